@@ -1,0 +1,72 @@
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace haptrial {
+
+/// Inclusive bounds of a number in a definition; `what` says them in words and units.
+struct Bounds {
+  double low{-std::numeric_limits<double>::infinity()};
+  double high{std::numeric_limits<double>::infinity()};
+  bool open_low{false};  // low itself is not allowed
+};
+
+inline constexpr Bounds kPositive{0.0, std::numeric_limits<double>::infinity(), true};
+inline constexpr Bounds kNonNegative{0.0, std::numeric_limits<double>::infinity(), false};
+inline constexpr Bounds kFraction{0.0, 1.0, false};
+
+/// A table of a definition file (TOML), read key by key. Each read checks presence, type and bounds
+/// and notes a problem instead of throwing, so that a definition is validated whole; finish() on the
+/// document then throws one InputError with a sentence for every problem:
+///
+///     training.toml:12: trajectory.speed is -1.6; allowed: a number above 0 [m/s]
+///
+/// Keys that nobody read are problems too. Not thread-safe; never on the servo thread.
+class Table {
+ public:
+  /// @throws InputError when the text is not TOML, with the line.
+  static Table parse(std::string_view text, std::string_view file_name);
+  /// @throws InputError when the file is absent, a directory, unreadable, empty or not TOML.
+  static Table load(const std::filesystem::path& file);
+
+  /// Required values. Where a problem is noted the smallest allowed finite value comes back.
+  /// @param unit  as written in the message, "m/s"; empty for a pure number.
+  double number(std::string_view key, const Bounds& bounds, std::string_view unit);
+  long integer(std::string_view key, long low, long high);
+  bool boolean(std::string_view key);
+  std::string text(std::string_view key);
+  std::string choice(std::string_view key, const std::vector<std::string>& allowed);
+  std::vector<double> numbers(std::string_view key, const Bounds& bounds, std::string_view unit);
+  std::vector<std::string> texts(std::string_view key);
+
+  /// A required table within this one; an absent one is noted and reads as empty without further
+  /// problems.
+  Table table(std::string_view key);
+  bool has(std::string_view key) const;
+  /// The keys of this table in the order of their names.
+  std::vector<std::string> keys() const;
+
+  /// Notes a problem of the values taken together, at the line of `key`.
+  /// @param found, allowed  complete the sentence "KEY is FOUND; allowed: ALLOWED".
+  void reject(std::string_view key, std::string_view found, std::string_view allowed);
+
+  /// @throws InputError with every problem of the whole document, one sentence a line.
+  void finish() const;
+
+  /// The text that was parsed, unchanged.
+  const std::string& source() const;
+
+ private:
+  struct Document;
+  struct Node;
+  Table(std::shared_ptr<Document> document, std::shared_ptr<Node> node);
+  std::shared_ptr<Document> document_;
+  std::shared_ptr<Node> node_;
+};
+
+}  // namespace haptrial

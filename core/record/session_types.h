@@ -1,0 +1,83 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace haptrial::record {
+
+/// What the participant's hand is going through within a pass.
+enum class Stage : std::uint8_t { kIdle, kApproach, kWait, kRun, kReturn };
+
+/// One servo tick: a row of /samples. Trivially copyable; goes through the block log.
+struct Sample {
+  std::uint64_t sequence{0};  // tick number from 0; a gap would be a loss
+  std::int64_t time_ns{0};    // since the session's first tick [ns]
+  Eigen::Vector3d position{Eigen::Vector3d::Zero()};  // p_W [m]
+  Eigen::Vector3d velocity{Eigen::Vector3d::Zero()};  // v_W [m/s]
+  Eigen::Vector3d force{Eigen::Vector3d::Zero()};     // commanded to the device, in W [N]
+  double applied_force{0.0};  // normal force that the participant applies, downward > 0 [N]
+  double target_force{0.0};   // [N]
+  std::int32_t pass{-1};      // row of /trials; -1 between passes
+  Stage stage{Stage::kIdle};
+  bool saturated{false};      // the envelope limited the force
+};
+
+enum class Phase : std::uint8_t { kTraining, kTest };
+enum class PassStatus : std::uint8_t { kCompleted, kAborted };
+
+/// One pass along the trajectory, a row of /trials. A trial is a training pass and a test pass.
+struct PassRow {
+  std::int32_t trial{0};       // from 1
+  std::string condition;       // training condition of the block: "haptic", "visual", "visuohaptic"
+  Phase phase{Phase::kTraining};
+  std::int32_t block{0};       // from 1
+  std::int32_t repetition{0};  // from 1 within the block
+  std::uint64_t stimulus_seed{0};
+  std::uint64_t first_sample{0};  // sequence numbers, both inclusive
+  std::uint64_t last_sample{0};
+  PassStatus status{PassStatus::kCompleted};
+};
+
+struct EventRow {
+  std::int64_t time_ns{0};
+  std::string kind;  // "session_start", "break", "overrun", "fault", ...
+  std::string text;
+};
+
+/// The stimulus of one block on a common time base, rows of /stimuli.
+struct StimulusRow {
+  std::int32_t block{0};
+  double time{0.0};                                   // since the start of the run [s]
+  Eigen::Vector3d position{Eigen::Vector3d::Zero()};  // ideal p_W [m]
+  double force{0.0};                                  // target normal force [N]
+};
+
+/// How the loop kept time. Histogram counts go with the bin edges below them.
+struct TimingRow {
+  std::int64_t bin_low_ns{0};
+  std::int64_t bin_high_ns{0};
+  std::uint64_t period_count{0};
+  std::uint64_t lateness_count{0};
+  std::uint64_t compute_count{0};
+};
+
+/// Root attributes of a session file.
+struct SessionInfo {
+  std::string program_version;
+  std::string program_commit;
+  std::string definition;       // the experiment definition as text, whole
+  std::string definition_name;  // file name it came from
+  std::string subject;          // identifier
+  std::uint64_t seed{0};
+  std::string device;           // device name
+  double device_max_force{0.0};         // [N]
+  double device_workspace_radius{0.0};  // [m]
+  std::string clock;            // "real" or "simulated"
+  double rate{1000.0};          // [Hz]
+  std::string start_utc;        // ISO 8601, "2026-11-20T09:30:00Z"
+  bool simulated{true};         // the participant is a virtual subject
+};
+
+}  // namespace haptrial::record
