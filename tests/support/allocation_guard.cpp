@@ -7,10 +7,13 @@ namespace {
 thread_local std::size_t allocations = 0;
 thread_local bool counting = false;
 
-void* counted(std::size_t size, std::size_t alignment) {
+void note() {
   if (counting) {
     ++allocations;
   }
+}
+
+void* counted(std::size_t size, std::size_t alignment) {
   void* p = alignment <= alignof(std::max_align_t)
                 ? std::malloc(size ? size : 1)
                 : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
@@ -20,6 +23,24 @@ void* counted(std::size_t size, std::size_t alignment) {
   return p;
 }
 }  // namespace
+
+// The linker sends the C allocation calls of every object of a test here (--wrap).
+extern "C" {
+void* __real_malloc(std::size_t);
+void* __real_calloc(std::size_t, std::size_t);
+void* __real_realloc(void*, std::size_t);
+void* __real_aligned_alloc(std::size_t, std::size_t);
+int __real_posix_memalign(void**, std::size_t, std::size_t);
+void* __wrap_malloc(std::size_t size) { return note(), __real_malloc(size); }
+void* __wrap_calloc(std::size_t n, std::size_t size) { return note(), __real_calloc(n, size); }
+void* __wrap_realloc(void* p, std::size_t size) { return note(), __real_realloc(p, size); }
+void* __wrap_aligned_alloc(std::size_t a, std::size_t size) {
+  return note(), __real_aligned_alloc(a, size);
+}
+int __wrap_posix_memalign(void** p, std::size_t a, std::size_t size) {
+  return note(), __real_posix_memalign(p, a, size);
+}
+}
 
 void* operator new(std::size_t size) { return counted(size, 1); }
 void* operator new[](std::size_t size) { return counted(size, 1); }

@@ -4,8 +4,8 @@
 
 namespace haptrial::test {
 
-/// Counts what the current thread takes from operator new while the guard lives; every form of
-/// operator new is replaced in the test binary.
+/// Counts the heap allocations of the current thread while the guard lives: every form of operator
+/// new, and the C allocation calls of every object linked into the test (Eigen calls malloc).
 class AllocationGuard {
  public:
   AllocationGuard();
