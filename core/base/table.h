@@ -3,13 +3,14 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace haptrial {
 
-/// Inclusive bounds of a number in a definition; `what` says them in words and units.
+/// Inclusive bounds of a number in a definition.
 struct Bounds {
   double low{-std::numeric_limits<double>::infinity()};
   double high{std::numeric_limits<double>::infinity()};
@@ -65,6 +66,11 @@ class Table {
   struct Document;
   struct Node;
   Table(std::shared_ptr<Document> document, std::shared_ptr<Node> node);
+  void note(unsigned line, const std::string& sentence);
+  template <class T>
+  std::optional<T> get(std::string_view key, std::string_view allowed);
+  template <class T>
+  std::vector<T> array(std::string_view key, const std::string& allowed);
   std::shared_ptr<Document> document_;
   std::shared_ptr<Node> node_;
 };

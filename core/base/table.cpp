@@ -1,0 +1,328 @@
+#include "core/base/table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+#define TOML_HEADER_ONLY 1
+#include <toml++/toml.h>
+
+#include "core/base/error.h"
+
+namespace haptrial {
+
+struct Table::Document {
+  std::string file_name;
+  std::string source;
+  toml::table root;
+  std::multimap<unsigned, std::string> problems;  // by line
+  std::vector<std::shared_ptr<Node>> nodes;       // tables that somebody asked for
+};
+
+struct Table::Node {
+  const toml::table* table;  // null where the definition lacks it
+  std::string path;          // "trajectory", "gains.plane"; empty for the root
+  std::set<std::string, std::less<>> read;
+
+  std::string full(std::string_view key) const {
+    return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
+  }
+};
+
+namespace {
+
+unsigned line_of(const toml::node* node) {
+  return node == nullptr ? 0u : static_cast<unsigned>(node->source().begin.line);
+}
+
+std::string words(const Bounds& bounds, std::string_view unit) {
+  const std::string in = unit.empty() ? "" : fmt::format(" [{}]", unit);
+  const bool low = std::isfinite(bounds.low);
+  const bool high = std::isfinite(bounds.high);
+  if (low && high) {
+    return fmt::format("a number {} {} and at most {}{}", bounds.open_low ? "above" : "of at least",
+                       bounds.low, bounds.high, in);
+  }
+  if (low) {
+    return fmt::format("a number {} {}{}", bounds.open_low ? "above" : "of at least", bounds.low, in);
+  }
+  if (high) {
+    return fmt::format("a number of at most {}{}", bounds.high, in);
+  }
+  return fmt::format("a finite number{}", in);
+}
+
+bool within(double x, const Bounds& b) {
+  return std::isfinite(x) && (b.open_low ? x > b.low : x >= b.low) && x <= b.high;
+}
+
+double fallback(const Bounds& b) {
+  if (std::isfinite(b.low)) {
+    return b.open_low ? (std::isfinite(b.high) ? b.high : b.low + 1.0) : b.low;
+  }
+  return std::isfinite(b.high) ? b.high : 0.0;
+}
+
+/// What stands in the file, short enough for a sentence.
+std::string shown(const toml::node& node) {
+  if (node.is_table()) {
+    return "a table";
+  }
+  std::ostringstream out;
+  node.visit([&](const auto& value) {
+    if constexpr (toml::is_array<decltype(value)>) {
+      out << "an array of " << value.size();
+    } else if constexpr (!toml::is_table<decltype(value)>) {
+      out << value;
+    }
+  });
+  std::string text = out.str();
+  if (text.size() > 60) {
+    text = text.substr(0, 57) + "...";
+  }
+  return text;
+}
+
+std::string joined(const std::vector<std::string>& items) {
+  return fmt::format("{}", fmt::join(items, ", "));
+}
+
+}  // namespace
+
+Table::Table(std::shared_ptr<Document> document, std::shared_ptr<Node> node)
+    : document_(std::move(document)), node_(std::move(node)) {}
+
+Table Table::parse(std::string_view text, std::string_view file_name) {
+  auto document = std::make_shared<Document>();
+  document->file_name = file_name;
+  document->source = text;
+  try {
+    document->root = toml::parse(document->source, document->file_name);
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}:{}: not valid TOML: {}", file_name, error.source().begin.line,
+                                 error.description()));
+  }
+  if (document->root.empty()) {
+    throw InputError(fmt::format("{}: the definition is empty; allowed: a TOML definition with at "
+                                 "least one key",
+                                 file_name));
+  }
+  auto root = std::make_shared<Node>(Node{&document->root, "", {}});
+  document->nodes.push_back(root);
+  return Table(document, root);
+}
+
+Table Table::load(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) {
+    throw InputError(fmt::format("{}: no such file; expected a definition (.toml)", file.string()));
+  }
+  if (!std::filesystem::is_regular_file(status)) {
+    throw InputError(fmt::format("{}: is {}; expected a definition file (.toml)", file.string(),
+                                 std::filesystem::is_directory(status) ? "a directory"
+                                                                       : "not a regular file"));
+  }
+  constexpr std::uintmax_t kLargest = 1 << 20;
+  if (const auto size = std::filesystem::file_size(file, error); size > kLargest) {
+    throw InputError(fmt::format("{}: {} bytes; a definition has at most {}", file.string(), size,
+                                 kLargest));
+  }
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  if (!(in && (in.peek() == std::ifstream::traits_type::eof() || text << in.rdbuf()))) {
+    throw InputError(fmt::format("{}: cannot be read", file.string()));
+  }
+  return parse(text.str(), file.string());
+}
+
+const std::string& Table::source() const { return document_->source; }
+
+bool Table::has(std::string_view key) const {
+  return node_->table != nullptr && node_->table->contains(key);
+}
+
+std::vector<std::string> Table::keys() const {
+  std::vector<std::string> names;
+  if (node_->table != nullptr) {
+    for (const auto& [key, value] : *node_->table) {
+      names.emplace_back(key.str());
+    }
+  }
+  return names;
+}
+
+void Table::note(unsigned line, const std::string& sentence) {
+  document_->problems.emplace(
+      line, line == 0 ? fmt::format("{}: {}", document_->file_name, sentence)
+                      : fmt::format("{}:{}: {}", document_->file_name, line, sentence));
+}
+
+void Table::reject(std::string_view key, std::string_view found, std::string_view allowed) {
+  const toml::node* node = node_->table == nullptr ? nullptr : node_->table->get(key);
+  note(node == nullptr ? line_of(node_->table) : line_of(node),
+       fmt::format("{} is {}; allowed: {}", node_->full(key), found, allowed));
+}
+
+/// The value under `key`, or nothing with the problem noted.
+template <class T>
+std::optional<T> Table::get(std::string_view key, std::string_view allowed) {
+  if (node_->table == nullptr) {
+    return std::nullopt;
+  }
+  node_->read.emplace(key);
+  const toml::node* node = node_->table->get(key);
+  if (node == nullptr) {
+    note(line_of(node_->table), fmt::format("{} is missing; allowed: {}", node_->full(key), allowed));
+    return std::nullopt;
+  }
+  std::optional<T> value;
+  if constexpr (std::is_same_v<T, double>) {
+    value = node->value<double>();
+    value = node->is_number() ? value : std::nullopt;
+  } else {
+    value = node->value_exact<T>();
+  }
+  if (!value) {
+    reject(key, shown(*node), allowed);
+  }
+  return value;
+}
+
+double Table::number(std::string_view key, const Bounds& bounds, std::string_view unit) {
+  const std::string allowed = words(bounds, unit);
+  const auto value = get<double>(key, allowed);
+  if (value && !within(*value, bounds)) {
+    reject(key, fmt::format("{}", *value), allowed);
+    return fallback(bounds);
+  }
+  return value.value_or(fallback(bounds));
+}
+
+long Table::integer(std::string_view key, long low, long high) {
+  const std::string allowed = fmt::format("a whole number from {} to {}", low, high);
+  const auto value = get<std::int64_t>(key, allowed);
+  if (value && (*value < low || *value > high)) {
+    reject(key, fmt::format("{}", *value), allowed);
+    return low;
+  }
+  return value.value_or(low);
+}
+
+bool Table::boolean(std::string_view key) { return get<bool>(key, "true or false").value_or(false); }
+
+std::string Table::text(std::string_view key) {
+  auto value = get<std::string>(key, "a text in quotes that is not empty");
+  if (value && value->empty()) {
+    reject(key, "an empty text", "a text in quotes that is not empty");
+  }
+  return value.value_or("");
+}
+
+std::string Table::choice(std::string_view key, const std::vector<std::string>& allowed) {
+  const auto value = get<std::string>(key, joined(allowed));
+  if (value && std::find(allowed.begin(), allowed.end(), *value) == allowed.end()) {
+    reject(key, fmt::format("'{}'", *value), joined(allowed));
+    return allowed.front();
+  }
+  return value.value_or(allowed.front());
+}
+
+/// Every element of the array under `key` as T; elements of another type are noted.
+template <class T>
+std::vector<T> Table::array(std::string_view key, const std::string& allowed) {
+  std::vector<T> values;
+  if (node_->table == nullptr) {
+    return values;
+  }
+  node_->read.emplace(key);
+  const toml::node* node = node_->table->get(key);
+  if (node == nullptr) {
+    note(line_of(node_->table), fmt::format("{} is missing; allowed: {}", node_->full(key), allowed));
+    return values;
+  }
+  const toml::array* array = node->as_array();
+  if (array == nullptr || array->empty()) {
+    reject(key, array == nullptr ? shown(*node) : "an empty array", allowed);
+    return values;
+  }
+  for (const toml::node& element : *array) {
+    if (const auto value = element.value<T>()) {
+      values.push_back(*value);
+    } else {
+      reject(key, fmt::format("an array with {}", shown(element)), allowed);
+    }
+  }
+  return values;
+}
+
+std::vector<double> Table::numbers(std::string_view key, const Bounds& bounds,
+                                   std::string_view unit) {
+  const std::string allowed = fmt::format("an array, each {}", words(bounds, unit));
+  auto values = array<double>(key, allowed);
+  for (const double value : values) {
+    if (!within(value, bounds)) {
+      reject(key, fmt::format("an array with {}", value), allowed);
+    }
+  }
+  return values;
+}
+
+std::vector<std::string> Table::texts(std::string_view key) {
+  return array<std::string>(key, "an array of texts in quotes");
+}
+
+Table Table::table(std::string_view key) {
+  const toml::table* inner = nullptr;
+  if (node_->table != nullptr) {
+    node_->read.emplace(key);
+    const toml::node* node = node_->table->get(key);
+    inner = node == nullptr ? nullptr : node->as_table();
+    if (node == nullptr) {
+      note(line_of(node_->table), fmt::format("the table [{}] is missing", node_->full(key)));
+    } else if (inner == nullptr) {
+      reject(key, shown(*node), "a table");
+    }
+  }
+  auto child = std::make_shared<Node>(Node{inner, node_->full(key), {}});
+  document_->nodes.push_back(child);
+  return Table(document_, child);
+}
+
+void Table::finish() const {
+  // The same table may have been asked for twice: a key is unknown when no reader knew it.
+  std::map<const toml::table*, std::set<std::string, std::less<>>> read;
+  for (const auto& node : document_->nodes) {
+    read[node->table].insert(node->read.begin(), node->read.end());
+  }
+  auto problems = document_->problems;
+  std::set<const toml::table*> done;
+  for (const auto& node : document_->nodes) {
+    if (node->table == nullptr || !done.insert(node->table).second) {
+      continue;
+    }
+    const auto& known = read[node->table];
+    for (const auto& [key, value] : *node->table) {
+      if (!known.contains(key.str())) {
+        problems.emplace(line_of(&value),
+                         fmt::format("{}:{}: {} is not a known key; allowed here: {}",
+                                     document_->file_name, line_of(&value), node->full(key.str()),
+                                     joined({known.begin(), known.end()})));
+      }
+    }
+  }
+  if (problems.empty()) {
+    return;
+  }
+  std::string sentences;
+  for (const auto& [line, sentence] : problems) {
+    sentences += (sentences.empty() ? "" : "\n") + sentence;
+  }
+  throw InputError(sentences);
+}
+
+}  // namespace haptrial
