@@ -1,8 +1,18 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 
 namespace haptrial::stimulus {
+
+/// What the participant has been told to do in this pass.
+enum class Instruction : std::uint8_t {
+  kRest,       // no task
+  kHoldPlane,  // keep the device in the plane against its force (haptic training)
+  kWatch,      // watch the target bar (visual training)
+  kMatch,      // make the applied bar as high as the target bar (visuohaptic training)
+  kRecall,     // apply the learnt pattern (test)
+};
 
 /// What the participant is to see at one instant. Written whole by the servo thread each tick; read
 /// by the renderer and by a virtual subject, so both see the same thing.
@@ -15,7 +25,10 @@ struct Presentation {
   bool show_saturation{false};   // small square: the device is at its force limit
   double target_force{0.0};      // [N]
   double applied_force{0.0};     // [N]
-  double progress{0.0};          // arc position along the trajectory, 0 to 1
+  double progress{0.0};          // time along the pass as a fraction, 0 before and 1 after the run
+  double pass_duration{0.0};     // of the run [s]
+  std::int32_t block{0};         // changes with the stimulus
+  Instruction instruction{Instruction::kRest};
 };
 
 }  // namespace haptrial::stimulus

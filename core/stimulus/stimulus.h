@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/stimulus/force_pattern.h"
+#include "core/stimulus/spatial_trajectory.h"
+
+namespace haptrial::stimulus {
+
+/// What one block teaches: a path for the hand and the force to be applied along it.
+struct Stimulus {
+  SpatialTrajectory path;
+  ForcePattern force;
+};
+
+/// The stimulus of a seed: same parameters and seed, same stimulus.
+Stimulus make_stimulus(const TrajectoryParameters& trajectory,
+                       const ForcePatternParameters& force_pattern, std::uint64_t seed);
+
+}  // namespace haptrial::stimulus
