@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace haptrial::analysis {
+
+/// Why a statistic does not exist for the data at hand; completes "not defined, because ...".
+struct Undefined {
+  std::string because;
+};
+
+/// A statistic, or the reason why it does not exist: degenerate data never become a NaN in a table.
+template <class T>
+class Defined {
+ public:
+  Defined(T value) : state_(std::move(value)) {}
+  Defined(Undefined reason) : state_(std::move(reason)) {}
+
+  explicit operator bool() const { return std::holds_alternative<T>(state_); }
+  const T& operator*() const { return std::get<T>(state_); }
+  const T* operator->() const { return &std::get<T>(state_); }
+
+  /// The reason; @throws std::bad_variant_access when there is a value.
+  const std::string& because() const { return std::get<Undefined>(state_).because; }
+
+ private:
+  std::variant<T, Undefined> state_;
+};
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,14 @@
+#pragma once
+
+namespace haptrial::analysis {
+
+/// P(F > f) with the given degrees of freedom, which need not be integers; all > 0.
+double f_upper_tail(double f, double df_numerator, double df_denominator);
+
+/// P(T > t) of Student's t; df > 0.
+double t_upper_tail(double t, double df);
+
+/// The t with P(T < t) = probability; probability inside (0, 1), df > 0.
+double t_quantile(double probability, double df);
+
+}  // namespace haptrial::analysis

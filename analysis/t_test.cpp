@@ -1,0 +1,126 @@
+#include "analysis/t_test.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+#include "analysis/descriptive.h"
+#include "analysis/distributions.h"
+
+namespace haptrial::analysis {
+namespace {
+
+double p_value(double t, double df, Tail tail) {
+  switch (tail) {
+    case Tail::kLess:
+      return t_upper_tail(-t, df);
+    case Tail::kGreater:
+      return t_upper_tail(t, df);
+    case Tail::kTwoSided:
+      break;
+  }
+  return std::min(1.0, 2.0 * t_upper_tail(std::abs(t), df));
+}
+
+TTest from_error(double difference, double standard_error, double df, Tail tail) {
+  const double t = difference / standard_error;
+  const double half = t_quantile(0.975, df) * standard_error;
+  return {t, df, p_value(t, df, tail), difference, difference - half, difference + half};
+}
+
+struct TwoSamples {
+  Moments a;
+  Moments b;
+};
+
+Defined<TwoSamples> two_samples(std::span<const double> a, std::span<const double> b) {
+  const auto first = moments(a);
+  const auto second = moments(b);
+  if (!first || !second) {
+    return Undefined{!first ? first.because() : second.because()};
+  }
+  if (first->squares == 0.0 && second->squares == 0.0) {
+    return Undefined{"the values do not vary within either sample"};
+  }
+  return TwoSamples{*first, *second};
+}
+
+}  // namespace
+
+Defined<TTest> student_t_test(std::span<const double> a, std::span<const double> b, Tail tail) {
+  const auto samples = two_samples(a, b);
+  if (!samples) {
+    return Undefined{samples.because()};
+  }
+  const auto& [ma, mb] = *samples;
+  const auto na = static_cast<double>(ma.count);
+  const auto nb = static_cast<double>(mb.count);
+  const double df = na + nb - 2.0;  // > 0: single values do not vary
+  const double pooled = (ma.squares + mb.squares) / df;
+  return from_error(mean_difference(ma, mb), std::sqrt(pooled * (1.0 / na + 1.0 / nb)), df, tail);
+}
+
+Defined<TTest> welch_t_test(std::span<const double> a, std::span<const double> b, Tail tail) {
+  const auto samples = two_samples(a, b);
+  if (!samples) {
+    return Undefined{samples.because()};
+  }
+  const auto& [ma, mb] = *samples;
+  if (ma.count < 2 || mb.count < 2) {
+    return Undefined{"a sample has a single value"};
+  }
+  const auto na = static_cast<double>(ma.count);
+  const auto nb = static_cast<double>(mb.count);
+  const double va = ma.variance() / na;
+  const double vb = mb.variance() / nb;
+  const double df = (va + vb) * (va + vb) / (va * va / (na - 1.0) + vb * vb / (nb - 1.0));
+  return from_error(mean_difference(ma, mb), std::sqrt(va + vb), df, tail);
+}
+
+Defined<TTest> paired_t_test(std::span<const double> a, std::span<const double> b, Tail tail) {
+  if (a.size() != b.size()) {
+    throw std::invalid_argument("paired_t_test: the samples differ in length");
+  }
+  std::vector<double> differences(a.size());
+  std::transform(a.begin(), a.end(), b.begin(), differences.begin(), std::minus<>{});
+  const auto m = moments(differences);
+  if (!m) {
+    return Undefined{m.because()};
+  }
+  if (m->count < 2) {
+    return Undefined{"there are fewer than two pairs"};
+  }
+  double largest = 0.0;  // rounding of the differences is relative to the values, not to them
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    largest = std::max({largest, std::abs(a[i]), std::abs(b[i])});
+  }
+  const auto n = static_cast<double>(m->count);
+  const double unit = 4.0 * std::numeric_limits<double>::epsilon() * largest;
+  if (m->squares <= n * unit * unit) {
+    return Undefined{"the differences do not vary"};
+  }
+  return from_error(m->mean(), std::sqrt(m->variance() / n), n - 1.0, tail);
+}
+
+std::vector<double> holm_adjusted(std::span<const double> p_values) {
+  if (!std::all_of(p_values.begin(), p_values.end(),
+                   [](double p) { return p >= 0.0 && p <= 1.0; })) {
+    throw std::invalid_argument("holm_adjusted: a p value lies outside [0, 1]");
+  }
+  std::vector<std::size_t> order(p_values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t i, std::size_t j) { return p_values[i] < p_values[j]; });
+  std::vector<double> adjusted(p_values.size());
+  double running = 0.0;
+  for (std::size_t rank = 0; rank < order.size(); ++rank) {
+    const auto hypotheses_left = static_cast<double>(order.size() - rank);
+    running = std::max(running, std::min(1.0, hypotheses_left * p_values[order[rank]]));
+    adjusted[order[rank]] = running;
+  }
+  return adjusted;
+}
+
+}  // namespace haptrial::analysis

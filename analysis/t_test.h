@@ -1,0 +1,44 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "analysis/defined.h"
+
+namespace haptrial::analysis {
+
+/// The alternative to equal means.
+enum class Tail {
+  kTwoSided,
+  kLess,     // mean(a) < mean(b)
+  kGreater,  // mean(a) > mean(b)
+};
+
+struct TTest {
+  double t{0.0};           // the sign of mean(a) - mean(b)
+  double df{0.0};          // not an integer for Welch's test
+  double p{0.0};           // for the tail asked for
+  double difference{0.0};  // mean(a) - mean(b)
+  double low{0.0};         // two-sided 95 % interval of the difference
+  double high{0.0};
+};
+
+/// Student's test with pooled variance.
+/// Undefined with an empty sample, fewer than three values, no variance, or a value not finite.
+Defined<TTest> student_t_test(std::span<const double> a, std::span<const double> b, Tail tail);
+
+/// Welch's test; variances may differ. Undefined with fewer than two values in either sample, no
+/// variance in both, or a value that is not finite.
+Defined<TTest> welch_t_test(std::span<const double> a, std::span<const double> b, Tail tail);
+
+/// Student's test of the differences a[i] - b[i]. Undefined with fewer than two pairs, equal
+/// differences, or a value that is not finite.
+/// @throws std::invalid_argument when the lengths differ.
+Defined<TTest> paired_t_test(std::span<const double> a, std::span<const double> b, Tail tail);
+
+/// Holm's step-down adjustment of p values tested together, in the order given.
+/// Source: Holm 1979, Scandinavian Journal of Statistics 6.
+/// @throws std::invalid_argument when a value is outside [0, 1].
+std::vector<double> holm_adjusted(std::span<const double> p_values);
+
+}  // namespace haptrial::analysis
