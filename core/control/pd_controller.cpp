@@ -1,0 +1,38 @@
+#include "core/control/pd_controller.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "core/base/table.h"
+
+namespace haptrial::control {
+
+PdGains read_pd_gains(Table& table) {
+  PdGains gains;
+  gains.stiffness = table.number("stiffness", {0.0, 1e5}, "N/m");
+  gains.damping = table.number("damping", {0.0, 1e4}, "N·s/m");
+  return gains;
+}
+
+PdController::PdController(const PdGains& gains) : gains_(gains) {
+  if (!(gains.stiffness >= 0.0) || !std::isfinite(gains.stiffness)) {
+    throw std::invalid_argument("PdController: stiffness must be finite and at least 0");
+  }
+  if (!(gains.damping >= 0.0) || !std::isfinite(gains.damping)) {
+    throw std::invalid_argument("PdController: damping must be finite and at least 0");
+  }
+}
+
+Eigen::Vector3d PdController::force(const PointState& target,
+                                    const PointState& tip) const noexcept {
+  const Eigen::Vector3d f = gains_.stiffness * (target.position - tip.position) +
+                            gains_.damping * (target.velocity - tip.velocity);
+  return f.allFinite() ? f : Eigen::Vector3d::Zero();
+}
+
+Eigen::Vector3d saturate(const Eigen::Vector3d& force, double limit) noexcept {
+  const double length = force.norm();
+  return length > limit ? Eigen::Vector3d(force * (limit / length)) : force;
+}
+
+}  // namespace haptrial::control

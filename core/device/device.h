@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+
+#include "core/base/point_state.h"
+
+namespace haptrial::device {
+
+/// What a device can do, for the session file and for checks before a session.
+struct DeviceInfo {
+  std::string name;
+  double max_force{12.0};          // sustained [N]
+  double workspace_radius{0.075};  // about the origin [m]
+  bool simulated{false};           // no hardware and no person behind it
+};
+
+/// One reading of a device, in the world frame W (docs/conventions.md).
+struct DeviceReading {
+  PointState tool;           // tool tip
+  std::uint32_t buttons{0};  // bit i: button i is pressed
+};
+
+/// An impedance device: the position is read, the force is commanded.
+/// Opened by its constructor, which throws; read() and write() belong to the servo thread and never
+/// throw, allocate or lock.
+class Device {
+ public:
+  virtual ~Device() = default;
+  virtual const DeviceInfo& info() const noexcept = 0;
+  /// @returns false when the device did not answer; `reading` is then unchanged.
+  virtual bool read(DeviceReading& reading) noexcept = 0;
+  /// @param force  on the tool tip, in W [N].
+  /// @returns false when the device refused it.
+  virtual bool write(const Eigen::Vector3d& force) noexcept = 0;
+};
+
+}  // namespace haptrial::device

@@ -1,0 +1,119 @@
+#include "core/device/envelope.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/base/table.h"
+
+namespace haptrial::device {
+
+EnvelopeLimits read_envelope_limits(Table& table) {
+  EnvelopeLimits limits;
+  limits.max_force = table.number("max_force", {0.0, 100.0, true}, "N");
+  limits.max_force_rate = table.number("max_force_rate", {0.0, 1e6, true}, "N/s");
+  limits.workspace_radius = table.number("workspace_radius", {0.0, 2.0, true}, "m");
+  limits.max_speed = table.number("max_speed", {0.0, 20.0, true}, "m/s");
+  limits.max_jump = table.number("max_jump", {0.0, 0.1, true}, "m");
+  limits.ramp_in = table.number("ramp_in", {0.0, 10.0}, "s");
+  return limits;
+}
+
+const char* describe(Fault fault) noexcept {
+  switch (fault) {
+    case Fault::kNone:
+      return "no fault";
+    case Fault::kReadFailed:
+      return "the device did not answer";
+    case Fault::kWriteFailed:
+      return "the device refused the force";
+    case Fault::kPositionNotFinite:
+      return "the device gave a position that is not a number";
+    case Fault::kJump:
+      return "the position jumped further between two ticks than a hand can move";
+    case Fault::kSpeed:
+      return "the tool moved faster than the envelope allows";
+    case Fault::kWorkspace:
+      return "the tool left the workspace";
+    case Fault::kForceNotFinite:
+      return "the protocol asked for a force that is not a number";
+    case Fault::kForceTooLarge:
+      return "the protocol asked for more force than the envelope allows";
+    case Fault::kEmergencyStop:
+      return "emergency stop";
+  }
+  return "unknown fault";
+}
+
+Envelope::Envelope(const EnvelopeLimits& limits) : limits_(limits) {
+  const bool positive = limits.max_force > 0.0 && limits.max_force_rate > 0.0 &&
+                        limits.workspace_radius > 0.0 && limits.max_speed > 0.0 &&
+                        limits.max_jump > 0.0 && limits.ramp_in >= 0.0;
+  if (!positive) {
+    throw std::invalid_argument("Envelope: every limit must be above 0");
+  }
+}
+
+Fault Envelope::check(bool read_ok, const DeviceReading& reading) noexcept {
+  if (!read_ok) {
+    trip(Fault::kReadFailed);
+    return fault_;
+  }
+  const Eigen::Vector3d& p = reading.tool.position;
+  if (!p.allFinite() || !reading.tool.velocity.allFinite()) {
+    trip(Fault::kPositionNotFinite);
+    return fault_;
+  }
+  if (has_position_ && (p - last_position_).norm() > limits_.max_jump) {
+    trip(Fault::kJump);
+  } else if (reading.tool.velocity.norm() > limits_.max_speed) {
+    trip(Fault::kSpeed);
+  } else if (p.norm() > limits_.workspace_radius) {
+    trip(Fault::kWorkspace);
+  }
+  last_position_ = p;
+  has_position_ = true;
+  return fault_;
+}
+
+Eigen::Vector3d Envelope::limit(const Eigen::Vector3d& wanted, double dt) noexcept {
+  // A hair above the limit is rounding of a force that was saturated to it.
+  constexpr double kRounding = 1.0 + 1e-9;
+  if (!wanted.allFinite() || !(dt > 0.0)) {
+    trip(Fault::kForceNotFinite);
+  } else if (wanted.norm() > limits_.max_force * kRounding) {
+    trip(Fault::kForceTooLarge);
+  }
+  if (fault_ != Fault::kNone) {
+    last_force_.setZero();
+    return last_force_;
+  }
+  since_start_ += dt;
+  const double share = limits_.ramp_in > 0.0 ? std::min(1.0, since_start_ / limits_.ramp_in) : 1.0;
+  Eigen::Vector3d target = share * wanted;
+  const double length = target.norm();
+  if (length > limits_.max_force) {
+    target *= limits_.max_force / length;
+  }
+  const Eigen::Vector3d change = target - last_force_;
+  const double step = change.norm();
+  const double allowed = limits_.max_force_rate * dt;
+  last_force_ = step > allowed ? Eigen::Vector3d(last_force_ + change * (allowed / step)) : target;
+  return last_force_;
+}
+
+void Envelope::trip(Fault fault) noexcept {
+  if (fault_ == Fault::kNone) {  // the first fault is the cause
+    fault_ = fault;
+    last_force_.setZero();
+  }
+}
+
+void Envelope::reset() noexcept {
+  fault_ = Fault::kNone;
+  last_force_.setZero();
+  has_position_ = false;
+  since_start_ = 0.0;
+}
+
+}  // namespace haptrial::device

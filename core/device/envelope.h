@@ -1,0 +1,76 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "core/device/device.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::device {
+
+/// Bounds that no protocol may leave. A device's own limits apply as well.
+struct EnvelopeLimits {
+  double max_force{12.0};         // > 0 [N]
+  double max_force_rate{4000.0};  // > 0 [N/s]
+  double workspace_radius{0.075}; // about the origin > 0 [m]
+  double max_speed{1.0};          // > 0 [m/s]
+  double max_jump{0.005};         // between two ticks > 0 [m]
+  double ramp_in{0.2};            // force grows from zero over this time after a start >= 0 [s]
+};
+
+/// Reads the keys of an [envelope] table.
+EnvelopeLimits read_envelope_limits(Table& table);
+
+enum class Fault : std::uint8_t {
+  kNone,
+  kReadFailed,
+  kWriteFailed,
+  kPositionNotFinite,
+  kJump,
+  kSpeed,
+  kWorkspace,
+  kForceNotFinite,
+  kForceTooLarge,
+  kEmergencyStop,
+};
+
+/// One sentence, such as "the tool left the workspace".
+const char* describe(Fault fault) noexcept;
+
+/// Stands between every protocol and every device on every tick. The force that leaves it is finite,
+/// never longer than max_force and never changes faster than max_force_rate, except that a fault
+/// brings it to zero in the same tick; it then stays zero until reset().
+/// Servo thread: no allocation, lock, I/O or throw.
+class Envelope {
+ public:
+  /// @throws std::invalid_argument when a limit is not above its bound.
+  explicit Envelope(const EnvelopeLimits& limits);
+
+  /// Judges a reading. @param read_ok  what Device::read returned. @returns the fault in force.
+  Fault check(bool read_ok, const DeviceReading& reading) noexcept;
+
+  /// @param wanted  the protocol's force [N]; more than max_force is a fault of the protocol, which
+  ///                is expected to saturate by itself.
+  /// @param dt      since the previous tick [s]
+  Eigen::Vector3d limit(const Eigen::Vector3d& wanted, double dt) noexcept;
+
+  /// Latches a fault from outside (a failed write, an emergency stop).
+  void trip(Fault fault) noexcept;
+  /// Clears the fault; the force ramps in again from zero.
+  void reset() noexcept;
+
+  Fault fault() const noexcept { return fault_; }
+
+ private:
+  EnvelopeLimits limits_;
+  Fault fault_{Fault::kNone};
+  Eigen::Vector3d last_force_{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d last_position_{Eigen::Vector3d::Zero()};
+  bool has_position_{false};
+  double since_start_{0.0};
+};
+
+}  // namespace haptrial::device

@@ -1,0 +1,69 @@
+#include "core/device/virtual_device.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "core/base/table.h"
+
+namespace haptrial::device {
+
+VirtualDeviceParameters read_virtual_device_parameters(Table& table) {
+  VirtualDeviceParameters p;
+  p.max_force = table.number("max_force", {0.0, 100.0, true}, "N");
+  p.workspace_radius = table.number("workspace_radius", {0.0, 2.0, true}, "m");
+  p.position_quantum = table.number("position_quantum", {0.0, 1e-3}, "m");
+  p.velocity_window = static_cast<int>(table.integer("velocity_window", 2, 64));
+  return p;
+}
+
+VirtualDevice::VirtualDevice(const VirtualDeviceParameters& parameters, HandlePhysics& physics,
+                             double rate)
+    : parameters_(parameters),
+      info_{"virtual", parameters.max_force, parameters.workspace_radius, true},
+      physics_(physics),
+      period_(1.0 / rate) {
+  const int n = parameters.velocity_window;
+  if (n < 2 || n > kMaxWindow || !(rate > 0.0) || !(parameters.max_force > 0.0) ||
+      !(parameters.position_quantum >= 0.0)) {
+    throw std::invalid_argument(
+        "VirtualDevice: rate and max_force must be above 0, position_quantum at least 0 and "
+        "velocity_window from 2 to 64");
+  }
+  slope_gain_ = 12.0 / (static_cast<double>(n) * (n * n - 1.0) * period_);
+  history_.fill(Eigen::Vector3d::Zero());
+  for (int i = 0; i < n; ++i) {
+    sense(physics_.state().position);
+  }
+}
+
+void VirtualDevice::sense(const Eigen::Vector3d& position) noexcept {
+  const double q = parameters_.position_quantum;
+  newest_ = (newest_ + 1) % parameters_.velocity_window;
+  for (int axis = 0; axis < 3; ++axis) {
+    history_[newest_][axis] = q > 0.0 ? q * std::nearbyint(position[axis] / q) : position[axis];
+  }
+}
+
+bool VirtualDevice::read(DeviceReading& reading) noexcept {
+  const int n = parameters_.velocity_window;
+  Eigen::Vector3d slope = Eigen::Vector3d::Zero();
+  for (int age = 0; age < n; ++age) {
+    slope += (0.5 * (n - 1) - age) * history_[(newest_ - age + n) % n];
+  }
+  reading.tool.position = history_[newest_];
+  reading.tool.velocity = slope_gain_ * slope;
+  reading.buttons = 0;
+  return true;
+}
+
+bool VirtualDevice::write(const Eigen::Vector3d& force) noexcept {
+  const double length = pending_force_.norm();
+  if (length > parameters_.max_force) {
+    pending_force_ *= parameters_.max_force / length;
+  }
+  sense(physics_.step(pending_force_, period_).position);
+  pending_force_ = force;
+  return true;
+}
+
+}  // namespace haptrial::device

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+
+#include "core/device/device.h"
+#include "core/device/handle_physics.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::device {
+
+/// Electronics of a 3-DOF impedance device; the defaults are the published figures of the omega.3.
+struct VirtualDeviceParameters {
+  double max_force{12.0};          // motors saturate here > 0 [N]
+  double workspace_radius{0.075};  // > 0 [m]
+  double position_quantum{1e-5};   // resolution of the encoders >= 0 [m]
+  int velocity_window{8};          // readings in the slope that estimates velocity, 2 to 64
+};
+
+/// Reads the keys of a [device] table.
+VirtualDeviceParameters read_virtual_device_parameters(Table& table);
+
+/// A device without hardware. Each write() advances the physics by one period; the force of a tick
+/// acts during the next one (one sample of delay), as it does through a bus.
+/// Velocity is the least-squares slope over the last readings, as drivers estimate it.
+class VirtualDevice final : public Device {
+ public:
+  /// @param physics  outlives the device.
+  /// @param rate     of the servo loop > 0 [Hz]
+  /// @throws std::invalid_argument naming a parameter out of its bounds.
+  VirtualDevice(const VirtualDeviceParameters& parameters, HandlePhysics& physics, double rate);
+
+  const DeviceInfo& info() const noexcept override { return info_; }
+  bool read(DeviceReading& reading) noexcept override;
+  bool write(const Eigen::Vector3d& force) noexcept override;
+
+ private:
+  static constexpr int kMaxWindow = 64;
+  void sense(const Eigen::Vector3d& position) noexcept;
+
+  VirtualDeviceParameters parameters_;
+  DeviceInfo info_;
+  HandlePhysics& physics_;
+  double period_;
+  double slope_gain_;  // of the least-squares slope [1/s]
+  Eigen::Vector3d pending_force_{Eigen::Vector3d::Zero()};
+  std::array<Eigen::Vector3d, kMaxWindow> history_;  // ring of readings
+  int newest_{0};
+};
+
+}  // namespace haptrial::device
