@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace haptrial::render {
+
+/// A picture; the first byte is the red of the top left pixel.
+struct Image {
+  int width{0};                   // [px]
+  int height{0};                  // [px]
+  std::vector<std::uint8_t> rgb;  // (height x width x 3), rows from the top
+};
+
+/// Writes a PNG file whole or not at all: the bytes go to a temporary file beside `path`, which
+/// then takes its name; an older picture there is replaced.
+/// @throws InputError when `path` cannot be written to; RunError when writing fails half-way, as on
+/// a full disk; std::invalid_argument when the image's size and bytes do not agree.
+void write_png(const std::filesystem::path& path, const Image& image);
+
+}  // namespace haptrial::render
