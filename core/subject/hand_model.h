@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/device/handle_physics.h"
+
+namespace haptrial::subject {
+
+/// What the nervous system asks of the hand for the next step.
+struct HandCommand {
+  double press{0.0};           // motor command, downward > 0 [N]
+  bool holds_posture{false};   // keep the height stiffly, or yield to the guide
+  Eigen::Vector3d tremor{Eigen::Vector3d::Zero()};  // force in W [N]
+};
+
+/// A hand on the handle of a virtual device. Servo thread.
+class HandModel : public device::HandlePhysics {
+ public:
+  /// Holds until the next command.
+  virtual void command(const HandCommand& command) noexcept = 0;
+};
+
+}  // namespace haptrial::subject

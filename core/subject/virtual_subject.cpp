@@ -1,0 +1,129 @@
+#include "core/subject/virtual_subject.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/subject/smooth_noise.h"
+
+namespace haptrial::subject {
+
+using stimulus::Instruction;
+using stimulus::Presentation;
+
+VirtualSubject::VirtualSubject(const SubjectParameters& person,
+                               const HandParameters& hand_parameters, HandModel& hand,
+                               std::uint64_t seed, double step)
+    : person_(person),
+      hand_(hand),
+      step_(step),
+      muscle_lag_(hand_parameters.excitation_time + hand_parameters.activation_time),
+      random_(seed, "mind"),
+      motor_(person, step, RandomStream(seed, "motor")),
+      bar_(person, random_) {}
+
+void VirtualSubject::observe(const Presentation& seen, const Eigen::Vector3d& device_force,
+                             double dt) noexcept {
+  Sensed now;
+  now.height = seen.show_target_bar ? seen.target_force : 0.0;
+  now.mismatch = seen.show_applied_bar ? seen.target_force - seen.applied_force : 0.0;
+  now.felt = device_force.y();
+  past_[++now_ % kDelayLine] = now;
+
+  const bool running = seen.progress > 0.0 && seen.progress < 1.0;
+  if (running && !in_run_) {
+    begin_pass(seen);
+  }
+  if (running) {
+    gather(seen, now);
+  } else if (in_run_) {
+    end_pass();
+  }
+  in_run_ = running;
+
+  HandCommand command;
+  command.press = running ? motor_.press(intended_press(seen, dt)) : 0.0;
+  command.holds_posture = running && seen.instruction == Instruction::kHoldPlane;
+  command.tremor = motor_.tremor();
+  hand_.command(command);
+}
+
+void VirtualSubject::begin_pass(const Presentation& seen) noexcept {
+  pass_duration_ = seen.pass_duration;
+  if (seen.block != block_) {
+    block_ = seen.block;
+    memory_.clear();
+    bar_.relax(person_.calibration_loss);
+  }
+  memory_.drift(person_.forgetting, person_.memory_correlation / pass_duration_, random_);
+  exposure_.clear();
+  correction_ = 0.0;
+  produced_scale_ = std::exp(person_.production_bias * random_.normal());
+  const double knot_time = pass_duration_ / ForceProfile::kKnots;
+  SmoothNoise timing(knot_time, person_.timing_correlation);
+  timing.restart(random_);
+  for (double& shift : warp_) {
+    shift = person_.timing_error * timing.next(random_);
+  }
+}
+
+void VirtualSubject::gather(const Presentation& seen, const Sensed& now) noexcept {
+  const bool felt_teaches =
+      seen.instruction == Instruction::kHoldPlane || seen.instruction == Instruction::kMatch;
+  if (seen.show_target_bar) {
+    exposure_.see(seen.progress, now.height);
+  }
+  if (felt_teaches) {
+    exposure_.feel(seen.progress, now.felt, now.mismatch);
+  }
+}
+
+void VirtualSubject::end_pass() noexcept {
+  if (!exposure_.empty()) {
+    memory_.learn(exposure_.perceived(person_, bar_, person_.memory_correlation / pass_duration_,
+                                      random_));
+    exposure_.clear();
+  }
+}
+
+double VirtualSubject::intended_press(const Presentation& seen, double dt) noexcept {
+  switch (seen.instruction) {
+    case Instruction::kHoldPlane:  // oppose what is felt; the posture takes the rest
+      return delayed(person_.haptic_delay).felt;
+    case Instruction::kMatch:
+      return match_bars(dt);
+    case Instruction::kRecall:
+      return recall(seen);
+    case Instruction::kRest:
+    case Instruction::kWatch:
+      break;
+  }
+  return 0.0;
+}
+
+double VirtualSubject::match_bars(double dt) noexcept {
+  // Follows the target bar ahead by its own delay, and removes what the bars still show in about a
+  // second; faster than that, a delay of 0.2 s would make the hand oscillate.
+  constexpr double kCorrectionTime = 1.0;  // [s]
+  constexpr double kSlopeSpan = 0.1;       // over which the bar's speed is seen [s]
+  const Sensed& seen = delayed(person_.visual_delay);
+  const Sensed& before = delayed(person_.visual_delay + kSlopeSpan);
+  const double lead = person_.visual_delay + muscle_lag_ + 0.5 * kSlopeSpan;
+  const double ahead = seen.height + lead * (seen.height - before.height) / kSlopeSpan;
+  const double gain = bar_.gain();
+  correction_ += gain * seen.mismatch * dt / kCorrectionTime;
+  return std::max(0.0, gain * ahead + correction_);
+}
+
+double VirtualSubject::recall(const Presentation& seen) const noexcept {
+  const double u = std::clamp(seen.progress * ForceProfile::kKnots - 0.5, 0.0,
+                              ForceProfile::kKnots - 1.0);
+  const double ahead = muscle_lag_ + warp_[static_cast<int>(u)];
+  return std::max(0.0, produced_scale_ * memory_.at(seen.progress + ahead / pass_duration_));
+}
+
+const VirtualSubject::Sensed& VirtualSubject::delayed(double delay) const noexcept {
+  const auto ticks = static_cast<std::uint32_t>(std::min(delay / step_, kDelayLine - 1.0));
+  return past_[(now_ - ticks) % kDelayLine];
+}
+
+}  // namespace haptrial::subject

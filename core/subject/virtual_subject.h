@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/stimulus/observer.h"
+#include "core/subject/force_memory.h"
+#include "core/subject/hand_model.h"
+#include "core/subject/hand_parameters.h"
+#include "core/subject/motor_noise.h"
+#include "core/subject/perception.h"
+
+namespace haptrial::subject {
+
+/// A simulated participant: sees what the screen shows, feels what the device applies, remembers and
+/// acts through a hand. Knows the instruction, not the condition and not the target.
+/// docs/algorithms/virtual-subject.md says what is assumed and what follows.
+class VirtualSubject final : public stimulus::Observer {
+ public:
+  /// @param hand  outlives the subject.
+  /// @param step  servo period > 0 [s]
+  VirtualSubject(const SubjectParameters& person, const HandParameters& hand_parameters,
+                 HandModel& hand, std::uint64_t seed, double step);
+
+  void observe(const stimulus::Presentation& seen, const Eigen::Vector3d& device_force,
+               double dt) noexcept override;
+
+ private:
+  static constexpr int kDelayLine = 4096;  // ticks; longer delays are cut to it
+
+  struct Sensed {
+    double height{0.0};    // target bar [N of its scale]
+    double mismatch{0.0};  // target bar minus applied bar [N of its scale]
+    double felt{0.0};      // [N]
+  };
+
+  void begin_pass(const stimulus::Presentation& seen) noexcept;
+  void gather(const stimulus::Presentation& seen, const Sensed& now) noexcept;
+  void end_pass() noexcept;
+  double intended_press(const stimulus::Presentation& seen, double dt) noexcept;
+  double match_bars(double dt) noexcept;
+  double recall(const stimulus::Presentation& seen) const noexcept;
+  const Sensed& delayed(double delay) const noexcept;
+
+  SubjectParameters person_;
+  HandModel& hand_;
+  double step_;
+  double muscle_lag_;  // a recalled force is commanded this much ahead [s]
+  RandomStream random_;
+  MotorNoise motor_;
+  BarCalibration bar_;
+  ForceMemory memory_;
+  Exposure exposure_;
+
+  std::array<Sensed, kDelayLine> past_{};
+  std::uint32_t now_{0};
+  std::array<double, ForceProfile::kKnots> warp_{};  // of recall [s]
+  double produced_scale_{1.0};
+  double correction_{0.0};  // of the press, learnt from the bars [N]
+  double pass_duration_{1.0};
+  std::int32_t block_{0};
+  bool in_run_{false};
+};
+
+}  // namespace haptrial::subject
