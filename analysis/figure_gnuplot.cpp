@@ -1,0 +1,237 @@
+#include "analysis/figure_gnuplot.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "core/base/error.h"
+
+namespace haptrial::analysis {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kScriptName = "figures.gp";
+constexpr const char* kLogName = "gnuplot.log";
+constexpr int kWidth = 900;  // of the SVG [px]; the PNG has twice as many
+
+// A gnuplot string in which nothing is special: single quotes know no escapes but ''.
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) {
+    result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    if (c == '\'') {
+      result += '\'';
+    }
+  }
+  return result + "'";
+}
+
+std::vector<const std::vector<double>*> columns(const Series& s) {
+  switch (s.mark) {
+    case Mark::kBars:
+    case Mark::kLinkedBars:
+      return {&s.x, &s.y, &s.low, &s.high};
+    case Mark::kSegments:
+      return {&s.x, &s.y, &s.x2, &s.y2};
+    case Mark::kLine:
+    case Mark::kPoints:
+      break;
+  }
+  return {&s.x, &s.y};
+}
+
+void check(const Figure& figure) {
+  const auto allowed = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; };
+  if (figure.name.empty() || !std::all_of(figure.name.begin(), figure.name.end(), allowed)) {
+    throw std::invalid_argument("gnuplot_script: a figure's name is not a plain file name");
+  }
+  for (const auto& s : figure.series) {
+    for (const auto* column : columns(s)) {
+      if (column->size() != s.x.size()) {
+        throw std::invalid_argument("gnuplot_script: columns of a series differ in length");
+      }
+    }
+  }
+}
+
+std::string data_block(const Series& series, std::size_t index) {
+  const auto used = columns(series);
+  std::string text = fmt::format("$s{} << EOD\n", index);
+  for (std::size_t row = 0; row < series.x.size(); ++row) {
+    for (const auto* column : used) {
+      text += fmt::format("{:.6g} ", (*column)[row]);
+    }
+    text += '\n';
+  }
+  return text + "EOD\n";
+}
+
+std::string plot_element(const Series& series, std::size_t index) {
+  const Look& look = series.look;
+  const auto line = fmt::format("lc rgb '{}' lw {:.3g} dt {}", look.color, look.width, look.dash);
+  const auto point = fmt::format("pt {} ps {:.3g}", look.point, look.point_size);
+  const auto title =
+      series.label.empty() ? std::string("notitle") : "title " + quoted(series.label);
+  switch (series.mark) {
+    case Mark::kLine:
+      return fmt::format("$s{} using 1:2 with lines {} {}", index, line, title);
+    case Mark::kPoints:
+      return fmt::format("$s{} using 1:2 with points {} {} {}", index, line, point, title);
+    case Mark::kSegments:
+      return fmt::format("$s{} using 1:2:($3-$1):($4-$2) with vectors nohead {} {}", index, line,
+                         title);
+    case Mark::kBars:
+      return fmt::format("$s{} using 1:2:3:4 with yerrorbars {} {} {}", index, line, point, title);
+    case Mark::kLinkedBars:
+      break;
+  }
+  return fmt::format("$s{} using 1:2:3:4 with yerrorlines {} {} {}", index, line, point, title);
+}
+
+std::string range(const char* axis, const std::optional<Range>& limits) {
+  return limits ? fmt::format("set {}range [{:.6g}:{:.6g}]\n", axis, limits->first, limits->second)
+                : fmt::format("set {}range [*:*]\n", axis);
+}
+
+std::string axes(const Figure& figure) {
+  std::string text =
+      fmt::format("set xlabel {}\nset ylabel {}\n", quoted(figure.x_label), quoted(figure.y_label));
+  text += range("x", figure.x_range) + range("y", figure.y_range);
+  if (!figure.x_names.empty()) {
+    std::string names;
+    for (const auto& [at, name] : figure.x_names) {
+      names += fmt::format("{}{} {:.6g}", names.empty() ? "" : ", ", quoted(name), at);
+    }
+    text += "set xtics (" + names + ")\n";
+  }
+  return text;
+}
+
+std::string headings(const Figure& figure) {
+  auto text =
+      fmt::format("set label 1 {} at graph 0, graph 1 offset 0,1.2 left font ',16' noenhanced\n",
+                  quoted(figure.title));
+  if (figure.simulated) {
+    text +=
+        "set label 2 'SIMULATED PARTICIPANTS' at graph 1, graph 1 offset 0,1.2 right "
+        "font ',12' textcolor rgb '#b00020' noenhanced\n";
+  }
+  return text;
+}
+
+constexpr const char* kStyle = R"(reset
+set encoding utf8
+set decimalsign '.'
+set border 3 lc rgb '#444444' lw 1
+set tics nomirror out scale 0.6
+set grid ytics lc rgb '#dddddd' lw 1 dt 1
+set key below center horizontal samplen 3 spacing 1.2 noenhanced
+set bars 1.2
+set tmargin 3
+set rmargin 4
+)";
+
+// What a complete file of the kind ends with.
+bool ends_with(const fs::path& file, const std::string& ending) {
+  std::ifstream stream(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const auto tail = text.substr(text.size() - std::min<std::size_t>(text.size(), 16));
+  return tail.find(ending) != std::string::npos;
+}
+
+// Runs gnuplot on the script in `folder`, its words in the log. Returns its exit status.
+int run_gnuplot(const fs::path& folder) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, kLogName, O_WRONLY | O_CREAT | O_TRUNC,
+                                   0644);
+  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+  // -d: no settings of the user's own.
+  std::array<std::string, 3> words{"gnuplot", "-d", kScriptName};
+  std::array<char*, 4> arguments{words[0].data(), words[1].data(), words[2].data(), nullptr};
+  pid_t child = 0;
+  const int failure = posix_spawnp(&child, "gnuplot", &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failure != 0) {
+    throw RunError(fmt::format(
+        "the figures need gnuplot, which could not be started ({}); install the package "
+        "gnuplot-nox or put gnuplot on the PATH",
+        std::strerror(failure)));
+  }
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+std::string first_words_of(const fs::path& log) {
+  std::ifstream stream(log);
+  std::string line;
+  while (std::getline(stream, line) && line.find_first_not_of(" \t^") == std::string::npos) {
+  }
+  return line.empty() ? "it said nothing" : line;
+}
+
+}  // namespace
+
+std::string gnuplot_script(const Figure& figure) {
+  check(figure);
+  std::string text = kStyle + headings(figure) + axes(figure);
+  std::string plot = "plot ";
+  for (std::size_t i = 0; i < figure.series.size(); ++i) {
+    text += data_block(figure.series[i], i);
+    plot += (i == 0 ? "" : ", \\\n  ") + plot_element(figure.series[i], i);
+  }
+  const int height = static_cast<int>(figure.height * kWidth);
+  text += fmt::format(
+      "set terminal svg size {},{} dynamic noenhanced font 'Helvetica,Arial,sans-serif,14' "
+      "background rgb 'white' name '{}'\nset output '{}.svg'\n{}\n",
+      kWidth, height, figure.name, figure.name, plot);
+  text += fmt::format(
+      "set terminal pngcairo size {},{} noenhanced font 'sans,14' fontscale 1.8 linewidth 2 "
+      "pointscale 2 background rgb 'white'\nset output '{}.png'\n{}\nset output\n",
+      2 * kWidth, 2 * height, figure.name, plot);
+  return text;
+}
+
+void draw_figures(const std::vector<Figure>& figures, const fs::path& folder) {
+  {
+    std::ofstream script(folder / kScriptName, std::ios::binary);
+    for (const auto& figure : figures) {
+      script << gnuplot_script(figure);
+    }
+    if (!script.flush()) {
+      throw RunError(fmt::format("{}: could not be written", (folder / kScriptName).string()));
+    }
+  }
+  const int status = run_gnuplot(folder);
+  if (status != 0) {
+    throw RunError(fmt::format("gnuplot failed with status {} while drawing the figures: {}",
+                               status, first_words_of(folder / kLogName)));
+  }
+  for (const auto& figure : figures) {
+    for (const auto& [extension, ending] : {std::pair{".svg", "</svg>"}, {".png", "IEND"}}) {
+      const fs::path file = folder / (figure.name + extension);
+      if (!ends_with(file, ending)) {
+        throw RunError(fmt::format("{}: gnuplot did not finish this picture; is the disk full?",
+                                   file.string()));
+      }
+    }
+  }
+  fs::remove(folder / kScriptName);
+  fs::remove(folder / kLogName);
+}
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,44 @@
+#include "analysis/scores_csv.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <sstream>
+#include <vector>
+
+#include "core/base/random.h"
+
+namespace haptrial::analysis {
+namespace {
+
+TEST(ScoresCsv, HasAHeadingAndARowForEachTrial) {
+  TrialScore s{"P01", "visual", 4, 2, 1, 0.1, 2.5, 0.0, 1e-7, 3.0};
+  EXPECT_EQ(scores_csv(std::vector{s}),
+            "subject,trial,block,repetition,condition,score,alignment_cost,rms_force,rms_slope,"
+            "rms_unaligned\nP01,4,2,1,visual,0.1,2.5,0,1e-07,3\n");
+}
+
+TEST(ScoresCsv, QuotesWhatWouldBreakARow) {
+  TrialScore s;
+  s.subject = "a,\"b\"\nc";
+  const auto text = scores_csv(std::vector{s});
+  EXPECT_NE(text.find("\n\"a,\"\"b\"\"\nc\",0,"), std::string::npos);
+}
+
+TEST(ScoresCsv, NumbersReadBackToTheSameBits) {
+  RandomStream random(8, "csv");
+  std::vector<TrialScore> scores(200, TrialScore{"x", "y"});
+  for (auto& s : scores) {
+    s.score = random.normal() * 1e3;
+  }
+  std::istringstream lines(scores_csv(scores));
+  std::string line;
+  std::getline(lines, line);
+  for (const auto& s : scores) {
+    ASSERT_TRUE(std::getline(lines, line));
+    EXPECT_EQ(std::strtod(line.c_str() + std::string("x,0,0,0,y,").size(), nullptr), s.score);
+  }
+}
+
+}  // namespace
+}  // namespace haptrial::analysis
