@@ -42,6 +42,10 @@ void main() {
     thickness = shape.w;
   }
   float coverage = clamp(min(0.5 - distance, thickness), 0.0, 1.0);
+  if (shape.z == 0.0 && shape.w == 0.0) {  // sharp corners: the overlap of two boxes is a product
+    vec2 sides = clamp(min(0.5 - outside, 2.0 * shape.xy), 0.0, 1.0);
+    coverage = sides.x * sides.y;
+  }
   if (masked) {
     coverage *= texelFetch(mask, ivec2(gl_FragCoord.xy), 0).r;
   }

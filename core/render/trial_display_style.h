@@ -17,7 +17,7 @@ struct TrialDisplayStyle {
   double trajectory_width{5.0};  // [px]
   double marker_radius{11.0};    // [px]
   double marker_halo{3.0};       // ring of background around the marker, >= 0 [px]
-  double smallest_extent{0.01};  // a shorter trajectory is drawn no larger than this [m]
+  double smallest_extent{0.01};  // a shorter trajectory does not fill the picture [m]
 
   // Force bars above the marker: the target's on the left, the applied force's on the right
   double full_scale{12.0};     // force of a full bar [N]
