@@ -12,8 +12,8 @@ enum class Stage : std::uint8_t { kIdle, kApproach, kWait, kRun, kReturn };
 
 /// One servo tick: a row of /samples. Trivially copyable; goes through the block log.
 struct Sample {
-  std::uint64_t sequence{0};  // tick number from 0; a gap would be a loss
-  std::int64_t time_ns{0};    // since the session's first tick [ns]
+  std::uint64_t sequence{0};                          // tick number from 0; a gap would be a loss
+  std::int64_t time_ns{0};                            // since the session's first tick [ns]
   Eigen::Vector3d position{Eigen::Vector3d::Zero()};  // p_W [m]
   Eigen::Vector3d velocity{Eigen::Vector3d::Zero()};  // v_W [m/s]
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};     // commanded to the device, in W [N]
@@ -21,7 +21,7 @@ struct Sample {
   double target_force{0.0};   // [N]
   std::int32_t pass{-1};      // row of /trials; -1 between passes
   Stage stage{Stage::kIdle};
-  bool saturated{false};      // the envelope limited the force
+  bool saturated{false};  // the envelope limited the force
 };
 
 enum class Phase : std::uint8_t { kTraining, kTest };
@@ -29,8 +29,8 @@ enum class PassStatus : std::uint8_t { kCompleted, kAborted };
 
 /// One pass along the trajectory, a row of /trials. A trial is a training pass and a test pass.
 struct PassRow {
-  std::int32_t trial{0};       // from 1
-  std::string condition;       // training condition of the block: "haptic", "visual", "visuohaptic"
+  std::int32_t trial{0};  // from 1
+  std::string condition;  // training condition of the block: "haptic", "visual", "visuohaptic"
   Phase phase{Phase::kTraining};
   std::int32_t block{0};       // from 1
   std::int32_t repetition{0};  // from 1 within the block
@@ -63,6 +63,13 @@ struct TimingRow {
   std::uint64_t compute_count{0};
 };
 
+/// What the loop counted over the whole session; attributes of /timing.
+struct TimingSummary {
+  std::uint64_t ticks{0};     // ticks that the loop ran: rows that /samples must have
+  std::uint64_t overruns{0};  // ticks that began after their period had passed
+  std::uint64_t dropped{0};   // records that the loop could not hand over
+};
+
 /// Root attributes of a session file.
 struct SessionInfo {
   std::string program_version;
@@ -71,13 +78,13 @@ struct SessionInfo {
   std::string definition_name;  // file name it came from
   std::string subject;          // identifier
   std::uint64_t seed{0};
-  std::string device;           // device name
+  std::string device;                   // device name
   double device_max_force{0.0};         // [N]
   double device_workspace_radius{0.0};  // [m]
-  std::string clock;            // "real" or "simulated"
-  double rate{1000.0};          // [Hz]
-  std::string start_utc;        // ISO 8601, "2026-11-20T09:30:00Z"
-  bool simulated{true};         // the participant is a virtual subject
+  std::string clock;                    // "real" or "simulated"
+  double rate{1000.0};                  // [Hz]
+  std::string start_utc;                // ISO 8601, "2026-11-20T09:30:00Z"
+  bool simulated{true};                 // the participant is a virtual subject
 };
 
 }  // namespace haptrial::record

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/record/schema.h"
+
+/// The part of HDF5 that session files need. Inside core/record only; hdf5.h stays in the source.
+namespace haptrial::record::h5 {
+
+/// What HDF5 or the system said, in words; the callers add the file.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Holds the one lock of the process for HDF5, which is not thread-safe in every installation, and
+/// keeps its error printer quiet on this thread. Every function below takes it itself; may be
+/// nested.
+class Lock {
+ public:
+  Lock();
+
+ private:
+  std::unique_lock<std::recursive_mutex> hold_;
+};
+
+/// Owns one identifier of HDF5.
+class Id {
+ public:
+  Id() = default;
+  explicit Id(std::int64_t id) : id_(id) {}
+  ~Id() { reset(); }
+  Id(Id&& other) noexcept : id_(other.id_) { other.id_ = -1; }
+  Id& operator=(Id&& other) noexcept;
+  std::int64_t get() const { return id_; }
+  explicit operator bool() const { return id_ >= 0; }
+  /// @returns false when HDF5 could not close it; it is given up all the same.
+  bool reset() noexcept;
+
+ private:
+  std::int64_t id_{-1};
+};
+
+/// Creates a file that must not exist, readable by HDF5 1.10 and later.
+Id create_file(const std::filesystem::path& path);
+/// Opens a file for reading; also one whose writer was killed or still writes.
+Id open_file(const std::filesystem::path& path);
+/// From here on HDF5 orders its writes so that the file is readable at every instant (single
+/// writer, multiple readers). No object or attribute may be created after it.
+void start_swmr(const Id& file);
+void flush(const Id& file);
+/// The descriptor under an open file; it stays HDF5's.
+int descriptor(const Id& file);
+
+void put(const Id& object, const char* attribute, const std::string& value);
+void put(const Id& object, const char* attribute, const std::vector<std::string>& values);
+void put(const Id& object, const char* attribute, const std::vector<double>& values);
+void put(const Id& object, const char* attribute, double value);
+void put(const Id& object, const char* attribute, std::int64_t value);
+void put(const Id& object, const char* attribute, std::uint64_t value);
+
+std::string get_text(const Id& object, const char* attribute);
+double get_f64(const Id& object, const char* attribute);
+std::int64_t get_i64(const Id& object, const char* attribute);
+std::uint64_t get_u64(const Id& object, const char* attribute);
+
+/// An empty extendible dataset with its columns, units and resolutions as attributes.
+Id create_table(const Id& file, const TableSchema& schema);
+/// @throws Error when it is missing or has other columns or filters than the schema.
+/// @param chunk_rows  receives the chunk length of the file.
+Id open_table(const Id& file, const TableSchema& schema, std::size_t& chunk_rows);
+
+std::uint64_t row_count(const Id& table);
+void set_row_count(const Id& table, std::uint64_t rows);
+/// A chunk that went through the filters already. @param row  its first row.
+void write_chunk(const Id& table, std::uint64_t row, std::span<const std::uint8_t> bytes);
+std::vector<std::uint8_t> read_chunk(const Id& table, std::uint64_t row);
+
+}  // namespace haptrial::record::h5

@@ -1,0 +1,129 @@
+#include "core/record/integrity.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace haptrial::record {
+namespace {
+
+constexpr std::uint64_t kPiece = 65536;  // rows read at once
+
+std::string number(std::uint64_t value) { return std::to_string(value); }
+std::string number(std::int32_t value) { return std::to_string(value); }
+
+/// Counts rows that break a rule and words the first of them.
+class Fault {
+ public:
+  void note(const std::string& sentence) {
+    if (count_++ == 0) first_ = sentence;
+  }
+  std::uint64_t count() const { return count_; }
+  void report(std::vector<std::string>& problems) const {
+    if (count_ == 0) return;
+    problems.push_back(count_ == 1 ? first_
+                                   : first_ + " (and " + number(count_ - 1) + " more like it)");
+  }
+
+ private:
+  std::uint64_t count_{0};
+  std::string first_;
+};
+
+/// Walks the samples in order beside the passes.
+class SampleCheck {
+ public:
+  explicit SampleCheck(const std::vector<PassRow>& passes) : passes_(passes) {}
+
+  void add(const Sample& sample) {
+    if (last_) {
+      if (sample.sequence != last_->sequence + 1) {
+        gaps.note("sequence number " + number(sample.sequence) + " follows " +
+                  number(last_->sequence));
+      }
+      if (sample.time_ns <= last_->time_ns) {
+        clock.note("the time does not advance at sequence number " + number(sample.sequence));
+      }
+    }
+    while (at_ < passes_.size() && passes_[at_].last_sample < sample.sequence) ++at_;
+    const bool inside = at_ < passes_.size() && passes_[at_].first_sample <= sample.sequence;
+    const std::int32_t expected = inside ? static_cast<std::int32_t>(at_) : -1;
+    if (sample.pass != expected) {
+      labels.note("sequence number " + number(sample.sequence) + " is marked as pass " +
+                  number(sample.pass) + ", and /trials puts it in pass " + number(expected));
+    }
+    last_ = sample;
+  }
+
+  Fault gaps, clock, labels;
+
+ private:
+  const std::vector<PassRow>& passes_;
+  std::size_t at_{0};
+  std::optional<Sample> last_;
+};
+
+void check_ranges(const std::vector<PassRow>& passes, Integrity& result) {
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    const PassRow& pass = passes[i];
+    const std::string range = "pass " + number(std::uint64_t{i}) + " has samples " +
+                              number(pass.first_sample) + " to " + number(pass.last_sample);
+    if (pass.status == PassStatus::kAborted) ++result.aborted;
+    if (pass.first_sample > pass.last_sample) {
+      result.problems.push_back(range + ", in reverse");
+    } else if (result.rows == 0 || pass.first_sample < result.first_sequence ||
+               pass.last_sample > result.last_sequence) {
+      result.problems.push_back(range + ", which are not all there");
+    }
+    if (i > 0 && pass.first_sample <= passes[i - 1].last_sample) {
+      result.problems.push_back(range + ", but the pass before ends at " +
+                                number(passes[i - 1].last_sample));
+    }
+  }
+}
+
+void check_counts(const SessionReader& reader, Integrity& result) {
+  const std::optional<TimingSummary> summary = reader.timing_summary();
+  if (!summary) {
+    result.problems.push_back("the counts of the loop are missing: the session did not end");
+    return;
+  }
+  result.overruns = summary->overruns;
+  result.dropped = summary->dropped;
+  if (summary->dropped > 0) {
+    result.problems.push_back(number(summary->dropped) + " records were dropped");
+  }
+  if (summary->ticks != result.rows) {
+    result.problems.push_back("the loop ran " + number(summary->ticks) + " ticks, and " +
+                              number(result.rows) + " rows are there");
+  }
+}
+
+}  // namespace
+
+Integrity check_session(const SessionReader& reader) {
+  Integrity result;
+  const std::vector<PassRow> passes = reader.passes();
+  result.rows = reader.sample_count();
+  result.passes = passes.size();
+  SampleCheck check(passes);
+  for (std::uint64_t first = 0; first < result.rows; first += kPiece) {
+    const std::vector<Sample> piece = reader.samples(first, std::min(kPiece, result.rows - first));
+    if (first == 0) result.first_sequence = piece.front().sequence;
+    result.last_sequence = piece.back().sequence;
+    for (const Sample& sample : piece) check.add(sample);
+  }
+  result.gaps = check.gaps.count();
+  if (result.first_sequence != 0) {
+    result.problems.push_back("the first sequence number is " + number(result.first_sequence) +
+                              " instead of 0");
+  }
+  check.gaps.report(result.problems);
+  check.clock.report(result.problems);
+  check_counts(reader, result);
+  check_ranges(passes, result);
+  check.labels.report(result.problems);
+  result.ok = result.problems.empty();
+  return result;
+}
+
+}  // namespace haptrial::record

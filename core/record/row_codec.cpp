@@ -1,0 +1,172 @@
+#include "core/record/row_codec.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <stdexcept>
+#include <string_view>
+
+#include "core/record/schema.h"
+
+namespace haptrial::record {
+namespace {
+
+/// One packed row, written or read field by field in column order.
+class PackedRow {
+ public:
+  explicit PackedRow(std::size_t bytes) : size_(bytes) {}
+
+  template <typename T>
+  void put(T value) {
+    std::memcpy(row_.data() + at_, &value, sizeof(T));
+    at_ += sizeof(T);
+  }
+  void put_text(std::string_view text, std::size_t bytes, const char* what) {
+    if (text.size() > bytes) {
+      throw std::invalid_argument(std::string(what) + " '" + std::string(text) + "' has " +
+                                  std::to_string(text.size()) + " bytes; allowed: at most " +
+                                  std::to_string(bytes));
+    }
+    if (text.find('\0') != std::string_view::npos) {
+      throw std::invalid_argument(std::string(what) + " holds a NUL byte; allowed: text");
+    }
+    std::memcpy(row_.data() + at_, text.data(), text.size());
+    at_ += bytes;
+  }
+  template <typename T>
+  T get() {
+    T value;
+    std::memcpy(&value, row_.data() + at_, sizeof(T));
+    at_ += sizeof(T);
+    return value;
+  }
+  std::string get_text(std::size_t bytes) {
+    const char* text = reinterpret_cast<const char*>(row_.data()) + at_;
+    at_ += bytes;
+    return {text, strnlen(text, bytes)};
+  }
+  std::span<std::uint8_t> bytes() { return {row_.data(), size_}; }
+
+ private:
+  std::array<std::uint8_t, 512> row_{};  // longer than any row of schema.h
+  std::size_t size_;
+  std::size_t at_{0};
+};
+
+PackedRow read(const BytePlanes& planes, std::size_t at) {
+  PackedRow row(planes.row_bytes());
+  planes.get_row(at, row.bytes());
+  return row;
+}
+
+}  // namespace
+
+void put_pass(BytePlanes& planes, std::size_t at, const PassRow& pass) {
+  PackedRow row(planes.row_bytes());
+  row.put(pass.trial);
+  row.put_text(pass.condition, kConditionBytes, "condition");
+  row.put_text(pass.phase == Phase::kTraining ? "training" : "test", kPhaseBytes, "phase");
+  row.put(pass.block);
+  row.put(pass.repetition);
+  row.put(pass.stimulus_seed);
+  row.put(pass.first_sample);
+  row.put(pass.last_sample);
+  row.put_text(pass.status == PassStatus::kCompleted ? "completed" : "aborted", kStatusBytes,
+               "status");
+  planes.put_row(at, row.bytes());
+}
+
+PassRow get_pass(const BytePlanes& planes, std::size_t at) {
+  PackedRow row = read(planes, at);
+  PassRow pass;
+  pass.trial = row.get<std::int32_t>();
+  pass.condition = row.get_text(kConditionBytes);
+  pass.phase = row.get_text(kPhaseBytes) == "training" ? Phase::kTraining : Phase::kTest;
+  pass.block = row.get<std::int32_t>();
+  pass.repetition = row.get<std::int32_t>();
+  pass.stimulus_seed = row.get<std::uint64_t>();
+  pass.first_sample = row.get<std::uint64_t>();
+  pass.last_sample = row.get<std::uint64_t>();
+  pass.status =
+      row.get_text(kStatusBytes) == "completed" ? PassStatus::kCompleted : PassStatus::kAborted;
+  return pass;
+}
+
+void put_stimulus(BytePlanes& planes, std::size_t at, const StimulusRow& stimulus) {
+  PackedRow row(planes.row_bytes());
+  row.put(stimulus.block);
+  row.put(stimulus.time);
+  for (Eigen::Index a = 0; a < 3; ++a) row.put(stimulus.position[a]);
+  row.put(stimulus.force);
+  planes.put_row(at, row.bytes());
+}
+
+StimulusRow get_stimulus(const BytePlanes& planes, std::size_t at) {
+  PackedRow row = read(planes, at);
+  StimulusRow stimulus;
+  stimulus.block = row.get<std::int32_t>();
+  stimulus.time = row.get<double>();
+  for (Eigen::Index a = 0; a < 3; ++a) stimulus.position[a] = row.get<double>();
+  stimulus.force = row.get<double>();
+  return stimulus;
+}
+
+void put_timing(BytePlanes& planes, std::size_t at, const TimingRow& timing) {
+  PackedRow row(planes.row_bytes());
+  row.put(timing.bin_low_ns);
+  row.put(timing.bin_high_ns);
+  row.put(timing.period_count);
+  row.put(timing.lateness_count);
+  row.put(timing.compute_count);
+  planes.put_row(at, row.bytes());
+}
+
+TimingRow get_timing(const BytePlanes& planes, std::size_t at) {
+  PackedRow row = read(planes, at);
+  TimingRow timing;
+  timing.bin_low_ns = row.get<std::int64_t>();
+  timing.bin_high_ns = row.get<std::int64_t>();
+  timing.period_count = row.get<std::uint64_t>();
+  timing.lateness_count = row.get<std::uint64_t>();
+  timing.compute_count = row.get<std::uint64_t>();
+  return timing;
+}
+
+std::vector<EventPart> event_parts(const EventRow& event) {
+  std::vector<EventPart> parts;
+  std::string_view rest = event.text;
+  do {
+    std::size_t size = std::min(rest.size(), kTextBytes);
+    // A cut never falls within a UTF-8 character (at most three continuation bytes back).
+    if (size < rest.size()) {
+      std::size_t cut = size;
+      while (cut + 4 > size && (static_cast<unsigned char>(rest[cut]) & 0xC0u) == 0x80u) --cut;
+      if ((static_cast<unsigned char>(rest[cut]) & 0xC0u) != 0x80u) size = cut;
+    }
+    parts.push_back({{event.time_ns, event.kind, std::string(rest.substr(0, size))},
+                     static_cast<std::int32_t>(parts.size())});
+    rest.remove_prefix(size);
+  } while (!rest.empty());
+  return parts;
+}
+
+void put_event(BytePlanes& planes, std::size_t at, const EventPart& part) {
+  PackedRow row(planes.row_bytes());
+  row.put(part.row.time_ns);
+  row.put_text(part.row.kind, kKindBytes, "event kind");
+  row.put_text(part.row.text, kTextBytes, "event text");
+  row.put(part.part);
+  planes.put_row(at, row.bytes());
+}
+
+EventPart get_event(const BytePlanes& planes, std::size_t at) {
+  PackedRow row = read(planes, at);
+  EventPart part;
+  part.row.time_ns = row.get<std::int64_t>();
+  part.row.kind = row.get_text(kKindBytes);
+  part.row.text = row.get_text(kTextBytes);
+  part.part = row.get<std::int32_t>();
+  return part;
+}
+
+}  // namespace haptrial::record

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace haptrial::record {
+
+/// Version of the layout below; a reader refuses any other.
+inline constexpr std::int64_t kSchemaVersion = 1;
+
+enum class ColumnType : std::uint8_t { kU8, kI32, kI64, kU64, kF32, kF64, kText };
+
+struct Column {
+  const char* name;
+  ColumnType type;
+  std::size_t bytes;  // of one value; the fixed length of a text
+  const char* unit;   // "m", "N", "ns"; "1" for a pure number, "" for a text
+  const char* description;
+  double resolution{0.0};  // values are rounded to its multiples [unit]; 0: stored as given
+};
+
+/// A compound dataset of the session file: one packed little-endian row for each record.
+struct TableSchema {
+  const char* name;
+  const char* description;
+  std::size_t chunk_rows;
+  std::span<const Column> columns;
+
+  std::size_t row_bytes() const;
+  /// Where the column starts within a row [bytes].
+  /// @throws std::invalid_argument when there is none of this name.
+  std::size_t offset(std::string_view column) const;
+};
+
+const TableSchema& samples_schema();
+const TableSchema& trials_schema();
+const TableSchema& events_schema();
+const TableSchema& stimuli_schema();
+const TableSchema& timing_schema();
+
+/// Lengths of the text columns [bytes of UTF-8].
+inline constexpr std::size_t kConditionBytes = 64;
+inline constexpr std::size_t kPhaseBytes = 16;
+inline constexpr std::size_t kStatusBytes = 16;
+inline constexpr std::size_t kKindBytes = 32;
+inline constexpr std::size_t kTextBytes = 256;
+
+/// Grids of the 32-bit columns of /samples, each a tenth of a device quantum or finer.
+inline constexpr double kPositionResolution = 0x1p-20;  // about 1 micrometre [m]
+inline constexpr double kVelocityResolution = 0x1p-16;  // about 15 micrometres a second [m/s]
+inline constexpr double kForceResolution = 0x1p-13;     // about 0.12 mN [N]
+
+}  // namespace haptrial::record

@@ -1,0 +1,227 @@
+#include "core/record/session_reader.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/record/byte_planes.h"
+#include "core/record/deflate.h"
+#include "core/record/hdf5_layer.h"
+#include "core/record/row_codec.h"
+#include "core/record/schema.h"
+
+namespace haptrial::record {
+namespace {
+
+namespace fs = std::filesystem;
+
+void check_regular(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) {
+    throw InputError(path.string() + ": no such file; allowed: a session file");
+  }
+  if (status.type() == fs::file_type::directory) {
+    throw InputError(path.string() + ": is a directory; allowed: a session file");
+  }
+  if (status.type() != fs::file_type::regular) {
+    throw InputError(path.string() + ": is not a regular file; allowed: a session file");
+  }
+}
+
+SessionInfo get_info(const h5::Id& file) {
+  const std::int64_t version = h5::get_i64(file, "schema_version");
+  if (version != kSchemaVersion) {
+    throw h5::Error("schema version " + std::to_string(version) + " instead of " +
+                    std::to_string(kSchemaVersion));
+  }
+  SessionInfo info;
+  info.program_version = h5::get_text(file, "program_version");
+  info.program_commit = h5::get_text(file, "program_commit");
+  info.definition = h5::get_text(file, "definition");
+  info.definition_name = h5::get_text(file, "definition_name");
+  info.subject = h5::get_text(file, "subject");
+  info.seed = h5::get_u64(file, "seed");
+  info.device = h5::get_text(file, "device");
+  info.device_max_force = h5::get_f64(file, "device_max_force");
+  info.device_workspace_radius = h5::get_f64(file, "device_workspace_radius");
+  info.clock = h5::get_text(file, "clock");
+  info.rate = h5::get_f64(file, "rate");
+  info.start_utc = h5::get_text(file, "start_utc");
+  info.simulated = h5::get_u64(file, "simulated") != 0;
+  return info;
+}
+
+/// One open dataset.
+struct Table {
+  const TableSchema* schema{nullptr};
+  std::size_t chunk_rows{0};
+  h5::Id dataset;
+  std::uint64_t rows{0};
+};
+
+Table open_table(const h5::Id& file, const TableSchema& schema) {
+  Table table;
+  table.schema = &schema;
+  table.dataset = h5::open_table(file, schema, table.chunk_rows);
+  table.rows = h5::row_count(table.dataset);
+  return table;
+}
+
+}  // namespace
+
+struct SessionReader::Impl {
+  explicit Impl(const fs::path& file_path) : path(file_path), file(h5::open_file(file_path)) {
+    info = get_info(file);
+    samples = open_table(file, samples_schema());
+    trials = open_table(file, trials_schema());
+    events = open_table(file, events_schema());
+    stimuli = open_table(file, stimuli_schema());
+    timing = open_table(file, timing_schema());
+  }
+
+  [[noreturn]] void damaged(const Table& table, std::uint64_t row, const std::string& why) const {
+    throw InputError(path.string() + ": rows of /" + table.schema->name + " from " +
+                     std::to_string(row) + " on cannot be read (" + why +
+                     "); allowed: an undamaged session file");
+  }
+
+  /// Calls use(planes, row in planes, row in the result, rows) for each chunk that holds rows
+  /// [first, first + count). Only fetching takes the lock of HDF5; inflating runs beside others.
+  template <typename Use>
+  void each_chunk(const Table& table, std::uint64_t first, std::uint64_t count, Use use) const {
+    if (first > table.rows || count > table.rows - first) {
+      throw std::invalid_argument(path.string() + ": rows [" + std::to_string(first) + ", " +
+                                  std::to_string(first + count) + ") of " +
+                                  std::to_string(table.rows));
+    }
+    BytePlanes planes(table.schema->row_bytes(), table.chunk_rows);
+    Inflater inflater;
+    for (std::uint64_t done = 0; done < count;) {
+      const std::uint64_t row = first + done;
+      const std::uint64_t chunk = row - row % table.chunk_rows;
+      const std::uint64_t rows = std::min(chunk + table.chunk_rows - row, count - done);
+      try {
+        const std::vector<std::uint8_t> bytes = h5::read_chunk(table.dataset, chunk);
+        if (!inflater.decompress(bytes, {planes.data(), planes.bytes().size()})) {
+          damaged(table, chunk, "a chunk does not inflate");
+        }
+      } catch (const h5::Error& error) {
+        damaged(table, chunk, error.what());
+      }
+      use(planes, row - chunk, done, rows);
+      done += rows;
+    }
+  }
+
+  template <typename Row>
+  std::vector<Row> all(const Table& table, Row (*get)(const BytePlanes&, std::size_t)) const {
+    std::vector<Row> result;
+    each_chunk(table, 0, table.rows,
+               [&](const BytePlanes& planes, std::size_t at, std::size_t, std::size_t rows) {
+                 for (std::size_t i = 0; i < rows; ++i) result.push_back(get(planes, at + i));
+               });
+    return result;
+  }
+
+  fs::path path;
+  h5::Id file;
+  SessionInfo info;
+  Table samples, trials, events, stimuli, timing;
+};
+
+SessionReader::SessionReader(const fs::path& path) {
+  check_regular(path);
+  try {
+    impl_ = std::make_unique<Impl>(path);
+  } catch (const h5::Error& error) {
+    throw InputError(path.string() + ": cannot be read as a session file (" + error.what() +
+                     "); allowed: an HDF5 file written by haptrial, schema version " +
+                     std::to_string(kSchemaVersion));
+  }
+}
+
+SessionReader::~SessionReader() = default;
+SessionReader::SessionReader(SessionReader&&) noexcept = default;
+SessionReader& SessionReader::operator=(SessionReader&&) noexcept = default;
+
+const fs::path& SessionReader::path() const { return impl_->path; }
+const SessionInfo& SessionReader::info() const { return impl_->info; }
+std::uint64_t SessionReader::sample_count() const { return impl_->samples.rows; }
+
+std::vector<Sample> SessionReader::samples(std::uint64_t first, std::uint64_t count) const {
+  std::vector<Sample> result(std::min(count, sample_count()));
+  impl_->each_chunk(
+      impl_->samples, first, count,
+      [&](const BytePlanes& planes, std::size_t at, std::size_t done, std::size_t rows) {
+        get_samples(planes, at, std::span(result).subspan(done, rows));
+      });
+  return result;
+}
+
+SampleColumns SessionReader::columns(std::uint64_t first, std::uint64_t count) const {
+  const TableSchema& schema = samples_schema();
+  const std::size_t time = schema.offset("time_ns");
+  const std::size_t position = schema.offset("position_x");
+  const std::size_t applied = schema.offset("applied_force");
+  const std::size_t target = schema.offset("target_force");
+  const auto size = static_cast<Eigen::Index>(std::min(count, sample_count()));
+  SampleColumns result;
+  result.time_ns.resize(static_cast<std::size_t>(size));
+  result.position.resize(3, size);
+  result.applied_force.resize(size);
+  result.target_force.resize(size);
+  impl_->each_chunk(
+      impl_->samples, first, count,
+      [&](const BytePlanes& planes, std::size_t at, std::size_t done, std::size_t rows) {
+        get_column_i64(planes, time, at, std::span(result.time_ns).subspan(done, rows));
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          get_column_f32(planes, position + 4 * axis, at, rows,
+                         result.position.data() + 3 * done + axis, 3);
+        }
+        get_column_f32(planes, applied, at, rows, result.applied_force.data() + done, 1);
+        get_column_f32(planes, target, at, rows, result.target_force.data() + done, 1);
+      });
+  return result;
+}
+
+std::vector<PassRow> SessionReader::passes() const { return impl_->all(impl_->trials, get_pass); }
+
+std::vector<EventRow> SessionReader::events() const {
+  std::vector<EventRow> result;
+  for (EventPart& part : impl_->all(impl_->events, get_event)) {
+    if (part.part > 0 && !result.empty()) {
+      result.back().text += part.row.text;
+    } else {
+      result.push_back(std::move(part.row));
+    }
+  }
+  return result;
+}
+
+std::vector<StimulusRow> SessionReader::stimuli() const {
+  return impl_->all(impl_->stimuli, get_stimulus);
+}
+
+std::vector<TimingRow> SessionReader::timing() const {
+  return impl_->all(impl_->timing, get_timing);
+}
+
+std::optional<TimingSummary> SessionReader::timing_summary() const {
+  try {
+    const h5::Id& dataset = impl_->timing.dataset;
+    const std::int64_t ticks = h5::get_i64(dataset, "ticks");
+    if (ticks < 0) return std::nullopt;
+    return TimingSummary{static_cast<std::uint64_t>(ticks),
+                         static_cast<std::uint64_t>(h5::get_i64(dataset, "overruns")),
+                         static_cast<std::uint64_t>(h5::get_i64(dataset, "dropped"))};
+  } catch (const h5::Error& error) {
+    throw InputError(path().string() + ": the counts of /timing cannot be read (" + error.what() +
+                     "); allowed: an undamaged session file");
+  }
+}
+
+}  // namespace haptrial::record

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/record/session_types.h"
+
+namespace haptrial::record {
+
+/// The columns of /samples that analysis reads in bulk.
+struct SampleColumns {
+  std::vector<std::int64_t> time_ns;  // (rows)      [ns]
+  Eigen::Matrix3Xd position;          // (3 x rows)  p_W [m]
+  Eigen::VectorXd applied_force;      // (rows)      [N]
+  Eigen::VectorXd target_force;       // (rows)      [N]
+};
+
+/// Reads a session file (docs/session-file.md), also the .partial of a session that was killed or
+/// still runs in another process; such a file is seen as it stood when it was opened.
+///
+/// Every member throws InputError, in one sentence that names the file, where its contents are
+/// damaged. const members may be called from several threads at once.
+class SessionReader {
+ public:
+  /// @throws InputError when the file is absent, a directory, not HDF5, cut short, or not a session
+  /// file of this schema version.
+  explicit SessionReader(const std::filesystem::path& path);
+  ~SessionReader();
+  SessionReader(SessionReader&&) noexcept;
+  SessionReader& operator=(SessionReader&&) noexcept;
+
+  const std::filesystem::path& path() const;
+  const SessionInfo& info() const;
+  std::uint64_t sample_count() const;
+
+  /// Rows [first, first + count) of /samples. Without gaps a row is its sequence number.
+  /// @throws std::invalid_argument when they are not all there.
+  std::vector<Sample> samples(std::uint64_t first, std::uint64_t count) const;
+  SampleColumns columns(std::uint64_t first, std::uint64_t count) const;
+
+  std::vector<PassRow> passes() const;
+  std::vector<EventRow> events() const;
+  std::vector<StimulusRow> stimuli() const;
+  std::vector<TimingRow> timing() const;
+  /// Nothing when the session did not come to its end.
+  std::optional<TimingSummary> timing_summary() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace haptrial::record
