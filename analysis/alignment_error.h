@@ -1,0 +1,32 @@
+#pragma once
+
+// The one place that knows the power p of the local error
+//
+//     e(i,j) = w_f |F_i - G_j|^p + w_s |F'_i - G'_j|^p.
+
+#include <cmath>
+
+namespace haptrial::analysis {
+
+/// |x|^p. Ops gives the number type (double, or a vector of floats) and its absolute value.
+template <int power, class Ops>
+[[gnu::always_inline]] inline typename Ops::Number powered(typename Ops::Number x) {
+  static_assert(power == 1 || power == 2);
+  if constexpr (power == 1) {
+    return Ops::absolute(x);
+  } else {
+    return x * x;
+  }
+}
+
+/// s with w |x|^p = |s x|^p: curves are scaled once instead of every cell.
+[[gnu::always_inline]] inline double scale_of_weight(double weight, int power) {
+  return power == 1 ? weight : std::sqrt(weight);
+}
+
+struct DoubleOps {
+  using Number = double;
+  static Number absolute(Number x) { return std::abs(x); }
+};
+
+}  // namespace haptrial::analysis
