@@ -1,0 +1,186 @@
+#include "analysis/score.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "core/base/error.h"
+
+namespace haptrial::analysis {
+namespace {
+
+/// Both curves of one recall on their common time base.
+struct Prepared {
+  TimeBase time;
+  std::vector<double> target, target_slope;
+  std::vector<double> applied, applied_slope;
+
+  AlignmentPair views() const { return {{target, target_slope}, {applied, applied_slope}}; }
+};
+
+/// The alignment takes no larger values (Aligner::kMaxError), and no device makes them.
+void check_size(std::span<const double> values, int power, double weight, const char* name) {
+  double largest = 0.0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  if (!(weight * std::pow(largest, power) <= Aligner::kMaxError)) {
+    throw InputError(std::string(name) + " reaches " + std::to_string(largest) +
+                     "; allowed: at most 1e12 after weighting");
+  }
+}
+
+Prepared prepare(const ForceCurve& target, const ForceCurve& applied, const ScoreParameters& p) {
+  Prepared ready;
+  ready.time.duration =
+      std::max(duration_of(target, "the target force"), duration_of(applied, "the applied force"));
+  ready.time.samples = static_cast<std::size_t>(p.samples);
+  ready.target = resample(target, ready.time);
+  ready.target_slope = slope(ready.target, ready.time);
+  ready.applied = box_filter(resample(applied, ready.time), ready.time, p.filter_width);
+  ready.applied_slope = slope(ready.applied, ready.time);
+  check_size(ready.target, p.alignment.power, p.alignment.force_weight, "the target force");
+  check_size(ready.applied, p.alignment.power, p.alignment.force_weight, "the applied force");
+  check_size(ready.target_slope, p.alignment.power, p.alignment.slope_weight,
+             "the slope of the target force");
+  check_size(ready.applied_slope, p.alignment.power, p.alignment.slope_weight,
+             "the slope of the applied force");
+  return ready;
+}
+
+double rms_difference(std::span<const double> a, std::span<const double> b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+RecallScore score_of(const Prepared& ready, const Alignment& alignment,
+                     std::span<const double> warped, const ScoreParameters& p) {
+  RecallScore score;
+  score.alignment_cost = alignment.cost / static_cast<double>(alignment.path.size());
+  score.rms_force = rms_difference(ready.target, warped);
+  score.rms_slope = rms_difference(ready.target_slope, slope(warped, ready.time));
+  score.rms_unaligned = rms_difference(ready.target, ready.applied);
+  score.score = (p.cost_share * score.alignment_cost + p.force_share * score.rms_force +
+                 p.slope_share * score.rms_slope) /
+                (p.cost_share + p.force_share + p.slope_share);
+  return score;
+}
+
+/// Scores one group of recalls with the workspaces of one thread.
+class GroupScorer {
+ public:
+  explicit GroupScorer(const ScoreParameters& parameters) : parameters_(parameters) {}
+
+  std::size_t group_size() const { return aligner_.lanes(); }
+
+  void score(std::span<const RecallPair> pairs, std::size_t first, std::span<RecallScore> results) {
+    ready_.clear();
+    views_.clear();
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      if (!pairs[k].target || !pairs[k].applied) {
+        throw std::invalid_argument("score: a recall needs two curves");
+      }
+      try {
+        ready_.push_back(prepare(*pairs[k].target, *pairs[k].applied, parameters_));
+      } catch (const InputError& error) {
+        throw InputError("recall " + std::to_string(first + k) + ": " + error.what());
+      }
+    }
+    for (const Prepared& ready : ready_) views_.push_back(ready.views());
+    alignments_.resize(pairs.size());
+    aligner_.align_batch(views_, parameters_.alignment, alignments_);
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const auto warped = warp(ready_[k].applied, alignments_[k].path);
+      results[k] = score_of(ready_[k], alignments_[k], warped, parameters_);
+    }
+  }
+
+ private:
+  const ScoreParameters& parameters_;
+  Aligner aligner_;
+  std::vector<Prepared> ready_;
+  std::vector<AlignmentPair> views_;
+  std::vector<Alignment> alignments_;
+};
+
+}  // namespace
+
+std::vector<double> warp(std::span<const double> applied, std::span<const PathPoint> path) {
+  std::vector<double> warped(path.empty() ? 0 : path.back().target + 1u, 0.0);
+  for (std::size_t k = 0; k < path.size();) {
+    const std::size_t target = path[k].target;
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (; k < path.size() && path[k].target == target; ++k, ++count) {
+      sum += applied[path[k].applied];
+    }
+    warped[target] = sum / static_cast<double>(count);
+  }
+  return warped;
+}
+
+RecallDetail score_recall_in_detail(const ForceCurve& target, const ForceCurve& applied,
+                                    const ScoreParameters& parameters) {
+  check(parameters);
+  Prepared ready = prepare(target, applied, parameters);
+  const AlignmentPair views = ready.views();
+  Alignment alignment = align(views.target, views.applied, parameters.alignment);
+  std::vector<double> warped = warp(ready.applied, alignment.path);
+  const RecallScore score = score_of(ready, alignment, warped, parameters);
+  return {score,
+          ready.time,
+          std::move(ready.target),
+          std::move(ready.applied),
+          std::move(alignment.path),
+          std::move(warped)};
+}
+
+RecallScore score_recall(const ForceCurve& target, const ForceCurve& applied,
+                         const ScoreParameters& parameters) {
+  return score_recall_in_detail(target, applied, parameters).score;
+}
+
+std::vector<RecallScore> score_recalls(std::span<const RecallPair> pairs,
+                                       const ScoreParameters& parameters, int jobs) {
+  check(parameters);
+  if (jobs < 1) throw std::invalid_argument("score: jobs must be at least 1");
+  std::vector<RecallScore> results(pairs.size());
+  const std::size_t group = Aligner().lanes();
+  const std::size_t groups = (pairs.size() + group - 1) / group;
+  std::vector<std::exception_ptr> errors(groups);
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    GroupScorer scorer(parameters);
+    for (std::size_t g; (g = next.fetch_add(1)) < groups;) {
+      const std::size_t first = g * group;
+      const std::size_t count = std::min(group, pairs.size() - first);
+      try {
+        scorer.score(pairs.subspan(first, count), first, std::span(results).subspan(first, count));
+      } catch (...) {
+        errors[g] = std::current_exception();
+      }
+    }
+  };
+  std::vector<std::jthread> threads;
+  const std::size_t wanted = std::min(static_cast<std::size_t>(jobs), groups);
+  for (std::size_t k = 1; k < wanted; ++k) threads.emplace_back(work);
+  work();
+  threads.clear();  // joins
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+  return results;
+}
+
+void fill(TrialScore& trial, const RecallScore& recall) {
+  trial.score = recall.score;
+  trial.alignment_cost = recall.alignment_cost;
+  trial.rms_force = recall.rms_force;
+  trial.rms_slope = recall.rms_slope;
+  trial.rms_unaligned = recall.rms_unaligned;
+}
+
+}  // namespace haptrial::analysis
