@@ -1,5 +1,6 @@
 #include "core/render/painter.h"
 
+#include <GL/glcorearb.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -126,6 +127,36 @@ TEST(PainterTest, PolylineGoesOverAndUnderOtherShapesAndOffTheScreen) {
   EXPECT_TRUE(has_colour(image, 0, 50, green));
   EXPECT_TRUE(has_colour(image, 99, 50, green));
   EXPECT_TRUE(has_colour(image, 50, 40, kBlack));
+}
+
+TEST(PainterTest, DrawsIntoTheFramebufferThatIsBoundAtBegin) {
+  OffscreenContext context(kSide, kSide);
+  const Gl& gl = context.gl();
+  Gl::Name texture = 0;
+  gl.gen_textures(1, &texture);
+  gl.bind_texture(GL_TEXTURE_2D, texture);
+  gl.tex_image_2d(GL_TEXTURE_2D, 0, GL_RGBA8, kSide, kSide, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  Gl::Name framebuffer = 0;
+  gl.gen_framebuffers(1, &framebuffer);
+  gl.bind_framebuffer(GL_FRAMEBUFFER, framebuffer);
+  gl.framebuffer_texture_2d(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
+  Painter painter(gl, kSide, kSide);
+  const std::vector<Eigen::Vector2d> ends{{20.0, 50.0}, {80.0, 50.0}};
+  const auto draw = [&](const Colour& background) {
+    painter.begin(background);
+    painter.polyline(ends, 10.0, kWhite);
+    painter.disc({50.0, 20.0}, 5.0, kWhite);
+    painter.end();
+  };
+  draw(kBlack);
+  const Image bound = read_frame(gl, kSide, kSide);
+  gl.bind_framebuffer(GL_FRAMEBUFFER, 0);
+  draw(kBlack);
+  EXPECT_GT(area(bound), 600.0);
+  EXPECT_EQ(bound.rgb, context.read().rgb);
+  draw({1.0, 0.0, 0.0});
+  gl.bind_framebuffer(GL_FRAMEBUFFER, framebuffer);
+  EXPECT_EQ(read_frame(gl, kSide, kSide).rgb, bound.rgb) << "drawn into the wrong one";
 }
 
 TEST(PainterTest, NothingIsDrawnOfNothing) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <thread>
@@ -331,6 +332,19 @@ TEST(FrameRendererTest, SeveralAtOnceDrawAsOneAlone) {
     }
   }
   EXPECT_EQ(small_one.draw(shown).rgb, small_alone.rgb) << "the other one has gone";
+}
+
+TEST(FrameRendererTest, OneThatGoesTakesNothingFromTheOther) {
+  stimulus::Presentation shown;
+  shown.show_trajectory = true;
+  shown.tool = wave(0.3);
+  const auto points = wave_points(200);
+  auto first = std::make_unique<FrameRenderer>(small_style());
+  FrameRenderer second(small_style());
+  second.set_trajectory(points);
+  const Image before = second.draw(shown);
+  first.reset();  // while the second one's context is current
+  EXPECT_EQ(second.draw(shown).rgb, before.rgb);
 }
 
 TEST(FrameRendererTest, ThreadsDrawTheSamePicture) {
