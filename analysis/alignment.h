@@ -19,7 +19,7 @@ namespace haptrial::analysis {
 struct AlignmentParameters {
   double force_weight{1.0};  // w_f >= 0 [1/N^p]
   double slope_weight{0.5};  // w_s >= 0 [(s/N)^p]
-  double penalty{0.1};       // >= 0, for each step that moves along one curve only [1]
+  double penalty{0.5};       // >= 0, for each step that moves along one curve only [1]
   int power{1};              // p, 1 or 2
 };
 

@@ -1,0 +1,162 @@
+// Alignment of 1000 x 1000 samples with its path, on one core: every kernel of this machine, one
+// pair at a time and side by side, beside a plain textbook search in double precision.
+//
+//     bench_alignment [samples] [runs]
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "analysis/alignment.h"
+#include "core/base/random.h"
+
+namespace {
+
+using namespace haptrial::analysis;
+
+constexpr std::size_t kPairs = 64;
+
+struct Curve {
+  std::vector<double> force, slope;
+};
+
+Curve smooth_curve(haptrial::RandomStream& random, std::size_t samples) {
+  Curve curve;
+  const double phase = random.uniform(0.0, 6.0), pitch = random.uniform(6.0, 18.0);
+  for (std::size_t i = 0; i < samples; ++i) {
+    const double angle = phase + pitch * static_cast<double>(i) / static_cast<double>(samples);
+    curve.force.push_back(5.0 + 4.0 * std::sin(angle) + 0.1 * random.normal());
+    curve.slope.push_back(3.0 * std::cos(angle) + 0.1 * random.normal());
+  }
+  return curve;
+}
+
+/// The baseline: the matrix and one byte a cell for the way back, nothing clever.
+class Textbook {
+ public:
+  void align(const CurveView& a, const CurveView& b, const AlignmentParameters& p,
+             Alignment& result) {
+    const std::size_t rows = a.force.size(), columns = b.force.size();
+    ways_.resize(rows * columns);
+    above_.assign(columns + 1, std::numeric_limits<double>::infinity());
+    row_.resize(columns + 1);
+    above_[0] = 0.0;
+    for (std::size_t i = 0; i < rows; ++i) {
+      row_[0] = std::numeric_limits<double>::infinity();
+      for (std::size_t j = 0; j < columns; ++j) {
+        double best = above_[j];
+        char way = 'd';
+        if (above_[j + 1] + p.penalty < best) best = above_[j + 1] + p.penalty, way = 'u';
+        if (row_[j] + p.penalty < best) best = row_[j] + p.penalty, way = 'l';
+        row_[j + 1] = best + p.force_weight * std::abs(a.force[i] - b.force[j]) +
+                      p.slope_weight * std::abs(a.slope[i] - b.slope[j]);
+        ways_[i * columns + j] = way;
+      }
+      std::swap(row_, above_);
+    }
+    result.cost = above_[columns];
+    result.path.clear();
+    for (std::size_t i = rows - 1, j = columns - 1;;) {
+      result.path.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j)});
+      if (i == 0 && j == 0) break;
+      const char way = ways_[i * columns + j];
+      if (way != 'l') --i;
+      if (way != 'u') --j;
+    }
+    std::reverse(result.path.begin(), result.path.end());
+  }
+
+ private:
+  std::vector<double> above_, row_;
+  std::vector<char> ways_;
+};
+
+/// Processor time of this thread: what another program takes in between does not count.
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+template <class Work>
+double median_seconds(int runs, Work work) {
+  work();
+  std::vector<double> seconds;
+  for (int run = 0; run < runs; ++run) {
+    const double start = thread_seconds();
+    work();
+    seconds.push_back(thread_seconds() - start);
+  }
+  std::nth_element(seconds.begin(), seconds.begin() + runs / 2, seconds.end());
+  return seconds[static_cast<std::size_t>(runs) / 2];
+}
+
+void print_row(const std::string& name, double seconds, std::size_t pairs, std::size_t samples,
+               double baseline_rate) {
+  const double rate = static_cast<double>(pairs) / seconds;
+  const double cells = static_cast<double>(samples * samples);
+  std::printf("%-28s %10.0f %12.4f %10.1f\n", name.c_str(), rate, 1e9 / (rate * cells),
+              rate / baseline_rate);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const long samples_asked = argc > 1 ? std::atol(argv[1]) : 1000;
+  const int runs = argc > 2 ? std::atoi(argv[2]) : 9;
+  if (samples_asked < 1 || samples_asked > 10000 || runs < 1) {
+    std::fprintf(stderr, "usage: bench_alignment [samples 1..10000] [runs 1..]\n");
+    return 2;
+  }
+  const auto samples = static_cast<std::size_t>(samples_asked);
+  haptrial::RandomStream random(1, "benchmark");
+  std::vector<Curve> curves;
+  for (std::size_t k = 0; k < 2 * kPairs; ++k) curves.push_back(smooth_curve(random, samples));
+  std::vector<AlignmentPair> pairs;
+  for (std::size_t k = 0; k < kPairs; ++k) {
+    const Curve &target = curves[2 * k], &applied = curves[2 * k + 1];
+    pairs.push_back({{target.force, target.slope}, {applied.force, applied.slope}});
+  }
+  const AlignmentParameters parameters;
+  std::vector<Alignment> results(kPairs), reference(kPairs);
+
+  constexpr std::size_t kTextbookPairs = 8;
+  Textbook textbook;
+  const double plain = median_seconds(runs, [&] {
+    for (std::size_t k = 0; k < kTextbookPairs; ++k) {
+      textbook.align(pairs[k].target, pairs[k].applied, parameters, reference[k]);
+    }
+  });
+  const double plain_rate = kTextbookPairs / plain;
+  std::printf("%zu x %zu samples with path, median of %d runs, one core\n", samples, samples, runs);
+  std::printf("%-28s %10s %12s %10s\n", "", "pairs/s", "ns/cell", "x textbook");
+  print_row("textbook, fp64, scalar", plain, kTextbookPairs, samples, plain_rate);
+  for (const InstructionSet set : available_instruction_sets()) {
+    Aligner aligner(set);
+    const std::string name(name_of(set));
+    const double single = median_seconds(runs, [&] {
+      for (std::size_t k = 0; k < kPairs; ++k) {
+        aligner.align(pairs[k].target, pairs[k].applied, parameters, results[k]);
+      }
+    });
+    print_row(name + ", single pair", single, kPairs, samples, plain_rate);
+    const double batch =
+        median_seconds(runs, [&] { aligner.align_batch(pairs, parameters, results); });
+    print_row(name + ", batch of " + std::to_string(aligner.lanes()) + " lanes", batch, kPairs,
+              samples, plain_rate);
+    for (std::size_t k = 0; k < kTextbookPairs; ++k) {
+      if (std::abs(results[k].cost - reference[k].cost) > 1e-4 * reference[k].cost) {
+        std::fprintf(stderr, "pair %zu costs %.9g, the textbook says %.9g\n", k, results[k].cost,
+                     reference[k].cost);
+        return 1;
+      }
+    }
+  }
+  return 0;
+}
