@@ -10,7 +10,7 @@ namespace haptrial::analysis {
 /// How a series is drawn. Colour is never the only difference: lines also differ in dash and width,
 /// points in shape.
 struct Look {
-  std::string color{"#000000"};  // #rrggbb
+  const char* color{"#000000"};  // #rrggbb, a literal
   int dash{1};                   // gnuplot dash type; 1 is solid
   int point{7};                  // gnuplot point type; 7 is a filled circle
   double width{2.0};
@@ -30,10 +30,10 @@ struct Series {
   std::string label;  // empty: not in the key
   Mark mark{Mark::kLine};
   Look look;
-  std::vector<double> x;
-  std::vector<double> y;
-  std::vector<double> low, high;
-  std::vector<double> x2, y2;
+  std::vector<double> x{};
+  std::vector<double> y{};
+  std::vector<double> low{}, high{};
+  std::vector<double> x2{}, y2{};
 };
 
 using Range = std::pair<double, double>;

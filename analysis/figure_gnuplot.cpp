@@ -24,16 +24,20 @@ constexpr const char* kScriptName = "figures.gp";
 constexpr const char* kLogName = "gnuplot.log";
 constexpr int kWidth = 900;  // of the SVG [px]; the PNG has twice as many
 
-// A gnuplot string in which nothing is special: single quotes know no escapes but ''.
+// A gnuplot string in which nothing is special: what could end it or run a command is an octal
+// escape.
 std::string quoted(const std::string& text) {
-  std::string result = "'";
+  std::string result = "\"";
   for (const char c : text) {
-    result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    if (c == '\'') {
-      result += '\'';
+    if (static_cast<unsigned char>(c) < 0x20) {
+      result += ' ';
+    } else if (std::strchr("\"'`\\$@", c) != nullptr) {
+      result += fmt::format("\\{:03o}", static_cast<unsigned char>(c));
+    } else {
+      result += c;
     }
   }
-  return result + "'";
+  return result + "\"";
 }
 
 std::vector<const std::vector<double>*> columns(const Series& s) {
@@ -197,8 +201,8 @@ std::string gnuplot_script(const Figure& figure) {
   const int height = static_cast<int>(figure.height * kWidth);
   text += fmt::format(
       "set terminal svg size {},{} dynamic noenhanced font 'Helvetica,Arial,sans-serif,14' "
-      "background rgb 'white' name '{}'\nset output '{}.svg'\n{}\n",
-      kWidth, height, figure.name, figure.name, plot);
+      "background rgb 'white'\nset output '{}.svg'\n{}\n",
+      kWidth, height, figure.name, plot);
   text += fmt::format(
       "set terminal pngcairo size {},{} noenhanced font 'sans,14' fontscale 1.8 linewidth 2 "
       "pointscale 2 background rgb 'white'\nset output '{}.png'\n{}\nset output\n",

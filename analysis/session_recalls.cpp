@@ -1,0 +1,224 @@
+#include "analysis/session_recalls.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/record/session_reader.h"
+
+namespace haptrial::analysis {
+namespace {
+
+using record::PassRow;
+using record::PassStatus;
+using record::Phase;
+using record::Sample;
+using record::SessionReader;
+using record::StimulusRow;
+
+std::map<std::int32_t, IdealPath> ideal_paths(const SessionReader& reader,
+                                              std::vector<StimulusRow>& first_block) {
+  std::map<std::int32_t, std::vector<StimulusRow>> blocks;
+  for (const auto& row : reader.stimuli()) {
+    blocks[row.block].push_back(row);
+  }
+  std::map<std::int32_t, IdealPath> paths;
+  for (auto& [block, rows] : blocks) {
+    if (first_block.empty()) {
+      first_block = rows;
+    }
+    try {
+      paths.emplace(block, std::move(rows));
+    } catch (const std::invalid_argument&) {
+      throw InputError(fmt::format(
+          "{}: the times of the stimulus of block {} do not increase; allowed: rows in order of "
+          "time",
+          reader.path().string(), block));
+    }
+  }
+  return paths;
+}
+
+PassTracking tracking_of(const std::vector<Sample>& run, const IdealPath& ideal, double rate) {
+  std::vector<double> times;
+  std::vector<Eigen::Vector3d> positions;
+  for (const auto& sample : run) {
+    times.push_back(1e-9 * static_cast<double>(sample.time_ns - run.front().time_ns));
+    positions.push_back(sample.position);
+  }
+  return track_pass(times, positions, ideal, rate);
+}
+
+// Trial by trial: the row of the last completed test pass.
+std::map<std::int32_t, std::size_t> counted_passes(const std::vector<PassRow>& passes) {
+  std::map<std::int32_t, std::size_t> rows;
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    if (passes[i].phase == Phase::kTest && passes[i].status == PassStatus::kCompleted) {
+      rows[passes[i].trial] = i;
+    }
+  }
+  return rows;
+}
+
+// Everything about one file while it is read.
+class Extraction {
+ public:
+  explicit Extraction(const SessionReader& reader) : reader_(reader), passes_(reader.passes()) {
+    result_.summary.file = reader.path().filename().string();
+    result_.summary.info = reader.info();
+    paths_ = ideal_paths(reader, result_.stimulus);
+    counted_ = counted_passes(passes_);
+  }
+
+  SessionRecalls run(const ScoreParameters& parameters, int jobs) {
+    for (std::size_t i = 0; i < passes_.size(); ++i) {
+      take(i);
+    }
+    exclude_missing_tests();
+    score(parameters, jobs);
+    finish();
+    return std::move(result_);
+  }
+
+ private:
+  void take(std::size_t i) {
+    const PassRow& pass = passes_[i];
+    const bool test = pass.phase == Phase::kTest;
+    result_.summary.test_passes += test ? 1 : 0;
+    if (pass.status != PassStatus::kCompleted) {
+      if (test) {
+        exclude(pass.trial, "the test pass was aborted");
+      }
+      return;
+    }
+    const auto samples = run_samples(reader_, pass);
+    if (samples) {
+      track(pass, *samples);
+    }
+    if (!test) {
+      return;
+    }
+    if (counted_.at(pass.trial) != i) {
+      exclude(pass.trial, "the trial was repeated later");
+      return;
+    }
+    const auto curves = samples ? recall_curves(*samples, reader_.info().rate)
+                                : Defined<RecallCurves>(Undefined{samples.because()});
+    if (!curves) {
+      exclude(pass.trial, curves.because());
+      return;
+    }
+    result_.scored.push_back({trial_of(pass), i});
+    curves_.push_back(*curves);
+  }
+
+  void track(const PassRow& pass, const std::vector<Sample>& samples) {
+    if (const auto path = paths_.find(pass.block); path != paths_.end()) {
+      result_.tracking.push_back(tracking_of(samples, path->second, reader_.info().rate));
+    }
+  }
+
+  TrialScore trial_of(const PassRow& pass) const {
+    TrialScore score;
+    score.subject = reader_.info().subject;
+    score.condition = pass.condition;
+    score.trial = pass.trial;
+    score.block = pass.block;
+    score.repetition = pass.repetition;
+    return score;
+  }
+
+  void exclude(std::int32_t trial, std::string reason) {
+    result_.exclusions.push_back({reader_.info().subject, trial, std::move(reason)});
+  }
+
+  void exclude_missing_tests() {
+    std::set<std::int32_t> trained;
+    std::set<std::int32_t> tested;
+    for (const auto& pass : passes_) {
+      (pass.phase == Phase::kTest ? tested : trained).insert(pass.trial);
+    }
+    for (const auto trial : trained) {
+      if (tested.count(trial) == 0) {
+        exclude(trial, "there is no test pass");
+      }
+    }
+  }
+
+  void score(const ScoreParameters& parameters, int jobs) {
+    std::vector<RecallPair> pairs;
+    for (const auto& curve : curves_) {
+      pairs.push_back({&curve.target, &curve.applied});
+    }
+    try {
+      const auto scores = score_recalls(pairs, parameters, jobs);
+      for (std::size_t k = 0; k < scores.size(); ++k) {
+        fill(result_.scored[k].score, scores[k]);
+      }
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: {}", reader_.path().string(), error.what()));
+    }
+  }
+
+  void finish() {
+    const auto by_trial = [](const auto& a, const auto& b) { return a.trial < b.trial; };
+    std::stable_sort(result_.exclusions.begin(), result_.exclusions.end(), by_trial);
+    std::stable_sort(result_.scored.begin(), result_.scored.end(),
+                     [&](const auto& a, const auto& b) { return by_trial(a.score, b.score); });
+    result_.summary.scored = result_.scored.size();
+    result_.summary.tracking = summarize_tracking(result_.summary.info.subject, result_.tracking);
+    result_.summary.timing = loop_timing(reader_);
+  }
+
+  const SessionReader& reader_;
+  std::vector<PassRow> passes_;
+  std::map<std::int32_t, IdealPath> paths_;      // by block
+  std::map<std::int32_t, std::size_t> counted_;  // row of the test pass, by trial
+  std::vector<RecallCurves> curves_;             // one for each of result_.scored
+  SessionRecalls result_;
+};
+
+}  // namespace
+
+Defined<std::vector<Sample>> run_samples(const SessionReader& reader, const PassRow& pass) {
+  if (pass.last_sample < pass.first_sample || pass.last_sample >= reader.sample_count()) {
+    return Undefined{"its samples are not all in the file"};
+  }
+  auto samples = reader.samples(pass.first_sample, pass.last_sample - pass.first_sample + 1);
+  if (samples.front().sequence != pass.first_sample ||
+      samples.back().sequence != pass.last_sample) {
+    return Undefined{"samples before or within it were lost"};
+  }
+  std::erase_if(samples, [](const Sample& s) { return s.stage != record::Stage::kRun; });
+  if (samples.size() < 2) {
+    return Undefined{"the trajectory did not run"};
+  }
+  return samples;
+}
+
+Defined<RecallCurves> recall_curves(const std::vector<Sample>& run, double rate) {
+  RecallCurves curves;
+  curves.target.rate = rate;
+  curves.applied.rate = rate;
+  for (const auto& sample : run) {
+    if (!std::isfinite(sample.target_force) || !std::isfinite(sample.applied_force)) {
+      return Undefined{"a force is not a finite number"};
+    }
+    curves.target.force.push_back(sample.target_force);
+    curves.applied.force.push_back(sample.applied_force);
+  }
+  return curves;
+}
+
+SessionRecalls session_recalls(const SessionReader& reader, const ScoreParameters& parameters,
+                               int jobs) {
+  return Extraction(reader).run(parameters, jobs);
+}
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "analysis/defined.h"
+#include "analysis/score.h"
+#include "analysis/study.h"
+
+namespace haptrial::record {
+class SessionReader;
+}
+
+namespace haptrial::analysis {
+
+/// One scored test pass and where it stands in its file.
+struct ScoredPass {
+  TrialScore score;
+  std::size_t pass{0};  // row of /trials
+};
+
+/// What one session file gives to a study.
+struct SessionRecalls {
+  SessionSummary summary;
+  std::vector<ScoredPass> scored;             // by trial
+  std::vector<Exclusion> exclusions;          // by trial
+  std::vector<PassTracking> tracking;         // completed passes of blocks with a stimulus
+  std::vector<record::StimulusRow> stimulus;  // of the first block
+};
+
+/// Reads one session file pass by pass and scores its completed test passes.
+/// Of several completed test passes of one trial the last counts.
+/// @throws InputError when the file cannot be read or its parts contradict each other.
+SessionRecalls session_recalls(const record::SessionReader& reader,
+                               const ScoreParameters& parameters, int jobs);
+
+/// The two curves of a test pass.
+struct RecallCurves {
+  ForceCurve target;
+  ForceCurve applied;
+};
+
+/// The curves while the trajectory runs, or why the pass cannot be scored.
+Defined<RecallCurves> recall_curves(const std::vector<record::Sample>& run, double rate);
+
+/// Samples of the pass during Stage::kRun, or why there are none to use.
+Defined<std::vector<record::Sample>> run_samples(const record::SessionReader& reader,
+                                                 const record::PassRow& pass);
+
+}  // namespace haptrial::analysis

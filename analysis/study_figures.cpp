@@ -1,0 +1,238 @@
+#include "analysis/study_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "analysis/wording.h"
+
+namespace haptrial::analysis {
+namespace {
+
+// Okabe and Ito's palette, told apart with any colour vision.
+constexpr const char* kBlue = "#0072b2";
+constexpr const char* kOrange = "#d55e00";
+constexpr const char* kGreen = "#009e73";
+constexpr const char* kPurple = "#cc79a7";
+constexpr const char* kGrey = "#9aa0a6";
+constexpr const char* kBlack = "#1a1a1a";
+
+// By place among the conditions: circle, square, triangle, diamond, each with its dash.
+Look condition_look(std::size_t index) {
+  const std::array<Look, 4> looks{Look{kOrange, 2, 5, 2.0, 1.1}, Look{kBlue, 4, 7, 2.0, 1.1},
+                                  Look{kGreen, 1, 9, 2.0, 1.3}, Look{kPurple, 3, 13, 2.0, 1.3}};
+  return looks[index % looks.size()];
+}
+
+Figure recall_error(const StudyResult& study) {
+  const auto& statistics = study.statistics;
+  Figure figure;
+  figure.name = "figure-28-recall-error";
+  figure.title = "Recall error by training condition";
+  figure.x_label = "Training condition";
+  figure.y_label = "Recall error (0 is perfect)";
+  Series participants{"mean of one participant", Mark::kPoints, {kBlue, 1, 6, 1.5, 0.9}};
+  Series intervals{"mean of all trials, 95 % CI", Mark::kBars, {kBlack, 1, 7, 2.5, 1.2}};
+  Series means{"", Mark::kPoints, {kBlack, 1, 7, 2.5, 1.2}};  // where no interval exists
+  double highest = 0.0;
+  for (std::size_t c = 0; c < statistics.conditions.size(); ++c) {
+    const auto& summary = statistics.summaries[c];
+    const auto place = static_cast<double>(c + 1);
+    figure.x_names.emplace_back(place, capitalized(summary.condition));
+    const auto people = static_cast<double>(statistics.table_1.size());
+    for (std::size_t p = 0; p < statistics.table_1.size(); ++p) {
+      const double spread = people > 1.0 ? 0.24 * static_cast<double>(p) / (people - 1.0) : 0.12;
+      participants.x.push_back(place + 0.1 + spread);
+      participants.y.push_back(statistics.table_1[p].means[c]);
+      highest = std::max(highest, participants.y.back());
+    }
+    if (const auto& i = summary.trials) {
+      intervals.x.push_back(place - 0.1);
+      intervals.y.push_back(i->mean);
+      intervals.low.push_back(i->low);
+      intervals.high.push_back(i->high);
+      highest = std::max(highest, i->high);
+    } else if (summary.mean) {
+      means.x.push_back(place - 0.1);
+      means.y.push_back(*summary.mean);
+      highest = std::max(highest, *summary.mean);
+    }
+  }
+  for (auto& series : {participants, intervals, means}) {
+    if (!series.x.empty()) {
+      figure.series.push_back(series);
+    }
+  }
+  figure.x_range = Range{0.4, static_cast<double>(statistics.conditions.size()) + 0.6};
+  figure.y_range = Range{0.0, highest > 0.0 ? 1.1 * highest : 1.0};
+  figure.caption =
+      "Mean recall error for each training condition with 95 % confidence intervals over the "
+      "pooled trials, as published, and the mean of every participant beside it (participants "
+      "from left to right in order of name).";
+  figure.alt = "Mean recall error by training condition:";
+  for (const auto& s : statistics.summaries) {
+    figure.alt += fmt::format(" {} {};", s.condition, mean_with_interval(s.trials));
+  }
+  return figure;
+}
+
+Figure learning(const StudyResult& study) {
+  const auto& statistics = study.statistics;
+  Figure figure;
+  figure.name = "learning";
+  figure.title = "Recall error over the repetitions of a trajectory";
+  figure.x_label = "Repetition within the block";
+  figure.y_label = "Recall error (0 is perfect)";
+  std::int32_t last = 1;
+  double highest = 0.0;
+  for (std::size_t c = 0; c < statistics.conditions.size(); ++c) {
+    Series series{capitalized(statistics.conditions[c]), Mark::kLinkedBars, condition_look(c)};
+    const double aside = 0.04 * (static_cast<double>(c) -
+                                 0.5 * static_cast<double>(statistics.conditions.size() - 1));
+    for (const auto& point : statistics.learning) {
+      if (point.condition != statistics.conditions[c] || !point.mean) {
+        continue;
+      }
+      series.x.push_back(point.repetition + aside);
+      series.y.push_back(*point.mean);
+      series.low.push_back(point.interval ? point.interval->low : *point.mean);
+      series.high.push_back(point.interval ? point.interval->high : *point.mean);
+      last = std::max(last, point.repetition);
+      highest = std::max(highest, series.high.back());
+    }
+    figure.series.push_back(std::move(series));
+  }
+  for (std::int32_t r = 1; r <= last; ++r) {
+    figure.x_names.emplace_back(r, std::to_string(r));
+  }
+  figure.x_range = Range{0.7, last + 0.3};
+  figure.y_range = Range{0.0, highest > 0.0 ? 1.1 * highest : 1.0};
+  figure.caption =
+      "Recall error at each repetition of the same trajectory and force pattern: means of the "
+      "participants' means with 95 % confidence intervals over participants.";
+  figure.alt = "Lines of mean recall error over repetitions, one for each training condition.";
+  return figure;
+}
+
+std::vector<double> time_base(const RecallPicture& picture) {
+  std::vector<double> times(picture.target.size());
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    times[i] = picture.duration * static_cast<double>(i) /
+               static_cast<double>(std::max<std::size_t>(times.size() - 1, 1));
+  }
+  return times;
+}
+
+std::string recall_title(const char* what, const RecallPicture& picture) {
+  return fmt::format("{}: {} recall, {} trial {} ({})", what, picture.which, picture.score.subject,
+                     picture.score.trial, picture.score.condition);
+}
+
+Figure force_figure(const char* name, const RecallPicture& picture, const char* what) {
+  Figure figure;
+  figure.name = fmt::format("{}-{}", name, picture.which);
+  figure.title = recall_title(what, picture);
+  figure.x_label = "Time [s]";
+  figure.y_label = "Normal force [N]";
+  figure.x_range = Range{0.0, picture.duration};
+  return figure;
+}
+
+Figure alignment(const RecallPicture& picture) {
+  constexpr std::size_t kPairs = 60;  // drawn of the path
+  Figure figure = force_figure("figure-26-alignment", picture, "Alignment");
+  const auto times = time_base(picture);
+  Series pairs{"aligned points", Mark::kSegments, {kGrey, 1, 0, 0.8}};
+  const std::size_t stride = std::max<std::size_t>(1, picture.pairs.size() / kPairs);
+  for (std::size_t k = 0; k < picture.pairs.size(); k += stride) {
+    const auto [target, applied] = picture.pairs[k];
+    pairs.x.push_back(times[target]);
+    pairs.y.push_back(picture.target[target]);
+    pairs.x2.push_back(times[applied]);
+    pairs.y2.push_back(picture.applied[applied]);
+  }
+  figure.series = {pairs,
+                   {"target", Mark::kLine, {kOrange, 1, 0, 2.5}, times, picture.target},
+                   {"applied", Mark::kLine, {kBlue, 2, 0, 2.5}, times, picture.applied}};
+  figure.caption = fmt::format(
+      "The pairing that dynamic programming found for the {} trial of the study (score {}): lines "
+      "join points of the target and of the applied force that belong together.",
+      picture.which, number(picture.score.score));
+  figure.alt = "Target and applied force over time, joined by the lines of the alignment.";
+  return figure;
+}
+
+Figure warped(const RecallPicture& picture) {
+  Figure figure = force_figure("figure-27-warped", picture, "After warping");
+  const auto times = time_base(picture);
+  figure.series = {{"target", Mark::kLine, {kOrange, 1, 0, 2.5}, times, picture.target},
+                   {"applied, warped", Mark::kLine, {kBlue, 2, 0, 2.5}, times, picture.warped}};
+  figure.caption = fmt::format(
+      "The same trial after warping the applied force onto the time base of the target: RMS "
+      "difference {} N, {} N before any alignment.",
+      number(picture.score.rms_force), number(picture.score.rms_unaligned));
+  figure.alt = "Target force and warped applied force over time.";
+  return figure;
+}
+
+Figure trajectory(const std::vector<record::StimulusRow>& rows) {
+  Figure figure;
+  figure.name = "figure-22-trajectory";
+  figure.title = "A spatial trajectory";
+  figure.x_label = "x [cm]";
+  figure.y_label = "z [cm]";
+  Series path{"", Mark::kLine, {kBlue, 1, 0, 2.5}};
+  for (const auto& row : rows) {
+    path.x.push_back(100.0 * row.position.x());
+    path.y.push_back(100.0 * row.position.z());
+  }
+  figure.series = {path};
+  figure.caption = "The spatial trajectory of the first block of the first session, from above.";
+  figure.alt = "A winding line from left to right.";
+  return figure;
+}
+
+Figure force_pattern(const std::vector<record::StimulusRow>& rows) {
+  Figure figure;
+  figure.name = "figure-23-force-pattern";
+  figure.title = "A force pattern";
+  figure.x_label = "Time [s]";
+  figure.y_label = "Target normal force [N]";
+  Series force{"", Mark::kLine, {kOrange, 1, 0, 2.5}};
+  for (const auto& row : rows) {
+    force.x.push_back(row.time);
+    force.y.push_back(row.force);
+  }
+  figure.x_range = Range{rows.front().time, rows.back().time};
+  figure.series = {force};
+  figure.caption =
+      "The magnitude of the downward force that the participant was to learn in the same block.";
+  figure.alt = "A force that rises and falls several times over the seconds of a pass.";
+  return figure;
+}
+
+}  // namespace
+
+std::vector<Figure> study_figures(const StudyResult& study) {
+  std::vector<Figure> figures;
+  if (!study.scores.empty()) {
+    figures.push_back(recall_error(study));
+    figures.push_back(learning(study));
+  }
+  for (const auto& picture : study.recalls) {
+    figures.push_back(alignment(picture));
+    figures.push_back(warped(picture));
+  }
+  if (study.stimulus.size() > 1) {
+    figures.push_back(trajectory(study.stimulus));
+    figures.push_back(force_pattern(study.stimulus));
+  }
+  for (auto& figure : figures) {
+    figure.simulated = study.simulated();
+  }
+  return figures;
+}
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,73 @@
+#include "analysis/wording.h"
+
+#include <fmt/format.h>
+
+namespace haptrial::analysis {
+namespace {
+
+std::string not_defined(const std::string& because) { return "not defined, because " + because; }
+
+// Degrees of freedom are whole but for Welch's test.
+std::string degrees(double df) { return fmt::format("{:.5g}", df); }
+
+}  // namespace
+
+std::string number(double value) { return fmt::format("{:.4g}", value); }
+
+std::string p_value(double p) {
+  if (p < 0.001) {
+    return "p < 0.001";
+  }
+  return p < 0.1 ? fmt::format("p = {:.2g}", p) : fmt::format("p = {:.2f}", p);
+}
+
+std::string mean_with_interval(const Defined<MeanInterval>& interval) {
+  if (!interval) {
+    return not_defined(interval.because());
+  }
+  return fmt::format("{}, 95 % CI {} to {}", number(interval->mean), number(interval->low),
+                     number(interval->high));
+}
+
+std::string anova_result(const Defined<Anova>& anova) {
+  if (!anova) {
+    return not_defined(anova.because());
+  }
+  return fmt::format("F({}, {}) = {}, {}, η² = {:.2g}", degrees(anova->df_between),
+                     degrees(anova->df_within), number(anova->f), p_value(anova->p),
+                     anova->eta_squared);
+}
+
+std::string anova_result(const Defined<RepeatedAnova>& anova) {
+  if (!anova) {
+    return not_defined(anova.because());
+  }
+  return fmt::format("F({}, {}) = {}, {}; Greenhouse–Geisser ε = {:.2f}, {}; partial η² = {:.2g}",
+                     degrees(anova->df_condition), degrees(anova->df_error), number(anova->f),
+                     p_value(anova->p), anova->epsilon, p_value(anova->p_corrected),
+                     anova->partial_eta_squared);
+}
+
+std::string t_result(const Defined<TTest>& test) {
+  if (!test) {
+    return not_defined(test.because());
+  }
+  return fmt::format("t({}) = {:.3g}, {}", degrees(test->df), test->t, p_value(test->p));
+}
+
+std::string quantity(const Defined<double>& value, double factor, const std::string& unit) {
+  return value ? number(*value * factor) + " " + unit : not_defined(value.because());
+}
+
+std::string capitalized(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') {
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  }
+  return text;
+}
+
+std::string counted(std::size_t count, const std::string& noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+
+#include "analysis/anova.h"
+#include "analysis/descriptive.h"
+#include "analysis/t_test.h"
+
+namespace haptrial::analysis {
+
+/// Results in words, the same in the command's summary and in the report. What is not defined
+/// becomes "not defined, because ...".
+
+/// Four significant digits, "0.1234".
+std::string number(double value);
+/// "p = 0.0123", "p < 0.001".
+std::string p_value(double p);
+/// "1.234, 95 % CI 1.1 to 1.3".
+std::string mean_with_interval(const Defined<MeanInterval>& interval);
+/// "F(2, 861) = 12.3, p < 0.001, η² = 0.028".
+std::string anova_result(const Defined<Anova>& anova);
+/// "F(2, 22) = 12.3, p < 0.001; Greenhouse–Geisser ε = 0.87, p < 0.001; partial η² = 0.4".
+std::string anova_result(const Defined<RepeatedAnova>& anova);
+/// "t(574) = -2.91, p = 0.002".
+std::string t_result(const Defined<TTest>& test);
+/// The value times `factor` with its unit, or why there is none.
+std::string quantity(const Defined<double>& value, double factor, const std::string& unit);
+/// "Visuohaptic" of "visuohaptic".
+std::string capitalized(std::string text);
+/// "1 trial", "2 trials".
+std::string counted(std::size_t count, const std::string& noun);
+
+}  // namespace haptrial::analysis
