@@ -20,8 +20,19 @@ function(haptrial_module name folder)
   set_property(GLOBAL PROPERTY HAPTRIAL_FOLDER_${name} ${folder})
 endfunction()
 
-# The command: build/haptrial.
+# The command: build/haptrial. It knows the commit that it was built from.
 function(haptrial_command)
+  execute_process(COMMAND git -C ${CMAKE_SOURCE_DIR} rev-parse --short=12 HEAD
+                  OUTPUT_VARIABLE HAPTRIAL_COMMIT OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  if(NOT HAPTRIAL_COMMIT)
+    set(HAPTRIAL_COMMIT unknown)
+  endif()
+  if(EXISTS ${CMAKE_SOURCE_DIR}/.git/logs/HEAD)
+    set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
+                 ${CMAKE_SOURCE_DIR}/.git/logs/HEAD)
+  endif()
+  configure_file(${CMAKE_SOURCE_DIR}/cmake/version.cpp.in ${CMAKE_BINARY_DIR}/version.cpp @ONLY)
+  target_sources(haptrial_experiments PRIVATE ${CMAKE_BINARY_DIR}/version.cpp)
   add_executable(haptrial ${CMAKE_SOURCE_DIR}/experiments/main.cpp)
   target_link_libraries(haptrial PRIVATE haptrial_experiments)
   set_target_properties(haptrial PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})

@@ -43,8 +43,8 @@ double gsl_get_double(void* state) {
   return static_cast<double>(next(*static_cast<State*>(state)) >> 11) * 0x1p-53;
 }
 void gsl_set(void*, unsigned long) {}
-const gsl_rng_type kGslType{"haptrial", 0xffffffffu, 0, sizeof(State), gsl_set, gsl_get,
-                            gsl_get_double};
+const gsl_rng_type kGslType{"haptrial", 0xffffffffu,   0, sizeof(State), gsl_set,
+                            gsl_get,    gsl_get_double};
 
 }  // namespace
 

@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <toml++/toml.h>
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
-#define TOML_HEADER_ONLY 1
-#include <toml++/toml.h>
 
 #include "core/base/error.h"
 
@@ -48,7 +47,8 @@ std::string words(const Bounds& bounds, std::string_view unit) {
                        bounds.low, bounds.high, in);
   }
   if (low) {
-    return fmt::format("a number {} {}{}", bounds.open_low ? "above" : "of at least", bounds.low, in);
+    return fmt::format("a number {} {}{}", bounds.open_low ? "above" : "of at least", bounds.low,
+                       in);
   }
   if (high) {
     return fmt::format("a number of at most {}{}", bounds.high, in);
@@ -107,9 +107,10 @@ Table Table::parse(std::string_view text, std::string_view file_name) {
                                  error.description()));
   }
   if (document->root.empty()) {
-    throw InputError(fmt::format("{}: the definition is empty; allowed: a TOML definition with at "
-                                 "least one key",
-                                 file_name));
+    throw InputError(
+        fmt::format("{}: the definition is empty; allowed: a TOML definition with at "
+                    "least one key",
+                    file_name));
   }
   auto root = std::make_shared<Node>(Node{&document->root, "", {}});
   document->nodes.push_back(root);
@@ -123,14 +124,14 @@ Table Table::load(const std::filesystem::path& file) {
     throw InputError(fmt::format("{}: no such file; expected a definition (.toml)", file.string()));
   }
   if (!std::filesystem::is_regular_file(status)) {
-    throw InputError(fmt::format("{}: is {}; expected a definition file (.toml)", file.string(),
-                                 std::filesystem::is_directory(status) ? "a directory"
-                                                                       : "not a regular file"));
+    throw InputError(
+        fmt::format("{}: is {}; expected a definition file (.toml)", file.string(),
+                    std::filesystem::is_directory(status) ? "a directory" : "not a regular file"));
   }
   constexpr std::uintmax_t kLargest = 1 << 20;
   if (const auto size = std::filesystem::file_size(file, error); size > kLargest) {
-    throw InputError(fmt::format("{}: {} bytes; a definition has at most {}", file.string(), size,
-                                 kLargest));
+    throw InputError(
+        fmt::format("{}: {} bytes; a definition has at most {}", file.string(), size, kLargest));
   }
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
@@ -177,7 +178,8 @@ std::optional<T> Table::get(std::string_view key, std::string_view allowed) {
   node_->read.emplace(key);
   const toml::node* node = node_->table->get(key);
   if (node == nullptr) {
-    note(line_of(node_->table), fmt::format("{} is missing; allowed: {}", node_->full(key), allowed));
+    note(line_of(node_->table),
+         fmt::format("{} is missing; allowed: {}", node_->full(key), allowed));
     return std::nullopt;
   }
   std::optional<T> value;
@@ -213,7 +215,9 @@ long Table::integer(std::string_view key, long low, long high) {
   return value.value_or(low);
 }
 
-bool Table::boolean(std::string_view key) { return get<bool>(key, "true or false").value_or(false); }
+bool Table::boolean(std::string_view key) {
+  return get<bool>(key, "true or false").value_or(false);
+}
 
 std::string Table::text(std::string_view key) {
   auto value = get<std::string>(key, "a text in quotes that is not empty");
@@ -242,7 +246,8 @@ std::vector<T> Table::array(std::string_view key, const std::string& allowed) {
   node_->read.emplace(key);
   const toml::node* node = node_->table->get(key);
   if (node == nullptr) {
-    note(line_of(node_->table), fmt::format("{} is missing; allowed: {}", node_->full(key), allowed));
+    note(line_of(node_->table),
+         fmt::format("{} is missing; allowed: {}", node_->full(key), allowed));
     return values;
   }
   const toml::array* array = node->as_array();

@@ -22,8 +22,8 @@ inline constexpr Bounds kNonNegative{0.0, std::numeric_limits<double>::infinity(
 inline constexpr Bounds kFraction{0.0, 1.0, false};
 
 /// A table of a definition file (TOML), read key by key. Each read checks presence, type and bounds
-/// and notes a problem instead of throwing, so that a definition is validated whole; finish() on the
-/// document then throws one InputError with a sentence for every problem:
+/// and notes a problem instead of throwing, so that a definition is validated whole; finish() on
+/// the document then throws one InputError with a sentence for every problem:
 ///
 ///     training.toml:12: trajectory.speed is -1.6; allowed: a number above 0 [m/s]
 ///

@@ -19,7 +19,7 @@ class MinimumJerkMove {
   MinimumJerkMove(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                   double peak_speed) noexcept;
 
-  PointState at(double time) const noexcept;            // time since the start [s]
+  PointState at(double time) const noexcept;              // time since the start [s]
   double duration() const noexcept { return duration_; }  // [s]
 
  private:

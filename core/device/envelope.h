@@ -13,12 +13,12 @@ namespace haptrial::device {
 
 /// Bounds that no protocol may leave. A device's own limits apply as well.
 struct EnvelopeLimits {
-  double max_force{12.0};         // > 0 [N]
-  double max_force_rate{4000.0};  // > 0 [N/s]
-  double workspace_radius{0.075}; // about the origin > 0 [m]
-  double max_speed{1.0};          // > 0 [m/s]
-  double max_jump{0.005};         // between two ticks > 0 [m]
-  double ramp_in{0.2};            // force grows from zero over this time after a start >= 0 [s]
+  double max_force{12.0};          // > 0 [N]
+  double max_force_rate{4000.0};   // > 0 [N/s]
+  double workspace_radius{0.075};  // about the origin > 0 [m]
+  double max_speed{1.0};           // > 0 [m/s]
+  double max_jump{0.005};          // between two ticks > 0 [m]
+  double ramp_in{0.2};             // force grows from zero over this time after a start >= 0 [s]
 };
 
 /// Reads the keys of an [envelope] table.
@@ -40,10 +40,10 @@ enum class Fault : std::uint8_t {
 /// One sentence, such as "the tool left the workspace".
 const char* describe(Fault fault) noexcept;
 
-/// Stands between every protocol and every device on every tick. The force that leaves it is finite,
-/// never longer than max_force and never changes faster than max_force_rate, except that a fault
-/// brings it to zero in the same tick; it then stays zero until reset().
-/// Servo thread: no allocation, lock, I/O or throw.
+/// Stands between every protocol and every device on every tick. The force that leaves it is
+/// finite, never longer than max_force and never changes faster than max_force_rate, except that a
+/// fault brings it to zero in the same tick; it then stays zero until reset(). Servo thread: no
+/// allocation, lock, I/O or throw.
 class Envelope {
  public:
   /// @throws std::invalid_argument when a limit is not above its bound.

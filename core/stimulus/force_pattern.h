@@ -11,15 +11,15 @@ namespace haptrial::stimulus {
 
 /// How the force patterns of a study are drawn. Source: Morris 2006, §4.2.3.
 struct ForcePatternParameters {
-  int sinusoids{4};           // number summed >= 1
-  double max_frequency{0.2};  // of each sinusoid > 0 [Hz]
-  double base_max{10.0};      // the sum is scaled into [0, base_max] > 0 [N]
-  int bumps_min{2};           // parabolic bumps per pattern, fewest and
-  int bumps_max{4};           // most
-  double bump_max{12.0};      // highest peak that a bump may reach >= base_max [N]
-  double bump_width_min{0.6}; // foot to foot > 0 [s]
-  double bump_width_max{1.4}; // [s]
-  double ramp{1.0};           // linear ramp at either end >= 0 [s]
+  int sinusoids{4};            // number summed >= 1
+  double max_frequency{0.2};   // of each sinusoid > 0 [Hz]
+  double base_max{10.0};       // the sum is scaled into [0, base_max] > 0 [N]
+  int bumps_min{2};            // parabolic bumps per pattern, fewest and
+  int bumps_max{4};            // most
+  double bump_max{12.0};       // highest peak that a bump may reach >= base_max [N]
+  double bump_width_min{0.6};  // foot to foot > 0 [s]
+  double bump_width_max{1.4};  // [s]
+  double ramp{1.0};            // linear ramp at either end >= 0 [s]
 };
 
 /// Reads the keys of a [force_pattern] table.

@@ -14,7 +14,8 @@ MotorNoise::MotorNoise(const SubjectParameters& person, double step, RandomStrea
   const double radius = std::exp(-2.0 * std::numbers::pi * kTremorBandwidth * step);
   a1_ = 2.0 * radius * std::cos(2.0 * std::numbers::pi * person.tremor_frequency * step);
   a2_ = -radius * radius;
-  // Variance of an AR(2) process with unit noise, inverted so that the root mean square is `tremor`.
+  // Variance of an AR(2) process with unit noise, inverted so that the root mean square is
+  // `tremor`.
   const double variance = (1.0 - a2_) / ((1.0 + a2_) * ((1.0 - a2_) * (1.0 - a2_) - a1_ * a1_));
   tremor_gain_ = person.tremor / std::sqrt(variance);
 }

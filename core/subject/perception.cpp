@@ -75,9 +75,12 @@ ForceProfile Exposure::perceived(const SubjectParameters& person, BarCalibration
   std::array<double, kKnots> height{};
   std::array<double, kKnots> force{};
   std::array<double, kKnots> mismatch{};
-  means(seen_, [](const Bin& b) { return b.sum; }, height);
-  means(felt_, [](const Bin& b) { return b.sum; }, force);
-  means(felt_, [](const Bin& b) { return b.extra; }, mismatch);
+  means(
+      seen_, [](const Bin& b) { return b.sum; }, height);
+  means(
+      felt_, [](const Bin& b) { return b.sum; }, force);
+  means(
+      felt_, [](const Bin& b) { return b.extra; }, mismatch);
 
   const double felt_scale = std::exp(person.haptic_bias * random.normal());
   if (sees && feels) {

@@ -8,8 +8,8 @@
 
 namespace haptrial::subject {
 
-/// What newtons a bar height means to somebody: a belief about the logarithm of the scale, 0 where it
-/// is right. Only force felt while a bar is seen calibrates it.
+/// What newtons a bar height means to somebody: a belief about the logarithm of the scale, 0 where
+/// it is right. Only force felt while a bar is seen calibrates it.
 class BarCalibration {
  public:
   BarCalibration(const SubjectParameters& person, RandomStream& random) noexcept;
@@ -29,8 +29,8 @@ class BarCalibration {
 
 /// One exposure to a force pattern, gathered tick by tick and turned into a profile at its end.
 ///
-/// Each sense c that took part gives an estimate z_c with variance sigma_c^2; they combine by maximum
-/// likelihood (Ernst and Banks 2002): z = sum(z_c / sigma_c^2) / sum(1 / sigma_c^2).
+/// Each sense c that took part gives an estimate z_c with variance sigma_c^2; they combine by
+/// maximum likelihood (Ernst and Banks 2002): z = sum(z_c / sigma_c^2) / sum(1 / sigma_c^2).
 class Exposure {
  public:
   void clear() noexcept;

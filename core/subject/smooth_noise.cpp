@@ -12,7 +12,8 @@ SmoothNoise::SmoothNoise(double step, double correlation_time) noexcept
 }
 
 void SmoothNoise::restart(RandomStream& random) noexcept {
-  // The stationary state: var(first) = 1 / (1 - d^2), cov = d-weighted; drawn by its Cholesky factor.
+  // The stationary state: var(first) = 1 / (1 - d^2), cov = d-weighted; drawn by its Cholesky
+  // factor.
   const double d2 = decay_ * decay_;
   const double first_variance = 1.0 / (1.0 - d2);
   const double covariance = 1.0 / ((1.0 - d2) * (1.0 - d2));

@@ -79,8 +79,8 @@ void VirtualSubject::gather(const Presentation& seen, const Sensed& now) noexcep
 
 void VirtualSubject::end_pass() noexcept {
   if (!exposure_.empty()) {
-    memory_.learn(exposure_.perceived(person_, bar_, person_.memory_correlation / pass_duration_,
-                                      random_));
+    memory_.learn(
+        exposure_.perceived(person_, bar_, person_.memory_correlation / pass_duration_, random_));
     exposure_.clear();
   }
 }
@@ -115,8 +115,8 @@ double VirtualSubject::match_bars(double dt) noexcept {
 }
 
 double VirtualSubject::recall(const Presentation& seen) const noexcept {
-  const double u = std::clamp(seen.progress * ForceProfile::kKnots - 0.5, 0.0,
-                              ForceProfile::kKnots - 1.0);
+  const double u =
+      std::clamp(seen.progress * ForceProfile::kKnots - 0.5, 0.0, ForceProfile::kKnots - 1.0);
   const double ahead = muscle_lag_ + warp_[static_cast<int>(u)];
   return std::max(0.0, produced_scale_ * memory_.at(seen.progress + ahead / pass_duration_));
 }

@@ -12,8 +12,8 @@
 
 namespace haptrial::subject {
 
-/// A simulated participant: sees what the screen shows, feels what the device applies, remembers and
-/// acts through a hand. Knows the instruction, not the condition and not the target.
+/// A simulated participant: sees what the screen shows, feels what the device applies, remembers
+/// and acts through a hand. Knows the instruction, not the condition and not the target.
 /// docs/algorithms/virtual-subject.md says what is assumed and what follows.
 class VirtualSubject final : public stimulus::Observer {
  public:

@@ -1,0 +1,26 @@
+#include "experiments/arguments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "core/base/error.h"
+
+namespace haptrial::experiments {
+
+int checked_number(const char* what, int value, int low, int high) {
+  if (value < low || value > high) {
+    throw InputError(
+        fmt::format("{} is {}; allowed: a whole number from {} to {}", what, value, low, high));
+  }
+  return value;
+}
+
+int checked_jobs(std::optional<int> jobs) {
+  constexpr int kMostJobs = 256;
+  const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return jobs ? checked_number("--jobs", *jobs, 1, kMostJobs) : std::min(processors, kMostJobs);
+}
+
+}  // namespace haptrial::experiments

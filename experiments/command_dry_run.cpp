@@ -1,0 +1,48 @@
+#include "experiments/commands.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "experiments/arguments.h"
+#include "experiments/study_run.h"
+
+namespace haptrial::experiments {
+namespace fs = std::filesystem;
+namespace {
+
+/// out/NAME-001, or the next number that is free.
+fs::path fresh_folder(const std::string& name) {
+  for (int n = 1;; ++n) {
+    const fs::path folder = fs::path("out") / fmt::format("{}-{:03}", name, n);
+    if (!fs::exists(folder)) {
+      return folder;
+    }
+  }
+}
+
+}  // namespace
+
+int dry_run(const DryRunOptions& options) {
+  const Definition definition = load_definition(options.definition);
+  DryRun dry;
+  dry.participants = checked_number(
+      "--subjects", options.subjects.value_or(definition.design.participants), 1, 10000);
+  dry.seed = options.seed;
+  dry.jobs = checked_jobs(options.jobs);
+  dry.frames_per_pass = checked_number("--frames", options.frames, 0, 1000);
+  dry.max_trials = checked_number("--trials", options.trials, 0, definition.design.trials);
+  dry.folder = options.out.empty() ? fresh_folder(definition.name) : fs::path(options.out);
+  const DryRunSummary done = run_dry(definition, dry);
+  fmt::print("{} sessions, {:.0f} s of simulated time in {:.1f} s ({:.0f} times real time)\n",
+             dry.participants, done.recorded_seconds, done.elapsed_seconds,
+             done.recorded_seconds / done.elapsed_seconds);
+  if (done.aborted_passes > 0) {
+    fmt::print("{} passes were aborted; haptrial info FILE says which and why\n",
+               done.aborted_passes);
+  }
+  fmt::print("sessions: {}\nnext: haptrial analyze {}\n", dry.folder.string(), dry.folder.string());
+  return 0;
+}
+
+}  // namespace haptrial::experiments

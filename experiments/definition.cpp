@@ -1,0 +1,99 @@
+#include "experiments/definition.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/base/table.h"
+#include "protocols/training_pass.h"
+
+namespace haptrial::experiments {
+namespace {
+
+/// What no table can see alone.
+void check_together(Table& root, const Definition& d) {
+  const auto& known = protocols::training_conditions();
+  Table design = root.table("design");
+  for (const std::string& condition : d.design.conditions) {
+    if (std::find(known.begin(), known.end(), condition) == known.end()) {
+      design.reject("conditions", fmt::format("an array with '{}'", condition),
+                    fmt::format("{}", fmt::join(known, ", ")));
+    }
+  }
+  Table guidance = root.table("guidance");
+  if (d.guidance.force_limit > d.envelope.max_force) {
+    guidance.reject("force_limit", fmt::format("{}", d.guidance.force_limit),
+                    fmt::format("at most envelope.max_force, {} [N]", d.envelope.max_force));
+  }
+  Table envelope = root.table("envelope");
+  if (d.envelope.max_force > d.device.max_force) {
+    envelope.reject("max_force", fmt::format("{}", d.envelope.max_force),
+                    fmt::format("at most device.max_force, {} [N]", d.device.max_force));
+  }
+  if (d.envelope.workspace_radius > d.device.workspace_radius) {
+    envelope.reject(
+        "workspace_radius", fmt::format("{}", d.envelope.workspace_radius),
+        fmt::format("at most device.workspace_radius, {} [m]", d.device.workspace_radius));
+  }
+  Table trajectory = root.table("trajectory");
+  const double reach = 0.5 * std::hypot(d.trajectory.length_x, d.trajectory.range_z);
+  if (reach > d.envelope.workspace_radius) {
+    trajectory.reject("length_x", fmt::format("{}", d.trajectory.length_x),
+                      fmt::format("with range_z, a curve within envelope.workspace_radius, {} [m]",
+                                  d.envelope.workspace_radius));
+  }
+  const double shortest = d.trajectory.length_x / d.trajectory.speed;
+  Table force_pattern = root.table("force_pattern");
+  if (2.0 * d.force_pattern.ramp > shortest) {
+    force_pattern.reject(
+        "ramp", fmt::format("{}", d.force_pattern.ramp),
+        fmt::format("at most half of the shortest pass, {:.3g} [s]", 0.5 * shortest));
+  }
+}
+
+Definition read(Table root, std::string_view file_name) {
+  Table experiment = root.table("experiment");
+  Table design = root.table("design");
+  Table trajectory = root.table("trajectory");
+  Table force_pattern = root.table("force_pattern");
+  Table guidance = root.table("guidance");
+  Table envelope = root.table("envelope");
+  Table device = root.table("device");
+  Table hand = root.table("hand");
+  Table subject = root.table("subject");
+  Table display = root.table("display");
+  Table recording = root.table("recording");
+  Table scoring = root.table("analysis");
+  const bool cvode = hand.choice("integrator", {"exact", "cvode"}) == "cvode";
+  Definition d{root.source(),
+               std::filesystem::path(file_name).filename().string(),
+               experiment.text("name"),
+               experiment.number("rate", {100.0, 20000.0}, "Hz"),
+               protocols::read_design(design),
+               stimulus::read_trajectory_parameters(trajectory),
+               stimulus::read_force_pattern_parameters(force_pattern),
+               protocols::read_guidance_parameters(guidance),
+               device::read_envelope_limits(envelope),
+               device::read_virtual_device_parameters(device),
+               subject::read_hand_parameters(hand),
+               cvode ? Integrator::kCvode : Integrator::kExact,
+               subject::Population(subject),
+               render::read_trial_display_style(display),
+               recording.number("stimulus_rate", {10.0, 10000.0}, "Hz"),
+               analysis::read_score_parameters(scoring)};
+  check_together(root, d);
+  root.finish();
+  return d;
+}
+
+}  // namespace
+
+Definition load_definition(const std::filesystem::path& file) {
+  return read(Table::load(file), file.string());
+}
+
+Definition parse_definition(std::string_view text, std::string_view file_name) {
+  return read(Table::parse(text, file_name), file_name);
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "analysis/score_parameters.h"
+#include "core/device/envelope.h"
+#include "core/device/virtual_device.h"
+#include "core/render/trial_display_style.h"
+#include "core/stimulus/stimulus.h"
+#include "core/subject/hand_parameters.h"
+#include "core/subject/subject_parameters.h"
+#include "protocols/schedule.h"
+#include "protocols/trajectory_pass.h"
+
+namespace haptrial::experiments {
+
+enum class Integrator { kExact, kCvode };
+
+/// An experiment, read from a definition file and valid as a whole.
+struct Definition {
+  std::string text;       // the file, unchanged
+  std::string file_name;  // without folders
+  std::string name;
+  double rate;  // of the servo loop [Hz]
+  protocols::Design design;
+  stimulus::TrajectoryParameters trajectory;
+  stimulus::ForcePatternParameters force_pattern;
+  protocols::GuidanceParameters guidance;
+  device::EnvelopeLimits envelope;
+  device::VirtualDeviceParameters device;
+  subject::HandParameters hand;
+  Integrator integrator;
+  subject::Population population;
+  render::TrialDisplayStyle display;
+  double stimulus_rate;  // [Hz]
+  analysis::ScoreParameters scoring;
+};
+
+/// @throws InputError with a sentence for every problem of the file.
+Definition load_definition(const std::filesystem::path& file);
+
+/// A definition from its text, as a session file keeps it.
+Definition parse_definition(std::string_view text, std::string_view file_name);
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::protocols {
+
+/// The plan of a study. Source: Morris 2006, §4.2.5.
+struct Design {
+  int participants{12};
+  int trials{72};                // per participant; a trial is a training pass and a test pass
+  int repetitions{3};            // trials of a block: same stimulus, same condition
+  int break_after{36};           // trials; 0 for no break
+  double break_duration{600.0};  // [s]
+  std::vector<std::string> conditions;  // of training
+
+  int blocks() const { return trials / repetitions; }
+};
+
+/// Reads a [design] table; a design that does not divide is noted as a problem.
+Design read_design(Table& table);
+
+/// One trial of a participant.
+struct PlannedTrial {
+  std::int32_t trial{0};       // from 1
+  std::int32_t block{0};       // from 1
+  std::int32_t repetition{0};  // from 1
+  std::string condition;
+  std::uint64_t stimulus_seed{0};  // the same within a block
+};
+
+/// The rows of a Williams design for n >= 1 conditions: every condition at every place equally
+/// often and after every other equally often. n rows where n is even, 2 n where it is odd.
+/// // (rows x n), values 0 .. n - 1. Source: Williams 1949.
+std::vector<std::vector<int>> williams_rows(int conditions);
+
+/// The trials of one participant in their order. Blocks come in groups that hold each condition
+/// once; the order within group g is a Williams row, and over as many consecutive participants as
+/// there are rows each row is used once in every group. Which row comes to whom is drawn from the
+/// study's seed.
+/// @param participant   from 0
+/// @param study_seed    the same for all participants
+/// @param session_seed  of this participant; stimuli derive from it
+std::vector<PlannedTrial> plan_trials(const Design& design, int participant,
+                                      std::uint64_t study_seed, std::uint64_t session_seed);
+
+}  // namespace haptrial::protocols

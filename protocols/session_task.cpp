@@ -1,0 +1,100 @@
+#include "protocols/session_task.h"
+
+namespace haptrial::protocols {
+
+SessionTask::SessionTask(device::Device& device, const device::EnvelopeLimits& limits, Log& log,
+                         std::vector<stimulus::Observer*> observers, Leave leave)
+    : device_(device),
+      envelope_(limits),
+      log_(log),
+      observers_(std::move(observers)),
+      leave_(leave) {}
+
+void SessionTask::start(Pass& pass, std::int32_t row) noexcept {
+  asked_row_.store(row, std::memory_order_relaxed);
+  busy_.store(true, std::memory_order_relaxed);
+  asked_.store(&pass, std::memory_order_release);
+}
+
+bool SessionTask::idle() const noexcept { return !busy_.load(std::memory_order_acquire); }
+
+void SessionTask::clear_fault() noexcept { clear_asked_.store(true, std::memory_order_release); }
+
+void SessionTask::emergency_stop() noexcept { stop_asked_.store(true, std::memory_order_release); }
+
+bool SessionTask::tick(const realtime::Tick& tick) noexcept {
+  take_requests(tick.index);
+
+  const bool read_ok = device_.read(reading_);
+  envelope_.check(read_ok, reading_);
+  PassOutput out = ask_pass(reading_, tick.dt);
+  const Eigen::Vector3d force = envelope_.limit(out.force, tick.dt);
+  for (stimulus::Observer* observer : observers_) {
+    observer->observe(out.presentation, force, tick.dt);
+  }
+  if (!device_.write(force)) {
+    envelope_.trip(device::Fault::kWriteFailed);
+  }
+
+  record::Sample sample;
+  sample.sequence = tick.index;
+  sample.time_ns = tick.time_ns;
+  sample.position = reading_.tool.position;
+  sample.velocity = reading_.tool.velocity;
+  sample.force = force;
+  sample.applied_force = out.applied_force;
+  sample.target_force = out.target_force;
+  sample.pass = pass_ != nullptr ? row_ : -1;
+  sample.stage = out.stage;
+  sample.saturated = out.saturated;
+  log_.push(sample);
+
+  const bool ended = end_if_over(tick.index);
+  return leave_ == Leave::kNever || !(ended || (tick.index + 1) % kSlice == 0);
+}
+
+void SessionTask::take_requests(std::uint64_t sequence) noexcept {
+  if (stop_asked_.load(std::memory_order_acquire)) {
+    stop_asked_.store(false, std::memory_order_relaxed);
+    envelope_.trip(device::Fault::kEmergencyStop);
+  }
+  if (clear_asked_.load(std::memory_order_acquire)) {
+    clear_asked_.store(false, std::memory_order_relaxed);
+    envelope_.reset();
+  }
+  if (Pass* asked = asked_.load(std::memory_order_acquire)) {
+    asked_.store(nullptr, std::memory_order_relaxed);
+    pass_ = asked;
+    row_ = asked_row_.load(std::memory_order_relaxed);
+    result_ = {};
+    result_.first_sample = sequence;
+  }
+}
+
+PassOutput SessionTask::ask_pass(const device::DeviceReading& reading, double dt) noexcept {
+  if (pass_ != nullptr && envelope_.fault() == device::Fault::kNone) {
+    return pass_->tick(reading.tool, dt);
+  }
+  PassOutput nothing;
+  nothing.presentation.tool = reading.tool.position;
+  return nothing;
+}
+
+bool SessionTask::end_if_over(std::uint64_t sequence) noexcept {
+  if (pass_ == nullptr) {
+    return false;
+  }
+  const device::Fault fault = envelope_.fault();
+  const PassState state = fault == device::Fault::kNone ? pass_->state() : PassState::kAborted;
+  if (state == PassState::kRunning) {
+    return false;
+  }
+  result_.state = state;
+  result_.fault = fault;
+  result_.last_sample = sequence;
+  pass_ = nullptr;
+  busy_.store(false, std::memory_order_release);
+  return true;
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <atomic>
+#include <vector>
+
+#include "core/device/device.h"
+#include "core/device/envelope.h"
+#include "core/realtime/block_log.h"
+#include "core/realtime/servo_loop.h"
+#include "core/record/session_types.h"
+#include "core/stimulus/observer.h"
+#include "protocols/pass.h"
+
+namespace haptrial::protocols {
+
+/// How a pass ended.
+struct PassResult {
+  PassState state{PassState::kRunning};
+  device::Fault fault{device::Fault::kNone};
+  std::uint64_t first_sample{0};  // sequence numbers, both inclusive
+  std::uint64_t last_sample{0};
+};
+
+/// What happens on every tick of a session:
+///
+///     device -> envelope -> pass -> envelope -> device, observers, log
+///
+/// The same on a real and on a simulated clock. Between passes the force is zero and ticks are
+/// recorded all the same. The servo thread calls tick(); the session's thread calls the rest.
+class SessionTask final : public realtime::ServoTask {
+ public:
+  using Log = realtime::BlockLog<record::Sample>;
+
+  /// When tick() asks ServoLoop::run to return. On a simulated clock the session's thread runs the
+  /// loop itself and has to be let out, to empty the log, before the log is full.
+  enum class Leave : std::uint8_t { kNever, kAfterPassOrSlice };
+  static constexpr std::uint64_t kSlice = 16384;  // [ticks]
+
+  /// Everything given outlives the task.
+  SessionTask(device::Device& device, const device::EnvelopeLimits& limits, Log& log,
+              std::vector<stimulus::Observer*> observers, Leave leave);
+
+  /// Hands a pass to the servo thread; it outlives the pass. Call only when idle().
+  /// @param row  of /trials, for the samples
+  void start(Pass& pass, std::int32_t row) noexcept;
+  bool idle() const noexcept;
+  /// Of the last pass; call only when idle().
+  const PassResult& result() const noexcept { return result_; }
+  /// Clears a fault before the next pass; the force ramps in again.
+  void clear_fault() noexcept;
+  /// Force to zero from the next tick on, the present pass aborted.
+  void emergency_stop() noexcept;
+
+  bool tick(const realtime::Tick& tick) noexcept override;
+
+ private:
+  void take_requests(std::uint64_t sequence) noexcept;
+  bool end_if_over(std::uint64_t sequence) noexcept;
+  PassOutput ask_pass(const device::DeviceReading& reading, double dt) noexcept;
+
+  device::Device& device_;
+  device::Envelope envelope_;
+  Log& log_;
+  std::vector<stimulus::Observer*> observers_;
+  Leave leave_;
+
+  std::atomic<Pass*> asked_{nullptr};  // session thread -> servo thread
+  std::atomic<std::int32_t> asked_row_{-1};
+  std::atomic<bool> busy_{false};
+  std::atomic<bool> clear_asked_{false};
+  std::atomic<bool> stop_asked_{false};
+
+  // Servo thread.
+  Pass* pass_{nullptr};
+  std::int32_t row_{-1};
+  device::DeviceReading reading_;
+  PassResult result_;  // published by busy_
+};
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,128 @@
+#include "protocols/trajectory_pass.h"
+
+#include <algorithm>
+
+#include "core/base/table.h"
+
+namespace haptrial::protocols {
+
+using record::Stage;
+
+GuidanceParameters read_guidance_parameters(Table& table) {
+  GuidanceParameters p;
+  Table trajectory = table.table("trajectory");
+  Table plane = table.table("plane");
+  p.trajectory = control::read_pd_gains(trajectory);
+  p.plane = control::read_pd_gains(plane);
+  p.force_limit = table.number("force_limit", {0.0, 100.0, true}, "N");
+  p.approach_speed = table.number("approach_speed", {0.0, 1.0, true}, "m/s");
+  p.settle_distance = table.number("settle_distance", {0.0, 0.1, true}, "m");
+  p.wait = table.number("wait", {0.0, 60.0}, "s");
+  p.wait_timeout = table.number("wait_timeout", {p.wait, 600.0, true}, "s");
+  return p;
+}
+
+TrajectoryPass::TrajectoryPass(const stimulus::Stimulus& stimulus,
+                               const GuidanceParameters& parameters, std::int32_t block)
+    : stimulus_(stimulus),
+      parameters_(parameters),
+      trajectory_controller_(parameters.trajectory),
+      plane_controller_(parameters.plane),
+      block_(block) {}
+
+void TrajectoryPass::enter(Stage stage) noexcept {
+  stage_ = stage;
+  time_ = 0.0;
+  settled_ = 0.0;
+  const Eigen::Vector3d& start = stimulus_.path.points().front();
+  if (stage == Stage::kApproach || stage == Stage::kReturn) {
+    move_ = control::MinimumJerkMove(target_, start, parameters_.approach_speed);
+  }
+}
+
+PointState TrajectoryPass::guide_target(const PointState& tool, double dt) noexcept {
+  time_ += dt;
+  switch (stage_) {
+    case Stage::kIdle:
+      target_ = tool.position;
+      enter(Stage::kApproach);
+      break;
+    case Stage::kApproach:
+      if (time_ >= move_.duration()) {
+        enter(Stage::kWait);
+      }
+      break;
+    case Stage::kWait:
+      settle(tool, dt);
+      break;
+    case Stage::kRun:
+      if (time_ >= stimulus_.path.duration()) {
+        enter(Stage::kReturn);
+      }
+      break;
+    case Stage::kReturn:
+      if (time_ >= move_.duration()) {
+        state_ = PassState::kCompleted;
+      }
+      break;
+  }
+  switch (stage_) {
+    case Stage::kRun:
+      return stimulus_.path.at(time_);
+    case Stage::kWait:
+      return {stimulus_.path.points().front(), Eigen::Vector3d::Zero()};
+    default:
+      return move_.at(time_);
+  }
+}
+
+void TrajectoryPass::settle(const PointState& tool, double dt) noexcept {
+  const double distance = (tool.position - stimulus_.path.points().front()).norm();
+  settled_ = distance <= parameters_.settle_distance ? settled_ + dt : 0.0;
+  if (settled_ >= parameters_.wait && settled_ > 0.0) {
+    enter(Stage::kRun);
+  } else if (time_ >= parameters_.wait_timeout) {
+    state_ = PassState::kAborted;
+  }
+}
+
+PassOutput TrajectoryPass::tick(const PointState& tool, double dt) noexcept {
+  const PointState target = guide_target(tool, dt);
+  const PassOutput out = output(tool, target);
+  target_ = target.position;
+  if (stage_ == Stage::kRun && !plane_holds()) {
+    target_.y() = tool.position.y();  // the return starts where the hand is
+  }
+  return out;
+}
+
+PassOutput TrajectoryPass::output(const PointState& tool, const PointState& target) const noexcept {
+  const bool runs = stage_ == Stage::kRun;
+  PassOutput out;
+  out.stage = stage_;
+  out.target_force = runs ? stimulus_.force.at(time_) : 0.0;
+  const double plane_force = plane_controller_.force(target, tool).y();
+  Eigen::Vector3d wanted = trajectory_controller_.force(target, tool);
+  wanted.y() = runs && !plane_holds() ? out.target_force : plane_force;
+  out.force = control::saturate(wanted, parameters_.force_limit);
+  out.saturated = wanted.norm() > parameters_.force_limit;
+  out.applied_force = out.force.y();
+
+  stimulus::Presentation& seen = out.presentation;
+  seen.tool = tool.position;
+  seen.show_trajectory = true;
+  seen.show_saturation = out.saturated;
+  seen.target_force = out.target_force;
+  seen.applied_force = out.applied_force;
+  seen.pass_duration = stimulus_.path.duration();
+  seen.block = block_;
+  if (runs) {
+    seen.progress = std::clamp(time_ / seen.pass_duration, 0.0, 1.0);
+    present(seen);
+  } else if (stage_ == Stage::kReturn) {
+    seen.progress = 1.0;
+  }
+  return out;
+}
+
+}  // namespace haptrial::protocols

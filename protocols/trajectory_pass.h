@@ -1,0 +1,69 @@
+#pragma once
+
+#include "core/control/minimum_jerk.h"
+#include "core/control/pd_controller.h"
+#include "core/stimulus/stimulus.h"
+#include "protocols/pass.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::protocols {
+
+/// How a hand is guided along a trajectory. Source: Morris 2006, §4.2.4.
+struct GuidanceParameters {
+  control::PdGains trajectory{900.0, 100.0};  // in the xz plane
+  control::PdGains plane{2000.0, 300.0};      // along y
+  double force_limit{12.0};                   // the device saturates here > 0 [N]
+  double approach_speed{0.10};                // peak, to the start and back > 0 [m/s]
+  double settle_distance{0.003};              // of the start, to be in before the run > 0 [m]
+  double wait{0.5};                           // at the start, without a break >= 0 [s]
+  double wait_timeout{10.0};                  // then the pass is aborted > 0 [s]
+};
+
+/// Reads a [guidance] table with its inner tables trajectory and plane.
+GuidanceParameters read_guidance_parameters(Table& table);
+
+/// One pass along a trajectory:
+///
+///     approach the start -> wait there, settled -> run along it -> return to the start
+///
+/// The kinds of pass differ in what happens along y during the run and in what is shown; each is a
+/// file of its own. The guide never jumps: every stage begins where the last one left its target.
+class TrajectoryPass : public Pass {
+ public:
+  /// @param stimulus  outlives the pass.  @param block  names the stimulus in the presentation.
+  TrajectoryPass(const stimulus::Stimulus& stimulus, const GuidanceParameters& parameters,
+                 std::int32_t block);
+
+  PassOutput tick(const PointState& tool, double dt) noexcept final;
+  PassState state() const noexcept final { return state_; }
+
+ protected:
+  /// During the run, the plane constraint holds the hand along y; where it does not, the device
+  /// pushes the hand up with the target force. Outside the run the plane always holds.
+  virtual bool plane_holds() const noexcept { return true; }
+  /// Completes what is seen during the run; tool, trajectory and progress are already there.
+  virtual void present(stimulus::Presentation& presentation) const noexcept = 0;
+
+ private:
+  void enter(record::Stage stage) noexcept;
+  PointState guide_target(const PointState& tool, double dt) noexcept;
+  void settle(const PointState& tool, double dt) noexcept;
+  PassOutput output(const PointState& tool, const PointState& target) const noexcept;
+
+  const stimulus::Stimulus& stimulus_;
+  GuidanceParameters parameters_;
+  control::PdController trajectory_controller_;
+  control::PdController plane_controller_;
+  std::int32_t block_;
+  record::Stage stage_{record::Stage::kIdle};
+  PassState state_{PassState::kRunning};
+  double time_{0.0};                                 // in the stage [s]
+  double settled_{0.0};                              // at the start without a break [s]
+  Eigen::Vector3d target_{Eigen::Vector3d::Zero()};  // where the guide was last [m]
+  control::MinimumJerkMove move_;
+};
+
+}  // namespace haptrial::protocols
