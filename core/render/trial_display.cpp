@@ -121,21 +121,20 @@ void TrialDisplay::draw_frame(const Rectangle& bar, Side side, const Colour& col
   const Colour faint = with_alpha(colour, style_.frame_opacity);
   painter_.fill(frame, style_.frame_radius, with_alpha(style_.background, style_.panel_opacity));
   painter_.outline(frame, style_.frame_radius, style_.frame_width, faint);
-  const double outer = 0.5 * style_.frame_width;
+  const double half = 0.5 * style_.frame_width;
   const double from =
-      side == Side::kLeft ? frame.low.x() - outer - style_.tick_length : frame.high.x() + outer;
+      side == Side::kLeft ? frame.low.x() - half - style_.tick_length : frame.high.x() + half;
   for (int tick = 1; tick < style_.bar_divisions; ++tick) {
     const double y = bar.high.y() - bar.size().y() * tick / style_.bar_divisions;
-    const double half = 0.5 * style_.frame_width;
     painter_.fill({{from, y - half}, {from + style_.tick_length, y + half}}, 0.0, faint);
   }
 }
 
 void TrialDisplay::draw_saturation() {
-  const Eigen::Vector2d corner(style_.width - style_.margin, style_.margin);
   const double side = style_.saturation_size;
-  painter_.fill({{corner.x() - side, corner.y()}, {corner.x(), corner.y() + side}}, 0.0,
-                style_.saturation_colour);
+  const double inset = std::max(0.0, 0.5 * (style_.margin - side));  // where no bar can reach
+  const double right = style_.width - inset;
+  painter_.fill({{right - side, inset}, {right, inset + side}}, 0.0, style_.saturation_colour);
 }
 
 }  // namespace haptrial::render

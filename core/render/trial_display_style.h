@@ -32,7 +32,7 @@ struct TrialDisplayStyle {
   double frame_opacity{0.45};  // 0 to 1
   double panel_opacity{0.85};  // of the background behind a bar, 0 to 1
 
-  // Saturation square, in the top right corner
+  // Saturation square, in the top right corner; up to the margin's size it hides no bar
   double saturation_size{26.0};  // side [px]
 
   Colour background{0xfa / 255.0, 0xfa / 255.0, 0xf8 / 255.0};
