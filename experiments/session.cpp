@@ -49,6 +49,8 @@ class Session {
                 record::Phase phase);
   void drive_until_idle();
   void drain();
+  void recover();
+  void pause(double seconds);
   void take_break();
   void draw_frames(const protocols::PlannedTrial& trial, record::Phase phase);
   void event(const std::string& kind, const std::string& text);
@@ -201,7 +203,7 @@ void Session::run_pass(protocols::TrajectoryPass& pass, const protocols::Planned
     event("aborted", fmt::format("trial {}: {}", trial.trial,
                                  fault ? device::describe(result.fault)
                                        : "the tool did not settle at the start in time"));
-    task_.clear_fault();
+    recover();
   }
   if (renderer_) {
     draw_frames(trial, phase);
@@ -231,16 +233,35 @@ void Session::drain() {
   }
 }
 
+void Session::pause(double seconds) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (std::chrono::steady_clock::now() < end && !asked_to_stop()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    drain();
+  }
+}
+
+/// Without force, for the hand to come back into the workspace; ticks are recorded all the same.
+void Session::recover() {
+  if (request_.clock == ClockKind::kReal) {
+    pause(d_.guidance.recovery);
+  } else {
+    const std::uint64_t end =
+        loop_.ticks() + static_cast<std::uint64_t>(d_.guidance.recovery * d_.rate);
+    task_.leave_before(end);
+    while (loop_.ticks() < end) {
+      loop_.run(task_);
+      drain();
+    }
+  }
+  task_.clear_fault();
+}
+
 void Session::take_break() {
   event("break", fmt::format("{} s", d_.design.break_duration));
   writer_.flush();
   if (request_.clock == ClockKind::kReal) {
-    const auto end =
-        std::chrono::steady_clock::now() + std::chrono::duration<double>(d_.design.break_duration);
-    while (std::chrono::steady_clock::now() < end && !asked_to_stop()) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      drain();
-    }
+    pause(d_.design.break_duration);
   }
 }
 

@@ -50,7 +50,8 @@ bool SessionTask::tick(const realtime::Tick& tick) noexcept {
   log_.push(sample);
 
   const bool ended = end_if_over(tick.index);
-  return leave_ == Leave::kNever || !(ended || (tick.index + 1) % kSlice == 0);
+  const std::uint64_t next = tick.index + 1;
+  return leave_ == Leave::kNever || !(ended || next % kSlice == 0 || next == leave_before_);
 }
 
 void SessionTask::take_requests(std::uint64_t sequence) noexcept {

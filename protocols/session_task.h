@@ -46,6 +46,8 @@ class SessionTask final : public realtime::ServoTask {
   bool idle() const noexcept;
   /// Of the last pass; call only when idle().
   const PassResult& result() const noexcept { return result_; }
+  /// Asks tick() to let ServoLoop::run return after the tick before `index`, once. Between runs.
+  void leave_before(std::uint64_t index) noexcept { leave_before_ = index; }
   /// Clears a fault before the next pass; the force ramps in again.
   void clear_fault() noexcept;
   /// Force to zero from the next tick on, the present pass aborted.
@@ -63,6 +65,7 @@ class SessionTask final : public realtime::ServoTask {
   Log& log_;
   std::vector<stimulus::Observer*> observers_;
   Leave leave_;
+  std::uint64_t leave_before_{0};
 
   std::atomic<Pass*> asked_{nullptr};  // session thread -> servo thread
   std::atomic<std::int32_t> asked_row_{-1};

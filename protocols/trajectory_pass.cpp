@@ -19,6 +19,7 @@ GuidanceParameters read_guidance_parameters(Table& table) {
   p.settle_distance = table.number("settle_distance", {0.0, 0.1, true}, "m");
   p.wait = table.number("wait", {0.0, 60.0}, "s");
   p.wait_timeout = table.number("wait_timeout", {p.wait, 600.0, true}, "s");
+  p.recovery = table.number("recovery", {0.0, 600.0}, "s");
   return p;
 }
 

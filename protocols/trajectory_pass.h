@@ -20,6 +20,7 @@ struct GuidanceParameters {
   double settle_distance{0.003};              // of the start, to be in before the run > 0 [m]
   double wait{0.5};                           // at the start, without a break >= 0 [s]
   double wait_timeout{10.0};                  // then the pass is aborted > 0 [s]
+  double recovery{3.0};                       // without force after an abort >= 0 [s]
 };
 
 /// Reads a [guidance] table with its inner tables trajectory and plane.

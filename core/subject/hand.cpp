@@ -28,7 +28,7 @@ PointState Hand::step(const Eigen::Vector3d& motor_force, double) noexcept {
     const bool vertical = axis == 1;
     const ExactStep& exact = vertical && command_.holds_posture ? holding_ : yielding_;
     const double press = vertical ? -command_.press : 0.0;
-    const Eigen::Vector2d input(motor_force[axis] + command_.tremor[axis], press);
+    const Eigen::Vector2d input(motor_force[axis] + command_.force[axis], press);
     AxisState next = exact.state * axes_[axis] + exact.input * input;
     const double stopping = -next[1] / exact.input(1, 0);
     next += exact.input.col(0) * std::clamp(stopping, -friction_, friction_);

@@ -43,7 +43,7 @@ struct CvodeHand::Solver {
       const bool vertical = axis == 1;
       const AxisDynamics& d = vertical && s.command.holds_posture ? s.holding : s.yielding;
       const double friction = -s.friction * std::tanh(x[1] / s.slip_speed);
-      const Eigen::Vector2d input(s.motor_force[axis] + s.command.tremor[axis] + friction,
+      const Eigen::Vector2d input(s.motor_force[axis] + s.command.force[axis] + friction,
                                   vertical ? -s.command.press : 0.0);
       dx = d.system * x + d.input * input;
     }

@@ -8,9 +8,9 @@ namespace haptrial::subject {
 
 /// What the nervous system asks of the hand for the next step.
 struct HandCommand {
-  double press{0.0};          // motor command, downward > 0 [N]
-  bool holds_posture{false};  // keep the height stiffly, or yield to the guide
-  Eigen::Vector3d tremor{Eigen::Vector3d::Zero()};  // force in W [N]
+  double press{0.0};                               // motor command, downward > 0 [N]
+  bool holds_posture{false};                       // keep the height stiffly, or yield to the guide
+  Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // by the whole arm, tremor included, in W [N]
 };
 
 /// A hand on the handle of a virtual device. Servo thread.

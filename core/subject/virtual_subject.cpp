@@ -10,6 +10,10 @@ namespace haptrial::subject {
 using stimulus::Instruction;
 using stimulus::Presentation;
 
+namespace {
+constexpr double kHomeStiffness = 100.0;  // [N/m]
+}
+
 VirtualSubject::VirtualSubject(const SubjectParameters& person,
                                const HandParameters& hand_parameters, HandModel& hand,
                                std::uint64_t seed, double step)
@@ -27,6 +31,8 @@ void VirtualSubject::observe(const Presentation& seen, const Eigen::Vector3d& de
   now.height = seen.show_target_bar ? seen.target_force : 0.0;
   now.mismatch = seen.show_applied_bar ? seen.target_force - seen.applied_force : 0.0;
   now.felt = device_force.y();
+  now.height_of_hand = seen.tool.y();
+  now.saturated = seen.show_saturation;
   past_[++now_ % kDelayLine] = now;
 
   const bool running = seen.progress > 0.0 && seen.progress < 1.0;
@@ -41,9 +47,12 @@ void VirtualSubject::observe(const Presentation& seen, const Eigen::Vector3d& de
   in_run_ = running;
 
   HandCommand command;
-  command.press = running ? motor_.press(intended_press(seen, dt)) : 0.0;
+  command.press = running ? motor_.press(hold_back(intended_press(seen, dt), dt)) : 0.0;
   command.holds_posture = running && seen.instruction == Instruction::kHoldPlane;
-  command.tremor = motor_.tremor();
+  command.force = motor_.tremor();
+  if (!seen.show_trajectory) {  // nobody guides the hand: it rests in the middle
+    command.force -= kHomeStiffness * seen.tool;
+  }
   hand_.command(command);
 }
 
@@ -57,6 +66,7 @@ void VirtualSubject::begin_pass(const Presentation& seen) noexcept {
   memory_.drift(person_.forgetting, person_.memory_correlation / pass_duration_, random_);
   exposure_.clear();
   correction_ = 0.0;
+  boldness_ = 1.0;
   produced_scale_ = std::exp(person_.production_bias * random_.normal());
   const double knot_time = pass_duration_ / ForceProfile::kKnots;
   SmoothNoise timing(knot_time, person_.timing_correlation);
@@ -87,8 +97,8 @@ void VirtualSubject::end_pass() noexcept {
 
 double VirtualSubject::intended_press(const Presentation& seen, double dt) noexcept {
   switch (seen.instruction) {
-    case Instruction::kHoldPlane:  // oppose what is felt; the posture takes the rest
-      return delayed(person_.haptic_delay).felt;
+    case Instruction::kHoldPlane:
+      return oppose();
     case Instruction::kMatch:
       return match_bars(dt);
     case Instruction::kRecall:
@@ -100,17 +110,37 @@ double VirtualSubject::intended_press(const Presentation& seen, double dt) noexc
   return 0.0;
 }
 
+double VirtualSubject::oppose() const noexcept {
+  // What is felt, and a push back to the plane. With the delay of the senses the push must stay
+  // below the posture's own stiffness, or it would oscillate.
+  constexpr double kPushBack = 100.0;  // [N/m]
+  const Sensed& sensed = delayed(person_.haptic_delay);
+  return sensed.felt + kPushBack * sensed.height_of_hand;
+}
+
+double VirtualSubject::hold_back(double press, double dt) noexcept {
+  // Where the device saturates the handle gives way: the hand eases off at once and takes its time
+  // to trust again. Shares of the intended press per second.
+  constexpr double kEaseOff = 5.0;
+  constexpr double kTrust = 1.0;
+  const bool gives_way = delayed(person_.haptic_delay).saturated;
+  boldness_ = std::clamp(boldness_ + (gives_way ? -kEaseOff : kTrust) * dt, 0.0, 1.0);
+  return boldness_ * press;
+}
+
 double VirtualSubject::match_bars(double dt) noexcept {
-  // Follows the target bar ahead by its own delay, and removes what the bars still show in about a
-  // second; faster than that, a delay of 0.2 s would make the hand oscillate.
-  constexpr double kCorrectionTime = 1.0;  // [s]
+  // Follows the target bar ahead by its own delay, and removes what the bars still show; much
+  // faster than this, a delay of 0.2 s would make the hand oscillate.
+  constexpr double kCorrectionTime = 0.5;  // [s]
   constexpr double kSlopeSpan = 0.1;       // over which the bar's speed is seen [s]
   const Sensed& seen = delayed(person_.visual_delay);
   const Sensed& before = delayed(person_.visual_delay + kSlopeSpan);
   const double lead = person_.visual_delay + muscle_lag_ + 0.5 * kSlopeSpan;
   const double ahead = seen.height + lead * (seen.height - before.height) / kSlopeSpan;
   const double gain = bar_.gain();
-  correction_ += gain * seen.mismatch * dt / kCorrectionTime;
+  if (boldness_ == 1.0) {  // what is held back on purpose is no error
+    correction_ += gain * seen.mismatch * dt / kCorrectionTime;
+  }
   return std::max(0.0, gain * ahead + correction_);
 }
 

@@ -29,9 +29,11 @@ class VirtualSubject final : public stimulus::Observer {
   static constexpr int kDelayLine = 4096;  // ticks; longer delays are cut to it
 
   struct Sensed {
-    double height{0.0};    // target bar [N of its scale]
-    double mismatch{0.0};  // target bar minus applied bar [N of its scale]
-    double felt{0.0};      // [N]
+    double height{0.0};          // target bar [N of its scale]
+    double mismatch{0.0};        // target bar minus applied bar [N of its scale]
+    double felt{0.0};            // [N]
+    double height_of_hand{0.0};  // over the plane [m]
+    bool saturated{false};       // the square is seen, or the handle gives way
   };
 
   void begin_pass(const stimulus::Presentation& seen) noexcept;
@@ -39,7 +41,9 @@ class VirtualSubject final : public stimulus::Observer {
   void end_pass() noexcept;
   double intended_press(const stimulus::Presentation& seen, double dt) noexcept;
   double match_bars(double dt) noexcept;
+  double oppose() const noexcept;
   double recall(const stimulus::Presentation& seen) const noexcept;
+  double hold_back(double press, double dt) noexcept;
   const Sensed& delayed(double delay) const noexcept;
 
   SubjectParameters person_;
@@ -57,6 +61,7 @@ class VirtualSubject final : public stimulus::Observer {
   std::array<double, ForceProfile::kKnots> warp_{};  // of recall [s]
   double produced_scale_{1.0};
   double correction_{0.0};  // of the press, learnt from the bars [N]
+  double boldness_{1.0};    // share of the intended press that the hand dares
   double pass_duration_{1.0};
   std::int32_t block_{0};
   bool in_run_{false};
