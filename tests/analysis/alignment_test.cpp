@@ -193,12 +193,43 @@ TEST(AlignmentTest, TiesGoStraightThenAlongTheTarget) {
   free.penalty = 0.0;
   EXPECT_EQ(align(two, two, free).path, (std::vector<PathPoint>{{0, 0}, {1, 1}}));
   EXPECT_EQ(align(two, three, free).path, (std::vector<PathPoint>{{0, 0}, {0, 1}, {1, 2}}));
-  // Straight through the middle costs 4; along either border costs nothing, and the steps into the
-  // end are equal: (1,0) is taken.
-  const Curve a{{1.0, 9.0, 1.0}, {0.0, 0.0, 0.0}}, b{{1.0, 9.0, 1.0}, {0.0, 4.0, 0.0}};
-  const Curve c{{1.0, 1.0, 1.0}, {0.0, 0.0, 0.0}}, d{{1.0, 3.0, 1.0}, {0.0, 0.0, 0.0}};
-  EXPECT_EQ(align(a, b, free).path, textbook_path<double>(a, b, free));
-  EXPECT_EQ(align(c, d, free).path, textbook_path<double>(c, d, free));
+  // Straight through the middle costs 100; round either corner of it 25 + 25.
+  const Curve peak{{0.0, 5.0, 0.0}, {0.0, 0.0, 0.0}}, trough{{0.0, -5.0, 0.0}, {0.0, 0.0, 0.0}};
+  free.power = 2;
+  EXPECT_EQ(align(peak, trough, free).path,
+            (std::vector<PathPoint>{{0, 0}, {0, 1}, {1, 2}, {2, 2}}));
+}
+
+TEST(AlignmentTest, TiesEverywhereGoAsInTheTextbook) {
+  RandomStream random(9, "ties");
+  for (int n = 0; n < 100; ++n) {
+    Curve a, b;
+    for (Curve* curve : {&a, &b}) {
+      const std::size_t samples = 1 + random.below(150);
+      for (std::size_t i = 0; i < samples; ++i) {
+        curve->force.push_back(static_cast<double>(random.below(3)));
+        curve->slope.push_back(static_cast<double>(random.below(2)));
+      }
+    }
+    const AlignmentParameters parameters{
+        .slope_weight = 1.0, .penalty = static_cast<double>(n % 3), .power = 1 + n % 2};
+    EXPECT_EQ(align(a, b, parameters).path, textbook_path<double>(a, b, parameters)) << n;
+  }
+}
+
+TEST(AlignmentTest, NothingOutsideTheMatrixIsCheapForLargeValues) {
+  RandomStream random(10, "large");
+  for (int n = 0; n < 20; ++n) {
+    Curve a, b;
+    for (Curve* curve : {&a, &b}) {
+      for (int i = 0; i < 40; ++i) {
+        curve->force.push_back(static_cast<double>(random.below(8)) * std::ldexp(1.0, 36));
+        curve->slope.push_back(0.0);
+      }
+    }
+    const AlignmentParameters parameters{.penalty = std::ldexp(1.0, 36)};
+    EXPECT_EQ(align(a, b, parameters).path, textbook_path<double>(a, b, parameters)) << n;
+  }
 }
 
 TEST(AlignmentTest, BadInputIsRefused) {
