@@ -36,12 +36,12 @@ void DiskSpace::ensure(int descriptor, std::uint64_t bytes) {
   struct stat file {};
   if (fstat(descriptor, &file) != 0) fail(errno);
   const std::uint64_t end = static_cast<std::uint64_t>(file.st_size) + bytes + kReserve;
-  if (end <= reserved_end_) return;
   struct rlimit limit {};
   if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
       end > limit.rlim_cur) {
     fail(EFBIG);
   }
+  if (end <= reserved_end_) return;
   if (reserve(descriptor, reserved_end_, end + kStep) == 0) {
     reserved_end_ = end + kStep;
     return;

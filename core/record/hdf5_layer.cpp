@@ -191,6 +191,11 @@ void flush(const Id& file) {
   check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), "cannot flush");
 }
 
+void close(Id& file) {
+  const Lock lock;
+  if (!file.reset()) fail("cannot close");
+}
+
 int descriptor(const Id& file) {
   const Lock lock;
   void* handle = nullptr;

@@ -55,6 +55,7 @@ Id open_file(const std::filesystem::path& path);
 /// writer, multiple readers). No object or attribute may be created after it.
 void start_swmr(const Id& file);
 void flush(const Id& file);
+void close(Id& file);
 /// The descriptor under an open file; it stays HDF5's.
 int descriptor(const Id& file);
 

@@ -11,6 +11,17 @@
 namespace haptrial::record {
 namespace {
 
+void check_text(std::string_view text, std::size_t bytes, const char* what) {
+  if (text.size() > bytes) {
+    throw std::invalid_argument(std::string(what) + " '" + std::string(text) + "' has " +
+                                std::to_string(text.size()) + " bytes; allowed: at most " +
+                                std::to_string(bytes));
+  }
+  if (text.find('\0') != std::string_view::npos) {
+    throw std::invalid_argument(std::string(what) + " holds a NUL byte; allowed: text");
+  }
+}
+
 /// One packed row, written or read field by field in column order.
 class PackedRow {
  public:
@@ -22,14 +33,7 @@ class PackedRow {
     at_ += sizeof(T);
   }
   void put_text(std::string_view text, std::size_t bytes, const char* what) {
-    if (text.size() > bytes) {
-      throw std::invalid_argument(std::string(what) + " '" + std::string(text) + "' has " +
-                                  std::to_string(text.size()) + " bytes; allowed: at most " +
-                                  std::to_string(bytes));
-    }
-    if (text.find('\0') != std::string_view::npos) {
-      throw std::invalid_argument(std::string(what) + " holds a NUL byte; allowed: text");
-    }
+    check_text(text, bytes, what);
     std::memcpy(row_.data() + at_, text.data(), text.size());
     at_ += bytes;
   }
@@ -135,6 +139,8 @@ TimingRow get_timing(const BytePlanes& planes, std::size_t at) {
 std::vector<EventPart> event_parts(const EventRow& event) {
   std::vector<EventPart> parts;
   std::string_view rest = event.text;
+  check_text(event.kind, kKindBytes, "event kind");  // before the first part is put anywhere
+  check_text(rest, rest.size(), "event text");
   do {
     std::size_t size = std::min(rest.size(), kTextBytes);
     // A cut never falls within a UTF-8 character (at most three continuation bytes back).

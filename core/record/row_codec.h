@@ -22,7 +22,8 @@ PassRow get_pass(const BytePlanes& planes, std::size_t at);
 StimulusRow get_stimulus(const BytePlanes& planes, std::size_t at);
 TimingRow get_timing(const BytePlanes& planes, std::size_t at);
 
-/// A row of /events: a text longer than its column goes on in the next rows.
+/// A row of /events: a text longer than its column goes on in the next rows, cut between
+/// characters.
 struct EventPart {
   EventRow row;
   std::int32_t part{0};

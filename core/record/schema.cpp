@@ -88,8 +88,7 @@ constexpr std::array kTiming{
     u64("compute_count", "ticks whose computation took a time in the bin"),
 };
 
-// 270 kB a chunk: within the 1 MiB chunk cache that HDF5 gives every reader, and at 1 kHz on file
-// after 4 s without a flush.
+// 270 kB a chunk: within the 1 MiB chunk cache that HDF5 gives every reader.
 constexpr std::size_t kSampleChunk = 4096;
 constexpr TableSchema kSamplesSchema{"samples", "one row for each tick of the servo loop",
                                      kSampleChunk, kSamples};

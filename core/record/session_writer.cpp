@@ -137,7 +137,8 @@ struct SessionWriter::Impl {
       h5::flush(file);
     } catch (...) {
       divert_file();
-      close_file();
+      close_tables();
+      file.reset();
       std::remove(partial.c_str());
       throw;
     }
@@ -154,8 +155,8 @@ struct SessionWriter::Impl {
   /// Runs one step of writing; its first failure ends all writing.
   template <typename Step>
   void guarded(Step step) {
-    if (!file) throw std::invalid_argument(final_path.string() + ": the session was closed before");
     if (!failure.empty()) throw RunError(failure);
+    if (!file) throw std::invalid_argument(final_path.string() + ": the session was closed before");
     try {
       step();
     } catch (const NoSpace& error) {
@@ -185,12 +186,10 @@ struct SessionWriter::Impl {
     }
   }
 
-  bool close_file() noexcept {
-    bool good = true;
+  void close_tables() noexcept {
     for (auto [table, schema] : tables()) {
-      if (*table) good = (*table)->close() && good;
+      if (*table) (*table)->close();
     }
-    return file.reset() && good;
   }
 
   fs::path final_path;
@@ -221,7 +220,8 @@ SessionWriter::~SessionWriter() {
   } catch (const std::exception&) {
     // The destructor has no one to tell; close() is for those who want to know.
   }
-  impl_->close_file();
+  impl_->close_tables();
+  impl_->file.reset();
   trim(impl_->partial);
 }
 
@@ -285,7 +285,8 @@ void SessionWriter::flush() {
 void SessionWriter::close() {
   impl_->guarded([&] {
     impl_->write_all();
-    if (!impl_->close_file()) throw h5::Error("HDF5 could not close it");
+    impl_->close_tables();
+    h5::close(impl_->file);
     trim(impl_->partial);
     sync(impl_->partial, O_RDWR);
     rename_to_new(impl_->partial, impl_->final_path);
@@ -300,7 +301,8 @@ void SessionWriter::discard() {
     throw std::invalid_argument(impl_->final_path.string() + ": the session was closed before");
   }
   impl_->divert_file();  // what HDF5 still holds need not reach the disk
-  impl_->close_file();
+  impl_->close_tables();
+  impl_->file.reset();
   std::remove(impl_->partial.c_str());
 }
 

@@ -28,9 +28,8 @@ class TableWriter {
   /// Writes the rows of the unfinished chunk, padded with zeros; more may follow them.
   void write_unfinished();
 
-  std::uint64_t rows() const { return first_row_ + used_; }
   const h5::Id& dataset() const { return dataset_; }
-  bool close() noexcept { return dataset_.reset(); }
+  void close() noexcept { dataset_.reset(); }
 
  private:
   void write();

@@ -1,0 +1,71 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "core/record/session_writer.h"
+#include "tests/core/record/session_fixture.h"
+
+namespace haptrial::record {
+namespace {
+
+bool python_has_libraries() {
+  return std::system("/usr/bin/python3 -c 'import h5py, pandas' 2>/dev/null") == 0;
+}
+
+void write_csv(const std::filesystem::path& path, const std::vector<Sample>& samples) {
+  std::ofstream out(path);
+  out << "sequence,time_ns,pass,stage,position_x,position_y,position_z,velocity_x,velocity_y,"
+         "velocity_z,force_x,force_y,force_z,applied_force,target_force,saturated\n";
+  for (const Sample& s : samples) {
+    out << fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", s.sequence, s.time_ns,
+                       s.pass, static_cast<int>(s.stage), s.position.x(), s.position.y(),
+                       s.position.z(), s.velocity.x(), s.velocity.y(), s.velocity.z(), s.force.x(),
+                       s.force.y(), s.force.z(), s.applied_force, s.target_force,
+                       static_cast<int>(s.saturated));
+  }
+}
+
+// Written by hand from the rows below: the file is compared with the source, not with a reader.
+constexpr const char* kExpected = R"({
+"attributes": {"schema_version": 1, "program_version": "0.1.0", "program_commit": "0123abc",
+  "definition": "[trajectory]\nspeed = 0.016  # größer als 0\n", "definition_name": "recall.toml",
+  "subject": "P07", "seed": 18364758544493064720, "device": "virtual", "device_max_force": 8.5,
+  "device_workspace_radius": 0.16, "clock": "simulated", "rate": 1000.0,
+  "start_utc": "2026-11-20T09:30:00Z", "simulated": 1},
+"counts": {"ticks": 9001, "overruns": 3, "dropped": 0},
+"trials": [[1, "haptic", "training", 1, 1, 18446744073709551615, 0, 4500, "completed"],
+           [1, "größe", "test", 1, 1, 7, 4501, 8999, "aborted"]],
+"events": [[-5, "session_start", "Grüße", 0], [9000000000, "fault", "", 0]],
+"stimuli": [[1, 0.0, 0.1, -0.2, 0.3, 1.5], [1, 0.001, 0.1, -0.2, 0.30000000000000004, 1.25]],
+"timing": [[-1000, 0, 1, 2, 3], [0, 1000, 4, 5, 6]]})";
+
+TEST(SessionPythonTest, ReadsWithH5pyAndPandasAsTheDocumentSays) {
+  if (!python_has_libraries()) GTEST_SKIP() << "/usr/bin/python3 has no h5py or no pandas";
+  const test::TemporaryFolder folder;
+  const std::vector<Sample> samples = test::hand_motion(9001, 3);
+  SessionWriter writer(folder / "session.h5", test::example_info());
+  writer.append(std::span(samples).first(5000));
+  writer.flush();  // the unfinished chunk is written twice
+  writer.append(std::span(samples).subspan(5000));
+  writer.add_pass(
+      {1, "haptic", Phase::kTraining, 1, 1, ~std::uint64_t{0}, 0, 4500, PassStatus::kCompleted});
+  writer.add_pass({1, "größe", Phase::kTest, 1, 1, 7, 4501, 8999, PassStatus::kAborted});
+  writer.add_event({-5, "session_start", "Grüße"});
+  writer.add_event({9000000000, "fault", ""});
+  writer.add_stimulus(std::vector<StimulusRow>{{1, 0.0, {0.1, -0.2, 0.3}, 1.5},
+                                               {1, 0.001, {0.1, -0.2, 0.1 + 0.2}, 1.25}});
+  writer.set_timing(std::vector<TimingRow>{{-1000, 0, 1, 2, 3}, {0, 1000, 4, 5, 6}}, {9001, 3, 0});
+  writer.close();
+  write_csv(folder / "samples.csv", samples);
+  std::ofstream(folder / "expected.json") << kExpected;
+  const std::string command = fmt::format(
+      "/usr/bin/python3 {0}/tests/core/record/read_session.py {1} {0}/docs/"
+      "session-file.md",
+      HAPTRIAL_SOURCE_DIR, folder.path().string());
+  EXPECT_EQ(std::system(command.c_str()), 0) << command;
+}
+
+}  // namespace
+}  // namespace haptrial::record
