@@ -1,0 +1,91 @@
+#include "core/realtime/histogram.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <stdexcept>
+
+namespace haptrial::realtime {
+namespace {
+
+constexpr int kSubBits = 6;  // 64 bins to an octave
+constexpr std::size_t kSubBins = std::size_t{1} << kSubBits;
+
+// Octave 0 holds 0 .. 63 one by one; octave k > 0 starts at 64 * 2^(k - 1).
+std::size_t bin_of(std::uint64_t duration) noexcept {
+  if (duration < kSubBins) {
+    return duration;
+  }
+  const int shift = static_cast<int>(std::bit_width(duration)) - 1 - kSubBits;
+  return (static_cast<std::size_t>(shift) << kSubBits) + (duration >> shift);
+}
+
+std::int64_t low_of(std::size_t bin) noexcept {
+  if (bin < 2 * kSubBins) {
+    return static_cast<std::int64_t>(bin);
+  }
+  const std::size_t shift = (bin >> kSubBits) - 1;
+  return static_cast<std::int64_t>((kSubBins + bin % kSubBins) << shift);
+}
+
+}  // namespace
+
+void DurationHistogram::add(std::int64_t duration) noexcept {
+  duration = std::max<std::int64_t>(duration, 0);
+  ++counts_[bin_of(static_cast<std::uint64_t>(duration))];
+  ++count_;
+  min_ = std::min(min_, duration);
+  max_ = std::max(max_, duration);
+  sum_ += static_cast<double>(duration);
+}
+
+void DurationHistogram::merge(const DurationHistogram& other) noexcept {
+  for (std::size_t i = 0; i < kBins; ++i) {
+    counts_[i] += other.counts_[i];
+  }
+  count_ += other.count_;
+  min_ = std::min(min_, other.min_);
+  max_ = std::max(max_, other.max_);
+  sum_ += other.sum_;
+}
+
+double DurationHistogram::min() const noexcept {
+  return count_ == 0 ? std::nan("") : static_cast<double>(min_);
+}
+
+double DurationHistogram::max() const noexcept {
+  return count_ == 0 ? std::nan("") : static_cast<double>(max_);
+}
+
+double DurationHistogram::mean() const noexcept {
+  return count_ == 0 ? std::nan("") : sum_ / static_cast<double>(count_);
+}
+
+double DurationHistogram::percentile(double percent) const {
+  if (!(percent >= 0.0 && percent <= 100.0)) {
+    throw std::invalid_argument("DurationHistogram: a percentile lies between 0 and 100");
+  }
+  if (count_ == 0) {
+    return std::nan("");
+  }
+  const double rank = std::max(1.0, std::ceil(percent / 100.0 * static_cast<double>(count_)));
+  std::uint64_t seen = 0;
+  for (std::size_t i = 0; i < kBins; ++i) {
+    seen += counts_[i];
+    if (static_cast<double>(seen) >= rank) {
+      return std::min(static_cast<double>(bin(i).high - 1), max());
+    }
+  }
+  return max();
+}
+
+DurationHistogram::Bin DurationHistogram::bin(std::size_t i) const {
+  if (i >= kBins) {
+    throw std::out_of_range("DurationHistogram::bin: there is no such bin");
+  }
+  const std::int64_t high =
+      i + 1 == kBins ? std::numeric_limits<std::int64_t>::max() : low_of(i + 1);
+  return {low_of(i), high, counts_[i]};
+}
+
+}  // namespace haptrial::realtime
