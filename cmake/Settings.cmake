@@ -26,6 +26,7 @@ elseif(HAPTRIAL_SANITIZER)
   message(FATAL_ERROR "HAPTRIAL_SANITIZER is '${HAPTRIAL_SANITIZER}'; allowed: address, thread, or empty")
 endif()
 
+option(HAPTRIAL_TESTS "Build the tests (needs GoogleTest)" ON)
 option(HAPTRIAL_BENCHMARKS "Build the benchmarks (needs Google Benchmark and the peers)" OFF)
 
 find_program(CCACHE ccache)

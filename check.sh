@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds and runs every test.
+#   ./check.sh         release build
+#   ./check.sh asan    under AddressSanitizer and UndefinedBehaviorSanitizer
+#   ./check.sh tsan    under ThreadSanitizer
+#   ./check.sh bench   the benchmarks, beside their peers
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+. "$root/cmake/setup.sh"
+
+export ASAN_OPTIONS=detect_stack_use_after_return=1
+export LSAN_OPTIONS=suppressions=$root/tests/support/lsan.supp:print_suppressions=0
+export TSAN_OPTIONS=suppressions=$root/tests/support/tsan.supp
+
+run_tests() {
+  ctest --test-dir "$root/$1" --output-on-failure --no-tests=error -j "$(nproc)" "${@:2}"
+}
+
+case "${1:-release}" in
+  release)
+    install_packages build test
+    build build -DHAPTRIAL_TESTS=ON
+    run_tests build
+    ;;
+  asan | tsan)
+    install_packages build test
+    [ "$1" = asan ] && sanitizer=address || sanitizer=thread
+    build "build-$1" -DHAPTRIAL_SANITIZER=$sanitizer -DHAPTRIAL_TESTS=ON
+    run_tests "build-$1"
+    ;;
+  bench)
+    install_packages build bench
+    build build-bench -DHAPTRIAL_BENCHMARKS=ON -DHAPTRIAL_TESTS=OFF
+    for benchmark in "$root"/build-bench/bench_*; do
+      say "== $(basename "$benchmark")"
+      "$benchmark"
+    done
+    ;;
+  *)
+    die "'$1' is not known; allowed: nothing, asan, tsan or bench"
+    ;;
+esac

@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, and runs the force-skill training study with virtual subjects.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+. "$root/cmake/setup.sh"
+
+install_packages build
+build build -DHAPTRIAL_TESTS=OFF -- haptrial
+cd "$root"
+study=$(build/haptrial dry-run experiments/force_training.toml) || exit $?
+say "$study"
+folder=$(sed -n 's/^sessions: //p' <<<"$study")
+build/haptrial analyze "$folder"
