@@ -133,8 +133,12 @@ struct Aligner::Workspace {
 
   void align_one(const CurveView& target, const CurveView& applied,
                  const AlignmentParameters& parameters, Alignment& result);
+  void walk_one(const CurveView& target, const CurveView& applied,
+                const AlignmentParameters& parameters, Alignment& result);
   void align_lanes(std::span<const AlignmentPair> pairs, const AlignmentParameters& parameters,
                    std::span<Alignment> results);
+  void walk_lanes(std::span<const AlignmentPair> pairs, std::size_t columns,
+                  const AlignmentParameters& parameters, std::span<Alignment> results);
   void interleave(std::span<const AlignmentPair> pairs, const Scales& scales, std::size_t rows,
                   std::size_t columns);
 };
@@ -188,6 +192,16 @@ void Aligner::Workspace::align_one(const CurveView& target, const CurveView& app
                                              bits, rows / strip, columns,
                                              static_cast<float>(parameters.penalty)});
 
+  walk_one(target, applied, parameters, result);
+}
+
+void Aligner::Workspace::walk_one(const CurveView& target, const CurveView& applied,
+                                  const AlignmentParameters& parameters, Alignment& result) {
+  const std::size_t lanes = kernels.lanes;
+  const std::size_t strip = kernels.strip_rows;
+  const std::size_t steps = applied.force.size() + strip - 1;
+  const std::size_t vectors = strip / lanes;
+  const Directions* bits = directions.at_least(0);
   const int strip_shift = std::countr_zero(strip);
   const int lane_shift = std::countr_zero(lanes);
   Walker walker = start_of_walk(target, applied, result);
@@ -241,7 +255,14 @@ void Aligner::Workspace::align_lanes(std::span<const AlignmentPair> pairs,
                                             applied_force.at_least(0), applied_slope.at_least(0),
                                             above, bits, rows / tile, columns,
                                             static_cast<float>(parameters.penalty)});
+  walk_lanes(pairs, columns, parameters, results);
+}
 
+void Aligner::Workspace::walk_lanes(std::span<const AlignmentPair> pairs, std::size_t columns,
+                                    const AlignmentParameters& parameters,
+                                    std::span<Alignment> results) {
+  const std::size_t tile = kernels.tile_rows;
+  const Directions* bits = directions.at_least(0);
   // All lanes walk together, so that their cache misses overlap.
   constexpr std::size_t kMostLanes = 16;
   Walker walkers[kMostLanes];

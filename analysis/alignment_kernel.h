@@ -20,7 +20,7 @@ struct Directions {
 /// consecutive rows on one anti-diagonal, the lowest row in lane 0. Values are scaled (alignment_
 /// error.h). Arrays may be read `strip_rows` places before and after the columns given.
 struct SingleTask {
-  const float* target_force;   // (strips * strip_rows) in strip order, see single_position()
+  const float* target_force;   // (strips * strip_rows); lowest row of each vector first
   const float* target_slope;   // likewise
   const float* applied_force;  // (columns); infinite before column 0, finite after the last
   const float* applied_slope;  // likewise
@@ -52,7 +52,7 @@ struct Kernels {
   void (*fill_batch[2])(const BatchTask&);
 };
 
-/// Defined where the compiler targets x86-64; see alignment_isa.cpp for who may call which.
+/// The last two exist where the compiler targets x86-64; kernels_for() knows what the machine runs.
 const Kernels& baseline_kernels();
 const Kernels& avx2_kernels();
 const Kernels& avx512_kernels();

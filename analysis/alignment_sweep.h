@@ -67,6 +67,9 @@ void fill_single(const SingleTask& task) {
   }
 }
 
+/// Lane k holds pair k. A tile of rows goes through a column before the next column is read, so
+/// that the row above and the applied curve are loaded once for all of them, and the rows of a tile
+/// work on different columns at the same time as far as the processor looks ahead.
 template <class Lanes, int power, std::size_t rows>
 void fill_batch(const BatchTask& task) {
   using Number = typename Lanes::Number;
