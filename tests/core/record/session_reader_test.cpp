@@ -126,6 +126,33 @@ TEST(SessionReaderTest, RefusesMissingAndForeignDatasets) {
   EXPECT_THAT(refusal(folder / "whole.h5"), HasSubstr("the counts of /timing"));
 }
 
+/// What a killed writer leaves: the file as it is while the writer still has it open.
+std::string unfinished_session(const TemporaryFolder& folder) {
+  SessionWriter writer(folder / "open.h5", test::example_info());
+  writer.append(test::hand_motion(20000, 1));
+  writer.add_event({1, "session_start", "text"});
+  writer.flush();
+  return contents(folder / "open.h5.partial");
+}
+
+TEST(SessionReaderTest, ReadsWhatAKilledWriterLeaves) {
+  const TemporaryFolder folder;
+  write_file(folder / "copy.h5", unfinished_session(folder));
+  EXPECT_EQ(refusal(folder / "copy.h5"), "");
+  EXPECT_EQ(SessionReader(folder / "copy.h5").sample_count(), 20000u);
+}
+
+TEST(SessionReaderTest, RefusesAnUnfinishedFileCutShortAnywhere) {
+  const TemporaryFolder folder;
+  const std::string whole = unfinished_session(folder);
+  for (const double part : {0.0001, 0.001, 0.01, 0.1, 0.5, 0.9}) {
+    const auto size = static_cast<std::size_t>(part * static_cast<double>(whole.size()));
+    const auto file = folder / (std::to_string(size) + ".h5");
+    write_file(file, whole.substr(0, size));
+    EXPECT_NE(refusal(file), "") << size << " of " << whole.size() << " bytes";
+  }
+}
+
 TEST(SessionReaderTest, RefusesAFileCutShortAnywhere) {
   const TemporaryFolder folder;
   const std::string whole = contents(example_session(folder));
@@ -148,7 +175,7 @@ TEST(SessionReaderTest, ChangedSamplesAreNotReadAsOthers) {
   int refused = 0;
   for (int repeat = 0; repeat < 100; ++repeat) {
     std::string bytes = whole;
-    const std::size_t at = 2048 + random.below(bytes.size() - 2048);
+    const std::size_t at = random.below(repeat % 5 == 0 ? 4096 : bytes.size());
     bytes[at] = static_cast<char>(bytes[at] ^ (1 << random.below(8)));
     const fs::path damaged = folder / "damaged.h5";
     fs::remove(damaged);
@@ -163,7 +190,7 @@ TEST(SessionReaderTest, ChangedSamplesAreNotReadAsOthers) {
     const std::vector<Sample> back = again.samples(0, samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) ASSERT_TRUE(test::same(back[i], samples[i]));
   }
-  EXPECT_GT(refused, 80);  // most of the file is compressed samples
+  EXPECT_GT(refused, 70);  // most of the file is compressed samples
 }
 
 }  // namespace
