@@ -11,7 +11,7 @@ namespace haptrial::analysis {
 /// points in shape.
 struct Look {
   const char* color{"#000000"};  // #rrggbb, a literal
-  int dash{1};                   // gnuplot dash type; 1 is solid
+  const char* dash{"solid"};      // "solid", or lengths drawn and left out: "(8,5)"
   int point{7};                  // gnuplot point type; 7 is a filled circle
   double width{2.0};
   double point_size{1.0};

@@ -99,7 +99,11 @@ std::string plot_element(const Series& series, std::size_t index) {
     case Mark::kLinkedBars:
       break;
   }
-  return fmt::format("$s{} using 1:2:3:4 with yerrorlines {} {} {}", index, line, point, title);
+  // A dashed bar could be taken for a short one.
+  return fmt::format(
+      "$s{} using 1:2:3:4 with yerrorbars lc rgb '{}' lw {:.3g} dt solid {} notitle, "
+      "$s{} using 1:2 with linespoints {} {} {}",
+      index, look.color, look.width, point, index, line, point, title);
 }
 
 std::string range(const char* axis, const std::optional<Range>& limits) {
@@ -108,8 +112,8 @@ std::string range(const char* axis, const std::optional<Range>& limits) {
 }
 
 std::string axes(const Figure& figure) {
-  std::string text =
-      fmt::format("set xlabel {}\nset ylabel {}\n", quoted(figure.x_label), quoted(figure.y_label));
+  std::string text = fmt::format("set xlabel {} offset 0,0.2\nset ylabel {}\n",
+                                 quoted(figure.x_label), quoted(figure.y_label));
   text += range("x", figure.x_range) + range("y", figure.y_range);
   if (!figure.x_names.empty()) {
     std::string names;
@@ -138,8 +142,9 @@ set encoding utf8
 set decimalsign '.'
 set border 3 lc rgb '#444444' lw 1
 set tics nomirror out scale 0.6
-set grid ytics lc rgb '#dddddd' lw 1 dt 1
-set key below center horizontal samplen 3 spacing 1.2 noenhanced
+set grid ytics lc rgb '#e3e5e8' lw 1 dt solid
+set key outside bottom center horizontal Left reverse samplen 4 width 2 noenhanced
+set bmargin 6
 set bars 1.2
 set tmargin 3
 set rmargin 4
@@ -211,6 +216,9 @@ std::string gnuplot_script(const Figure& figure) {
 }
 
 void draw_figures(const std::vector<Figure>& figures, const fs::path& folder) {
+  if (figures.empty()) {
+    return;
+  }
   {
     std::ofstream script(folder / kScriptName, std::ios::binary);
     for (const auto& figure : figures) {

@@ -19,10 +19,16 @@ constexpr const char* kPurple = "#cc79a7";
 constexpr const char* kGrey = "#9aa0a6";
 constexpr const char* kBlack = "#1a1a1a";
 
+constexpr const char* kSolid = "solid";
+constexpr const char* kLong = "(9,4)";
+constexpr const char* kMixed = "(9,4,2,4)";
+constexpr const char* kShort = "(3,3)";
+
 // By place among the conditions: circle, square, triangle, diamond, each with its dash.
 Look condition_look(std::size_t index) {
-  const std::array<Look, 4> looks{Look{kOrange, 2, 5, 2.0, 1.1}, Look{kBlue, 4, 7, 2.0, 1.1},
-                                  Look{kGreen, 1, 9, 2.0, 1.3}, Look{kPurple, 3, 13, 2.0, 1.3}};
+  const std::array<Look, 4> looks{
+      Look{kOrange, kLong, 5, 2.0, 1.1}, Look{kBlue, kMixed, 7, 2.0, 1.1},
+      Look{kGreen, kSolid, 9, 2.0, 1.3}, Look{kPurple, kShort, 13, 2.0, 1.3}};
   return looks[index % looks.size()];
 }
 
@@ -33,9 +39,9 @@ Figure recall_error(const StudyResult& study) {
   figure.title = "Recall error by training condition";
   figure.x_label = "Training condition";
   figure.y_label = "Recall error (0 is perfect)";
-  Series participants{"mean of one participant", Mark::kPoints, {kBlue, 1, 6, 1.5, 0.9}};
-  Series intervals{"mean of all trials, 95 % CI", Mark::kBars, {kBlack, 1, 7, 2.5, 1.2}};
-  Series means{"", Mark::kPoints, {kBlack, 1, 7, 2.5, 1.2}};  // where no interval exists
+  Series participants{"mean of one participant", Mark::kPoints, {kBlue, kSolid, 6, 1.5, 0.9}};
+  Series intervals{"mean of all trials, 95 % CI", Mark::kBars, {kBlack, kSolid, 7, 2.5, 1.2}};
+  Series means{"", Mark::kPoints, {kBlack, kSolid, 7, 2.5, 1.2}};  // where no interval exists
   double highest = 0.0;
   for (std::size_t c = 0; c < statistics.conditions.size(); ++c) {
     const auto& summary = statistics.summaries[c];
@@ -144,7 +150,7 @@ Figure alignment(const RecallPicture& picture) {
   constexpr std::size_t kPairs = 60;  // drawn of the path
   Figure figure = force_figure("figure-26-alignment", picture, "Alignment");
   const auto times = time_base(picture);
-  Series pairs{"aligned points", Mark::kSegments, {kGrey, 1, 0, 0.8}};
+  Series pairs{"aligned points", Mark::kSegments, {kGrey, kSolid, 0, 0.8}};
   const std::size_t stride = std::max<std::size_t>(1, picture.pairs.size() / kPairs);
   for (std::size_t k = 0; k < picture.pairs.size(); k += stride) {
     const auto [target, applied] = picture.pairs[k];
@@ -154,8 +160,8 @@ Figure alignment(const RecallPicture& picture) {
     pairs.y2.push_back(picture.applied[applied]);
   }
   figure.series = {pairs,
-                   {"target", Mark::kLine, {kOrange, 1, 0, 2.5}, times, picture.target},
-                   {"applied", Mark::kLine, {kBlue, 2, 0, 2.5}, times, picture.applied}};
+                   {"target", Mark::kLine, {kOrange, kSolid, 0, 2.5}, times, picture.target},
+                   {"applied", Mark::kLine, {kBlue, kLong, 0, 2.5}, times, picture.applied}};
   figure.caption = fmt::format(
       "The pairing that dynamic programming found for the {} trial of the study (score {}): lines "
       "join points of the target and of the applied force that belong together.",
@@ -167,12 +173,12 @@ Figure alignment(const RecallPicture& picture) {
 Figure warped(const RecallPicture& picture) {
   Figure figure = force_figure("figure-27-warped", picture, "After warping");
   const auto times = time_base(picture);
-  figure.series = {{"target", Mark::kLine, {kOrange, 1, 0, 2.5}, times, picture.target},
-                   {"applied, warped", Mark::kLine, {kBlue, 2, 0, 2.5}, times, picture.warped}};
+  figure.series = {{"target", Mark::kLine, {kOrange, kSolid, 0, 2.5}, times, picture.target},
+                   {"applied, warped", Mark::kLine, {kBlue, kLong, 0, 2.5}, times, picture.warped}};
   figure.caption = fmt::format(
       "The same trial after warping the applied force onto the time base of the target: RMS "
-      "difference {} N, {} N before any alignment.",
-      number(picture.score.rms_force), number(picture.score.rms_unaligned));
+      "difference {1}{0}N, {2}{0}N before any alignment.",
+      kNoBreak, number(picture.score.rms_force), number(picture.score.rms_unaligned));
   figure.alt = "Target force and warped applied force over time.";
   return figure;
 }
@@ -183,7 +189,7 @@ Figure trajectory(const std::vector<record::StimulusRow>& rows) {
   figure.title = "A spatial trajectory";
   figure.x_label = "x [cm]";
   figure.y_label = "z [cm]";
-  Series path{"", Mark::kLine, {kBlue, 1, 0, 2.5}};
+  Series path{"", Mark::kLine, {kBlue, kSolid, 0, 2.5}};
   for (const auto& row : rows) {
     path.x.push_back(100.0 * row.position.x());
     path.y.push_back(100.0 * row.position.z());
@@ -200,7 +206,7 @@ Figure force_pattern(const std::vector<record::StimulusRow>& rows) {
   figure.title = "A force pattern";
   figure.x_label = "Time [s]";
   figure.y_label = "Target normal force [N]";
-  Series force{"", Mark::kLine, {kOrange, 1, 0, 2.5}};
+  Series force{"", Mark::kLine, {kOrange, kSolid, 0, 2.5}};
   for (const auto& row : rows) {
     force.x.push_back(row.time);
     force.y.push_back(row.force);

@@ -2,17 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace haptrial::analysis {
 namespace {
 
 std::string not_defined(const std::string& because) { return "not defined, because " + because; }
 
 // Degrees of freedom are whole but for Welch's test.
-std::string degrees(double df) { return fmt::format("{:.5g}", df); }
+std::string degrees(double df) {
+  return df == std::floor(df) ? fmt::format("{:.0f}", df) : fmt::format("{:.1f}", df);
+}
 
 }  // namespace
 
-std::string number(double value) { return fmt::format("{:.4g}", value); }
+std::string number(double value) {
+  auto text = fmt::format("{:#.4g}", value);
+  if (text.back() == '.') {
+    text.pop_back();
+  }
+  return text;
+}
 
 std::string p_value(double p) {
   if (p < 0.001) {
@@ -56,7 +66,10 @@ std::string t_result(const Defined<TTest>& test) {
 }
 
 std::string quantity(const Defined<double>& value, double factor, const std::string& unit) {
-  return value ? number(*value * factor) + " " + unit : not_defined(value.because());
+  if (!value) {
+    return not_defined(value.because());
+  }
+  return number(*value * factor) + (unit.empty() ? "" : kNoBreak + unit);
 }
 
 std::string capitalized(std::string text) {
@@ -67,7 +80,8 @@ std::string capitalized(std::string text) {
 }
 
 std::string counted(std::size_t count, const std::string& noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+  const char* plural = noun.ends_with("s") ? "es" : "s";
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : plural);
 }
 
 }  // namespace haptrial::analysis

@@ -11,7 +11,10 @@ namespace haptrial::analysis {
 /// Results in words, the same in the command's summary and in the report. What is not defined
 /// becomes "not defined, because ...".
 
-/// Four significant digits, "0.1234".
+/// Keeps a number and its unit on one line.
+inline const std::string kNoBreak = "\u00a0";
+
+/// Four significant digits, "0.1230".
 std::string number(double value);
 /// "p = 0.0123", "p < 0.001".
 std::string p_value(double p);
@@ -27,7 +30,7 @@ std::string t_result(const Defined<TTest>& test);
 std::string quantity(const Defined<double>& value, double factor, const std::string& unit);
 /// "Visuohaptic" of "visuohaptic".
 std::string capitalized(std::string text);
-/// "1 trial", "2 trials".
+/// "1 trial", "2 passes".
 std::string counted(std::size_t count, const std::string& noun);
 
 }  // namespace haptrial::analysis

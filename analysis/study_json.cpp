@@ -1,0 +1,192 @@
+#include "analysis/study_json.h"
+
+#include <nlohmann/json.hpp>
+
+namespace haptrial::analysis {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(double value) { return value; }
+
+Json to_json(const MeanInterval& m) {
+  return {{"count", m.count},
+          {"mean", m.mean},
+          {"standard_deviation", m.deviation},
+          {"low_95", m.low},
+          {"high_95", m.high}};
+}
+
+Json to_json(const Anova& a) {
+  return {{"f", a.f},
+          {"df_between", a.df_between},
+          {"df_within", a.df_within},
+          {"squares_between", a.squares_between},
+          {"squares_within", a.squares_within},
+          {"p", a.p},
+          {"eta_squared", a.eta_squared}};
+}
+
+Json to_json(const RepeatedAnova& a) {
+  return {{"participants", a.participants},
+          {"conditions", a.conditions},
+          {"f", a.f},
+          {"df_condition", a.df_condition},
+          {"df_error", a.df_error},
+          {"squares_condition", a.squares_condition},
+          {"squares_participants", a.squares_participants},
+          {"squares_error", a.squares_error},
+          {"p", a.p},
+          {"greenhouse_geisser_epsilon", a.epsilon},
+          {"p_corrected", a.p_corrected},
+          {"partial_eta_squared", a.partial_eta_squared}};
+}
+
+Json to_json(const TTest& t) {
+  return {{"t", t.t},
+          {"df", t.df},
+          {"p", t.p},
+          {"difference", t.difference},
+          {"difference_low_95", t.low},
+          {"difference_high_95", t.high}};
+}
+
+Json to_json(const TimingPercentiles& p) {
+  return {{"median_ns", p.median_ns},
+          {"p99_ns", p.p99_ns},
+          {"p99_9_ns", p.p999_ns},
+          {"highest_ns", p.highest_ns}};
+}
+
+template <class T>
+Json to_json(const Defined<T>& value) {
+  return value ? to_json(*value) : Json{{"not_defined", value.because()}};
+}
+
+Json conditions(const StudyStatistics& s) {
+  Json rows = Json::array();
+  for (const auto& c : s.summaries) {
+    rows.push_back({{"condition", c.condition},
+                    {"trials", c.count},
+                    {"mean", to_json(c.mean)},
+                    {"pooled_trials", to_json(c.trials)},
+                    {"participant_means", to_json(c.participants)}});
+  }
+  return rows;
+}
+
+Json comparisons(const StudyStatistics& s) {
+  Json rows = Json::array();
+  for (const auto& c : s.comparisons) {
+    rows.push_back({{"hypothesis", c.better + " < " + c.worse},
+                    {"pooled_student_one_tailed", to_json(c.pooled)},
+                    {"pooled_welch_one_tailed", to_json(c.welch)},
+                    {"paired_participant_means_one_tailed", to_json(c.paired)},
+                    {"paired_p_holm", to_json(c.paired_holm)}});
+  }
+  return rows;
+}
+
+Json table_1(const StudyStatistics& s) {
+  Json rows = Json::array();
+  for (const auto& row : s.table_1) {
+    Json means;
+    for (std::size_t c = 0; c < row.means.size(); ++c) {
+      means[s.conditions[c]] = row.means[c];
+    }
+    rows.push_back(
+        {{"subject", row.subject}, {"best", row.best}, {"worst", row.worst}, {"means", means}});
+  }
+  return rows;
+}
+
+Json learning(const StudyStatistics& s) {
+  Json rows = Json::array();
+  for (const auto& point : s.learning) {
+    rows.push_back({{"condition", point.condition},
+                    {"repetition", point.repetition},
+                    {"participants", point.participants},
+                    {"mean", to_json(point.mean)},
+                    {"interval", to_json(point.interval)}});
+  }
+  return rows;
+}
+
+Json tracking(const TrackingSummary& t) {
+  return {{"subject", t.subject},
+          {"passes", t.passes},
+          {"passes_without_lag", t.passes_without_lag},
+          {"lag_s", to_json(t.lag)},
+          {"lag_standard_deviation_s", to_json(t.lag_deviation)},
+          {"rms_error_m", to_json(t.rms_error)},
+          {"rms_error_in_plane_m", to_json(t.rms_error_in_plane)}};
+}
+
+Json timing(const SessionSummary& session) {
+  const auto& t = session.timing;
+  Json row{{"subject", session.info.subject}, {"applies", t.applies}, {"complete", t.complete}};
+  if (t.complete) {
+    row.update(Json{{"ticks", t.ticks},
+                    {"overruns", t.overruns},
+                    {"dropped", t.dropped},
+                    {"missing", t.missing}});
+  }
+  if (t.applies) {
+    row["period"] = to_json(t.period);
+    row["lateness"] = to_json(t.lateness);
+    row["compute"] = to_json(t.compute);
+  }
+  return row;
+}
+
+Json session(const SessionSummary& s) {
+  return {{"subject", s.info.subject},
+          {"file", s.file},
+          {"simulated", s.info.simulated},
+          {"device", s.info.device},
+          {"clock", s.info.clock},
+          {"rate_hz", s.info.rate},
+          {"seed", s.info.seed},
+          {"start_utc", s.info.start_utc},
+          {"definition", s.info.definition_name},
+          {"program_version", s.info.program_version},
+          {"program_commit", s.info.program_commit},
+          {"test_passes", s.test_passes},
+          {"scored", s.scored}};
+}
+
+}  // namespace
+
+std::string statistics_json(const StudyResult& study) {
+  const auto& s = study.statistics;
+  Json root;
+  root["simulated"] = study.simulated();
+  root["participants"] = s.subjects.size();
+  root["trials"] = study.scores.size();
+  root["conditions"] = conditions(s);
+  root["published"] = {{"one_way_anova", to_json(s.anova)}};
+  root["repeated_measures"] = {{"anova", to_json(s.repeated)}, {"left_out", s.incomplete}};
+  root["comparisons"] = comparisons(s);
+  root["table_1"] = table_1(s);
+  root["learning"] = learning(s);
+  root["tracking"] = {{"overall", tracking(study.tracking)}, {"participants", Json::array()}};
+  root["timing"] = Json::array();
+  root["sessions"] = Json::array();
+  for (const auto& one : study.sessions) {
+    root["tracking"]["participants"].push_back(tracking(one.tracking));
+    root["timing"].push_back(timing(one));
+    root["sessions"].push_back(session(one));
+  }
+  root["exclusions"] = Json::array();
+  for (const auto& e : study.exclusions) {
+    root["exclusions"].push_back(
+        {{"subject", e.subject}, {"trial", e.trial}, {"reason", e.reason}});
+  }
+  for (const auto& [name, value] : study.parameters) {
+    root["parameters"][name] = value;
+  }
+  // Bytes that are not UTF-8 came from a file: shown as the replacement character.
+  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "core/record/session_types.h"
+
+namespace haptrial::analysis {
+
+/// A session whose curves are known: what the recorder would have written of a participant who does
+/// exactly this.
+struct SyntheticSession {
+  std::string subject{"P01"};
+  bool simulated{true};
+  std::string clock{"simulated"};
+  double rate{250.0};   // [Hz]
+  double seconds{5.0};  // of a pass
+  int blocks{3};        // conditions in turn: haptic, visual, visuohaptic
+  int repetitions{3};
+  double lag{0.0};                                  // of the hand behind the path [s]
+  Eigen::Vector3d offset{Eigen::Vector3d::Zero()};  // of the hand from the path [m]
+  int aborted_trial{0};                             // its test pass is aborted; 0 for none
+  int untested_trial{0};                            // has no test pass
+  int repeated_trial{0};  // has two test passes, the first with twice the force
+
+  /// Target force [N] of a time since the start of the run [s].
+  std::function<double(double)> target;
+  /// Applied force [N] of condition, trial, time [s] and target force [N].
+  std::function<double(const std::string&, int, double, double)> applied;
+};
+
+/// Ideal z of the path [m].
+double synthetic_path_z(double time);
+
+/// Writes it as a session file.
+void write_session(const std::filesystem::path& file, const SyntheticSession& session);
+
+}  // namespace haptrial::analysis
