@@ -4,9 +4,9 @@
 
 #include <filesystem>
 
-#include "analysis/report.h"
 #include "analysis/score_parameters.h"
 #include "analysis/study.h"
+#include "analysis/write_analysis.h"
 #include "core/base/error.h"
 #include "core/record/session_reader.h"
 #include "experiments/arguments.h"
