@@ -17,11 +17,8 @@ std::string degrees(double df) {
 }  // namespace
 
 std::string number(double value) {
-  auto text = fmt::format("{:#.4g}", value);
-  if (text.back() == '.') {
-    text.pop_back();
-  }
-  return text;
+  const double size = std::abs(value);
+  return size >= 1e3 && size < 1e7 ? fmt::format("{:.0f}", value) : fmt::format("{:#.4g}", value);
 }
 
 std::string p_value(double p) {

@@ -1,0 +1,185 @@
+#include "analysis/report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+
+#include "analysis/html.h"
+#include "analysis/study_figures.h"
+#include "analysis/study_json.h"
+#include "analysis/wording.h"
+#include "tests/analysis/example_study.h"
+
+namespace haptrial::analysis {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+// Stands in for gnuplot's pictures: the same ids in each.
+std::vector<Drawing> drawings(const StudyResult& study) {
+  std::vector<Drawing> result;
+  for (const auto& figure : study_figures(study)) {
+    result.push_back({figure,
+                      "<?xml version=\"1.0\"?>\n<svg width=\"9\"><defs><path id='gpPt0'/></defs>"
+                      "<g id=\"gnuplot_canvas\"><use xlink:href='#gpPt0'/></g></svg>\n"});
+  }
+  return result;
+}
+
+std::string report(const StudyResult& study) { return html_report(study, drawings(study)); }
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t found = 0;
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += what.size()) {
+    ++found;
+  }
+  return found;
+}
+
+TEST(Report, SaysThatParticipantsAreSimulatedExactlyWhenTheyAre) {
+  const auto simulated = report(example_study(true));
+  EXPECT_THAT(simulated, HasSubstr("class=\"banner\">SIMULATED PARTICIPANTS"));
+  EXPECT_THAT(simulated, HasSubstr("<title>SIMULATED"));
+  EXPECT_THAT(report(example_study(false)), Not(HasSubstr("SIMULATED")));
+  auto mixed = example_study(false);
+  mixed.sessions.back().info.simulated = true;
+  EXPECT_THAT(report(mixed), HasSubstr("class=\"banner\""));
+}
+
+TEST(Report, HoldsEveryPartOfTheAnalysis) {
+  const auto study = example_study(false);
+  const auto html = report(study);
+  for (const auto& line : summary_lines(study)) {
+    EXPECT_THAT(html, HasSubstr("<li>" + escape_html(line) + "</li>"));
+  }
+  for (const char* part :
+       {"Design and exclusions", "As published", "Repeated measures", "Table 1", "Learning",
+        "How recalls were aligned", "Tracking", "Timing", "Parameters and versions", "aborted",
+        "0.1.0 (0123abc)", "name = &quot;example&quot;", "1000 / 1020 / 1080 / 1500"}) {
+    EXPECT_THAT(html, HasSubstr(part));
+  }
+  EXPECT_EQ(count(html, "<figure>"), 10u);
+  EXPECT_EQ(count(html, "<figcaption>"), 10u);
+  EXPECT_EQ(count(html, "<svg role=\"img\" aria-label=\""), 10u);
+}
+
+TEST(Report, NeedsNothingButItself) {
+  const auto html = report(example_study(true));
+  EXPECT_FALSE(std::regex_search(html, std::regex("(src|href)=[\"'](?!#)|<script|<link|@import")));
+}
+
+TEST(Report, HasEachIdOnce) {
+  const auto html = report(example_study(true));
+  std::set<std::string> ids;
+  const std::regex pattern("id=[\"']([^\"']+)[\"']");
+  std::size_t found = 0;
+  for (auto it = std::sregex_iterator(html.begin(), html.end(), pattern);
+       it != std::sregex_iterator(); ++it, ++found) {
+    EXPECT_TRUE(ids.insert((*it)[1]).second) << (*it)[1];
+  }
+  EXPECT_EQ(found, 20u);
+  const std::regex uses("href='#([^']+)'");
+  for (auto it = std::sregex_iterator(html.begin(), html.end(), uses); it != std::sregex_iterator();
+       ++it) {
+    EXPECT_EQ(ids.count((*it)[1]), 1u);
+  }
+}
+
+TEST(Report, EscapesWhatComesFromFiles) {
+  auto study = example_study(true);
+  const std::string trap = "<script>alert(\"1\")</script>&'";
+  study.sessions[0].info.subject = trap;
+  study.sessions[0].file = trap;
+  study.sessions[0].info.device = trap;
+  study.sessions[0].info.definition = trap;
+  study.sessions[0].info.definition_name = trap;
+  study.sessions[0].info.program_commit = trap;
+  study.exclusions[0].reason = trap;
+  study.sessions[0].tracking.subject = trap;
+  for (auto& s : study.scores) {
+    s.subject += trap;
+    s.condition += trap;
+  }
+  study.statistics = study_statistics(study.scores);
+  for (auto& picture : study.recalls) {
+    picture.score.subject = trap;
+  }
+  const auto html = report(study);
+  EXPECT_THAT(html, Not(HasSubstr("<script")));
+  EXPECT_THAT(html, HasSubstr("&lt;script&gt;alert(&quot;1&quot;)&lt;/script&gt;&amp;&#39;"));
+}
+
+TEST(Report, PrintsWhyAStatisticIsNotDefined) {
+  auto study = example_study(false);
+  study.scores.resize(1);
+  study.statistics = study_statistics(study.scores);
+  study.tracking = summarize_tracking("all", {});
+  const auto html = report(study);
+  EXPECT_THAT(html, HasSubstr("not defined, because there are fewer than two groups"));
+  EXPECT_THAT(html, HasSubstr("not defined, because an interval needs at least two values"));
+  EXPECT_FALSE(std::regex_search(html, std::regex("[>( -](nan|inf)[<),. ]")));
+}
+
+TEST(Report, OfNoScoredTrialStillStands) {
+  StudyResult study;
+  study.statistics = study_statistics({});
+  const auto html = report(study);
+  EXPECT_THAT(html, HasSubstr("No participant has a scored trial in every condition."));
+  EXPECT_THAT(html, HasSubstr("</html>"));
+}
+
+TEST(Report, SaysWhenTimingDoesNotApply) {
+  EXPECT_THAT(report(example_study(true)), HasSubstr("Timing does not apply to P01, P02"));
+  EXPECT_THAT(report(example_study(false)), Not(HasSubstr("Timing does not apply")));
+}
+
+TEST(Json, HoldsTheNumbersOfTheStudy) {
+  const auto study = example_study(true);
+  const auto json = nlohmann::json::parse(statistics_json(study));
+  EXPECT_EQ(json["simulated"], true);
+  EXPECT_EQ(json["trials"], 108);
+  EXPECT_EQ(json["published"]["one_way_anova"]["f"], study.statistics.anova->f);
+  EXPECT_EQ(json["repeated_measures"]["anova"]["p_corrected"],
+            study.statistics.repeated->p_corrected);
+  EXPECT_EQ(json["conditions"][1]["pooled_trials"]["low_95"],
+            study.statistics.summaries[1].trials->low);
+  EXPECT_EQ(json["comparisons"][0]["hypothesis"], "visual < haptic");
+  EXPECT_EQ(json["table_1"].size(), 6u);
+  EXPECT_EQ(json["exclusions"][2]["subject"], "P03");
+  EXPECT_EQ(json["tracking"]["participants"].size(), 6u);
+}
+
+TEST(Json, SaysWhyAStatisticIsNotDefined) {
+  auto study = example_study(false);
+  study.statistics = study_statistics({});
+  study.sessions[0].info.device = "caf\xe9";  // not UTF-8
+  const auto text = statistics_json(study);
+  const auto json = nlohmann::json::parse(text);
+  EXPECT_EQ(json["published"]["one_way_anova"]["not_defined"], "there are fewer than two groups");
+  EXPECT_THAT(text, Not(HasSubstr("null")));
+}
+
+TEST(Html, EscapesAndAligns) {
+  EXPECT_EQ(escape_html("a<b>&\"'\x01\n"), "a&lt;b&gt;&amp;&quot;&#39;\n");
+  const auto table = html_table({"Name", "Value"}, {{"1", "2.5"}, {"<x>", "-3"}});
+  EXPECT_THAT(table, HasSubstr("<tr><td>&lt;x&gt;</td><td class=\"n\">-3</td></tr>"));
+}
+
+TEST(Wording, RoundsForReaders) {
+  EXPECT_EQ(number(3.04), "3.040");
+  EXPECT_EQ(number(1234.4), "1234");
+  EXPECT_EQ(p_value(0.00099), "p < 0.001");
+  EXPECT_EQ(p_value(0.0123), "p = 0.012");
+  EXPECT_EQ(p_value(0.5), "p = 0.50");
+  EXPECT_EQ(counted(1, "pass"), "1 pass");
+  EXPECT_EQ(counted(3, "pass"), "3 passes");
+  EXPECT_EQ(quantity(Undefined{"of this"}, 1.0, "m"), "not defined, because of this");
+}
+
+}  // namespace
+}  // namespace haptrial::analysis
