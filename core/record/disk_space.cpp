@@ -7,6 +7,7 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <system_error>
 
@@ -49,6 +50,14 @@ void DiskSpace::ensure(int descriptor, std::uint64_t bytes) {
   const int error = reserve(descriptor, reserved_end_, end);
   if (error != 0) fail(error);
   reserved_end_ = end;
+}
+
+void probe(int descriptor) {
+  std::array<char, 64> head{};
+  const ssize_t size = pread(descriptor, head.data(), head.size(), 0);
+  if (size < 0 || pwrite(descriptor, head.data(), static_cast<std::size_t>(size), 0) < 0) {
+    throw h5::Error(std::generic_category().message(errno));
+  }
 }
 
 void divert(int descriptor) noexcept {

@@ -25,6 +25,11 @@ class DiskSpace {
   std::uint64_t reserved_end_{0};  // every block below is ours [bytes]
 };
 
+/// Writes the first bytes of the file over themselves. HDF5 frees a file that it cannot close and
+/// yet keeps its identifier, so a device that takes no more writes must be met before.
+/// @throws h5::Error in the words of the system.
+void probe(int descriptor);
+
 /// Points the descriptor at nothing in particular: writes succeed and are forgotten. After a failed
 /// write this lets HDF5 close a file that it could otherwise never close.
 void divert(int descriptor) noexcept;

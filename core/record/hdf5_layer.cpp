@@ -152,7 +152,11 @@ T get_number(const Id& object, const char* name, hid_t type, H5T_class_t type_cl
 
 }  // namespace
 
-Lock::Lock() : hold_(process_mutex()) { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+Lock::Lock() : hold_(process_mutex()) {
+  // Nothing is left to HDF5's exit handler, which crashes on a file that it could not close.
+  [[maybe_unused]] static const herr_t no_exit_handler = H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 Id& Id::operator=(Id&& other) noexcept {
   if (this != &other) {

@@ -186,6 +186,15 @@ struct SessionWriter::Impl {
     }
   }
 
+  bool closable() noexcept {
+    try {
+      probe(h5::descriptor(file));
+      return true;
+    } catch (const h5::Error&) {
+      return false;
+    }
+  }
+
   void close_tables() noexcept {
     for (auto [table, schema] : tables()) {
       if (*table) (*table)->close();
@@ -220,6 +229,7 @@ SessionWriter::~SessionWriter() {
   } catch (const std::exception&) {
     // The destructor has no one to tell; close() is for those who want to know.
   }
+  if (!impl_->closable()) impl_->divert_file();
   impl_->close_tables();
   impl_->file.reset();
   trim(impl_->partial);
@@ -285,6 +295,7 @@ void SessionWriter::flush() {
 void SessionWriter::close() {
   impl_->guarded([&] {
     impl_->write_all();
+    probe(h5::descriptor(impl_->file));
     impl_->close_tables();
     h5::close(impl_->file);
     trim(impl_->partial);

@@ -15,6 +15,10 @@
 #include "core/record/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
+// HDF5 1.10 forgets a few hundred bytes when it meets a damaged header; ours are still counted.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5\n"; }
+
 namespace haptrial::record {
 namespace {
 
