@@ -18,8 +18,24 @@ struct Table::Document {
   std::string file_name;
   std::string source;
   toml::table root;
-  std::multimap<unsigned, std::string> problems;  // by line
-  std::vector<std::shared_ptr<Node>> nodes;       // tables that somebody asked for
+  std::multimap<unsigned, std::string> problems;  // of one value each, by line
+  std::multimap<unsigned, std::string> together;  // of values taken together, by line
+
+  /// Notes a problem once, on one line of text whatever the definition holds.
+  void note(std::multimap<unsigned, std::string>& in, unsigned line, std::string_view problem) {
+    std::string sentence = line == 0 ? fmt::format("{}: {}", file_name, problem)
+                                     : fmt::format("{}:{}: {}", file_name, line, problem);
+    for (char& c : sentence) {
+      const bool control = (c >= 0 && c < ' ') || c == '\x7f';
+      c = control ? ' ' : c;
+    }
+    const auto [begin, end] = in.equal_range(line);
+    if (std::none_of(begin, end, [&](const auto& noted) { return noted.second == sentence; })) {
+      in.emplace(line, std::move(sentence));
+    }
+  }
+
+  std::vector<std::shared_ptr<Node>> nodes;  // tables that somebody asked for
 };
 
 struct Table::Node {
@@ -62,7 +78,7 @@ bool within(double x, const Bounds& b) {
 
 double fallback(const Bounds& b) {
   if (std::isfinite(b.low)) {
-    return b.open_low ? (std::isfinite(b.high) ? b.high : b.low + 1.0) : b.low;
+    return b.open_low ? std::nextafter(b.low, b.high) : b.low;
   }
   return std::isfinite(b.high) ? b.high : 0.0;
 }
@@ -76,15 +92,39 @@ std::string shown(const toml::node& node) {
   node.visit([&](const auto& value) {
     if constexpr (toml::is_array<decltype(value)>) {
       out << "an array of " << value.size();
+    } else if constexpr (toml::is_floating_point<decltype(value)>) {
+      out << fmt::format("{}", value.get());
     } else if constexpr (!toml::is_table<decltype(value)>) {
       out << value;
     }
   });
   std::string text = out.str();
   if (text.size() > 60) {
-    text = text.substr(0, 57) + "...";
+    std::size_t end = 57;
+    while ((text[end] & 0xc0) == 0x80) {  // not within a character of several bytes
+      --end;
+    }
+    text = text.substr(0, end) + "...";
   }
   return text;
+}
+
+/// A key may hold keys in turn ("a.b.c = 1"). Thousands of them on one line are one inside the
+/// other, and a tree that deep overflows the stack when it is destroyed.
+constexpr int kMostDotsInLine = 100;
+
+void refuse_deep_keys(std::string_view text, std::string_view file_name) {
+  unsigned line = 1;
+  int dots = 0;
+  for (const char c : text) {
+    if (c == '\n') {
+      ++line;
+      dots = 0;
+    } else if (c == '.' && ++dots > kMostDotsInLine) {
+      throw InputError(fmt::format("{}:{}: the line has more than {} dots; allowed: shorter lines",
+                                   file_name, line, kMostDotsInLine));
+    }
+  }
 }
 
 std::string joined(const std::vector<std::string>& items) {
@@ -100,6 +140,7 @@ Table Table::parse(std::string_view text, std::string_view file_name) {
   auto document = std::make_shared<Document>();
   document->file_name = file_name;
   document->source = text;
+  refuse_deep_keys(text, file_name);
   try {
     document->root = toml::parse(document->source, document->file_name);
   } catch (const toml::parse_error& error) {
@@ -157,16 +198,22 @@ std::vector<std::string> Table::keys() const {
   return names;
 }
 
-void Table::note(unsigned line, const std::string& sentence) {
-  document_->problems.emplace(
-      line, line == 0 ? fmt::format("{}: {}", document_->file_name, sentence)
-                      : fmt::format("{}:{}: {}", document_->file_name, line, sentence));
+void Table::note(unsigned line, std::string_view problem) {
+  document_->note(document_->problems, line, problem);
+}
+
+unsigned Table::line(std::string_view key) const {
+  const toml::node* node = node_->table == nullptr ? nullptr : node_->table->get(key);
+  return node == nullptr ? line_of(node_->table) : line_of(node);
+}
+
+void Table::refuse(std::string_view key, std::string_view found, std::string_view allowed) {
+  note(line(key), fmt::format("{} is {}; allowed: {}", node_->full(key), found, allowed));
 }
 
 void Table::reject(std::string_view key, std::string_view found, std::string_view allowed) {
-  const toml::node* node = node_->table == nullptr ? nullptr : node_->table->get(key);
-  note(node == nullptr ? line_of(node_->table) : line_of(node),
-       fmt::format("{} is {}; allowed: {}", node_->full(key), found, allowed));
+  document_->note(document_->together, line(key),
+                  fmt::format("{} is {}; allowed: {}", node_->full(key), found, allowed));
 }
 
 /// The value under `key`, or nothing with the problem noted.
@@ -190,7 +237,7 @@ std::optional<T> Table::get(std::string_view key, std::string_view allowed) {
     value = node->value_exact<T>();
   }
   if (!value) {
-    reject(key, shown(*node), allowed);
+    refuse(key, shown(*node), allowed);
   }
   return value;
 }
@@ -199,7 +246,7 @@ double Table::number(std::string_view key, const Bounds& bounds, std::string_vie
   const std::string allowed = words(bounds, unit);
   const auto value = get<double>(key, allowed);
   if (value && !within(*value, bounds)) {
-    reject(key, fmt::format("{}", *value), allowed);
+    refuse(key, fmt::format("{}", *value), allowed);
     return fallback(bounds);
   }
   return value.value_or(fallback(bounds));
@@ -209,7 +256,7 @@ long Table::integer(std::string_view key, long low, long high) {
   const std::string allowed = fmt::format("a whole number from {} to {}", low, high);
   const auto value = get<std::int64_t>(key, allowed);
   if (value && (*value < low || *value > high)) {
-    reject(key, fmt::format("{}", *value), allowed);
+    refuse(key, fmt::format("{}", *value), allowed);
     return low;
   }
   return value.value_or(low);
@@ -222,7 +269,7 @@ bool Table::boolean(std::string_view key) {
 std::string Table::text(std::string_view key) {
   auto value = get<std::string>(key, "a text in quotes that is not empty");
   if (value && value->empty()) {
-    reject(key, "an empty text", "a text in quotes that is not empty");
+    refuse(key, "an empty text", "a text in quotes that is not empty");
   }
   return value.value_or("");
 }
@@ -230,7 +277,7 @@ std::string Table::text(std::string_view key) {
 std::string Table::choice(std::string_view key, const std::vector<std::string>& allowed) {
   const auto value = get<std::string>(key, joined(allowed));
   if (value && std::find(allowed.begin(), allowed.end(), *value) == allowed.end()) {
-    reject(key, fmt::format("'{}'", *value), joined(allowed));
+    refuse(key, shown(*node_->table->get(key)), joined(allowed));
     return allowed.front();
   }
   return value.value_or(allowed.front());
@@ -252,14 +299,14 @@ std::vector<T> Table::array(std::string_view key, const std::string& allowed) {
   }
   const toml::array* array = node->as_array();
   if (array == nullptr || array->empty()) {
-    reject(key, array == nullptr ? shown(*node) : "an empty array", allowed);
+    refuse(key, array == nullptr ? shown(*node) : "an empty array", allowed);
     return values;
   }
   for (const toml::node& element : *array) {
     if (const auto value = element.value<T>()) {
       values.push_back(*value);
     } else {
-      reject(key, fmt::format("an array with {}", shown(element)), allowed);
+      refuse(key, fmt::format("an array with {}", shown(element)), allowed);
     }
   }
   return values;
@@ -271,7 +318,7 @@ std::vector<double> Table::numbers(std::string_view key, const Bounds& bounds,
   auto values = array<double>(key, allowed);
   for (const double value : values) {
     if (!within(value, bounds)) {
-      reject(key, fmt::format("an array with {}", value), allowed);
+      refuse(key, fmt::format("an array with {}", value), allowed);
     }
   }
   return values;
@@ -290,7 +337,7 @@ Table Table::table(std::string_view key) {
     if (node == nullptr) {
       note(line_of(node_->table), fmt::format("the table [{}] is missing", node_->full(key)));
     } else if (inner == nullptr) {
-      reject(key, shown(*node), "a table");
+      refuse(key, shown(*node), "a table");
     }
   }
   auto child = std::make_shared<Node>(Node{inner, node_->full(key), {}});
@@ -304,7 +351,6 @@ void Table::finish() const {
   for (const auto& node : document_->nodes) {
     read[node->table].insert(node->read.begin(), node->read.end());
   }
-  auto problems = document_->problems;
   std::set<const toml::table*> done;
   for (const auto& node : document_->nodes) {
     if (node->table == nullptr || !done.insert(node->table).second) {
@@ -313,13 +359,13 @@ void Table::finish() const {
     const auto& known = read[node->table];
     for (const auto& [key, value] : *node->table) {
       if (!known.contains(key.str())) {
-        problems.emplace(line_of(&value),
-                         fmt::format("{}:{}: {} is not a known key; allowed here: {}",
-                                     document_->file_name, line_of(&value), node->full(key.str()),
-                                     joined({known.begin(), known.end()})));
+        document_->note(document_->problems, line_of(&value),
+                        fmt::format("{} is not a known key; allowed here: {}",
+                                    node->full(key.str()), joined({known.begin(), known.end()})));
       }
     }
   }
+  const auto& problems = document_->problems.empty() ? document_->together : document_->problems;
   if (problems.empty()) {
     return;
   }

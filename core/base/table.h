@@ -52,11 +52,13 @@ class Table {
   /// The keys of this table in the order of their names.
   std::vector<std::string> keys() const;
 
-  /// Notes a problem of the values taken together, at the line of `key`.
+  /// Notes a problem of values taken together, at the line of `key`. finish() reports these only
+  /// where every value is good by itself: a missing value would make them up.
   /// @param found, allowed  complete the sentence "KEY is FOUND; allowed: ALLOWED".
   void reject(std::string_view key, std::string_view found, std::string_view allowed);
 
-  /// @throws InputError with every problem of the whole document, one sentence a line.
+  /// @throws InputError with every problem of the whole document, one sentence a line, in the order
+  ///         of their lines.
   void finish() const;
 
   /// The text that was parsed, unchanged.
@@ -66,7 +68,9 @@ class Table {
   struct Document;
   struct Node;
   Table(std::shared_ptr<Document> document, std::shared_ptr<Node> node);
-  void note(unsigned line, const std::string& sentence);
+  void note(unsigned line, std::string_view problem);
+  void refuse(std::string_view key, std::string_view found, std::string_view allowed);
+  unsigned line(std::string_view key) const;
   template <class T>
   std::optional<T> get(std::string_view key, std::string_view allowed);
   template <class T>
