@@ -10,32 +10,17 @@
 namespace haptrial::analysis {
 namespace {
 
-double mean(std::span<const double> values) {
-  double sum = 0.0;
-  for (const double v : values) {
-    sum += v;
-  }
-  return sum / static_cast<double>(values.size());
-}
-
 // Correlation of actual[k + lag] with ideal[k] over the overlap; 0 where either is constant.
 double correlation(std::span<const double> actual, std::span<const double> ideal, long lag) {
   const auto shift = static_cast<std::size_t>(std::abs(lag));
-  const std::size_t count = actual.size() - shift;
-  const auto a = actual.subspan(lag > 0 ? shift : 0, count);
-  const auto b = ideal.subspan(lag > 0 ? 0 : shift, count);
-  const double mean_a = mean(a);
-  const double mean_b = mean(b);
-  double aa = 0.0;
-  double bb = 0.0;
-  double ab = 0.0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double da = a[k] - mean_a;
-    const double db = b[k] - mean_b;
-    aa += da * da;
-    bb += db * db;
-    ab += da * db;
-  }
+  const auto count = static_cast<Eigen::Index>(actual.size() - shift);
+  const Eigen::Map<const Eigen::ArrayXd> a(actual.data() + (lag > 0 ? shift : 0), count);
+  const Eigen::Map<const Eigen::ArrayXd> b(ideal.data() + (lag > 0 ? 0 : shift), count);
+  const double mean_a = a.mean();
+  const double mean_b = b.mean();
+  const double aa = (a - mean_a).square().sum();
+  const double bb = (b - mean_b).square().sum();
+  const double ab = ((a - mean_a) * (b - mean_b)).sum();
   return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
 }
 
@@ -44,18 +29,35 @@ bool varies(std::span<const double> values) {
   return low != values.end() && *high - *low > 1e-12 * std::max(std::abs(*low), std::abs(*high));
 }
 
-// The best of low, low + step, ... high.
-long best_lag(std::span<const double> actual, std::span<const double> ideal, long low, long high,
-              long step) {
+// The lag of the highest correlation from low to high.
+long best_lag(std::span<const double> actual, std::span<const double> ideal, long low, long high) {
   long best = low;
   double highest = -2.0;
-  for (long lag = low; lag <= high; lag += step) {
+  for (long lag = low; lag <= high; ++lag) {
     if (const double r = correlation(actual, ideal, lag); r > highest) {
       highest = r;
       best = lag;
     }
   }
   return best;
+}
+
+std::vector<double> every(std::span<const double> values, std::size_t step) {
+  std::vector<double> result;
+  result.reserve(values.size() / step + 1);
+  for (std::size_t k = 0; k < values.size(); k += step) {
+    result.push_back(values[k]);
+  }
+  return result;
+}
+
+// Coarse on every `step`th sample, then sample by sample around what was found.
+long best_lag_within(std::span<const double> actual, std::span<const double> ideal, long reach,
+                     long step) {
+  const auto stride = static_cast<std::size_t>(step);
+  const long steps = reach / step;
+  const long coarse = step * best_lag(every(actual, stride), every(ideal, stride), -steps, steps);
+  return best_lag(actual, ideal, std::max(-reach, coarse - step), std::min(reach, coarse + step));
 }
 
 Defined<double> root_mean(double squares, std::uint64_t count) {
@@ -102,11 +104,9 @@ Defined<double> lag_behind(std::span<const double> actual, std::span<const doubl
   if (reach < 2 || !varies(actual) || !varies(ideal)) {
     return Undefined{"the path does not vary"};
   }
-  // Coarse, then sample by sample: the paths change little within a hundredth of a second.
+  // The paths change little within a hundredth of a second.
   const long step = std::max(1L, std::lround(0.01 * rate));
-  const long coarse = best_lag(actual, ideal, -reach, reach, step);
-  const long best =
-      best_lag(actual, ideal, std::max(-reach, coarse - step), std::min(reach, coarse + step), 1);
+  const long best = best_lag_within(actual, ideal, reach, step);
   if (std::abs(best) == reach) {
     return Undefined{"the correlation is highest at the edge of the search"};
   }
