@@ -66,7 +66,8 @@ std::uint64_t RandomStream::bits() noexcept { return next(state_); }
 double RandomStream::uniform() noexcept { return static_cast<double>(bits() >> 11) * 0x1p-53; }
 
 double RandomStream::uniform(double low, double high) noexcept {
-  return low + (high - low) * uniform();
+  const double value = low + (high - low) * uniform();
+  return value < high ? value : low;  // rounding can reach high
 }
 
 double RandomStream::normal() noexcept {
