@@ -11,7 +11,7 @@ namespace haptrial::analysis {
 /// points in shape.
 struct Look {
   const char* color{"#000000"};  // #rrggbb, a literal
-  const char* dash{"solid"};      // "solid", or lengths drawn and left out: "(8,5)"
+  const char* dash{"solid"};     // "solid", or lengths drawn and left out: "(8,5)"
   int point{7};                  // gnuplot point type; 7 is a filled circle
   double width{2.0};
   double point_size{1.0};
@@ -48,10 +48,11 @@ struct Figure {
   std::vector<std::pair<double, std::string>> x_names;  // names in place of numbers on x
   std::optional<Range> x_range;                         // automatic when absent
   std::optional<Range> y_range;
-  double height{0.6};     // height / width of the whole picture
-  bool simulated{false};  // carries the mark of simulated participants
-  std::string caption;    // a sentence or two for the report
-  std::string alt;        // what one sees, for those who cannot see it
+  double height{0.6};       // height / width of the whole picture
+  bool equal_scale{false};  // a unit is as long on x as on y
+  bool simulated{false};    // carries the mark of simulated participants
+  std::string caption;      // a sentence or two for the report
+  std::string alt;          // what one sees, for those who cannot see it
 };
 
 }  // namespace haptrial::analysis

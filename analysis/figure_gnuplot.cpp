@@ -125,6 +125,14 @@ std::string axes(const Figure& figure) {
   return text;
 }
 
+// Room for the key, where there is one.
+std::string layout(const Figure& figure) {
+  const bool key = std::any_of(figure.series.begin(), figure.series.end(),
+                               [](const Series& s) { return !s.label.empty(); });
+  return fmt::format("{}set bmargin {}\n{}", key ? "" : "unset key\n", key ? 6 : 4,
+                     figure.equal_scale ? "set size ratio -1\n" : "");
+}
+
 std::string headings(const Figure& figure) {
   auto text =
       fmt::format("set label 1 {} at graph 0, graph 1 offset 0,1.2 left font ',16' noenhanced\n",
@@ -144,7 +152,6 @@ set border 3 lc rgb '#444444' lw 1
 set tics nomirror out scale 0.6
 set grid ytics lc rgb '#e3e5e8' lw 1 dt solid
 set key outside bottom center horizontal Left reverse samplen 4 width 2 noenhanced
-set bmargin 6
 set bars 1.2
 set tmargin 3
 set rmargin 4
@@ -197,7 +204,7 @@ std::string first_words_of(const fs::path& log) {
 
 std::string gnuplot_script(const Figure& figure) {
   check(figure);
-  std::string text = kStyle + headings(figure) + axes(figure);
+  std::string text = kStyle + layout(figure) + headings(figure) + axes(figure);
   std::string plot = "plot ";
   for (std::size_t i = 0; i < figure.series.size(); ++i) {
     text += data_block(figure.series[i], i);

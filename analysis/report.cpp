@@ -248,36 +248,54 @@ std::string microseconds(const Defined<TimingPercentiles>& p) {
                      us(p->highest_ns));
 }
 
+// On a simulated clock only completeness says anything.
+std::vector<std::string> timing_row(const SessionSummary& session, bool percentiles) {
+  const auto& t = session.timing;
+  std::vector<std::string> row{session.info.subject, session.info.clock};
+  const auto count = [&](std::uint64_t n) { return t.complete ? std::to_string(n) : "unknown"; };
+  row.insert(row.end(), {count(t.ticks), count(t.dropped), count(t.missing)});
+  if (percentiles) {
+    row.insert(
+        row.end(),
+        {t.applies ? count(t.overruns) : "-", t.applies ? microseconds(t.period) : "-",
+         t.applies ? microseconds(t.lateness) : "-", t.applies ? microseconds(t.compute) : "-"});
+  }
+  return row;
+}
+
 std::string timing(const StudyResult& study) {
   std::string html = heading("Timing of the servo loop");
-  Rows rows;
+  std::vector<std::string> names{"Subject", "Clock", "Ticks", "Dropped", "Missing"};
   std::vector<std::string> simulated;
+  std::vector<std::string> unfinished;
   for (const auto& session : study.sessions) {
-    const auto& t = session.timing;
-    if (!t.applies) {
+    if (!session.timing.applies) {
       simulated.push_back(session.info.subject);
     }
-    if (!t.complete) {
-      rows.push_back(
-          {session.info.subject, "the session did not come to its end", "-", "-", "-", "-", "-"});
-      continue;
+    if (!session.timing.complete) {
+      unfinished.push_back(session.info.subject);
     }
-    rows.push_back(
-        {session.info.subject, fmt::format("{} of {}", t.overruns, t.ticks),
-         fmt::format("{} / {}", t.dropped, t.missing), t.applies ? microseconds(t.period) : "-",
-         t.applies ? microseconds(t.lateness) : "-", t.applies ? microseconds(t.compute) : "-"});
-    rows.back().push_back(session.info.clock);
   }
+  const bool real = simulated.size() < study.sessions.size();
   if (!simulated.empty()) {
-    html += paragraph("Timing does not apply to " + joined(simulated) +
+    html += paragraph("Timing does not apply to " + (real ? joined(simulated) : "these sessions") +
                       ": on a simulated clock every tick takes exactly one period.");
   }
-  html += paragraph(
-      "Times in microseconds: median / 99 % / 99.9 % / highest, each the upper edge of the bin of "
-      "the histogram that holds it.");
-  return html + html_table({"Subject", "Overruns", "Dropped / missing", "Period", "Lateness",
-                            "Compute", "Clock"},
-                           rows);
+  if (!unfinished.empty()) {
+    html += paragraph(
+        "Not counted, because the session did not come to its end: " + joined(unfinished) + ".");
+  }
+  if (real) {
+    names.insert(names.end(), {"Overruns", "Period", "Lateness", "Compute"});
+    html += paragraph(
+        "Times in microseconds: median / 99 % / 99.9 % / highest, each the upper edge of the bin "
+        "of the histogram that holds it.");
+  }
+  Rows rows;
+  for (const auto& session : study.sessions) {
+    rows.push_back(timing_row(session, real));
+  }
+  return html + html_table(names, rows);
 }
 
 std::string versions(const StudyResult& study) {

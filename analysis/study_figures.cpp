@@ -194,6 +194,9 @@ Figure trajectory(const std::vector<record::StimulusRow>& rows) {
     path.x.push_back(100.0 * row.position.x());
     path.y.push_back(100.0 * row.position.z());
   }
+  const auto [left, right] = std::minmax_element(path.x.begin(), path.x.end());
+  figure.x_range = Range{*left, *right};
+  figure.equal_scale = true;
   figure.series = {path};
   figure.caption = "The spatial trajectory of the first block of the first session, from above.";
   figure.alt = "A winding line from left to right.";

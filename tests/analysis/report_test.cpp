@@ -134,8 +134,14 @@ TEST(Report, OfNoScoredTrialStillStands) {
 }
 
 TEST(Report, SaysWhenTimingDoesNotApply) {
-  EXPECT_THAT(report(example_study(true)), HasSubstr("Timing does not apply to P01, P02"));
+  EXPECT_THAT(report(example_study(true)), HasSubstr("Timing does not apply to these sessions"));
+  EXPECT_THAT(report(example_study(true)), Not(HasSubstr("Overruns")));
   EXPECT_THAT(report(example_study(false)), Not(HasSubstr("Timing does not apply")));
+  auto mixed = example_study(false);
+  mixed.sessions[1].timing.applies = false;
+  mixed.sessions[2].timing.complete = false;
+  EXPECT_THAT(report(mixed), HasSubstr("Timing does not apply to P02:"));
+  EXPECT_THAT(report(mixed), HasSubstr("did not come to its end: P03."));
 }
 
 TEST(Json, HoldsTheNumbersOfTheStudy) {
