@@ -46,7 +46,7 @@ struct Scales {
         limit(p.power == 1 ? Aligner::kMaxError : std::sqrt(Aligner::kMaxError)) {}
 };
 
-/// to[i * stride] = scale * from[i], for any order of places that `place` gives.
+/// *place(i) = scale * from[i]
 template <class Place>
 void write_scaled(std::span<const double> from, double scale, double limit, Place place) {
   bool good = true;
@@ -83,7 +83,7 @@ struct Walker {
 
   bool at_start() const { return row == 0 && column == 0; }
   void note() { *--out = {row, column}; }
-  void step(Directions directions, unsigned lane) {
+  void step(Directions directions, std::size_t lane) {
     const std::uint32_t aside = directions.aside >> lane & 1u;
     const std::uint32_t left = directions.left >> lane & 1u;
     row -= (aside & left) ^ 1u;
@@ -92,24 +92,36 @@ struct Walker {
   }
 };
 
-Walker start_of_walk(const CurveView& target, const CurveView& applied, Alignment& result) {
-  const auto rows = static_cast<std::uint32_t>(target.force.size());
-  const auto columns = static_cast<std::uint32_t>(applied.force.size());
+Walker start_of_walk(const AlignmentPair& pair, Alignment& result) {
+  const auto rows = static_cast<std::uint32_t>(pair.target.force.size());
+  const auto columns = static_cast<std::uint32_t>(pair.applied.force.size());
   result.path.resize(rows + columns - 1);
   Walker walker{rows - 1, columns - 1, result.path.data() + result.path.size()};
   walker.note();
   return walker;
 }
 
-void finish_walk(const Walker& walker, const CurveView& target, const CurveView& applied,
-                 const AlignmentParameters& parameters, Alignment& result) {
-  result.path.erase(result.path.begin(), result.path.begin() + (walker.out - result.path.data()));
-  result.cost = path_cost(target, applied, parameters, result.path);
-}
+/// Where the sweep finds the values, and the walk the bits, of a row, a column and a pair.
+struct Layout {
+  std::size_t lanes;
+  std::size_t
+      rows_of_vector;  // `lanes` for one pair, 1 for a batch; a power of two, as is the next
+  std::size_t strip;   // rows
+  std::size_t strips, columns;
 
-std::size_t round_up(std::size_t count, std::size_t unit) {
-  return (count + unit - 1) / unit * unit;
-}
+  std::size_t stride() const { return lanes >> vector_shift; }
+  std::size_t vectors() const { return strip >> vector_shift; }
+  std::size_t steps() const { return columns + strip - 1; }
+  std::size_t lane(std::size_t row, std::size_t pair) const {
+    return pair + (~row & ((std::size_t{1} << vector_shift) - 1));
+  }
+  std::size_t target(std::size_t row, std::size_t pair) const {
+    return (row >> vector_shift) * lanes + lane(row, pair);
+  }
+  /// Places over columns, with those before the first and after the last that a sweep touches.
+  std::size_t padded() const { return (columns + 2 * strip) * stride(); }
+  std::size_t first_column() const { return strip * stride(); }
+};
 
 /// A sweep takes the time of `lanes` pairs of the largest size whatever it holds, and is slower
 /// than pairs one by one when the direction bits leave the cache.
@@ -131,16 +143,17 @@ struct Aligner::Workspace {
   WorkBuffer<float> target_force, target_slope, applied_force, applied_slope, boundary;
   WorkBuffer<Directions> directions;
 
-  void align_one(const CurveView& target, const CurveView& applied,
-                 const AlignmentParameters& parameters, Alignment& result);
-  void walk_one(const CurveView& target, const CurveView& applied,
-                const AlignmentParameters& parameters, Alignment& result);
-  void align_lanes(std::span<const AlignmentPair> pairs, const AlignmentParameters& parameters,
-                   std::span<Alignment> results);
-  void walk_lanes(std::span<const AlignmentPair> pairs, std::size_t columns,
-                  const AlignmentParameters& parameters, std::span<Alignment> results);
-  void interleave(std::span<const AlignmentPair> pairs, const Scales& scales, std::size_t rows,
-                  std::size_t columns);
+  Layout layout_of(std::span<const AlignmentPair> pairs, bool side_by_side) const;
+  float* place_target(WorkBuffer<float>& buffer, const Layout& layout,
+                      std::span<const AlignmentPair> pairs,
+                      std::span<const double> CurveView::*values, double scale, double limit);
+  float* place_applied(WorkBuffer<float>& buffer, const Layout& layout,
+                       std::span<const AlignmentPair> pairs,
+                       std::span<const double> CurveView::*values, double scale, double limit);
+  void align(std::span<const AlignmentPair> pairs, bool side_by_side,
+             const AlignmentParameters& parameters, std::span<Alignment> results);
+  void walk(const Layout& layout, std::span<const AlignmentPair> pairs,
+            std::span<Alignment> results);
 };
 
 Aligner::Aligner(InstructionSet set)
@@ -151,138 +164,96 @@ Aligner& Aligner::operator=(Aligner&&) noexcept = default;
 
 std::size_t Aligner::lanes() const { return workspace_->kernels.lanes; }
 
-void Aligner::Workspace::align_one(const CurveView& target, const CurveView& applied,
-                                   const AlignmentParameters& parameters, Alignment& result) {
-  const Scales scales(parameters);
-  const std::size_t lanes = kernels.lanes;
-  const std::size_t strip = kernels.strip_rows;
-  const std::size_t rows = round_up(target.force.size(), strip);
-  const std::size_t columns = applied.force.size();
-
-  // A vector's lowest row sits in lane 0.
-  const auto place_row = [lanes](float* to) {
-    return [lanes, to](std::size_t i) { return to + (i ^ (lanes - 1)); };
-  };
-  float* forces = target_force.at_least(rows);
-  float* slopes = target_slope.at_least(rows);
-  std::fill_n(forces + rows - strip, strip, 0.0f);
-  std::fill_n(slopes + rows - strip, strip, 0.0f);
-  write_scaled(target.force, scales.force, scales.limit, place_row(forces));
-  write_scaled(target.slope, scales.slope, scales.limit, place_row(slopes));
-
-  // Infinite values before column 0 make the cells there infinitely dear.
-  const auto place_columns = [&](WorkBuffer<float>& buffer, std::span<const double> values,
-                                 double scale) {
-    float* to = buffer.at_least(columns + 2 * strip) + strip;
-    std::fill_n(to - strip, strip, std::numeric_limits<float>::infinity());
-    std::fill_n(to + columns, strip, 0.0f);
-    write_scaled(values, scale, scales.limit, [to](std::size_t j) { return to + j; });
-    return to;
-  };
-  const float* applied_forces = place_columns(applied_force, applied.force, scales.force);
-  const float* applied_slopes = place_columns(applied_slope, applied.slope, scales.slope);
-  float* above = boundary.at_least(columns + 2 * strip) + strip;
-  std::fill_n(above - strip, columns + 2 * strip, std::numeric_limits<float>::infinity());
-  above[-1] = 0.0f;
-
-  const std::size_t steps = columns + strip - 1;
-  const std::size_t vectors = strip / lanes;
-  Directions* bits = directions.at_least(rows / strip * steps * vectors);
-  kernels.fill_single[parameters.power - 1]({forces, slopes, applied_forces, applied_slopes, above,
-                                             bits, rows / strip, columns,
-                                             static_cast<float>(parameters.penalty)});
-
-  walk_one(target, applied, parameters, result);
-}
-
-void Aligner::Workspace::walk_one(const CurveView& target, const CurveView& applied,
-                                  const AlignmentParameters& parameters, Alignment& result) {
-  const std::size_t lanes = kernels.lanes;
-  const std::size_t strip = kernels.strip_rows;
-  const std::size_t steps = applied.force.size() + strip - 1;
-  const std::size_t vectors = strip / lanes;
-  const Directions* bits = directions.at_least(0);
-  const int strip_shift = std::countr_zero(strip);
-  const int lane_shift = std::countr_zero(lanes);
-  Walker walker = start_of_walk(target, applied, result);
-  while (!walker.at_start()) {
-    const std::size_t row = walker.row & (strip - 1);
-    const std::size_t step = (walker.row >> strip_shift) * steps + row + walker.column;
-    walker.step(bits[step * vectors + (row >> lane_shift)],
-                static_cast<unsigned>(~row & (lanes - 1)));
-  }
-  finish_walk(walker, target, applied, parameters, result);
-}
-
-void Aligner::Workspace::interleave(std::span<const AlignmentPair> pairs, const Scales& scales,
-                                    std::size_t rows, std::size_t columns) {
-  const std::size_t lanes = kernels.lanes;
-  const auto place = [&](WorkBuffer<float>& buffer, std::size_t length, double scale,
-                         auto&& values_of) {
-    float* to = buffer.at_least(length * lanes);
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      std::size_t filled = 0;
-      if (lane < pairs.size()) {
-        const std::span<const double> values = values_of(pairs[lane]);
-        write_scaled(values, scale, scales.limit,
-                     [&](std::size_t i) { return to + i * lanes + lane; });
-        filled = values.size();
-      }
-      for (std::size_t i = filled; i < length; ++i) to[i * lanes + lane] = 0.0f;
-    }
-  };
-  place(target_force, rows, scales.force, [](auto& pair) { return pair.target.force; });
-  place(target_slope, rows, scales.slope, [](auto& pair) { return pair.target.slope; });
-  place(applied_force, columns, scales.force, [](auto& pair) { return pair.applied.force; });
-  place(applied_slope, columns, scales.slope, [](auto& pair) { return pair.applied.slope; });
-}
-
-void Aligner::Workspace::align_lanes(std::span<const AlignmentPair> pairs,
-                                     const AlignmentParameters& parameters,
-                                     std::span<Alignment> results) {
-  const std::size_t lanes = kernels.lanes;
-  const std::size_t tile = kernels.tile_rows;
-  std::size_t rows = 0, columns = 0;
+Layout Aligner::Workspace::layout_of(std::span<const AlignmentPair> pairs,
+                                     bool side_by_side) const {
+  Layout layout{kernels.lanes, side_by_side ? 0 : std::countr_zero(kernels.lanes), 0, 0, 0};
+  layout.strip = side_by_side ? kernels.batch_vectors : kernels.single_vectors * kernels.lanes;
   for (const AlignmentPair& pair : pairs) {
-    rows = std::max(rows, round_up(pair.target.force.size(), tile));
-    columns = std::max(columns, pair.applied.force.size());
+    layout.strips = std::max(layout.strips, (pair.target.force.size() - 1) / layout.strip + 1);
+    layout.columns = std::max(layout.columns, pair.applied.force.size());
   }
-  interleave(pairs, Scales(parameters), rows, columns);
-  float* above = boundary.at_least(columns * lanes);
-  std::fill_n(above, columns * lanes, std::numeric_limits<float>::infinity());
-  Directions* bits = directions.at_least(rows * columns);
-  kernels.fill_batch[parameters.power - 1]({target_force.at_least(0), target_slope.at_least(0),
-                                            applied_force.at_least(0), applied_slope.at_least(0),
-                                            above, bits, rows / tile, columns,
-                                            static_cast<float>(parameters.penalty)});
-  walk_lanes(pairs, columns, parameters, results);
+  return layout;
 }
 
-void Aligner::Workspace::walk_lanes(std::span<const AlignmentPair> pairs, std::size_t columns,
-                                    const AlignmentParameters& parameters,
-                                    std::span<Alignment> results) {
-  const std::size_t tile = kernels.tile_rows;
-  const Directions* bits = directions.at_least(0);
-  // All lanes walk together, so that their cache misses overlap.
+float* Aligner::Workspace::place_target(WorkBuffer<float>& buffer, const Layout& layout,
+                                        std::span<const AlignmentPair> pairs,
+                                        std::span<const double> CurveView::*values, double scale,
+                                        double limit) {
+  const std::size_t count = layout.strips * layout.vectors() * layout.lanes;
+  float* to = buffer.at_least(count);
+  std::fill_n(to, count, 0.0f);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    write_scaled(pairs[k].target.*values, scale, limit,
+                 [=](std::size_t i) { return to + layout.target(i, k); });
+  }
+  return to;
+}
+
+/// Infinite values before column 0 make the cells there infinitely dear.
+float* Aligner::Workspace::place_applied(WorkBuffer<float>& buffer, const Layout& layout,
+                                         std::span<const AlignmentPair> pairs,
+                                         std::span<const double> CurveView::*values, double scale,
+                                         double limit) {
+  float* to = buffer.at_least(layout.padded());
+  std::fill_n(to, layout.first_column(), std::numeric_limits<float>::infinity());
+  std::fill_n(to + layout.first_column(), layout.padded() - layout.first_column(), 0.0f);
+  to += layout.first_column();
+  const std::size_t stride = layout.stride();
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    write_scaled(pairs[k].applied.*values, scale, limit,
+                 [=](std::size_t j) { return to + j * stride + k; });
+  }
+  return to;
+}
+
+void Aligner::Workspace::align(std::span<const AlignmentPair> pairs, bool side_by_side,
+                               const AlignmentParameters& parameters,
+                               std::span<Alignment> results) {
+  const Layout layout = layout_of(pairs, side_by_side);
+  const Scales scales(parameters);
+  const std::size_t stride = layout.stride();
+  float* above = boundary.at_least(layout.padded());
+  std::fill_n(above, layout.padded(), std::numeric_limits<float>::infinity());
+  above += layout.first_column();
+  std::fill_n(above - stride, stride, 0.0f);  // a path starts at (0,0) for nothing
+
+  const auto& sweeps = side_by_side ? kernels.sweep_batch : kernels.sweep_single;
+  sweeps[parameters.power - 1](
+      {place_target(target_force, layout, pairs, &CurveView::force, scales.force, scales.limit),
+       place_target(target_slope, layout, pairs, &CurveView::slope, scales.slope, scales.limit),
+       place_applied(applied_force, layout, pairs, &CurveView::force, scales.force, scales.limit),
+       place_applied(applied_slope, layout, pairs, &CurveView::slope, scales.slope, scales.limit),
+       above, directions.at_least(layout.strips * layout.steps() * layout.vectors()), layout.strips,
+       layout.columns, static_cast<float>(parameters.penalty)});
+  walk(layout, pairs, results);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    results[k].cost = path_cost(pairs[k].target, pairs[k].applied, parameters, results[k].path);
+  }
+}
+
+/// All pairs walk together, so that their cache misses overlap.
+void Aligner::Workspace::walk(const Layout& layout, std::span<const AlignmentPair> pairs,
+                              std::span<Alignment> results) {
   constexpr std::size_t kMostLanes = 16;
   Walker walkers[kMostLanes];
-  for (std::size_t lane = 0; lane < pairs.size(); ++lane) {
-    walkers[lane] = start_of_walk(pairs[lane].target, pairs[lane].applied, results[lane]);
-  }
-  const int tile_shift = std::countr_zero(tile);
+  for (std::size_t k = 0; k < pairs.size(); ++k) walkers[k] = start_of_walk(pairs[k], results[k]);
+  const Directions* bits = directions.at_least(0);
+  const std::size_t steps = layout.steps(), vectors = layout.vectors();
+  const int strip_shift = std::countr_zero(layout.strip);
   for (bool walking = true; walking;) {
     walking = false;
-    for (std::size_t lane = 0; lane < pairs.size(); ++lane) {
-      Walker& walker = walkers[lane];
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      Walker& walker = walkers[k];
       if (walker.at_start()) continue;
-      const std::size_t cell =
-          ((walker.row >> tile_shift) * columns + walker.column) * tile + (walker.row & (tile - 1));
-      walker.step(bits[cell], static_cast<unsigned>(lane));
+      const std::size_t row = walker.row & (layout.strip - 1);
+      const std::size_t step = (walker.row >> strip_shift) * steps + row + walker.column;
+      walker.step(bits[step * vectors + (row >> layout.vector_shift)], layout.lane(row, k));
       walking = true;
     }
   }
-  for (std::size_t lane = 0; lane < pairs.size(); ++lane) {
-    finish_walk(walkers[lane], pairs[lane].target, pairs[lane].applied, parameters, results[lane]);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    auto& path = results[k].path;
+    path.erase(path.begin(), path.begin() + (walkers[k].out - path.data()));
   }
 }
 
@@ -291,7 +262,8 @@ void Aligner::align(const CurveView& target, const CurveView& applied,
   check(parameters);
   check(target);
   check(applied);
-  workspace_->align_one(target, applied, parameters, result);
+  const AlignmentPair pair{target, applied};
+  workspace_->align({&pair, 1}, false, parameters, {&result, 1});
 }
 
 void Aligner::align_batch(std::span<const AlignmentPair> pairs,
@@ -306,11 +278,11 @@ void Aligner::align_batch(std::span<const AlignmentPair> pairs,
     const std::size_t count = std::min(lanes(), pairs.size() - first);
     const auto group = pairs.subspan(first, count);
     if (pays_side_by_side(group, lanes())) {
-      workspace_->align_lanes(group, parameters, results.subspan(first, count));
+      workspace_->align(group, true, parameters, results.subspan(first, count));
       continue;
     }
     for (std::size_t k = 0; k < count; ++k) {
-      workspace_->align_one(group[k].target, group[k].applied, parameters, results[first + k]);
+      workspace_->align(group.subspan(k, 1), false, parameters, results.subspan(first + k, 1));
     }
   }
 }

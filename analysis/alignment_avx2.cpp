@@ -41,7 +41,7 @@ struct Lanes8 {
 namespace haptrial::analysis::kernel {
 
 const Kernels& avx2_kernels() {
-  static const Kernels kernels = kernels_of<Lanes8, 4, 4>();
+  static const Kernels kernels = kernels_of<Lanes8, 8, 4>();
   return kernels;
 }
 

@@ -39,7 +39,7 @@ struct Lanes16 {
 namespace haptrial::analysis::kernel {
 
 const Kernels& avx512_kernels() {
-  static const Kernels kernels = kernels_of<Lanes16, 8, 4>();
+  static const Kernels kernels = kernels_of<Lanes16, 8, 8>();
   return kernels;
 }
 

@@ -55,7 +55,7 @@ struct Lanes4 {
 }  // namespace
 
 const Kernels& baseline_kernels() {
-  static const Kernels kernels = kernels_of<Lanes4, 4, 2>();
+  static const Kernels kernels = kernels_of<Lanes4, 4, 4>();
   return kernels;
 }
 

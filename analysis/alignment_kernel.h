@@ -16,40 +16,32 @@ struct Directions {
   std::uint16_t left;
 };
 
-/// One pair, swept in strips of `strip_rows` target samples. Within a strip a vector holds `lanes`
-/// consecutive rows on one anti-diagonal, the lowest row in lane 0. Values are scaled (alignment_
-/// error.h). Arrays may be read `strip_rows` places before and after the columns given.
-struct SingleTask {
-  const float* target_force;   // (strips * strip_rows); lowest row of each vector first
-  const float* target_slope;   // likewise
-  const float* applied_force;  // (columns); infinite before column 0, finite after the last
+/// A sweep over strips of target samples, each of a few vectors of rows. One pair: a vector holds
+/// `lanes` consecutive rows, the lowest in lane 0, and `stride` is 1. A batch: a vector holds one
+/// row of `lanes` pairs, and `stride` is `lanes`. Values are scaled (alignment_error.h).
+///
+/// The arrays over columns may be read, and the boundary written, for as many columns before the
+/// first and after the last as a strip has rows.
+struct Task {
+  const float* target_force;  // (strips x vectors x lanes)
+  const float* target_slope;  // likewise
+  const float*
+      applied_force;  // (columns x stride); infinite before the first, finite after the last
   const float* applied_slope;  // likewise
-  float* boundary;             // (columns); D of the row above the strip; 0 at -1, else infinite
-  Directions* directions;      // (strips x (columns + strip_rows - 1) x vectors)
+  float* boundary;         // (columns x stride); D of the row above; 0 at column -1, else infinite
+  Directions* directions;  // (strips x (columns + rows of a strip - 1) x vectors)
   std::size_t strips;
   std::size_t columns;
   float penalty;
 };
 
-/// `lanes` pairs side by side, swept in tiles of `tile_rows` target samples.
-struct BatchTask {
-  const float* target_force;   // (tiles * tile_rows x lanes)
-  const float* target_slope;   // likewise
-  const float* applied_force;  // (columns x lanes)
-  const float* applied_slope;  // likewise
-  float* boundary;             // (columns x lanes); D of the row above the tile; infinite
-  Directions* directions;      // (tiles x columns x tile_rows)
-  std::size_t tiles;
-  std::size_t columns;
-  float penalty;
-};
-
+/// Powers of two throughout.
 struct Kernels {
-  std::size_t lanes;       // of one vector
-  std::size_t strip_rows;  // of a strip of the single kernel: a multiple of lanes
-  std::size_t tile_rows;   // of a tile of the batch kernel
-  void (*fill_single[2])(const SingleTask&);  // for p = 1 and p = 2
-  void (*fill_batch[2])(const BatchTask&);
+  std::size_t lanes;                     // of one vector
+  std::size_t single_vectors;            // of a strip of one pair, each of `lanes` rows
+  std::size_t batch_vectors;             // of a strip of a batch, each of one row
+  void (*sweep_single[2])(const Task&);  // for p = 1 and p = 2
+  void (*sweep_batch[2])(const Task&);
 };
 
 /// The last two exist where the compiler targets x86-64; kernels_for() knows what the machine runs.

@@ -26,13 +26,35 @@ template <class Lanes, int power>
   return error + Lanes::smaller(aside, diagonal);
 }
 
-/// Rows r of a strip meet column step - r, so that no cell of a step needs another of the same
-/// step. D moves from lane to lane and from vector to vector; memory sees only the last row of a
-/// strip.
-template <class Lanes, int power, std::size_t vectors>
-void fill_single(const SingleTask& task) {
+/// How a sweep lays cells into vectors: what separates one pair from a batch.
+///
+/// One pair: the lanes are consecutive rows on one anti-diagonal, the lowest row in lane 0.
+template <class Lanes>
+struct OnePair {
   using Number = typename Lanes::Number;
-  constexpr std::size_t kRows = vectors * Lanes::kCount;
+  static constexpr std::ptrdiff_t kRowsOfVector = Lanes::kCount;
+  static constexpr std::ptrdiff_t kStride = 1;  // from one column to the next
+  static Number up(Number left, Number from) { return Lanes::shift_in(left, from); }
+  static Number border(const float* at) { return Lanes::all(*at); }
+};
+
+/// A batch: lane k holds pair k.
+template <class Lanes>
+struct PairPerLane {
+  using Number = typename Lanes::Number;
+  static constexpr std::ptrdiff_t kRowsOfVector = 1;
+  static constexpr std::ptrdiff_t kStride = Lanes::kCount;
+  static Number up(Number, Number from) { return from; }
+  static Number border(const float* at) { return Lanes::load(at); }
+};
+
+/// In each step of a strip its row r meets column step - r, so that no cell of a step needs another
+/// of the same step. D moves down from vector to vector; memory sees only the last row of a strip.
+template <class Lanes, class Layout, int power, std::size_t vectors>
+void sweep(const Task& task) {
+  using Number = typename Lanes::Number;
+  constexpr std::ptrdiff_t kRows = vectors * Layout::kRowsOfVector;
+  constexpr std::ptrdiff_t kStride = Layout::kStride;
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const Number penalty = Lanes::all(task.penalty);
   const float* applied_force = task.applied_force;
@@ -43,76 +65,38 @@ void fill_single(const SingleTask& task) {
   for (std::size_t strip = 0; strip < task.strips; ++strip) {
     Number target_force[vectors], target_slope[vectors], left[vectors], diagonal[vectors];
     for (std::size_t v = 0; v < vectors; ++v) {
-      target_force[v] = Lanes::load(task.target_force + strip * kRows + v * Lanes::kCount);
-      target_slope[v] = Lanes::load(task.target_slope + strip * kRows + v * Lanes::kCount);
+      target_force[v] = Lanes::load(task.target_force + (strip * vectors + v) * Lanes::kCount);
+      target_slope[v] = Lanes::load(task.target_slope + (strip * vectors + v) * Lanes::kCount);
       left[v] = diagonal[v] = Lanes::all(kInfinity);
     }
-    diagonal[0] = Lanes::shift_in(diagonal[0], Lanes::all(boundary[-1]));
+    diagonal[0] = Layout::up(diagonal[0], Layout::border(boundary - kStride));
     for (std::ptrdiff_t step = 0; step < steps; ++step) {
-      Number from = Lanes::all(boundary[step]);
+      Number from = Layout::border(boundary + step * kStride);
 #pragma GCC unroll 8
       for (std::size_t v = 0; v < vectors; ++v) {
-        const std::ptrdiff_t column = step - std::ptrdiff_t((v + 1) * Lanes::kCount) + 1;
-        const Number up = Lanes::shift_in(left[v], from);
+        const std::ptrdiff_t last_row = std::ptrdiff_t(v + 1) * Layout::kRowsOfVector - 1;
+        const std::ptrdiff_t at = (step - last_row) * kStride;
+        const Number up = Layout::up(left[v], from);
         const Number cost = relax<Lanes, power>(
-            diagonal[v], up, left[v], target_force[v] - Lanes::load(applied_force + column),
-            target_slope[v] - Lanes::load(applied_slope + column), penalty, *out++);
+            diagonal[v], up, left[v], target_force[v] - Lanes::load(applied_force + at),
+            target_slope[v] - Lanes::load(applied_slope + at), penalty, *out++);
         from = left[v];
         diagonal[v] = up;
         left[v] = cost;
       }
-      // Lane 0 is the last row; the lanes above it are overwritten by the steps that follow.
-      Lanes::store(boundary + step - std::ptrdiff_t(kRows) + 1, left[vectors - 1]);
+      // One pair: lane 0 is the last row; what the other lanes write, later steps overwrite.
+      Lanes::store(boundary + (step - kRows + 1) * kStride, left[vectors - 1]);
     }
   }
 }
 
-/// Lane k holds pair k. A tile of rows goes through a column before the next column is read, so
-/// that the row above and the applied curve are loaded once for all of them, and the rows of a tile
-/// work on different columns at the same time as far as the processor looks ahead.
-template <class Lanes, int power, std::size_t rows>
-void fill_batch(const BatchTask& task) {
-  using Number = typename Lanes::Number;
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  const Number penalty = Lanes::all(task.penalty);
-  Number corner = Lanes::all(0.0f);
-  const float* applied_force = task.applied_force;
-  const float* applied_slope = task.applied_slope;
-  float* boundary = task.boundary;
-  Directions* out = task.directions;
-  for (std::size_t tile = 0; tile < task.tiles; ++tile) {
-    Number target_force[rows], target_slope[rows], left[rows];
-    for (std::size_t r = 0; r < rows; ++r) {
-      target_force[r] = Lanes::load(task.target_force + (tile * rows + r) * Lanes::kCount);
-      target_slope[r] = Lanes::load(task.target_slope + (tile * rows + r) * Lanes::kCount);
-      left[r] = Lanes::all(kInfinity);
-    }
-    for (std::size_t column = 0; column < task.columns; ++column) {
-      const Number force = Lanes::load(applied_force + column * Lanes::kCount);
-      const Number slope = Lanes::load(applied_slope + column * Lanes::kCount);
-      Number up = Lanes::load(boundary + column * Lanes::kCount);
-      Number diagonal = corner;
-      corner = up;
-#pragma GCC unroll 8
-      for (std::size_t r = 0; r < rows; ++r) {
-        const Number cost = relax<Lanes, power>(diagonal, up, left[r], target_force[r] - force,
-                                                target_slope[r] - slope, penalty, *out++);
-        diagonal = left[r];
-        up = left[r] = cost;
-      }
-      Lanes::store(boundary + column * Lanes::kCount, up);
-    }
-    corner = Lanes::all(kInfinity);
-  }
-}
-
-template <class Lanes, std::size_t vectors, std::size_t rows>
+template <class Lanes, std::size_t single, std::size_t batch>
 Kernels kernels_of() {
   return {Lanes::kCount,
-          vectors * Lanes::kCount,
-          rows,
-          {fill_single<Lanes, 1, vectors>, fill_single<Lanes, 2, vectors>},
-          {fill_batch<Lanes, 1, rows>, fill_batch<Lanes, 2, rows>}};
+          single,
+          batch,
+          {sweep<Lanes, OnePair<Lanes>, 1, single>, sweep<Lanes, OnePair<Lanes>, 2, single>},
+          {sweep<Lanes, PairPerLane<Lanes>, 1, batch>, sweep<Lanes, PairPerLane<Lanes>, 2, batch>}};
 }
 
 }  // namespace

@@ -97,12 +97,29 @@ double median_seconds(int runs, Work work) {
   return seconds[static_cast<std::size_t>(runs) / 2];
 }
 
+/// From a chain of six dependent one-cycle operations, best of several.
+double cycles_per_second() {
+  constexpr long kRounds = 2'000'000;
+  double best = std::numeric_limits<double>::infinity();
+  std::uint64_t x = 88172645463325252u;
+  for (int run = 0; run < 20; ++run) {
+    const double start = thread_seconds();
+    for (long k = 0; k < kRounds; ++k) {
+      x ^= x << 13;
+      x ^= x >> 7;
+      x ^= x << 17;
+    }
+    best = std::min(best, thread_seconds() - start);
+  }
+  return x == 0 ? 0.0 : 6.0 * kRounds / best;
+}
+
 void print_row(const std::string& name, double seconds, std::size_t pairs, std::size_t samples,
-               double baseline_rate) {
+               double baseline_rate, double clock) {
   const double rate = static_cast<double>(pairs) / seconds;
   const double cells = static_cast<double>(samples * samples);
-  std::printf("%-28s %10.0f %12.4f %10.1f\n", name.c_str(), rate, 1e9 / (rate * cells),
-              rate / baseline_rate);
+  std::printf("%-28s %10.0f %10.4f %12.2f %10.1f\n", name.c_str(), rate, 1e9 / (rate * cells),
+              rate * cells / clock, rate / baseline_rate);
 }
 
 }  // namespace
@@ -126,6 +143,7 @@ int main(int argc, char** argv) {
   const AlignmentParameters parameters;
   std::vector<Alignment> results(kPairs), reference(kPairs);
 
+  const double clock = cycles_per_second();
   constexpr std::size_t kTextbookPairs = 8;
   Textbook textbook;
   const double plain = median_seconds(runs, [&] {
@@ -134,9 +152,10 @@ int main(int argc, char** argv) {
     }
   });
   const double plain_rate = kTextbookPairs / plain;
-  std::printf("%zu x %zu samples with path, median of %d runs, one core\n", samples, samples, runs);
-  std::printf("%-28s %10s %12s %10s\n", "", "pairs/s", "ns/cell", "x textbook");
-  print_row("textbook, fp64, scalar", plain, kTextbookPairs, samples, plain_rate);
+  std::printf("%zu x %zu samples with path, median of %d runs, one core at %.2f GHz\n", samples,
+              samples, runs, clock / 1e9);
+  std::printf("%-28s %10s %10s %12s %10s\n", "", "pairs/s", "ns/cell", "cells/cycle", "x textbook");
+  print_row("textbook, fp64, scalar", plain, kTextbookPairs, samples, plain_rate, clock);
   for (const InstructionSet set : available_instruction_sets()) {
     Aligner aligner(set);
     const std::string name(name_of(set));
@@ -145,11 +164,11 @@ int main(int argc, char** argv) {
         aligner.align(pairs[k].target, pairs[k].applied, parameters, results[k]);
       }
     });
-    print_row(name + ", single pair", single, kPairs, samples, plain_rate);
+    print_row(name + ", single pair", single, kPairs, samples, plain_rate, clock);
     const double batch =
         median_seconds(runs, [&] { aligner.align_batch(pairs, parameters, results); });
     print_row(name + ", batch of " + std::to_string(aligner.lanes()) + " lanes", batch, kPairs,
-              samples, plain_rate);
+              samples, plain_rate, clock);
     for (std::size_t k = 0; k < kTextbookPairs; ++k) {
       if (std::abs(results[k].cost - reference[k].cost) > 1e-4 * reference[k].cost) {
         std::fprintf(stderr, "pair %zu costs %.9g, the textbook says %.9g\n", k, results[k].cost,
