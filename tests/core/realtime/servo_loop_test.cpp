@@ -177,7 +177,6 @@ TEST(ServoLoopTest, ATickThatTakesTooLongIsCountedAndCaughtUp) {
   };
   loop.run(task);
   EXPECT_GE(loop.overruns(), 3u);  // itself, and the late ones that it held up
-  EXPECT_EQ(loop.resynchronised(), 0u);
   EXPECT_GE(loop.timing().compute.max(), 3e6);
   EXPECT_GE(loop.timing().lateness.max(), 2e6);
   for (std::size_t i = 1; i < task.ticks.size(); ++i) {  // no burst
