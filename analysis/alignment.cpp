@@ -104,9 +104,8 @@ Walker start_of_walk(const AlignmentPair& pair, Alignment& result) {
 /// Where the sweep finds the values, and the walk the bits, of a row, a column and a pair.
 struct Layout {
   std::size_t lanes;
-  std::size_t
-      rows_of_vector;  // `lanes` for one pair, 1 for a batch; a power of two, as is the next
-  std::size_t strip;   // rows
+  int vector_shift;   // a vector holds 2^vector_shift rows: `lanes` for one pair, 1 for a batch
+  std::size_t strip;  // rows, a power of two
   std::size_t strips, columns;
 
   std::size_t stride() const { return lanes >> vector_shift; }
