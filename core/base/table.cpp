@@ -93,8 +93,6 @@ std::string shown(const toml::node& node) {
     if constexpr (toml::is_array<decltype(value)>) {
       out << "an array of " << value.size();
     } else if constexpr (toml::is_floating_point<decltype(value)>) {
-      out << fmt::format("{}", value.get());
-    } else if constexpr (toml::is_floating_point<decltype(value)>) {
       const std::string digits = fmt::format("{}", value.get());
       const bool whole = digits.find_first_not_of("-0123456789") == std::string::npos;
       out << digits << (whole ? ".0" : "");  // 2.0 is no whole number in TOML
