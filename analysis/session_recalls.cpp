@@ -66,6 +66,36 @@ std::map<std::int32_t, std::size_t> counted_passes(const std::vector<PassRow>& p
   return rows;
 }
 
+// The first row whose sequence number is not below `sequence`.
+std::uint64_t row_of(const SessionReader& reader, std::uint64_t sequence) {
+  std::uint64_t low = 0;
+  std::uint64_t high = reader.sample_count();
+  while (low < high) {
+    const std::uint64_t middle = low + (high - low) / 2;
+    if (reader.samples(middle, 1).front().sequence < sequence) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+// `count` rows from the one of the sequence number on; fewer at the end of the file. Without losses
+// a row is its sequence number, so the search is for damaged files only.
+std::vector<Sample> pass_samples(const SessionReader& reader, std::uint64_t sequence,
+                                 std::uint64_t count) {
+  const std::uint64_t rows = reader.sample_count();
+  if (sequence < rows && count <= rows - sequence) {
+    auto samples = reader.samples(sequence, count);
+    if (samples.front().sequence == sequence) {
+      return samples;
+    }
+  }
+  const std::uint64_t row = row_of(reader, sequence);
+  return reader.samples(row, std::min(count, rows - row));
+}
+
 // Everything about one file while it is read.
 class Extraction {
  public:
@@ -187,13 +217,14 @@ class Extraction {
 }  // namespace
 
 Defined<std::vector<Sample>> run_samples(const SessionReader& reader, const PassRow& pass) {
-  if (pass.last_sample < pass.first_sample || pass.last_sample >= reader.sample_count()) {
+  if (pass.last_sample < pass.first_sample) {
     return Undefined{"its samples are not all in the file"};
   }
-  auto samples = reader.samples(pass.first_sample, pass.last_sample - pass.first_sample + 1);
-  if (samples.front().sequence != pass.first_sample ||
+  const std::uint64_t count = pass.last_sample - pass.first_sample + 1;
+  std::vector<Sample> samples = pass_samples(reader, pass.first_sample, count);
+  if (samples.size() != count || samples.front().sequence != pass.first_sample ||
       samples.back().sequence != pass.last_sample) {
-    return Undefined{"samples before or within it were lost"};
+    return Undefined{"its samples are not all in the file"};
   }
   std::erase_if(samples, [](const Sample& s) { return s.stage != record::Stage::kRun; });
   if (samples.size() < 2) {

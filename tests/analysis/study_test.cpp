@@ -188,6 +188,47 @@ TEST_F(Study, SaysWhichTrialsHaveNoScoreAndWhy) {
   EXPECT_THAT(study.exclusions[2].reason, HasSubstr("not a finite number"));
 }
 
+TEST_F(Study, ALostTickCostsItsTrialAndNoOther) {
+  auto session = noisy("P01");
+  add(session);
+  const auto whole = analyze_study(files_, {}, 1);
+  session.subject = "P02";
+  session.damaged_trial = 3;
+  session.applied = noisy("P01").applied;
+  const auto file = add(session);
+  const auto damaged = analyze_study({file}, {}, 1);
+  ASSERT_EQ(damaged.exclusions.size(), 1u);
+  EXPECT_EQ(damaged.exclusions[0].trial, 3);
+  EXPECT_THAT(damaged.exclusions[0].reason, HasSubstr("not all in the file"));
+  ASSERT_EQ(damaged.scores.size(), 8u);
+  EXPECT_EQ(damaged.scores.back().score, whole.scores.back().score);
+  EXPECT_EQ(damaged.sessions[0].timing.missing, 1u);
+}
+
+TEST_F(Study, TakesASessionThatWasKilled) {
+  auto session = noisy("P01");
+  session.finished = false;
+  session.clock = "real";
+  write_session(folder_ / "P01.h5", session);
+  const auto study = analyze_study({folder_ / "P01.h5.partial"}, {}, 1);
+  EXPECT_EQ(study.scores.size(), 9u);
+  EXPECT_FALSE(study.sessions[0].timing.complete);
+  EXPECT_FALSE(study.sessions[0].timing.period);
+}
+
+TEST_F(Study, RefusesAStimulusOutOfOrder) {
+  auto session = perfect();
+  session.stimulus_backwards = true;
+  add(session);
+  try {
+    analyze_study(files_, {}, 1);
+    ADD_FAILURE() << "took a stimulus that runs backwards";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("P01.h5"));
+    EXPECT_THAT(error.what(), HasSubstr("block 1"));
+  }
+}
+
 TEST_F(Study, ReadsHowTheLoopKeptTime) {
   auto session = perfect();
   session.clock = "real";

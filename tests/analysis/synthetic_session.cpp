@@ -1,5 +1,6 @@
 #include "tests/analysis/synthetic_session.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -26,6 +27,10 @@ class Writer {
       for (int repetition = 1; repetition <= session_.repetitions; ++repetition) {
         add_trial(block, repetition);
       }
+    }
+    if (!session_.finished) {
+      writer_.flush();
+      return;
     }
     const std::vector<record::TimingRow> histogram{{0, 1'000'000, 0, 99, 90},
                                                    {1'000'000, 2'000'000, 99, 1, 10},
@@ -54,6 +59,9 @@ class Writer {
     std::vector<record::StimulusRow> rows;
     for (int i = 0; i * 0.01 < session_.seconds + 0.01; ++i) {
       rows.push_back({block, i * 0.01, path(i * 0.01), session_.target(i * 0.01)});
+    }
+    if (session_.stimulus_backwards) {
+      std::reverse(rows.begin(), rows.end());
     }
     writer_.add_stimulus(rows);
   }
@@ -92,6 +100,9 @@ class Writer {
     }
     add_rest(samples, Stage::kReturn);
     row.last_sample = next_ - 1;
+    if (row.trial == session_.damaged_trial && row.phase == Phase::kTest) {
+      samples.erase(samples.begin() + 100);
+    }
     writer_.append(samples);
     writer_.add_pass(row);
     ++pass_;

@@ -22,7 +22,10 @@ struct SyntheticSession {
   Eigen::Vector3d offset{Eigen::Vector3d::Zero()};  // of the hand from the path [m]
   int aborted_trial{0};                             // its test pass is aborted; 0 for none
   int untested_trial{0};                            // has no test pass
-  int repeated_trial{0};  // has two test passes, the first with twice the force
+  int damaged_trial{0};            // a tick of its test pass never reached the file
+  bool stimulus_backwards{false};  // the rows of /stimuli are in the wrong order
+  bool finished{true};             // else the session was killed after its last pass
+  int repeated_trial{0};           // has two test passes, the first with twice the force
 
   /// Target force [N] of a time since the start of the run [s].
   std::function<double(double)> target;
