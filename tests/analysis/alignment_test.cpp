@@ -219,16 +219,21 @@ TEST(AlignmentTest, TiesEverywhereGoAsInTheTextbook) {
 
 TEST(AlignmentTest, NothingOutsideTheMatrixIsCheapForLargeValues) {
   RandomStream random(10, "large");
-  for (int n = 0; n < 20; ++n) {
-    Curve a, b;
-    for (Curve* curve : {&a, &b}) {
-      for (int i = 0; i < 40; ++i) {
-        curve->force.push_back(static_cast<double>(random.below(8)) * std::ldexp(1.0, 36));
-        curve->slope.push_back(0.0);
-      }
+  const AlignmentParameters parameters{.penalty = std::ldexp(1.0, 34)};
+  std::vector<Curve> curves(32);
+  for (Curve& curve : curves) {
+    curve.slope.assign(300, 0.0);
+    for (int i = 0; i < 300; ++i) {
+      curve.force.push_back(static_cast<double>(random.below(8)) * std::ldexp(1.0, 36));
     }
-    const AlignmentParameters parameters{.penalty = std::ldexp(1.0, 36)};
-    EXPECT_EQ(align(a, b, parameters).path, textbook_path<double>(a, b, parameters)) << n;
+  }
+  std::vector<AlignmentPair> pairs;
+  for (std::size_t k = 0; k < 16; ++k) pairs.push_back({curves[k].view(), curves[k + 16].view()});
+  const auto batch = align_batch(pairs, parameters);
+  for (std::size_t k = 0; k < 16; ++k) {
+    const auto expected = textbook_path<double>(curves[k], curves[k + 16], parameters);
+    EXPECT_EQ(batch[k].path, expected) << k;
+    EXPECT_EQ(align(curves[k], curves[k + 16], parameters).path, expected) << k;
   }
 }
 
