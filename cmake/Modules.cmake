@@ -38,13 +38,13 @@ function(haptrial_command)
   set_target_properties(haptrial PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
 endfunction()
 
-# tests/FOLDER/*.cpp becomes test_NAME for every module; tests/FOLDER/*.py runs as a script;
-# tests/benchmarks/*.cpp become bench_*.
+# tests/FOLDER/*.cpp becomes test_NAME for every module.
 function(haptrial_tests)
   enable_testing()
   include(GoogleTest)
   find_package(GTest REQUIRED)
-  add_library(haptrial_test_support STATIC ${CMAKE_SOURCE_DIR}/tests/support/allocation_guard.cpp)
+  file(GLOB support CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/support/*.cpp)
+  add_library(haptrial_test_support STATIC ${support})
   target_include_directories(haptrial_test_support PUBLIC ${CMAKE_SOURCE_DIR})
   get_property(modules GLOBAL PROPERTY HAPTRIAL_MODULES)
   foreach(name ${modules})
@@ -62,4 +62,5 @@ function(haptrial_tests)
       gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
     endif()
   endforeach()
+  add_dependencies(test_experiments haptrial)  # its tests run the command
 endfunction()

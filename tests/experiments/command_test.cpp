@@ -1,0 +1,200 @@
+// The command as its users meet it: what it prints, its exit status, and what it leaves behind.
+
+#include "tests/experiments/command.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <map>
+
+#include "tests/experiments/shipped.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial {
+namespace {
+
+namespace fs = std::filesystem;
+using test::CommandResult;
+using test::run_command;
+using testing::HasSubstr;
+using testing::Not;
+
+class CommandTest : public testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return "'" + (folder_ / name).string() + "'"; }
+  std::string shipped() const { return "'" + test::shipped_definition().string() + "'"; }
+  CommandResult brief_study(const std::string& name, const std::string& more = "") const {
+    return run_command("haptrial dry-run " + shipped() + " --trials 3 --out " + path(name) + " " +
+                       more);
+  }
+  /// Exit status 2, one sentence on standard error, nothing on standard output, nothing left.
+  void expect_bad_input(const std::string& line, const std::string& sentence) const {
+    const std::size_t before = entries();
+    const CommandResult result = run_command(line);
+    EXPECT_EQ(result.status, 2) << line << "\n" << result.errors;
+    EXPECT_THAT(result.errors, HasSubstr(sentence)) << line;
+    EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+    EXPECT_EQ(result.output, "") << line;
+    EXPECT_EQ(entries(), before) << line;
+  }
+  std::size_t entries() const {
+    const fs::recursive_directory_iterator all(folder_.path());
+    return static_cast<std::size_t>(std::distance(begin(all), end(all)));
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(CommandTest, HelpShowsAnExampleOfEverySubcommand) {
+  for (const char* name : {"dry-run", "run", "analyze", "info", "validate", "devices"}) {
+    const CommandResult help = run_command(std::string("haptrial ") + name + " --help");
+    EXPECT_EQ(help.status, 0);
+    EXPECT_THAT(help.output, HasSubstr(std::string("Example:\n  haptrial ") + name));
+  }
+  EXPECT_THAT(run_command("haptrial --version").output, HasSubstr("haptrial 0."));
+}
+
+TEST_F(CommandTest, StudyFromDefinitionToReport) {
+  const CommandResult dry = brief_study("study", "--subjects 3");
+  ASSERT_EQ(dry.status, 0) << dry.errors;
+  EXPECT_THAT(dry.output, HasSubstr("3 sessions"));
+  EXPECT_EQ(dry.errors, "") << "no progress line where there is no terminal";
+  const CommandResult info = run_command("haptrial info " + path("study/S02.h5"));
+  EXPECT_EQ(info.status, 0) << info.output;
+  EXPECT_THAT(info.output, HasSubstr("0 gaps"));
+  EXPECT_THAT(info.output, HasSubstr("S02 (simulated)"));
+  const CommandResult analysis = run_command("haptrial analyze " + path("study"));
+  ASSERT_EQ(analysis.status, 0) << analysis.errors;
+  for (const char* name : {"scores.csv", "statistics.json", "report.html"}) {
+    EXPECT_GT(fs::file_size(folder_ / "study" / name), 100u) << name;
+  }
+  const std::string scores = test::read_text(folder_ / "study" / "scores.csv");
+  EXPECT_EQ(std::count(scores.begin(), scores.end(), '\n'), 1 + 3 * 3);
+}
+
+TEST_F(CommandTest, SameSeedSameBytesWhateverTheJobs) {
+  std::map<std::string, std::string> scores;
+  for (const auto& [name, options] : std::map<std::string, std::string>{
+           {"one", "--jobs 1"}, {"two", "--jobs 2"}, {"other", "--jobs 2 --seed 5"}}) {
+    ASSERT_EQ(brief_study(name, "--subjects 4 " + options).status, 0);
+    ASSERT_EQ(run_command("haptrial analyze " + path(name)).status, 0);
+    scores[name] = test::read_text(folder_ / name / "scores.csv");
+  }
+  EXPECT_EQ(scores["one"], scores["two"]);
+  EXPECT_NE(scores["one"], scores["other"]);
+}
+
+TEST_F(CommandTest, FramesAreWritten) {
+  const CommandResult dry = brief_study("study", "--subjects 1 --frames 2");
+  ASSERT_EQ(dry.status, 0) << dry.errors;
+  int pictures = 0;
+  for (const auto& entry : fs::directory_iterator(folder_ / "study" / "frames")) {
+    pictures += entry.path().extension() == ".png" ? 1 : 0;
+  }
+  EXPECT_EQ(pictures, 3 * 2 * 2) << "trials x passes x frames";
+}
+
+TEST_F(CommandTest, ValidateAndDevices) {
+  const CommandResult valid = run_command("haptrial validate " + shipped());
+  EXPECT_EQ(valid.status, 0);
+  EXPECT_THAT(valid.output, HasSubstr("12 participants, 72 trials in 24 blocks of 3"));
+  EXPECT_THAT(run_command("haptrial devices").output, HasSubstr("virtual"));
+}
+
+TEST_F(CommandTest, BadArguments) {
+  expect_bad_input("haptrial", "subcommand");
+  expect_bad_input("haptrial dryrun x.toml", "dryrun");
+  expect_bad_input("haptrial dry-run", "DEFINITION");
+  expect_bad_input("haptrial dry-run " + shipped() + " --subjects 0 --out " + path("o"),
+                   "--subjects is 0; allowed: a whole number from 1");
+  expect_bad_input("haptrial dry-run " + shipped() + " --subjects many --out " + path("o"), "many");
+  expect_bad_input("haptrial dry-run " + shipped() + " --jobs 1000 --out " + path("o"),
+                   "--jobs is 1000; allowed: a whole number from 1 to 256");
+  expect_bad_input("haptrial dry-run " + shipped() + " --seed -1 --out " + path("o"), "--seed");
+  expect_bad_input("haptrial dry-run " + shipped() + " --trials 73 --out " + path("o"),
+                   "--trials is 73");
+  expect_bad_input("haptrial run " + shipped() + " --subject ../../evil1 --out " + path("o"),
+                   "--subject is '../../evil1'; allowed");
+  expect_bad_input("haptrial run " + shipped() + " --subject Anna --out " + path("o"),
+                   "add --participant NUMBER");
+  expect_bad_input("haptrial run " + shipped() + " --subject P1 --device omega --out " + path("o"),
+                   "--device is 'omega'; allowed: virtual");
+}
+
+TEST_F(CommandTest, BadDefinitions) {
+  test::write_text(folder_ / "empty.toml", "");
+  expect_bad_input("haptrial dry-run " + path("empty.toml") + " --out " + path("o"),
+                   "the definition is empty");
+  expect_bad_input("haptrial validate " + path("."), "is a directory");
+  expect_bad_input("haptrial validate " + path("absent.toml"), "no such file");
+  test::write_text(folder_ / "gains.toml", test::shipped_with("stiffness", "stiffness = nan"));
+  expect_bad_input("haptrial dry-run " + path("gains.toml") + " --out " + path("o"),
+                   "hand.stiffness is nan");
+}
+
+TEST_F(CommandTest, BadSessionFiles) {
+  expect_bad_input("haptrial info " + path("absent.h5"), "absent.h5");
+  expect_bad_input("haptrial info " + path("."), folder_.path().string());
+  expect_bad_input("haptrial analyze " + path("."), "holds no session files");
+  expect_bad_input("haptrial analyze " + path("absent"), "no such folder");
+  ASSERT_EQ(brief_study("study", "--subjects 1").status, 0);
+  const std::string whole = test::read_text(folder_ / "study" / "S01.h5");
+  fs::create_directory(folder_ / "cut");
+  test::write_text(folder_ / "cut" / "S01.h5", whole.substr(0, whole.size() / 2));
+  expect_bad_input("haptrial info " + path("cut/S01.h5"), "S01.h5");
+  expect_bad_input("haptrial analyze " + path("cut"), "S01.h5");
+}
+
+TEST_F(CommandTest, NothingIsOverwritten) {
+  ASSERT_EQ(brief_study("study", "--subjects 1").status, 0);
+  const std::string before = test::read_text(folder_ / "study" / "S01.h5");
+  expect_bad_input("haptrial dry-run " + shipped() + " --subjects 1 --out " + path("study"),
+                   "exists and is not an empty folder");
+  EXPECT_EQ(test::read_text(folder_ / "study" / "S01.h5"), before);
+}
+
+TEST_F(CommandTest, AFileInPlaceOfTheFolder) {
+  test::write_text(folder_ / "file", "mine");
+  expect_bad_input("haptrial dry-run " + shipped() + " --out " + path("file"), "file: exists");
+  expect_bad_input("haptrial dry-run " + shipped() + " --out " + path("file/below"),
+                   "the folder cannot be made");
+  EXPECT_EQ(test::read_text(folder_ / "file"), "mine");
+}
+
+TEST_F(CommandTest, MixedStudiesAreRefused) {
+  ASSERT_EQ(brief_study("study", "--subjects 1").status, 0);
+  test::write_text(folder_ / "other.toml", test::shipped_with("range_z", "range_z = 0.05"));
+  ASSERT_EQ(run_command("haptrial dry-run " + path("other.toml") +
+                        " --subjects 2 --trials 3 --out " + path("other"))
+                .status,
+            0);
+  fs::rename(folder_ / "other" / "S02.h5", folder_ / "study" / "S02.h5");
+  expect_bad_input("haptrial analyze " + path("study"), "another definition");
+}
+
+TEST_F(CommandTest, AFullDiskGetsASentenceAndLeavesNothing) {
+  // A limit on the size of files does what a full disk does, and needs no privilege.
+  const CommandResult result = run_command("trap '' XFSZ; ulimit -f 300; haptrial dry-run " +
+                                           shipped() + " --subjects 2 --out " + path("full"));
+  EXPECT_EQ(result.status, 1) << result.output;
+  EXPECT_THAT(result.errors, HasSubstr("haptrial: "));
+  EXPECT_FALSE(fs::exists(folder_ / "full")) << "nothing half-written";
+}
+
+TEST_F(CommandTest, AReadOnlyFolderGetsASentence) {
+  // For root the permission bits say nothing; /proc refuses everybody.
+  expect_bad_input("haptrial dry-run " + shipped() + " --out /proc/study", "/proc/study");
+}
+
+TEST_F(CommandTest, AnInterruptStopsAtOnceAndLeavesNothing) {
+  const CommandResult result =
+      run_command("\"$HAPTRIAL\" dry-run " + shipped() + " --jobs 1 --out " + path("cut") +
+                  " & sleep 0.5; kill -INT $!; wait $!");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.errors, HasSubstr("interrupted"));
+  EXPECT_FALSE(fs::exists(folder_ / "cut"));
+}
+
+}  // namespace
+}  // namespace haptrial
