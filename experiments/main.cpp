@@ -104,6 +104,21 @@ class Commands {
   std::optional<int> jobs_;
 };
 
+/// A mistyped subcommand by its name, rather than as one that is missing.
+void check_subcommand(CLI::App& app, int argc, char** argv) {
+  std::string known;
+  for (const CLI::App* sub : app.get_subcommands([](CLI::App*) { return true; })) {
+    known += (known.empty() ? "" : ", ") + sub->get_name();
+    if (argc > 1 && sub->get_name() == argv[1]) {
+      return;
+    }
+  }
+  if (argc > 1 && argv[1][0] != '-') {
+    throw haptrial::InputError(
+        fmt::format("'{}' is not a subcommand; allowed: {}", argv[1], known));
+  }
+}
+
 int run_command(int argc, char** argv) {
   CLI::App app("Force-feedback experiments: run them, record them, know what they showed.");
   app.name("haptrial");
@@ -113,6 +128,7 @@ int run_command(int argc, char** argv) {
   app.footer("haptrial SUBCOMMAND --help shows an example of each.");
   int status = 0;
   const Commands commands(app, status);
+  check_subcommand(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {

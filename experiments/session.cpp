@@ -308,6 +308,10 @@ void Session::write_timing() {
   if (!summary_.notice.empty()) {
     event("notice", summary_.notice);
   }
+  if (loop_.resynchronised() > 0) {
+    event("notice", fmt::format("the loop was suspended {} times and took up the present time",
+                                loop_.resynchronised()));
+  }
   summary_.ticks = loop_.ticks();
   summary_.overruns = loop_.overruns();
   summary_.dropped = log_.dropped();
