@@ -1,0 +1,270 @@
+#include "core/device/envelope.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <set>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/base/random.h"
+#include "core/base/table.h"
+#include "tests/support/allocation_guard.h"
+
+namespace haptrial::device {
+namespace {
+
+using Eigen::Vector3d;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kDt = 1e-3;
+
+DeviceReading at(const Vector3d& position, const Vector3d& velocity = Vector3d::Zero()) {
+  return {{position, velocity}, 0};
+}
+
+/// Passes on every force at once: no ramp, no limit of its rate.
+EnvelopeLimits open_limits() {
+  EnvelopeLimits limits;
+  limits.ramp_in = 0.0;
+  limits.max_force_rate = 1e6;
+  return limits;
+}
+
+TEST(EnvelopeTest, LetsAGoodForcePassUnchanged) {
+  Envelope envelope(open_limits());
+  EXPECT_EQ(envelope.check(true, at({0.01, 0.0, 0.0})), Fault::kNone);
+  EXPECT_EQ(envelope.limit({1.0, -2.0, 3.0}, kDt), Vector3d(1.0, -2.0, 3.0));
+  EXPECT_EQ(envelope.limit({0.0, 12.0, 0.0}, kDt), Vector3d(0.0, 12.0, 0.0)) << "the limit itself";
+}
+
+/// One way to break the envelope, in an otherwise good tick.
+struct Breach {
+  Fault fault;
+  std::function<void(Envelope&)> commit;
+};
+
+std::vector<Breach> breaches() {
+  const auto reading = [](const DeviceReading& r) {
+    return [r](Envelope& e) { e.check(true, r); };
+  };
+  const auto wanted = [](const Vector3d& f, double dt = kDt) {
+    return [f, dt](Envelope& e) { e.limit(f, dt); };
+  };
+  const auto tripped = [](Fault fault) { return [fault](Envelope& e) { e.trip(fault); }; };
+  return {{Fault::kReadFailed,
+           [](Envelope& e) {
+             e.check(false, at({0, 0, 0}));
+           }},
+          {Fault::kWriteFailed, tripped(Fault::kWriteFailed)},
+          {Fault::kPositionNotFinite, reading(at({kNan, 0, 0}))},
+          {Fault::kPositionNotFinite, reading(at({0, 0, -kInf}))},
+          {Fault::kPositionNotFinite, reading(at({0, 0, 0}, {0, kNan, 0}))},
+          {Fault::kJump, reading(at({0.00501, 0, 0}))},
+          {Fault::kSpeed, reading(at({0, 0, 0}, {0, 0.8, 0.8}))},
+          {Fault::kForceNotFinite, wanted({0, kNan, 0})},
+          {Fault::kForceNotFinite, wanted({kInf, 0, 0})},
+          {Fault::kForceNotFinite, wanted({0, 1, 0}, kNan)},
+          {Fault::kForceNotFinite, wanted({0, 1, 0}, 0.0)},
+          {Fault::kForceTooLarge, wanted({0, 12.001, 0})},
+          {Fault::kForceTooLarge, wanted({7.5, 7.5, 7.5})},
+          {Fault::kForceTooLarge, wanted({1e300, 1e300, 0})},
+          {Fault::kEmergencyStop, tripped(Fault::kEmergencyStop)}};
+}
+
+TEST(EnvelopeTest, EveryBreachBringsTheForceToZeroInTheSameTickAndLatches) {
+  for (const Breach& breach : breaches()) {
+    Envelope envelope(open_limits());
+    envelope.check(true, at({0, 0, 0}));
+    ASSERT_EQ(envelope.limit({0, 5, 0}, kDt), Vector3d(0, 5, 0));
+    breach.commit(envelope);
+    EXPECT_EQ(envelope.fault(), breach.fault) << describe(breach.fault);
+    EXPECT_TRUE(envelope.limit({0, 5, 0}, kDt).isZero(0.0)) << describe(breach.fault);
+    for (int i = 0; i < 100; ++i) {  // good ticks do not mend it
+      EXPECT_EQ(envelope.check(true, at({0, 0, 0})), breach.fault);
+      EXPECT_TRUE(envelope.limit({0, 1, 0}, kDt).isZero(0.0));
+    }
+    envelope.reset();
+    EXPECT_EQ(envelope.check(true, at({0.03, 0, 0})), Fault::kNone) << "no jump after a reset";
+    EXPECT_EQ(envelope.limit({0, 5, 0}, kDt), Vector3d(0, 5, 0));
+  }
+}
+
+TEST(EnvelopeTest, TheWorkspaceIsABall) {
+  Envelope inside(open_limits());
+  EXPECT_EQ(inside.check(true, at({0.045, 0.06, 0.0})), Fault::kNone)
+      << "its surface belongs to it";
+  Envelope outside(open_limits());
+  EXPECT_EQ(outside.check(true, at({0.046, 0.06, 0.0})), Fault::kWorkspace);
+  EXPECT_TRUE(outside.limit({1, 0, 0}, kDt).isZero(0.0));
+}
+
+TEST(EnvelopeTest, MotionUpToTheLimitsIsNoFault) {
+  EnvelopeLimits limits = open_limits();
+  limits.max_jump = 0.0078125;  // exact in binary
+  Envelope envelope(limits);
+  for (int i = -4; i <= 4; ++i) {
+    EXPECT_EQ(envelope.check(true, at({i * 0.0078125, 0, 0}, {0.6, 0.8, 0})), Fault::kNone);
+  }
+}
+
+TEST(EnvelopeTest, TheFirstFaultIsKept) {
+  for (const Breach& first : breaches()) {
+    for (const Breach& second : breaches()) {
+      Envelope envelope(open_limits());
+      envelope.check(true, at({0, 0, 0}));
+      first.commit(envelope);
+      second.commit(envelope);
+      EXPECT_EQ(envelope.fault(), first.fault) << describe(second.fault);
+    }
+  }
+}
+
+TEST(EnvelopeTest, ForceRampsInAfterAStartAndAfterAReset) {
+  EnvelopeLimits limits = open_limits();
+  limits.ramp_in = 0.2;
+  Envelope envelope(limits);
+  for (int round = 0; round < 2; ++round) {
+    for (int tick = 1; tick <= 300; ++tick) {
+      const Vector3d force = envelope.limit({0, 8, -6}, kDt);
+      const double share = std::min(1.0, tick * kDt / 0.2);
+      ASSERT_LT((force - share * Vector3d(0, 8, -6)).norm(), 1e-9) << tick;
+    }
+    envelope.reset();
+  }
+}
+
+TEST(EnvelopeTest, AStepOfForceIsSpreadAtTheLimitedRate) {
+  EnvelopeLimits limits = open_limits();
+  limits.max_force_rate = 1000.0;  // 1 N a tick
+  Envelope envelope(limits);
+  for (int tick = 1; tick <= 15; ++tick) {
+    EXPECT_NEAR(envelope.limit({0, 0, 10}, kDt).z(), std::min(10, tick), 1e-12);
+  }
+  EXPECT_NEAR(envelope.limit({0, 0, -10}, kDt).z(), 9.0, 1e-12) << "down as well";
+}
+
+/// Anything that a protocol or a device may come up with, mostly good.
+Vector3d any_vector(RandomStream& random, double usual) {
+  Vector3d v{random.uniform(-usual, usual), random.uniform(-usual, usual),
+             random.uniform(-usual, usual)};
+  const double bad[] = {kNan, kInf, -kInf, 1e300, -1e30, 1e-320};
+  if (random.below(200) == 0) {
+    v[static_cast<int>(random.below(3))] = bad[random.below(6)];
+  }
+  return v;
+}
+
+TEST(EnvelopeTest, HoldsItsPromiseOverTwoMillionRandomTicks) {
+  constexpr EnvelopeLimits kLimits;
+  Envelope envelope(kLimits);
+  RandomStream random(1, "envelope");
+  Vector3d before = Vector3d::Zero();
+  Vector3d position = Vector3d::Zero();
+  std::set<Fault> seen;
+  Fault latched = Fault::kNone;
+  std::uint64_t forces = 0;
+  for (int tick = 0; tick < 2000000; ++tick) {
+    position = 0.999 * (position + any_vector(random, 0.002));
+    if (!position.allFinite() || random.below(5000) == 0) {
+      position = any_vector(random, 0.04);
+    }
+    const bool read_ok = random.below(1000) != 0;
+    envelope.check(read_ok, at(position, any_vector(random, 0.58)));
+    if (random.below(2000) == 0) {
+      envelope.trip(random.below(2) ? Fault::kWriteFailed : Fault::kEmergencyStop);
+    }
+    const double dt = random.below(2000) == 0 ? any_vector(random, 1e-3).x() : kDt;
+    const Vector3d force = envelope.limit(any_vector(random, 7.1), dt);
+    const Fault fault = envelope.fault();
+
+    ASSERT_TRUE(force.allFinite()) << tick;
+    ASSERT_LE(force.norm(), kLimits.max_force * (1.0 + 1e-12)) << tick;
+    if (fault != Fault::kNone) {
+      ASSERT_TRUE(force.isZero(0.0)) << tick << ": " << describe(fault);
+    } else {
+      ASSERT_LE((force - before).norm(), kLimits.max_force_rate * dt * (1.0 + 1e-9)) << tick;
+      forces += !force.isZero(0.0);
+    }
+    ASSERT_TRUE(latched == Fault::kNone || latched == fault) << tick << ": a fault was replaced";
+    seen.insert(fault);
+    latched = fault;
+    before = force;
+    if (fault != Fault::kNone && random.below(10) == 0) {
+      envelope.reset();
+      latched = Fault::kNone;
+    }
+  }
+  EXPECT_EQ(seen.size(), 10u) << "every fault came up";
+  EXPECT_GT(forces, 500000u) << "and much of the time there was none";
+}
+
+TEST(EnvelopeTest, ATickDoesNotAllocate) {
+  Envelope envelope({});
+  const test::AllocationGuard guard;
+  for (int tick = 0; tick < 1000; ++tick) {
+    envelope.check(tick != 500, at({1e-5 * tick, 0, 0}));
+    envelope.limit({0, 3, 0}, kDt);
+  }
+  envelope.reset();
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+TEST(EnvelopeTest, EveryFaultHasItsOwnWords) {
+  std::set<std::string> words;
+  for (int fault = 0; fault <= static_cast<int>(Fault::kEmergencyStop); ++fault) {
+    const std::string text = describe(static_cast<Fault>(fault));
+    EXPECT_FALSE(text.empty());
+    EXPECT_NE(text, "unknown fault") << fault;
+    words.insert(text);
+  }
+  EXPECT_EQ(words.size(), 10u);
+}
+
+TEST(EnvelopeTest, LimitsOutOfBoundsAreRefused) {
+  const auto refused = [](double EnvelopeLimits::*limit, double value) {
+    EnvelopeLimits limits;
+    limits.*limit = value;
+    EXPECT_THROW(Envelope{limits}, std::invalid_argument) << value;
+  };
+  for (const double bad : {0.0, -1.0, kNan}) {
+    refused(&EnvelopeLimits::max_force, bad);
+    refused(&EnvelopeLimits::max_force_rate, bad);
+    refused(&EnvelopeLimits::workspace_radius, bad);
+    refused(&EnvelopeLimits::max_speed, bad);
+    refused(&EnvelopeLimits::max_jump, bad);
+  }
+  refused(&EnvelopeLimits::ramp_in, -0.1);
+  refused(&EnvelopeLimits::ramp_in, kNan);
+}
+
+TEST(EnvelopeTest, LimitsAreReadWithTheirBounds) {
+  Table good = Table::parse(
+      "max_force = 8.0\nmax_force_rate = 100.0\nworkspace_radius = 0.05\nmax_speed = 0.5\n"
+      "max_jump = 0.001\nramp_in = 0.0\n",
+      "f.toml");
+  const EnvelopeLimits limits = read_envelope_limits(good);
+  EXPECT_NO_THROW(good.finish());
+  EXPECT_NO_THROW(Envelope{limits});
+  EXPECT_EQ(limits.max_force, 8.0);
+  EXPECT_EQ(limits.max_jump, 0.001);
+  Table bad = Table::parse(
+      "max_force = 0.0\nmax_force_rate = 0.0\nworkspace_radius = 0.0\nmax_speed = 0.0\n"
+      "max_jump = 0.0\nramp_in = -1.0\n",
+      "f.toml");
+  read_envelope_limits(bad);
+  try {
+    bad.finish();
+    FAIL();
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    EXPECT_EQ(std::count(what.begin(), what.end(), '\n'), 5) << what;
+  }
+}
+
+}  // namespace
+}  // namespace haptrial::device
