@@ -23,13 +23,12 @@ struct Directions {
 /// The arrays over columns may be read, and the boundary written, for as many columns before the
 /// first and after the last as a strip has rows.
 struct Task {
-  const float* target_force;  // (strips x vectors x lanes)
-  const float* target_slope;  // likewise
-  const float*
-      applied_force;  // (columns x stride); infinite before the first, finite after the last
+  const float* target_force;   // (strips x vectors x lanes)
+  const float* target_slope;   // likewise
+  const float* applied_force;  // (columns x stride); infinite before them, finite after
   const float* applied_slope;  // likewise
-  float* boundary;         // (columns x stride); D of the row above; 0 at column -1, else infinite
-  Directions* directions;  // (strips x (columns + rows of a strip - 1) x vectors)
+  float* boundary;             // (columns x stride); D above row 0: 0 at column -1, else infinite
+  Directions* directions;      // (strips x (columns + rows of a strip - 1) x vectors)
   std::size_t strips;
   std::size_t columns;
   float penalty;
