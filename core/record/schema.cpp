@@ -49,7 +49,7 @@ constexpr std::array kSamples{
     f32("applied_force", "N", "normal force of the participant, downward positive",
         kForceResolution),
     f32("target_force", "N", "normal force to apply", kForceResolution),
-    u8("saturated", "1 where the envelope limited the force"),
+    u8("saturated", "1 where the force limit was reached"),
 };
 
 constexpr std::array kTrials{

@@ -21,7 +21,7 @@ struct Sample {
   double target_force{0.0};   // [N]
   std::int32_t pass{-1};      // row of /trials; -1 between passes
   Stage stage{Stage::kIdle};
-  bool saturated{false};  // the envelope limited the force
+  bool saturated{false};  // the force limit was reached
 };
 
 enum class Phase : std::uint8_t { kTraining, kTest };
