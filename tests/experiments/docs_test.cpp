@@ -1,0 +1,104 @@
+// Every command that a document shows is run, in the order in which the document shows it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <regex>
+#include <sstream>
+
+#include "tests/experiments/command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kSource = HAPTRIAL_SOURCE_DIR;
+
+std::vector<fs::path> documents() {
+  std::vector<fs::path> files{kSource / "README.md"};
+  for (const auto& entry : fs::recursive_directory_iterator(kSource / "docs")) {
+    if (entry.path().extension() == ".md") {
+      files.push_back(entry.path());
+    }
+  }
+  return files;
+}
+
+/// The lines of every block marked as shell. The two scripts of the first screen are left out: one
+/// of them runs this test, and the other builds.
+std::string shell_blocks(const fs::path& document) {
+  std::istringstream text(test::read_text(document));
+  std::string blocks;
+  bool inside = false;
+  for (std::string line; std::getline(text, line);) {
+    const auto start = line.find_first_not_of(' ');
+    const std::string content = start == std::string::npos ? "" : line.substr(start);
+    if (content.starts_with("```")) {
+      inside = !inside && content == "```sh";
+    } else if (inside && !content.starts_with("./")) {
+      blocks += content + "\n";
+    }
+  }
+  return blocks;
+}
+
+TEST(DocsTest, EveryCommandShownWorks) {
+  int commands = 0;
+  for (const fs::path& document : documents()) {
+    const std::string blocks = shell_blocks(document);
+    if (blocks.empty()) {
+      continue;
+    }
+    const test::TemporaryFolder checkout;  // looks like a checkout, and may be written to
+    fs::create_directory_symlink(HAPTRIAL_BINARY_DIR, checkout / "build");
+    fs::create_directory_symlink(kSource / "experiments", checkout / "experiments");
+    const test::CommandResult result =
+        test::run_command("set -e; cd '" + checkout.path().string() + "'\n" + blocks);
+    EXPECT_EQ(result.status, 0) << document << "\n" << result.output << result.errors;
+    commands += static_cast<int>(std::count(blocks.begin(), blocks.end(), '\n'));
+  }
+  EXPECT_GE(commands, 8) << "the documents lost their commands";
+}
+
+TEST(DocsTest, EveryLinkLeadsSomewhere) {
+  const std::regex link("\\]\\(([^)# ]+)(#[^)]*)?\\)");
+  int links = 0;
+  for (const fs::path& document : documents()) {
+    const std::string text = test::read_text(document);
+    for (std::sregex_iterator it(text.begin(), text.end(), link), end; it != end; ++it) {
+      const std::string target = (*it)[1];
+      if (target.find("://") == std::string::npos) {
+        EXPECT_TRUE(fs::exists(document.parent_path() / target)) << document << ": " << target;
+        ++links;
+      }
+    }
+  }
+  EXPECT_GE(links, 20);
+}
+
+TEST(DocsTest, NamedTestsExist) {
+  // A page that says which test shows something has to name one that is there.
+  std::string tests;
+  for (const auto& entry : fs::recursive_directory_iterator(kSource / "tests")) {
+    if (entry.path().extension() == ".cpp") {
+      tests += test::read_text(entry.path());
+    }
+  }
+  const std::regex named("`([A-Z][A-Za-z]*Test)(\\.([A-Za-z0-9]+))?`");
+  for (const fs::path& document : documents()) {
+    const std::string text = test::read_text(document);
+    for (std::sregex_iterator it(text.begin(), text.end(), named), end; it != end; ++it) {
+      const std::string suite = (*it)[1];
+      const std::string name = (*it)[3];
+      const std::regex definition("TEST(_F|_P)?\\(" + suite + ",\\s*" + (name.empty() ? "" : name));
+      EXPECT_TRUE(std::regex_search(tests, definition)) << document << ": " << (*it)[0];
+    }
+  }
+}
+
+}  // namespace
+}  // namespace haptrial
