@@ -55,15 +55,18 @@ bool SessionTask::tick(const realtime::Tick& tick) noexcept {
 }
 
 void SessionTask::take_requests(std::uint64_t sequence) noexcept {
-  if (stop_asked_.load(std::memory_order_acquire)) {
-    stop_asked_.store(false, std::memory_order_relaxed);
-    envelope_.trip(device::Fault::kEmergencyStop);
-  }
+  // Looked at in the reverse of the order in which the session's thread asks: who sees the pass
+  // sees the clearing that came before it. The stop is last, so that no clearing wipes it out.
+  Pass* const asked = asked_.load(std::memory_order_acquire);
   if (clear_asked_.load(std::memory_order_acquire)) {
     clear_asked_.store(false, std::memory_order_relaxed);
     envelope_.reset();
   }
-  if (Pass* asked = asked_.load(std::memory_order_acquire)) {
+  if (stop_asked_.load(std::memory_order_acquire)) {
+    stop_asked_.store(false, std::memory_order_relaxed);
+    envelope_.trip(device::Fault::kEmergencyStop);
+  }
+  if (asked != nullptr) {
     asked_.store(nullptr, std::memory_order_relaxed);
     pass_ = asked;
     row_ = asked_row_.load(std::memory_order_relaxed);
