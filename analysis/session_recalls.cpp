@@ -138,6 +138,10 @@ class Extraction {
       exclude(pass.trial, "the trial was repeated later");
       return;
     }
+    if (!was_trained(pass.trial)) {
+      exclude(pass.trial, "its training pass was aborted");
+      return;
+    }
     const auto curves = samples ? recall_curves(*samples, reader_.info().rate)
                                 : Defined<RecallCurves>(Undefined{samples.because()});
     if (!curves) {
@@ -146,6 +150,20 @@ class Extraction {
     }
     result_.scored.push_back({trial_of(pass), i});
     curves_.push_back(*curves);
+  }
+
+  // A definition may test without training; a training that was broken off is something else.
+  bool was_trained(std::int32_t trial) const {
+    bool tried = false;
+    for (const auto& pass : passes_) {
+      if (pass.trial == trial && pass.phase == Phase::kTraining) {
+        if (pass.status == PassStatus::kCompleted) {
+          return true;
+        }
+        tried = true;
+      }
+    }
+    return !tried;
   }
 
   void track(const PassRow& pass, const std::vector<Sample>& samples) {

@@ -30,7 +30,8 @@ struct SessionRecalls {
 };
 
 /// Reads one session file pass by pass and scores its completed test passes.
-/// Of several completed test passes of one trial the last counts.
+/// Of several completed test passes of one trial the last counts; a test after a training pass that
+/// was only ever aborted does not.
 /// @throws InputError when the file cannot be read or its parts contradict each other.
 SessionRecalls session_recalls(const record::SessionReader& reader,
                                const ScoreParameters& parameters, int jobs);

@@ -171,21 +171,24 @@ TEST_F(Study, SaysWhichTrialsHaveNoScoreAndWhy) {
   auto session = perfect();
   session.aborted_trial = 4;
   session.untested_trial = 2;
+  session.untrained_trial = 9;
   session.applied = [](const std::string&, int trial, double, double target) {
     return trial == 8 ? std::nan("") : target;
   };
   add(session);
   const auto study = analyze_study(files_, {}, 1);
-  EXPECT_EQ(study.scores.size(), 6u);
+  EXPECT_EQ(study.scores.size(), 5u);
   EXPECT_EQ(study.sessions[0].test_passes, 8u);
-  EXPECT_EQ(study.sessions[0].scored, 6u);
-  ASSERT_EQ(study.exclusions.size(), 3u);
+  EXPECT_EQ(study.sessions[0].scored, 5u);
+  ASSERT_EQ(study.exclusions.size(), 4u);
   EXPECT_EQ(study.exclusions[0].trial, 2);
   EXPECT_THAT(study.exclusions[0].reason, HasSubstr("no test pass"));
   EXPECT_EQ(study.exclusions[1].trial, 4);
   EXPECT_THAT(study.exclusions[1].reason, HasSubstr("aborted"));
   EXPECT_EQ(study.exclusions[2].trial, 8);
   EXPECT_THAT(study.exclusions[2].reason, HasSubstr("not a finite number"));
+  EXPECT_EQ(study.exclusions[3].trial, 9);
+  EXPECT_THAT(study.exclusions[3].reason, HasSubstr("its training pass was aborted"));
 }
 
 TEST_F(Study, ALostTickCostsItsTrialAndNoOther) {

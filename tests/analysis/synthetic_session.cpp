@@ -70,7 +70,11 @@ class Writer {
     const int trial = (block - 1) * session_.repetitions + repetition;
     const record::PassRow row{trial, kConditions[(block - 1) % 3], Phase::kTraining, block,
                               repetition};
-    add_pass(row, 1.0);
+    record::PassRow training = row;
+    if (trial == session_.untrained_trial) {
+      training.status = record::PassStatus::kAborted;
+    }
+    add_pass(training, 1.0);
     if (trial == session_.untested_trial) {
       return;
     }

@@ -21,7 +21,8 @@ struct SyntheticSession {
   double lag{0.0};                                  // of the hand behind the path [s]
   Eigen::Vector3d offset{Eigen::Vector3d::Zero()};  // of the hand from the path [m]
   int aborted_trial{0};                             // its test pass is aborted; 0 for none
-  int untested_trial{0};                            // has no test pass
+  int untrained_trial{0};          // its training pass is aborted, its test pass is not
+  int untested_trial{0};           // has no test pass
   int damaged_trial{0};            // a tick of its test pass never reached the file
   bool stimulus_backwards{false};  // the rows of /stimuli are in the wrong order
   bool finished{true};             // else the session was killed after its last pass
