@@ -84,7 +84,7 @@ class SessionTaskTest : public ::testing::Test {
       tick();
     }
   }
-  std::vector<record::Sample> samples() {
+  const std::vector<record::Sample>& samples() {
     log_.flush([&](auto rows) { samples_.insert(samples_.end(), rows.begin(), rows.end()); });
     return samples_;
   }
