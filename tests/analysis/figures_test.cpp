@@ -141,5 +141,19 @@ TEST_F(Figures, SayThatGnuplotFailed) {
   ::setenv("PATH", path.c_str(), 1);
 }
 
+TEST_F(Figures, SayThatAPictureIsCutShort) {
+  const std::string path = std::getenv("PATH");
+  std::ofstream(folder_ / "gnuplot") << "#!/bin/sh\nprintf '<svg>' > simple.svg\n";
+  fs::permissions(folder_ / "gnuplot", fs::perms::owner_all);
+  ::setenv("PATH", (folder_.string() + ":" + path).c_str(), 1);
+  try {
+    draw_figures({simple()}, folder_);
+    ADD_FAILURE() << "took half a picture";
+  } catch (const RunError& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("simple.svg"), HasSubstr("disk full")));
+  }
+  ::setenv("PATH", path.c_str(), 1);
+}
+
 }  // namespace
 }  // namespace haptrial::analysis
