@@ -62,5 +62,6 @@ function(haptrial_tests)
       gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
     endif()
   endforeach()
+  target_link_libraries(test_experiments PRIVATE nlohmann_json::nlohmann_json)
   add_dependencies(test_experiments haptrial)  # its tests run the command
 endfunction()

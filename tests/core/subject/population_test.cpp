@@ -10,21 +10,20 @@
 namespace haptrial::subject {
 namespace {
 
-constexpr const char* kKeys[] = {
-    "visual_weber",     "haptic_weber",       "visual_memory_noise", "haptic_memory_noise",
-    "haptic_bias",      "bar_misjudgement",   "calibration_loss",    "forgetting",
-    "memory_correlation", "production_bias",  "timing_error",        "timing_correlation",
-    "visual_delay",     "haptic_delay",       "force_noise",         "force_noise_time",
-    "tremor",           "tremor_frequency"};
+constexpr const char* kKeys[] = {"visual_weber",        "haptic_weber", "visual_memory_noise",
+                                 "haptic_memory_noise", "haptic_bias",  "bar_misjudgement",
+                                 "calibration_loss",    "forgetting",   "memory_correlation",
+                                 "production_bias",     "timing_error", "timing_correlation",
+                                 "visual_delay",        "haptic_delay", "force_noise",
+                                 "force_noise_time",    "tremor",       "tremor_frequency"};
 
 std::string definition(double median, double spread, const std::string& replaced_key = "",
                        const std::string& replacement = "") {
   std::string text;
   for (const char* key : kKeys) {
-    text += key == replaced_key
-                ? replacement + "\n"
-                : std::string(key) + " = { median = " + std::to_string(median) +
-                      ", spread = " + std::to_string(spread) + " }\n";
+    text += key == replaced_key ? replacement + "\n"
+                                : std::string(key) + " = { median = " + std::to_string(median) +
+                                      ", spread = " + std::to_string(spread) + " }\n";
   }
   return text;
 }

@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# Runs a shipped study anew and keeps what it gave: results/STUDY with report, tables, figures and a
+# manifest that says how. Session files stay out. Needs a build (quickstart.sh makes one).
+#   results/regenerate.sh force_training [SEED]
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+study=${1:?which study? a definition in experiments/, without .toml}
+seed=${2:-1}
+definition=experiments/$study.toml
+cd "$root"
+[ -f "$definition" ] || { echo "regenerate.sh: no $definition" >&2; exit 2; }
+
+out=$(mktemp -d)/sessions
+trap 'rm -rf "$(dirname "$out")"' EXIT
+build/haptrial dry-run "$definition" --seed "$seed" --out "$out"
+build/haptrial analyze "$out"
+
+sum() { sha256sum "$1" | cut -d' ' -f1; }
+rm -rf "results/$study"
+mkdir -p "results/$study"
+cp "$out"/report.html "$out"/scores.csv "$out"/statistics.json "$out"/*.svg "results/$study/"
+cat >"results/$study/manifest.json" <<EOF
+{
+  "study": "$study",
+  "simulated": true,
+  "commands": [
+    "haptrial dry-run $definition --seed $seed --out OUT",
+    "haptrial analyze OUT"
+  ],
+  "definition_sha256": "$(sum "$definition")",
+  "seed": $seed,
+  "program": "$(build/haptrial --version)",
+  "scores_sha256": "$(sum "results/$study/scores.csv")"
+}
+EOF
