@@ -34,7 +34,7 @@ int analyze(const std::string& folder, std::optional<int> jobs) {
   for (const std::string& line : analysis::summary_lines(study)) {
     fmt::print("{}\n", line);
   }
-  fmt::print("report: {}\n", (fs::path(folder) / "report.html").string());
+  fmt::print("report: {}\n", (fs::absolute(folder) / "report.html").lexically_normal().string());
   return 0;
 }
 

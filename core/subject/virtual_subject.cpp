@@ -133,10 +133,12 @@ double VirtualSubject::match_bars(double dt) noexcept {
   // faster than this, a delay of 0.2 s would make the hand oscillate.
   constexpr double kCorrectionTime = 0.5;  // [s]
   constexpr double kSlopeSpan = 0.1;       // over which the bar's speed is seen [s]
+  constexpr double kFurthest = 3.0;        // nobody expects a bar to grow on without end [N]
   const Sensed& seen = delayed(person_.visual_delay);
   const Sensed& before = delayed(person_.visual_delay + kSlopeSpan);
   const double lead = person_.visual_delay + muscle_lag_ + 0.5 * kSlopeSpan;
-  const double ahead = seen.height + lead * (seen.height - before.height) / kSlopeSpan;
+  const double rise = lead * (seen.height - before.height) / kSlopeSpan;
+  const double ahead = seen.height + std::clamp(rise, -kFurthest, kFurthest);
   const double gain = bar_.gain();
   if (boldness_ == 1.0) {  // what is held back on purpose is no error
     correction_ += gain * seen.mismatch * dt / kCorrectionTime;
