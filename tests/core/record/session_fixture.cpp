@@ -1,10 +1,7 @@
 #include "tests/core/record/session_fixture.h"
 
-#include <unistd.h>
-
 #include <cmath>
 #include <cstring>
-#include <stdexcept>
 
 #include "core/base/random.h"
 
@@ -12,17 +9,6 @@ namespace haptrial::test {
 
 using record::Sample;
 using record::Stage;
-
-TemporaryFolder::TemporaryFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "haptrial-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("mkdtemp failed");
-  path_ = pattern;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
 
 record::SessionInfo example_info() {
   record::SessionInfo info;

@@ -1,26 +1,11 @@
 #pragma once
 
-#include <filesystem>
-#include <string>
 #include <vector>
 
 #include "core/record/session_types.h"
+#include "tests/support/temporary_folder.h"
 
 namespace haptrial::test {
-
-/// A directory of its own, removed at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 record::SessionInfo example_info();
 
