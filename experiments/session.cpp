@@ -220,7 +220,10 @@ void Session::drive_until_idle() {
     drain();
     if (asked_to_stop()) {
       task_.emergency_stop();
-      throw RunError("interrupted");
+      throw RunError(request_.clock == ClockKind::kReal
+                         ? fmt::format("interrupted; what was recorded is in {}.partial",
+                                       request_.file.string())
+                         : "interrupted");
     }
   }
 }

@@ -102,6 +102,16 @@ TEST_F(CommandTest, ValidateAndDevices) {
   EXPECT_THAT(run_command("haptrial devices").output, HasSubstr("virtual"));
 }
 
+TEST_F(CommandTest, BashCompletesSubcommandsAndOptions) {
+  const std::string source = "source '" HAPTRIAL_SOURCE_DIR "/experiments/completion.bash'\n";
+  const CommandResult names =
+      run_command(source + "COMP_WORDS=(haptrial d) COMP_CWORD=1; _haptrial; echo ${COMPREPLY[@]}");
+  EXPECT_EQ(names.output, "dry-run devices\n");
+  const CommandResult options = run_command(
+      source + "COMP_WORDS=(haptrial dry-run --se) COMP_CWORD=2; _haptrial; echo ${COMPREPLY[@]}");
+  EXPECT_EQ(options.output, "--seed\n");
+}
+
 TEST_F(CommandTest, BadArguments) {
   expect_bad_input("haptrial", "subcommand");
   expect_bad_input("haptrial dryrun x.toml", "dryrun");
