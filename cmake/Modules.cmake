@@ -40,7 +40,6 @@ endfunction()
 
 # tests/FOLDER/*.cpp becomes test_NAME for every module.
 function(haptrial_tests)
-  enable_testing()
   include(GoogleTest)
   find_package(GTest REQUIRED)
   file(GLOB support CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/support/*.cpp)
@@ -59,7 +58,11 @@ function(haptrial_tests)
         LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc,--wrap=posix_memalign)
       target_compile_definitions(test_${name} PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}"
                                                       HAPTRIAL_BINARY_DIR="${CMAKE_BINARY_DIR}")
-      gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+      set(alone "")
+      if(name STREQUAL realtime)
+        set(alone RUN_SERIAL TRUE)  # these measure time
+      endif()
+      gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 ${alone})
     endif()
   endforeach()
   target_link_libraries(test_experiments PRIVATE nlohmann_json::nlohmann_json)
