@@ -13,10 +13,14 @@ void note() {
   }
 }
 
+void* taken(std::size_t size, std::size_t alignment) noexcept {
+  return alignment <= alignof(std::max_align_t)
+             ? std::malloc(size ? size : 1)
+             : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+}
+
 void* counted(std::size_t size, std::size_t alignment) {
-  void* p = alignment <= alignof(std::max_align_t)
-                ? std::malloc(size ? size : 1)
-                : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+  void* p = taken(size, alignment);
   if (p == nullptr) {
     throw std::bad_alloc();
   }
@@ -50,6 +54,16 @@ void* operator new(std::size_t size, std::align_val_t a) {
 void* operator new[](std::size_t size, std::align_val_t a) {
   return counted(size, static_cast<std::size_t>(a));
 }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return taken(size, 1); }
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return taken(size, 1); }
+void* operator new(std::size_t size, std::align_val_t a, const std::nothrow_t&) noexcept {
+  return taken(size, static_cast<std::size_t>(a));
+}
+void* operator new[](std::size_t size, std::align_val_t a, const std::nothrow_t&) noexcept {
+  return taken(size, static_cast<std::size_t>(a));
+}
+void operator delete(void* p, const std::nothrow_t&) noexcept { std::free(p); }
+void operator delete[](void* p, const std::nothrow_t&) noexcept { std::free(p); }
 void operator delete(void* p) noexcept { std::free(p); }
 void operator delete[](void* p) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t) noexcept { std::free(p); }
