@@ -20,6 +20,7 @@ struct DeviceInfo {
 struct DeviceReading {
   PointState tool;           // tool tip
   std::uint32_t buttons{0};  // bit i: button i is pressed
+  bool forces_on{true};      // false: the device has switched its motors off
 };
 
 /// An impedance device: the position is read, the force is commanded.
@@ -34,6 +35,9 @@ class Device {
   /// @param force  on the tool tip, in W [N].
   /// @returns false when the device refused it.
   virtual bool write(const Eigen::Vector3d& force) noexcept = 0;
+  /// Why the last read or write failed or the motors went off, in a sentence; "" where all is well.
+  /// A text of static duration. Servo thread.
+  virtual const char* trouble() const noexcept { return ""; }
 };
 
 }  // namespace haptrial::device
