@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "core/base/error.h"
+#include "core/render/gl_program.h"
 #include "core/render/painter_shader.h"
 
 namespace haptrial::render {
@@ -17,7 +17,6 @@ constexpr int kCorners = 4;
 constexpr int kAttributes = 3;  // place, form, colour
 constexpr int kFloatsPerAttribute = 4;
 constexpr double kEdge = 1.0;  // pixels beyond a shape that it covers in part
-constexpr int kLogSize = 1024;
 constexpr Colour kWhite{1.0, 1.0, 1.0};
 
 std::array<float, 4> floats(double a, double b, double c, double d) {
@@ -27,21 +26,6 @@ std::array<float, 4> floats(double a, double b, double c, double d) {
 
 std::array<float, 4> floats(const Colour& colour) {
   return floats(colour.red, colour.green, colour.blue, colour.alpha);
-}
-
-Gl::Name compiled(const Gl& gl, Gl::Enum type, const char* text) {
-  const Gl::Name shader = gl.create_shader(type);
-  gl.shader_source(shader, 1, &text, nullptr);
-  gl.compile_shader(shader);
-  int good = GL_FALSE;
-  gl.get_shaderiv(shader, GL_COMPILE_STATUS, &good);
-  if (good != GL_TRUE) {
-    std::array<char, kLogSize> log{};
-    gl.get_shader_info_log(shader, kLogSize, nullptr, log.data());
-    gl.delete_shader(shader);
-    throw RunError(fmt::format("the painter's shader does not compile: {}", log.data()));
-  }
-  return shader;
 }
 
 }  // namespace
@@ -61,21 +45,7 @@ Painter::~Painter() {
 }
 
 void Painter::build_program() {
-  const Gl::Name vertex = compiled(gl_, GL_VERTEX_SHADER, kVertexShader);
-  const Gl::Name fragment = compiled(gl_, GL_FRAGMENT_SHADER, kFragmentShader);
-  program_ = gl_.create_program();
-  gl_.attach_shader(program_, vertex);
-  gl_.attach_shader(program_, fragment);
-  gl_.link_program(program_);
-  gl_.delete_shader(vertex);  // kept by OpenGL until the program goes
-  gl_.delete_shader(fragment);
-  int good = GL_FALSE;
-  gl_.get_programiv(program_, GL_LINK_STATUS, &good);
-  if (good != GL_TRUE) {
-    std::array<char, kLogSize> log{};
-    gl_.get_program_info_log(program_, kLogSize, nullptr, log.data());
-    throw RunError(fmt::format("the painter's shaders do not link: {}", log.data()));
-  }
+  program_ = render::build_program(gl_, "the painter", kVertexShader, kFragmentShader);
   gl_.use_program(program_);
   gl_.uniform2f(gl_.get_uniform_location(program_, "screen"), static_cast<float>(width_),
                 static_cast<float>(height_));
@@ -117,6 +87,13 @@ void Painter::build_mask() {
 }
 
 void Painter::begin(const Colour& background) {
+  begin_over();
+  const std::array<float, 4> colour = floats(background);
+  gl_.clear_color(colour[0], colour[1], colour[2], colour[3]);
+  gl_.clear(GL_COLOR_BUFFER_BIT);
+}
+
+void Painter::begin_over() {
   int target = 0;
   gl_.get_integerv(GL_FRAMEBUFFER_BINDING, &target);
   target_framebuffer_ = static_cast<Gl::Name>(target);
@@ -133,9 +110,6 @@ void Painter::begin(const Colour& background) {
   gl_.bind_buffer(GL_ARRAY_BUFFER, shape_buffer_);
   gl_.active_texture(GL_TEXTURE0);
   gl_.bind_texture(GL_TEXTURE_2D, mask_texture_);
-  const std::array<float, 4> colour = floats(background);
-  gl_.clear_color(colour[0], colour[1], colour[2], colour[3]);
-  gl_.clear(GL_COLOR_BUFFER_BIT);
   shapes_.clear();
 }
 

@@ -30,6 +30,8 @@ class Painter {
 
   /// Fills the bound framebuffer with `background`.
   void begin(const Colour& background);
+  /// Leaves the framebuffer as it is: what follows goes over it.
+  void begin_over();
   /// Hands the last shapes to OpenGL.
   void end();
 
