@@ -109,21 +109,30 @@ PassOutput TrajectoryPass::output(const PointState& tool, const PointState& targ
   out.saturated = wanted.norm() > parameters_.force_limit;
   out.applied_force = out.force.y();
 
-  stimulus::Presentation& seen = out.presentation;
-  seen.tool = tool.position;
+  out.presentation = presentation(
+      {tool.position, stage_, time_, out.target_force, out.applied_force, out.saturated});
+  return out;
+}
+
+stimulus::Presentation TrajectoryPass::presentation(const PassMoment& moment) const noexcept {
+  stimulus::Presentation seen;
+  seen.tool = moment.tool;
+  if (moment.stage == Stage::kIdle) {
+    return seen;
+  }
   seen.show_trajectory = true;
-  seen.show_saturation = out.saturated;
-  seen.target_force = out.target_force;
-  seen.applied_force = out.applied_force;
+  seen.show_saturation = moment.saturated;
+  seen.target_force = moment.target_force;
+  seen.applied_force = moment.applied_force;
   seen.pass_duration = stimulus_.path.duration();
   seen.block = block_;
-  if (runs) {
-    seen.progress = std::clamp(time_ / seen.pass_duration, 0.0, 1.0);
+  if (moment.stage == Stage::kRun) {
+    seen.progress = std::clamp(moment.run_time / seen.pass_duration, 0.0, 1.0);
     present(seen);
-  } else if (stage_ == Stage::kReturn) {
+  } else if (moment.stage == Stage::kReturn) {
     seen.progress = 1.0;
   }
-  return out;
+  return seen;
 }
 
 }  // namespace haptrial::protocols

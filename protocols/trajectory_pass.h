@@ -26,6 +26,16 @@ struct GuidanceParameters {
 /// Reads a [guidance] table with its inner tables trajectory and plane.
 GuidanceParameters read_guidance_parameters(Table& table);
 
+/// An instant of a pass, as far as it can be seen; a recorded sample holds the same.
+struct PassMoment {
+  Eigen::Vector3d tool{Eigen::Vector3d::Zero()};  // p_W [m]
+  record::Stage stage{record::Stage::kIdle};
+  double run_time{0.0};       // since the run began; only during the run [s]
+  double target_force{0.0};   // [N]
+  double applied_force{0.0};  // [N]
+  bool saturated{false};
+};
+
 /// One pass along a trajectory:
 ///
 ///     approach the start -> wait there, settled -> run along it -> return to the start
@@ -40,6 +50,9 @@ class TrajectoryPass : public Pass {
 
   PassOutput tick(const PointState& tool, double dt) noexcept final;
   PassState state() const noexcept final { return state_; }
+  /// What the participant sees at an instant: tick() shows it, and a replay shows it again. Before
+  /// the pass and after a fault, when the stage is idle, that is nothing. Servo thread.
+  stimulus::Presentation presentation(const PassMoment& moment) const noexcept;
 
  protected:
   /// During the run, the plane constraint holds the hand along y; where it does not, the device
