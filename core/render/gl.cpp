@@ -39,6 +39,7 @@ void load_state(Gl& gl, const Loader& load) {
   load(gl.blend_func_separate, "glBlendFuncSeparate");
   load(gl.blend_equation, "glBlendEquation");
   load(gl.pixel_storei, "glPixelStorei");
+  load(gl.finish, "glFinish");
   load(gl.read_pixels, "glReadPixels");
 }
 

@@ -28,6 +28,7 @@ struct Gl {
   void (*blend_func_separate)(Enum src_rgb, Enum dst_rgb, Enum src_alpha, Enum dst_alpha);
   void (*blend_equation)(Enum mode);
   void (*pixel_storei)(Enum what, int value);
+  void (*finish)();
   void (*read_pixels)(int x, int y, int width, int height, Enum format, Enum type, void* pixels);
 
   // Shaders

@@ -76,6 +76,11 @@ Eigen::Vector2d TrialDisplay::to_pixels(const Eigen::Vector3d& point) const {
   return view_.to_pixels(seen_from_above(point));
 }
 
+Eigen::Vector3d TrialDisplay::to_world(const Eigen::Vector2d& pixel) const {
+  const Eigen::Vector2d point = view_.to_point(pixel);
+  return {point.x(), 0.0, point.y()};
+}
+
 void TrialDisplay::draw(const stimulus::Presentation& presentation) {
   painter_.begin(style_.background);
   if (presentation.show_trajectory) {

@@ -39,6 +39,8 @@ class TrialDisplay {
 
   /// Where a point p_W [m] is in the picture [px].
   Eigen::Vector2d to_pixels(const Eigen::Vector3d& point) const;
+  /// The point p_W of the xz plane that a pixel shows; y is 0 [m].
+  Eigen::Vector3d to_world(const Eigen::Vector2d& pixel) const;
 
  private:
   enum class Side { kLeft, kRight };

@@ -27,6 +27,9 @@ struct View {
   Eigen::Vector2d to_pixels(const Eigen::Vector2d& point) const {
     return pixel_centre + scale * (point - point_centre);
   }
+  Eigen::Vector2d to_point(const Eigen::Vector2d& pixel) const {
+    return point_centre + (pixel - pixel_centre) / scale;
+  }
 };
 
 /// The view that shows `world` [m] as large as fits into `screen` [px], in its middle.

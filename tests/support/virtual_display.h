@@ -1,0 +1,44 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::test {
+
+/// An X server without a monitor (Xvfb) on a display of its own, named by DISPLAY while it lives,
+/// with a person at its keyboard and mouse.
+class VirtualDisplay {
+ public:
+  static bool available();  // whether Xvfb is installed
+
+  /// @throws std::runtime_error when the server does not start within 20 s.
+  VirtualDisplay(int width, int height);
+  ~VirtualDisplay();
+  VirtualDisplay(const VirtualDisplay&) = delete;
+  VirtualDisplay& operator=(const VirtualDisplay&) = delete;
+
+  /// What the monitor would show, from the server's own memory, not by OpenGL.
+  std::vector<std::uint8_t> screenshot() const;  // (height x width x 3), rows from the top
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  /// To the window of that title. @param keysym  as X names it: 'p', ' ', 0xff1b for Escape
+  void press_key(const std::string& title, unsigned long keysym) const;
+  /// @param button  1 left, 2 middle, 3 right, 4 and 5 the wheel up and down
+  void press_button(const std::string& title, unsigned button) const;
+  void ask_to_close(const std::string& title) const;  // as a window manager does
+  void move_pointer(int x, int y) const;              // [px]
+
+ private:
+  TemporaryFolder folder_;
+  int width_;
+  int height_;
+  pid_t server_{-1};
+};
+
+}  // namespace haptrial::test
