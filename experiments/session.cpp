@@ -45,8 +45,8 @@ class Session {
   record::SessionInfo info() const;
   std::vector<stimulus::Observer*> observers();
   void run_trial(const protocols::PlannedTrial& trial);
-  void run_pass(protocols::TrajectoryPass& pass, const protocols::PlannedTrial& trial,
-                record::Phase phase);
+  void run_pass(std::unique_ptr<protocols::TrajectoryPass> pass,
+                const protocols::PlannedTrial& trial, record::Phase phase);
   void drive_until_idle();
   void drain();
   void recover();
@@ -70,7 +70,9 @@ class Session {
   protocols::SessionTask task_;
   realtime::ServoLoop loop_;
   record::SessionWriter writer_;
+  // Kept here, not in a function: the servo thread may be using them when an error leaves it.
   std::optional<stimulus::Stimulus> stimulus_;
+  std::unique_ptr<protocols::TrajectoryPass> pass_;
   std::thread servo_;  // on a real clock
   std::int32_t passes_{0};
   SessionSummary summary_;
@@ -173,16 +175,16 @@ void Session::run_trial(const protocols::PlannedTrial& trial) {
       renderer_->set_trajectory(stimulus_->path.points());
     }
   }
-  const auto training =
-      protocols::make_training_pass(trial.condition, *stimulus_, d_.guidance, trial.block);
-  run_pass(*training, trial, record::Phase::kTraining);
-  protocols::RecallTest test(*stimulus_, d_.guidance, trial.block);
-  run_pass(test, trial, record::Phase::kTest);
+  run_pass(protocols::make_training_pass(trial.condition, *stimulus_, d_.guidance, trial.block),
+           trial, record::Phase::kTraining);
+  run_pass(std::make_unique<protocols::RecallTest>(*stimulus_, d_.guidance, trial.block), trial,
+           record::Phase::kTest);
 }
 
-void Session::run_pass(protocols::TrajectoryPass& pass, const protocols::PlannedTrial& trial,
-                       record::Phase phase) {
-  task_.start(pass, passes_++);
+void Session::run_pass(std::unique_ptr<protocols::TrajectoryPass> pass,
+                       const protocols::PlannedTrial& trial, record::Phase phase) {
+  pass_ = std::move(pass);
+  task_.start(*pass_, passes_++);
   drive_until_idle();
   const protocols::PassResult& result = task_.result();
   record::PassRow row;
