@@ -38,6 +38,8 @@ class Device {
   /// Why the last read or write failed or the motors went off, in a sentence; "" where all is well.
   /// A text of static duration. Servo thread.
   virtual const char* trouble() const noexcept { return ""; }
+  /// Calls into the device's library that took longer than a period of the loop. Any thread.
+  virtual std::uint64_t slow_calls() const noexcept { return 0; }
 };
 
 }  // namespace haptrial::device

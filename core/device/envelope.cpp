@@ -16,6 +16,7 @@ EnvelopeLimits read_envelope_limits(Table& table) {
   limits.max_speed = table.number("max_speed", {0.0, 20.0, true}, "m/s");
   limits.max_jump = table.number("max_jump", {0.0, 0.1, true}, "m");
   limits.ramp_in = table.number("ramp_in", {0.0, 10.0}, "s");
+  limits.ramp_out = table.number("ramp_out", {0.0, 10.0}, "s");
   return limits;
 }
 
@@ -39,6 +40,8 @@ const char* describe(Fault fault) noexcept {
       return "the protocol asked for a force that is not a number";
     case Fault::kForceTooLarge:
       return "the protocol asked for more force than the envelope allows";
+    case Fault::kForcesOff:
+      return "the device switched its motors off";
     case Fault::kEmergencyStop:
       return "emergency stop";
   }
@@ -48,9 +51,9 @@ const char* describe(Fault fault) noexcept {
 Envelope::Envelope(const EnvelopeLimits& limits) : limits_(limits) {
   const bool positive = limits.max_force > 0.0 && limits.max_force_rate > 0.0 &&
                         limits.workspace_radius > 0.0 && limits.max_speed > 0.0 &&
-                        limits.max_jump > 0.0 && limits.ramp_in >= 0.0;
+                        limits.max_jump > 0.0 && limits.ramp_in >= 0.0 && limits.ramp_out >= 0.0;
   if (!positive) {
-    throw std::invalid_argument("Envelope: every limit must be above 0");
+    throw std::invalid_argument("Envelope: every limit must be above 0, and no ramp below");
   }
 }
 
@@ -63,6 +66,9 @@ Fault Envelope::check(bool read_ok, const DeviceReading& reading) noexcept {
   if (!p.allFinite() || !reading.tool.velocity.allFinite()) {
     trip(Fault::kPositionNotFinite);
     return fault_;
+  }
+  if (!reading.forces_on && !last_force_.isZero(0.0)) {
+    trip(Fault::kForcesOff);
   }
   if (has_position_ && (p - last_position_).norm() > limits_.max_jump) {
     trip(Fault::kJump);
@@ -88,18 +94,26 @@ Eigen::Vector3d Envelope::limit(const Eigen::Vector3d& wanted, double dt) noexce
     last_force_.setZero();
     return last_force_;
   }
-  since_start_ += dt;
-  const double share = limits_.ramp_in > 0.0 ? std::min(1.0, since_start_ / limits_.ramp_in) : 1.0;
-  Eigen::Vector3d target = share * wanted;
-  const double length = target.norm();
-  if (length > limits_.max_force) {
-    target *= limits_.max_force / length;
-  }
-  const Eigen::Vector3d change = target - last_force_;
+  const Eigen::Vector3d goal = target(wanted, dt);
+  const Eigen::Vector3d change = goal - last_force_;
   const double step = change.norm();
   const double allowed = limits_.max_force_rate * dt;
-  last_force_ = step > allowed ? Eigen::Vector3d(last_force_ + change * (allowed / step)) : target;
+  last_force_ = step > allowed ? Eigen::Vector3d(last_force_ + change * (allowed / step)) : goal;
   return last_force_;
+}
+
+Eigen::Vector3d Envelope::target(const Eigen::Vector3d& wanted, double dt) noexcept {
+  if (released_) {
+    since_release_ += dt;
+    return since_release_ < limits_.ramp_out
+               ? Eigen::Vector3d((1.0 - since_release_ / limits_.ramp_out) * released_force_)
+               : Eigen::Vector3d::Zero();
+  }
+  since_start_ += dt;
+  const double share = limits_.ramp_in > 0.0 ? std::min(1.0, since_start_ / limits_.ramp_in) : 1.0;
+  const Eigen::Vector3d grown = share * wanted;
+  const double length = grown.norm();
+  return length > limits_.max_force ? Eigen::Vector3d(grown * (limits_.max_force / length)) : grown;
 }
 
 void Envelope::trip(Fault fault) noexcept {
@@ -113,6 +127,19 @@ void Envelope::reset() noexcept {
   fault_ = Fault::kNone;
   last_force_.setZero();
   has_position_ = false;
+  engage();
+}
+
+void Envelope::release() noexcept {
+  if (!released_) {
+    released_ = true;
+    released_force_ = last_force_;
+    since_release_ = 0.0;
+  }
+}
+
+void Envelope::engage() noexcept {
+  released_ = false;
   since_start_ = 0.0;
 }
 

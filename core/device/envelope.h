@@ -19,6 +19,7 @@ struct EnvelopeLimits {
   double max_speed{1.0};           // > 0 [m/s]
   double max_jump{0.005};          // between two ticks > 0 [m]
   double ramp_in{0.2};             // force grows from zero over this time after a start >= 0 [s]
+  double ramp_out{0.2};            // and falls to zero over this one after release() >= 0 [s]
 };
 
 /// Reads the keys of an [envelope] table.
@@ -34,6 +35,7 @@ enum class Fault : std::uint8_t {
   kWorkspace,
   kForceNotFinite,
   kForceTooLarge,
+  kForcesOff,
   kEmergencyStop,
 };
 
@@ -42,14 +44,16 @@ const char* describe(Fault fault) noexcept;
 
 /// Stands between every protocol and every device on every tick. The force that leaves it is
 /// finite, never longer than max_force and never changes faster than max_force_rate, except that a
-/// fault brings it to zero in the same tick; it then stays zero until reset(). Servo thread: no
-/// allocation, lock, I/O or throw.
+/// fault brings it to zero in the same tick; it then stays zero until reset(). A normal end does
+/// not drop the force but lets it go over ramp_out. Servo thread: no allocation, lock, I/O or
+/// throw.
 class Envelope {
  public:
   /// @throws std::invalid_argument when a limit is not above its bound.
   explicit Envelope(const EnvelopeLimits& limits);
 
   /// Judges a reading. @param read_ok  what Device::read returned. @returns the fault in force.
+  /// Motors that are off are a fault where a force was commanded on the tick before.
   Fault check(bool read_ok, const DeviceReading& reading) noexcept;
 
   /// @param wanted  the protocol's force [N]; more than max_force is a fault of the protocol, which
@@ -59,18 +63,32 @@ class Envelope {
 
   /// Latches a fault from outside (a failed write, an emergency stop).
   void trip(Fault fault) noexcept;
-  /// Clears the fault; the force ramps in again from zero.
+  /// Clears the fault; the force ramps in again from zero. A person asked for it.
   void reset() noexcept;
+  /// A normal end: from its present value the force goes evenly to zero over ramp_out (longer where
+  /// max_force_rate says so) whatever limit() is asked for, and stays zero until engage() or
+  /// reset(). Releasing again while it falls changes nothing.
+  void release() noexcept;
+  /// The opposite of release(): the force follows limit() again and ramps in. A fault stays.
+  void engage() noexcept;
 
   Fault fault() const noexcept { return fault_; }
+  bool released() const noexcept { return released_; }
+  /// The force that limit() let pass last [N].
+  const Eigen::Vector3d& force() const noexcept { return last_force_; }
 
  private:
+  Eigen::Vector3d target(const Eigen::Vector3d& wanted, double dt) noexcept;
+
   EnvelopeLimits limits_;
   Fault fault_{Fault::kNone};
   Eigen::Vector3d last_force_{Eigen::Vector3d::Zero()};
   Eigen::Vector3d last_position_{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d released_force_{Eigen::Vector3d::Zero()};  // at release()
   bool has_position_{false};
-  double since_start_{0.0};
+  bool released_{false};
+  double since_start_{0.0};    // or engage() [s]
+  double since_release_{0.0};  // [s]
 };
 
 }  // namespace haptrial::device

@@ -73,6 +73,7 @@ std::vector<Breach> breaches() {
           {Fault::kForceTooLarge, wanted({0, 12.001, 0})},
           {Fault::kForceTooLarge, wanted({7.5, 7.5, 7.5})},
           {Fault::kForceTooLarge, wanted({1e300, 1e300, 0})},
+          {Fault::kForcesOff, reading({{}, 0, false})},
           {Fault::kEmergencyStop, tripped(Fault::kEmergencyStop)}};
 }
 
@@ -117,6 +118,7 @@ TEST(EnvelopeTest, TheFirstFaultIsKept) {
     for (const Breach& second : breaches()) {
       Envelope envelope(open_limits());
       envelope.check(true, at({0, 0, 0}));
+      envelope.limit({0, 1, 0}, kDt);
       first.commit(envelope);
       second.commit(envelope);
       EXPECT_EQ(envelope.fault(), first.fault) << describe(second.fault);
@@ -153,54 +155,151 @@ Vector3d any_vector(RandomStream& random, double usual) {
   Vector3d v{random.uniform(-usual, usual), random.uniform(-usual, usual),
              random.uniform(-usual, usual)};
   const double bad[] = {kNan, kInf, -kInf, 1e300, -1e30, 1e-320};
-  if (random.below(200) == 0) {
+  if (random.below(2000) == 0) {
     v[static_cast<int>(random.below(3))] = bad[random.below(6)];
   }
   return v;
 }
 
-TEST(EnvelopeTest, HoldsItsPromiseOverTwoMillionRandomTicks) {
-  constexpr EnvelopeLimits kLimits;
-  Envelope envelope(kLimits);
-  RandomStream random(1, "envelope");
-  Vector3d before = Vector3d::Zero();
-  Vector3d position = Vector3d::Zero();
-  std::set<Fault> seen;
-  Fault latched = Fault::kNone;
-  std::uint64_t forces = 0;
-  for (int tick = 0; tick < 2000000; ++tick) {
-    position = 0.999 * (position + any_vector(random, 0.002));
-    if (!position.allFinite() || random.below(5000) == 0) {
-      position = any_vector(random, 0.04);
-    }
-    const bool read_ok = random.below(1000) != 0;
-    envelope.check(read_ok, at(position, any_vector(random, 0.58)));
-    if (random.below(2000) == 0) {
-      envelope.trip(random.below(2) ? Fault::kWriteFailed : Fault::kEmergencyStop);
-    }
-    const double dt = random.below(2000) == 0 ? any_vector(random, 1e-3).x() : kDt;
-    const Vector3d force = envelope.limit(any_vector(random, 7.1), dt);
-    const Fault fault = envelope.fault();
+TEST(EnvelopeTest, MotorsThatAreOffAreAFaultOnlyUnderForce) {
+  Envelope envelope(open_limits());
+  const DeviceReading off{{}, 0, false};
+  for (int tick = 0; tick < 10; ++tick) {
+    ASSERT_EQ(envelope.check(true, off), Fault::kNone) << "at rest they may be off";
+    ASSERT_TRUE(envelope.limit(Vector3d::Zero(), kDt).isZero(0.0));
+  }
+  envelope.limit({0, 0.001, 0}, kDt);
+  EXPECT_EQ(envelope.check(true, off), Fault::kForcesOff);
+}
 
-    ASSERT_TRUE(force.allFinite()) << tick;
-    ASSERT_LE(force.norm(), kLimits.max_force * (1.0 + 1e-12)) << tick;
-    if (fault != Fault::kNone) {
-      ASSERT_TRUE(force.isZero(0.0)) << tick << ": " << describe(fault);
-    } else {
-      ASSERT_LE((force - before).norm(), kLimits.max_force_rate * dt * (1.0 + 1e-9)) << tick;
-      forces += !force.isZero(0.0);
+TEST(EnvelopeTest, AfterAReleaseTheForceFallsEvenlyWhateverIsWanted) {
+  EnvelopeLimits limits = open_limits();
+  limits.ramp_out = 0.1;
+  for (const Vector3d& wanted : {Vector3d(0, 0, 0), Vector3d(0, 8, -6), Vector3d(12, 0, 0)}) {
+    Envelope envelope(limits);
+    envelope.limit({0, 8, -6}, kDt);
+    envelope.release();
+    for (int tick = 1; tick <= 300; ++tick) {
+      const double share = std::max(0.0, 1.0 - tick * kDt / 0.1);
+      const Vector3d force = envelope.limit(wanted, kDt);
+      ASSERT_LT((force - share * Vector3d(0, 8, -6)).norm(), 1e-9) << tick;
+      ASSERT_TRUE(tick <= 100 || force.isZero(0.0)) << tick;
+      envelope.release();  // again: changes nothing
     }
-    ASSERT_TRUE(latched == Fault::kNone || latched == fault) << tick << ": a fault was replaced";
-    seen.insert(fault);
-    latched = fault;
+    EXPECT_TRUE(envelope.released());
+  }
+}
+
+TEST(EnvelopeTest, AReleaseWithoutARampIsStillBoundInItsRate) {
+  EnvelopeLimits limits = open_limits();
+  limits.ramp_out = 0.0;
+  limits.max_force_rate = 1000.0;
+  Envelope envelope(limits);
+  for (int tick = 0; tick < 5; ++tick) {
+    envelope.limit({0, 5, 0}, kDt);
+  }
+  envelope.release();
+  for (int left = 4; left >= 0; --left) {
+    EXPECT_NEAR(envelope.limit({0, 5, 0}, kDt).y(), left, 1e-12);
+  }
+}
+
+TEST(EnvelopeTest, EngagingRampsInAgainAndMendsNoFault) {
+  EnvelopeLimits limits = open_limits();
+  limits.ramp_in = limits.ramp_out = 0.1;
+  Envelope envelope(limits);
+  envelope.release();
+  EXPECT_TRUE(envelope.limit({0, 5, 0}, kDt).isZero(0.0));
+  envelope.engage();
+  for (int tick = 1; tick <= 200; ++tick) {
+    EXPECT_NEAR(envelope.limit({0, 5, 0}, kDt).y(), 5.0 * std::min(1.0, tick / 100.0), 1e-9);
+  }
+  envelope.trip(Fault::kEmergencyStop);
+  envelope.release();
+  envelope.engage();
+  EXPECT_EQ(envelope.fault(), Fault::kEmergencyStop);
+  EXPECT_TRUE(envelope.limit({0, 5, 0}, kDt).isZero(0.0));
+}
+
+/// A device and a protocol that go wrong at random, and what the envelope made of it.
+class RandomRun {
+ public:
+  void tick() {
+    hand_ = 0.999 * (hand_ + any_vector(random_, 0.002));
+    if (!hand_.allFinite() || random_.below(5000) == 0) {
+      hand_ = any_vector(random_, 0.04);
+    }
+    DeviceReading reading = at(hand_, any_vector(random_, 0.58));
+    reading.forces_on = random_.below(2000) != 0;
+    envelope_.check(random_.below(1000) != 0, reading);
+    if (random_.below(2000) == 0) {
+      envelope_.trip(random_.below(2) ? Fault::kWriteFailed : Fault::kEmergencyStop);
+    }
+    if (random_.below(500) == 0) {
+      random_.below(2) ? envelope_.release() : envelope_.engage();
+    }
+    dt = random_.below(2000) == 0 ? any_vector(random_, 1e-3).x() : kDt;
     before = force;
-    if (fault != Fault::kNone && random.below(10) == 0) {
-      envelope.reset();
-      latched = Fault::kNone;
+    force = envelope_.limit(any_vector(random_, 7.1), dt);
+    fault_before = fault;
+    fault = envelope_.fault();
+    released_for = envelope_.released() ? released_for + dt : 0.0;
+  }
+  void maybe_reset() {
+    if (fault != Fault::kNone && random_.below(10) == 0) {
+      envelope_.reset();
+      fault = Fault::kNone;
+      force.setZero();
+      released_for = 0.0;
     }
   }
-  EXPECT_EQ(seen.size(), 10u) << "every fault came up";
-  EXPECT_GT(forces, 500000u) << "and much of the time there was none";
+
+  Vector3d force{Vector3d::Zero()};
+  Vector3d before{Vector3d::Zero()};
+  Fault fault{Fault::kNone};
+  Fault fault_before{Fault::kNone};
+  double dt{kDt};
+  double released_for{0.0};  // [s]
+
+ private:
+  Envelope envelope_{EnvelopeLimits{}};
+  RandomStream random_{1, "envelope"};
+  Vector3d hand_{Vector3d::Zero()};
+};
+
+TEST(EnvelopeTest, HoldsItsPromiseOverTenMillionRandomTicks) {
+  constexpr EnvelopeLimits kLimits;
+  RandomRun run;
+  std::set<Fault> seen;
+  std::uint64_t forces = 0;
+  std::uint64_t released = 0;
+  for (int tick = 0; tick < 10'000'000; ++tick) {
+    run.tick();
+    ASSERT_TRUE(run.force.allFinite()) << tick;
+    ASSERT_LE(run.force.norm(), kLimits.max_force * (1.0 + 1e-12)) << tick;
+    if (run.fault != Fault::kNone) {
+      ASSERT_TRUE(run.force.isZero(0.0)) << tick << ": " << describe(run.fault);
+    } else {
+      ASSERT_LE((run.force - run.before).norm(),
+                kLimits.max_force_rate * run.dt * (1.0 + 1e-9) + 1e-12)
+          << tick;
+    }
+    if (run.released_for > 0.0) {
+      ASSERT_LE(run.force.norm(), run.before.norm() + 1e-12) << tick << ": grew after a release";
+    }
+    if (run.released_for > kLimits.ramp_out + 2.0 * kDt) {
+      ASSERT_TRUE(run.force.isZero(0.0)) << tick;
+      ++released;
+    }
+    ASSERT_TRUE(run.fault_before == Fault::kNone || run.fault_before == run.fault)
+        << tick << ": a fault was replaced";
+    seen.insert(run.fault);
+    forces += !run.force.isZero(0.0);
+    run.maybe_reset();
+  }
+  EXPECT_EQ(seen.size(), 11u) << "every fault came up";
+  EXPECT_GT(forces, 2'000'000u) << "and much of the time there was none";
+  EXPECT_GT(released, 100'000u);
 }
 
 TEST(EnvelopeTest, ATickDoesNotAllocate) {
@@ -222,7 +321,7 @@ TEST(EnvelopeTest, EveryFaultHasItsOwnWords) {
     EXPECT_NE(text, "unknown fault") << fault;
     words.insert(text);
   }
-  EXPECT_EQ(words.size(), 10u);
+  EXPECT_EQ(words.size(), 11u);
 }
 
 TEST(EnvelopeTest, LimitsOutOfBoundsAreRefused) {
@@ -240,21 +339,24 @@ TEST(EnvelopeTest, LimitsOutOfBoundsAreRefused) {
   }
   refused(&EnvelopeLimits::ramp_in, -0.1);
   refused(&EnvelopeLimits::ramp_in, kNan);
+  refused(&EnvelopeLimits::ramp_out, -0.1);
+  refused(&EnvelopeLimits::ramp_out, kNan);
 }
 
 TEST(EnvelopeTest, LimitsAreReadWithTheirBounds) {
   Table good = Table::parse(
       "max_force = 8.0\nmax_force_rate = 100.0\nworkspace_radius = 0.05\nmax_speed = 0.5\n"
-      "max_jump = 0.001\nramp_in = 0.0\n",
+      "max_jump = 0.001\nramp_in = 0.0\nramp_out = 0.3\n",
       "f.toml");
   const EnvelopeLimits limits = read_envelope_limits(good);
   EXPECT_NO_THROW(good.finish());
   EXPECT_NO_THROW(Envelope{limits});
   EXPECT_EQ(limits.max_force, 8.0);
   EXPECT_EQ(limits.max_jump, 0.001);
+  EXPECT_EQ(limits.ramp_out, 0.3);
   Table bad = Table::parse(
       "max_force = 0.0\nmax_force_rate = 0.0\nworkspace_radius = 0.0\nmax_speed = 0.0\n"
-      "max_jump = 0.0\nramp_in = -1.0\n",
+      "max_jump = 0.0\nramp_in = -1.0\nramp_out = 11.0\n",
       "f.toml");
   read_envelope_limits(bad);
   try {
@@ -262,7 +364,7 @@ TEST(EnvelopeTest, LimitsAreReadWithTheirBounds) {
     FAIL();
   } catch (const InputError& error) {
     const std::string what = error.what();
-    EXPECT_EQ(std::count(what.begin(), what.end(), '\n'), 5) << what;
+    EXPECT_EQ(std::count(what.begin(), what.end(), '\n'), 6) << what;
   }
 }
 

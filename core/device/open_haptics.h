@@ -1,0 +1,92 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+
+#include "core/device/device.h"
+#include "core/realtime/latest_value.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::device {
+
+/// How a 3D Systems device is set up. The defaults suit a Touch.
+struct OpenHapticsParameters {
+  std::string name;               // as the vendor's setup tool named it; empty: the default one
+  double max_force{3.3};          // at most the device's own limit is used > 0 [N]
+  double workspace_radius{0.08};  // > 0 [m]
+  double patience{0.02};          // how long one side goes on without word from the other > 0 [s]
+};
+
+/// Reads the keys of an [open_haptics] table.
+OpenHapticsParameters read_open_haptics_parameters(Table& table);
+
+/// Drives a Phantom or Touch through the vendor's OpenHaptics HD library.
+///
+/// The library insists on a scheduler of its own, whose thread alone may talk to the device. The
+/// callback and the servo loop therefore exchange their newest values, and neither waits for the
+/// other; a tick reads what the scheduler read at most one of its periods ago. Silence on either
+/// side for `patience` is a fault: read() fails when no fresh position came, and the callback lets
+/// the force go when no fresh command came.
+///
+/// The vendor's axes are ours (x right, y up, z to the user), in millimetres.
+class OpenHapticsDevice final : public Device {
+ public:
+  /// @param rate     of the scheduler and of the servo loop > 0 [Hz]
+  /// @param library  a path in place of the search for libHD.so
+  /// @throws InputError when the library or one of its functions is missing, RunError when no
+  ///         device answers.
+  OpenHapticsDevice(const OpenHapticsParameters& parameters, double rate,
+                    const std::string& library = "");
+  /// Force to zero, scheduler stopped, forces off, closed.
+  ~OpenHapticsDevice() override;
+
+  const DeviceInfo& info() const noexcept override { return info_; }
+  bool read(DeviceReading& reading) noexcept override;
+  bool write(const Eigen::Vector3d& force) noexcept override;
+  const char* trouble() const noexcept override { return trouble_; }
+  /// Periods of the vendor's scheduler that brought no fresh position to a tick.
+  std::uint64_t slow_calls() const noexcept override {
+    return stale_.load(std::memory_order_relaxed);
+  }
+
+ private:
+  struct Api;
+  struct Sensed {
+    DeviceReading reading;
+    unsigned error{0};  // of the frame; 0: none
+  };
+  static unsigned frame(void* self);  // scheduler's thread
+  void exchange() noexcept;
+  void note_error(unsigned error) noexcept;
+  void start(double rate);
+  void close() noexcept;
+  void require(const char* what) const;
+
+  OpenHapticsParameters parameters_;
+  std::unique_ptr<const Api> api_;
+  unsigned device_;
+  unsigned long callback_{0};
+  bool scheduler_runs_{false};
+  DeviceInfo info_;
+  int patience_ticks_;
+  const char* trouble_{""};
+
+  realtime::LatestValue<Sensed> sensed_;            // scheduler -> servo
+  realtime::LatestValue<Eigen::Vector3d> command_;  // servo -> scheduler
+  std::atomic<bool> ending_{false};
+  std::atomic<std::uint64_t> stale_{0};
+  // Servo thread.
+  Sensed latest_;
+  int ticks_without_news_{0};
+  // Scheduler's thread.
+  Eigen::Vector3d force_{Eigen::Vector3d::Zero()};
+  int frames_without_command_{0};
+  unsigned error_{0};
+  int error_frames_{0};  // left, for which it is still told
+};
+
+}  // namespace haptrial::device

@@ -1,0 +1,57 @@
+#pragma once
+
+namespace haptrial::test {
+
+/// What a stand-in library can be told to do wrong from some tick on.
+enum class Failure : int {
+  kNone,
+  kNoDevice,
+  kLostLink,
+  kTimeout,
+  kNotFinite,
+  kJump,
+  kForcesOffByButton,
+  kForcesOffByVelocity,
+  kForcesOffByWatchdog,
+  kMotorsWarm,
+  kForceRefused,
+  kStall,      // the vendor's own thread stops
+  kSlowCall,   // 5 ms in every read
+  kSaturated,  // these two are return values above zero: no error
+  kTimeGuard,
+};
+
+/// What a stand-in knows of itself, in the vendor's axes and units.
+struct StandInView {
+  double position[3];
+  double force[3];  // that the motors give
+  long ticks;       // periods that passed
+  bool forces_on;
+  bool open;
+};
+
+/// What a stand-in was set to, and in which order.
+struct StandInSetup {
+  double effector_mass;  // [kg]
+  int gravity;
+  int window_ms;
+  int window_mode;
+  double max_force;  // [N]
+  int watchdog;
+  int threshold;
+  int time_guard_us;
+  double rate;       // of the scheduler [Hz]
+  char calls[1024];  // names of the set-up calls, each with a blank behind it
+};
+
+// Each stand-in exports these with C linkage beside the vendor's functions:
+//   void stand_in_reset()                       as if just plugged in
+//   void stand_in_fail(int failure, long tick)  from that tick on
+//   void stand_in_place(const double p[3])      the handle rests there; its spring too
+//   void stand_in_buttons(unsigned mask)
+//   void stand_in_view(StandInView*)
+//   void stand_in_setup(StandInSetup*)
+//   void stand_in_manual(int on)                HD only: no thread; stand_in_step() is one period
+//   void stand_in_step()
+
+}  // namespace haptrial::test
