@@ -16,6 +16,7 @@ struct Deflater::Impl {
 
   libdeflate_compressor* compressor;
   std::vector<std::uint8_t> out;
+  std::size_t size{0};
 };
 
 Deflater::Deflater(int level) : impl_(std::make_unique<Impl>(level)) {}
@@ -24,10 +25,16 @@ Deflater::Deflater(Deflater&&) noexcept = default;
 Deflater& Deflater::operator=(Deflater&&) noexcept = default;
 
 std::span<const std::uint8_t> Deflater::compress(std::span<const std::uint8_t> bytes) {
-  impl_->out.resize(libdeflate_zlib_compress_bound(impl_->compressor, bytes.size()));
-  const std::size_t size = libdeflate_zlib_compress(impl_->compressor, bytes.data(), bytes.size(),
-                                                    impl_->out.data(), impl_->out.size());
-  return {impl_->out.data(), size};
+  const std::size_t bound = libdeflate_zlib_compress_bound(impl_->compressor, bytes.size());
+  impl_->out.resize(bound + 1);
+  impl_->size = libdeflate_zlib_compress(impl_->compressor, bytes.data(), bytes.size(),
+                                         impl_->out.data(), bound);
+  impl_->out[impl_->size] = 0;
+  return {impl_->out.data(), impl_->size};
+}
+
+std::span<const std::uint8_t> Deflater::padded() const {
+  return {impl_->out.data(), impl_->size + 1};
 }
 
 struct Inflater::Impl {
@@ -49,6 +56,15 @@ Inflater& Inflater::operator=(Inflater&&) noexcept = default;
 bool Inflater::decompress(std::span<const std::uint8_t> compressed, std::span<std::uint8_t> out) {
   return libdeflate_zlib_decompress(impl_->decompressor, compressed.data(), compressed.size(),
                                     out.data(), out.size(), nullptr) == LIBDEFLATE_SUCCESS;
+}
+
+Inflater::Lengths Inflater::decompress_prefix(std::span<const std::uint8_t> bytes,
+                                              std::span<std::uint8_t> out) {
+  Lengths lengths;
+  const libdeflate_result result =
+      libdeflate_zlib_decompress_ex(impl_->decompressor, bytes.data(), bytes.size(), out.data(),
+                                    out.size(), &lengths.compressed, &lengths.raw);
+  return result == LIBDEFLATE_SUCCESS ? lengths : Lengths{};
 }
 
 }  // namespace haptrial::record

@@ -19,6 +19,8 @@ class Deflater {
 
   /// The result is valid until the next call.
   std::span<const std::uint8_t> compress(std::span<const std::uint8_t> bytes);
+  /// The last result with a byte behind it that inflating ignores.
+  std::span<const std::uint8_t> padded() const;
 
  private:
   struct Impl;
@@ -34,6 +36,13 @@ class Inflater {
 
   /// @returns false when the input is damaged or does not fill `out` exactly.
   bool decompress(std::span<const std::uint8_t> compressed, std::span<std::uint8_t> out);
+
+  /// A stream of unknown length at the start of `bytes`.
+  struct Lengths {
+    std::size_t compressed{0};  // [bytes]; 0 when there is no whole stream that fits `out`
+    std::size_t raw{0};
+  };
+  Lengths decompress_prefix(std::span<const std::uint8_t> bytes, std::span<std::uint8_t> out);
 
  private:
   struct Impl;

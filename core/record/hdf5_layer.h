@@ -47,10 +47,14 @@ class Id {
   std::int64_t id_{-1};
 };
 
-/// Creates a file that must not exist, readable by HDF5 1.10 and later.
-Id create_file(const std::filesystem::path& path);
+/// Creates a file, readable by HDF5 1.10 and later.
+/// @param over  the file may exist, and loses what it holds
+Id create_file(const std::filesystem::path& path, bool over = false);
 /// Opens a file for reading; also one whose writer was killed or still writes.
 Id open_file(const std::filesystem::path& path);
+/// Opens a file to go on writing; also one whose writer was killed, which must be certain: nothing
+/// here keeps two writers apart.
+Id open_to_go_on(const std::filesystem::path& path);
 /// From here on HDF5 orders its writes so that the file is readable at every instant (single
 /// writer, multiple readers). No object or attribute may be created after it.
 void start_swmr(const Id& file);

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "core/record/schema.h"
 
@@ -63,6 +64,21 @@ PackedRow read(const BytePlanes& planes, std::size_t at) {
   return row;
 }
 
+PassRow read_pass_1(PackedRow& row) {
+  PassRow pass;
+  pass.trial = row.get<std::int32_t>();
+  pass.condition = row.get_text(kConditionBytes);
+  pass.phase = row.get_text(kPhaseBytes) == "training" ? Phase::kTraining : Phase::kTest;
+  pass.block = row.get<std::int32_t>();
+  pass.repetition = row.get<std::int32_t>();
+  pass.stimulus_seed = row.get<std::uint64_t>();
+  pass.first_sample = row.get<std::uint64_t>();
+  pass.last_sample = row.get<std::uint64_t>();
+  pass.status =
+      row.get_text(kStatusBytes) == "completed" ? PassStatus::kCompleted : PassStatus::kAborted;
+  return pass;
+}
+
 }  // namespace
 
 void put_pass(BytePlanes& planes, std::size_t at, const PassRow& pass) {
@@ -77,23 +93,22 @@ void put_pass(BytePlanes& planes, std::size_t at, const PassRow& pass) {
   row.put(pass.last_sample);
   row.put_text(pass.status == PassStatus::kCompleted ? "completed" : "aborted", kStatusBytes,
                "status");
+  row.put(static_cast<std::uint8_t>(pass.practice ? 1 : 0));
+  row.put(pass.attempt);
   planes.put_row(at, row.bytes());
 }
 
 PassRow get_pass(const BytePlanes& planes, std::size_t at) {
   PackedRow row = read(planes, at);
-  PassRow pass;
-  pass.trial = row.get<std::int32_t>();
-  pass.condition = row.get_text(kConditionBytes);
-  pass.phase = row.get_text(kPhaseBytes) == "training" ? Phase::kTraining : Phase::kTest;
-  pass.block = row.get<std::int32_t>();
-  pass.repetition = row.get<std::int32_t>();
-  pass.stimulus_seed = row.get<std::uint64_t>();
-  pass.first_sample = row.get<std::uint64_t>();
-  pass.last_sample = row.get<std::uint64_t>();
-  pass.status =
-      row.get_text(kStatusBytes) == "completed" ? PassStatus::kCompleted : PassStatus::kAborted;
+  PassRow pass = read_pass_1(row);
+  pass.practice = row.get<std::uint8_t>() != 0;
+  pass.attempt = row.get<std::int32_t>();
   return pass;
+}
+
+PassRow get_pass_1(const BytePlanes& planes, std::size_t at) {
+  PackedRow row = read(planes, at);
+  return read_pass_1(row);
 }
 
 void put_stimulus(BytePlanes& planes, std::size_t at, const StimulusRow& stimulus) {
@@ -136,6 +151,23 @@ TimingRow get_timing(const BytePlanes& planes, std::size_t at) {
   return timing;
 }
 
+void put_frame(BytePlanes& planes, std::size_t at, const FrameRow& frame) {
+  PackedRow row(planes.row_bytes());
+  row.put(frame.time_ns);
+  row.put(frame.frame_time_ns);
+  row.put(frame.dropped);
+  planes.put_row(at, row.bytes());
+}
+
+FrameRow get_frame(const BytePlanes& planes, std::size_t at) {
+  PackedRow row = read(planes, at);
+  FrameRow frame;
+  frame.time_ns = row.get<std::int64_t>();
+  frame.frame_time_ns = row.get<std::int64_t>();
+  frame.dropped = row.get<std::int32_t>();
+  return frame;
+}
+
 std::vector<EventPart> event_parts(const EventRow& event) {
   std::vector<EventPart> parts;
   std::string_view rest = event.text;
@@ -169,6 +201,35 @@ EventPart get_event(const BytePlanes& planes, std::size_t at) {
   PackedRow row = read(planes, at);
   EventPart part;
   part.row.time_ns = row.get<std::int64_t>();
+  part.row.kind = row.get_text(kKindBytes);
+  part.row.text = row.get_text(kTextBytes);
+  part.part = row.get<std::int32_t>();
+  return part;
+}
+
+std::vector<EventRow> joined_events(std::vector<EventPart> parts) {
+  std::vector<EventRow> events;
+  for (EventPart& part : parts) {
+    if (part.part > 0 && !events.empty()) {
+      events.back().text += part.row.text;
+    } else {
+      events.push_back(std::move(part.row));
+    }
+  }
+  return events;
+}
+
+void put_attribute(BytePlanes& planes, std::size_t at, const EventPart& part) {
+  PackedRow row(planes.row_bytes());
+  row.put_text(part.row.kind, kKindBytes, "attribute name");
+  row.put_text(part.row.text, kTextBytes, "attribute value");
+  row.put(part.part);
+  planes.put_row(at, row.bytes());
+}
+
+EventPart get_attribute(const BytePlanes& planes, std::size_t at) {
+  PackedRow row = read(planes, at);
+  EventPart part;
   part.row.kind = row.get_text(kKindBytes);
   part.row.text = row.get_text(kTextBytes);
   part.part = row.get<std::int32_t>();

@@ -1,5 +1,6 @@
 #include "core/record/schema.h"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 #include <string>
@@ -62,7 +63,10 @@ constexpr std::array kTrials{
     u64("first_sample", "sequence number of the first sample, inclusive"),
     u64("last_sample", "sequence number of the last sample, inclusive"),
     text("status", kStatusBytes, "completed or aborted"),
+    u8("practice", "1 where the pass is not part of the study"),
+    i32("attempt", "number from 1; above 1 the trial was aborted before and queued again"),
 };
+constexpr std::size_t kNewInTrials = 2;  // columns that schema version 1 does not have
 
 constexpr std::array kEvents{
     i64("time_ns", "ns", "since the first tick of the session"),
@@ -88,16 +92,37 @@ constexpr std::array kTiming{
     u64("compute_count", "ticks whose computation took a time in the bin"),
 };
 
+constexpr std::array kFrames{
+    i64("time_ns", "ns", "when the frame was shown, since the first tick of the session"),
+    i64("frame_time_ns", "ns", "what drawing the frame took"),
+    i32("dropped", "refreshes of the screen missed since the frame before"),
+};
+
+constexpr std::array kAttributes{
+    text("name", kKindBytes, "of a root attribute, or of a count of /timing"),
+    text("value", kTextBytes, "as text"),
+    i32("part", "0; 1, 2, ... where the row continues the value of the row before"),
+};
+
 // 270 kB a chunk: within the 1 MiB chunk cache that HDF5 gives every reader.
 constexpr std::size_t kSampleChunk = 4096;
 constexpr TableSchema kSamplesSchema{"samples", "one row for each tick of the servo loop",
                                      kSampleChunk, kSamples};
 constexpr TableSchema kTrialsSchema{"trials", "one row for each pass along the trajectory", 64,
                                     kTrials};
+constexpr TableSchema kTrialsSchema1{"trials", "one row for each pass along the trajectory", 64,
+                                     std::span(kTrials).first(kTrials.size() - kNewInTrials)};
 constexpr TableSchema kEventsSchema{"events", "what happened when", 64, kEvents};
 constexpr TableSchema kStimuliSchema{"stimuli", "the ideal movement and force of each block", 4096,
                                      kStimuli};
 constexpr TableSchema kTimingSchema{"timing", "histogram of how the loop kept time", 256, kTiming};
+
+// 0.8 s at 60 Hz.
+constexpr TableSchema kFramesSchema{"frames", "one row for each frame of the participant's screen",
+                                    48, kFrames};
+constexpr TableSchema kAttributesSchema{
+    "attributes", "the root attributes once more: found even where the file's structure is lost",
+    512, kAttributes};
 
 }  // namespace
 
@@ -118,8 +143,18 @@ std::size_t TableSchema::offset(std::string_view column) const {
 
 const TableSchema& samples_schema() { return kSamplesSchema; }
 const TableSchema& trials_schema() { return kTrialsSchema; }
+const TableSchema& trials_schema_1() { return kTrialsSchema1; }
 const TableSchema& events_schema() { return kEventsSchema; }
 const TableSchema& stimuli_schema() { return kStimuliSchema; }
 const TableSchema& timing_schema() { return kTimingSchema; }
+const TableSchema& frames_schema() { return kFramesSchema; }
+const TableSchema& attributes_schema() { return kAttributesSchema; }
+
+std::size_t live_chunk_rows(double rate) {
+  constexpr double kLongest = 0.8;  // [s]
+  const double steps = kLongest * rate / static_cast<double>(kLiveChunkStep);
+  const double most = static_cast<double>(kSampleChunk / kLiveChunkStep);
+  return kLiveChunkStep * static_cast<std::size_t>(std::clamp(steps, 1.0, most));
+}
 
 }  // namespace haptrial::record

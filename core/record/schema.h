@@ -7,8 +7,9 @@
 
 namespace haptrial::record {
 
-/// Version of the layout below; a reader refuses any other.
-inline constexpr std::int64_t kSchemaVersion = 1;
+/// Version of the layout below. Version 1, which is still read, has no practice and attempt in
+/// /trials, no /frames and no /attributes.
+inline constexpr std::int64_t kSchemaVersion = 2;
 
 enum class ColumnType : std::uint8_t { kU8, kI32, kI64, kU64, kF32, kF64, kText };
 
@@ -29,6 +30,8 @@ struct TableSchema {
   std::span<const Column> columns;
 
   std::size_t row_bytes() const;
+  /// The same with chunks of another length.
+  TableSchema with_chunks(std::size_t rows) const { return {name, description, rows, columns}; }
   /// Where the column starts within a row [bytes].
   /// @throws std::invalid_argument when there is none of this name.
   std::size_t offset(std::string_view column) const;
@@ -36,9 +39,17 @@ struct TableSchema {
 
 const TableSchema& samples_schema();
 const TableSchema& trials_schema();
+const TableSchema& trials_schema_1();  // of schema version 1
 const TableSchema& events_schema();
 const TableSchema& stimuli_schema();
 const TableSchema& timing_schema();
+const TableSchema& frames_schema();
+const TableSchema& attributes_schema();
+
+/// Chunk length of /samples on a real clock: at most 0.8 s, so that a chunk is in the file before a
+/// second has passed; a multiple of kLiveChunkStep, no longer than samples_schema() has it.
+inline constexpr std::size_t kLiveChunkStep = 64;
+std::size_t live_chunk_rows(double rate);
 
 /// Lengths of the text columns [bytes of UTF-8].
 inline constexpr std::size_t kConditionBytes = 64;

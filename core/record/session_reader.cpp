@@ -12,6 +12,7 @@
 #include "core/record/hdf5_layer.h"
 #include "core/record/row_codec.h"
 #include "core/record/schema.h"
+#include "core/record/session_info.h"
 
 namespace haptrial::record {
 namespace {
@@ -30,29 +31,6 @@ void check_regular(const fs::path& path) {
   if (status.type() != fs::file_type::regular) {
     throw InputError(path.string() + ": is not a regular file; allowed: a session file");
   }
-}
-
-SessionInfo get_info(const h5::Id& file) {
-  const std::int64_t version = h5::get_i64(file, "schema_version");
-  if (version != kSchemaVersion) {
-    throw h5::Error("schema version " + std::to_string(version) + " instead of " +
-                    std::to_string(kSchemaVersion));
-  }
-  SessionInfo info;
-  info.program_version = h5::get_text(file, "program_version");
-  info.program_commit = h5::get_text(file, "program_commit");
-  info.definition = h5::get_text(file, "definition");
-  info.definition_name = h5::get_text(file, "definition_name");
-  info.subject = h5::get_text(file, "subject");
-  info.seed = h5::get_u64(file, "seed");
-  info.device = h5::get_text(file, "device");
-  info.device_max_force = h5::get_f64(file, "device_max_force");
-  info.device_workspace_radius = h5::get_f64(file, "device_workspace_radius");
-  info.clock = h5::get_text(file, "clock");
-  info.rate = h5::get_f64(file, "rate");
-  info.start_utc = h5::get_text(file, "start_utc");
-  info.simulated = h5::get_u64(file, "simulated") != 0;
-  return info;
 }
 
 /// One open dataset.
@@ -75,12 +53,19 @@ Table open_table(const h5::Id& file, const TableSchema& schema) {
 
 struct SessionReader::Impl {
   explicit Impl(const fs::path& file_path) : path(file_path), file(h5::open_file(file_path)) {
-    info = get_info(file);
+    version = get_version(file);
+    if (version == 1) info = get_info(file);
     samples = open_table(file, samples_schema());
-    trials = open_table(file, trials_schema());
+    trials = open_table(file, version == 1 ? trials_schema_1() : trials_schema());
     events = open_table(file, events_schema());
     stimuli = open_table(file, stimuli_schema());
     timing = open_table(file, timing_schema());
+    if (version > 1) {
+      frames = open_table(file, frames_schema());
+      attributes = open_table(file, attributes_schema());
+      if (attributes.rows == 0) throw h5::Error("/attributes is empty");
+      info = info_of(joined_events(all(attributes, get_attribute)));
+    }
   }
 
   [[noreturn]] void damaged(const Table& table, std::uint64_t row, const std::string& why) const {
@@ -129,8 +114,9 @@ struct SessionReader::Impl {
 
   fs::path path;
   h5::Id file;
+  std::int64_t version{0};
   SessionInfo info;
-  Table samples, trials, events, stimuli, timing;
+  Table samples, trials, events, stimuli, timing, frames, attributes;
 };
 
 SessionReader::SessionReader(const fs::path& path) {
@@ -139,7 +125,7 @@ SessionReader::SessionReader(const fs::path& path) {
     impl_ = std::make_unique<Impl>(path);
   } catch (const h5::Error& error) {
     throw InputError(path.string() + ": cannot be read as a session file (" + error.what() +
-                     "); allowed: an HDF5 file written by haptrial, schema version " +
+                     "); allowed: an HDF5 file written by haptrial, schema version 1 to " +
                      std::to_string(kSchemaVersion));
   }
 }
@@ -150,7 +136,11 @@ SessionReader& SessionReader::operator=(SessionReader&&) noexcept = default;
 
 const fs::path& SessionReader::path() const { return impl_->path; }
 const SessionInfo& SessionReader::info() const { return impl_->info; }
+std::int64_t SessionReader::version() const { return impl_->version; }
 std::uint64_t SessionReader::sample_count() const { return impl_->samples.rows; }
+std::size_t SessionReader::chunk_rows() const { return impl_->samples.chunk_rows; }
+std::uint64_t SessionReader::attribute_rows() const { return impl_->attributes.rows; }
+std::uint64_t SessionReader::event_rows() const { return impl_->events.rows; }
 
 std::vector<Sample> SessionReader::samples(std::uint64_t first, std::uint64_t count) const {
   std::vector<Sample> result(std::min(count, sample_count()));
@@ -188,19 +178,15 @@ SampleColumns SessionReader::columns(std::uint64_t first, std::uint64_t count) c
   return result;
 }
 
-std::vector<PassRow> SessionReader::passes() const { return impl_->all(impl_->trials, get_pass); }
+std::vector<PassRow> SessionReader::passes() const {
+  return impl_->all(impl_->trials, impl_->version == 1 ? get_pass_1 : get_pass);
+}
 
 std::vector<EventRow> SessionReader::events() const {
-  std::vector<EventRow> result;
-  for (EventPart& part : impl_->all(impl_->events, get_event)) {
-    if (part.part > 0 && !result.empty()) {
-      result.back().text += part.row.text;
-    } else {
-      result.push_back(std::move(part.row));
-    }
-  }
-  return result;
+  return joined_events(impl_->all(impl_->events, get_event));
 }
+
+std::vector<FrameRow> SessionReader::frames() const { return impl_->all(impl_->frames, get_frame); }
 
 std::vector<StimulusRow> SessionReader::stimuli() const {
   return impl_->all(impl_->stimuli, get_stimulus);

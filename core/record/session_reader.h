@@ -27,7 +27,7 @@ struct SampleColumns {
 class SessionReader {
  public:
   /// @throws InputError when the file is absent, a directory, not HDF5, cut short, or not a session
-  /// file of this schema version.
+  /// file of a schema version up to this one.
   explicit SessionReader(const std::filesystem::path& path);
   ~SessionReader();
   SessionReader(SessionReader&&) noexcept;
@@ -35,7 +35,9 @@ class SessionReader {
 
   const std::filesystem::path& path() const;
   const SessionInfo& info() const;
+  std::int64_t version() const;  // of the file's schema
   std::uint64_t sample_count() const;
+  std::size_t chunk_rows() const;  // length of a chunk of /samples
 
   /// Rows [first, first + count) of /samples. Without gaps a row is its sequence number.
   /// @throws std::invalid_argument when they are not all there.
@@ -44,6 +46,9 @@ class SessionReader {
 
   std::vector<PassRow> passes() const;
   std::vector<EventRow> events() const;
+  std::uint64_t event_rows() const;  // with the rows that continue others
+  std::uint64_t attribute_rows() const;
+  std::vector<FrameRow> frames() const;  // none in a file of schema version 1
   std::vector<StimulusRow> stimuli() const;
   std::vector<TimingRow> timing() const;
   /// Nothing when the session did not come to its end.

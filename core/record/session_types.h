@@ -38,6 +38,8 @@ struct PassRow {
   std::uint64_t first_sample{0};  // sequence numbers, both inclusive
   std::uint64_t last_sample{0};
   PassStatus status{PassStatus::kCompleted};
+  bool practice{false};     // not part of the study: no analysis counts it
+  std::int32_t attempt{1};  // from 1; an aborted trial that was queued again has 2, 3, ...
 };
 
 struct EventRow {
@@ -52,6 +54,13 @@ struct StimulusRow {
   double time{0.0};                                   // since the start of the run [s]
   Eigen::Vector3d position{Eigen::Vector3d::Zero()};  // ideal p_W [m]
   double force{0.0};                                  // target normal force [N]
+};
+
+/// One drawn frame of the participant's screen, a row of /frames.
+struct FrameRow {
+  std::int64_t time_ns{0};        // when it was shown, since the session's first tick [ns]
+  std::int64_t frame_time_ns{0};  // what drawing it took [ns]
+  std::int32_t dropped{0};        // refreshes of the screen missed since the frame before
 };
 
 /// How the loop kept time. Histogram counts go with the bin edges below them.
@@ -70,6 +79,17 @@ struct TimingSummary {
   std::uint64_t dropped{0};   // records that the loop could not hand over
 };
 
+/// Who takes part; root attributes participant_*. Texts as the study's form has them; whatever was
+/// not asked stays empty. There is no field for a name, nor for the experimenter's.
+struct Participant {
+  std::string identifier;
+  std::string handedness;  // "right", "left", ...
+  std::string age_band;    // "18-25", ...
+  std::string sex;
+  std::string consent_confirmed;  // "yes", or a date
+  std::string notes;
+};
+
 /// Root attributes of a session file.
 struct SessionInfo {
   std::string program_version;
@@ -85,6 +105,7 @@ struct SessionInfo {
   double rate{1000.0};                  // [Hz]
   std::string start_utc;                // ISO 8601, "2026-11-20T09:30:00Z"
   bool simulated{true};                 // the participant is a virtual subject
+  Participant participant{};
 };
 
 }  // namespace haptrial::record

@@ -1,219 +1,166 @@
 #include "core/record/session_writer.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <cstdio>
-#include <memory>
-#include <stdexcept>
-#include <string>
-#include <system_error>
-#include <utility>
 
 #include "core/base/error.h"
-#include "core/record/disk_space.h"
-#include "core/record/hdf5_layer.h"
 #include "core/record/row_codec.h"
 #include "core/record/schema.h"
-#include "core/record/table_writer.h"
+#include "core/record/session_info.h"
+#include "core/record/session_target.h"
+#include "core/record/session_writer_impl.h"
 
 namespace haptrial::record {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path partial_path(const fs::path& final_path) {
-  fs::path path = final_path;
-  path += ".partial";
-  return path;
+// Dry runs write twelve sessions in seconds; a session with a person has time, and short chunks.
+constexpr int kFastLevel = 1;
+constexpr int kLiveLevel = 3;
+
+bool is_live(const SessionInfo& info) { return info.clock == "real"; }
+
+TableSchema sized(const TableSchema& schema, const SessionInfo& info) {
+  const bool short_chunks = is_live(info) && &schema == &samples_schema();
+  return short_chunks ? schema.with_chunks(live_chunk_rows(info.rate)) : schema;
 }
 
-void check_target(const fs::path& final_path, const fs::path& partial) {
-  const std::string name = final_path.string();
-  std::error_code ignored;
-  const fs::path folder = final_path.has_parent_path() ? final_path.parent_path() : fs::path(".");
-  if (!final_path.has_filename()) {
-    throw InputError(name + ": no file name; allowed: a file in an existing folder");
-  }
-  if (!fs::is_directory(folder, ignored)) {
-    throw InputError(name + ": the folder " + folder.string() +
-                     " does not exist; allowed: a file in an existing folder");
-  }
-  if (fs::symlink_status(final_path, ignored).type() != fs::file_type::not_found) {
-    throw InputError(name + ": exists already; allowed: a new file");
-  }
-  if (fs::symlink_status(partial, ignored).type() != fs::file_type::not_found) {
-    throw InputError(partial.string() + ": exists already, from a session that did not end or " +
-                     "still runs; allowed: a new file");
-  }
-  if (access(folder.c_str(), W_OK | X_OK) != 0) {
-    throw InputError(name + ": the folder " + folder.string() +
-                     " may not be written; allowed: a folder with write permission");
-  }
-}
-
-void check_texts(const fs::path& final_path, const SessionInfo& info) {
-  const std::array<std::pair<const char*, const std::string*>, 8> texts{{
-      {"program_version", &info.program_version},
-      {"program_commit", &info.program_commit},
-      {"definition", &info.definition},
-      {"definition_name", &info.definition_name},
-      {"subject", &info.subject},
-      {"device", &info.device},
-      {"clock", &info.clock},
-      {"start_utc", &info.start_utc},
-  }};
-  for (const auto& [name, text] : texts) {
-    if (text->find('\0') != std::string::npos) {
-      throw InputError(final_path.string() + ": " + name + " holds a NUL byte; allowed: text");
+void put_attributes(TableWriter& table, const std::vector<EventRow>& rows) {
+  for (const EventRow& row : rows) {
+    for (const EventPart& part : event_parts(row)) {
+      put_attribute(table.planes(), table.used(), part);
+      table.added(1);
     }
   }
-}
-
-void put_info(const h5::Id& file, const SessionInfo& info) {
-  h5::put(file, "schema_version", kSchemaVersion);
-  h5::put(file, "program_version", info.program_version);
-  h5::put(file, "program_commit", info.program_commit);
-  h5::put(file, "definition", info.definition);
-  h5::put(file, "definition_name", info.definition_name);
-  h5::put(file, "subject", info.subject);
-  h5::put(file, "seed", info.seed);
-  h5::put(file, "device", info.device);
-  h5::put(file, "device_max_force", info.device_max_force);
-  h5::put(file, "device_workspace_radius", info.device_workspace_radius);
-  h5::put(file, "clock", info.clock);
-  h5::put(file, "rate", info.rate);
-  h5::put(file, "start_utc", info.start_utc);
-  h5::put(file, "simulated", std::uint64_t{info.simulated ? 1u : 0u});
-}
-
-void sync(const fs::path& path, int flags) {
-  const int descriptor = open(path.c_str(), flags | O_CLOEXEC);
-  if (descriptor < 0) throw h5::Error(std::generic_category().message(errno));
-  const int status = fsync(descriptor);
-  const int code = errno;
-  ::close(descriptor);
-  if (status != 0) throw h5::Error(std::generic_category().message(code));
-}
-
-/// Gives back the blocks that were reserved behind the end. Best effort: they hold nothing.
-void trim(const fs::path& path) noexcept {
-  struct stat file {};
-  if (stat(path.c_str(), &file) == 0 && truncate(path.c_str(), file.st_size) != 0) errno = 0;
-}
-
-void rename_to_new(const fs::path& from, const fs::path& to) {
-  if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return;
-  // A file system without the flag: look first, and take the small race.
-  if (errno == EINVAL || errno == ENOSYS) {
-    errno = fs::exists(to) ? EEXIST : 0;
-    if (errno == 0 && rename(from.c_str(), to.c_str()) == 0) return;
-  }
-  throw h5::Error("cannot rename to " + to.string() + ": " +
-                  std::generic_category().message(errno));
 }
 
 }  // namespace
 
-struct SessionWriter::Impl {
-  Impl(const fs::path& file_path, const SessionInfo& info)
-      : final_path(file_path), partial(partial_path(file_path)), file(h5::create_file(partial)) {
-    try {
-      space.ensure(h5::descriptor(file), 0);
-      put_info(file, info);
-      for (auto [table, schema] : tables()) {
-        *table = std::make_unique<TableWriter>(file, *schema, [this](std::uint64_t bytes) {
-          space.ensure(h5::descriptor(file), bytes);
-        });
-      }
-      for (const char* count : {"ticks", "overruns", "dropped"}) {
-        h5::put(timing->dataset(), count, std::int64_t{-1});
-      }
-      h5::start_swmr(file);
-      h5::flush(file);
-    } catch (...) {
-      divert_file();
-      close_tables();
-      file.reset();
-      std::remove(partial.c_str());
-      throw;
-    }
-  }
-
-  std::array<std::pair<std::unique_ptr<TableWriter>*, const TableSchema*>, 5> tables() {
-    return {{{&samples, &samples_schema()},
-             {&trials, &trials_schema()},
-             {&events, &events_schema()},
-             {&stimuli, &stimuli_schema()},
-             {&timing, &timing_schema()}}};
-  }
-
-  /// Runs one step of writing; its first failure ends all writing.
-  template <typename Step>
-  void guarded(Step step) {
-    if (!failure.empty()) throw RunError(failure);
-    if (!file) throw std::invalid_argument(final_path.string() + ": the session was closed before");
-    try {
-      step();
-    } catch (const NoSpace& error) {
-      give_up(error.what());  // met before HDF5 wrote anything: the file can still be closed
-    } catch (const h5::Error& error) {
-      divert_file();
-      give_up(error.what());
-    }
-  }
-
-  [[noreturn]] void give_up(const std::string& why) {
-    failure = final_path.string() + ": the session cannot be written (" + why +
-              "); what came before is kept in " + partial.string();
-    throw RunError(failure);
-  }
-
-  void write_all() {
-    for (auto [table, schema] : tables()) (*table)->write_unfinished();
-    h5::flush(file);
-  }
-
-  void divert_file() noexcept {
-    try {
-      if (file) divert(h5::descriptor(file));
-    } catch (const h5::Error&) {
-      // Without a descriptor there is nothing to divert.
-    }
-  }
-
-  bool closable() noexcept {
-    try {
-      probe(h5::descriptor(file));
-      return true;
-    } catch (const h5::Error&) {
-      return false;
-    }
-  }
-
-  void close_tables() noexcept {
+SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info)
+    : final_path(file_path),
+      partial(partial_path(file_path)),
+      live(is_live(info)),
+      lock(FileLock::take(new_path(file_path), true)) {
+  const fs::path created = new_path(file_path);
+  try {
+    file = h5::create_file(created, true);
+    space.ensure(h5::descriptor(file), 0);
+    put_info(file, info);
     for (auto [table, schema] : tables()) {
-      if (*table) (*table)->close();
+      table->emplace(file, sized(*schema, info), live ? kLiveLevel : kFastLevel, ensure_space());
     }
+    for (const char* count : {"ticks", "overruns", "dropped"}) {
+      h5::put(timing->dataset(), count, std::int64_t{-1});
+    }
+    put_attributes(*attributes, info_rows(info));
+    h5::start_swmr(file);
+    write(true);
+    rename_to_new(created, partial);
+  } catch (...) {
+    divert_file();
+    close_tables();
+    file.reset();
+    std::remove(created.c_str());
+    throw;
   }
+}
 
-  fs::path final_path;
-  fs::path partial;
-  h5::Id file;
-  DiskSpace space;
-  std::unique_ptr<TableWriter> samples, trials, events, stimuli, timing;
-  bool has_timing{false};
-  bool finished{false};
-  std::string failure;
-};
+SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info, FileLock held,
+                          const KeptRows& rows)
+    : final_path(file_path),
+      partial(partial_path(file_path)),
+      live(is_live(info)),
+      lock(std::move(held)),
+      file(h5::open_to_go_on(partial)),
+      resumed(true) {
+  // In the order of tables().
+  const std::array kept{rows.samples, rows.frames, rows.trials,    rows.events,
+                        rows.stimuli, rows.timing, rows.attributes};
+  try {
+    space.ensure(h5::descriptor(file), 0);
+    std::size_t i = 0;
+    for (auto [table, schema] : tables()) {
+      table->emplace(TableWriter::go_on(file, *schema, kept[i++], live ? kLiveLevel : kFastLevel,
+                                        ensure_space()));
+    }
+    h5::start_swmr(file);
+    h5::flush(file);
+  } catch (...) {
+    close_tables();
+    file.reset();
+    throw;
+  }
+}
+
+SessionWriter::Impl::Tables SessionWriter::Impl::tables() {
+  return {{{&samples, &samples_schema()},
+           {&frames, &frames_schema()},
+           {&trials, &trials_schema()},
+           {&events, &events_schema()},
+           {&stimuli, &stimuli_schema()},
+           {&timing, &timing_schema()},
+           {&attributes, &attributes_schema()}}};
+}
+
+TableWriter::EnsureSpace SessionWriter::Impl::ensure_space() {
+  return [this](std::uint64_t bytes) { space.ensure(h5::descriptor(file), bytes); };
+}
+
+void SessionWriter::Impl::check_open() const {
+  if (!failure.empty()) throw RunError(failure);
+  if (!file) throw std::invalid_argument(final_path.string() + ": the session was closed before");
+}
+
+void SessionWriter::Impl::give_up(const std::string& why) {
+  failure = final_path.string() + ": the session cannot be written (" + why +
+            "); what came before is kept in " + partial.string();
+  throw RunError(failure);
+}
+
+/// Before a row of /trials that refers to them, whenever the process is killed.
+void SessionWriter::Impl::write_samples() {
+  samples->write_unfinished();
+  h5::flush(file);
+}
+
+void SessionWriter::Impl::write(bool all) {
+  if (all || trials->has_unwritten()) write_samples();
+  if (all) frames->write_unfinished();
+  for (auto* table : {&trials, &events, &stimuli, &timing, &attributes}) {
+    (*table)->write_unfinished();
+  }
+  h5::flush(file);
+}
+
+void SessionWriter::Impl::divert_file() noexcept {
+  try {
+    if (file) divert(h5::descriptor(file));
+  } catch (const h5::Error&) {
+    // Without a descriptor there is nothing to divert.
+  }
+}
+
+bool SessionWriter::Impl::closable() noexcept {
+  try {
+    probe(h5::descriptor(file));
+    return true;
+  } catch (const h5::Error&) {
+    return false;
+  }
+}
+
+void SessionWriter::Impl::close_tables() noexcept {
+  for (auto [table, schema] : tables()) {
+    if (*table) (*table)->close();
+  }
+}
 
 SessionWriter::SessionWriter(const fs::path& final_path, const SessionInfo& info) {
-  check_target(final_path, partial_path(final_path));
-  check_texts(final_path, info);
+  check_target(final_path);
+  if (const auto name = text_with_nul(info)) {
+    throw InputError(final_path.string() + ": " + *name + " holds a NUL byte; allowed: text");
+  }
   try {
     impl_ = std::make_unique<Impl>(final_path, info);
   } catch (const h5::Error& error) {
@@ -222,10 +169,13 @@ SessionWriter::SessionWriter(const fs::path& final_path, const SessionInfo& info
   }
 }
 
+SessionWriter::SessionWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SessionWriter::SessionWriter(SessionWriter&&) noexcept = default;
+
 SessionWriter::~SessionWriter() {
-  if (!impl_->file) return;
+  if (!impl_ || !impl_->file) return;
   try {
-    if (impl_->failure.empty()) impl_->guarded([&] { impl_->write_all(); });
+    if (impl_->failure.empty()) impl_->guarded([&] { impl_->write(true); });
   } catch (const std::exception&) {
     // The destructor has no one to tell; close() is for those who want to know.
   }
@@ -238,18 +188,22 @@ SessionWriter::~SessionWriter() {
 void SessionWriter::append(std::span<const Sample> rows) {
   impl_->guarded([&] {
     TableWriter& table = *impl_->samples;
+    bool finished_chunk = false;
     while (!rows.empty()) {
       const std::size_t count = std::min(table.room(), rows.size());
       put_samples(table.planes(), table.used(), rows.first(count));
       table.added(count);
+      finished_chunk = finished_chunk || table.used() == 0;
       rows = rows.subspan(count);
     }
+    if (finished_chunk && impl_->live) h5::flush(impl_->file);
   });
 }
 
 void SessionWriter::add_pass(const PassRow& pass) {
   impl_->guarded([&] {
     put_pass(impl_->trials->planes(), impl_->trials->used(), pass);
+    if (impl_->trials->room() == 1) impl_->write_samples();
     impl_->trials->added(1);
   });
 }
@@ -269,6 +223,16 @@ void SessionWriter::add_stimulus(std::span<const StimulusRow> rows) {
       put_stimulus(impl_->stimuli->planes(), impl_->stimuli->used(), row);
       impl_->stimuli->added(1);
     }
+    if (impl_->live) impl_->write(false);  // a block is there whole or not at all
+  });
+}
+
+void SessionWriter::add_frames(std::span<const FrameRow> rows) {
+  impl_->guarded([&] {
+    for (const FrameRow& row : rows) {
+      put_frame(impl_->frames->planes(), impl_->frames->used(), row);
+      impl_->frames->added(1);
+    }
   });
 }
 
@@ -279,31 +243,46 @@ void SessionWriter::set_timing(std::span<const TimingRow> histogram, const Timin
       put_timing(impl_->timing->planes(), impl_->timing->used(), row);
       impl_->timing->added(1);
     }
-    impl_->space.ensure(h5::descriptor(impl_->file), 0);
-    const h5::Id& dataset = impl_->timing->dataset();
-    h5::put(dataset, "ticks", static_cast<std::int64_t>(summary.ticks));
-    h5::put(dataset, "overruns", static_cast<std::int64_t>(summary.overruns));
-    h5::put(dataset, "dropped", static_cast<std::int64_t>(summary.dropped));
+    impl_->write(true);  // the counts say that the session ended: last of all
+    const std::array<std::pair<const char*, std::uint64_t>, 3> counts{
+        {{"ticks", summary.ticks + impl_->earlier_ticks},
+         {"overruns", summary.overruns},
+         {"dropped", summary.dropped}}};
+    for (const auto& [name, count] : counts) {
+      h5::put(impl_->timing->dataset(), name, static_cast<std::int64_t>(count));
+      put_attributes(*impl_->attributes, {{0, name, std::to_string(count)}});
+    }
     impl_->has_timing = true;
   });
 }
 
 void SessionWriter::flush() {
-  impl_->guarded([&] { impl_->write_all(); });
+  impl_->guarded([&] { impl_->write(!impl_->live); });
 }
+
+void SessionWriter::sync() {
+  impl_->guarded([&] {
+    impl_->write(true);
+    sync_data(h5::descriptor(impl_->file));
+    if (!impl_->folder_synced) sync_folder_of(impl_->partial);
+    impl_->folder_synced = true;
+  });
+}
+
+bool SessionWriter::can_go_on() const noexcept { return impl_->file && impl_->failure.empty(); }
 
 void SessionWriter::close() {
   impl_->guarded([&] {
-    impl_->write_all();
+    impl_->write(true);
     probe(h5::descriptor(impl_->file));
     impl_->close_tables();
     h5::close(impl_->file);
     trim(impl_->partial);
-    sync(impl_->partial, O_RDWR);
+    sync_file(impl_->partial);
     rename_to_new(impl_->partial, impl_->final_path);
     impl_->finished = true;
-    const fs::path folder = impl_->final_path.parent_path();
-    sync(folder.empty() ? fs::path(".") : folder, O_RDONLY | O_DIRECTORY);
+    impl_->lock = FileLock();
+    sync_folder_of(impl_->final_path);
   });
 }
 
@@ -311,10 +290,12 @@ void SessionWriter::discard() {
   if (impl_->finished) {
     throw std::invalid_argument(impl_->final_path.string() + ": the session was closed before");
   }
-  impl_->divert_file();  // what HDF5 still holds need not reach the disk
+  // What HDF5 still holds of a new session need not reach the disk.
+  if (!impl_->resumed) impl_->divert_file();
   impl_->close_tables();
   impl_->file.reset();
-  std::remove(impl_->partial.c_str());
+  if (!impl_->resumed) std::remove(impl_->partial.c_str());
+  impl_->lock = FileLock();
 }
 
 }  // namespace haptrial::record

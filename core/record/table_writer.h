@@ -17,7 +17,13 @@ class TableWriter {
   using EnsureSpace = std::function<void(std::uint64_t bytes)>;
 
   /// Creates the dataset. @param ensure_space  called before each write to the file.
-  TableWriter(const h5::Id& file, const TableSchema& schema, EnsureSpace ensure_space);
+  /// @param level  of compression, 1 (fast) to 12
+  TableWriter(const h5::Id& file, const TableSchema& schema, int level, EnsureSpace ensure_space);
+
+  /// Opens the dataset to go on after its first `rows` rows; those behind them are removed. Not in
+  /// SWMR mode. @throws h5::Error when the chunk to go on in cannot be read.
+  static TableWriter go_on(const h5::Id& file, const TableSchema& schema, std::uint64_t rows,
+                           int level, EnsureSpace ensure_space);
 
   /// Where the next rows go: rows [used(), used() + room()) of the chunk; then say how many.
   BytePlanes& planes() { return planes_; }
@@ -27,11 +33,14 @@ class TableWriter {
 
   /// Writes the rows of the unfinished chunk, padded with zeros; more may follow them.
   void write_unfinished();
+  bool has_unwritten() const { return used_ != written_; }
 
   const h5::Id& dataset() const { return dataset_; }
   void close() noexcept { dataset_.reset(); }
 
  private:
+  TableWriter(h5::Id dataset, const TableSchema& schema, std::size_t chunk_rows, int level,
+              EnsureSpace ensure_space);
   void write();
 
   h5::Id dataset_;
@@ -40,7 +49,8 @@ class TableWriter {
   Deflater deflater_;
   std::uint64_t first_row_{0};  // of the present chunk
   std::size_t used_{0};
-  std::size_t written_{0};  // rows of the present chunk that are in the file
+  std::size_t written_{0};        // rows of the present chunk that are in the file
+  std::size_t written_bytes_{0};  // that they take there
 };
 
 }  // namespace haptrial::record

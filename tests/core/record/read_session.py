@@ -68,10 +68,17 @@ def check_expected(file, trials, expected):
         check(file.attrs[name] == value, f"attribute {name}: {file.attrs[name]!r}")
     for name, value in expected["counts"].items():
         check(file["timing"].attrs[name] == value, f"attribute {name} of /timing")
-    for table in ("trials", "events", "stimuli", "timing"):
+    for table in ("trials", "events", "stimuli", "timing", "frames"):
         rows = [[v.decode("utf-8") if isinstance(v, bytes) else v for v in row.tolist()]
                 for row in file[table][:]]
         check(rows == expected[table], f"/{table}: {rows}")
+    copy = {}
+    for name, value, _ in file["attributes"][:].tolist():
+        copy[name.decode()] = copy.get(name.decode(), "") + value.decode()
+    for name, value in {**expected["attributes"], **expected["counts"]}.items():
+        if name != "schema_version":
+            same = float(copy[name]) == value if isinstance(value, float) else copy[name] == str(value)
+            check(same, f"/attributes: {name} is {copy[name]!r}")
     check(list(trials["condition"]) == [row[1] for row in expected["trials"]], "conditions")
 
 

@@ -25,6 +25,11 @@ record::SessionInfo example_info() {
   info.rate = 1000.0;
   info.start_utc = "2026-11-20T09:30:00Z";
   info.simulated = true;
+  info.participant.identifier = "P07";
+  info.participant.handedness = "right";
+  info.participant.age_band = "18-25";
+  info.participant.consent_confirmed = "yes";
+  info.participant.notes = "trägt Brille";
   return info;
 }
 

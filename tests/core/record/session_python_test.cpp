@@ -29,16 +29,20 @@ void write_csv(const std::filesystem::path& path, const std::vector<Sample>& sam
 
 // Written by hand from the rows below: the file is compared with the source, not with a reader.
 constexpr const char* kExpected = R"({
-"attributes": {"schema_version": 1, "program_version": "0.1.0", "program_commit": "0123abc",
+"attributes": {"schema_version": 2, "program_version": "0.1.0", "program_commit": "0123abc",
   "definition": "[trajectory]\nspeed = 0.016  # größer als 0\n", "definition_name": "recall.toml",
   "subject": "P07", "seed": 18364758544493064720, "device": "virtual", "device_max_force": 8.5,
   "device_workspace_radius": 0.16, "clock": "simulated", "rate": 1000.0,
-  "start_utc": "2026-11-20T09:30:00Z", "simulated": 1},
+  "start_utc": "2026-11-20T09:30:00Z", "simulated": 1,
+  "participant_identifier": "P07", "participant_handedness": "right",
+  "participant_age_band": "18-25", "participant_sex": "", "participant_consent_confirmed": "yes",
+  "participant_notes": "trägt Brille"},
 "counts": {"ticks": 9001, "overruns": 3, "dropped": 0},
-"trials": [[1, "haptic", "training", 1, 1, 18446744073709551615, 0, 4500, "completed"],
-           [1, "größe", "test", 1, 1, 7, 4501, 8999, "aborted"]],
+"trials": [[1, "haptic", "training", 1, 1, 18446744073709551615, 0, 4500, "completed", 1, 1],
+           [1, "größe", "test", 1, 1, 7, 4501, 8999, "aborted", 0, 2]],
 "events": [[-5, "session_start", "Grüße", 0], [9000000000, "fault", "", 0]],
 "stimuli": [[1, 0.0, 0.1, -0.2, 0.3, 1.5], [1, 0.001, 0.1, -0.2, 0.30000000000000004, 1.25]],
+"frames": [[16666667, 2000000, 0], [50000000, 3500000, 1]],
 "timing": [[-1000, 0, 1, 2, 3], [0, 1000, 4, 5, 6]]})";
 
 TEST(SessionPythonTest, ReadsWithH5pyAndPandasAsTheDocumentSays) {
@@ -50,12 +54,13 @@ TEST(SessionPythonTest, ReadsWithH5pyAndPandasAsTheDocumentSays) {
   writer.flush();  // the unfinished chunk is written twice
   writer.append(std::span(samples).subspan(5000));
   writer.add_pass(
-      {1, "haptic", Phase::kTraining, 1, 1, ~std::uint64_t{0}, 0, 4500, PassStatus::kCompleted});
-  writer.add_pass({1, "größe", Phase::kTest, 1, 1, 7, 4501, 8999, PassStatus::kAborted});
+      {1, "haptic", Phase::kTraining, 1, 1, ~std::uint64_t{0}, 0, 4500, PassStatus::kCompleted, true});
+  writer.add_pass({1, "größe", Phase::kTest, 1, 1, 7, 4501, 8999, PassStatus::kAborted, false, 2});
   writer.add_event({-5, "session_start", "Grüße"});
   writer.add_event({9000000000, "fault", ""});
   writer.add_stimulus(std::vector<StimulusRow>{{1, 0.0, {0.1, -0.2, 0.3}, 1.5},
                                                {1, 0.001, {0.1, -0.2, 0.1 + 0.2}, 1.25}});
+  writer.add_frames(std::vector<FrameRow>{{16666667, 2000000, 0}, {50000000, 3500000, 1}});
   writer.set_timing(std::vector<TimingRow>{{-1000, 0, 1, 2, 3}, {0, 1000, 4, 5, 6}}, {9001, 3, 0});
   writer.close();
   write_csv(folder / "samples.csv", samples);

@@ -88,7 +88,7 @@ TEST(SessionReaderTest, RefusesOtherLayouts) {
     const h5::Id file = h5::create_file(folder / "future.h5");
     h5::put(file, "schema_version", std::int64_t{kSchemaVersion + 1});
   }
-  EXPECT_THAT(refusal(folder / "future.h5"), HasSubstr("schema version 2 instead of 1"));
+  EXPECT_THAT(refusal(folder / "future.h5"), HasSubstr("schema version 3 instead of 1 to 2"));
   {
     const h5::Id file = h5::create_file(folder / "text_version.h5");
     h5::put(file, "schema_version", std::string("1"));
@@ -101,7 +101,9 @@ void create_with(const fs::path& path, const std::vector<TableSchema>& schemas) 
   const h5::Id file = h5::create_file(path);
   h5::put(file, "schema_version", kSchemaVersion);
   for (const char* name : {"program_version", "program_commit", "definition", "definition_name",
-                           "subject", "device", "clock", "start_utc"}) {
+                           "subject", "device", "clock", "start_utc", "participant_identifier",
+                           "participant_handedness", "participant_age_band", "participant_sex",
+                           "participant_consent_confirmed", "participant_notes"}) {
     h5::put(file, name, std::string("x"));
   }
   for (const char* name : {"device_max_force", "device_workspace_radius", "rate"}) {
@@ -114,7 +116,8 @@ void create_with(const fs::path& path, const std::vector<TableSchema>& schemas) 
 TEST(SessionReaderTest, RefusesMissingAndForeignDatasets) {
   const TemporaryFolder folder;
   const std::vector<TableSchema> all{samples_schema(), trials_schema(), events_schema(),
-                                     stimuli_schema(), timing_schema()};
+                                     stimuli_schema(), timing_schema(), frames_schema(),
+                                     attributes_schema()};
   for (std::size_t gone = 0; gone < all.size(); ++gone) {
     std::vector<TableSchema> rest = all;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(gone));
@@ -127,7 +130,7 @@ TEST(SessionReaderTest, RefusesMissingAndForeignDatasets) {
   create_with(folder / "foreign.h5", foreign);
   EXPECT_THAT(refusal(folder / "foreign.h5"), HasSubstr("/trials has other columns"));
   create_with(folder / "whole.h5", all);
-  EXPECT_THAT(refusal(folder / "whole.h5"), HasSubstr("the counts of /timing"));
+  EXPECT_THAT(refusal(folder / "whole.h5"), HasSubstr("/attributes is empty"));
 }
 
 /// What a killed writer leaves: the file as it is while the writer still has it open.

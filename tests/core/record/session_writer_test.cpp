@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -262,13 +263,16 @@ TEST(SessionWriterTest, AFullDiskIsASentence) {
   EXPECT_EQ(umount(disk.c_str()), 0);
 }
 
-/// The descriptor under an open file of this process.
+/// The descriptor through which this process writes the file: the last one, behind the lock's.
 int descriptor_of(const fs::path& file) {
+  int last = -1;
   for (const auto& entry : fs::directory_iterator("/proc/self/fd")) {
     std::error_code ignored;
-    if (fs::read_symlink(entry.path(), ignored) == file) return std::stoi(entry.path().filename());
+    if (fs::read_symlink(entry.path(), ignored) == file) {
+      last = std::max(last, std::stoi(entry.path().filename()));
+    }
   }
-  return -1;
+  return last;
 }
 
 TEST(SessionWriterTest, AWriteThatFailsWithinHdf5IsASentenceAndTheFileStaysReadable) {

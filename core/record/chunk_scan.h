@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+
+namespace haptrial::record {
+
+/// Finds the chunks of our datasets in a file without its structure: each is a zlib stream with a
+/// checksum, and its size when inflated tells its dataset.
+///
+/// Calls found(offset, raw) for each stream that is whole, in the order of the file; `raw` is
+/// inflated, and valid until found() returns.
+void scan_chunks(
+    std::span<const std::uint8_t> file,
+    const std::function<void(std::uint64_t offset, std::span<const std::uint8_t> raw)>& found);
+
+}  // namespace haptrial::record
