@@ -1,0 +1,234 @@
+#include "core/stream/lsl_outlet.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <exception>
+#include <optional>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/device/dynamic_library.h"
+
+namespace haptrial::stream {
+namespace {
+
+constexpr std::int32_t kDouble = 2;  // channel formats
+constexpr std::int32_t kText = 3;
+constexpr double kIrregular = 0.0;          // rate of a stream without one
+constexpr std::int32_t kChunkAsPushed = 0;  // samples are sent on as they were pushed
+constexpr std::int32_t kBuffered = 360;     // kept for who listens late or slowly [s]
+
+constexpr std::array<LslOutlet::Channel, 15> kChannels{{
+    {"sequence", "1", "Counter"},
+    {"position_x", "m", "Position"},
+    {"position_y", "m", "Position"},
+    {"position_z", "m", "Position"},
+    {"velocity_x", "m/s", "Velocity"},
+    {"velocity_y", "m/s", "Velocity"},
+    {"velocity_z", "m/s", "Velocity"},
+    {"force_x", "N", "Force"},
+    {"force_y", "N", "Force"},
+    {"force_z", "N", "Force"},
+    {"applied_force", "N", "Force"},
+    {"target_force", "N", "Force"},
+    {"pass", "1", "Counter"},
+    {"stage", "1", "State"},
+    {"saturated", "1", "State"},
+}};
+
+/// The functions of the library, as its interface documents them.
+struct Functions {
+  using Info = void*;
+  using Xml = void*;
+  using Outlet = void*;
+  Info (*create_streaminfo)(const char* name, const char* type, std::int32_t channels, double rate,
+                            std::int32_t format, const char* source_id);
+  Xml (*get_desc)(Info);
+  Xml (*append_child)(Xml, const char* name);
+  Xml (*append_child_value)(Xml, const char* name, const char* value);
+  Outlet (*create_outlet)(Info, std::int32_t chunk, std::int32_t max_buffered);
+  std::int32_t (*push_chunk)(Outlet, const double* values, unsigned long count,
+                             const double* timestamps);
+  std::int32_t (*push_text)(Outlet, const char** text, double timestamp);
+  double (*local_clock)();
+  const char* (*last_error)();
+  void (*destroy_outlet)(Outlet);
+  void (*destroy_streaminfo)(Info);
+};
+
+Functions load(const device::DynamicLibrary& library) {
+  Functions f{};
+  library.get(f.create_streaminfo, "lsl_create_streaminfo");
+  library.get(f.get_desc, "lsl_get_desc");
+  library.get(f.append_child, "lsl_append_child");
+  library.get(f.append_child_value, "lsl_append_child_value");
+  library.get(f.create_outlet, "lsl_create_outlet");
+  library.get(f.push_chunk, "lsl_push_chunk_dtn");
+  library.get(f.push_text, "lsl_push_sample_strt");
+  library.get(f.local_clock, "lsl_local_clock");
+  library.get(f.last_error, "lsl_last_error");
+  library.get(f.destroy_outlet, "lsl_destroy_outlet");
+  library.get(f.destroy_streaminfo, "lsl_destroy_streaminfo");
+  return f;
+}
+
+void append(const record::Sample& s, std::vector<double>& values) {
+  values.push_back(static_cast<double>(s.sequence));
+  for (const Eigen::Vector3d* vector : {&s.position, &s.velocity, &s.force}) {
+    values.insert(values.end(), vector->begin(), vector->end());
+  }
+  values.insert(values.end(), {s.applied_force, s.target_force, static_cast<double>(s.pass),
+                               static_cast<double>(s.stage), s.saturated ? 1.0 : 0.0});
+}
+
+double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
+
+}  // namespace
+
+struct LslOutlet::Impl {
+  explicit Impl(const LslOptions& o)
+      : options(o),
+        library(o.library, "the Lab Streaming Layer, https://labstreaminglayer.org"),
+        lsl(load(library)) {}
+  ~Impl() {
+    for (const Functions::Outlet outlet : {samples, markers}) {
+      if (outlet != nullptr) {
+        lsl.destroy_outlet(outlet);
+      }
+    }
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  Functions::Outlet open_samples();
+  Functions::Outlet open_markers();
+  Functions::Outlet opened(Functions::Info info, const std::string& name);
+  void describe(Functions::Info info);
+  void tie(std::int64_t session_ns) { offset = lsl.local_clock() - seconds(session_ns); }
+  void note(std::int32_t result, std::size_t count);
+
+  LslOptions options;
+  device::DynamicLibrary library;
+  Functions lsl;
+  Functions::Outlet samples{nullptr};
+  Functions::Outlet markers{nullptr};
+  std::optional<double> offset;  // of the layer's clock from the session's [s]
+  std::vector<double> values;
+  std::vector<double> timestamps;
+  std::uint64_t refused{0};
+  std::string first_refusal;
+};
+
+void LslOutlet::Impl::describe(Functions::Info info) {
+  const Functions::Xml about = lsl.get_desc(info);
+  lsl.append_child_value(about, "study", options.study.c_str());
+  lsl.append_child_value(about, "subject", options.subject.c_str());
+  lsl.append_child_value(about, "device", options.device.c_str());
+  lsl.append_child_value(about, "simulated", options.simulated ? "true" : "false");
+}
+
+/// An outlet keeps a copy of its description, which is ours to destroy.
+Functions::Outlet LslOutlet::Impl::opened(Functions::Info info, const std::string& name) {
+  const Functions::Outlet outlet = lsl.create_outlet(info, kChunkAsPushed, kBuffered);
+  lsl.destroy_streaminfo(info);
+  if (outlet == nullptr) {
+    throw RunError(
+        fmt::format("the Lab Streaming Layer opens no stream '{}': {}", name, lsl.last_error()));
+  }
+  return outlet;
+}
+
+Functions::Outlet LslOutlet::Impl::open_samples() {
+  const std::string name = "haptrial " + options.subject;
+  const Functions::Info info = lsl.create_streaminfo(
+      name.c_str(), "Haptics", static_cast<std::int32_t>(kChannels.size()), options.rate, kDouble,
+      fmt::format("haptrial-{}-{}-samples", options.study, options.subject).c_str());
+  if (info == nullptr) {
+    throw RunError(fmt::format("the Lab Streaming Layer takes no description of '{}': {}", name,
+                               lsl.last_error()));
+  }
+  describe(info);
+  const Functions::Xml list = lsl.append_child(lsl.get_desc(info), "channels");
+  for (const Channel& channel : kChannels) {
+    const Functions::Xml one = lsl.append_child(list, "channel");
+    lsl.append_child_value(one, "label", channel.label);
+    lsl.append_child_value(one, "unit", channel.unit);
+    lsl.append_child_value(one, "type", channel.type);
+  }
+  return opened(info, name);
+}
+
+Functions::Outlet LslOutlet::Impl::open_markers() {
+  const std::string name = "haptrial " + options.subject + " markers";
+  const Functions::Info info = lsl.create_streaminfo(
+      name.c_str(), "Markers", 1, kIrregular, kText,
+      fmt::format("haptrial-{}-{}-markers", options.study, options.subject).c_str());
+  if (info == nullptr) {
+    throw RunError(fmt::format("the Lab Streaming Layer takes no description of '{}': {}", name,
+                               lsl.last_error()));
+  }
+  describe(info);
+  return opened(info, name);
+}
+
+void LslOutlet::Impl::note(std::int32_t result, std::size_t count) {
+  if (result != 0) {
+    if (refused == 0) {
+      first_refusal = fmt::format("error {}: {}", result, lsl.last_error());
+    }
+    refused += count;
+  }
+}
+
+std::span<const LslOutlet::Channel> LslOutlet::channels() { return kChannels; }
+
+LslOutlet::LslOutlet(const LslOptions& options) : impl_(std::make_unique<Impl>(options)) {
+  impl_->samples = impl_->open_samples();
+  impl_->markers = impl_->open_markers();
+}
+
+LslOutlet::~LslOutlet() = default;
+
+std::unique_ptr<LslOutlet> LslOutlet::open(const LslOptions& options, std::string& notice) {
+  try {
+    return std::make_unique<LslOutlet>(options);
+  } catch (const std::exception& error) {
+    notice = fmt::format("{}; the session goes on without its streams", error.what());
+    return nullptr;
+  }
+}
+
+void LslOutlet::synchronise(std::int64_t session_ns) { impl_->tie(session_ns); }
+
+void LslOutlet::push(std::span<const record::Sample> samples) {
+  if (samples.empty()) {
+    return;
+  }
+  if (!impl_->offset) {
+    impl_->tie(samples.back().time_ns);
+  }
+  impl_->values.clear();
+  impl_->timestamps.clear();
+  for (const record::Sample& sample : samples) {
+    append(sample, impl_->values);
+    impl_->timestamps.push_back(*impl_->offset + seconds(sample.time_ns));
+  }
+  impl_->note(impl_->lsl.push_chunk(impl_->samples, impl_->values.data(), impl_->values.size(),
+                                    impl_->timestamps.data()),
+              samples.size());
+}
+
+void LslOutlet::mark(const std::string& text, std::int64_t session_ns) {
+  if (!impl_->offset) {
+    impl_->tie(session_ns);
+  }
+  const char* marker = text.c_str();
+  impl_->note(impl_->lsl.push_text(impl_->markers, &marker, *impl_->offset + seconds(session_ns)),
+              1);
+}
+
+std::uint64_t LslOutlet::refused() const noexcept { return impl_->refused; }
+const std::string& LslOutlet::first_refusal() const noexcept { return impl_->first_refusal; }
+
+}  // namespace haptrial::stream

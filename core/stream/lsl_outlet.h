@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "core/record/session_types.h"
+
+namespace haptrial::stream {
+
+/// What the streams say of themselves.
+struct LslOptions {
+  std::string library{"liblsl.so"};  // a name that the loader searches for, or a path
+  std::string study;                 // name of the experiment
+  std::string subject;               // identifier
+  std::string device;
+  double rate{1000.0};  // of the samples [Hz]
+  bool simulated{false};
+};
+
+/// Sends a session to the Lab Streaming Layer while it runs: every sample in one stream, markers in
+/// another, on the layer's own clock, so that an EEG or eye tracker can be put beside it. The
+/// layer's library is loaded at run time.
+///
+/// A push may wait for a lock of the library: everything belongs to the thread that empties the
+/// block log, never to the servo thread.
+///
+/// Streams: "haptrial SUBJECT" of type Haptics, double precision, one channel a column of
+/// channels(); "haptrial SUBJECT markers" of type Markers, one text a marker.
+class LslOutlet {
+ public:
+  struct Channel {
+    const char* label;
+    const char* unit;
+    const char* type;
+  };
+  static std::span<const Channel> channels();
+
+  /// @throws InputError when the library is absent or lacks a function; RunError when it refuses a
+  /// stream.
+  explicit LslOutlet(const LslOptions& options);
+  ~LslOutlet();
+  LslOutlet(const LslOutlet&) = delete;
+  LslOutlet& operator=(const LslOutlet&) = delete;
+
+  /// An outlet where there can be one; else none and a sentence in `notice`: a session goes on
+  /// without its streams.
+  static std::unique_ptr<LslOutlet> open(const LslOptions& options, std::string& notice);
+
+  /// Ties the session's clock to the layer's. Without it the first push does, as if its last sample
+  /// were of now.
+  /// @param session_ns  the session's time now, since its first tick [ns]
+  void synchronise(std::int64_t session_ns);
+  void push(std::span<const record::Sample> samples);
+  void mark(const std::string& text, std::int64_t session_ns);
+
+  /// Samples and markers that the library did not take, and its words for the first one.
+  std::uint64_t refused() const noexcept;
+  const std::string& first_refusal() const noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace haptrial::stream
