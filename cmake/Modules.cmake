@@ -52,6 +52,16 @@ function(haptrial_stand_ins)
   endforeach()
 endfunction()
 
+# The console's page is built into the command.
+function(haptrial_console_page)
+  set(html ${CMAKE_SOURCE_DIR}/experiments/console.html)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${html})
+  file(READ ${html} HAPTRIAL_CONSOLE_HTML)
+  configure_file(${CMAKE_SOURCE_DIR}/cmake/console_page.cpp.in ${CMAKE_BINARY_DIR}/console_page.cpp
+                 @ONLY)
+  target_sources(haptrial_experiments PRIVATE ${CMAKE_BINARY_DIR}/console_page.cpp)
+endfunction()
+
 # tests/FOLDER/*.cpp becomes test_NAME for every module.
 function(haptrial_tests)
   include(GoogleTest)

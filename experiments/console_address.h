@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace haptrial::experiments {
+
+/// @param address  numeric, of one network interface; "every interface" (0.0.0.0) is not allowed,
+///                 since then nobody could say which Host is right.
+/// @returns whether it is of the loopback interface.
+/// @throws InputError also where it is not and `allow_remote` is false.
+bool check_console_address(const std::string& address, bool allow_remote);
+
+/// What the Host of a request may be: "127.0.0.1:8080" and, on loopback, "localhost:8080".
+std::vector<std::string> console_hosts(const std::string& address, bool loopback, int port);
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace haptrial::experiments {
+
+/// console.html as it stands in the source; built in.
+std::string_view console_page_template();
+
+/// The page with its nonce in place: only scripts and styles that carry it run.
+std::string console_page(const std::string& nonce);
+
+/// The Content-Security-Policy for that page.
+std::string console_page_policy(const std::string& nonce);
+
+}  // namespace haptrial::experiments

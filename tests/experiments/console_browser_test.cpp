@@ -1,0 +1,161 @@
+// The console's page in a real browser: console_browser.py clicks, this test is the session.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+#include "experiments/console.h"
+#include "experiments/console_messages.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using ::testing::ElementsAre;
+namespace fs = std::filesystem;
+
+bool is_installed(const std::string& program) {
+  return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
+}
+
+/// Plays a session as the runner would: follows what it is asked, publishes 50 times a second.
+class ScriptedSession {
+ public:
+  explicit ScriptedSession(SessionControl& control) : control_(control) {
+    status_.subject = "S01";
+    status_.state = "instructions";
+    status_.screen = "Hold the handle lightly.\nFollow the line; press as the bar shows.";
+    status_.trial = 1;
+    status_.trials = 72;
+    status_.block = 1;
+    status_.blocks = 24;
+    status_.condition = "visuohaptic";
+    status_.phase = "training";
+    status_.stage = "idle";
+    status_.device = "virtual";
+    status_.simulated = true;
+    status_.rate = 1000.0;
+    status_.lateness_median_us = 3.1;
+    status_.lateness_99_us = 11.8;
+    status_.lateness_worst_us = 64.0;
+    thread_ = std::thread([this] { run(); });
+  }
+  ~ScriptedSession() {
+    ended_ = true;
+    thread_.join();
+  }
+
+  const std::vector<std::string>& stop_and_tell() {
+    ended_ = true;
+    if (thread_.joinable()) {
+      thread_.join();
+    }
+    thread_ = std::thread([] {});
+    return heard_;
+  }
+
+ private:
+  void run() {
+    while (!ended_) {
+      for (const auto& message : control_.take()) {
+        heard_.push_back(message.is_note ? "note: " + message.text : name_of(message.request));
+        if (!message.is_note) {
+          follow(message.request);
+        }
+      }
+      move();
+      control_.publish(status_);
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+
+  void follow(Request request) {
+    switch (request) {
+      case Request::kStart:
+        status_.state = "running";
+        status_.screen.clear();
+        status_.stage = "run";
+        break;
+      case Request::kPause:
+        status_.state = "paused";
+        break;
+      case Request::kSkipTrial:
+        status_.trial = 20;
+        status_.block = 7;
+        break;
+      case Request::kEmergencyStop:
+        status_.state = "stopped";
+        status_.fault = "an emergency stop";
+        break;
+      case Request::kClear:
+        status_.state = "paused";
+        status_.fault.clear();
+        break;
+      default:
+        break;
+    }
+  }
+
+  void move() {
+    status_.ticks += 20;
+    const double t = static_cast<double>(status_.ticks) / 1000.0;
+    const bool moving = status_.state == "running";
+    status_.target_force = moving ? 2.2 + 1.1 * std::sin(1.26 * t) + 0.5 * std::sin(2.9 * t) : 0.0;
+    status_.applied_force = moving ? 0.93 * status_.target_force + 0.15 * std::sin(7.0 * t) : 0.0;
+    status_.position = {0.05 * std::sin(0.3 * t), 0.0004 * std::sin(5.0 * t),
+                        0.02 * std::cos(0.7 * t)};
+  }
+
+  SessionControl& control_;
+  SessionStatus status_;
+  std::vector<std::string> heard_;
+  std::atomic<bool> ended_{false};
+  std::thread thread_;
+};
+
+TEST(ConsoleBrowserTest, ASessionIsClickedThrough) {
+  if (!is_installed("chromedriver") || !is_installed("chromium") || !is_installed("python3")) {
+    GTEST_SKIP() << "needs Debian's chromium, chromium-driver and python3";
+  }
+  const test::TemporaryFolder folder;
+  SessionControl control;
+  ScriptedSession session(control);
+  auto console = std::make_unique<Console>(control);
+  const std::string command = "timeout 120 python3 '" HAPTRIAL_SOURCE_DIR
+                              "/tests/experiments/console_browser.py' '" +
+                              console->url() + "' '" + folder.path().string() + "' 2>&1";
+  FILE* script = ::popen(command.c_str(), "r");
+  ASSERT_NE(script, nullptr);
+  std::string output;
+  std::vector<std::string> refusals;
+  for (std::array<char, 512> line; std::fgets(line.data(), line.size(), script) != nullptr;) {
+    output += line.data();
+    if (output.ends_with("CLOSE\n")) {
+      refusals = console->refusals();
+      console.reset();
+    }
+  }
+  EXPECT_EQ(::pclose(script), 0) << output;
+  EXPECT_THAT(session.stop_and_tell(),
+              ElementsAre("start", "pause", "note: hand slips <b>&amp; \u00e9 r s a c p", "start",
+                          "repeat", "skip", "emergency_stop", "clear", "emergency_stop", "clear"));
+  EXPECT_GE(refusals.size(), 3u) << "of the page from elsewhere";
+  for (const char* picture :
+       {"console-running.png", "console-stopped.png", "console-narrow.png", "console-lost.png"}) {
+    ASSERT_TRUE(fs::exists(folder / picture)) << picture;
+    EXPECT_GT(fs::file_size(folder / picture), 10'000u) << picture;
+    if (const char* keep = std::getenv("HAPTRIAL_KEEP_PICTURES")) {
+      fs::copy(folder / picture, keep, fs::copy_options::overwrite_existing);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace haptrial::experiments
