@@ -59,7 +59,8 @@ PassTracking tracking_of(const std::vector<Sample>& run, const IdealPath& ideal,
 std::map<std::int32_t, std::size_t> counted_passes(const std::vector<PassRow>& passes) {
   std::map<std::int32_t, std::size_t> rows;
   for (std::size_t i = 0; i < passes.size(); ++i) {
-    if (passes[i].phase == Phase::kTest && passes[i].status == PassStatus::kCompleted) {
+    if (!passes[i].practice && passes[i].phase == Phase::kTest &&
+        passes[i].status == PassStatus::kCompleted) {
       rows[passes[i].trial] = i;
     }
   }
@@ -119,6 +120,9 @@ class Extraction {
  private:
   void take(std::size_t i) {
     const PassRow& pass = passes_[i];
+    if (pass.practice) {
+      return;
+    }
     const bool test = pass.phase == Phase::kTest;
     result_.summary.test_passes += test ? 1 : 0;
     if (pass.status != PassStatus::kCompleted) {
@@ -156,7 +160,7 @@ class Extraction {
   bool was_trained(std::int32_t trial) const {
     bool tried = false;
     for (const auto& pass : passes_) {
-      if (pass.trial == trial && pass.phase == Phase::kTraining) {
+      if (!pass.practice && pass.trial == trial && pass.phase == Phase::kTraining) {
         if (pass.status == PassStatus::kCompleted) {
           return true;
         }
@@ -190,6 +194,9 @@ class Extraction {
     std::set<std::int32_t> trained;
     std::set<std::int32_t> tested;
     for (const auto& pass : passes_) {
+      if (pass.practice) {
+        continue;
+      }
       (pass.phase == Phase::kTest ? tested : trained).insert(pass.trial);
     }
     for (const auto trial : trained) {

@@ -2,16 +2,54 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "core/record/file_lock.h"
 #include "core/record/integrity.h"
 #include "core/record/session_reader.h"
 
 namespace haptrial::experiments {
+namespace {
+
+void print_participant(const record::Participant& participant) {
+  const std::array<std::pair<const char*, const std::string*>, 5> fields{
+      {{"handedness", &participant.handedness},
+       {"age", &participant.age_band},
+       {"sex", &participant.sex},
+       {"consent", &participant.consent_confirmed},
+       {"notes", &participant.notes}}};
+  for (const auto& [name, value] : fields) {
+    if (!value->empty()) {
+      fmt::print("{:<11} {}\n", name, *value);
+    }
+  }
+}
+
+void print_frames(const std::vector<record::FrameRow>& frames) {
+  if (frames.empty()) {
+    return;
+  }
+  std::int64_t longest = 0;
+  std::int64_t dropped = 0;
+  for (const record::FrameRow& frame : frames) {
+    longest = std::max(longest, frame.frame_time_ns);
+    dropped += frame.dropped;
+  }
+  fmt::print("frames      {} drawn, {} refreshes missed, the longest took {:.1f} ms\n",
+             frames.size(), dropped, 1e-6 * static_cast<double>(longest));
+}
+
+}  // namespace
 
 int info(const std::string& file) {
   const record::SessionReader reader(file);
   const record::SessionInfo& i = reader.info();
   const record::Integrity integrity = record::check_session(reader);
   fmt::print("subject     {}{}\n", i.subject, i.simulated ? " (simulated)" : "");
+  print_participant(i.participant);
   fmt::print("definition  {}, seed {}\n", i.definition_name, i.seed);
   fmt::print("recorded    {}, haptrial {} ({})\n", i.start_utc, i.program_version,
              i.program_commit);
@@ -20,17 +58,23 @@ int info(const std::string& file) {
   fmt::print("clock       {}, {} Hz\n", i.clock, i.rate);
   fmt::print("rows        {}, sequence {} to {}, {} gaps\n", integrity.rows,
              integrity.first_sequence, integrity.last_sequence, integrity.gaps);
-  fmt::print("passes      {}, {} aborted\n", integrity.passes, integrity.aborted);
+  fmt::print("passes      {}, {} aborted, {} for practice\n", integrity.passes, integrity.aborted,
+             integrity.practice);
   fmt::print("loop        {} overruns, {} records dropped\n", integrity.overruns,
              integrity.dropped);
+  print_frames(reader.frames());
   for (const record::EventRow& event : reader.events()) {
-    if (event.kind == "aborted" || event.kind == "fault" || event.kind == "notice") {
+    if (event.kind == "aborted" || event.kind == "fault" || event.kind == "notice" ||
+        event.kind == "recovered") {
       fmt::print("{:<11} at {:.3f} s: {}\n", event.kind, 1e-9 * static_cast<double>(event.time_ns),
                  event.text);
     }
   }
   for (const std::string& problem : integrity.problems) {
     fmt::print("problem     {}\n", problem);
+  }
+  if (record::FileLock::taken(file)) {
+    fmt::print("a haptrial is recording into this file at present\n");
   }
   fmt::print("{}\n", integrity.ok ? "complete: every tick is recorded" : "NOT complete");
   return integrity.ok ? 0 : 1;

@@ -33,6 +33,9 @@ int run(const RunOptions& options);
 
 int analyze(const std::string& folder, std::optional<int> jobs);
 int info(const std::string& file);
+/// @param out  new session file; empty: beside the damaged one
+/// @returns 0 when something was recovered, else 1.
+int recover(const std::string& file, const std::string& out);
 int validate(const std::string& definition);
 int devices();
 

@@ -32,6 +32,7 @@ class Commands {
     add_run();
     add_analyze();
     add_info();
+    add_recover();
     add_validate();
     add_devices();
   }
@@ -84,6 +85,15 @@ class Commands {
     sub->callback([this] { status_ = experiments::info(path_); });
   }
 
+  void add_recover() {
+    CLI::App* sub = subcommand(app_, "recover", "Save what a damaged session file still holds",
+                               "haptrial recover out/sessions/P01.h5.partial");
+    sub->add_option("FILE", path_, "Damaged session file (.h5, .partial); it stays as it is")
+        ->required();
+    sub->add_option("OUT", recover_out_, "New session file (FILE.recovered.h5)");
+    sub->callback([this] { status_ = experiments::recover(path_, recover_out_); });
+  }
+
   void add_validate() {
     CLI::App* sub = subcommand(app_, "validate", "Check a definition and say what it plans",
                                "haptrial validate experiments/force_training.toml");
@@ -101,6 +111,7 @@ class Commands {
   experiments::DryRunOptions dry_run_;
   experiments::RunOptions run_;
   std::string path_;
+  std::string recover_out_;
   std::optional<int> jobs_;
 };
 

@@ -70,7 +70,9 @@ Id open_to_go_on(const std::filesystem::path& path) {
   hbool_t yes = true;
   check(H5Pset(access.get(), "clear_status_flags", &yes), "status flags");
   check(H5Pset(access.get(), "skip_eof_check", &yes), "end of file");
-  Id file = take(H5Fopen(path.c_str(), H5F_ACC_RDWR, access.get()), "cannot open for writing");
+  // Ordered from the first write on: a kill in between leaves the file as readable as it was.
+  const unsigned flags = H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE;
+  Id file = take(H5Fopen(path.c_str(), flags, access.get()), "cannot open for writing");
   check(H5Fincrement_filesize(file.get(), 0), "end of file");
   return file;
 }

@@ -52,8 +52,8 @@ class Id {
 Id create_file(const std::filesystem::path& path, bool over = false);
 /// Opens a file for reading; also one whose writer was killed or still writes.
 Id open_file(const std::filesystem::path& path);
-/// Opens a file to go on writing; also one whose writer was killed, which must be certain: nothing
-/// here keeps two writers apart.
+/// Opens a file to go on writing, as after start_swmr(); also one whose writer was killed, which
+/// must be certain: nothing here keeps two writers apart.
 Id open_to_go_on(const std::filesystem::path& path);
 /// From here on HDF5 orders its writes so that the file is readable at every instant (single
 /// writer, multiple readers). No object or attribute may be created after it.

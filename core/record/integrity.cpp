@@ -68,6 +68,11 @@ void check_ranges(const std::vector<PassRow>& passes, Integrity& result) {
     const std::string range = "pass " + number(std::uint64_t{i}) + " has samples " +
                               number(pass.first_sample) + " to " + number(pass.last_sample);
     if (pass.status == PassStatus::kAborted) ++result.aborted;
+    if (pass.practice) ++result.practice;
+    if (pass.attempt < 1) {
+      result.problems.push_back("pass " + number(std::uint64_t{i}) + " is attempt " +
+                                number(pass.attempt) + ", and attempts count from 1");
+    }
     if (pass.first_sample > pass.last_sample) {
       result.problems.push_back(range + ", in reverse");
     } else if (result.rows == 0 || pass.first_sample < result.first_sequence ||

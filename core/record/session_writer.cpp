@@ -84,7 +84,6 @@ SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info, Fi
       table->emplace(TableWriter::go_on(file, *schema, kept[i++], live ? kLiveLevel : kFastLevel,
                                         ensure_space()));
     }
-    h5::start_swmr(file);
     h5::flush(file);
   } catch (...) {
     close_tables();

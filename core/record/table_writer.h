@@ -20,8 +20,8 @@ class TableWriter {
   /// @param level  of compression, 1 (fast) to 12
   TableWriter(const h5::Id& file, const TableSchema& schema, int level, EnsureSpace ensure_space);
 
-  /// Opens the dataset to go on after its first `rows` rows; those behind them are removed. Not in
-  /// SWMR mode. @throws h5::Error when the chunk to go on in cannot be read.
+  /// Opens the dataset to go on after its first `rows` rows; those behind them are removed.
+  /// @throws h5::Error when the chunk to go on in cannot be read.
   static TableWriter go_on(const h5::Id& file, const TableSchema& schema, std::uint64_t rows,
                            int level, EnsureSpace ensure_space);
 

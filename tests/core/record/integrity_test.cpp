@@ -46,6 +46,7 @@ struct Session {
 TEST(IntegrityTest, ASoundSessionHasNoProblem) {
   Session session;
   session.passes[1].status = PassStatus::kAborted;
+  session.passes[0].practice = true;
   session.summary[0].overruns = 12;
   const Integrity result = session.check();
   EXPECT_TRUE(result.ok);
@@ -56,6 +57,7 @@ TEST(IntegrityTest, ASoundSessionHasNoProblem) {
   EXPECT_EQ(result.last_sequence, 69999u);
   EXPECT_EQ(result.passes, 2u);
   EXPECT_EQ(result.aborted, 1u);
+  EXPECT_EQ(result.practice, 1u);
   EXPECT_EQ(result.overruns, 12u);
   EXPECT_EQ(result.dropped, 0u);
 }
@@ -66,6 +68,13 @@ TEST(IntegrityTest, AnEmptySessionThatEndedIsSound) {
   session.passes.clear();
   session.summary[0].ticks = 0;
   EXPECT_TRUE(session.check().ok);
+}
+
+TEST(IntegrityTest, AttemptsCountFromOne) {
+  Session session;
+  session.passes[1].attempt = 0;
+  EXPECT_THAT(session.check().problems,
+              ElementsAre("pass 1 is attempt 0, and attempts count from 1"));
 }
 
 TEST(IntegrityTest, MissingTicksAreFound) {

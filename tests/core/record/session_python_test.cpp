@@ -53,8 +53,8 @@ TEST(SessionPythonTest, ReadsWithH5pyAndPandasAsTheDocumentSays) {
   writer.append(std::span(samples).first(5000));
   writer.flush();  // the unfinished chunk is written twice
   writer.append(std::span(samples).subspan(5000));
-  writer.add_pass(
-      {1, "haptic", Phase::kTraining, 1, 1, ~std::uint64_t{0}, 0, 4500, PassStatus::kCompleted, true});
+  writer.add_pass({1, "haptic", Phase::kTraining, 1, 1, ~std::uint64_t{0}, 0, 4500,
+                   PassStatus::kCompleted, true});
   writer.add_pass({1, "größe", Phase::kTest, 1, 1, 7, 4501, 8999, PassStatus::kAborted, false, 2});
   writer.add_event({-5, "session_start", "Grüße"});
   writer.add_event({9000000000, "fault", ""});

@@ -115,8 +115,8 @@ void create_with(const fs::path& path, const std::vector<TableSchema>& schemas) 
 
 TEST(SessionReaderTest, RefusesMissingAndForeignDatasets) {
   const TemporaryFolder folder;
-  const std::vector<TableSchema> all{samples_schema(), trials_schema(), events_schema(),
-                                     stimuli_schema(), timing_schema(), frames_schema(),
+  const std::vector<TableSchema> all{samples_schema(),   trials_schema(), events_schema(),
+                                     stimuli_schema(),   timing_schema(), frames_schema(),
                                      attributes_schema()};
   for (std::size_t gone = 0; gone < all.size(); ++gone) {
     std::vector<TableSchema> rest = all;

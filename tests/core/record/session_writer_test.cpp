@@ -223,6 +223,7 @@ void expect_full_disk(const fs::path& file, const char* reason) {
       }
       writer.close();
     });
+    EXPECT_FALSE(writer.can_go_on());
     EXPECT_THAT(message, HasSubstr(reason));
     EXPECT_THAT(message, HasSubstr(file.string() + ": the session cannot be written"));
     EXPECT_EQ(message_of<RunError>([&] { writer.append(samples); }), message);
@@ -284,6 +285,7 @@ TEST(SessionWriterTest, AWriteThatFailsWithinHdf5IsASentenceAndTheFileStaysReada
       SessionWriter writer(folder / "a.h5", example_info());
       writer.append(std::span(samples).first(6000));
       writer.flush();
+      EXPECT_TRUE(writer.can_go_on());
       // From here on every write meets a full device, though space was there before.
       const int full = open("/dev/full", O_RDWR);
       const int under = descriptor_of(partial);
@@ -294,6 +296,7 @@ TEST(SessionWriterTest, AWriteThatFailsWithinHdf5IsASentenceAndTheFileStaysReada
         if (!at_close) writer.append(std::span(samples).subspan(6000));
         writer.close();
       });
+      EXPECT_FALSE(writer.can_go_on());
       EXPECT_THAT(message, HasSubstr("No space left on device"));
       EXPECT_THROW(writer.close(), RunError);
     }
