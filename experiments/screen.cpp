@@ -95,7 +95,7 @@ struct Screen::Impl {
 
   mutable std::mutex mutex;  // all below
   Scene scene;
-  std::vector<ScreenFrame> frames;
+  std::vector<record::FrameRow> frames;
   ScreenSummary summary;
   realtime::DurationHistogram draw_times;
   std::string trouble;
@@ -104,7 +104,7 @@ struct Screen::Impl {
   std::condition_variable picture_taken;
 
   void run();
-  void count(const ScreenFrame& frame);
+  void count(const record::FrameRow& frame);
 };
 
 namespace {
@@ -135,7 +135,7 @@ class Pace {
   }
 
   /// When the display has a picture.
-  ScreenFrame shown(std::int64_t draw_ns) {
+  record::FrameRow shown(std::int64_t draw_ns) {
     const std::int64_t now = now_ns();
     const std::int64_t since = now - std::exchange(last_, now);
     if (locked_) {  // pictures come at refreshes, so that their distance tells
@@ -313,7 +313,7 @@ void Screen::Impl::run() {
   }
 }
 
-void Screen::Impl::count(const ScreenFrame& frame) {
+void Screen::Impl::count(const record::FrameRow& frame) {
   const std::int64_t first = first_tick_ns.load(std::memory_order_relaxed);
   const std::lock_guard lock(mutex);
   ++summary.frames;
@@ -363,7 +363,7 @@ void Screen::observe(const stimulus::Presentation& presentation, const Eigen::Ve
   impl_->presentation.write(presentation);
 }
 
-std::vector<ScreenFrame> Screen::take_frames() {
+std::vector<record::FrameRow> Screen::take_frames() {
   const std::lock_guard lock(impl_->mutex);
   return std::exchange(impl_->frames, {});
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/record/session_types.h"
 #include "core/render/text_screen.h"
 #include "core/render/trial_display_style.h"
 #include "core/render/window.h"
@@ -16,13 +17,6 @@
 #include "experiments/session_control.h"
 
 namespace haptrial::experiments {
-
-/// One picture that was shown, as record::FrameRow keeps it.
-struct ScreenFrame {
-  std::int64_t time_ns{0};        // when the display had it, since the session's first tick [ns]
-  std::int64_t frame_time_ns{0};  // what drawing it took [ns]
-  std::int32_t dropped{0};        // refreshes that passed in between without a new picture
-};
 
 /// How a screen kept time.
 struct ScreenSummary {
@@ -84,7 +78,7 @@ class Screen final : public stimulus::Observer {
                double dt) noexcept override;
 
   /// The pictures since the last call, from the session's first tick on, in order.
-  std::vector<ScreenFrame> take_frames();
+  std::vector<record::FrameRow> take_frames();
   ScreenSummary summary() const;
   /// Why the screen has stopped drawing, in a sentence; empty while it draws.
   std::string trouble() const;

@@ -127,12 +127,12 @@ TEST_F(ScreenTest, CountsItsFramesFromTheFirstTickOn) {
   screen.show_trial(path());
   screen.observe(running(), kNoForce, 1e-3);
   std::this_thread::sleep_for(2s);
-  const std::vector<ScreenFrame> frames = screen.take_frames();
+  const std::vector<record::FrameRow> frames = screen.take_frames();
   ASSERT_GT(frames.size(), 10u);
   // Every refresh of the two seconds held a picture or is counted as dropped.
   std::int64_t dropped = 0;
   std::int64_t last = 0;
-  for (const ScreenFrame& frame : frames) {
+  for (const record::FrameRow& frame : frames) {
     EXPECT_GT(frame.time_ns, last);
     EXPECT_GT(frame.frame_time_ns, 0);
     EXPECT_LT(frame.frame_time_ns, frame.time_ns + 1'000'000'000);
