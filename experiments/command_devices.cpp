@@ -1,11 +1,15 @@
-#include "experiments/commands.h"
-
 #include <fmt/format.h>
+
+#include "core/device/catalog.h"
+#include "experiments/commands.h"
 
 namespace haptrial::experiments {
 
 int devices() {
-  fmt::print("virtual   simulated 3-DOF impedance device with a virtual subject's hand\n");
+  for (const device::DeviceListing& listing : device::list_devices()) {
+    fmt::print("{:<16} {:<8} {}\n", listing.name, listing.available ? "ready" : "missing",
+               listing.what);
+  }
   return 0;
 }
 

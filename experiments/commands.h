@@ -39,4 +39,12 @@ int recover(const std::string& file, const std::string& out);
 int validate(const std::string& definition);
 int devices();
 
+struct DeviceTestOptions {
+  std::string name;
+  double seconds{120.0};
+  std::string library;  // a path in place of the search for the vendor's library
+};
+/// @returns 0 when the device is fit for use, else 1.
+int device_test(const DeviceTestOptions& options);
+
 }  // namespace haptrial::experiments

@@ -35,6 +35,7 @@ class Commands {
     add_recover();
     add_validate();
     add_devices();
+    add_device_test();
   }
 
  private:
@@ -106,10 +107,22 @@ class Commands {
     sub->callback([this] { status_ = experiments::devices(); });
   }
 
+  void add_device_test() {
+    CLI::App* sub = subcommand(app_, "device-test", "Check a device and say whether it is fit",
+                               "haptrial device-test force-dimension");
+    sub->add_option("NAME", device_test_.name, "virtual, mouse, force-dimension or open-haptics")
+        ->required();
+    sub->add_option("--seconds", device_test_.seconds, "How long (120)");
+    sub->add_option("--library", device_test_.library,
+                    "Path of the vendor's library; searched for by default");
+    sub->callback([this] { status_ = experiments::device_test(device_test_); });
+  }
+
   CLI::App& app_;
   int& status_;
   experiments::DryRunOptions dry_run_;
   experiments::RunOptions run_;
+  experiments::DeviceTestOptions device_test_;
   std::string path_;
   std::string recover_out_;
   std::optional<int> jobs_;

@@ -256,4 +256,10 @@ bool OpenHapticsDevice::write(const Eigen::Vector3d& force) noexcept {
   return true;
 }
 
+void check_open_haptics_library(const std::string& library) {
+  const DynamicLibrary loaded(library.empty() ? "libHD.so" : library, kWhere);
+  void (*begin_frame)(unsigned) = nullptr;
+  loaded.get(begin_frame, "hdBeginFrame");
+}
+
 }  // namespace haptrial::device

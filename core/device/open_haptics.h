@@ -89,4 +89,7 @@ class OpenHapticsDevice final : public Device {
   int error_frames_{0};  // left, for which it is still told
 };
 
+/// Loads the library and lets it go; opens no device. @throws InputError as the device does.
+void check_open_haptics_library(const std::string& library = "");
+
 }  // namespace haptrial::device

@@ -81,7 +81,7 @@ struct StandInHandle {
     anchor = {};
     if (sweep > 0.0 && sweep < 1.0) {
       const auto axis = static_cast<std::size_t>(3.0 * sweep);
-      anchor[axis] = 0.055 * std::sin(2.0 * kPi * (3.0 * sweep - static_cast<double>(axis)));
+      anchor[axis] = 0.1 * std::sin(2.0 * kPi * (3.0 * sweep - static_cast<double>(axis)));
     }
     buttons = share > 0.9 ? 1u : 0u;
   }

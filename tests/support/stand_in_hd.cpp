@@ -1,6 +1,9 @@
 // A stand-in for 3D Systems' OpenHaptics HD library: its C functions, over a simulated handle, with
 // a scheduler on a thread of its own, or one that a test steps by hand.
 
+#include <pthread.h>
+#include <sched.h>
+
 #include <atomic>
 #include <chrono>
 #include <limits>
@@ -58,6 +61,8 @@ void period() {
 }
 
 void schedule_periods() {
+  const sched_param urgent{80};  // as a vendor's scheduler runs; refused, it is merely less even
+  pthread_setschedparam(pthread_self(), SCHED_FIFO, &urgent);
   auto next = std::chrono::steady_clock::now();
   while (!stop) {
     period();

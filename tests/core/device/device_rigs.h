@@ -47,6 +47,9 @@ std::vector<RigKind> every_rig();
 /// The controls of a stand-in library, which stays loaded while this lives.
 struct StandIn {
   explicit StandIn(const std::string& name);
+  ~StandIn() { reset(); }  // the loader may keep the library
+  StandIn(const StandIn&) = delete;
+  StandIn& operator=(const StandIn&) = delete;
   StandInView look() const;
   StandInSetup setup() const;
 

@@ -1,0 +1,183 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <thread>
+
+#include "core/base/error.h"
+#include "core/device/coupled_mass.h"
+#include "core/device/force_dimension.h"
+#include "core/device/mouse.h"
+#include "core/device/open_haptics.h"
+#include "experiments/commands.h"
+#include "experiments/device_check.h"
+#include "experiments/interrupt.h"
+
+namespace haptrial::experiments {
+namespace {
+
+constexpr double kRate = 1000.0;     // [Hz]
+constexpr double kReachShare = 0.4;  // of the workspace's radius, to each side
+
+/// A device, and who moves it where there is no person.
+struct Bench {
+  std::unique_ptr<device::CoupledMass> handle;  // of the virtual device
+  std::unique_ptr<device::Device> device;
+  DeviceCheck::Hand hand;
+  Eigen::Vector3d reach;  // what counts as having tried the workspace, to each side [m]
+  bool has_button{true};
+};
+
+/// A hand that is firm enough to try the workspace within a second.
+constexpr device::CoupledMassParameters kFirmHand{1.0, 2000.0, 90.0};
+
+/// Where a hand goes that tries one axis after the other, there and back.
+Eigen::Vector3d sweep(CheckPart part, double share, double radius) {
+  const double start = DeviceCheck::start_of(CheckPart::kMove);
+  const double sweep = (share - start) / (DeviceCheck::start_of(CheckPart::kPush) - start);
+  if (part != CheckPart::kMove) {
+    return Eigen::Vector3d::Zero();
+  }
+  const int axis = std::min(2, static_cast<int>(3.0 * sweep));
+  return 0.7 * radius * std::sin(2.0 * std::numbers::pi * (3.0 * sweep - axis)) *
+         Eigen::Vector3d::Unit(axis);
+}
+
+Bench virtual_bench() {
+  Bench bench;
+  bench.handle = std::make_unique<device::CoupledMass>(kFirmHand);
+  const device::VirtualDeviceParameters parameters;
+  bench.device = std::make_unique<device::VirtualDevice>(parameters, *bench.handle, kRate);
+  bench.hand = [handle = bench.handle.get(), parameters](CheckPart part, double share) {
+    handle->set_anchor(sweep(part, share, parameters.workspace_radius));
+  };
+  bench.has_button = false;
+  return bench;
+}
+
+Bench mouse_bench() {
+  Bench bench;
+  device::MouseParameters parameters;
+  parameters.coupling = kFirmHand;
+  parameters.pointer_speed = 2.0;
+  auto mouse = std::make_unique<device::MouseDevice>(parameters, kRate);
+  const double radius = mouse->info().workspace_radius;
+  bench.hand = [mouse = mouse.get(), radius](CheckPart part, double share) {
+    const Eigen::Vector3d where = sweep(part, share, radius);
+    mouse->move(where.x(), where.z());
+    mouse->set_buttons(part == CheckPart::kButton ? 1 : 0);
+  };
+  bench.device = std::move(mouse);
+  return bench;
+}
+
+Bench vendor_bench(const DeviceTestOptions& options) {
+  Bench bench;
+  if (options.name == "force-dimension") {
+    bench.device = std::make_unique<device::ForceDimensionDevice>(
+        device::ForceDimensionParameters{}, kRate, options.library);
+  } else if (options.name == "open-haptics") {
+    bench.device = std::make_unique<device::OpenHapticsDevice>(device::OpenHapticsParameters{},
+                                                               kRate, options.library);
+  } else {
+    throw InputError(fmt::format(
+        "'{}' is no device to test; allowed: virtual, mouse, force-dimension, open-haptics",
+        options.name));
+  }
+  return bench;
+}
+
+Bench make_bench(const DeviceTestOptions& options) {
+  Bench bench = options.name == "virtual" ? virtual_bench()
+                : options.name == "mouse" ? mouse_bench()
+                                          : vendor_bench(options);
+  const double reach = kReachShare * bench.device->info().workspace_radius;
+  bench.reach = {reach, options.name == "mouse" ? 0.0 : reach, reach};  // a pointer has no height
+  return bench;
+}
+
+/// The speed and jump of a hand that tries the workspace are not those of a trial.
+device::EnvelopeLimits limits_of(const device::DeviceInfo& info) {
+  device::EnvelopeLimits limits;
+  limits.max_force = 0.4 * info.max_force;
+  limits.max_force_rate = 200.0;
+  limits.workspace_radius = 2.0 * info.workspace_radius;  // further than the handle can go
+  limits.max_speed = 2.0;
+  limits.max_jump = 0.02;  // a fast hand, and a loop that was late
+  limits.ramp_in = 0.0;
+  return limits;
+}
+
+const char* prompt(CheckPart part) {
+  switch (part) {
+    case CheckPart::kRest:
+      return "hold the handle still in the middle";
+    case CheckPart::kMove:
+      return "move the handle to every side: left and right, up and down, near and far";
+    case CheckPart::kPush:
+      return "hold the handle loosely in the middle: the device pushes gently, six times";
+    case CheckPart::kButton:
+      return "press a button of the handle";
+    case CheckPart::kDone:
+      break;
+  }
+  return "";
+}
+
+/// Runs the loop on a thread of its own, and tells the person what to do.
+void run_check(DeviceCheck& check, realtime::ServoLoop& loop, bool person) {
+  std::thread servo([&] { loop.run(check); });
+  std::optional<CheckPart> told;
+  while (check.part() != CheckPart::kDone) {
+    if (person && told != check.part() && check.part() != CheckPart::kDone) {
+      told = check.part();
+      fmt::print("-> {}\n", prompt(*told));
+      std::fflush(stdout);
+    }
+    if (interrupted()) {
+      loop.request_stop();
+      break;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  servo.join();
+  if (interrupted()) {
+    throw RunError("interrupted; the check came to no verdict");
+  }
+}
+
+}  // namespace
+
+int device_test(const DeviceTestOptions& options) {
+  constexpr double kLeast = 1.0;
+  constexpr double kMost = 3600.0;
+  if (!(options.seconds >= kLeast && options.seconds <= kMost)) {
+    throw InputError(fmt::format("--seconds is {}; allowed: a number from {} to {} [s]",
+                                 options.seconds, kLeast, kMost));
+  }
+  Bench bench = make_bench(options);
+  const device::DeviceInfo& info = bench.device->info();
+  fmt::print("{}{}: {:.1f} N, workspace radius {:.0f} mm\n", info.name,
+             info.simulated ? " (simulated)" : "", info.max_force, 1e3 * info.workspace_radius);
+  const auto ticks = static_cast<std::uint64_t>(std::lround(options.seconds * kRate));
+  DeviceCheck check(*bench.device, limits_of(info), ticks, bench.hand);
+  realtime::ServoLoop loop(realtime::ClockKind::kReal, kRate);
+  run_check(check, loop, !bench.hand);
+
+  bool good = true;
+  for (const Verdict& v : judge(check.findings(), loop, bench.reach, bench.has_button)) {
+    fmt::print("{}  {:<12} {}\n", v.good ? "good" : "FAIL", v.what, v.text);
+    good = good && v.good;
+  }
+  fmt::print("      {:<12} {} took longer than a period\n", "calls", bench.device->slow_calls());
+  if (!loop.real_time_status().notice.empty()) {
+    fmt::print("{}\n", loop.real_time_status().notice);
+  }
+  fmt::print("verdict: {} {}\n", options.name, good ? "is fit for use" : "is NOT fit for use");
+  return good ? 0 : 1;
+}
+
+}  // namespace haptrial::experiments
