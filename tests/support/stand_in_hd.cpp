@@ -35,7 +35,7 @@ Callback callback = nullptr;
 void* user = nullptr;
 bool manual = false;
 double rate = 1000.0;
-unsigned error = 0;
+std::atomic<unsigned> error{0};
 std::thread scheduler;
 std::atomic<bool> stop{false};
 
@@ -180,10 +180,6 @@ void hdSetDoublev(unsigned what, const double* in) {
     std::copy_n(in, 3, handle.force.begin());
   }
 }
-ErrorInfo hdGetError() {
-  const ErrorInfo info{error, 0, 0};
-  error = 0;
-  return info;
-}
+ErrorInfo hdGetError() { return {error.exchange(0), 0, 0}; }
 
 }  // extern "C"
