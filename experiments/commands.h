@@ -31,6 +31,16 @@ struct RunOptions {
 };
 int run(const RunOptions& options);
 
+struct ReplayOptions {
+  std::string file;
+  int trial{0};
+  std::string phase;   // "training", "test"; empty: both
+  std::string video;   // .mp4
+  std::string frames;  // folder
+  int fps{30};
+};
+int replay(const ReplayOptions& options);
+
 int analyze(const std::string& folder, std::optional<int> jobs);
 int info(const std::string& file);
 /// @param out  new session file; empty: beside the damaged one

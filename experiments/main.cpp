@@ -33,6 +33,7 @@ class Commands {
     add_analyze();
     add_info();
     add_recover();
+    add_replay();
     add_validate();
     add_devices();
     add_device_test();
@@ -95,6 +96,19 @@ class Commands {
     sub->callback([this] { status_ = experiments::recover(path_, recover_out_); });
   }
 
+  void add_replay() {
+    CLI::App* sub =
+        subcommand(app_, "replay", "Show a recorded trial as the participant saw it, with forces",
+                   "haptrial replay out/force_training-001/S01.h5 --trial 3 --video trial-3.mp4");
+    sub->add_option("FILE", replay_.file, "Session file (.h5)")->required();
+    sub->add_option("--trial", replay_.trial, "Number from 1")->required();
+    sub->add_option("--phase", replay_.phase, "training or test; both by default");
+    sub->add_option("--video", replay_.video, "New video (.mp4), written by ffmpeg");
+    sub->add_option("--frames", replay_.frames, "New folder for pictures (.png)");
+    sub->add_option("--fps", replay_.fps, "Pictures a second (30)");
+    sub->callback([this] { status_ = experiments::replay(replay_); });
+  }
+
   void add_validate() {
     CLI::App* sub = subcommand(app_, "validate", "Check a definition and say what it plans",
                                "haptrial validate experiments/force_training.toml");
@@ -122,6 +136,7 @@ class Commands {
   int& status_;
   experiments::DryRunOptions dry_run_;
   experiments::RunOptions run_;
+  experiments::ReplayOptions replay_;
   experiments::DeviceTestOptions device_test_;
   std::string path_;
   std::string recover_out_;
