@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 #include <filesystem>
+#include <memory>
 
 #include "core/base/error.h"
 #include "experiments/arguments.h"
+#include "experiments/console.h"
+#include "experiments/keyboard.h"
 #include "experiments/session.h"
 
 namespace haptrial::experiments {
@@ -42,15 +46,39 @@ int participant_of(const RunOptions& options) {
   return std::stoi(digits) - 1;
 }
 
+/// With an experimenter at the console's page or at the keyboard, where that was asked for.
+SessionSummary attended_session(SessionRequest& request, const RunOptions& options) {
+  if (!options.console && !options.keyboard) {
+    return run_session(request);
+  }
+  SessionControl control;  // outlives what speaks to it
+  request.control = &control;
+  std::unique_ptr<Console> console;
+  if (options.console) {
+    ConsoleOptions console_options;
+    console_options.address = options.address;
+    console_options.port = checked_number("--port", options.port, 0, 65535);
+    console_options.allow_remote = options.remote;
+    console_options.on_refusal = [&control](const std::string& sentence) {
+      control.note("console: " + sentence);
+    };
+    console = std::make_unique<Console>(control, console_options);
+    fmt::print("console: {}\n", console->url());
+    std::fflush(stdout);
+  }
+  const Keyboard keyboard(control);
+  if (keyboard.active()) {
+    fmt::print("{}\n", Keyboard::help());
+    std::fflush(stdout);
+  }
+  return run_session(request);
+}
+
 }  // namespace
 
 int run(const RunOptions& options) {
   const Definition definition = load_definition(options.definition);
   check_subject(options.subject);
-  if (options.device != "virtual") {
-    throw InputError(fmt::format("--device is '{}'; allowed: virtual (haptrial devices lists them)",
-                                 options.device));
-  }
   SessionRequest request;
   request.definition = &definition;
   request.subject = options.subject;
@@ -65,9 +93,15 @@ int run(const RunOptions& options) {
         fmt::format("{}: the folder cannot be made ({})", options.out, error.message()));
   }
   request.file = fs::path(options.out) / (options.subject + ".h5");
-  const SessionSummary done = run_session(request);
-  if (!done.notice.empty()) {
-    fmt::print("{}\n", done.notice);
+  request.device = options.device;
+  request.window = options.window;
+  request.stream = options.stream;
+  request.resume = options.resume;
+  request.person = options.person;
+  request.person.identifier = options.subject;
+  const SessionSummary done = attended_session(request, options);
+  for (const std::string& notice : done.notices) {
+    fmt::print("{}\n", notice);
   }
   fmt::print("session: {}\n{} ticks at {} Hz, {} overruns, {} records lost, {} passes aborted\n",
              request.file.string(), done.ticks, definition.rate, done.overruns, done.dropped,

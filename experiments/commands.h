@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "core/record/session_types.h"
+
 namespace haptrial::experiments {
 
 /// The subcommands of haptrial: each prints to standard output and returns an exit status. Bad
@@ -28,6 +30,15 @@ struct RunOptions {
   std::optional<int> participant;  // default: the number at the end of the subject's identifier
   std::string out{"out/sessions"};
   int trials{0};
+  bool console{false};
+  bool keyboard{false};
+  std::string address{"127.0.0.1"};
+  int port{0};         // of the console; 0: any that is free
+  bool remote{false};  // the console may listen on another address than the loopback's
+  bool window{false};
+  bool stream{false};
+  bool resume{false};
+  record::Participant person;
 };
 int run(const RunOptions& options);
 

@@ -62,6 +62,8 @@ Definition read(Table root, std::string_view file_name) {
   Table hand = root.table("hand");
   Table subject = root.table("subject");
   Table display = root.table("display");
+  Table screen = root.table("screen");
+  Table texts = root.table("texts");
   Table recording = root.table("recording");
   Table scoring = root.table("analysis");
   const bool cvode = hand.choice("integrator", {"exact", "cvode"}) == "cvode";
@@ -79,6 +81,8 @@ Definition read(Table root, std::string_view file_name) {
                cvode ? Integrator::kCvode : Integrator::kExact,
                subject::Population(subject),
                render::read_trial_display_style(display),
+               read_screen_options(screen),
+               read_session_texts(texts),
                recording.number("stimulus_rate", {10.0, 10000.0}, "Hz"),
                analysis::read_score_parameters(scoring)};
   check_together(root, d);

@@ -11,6 +11,7 @@
 #include "core/stimulus/stimulus.h"
 #include "core/subject/hand_parameters.h"
 #include "core/subject/subject_parameters.h"
+#include "experiments/screen_options.h"
 #include "protocols/schedule.h"
 #include "protocols/trajectory_pass.h"
 
@@ -34,6 +35,8 @@ struct Definition {
   Integrator integrator;
   subject::Population population;
   render::TrialDisplayStyle display;
+  ScreenOptions screen;
+  SessionTexts texts;
   double stimulus_rate;  // [Hz]
   analysis::ScoreParameters scoring;
 };

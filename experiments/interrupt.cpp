@@ -3,14 +3,22 @@
 #include <atomic>
 #include <csignal>
 
+#include "experiments/keyboard.h"
+
 namespace haptrial::experiments {
 namespace {
 
 std::atomic<bool> asked{false};
+std::atomic<void (*)(void*)> hook{nullptr};
+std::atomic<void*> hook_with{nullptr};
 static_assert(std::atomic<bool>::is_always_lock_free);  // so that a signal handler may set it
 
 extern "C" void on_signal(int signal) {
   asked.store(true);
+  if (const auto call = hook.load()) {
+    call(hook_with.load());
+  }
+  restore_terminal();
   std::signal(signal, SIG_DFL);
 }
 
@@ -22,5 +30,11 @@ void watch_for_interrupt() {
 }
 
 bool interrupted() noexcept { return asked.load(); }
+
+void call_on_interrupt(void (*call)(void*), void* with) noexcept {
+  hook.store(nullptr);
+  hook_with.store(with);
+  hook.store(call);
+}
 
 }  // namespace haptrial::experiments

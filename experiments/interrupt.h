@@ -6,4 +6,8 @@ namespace haptrial::experiments {
 void watch_for_interrupt();
 bool interrupted() noexcept;  // any thread
 
+/// Called from the signal's handler as well, with `with`: only what a handler may do (an atomic
+/// store). Null: nobody. Any thread.
+void call_on_interrupt(void (*call)(void*), void* with) noexcept;
+
 }  // namespace haptrial::experiments

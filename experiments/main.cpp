@@ -61,7 +61,21 @@ class Commands {
                                "haptrial run experiments/force_training.toml --subject P01");
     sub->add_option("DEFINITION", run_.definition, "Experiment definition (.toml)")->required();
     sub->add_option("--subject", run_.subject, "Identifier: letters, digits, '-', '_'")->required();
-    sub->add_option("--device", run_.device, "Device (virtual)");
+    sub->add_option("--device", run_.device,
+                    "virtual, mouse, force-dimension, open-haptics or replay:FILE (virtual)");
+    sub->add_flag("--window", run_.window, "Show the participant's screen");
+    sub->add_flag("--keyboard", run_.keyboard, "Keys of this terminal steer the session");
+    sub->add_flag("--console", run_.console, "Serve the experimenter's page on the loopback address");
+    sub->add_option("--port", run_.port, "Of the console (any that is free)");
+    sub->add_option("--address", run_.address, "Of the console (127.0.0.1); needs --remote");
+    sub->add_flag("--remote", run_.remote, "Let the console listen on another address");
+    sub->add_flag("--lsl", run_.stream, "Stream to the Lab Streaming Layer, where it is installed");
+    sub->add_flag("--resume", run_.resume, "Go on with the session that did not come to its end");
+    sub->add_option("--handedness", run_.person.handedness, "Of the participant, for the file");
+    sub->add_option("--age-band", run_.person.age_band, "Such as 18-25");
+    sub->add_option("--sex", run_.person.sex, "Of the participant, for the file");
+    sub->add_option("--consent", run_.person.consent_confirmed, "Such as yes, or a date");
+    sub->add_option("--notes", run_.person.notes, "Free text, for the file");
     sub->add_option("--seed", run_.seed, "Of the study (1)")->check(CLI::NonNegativeNumber);
     sub->add_option("--participant", run_.participant,
                     "Number that sets the order of conditions; at the end of ID by default");

@@ -4,9 +4,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/realtime/servo_loop.h"
+#include "core/record/session_types.h"
 #include "experiments/definition.h"
+#include "experiments/session_control.h"
 
 namespace haptrial::experiments {
 
@@ -21,17 +24,26 @@ struct SessionRequest {
   std::filesystem::path file;
   int frames_per_pass{0};  // pictures of what was shown, into frames_folder
   std::filesystem::path frames_folder;
-  int max_trials{0};                           // 0: all
+  int max_trials{0};                           // of the study proper; 0: all
   std::atomic<std::uint64_t>* ticks{nullptr};  // counts what is done, for a progress line
   const std::atomic<bool>* cancel{nullptr};  // set from outside to end early, as an interrupt does
+
+  // Sessions on the real clock.
+  std::string device{"virtual"};     // as make_rig takes it
+  SessionControl* control{nullptr};  // of an experimenter at a console or keyboard
+  bool window{false};                // the participant's screen
+  bool stream{false};                // to the Lab Streaming Layer
+  bool resume{false};                // go on with FILE.partial where there is one
+  record::Participant person;
 };
 
 struct SessionSummary {
   std::uint64_t ticks{0};
+  int passes{0};  // in this run
   int aborted_passes{0};
   std::uint64_t overruns{0};
   std::uint64_t dropped{0};
-  std::string notice;  // of the real-time set-up; empty where nothing was refused
+  std::vector<std::string> notices;  // sentences: real time, screen, streams
 };
 
 /// Runs the session and writes its file. On an interrupt or a failure of a simulated session

@@ -17,6 +17,7 @@ Design read_design(Table& table) {
   d.repetitions = static_cast<int>(table.integer("repetitions", 1, 1000));
   d.break_after = static_cast<int>(table.integer("break_after", 0, 100000));
   d.break_duration = table.number("break_duration", {0.0, 86400.0}, "s");
+  d.practice = static_cast<int>(table.integer("practice", 0, 100));
   d.conditions = table.texts("conditions");
 
   const int group = d.repetitions * static_cast<int>(d.conditions.size());
@@ -80,6 +81,14 @@ std::vector<PlannedTrial> plan_trials(const Design& design, int participant,
   const int n = static_cast<int>(design.conditions.size());
   const auto rows = williams_rows(n);
   std::vector<PlannedTrial> plan;
+  for (const std::string& condition : design.conditions) {
+    for (int trial = 1; trial <= design.practice; ++trial) {
+      const std::uint64_t seed =
+          derived_seed(session_seed, fmt::format("practice {} {}", condition, trial));
+      plan.push_back({trial, 0, 1, condition, seed, true});
+    }
+  }
+  const auto practice = static_cast<std::int32_t>(plan.size());
   for (int block = 0; block < design.blocks(); ++block) {
     const int group = block / n;
     const auto order = shuffled_rows(rows.size(), study_seed, group);
@@ -87,8 +96,8 @@ std::vector<PlannedTrial> plan_trials(const Design& design, int participant,
     const std::string& condition = design.conditions[row[block % n]];
     const std::uint64_t seed = derived_seed(session_seed, fmt::format("block {}", block + 1));
     for (int repetition = 1; repetition <= design.repetitions; ++repetition) {
-      plan.push_back(
-          {static_cast<std::int32_t>(plan.size()) + 1, block + 1, repetition, condition, seed});
+      plan.push_back({static_cast<std::int32_t>(plan.size()) - practice + 1, block + 1, repetition,
+                      condition, seed, false});
     }
   }
   return plan;

@@ -17,6 +17,7 @@ struct Design {
   int repetitions{3};            // trials of a block: same stimulus, same condition
   int break_after{36};           // trials; 0 for no break
   double break_duration{600.0};  // [s]
+  int practice{0};                      // trials of each condition before the first
   std::vector<std::string> conditions;  // of training
 
   int blocks() const { return trials / repetitions; }
@@ -32,6 +33,7 @@ struct PlannedTrial {
   std::int32_t repetition{0};  // from 1
   std::string condition;
   std::uint64_t stimulus_seed{0};  // the same within a block
+  bool practice{false};            // before the study: block 0, not scored
 };
 
 /// The rows of a Williams design for n >= 1 conditions: every condition at every place equally
@@ -39,7 +41,7 @@ struct PlannedTrial {
 /// // (rows x n), values 0 .. n - 1. Source: Williams 1949.
 std::vector<std::vector<int>> williams_rows(int conditions);
 
-/// The trials of one participant in their order. Blocks come in groups that hold each condition
+/// The trials of one participant in their order, practice first. Blocks come in groups that hold each condition
 /// once; the order within group g is a Williams row, and over as many consecutive participants as
 /// there are rows each row is used once in every group. Which row comes to whom is drawn from the
 /// study's seed.

@@ -3,14 +3,17 @@
 namespace haptrial::protocols {
 
 SessionTask::SessionTask(device::Device& device, const device::EnvelopeLimits& limits, Log& log,
-                         std::vector<stimulus::Observer*> observers, Leave leave)
+                         std::vector<stimulus::Observer*> observers, Leave leave,
+                         Origin origin)
     : device_(device),
       envelope_(limits),
       log_(log),
       observers_(std::move(observers)),
-      leave_(leave) {}
+      leave_(leave),
+      origin_(origin) {}
 
 void SessionTask::start(Pass& pass, std::int32_t row) noexcept {
+  result_ = {};  // while idle the servo thread leaves it alone
   asked_row_.store(row, std::memory_order_relaxed);
   busy_.store(true, std::memory_order_relaxed);
   asked_.store(&pass, std::memory_order_release);
@@ -21,6 +24,8 @@ bool SessionTask::idle() const noexcept { return !busy_.load(std::memory_order_a
 void SessionTask::clear_fault() noexcept { clear_asked_.store(true, std::memory_order_release); }
 
 void SessionTask::emergency_stop() noexcept { stop_asked_.store(true, std::memory_order_release); }
+
+void SessionTask::break_off() noexcept { break_asked_.store(true, std::memory_order_release); }
 
 bool SessionTask::tick(const realtime::Tick& tick) noexcept {
   take_requests(tick.index);
@@ -37,8 +42,8 @@ bool SessionTask::tick(const realtime::Tick& tick) noexcept {
   }
 
   record::Sample sample;
-  sample.sequence = tick.index;
-  sample.time_ns = tick.time_ns;
+  sample.sequence = origin_.sequence + tick.index;
+  sample.time_ns = origin_.time_ns + tick.time_ns;
   sample.position = reading_.tool.position;
   sample.velocity = reading_.tool.velocity;
   sample.force = force;
@@ -66,17 +71,22 @@ void SessionTask::take_requests(std::uint64_t sequence) noexcept {
     stop_asked_.store(false, std::memory_order_relaxed);
     envelope_.trip(device::Fault::kEmergencyStop);
   }
+  if (break_asked_.load(std::memory_order_acquire)) {
+    break_asked_.store(false, std::memory_order_relaxed);
+    broken_off_ = pass_ != nullptr;
+  }
   if (asked != nullptr) {
+    broken_off_ = false;
     asked_.store(nullptr, std::memory_order_relaxed);
     pass_ = asked;
     row_ = asked_row_.load(std::memory_order_relaxed);
-    result_ = {};
-    result_.first_sample = sequence;
+    result_.begun = true;
+    result_.first_sample = origin_.sequence + sequence;
   }
 }
 
 PassOutput SessionTask::ask_pass(const device::DeviceReading& reading, double dt) noexcept {
-  if (pass_ != nullptr && envelope_.fault() == device::Fault::kNone) {
+  if (pass_ != nullptr && !broken_off_ && envelope_.fault() == device::Fault::kNone) {
     return pass_->tick(reading.tool, dt);
   }
   PassOutput nothing;
@@ -89,13 +99,14 @@ bool SessionTask::end_if_over(std::uint64_t sequence) noexcept {
     return false;
   }
   const device::Fault fault = envelope_.fault();
-  const PassState state = fault == device::Fault::kNone ? pass_->state() : PassState::kAborted;
+  const bool cut = fault != device::Fault::kNone || broken_off_;
+  const PassState state = cut ? PassState::kAborted : pass_->state();
   if (state == PassState::kRunning) {
     return false;
   }
   result_.state = state;
   result_.fault = fault;
-  result_.last_sample = sequence;
+  result_.last_sample = origin_.sequence + sequence;
   pass_ = nullptr;
   busy_.store(false, std::memory_order_release);
   return true;

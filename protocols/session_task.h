@@ -15,10 +15,17 @@ namespace haptrial::protocols {
 
 /// How a pass ended.
 struct PassResult {
+  bool begun{false};  // the servo thread has taken it up
   PassState state{PassState::kRunning};
   device::Fault fault{device::Fault::kNone};
   std::uint64_t first_sample{0};  // sequence numbers, both inclusive
   std::uint64_t last_sample{0};
+};
+
+/// Where a resumed session goes on: what its first tick is to have.
+struct Origin {
+  std::uint64_t sequence{0};
+  std::int64_t time_ns{0};
 };
 
 /// What happens on every tick of a session:
@@ -38,7 +45,7 @@ class SessionTask final : public realtime::ServoTask {
 
   /// Everything given outlives the task.
   SessionTask(device::Device& device, const device::EnvelopeLimits& limits, Log& log,
-              std::vector<stimulus::Observer*> observers, Leave leave);
+              std::vector<stimulus::Observer*> observers, Leave leave, Origin origin = Origin{});
 
   /// Hands a pass to the servo thread; it outlives the pass. Call only when idle().
   /// @param row  of /trials, for the samples
@@ -50,6 +57,8 @@ class SessionTask final : public realtime::ServoTask {
   void leave_before(std::uint64_t index) noexcept { leave_before_ = index; }
   /// Clears a fault before the next pass; the force ramps in again.
   void clear_fault() noexcept;
+  /// Ends the present pass as aborted without a fault: to repeat or to skip its trial.
+  void break_off() noexcept;
   /// Force to zero from the next tick on, the present pass aborted.
   void emergency_stop() noexcept;
 
@@ -65,6 +74,7 @@ class SessionTask final : public realtime::ServoTask {
   Log& log_;
   std::vector<stimulus::Observer*> observers_;
   Leave leave_;
+  Origin origin_;
   std::uint64_t leave_before_{0};
 
   std::atomic<Pass*> asked_{nullptr};  // session thread -> servo thread
@@ -72,10 +82,12 @@ class SessionTask final : public realtime::ServoTask {
   std::atomic<bool> busy_{false};
   std::atomic<bool> clear_asked_{false};
   std::atomic<bool> stop_asked_{false};
+  std::atomic<bool> break_asked_{false};
 
   // Servo thread.
   Pass* pass_{nullptr};
   std::int32_t row_{-1};
+  bool broken_off_{false};
   device::DeviceReading reading_;
   PassResult result_;  // published by busy_
 };

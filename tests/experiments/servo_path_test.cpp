@@ -20,7 +20,7 @@ TEST_P(ServoPathTest, DoesNotAllocate) {
   experiments::VirtualRig rig(definition, 1);
   experiments::FrameCapture capture(10);
   protocols::SessionTask::Log log;
-  protocols::SessionTask task(rig.device(), definition.envelope, log, {&rig.subject(), &capture},
+  protocols::SessionTask task(rig.device(), definition.envelope, log, {rig.subject(), &capture},
                               protocols::SessionTask::Leave::kNever);
   const auto stimulus = stimulus::make_stimulus(definition.trajectory, definition.force_pattern, 1);
   const std::string kind = GetParam();

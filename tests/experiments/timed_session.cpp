@@ -32,7 +32,7 @@ TimedSession run_timed_session(std::uint64_t ticks, const std::filesystem::path&
   const auto definition = experiments::load_definition(shipped_definition());
   experiments::VirtualRig rig(definition, 1);
   protocols::SessionTask::Log log;
-  protocols::SessionTask task(rig.device(), definition.envelope, log, {&rig.subject()},
+  protocols::SessionTask task(rig.device(), definition.envelope, log, {rig.subject()},
                               protocols::SessionTask::Leave::kNever);
   realtime::ServoLoop loop(realtime::ClockKind::kReal, definition.rate);
   record::SessionWriter writer(file, {});

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/device/device.h"
+#include "core/stimulus/observer.h"
+#include "experiments/definition.h"
+
+namespace haptrial::device {
+class MouseDevice;
+}
+
+namespace haptrial::experiments {
+
+/// What a session drives: a device, and who holds it.
+class Rig {
+ public:
+  virtual ~Rig() = default;
+  virtual device::Device& device() = 0;
+  /// The virtual subject; null where a person holds the device.
+  virtual stimulus::Observer* subject() { return nullptr; }
+  /// Where the screen's pointer goes; null for any other device.
+  virtual device::MouseDevice* mouse() { return nullptr; }
+};
+
+/// Opens a device by its name: virtual, mouse, force-dimension, open-haptics, or replay:FILE, which
+/// plays a recorded session's hand back.
+/// @param session_seed  the virtual person, and every random number of theirs, follows from it
+/// @throws InputError for an unknown name or an absent library, RunError where no device answers.
+std::unique_ptr<Rig> make_rig(const std::string& name, const Definition& definition,
+                              std::uint64_t session_seed);
+
+}  // namespace haptrial::experiments

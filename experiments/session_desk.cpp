@@ -1,0 +1,72 @@
+#include "experiments/session_desk.h"
+
+namespace haptrial::experiments {
+
+SessionDesk::SessionDesk(SessionControl* control, Actions actions)
+    : control_(control), actions_(std::move(actions)) {}
+
+void SessionDesk::follow(std::span<const record::Sample> samples, double period_ns) {
+  if (attended()) {
+    live_.follow(samples, period_ns);
+  }
+}
+
+void SessionDesk::take_messages() {
+  if (!attended()) {
+    return;
+  }
+  for (const SessionControl::Message& message : control_->take()) {
+    if (message.is_note) {
+      actions_.event("note", message.text);
+    } else {
+      heed(message.request);
+    }
+  }
+}
+
+void SessionDesk::heed(Request request) {
+  switch (request) {
+    case Request::kStart:
+      wishes_.pause = false;
+      break;
+    case Request::kPause:
+      wishes_.pause = true;
+      break;
+    case Request::kRepeatTrial:
+      wishes_.repeat = true;
+      actions_.break_off();
+      break;
+    case Request::kSkipTrial:
+      wishes_.skip = true;
+      actions_.break_off();
+      break;
+    case Request::kAbort:
+      wishes_.abort = true;
+      actions_.break_off();
+      break;
+    case Request::kEmergencyStop:  // the force is zero already
+      wishes_.stopped = true;
+      actions_.event("emergency_stop", "by the experimenter");
+      break;
+    case Request::kClear:
+      wishes_.stopped = false;
+      wishes_.pause = true;  // goes on when the experimenter says so
+      status_.fault.clear();
+      actions_.clear_fault();
+      break;
+  }
+}
+
+void SessionDesk::publish(const std::string& state) {
+  constexpr std::chrono::milliseconds kBetween{50};
+  const auto now = std::chrono::steady_clock::now();
+  if (!attended() || (now - published_ < kBetween && status_.state == state)) {
+    return;
+  }
+  published_ = now;
+  status_.state = state;
+  live_.fill(status_);
+  control_->publish(status_);
+}
+
+}  // namespace haptrial::experiments
