@@ -21,10 +21,14 @@ int info(const std::string& file) {
   fmt::print("rows        {}, sequence {} to {}, {} gaps\n", integrity.rows,
              integrity.first_sequence, integrity.last_sequence, integrity.gaps);
   fmt::print("passes      {}, {} aborted\n", integrity.passes, integrity.aborted);
-  fmt::print("loop        {} overruns, {} records dropped\n", integrity.overruns,
-             integrity.dropped);
+  if (reader.timing_summary()) {
+    fmt::print("loop        {} overruns, {} records dropped\n", integrity.overruns,
+               integrity.dropped);
+  } else {
+    fmt::print("loop        unknown: the session did not come to its end\n");
+  }
   for (const record::EventRow& event : reader.events()) {
-    if (event.kind == "aborted" || event.kind == "fault" || event.kind == "notice") {
+    if (event.kind == "aborted" || event.kind == "interrupted" || event.kind == "notice") {
       fmt::print("{:<11} at {:.3f} s: {}\n", event.kind, 1e-9 * static_cast<double>(event.time_ns),
                  event.text);
     }

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "experiments/arguments.h"
+#include "experiments/interrupt.h"
 #include "experiments/session.h"
 
 namespace haptrial::experiments {
@@ -45,6 +46,7 @@ int participant_of(const RunOptions& options) {
 }  // namespace
 
 int run(const RunOptions& options) {
+  watch_for_interrupt();
   const Definition definition = load_definition(options.definition);
   check_subject(options.subject);
   if (options.device != "virtual") {
@@ -55,7 +57,7 @@ int run(const RunOptions& options) {
   request.definition = &definition;
   request.subject = options.subject;
   request.participant = participant_of(options);
-  request.seed = options.seed;
+  request.seed = checked_seed(options.seed);
   request.clock = realtime::ClockKind::kReal;
   request.max_trials = checked_number("--trials", options.trials, 0, definition.design.trials);
   std::error_code error;

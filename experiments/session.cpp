@@ -57,6 +57,8 @@ class Session {
   void append_rest();
   void join_servo();
   void give_up() noexcept;
+  void record_broken_pass();
+  void record_pass(record::PassStatus status, std::uint64_t last_sample);
   bool asked_to_stop() const;
   void write_timing();
 
@@ -73,8 +75,8 @@ class Session {
   // Kept here, not in a function: the servo thread may be using them when an error leaves it.
   std::optional<stimulus::Stimulus> stimulus_;
   std::unique_ptr<protocols::TrajectoryPass> pass_;
-  std::thread servo_;  // on a real clock
-  std::int32_t passes_{0};
+  std::thread servo_;    // on a real clock
+  record::PassRow row_;  // of the present pass
   SessionSummary summary_;
 };
 
@@ -156,6 +158,9 @@ void Session::give_up() noexcept {
       writer_.discard();  // a dry run can be repeated; half of one is of no use
     } else {
       append_rest();
+      record_broken_pass();
+      event("interrupted", "the session did not come to its end");
+      write_timing();
     }
   } catch (const std::exception&) {
     // What stopped the session is the error to report; the writer keeps what it could.
@@ -184,21 +189,19 @@ void Session::run_trial(const protocols::PlannedTrial& trial) {
 void Session::run_pass(std::unique_ptr<protocols::TrajectoryPass> pass,
                        const protocols::PlannedTrial& trial, record::Phase phase) {
   pass_ = std::move(pass);
-  task_.start(*pass_, passes_++);
+  row_ = {};
+  row_.trial = trial.trial;
+  row_.condition = trial.condition;
+  row_.phase = phase;
+  row_.block = trial.block;
+  row_.repetition = trial.repetition;
+  row_.stimulus_seed = trial.stimulus_seed;
+  task_.start(*pass_, summary_.passes++);
   drive_until_idle();
   const protocols::PassResult& result = task_.result();
-  record::PassRow row;
-  row.trial = trial.trial;
-  row.condition = trial.condition;
-  row.phase = phase;
-  row.block = trial.block;
-  row.repetition = trial.repetition;
-  row.stimulus_seed = trial.stimulus_seed;
-  row.first_sample = result.first_sample;
-  row.last_sample = result.last_sample;
   const bool aborted = result.state == protocols::PassState::kAborted;
-  row.status = aborted ? record::PassStatus::kAborted : record::PassStatus::kCompleted;
-  writer_.add_pass(row);
+  record_pass(aborted ? record::PassStatus::kAborted : record::PassStatus::kCompleted,
+              result.last_sample);
   if (aborted) {
     ++summary_.aborted_passes;
     const bool fault = result.fault != device::Fault::kNone;
@@ -209,6 +212,24 @@ void Session::run_pass(std::unique_ptr<protocols::TrajectoryPass> pass,
   }
   if (renderer_) {
     draw_frames(trial, phase);
+  }
+}
+
+void Session::record_pass(record::PassStatus status, std::uint64_t last_sample) {
+  row_.first_sample = task_.result().first_sample;
+  row_.last_sample = last_sample;
+  row_.status = status;
+  writer_.add_pass(row_);
+  if (request_.clock == ClockKind::kReal) {
+    writer_.flush();
+  }
+}
+
+/// The pass during which the session ended: its samples are there, so it has a row. Without a servo
+/// thread.
+void Session::record_broken_pass() {
+  if (!task_.idle() && task_.result().begun) {
+    record_pass(record::PassStatus::kAborted, loop_.ticks() - 1);
   }
 }
 

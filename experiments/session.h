@@ -28,6 +28,7 @@ struct SessionRequest {
 
 struct SessionSummary {
   std::uint64_t ticks{0};
+  int passes{0};
   int aborted_passes{0};
   std::uint64_t overruns{0};
   std::uint64_t dropped{0};

@@ -11,6 +11,7 @@ SessionTask::SessionTask(device::Device& device, const device::EnvelopeLimits& l
       leave_(leave) {}
 
 void SessionTask::start(Pass& pass, std::int32_t row) noexcept {
+  result_ = {};  // while idle the servo thread leaves it alone
   asked_row_.store(row, std::memory_order_relaxed);
   busy_.store(true, std::memory_order_relaxed);
   asked_.store(&pass, std::memory_order_release);
@@ -70,7 +71,7 @@ void SessionTask::take_requests(std::uint64_t sequence) noexcept {
     asked_.store(nullptr, std::memory_order_relaxed);
     pass_ = asked;
     row_ = asked_row_.load(std::memory_order_relaxed);
-    result_ = {};
+    result_.begun = true;
     result_.first_sample = sequence;
   }
 }

@@ -15,6 +15,7 @@ namespace haptrial::protocols {
 
 /// How a pass ended.
 struct PassResult {
+  bool begun{false};  // the servo thread has taken it up
   PassState state{PassState::kRunning};
   device::Fault fault{device::Fault::kNone};
   std::uint64_t first_sample{0};  // sequence numbers, both inclusive

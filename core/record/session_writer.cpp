@@ -168,8 +168,7 @@ struct SessionWriter::Impl {
   }
 
   [[noreturn]] void give_up(const std::string& why) {
-    failure = final_path.string() + ": the session cannot be written (" + why +
-              "); what came before is kept in " + partial.string();
+    failure = final_path.string() + ": the session cannot be written (" + why + ")";
     throw RunError(failure);
   }
 
