@@ -85,6 +85,9 @@ std::string design(const StudyResult& study) {
                     std::to_string(session.test_passes), std::to_string(session.scored)});
   }
   html += html_table({"Subject", "File", "Device", "Start", "Test passes", "Scored"}, rows);
+  for (const std::string& remark : study.remarks) {
+    html += paragraph(remark);
+  }
   if (study.exclusions.empty()) {
     return html + paragraph("No trial was excluded.");
   }

@@ -61,7 +61,8 @@ RecallScore score_of(const Prepared& ready, const Alignment& alignment,
   RecallScore score;
   score.alignment_cost = alignment.cost / static_cast<double>(alignment.path.size());
   score.rms_force = rms_difference(ready.target, warped);
-  score.rms_slope = rms_difference(ready.target_slope, slope(warped, ready.time));
+  // The slopes are warped, not the warped curve's taken: that one is a staircase.
+  score.rms_slope = rms_difference(ready.target_slope, warp(ready.applied_slope, alignment.path));
   score.rms_unaligned = rms_difference(ready.target, ready.applied);
   score.score = (p.cost_share * score.alignment_cost + p.force_share * score.rms_force +
                  p.slope_share * score.rms_slope) /

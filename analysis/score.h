@@ -43,9 +43,9 @@ std::vector<double> warp(std::span<const double> applied, std::span<const PathPo
 /// Scores one recall: both curves are resampled onto one time base, which lasts as long as the
 /// longer of them (the shorter holds its last force); the applied force goes through the box
 /// filter; slopes are taken; the curves are aligned; the applied force is warped onto the target's
-/// time base, and its slope is taken anew there. The score is the weighted average that
-/// ScoreParameters describes; 0 is perfect recall. rms_unaligned compares the same two curves
-/// before the alignment. Source: Morris 2006, §4.3.
+/// time base, and its slope likewise (not taken anew: the warped curve is a staircase). The score
+/// is the weighted average that ScoreParameters describes; 0 is perfect recall. rms_unaligned
+/// compares the same two curves before the alignment. Source: Morris 2006, §4.3.
 /// @throws InputError for a curve that duration_of() or the alignment refuses;
 ///   std::invalid_argument for parameters out of bounds.
 RecallScore score_recall(const ForceCurve& target, const ForceCurve& applied,

@@ -55,6 +55,7 @@ struct StudyResult {
   std::vector<RecallPicture> recalls;                           // best, median, worst
   std::vector<record::StimulusRow> stimulus;                    // first block of the first session
   std::vector<std::pair<std::string, std::string>> parameters;  // of the scores: name, value
+  std::vector<std::string> remarks;  // sentences for the report: what is missing from the study
 
   /// True when any participant is a virtual subject: then every output says so.
   bool simulated() const;

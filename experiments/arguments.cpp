@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <limits>
 #include <thread>
 
 #include "core/base/error.h"
@@ -15,6 +17,16 @@ int checked_number(const char* what, int value, int low, int high) {
         fmt::format("{} is {}; allowed: a whole number from {} to {}", what, value, low, high));
   }
   return value;
+}
+
+std::uint64_t checked_seed(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error != std::errc() || end != text.data() + text.size()) {
+    throw InputError(fmt::format("--seed is '{}'; allowed: a whole number from 0 to {}", text,
+                                 std::numeric_limits<std::uint64_t>::max()));
+  }
+  return seed;
 }
 
 int checked_jobs(std::optional<int> jobs) {

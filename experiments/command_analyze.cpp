@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "analysis/score_parameters.h"
@@ -15,6 +16,31 @@
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
+namespace {
+
+/// Sentences about sessions that the study planned and the folder lacks.
+std::vector<std::string> what_is_missing(const fs::path& folder, std::size_t sessions,
+                                         const Definition& definition) {
+  std::vector<std::string> remarks;
+  const auto planned = static_cast<std::size_t>(definition.design.participants);
+  if (sessions != planned) {
+    remarks.push_back(fmt::format("{} of {} planned participants are here.", sessions, planned));
+  }
+  std::vector<std::string> unfinished;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".partial") {
+      unfinished.push_back(entry.path().filename().string());
+    }
+  }
+  std::sort(unfinished.begin(), unfinished.end());
+  if (!unfinished.empty()) {
+    remarks.push_back(fmt::format("Not analysed, because the session did not come to its end: {}.",
+                                  fmt::join(unfinished, ", ")));
+  }
+  return remarks;
+}
+
+}  // namespace
 
 int analyze(const std::string& folder, std::optional<int> jobs) {
   const int threads = checked_jobs(jobs);
@@ -29,10 +55,18 @@ int analyze(const std::string& folder, std::optional<int> jobs) {
     }
   }
   const Definition definition = parse_definition(first.definition, first.definition_name);
-  const analysis::StudyResult study = analysis::analyze_study(files, definition.scoring, threads);
+  analysis::StudyResult study = analysis::analyze_study(files, definition.scoring, threads);
+  if (study.scores.empty()) {
+    throw InputError(fmt::format(
+        "{}: no session holds a completed test pass, so nothing can be scored", folder));
+  }
+  study.remarks = what_is_missing(folder, files.size(), definition);
   analysis::write_analysis(study, folder);
   for (const std::string& line : analysis::summary_lines(study)) {
     fmt::print("{}\n", line);
+  }
+  for (const std::string& remark : study.remarks) {
+    fmt::print("{}\n", remark);
   }
   fmt::print("report: {}\n", (fs::absolute(folder) / "report.html").lexically_normal().string());
   return 0;

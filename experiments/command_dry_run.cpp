@@ -4,7 +4,9 @@
 
 #include <filesystem>
 
+#include "core/base/error.h"
 #include "experiments/arguments.h"
+#include "experiments/interrupt.h"
 #include "experiments/study_run.h"
 
 namespace haptrial::experiments {
@@ -24,11 +26,12 @@ fs::path fresh_folder(const std::string& name) {
 }  // namespace
 
 int dry_run(const DryRunOptions& options) {
+  watch_for_interrupt();
   const Definition definition = load_definition(options.definition);
   DryRun dry;
   dry.participants = checked_number(
       "--subjects", options.subjects.value_or(definition.design.participants), 1, 10000);
-  dry.seed = options.seed;
+  dry.seed = checked_seed(options.seed);
   dry.jobs = checked_jobs(options.jobs);
   dry.frames_per_pass = checked_number("--frames", options.frames, 0, 1000);
   dry.max_trials = checked_number("--trials", options.trials, 0, definition.design.trials);
@@ -37,6 +40,10 @@ int dry_run(const DryRunOptions& options) {
   fmt::print("{} sessions, {:.0f} s of simulated time in {:.1f} s ({:.0f} times real time)\n",
              dry.participants, done.recorded_seconds, done.elapsed_seconds,
              done.recorded_seconds / done.elapsed_seconds);
+  if (done.aborted_passes == done.passes) {
+    throw RunError(fmt::format("every pass was aborted; haptrial info {} says why",
+                               (dry.folder / "S01.h5").string()));
+  }
   if (done.aborted_passes > 0) {
     fmt::print("{} passes were aborted; haptrial info FILE says which and why\n",
                done.aborted_passes);

@@ -60,11 +60,15 @@ int info(const std::string& file) {
              integrity.first_sequence, integrity.last_sequence, integrity.gaps);
   fmt::print("passes      {}, {} aborted, {} for practice\n", integrity.passes, integrity.aborted,
              integrity.practice);
-  fmt::print("loop        {} overruns, {} records dropped\n", integrity.overruns,
-             integrity.dropped);
+  if (reader.timing_summary()) {
+    fmt::print("loop        {} overruns, {} records dropped\n", integrity.overruns,
+               integrity.dropped);
+  } else {
+    fmt::print("loop        unknown: the session did not come to its end\n");
+  }
   print_frames(reader.frames());
   for (const record::EventRow& event : reader.events()) {
-    if (event.kind == "aborted" || event.kind == "fault" || event.kind == "notice" ||
+    if (event.kind == "aborted" || event.kind == "interrupted" || event.kind == "notice" ||
         event.kind == "recovered") {
       fmt::print("{:<11} at {:.3f} s: {}\n", event.kind, 1e-9 * static_cast<double>(event.time_ns),
                  event.text);

@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "experiments/arguments.h"
 #include "experiments/console.h"
+#include "experiments/interrupt.h"
 #include "experiments/keyboard.h"
 #include "experiments/session.h"
 
@@ -77,13 +78,14 @@ SessionSummary attended_session(SessionRequest& request, const RunOptions& optio
 }  // namespace
 
 int run(const RunOptions& options) {
+  watch_for_interrupt();
   const Definition definition = load_definition(options.definition);
   check_subject(options.subject);
   SessionRequest request;
   request.definition = &definition;
   request.subject = options.subject;
   request.participant = participant_of(options);
-  request.seed = options.seed;
+  request.seed = checked_seed(options.seed);
   request.clock = realtime::ClockKind::kReal;
   request.max_trials = checked_number("--trials", options.trials, 0, definition.design.trials);
   std::error_code error;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -14,7 +13,7 @@ namespace haptrial::experiments {
 struct DryRunOptions {
   std::string definition;
   std::optional<int> subjects;  // default: as the definition says
-  std::uint64_t seed{1};
+  std::string seed{"1"};
   std::optional<int> jobs;  // default: one per processor
   std::string out;          // default: a new folder out/NAME-001
   int frames{0};
@@ -26,7 +25,7 @@ struct RunOptions {
   std::string definition;
   std::string subject;
   std::string device{"virtual"};
-  std::uint64_t seed{1};
+  std::string seed{"1"};
   std::optional<int> participant;  // default: the number at the end of the subject's identifier
   std::string out{"out/sessions"};
   int trials{0};

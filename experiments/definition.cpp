@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 
 #include "core/base/table.h"
 #include "protocols/training_pass.h"
 
 namespace haptrial::experiments {
 namespace {
+
+constexpr double kLongestPass = 300.0;  // along x; the curve itself is a few times longer [s]
 
 /// What no table can see alone.
 void check_together(Table& root, const Definition& d) {
@@ -35,7 +39,18 @@ void check_together(Table& root, const Definition& d) {
         "workspace_radius", fmt::format("{}", d.envelope.workspace_radius),
         fmt::format("at most device.workspace_radius, {} [m]", d.device.workspace_radius));
   }
+  const bool plain = std::all_of(d.name.begin(), d.name.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_';
+  });
+  if (!plain) {
+    root.table("experiment")
+        .reject("name", fmt::format("'{}'", d.name), "letters, digits, '-' and '_'");
+  }
   Table trajectory = root.table("trajectory");
+  if (d.trajectory.length_x / d.trajectory.speed > kLongestPass) {
+    trajectory.reject("speed", fmt::format("{}", d.trajectory.speed),
+                      fmt::format("so fast that length_x takes at most {} s", kLongestPass));
+  }
   const double reach = 0.5 * std::hypot(d.trajectory.length_x, d.trajectory.range_z);
   if (reach > d.envelope.workspace_radius) {
     trajectory.reject("length_x", fmt::format("{}", d.trajectory.length_x),

@@ -3,41 +3,42 @@
 namespace haptrial::experiments {
 namespace {
 
-const char* stage_of(const stimulus::Presentation& seen) {
-  if (!seen.show_trajectory) {
-    return "idle";
+const char* name_of(record::Stage stage) {
+  switch (stage) {
+    case record::Stage::kIdle:
+      return "idle";
+    case record::Stage::kApproach:
+      return "approach";
+    case record::Stage::kWait:
+      return "wait";
+    case record::Stage::kRun:
+      return "run";
+    case record::Stage::kReturn:
+      return "return";
   }
-  if (seen.progress <= 0.0) {
-    return "approach";
-  }
-  return seen.progress < 1.0 ? "run" : "return";
+  return "";
 }
 
 }  // namespace
 
-void LiveStatus::observe(const stimulus::Presentation& seen, const Eigen::Vector3d&,
-                         double) noexcept {
-  latest_.write(seen);
-}
-
 void LiveStatus::follow(std::span<const record::Sample> samples, double period_ns) {
   for (const record::Sample& sample : samples) {
-    const double late = static_cast<double>(sample.time_ns) -
-                        static_cast<double>(sample.sequence) * period_ns;
+    const double late =
+        static_cast<double>(sample.time_ns) - static_cast<double>(sample.sequence) * period_ns;
     if (!started_ || late < earliest_ns_) {
       earliest_ns_ = late;
       started_ = true;
     }
     lateness_.add(static_cast<std::int64_t>(late - earliest_ns_));
+    last_ = sample;
   }
 }
 
-void LiveStatus::fill(SessionStatus& status) {
-  latest_.read(seen_);
-  status.position = seen_.tool;
-  status.target_force = seen_.target_force;
-  status.applied_force = seen_.applied_force;
-  status.stage = stage_of(seen_);
+void LiveStatus::fill(SessionStatus& status) const {
+  status.position = last_.position;
+  status.target_force = last_.target_force;
+  status.applied_force = last_.applied_force;
+  status.stage = name_of(last_.stage);
   if (lateness_.count() > 0) {
     status.lateness_median_us = 1e-3 * lateness_.percentile(50.0);
     status.lateness_99_us = 1e-3 * lateness_.percentile(99.0);

@@ -3,29 +3,22 @@
 #include <span>
 
 #include "core/realtime/histogram.h"
-#include "core/realtime/latest_value.h"
 #include "core/record/session_types.h"
-#include "core/stimulus/observer.h"
 #include "experiments/session_control.h"
 
 namespace haptrial::experiments {
 
-/// What the servo thread shows of itself for the console, and what the session's thread makes of it.
-class LiveStatus final : public stimulus::Observer {
+/// What the records of a running session say for the console. Session's thread.
+class LiveStatus {
  public:
-  /// Servo thread: keeps the latest tick.
-  void observe(const stimulus::Presentation& seen, const Eigen::Vector3d& device_force,
-               double dt) noexcept override;
-
-  /// Session's thread: how late the ticks of these records were, against the earliest of all.
+  /// How late the ticks of these records were, against the earliest of all; keeps the last one.
   /// @param period_ns  nominal
   void follow(std::span<const record::Sample> samples, double period_ns);
-  /// Session's thread: fills position, forces, stage and lateness.
-  void fill(SessionStatus& status);
+  /// Fills position, forces, stage and lateness.
+  void fill(SessionStatus& status) const;
 
  private:
-  realtime::LatestValue<stimulus::Presentation> latest_;
-  stimulus::Presentation seen_;
+  record::Sample last_;
   realtime::DurationHistogram lateness_;
   double earliest_ns_{0.0};  // of time minus deadline
   bool started_{false};

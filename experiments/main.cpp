@@ -8,7 +8,6 @@
 
 #include "core/base/error.h"
 #include "experiments/commands.h"
-#include "experiments/interrupt.h"
 #include "experiments/version.h"
 
 namespace {
@@ -46,8 +45,7 @@ class Commands {
                    "haptrial dry-run experiments/force_training.toml --jobs 2");
     sub->add_option("DEFINITION", dry_run_.definition, "Experiment definition (.toml)")->required();
     sub->add_option("--subjects", dry_run_.subjects, "How many; as the definition says by default");
-    sub->add_option("--seed", dry_run_.seed, "Of every random number (1)")
-        ->check(CLI::NonNegativeNumber);
+    sub->add_option("--seed", dry_run_.seed, "Of every random number (1)");
     sub->add_option("--jobs", dry_run_.jobs, "Threads; one per processor by default");
     sub->add_option("--out", dry_run_.out, "New folder for the session files (out/NAME-001)");
     sub->add_option("--trials", dry_run_.trials, "Only the first so many of each subject");
@@ -65,7 +63,8 @@ class Commands {
                     "virtual, mouse, force-dimension, open-haptics or replay:FILE (virtual)");
     sub->add_flag("--window", run_.window, "Show the participant's screen");
     sub->add_flag("--keyboard", run_.keyboard, "Keys of this terminal steer the session");
-    sub->add_flag("--console", run_.console, "Serve the experimenter's page on the loopback address");
+    sub->add_flag("--console", run_.console,
+                  "Serve the experimenter's page on the loopback address");
     sub->add_option("--port", run_.port, "Of the console (any that is free)");
     sub->add_option("--address", run_.address, "Of the console (127.0.0.1); needs --remote");
     sub->add_flag("--remote", run_.remote, "Let the console listen on another address");
@@ -76,7 +75,7 @@ class Commands {
     sub->add_option("--sex", run_.person.sex, "Of the participant, for the file");
     sub->add_option("--consent", run_.person.consent_confirmed, "Such as yes, or a date");
     sub->add_option("--notes", run_.person.notes, "Free text, for the file");
-    sub->add_option("--seed", run_.seed, "Of the study (1)")->check(CLI::NonNegativeNumber);
+    sub->add_option("--seed", run_.seed, "Of the study (1)");
     sub->add_option("--participant", run_.participant,
                     "Number that sets the order of conditions; at the end of ID by default");
     sub->add_option("--trials", run_.trials, "Only the first so many");
@@ -196,9 +195,12 @@ int run_command(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  experiments::watch_for_interrupt();
   try {
-    return run_command(argc, argv);
+    const int status = run_command(argc, argv);
+    if (std::fflush(stdout) != 0) {
+      throw haptrial::RunError("standard output cannot be written");
+    }
+    return status;
   } catch (const haptrial::InputError& error) {
     fmt::print(stderr, "haptrial: {}\n", error.what());
     return kBadInput;

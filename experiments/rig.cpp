@@ -69,9 +69,10 @@ std::unique_ptr<Rig> make_rig(const std::string& name, const Definition& d,
   if (name.starts_with(kReplay)) {
     return std::make_unique<DeviceRig>(replayed(name.substr(kReplay.size()), d.rate));
   }
-  throw InputError(fmt::format("--device is '{}'; allowed: virtual, mouse, force-dimension, "
-                               "open-haptics, replay:FILE (haptrial devices says which are there)",
-                               name));
+  throw InputError(
+      fmt::format("--device is '{}'; allowed: virtual, mouse, force-dimension, "
+                  "open-haptics, replay:FILE (haptrial devices says which are there)",
+                  name));
 }
 
 }  // namespace haptrial::experiments

@@ -71,6 +71,7 @@ class Session {
 
   void drive_until_idle();
   void collect();
+  void take(std::span<const record::Sample> samples);
   void take_frames();
   void wait(double seconds, const char* state);
   void wait_for_experimenter(const char* state);
@@ -99,7 +100,7 @@ class Session {
   FrameCapture capture_;
   std::optional<render::FrameRenderer> renderer_;
   std::unique_ptr<Screen> screen_;
-  record::Resumed before_;         // what a resumed file holds
+  record::Resumed before_;        // what a resumed file holds
   record::SessionWriter writer_;  // opened when everything else is there
   std::unique_ptr<stream::LslOutlet> outlet_;
   SessionDesk desk_;
@@ -109,7 +110,7 @@ class Session {
   // Kept here, not in a function: the servo thread may be using them when an error leaves it.
   std::optional<stimulus::Stimulus> stimulus_;
   std::unique_ptr<protocols::TrajectoryPass> pass_;
-  std::thread servo_;  // on a real clock
+  std::thread servo_;    // on a real clock
   record::PassRow row_;  // of the present pass
   Clock::time_point flushed_{};
 };
@@ -144,7 +145,9 @@ Session::Session(const SessionRequest& request)
       summary_.notices.push_back(notice);
     }
   }
-  const auto stop = [](void* task) { static_cast<protocols::SessionTask*>(task)->emergency_stop(); };
+  const auto stop = [](void* task) {
+    static_cast<protocols::SessionTask*>(task)->emergency_stop();
+  };
   if (real_) {
     call_on_interrupt(stop, &task_);
   }
@@ -168,9 +171,10 @@ record::SessionWriter Session::open_writer() {
   }
   record::SessionWriter writer = record::SessionWriter::resume(request_.file, before_);
   if (before_.info.definition != d_.text || before_.info.seed != request_.seed) {
-    throw InputError(fmt::format("{}.partial: was recorded with another definition or seed ({}); "
-                                 "resume it with the same ones",
-                                 request_.file.string(), before_.info.seed));
+    throw InputError(
+        fmt::format("{}.partial: was recorded with another definition or seed ({}); "
+                    "resume it with the same ones",
+                    request_.file.string(), before_.info.seed));
   }
   return writer;
 }
@@ -217,9 +221,6 @@ std::vector<stimulus::Observer*> Session::observers() {
   }
   if (screen_) {
     all.push_back(screen_.get());
-  }
-  if (desk_.attended()) {
-    all.push_back(&desk_.observer());
   }
   return all;
 }
@@ -332,9 +333,9 @@ void Session::present(const PlannedTrial& trial) {
 
 /// @returns whether both passes were completed.
 bool Session::run_trial(const PlannedTrial& trial, int attempt) {
-  const bool learnt = run_pass(
-      protocols::make_training_pass(trial.condition, *stimulus_, d_.guidance, trial.block), trial,
-      record::Phase::kTraining, attempt);
+  const bool learnt =
+      run_pass(protocols::make_training_pass(trial.condition, *stimulus_, d_.guidance, trial.block),
+               trial, record::Phase::kTraining, attempt);
   if (!learnt && desk_.attended()) {
     return false;  // the trial is presented again, from its training on
   }
@@ -388,8 +389,8 @@ void Session::after_abort(const protocols::PassResult& result) {
   const bool fault = result.fault != device::Fault::kNone;
   const std::string why = fault ? device::describe(result.fault) : why_broken_off();
   const std::string trouble = fault ? rig_->device().trouble() : "";
-  event("aborted", fmt::format("trial {}: {}{}{}", row_.trial, why, trouble.empty() ? "" : "; ",
-                               trouble));
+  event("aborted",
+        fmt::format("trial {}: {}{}{}", row_.trial, why, trouble.empty() ? "" : "; ", trouble));
   if (fault && desk_.attended()) {
     desk_.status().fault = trouble.empty() ? why : why + "; " + trouble;
     desk_.wishes().stopped = true;  // a person sees to the cause
@@ -429,13 +430,8 @@ void Session::drive_until_idle() {
 
 /// What has come since the last call: records, pictures shown, messages.
 void Session::collect() {
-  const std::size_t count = log_.drain([this](std::span<const record::Sample> samples) {
-    writer_.append(samples);
-    desk_.follow(samples, 1e9 / d_.rate);
-    if (outlet_) {
-      outlet_->push(samples);
-    }
-  });
+  const auto take = [this](std::span<const record::Sample> samples) { this->take(samples); };
+  const std::size_t count = real_ ? log_.flush(take) : log_.drain(take);
   if (request_.ticks != nullptr) {
     request_.ticks->fetch_add(count, std::memory_order_relaxed);
   }
@@ -445,6 +441,14 @@ void Session::collect() {
   if (real_ && Clock::now() - flushed_ >= kFlushEvery) {
     flushed_ = Clock::now();
     writer_.flush();
+  }
+}
+
+void Session::take(std::span<const record::Sample> samples) {
+  writer_.append(samples);
+  desk_.follow(samples, 1e9 / d_.rate);
+  if (outlet_) {
+    outlet_->push(samples);
   }
 }
 
@@ -472,8 +476,8 @@ void Session::wait_for_experimenter(const char* state) {
   while ((wishes.pause || wishes.stopped) && !wishes.abort) {
     wait(0.02, wishes.stopped ? "stopped" : state);
     if (asked_to_stop()) {
-      throw RunError(fmt::format("interrupted; what was recorded is in {}.partial",
-                                 request_.file.string()));
+      throw RunError(
+          fmt::format("interrupted; what was recorded is in {}.partial", request_.file.string()));
     }
   }
 }
@@ -575,8 +579,7 @@ void Session::give_up() noexcept {
     }
     append_rest();
     if (!task_.idle() && task_.result().begun) {
-      record_pass(record::PassStatus::kAborted,
-                  before_.next_sequence + loop_.ticks() - 1);
+      record_pass(record::PassStatus::kAborted, before_.next_sequence + loop_.ticks() - 1);
     }
     event("interrupted", "the session did not come to its end");
     writer_.sync();
@@ -606,10 +609,7 @@ void Session::join_servo() {
 }
 
 void Session::append_rest() {
-  log_.flush([this](std::span<const record::Sample> samples) {
-    writer_.append(samples);
-    desk_.follow(samples, 1e9 / d_.rate);
-  });
+  log_.flush([this](std::span<const record::Sample> samples) { take(samples); });
 }
 
 bool Session::asked_to_stop() const {

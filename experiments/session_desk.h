@@ -14,9 +14,9 @@ namespace haptrial::experiments {
 /// What the experimenter asked for and has not come about yet.
 struct Wishes {
   bool pause{false};
-  bool repeat{false};  // the present trial
-  bool skip{false};    // the present trial
-  bool abort{false};   // the session
+  bool repeat{false};   // the present trial
+  bool skip{false};     // the present trial
+  bool abort{false};    // the session
   bool stopped{false};  // by a fault or an emergency stop, until it is cleared
 };
 
@@ -26,14 +26,13 @@ class SessionDesk {
  public:
   /// What a message does to the session at once.
   struct Actions {
-    std::function<void()> break_off;    // the present pass
+    std::function<void()> break_off;  // the present pass
     std::function<void()> clear_fault;
     std::function<void(const std::string& kind, const std::string& text)> event;
   };
   SessionDesk(SessionControl* control, Actions actions);
 
   bool attended() const { return control_ != nullptr; }
-  stimulus::Observer& observer() { return live_; }
   void follow(std::span<const record::Sample> samples, double period_ns);
 
   void take_messages();

@@ -16,35 +16,29 @@ namespace haptrial::experiments {
 namespace fs = std::filesystem;
 namespace {
 
-/// Makes the folder; takes back what it made if the run fails.
+/// A new folder, made by this run alone; taken back if the run fails.
 class OutputFolder {
  public:
   explicit OutputFolder(fs::path folder) : folder_(std::move(folder)) {
     std::error_code error;
-    if (fs::exists(folder_, error) &&
-        !(fs::is_directory(folder_, error) && fs::is_empty(folder_, error))) {
-      throw InputError(
-          fmt::format("{}: exists and is not an empty folder; name a new one with --out, nothing "
-                      "is overwritten",
-                      folder_.string()));
+    if (const fs::path parent = folder_.lexically_normal().parent_path(); !parent.empty()) {
+      fs::create_directories(parent, error);
     }
-    made_ = fs::create_directories(folder_, error);
-    if (error) {
+    // Making a folder is the one step that only one of two runs can do.
+    const bool made = !error && fs::create_directory(folder_, error);
+    if (error && !fs::exists(folder_)) {
       throw InputError(
           fmt::format("{}: the folder cannot be made ({})", folder_.string(), error.message()));
     }
+    if (!made) {
+      throw InputError(fmt::format(
+          "{}: exists; name a new folder with --out, nothing is overwritten", folder_.string()));
+    }
   }
   ~OutputFolder() {
-    if (keep_) {
-      return;
-    }
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder_, error)) {
+    if (!keep_) {
       std::error_code ignored;
-      fs::remove_all(entry.path(), ignored);  // the folder was empty: all of it is ours
-    }
-    if (made_) {
-      fs::remove(folder_, error);
+      fs::remove_all(folder_, ignored);
     }
   }
   OutputFolder(const OutputFolder&) = delete;
@@ -53,7 +47,6 @@ class OutputFolder {
 
  private:
   fs::path folder_;
-  bool made_{false};
   bool keep_{false};
 };
 
@@ -89,6 +82,7 @@ class Crew {
         const SessionSummary done = run_session(request(p));
         const std::lock_guard lock(mutex_);
         summary_.ticks += done.ticks;
+        summary_.passes += done.passes;
         summary_.aborted_passes += done.aborted_passes;
       } catch (...) {
         const std::lock_guard lock(mutex_);

@@ -19,6 +19,7 @@ struct DryRun {
 
 struct DryRunSummary {
   std::uint64_t ticks{0};
+  int passes{0};
   int aborted_passes{0};
   double recorded_seconds{0.0};  // simulated time
   double elapsed_seconds{0.0};   // on the wall
@@ -26,7 +27,7 @@ struct DryRunSummary {
 
 /// Participants are shared out over threads; the files do not depend on how many.
 /// Where anything fails the other sessions are stopped and nothing is left.
-/// @throws InputError when the folder exists and is not empty, or cannot be made.
+/// @throws InputError when the folder exists or cannot be made.
 DryRunSummary run_dry(const Definition& definition, const DryRun& dry_run);
 
 /// "S01" for participant 0.

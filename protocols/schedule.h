@@ -17,7 +17,7 @@ struct Design {
   int repetitions{3};            // trials of a block: same stimulus, same condition
   int break_after{36};           // trials; 0 for no break
   double break_duration{600.0};  // [s]
-  int practice{0};                      // trials of each condition before the first
+  int practice{0};               // trials of each condition before the first
   std::vector<std::string> conditions;  // of training
 
   int blocks() const { return trials / repetitions; }
@@ -41,10 +41,10 @@ struct PlannedTrial {
 /// // (rows x n), values 0 .. n - 1. Source: Williams 1949.
 std::vector<std::vector<int>> williams_rows(int conditions);
 
-/// The trials of one participant in their order, practice first. Blocks come in groups that hold each condition
-/// once; the order within group g is a Williams row, and over as many consecutive participants as
-/// there are rows each row is used once in every group. Which row comes to whom is drawn from the
-/// study's seed.
+/// The trials of one participant in their order, practice first. Blocks come in groups that hold
+/// each condition once; the order within group g is a Williams row, and over as many consecutive
+/// participants as there are rows each row is used once in every group. Which row comes to whom is
+/// drawn from the study's seed.
 /// @param participant   from 0
 /// @param study_seed    the same for all participants
 /// @param session_seed  of this participant; stimuli derive from it

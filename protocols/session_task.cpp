@@ -3,8 +3,7 @@
 namespace haptrial::protocols {
 
 SessionTask::SessionTask(device::Device& device, const device::EnvelopeLimits& limits, Log& log,
-                         std::vector<stimulus::Observer*> observers, Leave leave,
-                         Origin origin)
+                         std::vector<stimulus::Observer*> observers, Leave leave, Origin origin)
     : device_(device),
       envelope_(limits),
       log_(log),
@@ -74,9 +73,13 @@ void SessionTask::take_requests(std::uint64_t sequence) noexcept {
   if (break_asked_.load(std::memory_order_acquire)) {
     break_asked_.store(false, std::memory_order_relaxed);
     broken_off_ = pass_ != nullptr;
+    envelope_.release();  // nothing is wrong: the force is let go, not cut
   }
   if (asked != nullptr) {
     broken_off_ = false;
+    if (envelope_.released()) {
+      envelope_.engage();
+    }
     asked_.store(nullptr, std::memory_order_relaxed);
     pass_ = asked;
     row_ = asked_row_.load(std::memory_order_relaxed);

@@ -15,7 +15,7 @@ GuidanceParameters read_guidance_parameters(Table& table) {
   p.trajectory = control::read_pd_gains(trajectory);
   p.plane = control::read_pd_gains(plane);
   p.force_limit = table.number("force_limit", {0.0, 100.0, true}, "N");
-  p.approach_speed = table.number("approach_speed", {0.0, 1.0, true}, "m/s");
+  p.approach_speed = table.number("approach_speed", {0.001, 1.0}, "m/s");
   p.settle_distance = table.number("settle_distance", {0.0, 0.1, true}, "m");
   p.wait = table.number("wait", {0.0, 60.0}, "s");
   p.wait_timeout = table.number("wait_timeout", {p.wait, 600.0, true}, "s");
@@ -122,13 +122,14 @@ stimulus::Presentation TrajectoryPass::presentation(const PassMoment& moment) co
   }
   seen.show_trajectory = true;
   seen.show_saturation = moment.saturated;
-  seen.target_force = moment.target_force;
-  seen.applied_force = moment.applied_force;
   seen.pass_duration = stimulus_.path.duration();
   seen.block = block_;
   if (moment.stage == Stage::kRun) {
     seen.progress = std::clamp(moment.run_time / seen.pass_duration, 0.0, 1.0);
     present(seen);
+    // What is not shown is not there: nobody who is presented with it can know more than a person.
+    seen.target_force = seen.show_target_bar ? moment.target_force : 0.0;
+    seen.applied_force = seen.show_applied_bar ? moment.applied_force : 0.0;
   } else if (moment.stage == Stage::kReturn) {
     seen.progress = 1.0;
   }

@@ -16,7 +16,7 @@ struct GuidanceParameters {
   control::PdGains trajectory{900.0, 100.0};  // in the xz plane
   control::PdGains plane{2000.0, 300.0};      // along y
   double force_limit{12.0};                   // the device saturates here > 0 [N]
-  double approach_speed{0.10};                // peak, to the start and back > 0 [m/s]
+  double approach_speed{0.10};                // peak, to the start and back >= 0.001 [m/s]
   double settle_distance{0.003};              // of the start, to be in before the run > 0 [m]
   double wait{0.5};                           // at the start, without a break >= 0 [s]
   double wait_timeout{10.0};                  // then the pass is aborted > 0 [s]

@@ -11,7 +11,7 @@ namespace haptrial::device {
 EnvelopeLimits read_envelope_limits(Table& table) {
   EnvelopeLimits limits;
   limits.max_force = table.number("max_force", {0.0, 100.0, true}, "N");
-  limits.max_force_rate = table.number("max_force_rate", {0.0, 1e6, true}, "N/s");
+  limits.max_force_rate = table.number("max_force_rate", {10.0, 1e6}, "N/s");
   limits.workspace_radius = table.number("workspace_radius", {0.0, 2.0, true}, "m");
   limits.max_speed = table.number("max_speed", {0.0, 20.0, true}, "m/s");
   limits.max_jump = table.number("max_jump", {0.0, 0.1, true}, "m");

@@ -61,7 +61,7 @@ void ramp_ends(double ramp, double duration, std::vector<double>& forces) {
 ForcePatternParameters read_force_pattern_parameters(Table& table) {
   ForcePatternParameters p;
   p.sinusoids = static_cast<int>(table.integer("sinusoids", 1, 1000));
-  p.max_frequency = table.number("max_frequency", {0.0, 100.0, true}, "Hz");
+  p.max_frequency = table.number("max_frequency", {0.001, 100.0}, "Hz");
   p.base_max = table.number("base_max", {0.0, 100.0, true}, "N");
   p.bumps_min = static_cast<int>(table.integer("bumps_min", 0, 100));
   p.bumps_max = static_cast<int>(table.integer("bumps_max", p.bumps_min, 100));

@@ -12,7 +12,7 @@ namespace haptrial::stimulus {
 /// How the force patterns of a study are drawn. Source: Morris 2006, §4.2.3.
 struct ForcePatternParameters {
   int sinusoids{4};            // number summed >= 1
-  double max_frequency{0.2};   // of each sinusoid > 0 [Hz]
+  double max_frequency{0.2};   // of each sinusoid >= 0.001 [Hz]
   double base_max{10.0};       // the sum is scaled into [0, base_max] > 0 [N]
   int bumps_min{2};            // parabolic bumps per pattern, fewest and
   int bumps_max{4};            // most

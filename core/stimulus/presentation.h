@@ -23,8 +23,8 @@ struct Presentation {
   bool show_target_bar{false};   // blue bar: target normal force
   bool show_applied_bar{false};  // green bar: normal force that the participant applies
   bool show_saturation{false};   // small square: the device is at its force limit
-  double target_force{0.0};      // [N]
-  double applied_force{0.0};     // [N]
+  double target_force{0.0};      // [N]; 0 where its bar is hidden
+  double applied_force{0.0};     // [N]; 0 where its bar is hidden
   double progress{0.0};          // time along the pass as a fraction, 0 before and 1 after the run
   double pass_duration{0.0};     // of the run [s]
   std::int32_t block{0};         // changes with the stimulus

@@ -44,7 +44,7 @@ TrajectoryParameters read_trajectory_parameters(Table& table) {
   p.length_x = table.number("length_x", {0.0, 1.0, true}, "m");
   p.range_z = table.number("range_z", {0.0, 1.0, true}, "m");
   p.sinusoids = static_cast<int>(table.integer("sinusoids", 1, 1000));
-  p.max_spatial_frequency = table.number("max_spatial_frequency", {0.0, 1000.0, true}, "cycles/m");
+  p.max_spatial_frequency = table.number("max_spatial_frequency", {0.1, 1000.0}, "cycles/m");
   p.speed = table.number("speed", {0.0, 1.0, true}, "m/s");
   return p;
 }

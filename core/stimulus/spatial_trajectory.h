@@ -17,7 +17,7 @@ struct TrajectoryParameters {
   double length_x{0.10};               // extent from left to right > 0 [m]
   double range_z{0.06};                // extent of z after scaling > 0 [m]
   int sinusoids{20};                   // number summed >= 1
-  double max_spatial_frequency{30.0};  // of each sinusoid > 0 [cycles/m]
+  double max_spatial_frequency{30.0};  // of each sinusoid >= 0.1 [cycles/m]
   double speed{0.016};                 // along the arc > 0 [m/s]
 };
 

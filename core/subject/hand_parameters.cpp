@@ -6,14 +6,14 @@ namespace haptrial::subject {
 
 HandParameters read_hand_parameters(Table& table) {
   HandParameters p;
-  p.handle_mass = table.number("handle_mass", {0.0, 10.0, true}, "kg");
+  p.handle_mass = table.number("handle_mass", {0.001, 10.0}, "kg");
   p.coulomb_friction = table.number("coulomb_friction", {0.0, 10.0}, "N");
-  p.hand_mass = table.number("hand_mass", {0.0, 10.0, true}, "kg");
+  p.hand_mass = table.number("hand_mass", {0.001, 10.0}, "kg");
   p.damping = table.number("damping", {0.0, 1000.0}, "N·s/m");
   p.stiffness = table.number("stiffness", {0.0, 1e5}, "N/m");
-  p.posture_time = table.number("posture_time", {0.0, 100.0, true}, "s");
-  p.excitation_time = table.number("excitation_time", {0.0, 1.0, true}, "s");
-  p.activation_time = table.number("activation_time", {0.0, 1.0, true}, "s");
+  p.posture_time = table.number("posture_time", {0.001, 100.0}, "s");
+  p.excitation_time = table.number("excitation_time", {0.001, 1.0}, "s");
+  p.activation_time = table.number("activation_time", {0.001, 1.0}, "s");
   return p;
 }
 

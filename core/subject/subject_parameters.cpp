@@ -19,7 +19,7 @@ struct Field {
 constexpr Bounds kShare{0.0, 1.0};
 constexpr Bounds kNewton{0.0, 100.0};
 constexpr Bounds kSeconds{0.0, 60.0, true};
-constexpr Bounds kDelay{0.0, 0.5};  // the delay line of the virtual subject holds half a second
+constexpr Bounds kDelay{0.0, 0.5};  // the virtual subject's delay line holds this at every rate
 
 using S = SubjectParameters;
 constexpr Field kFields[] = {

@@ -26,7 +26,7 @@ class VirtualSubject final : public stimulus::Observer {
                double dt) noexcept override;
 
  private:
-  static constexpr int kDelayLine = 4096;  // ticks; longer delays are cut to it
+  static constexpr int kDelayLine = 16384;  // ticks: 0.8 s at the highest rate, 20 kHz
 
   struct Sensed {
     double height{0.0};          // target bar [N of its scale]

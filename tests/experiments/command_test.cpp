@@ -122,7 +122,11 @@ TEST_F(CommandTest, BadArguments) {
   expect_bad_input("haptrial dry-run " + shipped() + " --subjects many --out " + path("o"), "many");
   expect_bad_input("haptrial dry-run " + shipped() + " --jobs 1000 --out " + path("o"),
                    "--jobs is 1000; allowed: a whole number from 1 to 256");
-  expect_bad_input("haptrial dry-run " + shipped() + " --seed -1 --out " + path("o"), "--seed");
+  expect_bad_input("haptrial dry-run " + shipped() + " --seed -1 --out " + path("o"),
+                   "--seed is '-1'; allowed: a whole number from 0 to");
+  expect_bad_input(
+      "haptrial dry-run " + shipped() + " --seed 99999999999999999999 --out " + path("o"),
+      "--seed is '99999999999999999999'; allowed");
   expect_bad_input("haptrial dry-run " + shipped() + " --trials 73 --out " + path("o"),
                    "--trials is 73");
   expect_bad_input("haptrial run " + shipped() + " --subject ../../evil1 --out " + path("o"),
@@ -161,8 +165,50 @@ TEST_F(CommandTest, NothingIsOverwritten) {
   ASSERT_EQ(brief_study("study", "--subjects 1").status, 0);
   const std::string before = test::read_text(folder_ / "study" / "S01.h5");
   expect_bad_input("haptrial dry-run " + shipped() + " --subjects 1 --out " + path("study"),
-                   "exists and is not an empty folder");
+                   "study: exists; name a new folder");
   EXPECT_EQ(test::read_text(folder_ / "study" / "S01.h5"), before);
+}
+
+TEST_F(CommandTest, OfTwoRunsIntoOneFolderOneIsRefused) {
+  for (int attempt = 0; attempt < 5; ++attempt) {
+    const std::string out = path("tw" + std::to_string(attempt));
+    const std::string dry =
+        "\"$HAPTRIAL\" dry-run " + shipped() + " --subjects 1 --trials 3 --out " + out;
+    const CommandResult both =
+        run_command(dry + " & a=$!; " + dry + " & b=$!; wait $a; x=$?; wait $b; echo $((x + $?))");
+    EXPECT_THAT(both.output, HasSubstr("\n2\n")) << both.output << both.errors;
+    EXPECT_TRUE(fs::exists(folder_ / ("tw" + std::to_string(attempt)) / "S01.h5"));
+  }
+}
+
+TEST_F(CommandTest, AnIncompleteStudySaysSo) {
+  ASSERT_EQ(brief_study("study", "--subjects 2").status, 0);
+  fs::rename(folder_ / "study" / "S02.h5", folder_ / "study" / "S02.h5.partial");
+  const CommandResult analysis = run_command("haptrial analyze " + path("study"));
+  EXPECT_EQ(analysis.status, 0) << analysis.errors;
+  const std::string report = test::read_text(folder_ / "study" / "report.html");
+  for (const char* remark : {"1 of 12 planned participants are here.", "S02.h5.partial"}) {
+    EXPECT_THAT(analysis.output, HasSubstr(remark));
+    EXPECT_THAT(report, HasSubstr(remark));
+  }
+}
+
+TEST_F(CommandTest, AnInterruptedSessionKeepsItsPass) {
+  const CommandResult result =
+      run_command("\"$HAPTRIAL\" run " + shipped() + " --subject P01 --out " + path("o") +
+                  " & sleep 2; kill -INT $!; wait $!");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.errors, HasSubstr("P01.h5.partial"));
+  const CommandResult info = run_command("haptrial info " + path("o/P01.h5.partial"));
+  EXPECT_EQ(info.status, 0) << info.output << info.errors;
+  EXPECT_THAT(info.output, HasSubstr("passes      1, 1 aborted"));
+  EXPECT_THAT(info.output, HasSubstr("interrupted"));
+}
+
+TEST_F(CommandTest, StandardOutputThatIsFullIsAFailure) {
+  const CommandResult result = run_command("haptrial validate " + shipped() + " >/dev/full");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.errors, HasSubstr("standard output cannot be written"));
 }
 
 TEST_F(CommandTest, AFileInPlaceOfTheFolder) {

@@ -234,8 +234,8 @@ TEST_P(EveryPass, ShowsWhatItsConditionShowsAndOnlyDuringTheRun) {
     ASSERT_EQ(seen.show_applied_bar, runs && during.applied);
     ASSERT_EQ(seen.instruction, runs ? during.instruction : Instruction::kRest);
     ASSERT_EQ(seen.show_saturation, m.out.saturated);
-    ASSERT_EQ(seen.target_force, m.out.target_force);
-    ASSERT_EQ(seen.applied_force, m.out.applied_force);
+    ASSERT_EQ(seen.target_force, seen.show_target_bar ? m.out.target_force : 0.0);
+    ASSERT_EQ(seen.applied_force, seen.show_applied_bar ? m.out.applied_force : 0.0);
     ASSERT_EQ(seen.tool, m.tool.position);
     ASSERT_EQ(seen.block, 7);
     ASSERT_EQ(seen.pass_duration, stimulus_of_study().path.duration());
