@@ -13,6 +13,7 @@
 #include "experiments/console.h"
 #include "experiments/interrupt.h"
 #include "experiments/keyboard.h"
+#include "experiments/rig.h"
 #include "experiments/session.h"
 
 namespace haptrial::experiments {
@@ -81,6 +82,7 @@ int run(const RunOptions& options) {
   watch_for_interrupt();
   const Definition definition = load_definition(options.definition);
   check_subject(options.subject);
+  check_device_name(options.device);
   SessionRequest request;
   request.definition = &definition;
   request.subject = options.subject;

@@ -13,6 +13,8 @@
 namespace haptrial::experiments {
 namespace {
 
+constexpr std::string_view kReplay = "replay:";
+
 /// A device with a person at it, or with a recording in a person's place.
 class DeviceRig final : public Rig {
  public:
@@ -49,12 +51,22 @@ std::unique_ptr<device::Device> replayed(const std::string& file, double rate) {
 
 }  // namespace
 
+void check_device_name(const std::string& name) {
+  for (const char* known : {"virtual", "mouse", "force-dimension", "open-haptics"}) {
+    if (name == known) {
+      return;
+    }
+  }
+  if (!name.starts_with(kReplay)) {
+    throw InputError(
+        fmt::format("--device is '{}'; allowed: virtual, mouse, force-dimension, "
+                    "open-haptics, replay:FILE (haptrial devices says which are there)",
+                    name));
+  }
+}
+
 std::unique_ptr<Rig> make_rig(const std::string& name, const Definition& d,
                               std::uint64_t session_seed) {
-  constexpr std::string_view kReplay = "replay:";
-  if (name == "virtual") {
-    return std::make_unique<VirtualRig>(d, session_seed);
-  }
   if (name == "mouse") {
     return std::make_unique<MouseRig>(d.rate);
   }
@@ -69,10 +81,8 @@ std::unique_ptr<Rig> make_rig(const std::string& name, const Definition& d,
   if (name.starts_with(kReplay)) {
     return std::make_unique<DeviceRig>(replayed(name.substr(kReplay.size()), d.rate));
   }
-  throw InputError(
-      fmt::format("--device is '{}'; allowed: virtual, mouse, force-dimension, "
-                  "open-haptics, replay:FILE (haptrial devices says which are there)",
-                  name));
+  check_device_name(name);
+  return std::make_unique<VirtualRig>(d, session_seed);
 }
 
 }  // namespace haptrial::experiments

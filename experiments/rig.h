@@ -31,4 +31,7 @@ class Rig {
 std::unique_ptr<Rig> make_rig(const std::string& name, const Definition& definition,
                               std::uint64_t session_seed);
 
+/// @throws InputError unless make_rig knows the name.
+void check_device_name(const std::string& name);
+
 }  // namespace haptrial::experiments

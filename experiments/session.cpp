@@ -110,8 +110,9 @@ class Session {
   // Kept here, not in a function: the servo thread may be using them when an error leaves it.
   std::optional<stimulus::Stimulus> stimulus_;
   std::unique_ptr<protocols::TrajectoryPass> pass_;
-  std::thread servo_;    // on a real clock
-  record::PassRow row_;  // of the present pass
+  std::thread servo_;     // on a real clock
+  record::PassRow row_;   // of the present pass
+  bool row_open_{false};  // and is not in the file yet
   Clock::time_point flushed_{};
 };
 
@@ -357,6 +358,7 @@ bool Session::run_pass(std::unique_ptr<protocols::TrajectoryPass> pass, const Pl
   row_.stimulus_seed = trial.stimulus_seed;
   row_.practice = trial.practice;
   row_.attempt = attempt;
+  row_open_ = true;
   const auto known = before_.passes.size() + before_.open_passes.size();
   task_.start(*pass_, static_cast<std::int32_t>(known) + summary_.passes++);
   drive_until_idle();
@@ -379,6 +381,7 @@ void Session::record_pass(record::PassStatus status, std::uint64_t last_sample) 
   row_.last_sample = last_sample;
   row_.status = status;
   writer_.add_pass(row_);
+  row_open_ = false;
   if (real_) {
     writer_.sync();
   }
@@ -578,8 +581,10 @@ void Session::give_up() noexcept {
       return;
     }
     append_rest();
-    if (!task_.idle() && task_.result().begun) {
-      record_pass(record::PassStatus::kAborted, before_.next_sequence + loop_.ticks() - 1);
+    if (row_open_ && task_.result().begun) {
+      record_pass(record::PassStatus::kAborted, task_.idle()
+                                                    ? task_.result().last_sample
+                                                    : before_.next_sequence + loop_.ticks() - 1);
     }
     event("interrupted", "the session did not come to its end");
     writer_.sync();

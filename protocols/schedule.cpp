@@ -17,7 +17,7 @@ Design read_design(Table& table) {
   d.repetitions = static_cast<int>(table.integer("repetitions", 1, 1000));
   d.break_after = static_cast<int>(table.integer("break_after", 0, 100000));
   d.break_duration = table.number("break_duration", {0.0, 86400.0}, "s");
-  d.practice = static_cast<int>(table.integer("practice", 0, 100));
+  d.practice = table.has("practice") ? static_cast<int>(table.integer("practice", 0, 100)) : 0;
   d.conditions = table.texts("conditions");
 
   const int group = d.repetitions * static_cast<int>(d.conditions.size());

@@ -237,8 +237,11 @@ TEST(ArchitectureTest, HeavyLibrariesStayOutOfHeaders) {
       if (file.extension() != ".h") {
         continue;
       }
+      // An internal header belongs to the few sources that wrap one library.
+      const bool internal = file.stem().string().ends_with("_internal");
       for (const std::string& include : includes(contents(file))) {
-        EXPECT_FALSE(std::regex_match(include, heavy)) << file << " includes " << include;
+        EXPECT_TRUE(internal || !std::regex_match(include, heavy))
+            << file << " includes " << include;
       }
       EXPECT_EQ(contents(file).rfind("#pragma once\n", 0), 0u) << file;
     }

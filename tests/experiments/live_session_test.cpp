@@ -1,0 +1,160 @@
+// Sessions on the real clock with an experimenter who asks for things, and sessions that are
+// killed.
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <functional>
+#include <thread>
+
+#include "core/record/integrity.h"
+#include "core/record/session_reader.h"
+#include "experiments/session.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/sanitizer.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using record::PassRow;
+using record::PassStatus;
+using record::Phase;
+
+class LiveSessionTest : public testing::Test {
+ protected:
+  LiveSessionTest() {
+    request_.definition = &definition_;
+    request_.subject = "P01";
+    request_.clock = realtime::ClockKind::kReal;
+    request_.file = folder_ / "P01.h5";
+  }
+  /// Does `then` once the session shows `what`, or fails after ten seconds.
+  void when(const std::function<bool(const SessionStatus&)>& what, Request then) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    while (!what(control_.status())) {
+      ASSERT_LT(std::chrono::steady_clock::now(), end) << "state " << control_.status().state;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    control_.ask(then);
+  }
+  static std::function<bool(const SessionStatus&)> state(const std::string& name) {
+    return [name](const SessionStatus& s) { return s.state == name; };
+  }
+  static bool runs(const SessionStatus& s) { return s.state == "running" && s.stage == "run"; }
+
+  test::TemporaryFolder folder_;
+  // Brisk passes, so that a test takes seconds.
+  Definition definition_ =
+      parse_definition(test::shipped_with("speed", "speed = 0.05"), "brisk.toml");
+  SessionControl control_;
+  SessionRequest request_;
+};
+
+TEST_F(LiveSessionTest, TrialsAreRepeatedSkippedAndEnded) {
+  request_.control = &control_;
+  std::thread experimenter([this] {
+    when(state("instructions"), Request::kStart);
+    when(runs, Request::kRepeatTrial);
+    when([](const SessionStatus& s) { return s.aborted_passes == 1 && runs(s); },
+         Request::kSkipTrial);
+    when([](const SessionStatus& s) { return s.trial == 2 && runs(s); }, Request::kAbort);
+    control_.note("a note");
+  });
+  run_session(request_);
+  experimenter.join();
+  const record::SessionReader reader(request_.file);
+  EXPECT_TRUE(record::check_session(reader).ok);
+  const auto passes = reader.passes();
+  ASSERT_EQ(passes.size(), 3u);
+  for (const PassRow& pass : passes) {
+    EXPECT_EQ(pass.status, PassStatus::kAborted);
+    EXPECT_EQ(pass.phase, Phase::kTraining);
+  }
+  EXPECT_EQ(passes[0].attempt, 1);
+  EXPECT_EQ(passes[1].trial, 1);
+  EXPECT_EQ(passes[1].attempt, 2);
+  EXPECT_EQ(passes[2].trial, 2);
+}
+
+TEST_F(LiveSessionTest, AnEmergencyStopStaysUntilItIsClearedAndTheTrialComesAgain) {
+  request_.control = &control_;
+  std::thread experimenter([this] {
+    when(state("instructions"), Request::kStart);
+    when(runs, Request::kEmergencyStop);
+    when(state("stopped"), Request::kStart);  // not enough: nobody has cleared the cause
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    EXPECT_EQ(control_.status().state, "stopped");
+    control_.ask(Request::kClear);
+    when(state("stopped"), Request::kStart);
+    when([](const SessionStatus& s) { return s.aborted_passes == 1 && runs(s); }, Request::kAbort);
+  });
+  run_session(request_);
+  experimenter.join();
+  const record::SessionReader reader(request_.file);
+  const auto passes = reader.passes();
+  ASSERT_EQ(passes.size(), 2u);
+  EXPECT_EQ(passes[1].trial, 1);
+  EXPECT_EQ(passes[1].attempt, 2);
+  // From the last sample of the stopped pass to the first of the next: no force at all.
+  const auto between =
+      reader.samples(passes[0].last_sample, passes[1].first_sample - passes[0].last_sample);
+  EXPECT_GT(between.size(), 200u);
+  for (const record::Sample& sample : between) {
+    ASSERT_EQ(sample.force.norm(), 0.0) << sample.sequence;
+  }
+}
+
+TEST_F(LiveSessionTest, AKilledSessionGoesOnAtItsFirstUnfinishedTrial) {
+  if (test::kThreadSanitizer) {
+    GTEST_SKIP() << "a thread sanitizer does not follow a fork of threads";
+  }
+  request_.max_trials = 2;
+  const pid_t child = fork();
+  if (child == 0) {
+    run_session(request_);
+    _exit(0);
+  }
+  // Killed in the second trial: its first test is on the disk by then.
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  const auto tests_done = [this] {
+    try {
+      const auto passes = record::SessionReader(folder_ / "P01.h5.partial").passes();
+      return passes.size() >= 2;
+    } catch (const std::exception&) {
+      return false;
+    }
+  };
+  while (!tests_done() && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  ASSERT_FALSE(std::filesystem::exists(request_.file));
+
+  request_.resume = true;
+  run_session(request_);
+  const record::SessionReader reader(request_.file);
+  const record::Integrity integrity = record::check_session(reader);
+  EXPECT_TRUE(integrity.ok) << (integrity.problems.empty() ? "" : integrity.problems.front());
+  EXPECT_EQ(integrity.gaps, 0u);
+  std::vector<int> tested;
+  std::uint64_t seed = 0;
+  for (const PassRow& pass : reader.passes()) {
+    if (pass.status == PassStatus::kCompleted) {
+      seed = seed == 0 ? pass.stimulus_seed : seed;
+      EXPECT_EQ(pass.stimulus_seed, seed) << "the stimulus of the block is the same as before";
+      if (pass.phase == Phase::kTest) {
+        tested.push_back(pass.trial);
+      }
+    }
+  }
+  EXPECT_EQ(tested, (std::vector<int>{1, 2}));
+}
+
+}  // namespace
+}  // namespace haptrial::experiments
