@@ -1,6 +1,5 @@
 #include "experiments/session.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,17 +10,12 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
-#include "core/device/mouse.h"
-#include "core/record/session_resume.h"
-#include "core/record/session_writer.h"
 #include "core/render/frames.h"
-#include "core/stream/lsl_outlet.h"
 #include "experiments/frame_capture.h"
 #include "experiments/interrupt.h"
 #include "experiments/rig.h"
-#include "experiments/screen.h"
 #include "experiments/session_desk.h"
-#include "experiments/version.h"
+#include "experiments/session_opening.h"
 #include "protocols/recall_test.h"
 #include "protocols/session_task.h"
 #include "protocols/training_pass.h"
@@ -33,18 +27,6 @@ using protocols::PlannedTrial;
 using realtime::ClockKind;
 using Clock = std::chrono::steady_clock;
 
-std::vector<record::StimulusRow> stimulus_rows(const stimulus::Stimulus& s, std::int32_t block,
-                                               double rate) {
-  std::vector<record::StimulusRow> rows;
-  const auto count = static_cast<std::size_t>(s.path.duration() * rate) + 1;
-  rows.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const double t = static_cast<double>(i) / rate;
-    rows.push_back({block, t, s.path.at(t).position, s.force.at(t)});
-  }
-  return rows;
-}
-
 class Session {
  public:
   explicit Session(const SessionRequest& request);
@@ -52,9 +34,6 @@ class Session {
   SessionSummary run();
 
  private:
-  record::SessionInfo info() const;
-  record::SessionWriter open_writer();
-  std::unique_ptr<Screen> open_screen();
   std::vector<stimulus::Observer*> observers();
   SessionDesk::Actions desk_actions();
 
@@ -123,8 +102,8 @@ Session::Session(const SessionRequest& request)
       session_seed_(derived_seed(request.seed, "participant " + request.subject)),
       rig_(make_rig(request.device, d_, session_seed_)),
       capture_(request.frames_per_pass),
-      screen_(open_screen()),
-      writer_(open_writer()),
+      screen_(open_screen(request, rig_->mouse())),
+      writer_(open_writer(request, before_)),
       desk_(request.control, desk_actions()),
       task_(rig_->device(), d_.envelope, log_, observers(),
             real_ ? protocols::SessionTask::Leave::kNever
@@ -134,17 +113,10 @@ Session::Session(const SessionRequest& request)
   if (request.frames_per_pass > 0) {
     renderer_.emplace(d_.display);
   }
-  if (request.stream) {
-    std::string notice;
-    outlet_ = stream::LslOutlet::open({.study = d_.name,
-                                       .subject = request.subject,
-                                       .device = request.device,
-                                       .rate = d_.rate,
-                                       .simulated = rig_->subject() != nullptr},
-                                      notice);
-    if (!notice.empty()) {
-      summary_.notices.push_back(notice);
-    }
+  std::string notice;
+  outlet_ = open_outlet(request, rig_->subject() != nullptr, notice);
+  if (!notice.empty()) {
+    summary_.notices.push_back(notice);
   }
   const auto stop = [](void* task) {
     static_cast<protocols::SessionTask*>(task)->emergency_stop();
@@ -166,47 +138,6 @@ Session::~Session() {
   }
 }
 
-record::SessionWriter Session::open_writer() {
-  if (!request_.resume || !record::SessionWriter::can_resume(request_.file)) {
-    return record::SessionWriter(request_.file, info());
-  }
-  record::SessionWriter writer = record::SessionWriter::resume(request_.file, before_);
-  if (before_.info.definition != d_.text || before_.info.seed != request_.seed) {
-    throw InputError(
-        fmt::format("{}.partial: was recorded with another definition or seed ({}); "
-                    "resume it with the same ones",
-                    request_.file.string(), before_.info.seed));
-  }
-  return writer;
-}
-
-std::unique_ptr<Screen> Session::open_screen() {
-  if (!request_.window) {
-    return nullptr;
-  }
-  ScreenCallbacks callbacks;
-  SessionControl* control = request_.control;
-  if (control != nullptr) {
-    callbacks.key = [control](const render::KeyPress& press) {
-      if (const auto request = request_of(press)) {
-        control->ask(*request);
-      }
-    };
-    callbacks.closed = [control] { control->ask(Request::kAbort); };
-  }
-  if (device::MouseDevice* mouse = rig_->mouse()) {
-    callbacks.pointer = [mouse](const ScreenPointer& pointer) {
-      constexpr double kForcePerStep = 0.5;  // of the wheel, while the left button is held [N]
-      constexpr double kStartingForce = 2.0;
-      mouse->move(pointer.x, pointer.z);
-      mouse->set_buttons(pointer.buttons);
-      const bool held = (pointer.buttons & 1u) != 0;
-      mouse->press(held ? std::max(0.0, kStartingForce + kForcePerStep * pointer.wheel) : 0.0);
-    };
-  }
-  return std::make_unique<Screen>(d_.screen, d_.display, std::move(callbacks));
-}
-
 SessionDesk::Actions Session::desk_actions() {
   return {[this] { task_.break_off(); }, [this] { task_.clear_fault(); },
           [this](const std::string& kind, const std::string& text) { event(kind, text); }};
@@ -224,25 +155,6 @@ std::vector<stimulus::Observer*> Session::observers() {
     all.push_back(screen_.get());
   }
   return all;
-}
-
-record::SessionInfo Session::info() const {
-  record::SessionInfo info;
-  info.program_version = program_version();
-  info.program_commit = program_commit();
-  info.definition = d_.text;
-  info.definition_name = d_.file_name;
-  info.subject = request_.subject;
-  info.seed = request_.seed;
-  info.device = request_.device;
-  info.device_max_force = d_.device.max_force;
-  info.device_workspace_radius = d_.device.workspace_radius;
-  info.clock = real_ ? "real" : "simulated";
-  info.rate = d_.rate;
-  info.start_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
-  info.simulated = request_.device == "virtual";
-  info.participant = request_.person;
-  return info;
 }
 
 SessionSummary Session::run() {

@@ -1,0 +1,102 @@
+#include "experiments/session_opening.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+
+#include "core/base/error.h"
+#include "core/device/mouse.h"
+#include "experiments/version.h"
+
+namespace haptrial::experiments {
+
+record::SessionInfo session_info(const SessionRequest& request) {
+  const Definition& d = *request.definition;
+  record::SessionInfo info;
+  info.program_version = program_version();
+  info.program_commit = program_commit();
+  info.definition = d.text;
+  info.definition_name = d.file_name;
+  info.subject = request.subject;
+  info.seed = request.seed;
+  info.device = request.device;
+  info.device_max_force = d.device.max_force;
+  info.device_workspace_radius = d.device.workspace_radius;
+  info.clock = request.clock == realtime::ClockKind::kReal ? "real" : "simulated";
+  info.rate = d.rate;
+  info.start_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  info.simulated = request.device == "virtual";
+  info.participant = request.person;
+  return info;
+}
+
+record::SessionWriter open_writer(const SessionRequest& request, record::Resumed& before) {
+  if (!request.resume || !record::SessionWriter::can_resume(request.file)) {
+    return record::SessionWriter(request.file, session_info(request));
+  }
+  record::SessionWriter writer = record::SessionWriter::resume(request.file, before);
+  if (before.info.definition != request.definition->text || before.info.seed != request.seed) {
+    throw InputError(
+        fmt::format("{}.partial: was recorded with another definition or seed ({}); "
+                    "resume it with the same ones",
+                    request.file.string(), before.info.seed));
+  }
+  return writer;
+}
+
+std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::MouseDevice* mouse) {
+  if (!request.window) {
+    return nullptr;
+  }
+  ScreenCallbacks callbacks;
+  SessionControl* control = request.control;
+  if (control != nullptr) {
+    callbacks.key = [control](const render::KeyPress& press) {
+      if (const auto asked = request_of(press)) {
+        control->ask(*asked);
+      }
+    };
+    callbacks.closed = [control] { control->ask(Request::kAbort); };
+  }
+  if (mouse != nullptr) {
+    callbacks.pointer = [mouse](const ScreenPointer& pointer) {
+      constexpr double kForcePerStep = 0.5;  // of the wheel, while the left button is held [N]
+      constexpr double kStartingForce = 2.0;
+      mouse->move(pointer.x, pointer.z);
+      mouse->set_buttons(pointer.buttons);
+      const bool held = (pointer.buttons & 1u) != 0;
+      mouse->press(held ? std::max(0.0, kStartingForce + kForcePerStep * pointer.wheel) : 0.0);
+    };
+  }
+  return std::make_unique<Screen>(request.definition->screen, request.definition->display,
+                                  std::move(callbacks));
+}
+
+std::unique_ptr<stream::LslOutlet> open_outlet(const SessionRequest& request, bool simulated,
+                                               std::string& notice) {
+  if (!request.stream) {
+    return nullptr;
+  }
+  return stream::LslOutlet::open({.study = request.definition->name,
+                                  .subject = request.subject,
+                                  .device = request.device,
+                                  .rate = request.definition->rate,
+                                  .simulated = simulated},
+                                 notice);
+}
+
+std::vector<record::StimulusRow> stimulus_rows(const stimulus::Stimulus& s, std::int32_t block,
+                                               double rate) {
+  std::vector<record::StimulusRow> rows;
+  const auto count = static_cast<std::size_t>(s.path.duration() * rate) + 1;
+  rows.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double t = static_cast<double>(i) / rate;
+    rows.push_back({block, t, s.path.at(t).position, s.force.at(t)});
+  }
+  return rows;
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/record/session_resume.h"
+#include "core/record/session_writer.h"
+#include "core/stimulus/stimulus.h"
+#include "core/stream/lsl_outlet.h"
+#include "experiments/screen.h"
+#include "experiments/session.h"
+
+namespace haptrial::device {
+class MouseDevice;
+}
+
+namespace haptrial::experiments {
+
+/// What a session opens before its first tick, each from the request alone.
+
+record::SessionInfo session_info(const SessionRequest& request);
+
+/// A new session file, or the one that is gone on with; `before` says what that one holds.
+/// @throws InputError as SessionWriter does, and where the file is of another definition or seed.
+record::SessionWriter open_writer(const SessionRequest& request, record::Resumed& before);
+
+/// The participant's screen, where one was asked for; else null. Its keys reach the session's
+/// control, its pointer the mouse device.
+/// @param mouse  null for any other device
+std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::MouseDevice* mouse);
+
+/// The streams, where they were asked for and can be had; else null and, where they cannot, a
+/// sentence in `notice`.
+std::unique_ptr<stream::LslOutlet> open_outlet(const SessionRequest& request, bool simulated,
+                                               std::string& notice);
+
+/// The ideal curves of a block for the session file. @param rate  [Hz]
+std::vector<record::StimulusRow> stimulus_rows(const stimulus::Stimulus& stimulus,
+                                               std::int32_t block, double rate);
+
+}  // namespace haptrial::experiments
