@@ -42,8 +42,13 @@ class Driver:
                 break
         options = {"args": FLAGS + [f"--user-data-dir={profile}"]}
         logging = {"goog:loggingPrefs": {"browser": "ALL"}}
-        answer = self.call("POST", "/session", {"capabilities": {"alwaysMatch": {
-            "browserName": "chrome", "goog:chromeOptions": options, **logging}}})
+        try:
+            answer = self.call("POST", "/session", {"capabilities": {"alwaysMatch": {
+                "browserName": "chrome", "goog:chromeOptions": options, **logging}}})
+        except OSError as error:  # no shared memory, say: nothing that the page could help
+            self.process.kill()
+            print(f"Chromium does not start here: {error}")
+            sys.exit(77)
         self.base += "/session/" + answer["sessionId"]
 
     def call(self, method, path, body=None):

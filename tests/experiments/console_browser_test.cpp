@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
 #include <array>
 #include <atomic>
@@ -142,7 +143,11 @@ TEST(ConsoleBrowserTest, ASessionIsClickedThrough) {
       console.reset();
     }
   }
-  EXPECT_EQ(::pclose(script), 0) << output;
+  const int status = ::pclose(script);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 77) {
+    GTEST_SKIP() << output;
+  }
+  EXPECT_EQ(status, 0) << output;
   EXPECT_THAT(session.stop_and_tell(),
               ElementsAre("start", "pause", "note: hand slips <b>&amp; \u00e9 r s a c p", "start",
                           "repeat", "skip", "emergency_stop", "clear", "emergency_stop", "clear"));
