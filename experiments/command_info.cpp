@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/timing.h"
 #include "core/record/file_lock.h"
 #include "core/record/integrity.h"
 #include "core/record/session_reader.h"
@@ -25,6 +26,21 @@ void print_participant(const record::Participant& participant) {
     if (!value->empty()) {
       fmt::print("{:<11} {}\n", name, *value);
     }
+  }
+}
+
+void print_loop(const record::SessionReader& reader) {
+  const analysis::LoopTiming loop = analysis::loop_timing(reader);
+  if (!loop.complete) {
+    fmt::print("loop        unknown: the session did not come to its end\n");
+    return;
+  }
+  fmt::print("loop        {} overruns, {} records dropped\n", loop.overruns, loop.dropped);
+  if (loop.applies && loop.lateness) {
+    const analysis::TimingPercentiles& late = *loop.lateness;
+    const auto us = [](std::int64_t ns) { return 1e-3 * static_cast<double>(ns); };
+    fmt::print("lateness    median {:.2f}, 99 % {:.2f}, 99.9 % {:.2f}, worst {:.2f} us\n",
+               us(late.median_ns), us(late.p99_ns), us(late.p999_ns), us(late.highest_ns));
   }
 }
 
@@ -60,12 +76,7 @@ int info(const std::string& file) {
              integrity.first_sequence, integrity.last_sequence, integrity.gaps);
   fmt::print("passes      {}, {} aborted, {} for practice\n", integrity.passes, integrity.aborted,
              integrity.practice);
-  if (reader.timing_summary()) {
-    fmt::print("loop        {} overruns, {} records dropped\n", integrity.overruns,
-               integrity.dropped);
-  } else {
-    fmt::print("loop        unknown: the session did not come to its end\n");
-  }
+  print_loop(reader);
   print_frames(reader.frames());
   for (const record::EventRow& event : reader.events()) {
     if (event.kind == "aborted" || event.kind == "interrupted" || event.kind == "notice" ||
