@@ -19,7 +19,9 @@ extern "C" void on_signal(int signal) {
     call(hook_with.load());
   }
   restore_terminal();
-  std::signal(signal, SIG_DFL);
+  if (signal != SIGHUP) {  // a shell and the system may both tell of a closed terminal
+    std::signal(signal, SIG_DFL);
+  }
 }
 
 }  // namespace
@@ -27,6 +29,9 @@ extern "C" void on_signal(int signal) {
 void watch_for_interrupt() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  if (std::signal(SIGHUP, on_signal) == SIG_IGN) {
+    std::signal(SIGHUP, SIG_IGN);  // nohup: the session is to outlive its terminal
+  }
 }
 
 bool interrupted() noexcept { return asked.load(); }

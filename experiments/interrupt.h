@@ -2,7 +2,8 @@
 
 namespace haptrial::experiments {
 
-/// From now on SIGINT and SIGTERM ask the program to stop; a second one ends it at once.
+/// From now on SIGINT, SIGTERM and a closed terminal (SIGHUP, unless it was ignored) ask the
+/// program to stop; a second SIGINT or SIGTERM ends it at once.
 void watch_for_interrupt();
 bool interrupted() noexcept;  // any thread
 
