@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -58,6 +59,13 @@ void print_frames(const std::vector<record::FrameRow>& frames) {
              frames.size(), dropped, 1e-6 * static_cast<double>(longest));
 }
 
+/// What a person did or has to know; the rest is in /events.
+bool is_told(const std::string& kind) {
+  constexpr std::array<std::string_view, 6> kTold{"aborted", "interrupted",    "notice",
+                                                  "note",    "emergency_stop", "recovered"};
+  return std::find(kTold.begin(), kTold.end(), kind) != kTold.end();
+}
+
 }  // namespace
 
 int info(const std::string& file) {
@@ -79,8 +87,7 @@ int info(const std::string& file) {
   print_loop(reader);
   print_frames(reader.frames());
   for (const record::EventRow& event : reader.events()) {
-    if (event.kind == "aborted" || event.kind == "interrupted" || event.kind == "notice" ||
-        event.kind == "recovered") {
+    if (is_told(event.kind)) {
       fmt::print("{:<11} at {:.3f} s: {}\n", event.kind, 1e-9 * static_cast<double>(event.time_ns),
                  event.text);
     }

@@ -380,14 +380,12 @@ void Console::Implementation::send_events(httplib::Response& response) {
       "text/event-stream",
       [this, period, patience, first = true](std::size_t, httplib::DataSink& sink) mutable {
         Connection& connection = t_job->connection;
-        if (!first && !connection.wait(period)) {
-          return false;
-        }
-        connection.set_deadline(patience);  // for a page that no longer reads
+        const bool last = !first && !connection.wait(period);  // how the session ended, say
+        connection.set_deadline(patience);                     // for a page that no longer reads
         const std::string event = fmt::format("{}data: {}\n\n", first ? "retry: 500\n" : "",
                                               status_json(control_.status(), log_.count()));
         first = false;
-        return sink.write(event.data(), event.size());
+        return sink.write(event.data(), event.size()) && !last;
       },
       [this](bool) { streams_.fetch_sub(1); });
 }

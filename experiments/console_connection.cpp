@@ -69,7 +69,8 @@ bool Connection::ready(short events) {
   for (;;) {
     const int left = milliseconds_until(deadline_);
     const int count = ::poll(watched.data(), watched.size(), std::min(left, kSlice));
-    if (count > 0 && watched[1].revents != 0) {
+    const bool writable = (watched[0].revents & POLLOUT) != 0;
+    if (count > 0 && watched[1].revents != 0 && !writable) {
       trouble_ = Trouble::kStopped;
     } else if (left == 0 || (events == POLLIN && in_the_way()) || (count < 0 && errno != EINTR)) {
       trouble_ = Trouble::kTooSlow;

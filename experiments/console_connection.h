@@ -42,7 +42,8 @@ class Connection {
 
   /// @returns bytes read (at least 1), 0 when the peer closed, -1 with trouble().
   ssize_t read(char* data, std::size_t size);
-  /// @returns bytes written (at least 1) or -1 with trouble().
+  /// @returns bytes written (at least 1) or -1 with trouble(). Once the console closes, only what
+  /// the peer takes at once is written: a last word.
   ssize_t write(const char* data, std::size_t size);
   /// Waits without reading. @returns false when the peer or the console has gone.
   bool wait(Duration time);
