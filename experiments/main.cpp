@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "core/base/error.h"
 #include "experiments/commands.h"
@@ -16,6 +17,11 @@ namespace experiments = haptrial::experiments;
 
 constexpr int kFailed = 1;
 constexpr int kBadInput = 2;
+
+/// Also where nobody reads it any more, as in a terminal that was closed.
+void complain(const std::string& sentence) {
+  [[maybe_unused]] const int written = std::fputs(("haptrial: " + sentence + "\n").c_str(), stderr);
+}
 
 CLI::App* subcommand(CLI::App& app, const char* name, const char* what, const char* example) {
   CLI::App* sub = app.add_subcommand(name, what);
@@ -186,7 +192,7 @@ int run_command(int argc, char** argv) {
   } catch (const CLI::Success& asked) {
     return app.exit(asked);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "haptrial: {}; see haptrial --help\n", error.what());
+    complain(std::string(error.what()) + "; see haptrial --help");
     return kBadInput;
   }
   return status;
@@ -202,10 +208,10 @@ int main(int argc, char** argv) {
     }
     return status;
   } catch (const haptrial::InputError& error) {
-    fmt::print(stderr, "haptrial: {}\n", error.what());
+    complain(error.what());
     return kBadInput;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "haptrial: {}\n", error.what());
+    complain(error.what());
     return kFailed;
   }
 }
