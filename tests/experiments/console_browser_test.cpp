@@ -152,13 +152,9 @@ TEST(ConsoleBrowserTest, ASessionIsClickedThrough) {
               ElementsAre("start", "pause", "note: hand slips <b>&amp; \u00e9 r s a c p", "start",
                           "repeat", "skip", "emergency_stop", "clear", "emergency_stop", "clear"));
   EXPECT_GE(refusals.size(), 3u) << "of the page from elsewhere";
-  for (const char* picture :
-       {"console-running.png", "console-stopped.png", "console-narrow.png", "console-lost.png"}) {
+  for (const char* picture : {"console-narrow.png", "console-lost.png"}) {
     ASSERT_TRUE(fs::exists(folder / picture)) << picture;
     EXPECT_GT(fs::file_size(folder / picture), 10'000u) << picture;
-    if (const char* keep = std::getenv("HAPTRIAL_KEEP_PICTURES")) {
-      fs::copy(folder / picture, keep, fs::copy_options::overwrite_existing);
-    }
   }
 }
 

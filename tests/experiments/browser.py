@@ -1,0 +1,109 @@
+"""Drives headless Chromium for the tests of the experimenter's console.
+
+Speaks the WebDriver protocol to chromedriver with the standard library alone.
+"""
+
+import base64
+import json
+import os
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+
+FLAGS = [
+    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync",
+    "--disable-dev-shm-usage", "--hide-scrollbars", "--window-size=1280,900",
+]
+ESCAPE = "\ue00c"
+
+
+class Driver:
+    """One chromedriver on a port of its own choice, with one window."""
+
+    def __init__(self, folder):
+        profile = folder / "profile"
+        self.process = subprocess.Popen(
+            ["chromedriver", "--port=0"], stdout=subprocess.PIPE, text=True,
+            env={**os.environ, "HOME": str(folder)})
+        self.base = ""
+        for line in self.process.stdout:
+            if "started successfully on port" in line:
+                port = line.strip().rstrip(".").rsplit(" ", 1)[1]
+                self.base = f"http://127.0.0.1:{port}"
+                break
+        options = {"args": FLAGS + [f"--user-data-dir={profile}"]}
+        logging = {"goog:loggingPrefs": {"browser": "ALL"}}
+        try:
+            answer = self.call("POST", "/session", {"capabilities": {"alwaysMatch": {
+                "browserName": "chrome", "goog:chromeOptions": options, **logging}}})
+        except OSError as error:  # no shared memory, say: nothing that the page could help
+            self.process.kill()
+            print(f"Chromium does not start here: {error}")
+            sys.exit(77)
+        self.base += "/session/" + answer["sessionId"]
+
+    def call(self, method, path, body=None):
+        data = None if method != "POST" else json.dumps(body or {}).encode()
+        request = urllib.request.Request(self.base + path, data, method=method,
+                                         headers={"Content-Type": "application/json"})
+        opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
+        with opener.open(request, timeout=60) as answer:
+            return json.load(answer)["value"]
+
+    def run(self, script):
+        return self.call("POST", "/execute/sync", {"script": script, "args": []})
+
+    def text(self, name):
+        return self.run(f"return document.getElementById('{name}').innerText")
+
+    def hidden(self, name):
+        return self.run(f"return !document.getElementById('{name}').checkVisibility()")
+
+    def element(self, name):
+        found = self.call("POST", "/element", {"using": "css selector", "value": "#" + name})
+        return next(iter(found.values()))
+
+    def click(self, name):
+        """As a person does: at the place on the screen, which nothing may cover."""
+        self.call("POST", f"/element/{self.element(name)}/click")
+
+    def type(self, name, text):
+        self.call("POST", f"/element/{self.element(name)}/value", {"text": text})
+
+    def key(self, key):
+        self.call("POST", "/actions", {"actions": [{"type": "key", "id": "keys", "actions": [
+            {"type": "keyDown", "value": key}, {"type": "keyUp", "value": key}]}]})
+
+    def picture(self, file, width=1280, height=900):
+        self.call("POST", "/window/rect", {"width": width, "height": height})
+        time.sleep(0.3)
+        file.write_bytes(base64.b64decode(self.call("GET", "/screenshot")))
+
+    def complaints(self):
+        """Errors in the browser's console: scripts that fail, things that the policy blocks."""
+        log = self.call("POST", "/se/log", {"type": "browser"})
+        return [entry["message"] for entry in log if entry["level"] in ("SEVERE", "WARNING")]
+
+    def close(self):
+        try:
+            self.call("DELETE", "")
+        except (urllib.error.URLError, OSError):
+            pass
+        self.process.terminate()
+        self.process.wait(20)
+
+
+def wait(what, condition, seconds=10):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if condition():
+            return
+        time.sleep(0.03)
+    raise AssertionError("never came: " + what)
+
+
+def state(page, wanted, seconds=10):
+    wait(f"state {wanted}", lambda: page.text("state") == wanted, seconds)

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/experiments/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::test {
+
+/// Whether `good` came true within so many seconds; asked every 10 ms.
+bool eventually(const std::function<bool()>& good, double seconds = 20.0);
+
+/// The built command while it runs, with a person who watches it and meddles. What it printed stays
+/// in a folder of its own. A command that outlives this is killed.
+class LiveCommand {
+ public:
+  enum class Where { kBackground, kTerminal };
+
+  /// Whether the system has pseudo-terminals.
+  static bool has_terminals();
+
+  /// @param arguments  of `haptrial`, as a shell takes them
+  /// @param before  shell lines run before it in the same process: "ulimit -f 300"
+  /// @param where  on a terminal of its own, whose keys press() presses, or in the background
+  /// @throws std::runtime_error where it cannot be started
+  explicit LiveCommand(const std::string& arguments, const std::string& before = "",
+                       Where where = Where::kBackground);
+  ~LiveCommand();
+  LiveCommand(const LiveCommand&) = delete;
+  LiveCommand& operator=(const LiveCommand&) = delete;
+
+  std::string output();  // standard output so far; on a terminal, all that it shows
+  std::string errors();  // standard error so far; on a terminal, nothing
+  /// The first line of the output that starts so, without that start; "" where none comes.
+  std::string line_after(const std::string& start, double seconds = 20.0);
+
+  void signal(int number) const;
+  void press(const std::string& keys) const;  // on the terminal
+  void hang_up();                             // the terminal's window is closed
+  bool runs();
+
+  /// @returns what it gave; status -1 where it had to be killed because it did not end in time.
+  CommandResult wait(double seconds = 20.0);
+
+ private:
+  void start_on_terminal(const std::string& script);
+  void start_in_background(const std::string& script);
+  void read_screen();
+  bool reap(int options);
+
+  TemporaryFolder folder_;
+  pid_t process_{-1};
+  int screen_{-1};  // the terminal's other end
+  std::string shown_;
+  int status_{-1};
+};
+
+/// The shipped definition with other values, each given as its line: {"speed", "speed = 0.05"}.
+std::string shipped_with_all(const std::vector<std::pair<std::string, std::string>>& lines);
+
+/// The lines that make a pass last about three seconds and a trial six.
+std::vector<std::pair<std::string, std::string>> brisk_lines();
+/// The shipped study with these, and others.
+std::string brisk_text(std::vector<std::pair<std::string, std::string>> more = {});
+
+}  // namespace haptrial::test

@@ -1,0 +1,138 @@
+// What ends a session from outside, as it comes about: Ctrl-C in the terminal, SIGTERM, and a
+// terminal whose window is closed; during a pass, a text and a break.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/record/integrity.h"
+#include "core/record/session_reader.h"
+#include "tests/experiments/console_person.h"
+#include "tests/experiments/live_command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial {
+namespace {
+
+namespace fs = std::filesystem;
+using test::CommandResult;
+using test::ConsolePerson;
+using test::LiveCommand;
+using testing::HasSubstr;
+
+enum class Way { kControlC, kTerminate, kCloseTerminal };
+enum class Moment { kPass, kText, kBreak };
+
+class LiveInterruptTest : public testing::TestWithParam<std::tuple<Way, Moment>> {
+ protected:
+  LiveInterruptTest() {
+    test::write_text(folder_ / "study.toml",
+                     test::brisk_text({{"repetitions", "repetitions = 1"},
+                                       {"break_after", "break_after = 1"},
+                                       {"break_duration", "break_duration = 60.0"}}));
+  }
+  void SetUp() override {
+    if (way() != Way::kTerminate && !LiveCommand::has_terminals()) {
+      GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
+    }
+  }
+  static Way way() { return std::get<0>(GetParam()); }
+  static Moment moment() { return std::get<1>(GetParam()); }
+
+  std::string run(const std::string& more = "") const {
+    return "run '" + (folder_ / "study.toml").string() + "' --subject S01 --out '" +
+           (folder_ / "out").string() + "' --console " + more;
+  }
+  static void come_to_the_moment(ConsolePerson& person) {
+    ASSERT_TRUE(person.sees("instructions"));
+    if (moment() == Moment::kText) {
+      ASSERT_TRUE(test::eventually([&person] { return person.status()["ticks"] > 300; }));
+      return;
+    }
+    ASSERT_TRUE(person.ask("start"));
+    ASSERT_TRUE(person.sees("running", "run"));
+    if (moment() == Moment::kBreak) {
+      ASSERT_TRUE(person.ask("skip"));
+      ASSERT_TRUE(person.sees("break"));
+    }
+  }
+  static void interrupt(LiveCommand& session) {
+    switch (way()) {
+      case Way::kControlC:
+        session.press("\x03");
+        break;
+      case Way::kTerminate:
+        session.signal(SIGTERM);
+        break;
+      case Way::kCloseTerminal:
+        session.hang_up();
+        break;
+    }
+  }
+  void expect_it_goes_on() {
+    const fs::path partial = folder_ / "out/S01.h5.partial";
+    const std::uint64_t rows = record::SessionReader(partial).sample_count();
+    EXPECT_GT(rows, 0u);
+    LiveCommand again(run("--resume"));
+    ConsolePerson person(again.line_after("console: "));
+    ASSERT_TRUE(person.sees("instructions")) << again.errors();
+    ASSERT_TRUE(person.ask("abort"));
+    const CommandResult ended = again.wait();
+    EXPECT_EQ(ended.status, 0) << ended.errors;
+    const record::SessionReader reader(folder_ / "out/S01.h5");
+    const record::Integrity integrity = record::check_session(reader);
+    EXPECT_TRUE(integrity.ok) << testing::PrintToString(integrity.problems);
+    EXPECT_GT(reader.sample_count(), rows);
+    EXPECT_FALSE(fs::exists(partial));
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_P(LiveInterruptTest, EndsAtOnceAndCanBeGoneOnWith) {
+  using Clock = std::chrono::steady_clock;
+  LiveCommand session(
+      run(), "",
+      way() == Way::kTerminate ? LiveCommand::Where::kBackground : LiveCommand::Where::kTerminal);
+  ConsolePerson person(session.line_after("console: "));
+  ASSERT_NO_FATAL_FAILURE(come_to_the_moment(person)) << session.errors();
+  const auto start = Clock::now();
+  interrupt(session);
+  const CommandResult ended = session.wait(10.0);
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 3.0) << "at once";
+  EXPECT_EQ(ended.status, 1);
+  if (way() != Way::kCloseTerminal) {  // there nobody reads it any more
+    const std::string said = way() == Way::kTerminate ? ended.errors : ended.output;
+    EXPECT_THAT(said, HasSubstr("haptrial: interrupted; what was recorded is in "));
+    EXPECT_THAT(said, HasSubstr("S01.h5.partial"));
+  }
+
+  ASSERT_TRUE(fs::exists(folder_ / "out/S01.h5.partial"));
+  const CommandResult info =
+      test::run_command("haptrial info '" + (folder_ / "out/S01.h5.partial").string() + "'");
+  EXPECT_EQ(info.status, 1) << "not complete";
+  EXPECT_THAT(info.output, HasSubstr("interrupted at "));
+  EXPECT_THAT(info.output, HasSubstr(" 0 gaps"));
+  expect_it_goes_on();
+}
+
+std::string name_of(const testing::TestParamInfo<std::tuple<Way, Moment>>& info) {
+  const char* const ways[] = {"ControlC", "Terminate", "CloseTerminal"};
+  const char* const moments[] = {"Pass", "Text", "Break"};
+  return std::string(ways[static_cast<int>(std::get<0>(info.param))]) + "During" +
+         moments[static_cast<int>(std::get<1>(info.param))];
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, LiveInterruptTest,
+    testing::Combine(testing::Values(Way::kControlC, Way::kTerminate, Way::kCloseTerminal),
+                     testing::Values(Moment::kPass, Moment::kText, Moment::kBreak)),
+    name_of);
+
+}  // namespace
+}  // namespace haptrial
