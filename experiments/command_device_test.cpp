@@ -13,6 +13,7 @@
 #include "core/device/mouse.h"
 #include "core/device/open_haptics.h"
 #include "experiments/commands.h"
+#include "experiments/definition.h"
 #include "experiments/device_check.h"
 #include "experiments/interrupt.h"
 
@@ -46,10 +47,29 @@ Eigen::Vector3d sweep(CheckPart part, double share, double radius) {
          Eigen::Vector3d::Unit(axis);
 }
 
-Bench virtual_bench() {
+/// How the devices are set up; a stop button is a button like any other here.
+struct Setup {
+  device::VirtualDeviceParameters electronics;
+  device::MouseParameters mouse;
+  device::ForceDimensionParameters force_dimension;
+  device::OpenHapticsParameters open_haptics;
+};
+
+Setup setup_of(const DeviceTestOptions& options) {
+  Setup setup;
+  if (!options.definition.empty()) {
+    const Definition d = load_definition(options.definition);
+    setup = {d.device, d.mouse, d.force_dimension, d.open_haptics};
+  }
+  setup.mouse.stop_button = -1;
+  setup.force_dimension.stop_button = -1;
+  setup.open_haptics.stop_button = -1;
+  return setup;
+}
+
+Bench virtual_bench(const device::VirtualDeviceParameters& parameters) {
   Bench bench;
   bench.handle = std::make_unique<device::CoupledMass>(kFirmHand);
-  const device::VirtualDeviceParameters parameters;
   bench.device = std::make_unique<device::VirtualDevice>(parameters, *bench.handle, kRate);
   bench.hand = [handle = bench.handle.get(), parameters](CheckPart part, double share) {
     handle->set_anchor(sweep(part, share, parameters.workspace_radius));
@@ -58,9 +78,8 @@ Bench virtual_bench() {
   return bench;
 }
 
-Bench mouse_bench() {
+Bench mouse_bench(device::MouseParameters parameters) {
   Bench bench;
-  device::MouseParameters parameters;
   parameters.coupling = kFirmHand;
   parameters.pointer_speed = 2.0;
   auto mouse = std::make_unique<device::MouseDevice>(parameters, kRate);
@@ -74,14 +93,14 @@ Bench mouse_bench() {
   return bench;
 }
 
-Bench vendor_bench(const DeviceTestOptions& options) {
+Bench vendor_bench(const DeviceTestOptions& options, const Setup& setup) {
   Bench bench;
   if (options.name == "force-dimension") {
-    bench.device = std::make_unique<device::ForceDimensionDevice>(
-        device::ForceDimensionParameters{}, kRate, options.library);
+    bench.device = std::make_unique<device::ForceDimensionDevice>(setup.force_dimension, kRate,
+                                                                  options.library);
   } else if (options.name == "open-haptics") {
-    bench.device = std::make_unique<device::OpenHapticsDevice>(device::OpenHapticsParameters{},
-                                                               kRate, options.library);
+    bench.device =
+        std::make_unique<device::OpenHapticsDevice>(setup.open_haptics, kRate, options.library);
   } else {
     throw InputError(fmt::format(
         "'{}' is no device to test; allowed: virtual, mouse, force-dimension, open-haptics",
@@ -91,9 +110,10 @@ Bench vendor_bench(const DeviceTestOptions& options) {
 }
 
 Bench make_bench(const DeviceTestOptions& options) {
-  Bench bench = options.name == "virtual" ? virtual_bench()
-                : options.name == "mouse" ? mouse_bench()
-                                          : vendor_bench(options);
+  const Setup setup = setup_of(options);
+  Bench bench = options.name == "virtual" ? virtual_bench(setup.electronics)
+                : options.name == "mouse" ? mouse_bench(setup.mouse)
+                                          : vendor_bench(options, setup);
   const double reach = kReachShare * bench.device->info().workspace_radius;
   bench.reach = {reach, options.name == "mouse" ? 0.0 : reach, reach};  // a pointer has no height
   return bench;

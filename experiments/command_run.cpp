@@ -83,6 +83,10 @@ int run(const RunOptions& options) {
   const Definition definition = load_definition(options.definition);
   check_subject(options.subject);
   check_device_name(options.device);
+  if (options.device == "mouse" && !options.window) {
+    throw InputError(
+        "--device mouse takes its pointer from the participant's screen; add --window");
+  }
   SessionRequest request;
   request.definition = &definition;
   request.subject = options.subject;
@@ -97,7 +101,7 @@ int run(const RunOptions& options) {
         fmt::format("{}: the folder cannot be made ({})", options.out, error.message()));
   }
   request.file = fs::path(options.out) / (options.subject + ".h5");
-  request.device = options.device;
+  request.device = {options.device, options.library};
   request.window = options.window;
   request.stream = options.stream;
   request.resume = options.resume;

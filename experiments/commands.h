@@ -25,6 +25,7 @@ struct RunOptions {
   std::string definition;
   std::string subject;
   std::string device{"virtual"};
+  std::string library;  // of the device's vendor, in place of the search
   std::string seed{"1"};
   std::optional<int> participant;  // default: the number at the end of the subject's identifier
   std::string out{"out/sessions"};
@@ -61,6 +62,7 @@ int devices();
 
 struct DeviceTestOptions {
   std::string name;
+  std::string definition;  // whose set-up of the device is used; empty: the driver's defaults
   double seconds{120.0};
   std::string library;  // a path in place of the search for the vendor's library
 };

@@ -66,6 +66,18 @@ void check_together(Table& root, const Definition& d) {
   }
 }
 
+void read_devices(Table& root, Definition& d) {
+  const auto read = [&root](const char* key, auto& into, auto reader) {
+    if (root.has(key)) {
+      Table table = root.table(key);
+      into = reader(table);
+    }
+  };
+  read("force_dimension", d.force_dimension, device::read_force_dimension_parameters);
+  read("open_haptics", d.open_haptics, device::read_open_haptics_parameters);
+  read("mouse", d.mouse, device::read_mouse_parameters);
+}
+
 Definition read(Table root, std::string_view file_name) {
   Table experiment = root.table("experiment");
   Table design = root.table("design");
@@ -100,6 +112,7 @@ Definition read(Table root, std::string_view file_name) {
                read_session_texts(texts),
                recording.number("stimulus_rate", {10.0, 10000.0}, "Hz"),
                analysis::read_score_parameters(scoring)};
+  read_devices(root, d);
   check_together(root, d);
   root.finish();
   return d;

@@ -6,6 +6,9 @@
 
 #include "analysis/score_parameters.h"
 #include "core/device/envelope.h"
+#include "core/device/force_dimension.h"
+#include "core/device/mouse.h"
+#include "core/device/open_haptics.h"
 #include "core/device/virtual_device.h"
 #include "core/render/trial_display_style.h"
 #include "core/stimulus/stimulus.h"
@@ -39,6 +42,11 @@ struct Definition {
   SessionTexts texts;
   double stimulus_rate;  // [Hz]
   analysis::ScoreParameters scoring;
+  // Of the devices that may take the virtual one's place; a table that is left out has its
+  // defaults.
+  device::ForceDimensionParameters force_dimension{};
+  device::OpenHapticsParameters open_haptics{};
+  device::MouseParameters mouse{};
 };
 
 /// @throws InputError with a sentence for every problem of the file.

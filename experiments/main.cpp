@@ -67,6 +67,8 @@ class Commands {
     sub->add_option("--subject", run_.subject, "Identifier: letters, digits, '-', '_'")->required();
     sub->add_option("--device", run_.device,
                     "virtual, mouse, force-dimension, open-haptics or replay:FILE (virtual)");
+    sub->add_option("--library", run_.library,
+                    "Path of the vendor's library; searched for by default");
     sub->add_flag("--window", run_.window, "Show the participant's screen");
     sub->add_flag("--keyboard", run_.keyboard, "Keys of this terminal steer the session");
     sub->add_flag("--console", run_.console,
@@ -145,6 +147,8 @@ class Commands {
                                "haptrial device-test force-dimension");
     sub->add_option("NAME", device_test_.name, "virtual, mouse, force-dimension or open-haptics")
         ->required();
+    sub->add_option("--definition", device_test_.definition,
+                    "Set the device up as this experiment does (.toml)");
     sub->add_option("--seconds", device_test_.seconds, "How long (120)");
     sub->add_option("--library", device_test_.library,
                     "Path of the vendor's library; searched for by default");

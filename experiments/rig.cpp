@@ -27,7 +27,7 @@ class DeviceRig final : public Rig {
 
 class MouseRig final : public Rig {
  public:
-  explicit MouseRig(double rate) : device_({}, rate) {}
+  explicit MouseRig(const Definition& d) : device_(d.mouse, d.rate) {}
   device::Device& device() override { return device_; }
   device::MouseDevice* mouse() override { return &device_; }
 
@@ -37,16 +37,63 @@ class MouseRig final : public Rig {
 
 std::unique_ptr<device::Device> replayed(const std::string& file, double rate) {
   const record::SessionReader reader(file);
+  if (reader.info().rate != rate) {
+    throw InputError(fmt::format("{}: was recorded at {} Hz; allowed: the definition's rate, {} Hz",
+                                 file, reader.info().rate, rate));
+  }
   std::vector<PointState> hand;
+  std::uint64_t first = 0;
   for (const record::Sample& sample : reader.samples(0, reader.sample_count())) {
+    first = hand.empty() ? sample.sequence : first;
     hand.push_back({sample.position, sample.velocity});
+  }
+  std::vector<std::size_t> starts;
+  for (const record::PassRow& pass : reader.passes()) {
+    if (pass.status == record::PassStatus::kCompleted) {
+      starts.push_back(static_cast<std::size_t>(pass.first_sample - first));
+    }
   }
   device::DeviceInfo info;
   info.name = "replay";
   info.max_force = reader.info().device_max_force;
   info.workspace_radius = reader.info().device_workspace_radius;
   info.simulated = reader.info().simulated;
-  return std::make_unique<device::ReplayDevice>(std::move(hand), rate, info);
+  return std::make_unique<device::ReplayDevice>(std::move(hand), rate, info, std::move(starts));
+}
+
+std::unique_ptr<Rig> open_rig(const DeviceChoice& choice, const Definition& d,
+                              std::uint64_t session_seed) {
+  const auto with = [](auto device) { return std::make_unique<DeviceRig>(std::move(device)); };
+  if (choice.name == "mouse") {
+    return std::make_unique<MouseRig>(d);
+  }
+  if (choice.name == "force-dimension") {
+    return with(
+        std::make_unique<device::ForceDimensionDevice>(d.force_dimension, d.rate, choice.library));
+  }
+  if (choice.name == "open-haptics") {
+    return with(
+        std::make_unique<device::OpenHapticsDevice>(d.open_haptics, d.rate, choice.library));
+  }
+  if (choice.name.starts_with(kReplay)) {
+    return with(replayed(choice.name.substr(kReplay.size()), d.rate));
+  }
+  check_device_name(choice.name);
+  return std::make_unique<VirtualRig>(d, session_seed);
+}
+
+/// A weaker device would saturate unseen, a smaller one would stop at its walls.
+void check_reach(const device::DeviceInfo& info, const Definition& d) {
+  const auto check = [&](const char* key, double wanted, double most, const char* unit) {
+    if (wanted > most) {
+      throw InputError(
+          fmt::format("{}: envelope.{} is {} {}; allowed: at most {}, which is what "
+                      "the {} gives",
+                      d.file_name, key, wanted, unit, most, info.name));
+    }
+  };
+  check("max_force", d.envelope.max_force, info.max_force, "N");
+  check("workspace_radius", d.envelope.workspace_radius, info.workspace_radius, "m");
 }
 
 }  // namespace
@@ -65,24 +112,11 @@ void check_device_name(const std::string& name) {
   }
 }
 
-std::unique_ptr<Rig> make_rig(const std::string& name, const Definition& d,
+std::unique_ptr<Rig> make_rig(const DeviceChoice& choice, const Definition& d,
                               std::uint64_t session_seed) {
-  if (name == "mouse") {
-    return std::make_unique<MouseRig>(d.rate);
-  }
-  if (name == "force-dimension") {
-    return std::make_unique<DeviceRig>(
-        std::make_unique<device::ForceDimensionDevice>(device::ForceDimensionParameters{}, d.rate));
-  }
-  if (name == "open-haptics") {
-    return std::make_unique<DeviceRig>(
-        std::make_unique<device::OpenHapticsDevice>(device::OpenHapticsParameters{}, d.rate));
-  }
-  if (name.starts_with(kReplay)) {
-    return std::make_unique<DeviceRig>(replayed(name.substr(kReplay.size()), d.rate));
-  }
-  check_device_name(name);
-  return std::make_unique<VirtualRig>(d, session_seed);
+  std::unique_ptr<Rig> rig = open_rig(choice, d, session_seed);
+  check_reach(rig->device().info(), d);
+  return rig;
 }
 
 }  // namespace haptrial::experiments

@@ -24,11 +24,17 @@ class Rig {
   virtual device::MouseDevice* mouse() { return nullptr; }
 };
 
-/// Opens a device by its name: virtual, mouse, force-dimension, open-haptics, or replay:FILE, which
-/// plays a recorded session's hand back.
+/// Which device, and where its vendor's library is.
+struct DeviceChoice {
+  std::string name{"virtual"};  // or mouse, force-dimension, open-haptics, replay:FILE
+  std::string library{};        // a path in place of the search
+};
+
+/// Opens a device, set up as the definition says; replay:FILE plays a recorded session's hand back.
 /// @param session_seed  the virtual person, and every random number of theirs, follows from it
-/// @throws InputError for an unknown name or an absent library, RunError where no device answers.
-std::unique_ptr<Rig> make_rig(const std::string& name, const Definition& definition,
+/// @throws InputError for an unknown name, an absent library or an envelope that the device cannot
+///         fill; RunError where no device answers.
+std::unique_ptr<Rig> make_rig(const DeviceChoice& choice, const Definition& definition,
                               std::uint64_t session_seed);
 
 /// @throws InputError unless make_rig knows the name.

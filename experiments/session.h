@@ -9,6 +9,7 @@
 #include "core/realtime/servo_loop.h"
 #include "core/record/session_types.h"
 #include "experiments/definition.h"
+#include "experiments/rig.h"
 #include "experiments/session_control.h"
 
 namespace haptrial::experiments {
@@ -29,7 +30,7 @@ struct SessionRequest {
   const std::atomic<bool>* cancel{nullptr};  // set from outside to end early, as an interrupt does
 
   // Sessions on the real clock.
-  std::string device{"virtual"};     // as make_rig takes it
+  DeviceChoice device;
   SessionControl* control{nullptr};  // of an experimenter at a console or keyboard
   bool window{false};                // the participant's screen
   bool stream{false};                // to the Lab Streaming Layer

@@ -12,7 +12,7 @@
 
 namespace haptrial::experiments {
 
-record::SessionInfo session_info(const SessionRequest& request) {
+record::SessionInfo session_info(const SessionRequest& request, const device::DeviceInfo& device) {
   const Definition& d = *request.definition;
   record::SessionInfo info;
   info.program_version = program_version();
@@ -21,20 +21,21 @@ record::SessionInfo session_info(const SessionRequest& request) {
   info.definition_name = d.file_name;
   info.subject = request.subject;
   info.seed = request.seed;
-  info.device = request.device;
-  info.device_max_force = d.device.max_force;
-  info.device_workspace_radius = d.device.workspace_radius;
+  info.device = request.device.name;
+  info.device_max_force = device.max_force;
+  info.device_workspace_radius = device.workspace_radius;
   info.clock = request.clock == realtime::ClockKind::kReal ? "real" : "simulated";
   info.rate = d.rate;
   info.start_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
-  info.simulated = request.device == "virtual";
+  info.simulated = device.simulated;
   info.participant = request.person;
   return info;
 }
 
-record::SessionWriter open_writer(const SessionRequest& request, record::Resumed& before) {
+record::SessionWriter open_writer(const SessionRequest& request, const device::DeviceInfo& device,
+                                  record::Resumed& before) {
   if (!request.resume || !record::SessionWriter::can_resume(request.file)) {
-    return record::SessionWriter(request.file, session_info(request));
+    return record::SessionWriter(request.file, session_info(request, device));
   }
   record::SessionWriter writer = record::SessionWriter::resume(request.file, before);
   if (before.info.definition != request.definition->text || before.info.seed != request.seed) {
@@ -62,12 +63,9 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::Mouse
   }
   if (mouse != nullptr) {
     callbacks.pointer = [mouse](const ScreenPointer& pointer) {
-      constexpr double kForcePerStep = 0.5;  // of the wheel, while the left button is held [N]
-      constexpr double kStartingForce = 2.0;
       mouse->move(pointer.x, pointer.z);
       mouse->set_buttons(pointer.buttons);
-      const bool held = (pointer.buttons & 1u) != 0;
-      mouse->press(held ? std::max(0.0, kStartingForce + kForcePerStep * pointer.wheel) : 0.0);
+      mouse->press(device::is_pressed(pointer.buttons, 0) ? mouse->press_at(pointer.wheel) : 0.0);
     };
   }
   return std::make_unique<Screen>(request.definition->screen, request.definition->display,
@@ -81,7 +79,7 @@ std::unique_ptr<stream::LslOutlet> open_outlet(const SessionRequest& request, bo
   }
   return stream::LslOutlet::open({.study = request.definition->name,
                                   .subject = request.subject,
-                                  .device = request.device,
+                                  .device = request.device.name,
                                   .rate = request.definition->rate,
                                   .simulated = simulated},
                                  notice);

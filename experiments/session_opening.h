@@ -19,11 +19,12 @@ namespace haptrial::experiments {
 
 /// What a session opens before its first tick, each from the request alone.
 
-record::SessionInfo session_info(const SessionRequest& request);
+record::SessionInfo session_info(const SessionRequest& request, const device::DeviceInfo& device);
 
 /// A new session file, or the one that is gone on with; `before` says what that one holds.
 /// @throws InputError as SessionWriter does, and where the file is of another definition or seed.
-record::SessionWriter open_writer(const SessionRequest& request, record::Resumed& before);
+record::SessionWriter open_writer(const SessionRequest& request, const device::DeviceInfo& device,
+                                  record::Resumed& before);
 
 /// The participant's screen, where one was asked for; else null. Its keys reach the session's
 /// control, its pointer the mouse device.

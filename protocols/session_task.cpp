@@ -1,5 +1,7 @@
 #include "protocols/session_task.h"
 
+#include <utility>
+
 namespace haptrial::protocols {
 
 SessionTask::SessionTask(device::Device& device, const device::EnvelopeLimits& limits, Log& log,
@@ -72,20 +74,34 @@ void SessionTask::take_requests(std::uint64_t sequence) noexcept {
   }
   if (break_asked_.load(std::memory_order_acquire)) {
     break_asked_.store(false, std::memory_order_relaxed);
+    if (waiting_ != nullptr) {
+      begin(sequence);
+    }
     broken_off_ = pass_ != nullptr;
     envelope_.release();  // nothing is wrong: the force is let go, not cut
   }
   if (asked != nullptr) {
-    broken_off_ = false;
-    if (envelope_.released()) {
-      envelope_.engage();
-    }
     asked_.store(nullptr, std::memory_order_relaxed);
-    pass_ = asked;
-    row_ = asked_row_.load(std::memory_order_relaxed);
-    result_.begun = true;
-    result_.first_sample = origin_.sequence + sequence;
+    waiting_ = asked;
   }
+  if (waiting_ != nullptr && may_begin()) {
+    begin(sequence);
+  }
+}
+
+/// Not before the force of the pass before has gone; a fault lets it begin, to end it.
+bool SessionTask::may_begin() noexcept {
+  const bool let_go = !envelope_.released() || envelope_.at_rest();
+  return envelope_.fault() != device::Fault::kNone || (let_go && device_.ready());
+}
+
+void SessionTask::begin(std::uint64_t sequence) noexcept {
+  pass_ = std::exchange(waiting_, nullptr);
+  row_ = asked_row_.load(std::memory_order_relaxed);
+  broken_off_ = false;
+  result_.begun = true;
+  result_.first_sample = origin_.sequence + sequence;
+  envelope_.engage();
 }
 
 PassOutput SessionTask::ask_pass(const device::DeviceReading& reading, double dt) noexcept {
@@ -111,6 +127,7 @@ bool SessionTask::end_if_over(std::uint64_t sequence) noexcept {
   result_.fault = fault;
   result_.last_sample = origin_.sequence + sequence;
   pass_ = nullptr;
+  envelope_.release();
   busy_.store(false, std::memory_order_release);
   return true;
 }

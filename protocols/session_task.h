@@ -32,8 +32,9 @@ struct Origin {
 ///
 ///     device -> envelope -> pass -> envelope -> device, observers, log
 ///
-/// The same on a real and on a simulated clock. Between passes the force is zero and ticks are
-/// recorded all the same. The servo thread calls tick(); the session's thread calls the rest.
+/// The same on a real and on a simulated clock. After a pass the force is let go over the envelope's
+/// ramp_out, and the next one begins when it has gone and the device is ready; between passes it is
+/// zero, and ticks are recorded all the same. The servo thread calls tick(); the session's thread calls the rest.
 class SessionTask final : public realtime::ServoTask {
  public:
   using Log = realtime::BlockLog<record::Sample>;
@@ -66,6 +67,8 @@ class SessionTask final : public realtime::ServoTask {
 
  private:
   void take_requests(std::uint64_t sequence) noexcept;
+  bool may_begin() noexcept;
+  void begin(std::uint64_t sequence) noexcept;
   bool end_if_over(std::uint64_t sequence) noexcept;
   PassOutput ask_pass(const device::DeviceReading& reading, double dt) noexcept;
 
@@ -85,6 +88,7 @@ class SessionTask final : public realtime::ServoTask {
   std::atomic<bool> break_asked_{false};
 
   // Servo thread.
+  Pass* waiting_{nullptr};  // until it may begin
   Pass* pass_{nullptr};
   std::int32_t row_{-1};
   bool broken_off_{false};

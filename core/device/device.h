@@ -21,7 +21,13 @@ struct DeviceReading {
   PointState tool;           // tool tip
   std::uint32_t buttons{0};  // bit i: button i is pressed
   bool forces_on{true};      // false: the device has switched its motors off
+  bool stop_pressed{false};  // the button that the device's set-up names as emergency stop
 };
+
+/// Whether a button is among those pressed. @param button  from 0; below 0 there is none
+constexpr bool is_pressed(std::uint32_t buttons, int button) noexcept {
+  return button >= 0 && ((buttons >> static_cast<unsigned>(button)) & 1u) != 0;
+}
 
 /// An impedance device: the position is read, the force is commanded.
 /// Opened by its constructor, which throws; read() and write() belong to the servo thread and never
@@ -35,6 +41,9 @@ class Device {
   /// @param force  on the tool tip, in W [N].
   /// @returns false when the device refused it.
   virtual bool write(const Eigen::Vector3d& force) noexcept = 0;
+  /// Asked on every tick, before read(), while a pass wants to begin: may it, with that read? A
+  /// recording lets each pass begin where it began when it was recorded. Servo thread.
+  virtual bool ready() noexcept { return true; }
   /// Why the last read or write failed or the motors went off, in a sentence; "" where all is well.
   /// A text of static duration. Servo thread.
   virtual const char* trouble() const noexcept { return ""; }

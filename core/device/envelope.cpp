@@ -42,6 +42,8 @@ const char* describe(Fault fault) noexcept {
       return "the protocol asked for more force than the envelope allows";
     case Fault::kForcesOff:
       return "the device switched its motors off";
+    case Fault::kStopButton:
+      return "the device's stop button was pressed";
     case Fault::kEmergencyStop:
       return "emergency stop";
   }
@@ -66,6 +68,9 @@ Fault Envelope::check(bool read_ok, const DeviceReading& reading) noexcept {
   if (!p.allFinite() || !reading.tool.velocity.allFinite()) {
     trip(Fault::kPositionNotFinite);
     return fault_;
+  }
+  if (reading.stop_pressed) {
+    trip(Fault::kStopButton);
   }
   if (!reading.forces_on && !last_force_.isZero(0.0)) {
     trip(Fault::kForcesOff);

@@ -36,11 +36,17 @@ enum class Fault : std::uint8_t {
   kForceNotFinite,
   kForceTooLarge,
   kForcesOff,
+  kStopButton,
   kEmergencyStop,
 };
 
 /// One sentence, such as "the tool left the workspace".
 const char* describe(Fault fault) noexcept;
+
+/// Whether a person stopped the device, and so a person has to clear it.
+constexpr bool by_a_person(Fault fault) noexcept {
+  return fault == Fault::kStopButton || fault == Fault::kEmergencyStop;
+}
 
 /// Stands between every protocol and every device on every tick. The force that leaves it is
 /// finite, never longer than max_force and never changes faster than max_force_rate, except that a
@@ -74,6 +80,8 @@ class Envelope {
 
   Fault fault() const noexcept { return fault_; }
   bool released() const noexcept { return released_; }
+  /// Released, and the force has gone.
+  bool at_rest() const noexcept { return released_ && last_force_.isZero(0.0); }
   /// The force that limit() let pass last [N].
   const Eigen::Vector3d& force() const noexcept { return last_force_; }
 

@@ -175,6 +175,7 @@ ForceDimensionParameters read_force_dimension_parameters(Table& table) {
     p.velocity_threshold = static_cast<int>(table.integer("velocity_threshold", 0, 1'000'000));
   }
   p.time_guard = table.number("time_guard", {0.0, 0.01}, "s");
+  p.stop_button = static_cast<int>(table.integer("stop_button", -1, 31));
   return p;
 }
 
@@ -285,6 +286,7 @@ bool ForceDimensionDevice::read(DeviceReading& reading) noexcept {
   fresh.tool.position = {py, pz, px};
   fresh.tool.velocity = {vy, vz, vx};
   fresh.buttons = api_->get_button_mask(id_);
+  fresh.stop_pressed = is_pressed(fresh.buttons, parameters_.stop_button);
   trouble_ = "";
   judge_status(fresh);
   reading = fresh;

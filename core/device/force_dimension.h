@@ -26,6 +26,7 @@ struct ForceDimensionParameters {
   int velocity_threshold{-1};     // at which the device brakes, in its own units; -1: keep the
                                   // maker's setting
   double time_guard{0.0};         // a faster position read gives the last one; 0: off >= 0 [s]
+  int stop_button{0};             // emergency stop; -1: none
 };
 
 /// Reads the keys of a [force_dimension] table; velocity_threshold may be left out.

@@ -4,7 +4,19 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/base/table.h"
+
 namespace haptrial::device {
+
+MouseParameters read_mouse_parameters(Table& table) {
+  MouseParameters p;
+  p.pointer_speed = table.number("pointer_speed", {0.0, 10.0, true}, "m/s");
+  p.max_press = table.number("max_press", {0.0, 100.0, true}, "N");
+  p.first_press = table.number("first_press", {0.0, 100.0}, "N");
+  p.press_step = table.number("press_step", {0.0, 100.0}, "N");
+  p.stop_button = static_cast<int>(table.integer("stop_button", -1, 31));
+  return p;
+}
 
 MouseDevice::MouseDevice(const MouseParameters& parameters, double rate)
     : parameters_(parameters),
@@ -24,6 +36,7 @@ bool MouseDevice::read(DeviceReading& reading) noexcept {
     return false;
   }
   reading.buttons = pointer_.buttons;
+  reading.stop_pressed = is_pressed(pointer_.buttons, parameters_.stop_button);
   return true;
 }
 
@@ -59,6 +72,10 @@ void MouseDevice::press(double force) noexcept {
     asked_.press = std::clamp(force, 0.0, parameters_.max_press);
     channel_.write(asked_);
   }
+}
+
+double MouseDevice::press_at(double wheel) const noexcept {
+  return std::max(0.0, parameters_.first_press + parameters_.press_step * wheel);
 }
 
 void MouseDevice::set_buttons(std::uint32_t buttons) noexcept {

@@ -4,6 +4,10 @@
 #include "core/device/virtual_device.h"
 #include "core/realtime/latest_value.h"
 
+namespace haptrial {
+class Table;
+}
+
 namespace haptrial::device {
 
 struct MouseParameters {
@@ -11,7 +15,13 @@ struct MouseParameters {
   CoupledMassParameters coupling;
   double pointer_speed{0.5};  // at which the mass is drawn after the pointer, at most > 0 [m/s]
   double max_press{12.0};     // > 0 [N]
+  double first_press{2.0};    // when the left button goes down >= 0 [N]
+  double press_step{0.5};     // more or less for each step of the wheel >= 0 [N]
+  int stop_button{1};         // emergency stop, the right one; -1: none
 };
+
+/// Reads the keys of a [mouse] table.
+MouseParameters read_mouse_parameters(Table& table);
 
 /// A session on a laptop: the pointer stands for the hand. A simulated mass follows it through a
 /// spring, and the protocol's forces act on that mass, so that guidance is seen but not felt. The
@@ -31,6 +41,9 @@ class MouseDevice final : public Device {
   void move(double x, double z) noexcept;            // pointer [m]
   void press(double force) noexcept;                 // downward; 0 where no button is held [N]
   void set_buttons(std::uint32_t buttons) noexcept;  // bit i: button i is held
+
+  /// The press of a held left button. @param wheel  its steps since the session's start
+  double press_at(double wheel) const noexcept;
 
  private:
   struct Pointer {

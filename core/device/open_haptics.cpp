@@ -114,6 +114,7 @@ OpenHapticsParameters read_open_haptics_parameters(Table& table) {
   p.max_force = table.number("max_force", {0.0, 100.0, true}, "N");
   p.workspace_radius = table.number("workspace_radius", {0.0, 2.0, true}, "m");
   p.patience = table.number("patience", {0.002, 1.0}, "s");
+  p.stop_button = static_cast<int>(table.integer("stop_button", -1, 31));
   return p;
 }
 
@@ -216,6 +217,7 @@ void OpenHapticsDevice::exchange() noexcept {
   now.reading.tool.position = kMillimetre * Eigen::Vector3d(p[0], p[1], p[2]);
   now.reading.tool.velocity = kMillimetre * Eigen::Vector3d(v[0], v[1], v[2]);
   now.reading.buttons = static_cast<std::uint32_t>(buttons);
+  now.reading.stop_pressed = is_pressed(now.reading.buttons, parameters_.stop_button);
   note_error(api.get_error().code);
   now.error = error_;
   now.reading.forces_on = now.error == 0;

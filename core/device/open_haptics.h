@@ -19,6 +19,7 @@ struct OpenHapticsParameters {
   double max_force{3.3};          // at most the device's own limit is used > 0 [N]
   double workspace_radius{0.08};  // > 0 [m]
   double patience{0.02};          // how long one side goes on without word from the other > 0 [s]
+  int stop_button{1};             // emergency stop; -1: none
 };
 
 /// Reads the keys of an [open_haptics] table.

@@ -113,7 +113,7 @@ void SessionWriter::Impl::check_open() const {
 
 void SessionWriter::Impl::give_up(const std::string& why) {
   failure = final_path.string() + ": the session cannot be written (" + why +
-            ")";
+            "); what came before is in " + final_path.filename().string() + ".partial";
   throw RunError(failure);
 }
 

@@ -65,14 +65,16 @@ struct Witness final : stimulus::Observer {
 
 class SessionTaskTest : public ::testing::Test {
  protected:
-  explicit SessionTaskTest(Leave leave = Leave::kNever)
-      : log_(1024, 128), task_(device_, limits(), log_, {&witness_}, leave) {
+  explicit SessionTaskTest(Leave leave = Leave::kNever,
+                           const device::EnvelopeLimits& envelope = limits())
+      : log_(1024, 128), task_(device_, envelope, log_, {&witness_}, leave) {
     witness_.blocks.reserve(1 << 16);
     witness_.forces.reserve(1 << 16);
   }
   static device::EnvelopeLimits limits() {
     device::EnvelopeLimits l;
     l.ramp_in = 0.0;
+    l.ramp_out = 0.0;
     l.max_force_rate = 1e6;
     return l;
   }
@@ -140,6 +142,81 @@ TEST_F(SessionTaskTest, APassRunsAndEverythingElseIsRest) {
     EXPECT_EQ(witness_.blocks[row.sequence], within ? 9 : 0);
   }
   EXPECT_NEAR(witness_.time, 40 * kDt, 1e-12);
+}
+
+/// Ten ticks of ramp either way.
+class RampedTaskTest : public SessionTaskTest {
+ protected:
+  RampedTaskTest() : SessionTaskTest(Leave::kNever, ramped()) {}
+  static device::EnvelopeLimits ramped() {
+    device::EnvelopeLimits l = limits();
+    l.ramp_in = l.ramp_out = 10 * kDt;
+    return l;
+  }
+};
+
+TEST_F(RampedTaskTest, AfterAPassTheForceIsLetGoAndTheNextOneWaitsUntilItHasGone) {
+  ConstantPass pass({0, 5, 0}, 20);
+  ConstantPass next({0, 3, 0}, 20);
+  task_.start(pass, 0);
+  ticks(20);
+  ASSERT_TRUE(task_.idle());
+  task_.start(next, 1);
+  ticks(40);
+  ASSERT_TRUE(task_.idle());
+  const auto& rows = samples();
+  for (int i = 0; i < 10; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    EXPECT_NEAR(rows[at].force.y(), 0.5 * (i + 1), 1e-12) << "the first one ramps in";
+    EXPECT_NEAR(rows[20 + at].force.y(), 5.0 - 0.5 * (i + 1), 1e-12) << "and out";
+    EXPECT_EQ(rows[20 + at].pass, -1);
+    EXPECT_NEAR(rows[30 + at].force.y(), 0.3 * (i + 1), 1e-12) << "the next one ramps in again";
+  }
+  EXPECT_EQ(task_.result().first_sample, 30u);
+  expect_all_recorded();
+}
+
+TEST_F(SessionTaskTest, APassWaitsUntilTheDeviceIsReady) {
+  int asked = 0;
+  device_.on_ready = [&asked] { return ++asked > 7; };
+  ConstantPass pass({0, 5, 0}, 5);
+  ticks(3);
+  EXPECT_EQ(asked, 0) << "no pass wants to begin";
+  task_.start(pass, 0);
+  ticks(12);
+  EXPECT_TRUE(task_.idle());
+  EXPECT_EQ(asked, 8);
+  EXPECT_EQ(task_.result().first_sample, 10u);
+}
+
+TEST_F(SessionTaskTest, APassThatWaitsCanBeBrokenOffOrStopped) {
+  device_.on_ready = [] { return false; };
+  ConstantPass pass({0, 5, 0}, 5);
+  for (const bool stop : {false, true}) {
+    task_.start(pass, 0);
+    ticks(3);
+    ASSERT_FALSE(task_.idle());
+    stop ? task_.emergency_stop() : task_.break_off();
+    ticks(1);
+    ASSERT_TRUE(task_.idle());
+    EXPECT_EQ(task_.result().state, PassState::kAborted);
+    EXPECT_EQ(task_.result().fault, stop ? Fault::kEmergencyStop : Fault::kNone);
+    EXPECT_EQ(pass.done(), 0);
+  }
+}
+
+TEST_F(SessionTaskTest, TheStopButtonTakesTheForceAwayAtOnceAndForGood) {
+  device_.on_read = [](std::size_t tick, DeviceReading& r) {
+    r.stop_pressed = tick == 5;
+    return true;
+  };
+  ConstantPass pass({0, 5, 0}, 20);
+  task_.start(pass, 0);
+  ticks(20);
+  EXPECT_EQ(task_.result().fault, Fault::kStopButton);
+  for (const auto& row : samples()) {
+    EXPECT_EQ(row.force.y(), row.sequence < 5 ? 5.0 : 0.0) << row.sequence;
+  }
 }
 
 TEST_F(SessionTaskTest, APassThatGivesUpIsAbortedWithoutAFault) {
@@ -345,8 +422,10 @@ TEST_F(LeavingTaskTest, DrivenByTheSimulatedLoopEveryTickIsARecord) {
     EXPECT_EQ(task_.result().last_sample + 1, loop.ticks());
   }
   index_ = loop.ticks();
-  EXPECT_EQ(index_, 3510u);
   expect_all_recorded();
+  const auto& rows = samples();
+  EXPECT_EQ(std::count_if(rows.begin(), rows.end(), [](const auto& r) { return r.pass >= 0; }),
+            3510);
 }
 
 /// A servo thread on the real clock, as in a session; the test is the session's thread.

@@ -31,8 +31,11 @@ class ScriptedDevice final : public device::Device {
     return !on_write || on_write(written.size() - 1);
   }
 
-  OnRead on_read;    // none: every read succeeds
-  OnWrite on_write;  // none: every write succeeds
+  bool ready() noexcept override { return !on_ready || on_ready(); }
+
+  std::function<bool()> on_ready;  // none: at once
+  OnRead on_read;                  // none: every read succeeds
+  OnWrite on_write;                // none: every write succeeds
   Eigen::Vector3d position{Eigen::Vector3d::Zero()};
   std::vector<Eigen::Vector3d> written;  // one a tick [N]
 

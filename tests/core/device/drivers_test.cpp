@@ -120,6 +120,23 @@ TEST(ForceDimensionTest, TheMakersVelocityThresholdIsKeptUnlessOneIsGiven) {
   EXPECT_EQ(order(stand_in.setup(), {"watchdog"}).size(), 1u) << "which is never off";
 }
 
+TEST(ForceDimensionTest, ItsStopButtonIsThatOfTheHandleUnlessThereIsNone) {
+  const StandIn stand_in("stand_in_dhd");
+  ForceDimensionParameters p;
+  for (const int button : {0, -1}) {
+    p.stop_button = button;
+    ForceDimensionDevice device(p, kRigRate, stand_in.path);
+    for (const unsigned pressed : {0u, 1u, 2u}) {
+      stand_in.buttons(pressed);
+      DeviceReading reading;
+      ASSERT_TRUE(device.read(reading));
+      EXPECT_EQ(reading.buttons, pressed);
+      EXPECT_EQ(reading.stop_pressed, button == 0 && pressed == 1u);
+    }
+    stand_in.buttons(0);
+  }
+}
+
 TEST(ForceDimensionTest, ForcesReachTheMotorsInTheVendorsAxes) {
   const StandIn stand_in("stand_in_dhd");
   ForceDimensionDevice device({}, kRigRate, stand_in.path);
@@ -200,13 +217,15 @@ TEST(ForceDimensionTest, ParametersOutOfBoundsAreRefused) {
 TEST(ForceDimensionTest, ParametersAreReadWithTheirBounds) {
   const std::string text =
       "index = 1\nmax_force = 12.0\nworkspace_radius = 0.075\neffector_mass = 0.1\n"
-      "gravity_compensation = false\nvelocity_window = 0.02\nwatchdog = 0.01\ntime_guard = 0.0\n";
+      "gravity_compensation = false\nvelocity_window = 0.02\nwatchdog = 0.01\ntime_guard = 0.0\n"
+      "stop_button = 2\n";
   Table table = Table::parse(text, "f.toml");
   const ForceDimensionParameters p = read_force_dimension_parameters(table);
   EXPECT_NO_THROW(table.finish());
   EXPECT_EQ(p.index, 1);
   EXPECT_FALSE(p.gravity_compensation);
   EXPECT_EQ(p.velocity_threshold, -1);
+  EXPECT_EQ(p.stop_button, 2);
   Table off = Table::parse(text + "velocity_threshold = -5\n", "f.toml");
   read_force_dimension_parameters(off);
   EXPECT_THROW(off.finish(), InputError);
@@ -284,11 +303,29 @@ TEST_F(OpenHapticsTest, RunsWithTheVendorsOwnThread) {
 
 TEST_F(OpenHapticsTest, ParametersAreReadWithTheirBounds) {
   Table table = Table::parse(
-      "name = \"Touch\"\nmax_force = 3.0\nworkspace_radius = 0.07\npatience = 0.01\n", "f.toml");
+      "name = \"Touch\"\nmax_force = 3.0\nworkspace_radius = 0.07\npatience = 0.01\n"
+      "stop_button = 0\n",
+      "f.toml");
   const OpenHapticsParameters p = read_open_haptics_parameters(table);
   EXPECT_NO_THROW(table.finish());
   EXPECT_EQ(p.name, "Touch");
   EXPECT_EQ(p.patience, 0.01);
+  EXPECT_EQ(p.stop_button, 0);
+}
+
+TEST_F(OpenHapticsTest, ItsStopButtonIsTheSecondOneUnlessAnotherIsNamed) {
+  OpenHapticsParameters p;
+  for (const int button : {1, 0, -1}) {
+    p.stop_button = button;
+    OpenHapticsDevice device(p, kRigRate, stand_in_.path);
+    for (const unsigned pressed : {0u, 1u, 2u}) {
+      stand_in_.buttons(pressed);
+      stand_in_.step();
+      DeviceReading reading;
+      ASSERT_TRUE(device.read(reading));
+      EXPECT_EQ(reading.stop_pressed, button >= 0 && pressed == (1u << button)) << button;
+    }
+  }
 }
 
 TEST(CatalogTest, SaysWhatIsThereAndWhatIsMissing) {

@@ -74,6 +74,7 @@ std::vector<Breach> breaches() {
           {Fault::kForceTooLarge, wanted({7.5, 7.5, 7.5})},
           {Fault::kForceTooLarge, wanted({1e300, 1e300, 0})},
           {Fault::kForcesOff, reading({{}, 0, false})},
+          {Fault::kStopButton, reading({{}, 1, true, true})},
           {Fault::kEmergencyStop, tripped(Fault::kEmergencyStop)}};
 }
 
@@ -231,6 +232,7 @@ class RandomRun {
     }
     DeviceReading reading = at(hand_, any_vector(random_, 0.58));
     reading.forces_on = random_.below(2000) != 0;
+    reading.stop_pressed = random_.below(5000) == 0;
     envelope_.check(random_.below(1000) != 0, reading);
     if (random_.below(2000) == 0) {
       envelope_.trip(random_.below(2) ? Fault::kWriteFailed : Fault::kEmergencyStop);
@@ -297,7 +299,7 @@ TEST(EnvelopeTest, HoldsItsPromiseOverTenMillionRandomTicks) {
     forces += !run.force.isZero(0.0);
     run.maybe_reset();
   }
-  EXPECT_EQ(seen.size(), 11u) << "every fault came up";
+  EXPECT_EQ(seen.size(), 12u) << "every fault came up";
   EXPECT_GT(forces, 2'000'000u) << "and much of the time there was none";
   EXPECT_GT(released, 100'000u);
 }
@@ -321,7 +323,7 @@ TEST(EnvelopeTest, EveryFaultHasItsOwnWords) {
     EXPECT_NE(text, "unknown fault") << fault;
     words.insert(text);
   }
-  EXPECT_EQ(words.size(), 11u);
+  EXPECT_EQ(words.size(), 12u);
 }
 
 TEST(EnvelopeTest, LimitsOutOfBoundsAreRefused) {

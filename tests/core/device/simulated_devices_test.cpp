@@ -6,6 +6,7 @@
 #include <limits>
 #include <thread>
 
+#include "core/base/table.h"
 #include "core/device/coupled_mass.h"
 #include "core/device/mouse.h"
 #include "core/device/replay.h"
@@ -96,6 +97,28 @@ TEST(MouseTest, APressIsHeldByTheDeviceThatHoldsAgainstIt) {
   EXPECT_LT(std::abs(after(mouse, 3000).tool.position.y()), 1e-5);
 }
 
+TEST(MouseTest, TheWheelSetsThePressOfTheLeftButton) {
+  Table table = Table::parse(
+      "pointer_speed = 0.3\nmax_press = 8.0\nfirst_press = 1.5\npress_step = 0.25\n"
+      "stop_button = 2\n",
+      "m.toml");
+  const MouseParameters p = read_mouse_parameters(table);
+  EXPECT_NO_THROW(table.finish());
+  EXPECT_EQ(p.pointer_speed, 0.3);
+  EXPECT_EQ(p.max_press, 8.0);
+  MouseDevice mouse(p, kRate);
+  EXPECT_EQ(mouse.press_at(0.0), 1.5);
+  EXPECT_EQ(mouse.press_at(4.0), 2.5);
+  EXPECT_EQ(mouse.press_at(-40.0), 0.0) << "never upward";
+  DeviceReading reading;
+  for (const std::uint32_t held : {0u, 1u, 2u, 4u, 7u}) {
+    mouse.set_buttons(held);
+    mouse.read(reading);
+    EXPECT_EQ(reading.buttons, held);
+    EXPECT_EQ(reading.stop_pressed, (held & 4u) != 0);
+  }
+}
+
 TEST(MouseTest, NonsenseFromTheScreenIsLeftOut) {
   MouseDevice mouse({}, kRate);
   mouse.move(0.01, 0.01);
@@ -153,6 +176,50 @@ TEST(ReplayTest, GivesEveryStateOnceAndThenEnds) {
   EXPECT_EQ(reading.tool.position, hand.back().position) << "unchanged";
   EXPECT_TRUE(replay.write(Vector3d::Zero()));
   EXPECT_FALSE(replay.read(reading));
+}
+
+/// A hand whose x is the number of its state.
+std::vector<PointState> numbered_hand(int states) {
+  std::vector<PointState> hand;
+  for (int i = 0; i < states; ++i) {
+    hand.push_back({{1.0 * i, 0.0, 0.0}, Vector3d::Zero()});
+  }
+  return hand;
+}
+
+TEST(ReplayTest, APassBeginsWhereItBeganHoweverEarlyOrLateItIsAskedFor) {
+  ReplayDevice replay(numbered_hand(40), kRate, {}, {10, 25});
+  DeviceReading reading;
+  const auto tick = [&] {
+    EXPECT_TRUE(replay.read(reading));
+    replay.write(Vector3d::Zero());
+    return reading.tool.position.x();
+  };
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(tick(), i);
+  }
+  for (int i = 5; i < 9; ++i) {  // early: the pass waits for the hand
+    EXPECT_FALSE(replay.ready());
+    EXPECT_EQ(tick(), i);
+  }
+  EXPECT_TRUE(replay.ready());
+  for (int i = 10; i < 24; ++i) {
+    EXPECT_EQ(tick(), i);
+  }
+  for (int i = 0; i < 7; ++i) {  // late: the hand waits for the pass
+    EXPECT_EQ(tick(), 24.0);
+  }
+  EXPECT_TRUE(replay.ready());
+  for (int i = 25; i < 40; ++i) {
+    EXPECT_FALSE(replay.ready()) << "there is no third pass";
+    EXPECT_EQ(tick(), i);
+  }
+  EXPECT_FALSE(replay.read(reading));
+}
+
+TEST(ReplayTest, StartsOutsideTheRecordingOrOutOfOrderAreRefused) {
+  EXPECT_THROW(ReplayDevice(numbered_hand(5), kRate, {}, {5}), std::invalid_argument);
+  EXPECT_THROW(ReplayDevice(numbered_hand(5), kRate, {}, {3, 1}), std::invalid_argument);
 }
 
 TEST(ReplayTest, AnEmptyRecordingIsRefused) {

@@ -1,0 +1,161 @@
+#include "experiments/session_record.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "experiments/session_opening.h"
+
+namespace haptrial::experiments {
+
+using protocols::PlannedTrial;
+
+SessionRecord::SessionRecord(const SessionRequest& request, const device::DeviceInfo& device,
+                             const realtime::ServoLoop& loop)
+    : request_(request),
+      loop_(loop),
+      real_(request.clock == realtime::ClockKind::kReal),
+      writer_(open_writer(request, device, before_)),
+      blocks_(before_.blocks),
+      passes_(static_cast<std::int32_t>(before_.passes.size() + before_.open_passes.size())) {
+  outlet_ = open_outlet(request, device.simulated, notice_);
+}
+
+protocols::Origin SessionRecord::origin() const {
+  return {before_.next_sequence, before_.last_time_ns + 1};
+}
+
+void SessionRecord::open(const std::string& text) {
+  for (const record::OpenPass& open : before_.open_passes) {
+    row_ = {};
+    row_.condition = "unknown";
+    add_pass(record::PassStatus::kAborted, open.first_sample, open.last_sample);
+  }
+  event(before_.rows > 0 ? "session_resumed" : "session_start", text);
+}
+
+bool SessionRecord::holds(const PlannedTrial& trial) const {
+  return std::any_of(before_.passes.begin(), before_.passes.end(), [&](const auto& pass) {
+    return pass.trial == trial.trial && pass.practice == trial.practice &&
+           pass.condition == trial.condition && pass.phase == record::Phase::kTest &&
+           pass.status == record::PassStatus::kCompleted;
+  });
+}
+
+void SessionRecord::keep_stimulus(const PlannedTrial& trial, const stimulus::Stimulus& stimulus) {
+  if (trial.practice || std::find(blocks_.begin(), blocks_.end(), trial.block) != blocks_.end()) {
+    return;
+  }
+  writer_.add_stimulus(stimulus_rows(stimulus, trial.block, request_.definition->stimulus_rate));
+  blocks_.push_back(trial.block);
+}
+
+std::int32_t SessionRecord::begin_pass(const PlannedTrial& trial, record::Phase phase,
+                                       int attempt) {
+  row_ = {};
+  row_.trial = trial.trial;
+  row_.condition = trial.condition;
+  row_.phase = phase;
+  row_.block = trial.block;
+  row_.repetition = trial.repetition;
+  row_.stimulus_seed = trial.stimulus_seed;
+  row_.practice = trial.practice;
+  row_.attempt = attempt;
+  row_open_ = true;
+  return passes_++;
+}
+
+void SessionRecord::end_pass(const protocols::PassResult& result) {
+  append_rest();
+  const bool aborted = result.state == protocols::PassState::kAborted;
+  add_pass(aborted ? record::PassStatus::kAborted : record::PassStatus::kCompleted,
+           result.first_sample, result.last_sample);
+}
+
+void SessionRecord::add_pass(record::PassStatus status, std::uint64_t first_sample,
+                             std::uint64_t last_sample) {
+  row_.status = status;
+  row_.first_sample = first_sample;
+  row_.last_sample = last_sample;
+  writer_.add_pass(row_);
+  row_open_ = false;
+  if (real_) {
+    writer_.sync();
+  }
+}
+
+std::size_t SessionRecord::collect(const Follower& follow) {
+  const auto take = [&](std::span<const record::Sample> samples) {
+    append(samples);
+    follow(samples);
+  };
+  const std::size_t count = real_ ? log_.flush(take) : log_.drain(take);
+  constexpr std::chrono::milliseconds kFlushEvery{500};
+  const auto now = std::chrono::steady_clock::now();
+  if (real_ && now - flushed_ >= kFlushEvery) {
+    flushed_ = now;
+    writer_.flush();
+  }
+  return count;
+}
+
+void SessionRecord::append(std::span<const record::Sample> samples) {
+  writer_.append(samples);
+  if (outlet_) {
+    outlet_->push(samples);
+  }
+}
+
+void SessionRecord::append_rest() {
+  log_.flush([this](std::span<const record::Sample> samples) { append(samples); });
+}
+
+void SessionRecord::event(const std::string& kind, const std::string& text) {
+  writer_.add_event({now_ns(), kind, text});
+  if (outlet_) {
+    outlet_->mark(kind + (text.empty() ? "" : ": " + text), now_ns());
+  }
+}
+
+std::int64_t SessionRecord::now_ns() const {
+  const double seconds = static_cast<double>(loop_.ticks()) / loop_.rate_hz();
+  return before_.last_time_ns + 1 + static_cast<std::int64_t>(seconds * 1e9);
+}
+
+void SessionRecord::close(const std::string& text) {
+  append_rest();
+  event("session_end", text);
+  write_timing();
+  writer_.close();
+}
+
+void SessionRecord::give_up(const protocols::SessionTask& task) {
+  if (!real_) {
+    writer_.discard();  // a dry run can be repeated; half of one is of no use
+    return;
+  }
+  append_rest();
+  const protocols::PassResult& result = task.result();
+  if (row_open_ && result.begun) {
+    add_pass(record::PassStatus::kAborted, result.first_sample,
+             task.idle() ? result.last_sample : origin().sequence + loop_.ticks() - 1);
+  }
+  event("interrupted", "the session did not come to its end");
+  writer_.sync();
+}
+
+void SessionRecord::write_timing() {
+  const realtime::LoopTiming& timing = loop_.timing();
+  std::vector<record::TimingRow> rows;
+  for (std::size_t i = 0; i < realtime::DurationHistogram::kBins; ++i) {
+    const auto period = timing.period.bin(i);
+    const auto lateness = timing.lateness.bin(i);
+    const auto compute = timing.compute.bin(i);
+    if (period.count + lateness.count + compute.count > 0) {
+      rows.push_back({period.low, period.high, period.count, lateness.count, compute.count});
+    }
+  }
+  writer_.set_timing(rows, {loop_.ticks(), loop_.overruns(), log_.dropped()});
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/device/device.h"
+#include "core/realtime/servo_loop.h"
+#include "core/record/session_resume.h"
+#include "core/record/session_writer.h"
+#include "core/stimulus/stimulus.h"
+#include "core/stream/lsl_outlet.h"
+#include "experiments/session.h"
+#include "protocols/schedule.h"
+#include "protocols/session_task.h"
+
+namespace haptrial::experiments {
+
+/// What a session writes and streams: the records of its servo thread, passes, events, stimuli,
+/// frames and timing. Session's thread. Every member throws RunError when the file cannot be
+/// written.
+class SessionRecord {
+ public:
+  /// Opens the session file, or goes on with it, and the streams.
+  /// @param loop  whose ticks are recorded and give events their time; outlives the record
+  SessionRecord(const SessionRequest& request, const device::DeviceInfo& device,
+                const realtime::ServoLoop& loop);
+
+  /// Where the servo thread leaves its records.
+  protocols::SessionTask::Log& log() { return log_; }
+  /// Of the first tick of this run.
+  protocols::Origin origin() const;
+  std::uint64_t dropped() const { return log_.dropped(); }
+  /// Why there are no streams though they were asked for, in a sentence; else empty.
+  const std::string& notice() const { return notice_; }
+
+  /// The first event, after rows for the passes during which an earlier run ended.
+  void open(const std::string& text);
+  /// Whether a resumed file holds the trial's test already.
+  bool holds(const protocols::PlannedTrial& trial) const;
+  /// Once a block, also over several runs.
+  void keep_stimulus(const protocols::PlannedTrial& trial, const stimulus::Stimulus& stimulus);
+
+  /// @returns the number of its row, for its samples.
+  std::int32_t begin_pass(const protocols::PlannedTrial& trial, record::Phase phase, int attempt);
+  /// The present pass, or the last one.
+  const record::PassRow& pass() const { return row_; }
+  void end_pass(const protocols::PassResult& result);
+
+  /// What the servo thread has recorded since the last call, shown to `follow`.
+  /// @returns the number of records.
+  using Follower = std::function<void(std::span<const record::Sample>)>;
+  std::size_t collect(const Follower& follow);
+  void keep_frames(const std::vector<record::FrameRow>& frames) { writer_.add_frames(frames); }
+  void event(const std::string& kind, const std::string& text);
+
+  /// After the loop's end: the last event and the timing; the file is complete.
+  void close(const std::string& text);
+  /// After the loop's end, where the session did not come to its own: a simulated one leaves
+  /// nothing, another FILE.partial, with its open pass as aborted.
+  void give_up(const protocols::SessionTask& task);
+
+ private:
+  std::int64_t now_ns() const;
+  void append(std::span<const record::Sample> samples);
+  void append_rest();
+  void add_pass(record::PassStatus status, std::uint64_t first_sample, std::uint64_t last_sample);
+  void write_timing();
+
+  const SessionRequest& request_;
+  const realtime::ServoLoop& loop_;
+  const bool real_;
+  record::Resumed before_;  // what a resumed file holds
+  record::SessionWriter writer_;
+  std::string notice_;
+  std::unique_ptr<stream::LslOutlet> outlet_;
+  protocols::SessionTask::Log log_;
+  std::vector<std::int32_t> blocks_;  // whose stimuli are in the file
+  record::PassRow row_;
+  bool row_open_{false};  // and is not in the file yet
+  std::int32_t passes_{0};
+  std::chrono::steady_clock::time_point flushed_{};
+};
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,97 @@
+// A session on the real clock, driven again by its own recording.
+
+#include <gtest/gtest.h>
+
+#include "analysis/study.h"
+#include "core/base/error.h"
+#include "core/record/integrity.h"
+#include "core/record/schema.h"
+#include "core/record/session_reader.h"
+#include "experiments/session.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RoundTripTest : public testing::Test {
+ protected:
+  fs::path run(const std::string& folder, const DeviceChoice& device,
+               realtime::ClockKind clock = realtime::ClockKind::kReal) {
+    fs::create_directories(folder_ / folder);
+    SessionRequest request;
+    request.definition = &definition_;
+    request.subject = "P01";
+    request.clock = clock;
+    request.max_trials = 1;
+    request.device = device;
+    request.file = folder_ / folder / "P01.h5";
+    run_session(request);
+    return request.file;
+  }
+
+  test::TemporaryFolder folder_;
+  Definition definition_ =
+      parse_definition(test::shipped_with("speed", "speed = 0.05"), "brisk.toml");
+};
+
+TEST_F(RoundTripTest, ARecordedSessionDrivenAgainGivesTheSameForcesAndScores) {
+  const fs::path live = run("live", {"virtual"});
+  const fs::path again = run("again", {"replay:" + live.string()});
+  const record::SessionReader a(live);
+  const record::SessionReader b(again);
+  EXPECT_TRUE(record::check_session(b).ok);
+  EXPECT_TRUE(b.info().simulated);
+
+  // The file rounds velocities, which the damping of the guidance turns into forces.
+  const double damping =
+      definition_.guidance.plane.damping + definition_.guidance.trajectory.damping;
+  const double rounding = damping * record::kVelocityResolution + 2.0 * record::kForceResolution;
+  const auto passes = a.passes();
+  const auto passes_again = b.passes();
+  ASSERT_EQ(passes.size(), 2u);
+  ASSERT_EQ(passes_again.size(), 2u);
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    const auto rows =
+        a.samples(passes[i].first_sample, passes[i].last_sample - passes[i].first_sample + 1);
+    const auto rows_again =
+        b.samples(passes_again[i].first_sample,
+                  passes_again[i].last_sample - passes_again[i].first_sample + 1);
+    EXPECT_EQ(passes_again[i].status, record::PassStatus::kCompleted);
+    ASSERT_EQ(rows.size(), rows_again.size()) << "pass " << i;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      ASSERT_EQ(rows[k].position, rows_again[k].position) << "pass " << i << ", sample " << k;
+      ASSERT_LT((rows[k].force - rows_again[k].force).norm(), rounding) << i << ", " << k;
+    }
+  }
+
+  const auto score = [this](const fs::path& file) {
+    return analysis::analyze_study({file}, definition_.scoring, 1).scores;
+  };
+  const auto scores = score(live);
+  const auto scores_again = score(again);
+  ASSERT_EQ(scores.size(), 1u);
+  ASSERT_EQ(scores_again.size(), 1u);
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    EXPECT_GT(scores[i].score, 0.1);
+    EXPECT_NEAR(scores_again[i].score, scores[i].score, rounding);
+    EXPECT_NEAR(scores_again[i].rms_force, scores[i].rms_force, rounding);
+  }
+}
+
+TEST_F(RoundTripTest, ARecordingOfAnotherRateIsRefused) {
+  const fs::path live = run("live", {"virtual"}, realtime::ClockKind::kSimulated);
+  definition_ = parse_definition(test::shipped_with("rate", "rate = 2000.0"), "fast.toml");
+  try {
+    run("again", {"replay:" + live.string()});
+    FAIL() << "nothing was thrown";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("recorded at 1000 Hz"), std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace haptrial::experiments
