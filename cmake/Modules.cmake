@@ -98,6 +98,6 @@ function(haptrial_tests)
   gtest_discover_tests(test_architecture)
   add_dependencies(test_stream stand_in_lsl)
   add_dependencies(test_device stand_in_dhd stand_in_dhd_only stand_in_hd)
-  add_dependencies(test_experiments stand_in_dhd stand_in_hd)
+  add_dependencies(test_experiments stand_in_dhd stand_in_hd stand_in_lsl)
   add_dependencies(test_experiments haptrial)  # its tests run the command
 endfunction()

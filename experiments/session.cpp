@@ -10,9 +10,8 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
-#include "core/render/frames.h"
-#include "experiments/frame_capture.h"
 #include "experiments/interrupt.h"
+#include "experiments/pass_pictures.h"
 #include "experiments/rig.h"
 #include "experiments/session_desk.h"
 #include "experiments/session_opening.h"
@@ -55,7 +54,6 @@ class Session {
   void take_break();
   void show_text(const std::string& text, const std::string& hint, double countdown = 0.0);
   void publish(const char* state);
-  void draw_pictures(const PlannedTrial& trial, record::Phase phase);
 
   void finish();
   void give_up() noexcept;
@@ -72,8 +70,7 @@ class Session {
   SessionSummary summary_;
   realtime::ServoLoop loop_;
   std::unique_ptr<Rig> rig_;
-  FrameCapture capture_;
-  std::optional<render::FrameRenderer> renderer_;
+  PassPictures pictures_;
   std::unique_ptr<Screen> screen_;
   SessionRecord record_;  // opened when everything else is there
   SessionDesk desk_;
@@ -92,7 +89,7 @@ Session::Session(const SessionRequest& request)
       session_seed_(derived_seed(request.seed, "participant " + request.subject)),
       loop_(request.clock, d_.rate),
       rig_(make_rig(request.device, d_, session_seed_)),
-      capture_(request.frames_per_pass),
+      pictures_(request),
       screen_(open_screen(request, rig_->mouse())),
       record_(request, rig_->device().info(), loop_),
       desk_(request.control, desk_actions()),
@@ -100,9 +97,6 @@ Session::Session(const SessionRequest& request)
             real_ ? protocols::SessionTask::Leave::kNever
                   : protocols::SessionTask::Leave::kAfterPassOrSlice,
             record_.origin()) {
-  if (request.frames_per_pass > 0) {
-    renderer_.emplace(d_.display);
-  }
   const auto stop = [](void* task) {
     static_cast<protocols::SessionTask*>(task)->emergency_stop();
   };
@@ -133,8 +127,8 @@ std::vector<stimulus::Observer*> Session::observers() {
   if (rig_->subject() != nullptr) {
     all.push_back(rig_->subject());
   }
-  if (request_.frames_per_pass > 0) {
-    all.push_back(&capture_);
+  if (pictures_.observer() != nullptr) {
+    all.push_back(pictures_.observer());
   }
   if (screen_) {
     all.push_back(screen_.get());
@@ -187,9 +181,7 @@ void Session::prepare(const PlannedTrial& trial) {
   if (!stimulus_ || stimulus_seed_ != trial.stimulus_seed) {
     stimulus_ = stimulus::make_stimulus(d_.trajectory, d_.force_pattern, trial.stimulus_seed);
     stimulus_seed_ = trial.stimulus_seed;
-    if (renderer_) {
-      renderer_->set_trajectory(stimulus_->path.points());
-    }
+    pictures_.set_trajectory(stimulus_->path.points());
   }
   record_.keep_stimulus(trial, *stimulus_);
 }
@@ -240,9 +232,7 @@ bool Session::run_pass(std::unique_ptr<protocols::TrajectoryPass> pass, const Pl
   if (aborted) {
     after_abort(result);
   }
-  if (renderer_) {
-    draw_pictures(trial, phase);
-  }
+  pictures_.draw(trial, phase);
   return !aborted;
 }
 
@@ -380,17 +370,6 @@ void Session::publish(const char* state) {
   status.dropped = record_.dropped();
   status.aborted_passes = summary_.aborted_passes;
   desk_.publish(state);
-}
-
-void Session::draw_pictures(const PlannedTrial& trial, record::Phase phase) {
-  int number = 0;
-  for (const stimulus::Presentation& moment : capture_.take()) {
-    const auto file =
-        request_.frames_folder /
-        fmt::format("{}-trial{:02}-{}-{:02}.png", request_.subject, trial.trial,
-                    phase == record::Phase::kTest ? "test" : trial.condition, ++number);
-    render::write_png(file, renderer_->draw(moment));
-  }
 }
 
 void Session::finish() {

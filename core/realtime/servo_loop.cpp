@@ -15,11 +15,10 @@ std::int64_t now_ns() noexcept {
   return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
 }
 
-// A thread wakes late from its sleep, by 30 µs in the median on a virtual machine; the last of the
-// wait is therefore spent looking at the clock. That took the median to 0.05 µs and the 99th
-// percentile from 0.1 ms to 0.065 ms, for 2% of a processor at 1 kHz.
-constexpr double kSpinNs = 50e3;
-constexpr double kSpinShare = 0.05;  // of a period, at most
+// A thread wakes late from its sleep; the last of the wait is therefore spent looking at the clock.
+// docs/algorithms/servo-loop.md has what that costs and brings.
+constexpr double kSpinNs = 100e3;
+constexpr double kSpinShare = 0.1;  // of a period, at most
 
 // Waits until the time on CLOCK_MONOTONIC, or not at all when it has passed.
 // @returns the time when the wait was over.

@@ -1,7 +1,8 @@
 // A servo loop that does nothing: what the machine itself adds to any loop of that rate.
-// bench_idle_loop [RATE SECONDS], 1000 Hz and 10 s by default.
+// bench_idle_loop [RATE SECONDS [HISTOGRAM.csv]], 1000 Hz and 10 s by default.
 
 #include <fmt/format.h>
+#include <fmt/os.h>
 
 #include <cstdlib>
 
@@ -20,6 +21,17 @@ class Nothing final : public haptrial::realtime::ServoTask {
   std::uint64_t ticks_;
 };
 
+void write_histogram(const char* file, const haptrial::realtime::DurationHistogram& lateness) {
+  auto out = fmt::output_file(file);
+  out.print("bin_high_ns,lateness_count\n");
+  for (std::size_t i = 0; i < haptrial::realtime::DurationHistogram::kBins; ++i) {
+    const auto bin = lateness.bin(i);
+    if (bin.count > 0) {
+      out.print("{},{}\n", bin.high, bin.count);
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -32,5 +44,8 @@ int main(int argc, char** argv) {
   fmt::print("lateness    median {:.2f}, 99 % {:.2f}, 99.9 % {:.2f}, worst {:.2f} us; {} ticks\n",
              lateness.percentile(50.0) * 1e-3, lateness.percentile(99.0) * 1e-3,
              lateness.percentile(99.9) * 1e-3, lateness.max() * 1e-3, loop.ticks());
+  if (argc > 3) {
+    write_histogram(argv[3], lateness);
+  }
   return 0;
 }
