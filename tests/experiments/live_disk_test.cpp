@@ -45,7 +45,7 @@ TEST(LiveDiskTest, AFullDiskEndsTheSessionInASentenceAndItGoesOnWhereThereIsRoom
   const std::uint64_t rows = record::SessionReader(partial).sample_count();
   EXPECT_GT(rows, 1000u) << "what came before is there";
   const CommandResult python = test::run_command(
-      "python3 -c 'import h5py, sys\nwith h5py.File(sys.argv[1], \"r\") as f:\n"
+      "/usr/bin/python3 -c 'import h5py, sys\nwith h5py.File(sys.argv[1], \"r\") as f:\n"
       "    s = f[\"samples\"][:]\n"
       "    assert (s[\"sequence\"] == range(len(s))).all()\n"
       "    print(len(s))' '" +

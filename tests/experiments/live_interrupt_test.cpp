@@ -80,7 +80,10 @@ class LiveInterruptTest : public testing::TestWithParam<std::tuple<Way, Moment>>
     EXPECT_GT(rows, 0u);
     LiveCommand again(run("--resume"));
     ConsolePerson person(again.line_after("console: "));
-    ASSERT_TRUE(person.sees("instructions")) << again.errors();
+    ASSERT_TRUE(test::eventually([&person] {
+      const nlohmann::json now = person.status();
+      return !now.is_null() && now["state"] == "instructions" && now["ticks"] > 0;
+    })) << again.errors();
     ASSERT_TRUE(person.ask("abort"));
     const CommandResult ended = again.wait();
     EXPECT_EQ(ended.status, 0) << ended.errors;

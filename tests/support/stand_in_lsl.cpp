@@ -1,6 +1,10 @@
-// A stand-in for liblsl: the same C functions, which keep what was pushed.
+// A stand-in for liblsl: the same C functions, which keep what was pushed. For a test in another
+// process, STAND_IN_LSL_FILE names a file to which each outlet writes what it got when it closes.
 #include "tests/support/stand_in_lsl.h"
 
+#include <cstdlib>
+#include <fstream>
+#include <iomanip>
 #include <memory>
 
 using haptrial::test::LslRecord;
@@ -29,6 +33,28 @@ Node* child(Node* parent, const char* name) {
 /// Outlets are numbers from 1.
 LslStream& stream(void* outlet) {
   return record.streams.at(reinterpret_cast<std::size_t>(outlet) - 1);
+}
+
+/// A line for the stream, then one for each sample or text: its time and what it held.
+void tell(const LslStream& s) {
+  const char* file = std::getenv("STAND_IN_LSL_FILE");
+  if (file == nullptr) {
+    return;
+  }
+  std::ofstream out(file, std::ios::app);
+  out << std::setprecision(17) << "stream\t" << s.name << "\t" << s.type << "\t" << s.channels
+      << "\t" << s.rate << "\n";
+  const auto channels = static_cast<std::size_t>(s.channels);
+  for (std::size_t i = 0; i < s.timestamps.size(); ++i) {
+    out << s.timestamps[i];
+    if (i < s.texts.size()) {
+      out << "\t" << s.texts[i];
+    }
+    for (std::size_t k = i * channels; k < (i + 1) * channels && k < s.values.size(); ++k) {
+      out << "\t" << s.values[k];
+    }
+    out << "\n";
+  }
 }
 
 }  // namespace
@@ -84,7 +110,10 @@ std::int32_t lsl_push_sample_strt(void* outlet, const char** text, double timest
 }
 double lsl_local_clock() { return record.clock; }
 const char* lsl_last_error() { return "the stand-in was told to fail"; }
-void lsl_destroy_outlet(void* outlet) { stream(outlet).open = false; }
+void lsl_destroy_outlet(void* outlet) {
+  stream(outlet).open = false;
+  tell(stream(outlet));
+}
 void lsl_destroy_streaminfo(void* info) {
   --record.infos;
   delete static_cast<Info*>(info);

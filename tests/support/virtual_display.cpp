@@ -89,6 +89,19 @@ Time next_time() {
   return time += 10;
 }
 
+void send_button(const std::string& title, unsigned button, int type, long mask) {
+  const X x;
+  XEvent event{};
+  event.xbutton.type = type;
+  event.xbutton.display = x.display();
+  event.xbutton.window = x.find(title);
+  event.xbutton.root = x.root();
+  event.xbutton.button = button;
+  event.xbutton.time = next_time();
+  event.xbutton.same_screen = True;
+  x.send(event.xbutton.window, mask, event);
+}
+
 /// The number that the server writes when it is ready.
 std::string display_number(int from) {
   std::string number;
@@ -183,16 +196,11 @@ void VirtualDisplay::press_key(const std::string& title, unsigned long keysym) c
 }
 
 void VirtualDisplay::press_button(const std::string& title, unsigned button) const {
-  const X x;
-  XEvent event{};
-  event.xbutton.type = ButtonPress;
-  event.xbutton.display = x.display();
-  event.xbutton.window = x.find(title);
-  event.xbutton.root = x.root();
-  event.xbutton.button = button;
-  event.xbutton.time = next_time();
-  event.xbutton.same_screen = True;
-  x.send(event.xbutton.window, ButtonPressMask, event);
+  send_button(title, button, ButtonPress, ButtonPressMask);
+}
+
+void VirtualDisplay::release_button(const std::string& title, unsigned button) const {
+  send_button(title, button, ButtonRelease, ButtonReleaseMask);
 }
 
 void VirtualDisplay::ask_to_close(const std::string& title) const {

@@ -30,7 +30,8 @@ class VirtualDisplay {
   /// To the window of that title. @param keysym  as X names it: 'p', ' ', 0xff1b for Escape
   void press_key(const std::string& title, unsigned long keysym) const;
   /// @param button  1 left, 2 middle, 3 right, 4 and 5 the wheel up and down
-  void press_button(const std::string& title, unsigned button) const;
+  void press_button(const std::string& title, unsigned button) const;  // and hold it
+  void release_button(const std::string& title, unsigned button) const;
   void ask_to_close(const std::string& title) const;  // as a window manager does
   void move_pointer(int x, int y) const;              // [px]
 

@@ -1,0 +1,190 @@
+// `haptrial run --device mouse --window`: a hand at the mouse follows the path and presses.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "core/record/integrity.h"
+#include "core/record/session_reader.h"
+#include "core/render/frames.h"
+#include "experiments/definition.h"
+#include "tests/core/render/pixels.h"
+#include "tests/experiments/console_person.h"
+#include "tests/experiments/live_command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/virtual_display.h"
+
+namespace haptrial {
+namespace {
+
+using test::CommandResult;
+using test::ConsolePerson;
+using test::LiveCommand;
+using testing::HasSubstr;
+
+class LiveMouseTest : public testing::Test {
+ protected:
+  static constexpr int kWidth = 800;
+  static constexpr int kHeight = 600;
+
+  void SetUp() override {
+    if (!test::VirtualDisplay::available()) {
+      GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
+    }
+    display_.emplace(kWidth, kHeight);
+    test::write_text(folder_ / "study.toml",
+                     test::brisk_text({{"conditions", "conditions = [\"visual\"]"},
+                                       {"speed", "speed = 0.04"},
+                                       {"wait_timeout", "wait_timeout = 30.0"}}));
+    definition_ = experiments::load_definition(folder_ / "study.toml");
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  /// The path of the block under way, from the file that is being written.
+  std::vector<record::StimulusRow> stimulus() const {
+    std::vector<record::StimulusRow> rows;
+    test::eventually([&] {
+      try {
+        rows = record::SessionReader(folder_ / "out/S01.h5.partial").stimuli();
+      } catch (const std::exception&) {  // not there yet
+      }
+      return !rows.empty();
+    });
+    return rows;
+  }
+
+  /// A hand that knows where on the monitor a point of the path is.
+  class Hand {
+   public:
+    Hand(const test::VirtualDisplay& display, render::TrialDisplayStyle style,
+         const std::vector<record::StimulusRow>& path)
+        : display_(display) {
+      style.width = kWidth;
+      style.height = kHeight;
+      std::vector<Eigen::Vector3d> points;
+      for (const record::StimulusRow& row : path) {
+        points.push_back(row.position);
+      }
+      const auto marker_at = [&](const Eigen::Vector3d& tool) {
+        stimulus::Presentation scene;
+        scene.show_trajectory = true;
+        scene.tool = tool;
+        return render::find(render::render_presentation(style, points, scene), style.marker_colour)
+            .centre;
+      };
+      first_ = points.front();
+      pixel_ = marker_at(first_);
+      scale_ = (marker_at(points.back()) - pixel_).x() / (points.back() - first_).x();
+    }
+    void move_to(const Eigen::Vector3d& point) const {
+      const Eigen::Vector3d way = scale_ * (point - first_);
+      display_.move_pointer(static_cast<int>(std::lround(pixel_.x() + way.x())),
+                            static_cast<int>(std::lround(pixel_.y() + way.z())));
+    }
+
+   private:
+    const test::VirtualDisplay& display_;
+    Eigen::Vector3d first_;
+    Eigen::Vector2d pixel_;
+    double scale_{0.0};  // [px/m]
+  };
+
+  test::TemporaryFolder folder_;
+  std::optional<test::VirtualDisplay> display_;
+  std::optional<experiments::Definition> definition_;
+};
+
+TEST_F(LiveMouseTest, ThePointerLeadsTheToolAndAPressIsAForce) {
+  const std::string title = definition_->screen.title;
+  LiveCommand session("run '" + path("study.toml") + "' --subject S01 --out '" + path("out") +
+                      "' --device mouse --window --console");
+  ConsolePerson person(session.line_after("console: "));
+  ASSERT_TRUE(person.sees("instructions")) << session.errors();
+  ASSERT_TRUE(person.ask("start"));
+  const std::vector<record::StimulusRow> path_rows = stimulus();
+  ASSERT_FALSE(path_rows.empty());
+  const Hand hand(*display_, definition_->display, path_rows);
+  const auto rests_at_start = [&, i = 0]() mutable {
+    const double tremor = i++ % 2 == 0 ? 0.0 : 2e-4;  // no hand is still [m]
+    hand.move_to(path_rows.front().position + Eigen::Vector3d(tremor, 0.0, 0.0));
+    return person.sees("running", "run", 0.05);
+  };
+  ASSERT_TRUE(test::eventually(rests_at_start)) << "so that the run begins";
+
+  // The first half without a press, the second with the left button held.
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  bool pressed = false;
+  for (;;) {
+    const double t = std::chrono::duration<double>(Clock::now() - start).count();
+    if (t > path_rows.back().time) {
+      break;
+    }
+    const auto row = std::lower_bound(path_rows.begin(), path_rows.end(), t,
+                                      [](const auto& r, double time) { return r.time < time; });
+    hand.move_to(row->position);
+    if (!pressed && t > 0.5 * path_rows.back().time) {
+      display_->press_button(title, 1);
+      pressed = true;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  display_->release_button(title, 1);
+  ASSERT_TRUE(person.ask("abort"));
+  const CommandResult ended = session.wait();
+  ASSERT_EQ(ended.status, 0) << ended.errors;
+
+  const record::SessionReader reader(folder_ / "out/S01.h5");
+  EXPECT_EQ(reader.info().device, "mouse");
+  EXPECT_FALSE(reader.info().simulated) << "a person moved it";
+  EXPECT_TRUE(record::check_session(reader).ok);
+  const record::PassRow pass = reader.passes().at(0);
+  std::vector<record::Sample> run;
+  for (const record::Sample& sample :
+       reader.samples(pass.first_sample, pass.last_sample - pass.first_sample + 1)) {
+    if (sample.stage == record::Stage::kRun) {
+      run.push_back(sample);
+    }
+  }
+  ASSERT_GT(run.size(), 1000u);
+  const Eigen::Vector3d& first = path_rows.front().position;
+  EXPECT_NEAR((run.front().position - first).norm(), 0.0, 0.004);
+  const double length = path_rows.back().position.x() - first.x();
+  EXPECT_GT(run.back().position.x() - first.x(), 0.8 * length);
+
+  // A press of p, of which the plane (k_plane) takes what the hand's own spring (400 N/m) leaves.
+  const double press = 2.0;
+  const double plane = definition_->guidance.plane.stiffness;
+  const double expected = press * plane / (plane + 400.0);
+  // The mean over a part of the run: single readings carry the noise of a quantised velocity.
+  const auto mean_force = [&](double from, double to) {
+    const auto at = [&](double share) {
+      return static_cast<std::size_t>(share * static_cast<double>(run.size()));
+    };
+    double sum = 0.0;
+    for (std::size_t i = at(from); i < at(to); ++i) {
+      sum += run[i].applied_force;
+    }
+    return sum / static_cast<double>(at(to) - at(from));
+  };
+  EXPECT_NEAR(mean_force(0.1, 0.4), 0.0, 0.03);
+  EXPECT_NEAR(mean_force(0.75, 0.95), expected, 0.1);
+}
+
+TEST_F(LiveMouseTest, WithoutItsWindowItIsASentenceAndNothingIsLeft) {
+  const CommandResult result =
+      test::run_command("timeout 5 \"$HAPTRIAL\" run '" + path("study.toml") +
+                        "' --subject S01 --trials 1 --device mouse --out '" + path("out") + "'");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.errors, HasSubstr("--window"));
+  EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
+}  // namespace
+}  // namespace haptrial

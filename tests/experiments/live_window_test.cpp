@@ -1,0 +1,234 @@
+// `haptrial run --window` on a display without a monitor: what is on the screen while a session
+// goes on, against what its file holds afterwards.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/record/integrity.h"
+#include "core/record/session_reader.h"
+#include "core/render/frames.h"
+#include "experiments/definition.h"
+#include "tests/core/render/pixels.h"
+#include "tests/experiments/console_person.h"
+#include "tests/experiments/live_command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/virtual_display.h"
+
+namespace haptrial {
+namespace {
+
+using render::Blob;
+using render::Image;
+using test::CommandResult;
+using test::ConsolePerson;
+using test::LiveCommand;
+using testing::HasSubstr;
+
+constexpr int kDisplayWidth = 1000;
+constexpr int kDisplayHeight = 700;
+
+Image part(const Image& image, int left, int top, int width, int height) {
+  Image out{width, height, {}};
+  for (int y = top; y < top + height; ++y) {
+    const auto row = image.rgb.begin() + 3 * (static_cast<std::ptrdiff_t>(y) * image.width + left);
+    out.rgb.insert(out.rgb.end(), row, row + 3 * static_cast<std::ptrdiff_t>(width));
+  }
+  return out;
+}
+
+/// What a picture of a trial says.
+struct Seen {
+  Eigen::Vector2d marker;     // [px]
+  double target_height{0.0};  // of the bars [px]
+  double applied_height{0.0};
+  int curve{0};  // pixels
+};
+
+class LiveWindowTest : public testing::TestWithParam<bool> {
+ protected:
+  void SetUp() override {
+    if (!test::VirtualDisplay::available()) {
+      GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
+    }
+    display_.emplace(kDisplayWidth, kDisplayHeight);
+    test::write_text(
+        folder_ / "study.toml",
+        test::brisk_text({{"conditions", "conditions = [\"visuohaptic\"]"},
+                          {"full_screen", full() ? "full_screen = true" : "full_screen = false"},
+                          {"width", "width = 800"},
+                          {"height", "height = 600"},
+                          {"photodiode", "photodiode = \"run\""}}));
+    definition_ = experiments::load_definition(folder_ / "study.toml");
+    style_ = definition_->display;
+    if (full()) {
+      style_.width = kDisplayWidth;
+      style_.height = kDisplayHeight;
+    }
+  }
+  static bool full() { return GetParam(); }
+  std::string run() const {
+    return "run '" + (folder_ / "study.toml").string() + "' --subject S01 --out '" +
+           (folder_ / "out").string() + "' --window --console";
+  }
+  Image on_monitor() const { return {kDisplayWidth, kDisplayHeight, display_->screenshot()}; }
+  /// What the program draws on: the whole monitor, or a window in its middle.
+  Image on_screen() const {
+    return part(on_monitor(), (kDisplayWidth - style_.width) / 2,
+                (kDisplayHeight - style_.height) / 2, style_.width, style_.height);
+  }
+  bool patch_is_white() const { return shade_of_patch() == 255.0; }
+  double shade_of_patch() const { return render::pixel(on_screen(), 5, style_.height - 6).x(); }
+
+  void expect_instructions() const {
+    EXPECT_TRUE(test::eventually([&] {
+      return render::find(on_screen(), style_.marker_colour).count > 1000;
+    })) << "letters";
+    const Image page = on_screen();
+    EXPECT_EQ(render::find(page, style_.target_colour).count, 0) << "no bar";
+    EXPECT_EQ(render::find(page, style_.trajectory_colour).count, 0) << "no path";
+    EXPECT_TRUE(render::has_colour(page, 2, 2, style_.background));
+    EXPECT_EQ(render::has_colour(on_monitor(), 2, 2, style_.background), full())
+        << "a full screen leaves nothing of the monitor, a window does";
+    EXPECT_EQ(shade_of_patch(), 0.0);
+  }
+
+  /// A picture with both bars, if the moment is one.
+  std::optional<Seen> look() const {
+    const Image image = on_screen();
+    const Blob target = render::find(image, style_.target_colour);
+    const Blob applied = render::find(image, style_.applied_colour);
+    const Blob marker = render::find(image, style_.marker_colour);
+    if (target.bottom - target.top < 20 || applied.bottom - applied.top < 20 ||
+        marker.right - marker.left > 3.0 * style_.marker_radius) {
+      return std::nullopt;
+    }
+    return Seen{marker.centre, target.bottom - target.top + 1.0, applied.bottom - applied.top + 1.0,
+                render::find(image, style_.trajectory_colour).count};
+  }
+
+  void expect_file_agrees(const Seen& seen) const;
+  void expect_frames(const record::SessionReader& reader) const;
+
+  test::TemporaryFolder folder_;
+  std::optional<test::VirtualDisplay> display_;
+  std::optional<experiments::Definition> definition_;
+  render::TrialDisplayStyle style_;
+};
+
+/// Some tick of the run had the position and the two forces that the picture showed.
+void LiveWindowTest::expect_file_agrees(const Seen& seen) const {
+  const record::SessionReader reader(folder_ / "out/S01.h5");
+  const record::PassRow pass = reader.passes().at(0);
+  const stimulus::Stimulus stimulus = stimulus::make_stimulus(
+      definition_->trajectory, definition_->force_pattern, pass.stimulus_seed);
+  const std::vector<Eigen::Vector3d>& points = stimulus.path.points();
+
+  // The same scene drawn off screen says where two points of the path are: the scale and the place.
+  const auto marker_at = [&](const Eigen::Vector3d& tool) {
+    stimulus::Presentation scene;
+    scene.show_trajectory = true;
+    scene.tool = tool;
+    return render::find(render::render_presentation(style_, points, scene), style_.marker_colour)
+        .centre;
+  };
+  const Eigen::Vector2d first = marker_at(points.front());
+  const Eigen::Vector2d last = marker_at(points.back());
+  const double scale = (last.x() - first.x()) / (points.back().x() - points.front().x());  // [px/m]
+  const double newton = style_.bar_height / style_.full_scale;                             // [px/N]
+  const std::uint64_t count = pass.last_sample - pass.first_sample + 1;
+  double nearest = 1e9;
+  for (const record::Sample& sample : reader.samples(pass.first_sample, count)) {
+    if (sample.stage == record::Stage::kRun) {
+      const Eigen::Vector3d way = scale * (sample.position - points.front());
+      const double place = (first + Eigen::Vector2d(way.x(), way.z()) - seen.marker).norm();
+      const double target = std::abs(newton * sample.target_force - seen.target_height);
+      const double applied = std::abs(newton * sample.applied_force - seen.applied_height);
+      nearest = std::min(nearest, std::max({place, target, applied}));
+    }
+  }
+  EXPECT_LT(nearest, 2.5) << "pixels";
+  stimulus::Presentation path;
+  path.show_trajectory = true;
+  path.tool = Eigen::Vector3d::Constant(std::nan(""));  // not drawn
+  const int curve =
+      render::find(render::render_presentation(style_, points, path), style_.trajectory_colour)
+          .count;
+  EXPECT_GT(seen.curve, curve / 2) << "the rest is under the marker and the bars";
+  EXPECT_LE(seen.curve, curve);
+}
+
+void LiveWindowTest::expect_frames(const record::SessionReader& reader) const {
+  const std::vector<record::FrameRow> frames = reader.frames();
+  ASSERT_GT(frames.size(), 30u);
+  // Xvfb has no refresh, so a timer of 60 Hz sets the pace: each period has a picture, or is
+  // counted as missed. The first pictures of a kind take longer.
+  const std::size_t steady = 10;
+  std::int64_t pictures = 0;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    EXPECT_GT(frames[i].time_ns, frames[i - 1].time_ns);
+    pictures += i > steady ? 1 + frames[i].dropped : 0;
+  }
+  const double span = 1e-9 * static_cast<double>(frames.back().time_ns - frames[steady].time_ns);
+  EXPECT_NEAR(static_cast<double>(pictures), 60.0 * span, 6.0);
+  const record::Sample end = reader.samples(reader.sample_count() - 1, 1).front();
+  EXPECT_NEAR(1e-9 * static_cast<double>(frames.back().time_ns - end.time_ns), 0.0, 1.0)
+      << "to the session's end, on its clock";
+}
+
+TEST_P(LiveWindowTest, ShowsWhatTheFileHolds) {
+  LiveCommand session(run());
+  ConsolePerson person(session.line_after("console: "));
+  ASSERT_TRUE(person.sees("instructions")) << session.errors();
+  expect_instructions();
+
+  ASSERT_TRUE(person.ask("start"));
+  ASSERT_TRUE(person.sees("running", "run"));
+  std::optional<Seen> seen;
+  EXPECT_TRUE(test::eventually([&] {
+    seen = look();
+    return seen.has_value();
+  })) << "path, cursor and both bars";
+  EXPECT_TRUE(test::eventually([&] { return patch_is_white(); }, 1.0));
+
+  display_->press_key(definition_->screen.title, 0xff1b);  // Escape at the participant's keyboard
+  ASSERT_TRUE(person.sees("stopped"));
+  EXPECT_EQ(person.status()["applied_force"], 0.0);
+  EXPECT_TRUE(test::eventually([&] { return shade_of_patch() == 0.0; })) << "the run is over";
+  ASSERT_TRUE(person.ask("abort"));
+  const CommandResult ended = session.wait();
+  ASSERT_EQ(ended.status, 0) << ended.errors;
+
+  const record::SessionReader reader(folder_ / "out/S01.h5");
+  EXPECT_TRUE(record::check_session(reader).ok);
+  expect_frames(reader);
+  if (seen) {
+    expect_file_agrees(*seen);
+  }
+  const CommandResult info =
+      test::run_command("haptrial info '" + (folder_ / "out/S01.h5").string() + "'");
+  EXPECT_THAT(info.output, HasSubstr("frames      " + std::to_string(reader.frames().size())));
+}
+
+std::string name_of(const testing::TestParamInfo<bool>& full) {
+  return full.param ? "FullScreen" : "Window";
+}
+INSTANTIATE_TEST_SUITE_P(All, LiveWindowTest, testing::Bool(), name_of);
+
+TEST(LiveWindowWithoutDisplayTest, IsASentenceAndLeavesNothing) {
+  const test::TemporaryFolder folder;
+  const CommandResult result =
+      test::run_command("unset DISPLAY; haptrial run '" + test::shipped_definition().string() +
+                        "' --subject S01 --window --out '" + (folder / "out").string() + "'");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.errors, HasSubstr("DISPLAY"));
+  EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/S01.h5.partial"));
+}
+
+}  // namespace
+}  // namespace haptrial
