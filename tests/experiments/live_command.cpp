@@ -5,6 +5,7 @@
 #include <pty.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <array>
@@ -136,6 +137,12 @@ void LiveCommand::press(const std::string& keys) const {
   if (::write(screen_, keys.data(), keys.size()) != static_cast<ssize_t>(keys.size())) {
     throw std::runtime_error("the terminal takes no keys");
   }
+}
+
+bool LiveCommand::takes_lines() const {
+  termios modes{};
+  ::tcgetattr(screen_, &modes);
+  return (modes.c_lflag & ICANON) != 0 && (modes.c_lflag & ECHO) != 0;
 }
 
 void LiveCommand::hang_up() {

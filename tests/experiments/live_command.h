@@ -41,6 +41,7 @@ class LiveCommand {
 
   void signal(int number) const;
   void press(const std::string& keys) const;  // on the terminal
+  bool takes_lines() const;                   // whether the terminal shows and edits what is typed
   void hang_up();                             // the terminal's window is closed
   bool runs();
 

@@ -39,7 +39,7 @@ def moves(page, *names):
 def picture(page, file):
     """With nothing but the pass going on in the plot's last seconds."""
     time.sleep(PLOT_SECONDS)
-    page.picture(file)
+    page.picture(file, height=980)
 
 
 def condition(page):
@@ -105,7 +105,7 @@ def stop_and_clear(page, folder):
     time.sleep(0.5)
     assert page.text("state") == "STOPPED"
     assert page.text("applied") == NO_FORCE
-    page.picture(folder / "console-stopped.png")
+    page.picture(folder / "console-stopped.png", height=980)
     page.click("clear")
     state(page, "Paused")
     assert page.hidden("fault"), page.text("fault")
