@@ -166,14 +166,16 @@ class Easel {
               style.target_colour),
         patch_(window.gl(), style.width, style.height) {}
 
-  void take(const Scene& scene) {
+  /// @returns whether it is another one than before.
+  bool take(const Scene& scene) {
     if (scene.version == scene_.version) {
-      return;
+      return false;
     }
     scene_ = scene;
     if (scene_.trial) {
       trial_.set_trajectory(scene_.points);
     }
+    return true;
   }
 
   void draw(const stimulus::Presentation& presentation) {
@@ -274,9 +276,10 @@ void Screen::Impl::run() {
     while (!stop.load(std::memory_order_relaxed)) {
       pace.wait();
       const std::int64_t start = now_ns();
+      bool other_view = false;
       {
         const std::lock_guard lock(mutex);
-        easel.take(scene);
+        other_view = easel.take(scene);
       }
       presentation.read(seen);
       easel.draw(seen);
@@ -296,7 +299,8 @@ void Screen::Impl::run() {
           callbacks.key(press);
         }
       }
-      if (callbacks.pointer && std::exchange(pointer, window.pointer()) != pointer) {
+      const bool moved = std::exchange(pointer, window.pointer()) != pointer;
+      if (callbacks.pointer && (moved || other_view)) {  // a view may move under the pointer
         callbacks.pointer(easel.pointer());
       }
       if (window.close_asked() && !std::exchange(closed, true) && callbacks.closed) {

@@ -40,7 +40,7 @@ struct ScreenPointer {
 /// What happens at the screen; called on its thread. They must not call back into the screen.
 struct ScreenCallbacks {
   std::function<void(const render::KeyPress&)> key;
-  std::function<void(const ScreenPointer&)> pointer;  // when it changed
+  std::function<void(const ScreenPointer&)> pointer;  // when it or the view under it changed
   std::function<void()> closed;                       // the window's close button, once
 };
 

@@ -88,6 +88,7 @@ struct Window::Impl {
 
   void open(const WindowOptions& options);
   void listen();
+  void point_at(double x, double y);
   static Impl& of(GLFWwindow* window) {
     return *static_cast<Impl*>(glfwGetWindowUserPointer(window));
   }
@@ -131,6 +132,10 @@ void Window::Impl::open(const WindowOptions& options) {
   gl = load_gl(&address_of);
   glfwSwapInterval(options.refresh_lock ? 1 : 0);
   glfwGetFramebufferSize(window.get(), &width, &height);
+  double x = 0.0;
+  double y = 0.0;
+  glfwGetCursorPos(window.get(), &x, &y);
+  point_at(x, y);
   glfwGetError(nullptr);  // an answer that is not needed (swap interval) is no failure
 }
 
@@ -141,13 +146,8 @@ void Window::Impl::listen() {
       of(w).keys.push_back({key_of(key)});
     }
   });
-  glfwSetCursorPosCallback(window.get(), [](GLFWwindow* w, double x, double y) {
-    // GLFW counts in the window's own units; some displays give these several pixels.
-    int units = 0;
-    glfwGetWindowSize(w, &units, nullptr);
-    const double scale = units > 0 ? static_cast<double>(of(w).width) / units : 1.0;
-    of(w).pointer.position = {scale * x, scale * y};
-  });
+  glfwSetCursorPosCallback(window.get(),
+                           [](GLFWwindow* w, double x, double y) { of(w).point_at(x, y); });
   glfwSetScrollCallback(window.get(),
                         [](GLFWwindow* w, double, double y) { of(w).pointer.wheel += y; });
   glfwSetMouseButtonCallback(window.get(), [](GLFWwindow* w, int button, int action, int) {
@@ -155,6 +155,14 @@ void Window::Impl::listen() {
     std::uint32_t& buttons = of(w).pointer.buttons;
     buttons = action == GLFW_PRESS ? buttons | bit : buttons & ~bit;
   });
+}
+
+/// GLFW counts in the window's own units; some displays give these several pixels.
+void Window::Impl::point_at(double x, double y) {
+  int units = 0;
+  glfwGetWindowSize(window.get(), &units, nullptr);
+  const double scale = units > 0 ? static_cast<double>(width) / units : 1.0;
+  pointer.position = {scale * x, scale * y};
 }
 
 Window::Window(const WindowOptions& options) : impl_(std::make_unique<Impl>()) {

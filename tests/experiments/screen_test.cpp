@@ -234,6 +234,34 @@ TEST_F(ScreenTest, KeysPointerAndCloseButtonReachTheCallbacks) {
   EXPECT_TRUE(eventually([&] { return closed == 1; }));
 }
 
+TEST_F(ScreenTest, APointerThatRestsIsWhereTheNewTrialShowsIt) {
+  std::mutex mutex;
+  ScreenPointer pointer;
+  ScreenCallbacks callbacks;
+  callbacks.pointer = [&](const ScreenPointer& now) {
+    const std::lock_guard lock(mutex);
+    pointer = now;
+  };
+  const Presentation at_end = [] {
+    Presentation seen = running();
+    seen.tool = path().back();
+    seen.show_target_bar = seen.show_applied_bar = false;
+    return seen;
+  }();
+  const render::Blob marker =
+      render::find(render::render_presentation(style(), path(), at_end), style().marker_colour);
+  display_->move_pointer(static_cast<int>(marker.centre.x()), static_cast<int>(marker.centre.y()));
+  Screen screen(options_, style(), callbacks);  // with a view of its own, and no trial
+  std::this_thread::sleep_for(200ms);
+  screen.show_trial(path());
+  EXPECT_TRUE(eventually([&] {
+    const std::lock_guard lock(mutex);
+    return std::abs(pointer.x - path().back().x()) < 5e-4 &&
+           std::abs(pointer.z - path().back().z()) < 5e-4;
+  })) << pointer.x
+      << " " << pointer.z;
+}
+
 TEST_F(ScreenTest, ObserveDoesNotAllocate) {
   Screen screen(options_, style());
   const Presentation seen = running();
