@@ -35,8 +35,10 @@ class LiveConsoleTest : public testing::Test {
                      << "python3";
       }
     }
-    test::write_text(folder_ / "study.toml",
-                     kept_pictures() != nullptr ? test::shipped_text() : test::brisk_text());
+    // Slow enough for a browser on a busy machine to do something within a pass.
+    test::write_text(folder_ / "study.toml", kept_pictures() != nullptr
+                                                 ? test::shipped_text()
+                                                 : test::brisk_text({{"speed", "speed = 0.03"}}));
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
