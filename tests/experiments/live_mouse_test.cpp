@@ -39,7 +39,7 @@ class LiveMouseTest : public testing::Test {
     display_.emplace(kWidth, kHeight);
     test::write_text(folder_ / "study.toml",
                      test::brisk_text({{"conditions", "conditions = [\"visual\"]"},
-                                       {"speed", "speed = 0.04"},
+                                       {"speed", "speed = 0.03"},
                                        {"wait_timeout", "wait_timeout = 30.0"}}));
     definition_ = experiments::load_definition(folder_ / "study.toml");
   }
@@ -173,7 +173,7 @@ TEST_F(LiveMouseTest, ThePointerLeadsTheToolAndAPressIsAForce) {
     return sum / static_cast<double>(at(to) - at(from));
   };
   EXPECT_NEAR(mean_force(0.1, 0.4), 0.0, 0.03);
-  EXPECT_NEAR(mean_force(0.75, 0.95), expected, 0.1);
+  EXPECT_NEAR(mean_force(0.85, 0.97), expected, 0.1);
 }
 
 TEST_F(LiveMouseTest, WithoutItsWindowItIsASentenceAndNothingIsLeft) {
