@@ -14,10 +14,7 @@ std::atomic<void*> hook_with{nullptr};
 static_assert(std::atomic<bool>::is_always_lock_free);  // so that a signal handler may set it
 
 extern "C" void on_signal(int signal) {
-  asked.store(true);
-  if (const auto call = hook.load()) {
-    call(hook_with.load());
-  }
+  interrupt();
   restore_terminal();
   if (signal != SIGHUP) {  // a shell and the system may both tell of a closed terminal
     std::signal(signal, SIG_DFL);
@@ -35,6 +32,13 @@ void watch_for_interrupt() {
 }
 
 bool interrupted() noexcept { return asked.load(); }
+
+void interrupt() noexcept {
+  asked.store(true);
+  if (const auto call = hook.load()) {
+    call(hook_with.load());
+  }
+}
 
 void call_on_interrupt(void (*call)(void*), void* with) noexcept {
   hook.store(nullptr);

@@ -6,6 +6,8 @@ namespace haptrial::experiments {
 /// program to stop; a second SIGINT or SIGTERM ends it at once.
 void watch_for_interrupt();
 bool interrupted() noexcept;  // any thread
+/// As such a signal does. Any thread.
+void interrupt() noexcept;
 
 /// Called from the signal's handler as well, with `with`: only what a handler may do (an atomic
 /// store). Null: nobody. Any thread.

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/random.h"
@@ -48,9 +49,10 @@ class Session {
 
   void drive_until_idle();
   void collect();
-  void wait(double seconds, const char* state);
+  void wait(double seconds, const char* state, bool until_asked = false);
   void wait_for_experimenter(const char* state);
   void recover();
+  void pause_where_asked();
   void take_break();
   void show_text(const std::string& text, const std::string& hint, double countdown = 0.0);
   void publish(const char* state);
@@ -160,6 +162,7 @@ void Session::run_plan(const std::vector<PlannedTrial>& plan) {
     show_text(d_.texts.instructions, "The experimenter starts");
     wait_for_experimenter("instructions");
   }
+  bool practised = false;
   for (const PlannedTrial& trial : plan) {
     const bool enough =
         request_.max_trials > 0 && !trial.practice && trial.trial > request_.max_trials;
@@ -169,12 +172,20 @@ void Session::run_plan(const std::vector<PlannedTrial>& plan) {
     if (record_.holds(trial)) {
       continue;
     }
+    if (trial.practice && !std::exchange(practised, true) && desk_.attended()) {
+      show_text(d_.texts.practice, "The experimenter starts");
+      wait_for_experimenter("instructions");
+    }
     present(trial);
-    if (!trial.practice && trial.trial == d_.design.break_after) {
+    if (!trial.practice && trial.trial == d_.design.break_after && !desk_.wishes().abort) {
       take_break();
     }
   }
   show_text(d_.texts.thanks, "");
+  if (screen_) {
+    constexpr double kTimeToRead = 5.0;  // [s]
+    wait(kTimeToRead, "thanks", true);
+  }
 }
 
 void Session::prepare(const PlannedTrial& trial) {
@@ -191,16 +202,15 @@ void Session::prepare(const PlannedTrial& trial) {
 void Session::present(const PlannedTrial& trial) {
   prepare(trial);
   Wishes& wishes = desk_.wishes();
-  for (int attempt = 1; !wishes.abort; ++attempt) {
+  for (int attempt = record_.attempts(trial) + 1; !wishes.abort; ++attempt) {
     wishes.repeat = wishes.skip = false;
+    desk_.status().screen.clear();
     if (screen_) {
       screen_->show_trial(stimulus_->path.points());
     }
     const bool done = run_trial(trial, attempt);
-    if (wishes.stopped || wishes.pause) {
-      wait_for_experimenter(wishes.stopped ? "stopped" : "paused");
-    }
-    if (done || wishes.skip || !desk_.attended()) {
+    pause_where_asked();
+    if ((done && !wishes.repeat) || wishes.skip || !desk_.attended()) {
       return;
     }
   }
@@ -214,10 +224,22 @@ bool Session::run_trial(const PlannedTrial& trial, int attempt) {
   if (!learnt && desk_.attended()) {
     return false;  // the trial is presented again, from its training on
   }
+  pause_where_asked();
+  const Wishes& wishes = desk_.wishes();
+  if (wishes.repeat || wishes.skip || wishes.abort) {
+    return false;
+  }
   const bool tested =
       run_pass(std::make_unique<protocols::RecallTest>(*stimulus_, d_.guidance, trial.block), trial,
                record::Phase::kTest, attempt);
   return learnt && tested;
+}
+
+void Session::pause_where_asked() {
+  const Wishes& wishes = desk_.wishes();
+  if (wishes.stopped || wishes.pause) {
+    wait_for_experimenter("paused");
+  }
 }
 
 bool Session::run_pass(std::unique_ptr<protocols::TrajectoryPass> pass, const PlannedTrial& trial,
@@ -294,9 +316,13 @@ void Session::collect() {
 }
 
 /// On the real clock, without force.
-void Session::wait(double seconds, const char* state) {
+/// @param until_asked  or until the experimenter starts or stops
+void Session::wait(double seconds, const char* state, bool until_asked) {
+  Wishes& wishes = desk_.wishes();
+  wishes.start = false;
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-  while (Clock::now() < end && !asked_to_stop() && !desk_.wishes().abort) {
+  while (Clock::now() < end && !asked_to_stop() && !wishes.abort &&
+         !(until_asked && (wishes.start || wishes.stopped))) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     desk_.status().break_left = std::chrono::duration<double>(end - Clock::now()).count();
     collect();
@@ -329,14 +355,17 @@ void Session::recover() {
       collect();
     }
   }
-  task_.clear_fault();
+  if (!desk_.wishes().stopped) {  // what a person stopped, a person clears
+    task_.clear_fault();
+  }
 }
 
 void Session::take_break() {
   record_.event("break", fmt::format("{} s", d_.design.break_duration));
   if (real_) {
     show_text(d_.texts.rest, "", d_.design.break_duration);
-    wait(d_.design.break_duration, "break");
+    wait(d_.design.break_duration, "break", true);
+    pause_where_asked();
   }
 }
 

@@ -27,6 +27,7 @@ void SessionDesk::take_messages() {
 void SessionDesk::heed(Request request) {
   switch (request) {
     case Request::kStart:
+      wishes_.start = true;
       wishes_.pause = false;
       break;
     case Request::kPause:

@@ -13,6 +13,7 @@ namespace haptrial::experiments {
 
 /// What the experimenter asked for and has not come about yet.
 struct Wishes {
+  bool start{false};  // go on before the time of a break has passed
   bool pause{false};
   bool repeat{false};   // the present trial
   bool skip{false};     // the present trial

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/device/mouse.h"
+#include "experiments/interrupt.h"
 #include "experiments/version.h"
 
 namespace haptrial::experiments {
@@ -60,6 +61,13 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::Mouse
       }
     };
     callbacks.closed = [control] { control->ask(Request::kAbort); };
+  } else {  // nobody is there who could clear a stop or say that it goes on
+    callbacks.key = [](const render::KeyPress& press) {
+      if (press.key == render::KeyPress::kEscape) {
+        interrupt();
+      }
+    };
+    callbacks.closed = [] { interrupt(); };
   }
   if (mouse != nullptr) {
     callbacks.pointer = [mouse](const ScreenPointer& pointer) {

@@ -42,6 +42,16 @@ bool SessionRecord::holds(const PlannedTrial& trial) const {
   });
 }
 
+int SessionRecord::attempts(const PlannedTrial& trial) const {
+  int most = 0;
+  for (const record::PassRow& pass : before_.passes) {
+    const bool same = pass.trial == trial.trial && pass.practice == trial.practice &&
+                      pass.condition == trial.condition;
+    most = same ? std::max(most, static_cast<int>(pass.attempt)) : most;
+  }
+  return most;
+}
+
 void SessionRecord::keep_stimulus(const PlannedTrial& trial, const stimulus::Stimulus& stimulus) {
   if (trial.practice || std::find(blocks_.begin(), blocks_.end(), trial.block) != blocks_.end()) {
     return;

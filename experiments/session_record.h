@@ -42,6 +42,8 @@ class SessionRecord {
   void open(const std::string& text);
   /// Whether a resumed file holds the trial's test already.
   bool holds(const protocols::PlannedTrial& trial) const;
+  /// Of a trial in a resumed file; 0 where it has none.
+  int attempts(const protocols::PlannedTrial& trial) const;
   /// Once a block, also over several runs.
   void keep_stimulus(const protocols::PlannedTrial& trial, const stimulus::Stimulus& stimulus);
 

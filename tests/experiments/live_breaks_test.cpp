@@ -1,0 +1,138 @@
+// Breaks, practice, resumed attempts and a participant's Escape, as an
+// experimenter meets them.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/record/session_reader.h"
+#include "tests/experiments/console_person.h"
+#include "tests/experiments/live_command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/virtual_display.h"
+
+namespace haptrial {
+namespace {
+
+using test::CommandResult;
+using test::ConsolePerson;
+using test::LiveCommand;
+using testing::HasSubstr;
+
+class LiveBreaksTest : public testing::Test {
+ protected:
+  using Lines = std::vector<std::pair<std::string, std::string>>;
+  std::string run(const Lines& more, const std::string& options = "--console") const {
+    Lines lines{{"repetitions", "repetitions = 1"},
+                {"break_after", "break_after = 1"},
+                {"break_duration", "break_duration = 30.0"}};
+    lines.insert(lines.end(), more.begin(), more.end());
+    test::write_text(folder_ / "study.toml", test::brisk_text(lines));
+    return "run '" + (folder_ / "study.toml").string() + "' --subject S01 --out '" +
+           (folder_ / "out").string() + "' " + options;
+  }
+  static void come_to_the_break(ConsolePerson& person) {
+    ASSERT_TRUE(person.sees("instructions"));
+    ASSERT_TRUE(person.ask("start"));
+    ASSERT_TRUE(person.sees("running", "run"));
+    ASSERT_TRUE(person.ask("skip"));
+    ASSERT_TRUE(person.sees("break"));
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(LiveBreaksTest, ABreakEndsBeforeItsTimeWhenTheExperimenterStarts) {
+  LiveCommand session(run({}));
+  ConsolePerson person(session.line_after("console: "));
+  ASSERT_NO_FATAL_FAILURE(come_to_the_break(person));
+  EXPECT_THAT(person.status()["screen"].get<std::string>(), HasSubstr("Let go of the handle"));
+  ASSERT_TRUE(person.ask("start"));
+  EXPECT_TRUE(person.sees("running", "run", 5.0));
+  EXPECT_EQ(person.status()["trial"], 2);
+}
+
+TEST_F(LiveBreaksTest, AnEmergencyStopInABreakIsSeenAndStays) {
+  LiveCommand session(run({}));
+  ConsolePerson person(session.line_after("console: "));
+  ASSERT_NO_FATAL_FAILURE(come_to_the_break(person));
+  ASSERT_TRUE(person.ask("emergency_stop"));
+  EXPECT_TRUE(person.sees("stopped", "", 2.0));
+}
+
+TEST_F(LiveBreaksTest, ASessionThatIsEndedBeforeItsBreakHasNone) {
+  LiveCommand session(run({}));
+  ConsolePerson person(session.line_after("console: "));
+  ASSERT_TRUE(person.sees("instructions"));
+  ASSERT_TRUE(person.ask("start"));
+  ASSERT_TRUE(person.sees("running", "run"));
+  ASSERT_TRUE(person.ask("abort"));
+  ASSERT_EQ(session.wait().status, 0);
+  for (const record::EventRow& event : record::SessionReader(folder_ / "out/S01.h5").events()) {
+    EXPECT_NE(event.kind, "break");
+  }
+}
+
+TEST_F(LiveBreaksTest, ThePracticeTextIsShownBeforeThePractice) {
+  LiveCommand session(run({{"practice", "practice = 1"}}));
+  ConsolePerson person(session.line_after("console: "));
+  ASSERT_TRUE(person.sees("instructions"));
+  ASSERT_TRUE(person.ask("start"));
+  EXPECT_TRUE(test::eventually(
+      [&] {
+        return person.status()["screen"].get<std::string>().find("These trials do not count") !=
+               std::string::npos;
+      },
+      2.0));
+}
+
+TEST_F(LiveBreaksTest, AttemptsAreCountedOnAfterAResume) {
+  {
+    LiveCommand session(run({}));
+    ConsolePerson person(session.line_after("console: "));
+    ASSERT_TRUE(person.sees("instructions"));
+    ASSERT_TRUE(person.ask("start"));
+    ASSERT_TRUE(person.sees("running", "run"));
+    session.signal(SIGTERM);
+    ASSERT_EQ(session.wait().status, 1);
+  }
+  LiveCommand again(run({}, "--console --resume"));
+  ConsolePerson person(again.line_after("console: "));
+  ASSERT_TRUE(person.sees("instructions"));
+  ASSERT_TRUE(person.ask("start"));
+  ASSERT_TRUE(person.sees("running", "run"));
+  ASSERT_TRUE(person.ask("abort"));
+  ASSERT_EQ(again.wait().status, 0);
+  const auto passes = record::SessionReader(folder_ / "out/S01.h5").passes();
+  ASSERT_EQ(passes.size(), 2u);
+  EXPECT_EQ(passes[1].trial, 1);
+  EXPECT_EQ(passes[1].attempt, 2);
+}
+
+TEST_F(LiveBreaksTest, EscapeInTheParticipantsWindowStopsASessionWithoutAConsole) {
+  if (!test::VirtualDisplay::available()) {
+    GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
+  }
+  const test::VirtualDisplay display(1280, 720);
+  LiveCommand session(run({}, "--window"));
+  const auto partial = folder_ / "out/S01.h5.partial";
+  ASSERT_TRUE(test::eventually([&] {
+    try {
+      const record::SessionReader reader(partial);
+      const std::uint64_t rows = reader.sample_count();
+      return rows > 0 && reader.samples(rows - 1, 1)[0].stage == record::Stage::kRun;
+    } catch (const std::exception&) {
+      return false;
+    }
+  }));
+  display.press_key("haptrial", 0xff1b);
+  const CommandResult ended = session.wait(3.0);
+  EXPECT_EQ(ended.status, 1) << "it goes on: the key was not heard";
+  EXPECT_THAT(ended.errors, HasSubstr("S01.h5.partial"));
+}
+
+}  // namespace
+}  // namespace haptrial
