@@ -11,4 +11,13 @@ double t_upper_tail(double t, double df);
 /// The t with P(T < t) = probability; probability inside (0, 1), df > 0.
 double t_quantile(double probability, double df);
 
+/// P(Z > z) of the standard normal distribution.
+double normal_upper_tail(double z);
+
+/// The z with P(Z < z) = probability; probability inside (0, 1).
+double normal_quantile(double probability);
+
+/// P(X > x) of chi squared; df > 0.
+double chi_squared_upper_tail(double x, double df);
+
 }  // namespace haptrial::analysis

@@ -6,6 +6,8 @@
 #include <set>
 #include <tuple>
 
+#include "analysis/p_adjust.h"
+
 namespace haptrial::analysis {
 namespace {
 

@@ -7,6 +7,7 @@
 
 #include "analysis/anova.h"
 #include "analysis/descriptive.h"
+#include "analysis/repeated_anova.h"
 #include "analysis/t_test.h"
 #include "analysis/trial_score.h"
 

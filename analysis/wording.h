@@ -4,6 +4,7 @@
 
 #include "analysis/anova.h"
 #include "analysis/descriptive.h"
+#include "analysis/repeated_anova.h"
 #include "analysis/t_test.h"
 
 namespace haptrial::analysis {

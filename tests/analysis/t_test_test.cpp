@@ -10,6 +10,7 @@
 
 #include "analysis/descriptive.h"
 #include "analysis/distributions.h"
+#include "analysis/p_adjust.h"
 #include "core/base/random.h"
 
 namespace haptrial::analysis {
@@ -67,12 +68,12 @@ TEST(TTest, TailsFitTogether) {
   for (auto& v : a) v = random.normal();
   for (auto& v : b) v = random.normal() + 0.4;
   for (const auto test : {student_t_test, welch_t_test}) {
-    const auto less = test(a, b, Tail::kLess);
-    const auto greater = test(a, b, Tail::kGreater);
-    const auto both = test(a, b, Tail::kTwoSided);
+    const auto less = test(a, b, Tail::kLess, 0.95);
+    const auto greater = test(a, b, Tail::kGreater, 0.95);
+    const auto both = test(a, b, Tail::kTwoSided, 0.95);
     EXPECT_NEAR(less->p + greater->p, 1.0, 1e-14);
     EXPECT_NEAR(both->p, 2.0 * std::min(less->p, greater->p), 1e-14);
-    EXPECT_DOUBLE_EQ(test(b, a, Tail::kGreater)->p, less->p);
+    EXPECT_DOUBLE_EQ(test(b, a, Tail::kGreater, 0.95)->p, less->p);
     // The interval excludes zero exactly when the two-sided p is below 0.05.
     EXPECT_EQ(both->low > 0.0 || both->high < 0.0, both->p < 0.05);
   }
