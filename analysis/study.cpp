@@ -12,6 +12,7 @@
 
 #include "analysis/score.h"
 #include "analysis/session_recalls.h"
+#include "analysis/study_parts.h"
 #include "core/base/error.h"
 #include "core/record/session_reader.h"
 
@@ -83,39 +84,27 @@ RecallPicture picture_of(const Origin& origin, const std::string& which,
                          const ScoreParameters& parameters) {
   const record::SessionReader reader(origin.session->file);
   const auto run = run_samples(reader, reader.passes().at(origin.pass->pass));
-  const auto curves = recall_curves(*run, reader.info().rate);
-  auto detail = score_recall_in_detail(curves->target, curves->applied, parameters);
-  RecallPicture picture{which,
-                        origin.pass->score,
-                        detail.time.duration,
-                        std::move(detail.target),
-                        std::move(detail.applied),
-                        std::move(detail.warped)};
-  for (const auto& point : detail.path) {
-    picture.pairs.emplace_back(point.target, point.applied);
-  }
-  return picture;
+  return recall_picture(which, origin.pass->score, *recall_curves(*run, reader.info().rate),
+                        parameters);
 }
 
-// Best, median (the lower of two) and worst; of equal scores the first.
 std::vector<RecallPicture> pictures(const std::vector<Session>& sessions,
+                                    const std::vector<TrialScore>& scores,
                                     const ScoreParameters& parameters) {
-  std::vector<Origin> origins;
+  std::vector<Origin> origins;  // one for each of scores
   for (const auto& session : sessions) {
     for (const auto& pass : session.recalls.scored) {
       origins.push_back({&session, &pass});
     }
   }
-  if (origins.empty()) {
-    return {};
+  std::vector<RecallPicture> result;
+  for (const auto& [which, at] : notable(scores)) {
+    result.push_back(picture_of(origins[at], which, parameters));
   }
-  std::stable_sort(origins.begin(), origins.end(), [](const Origin& a, const Origin& b) {
-    return a.pass->score.score < b.pass->score.score;
-  });
-  return {picture_of(origins.front(), "best", parameters),
-          picture_of(origins[(origins.size() - 1) / 2], "median", parameters),
-          picture_of(origins.back(), "worst", parameters)};
+  return result;
 }
+
+}  // namespace
 
 std::vector<std::pair<std::string, std::string>> parameter_rows(const ScoreParameters& p) {
   return {{"samples of the common time base", fmt::format("{}", p.samples)},
@@ -129,7 +118,34 @@ std::vector<std::pair<std::string, std::string>> parameter_rows(const ScoreParam
           {"score: share of the slope difference", fmt::format("{} s/N", p.slope_share)}};
 }
 
-}  // namespace
+std::vector<std::pair<std::string, std::size_t>> notable(const std::vector<TrialScore>& scores) {
+  if (scores.empty()) {
+    return {};
+  }
+  std::vector<std::size_t> order(scores.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return scores[a].score < scores[b].score;
+  });
+  return {{"best", order.front()},
+          {"median", order[(order.size() - 1) / 2]},
+          {"worst", order.back()}};
+}
+
+RecallPicture recall_picture(const std::string& which, const TrialScore& score,
+                             const RecallCurves& curves, const ScoreParameters& parameters) {
+  auto detail = score_recall_in_detail(curves.target, curves.applied, parameters);
+  RecallPicture picture{which,
+                        score,
+                        detail.time.duration,
+                        std::move(detail.target),
+                        std::move(detail.applied),
+                        std::move(detail.warped)};
+  for (const auto& point : detail.path) {
+    picture.pairs.emplace_back(point.target, point.applied);
+  }
+  return picture;
+}
 
 StudyResult analyze_study(const std::vector<fs::path>& session_files,
                           const ScoreParameters& parameters, int jobs) {
@@ -156,7 +172,7 @@ StudyResult analyze_study(const std::vector<fs::path>& session_files,
   }
   study.statistics = study_statistics(study.scores);
   study.tracking = summarize_tracking("all participants", tracking);
-  study.recalls = pictures(sessions, parameters);
+  study.recalls = pictures(sessions, study.scores, parameters);
   study.stimulus = sessions.front().recalls.stimulus;
   study.parameters = parameter_rows(parameters);
   return study;

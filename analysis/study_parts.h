@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/session_recalls.h"
+#include "analysis/study.h"
+
+namespace haptrial::analysis {
+
+// What a study of session files and one of curves from elsewhere have in common.
+
+/// Names and values of the parameters, as the report prints them.
+std::vector<std::pair<std::string, std::string>> parameter_rows(const ScoreParameters& parameters);
+
+/// The places of the best, the median (the lower of two) and the worst of the scores, with those
+/// words; of equal scores the first. None without scores.
+std::vector<std::pair<std::string, std::size_t>> notable(const std::vector<TrialScore>& scores);
+
+/// @param which  "best", "median" or "worst"
+RecallPicture recall_picture(const std::string& which, const TrialScore& score,
+                             const RecallCurves& curves, const ScoreParameters& parameters);
+
+}  // namespace haptrial::analysis
