@@ -1,5 +1,7 @@
 #include "analysis/anova.h"
 
+#include <cmath>
+
 #include "analysis/descriptive.h"
 #include "analysis/distributions.h"
 
@@ -64,6 +66,9 @@ Defined<Anova> one_way_anova(const Table& groups) {
   result.squares_between = between_squares(*each);
   result.f =
       (result.squares_between / result.df_between) / (result.squares_within / result.df_within);
+  if (!std::isfinite(result.f)) {
+    return Undefined{kBeyondDouble};
+  }
   result.p = f_upper_tail(result.f, result.df_between, result.df_within);
   result.eta_squared = result.squares_between / (result.squares_between + result.squares_within);
   return result;

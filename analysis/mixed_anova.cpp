@@ -39,13 +39,13 @@ Defined<Anova> between_groups(const std::vector<Table>& groups, double rounding)
   }
   const auto anova = one_way_anova(means);
   if (!anova) {
-    return Undefined{"the participants of a group do not differ"};
+    return anova;
   }
   Anova result = *anova;
   result.squares_between *= conditions;
   result.squares_within *= conditions;
   if (result.squares_within <= rounding) {
-    return Undefined{"the participants of a group do not differ"};
+    return Undefined{"the values do not vary within any group"};
   }
   return result;
 }

@@ -53,11 +53,10 @@ Defined<double> huynh_feldt(double greenhouse_geisser, double c, double df) {
 
 Sphericity sphericity(const Eigen::MatrixXd& products, double df) {
   const auto c = static_cast<double>(products.rows());
-  const double trace = products.trace();
+  const Eigen::MatrixXd unit = products / products.trace();
   Sphericity result;
-  result.mauchly = mauchly(products, df);
-  result.greenhouse_geisser =
-      std::clamp(trace * trace / (c * products.squaredNorm()), 1.0 / c, 1.0);
+  result.mauchly = mauchly(unit, df);
+  result.greenhouse_geisser = std::clamp(1.0 / (c * unit.squaredNorm()), 1.0 / c, 1.0);
   result.huynh_feldt = huynh_feldt(result.greenhouse_geisser, c, df);
   return result;
 }

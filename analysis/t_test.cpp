@@ -24,16 +24,18 @@ double p_value(double t, double df, Tail tail) {
   return std::min(1.0, 2.0 * t_upper_tail(std::abs(t), df));
 }
 
-TTest from_error(double difference, double standard_error, double df, Tail tail, double level) {
+Defined<TTest> from_error(double difference, double standard_error, double df, Tail tail,
+                          double level) {
   const double t = difference / standard_error;
+  if (!std::isfinite(t) || !std::isfinite(difference) || !(df > 0.0)) {
+    return Undefined{kBeyondDouble};
+  }
   const double half = t_quantile(0.5 + 0.5 * level, df) * standard_error;
-  return {t,
-          df,
-          p_value(t, df, tail),
-          difference,
-          difference - half,
-          difference + half,
-          standard_error};
+  TTest result{t, df, p_value(t, df, tail), difference};
+  result.low = difference - half;
+  result.high = difference + half;
+  result.error = standard_error;
+  return result;
 }
 
 struct TwoSamples {

@@ -64,6 +64,9 @@ Defined<WithinEffect> tested(double squares, double df, const Eigen::MatrixXd& p
     return Undefined{"the conditions differ by the same amount for every participant"};
   }
   result.f = (result.squares / result.df) / (result.squares_error / result.df_error);
+  if (!std::isfinite(result.f)) {
+    return Undefined{kBeyondDouble};
+  }
   result.p = f_upper_tail(result.f, result.df, result.df_error);
   result.partial_eta_squared = result.squares / (result.squares + result.squares_error);
   result.sphericity = sphericity(products, df_rows);

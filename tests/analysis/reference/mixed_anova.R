@@ -27,19 +27,19 @@ mixed <- function(case, data, value) {
          squares = between[1, "Sum Sq"], squares_error = between[2, "Sum Sq"],
          p = between[1, "Pr(>F)"])
   procedure_once("Mixed ANOVA: condition (sequential)",
-                 "anova(lm(contrasts ~ group) test = 'Spherical'); mauchly.test; aov")
+                 "anova(lm(contrasts ~ group), test = 'Spherical'); mauchly.test; aov")
   within(case, table, "(Intercept)", epsilon, mauchly)
   answer(case, squares = inside[1, "Sum Sq"], squares_error = inside[3, "Sum Sq"],
          f_aov = inside[1, "F value"])
   procedure_once("Mixed ANOVA: interaction",
-                 "anova(lm(contrasts ~ group) test = 'Spherical'); mauchly.test; aov")
+                 "anova(lm(contrasts ~ group), test = 'Spherical'); mauchly.test; aov")
   within(case, table, "group", epsilon, mauchly)
   answer(case, squares = inside[2, "Sum Sq"], squares_error = inside[3, "Sum Sq"],
          f_aov = inside[2, "F value"])
 
   # Type III: the intercept last, after groups coded to sum to zero.
   procedure_once("Mixed ANOVA: condition (marginal)",
-                 "anova(full reduced test = 'Spherical') with contr.sum")
+                 "anova(full, reduced, test = 'Spherical') with contr.sum")
   codes <- contr.sum(nlevels(group))[group, , drop = FALSE]
   marginal <- anova(lm(scores ~ codes), lm(scores ~ codes - 1), test = "Spherical")
   answer(case, f = marginal[2, "F"], df = marginal[2, "num Df"], df_error = marginal[2, "den Df"],

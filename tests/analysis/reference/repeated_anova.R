@@ -34,7 +34,7 @@ wide <- function(data, value, columns) {
 }
 
 procedure("Repeated-measures ANOVA: one factor",
-          "anova(lm(contrasts ~ 1) test = 'Spherical'); mauchly.test; aov")
+          "anova(lm(contrasts ~ 1), test = 'Spherical'); mauchly.test; aov")
 one_factor <- function(case, table) {
   effect(paste(case, "condition"), table %*% orthonormal(ncol(table)))
   long <- data.frame(value = c(table), subject = factor(c(row(table))),
@@ -50,7 +50,7 @@ one_factor("times", wide(times, "value", "condition"))
 one_factor("times of five", wide(times, "value", "condition")[1:5, ])
 
 procedure("Repeated-measures ANOVA: two factors",
-          "anova(lm(contrasts ~ 1) test = 'Spherical'); mauchly.test; aov")
+          "anova(lm(contrasts ~ 1), test = 'Spherical'); mauchly.test; aov")
 two_factors <- function(case, data, value, a, b) {
   cells <- wide(data, value, c(b, a))  # b runs fastest
   table <- matrix(cells, nrow(cells))
