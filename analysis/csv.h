@@ -51,7 +51,7 @@ class CsvTable {
     std::uint32_t begin, length;  // in text_
   };
   class Parser;
-  explicit CsvTable(std::string text, std::string name);
+  CsvTable(std::string text, std::string name);
   std::string_view view(Field field) const;
 
   std::string name_;

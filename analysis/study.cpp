@@ -107,15 +107,7 @@ std::vector<RecallPicture> pictures(const std::vector<Session>& sessions,
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> parameter_rows(const ScoreParameters& p) {
-  return {{"samples of the common time base", fmt::format("{}", p.samples)},
-          {"box filter on the applied force", fmt::format("{} s", p.filter_width)},
-          {"error matrix: weight of force", fmt::format("{}", p.alignment.force_weight)},
-          {"error matrix: weight of slope", fmt::format("{}", p.alignment.slope_weight)},
-          {"error matrix: power", fmt::format("{}", p.alignment.power)},
-          {"penalty of a step along one curve", fmt::format("{}", p.alignment.penalty)},
-          {"score: share of the alignment cost", fmt::format("{}", p.cost_share)},
-          {"score: share of the force difference", fmt::format("{} /N", p.force_share)},
-          {"score: share of the slope difference", fmt::format("{} s/N", p.slope_share)}};
+  return described(p);
 }
 
 std::vector<std::pair<std::string, std::size_t>> notable(const std::vector<TrialScore>& scores) {

@@ -66,7 +66,7 @@ TEST(ScoreParametersTest, ProblemsNameTheKey) {
   EXPECT_THAT(problem_of(with("samples = 800\n", "samples = 1\n")), HasSubstr("analysis.samples"));
   EXPECT_THAT(problem_of(with("filter_width = 0.05\n", "filter_width = -1.0\n")),
               HasSubstr("analysis.filter_width"));
-  EXPECT_THAT(problem_of(with("power = 2\n", "power = 3\n")), HasSubstr("analysis.power"));
+  EXPECT_THAT(problem_of(with("power = 2\n", "power = 0.5\n")), HasSubstr("analysis.power"));
   EXPECT_THAT(problem_of(with("penalty = 0.2\n", "")), HasSubstr("analysis.penalty"));
   EXPECT_THAT(problem_of(with("penalty = 0.2\n", "penalty = 0.2\npenalti = 1.0\n")),
               HasSubstr("penalti"));

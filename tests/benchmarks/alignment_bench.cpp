@@ -40,7 +40,7 @@ Curve smooth_curve(haptrial::RandomStream& random, std::size_t samples) {
 /// The baseline: the matrix and one byte a cell for the way back, nothing clever.
 class Textbook {
  public:
-  void align(const CurveView& a, const CurveView& b, const AlignmentParameters& p,
+  void align(const CurveView& a, const CurveView& b, const AlignmentOptions& p,
              Alignment& result) {
     const std::size_t rows = a.force.size(), columns = b.force.size();
     ways_.resize(rows * columns);
@@ -140,7 +140,7 @@ int main(int argc, char** argv) {
     const Curve &target = curves[2 * k], &applied = curves[2 * k + 1];
     pairs.push_back({{target.force, target.slope}, {applied.force, applied.slope}});
   }
-  const AlignmentParameters parameters;
+  const AlignmentOptions parameters;
   std::vector<Alignment> results(kPairs), reference(kPairs);
 
   const double clock = cycles_per_second();
