@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/record/session_types.h"
 
@@ -52,6 +53,20 @@ struct ReplayOptions {
 int replay(const ReplayOptions& options);
 
 int analyze(const std::string& folder, std::optional<int> jobs);
+
+/// Exactly one of bids, csv and curves names a new folder.
+struct ExportOptions {
+  std::vector<std::string> files;  // session files, or folders of them
+  std::string bids;
+  std::string csv;
+  std::string curves;
+  bool samples{false};               // of csv: every tick as well
+  std::string name;                  // of the BIDS data set; default: the experiment's
+  std::vector<std::string> authors;  // of the BIDS data set
+  std::optional<int> jobs;
+};
+int export_sessions(const ExportOptions& options);
+
 int info(const std::string& file);
 /// @param out  new session file; empty: beside the damaged one
 /// @returns 0 when something was recovered, else 1.

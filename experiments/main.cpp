@@ -30,6 +30,7 @@ class Commands {
     add_dry_run();
     add_run();
     add_analyze();
+    add_export();
     add_info();
     add_recover();
     add_replay();
@@ -92,6 +93,22 @@ class Commands {
     sub->callback([this] { status_ = experiments::analyze(path_, jobs_); });
   }
 
+  void add_export() {
+    CLI::App* sub =
+        subcommand(app_, "export", "Write sessions in the forms of other programs",
+                   "haptrial export --bids data-set out/force_training-001");
+    sub->add_option("FILE", export_.files, "Session files (.h5), or folders of them")->required();
+    sub->add_option("--bids", export_.bids, "New folder for a BIDS data set");
+    sub->add_option("--csv", export_.csv, "New folder for tidy tables (.csv)");
+    sub->add_option("--curves", export_.curves, "New folder for the scored curves (.csv)");
+    sub->add_flag("--samples", export_.samples, "With --csv: every tick as well (.csv.gz)");
+    sub->add_option("--name", export_.name, "With --bids: of the data set");
+    sub->add_option("--author", export_.authors, "With --bids: of the data set; may be repeated")
+        ->allow_extra_args(false);
+    sub->add_option("--jobs", export_.jobs, "Threads; one per processor by default");
+    sub->callback([this] { status_ = experiments::export_sessions(export_); });
+  }
+
   void add_info() {
     CLI::App* sub =
         subcommand(app_, "info", "Say what a session file holds and whether it is complete",
@@ -151,6 +168,7 @@ class Commands {
   experiments::RunOptions run_;
   experiments::ReplayOptions replay_;
   experiments::DeviceTestOptions device_test_;
+  experiments::ExportOptions export_;
   std::string path_;
   std::string recover_out_;
   std::optional<int> jobs_;
