@@ -28,22 +28,23 @@ std::vector<double> distances(const std::vector<double>& group, Centre centre) {
 Defined<Anova> levene(const std::vector<std::vector<double>>& groups, Centre centre) {
   std::vector<std::vector<double>> spread;
   double largest = 0.0;
-  double count = 0.0;
+  double squares = 0.0;  // of the distances, within groups
+  std::size_t count = 0;
   for (const auto& group : groups) {
-    const auto m = moments(group);
-    if (!m) {
+    if (const auto m = moments(group); !m) {
       return Undefined{group.empty() ? "a group is empty" : m.because()};
     }
     spread.push_back(distances(group, centre));
     largest = std::max(largest, *std::max_element(spread.back().begin(), spread.back().end()));
-    count += static_cast<double>(group.size());
+    squares += moments(spread.back())->squares;
+    count += group.size();
   }
-  const auto anova = one_way_anova(spread);
   const double unit = 8.0 * std::numeric_limits<double>::epsilon() * largest;
-  if (anova && anova->squares_within <= count * unit * unit) {
+  if (groups.size() > 1 && count > groups.size() &&
+      squares <= static_cast<double>(count) * unit * unit) {
     return Undefined{"all values of a group lie equally far from its centre"};
   }
-  return anova;
+  return one_way_anova(spread);
 }
 
 }  // namespace haptrial::analysis
