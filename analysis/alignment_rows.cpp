@@ -174,11 +174,10 @@ struct Search {
     }
   }
 
-  /// What the next two rows may read beside the cells of this one.
-  void close(double* values, std::size_t row, std::size_t first, std::size_t last) const {
-    const std::size_t farthest = band.last(std::min(row + 2, row_count() - 1));
+  /// What later rows may read before the first cell of this one. Nothing lies after the last: the
+  /// rows that the memory held before ended no later.
+  static void close(double* values, std::size_t first) {
     std::fill(values + first - kLead, values + first, kInfinity);
-    std::fill(values + last + 1, values + farthest + 1, kInfinity);
   }
 
   template <class Steps>
@@ -186,7 +185,7 @@ struct Search {
     for (std::size_t i = 0; i < row_count(); ++i, rows.next()) {
       const std::size_t first = band.first(i), last = band.last(i);
       fill_error_row(i, first, last);
-      close(rows.error, i, first, last);
+      close(rows.error, first);
       if (i > 0) {
         Steps::fill(rows, first, last, options.penalty, ways_of(i));
       } else if (options.open_begin) {
@@ -194,7 +193,7 @@ struct Search {
       } else {
         Steps::start(rows, last, options.penalty, ways_of(0));
       }
-      close(rows.cost, i, first, last);
+      close(rows.cost, first);
     }
   }
 
