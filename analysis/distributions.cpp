@@ -19,16 +19,25 @@ double t_upper_tail(double t, double df) {
   return t < 0.0 ? 1.0 - tail : tail;
 }
 
-// GSL's quantile has about seven digits: Newton's steps on the logarithm of the tail add the rest.
+// GSL's quantile has about seven digits, and fewer far out. Newton's steps add the rest: in the
+// logarithms of the tail and of t, where the curve bends one way only, they cannot go astray.
 double t_quantile(double probability, double df) {
   if (probability == 0.5) {
     return 0.0;
   }
   const double tail = std::min(probability, 1.0 - probability);
   double t = gsl_cdf_tdist_Qinv(tail, df);
-  for (int step = 0; step < 4; ++step) {
+  if (!(t > 0.0) || !std::isfinite(t)) {
+    t = 1.0;
+  }
+  for (int i = 0; i < 500; ++i) {
     const double found = t_upper_tail(t, df);
-    t += std::log(found / tail) * found / gsl_ran_tdist_pdf(t, df);
+    const double slope = t * gsl_ran_tdist_pdf(t, df) / found;
+    const double step = found > 0.0 ? std::clamp(std::log(found / tail) / slope, -1.0, 1.0) : -1.0;
+    t *= std::exp(step);
+    if (std::abs(step) < 1e-15) {
+      break;
+    }
   }
   return probability < 0.5 ? -t : t;
 }

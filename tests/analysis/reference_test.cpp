@@ -72,6 +72,19 @@ INSTANTIATE_TEST_SUITE_P(R, Reference, testing::ValuesIn(topics()), [](const aut
   return name;
 });
 
+TEST(ReferenceScripts, EachHaveATopic) {
+  std::vector<std::string> scripts, names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder())) {
+    if (entry.path().extension() == ".R" && entry.path().stem() != "reference") {
+      scripts.push_back(entry.path().stem());
+    }
+  }
+  for (const Topic& topic : topics()) {
+    names.push_back(topic.name);
+  }
+  EXPECT_THAT(scripts, testing::UnorderedElementsAreArray(names));
+}
+
 // The next power of ten above a difference.
 std::string bound(double difference) {
   const double decade = std::ceil(std::log10(std::max(difference, kFloor)) - 1e-9);
