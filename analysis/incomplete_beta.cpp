@@ -11,8 +11,11 @@ namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
-// a log(1 + u / a) - u, without the digits that cancel when u is small beside a.
-double deviance(double a, double u) { return a * gsl_sf_log_1plusx_mx(u / a); }
+// a log(ratio) - u, where ratio = 1 + u / a, without the digits that cancel when u is small beside a.
+double deviance(double a, double u, double ratio) {
+  constexpr double kSmall = 0.5;
+  return std::abs(u) < kSmall * a ? a * gsl_sf_log_1plusx_mx(u / a) : a * std::log(ratio) - u;
+}
 
 // I_x(a, b) / beta_power(a, b, x, y) * a, for x below about the mean of the distribution.
 double continued_fraction(double a, double b, double x) {
@@ -48,15 +51,16 @@ double beta_power(double a, double b, double x, double y) {
   }
   const double n = a + b;
   const double u = b * x - a * y;  // n x - a
-  const double ratio = gsl_sf_gammastar(n) / (gsl_sf_gammastar(a) * gsl_sf_gammastar(b));
-  return std::exp(deviance(a, u) + deviance(b, -u)) * std::sqrt(a / n * b / kTwoPi) * ratio;
+  const double exponent = deviance(a, u, x * n / a) + deviance(b, -u, y * n / b);
+  const double gammas = gsl_sf_gammastar(n) / (gsl_sf_gammastar(a) * gsl_sf_gammastar(b));
+  return std::exp(exponent) * std::sqrt(a / n * b / kTwoPi) * gammas;
 }
 
 double poisson_power(double k, double m) {
   if (k == 0.0) {
     return std::exp(-m);
   }
-  return std::exp(deviance(k, m - k)) / (std::sqrt(kTwoPi * k) * gsl_sf_gammastar(k));
+  return std::exp(deviance(k, m - k, m / k)) / (std::sqrt(kTwoPi * k) * gsl_sf_gammastar(k));
 }
 
 BetaTails beta_tails(double a, double b, double x, double y) {

@@ -56,7 +56,7 @@ struct PoissonBeta {
     double step = step_at(j);
     double term = weight * tail;
     double sum = term;
-    while (j > 0.0) {
+    while (j > 0.0 && weight > 0.0) {
       step = step < kLost ? step_at(j - 1.0) : step * (a + j) / (x * (a + b + j - 1.0));
       weight *= (j + shift) / m;
       j -= 1.0;
