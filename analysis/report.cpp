@@ -45,12 +45,14 @@ std::string opening(const StudyResult& study) {
   const auto& s = study.statistics;
   std::string html = "<h1>Recall of force patterns</h1>\n<p class=\"lead\">" +
                      escape_html(fmt::format(
-                         "{} of {} under {}. Each trial trained a force pattern and then asked for "
-                         "it; the recall error is 0 for a perfect recall and grows with the "
-                         "difference that remains after aligning the two curves in time.",
+                         "{} of {} under {}. {} recall error is 0 for a perfect recall and grows "
+                         "with the difference that remains after aligning the two curves in time.",
                          counted(study.scores.size(), "scored recall trial"),
                          counted(study.sessions.size(), "participant"),
-                         counted(s.conditions.size(), "training condition"))) +
+                         counted(s.conditions.size(), "training condition"),
+                         study.curves_from.empty()
+                             ? "Each trial trained a force pattern and then asked for it; the"
+                             : "The")) +
                      "</p>\n";
   if (study.simulated()) {
     html +=
@@ -68,6 +70,26 @@ std::string lines_that_matter(const StudyResult& study) {
   return html + "</ul>\n";
 }
 
+std::string session_list(const StudyResult& study) {
+  Rows rows;
+  for (const auto& session : study.sessions) {
+    rows.push_back({session.info.subject, session.file, session.info.device, session.info.start_utc,
+                    std::to_string(session.test_passes), std::to_string(session.scored)});
+  }
+  return html_table({"Subject", "File", "Device", "Start", "Test passes", "Scored"}, rows);
+}
+
+std::string curve_list(const StudyResult& study) {
+  Rows rows;
+  for (const auto& session : study.sessions) {
+    rows.push_back({session.info.subject, std::to_string(session.scored)});
+  }
+  return paragraph("The curves were not recorded by haptrial; " + study.curves_from +
+                   " says of which trial each is. Nothing is known here of devices, tracking and "
+                   "timing, nor of trials that the table leaves out.") +
+         html_table({"Subject", "Scored"}, rows);
+}
+
 std::string design(const StudyResult& study) {
   std::string html = heading("Design and exclusions");
   std::size_t blocks = 0;
@@ -79,12 +101,7 @@ std::string design(const StudyResult& study) {
       "Training conditions: {}. The scored trials lie in {} that repeat one trajectory and force "
       "pattern under one training condition.",
       joined(study.statistics.conditions), counted(blocks, "block")));
-  Rows rows;
-  for (const auto& session : study.sessions) {
-    rows.push_back({session.info.subject, session.file, session.info.device, session.info.start_utc,
-                    std::to_string(session.test_passes), std::to_string(session.scored)});
-  }
-  html += html_table({"Subject", "File", "Device", "Start", "Test passes", "Scored"}, rows);
+  html += study.curves_from.empty() ? session_list(study) : curve_list(study);
   for (const std::string& remark : study.remarks) {
     html += paragraph(remark);
   }
@@ -96,7 +113,7 @@ std::string design(const StudyResult& study) {
     ++reasons[e.reason];
   }
   html += paragraph("Without a score: " + counted(study.exclusions.size(), "test pass") + ".");
-  rows.clear();
+  Rows rows;
   for (const auto& [reason, count] : reasons) {
     rows.push_back({reason, std::to_string(count)});
   }
@@ -308,6 +325,9 @@ std::string versions(const StudyResult& study) {
     rows.push_back({name, value});
   }
   html += html_table({"Parameter of the score", "Value"}, rows);
+  if (!study.curves_from.empty()) {
+    return html;
+  }
   std::set<std::string> programs;
   std::map<std::string, std::string> definitions;  // text to name
   for (const auto& session : study.sessions) {
@@ -336,8 +356,11 @@ std::string html_report(const StudyResult& study, const std::vector<Drawing>& dr
       study.simulated() ? "SIMULATED: " : "", kReportStyle);
   html += opening(study) + lines_that_matter(study) + design(study) + recall(study, drawings) +
           analyses(study) + table_1(study.statistics) + learning(drawings) +
-          alignments(study, drawings) + stimuli(drawings) + tracking(study) + timing(study) +
-          versions(study);
+          alignments(study, drawings);
+  if (study.curves_from.empty()) {
+    html += stimuli(drawings) + tracking(study) + timing(study);
+  }
+  html += versions(study);
   return html + "</body>\n</html>\n";
 }
 

@@ -84,8 +84,9 @@ RecallPicture picture_of(const Origin& origin, const std::string& which,
                          const ScoreParameters& parameters) {
   const record::SessionReader reader(origin.session->file);
   const auto run = run_samples(reader, reader.passes().at(origin.pass->pass));
-  return recall_picture(which, origin.pass->score, *recall_curves(*run, reader.info().rate),
-                        parameters);
+  const auto curves = recall_curves(*run, reader.info().rate);
+  return recall_picture(which, origin.pass->score,
+                        score_recall_in_detail(curves->target, curves->applied, parameters));
 }
 
 std::vector<RecallPicture> pictures(const std::vector<Session>& sessions,
@@ -106,10 +107,6 @@ std::vector<RecallPicture> pictures(const std::vector<Session>& sessions,
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> parameter_rows(const ScoreParameters& p) {
-  return described(p);
-}
-
 std::vector<std::pair<std::string, std::size_t>> notable(const std::vector<TrialScore>& scores) {
   if (scores.empty()) {
     return {};
@@ -125,8 +122,7 @@ std::vector<std::pair<std::string, std::size_t>> notable(const std::vector<Trial
 }
 
 RecallPicture recall_picture(const std::string& which, const TrialScore& score,
-                             const RecallCurves& curves, const ScoreParameters& parameters) {
-  auto detail = score_recall_in_detail(curves.target, curves.applied, parameters);
+                             RecallDetail detail) {
   RecallPicture picture{which,
                         score,
                         detail.time.duration,
@@ -166,7 +162,7 @@ StudyResult analyze_study(const std::vector<fs::path>& session_files,
   study.tracking = summarize_tracking("all participants", tracking);
   study.recalls = pictures(sessions, study.scores, parameters);
   study.stimulus = sessions.front().recalls.stimulus;
-  study.parameters = parameter_rows(parameters);
+  study.parameters = described(parameters);
   return study;
 }
 

@@ -155,6 +155,17 @@ Json session(const SessionSummary& s) {
           {"scored", s.scored}};
 }
 
+void add_sessions(Json& root, const StudyResult& study) {
+  root["tracking"] = {{"overall", tracking(study.tracking)}, {"participants", Json::array()}};
+  root["timing"] = Json::array();
+  root["sessions"] = Json::array();
+  for (const auto& one : study.sessions) {
+    root["tracking"]["participants"].push_back(tracking(one.tracking));
+    root["timing"].push_back(timing(one));
+    root["sessions"].push_back(session(one));
+  }
+}
+
 }  // namespace
 
 std::string statistics_json(const StudyResult& study) {
@@ -169,13 +180,10 @@ std::string statistics_json(const StudyResult& study) {
   root["comparisons"] = comparisons(s);
   root["table_1"] = table_1(s);
   root["learning"] = learning(s);
-  root["tracking"] = {{"overall", tracking(study.tracking)}, {"participants", Json::array()}};
-  root["timing"] = Json::array();
-  root["sessions"] = Json::array();
-  for (const auto& one : study.sessions) {
-    root["tracking"]["participants"].push_back(tracking(one.tracking));
-    root["timing"].push_back(timing(one));
-    root["sessions"].push_back(session(one));
+  if (study.curves_from.empty()) {
+    add_sessions(root, study);
+  } else {
+    root["curves_from"] = study.curves_from;
   }
   root["exclusions"] = Json::array();
   for (const auto& e : study.exclusions) {

@@ -4,15 +4,12 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/session_recalls.h"
+#include "analysis/score.h"
 #include "analysis/study.h"
 
 namespace haptrial::analysis {
 
 // What a study of session files and one of curves from elsewhere have in common.
-
-/// Names and values of the parameters, as the report prints them.
-std::vector<std::pair<std::string, std::string>> parameter_rows(const ScoreParameters& parameters);
 
 /// The places of the best, the median (the lower of two) and the worst of the scores, with those
 /// words; of equal scores the first. None without scores.
@@ -20,6 +17,6 @@ std::vector<std::pair<std::string, std::size_t>> notable(const std::vector<Trial
 
 /// @param which  "best", "median" or "worst"
 RecallPicture recall_picture(const std::string& which, const TrialScore& score,
-                             const RecallCurves& curves, const ScoreParameters& parameters);
+                             RecallDetail detail);
 
 }  // namespace haptrial::analysis
