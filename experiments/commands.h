@@ -52,7 +52,18 @@ struct ReplayOptions {
 };
 int replay(const ReplayOptions& options);
 
-int analyze(const std::string& folder, std::optional<int> jobs);
+struct AnalyzeOptions {
+  std::string folder;  // of session files; else the ones below
+  std::string curves;  // folder of curves that something else recorded
+  std::string conditions;
+  std::string out;
+  std::string definition;  // for its [analysis]; default: as shipped
+  std::string time_column;
+  std::string target_column;
+  std::string applied_column;
+  std::optional<int> jobs;
+};
+int analyze(const AnalyzeOptions& options);
 
 /// Exactly one of bids, csv and curves names a new folder.
 struct ExportOptions {

@@ -88,15 +88,24 @@ class Commands {
     CLI::App* sub =
         subcommand(app_, "analyze", "Score and test the sessions of a folder; write the report",
                    "haptrial analyze out/force_training-001");
-    sub->add_option("DIR", path_, "Folder of session files (.h5)")->required();
-    sub->add_option("--jobs", jobs_, "Threads; one per processor by default");
-    sub->callback([this] { status_ = experiments::analyze(path_, jobs_); });
+    sub->add_option("DIR", analyze_.folder, "Folder of session files (.h5)");
+    sub->add_option("--curves", analyze_.curves,
+                    "In place of DIR: folder of curves that something else recorded (.csv)");
+    sub->add_option("--conditions", analyze_.conditions,
+                    "With --curves: table of their trials (.csv)");
+    sub->add_option("--out", analyze_.out, "With --curves: folder for the report");
+    sub->add_option("--definition", analyze_.definition,
+                    "With --curves: score as this definition says; as shipped by default");
+    sub->add_option("--time-column", analyze_.time_column, "With --curves (time)");
+    sub->add_option("--target-column", analyze_.target_column, "With --curves (target_force)");
+    sub->add_option("--applied-column", analyze_.applied_column, "With --curves (applied_force)");
+    sub->add_option("--jobs", analyze_.jobs, "Threads; one per processor by default");
+    sub->callback([this] { status_ = experiments::analyze(analyze_); });
   }
 
   void add_export() {
-    CLI::App* sub =
-        subcommand(app_, "export", "Write sessions in the forms of other programs",
-                   "haptrial export --bids data-set out/force_training-001");
+    CLI::App* sub = subcommand(app_, "export", "Write sessions in the forms of other programs",
+                               "haptrial export --bids data-set out/force_training-001");
     sub->add_option("FILE", export_.files, "Session files (.h5), or folders of them")->required();
     sub->add_option("--bids", export_.bids, "New folder for a BIDS data set");
     sub->add_option("--csv", export_.csv, "New folder for tidy tables (.csv)");
@@ -169,9 +178,9 @@ class Commands {
   experiments::ReplayOptions replay_;
   experiments::DeviceTestOptions device_test_;
   experiments::ExportOptions export_;
+  experiments::AnalyzeOptions analyze_;
   std::string path_;
   std::string recover_out_;
-  std::optional<int> jobs_;
 };
 
 /// A mistyped subcommand by its name, rather than as one that is missing.
