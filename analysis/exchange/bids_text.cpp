@@ -213,7 +213,8 @@ std::string readme(std::span<const Session> sessions) {
       "the tick (a row of n/a), so an onset in the events is exact; the column time is what the\n"
       "clock read. World frame: origin at the centre of the device's workspace, x to the\n"
       "participant's right, y up, z towards the participant. The learnt force points down and is\n"
-      "given as a magnitude. Left out on purpose: consent and free notes about participants.\n",
+      "given as a magnitude. Reals have 32 bits, as in the session files. Left out on purpose: "
+      "consent and free notes about participants.\n",
       experiment_name(sessions.front()));
   return text;
 }

@@ -12,7 +12,7 @@ namespace haptrial::exchange {
 struct BidsOptions {
   std::string name{};                  // of the data set; empty: the experiment's
   std::vector<std::string> authors{};  // as the data set is to name them
-  std::string program_version;         // of the exporting program
+  std::string program_version{};       // of the exporting program
   int jobs{1};
 };
 

@@ -30,8 +30,7 @@ std::string curves_text(const analysis::RecallCurves& curves) {
   std::string text = "target_force,applied_force\n";
   RowText row(text, Delimited::kCsv);
   for (std::size_t i = 0; i < curves.target.force.size(); ++i) {
-    row.add(static_cast<float>(curves.target.force[i]));  // as the file has it
-    row.add(static_cast<float>(curves.applied.force[i])).end();
+    row.add(curves.target.force[i]).add(curves.applied.force[i]).end();
   }
   return text;
 }
