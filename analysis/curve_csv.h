@@ -11,9 +11,9 @@ namespace haptrial::analysis {
 
 /// Which columns of a table make a curve.
 struct CurveColumns {
-  std::string time;            // empty: "time", or without names the first of two
-  std::string value;           // empty: the only column beside the time
-  std::optional<double> rate;  // > 0, in place of a column of times [Hz]
+  std::string time{};            // empty: "time", or without names the first of two
+  std::string value{};           // empty: the only column beside the time
+  std::optional<double> rate{};  // > 0, in place of a column of times [Hz]
 };
 
 /// A curve from a table, with its own samples.
