@@ -208,12 +208,11 @@ std::string readme(std::span<const Session> sessions) {
       "                   columns, units and rate stand in the .json beside it\n"
       "stimuli/           the ideal movement and target force of each block\n"
       "code/              the definition of the experiment\n\n"
-      "Row k of a recording is tick k after the one of StartTime, also where the session file "
-      "lacks\n"
-      "the tick (a row of n/a), so an onset in the events is exact; the column time is what the\n"
-      "clock read. World frame: origin at the centre of the device's workspace, x to the\n"
+      "Row k of a recording is tick k after the one of StartTime, also where the session file\n"
+      "lacks the tick (a row of n/a), so an onset in the events is exact; the column time is what\n"
+      "the clock read. World frame: origin at the centre of the device's workspace, x to the\n"
       "participant's right, y up, z towards the participant. The learnt force points down and is\n"
-      "given as a magnitude. Reals have 32 bits, as in the session files. Left out on purpose: "
+      "given as a magnitude. Reals have 32 bits, as in the session files. Left out on purpose:\n"
       "consent and free notes about participants.\n",
       experiment_name(sessions.front()));
   return text;
