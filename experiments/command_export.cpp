@@ -58,10 +58,10 @@ void export_as_bids(const ExportOptions& options, const std::vector<fs::path>& f
   const auto done = exchange::export_bids(files, options.bids,
                                           {options.name, options.authors, program_version(), jobs},
                                           [&](std::uint64_t samples) { watch(samples); });
-  fmt::print(
-      "{} of {}, {} samples{}\ndata set: {}\n", done.sessions,
-      done.subjects == 1 ? "one subject" : fmt::format("{} subjects", done.subjects), done.samples,
-      done.missing > 0 ? fmt::format(", {} ticks are missing", done.missing) : "", options.bids);
+  const std::string missing =
+      done.missing > 0 ? fmt::format(", {} ticks are missing", done.missing) : "";
+  fmt::print("{} sessions of {} subjects, {} samples{}\ndata set: {}\n", done.sessions,
+             done.subjects, done.samples, missing, options.bids);
 }
 
 void export_as_csv(const ExportOptions& options, const std::vector<fs::path>& files, int jobs) {
