@@ -295,7 +295,7 @@ std::string recording_sidecar(const Session& session, const WrittenSamples& samp
       fmt::format("haptrial {} ({})", info.program_version, info.program_commit);
   json["Simulated"] = info.simulated;
   json["Clock"] = info.clock;
-  json["Seed"] = info.seed;
+  json["Seed"] = std::to_string(info.seed);  // 64 bits are more than a double holds
   json["DeviceMaxForce"] = info.device_max_force;
   json["DeviceWorkspaceRadius"] = info.device_workspace_radius;
   json["MissingTicks"] = samples.missing;

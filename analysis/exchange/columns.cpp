@@ -42,7 +42,10 @@ ColumnDoc doc_of(const record::TableSchema& schema, std::string_view column) {
   for (const auto& each : schema.columns) {
     if (column == each.name) {
       const std::string unit = each.unit;
-      return {each.name, unit == "1" ? "" : unit, each.description};
+      const bool wide = column == "stimulus_seed";
+      return {each.name, unit == "1" ? "" : unit,
+              std::string(each.description) +
+                  (wide ? "; 64 bits: to be read as text where numbers are doubles" : "")};
     }
   }
   throw std::invalid_argument(std::string("no column ") + std::string(column));

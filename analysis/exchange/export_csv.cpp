@@ -34,7 +34,7 @@ Docs session_docs() {
           {"device", "", "name"},
           {"clock", "", "real or simulated"},
           {"rate", "Hz", "of the servo loop, so of the samples"},
-          {"seed", "", "of the session"},
+          {"seed", "", "of the session; 64 bits: to be read as text where numbers are doubles"},
           {"start_utc", "", "ISO 8601"},
           {"definition", "", "file of the experiment's definition"},
           {"program_version", "", "what recorded the session"},
