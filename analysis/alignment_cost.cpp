@@ -1,7 +1,5 @@
 // What a path costs, summed in double precision.
 
-#include <cmath>
-
 #include "analysis/alignment.h"
 #include "analysis/alignment_error.h"
 
@@ -33,10 +31,8 @@ double sum_along(const CurveView& a, const CurveView& b, const AlignmentOptions&
 
 double path_cost(const CurveView& target, const CurveView& applied, const AlignmentOptions& options,
                  std::span<const PathPoint> path) {
-  const auto sum = [&](auto power) { return sum_along(target, applied, options, path, power); };
-  if (options.power == 1.0) return sum([](double x) { return powered<1, DoubleOps>(x); });
-  if (options.power == 2.0) return sum([](double x) { return powered<2, DoubleOps>(x); });
-  return sum([p = options.power](double x) { return std::pow(std::abs(x), p); });
+  return with_power(options.power,
+                    [&](auto power) { return sum_along(target, applied, options, path, power); });
 }
 
 double path_weight(StepPattern pattern, std::span<const PathPoint> path) {

@@ -1,7 +1,6 @@
 #include "analysis/alignment_rows.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "analysis/alignment_error.h"
@@ -162,16 +161,9 @@ struct Search {
   std::uint8_t* ways_of(std::size_t row) const { return ways + row * way_stride - band.first(row); }
 
   void fill_error_row(std::size_t row, std::size_t first, std::size_t last) const {
-    const auto fill = [&](auto power) {
+    with_power(options.power, [&](auto power) {
       fill_errors(target, row, applied, first, last, options, power, rows.error);
-    };
-    if (options.power == 1.0) {
-      fill([](double x) { return powered<1, DoubleOps>(x); });
-    } else if (options.power == 2.0) {
-      fill([](double x) { return powered<2, DoubleOps>(x); });
-    } else {
-      fill([p = options.power](double x) { return std::pow(std::abs(x), p); });
-    }
+    });
   }
 
   /// What later rows may read before the first cell of this one. Nothing lies after the last: the

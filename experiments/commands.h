@@ -78,6 +78,27 @@ struct ExportOptions {
 };
 int export_sessions(const ExportOptions& options);
 
+/// Two curves of any origin (.csv).
+struct AlignOptions {
+  std::string target;         // "-": standard input
+  std::string applied;        // likewise, but not both
+  std::string time;           // name of a column in both; see analysis::CurveColumns
+  std::string value;          // likewise
+  std::string applied_value;  // where the applied curve's name is another
+  std::optional<double> rate;
+  int samples{1000};
+  double filter{0.1};
+  double power{1.0};
+  double slope_weight{0.5};
+  std::optional<double> penalty;  // default: as the pattern is known
+  std::string pattern{"published"};
+  std::optional<double> window;
+  bool open_begin{false};
+  bool open_end{false};
+  std::string out;  // new folder; empty: nothing is written
+};
+int align(const AlignOptions& options);
+
 int info(const std::string& file);
 /// @param out  new session file; empty: beside the damaged one
 /// @returns 0 when something was recovered, else 1.

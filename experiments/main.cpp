@@ -31,6 +31,7 @@ class Commands {
     add_run();
     add_analyze();
     add_export();
+    add_align();
     add_info();
     add_recover();
     add_replay();
@@ -118,6 +119,34 @@ class Commands {
     sub->callback([this] { status_ = experiments::export_sessions(export_); });
   }
 
+  void add_align() {
+    CLI::App* sub =
+        subcommand(app_, "align", "Align two curves of any origin (.csv) and score the second",
+                   "haptrial align target.csv applied.csv --value force --out aligned");
+    sub->add_option("TARGET", align_.target,
+                    "Table of the target curve (.csv); - reads standard "
+                    "input")
+        ->required();
+    sub->add_option("APPLIED", align_.applied, "Table of the applied curve")->required();
+    sub->add_option("--time", align_.time, "Column of times in s, by name or number (time)");
+    sub->add_option("--rate", align_.rate, "Rows a second, in place of a column of times");
+    sub->add_option("--value", align_.value, "Column of values (the only other one)");
+    sub->add_option("--applied-value", align_.applied_value, "The same of APPLIED (as --value)");
+    sub->add_option("--samples", align_.samples, "Of the common time base (1000)");
+    sub->add_option("--filter", align_.filter, "Width of the box filter on APPLIED in s (0.1)");
+    sub->add_option("--power", align_.power, "Of the differences, 1 or more (1)");
+    sub->add_option("--slope-weight", align_.slope_weight, "Of differences of slopes (0.5)");
+    sub->add_option("--penalty", align_.penalty,
+                    "Of a step that is not straight (0.5 with the published pattern, else 0)");
+    sub->add_option("--pattern", align_.pattern,
+                    "published, symmetric1, symmetric2, asymmetric or symmetricP1 (published)");
+    sub->add_option("--window", align_.window, "Pair no samples farther apart than so many s");
+    sub->add_flag("--open-begin", align_.open_begin, "APPLIED may begin before the match does");
+    sub->add_flag("--open-end", align_.open_end, "APPLIED may go on after the match");
+    sub->add_option("--out", align_.out, "New folder for the aligned curves, path and picture");
+    sub->callback([this] { status_ = experiments::align(align_); });
+  }
+
   void add_info() {
     CLI::App* sub =
         subcommand(app_, "info", "Say what a session file holds and whether it is complete",
@@ -178,6 +207,7 @@ class Commands {
   experiments::ReplayOptions replay_;
   experiments::DeviceTestOptions device_test_;
   experiments::ExportOptions export_;
+  experiments::AlignOptions align_;
   experiments::AnalyzeOptions analyze_;
   std::string path_;
   std::string recover_out_;
