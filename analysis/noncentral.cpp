@@ -47,17 +47,31 @@ struct PoissonBeta {
   // I_x(a + j, b) - I_x(a + j + 1, b)
   double step_at(double j) const { return beta_power(a + j, b, x, y) / (a + j); }
 
+  // The highest j up to `top` whose step is large enough to go on from; 0 if none is.
+  double reached(double top) const {
+    constexpr double kLost = 1e-290;  // below, a recurrence would have lost its digits
+    if (step_at(top) >= kLost) {
+      return top;
+    }
+    double low = std::clamp(std::ceil((x * (a + b) - a - 1.0) / y), 0.0, top);  // largest step
+    double high = top;
+    while (high - low > 1.0) {
+      const double middle = std::floor(0.5 * (low + high));
+      (step_at(middle) >= kLost ? low : high) = middle;
+    }
+    return low;
+  }
+
   // Downwards: I_x(a + j - 1, b) adds a step to I_x(a + j, b).
   double lower() const {
-    constexpr double kLost = 1e-290;  // below, the recurrence has lost its digits
-    double j = highest();
+    double j = reached(highest());
     double weight = poisson_power(j + shift, m);
     double tail = beta_tails(a + j, b, x, y).lower;
     double step = step_at(j);
     double term = weight * tail;
     double sum = term;
     while (j > 0.0 && weight > 0.0) {
-      step = step < kLost ? step_at(j - 1.0) : step * (a + j) / (x * (a + b + j - 1.0));
+      step *= (a + j) / (x * (a + b + j - 1.0));
       weight *= (j + shift) / m;
       j -= 1.0;
       tail += step;

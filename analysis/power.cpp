@@ -1,5 +1,6 @@
 #include "analysis/power.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -58,7 +59,8 @@ double t_curve(const TPlan& plan, double n, double delta) {
   const double noncentrality = delta * std::sqrt(plan.design == TDesign::kTwoSample ? 0.5 * n : n);
   const double critical = t_critical(plan.one_tailed ? plan.alpha : 0.5 * plan.alpha, df);
   const double power = noncentral_t(critical, df, noncentrality).upper;
-  return plan.one_tailed ? power : power + noncentral_t(-critical, df, noncentrality).lower;
+  return plan.one_tailed ? power
+                         : std::min(1.0, power + noncentral_t(-critical, df, noncentrality).lower);
 }
 
 double anova_curve(const AnovaPlan& plan, double n, double f) {

@@ -172,6 +172,9 @@ Answers::Case& Answers::Case::is(const std::string& quantity, double ours) {
 }
 
 Answers::Case& Answers::Case::are(const std::string& quantity, const std::vector<double>& ours) {
+  if (ours.size() == 1) {
+    return is(quantity, ours.front());
+  }
   for (std::size_t i = 0; i < ours.size(); ++i) {
     is(quantity + "." + std::to_string(i + 1), ours[i]);
   }

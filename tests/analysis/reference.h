@@ -56,7 +56,7 @@ class Answers {
    public:
     Case(Answers& answers, std::string procedure, std::string name);
     Case& is(const std::string& quantity, double ours);
-    /// The quantities NAME.1, NAME.2, ...
+    /// The quantities NAME.1, NAME.2, ...; NAME where there is one.
     Case& are(const std::string& quantity, const std::vector<double>& ours);
 
    private:
