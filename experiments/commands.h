@@ -104,6 +104,22 @@ int info(const std::string& file);
 /// @returns 0 when something was recovered, else 1.
 int recover(const std::string& file, const std::string& out);
 int validate(const std::string& definition);
+
+/// Two of an effect (delta and sd, or f), n and power; the third is computed.
+struct PowerOptions {
+  std::string test;                   // "t", "anova"
+  std::optional<std::string> design;  // of t: "two-sample" by default, "paired", "one-sample"
+  std::optional<double> delta;        // difference of the means
+  double sd{1.0};                     // in the same unit; of paired values that of the differences
+  std::optional<double> f;            // of anova: Cohen's
+  std::optional<int> groups;          // of anova
+  std::optional<long> n;              // participants in each group
+  std::optional<double> power;
+  double alpha{0.05};
+  bool one_tailed{false};
+};
+int power(const PowerOptions& options);
+
 int devices();
 
 struct DeviceTestOptions {

@@ -36,6 +36,7 @@ class Commands {
     add_recover();
     add_replay();
     add_validate();
+    add_power();
     add_devices();
     add_device_test();
   }
@@ -184,6 +185,24 @@ class Commands {
     sub->callback([this] { status_ = experiments::validate(path_); });
   }
 
+  void add_power() {
+    CLI::App* sub = subcommand(app_, "power", "Say how many participants a study needs",
+                               "haptrial power t --design paired --delta 20 --sd 35 --power 0.8");
+    sub->add_option("TEST", power_.test, "t or anova (one way)")->required();
+    sub->add_option("--design", power_.design, "Of t: two-sample, paired or one-sample "
+                                               "(two-sample)");
+    sub->add_option("--delta", power_.delta, "Of t: the difference to find");
+    sub->add_option("--sd", power_.sd,
+                    "In the unit of --delta; with paired that of the differences (1)");
+    sub->add_option("--f", power_.f, "Of anova: deviation of the groups' means by that within");
+    sub->add_option("--groups", power_.groups, "Of anova: how many");
+    sub->add_option("--n", power_.n, "Participants in each group");
+    sub->add_option("--power", power_.power, "Chance of finding the effect");
+    sub->add_option("--alpha", power_.alpha, "Chance of finding one that is none (0.05)");
+    sub->add_flag("--one-tailed", power_.one_tailed, "Of t: the sign of the difference is planned");
+    sub->callback([this] { status_ = experiments::power(power_); });
+  }
+
   void add_devices() {
     CLI::App* sub = subcommand(app_, "devices", "List the devices", "haptrial devices");
     sub->callback([this] { status_ = experiments::devices(); });
@@ -205,6 +224,7 @@ class Commands {
   experiments::DryRunOptions dry_run_;
   experiments::RunOptions run_;
   experiments::ReplayOptions replay_;
+  experiments::PowerOptions power_;
   experiments::DeviceTestOptions device_test_;
   experiments::ExportOptions export_;
   experiments::AlignOptions align_;
