@@ -6,7 +6,9 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
+#include "analysis/scores_csv.h"
 #include "tests/analysis/exchange/small_session.h"
 #include "tests/support/temporary_folder.h"
 
@@ -101,6 +103,19 @@ TEST(ExportCsvTest, SamplesAreLeftOutUnlessAskedFor) {
   EXPECT_THAT(read(folder / "out/dictionary.json"), HasSubstr("\"simulated\": true"));
   EXPECT_THAT(read(folder / "out/trials.csv"),
               HasSubstr("\nP01,1,1,1,haptic,test,1,1,1,0,completed,9007199254740994,"));
+}
+
+TEST(ExportCsvTest, TheDictionaryKnowsTheColumnsOfTheScores) {
+  const test::TemporaryFolder folder;
+  const std::vector<fs::path> files{folder / "1.h5"};
+  write_session(files[0], {});
+  export_csv(files, folder / "out", {}, ignore);
+  const auto json = nlohmann::ordered_json::parse(read(folder / "out/dictionary.json"));
+  std::string heading;
+  for (const auto& [name, column] : json["files"]["scores.csv"]["columns"].items()) {
+    heading += (heading.empty() ? "" : ",") + name;
+  }
+  EXPECT_EQ(heading + "\n", analysis::scores_csv({}));
 }
 
 }  // namespace
