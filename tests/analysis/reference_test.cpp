@@ -133,9 +133,9 @@ std::vector<std::string> table_of_nist() {
   for (const auto& cap : nist::caps()) {
     const auto d = nist::digits(cap.file);
     lines.push_back(fmt::format("| {} | {} | {} | {} | {} | {} | {} |",
-                                std::string(cap.file).substr(0, 6), digits(d.f), digits(cap.f),
-                                digits(d.between), digits(cap.between), digits(d.within),
-                                digits(cap.within)));
+                                std::filesystem::path(cap.file).stem().string(), digits(d.f),
+                                digits(cap.f), digits(d.between), digits(cap.between),
+                                digits(d.within), digits(cap.within)));
   }
   return lines;
 }
