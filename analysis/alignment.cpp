@@ -163,7 +163,8 @@ struct Aligner::Workspace {
 };
 
 Aligner::Aligner(InstructionSet set)
-    : workspace_(new Workspace{kernel::kernels_for(set), {}, {}, {}, {}, {}, {}, {}}) {}
+    : workspace_(new Workspace{
+          kernel::kernels_for(set), {}, {}, {}, {}, {}, {}, RowSearch(kernel::kernels_for(set))}) {}
 Aligner::~Aligner() = default;
 Aligner::Aligner(Aligner&&) noexcept = default;
 Aligner& Aligner::operator=(Aligner&&) noexcept = default;

@@ -29,6 +29,11 @@ struct DoubleOps {
   static Number absolute(Number x) { return std::abs(x); }
 };
 
+/// Whether a few operations give |x|^p.
+inline bool has_short_power(double p) {
+  return p == 1.0 || p == 1.5 || p == 2.0 || p == 3.0 || p == 4.0;
+}
+
 /// use(f) with f(x) = |x|^p in double precision: by a few operations for the powers that people
 /// take, by pow() for the rest.
 template <class Use>

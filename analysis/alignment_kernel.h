@@ -42,6 +42,9 @@ struct Kernels {
   std::size_t batch_vectors;   // of a strip of a batch, each of one row
   void (*sweep_single[2][2])(const Task&);
   void (*sweep_batch[2][2])(const Task&);
+
+  /// |x|^p in place, to 3e-13 of it where |x|^p is below 2^200 and p at most 100.
+  void (*raise)(double* values, std::size_t count, double power);
 };
 
 /// The last two exist where the compiler targets x86-64; kernels_for() knows what the machine runs.

@@ -23,6 +23,7 @@ struct Rows {
   double* above_2;
   double* error;
   double* error_above;
+  double* spare;
 
   void next() {
     std::swap(above_2, above);
@@ -149,6 +150,7 @@ struct Search {
   const CurveView& target;
   const CurveView& applied;
   const AlignmentOptions& options;
+  void (*raise)(double* values, std::size_t count, double power);
   Band band;
   Rows rows;
   std::uint8_t* ways;
@@ -161,9 +163,27 @@ struct Search {
   std::uint8_t* ways_of(std::size_t row) const { return ways + row * way_stride - band.first(row); }
 
   void fill_error_row(std::size_t row, std::size_t first, std::size_t last) const {
+    if (!has_short_power(options.power)) {
+      raise_error_row(row, first, last);
+      return;
+    }
     with_power(options.power, [&](auto power) {
       fill_errors(target, row, applied, first, last, options, power, rows.error);
     });
+  }
+
+  void raise_error_row(std::size_t row, std::size_t first, std::size_t last) const {
+    const auto differences = [&](std::span<const double> CurveView::*values, double* to) {
+      const double value = (target.*values)[row];
+      const double* others = (applied.*values).data();
+      for (std::size_t j = first; j <= last; ++j) to[j] = value - others[j];
+      raise(to + first, last - first + 1, options.power);
+    };
+    differences(&CurveView::force, rows.error);
+    differences(&CurveView::slope, rows.spare);
+    for (std::size_t j = first; j <= last; ++j) {
+      rows.error[j] = options.force_weight * rows.error[j] + options.slope_weight * rows.spare[j];
+    }
   }
 
   /// What later rows may read before the first cell of this one. Nothing lies after the last: the
@@ -259,7 +279,7 @@ std::size_t Band::widest() const {
 bool RowSearch::find(const CurveView& target, const CurveView& applied,
                      const AlignmentOptions& options, std::vector<PathPoint>& path) {
   const std::size_t count = target.force.size(), stride = applied.force.size() + kLead;
-  constexpr std::size_t kRows = 5;
+  constexpr std::size_t kRows = 6;
   double* values = values_.at_least(kRows * stride);
   std::fill_n(values, kRows * stride, kInfinity);
   const auto row = [&](std::size_t k) { return values + k * stride + kLead; };
@@ -267,8 +287,9 @@ bool RowSearch::find(const CurveView& target, const CurveView& applied,
   Search search{target,
                 applied,
                 options,
+                kernels_.raise,
                 band,
-                {row(0), row(1), row(2), row(3), row(4)},
+                {row(0), row(1), row(2), row(3), row(4), row(5)},
                 ways_.at_least(count * band.widest()),
                 band.widest()};
   switch (options.pattern) {

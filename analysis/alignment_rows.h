@@ -5,6 +5,7 @@
 
 #include "analysis/alignment.h"
 #include "analysis/alignment_buffer.h"
+#include "analysis/alignment_kernel.h"
 
 namespace haptrial::analysis {
 
@@ -13,6 +14,8 @@ namespace haptrial::analysis {
 /// patterns without a step along the row alone are free of chains. One object per thread.
 class RowSearch {
  public:
+  explicit RowSearch(const kernel::Kernels& kernels) : kernels_(kernels) {}
+
   /// Preconditions: options without a problem, and curves that Aligner takes.
   /// @param path  gets the cheapest path.
   /// @returns false where the options leave none.
@@ -20,6 +23,7 @@ class RowSearch {
             std::vector<PathPoint>& path);
 
  private:
+  const kernel::Kernels& kernels_;
   WorkBuffer<double> values_;
   WorkBuffer<std::uint8_t> ways_;
 };

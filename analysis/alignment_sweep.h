@@ -8,6 +8,7 @@
 
 #include "analysis/alignment_error.h"
 #include "analysis/alignment_kernel.h"
+#include "analysis/alignment_raise.h"
 
 namespace haptrial::analysis::kernel {
 namespace {
@@ -102,7 +103,8 @@ Kernels kernels_of() {
           {{sweep<Lanes, One, 1, 1, single>, sweep<Lanes, One, 1, 2, single>},
            {sweep<Lanes, One, 2, 1, single>, sweep<Lanes, One, 2, 2, single>}},
           {{sweep<Lanes, Batch, 1, 1, batch>, sweep<Lanes, Batch, 1, 2, batch>},
-           {sweep<Lanes, Batch, 2, 1, batch>, sweep<Lanes, Batch, 2, 2, batch>}}};
+           {sweep<Lanes, Batch, 2, 1, batch>, sweep<Lanes, Batch, 2, 2, batch>}},
+          raise};
 }
 
 }  // namespace

@@ -94,6 +94,19 @@ TEST_P(AlignmentSetTest, EveryInstructionSetGivesTheSameBits) {
   }
 }
 
+TEST_P(AlignmentSetTest, EveryInstructionSetGivesTheSameBitsByRowsToo) {
+  const Cases cases("rows", 6, 150, 160, 10);
+  for (double power : {1.5, 1.7}) {
+    const AlignmentOptions options{.power = power, .pattern = StepPattern::kAsymmetric};
+    for (const AlignmentPair& pair : cases.pairs) {
+      Alignment here, baseline;
+      Aligner(GetParam()).align(pair.target, pair.applied, options, here);
+      Aligner(InstructionSet::kBaseline).align(pair.target, pair.applied, options, baseline);
+      expect_same(here, baseline, std::to_string(power));
+    }
+  }
+}
+
 TEST_P(AlignmentSetTest, NothingIsAllocatedAfterTheFirstUse) {
   const Cases cases("allocation", 35, 150, 150, 0);
   const AlignmentOptions parameters{};
