@@ -47,11 +47,14 @@ TEST_F(ExchangeTest, TheShippedStudyComesBackFromItsCurves) {
                                         path("study") + " && haptrial analyze " + path("study"));
   ASSERT_EQ(out.status, 0) << out.errors;
   EXPECT_THAT(out.output, HasSubstr("72 scored trials of 4 subjects"));
+  const std::string taken = "haptrial analyze --curves " + path("curves") + " --conditions " +
+                            path("curves/conditions.csv") + " --out ";
   const CommandResult in =
-      run_command("haptrial analyze --curves " + path("curves") + " --conditions " +
-                  path("curves/conditions.csv") + " --out " + path("report") + " --definition '" +
+      run_command(taken + path("report") + " && " + taken + path("again") + " --definition '" +
                   test::shipped_definition().string() + "'");
   ASSERT_EQ(in.status, 0) << in.errors;
+  EXPECT_EQ(test::read_text(folder_ / "again/scores.csv"),
+            test::read_text(folder_ / "study/scores.csv"));
   EXPECT_EQ(test::read_text(folder_ / "report/scores.csv"),
             test::read_text(folder_ / "study/scores.csv"));
   const auto ours = nlohmann::json::parse(test::read_text(folder_ / "report/statistics.json"));
