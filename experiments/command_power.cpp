@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string>
 #include <tuple>
 
 #include "analysis/power.h"
@@ -14,8 +15,10 @@ constexpr int kMostGroups = 1000;
 
 void check_inside(const char* option, double value, double low, double high) {
   if (!(value > low && value < high)) {
-    throw InputError(
-        fmt::format("{} is {}; allowed: a number between {} and {}", option, value, low, high));
+    const std::string allowed = std::isinf(high)
+                                    ? fmt::format("a number above {}", low)
+                                    : fmt::format("a number between {} and {}", low, high);
+    throw InputError(fmt::format("{} is {}; allowed: {}", option, value, allowed));
   }
 }
 

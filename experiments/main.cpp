@@ -189,8 +189,7 @@ class Commands {
     CLI::App* sub = subcommand(app_, "power", "Say how many participants a study needs",
                                "haptrial power t --design paired --delta 20 --sd 35 --power 0.8");
     sub->add_option("TEST", power_.test, "t or anova (one way)")->required();
-    sub->add_option("--design", power_.design, "Of t: two-sample, paired or one-sample "
-                                               "(two-sample)");
+    sub->add_option("--design", power_.design, "Of t: two-sample (default), paired, one-sample");
     sub->add_option("--delta", power_.delta, "Of t: the difference to find");
     sub->add_option("--sd", power_.sd,
                     "In the unit of --delta; with paired that of the differences (1)");

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/experiments/command.h"
 
 namespace haptrial {
@@ -38,6 +40,12 @@ TEST(PowerCommand, SaysHowManyParticipants) {
               HasSubstr("participants  53 in each of 3 groups, 159 in all\n"));
 }
 
+TEST(PowerCommand, HelpShowsAnExampleThatWorks) {
+  const std::string example = "haptrial power t --design paired --delta 20 --sd 35 --power 0.8";
+  EXPECT_THAT(run_command("haptrial power --help").output, HasSubstr("Example:\n  " + example));
+  EXPECT_EQ(run_command(example).status, 0);
+}
+
 TEST(PowerCommand, ComputesWhicheverIsMissing) {
   EXPECT_THAT(printed("t --delta 5 --sd 10 --n 64"), HasSubstr("power         0.8015\n"));
   EXPECT_THAT(printed("t --sd 10 --n 64 --power 0.8015"), HasSubstr("difference    5.00"));
@@ -58,7 +66,7 @@ TEST(PowerCommand, RefusesWithASentence) {
   expect_refused("anova --groups 3 --delta 0.2 --n 9", "--delta is given with anova");
   expect_refused("anova --f 0.2 --n 9", "--groups is missing");
   expect_refused("anova --groups 1 --f 0.2 --n 9", "--groups is 1; allowed: a whole number from 2");
-  expect_refused("anova --groups 3 --f -1 --n 9", "--f is -1; allowed");
+  expect_refused("anova --groups 3 --f -1 --n 9", "--f is -1; allowed: a number above 0");
   expect_refused("t --delta 0 --power 0.8", "--delta is 0; allowed: a number other than 0");
   expect_refused("t --delta nan --power 0.8", "--delta is nan");
   expect_refused("t --delta 1 --sd 0 --n 9", "--sd is 0; allowed");
