@@ -115,7 +115,7 @@ TEST_F(ExportBidsTest, TheOfficialValidatorFindsNoErrors) {
   }
   const int had = shell("/usr/bin/python3" + quoted(kHere / "bids_validator.py") +
                         quoted(fs::path(HAPTRIAL_BINARY_DIR)));
-  if (had == 3) {
+  if (had == 3 || had == 127) {
     GTEST_SKIP() << "the validator cannot be had here: " << output_;
   }
   ASSERT_EQ(had, 0) << output_;
