@@ -148,7 +148,7 @@ TEST_F(ImportCurvesTest, TheReportClaimsNothingThatIsNotThere) {
   put("2.csv", curves(0.3));
   const auto study = import("subject,trial,condition,file\nA,1,haptic,1.csv\nA,2,visual,2.csv\n");
   EXPECT_EQ(study.curves_from, "table.csv");
-  const std::string report = html_report(study, {});
+  const std::string report = to_html(study_report(study, {}));
   EXPECT_THAT(report, HasSubstr("The curves were not recorded by haptrial; table.csv says"));
   for (const char* absent : {"Tracking of the trajectory", "Timing of the servo loop", "Device",
                              "A stimulus", "Recorded by haptrial", "trained a force pattern"}) {
