@@ -15,9 +15,13 @@ bool all_finite(std::span<const double> values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
-// z0: how far the estimate lies off the middle of the (sorted) replicates. A tie counts half.
+// z0: how far the estimate lies off the middle of the (sorted) replicates. A tie, also one that
+// only the order of a sum parts, counts half.
 Defined<double> bias_correction(double estimate, const std::vector<double>& sorted) {
-  const auto [first, last] = std::equal_range(sorted.begin(), sorted.end(), estimate);
+  const double rounding =
+      1e-13 * std::max({std::abs(estimate), std::abs(sorted.front()), std::abs(sorted.back())});
+  const auto first = std::lower_bound(sorted.begin(), sorted.end(), estimate - rounding);
+  const auto last = std::upper_bound(sorted.begin(), sorted.end(), estimate + rounding);
   const auto below = static_cast<double>(first - sorted.begin());
   const auto ties = static_cast<double>(last - first);
   const double share = (below + 0.5 * ties) / static_cast<double>(sorted.size());

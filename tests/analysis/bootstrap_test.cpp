@@ -115,6 +115,14 @@ TEST(Bca, IsThePercentileIntervalWithoutBiasAndAcceleration) {
   EXPECT_NEAR(interval->high, 950.0, 1e-9);
 }
 
+TEST(Bca, TakesForATieWhatOnlyRoundingParts) {
+  Values replicates(998);
+  std::iota(replicates.begin(), replicates.end(), 1.0);
+  const double tie = 0.1 + 0.2 + 499.2;  // 499.5 but for the last digits
+  for (int i = 0; i < 400; ++i) replicates.push_back(499.5);
+  EXPECT_NEAR(bca_interval(tie, replicates, {{1, 2, 3}}, 0.9)->bias, 0.0, 1e-15);
+}
+
 TEST(Bca, SaysWhyItIsNotDefined) {
   const Values one{1};
   EXPECT_THAT(bootstrap(Values{}, mean, draws(99)).because(), HasSubstr("no values"));
