@@ -16,7 +16,7 @@ struct HtmlBlock {
     return "<p>" + escape_html(p.text) + "</p>\n";
   }
   std::string operator()(const Document::Alarm& a) const {
-    return "<div class=\"banner\" role=\"alert\">" + escape_html(a.text) + "</div>\n";
+    return "<div class=\"banner\" role=\"note\">" + escape_html(a.text) + "</div>\n";
   }
   std::string operator()(const Document::Points& p) const {
     std::string html = "<ul class=\"lines\">\n";

@@ -50,12 +50,12 @@ std::size_t count(const std::string& text, const std::string& what) {
 
 TEST(Report, SaysThatParticipantsAreSimulatedExactlyWhenTheyAre) {
   const auto simulated = report(example_study(true));
-  EXPECT_THAT(simulated, HasSubstr("class=\"banner\">SIMULATED PARTICIPANTS"));
+  EXPECT_THAT(simulated, HasSubstr("class=\"banner\" role=\"note\">SIMULATED PARTICIPANTS"));
   EXPECT_THAT(simulated, HasSubstr("<title>SIMULATED"));
   EXPECT_THAT(report(example_study(false)), Not(HasSubstr("SIMULATED")));
   auto mixed = example_study(false);
   mixed.sessions.back().info.simulated = true;
-  EXPECT_THAT(report(mixed), HasSubstr("class=\"banner\""));
+  EXPECT_THAT(report(mixed), HasSubstr("class=\"banner\" "));
 }
 
 TEST(Report, HoldsEveryPartOfTheAnalysis) {
