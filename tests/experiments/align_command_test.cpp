@@ -229,6 +229,12 @@ TEST_F(AlignCommandTest, BadArgumentsGetASentence) {
   expect_bad(both + "--out target.csv", "target.csv");
 }
 
+TEST_F(AlignCommandTest, HelpShowsAnExample) {
+  const CommandResult help = run("--help");
+  EXPECT_EQ(help.status, 0);
+  EXPECT_THAT(help.output, HasSubstr("Example:\n  haptrial align "));
+}
+
 TEST_F(AlignCommandTest, BashCompletesItsOptions) {
   const CommandResult options = run_command(
       "source '" HAPTRIAL_SOURCE_DIR
