@@ -177,6 +177,9 @@ Defined<PermutationTest> permutation_test(std::span<const double> a, std::span<c
   const double rounding = n * std::numeric_limits<double>::epsilon() * largest(values);
   // Deviations from the common mean: the sum over one sample decides on the difference.
   const auto all = moments(values);
+  if (!all) {
+    return Undefined{all.because()};
+  }
   for (auto& value : values) {
     value = (value - all->origin) - all->offset;
   }

@@ -1,8 +1,6 @@
 // No statistic is ever NaN or infinite: whatever the data, there is a number or a sentence.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,53 +11,18 @@
 #include "analysis/shapiro_wilk.h"
 #include "analysis/t_test.h"
 #include "analysis/wilcoxon.h"
+#include "tests/analysis/degenerate_samples.h"
 
 namespace haptrial::analysis {
 namespace {
 
-using Values = std::vector<double>;
+using degenerate::expect_numbers;
+using degenerate::expect_p;
+using degenerate::has_value;
+using degenerate::kSamples;
+using degenerate::name;
+using degenerate::Values;
 using Table = std::vector<Values>;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// Samples that break formulas: nothing, one value, no variance, too large, too small, not numbers.
-const std::vector<Values> kSamples{{},
-                                   {3.0},
-                                   {3.0, 3.0},
-                                   {3.0, 3.0, 3.0, 3.0},
-                                   {1.0, 2.0},
-                                   {1.0, 2.0, 3.0},
-                                   {0.1, 0.2, 0.3, 0.4},
-                                   {1.0, 1.0, 2.0, 2.0},
-                                   {0.1 + 0.2, 0.3, 0.3},
-                                   {kNan, 1.0, 2.0},
-                                   {kInfinity, 1.0, 2.0},
-                                   {1e308, -1e308, 1e308},
-                                   {1e200, -3e200, 2e200},
-                                   {1e-200, 2e-200, 5e-200},
-                                   {5e-324, 0.0, 1e-323},
-                                   {1e12 + 0.125, 1e12, 1e12 + 0.5, 1e12},
-                                   {-0.0, 0.0, 0.0},
-                                   {1.0, 1.0, 1.0, 1e15}};
-
-void expect_numbers(const std::string& what, const Values& values) {
-  for (const double value : values) {
-    EXPECT_TRUE(std::isfinite(value)) << what;
-  }
-}
-
-void expect_p(const std::string& what, double p) {
-  EXPECT_TRUE(p >= 0.0 && p <= 1.0) << what << ": p = " << p;
-}
-
-template <class T>
-bool has_value(const std::string& what, const Defined<T>& result) {
-  if (!result) {
-    EXPECT_FALSE(result.because().empty()) << what;
-  }
-  return static_cast<bool>(result);
-}
 
 void check(const std::string& what, const Defined<TTest>& t) {
   if (has_value(what, t)) {
@@ -110,10 +73,6 @@ void check(const std::string& what, const Defined<WithinEffect>& e) {
       expect_p(what, *e->p_huynh_feldt);
     }
   }
-}
-
-std::string name(std::size_t i, std::size_t j) {
-  return "samples " + std::to_string(i) + " and " + std::to_string(j);
 }
 
 TEST(DegenerateData, GiveNumbersOrASentenceInTestsOfTwoSamples) {

@@ -131,6 +131,7 @@ TEST(PermutationTest, SaysWhyItIsNotDefined) {
               HasSubstr("no values"));
   EXPECT_THAT(permutation_test(Values{1, nan}, Values{1}, Tail::kLess, {}).because(),
               HasSubstr("finite"));
+  EXPECT_FALSE(permutation_test(Values{1e308}, Values{-1e308}, Tail::kLess, {}));
   EXPECT_THAT(sign_flip_test(Values{}, Values{}, Tail::kLess, {}).because(),
               HasSubstr("no values"));
   EXPECT_THROW(sign_flip_test(Values{1}, Values{1, 2}, Tail::kLess, {}), std::invalid_argument);
