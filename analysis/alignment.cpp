@@ -6,26 +6,26 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "analysis/alignment_buffer.h"
 #include "analysis/alignment_error.h"
 #include "analysis/alignment_kernel.h"
+#include "analysis/alignment_rows.h"
+#include "analysis/parallel.h"
 
 namespace haptrial::analysis {
 namespace {
 
 using kernel::Directions;
 
-void require_parameter(bool holds, const char* sentence) {
-  if (!holds) throw std::invalid_argument(std::string("alignment: ") + sentence);
+void require_parameter(bool holds, std::string_view sentence) {
+  if (!holds) throw std::invalid_argument("alignment: " + std::string(sentence));
 }
 
-void check(const AlignmentParameters& p) {
-  const auto bounded = [](double x) { return x >= 0.0 && x <= Aligner::kMaxError; };
-  require_parameter(bounded(p.force_weight), "force_weight must be finite and at least 0");
-  require_parameter(bounded(p.slope_weight), "slope_weight must be finite and at least 0");
-  require_parameter(bounded(p.penalty), "penalty must be finite and at least 0");
-  require_parameter(p.power == 1 || p.power == 2, "power must be 1 or 2");
+void check(const AlignmentOptions& options) {
+  const std::string problem = problem_of(options);
+  require_parameter(problem.empty(), problem);
 }
 
 void check(const CurveView& curve) {
@@ -35,15 +35,18 @@ void check(const CurveView& curve) {
                     "a curve's force and slope must have the same length");
 }
 
+constexpr const char* kBadValue = "a value is not finite or too large";
+
 /// What a curve's values are multiplied by before they meet in single precision.
 struct Scales {
   double force, slope;
   double limit;  // largest |scaled value|
 
-  explicit Scales(const AlignmentParameters& p)
-      : force(scale_of_weight(p.force_weight, p.power)),
-        slope(scale_of_weight(p.slope_weight, p.power)),
-        limit(p.power == 1 ? Aligner::kMaxError : std::sqrt(Aligner::kMaxError)) {}
+  /// Precondition: is_vectorized(o).
+  explicit Scales(const AlignmentOptions& o)
+      : force(scale_of_weight(o.force_weight, static_cast<int>(o.power))),
+        slope(scale_of_weight(o.slope_weight, static_cast<int>(o.power))),
+        limit(o.power == 1.0 ? Aligner::kMaxError : std::sqrt(Aligner::kMaxError)) {}
 };
 
 /// *place(i) = scale * from[i]
@@ -55,25 +58,15 @@ void write_scaled(std::span<const double> from, double scale, double limit, Plac
     good &= std::abs(value) <= limit;  // false for a NaN
     *place(i) = static_cast<float>(value);
   }
-  require_parameter(good, "a value is not finite or too large");
+  require_parameter(good, kBadValue);
 }
 
-template <int power>
-double path_cost_of(const CurveView& a, const CurveView& b, const AlignmentParameters& p,
-                    std::span<const PathPoint> path) {
-  const auto error = [&](PathPoint at) {
-    const double force = a.force[at.target] - b.force[at.applied];
-    const double slope = a.slope[at.target] - b.slope[at.applied];
-    return p.force_weight * powered<power, DoubleOps>(force) +
-           p.slope_weight * powered<power, DoubleOps>(slope);
-  };
-  double cost = path.empty() ? 0.0 : error(path[0]);
-  for (std::size_t k = 1; k < path.size(); ++k) {
-    const bool diagonal =
-        path[k].target != path[k - 1].target && path[k].applied != path[k - 1].applied;
-    cost += error(path[k]) + (diagonal ? 0.0 : p.penalty);
-  }
-  return cost;
+/// The same for values that are not scaled.
+void check_values(std::span<const double> values, double weight, double power) {
+  const double limit = std::pow(Aligner::kMaxError / weight, 1.0 / power);
+  bool good = true;
+  for (const double value : values) good &= std::abs(value) <= limit && std::isfinite(value);
+  require_parameter(good, kBadValue);
 }
 
 /// Walks one path backwards; knows nothing of where a cell's bits lie.
@@ -122,6 +115,18 @@ struct Layout {
   std::size_t first_column() const { return strip * stride(); }
 };
 
+/// e(0,0), by the operations of the sweep.
+float first_error(const kernel::Task& task, const Layout& layout, std::size_t pair, bool square) {
+  const float force = task.target_force[layout.target(0, pair)] - task.applied_force[pair];
+  const float slope = task.target_slope[layout.target(0, pair)] - task.applied_slope[pair];
+  return square ? force * force + slope * slope : std::abs(force) + std::abs(slope);
+}
+
+void finish(const AlignmentPair& pair, const AlignmentOptions& options, Alignment& result) {
+  result.cost = path_cost(pair.target, pair.applied, options, result.path);
+  result.weight = path_weight(options.pattern, result.path);
+}
+
 /// A sweep takes the time of `lanes` pairs of the largest size whatever it holds, and is slower
 /// than pairs one by one when the direction bits leave the cache.
 bool pays_side_by_side(std::span<const AlignmentPair> pairs, std::size_t lanes) {
@@ -141,6 +146,7 @@ struct Aligner::Workspace {
   const kernel::Kernels& kernels;
   WorkBuffer<float> target_force, target_slope, applied_force, applied_slope, boundary;
   WorkBuffer<Directions> directions;
+  RowSearch rows;
 
   Layout layout_of(std::span<const AlignmentPair> pairs, bool side_by_side) const;
   float* place_target(WorkBuffer<float>& buffer, const Layout& layout,
@@ -150,13 +156,15 @@ struct Aligner::Workspace {
                        std::span<const AlignmentPair> pairs,
                        std::span<const double> CurveView::*values, double scale, double limit);
   void align(std::span<const AlignmentPair> pairs, bool side_by_side,
-             const AlignmentParameters& parameters, std::span<Alignment> results);
+             const AlignmentOptions& options, std::span<Alignment> results);
+  void align_by_rows(const AlignmentPair& pair, const AlignmentOptions& options, Alignment& result);
   void walk(const Layout& layout, std::span<const AlignmentPair> pairs,
             std::span<Alignment> results);
 };
 
 Aligner::Aligner(InstructionSet set)
-    : workspace_(new Workspace{kernel::kernels_for(set), {}, {}, {}, {}, {}, {}}) {}
+    : workspace_(new Workspace{
+          kernel::kernels_for(set), {}, {}, {}, {}, {}, {}, RowSearch(kernel::kernels_for(set))}) {}
 Aligner::~Aligner() = default;
 Aligner::Aligner(Aligner&&) noexcept = default;
 Aligner& Aligner::operator=(Aligner&&) noexcept = default;
@@ -206,28 +214,45 @@ float* Aligner::Workspace::place_applied(WorkBuffer<float>& buffer, const Layout
 }
 
 void Aligner::Workspace::align(std::span<const AlignmentPair> pairs, bool side_by_side,
-                               const AlignmentParameters& parameters,
-                               std::span<Alignment> results) {
+                               const AlignmentOptions& options, std::span<Alignment> results) {
   const Layout layout = layout_of(pairs, side_by_side);
-  const Scales scales(parameters);
+  const Scales scales(options);
   const std::size_t stride = layout.stride();
   float* above = boundary.at_least(layout.padded());
   std::fill_n(above, layout.padded(), std::numeric_limits<float>::infinity());
   above += layout.first_column();
   std::fill_n(above - stride, stride, 0.0f);  // a path starts at (0,0) for nothing
 
-  const auto& sweeps = side_by_side ? kernels.sweep_batch : kernels.sweep_single;
-  sweeps[parameters.power - 1](
-      {place_target(target_force, layout, pairs, &CurveView::force, scales.force, scales.limit),
-       place_target(target_slope, layout, pairs, &CurveView::slope, scales.slope, scales.limit),
-       place_applied(applied_force, layout, pairs, &CurveView::force, scales.force, scales.limit),
-       place_applied(applied_slope, layout, pairs, &CurveView::slope, scales.slope, scales.limit),
-       above, directions.at_least(layout.strips * layout.steps() * layout.vectors()), layout.strips,
-       layout.columns, static_cast<float>(parameters.penalty)});
-  walk(layout, pairs, results);
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    results[k].cost = path_cost(pairs[k].target, pairs[k].applied, parameters, results[k].path);
+  const kernel::Task task{
+      place_target(target_force, layout, pairs, &CurveView::force, scales.force, scales.limit),
+      place_target(target_slope, layout, pairs, &CurveView::slope, scales.slope, scales.limit),
+      place_applied(applied_force, layout, pairs, &CurveView::force, scales.force, scales.limit),
+      place_applied(applied_slope, layout, pairs, &CurveView::slope, scales.slope, scales.limit),
+      above,
+      directions.at_least(layout.strips * layout.steps() * layout.vectors()),
+      layout.strips,
+      layout.columns,
+      static_cast<float>(options.penalty)};
+  const bool square = options.power == 2.0;
+  const bool twice = doubles_straight(options.pattern);
+  for (std::size_t k = 0; twice && k < pairs.size(); ++k) {
+    above[k - stride] = -first_error(task, layout, k, square);  // (0,0) counts once all the same
   }
+  const auto& sweeps = side_by_side ? kernels.sweep_batch : kernels.sweep_single;
+  sweeps[twice][square](task);
+  walk(layout, pairs, results);
+  for (std::size_t k = 0; k < pairs.size(); ++k) finish(pairs[k], options, results[k]);
+}
+
+void Aligner::Workspace::align_by_rows(const AlignmentPair& pair, const AlignmentOptions& options,
+                                       Alignment& result) {
+  for (const CurveView& curve : {pair.target, pair.applied}) {
+    check_values(curve.force, options.force_weight, options.power);
+    check_values(curve.slope, options.slope_weight, options.power);
+  }
+  require_parameter(rows.find(pair.target, pair.applied, options, result.path),
+                    "the pattern leaves no path between curves of these lengths");
+  finish(pair, options, result);
 }
 
 /// All pairs walk together, so that their cache misses overlap.
@@ -257,54 +282,63 @@ void Aligner::Workspace::walk(const Layout& layout, std::span<const AlignmentPai
 }
 
 void Aligner::align(const CurveView& target, const CurveView& applied,
-                    const AlignmentParameters& parameters, Alignment& result) {
-  check(parameters);
+                    const AlignmentOptions& options, Alignment& result) {
+  check(options);
   check(target);
   check(applied);
   const AlignmentPair pair{target, applied};
-  workspace_->align({&pair, 1}, false, parameters, {&result, 1});
+  if (is_vectorized(options)) {
+    workspace_->align({&pair, 1}, false, options, {&result, 1});
+  } else {
+    workspace_->align_by_rows(pair, options, result);
+  }
 }
 
-void Aligner::align_batch(std::span<const AlignmentPair> pairs,
-                          const AlignmentParameters& parameters, std::span<Alignment> results) {
-  check(parameters);
+void Aligner::align_batch(std::span<const AlignmentPair> pairs, const AlignmentOptions& options,
+                          std::span<Alignment> results) {
+  check(options);
   require_parameter(pairs.size() == results.size(), "a batch needs one result for each pair");
   for (const AlignmentPair& pair : pairs) {
     check(pair.target);
     check(pair.applied);
   }
+  if (!is_vectorized(options)) {
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      workspace_->align_by_rows(pairs[k], options, results[k]);
+    }
+    return;
+  }
   for (std::size_t first = 0; first < pairs.size(); first += lanes()) {
     const std::size_t count = std::min(lanes(), pairs.size() - first);
     const auto group = pairs.subspan(first, count);
     if (pays_side_by_side(group, lanes())) {
-      workspace_->align(group, true, parameters, results.subspan(first, count));
+      workspace_->align(group, true, options, results.subspan(first, count));
       continue;
     }
     for (std::size_t k = 0; k < count; ++k) {
-      workspace_->align(group.subspan(k, 1), false, parameters, results.subspan(first + k, 1));
+      workspace_->align(group.subspan(k, 1), false, options, results.subspan(first + k, 1));
     }
   }
 }
 
 Alignment align(const CurveView& target, const CurveView& applied,
-                const AlignmentParameters& parameters) {
+                const AlignmentOptions& options) {
   Alignment result;
-  Aligner().align(target, applied, parameters, result);
+  Aligner().align(target, applied, options, result);
   return result;
 }
 
 std::vector<Alignment> align_batch(std::span<const AlignmentPair> pairs,
-                                   const AlignmentParameters& parameters) {
+                                   const AlignmentOptions& options, int jobs) {
   std::vector<Alignment> results(pairs.size());
-  Aligner().align_batch(pairs, parameters, results);
+  const std::size_t group = Aligner().lanes();
+  in_groups(pairs.size(), group, jobs, [&] {
+    return [&, aligner = Aligner()](std::size_t first, std::size_t count) mutable {
+      aligner.align_batch(pairs.subspan(first, count), options,
+                          std::span(results).subspan(first, count));
+    };
+  });
   return results;
-}
-
-double path_cost(const CurveView& target, const CurveView& applied,
-                 const AlignmentParameters& parameters, std::span<const PathPoint> path) {
-  check(parameters);
-  return parameters.power == 1 ? path_cost_of<1>(target, applied, parameters, path)
-                               : path_cost_of<2>(target, applied, parameters, path);
 }
 
 }  // namespace haptrial::analysis

@@ -1,27 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "analysis/alignment_isa.h"
+#include "analysis/alignment_options.h"
 
 namespace haptrial::analysis {
-
-/// The cost of pairing point i of the target with point j of the applied curve, and of stretching
-/// time:
-///
-///     e(i,j) = w_f |F_i - G_j|^p + w_s |F'_i - G'_j|^p
-///     D(i,j) = e(i,j) + min( D(i-1,j-1), min(D(i-1,j), D(i,j-1)) + penalty ),   D(0,0) = e(0,0)
-///
-/// Source: Morris 2006, §4.3; the source leaves p open (docs/algorithms/alignment.md).
-struct AlignmentParameters {
-  double force_weight{1.0};  // w_f >= 0 [1/N^p]
-  double slope_weight{0.5};  // w_s >= 0 [(s/N)^p]
-  double penalty{0.5};       // >= 0, for each step that moves along one curve only [1]
-  int power{1};              // p, 1 or 2
-};
 
 /// A force curve and its slope on a common time base. Views only: the caller owns the samples.
 struct CurveView {
@@ -41,17 +29,21 @@ struct PathPoint {
 };
 
 struct Alignment {
-  double cost{0.0};             // sum of e along the path, and of the penalties [1]
-  std::vector<PathPoint> path;  // from (0,0) to (N-1,M-1), each step (1,1), (1,0) or (0,1)
+  double cost{0.0};             // sum of weighted e along the path, and of the penalties [1]
+  double weight{0.0};           // sum of the weights of e; path.size() in the published form
+  std::vector<PathPoint> path;  // from (0,0) to (N-1,M-1) unless an end is open
 };
 
-/// Pairs two curves at minimum cost, the whole matrix searched, and keeps its workspace: after the
-/// largest sizes have been seen once, nothing is allocated but a result that has to grow.
+/// Pairs two curves at minimum cost, every path searched that the options allow, and keeps its
+/// workspace: after the largest sizes have been seen once, nothing is allocated but a result that
+/// has to grow.
 ///
-/// Where several steps cost the same, (1,1) is taken before (1,0) and (1,0) before (0,1), as seen
-/// from the end of the path. The path is searched in single precision; its cost is then summed
-/// along it in double precision. One pair alone, a batch of any size and every instruction set give
-/// the same path and the same cost bit for bit. One object per thread.
+/// Where several steps cost the same, (1,1) is taken before (1,0) and (1,0) before the last, as
+/// seen from the end of the path; of equal open ends the latest. The published form, and others
+/// where is_vectorized(), is searched in single precision in vector lanes, the rest in double
+/// precision; the cost is then summed along the path in double precision. One pair alone, a batch
+/// of any size and every instruction set give the same path and the same cost bit for bit. One
+/// object per thread.
 class Aligner {
  public:
   /// @throws std::invalid_argument when this machine cannot run `set`.
@@ -62,14 +54,15 @@ class Aligner {
 
   /// @throws std::invalid_argument for an empty curve or one of more than kMaxSamples, a force and
   ///   a slope of different lengths, a value that is not finite or above kMaxError after weighting,
-  ///   or a parameter out of bounds.
-  void align(const CurveView& target, const CurveView& applied,
-             const AlignmentParameters& parameters, Alignment& result);
+  ///   options that problem_of() names, or a pattern that leaves no path between curves of these
+  ///   lengths.
+  void align(const CurveView& target, const CurveView& applied, const AlignmentOptions& options,
+             Alignment& result);
 
   /// The same for many pairs, side by side in the lanes of the vectors. Sizes may differ; the time
   /// is least when neighbours in the list have the same size.
   /// @param results  as many as pairs.
-  void align_batch(std::span<const AlignmentPair> pairs, const AlignmentParameters& parameters,
+  void align_batch(std::span<const AlignmentPair> pairs, const AlignmentOptions& options,
                    std::span<Alignment> results);
 
   /// Pairs that one sweep of align_batch() takes.
@@ -84,14 +77,15 @@ class Aligner {
 };
 
 /// One call; see Aligner for the errors. Threads: any.
-Alignment align(const CurveView& target, const CurveView& applied,
-                const AlignmentParameters& parameters);
+Alignment align(const CurveView& target, const CurveView& applied, const AlignmentOptions& options);
+/// @param jobs  threads >= 1; the results do not depend on it.
 std::vector<Alignment> align_batch(std::span<const AlignmentPair> pairs,
-                                   const AlignmentParameters& parameters);
+                                   const AlignmentOptions& options, int jobs = 1);
 
-/// The cost of a given path in double precision, as Alignment::cost is computed.
-/// Precondition: the path lies inside the curves.
-double path_cost(const CurveView& target, const CurveView& applied,
-                 const AlignmentParameters& parameters, std::span<const PathPoint> path);
+/// The cost of a given path in double precision and the weights in it, as Alignment has them.
+/// Preconditions: options without a problem; the path lies inside the curves.
+double path_cost(const CurveView& target, const CurveView& applied, const AlignmentOptions& options,
+                 std::span<const PathPoint> path);
+double path_weight(StepPattern pattern, std::span<const PathPoint> path);
 
 }  // namespace haptrial::analysis

@@ -29,4 +29,21 @@ struct DoubleOps {
   static Number absolute(Number x) { return std::abs(x); }
 };
 
+/// Whether a few operations give |x|^p.
+inline bool has_short_power(double p) {
+  return p == 1.0 || p == 1.5 || p == 2.0 || p == 3.0 || p == 4.0;
+}
+
+/// use(f) with f(x) = |x|^p in double precision: by a few operations for the powers that people
+/// take, by pow() for the rest.
+template <class Use>
+auto with_power(double p, Use use) {
+  if (p == 1.0) return use([](double x) { return powered<1, DoubleOps>(x); });
+  if (p == 2.0) return use([](double x) { return powered<2, DoubleOps>(x); });
+  if (p == 1.5) return use([](double x) { return std::abs(x) * std::sqrt(std::abs(x)); });
+  if (p == 3.0) return use([](double x) { return std::abs(x) * (x * x); });
+  if (p == 4.0) return use([](double x) { return (x * x) * (x * x); });
+  return use([p](double x) { return std::pow(std::abs(x), p); });
+}
+
 }  // namespace haptrial::analysis

@@ -27,20 +27,24 @@ struct Task {
   const float* target_slope;   // likewise
   const float* applied_force;  // (columns x stride); infinite before them, finite after
   const float* applied_slope;  // likewise
-  float* boundary;             // (columns x stride); D above row 0: 0 at column -1, else infinite
+  float* boundary;             // (columns x stride); D above row 0, infinite but at column -1
   Directions* directions;      // (strips x (columns + rows of a strip - 1) x vectors)
   std::size_t strips;
   std::size_t columns;
   float penalty;
 };
 
-/// Powers of two throughout.
+/// Powers of two throughout. Sweeps by the weight of a straight step's error, 1 or 2, then by p, 1
+/// or 2.
 struct Kernels {
-  std::size_t lanes;                     // of one vector
-  std::size_t single_vectors;            // of a strip of one pair, each of `lanes` rows
-  std::size_t batch_vectors;             // of a strip of a batch, each of one row
-  void (*sweep_single[2])(const Task&);  // for p = 1 and p = 2
-  void (*sweep_batch[2])(const Task&);
+  std::size_t lanes;           // of one vector
+  std::size_t single_vectors;  // of a strip of one pair, each of `lanes` rows
+  std::size_t batch_vectors;   // of a strip of a batch, each of one row
+  void (*sweep_single[2][2])(const Task&);
+  void (*sweep_batch[2][2])(const Task&);
+
+  /// |x|^p in place, to 3e-13 of it where |x|^p is below 2^200 and p at most 100.
+  void (*raise)(double* values, std::size_t count, double power);
 };
 
 /// The last two exist where the compiler targets x86-64; kernels_for() knows what the machine runs.

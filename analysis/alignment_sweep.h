@@ -8,18 +8,21 @@
 
 #include "analysis/alignment_error.h"
 #include "analysis/alignment_kernel.h"
+#include "analysis/alignment_raise.h"
 
 namespace haptrial::analysis::kernel {
 namespace {
 
 /// The recurrence, for `lanes` independent cells. Ties go to `diagonal`, then to `up`.
-template <class Lanes, int power>
+/// @tparam straight  weight of the error of a step from the diagonal
+template <class Lanes, int straight, int power>
 [[gnu::always_inline]] inline typename Lanes::Number relax(
     typename Lanes::Number diagonal, typename Lanes::Number up, typename Lanes::Number left,
     typename Lanes::Number force_difference, typename Lanes::Number slope_difference,
     typename Lanes::Number penalty, Directions& directions) {
   const auto error =
       powered<power, Lanes>(force_difference) + powered<power, Lanes>(slope_difference);
+  if constexpr (straight == 2) diagonal = diagonal + error;
   const auto aside = Lanes::smaller(left, up) + penalty;
   directions.aside = Lanes::less(aside, diagonal);
   directions.left = Lanes::less(left, up);
@@ -50,7 +53,7 @@ struct PairPerLane {
 
 /// In each step of a strip its row r meets column step - r, so that no cell of a step needs another
 /// of the same step. D moves down from vector to vector; memory sees only the last row of a strip.
-template <class Lanes, class Layout, int power, std::size_t vectors>
+template <class Lanes, class Layout, int straight, int power, std::size_t vectors>
 void sweep(const Task& task) {
   using Number = typename Lanes::Number;
   constexpr std::ptrdiff_t kRows = vectors * Layout::kRowsOfVector;
@@ -77,7 +80,7 @@ void sweep(const Task& task) {
         const std::ptrdiff_t last_row = std::ptrdiff_t(v + 1) * Layout::kRowsOfVector - 1;
         const std::ptrdiff_t at = (step - last_row) * kStride;
         const Number up = Layout::up(left[v], from);
-        const Number cost = relax<Lanes, power>(
+        const Number cost = relax<Lanes, straight, power>(
             diagonal[v], up, left[v], target_force[v] - Lanes::load(applied_force + at),
             target_slope[v] - Lanes::load(applied_slope + at), penalty, *out++);
         from = left[v];
@@ -92,11 +95,16 @@ void sweep(const Task& task) {
 
 template <class Lanes, std::size_t single, std::size_t batch>
 Kernels kernels_of() {
+  using One = OnePair<Lanes>;
+  using Batch = PairPerLane<Lanes>;
   return {Lanes::kCount,
           single,
           batch,
-          {sweep<Lanes, OnePair<Lanes>, 1, single>, sweep<Lanes, OnePair<Lanes>, 2, single>},
-          {sweep<Lanes, PairPerLane<Lanes>, 1, batch>, sweep<Lanes, PairPerLane<Lanes>, 2, batch>}};
+          {{sweep<Lanes, One, 1, 1, single>, sweep<Lanes, One, 1, 2, single>},
+           {sweep<Lanes, One, 2, 1, single>, sweep<Lanes, One, 2, 2, single>}},
+          {{sweep<Lanes, Batch, 1, 1, batch>, sweep<Lanes, Batch, 1, 2, batch>},
+           {sweep<Lanes, Batch, 2, 1, batch>, sweep<Lanes, Batch, 2, 2, batch>}},
+          raise};
 }
 
 }  // namespace

@@ -11,6 +11,9 @@ struct Undefined {
   std::string because;
 };
 
+/// Where squares of the values overflow or vanish.
+inline const char* const kBeyondDouble = "the values are too large or too small to compute with";
+
 /// A statistic, or the reason why it does not exist: degenerate data never become a NaN in a table.
 template <class T>
 class Defined {

@@ -55,6 +55,9 @@ Defined<Moments> moments(std::span<const double> values) {
   const double rest = residual.value();
   result.squares = std::max(0.0, squares.value() - rest * rest / n);
   result.offset += rest / n;
+  if (!std::isfinite(result.squares) || !std::isfinite(result.mean())) {
+    return Undefined{kBeyondDouble};
+  }
   return result;
 }
 

@@ -1,13 +1,12 @@
 #include "analysis/score.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <stdexcept>
 #include <string>
-#include <thread>
+#include <utility>
 
+#include "analysis/parallel.h"
 #include "core/base/error.h"
 
 namespace haptrial::analysis {
@@ -23,7 +22,7 @@ struct Prepared {
 };
 
 /// The alignment takes no larger values (Aligner::kMaxError), and no device makes them.
-void check_size(std::span<const double> values, int power, double weight, const char* name) {
+void check_size(std::span<const double> values, double power, double weight, const char* name) {
   double largest = 0.0;
   for (const double value : values) largest = std::max(largest, std::abs(value));
   if (!(weight * std::pow(largest, power) <= Aligner::kMaxError)) {
@@ -32,7 +31,8 @@ void check_size(std::span<const double> values, int power, double weight, const 
   }
 }
 
-Prepared prepare(const ForceCurve& target, const ForceCurve& applied, const ScoreParameters& p) {
+Prepared prepare(const SampledCurve& target, const SampledCurve& applied,
+                 const ScoreParameters& p) {
   Prepared ready;
   ready.time.duration =
       std::max(duration_of(target, "the target force"), duration_of(applied, "the applied force"));
@@ -50,6 +50,17 @@ Prepared prepare(const ForceCurve& target, const ForceCurve& applied, const Scor
   return ready;
 }
 
+/// With the window in samples of the recall's time base.
+AlignmentOptions options_on(const TimeBase& time, const ScoreParameters& p) {
+  AlignmentOptions options = p.alignment;
+  if (p.window) {
+    const double most = static_cast<double>(time.samples);
+    const double rounded_up = *p.window / time.step() * (1.0 + 1e-9);  // 0.3 s are 3 steps of 0.1 s
+    options.window = static_cast<std::size_t>(std::min(rounded_up, most));
+  }
+  return options;
+}
+
 double rms_difference(std::span<const double> a, std::span<const double> b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
@@ -59,7 +70,7 @@ double rms_difference(std::span<const double> a, std::span<const double> b) {
 RecallScore score_of(const Prepared& ready, const Alignment& alignment,
                      std::span<const double> warped, const ScoreParameters& p) {
   RecallScore score;
-  score.alignment_cost = alignment.cost / static_cast<double>(alignment.path.size());
+  score.alignment_cost = alignment.cost / alignment.weight;
   score.rms_force = rms_difference(ready.target, warped);
   // The slopes are warped, not the warped curve's taken: that one is a staircase.
   score.rms_slope = rms_difference(ready.target_slope, warp(ready.applied_slope, alignment.path));
@@ -75,24 +86,19 @@ class GroupScorer {
  public:
   explicit GroupScorer(const ScoreParameters& parameters) : parameters_(parameters) {}
 
-  std::size_t group_size() const { return aligner_.lanes(); }
-
   void score(std::span<const RecallPair> pairs, std::size_t first, std::span<RecallScore> results) {
     ready_.clear();
-    views_.clear();
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       if (!pairs[k].target || !pairs[k].applied) {
         throw std::invalid_argument("score: a recall needs two curves");
       }
       try {
-        ready_.push_back(prepare(*pairs[k].target, *pairs[k].applied, parameters_));
+        ready_.push_back(prepare(view(*pairs[k].target), view(*pairs[k].applied), parameters_));
       } catch (const InputError& error) {
         throw InputError("recall " + std::to_string(first + k) + ": " + error.what());
       }
     }
-    for (const Prepared& ready : ready_) views_.push_back(ready.views());
-    alignments_.resize(pairs.size());
-    aligner_.align_batch(views_, parameters_.alignment, alignments_);
+    align();
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const auto warped = warp(ready_[k].applied, alignments_[k].path);
       results[k] = score_of(ready_[k], alignments_[k], warped, parameters_);
@@ -100,6 +106,21 @@ class GroupScorer {
   }
 
  private:
+  /// Windows differ with the durations, so each pair then goes alone.
+  void align() {
+    views_.clear();
+    for (const Prepared& ready : ready_) views_.push_back(ready.views());
+    alignments_.resize(ready_.size());
+    if (!parameters_.window) {
+      aligner_.align_batch(views_, parameters_.alignment, alignments_);
+      return;
+    }
+    for (std::size_t k = 0; k < ready_.size(); ++k) {
+      aligner_.align(views_[k].target, views_[k].applied, options_on(ready_[k].time, parameters_),
+                     alignments_[k]);
+    }
+  }
+
   const ScoreParameters& parameters_;
   Aligner aligner_;
   std::vector<Prepared> ready_;
@@ -123,12 +144,12 @@ std::vector<double> warp(std::span<const double> applied, std::span<const PathPo
   return warped;
 }
 
-RecallDetail score_recall_in_detail(const ForceCurve& target, const ForceCurve& applied,
-                                    const ScoreParameters& parameters) {
+RecallDetail align_curves(const SampledCurve& target, const SampledCurve& applied,
+                          const ScoreParameters& parameters) {
   check(parameters);
   Prepared ready = prepare(target, applied, parameters);
   const AlignmentPair views = ready.views();
-  Alignment alignment = align(views.target, views.applied, parameters.alignment);
+  Alignment alignment = align(views.target, views.applied, options_on(ready.time, parameters));
   std::vector<double> warped = warp(ready.applied, alignment.path);
   const RecallScore score = score_of(ready, alignment, warped, parameters);
   return {score,
@@ -139,6 +160,11 @@ RecallDetail score_recall_in_detail(const ForceCurve& target, const ForceCurve& 
           std::move(warped)};
 }
 
+RecallDetail score_recall_in_detail(const ForceCurve& target, const ForceCurve& applied,
+                                    const ScoreParameters& parameters) {
+  return align_curves(view(target), view(applied), parameters);
+}
+
 RecallScore score_recall(const ForceCurve& target, const ForceCurve& applied,
                          const ScoreParameters& parameters) {
   return score_recall_in_detail(target, applied, parameters).score;
@@ -147,32 +173,12 @@ RecallScore score_recall(const ForceCurve& target, const ForceCurve& applied,
 std::vector<RecallScore> score_recalls(std::span<const RecallPair> pairs,
                                        const ScoreParameters& parameters, int jobs) {
   check(parameters);
-  if (jobs < 1) throw std::invalid_argument("score: jobs must be at least 1");
   std::vector<RecallScore> results(pairs.size());
-  const std::size_t group = Aligner().lanes();
-  const std::size_t groups = (pairs.size() + group - 1) / group;
-  std::vector<std::exception_ptr> errors(groups);
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    GroupScorer scorer(parameters);
-    for (std::size_t g; (g = next.fetch_add(1)) < groups;) {
-      const std::size_t first = g * group;
-      const std::size_t count = std::min(group, pairs.size() - first);
-      try {
-        scorer.score(pairs.subspan(first, count), first, std::span(results).subspan(first, count));
-      } catch (...) {
-        errors[g] = std::current_exception();
-      }
-    }
-  };
-  std::vector<std::jthread> threads;
-  const std::size_t wanted = std::min(static_cast<std::size_t>(jobs), groups);
-  for (std::size_t k = 1; k < wanted; ++k) threads.emplace_back(work);
-  work();
-  threads.clear();  // joins
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
+  in_groups(pairs.size(), Aligner().lanes(), jobs, [&] {
+    return [&, scorer = GroupScorer(parameters)](std::size_t first, std::size_t count) mutable {
+      scorer.score(pairs.subspan(first, count), first, std::span(results).subspan(first, count));
+    };
+  });
   return results;
 }
 

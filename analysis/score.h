@@ -13,7 +13,7 @@ namespace haptrial::analysis {
 /// How well one force pattern was recalled; the fields mean what they mean in TrialScore.
 struct RecallScore {
   double score{0.0};
-  double alignment_cost{0.0};  // per pair of the path
+  double alignment_cost{0.0};  // per pair of the path, each counted by its weight
   double rms_force{0.0};       // [N]
   double rms_slope{0.0};       // [N/s]
   double rms_unaligned{0.0};   // [N]
@@ -52,6 +52,11 @@ RecallScore score_recall(const ForceCurve& target, const ForceCurve& applied,
                          const ScoreParameters& parameters);
 RecallDetail score_recall_in_detail(const ForceCurve& target, const ForceCurve& applied,
                                     const ScoreParameters& parameters);
+
+/// Anybody's two curves, at rates or times of their own, each counted from its first sample: the
+/// same function with everything it found, in the unit of the values where these are not newtons.
+RecallDetail align_curves(const SampledCurve& target, const SampledCurve& applied,
+                          const ScoreParameters& parameters);
 
 /// The same for many, side by side in vector lanes and over `jobs` threads. The results do not
 /// depend on `jobs`, bit for bit.

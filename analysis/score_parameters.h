@@ -1,6 +1,11 @@
 #pragma once
 
-#include "analysis/alignment.h"
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/alignment_options.h"
 #include "core/base/table.h"
 
 namespace haptrial::analysis {
@@ -10,7 +15,8 @@ namespace haptrial::analysis {
 struct ScoreParameters {
   int samples{1000};         // of the common time base, 2 to 10,000
   double filter_width{0.1};  // box filter on the applied force, 0 to 10 [s]
-  AlignmentParameters alignment;
+  AlignmentOptions alignment;
+  std::optional<double> window;  // of the alignment, >= 0, in place of alignment.window [s]
 
   // score = (c C + f R + s S) / (c + f + s), C the alignment cost per pair of the path, R and S the
   // RMS differences of force [N] and slope [N/s] after warping. Not all three may be 0.
@@ -20,9 +26,14 @@ struct ScoreParameters {
 };
 
 /// Reads the [analysis] table of a definition: samples, filter_width, force_weight, slope_weight,
-/// power, penalty, cost_share, force_share, slope_share, all required. Problems are noted in the
-/// table; its finish() throws them.
+/// power, penalty, cost_share, force_share, slope_share, all required; and step_pattern, window,
+/// open_begin, open_end, where they are not as published. Problems are noted in the table; its
+/// finish() throws them.
 ScoreParameters read_score_parameters(Table& analysis);
+
+/// What the parameters are, in words and with units, for reports: name, value. Options of the
+/// alignment that are as published stay out.
+std::vector<std::pair<std::string, std::string>> described(const ScoreParameters& parameters);
 
 /// @throws std::invalid_argument naming the parameter that breaks its bound.
 void check(const ScoreParameters& parameters);

@@ -12,6 +12,7 @@
 
 #include "analysis/score.h"
 #include "analysis/session_recalls.h"
+#include "analysis/study_parts.h"
 #include "core/base/error.h"
 #include "core/record/session_reader.h"
 
@@ -84,9 +85,46 @@ RecallPicture picture_of(const Origin& origin, const std::string& which,
   const record::SessionReader reader(origin.session->file);
   const auto run = run_samples(reader, reader.passes().at(origin.pass->pass));
   const auto curves = recall_curves(*run, reader.info().rate);
-  auto detail = score_recall_in_detail(curves->target, curves->applied, parameters);
+  return recall_picture(which, origin.pass->score,
+                        score_recall_in_detail(curves->target, curves->applied, parameters));
+}
+
+std::vector<RecallPicture> pictures(const std::vector<Session>& sessions,
+                                    const std::vector<TrialScore>& scores,
+                                    const ScoreParameters& parameters) {
+  std::vector<Origin> origins;  // one for each of scores
+  for (const auto& session : sessions) {
+    for (const auto& pass : session.recalls.scored) {
+      origins.push_back({&session, &pass});
+    }
+  }
+  std::vector<RecallPicture> result;
+  for (const auto& [which, at] : notable(scores)) {
+    result.push_back(picture_of(origins[at], which, parameters));
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::size_t>> notable(const std::vector<TrialScore>& scores) {
+  if (scores.empty()) {
+    return {};
+  }
+  std::vector<std::size_t> order(scores.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return scores[a].score < scores[b].score;
+  });
+  return {{"best", order.front()},
+          {"median", order[(order.size() - 1) / 2]},
+          {"worst", order.back()}};
+}
+
+RecallPicture recall_picture(const std::string& which, const TrialScore& score,
+                             RecallDetail detail) {
   RecallPicture picture{which,
-                        origin.pass->score,
+                        score,
                         detail.time.duration,
                         std::move(detail.target),
                         std::move(detail.applied),
@@ -96,40 +134,6 @@ RecallPicture picture_of(const Origin& origin, const std::string& which,
   }
   return picture;
 }
-
-// Best, median (the lower of two) and worst; of equal scores the first.
-std::vector<RecallPicture> pictures(const std::vector<Session>& sessions,
-                                    const ScoreParameters& parameters) {
-  std::vector<Origin> origins;
-  for (const auto& session : sessions) {
-    for (const auto& pass : session.recalls.scored) {
-      origins.push_back({&session, &pass});
-    }
-  }
-  if (origins.empty()) {
-    return {};
-  }
-  std::stable_sort(origins.begin(), origins.end(), [](const Origin& a, const Origin& b) {
-    return a.pass->score.score < b.pass->score.score;
-  });
-  return {picture_of(origins.front(), "best", parameters),
-          picture_of(origins[(origins.size() - 1) / 2], "median", parameters),
-          picture_of(origins.back(), "worst", parameters)};
-}
-
-std::vector<std::pair<std::string, std::string>> parameter_rows(const ScoreParameters& p) {
-  return {{"samples of the common time base", fmt::format("{}", p.samples)},
-          {"box filter on the applied force", fmt::format("{} s", p.filter_width)},
-          {"error matrix: weight of force", fmt::format("{}", p.alignment.force_weight)},
-          {"error matrix: weight of slope", fmt::format("{}", p.alignment.slope_weight)},
-          {"error matrix: power", fmt::format("{}", p.alignment.power)},
-          {"penalty of a step along one curve", fmt::format("{}", p.alignment.penalty)},
-          {"score: share of the alignment cost", fmt::format("{}", p.cost_share)},
-          {"score: share of the force difference", fmt::format("{} /N", p.force_share)},
-          {"score: share of the slope difference", fmt::format("{} s/N", p.slope_share)}};
-}
-
-}  // namespace
 
 StudyResult analyze_study(const std::vector<fs::path>& session_files,
                           const ScoreParameters& parameters, int jobs) {
@@ -156,9 +160,9 @@ StudyResult analyze_study(const std::vector<fs::path>& session_files,
   }
   study.statistics = study_statistics(study.scores);
   study.tracking = summarize_tracking("all participants", tracking);
-  study.recalls = pictures(sessions, parameters);
+  study.recalls = pictures(sessions, study.scores, parameters);
   study.stimulus = sessions.front().recalls.stimulus;
-  study.parameters = parameter_rows(parameters);
+  study.parameters = described(parameters);
   return study;
 }
 

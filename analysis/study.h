@@ -57,6 +57,10 @@ struct StudyResult {
   std::vector<std::pair<std::string, std::string>> parameters;  // of the scores: name, value
   std::vector<std::string> remarks;  // sentences for the report: what is missing from the study
 
+  /// The table of a study of curves that something else recorded, of which nothing but the forces
+  /// is known: no tracking, timing, device or stimulus. Empty for session files.
+  std::string curves_from{};
+
   /// True when any participant is a virtual subject: then every output says so.
   bool simulated() const;
 };

@@ -118,7 +118,41 @@ Figure learning(const StudyResult& study) {
   figure.caption =
       "Recall error at each repetition of the same trajectory and force pattern: means of the "
       "participants' means with 95 % confidence intervals over participants.";
-  figure.alt = "Lines of mean recall error over repetitions, one for each training condition.";
+  figure.alt = "Mean recall error over repetitions:";
+  for (const auto& point : statistics.learning) {
+    if (point.mean) {
+      figure.alt +=
+          fmt::format(" {} {}: {};", point.condition, point.repetition, number(*point.mean));
+    }
+  }
+  return figure;
+}
+
+Figure learning_over_blocks(const StudyResult& study) {
+  Figure figure;
+  figure.name = "learning-over-blocks";
+  figure.title = "Recall error over the session";
+  figure.x_label = "Block";
+  figure.y_label = "Recall error (0 is perfect)";
+  Series series{"", Mark::kLinkedBars, {kBlue, kSolid, 7, 2.0, 1.1}};
+  double highest = 0.0;
+  for (const auto& point : study.statistics.blocks) {
+    if (!point.mean) {
+      continue;
+    }
+    series.x.push_back(point.block);
+    series.y.push_back(*point.mean);
+    series.low.push_back(point.interval ? point.interval->low : *point.mean);
+    series.high.push_back(point.interval ? point.interval->high : *point.mean);
+    highest = std::max(highest, series.high.back());
+    figure.alt += fmt::format(" {} {};", point.block, number(*point.mean));
+  }
+  figure.series.push_back(std::move(series));
+  figure.y_range = Range{0.0, highest > 0.0 ? 1.1 * highest : 1.0};
+  figure.caption =
+      "Recall error in each block of the session: means of the participants' means with 95 % "
+      "confidence intervals over participants. Conditions are counterbalanced over blocks.";
+  figure.alt = "Mean recall error by block:" + figure.alt;
   return figure;
 }
 
@@ -229,6 +263,7 @@ std::vector<Figure> study_figures(const StudyResult& study) {
   if (!study.scores.empty()) {
     figures.push_back(recall_error(study));
     figures.push_back(learning(study));
+    figures.push_back(learning_over_blocks(study));
   }
   for (const auto& picture : study.recalls) {
     figures.push_back(alignment(picture));

@@ -42,6 +42,39 @@ Json to_json(const RepeatedAnova& a) {
           {"partial_eta_squared", a.partial_eta_squared}};
 }
 
+Json to_json(const EffectSize& e) {
+  return {{"value", e.value}, {"low", e.low}, {"high", e.high}, {"level", e.level}};
+}
+
+Json to_json(const RankAnova& r) {
+  return {{"chi_squared", r.chi_squared}, {"df", r.df}, {"p", r.p}};
+}
+
+Json to_json(const RankTest& r) {
+  return {{"statistic", r.statistic}, {"p", r.p}, {"exact", r.exact}};
+}
+
+Json to_json(const ShapiroWilk& s) { return {{"w", s.w}, {"p", s.p}}; }
+
+Json to_json(const Mauchly& m) { return {{"w", m.w}, {"p", m.p}}; }
+
+Json to_json(const MixedModel& m) {
+  Json coefficients = Json::array();
+  for (const Coefficient& c : m.coefficients) {
+    coefficients.push_back({{"estimate", c.estimate},
+                            {"standard_error", c.error},
+                            {"df_satterthwaite", c.df},
+                            {"t", c.t},
+                            {"p", c.p},
+                            {"low_95", c.low},
+                            {"high_95", c.high}});
+  }
+  return {{"coefficients", coefficients},
+          {"variance_between", m.variance_between},
+          {"variance_within", m.variance_within},
+          {"log_likelihood_reml", m.log_likelihood}};
+}
+
 Json to_json(const TTest& t) {
   return {{"t", t.t},
           {"df", t.df},
@@ -80,11 +113,58 @@ Json comparisons(const StudyStatistics& s) {
   for (const auto& c : s.comparisons) {
     rows.push_back({{"hypothesis", c.better + " < " + c.worse},
                     {"pooled_student_one_tailed", to_json(c.pooled)},
+                    {"pooled_cohens_d", to_json(c.pooled_d)},
                     {"pooled_welch_one_tailed", to_json(c.welch)},
                     {"paired_participant_means_one_tailed", to_json(c.paired)},
+                    {"paired_d_z", to_json(c.paired_dz)},
                     {"paired_p_holm", to_json(c.paired_holm)}});
   }
   return rows;
+}
+
+Json pairs(const StudyStatistics& s) {
+  Json rows = Json::array();
+  for (const auto& p : s.pairs) {
+    rows.push_back({{"conditions", {p.a, p.b}},
+                    {"paired_two_tailed", to_json(p.test)},
+                    {"p_holm", to_json(p.holm)},
+                    {"d_z", to_json(p.dz)},
+                    {"wilcoxon_signed_rank", to_json(p.signed_rank)}});
+  }
+  return rows;
+}
+
+Json blocks(const StudyStatistics& s) {
+  Json rows = Json::array();
+  for (const auto& point : s.blocks) {
+    rows.push_back({{"block", point.block},
+                    {"participants", point.participants},
+                    {"mean", to_json(point.mean)},
+                    {"interval", to_json(point.interval)}});
+  }
+  return rows;
+}
+
+Json published(const StudyStatistics& s) {
+  return {{"one_way_anova", to_json(s.anova)},
+          {"eta_squared", to_json(s.eta)},
+          {"kruskal_wallis", to_json(s.ranks)},
+          {"levene_about_medians", to_json(s.levene)},
+          {"shapiro_wilk_of_residuals", to_json(s.normality)}};
+}
+
+Json repeated(const StudyStatistics& s) {
+  Json all{{"anova", to_json(s.repeated)},
+           {"partial_eta_squared", to_json(s.partial_eta)},
+           {"generalized_eta_squared", to_json(s.generalized_eta)},
+           {"friedman", to_json(s.friedman)},
+           {"left_out", s.incomplete}};
+  if (s.repeated) {
+    all["mauchly"] = to_json(s.repeated->sphericity.mauchly);
+    all["huynh_feldt_epsilon"] = to_json(s.repeated->sphericity.huynh_feldt);
+    all["p_huynh_feldt"] = to_json(s.repeated->p_huynh_feldt);
+  }
+  return all;
 }
 
 Json table_1(const StudyStatistics& s) {
@@ -155,6 +235,17 @@ Json session(const SessionSummary& s) {
           {"scored", s.scored}};
 }
 
+void add_sessions(Json& root, const StudyResult& study) {
+  root["tracking"] = {{"overall", tracking(study.tracking)}, {"participants", Json::array()}};
+  root["timing"] = Json::array();
+  root["sessions"] = Json::array();
+  for (const auto& one : study.sessions) {
+    root["tracking"]["participants"].push_back(tracking(one.tracking));
+    root["timing"].push_back(timing(one));
+    root["sessions"].push_back(session(one));
+  }
+}
+
 }  // namespace
 
 std::string statistics_json(const StudyResult& study) {
@@ -164,18 +255,19 @@ std::string statistics_json(const StudyResult& study) {
   root["participants"] = s.subjects.size();
   root["trials"] = study.scores.size();
   root["conditions"] = conditions(s);
-  root["published"] = {{"one_way_anova", to_json(s.anova)}};
-  root["repeated_measures"] = {{"anova", to_json(s.repeated)}, {"left_out", s.incomplete}};
+  root["published"] = published(s);
+  root["repeated_measures"] = repeated(s);
+  root["mixed_model"] = to_json(s.mixed);
   root["comparisons"] = comparisons(s);
+  root["pairs"] = pairs(s);
   root["table_1"] = table_1(s);
   root["learning"] = learning(s);
-  root["tracking"] = {{"overall", tracking(study.tracking)}, {"participants", Json::array()}};
-  root["timing"] = Json::array();
-  root["sessions"] = Json::array();
-  for (const auto& one : study.sessions) {
-    root["tracking"]["participants"].push_back(tracking(one.tracking));
-    root["timing"].push_back(timing(one));
-    root["sessions"].push_back(session(one));
+  root["blocks"] = blocks(s);
+  root["change_per_block"] = to_json(s.slope);
+  if (study.curves_from.empty()) {
+    add_sessions(root, study);
+  } else {
+    root["curves_from"] = study.curves_from;
   }
   root["exclusions"] = Json::array();
   for (const auto& e : study.exclusions) {

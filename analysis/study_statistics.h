@@ -7,8 +7,15 @@
 
 #include "analysis/anova.h"
 #include "analysis/descriptive.h"
+#include "analysis/effect_size.h"
+#include "analysis/levene.h"
+#include "analysis/mixed_model.h"
+#include "analysis/rank_anova.h"
+#include "analysis/repeated_anova.h"
+#include "analysis/shapiro_wilk.h"
 #include "analysis/t_test.h"
 #include "analysis/trial_score.h"
+#include "analysis/wilcoxon.h"
 
 namespace haptrial::analysis {
 
@@ -33,10 +40,22 @@ struct ParticipantMeans {
 struct Comparison {
   std::string better;
   std::string worse;
-  Defined<TTest> pooled{Undefined{"a condition is missing"}};  // Student, one-tailed, as published
-  Defined<TTest> welch{Undefined{"a condition is missing"}};   // the same, unequal variances
-  Defined<TTest> paired{Undefined{"a condition is missing"}};  // participants' means, one-tailed
-  Defined<double> paired_holm{Undefined{"a condition is missing"}};  // its p, adjusted over all
+  Defined<TTest> pooled{Undefined{"nothing was compared"}};  // Student, one-tailed, as published
+  Defined<EffectSize> pooled_d{Undefined{"nothing was compared"}};  // Cohen's d
+  Defined<TTest> welch{Undefined{"nothing was compared"}};          // the same, unequal variances
+  Defined<TTest> paired{Undefined{"nothing was compared"}};  // participants' means, one-tailed
+  Defined<EffectSize> paired_dz{Undefined{"nothing was compared"}};
+  Defined<double> paired_holm{Undefined{"nothing was compared"}};  // p of paired, over all planned
+};
+
+/// Two conditions within participants, without a hypothesis: two-tailed.
+struct PairComparison {
+  std::string a;
+  std::string b;
+  Defined<TTest> test{Undefined{"nothing was compared"}};
+  Defined<double> holm{Undefined{"nothing was compared"}};  // its p, adjusted over all pairs
+  Defined<EffectSize> dz{Undefined{"nothing was compared"}};
+  Defined<RankTest> signed_rank{Undefined{"nothing was compared"}};
 };
 
 /// Mean error of a condition at a repetition within the block.
@@ -48,17 +67,42 @@ struct LearningPoint {
   Defined<MeanInterval> interval{Undefined{"there are no participants"}};
 };
 
+/// Mean error of the participants in their n-th block.
+struct BlockPoint {
+  std::int32_t block{0};
+  std::size_t participants{0};
+  Defined<double> mean{Undefined{"there are no participants"}};  // of the participants' means
+  Defined<MeanInterval> interval{Undefined{"there are no participants"}};
+};
+
 /// Source: Morris 2006, §4.4.
 struct StudyStatistics {
   std::vector<std::string> subjects;    // in order of name
   std::vector<std::string> conditions;  // haptic, visual, visuohaptic, then others by name
   std::vector<ConditionSummary> summaries;
-  Defined<Anova> anova{Undefined{"there are no trials"}};             // pooled trials, as published
-  Defined<RepeatedAnova> repeated{Undefined{"there are no trials"}};  // participants' means
-  std::vector<Comparison> comparisons;    // visual < haptic, visuohaptic < visual
+
+  // Pooled trials, as published.
+  Defined<Anova> anova{Undefined{"there are no trials"}};
+  Defined<EffectSize> eta{Undefined{"there are no trials"}};  // squared
+  Defined<RankAnova> ranks{Undefined{"there are no trials"}};
+  Defined<Anova> levene{Undefined{"there are no trials"}};           // about the medians
+  Defined<ShapiroWilk> normality{Undefined{"there are no trials"}};  // less their condition's mean
+
+  // Participants' means.
+  Defined<RepeatedAnova> repeated{Undefined{"there are no trials"}};
+  Defined<EffectSize> partial_eta{Undefined{"there are no trials"}};  // squared
+  Defined<double> generalized_eta{Undefined{"there are no trials"}};  // squared
+  Defined<RankAnova> friedman{Undefined{"there are no trials"}};
+
+  Defined<MixedModel> mixed{Undefined{"there are no trials"}};  // all trials, first as reference
+  std::vector<Comparison> comparisons;  // visual < haptic, visuohaptic < visual, where they are
+  std::vector<PairComparison> pairs;    // every two conditions
+
   std::vector<ParticipantMeans> table_1;  // participants with a trial in every condition
   std::vector<std::string> incomplete;    // subjects left out of table_1, `repeated` and `paired`
   std::vector<LearningPoint> learning;    // by condition, then repetition
+  std::vector<BlockPoint> blocks;         // in order
+  Defined<MeanInterval> slope{Undefined{"there are no trials"}};  // participants' own, a block
 };
 
 /// @param scores  in any order; the result does not depend on it but for rounding.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
+#include <vector>
 
 #include "analysis/descriptive.h"
 #include "analysis/distributions.h"
@@ -24,10 +24,18 @@ double p_value(double t, double df, Tail tail) {
   return std::min(1.0, 2.0 * t_upper_tail(std::abs(t), df));
 }
 
-TTest from_error(double difference, double standard_error, double df, Tail tail) {
+Defined<TTest> from_error(double difference, double standard_error, double df, Tail tail,
+                          double level) {
   const double t = difference / standard_error;
-  const double half = t_quantile(0.975, df) * standard_error;
-  return {t, df, p_value(t, df, tail), difference, difference - half, difference + half};
+  if (!std::isfinite(t) || !std::isfinite(difference) || !(df > 0.0)) {
+    return Undefined{kBeyondDouble};
+  }
+  const double half = t_quantile(0.5 + 0.5 * level, df) * standard_error;
+  TTest result{t, df, p_value(t, df, tail), difference};
+  result.low = difference - half;
+  result.high = difference + half;
+  result.error = standard_error;
+  return result;
 }
 
 struct TwoSamples {
@@ -49,7 +57,8 @@ Defined<TwoSamples> two_samples(std::span<const double> a, std::span<const doubl
 
 }  // namespace
 
-Defined<TTest> student_t_test(std::span<const double> a, std::span<const double> b, Tail tail) {
+Defined<TTest> student_t_test(std::span<const double> a, std::span<const double> b, Tail tail,
+                              double level) {
   const auto samples = two_samples(a, b);
   if (!samples) {
     return Undefined{samples.because()};
@@ -59,10 +68,12 @@ Defined<TTest> student_t_test(std::span<const double> a, std::span<const double>
   const auto nb = static_cast<double>(mb.count);
   const double df = na + nb - 2.0;  // > 0: single values do not vary
   const double pooled = (ma.squares + mb.squares) / df;
-  return from_error(mean_difference(ma, mb), std::sqrt(pooled * (1.0 / na + 1.0 / nb)), df, tail);
+  return from_error(mean_difference(ma, mb), std::sqrt(pooled * (1.0 / na + 1.0 / nb)), df, tail,
+                    level);
 }
 
-Defined<TTest> welch_t_test(std::span<const double> a, std::span<const double> b, Tail tail) {
+Defined<TTest> welch_t_test(std::span<const double> a, std::span<const double> b, Tail tail,
+                            double level) {
   const auto samples = two_samples(a, b);
   if (!samples) {
     return Undefined{samples.because()};
@@ -76,10 +87,11 @@ Defined<TTest> welch_t_test(std::span<const double> a, std::span<const double> b
   const double va = ma.variance() / na;
   const double vb = mb.variance() / nb;
   const double df = (va + vb) * (va + vb) / (va * va / (na - 1.0) + vb * vb / (nb - 1.0));
-  return from_error(mean_difference(ma, mb), std::sqrt(va + vb), df, tail);
+  return from_error(mean_difference(ma, mb), std::sqrt(va + vb), df, tail, level);
 }
 
-Defined<TTest> paired_t_test(std::span<const double> a, std::span<const double> b, Tail tail) {
+Defined<TTest> paired_t_test(std::span<const double> a, std::span<const double> b, Tail tail,
+                             double level) {
   if (a.size() != b.size()) {
     throw std::invalid_argument("paired_t_test: the samples differ in length");
   }
@@ -101,26 +113,7 @@ Defined<TTest> paired_t_test(std::span<const double> a, std::span<const double> 
   if (m->squares <= n * unit * unit) {
     return Undefined{"the differences do not vary"};
   }
-  return from_error(m->mean(), std::sqrt(m->variance() / n), n - 1.0, tail);
-}
-
-std::vector<double> holm_adjusted(std::span<const double> p_values) {
-  if (!std::all_of(p_values.begin(), p_values.end(),
-                   [](double p) { return p >= 0.0 && p <= 1.0; })) {
-    throw std::invalid_argument("holm_adjusted: a p value lies outside [0, 1]");
-  }
-  std::vector<std::size_t> order(p_values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t i, std::size_t j) { return p_values[i] < p_values[j]; });
-  std::vector<double> adjusted(p_values.size());
-  double running = 0.0;
-  for (std::size_t rank = 0; rank < order.size(); ++rank) {
-    const auto hypotheses_left = static_cast<double>(order.size() - rank);
-    running = std::max(running, std::min(1.0, hypotheses_left * p_values[order[rank]]));
-    adjusted[order[rank]] = running;
-  }
-  return adjusted;
+  return from_error(m->mean(), std::sqrt(m->variance() / n), n - 1.0, tail, level);
 }
 
 }  // namespace haptrial::analysis

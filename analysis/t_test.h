@@ -1,7 +1,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "analysis/defined.h"
 
@@ -19,26 +18,27 @@ struct TTest {
   double df{0.0};          // not an integer for Welch's test
   double p{0.0};           // for the tail asked for
   double difference{0.0};  // mean(a) - mean(b)
-  double low{0.0};         // two-sided 95 % interval of the difference
+  double low{0.0};         // two-sided interval of the difference, whatever the tail
   double high{0.0};
+  double error{0.0};  // standard error of the difference
 };
+
+/// @param level  coverage of the interval of the difference, inside (0, 1); the same for each test.
 
 /// Student's test with pooled variance.
 /// Undefined with an empty sample, fewer than three values, no variance, or a value not finite.
-Defined<TTest> student_t_test(std::span<const double> a, std::span<const double> b, Tail tail);
+Defined<TTest> student_t_test(std::span<const double> a, std::span<const double> b, Tail tail,
+                              double level = 0.95);
 
 /// Welch's test; variances may differ. Undefined with fewer than two values in either sample, no
 /// variance in both, or a value that is not finite.
-Defined<TTest> welch_t_test(std::span<const double> a, std::span<const double> b, Tail tail);
+Defined<TTest> welch_t_test(std::span<const double> a, std::span<const double> b, Tail tail,
+                            double level = 0.95);
 
 /// Student's test of the differences a[i] - b[i]. Undefined with fewer than two pairs, equal
 /// differences, or a value that is not finite.
 /// @throws std::invalid_argument when the lengths differ.
-Defined<TTest> paired_t_test(std::span<const double> a, std::span<const double> b, Tail tail);
-
-/// Holm's step-down adjustment of p values tested together, in the order given.
-/// Source: Holm 1979, Scandinavian Journal of Statistics 6.
-/// @throws std::invalid_argument when a value is outside [0, 1].
-std::vector<double> holm_adjusted(std::span<const double> p_values);
+Defined<TTest> paired_t_test(std::span<const double> a, std::span<const double> b, Tail tail,
+                             double level = 0.95);
 
 }  // namespace haptrial::analysis

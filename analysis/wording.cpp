@@ -62,6 +62,55 @@ std::string t_result(const Defined<TTest>& test) {
   return fmt::format("t({}) = {:.3g}, {}", degrees(test->df), test->t, p_value(test->p));
 }
 
+std::string rank_result(const Defined<RankAnova>& test) {
+  if (!test) {
+    return not_defined(test.because());
+  }
+  return fmt::format("χ²({}) = {}, {}", degrees(test->df), number(test->chi_squared),
+                     p_value(test->p));
+}
+
+std::string rank_result(const Defined<RankTest>& test) {
+  if (!test) {
+    return not_defined(test.because());
+  }
+  return fmt::format("V = {:g}, {}", test->statistic, p_value(test->p));
+}
+
+std::string effect(const Defined<EffectSize>& size) {
+  if (!size) {
+    return not_defined(size.because());
+  }
+  return fmt::format("{:.2f}, {:.0f} % CI {:.2f} to {:.2f}", size->value, 100.0 * size->level,
+                     size->low, size->high);
+}
+
+std::string levene_result(const Defined<Anova>& test) {
+  if (!test) {
+    return not_defined(test.because());
+  }
+  return fmt::format("F({}, {}) = {}, {}", degrees(test->df_between), degrees(test->df_within),
+                     number(test->f), p_value(test->p));
+}
+
+std::string normality_result(const Defined<ShapiroWilk>& test) {
+  return test ? fmt::format("W = {:.3f}, {}", test->w, p_value(test->p))
+              : not_defined(test.because());
+}
+
+std::string sphericity_result(const Defined<RepeatedAnova>& anova) {
+  if (!anova) {
+    return "Mauchly's test of sphericity is " + not_defined(anova.because()) + ".";
+  }
+  const auto& mauchly = anova->sphericity.mauchly;
+  const std::string test = mauchly ? fmt::format("W = {:.3f}, {}", mauchly->w, p_value(mauchly->p))
+                                   : not_defined(mauchly.because());
+  const std::string huynh = anova->p_huynh_feldt ? p_value(*anova->p_huynh_feldt)
+                                                 : not_defined(anova->p_huynh_feldt.because());
+  return fmt::format("Sphericity, Mauchly's test: {}; corrected after Huynh and Feldt: {}.", test,
+                     huynh);
+}
+
 std::string quantity(const Defined<double>& value, double factor, const std::string& unit) {
   if (!value) {
     return not_defined(value.because());

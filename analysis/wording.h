@@ -4,7 +4,12 @@
 
 #include "analysis/anova.h"
 #include "analysis/descriptive.h"
+#include "analysis/effect_size.h"
+#include "analysis/rank_anova.h"
+#include "analysis/repeated_anova.h"
+#include "analysis/shapiro_wilk.h"
 #include "analysis/t_test.h"
+#include "analysis/wilcoxon.h"
 
 namespace haptrial::analysis {
 
@@ -26,6 +31,18 @@ std::string anova_result(const Defined<Anova>& anova);
 std::string anova_result(const Defined<RepeatedAnova>& anova);
 /// "t(574) = -2.91, p = 0.002".
 std::string t_result(const Defined<TTest>& test);
+/// "χ²(2) = 9.1, p = 0.011".
+std::string rank_result(const Defined<RankAnova>& test);
+/// "V = 12, p = 0.034".
+std::string rank_result(const Defined<RankTest>& test);
+/// "-0.42, 95 % CI -0.71 to -0.13".
+std::string effect(const Defined<EffectSize>& size);
+/// "F(2, 861) = 2.1, p = 0.12".
+std::string levene_result(const Defined<Anova>& test);
+/// "W = 0.97, p = 0.03".
+std::string normality_result(const Defined<ShapiroWilk>& test);
+/// A sentence on Mauchly's test and Huynh and Feldt's correction.
+std::string sphericity_result(const Defined<RepeatedAnova>& anova);
 /// The value times `factor` with its unit, or why there is none.
 std::string quantity(const Defined<double>& value, double factor, const std::string& unit);
 /// "Visuohaptic" of "visuohaptic".

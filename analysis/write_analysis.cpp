@@ -101,7 +101,9 @@ void write_analysis(const StudyResult& study, const fs::path& folder) {
   for (const auto& figure : figures) {
     drawings.push_back({figure, contents(staging.path() / (figure.name + ".svg"))});
   }
-  staging.write("report.html", html_report(study, drawings));
+  const Document report = study_report(study, drawings);
+  staging.write("report.html", to_html(report));
+  staging.write("report.md", to_markdown(report));
   staging.publish();
 }
 

@@ -79,8 +79,9 @@ function(haptrial_tests)
       add_executable(test_${name} ${sources})
       target_link_libraries(test_${name} PRIVATE haptrial_${name} haptrial_test_support GTest::gmock
                                                  GTest::gtest GTest::gtest_main)
-      # The allocation guard sees malloc of our objects too (Eigen calls it directly).
-      target_link_options(test_${name} PRIVATE
+      # The allocation guard sees malloc of our objects too (Eigen calls it directly); it is linked
+      # also where no test names it.
+      target_link_options(test_${name} PRIVATE LINKER:--undefined=__wrap_malloc
         LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc,--wrap=posix_memalign)
       target_compile_definitions(test_${name} PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}"
                                                       HAPTRIAL_BINARY_DIR="${CMAKE_BINARY_DIR}")

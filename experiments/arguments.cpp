@@ -19,6 +19,14 @@ int checked_number(const char* what, int value, int low, int high) {
   return value;
 }
 
+double checked_real(const char* what, double value, double low, double high) {
+  if (!(value >= low && value <= high)) {
+    throw InputError(
+        fmt::format("{} is {}; allowed: a number from {} to {}", what, value, low, high));
+  }
+  return value;
+}
+
 std::uint64_t checked_seed(const std::string& text) {
   std::uint64_t seed = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);

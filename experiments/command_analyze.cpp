@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <tuple>
 
+#include "analysis/exchange/import_curves.h"
 #include "analysis/score_parameters.h"
 #include "analysis/study.h"
 #include "analysis/write_analysis.h"
@@ -12,6 +14,7 @@
 #include "core/record/session_reader.h"
 #include "experiments/arguments.h"
 #include "experiments/definition.h"
+#include "experiments/interrupt.h"
 #include "experiments/study_run.h"
 
 namespace haptrial::experiments {
@@ -40,10 +43,7 @@ std::vector<std::string> what_is_missing(const fs::path& folder, std::size_t ses
   return remarks;
 }
 
-}  // namespace
-
-int analyze(const std::string& folder, std::optional<int> jobs) {
-  const int threads = checked_jobs(jobs);
+analysis::StudyResult analyzed_sessions(const std::string& folder, int threads) {
   const auto files = session_files(folder);
   const record::SessionInfo first = record::SessionReader(files.front()).info();
   for (const fs::path& file : files) {
@@ -61,14 +61,62 @@ int analyze(const std::string& folder, std::optional<int> jobs) {
         "{}: no session holds a completed test pass, so nothing can be scored", folder));
   }
   study.remarks = what_is_missing(folder, files.size(), definition);
-  analysis::write_analysis(study, folder);
+  return study;
+}
+
+analysis::StudyResult analyzed_curves(const AnalyzeOptions& options, int threads) {
+  watch_for_interrupt();
+  const analysis::ScoreParameters scoring = options.definition.empty()
+                                                ? analysis::ScoreParameters{}
+                                                : load_definition(options.definition).scoring;
+  return exchange::analyze_curves({options.curves, options.conditions, options.time_column,
+                                   options.target_column, options.applied_column},
+                                  scoring, threads, [](std::uint64_t) {
+                                    if (interrupted()) {
+                                      throw RunError("interrupted; nothing was written");
+                                    }
+                                  });
+}
+
+/// A folder of sessions, or one of curves with all that it needs.
+void check_source(const AnalyzeOptions& options) {
+  if (options.folder.empty() == options.curves.empty()) {
+    throw InputError(fmt::format("{} of DIR and --curves are given; allowed: exactly one",
+                                 options.folder.empty() ? "none" : "both"));
+  }
+  const bool curves = !options.curves.empty();
+  for (const auto& [name, value, needed] : {std::tuple{"--conditions", &options.conditions, true},
+                                            {"--out", &options.out, true},
+                                            {"--definition", &options.definition, false},
+                                            {"--time-column", &options.time_column, false},
+                                            {"--target-column", &options.target_column, false},
+                                            {"--applied-column", &options.applied_column, false}}) {
+    if (curves && needed && value->empty()) {
+      throw InputError(fmt::format("{} is missing; --curves needs it", name));
+    }
+    if (!curves && !value->empty()) {
+      throw InputError(fmt::format("{} is given without --curves; allowed: only with it", name));
+    }
+  }
+}
+
+}  // namespace
+
+int analyze(const AnalyzeOptions& options) {
+  const int threads = checked_jobs(options.jobs);
+  check_source(options);
+  const bool curves = !options.curves.empty();
+  const analysis::StudyResult study =
+      curves ? analyzed_curves(options, threads) : analyzed_sessions(options.folder, threads);
+  const fs::path out = curves ? options.out : options.folder;
+  analysis::write_analysis(study, out);
   for (const std::string& line : analysis::summary_lines(study)) {
     fmt::print("{}\n", line);
   }
   for (const std::string& remark : study.remarks) {
     fmt::print("{}\n", remark);
   }
-  fmt::print("report: {}\n", (fs::absolute(folder) / "report.html").lexically_normal().string());
+  fmt::print("report: {}\n", (fs::absolute(out) / "report.html").lexically_normal().string());
   return 0;
 }
 

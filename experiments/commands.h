@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/record/session_types.h"
 
@@ -52,12 +53,74 @@ struct ReplayOptions {
 };
 int replay(const ReplayOptions& options);
 
-int analyze(const std::string& folder, std::optional<int> jobs);
+struct AnalyzeOptions {
+  std::string folder;  // of session files; else the ones below
+  std::string curves;  // folder of curves that something else recorded
+  std::string conditions;
+  std::string out;
+  std::string definition;  // for its [analysis]; default: as shipped
+  std::string time_column;
+  std::string target_column;
+  std::string applied_column;
+  std::optional<int> jobs;
+};
+int analyze(const AnalyzeOptions& options);
+
+/// Exactly one of bids, csv and curves names a new folder.
+struct ExportOptions {
+  std::vector<std::string> files;  // session files, or folders of them
+  std::string bids;
+  std::string csv;
+  std::string curves;
+  bool samples{false};               // of csv: every tick as well
+  std::string name;                  // of the BIDS data set; default: the experiment's
+  std::vector<std::string> authors;  // of the BIDS data set
+  std::optional<int> jobs;
+};
+int export_sessions(const ExportOptions& options);
+
+/// Two curves of any origin (.csv).
+struct AlignOptions {
+  std::string target;         // "-": standard input
+  std::string applied;        // likewise, but not both
+  std::string time;           // name of a column in both; see analysis::CurveColumns
+  std::string value;          // likewise
+  std::string applied_value;  // where the applied curve's name is another
+  std::optional<double> rate;
+  int samples{1000};
+  double filter{0.1};
+  double power{1.0};
+  double slope_weight{0.5};
+  std::optional<double> penalty;  // default: as the pattern is known
+  std::string pattern{"published"};
+  std::optional<double> window;
+  bool open_begin{false};
+  bool open_end{false};
+  std::string out;  // new folder; empty: nothing is written
+};
+int align(const AlignOptions& options);
+
 int info(const std::string& file);
 /// @param out  new session file; empty: beside the damaged one
 /// @returns 0 when something was recovered, else 1.
 int recover(const std::string& file, const std::string& out);
 int validate(const std::string& definition);
+
+/// Two of an effect (delta and sd, or f), n and power; the third is computed.
+struct PowerOptions {
+  std::string test;                   // "t", "anova"
+  std::optional<std::string> design;  // of t: "two-sample" by default, "paired", "one-sample"
+  std::optional<double> delta;        // difference of the means
+  double sd{1.0};                     // in the same unit; of paired values that of the differences
+  std::optional<double> f;            // of anova: Cohen's
+  std::optional<int> groups;          // of anova
+  std::optional<long> n;              // participants in each group
+  std::optional<double> power;
+  double alpha{0.05};
+  bool one_tailed{false};
+};
+int power(const PowerOptions& options);
+
 int devices();
 
 struct DeviceTestOptions {

@@ -36,10 +36,13 @@ class Commands {
     add_dry_run();
     add_run();
     add_analyze();
+    add_export();
+    add_align();
     add_info();
     add_recover();
     add_replay();
     add_validate();
+    add_power();
     add_devices();
     add_device_test();
   }
@@ -95,9 +98,62 @@ class Commands {
     CLI::App* sub =
         subcommand(app_, "analyze", "Score and test the sessions of a folder; write the report",
                    "haptrial analyze out/force_training-001");
-    sub->add_option("DIR", path_, "Folder of session files (.h5)")->required();
-    sub->add_option("--jobs", jobs_, "Threads; one per processor by default");
-    sub->callback([this] { status_ = experiments::analyze(path_, jobs_); });
+    sub->add_option("DIR", analyze_.folder, "Folder of session files (.h5)");
+    sub->add_option("--curves", analyze_.curves,
+                    "In place of DIR: folder of curves that something else recorded (.csv)");
+    sub->add_option("--conditions", analyze_.conditions,
+                    "With --curves: table of their trials (.csv)");
+    sub->add_option("--out", analyze_.out, "With --curves: folder for the report");
+    sub->add_option("--definition", analyze_.definition,
+                    "With --curves: score as this definition says; as shipped by default");
+    sub->add_option("--time-column", analyze_.time_column, "With --curves (time)");
+    sub->add_option("--target-column", analyze_.target_column, "With --curves (target_force)");
+    sub->add_option("--applied-column", analyze_.applied_column, "With --curves (applied_force)");
+    sub->add_option("--jobs", analyze_.jobs, "Threads; one per processor by default");
+    sub->callback([this] { status_ = experiments::analyze(analyze_); });
+  }
+
+  void add_export() {
+    CLI::App* sub = subcommand(app_, "export", "Write sessions in the forms of other programs",
+                               "haptrial export --bids data-set out/force_training-001");
+    sub->add_option("FILE", export_.files, "Session files (.h5), or folders of them")->required();
+    sub->add_option("--bids", export_.bids, "New folder for a BIDS data set");
+    sub->add_option("--csv", export_.csv, "New folder for tidy tables (.csv)");
+    sub->add_option("--curves", export_.curves, "New folder for the scored curves (.csv)");
+    sub->add_flag("--samples", export_.samples, "With --csv: every tick as well (.csv.gz)");
+    sub->add_option("--name", export_.name, "With --bids: of the data set");
+    sub->add_option("--author", export_.authors, "With --bids: of the data set; may be repeated")
+        ->allow_extra_args(false);
+    sub->add_option("--jobs", export_.jobs, "Threads; one per processor by default");
+    sub->callback([this] { status_ = experiments::export_sessions(export_); });
+  }
+
+  void add_align() {
+    CLI::App* sub =
+        subcommand(app_, "align", "Align two curves of any origin (.csv) and score the second",
+                   "haptrial align target.csv applied.csv --value force --out aligned");
+    sub->add_option("TARGET", align_.target,
+                    "Table of the target curve (.csv); - reads standard "
+                    "input")
+        ->required();
+    sub->add_option("APPLIED", align_.applied, "Table of the applied curve")->required();
+    sub->add_option("--time", align_.time, "Column of times in s, by name or number (time)");
+    sub->add_option("--rate", align_.rate, "Rows a second, in place of a column of times");
+    sub->add_option("--value", align_.value, "Column of values (the only other one)");
+    sub->add_option("--applied-value", align_.applied_value, "The same of APPLIED (as --value)");
+    sub->add_option("--samples", align_.samples, "Of the common time base (1000)");
+    sub->add_option("--filter", align_.filter, "Width of the box filter on APPLIED in s (0.1)");
+    sub->add_option("--power", align_.power, "Of the differences, 1 or more (1)");
+    sub->add_option("--slope-weight", align_.slope_weight, "Of differences of slopes (0.5)");
+    sub->add_option("--penalty", align_.penalty,
+                    "Of a step that is not straight (0.5 with the published pattern, else 0)");
+    sub->add_option("--pattern", align_.pattern,
+                    "published, symmetric1, symmetric2, asymmetric or symmetricP1 (published)");
+    sub->add_option("--window", align_.window, "Pair no samples farther apart than so many s");
+    sub->add_flag("--open-begin", align_.open_begin, "APPLIED may begin before the match does");
+    sub->add_flag("--open-end", align_.open_end, "APPLIED may go on after the match");
+    sub->add_option("--out", align_.out, "New folder for the aligned curves, path and picture");
+    sub->callback([this] { status_ = experiments::align(align_); });
   }
 
   void add_info() {
@@ -137,6 +193,23 @@ class Commands {
     sub->callback([this] { status_ = experiments::validate(path_); });
   }
 
+  void add_power() {
+    CLI::App* sub = subcommand(app_, "power", "Say how many participants a study needs",
+                               "haptrial power t --design paired --delta 20 --sd 35 --power 0.8");
+    sub->add_option("TEST", power_.test, "t or anova (one way)")->required();
+    sub->add_option("--design", power_.design, "Of t: two-sample (default), paired, one-sample");
+    sub->add_option("--delta", power_.delta, "Of t: the difference to find");
+    sub->add_option("--sd", power_.sd,
+                    "In the unit of --delta; with paired that of the differences (1)");
+    sub->add_option("--f", power_.f, "Of anova: deviation of the groups' means by that within");
+    sub->add_option("--groups", power_.groups, "Of anova: how many");
+    sub->add_option("--n", power_.n, "Participants in each group");
+    sub->add_option("--power", power_.power, "Chance of finding the effect");
+    sub->add_option("--alpha", power_.alpha, "Chance of finding one that is none (0.05)");
+    sub->add_flag("--one-tailed", power_.one_tailed, "Of t: the sign of the difference is planned");
+    sub->callback([this] { status_ = experiments::power(power_); });
+  }
+
   void add_devices() {
     CLI::App* sub = subcommand(app_, "devices", "List the devices", "haptrial devices");
     sub->callback([this] { status_ = experiments::devices(); });
@@ -160,10 +233,13 @@ class Commands {
   experiments::DryRunOptions dry_run_;
   experiments::RunOptions run_;
   experiments::ReplayOptions replay_;
+  experiments::PowerOptions power_;
   experiments::DeviceTestOptions device_test_;
+  experiments::ExportOptions export_;
+  experiments::AlignOptions align_;
+  experiments::AnalyzeOptions analyze_;
   std::string path_;
   std::string recover_out_;
-  std::optional<int> jobs_;
 };
 
 /// A mistyped subcommand by its name, rather than as one that is missing.

@@ -49,9 +49,9 @@ TEST_P(AlignmentSetTest, BatchEqualsSinglePairs) {
                                  {64u, 64u},
                                  {65u, 127u},
                                  {130u, 99u}}) {
-      for (int power : {1, 2}) {
+      for (double power : {1.0, 2.0}) {
         const Cases cases("batch", count, rows, columns, 0);
-        const AlignmentParameters parameters{.penalty = 0.05, .power = power};
+        const AlignmentOptions parameters{.penalty = 0.05, .power = power};
         std::vector<Alignment> batch(count);
         aligner.align_batch(cases.pairs, parameters, batch);
         for (std::size_t k = 0; k < count; ++k) {
@@ -66,7 +66,7 @@ TEST_P(AlignmentSetTest, BatchEqualsSinglePairs) {
 
 TEST_P(AlignmentSetTest, BatchTakesPairsOfDifferentSizes) {
   Aligner aligner(GetParam());
-  const AlignmentParameters parameters{};
+  const AlignmentOptions parameters{};
   for (std::size_t spread : {3u, 150u}) {  // side by side, and too different for it
     const Cases cases("sizes", 48, 200, 211, spread);
     std::vector<Alignment> batch(cases.pairs.size());
@@ -81,8 +81,8 @@ TEST_P(AlignmentSetTest, BatchTakesPairsOfDifferentSizes) {
 
 TEST_P(AlignmentSetTest, EveryInstructionSetGivesTheSameBits) {
   const Cases cases("sets", 32, 400, 380, 10);
-  for (int power : {1, 2}) {
-    const AlignmentParameters parameters{.slope_weight = 0.3, .penalty = 0.07, .power = power};
+  for (double power : {1.0, 2.0}) {
+    const AlignmentOptions parameters{.slope_weight = 0.3, .penalty = 0.07, .power = power};
     std::vector<Alignment> here(cases.pairs.size()), baseline(cases.pairs.size());
     Aligner(GetParam()).align_batch(cases.pairs, parameters, here);
     Aligner(InstructionSet::kBaseline).align_batch(cases.pairs, parameters, baseline);
@@ -94,9 +94,22 @@ TEST_P(AlignmentSetTest, EveryInstructionSetGivesTheSameBits) {
   }
 }
 
+TEST_P(AlignmentSetTest, EveryInstructionSetGivesTheSameBitsByRowsToo) {
+  const Cases cases("rows", 6, 150, 160, 10);
+  for (double power : {1.5, 1.7}) {
+    const AlignmentOptions options{.power = power, .pattern = StepPattern::kAsymmetric};
+    for (const AlignmentPair& pair : cases.pairs) {
+      Alignment here, baseline;
+      Aligner(GetParam()).align(pair.target, pair.applied, options, here);
+      Aligner(InstructionSet::kBaseline).align(pair.target, pair.applied, options, baseline);
+      expect_same(here, baseline, std::to_string(power));
+    }
+  }
+}
+
 TEST_P(AlignmentSetTest, NothingIsAllocatedAfterTheFirstUse) {
   const Cases cases("allocation", 35, 150, 150, 0);
-  const AlignmentParameters parameters{};
+  const AlignmentOptions parameters{};
   Aligner aligner(GetParam());
   Alignment single;
   std::vector<Alignment> batch(cases.pairs.size());
@@ -110,7 +123,7 @@ TEST_P(AlignmentSetTest, NothingIsAllocatedAfterTheFirstUse) {
 
 TEST_P(AlignmentSetTest, AWorkspaceForgetsItsLastPair) {
   const Cases large("large", 16, 300, 300, 0), small("small", 16, 20, 31, 0);
-  const AlignmentParameters parameters{};
+  const AlignmentOptions parameters{};
   Aligner used(GetParam());
   std::vector<Alignment> first(16), again(16), fresh(16);
   used.align_batch(large.pairs, parameters, first);

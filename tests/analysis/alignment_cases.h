@@ -40,11 +40,11 @@ inline Curve smooth_curve(RandomStream& random, std::size_t samples) {
   return curve;
 }
 
-inline const AlignmentParameters kExact{.force_weight = 1.0, .slope_weight = 0.25, .penalty = 0.5};
+inline const AlignmentOptions kExact{.force_weight = 1.0, .slope_weight = 0.25, .penalty = 0.5};
 
 /// The recurrence as a textbook has it: the whole matrix, then back from its last entry.
 template <class Real>
-std::vector<PathPoint> textbook_path(const Curve& a, const Curve& b, const AlignmentParameters& p) {
+std::vector<PathPoint> textbook_path(const Curve& a, const Curve& b, const AlignmentOptions& p) {
   const std::size_t rows = a.force.size(), columns = b.force.size();
   const Real infinity = std::numeric_limits<Real>::infinity();
   std::vector<Real> cost((rows + 1) * (columns + 1), infinity);  // row and column 0 are outside

@@ -17,19 +17,19 @@ using test::kExact;
 using test::smooth_curve;
 using test::textbook_path;
 
-Alignment align(const Curve& a, const Curve& b, const AlignmentParameters& p) {
+Alignment align(const Curve& a, const Curve& b, const AlignmentOptions& p) {
   return analysis::align(a.view(), b.view(), p);
 }
 
 /// e(i,j), written from the formula and not from the code.
-double point_error(const Curve& a, const Curve& b, const AlignmentParameters& p, std::size_t i,
+double point_error(const Curve& a, const Curve& b, const AlignmentOptions& p, std::size_t i,
                    std::size_t j) {
   return p.force_weight * std::pow(std::abs(a.force[i] - b.force[j]), p.power) +
          p.slope_weight * std::pow(std::abs(a.slope[i] - b.slope[j]), p.power);
 }
 
 /// The least cost over every monotone path from (i,j) to the end, by trying them all.
-double exhaustive(const Curve& a, const Curve& b, const AlignmentParameters& p, std::size_t i = 0,
+double exhaustive(const Curve& a, const Curve& b, const AlignmentOptions& p, std::size_t i = 0,
                   std::size_t j = 0) {
   const bool last_row = i + 1 == a.force.size(), last_column = j + 1 == b.force.size();
   double rest = last_row && last_column ? 0.0 : std::numeric_limits<double>::infinity();
@@ -52,7 +52,7 @@ void expect_complete_path(const std::vector<PathPoint>& path, std::size_t rows,
   }
 }
 
-double recomputed_cost(const Curve& a, const Curve& b, const AlignmentParameters& p,
+double recomputed_cost(const Curve& a, const Curve& b, const AlignmentOptions& p,
                        const std::vector<PathPoint>& path) {
   double cost = 0.0;
   for (std::size_t k = 0; k < path.size(); ++k) {
@@ -66,9 +66,9 @@ double recomputed_cost(const Curve& a, const Curve& b, const AlignmentParameters
 
 TEST(AlignmentTest, CostIsTheLeastOverEveryPath) {
   RandomStream random(1, "exhaustive");
-  for (int power : {1, 2}) {
+  for (double power : {1.0, 2.0}) {
     for (int n = 0; n < 300; ++n) {
-      AlignmentParameters parameters = kExact;
+      AlignmentOptions parameters = kExact;
       parameters.power = power;
       parameters.penalty = static_cast<double>(random.below(8)) / 4.0;
       const Curve a = exact_curve(random, 1 + random.below(6));
@@ -92,8 +92,8 @@ TEST(AlignmentTest, EqualsTheTextbookWhereSumsAreExact) {
 TEST(AlignmentTest, EqualsTheTextbookInSinglePrecision) {
   RandomStream random(3, "single precision");
   for (int n = 0; n < 40; ++n) {
-    AlignmentParameters parameters{.slope_weight = 0.37, .penalty = 0.05};
-    parameters.power = 1 + n % 2;
+    AlignmentOptions parameters{.slope_weight = 0.37, .penalty = 0.05};
+    parameters.power = 1.0 + n % 2;
     const Curve a = smooth_curve(random, 200 + random.below(300));
     const Curve b = smooth_curve(random, 200 + random.below(300));
     EXPECT_EQ(align(a, b, parameters).path, textbook_path<float>(a, b, parameters)) << n;
@@ -106,7 +106,7 @@ TEST(AlignmentTest, EqualsTheTextbookInSinglePrecision) {
 /// best.
 TEST(AlignmentTest, SinglePrecisionStaysWithinItsBound) {
   RandomStream random(4, "bound");
-  const AlignmentParameters parameters{.slope_weight = 0.37, .penalty = 0.05};
+  const AlignmentOptions parameters{.slope_weight = 0.37, .penalty = 0.05};
   for (int n = 0; n < 8; ++n) {
     const Curve a = smooth_curve(random, 1000), b = smooth_curve(random, 1000);
     const double best =
@@ -133,7 +133,7 @@ TEST(AlignmentTest, ACurveAgainstItselfCostsNothing) {
   RandomStream random(5, "identity");
   for (std::size_t samples : {1u, 2u, 15u, 64u, 65u, 1000u}) {
     const Curve a = smooth_curve(random, samples);
-    const Alignment found = align(a, a, AlignmentParameters{});
+    const Alignment found = align(a, a, AlignmentOptions{});
     EXPECT_EQ(found.cost, 0.0);
     ASSERT_EQ(found.path.size(), samples);
     for (std::uint32_t i = 0; i < samples; ++i) EXPECT_EQ(found.path[i], (PathPoint{i, i}));
@@ -155,7 +155,7 @@ TEST(AlignmentTest, ALargerPenaltyNeverLowersTheCost) {
     const Curve a = exact_curve(random, 80), b = exact_curve(random, 80);
     double previous = -1.0;
     for (double penalty : {0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 64.0}) {
-      AlignmentParameters parameters = kExact;
+      AlignmentOptions parameters = kExact;
       parameters.penalty = penalty;
       const Alignment found = align(a, b, parameters);
       EXPECT_GE(found.cost, previous);
@@ -178,7 +178,7 @@ TEST(AlignmentTest, PathIsMonotoneContiguousAndComplete) {
                                {333u, 777u},
                                {1000u, 1000u}}) {
     const Curve a = smooth_curve(random, rows), b = smooth_curve(random, columns);
-    const AlignmentParameters parameters{};
+    const AlignmentOptions parameters{};
     const Alignment found = align(a, b, parameters);
     expect_complete_path(found.path, rows, columns);
     EXPECT_NEAR(found.cost, recomputed_cost(a, b, parameters, found.path), 1e-9 * found.cost);
@@ -189,7 +189,7 @@ TEST(AlignmentTest, PathIsMonotoneContiguousAndComplete) {
 TEST(AlignmentTest, TiesGoStraightThenAlongTheTarget) {
   const Curve two{{1.0, 1.0}, {0.0, 0.0}};
   const Curve three{{1.0, 1.0, 1.0}, {0.0, 0.0, 0.0}};
-  AlignmentParameters free;
+  AlignmentOptions free;
   free.penalty = 0.0;
   EXPECT_EQ(align(two, two, free).path, (std::vector<PathPoint>{{0, 0}, {1, 1}}));
   EXPECT_EQ(align(two, three, free).path, (std::vector<PathPoint>{{0, 0}, {0, 1}, {1, 2}}));
@@ -211,15 +211,15 @@ TEST(AlignmentTest, TiesEverywhereGoAsInTheTextbook) {
         curve->slope.push_back(static_cast<double>(random.below(2)));
       }
     }
-    const AlignmentParameters parameters{
-        .slope_weight = 1.0, .penalty = static_cast<double>(n % 3), .power = 1 + n % 2};
+    const AlignmentOptions parameters{
+        .slope_weight = 1.0, .penalty = static_cast<double>(n % 3), .power = 1.0 + n % 2};
     EXPECT_EQ(align(a, b, parameters).path, textbook_path<double>(a, b, parameters)) << n;
   }
 }
 
 TEST(AlignmentTest, NothingOutsideTheMatrixIsCheapForLargeValues) {
   RandomStream random(10, "large");
-  const AlignmentParameters parameters{.penalty = std::ldexp(1.0, 34)};
+  const AlignmentOptions parameters{.penalty = std::ldexp(1.0, 34)};
   std::vector<Curve> curves(32);
   for (Curve& curve : curves) {
     curve.slope.assign(300, 0.0);
@@ -239,7 +239,7 @@ TEST(AlignmentTest, NothingOutsideTheMatrixIsCheapForLargeValues) {
 
 TEST(AlignmentTest, BadInputIsRefused) {
   const Curve good{{1.0, 2.0}, {0.0, 1.0}};
-  const auto refused = [&](const Curve& a, const AlignmentParameters& p) {
+  const auto refused = [&](const Curve& a, const AlignmentOptions& p) {
     EXPECT_THROW(align(a, good, p), std::invalid_argument);
     EXPECT_THROW(align(good, a, p), std::invalid_argument);
   };
@@ -253,7 +253,9 @@ TEST(AlignmentTest, BadInputIsRefused) {
   refused(good, {.slope_weight = nan});
   refused(good, {.penalty = infinity});
   refused(good, {.penalty = -0.1});
-  refused(good, {.power = 3});
+  refused(good, {.power = 0.5});
+  refused(good, {.power = 101.0});
+  refused(good, {.power = nan});
   const std::vector<double> many(Aligner::kMaxSamples + 1, 0.0);
   refused({many, many}, {});
 }

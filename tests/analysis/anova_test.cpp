@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "analysis/repeated_anova.h"
 #include "analysis/t_test.h"
 #include "core/base/random.h"
 

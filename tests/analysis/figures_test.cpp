@@ -56,7 +56,7 @@ unsigned big_endian(const std::string& bytes, std::size_t at) {
 
 TEST_F(Figures, OfAStudyAreAllDrawn) {
   const auto figures = study_figures(example_study(true));
-  EXPECT_EQ(figures.size(), 10u);  // 28, learning, 26 and 27 three times, 22, 23
+  EXPECT_EQ(figures.size(), 11u);  // 28, learning twice, 26 and 27 three times, 22, 23
   draw_figures(figures, folder_);
   for (const auto& figure : figures) {
     EXPECT_FALSE(figure.alt.empty() || figure.caption.empty());
@@ -70,7 +70,7 @@ TEST_F(Figures, OfAStudyAreAllDrawn) {
     EXPECT_GT(png.size(), 10'000u);  // not an empty frame
   }
   // Only the pictures stay.
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 20);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 22);
 }
 
 TEST_F(Figures, OfRealParticipantsCarryNoMark) {

@@ -30,7 +30,15 @@ std::vector<Drawing> drawings(const StudyResult& study) {
   return result;
 }
 
-std::string report(const StudyResult& study) { return html_report(study, drawings(study)); }
+std::string report(const StudyResult& study) {
+  const auto pictures = drawings(study);
+  return to_html(study_report(study, pictures));
+}
+
+std::string markdown(const StudyResult& study) {
+  const auto pictures = drawings(study);
+  return to_markdown(study_report(study, pictures));
+}
 
 std::size_t count(const std::string& text, const std::string& what) {
   std::size_t found = 0;
@@ -42,12 +50,12 @@ std::size_t count(const std::string& text, const std::string& what) {
 
 TEST(Report, SaysThatParticipantsAreSimulatedExactlyWhenTheyAre) {
   const auto simulated = report(example_study(true));
-  EXPECT_THAT(simulated, HasSubstr("class=\"banner\">SIMULATED PARTICIPANTS"));
+  EXPECT_THAT(simulated, HasSubstr("class=\"banner\" role=\"note\">SIMULATED PARTICIPANTS"));
   EXPECT_THAT(simulated, HasSubstr("<title>SIMULATED"));
   EXPECT_THAT(report(example_study(false)), Not(HasSubstr("SIMULATED")));
   auto mixed = example_study(false);
   mixed.sessions.back().info.simulated = true;
-  EXPECT_THAT(report(mixed), HasSubstr("class=\"banner\""));
+  EXPECT_THAT(report(mixed), HasSubstr("class=\"banner\" "));
 }
 
 TEST(Report, HoldsEveryPartOfTheAnalysis) {
@@ -58,13 +66,63 @@ TEST(Report, HoldsEveryPartOfTheAnalysis) {
   }
   for (const char* part :
        {"Design and exclusions", "As published", "Repeated measures", "Table 1", "Learning",
-        "How recalls were aligned", "Tracking", "Timing", "Parameters and versions", "aborted",
+        "How recalls were aligned", "Tracking", "Timing", "Methods, parameters and versions",
+        "Mixed model", "Levene", "Mauchly", "Friedman", "d_z", "generalized", "aborted",
         "0.1.0 (0123abc)", "name = &quot;example&quot;", "1000 / 1020 / 1080 / 1500"}) {
     EXPECT_THAT(html, HasSubstr(part));
   }
-  EXPECT_EQ(count(html, "<figure>"), 10u);
-  EXPECT_EQ(count(html, "<figcaption>"), 10u);
-  EXPECT_EQ(count(html, "<svg role=\"img\" aria-label=\""), 10u);
+  EXPECT_EQ(count(html, "<figure>"), 11u);
+  EXPECT_EQ(count(html, "<figcaption>"), 11u);
+  EXPECT_EQ(count(html, "<svg role=\"img\" aria-label=\""), 11u);
+}
+
+TEST(Report, SaysThePlannedTestsAsJournalsWantThem) {
+  const auto study = example_study(false);
+  const Comparison& c = study.statistics.comparisons.at(0);
+  const auto html = report(study);
+  EXPECT_THAT(html, testing::ContainsRegex("Recall error was (not )?significantly lower after "
+                                           "visual \\(M = [0-9.]+, SD = [0-9.]+\\) than after "
+                                           "haptic training"));
+  EXPECT_THAT(
+      html, HasSubstr(escape_html(t_result(c.pooled) + ", one-tailed, d = " + effect(c.pooled_d))));
+}
+
+TEST(Report, OfOtherConditionsComparesEveryTwo) {
+  auto study = example_study(false);
+  for (auto& score : study.scores) {
+    score.condition = score.condition == "visual" ? "slow" : score.condition + " fast";
+  }
+  study.statistics = study_statistics(study.scores);
+  EXPECT_TRUE(study.statistics.comparisons.empty());
+  ASSERT_EQ(study.statistics.pairs.size(), 3u);
+  const auto html = report(study);
+  EXPECT_THAT(html, HasSubstr("haptic fast and slow"));
+  EXPECT_THAT(html, Not(HasSubstr("one-tailed, d")));
+}
+
+TEST(Report, IsTheSameInMarkdown) {
+  const auto study = example_study(true);
+  const auto text = markdown(study);
+  EXPECT_TRUE(text.starts_with("# Recall of force patterns\n"));
+  EXPECT_THAT(text, HasSubstr("> **SIMULATED PARTICIPANTS"));
+  EXPECT_EQ(count(text, "\n## ") + count(text, "\n### "),
+            count(report(study), "<h2>") + count(report(study), "<h3>"));
+  EXPECT_EQ(count(text, ".svg)"), 11u);
+  EXPECT_THAT(text, HasSubstr("](figure-28-recall-error.svg)"));
+  for (const auto& row : study.statistics.table_1) {
+    EXPECT_THAT(text, HasSubstr("| " + row.subject + " | " + row.best + " | " + row.worst + " | "));
+  }
+}
+
+TEST(Markdown, LeavesNothingThatReadsAsMarkup) {
+  Document document;
+  document.title = "a_b *c*";
+  document.table({"x"}, {{"1 | 2\n# 3 <b>"}});
+  document.source("file", "one\n```\ntwo");
+  const auto text = to_markdown(document);
+  EXPECT_THAT(text, HasSubstr("# a\\_b \\*c\\*\n"));
+  EXPECT_THAT(text, HasSubstr("| 1 \\| 2 \\# 3 &lt;b&gt; |\n"));
+  EXPECT_THAT(text, HasSubstr("````\none\n```\ntwo\n````\n"));
 }
 
 // What stands between each `before` and the next quote.
@@ -91,7 +149,7 @@ TEST(Report, HasEachIdOnce) {
   const auto single = quoted_after(html, " id='");
   ids.insert(ids.end(), single.begin(), single.end());
   const std::set<std::string> unique(ids.begin(), ids.end());
-  EXPECT_EQ(ids.size(), 20u);
+  EXPECT_EQ(ids.size(), 22u);
   EXPECT_EQ(unique.size(), ids.size());
   for (const auto& used : quoted_after(html, "href='#")) {
     EXPECT_EQ(unique.count(used), 1u) << used;

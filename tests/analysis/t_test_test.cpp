@@ -15,8 +15,6 @@
 namespace haptrial::analysis {
 namespace {
 
-using testing::DoubleNear;
-using testing::ElementsAre;
 using testing::HasSubstr;
 using Values = std::vector<double>;
 
@@ -67,14 +65,32 @@ TEST(TTest, TailsFitTogether) {
   for (auto& v : a) v = random.normal();
   for (auto& v : b) v = random.normal() + 0.4;
   for (const auto test : {student_t_test, welch_t_test}) {
-    const auto less = test(a, b, Tail::kLess);
-    const auto greater = test(a, b, Tail::kGreater);
-    const auto both = test(a, b, Tail::kTwoSided);
+    const auto less = test(a, b, Tail::kLess, 0.95);
+    const auto greater = test(a, b, Tail::kGreater, 0.95);
+    const auto both = test(a, b, Tail::kTwoSided, 0.95);
     EXPECT_NEAR(less->p + greater->p, 1.0, 1e-14);
     EXPECT_NEAR(both->p, 2.0 * std::min(less->p, greater->p), 1e-14);
-    EXPECT_DOUBLE_EQ(test(b, a, Tail::kGreater)->p, less->p);
+    EXPECT_DOUBLE_EQ(test(b, a, Tail::kGreater, 0.95)->p, less->p);
     // The interval excludes zero exactly when the two-sided p is below 0.05.
     EXPECT_EQ(both->low > 0.0 || both->high < 0.0, both->p < 0.05);
+  }
+}
+
+TEST(TTest, IntervalHoldsExactlyTheDifferencesThatItsLevelDoesNotReject) {
+  RandomStream random(23, "interval");
+  Values a(7), b(11);
+  for (auto& v : a) v = random.normal();
+  for (auto& v : b) v = 2.0 * random.normal();
+  for (const auto test : {student_t_test, welch_t_test}) {
+    for (const double level : {0.5, 0.9, 0.99}) {
+      const auto t = test(a, b, Tail::kGreater, level);
+      for (const double edge : {t->low, t->high}) {
+        Values moved = a;
+        for (auto& v : moved) v -= edge;
+        EXPECT_NEAR(test(moved, b, Tail::kTwoSided, level)->p, 1.0 - level, 1e-12);
+      }
+      EXPECT_DOUBLE_EQ(t->t * t->error, t->difference);
+    }
   }
 }
 
@@ -90,16 +106,6 @@ TEST(TTest, SaysWhyItIsNotDefined) {
   EXPECT_THAT(paired_t_test(Values{0.1, 0.3}, Values{0.3, 0.5}, Tail::kLess).because(),
               HasSubstr("not vary"));
   EXPECT_THROW(paired_t_test(Values{1, 2}, Values{1}, Tail::kLess), std::invalid_argument);
-}
-
-TEST(Holm, StepsDown) {
-  // Ordered 0.01, 0.02, 0.03, 0.04 times 4, 3, 2, 1, never falling.
-  EXPECT_THAT(holm_adjusted(Values{0.04, 0.01, 0.03, 0.02}),
-              ElementsAre(DoubleNear(0.06, 1e-15), DoubleNear(0.04, 1e-15), DoubleNear(0.06, 1e-15),
-                          DoubleNear(0.06, 1e-15)));
-  EXPECT_THAT(holm_adjusted(Values{0.6, 0.9}), ElementsAre(1.0, 1.0));
-  EXPECT_THAT(holm_adjusted(Values{}), testing::IsEmpty());
-  EXPECT_THROW(holm_adjusted(Values{1.5}), std::invalid_argument);
 }
 
 TEST(Moments, KeepDigitsBehindALargeConstant) {

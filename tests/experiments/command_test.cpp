@@ -48,7 +48,8 @@ class CommandTest : public testing::Test {
 };
 
 TEST_F(CommandTest, HelpShowsAnExampleOfEverySubcommand) {
-  for (const char* name : {"dry-run", "run", "analyze", "info", "validate", "devices", "device-test"}) {
+  for (const char* name :
+       {"dry-run", "run", "analyze", "export", "info", "validate", "devices", "device-test"}) {
     const CommandResult help = run_command(std::string("haptrial ") + name + " --help");
     EXPECT_EQ(help.status, 0);
     EXPECT_THAT(help.output, HasSubstr(std::string("Example:\n  haptrial ") + name));

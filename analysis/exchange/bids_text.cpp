@@ -1,0 +1,308 @@
+#include "analysis/exchange/bids_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "analysis/exchange/columns.h"
+#include "analysis/exchange/delimited.h"
+#include "core/record/schema.h"
+#include "core/record/session_reader.h"
+
+namespace haptrial::exchange::bids {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string text_of(const Json& json) {
+  // Bytes that are not UTF-8 came from a file: shown as the replacement character.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json json_of(const ColumnDoc& doc) {
+  Json json;
+  json["Description"] = doc.description;
+  if (!doc.unit.empty()) {
+    json["Units"] = doc.unit;
+  }
+  for (const auto& [value, meaning] : doc.levels) {
+    json["Levels"][value] = meaning;
+  }
+  return json;
+}
+
+std::string sidecar_of(const std::vector<ColumnDoc>& docs) {
+  Json json;
+  for (const auto& doc : docs) {
+    json[doc.name] = json_of(doc);
+  }
+  return text_of(json);
+}
+
+bool any_simulated(std::span<const Session> sessions) {
+  return std::any_of(sessions.begin(), sessions.end(),
+                     [](const auto& s) { return s.source.info.simulated; });
+}
+
+std::string experiment_name(const Session& session) {
+  return std::filesystem::path(session.source.info.definition_name).stem().string();
+}
+
+constexpr const char* kSimulated =
+    "SIMULATED PARTICIPANTS: these data come from virtual subjects. They say how the experiment "
+    "and "
+    "its analysis work, not how people behave.";
+
+// ---- participants
+
+/// The column's name in BIDS where all values are among those that BIDS allows there, else one of
+/// our own: the study's form decides what people can answer.
+std::string person_column(std::span<const Session> sessions, const char* name,
+                          std::string record::Participant::*field,
+                          const std::set<std::string>& allowed) {
+  const bool all = std::all_of(sessions.begin(), sessions.end(), [&](const Session& s) {
+    const std::string& value = s.source.info.participant.*field;
+    return value.empty() || allowed.contains(value);
+  });
+  return all ? name : std::string("reported_") + name;
+}
+
+const std::set<std::string> kSexes{"male",   "m", "M", "MALE",   "Male",
+                                   "female", "f", "F", "FEMALE", "Female",
+                                   "other",  "o", "O", "OTHER",  "Other"};
+const std::set<std::string> kHands{"left",         "l", "L", "LEFT",         "Left",
+                                   "right",        "r", "R", "RIGHT",        "Right",
+                                   "ambidextrous", "a", "A", "AMBIDEXTROUS", "Ambidextrous"};
+
+std::vector<ColumnDoc> participant_docs(std::span<const Session> sessions) {
+  return {{"participant_id", "", "the subject's label in this data set"},
+          {"subject", "", "the subject's identifier in the session files"},
+          {person_column(sessions, "sex", &record::Participant::sex, kSexes), "",
+           "as the participant gave it"},
+          {person_column(sessions, "handedness", &record::Participant::handedness, kHands), "",
+           "as the participant gave it"},
+          {"age_band", "", "range of ages in years, as the participant gave it"},
+          {"simulated",
+           "",
+           "whether the participant is a virtual subject",
+           {{"true", "SIMULATED: a virtual subject"}, {"false", "a person"}}}};
+}
+
+// ---- events
+
+std::vector<ColumnDoc> event_docs() {
+  const auto pass = [](const char* name) { return doc_of(record::trials_schema(), name); };
+  std::vector<ColumnDoc> docs{
+      {"onset", "s",
+       "of the pass or event since the first tick of the session: tick number / rate"},
+      {"duration", "s", "of the whole pass with approach, wait and return; 0 for an event"},
+      {"trial_type", "", "training condition of the block; n/a for an event"},
+      {"stim_file", "",
+       "the ideal movement and force of the block, below stimuli/: block, time [s] since the run "
+       "began, position_x, position_y, position_z [m], force [N]"},
+      {"pass", "", "number of the pass from 0, as in the recording"},
+      pass("phase"),
+      pass("trial"),
+      pass("block"),
+      pass("repetition"),
+      pass("attempt"),
+      pass("practice"),
+      pass("status"),
+      pass("stimulus_seed"),
+      {"run_onset", "s", "when the trajectory began to run; the part that is scored"},
+      {"run_duration", "s", "how long it ran"},
+      {"event", "", "what happened, in one word; n/a for a pass"},
+      {"text", "", "details of the event"}};
+  docs[5].levels = {{"training", "the pattern is presented"}, {"test", "it is recalled"}};
+  docs[10].levels = {{"0", "part of the study"}, {"1", "not scored"}};
+  docs[11].levels = {{"completed", "came to its end"}, {"aborted", "was broken off"}};
+  return docs;
+}
+
+struct EventLine {
+  double onset{0.0};
+  std::string text;
+};
+
+EventLine line_of(const Session& session, const record::PassRow& pass, std::size_t index,
+                  const RunSpan& run, bool stimulus) {
+  const double rate = session.source.info.rate;
+  const auto seconds = [&](std::uint64_t ticks) { return static_cast<double>(ticks) / rate; };
+  EventLine line;
+  line.onset = seconds(pass.first_sample);
+  RowText row(line.text, Delimited::kTsv);
+  const bool any = pass.last_sample >= pass.first_sample;
+  row.add(line.onset).add(any ? seconds(pass.last_sample - pass.first_sample + 1) : 0.0);
+  row.add(pass.condition).add(stimulus ? session.stimulus(pass.block) : "");
+  row.add(static_cast<std::uint64_t>(index));
+  row.add(pass.phase == record::Phase::kTest ? "test" : "training");
+  row.add(pass.trial).add(pass.block).add(pass.repetition).add(pass.attempt);
+  row.add(pass.practice ? 1 : 0);
+  row.add(pass.status == record::PassStatus::kCompleted ? "completed" : "aborted");
+  row.add(pass.stimulus_seed);
+  if (run.ticks > 0) {
+    row.add(seconds(run.first)).add(seconds(run.ticks));
+  } else {
+    row.add_missing().add_missing();
+  }
+  row.add_missing().add_missing().end();
+  return line;
+}
+
+EventLine line_of(const record::EventRow& event) {
+  EventLine line;
+  line.onset = 1e-9 * static_cast<double>(event.time_ns);
+  RowText row(line.text, Delimited::kTsv);
+  row.add_seconds(event.time_ns).add(0);
+  for (std::size_t i = 0; i < 13; ++i) {
+    row.add_missing();
+  }
+  row.add(event.kind).add(event.text).end();
+  return line;
+}
+
+}  // namespace
+
+std::string Session::folder() const { return session.empty() ? subject : subject + "/" + session; }
+
+std::string Session::stem() const {
+  return subject + (session.empty() ? "" : "_" + session) + "_task-" + task;
+}
+
+std::string Session::stimulus(std::int32_t block) const {
+  return fmt::format("{}{}_block-{:02}.tsv.gz", subject, session.empty() ? "" : "_" + session,
+                     block);
+}
+
+std::string dataset_description(std::span<const Session> sessions, const BidsOptions& options) {
+  const bool simulated = any_simulated(sessions);
+  const std::string name = options.name.empty() ? experiment_name(sessions.front()) : options.name;
+  Json json;
+  json["Name"] = (simulated ? "SIMULATED: " : "") + name;
+  json["BIDSVersion"] = "1.10.0";
+  json["DatasetType"] = "raw";
+  if (!options.authors.empty()) {
+    json["Authors"] = options.authors;
+  }
+  json["GeneratedBy"] = {{{"Name", "haptrial"},
+                          {"Version", options.program_version},
+                          {"Description", "haptrial export --bids"}}};
+  json["Simulated"] = simulated;
+  return text_of(json);
+}
+
+std::string readme(std::span<const Session> sessions) {
+  std::string text;
+  if (any_simulated(sessions)) {
+    text = std::string(kSimulated) + "\n\n";
+  }
+  text += fmt::format(
+      "{}: a force-feedback experiment, exported from session files of haptrial.\n\n"
+      "beh/*_events.tsv   passes along the trajectory (a trial is a training pass and a test "
+      "pass)\n"
+      "                   and what else happened\n"
+      "beh/*_physio.*     the recording: a row for each tick of the servo loop, without heading;\n"
+      "                   columns, units and rate stand in the .json beside it\n"
+      "stimuli/           the ideal movement and target force of each block\n"
+      "code/              the definition of the experiment\n\n"
+      "Row k of a recording is tick k after the one of StartTime, also where the session file\n"
+      "lacks the tick (a row of n/a), so an onset in the events is exact; the column time is what\n"
+      "the clock read. World frame: origin at the centre of the device's workspace, x to the\n"
+      "participant's right, y up, z towards the participant. The learnt force points down and is\n"
+      "given as a magnitude. Reals have 32 bits, as in the session files. Left out on purpose:\n"
+      "consent and free notes about participants.\n",
+      experiment_name(sessions.front()));
+  return text;
+}
+
+std::string participants_table(std::span<const Session> sessions) {
+  std::string text = heading(participant_docs(sessions), Delimited::kTsv);
+  RowText row(text, Delimited::kTsv);
+  for (const auto& [source, subject, session, task] : sessions) {
+    if (source.number == 1) {
+      const auto& person = source.info.participant;
+      row.add(subject).add(source.info.subject).add(person.sex).add(person.handedness);
+      row.add(person.age_band).add(source.info.simulated ? "true" : "false").end();
+    }
+  }
+  return text;
+}
+
+std::string participants_sidecar(std::span<const Session> sessions) {
+  return sidecar_of(participant_docs(sessions));
+}
+
+std::string sessions_table(std::span<const Session> of_subject) {
+  std::string text = "session_id\tacq_time\n";
+  RowText row(text, Delimited::kTsv);
+  for (const auto& session : of_subject) {
+    row.add(session.session).add(session.source.info.start_utc).end();
+  }
+  return text;
+}
+
+std::string scans_table(const Session& session) {
+  std::string text = "filename\tacq_time\n";
+  RowText row(text, Delimited::kTsv);
+  row.add("beh/" + session.stem() + "_physio.tsv.gz").add(session.source.info.start_utc).end();
+  return text;
+}
+
+std::string events_table(const Session& session, const record::SessionReader& reader,
+                         const WrittenSamples& samples) {
+  std::set<std::int32_t> blocks;
+  for (const auto& row : reader.stimuli()) {
+    blocks.insert(row.block);
+  }
+  std::vector<EventLine> lines;
+  const auto passes = reader.passes();
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    lines.push_back(
+        line_of(session, passes[i], i, samples.runs.at(i), blocks.contains(passes[i].block)));
+  }
+  for (const auto& event : reader.events()) {
+    lines.push_back(line_of(event));
+  }
+  std::stable_sort(lines.begin(), lines.end(),
+                   [](const auto& a, const auto& b) { return a.onset < b.onset; });
+  std::string text = heading(event_docs(), Delimited::kTsv);
+  for (const auto& line : lines) {
+    text += line.text;
+  }
+  return text;
+}
+
+std::string events_sidecar() { return sidecar_of(event_docs()); }
+
+std::string recording_sidecar(const Session& session, const WrittenSamples& samples) {
+  const auto& info = session.source.info;
+  Json json;
+  json["TaskName"] = session.task;
+  if (info.simulated) {
+    json["TaskDescription"] = kSimulated;
+  }
+  json["SamplingFrequency"] = info.rate;
+  json["StartTime"] = static_cast<double>(samples.first_sequence) / info.rate;
+  json["Columns"] = Json::array();
+  for (std::size_t i = 1; i < sample_docs().size(); ++i) {
+    json["Columns"].push_back(sample_docs()[i].name);
+  }
+  json["ManufacturersModelName"] = info.device;
+  json["SoftwareVersions"] =
+      fmt::format("haptrial {} ({})", info.program_version, info.program_commit);
+  json["Simulated"] = info.simulated;
+  json["Clock"] = info.clock;
+  json["Seed"] = std::to_string(info.seed);  // 64 bits are more than a double holds
+  json["DeviceMaxForce"] = info.device_max_force;
+  json["DeviceWorkspaceRadius"] = info.device_workspace_radius;
+  json["MissingTicks"] = samples.missing;
+  for (std::size_t i = 1; i < sample_docs().size(); ++i) {
+    json[sample_docs()[i].name] = json_of(sample_docs()[i]);
+  }
+  return text_of(json);
+}
+
+}  // namespace haptrial::exchange::bids

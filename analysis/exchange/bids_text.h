@@ -1,0 +1,40 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/exchange/export_bids.h"
+#include "analysis/exchange/sample_text.h"
+
+// The texts of a BIDS data set; for export_bids.cpp only.
+namespace haptrial::exchange::bids {
+
+/// A session and the names that it has in the data set.
+struct Session {
+  ExportSession source;
+  std::string subject;  // "sub-S01"
+  std::string session;  // "ses-2"; empty where every subject has one
+  std::string task;     // "forcetraining"
+
+  std::string folder() const;                      // "sub-S01/ses-2"
+  std::string stem() const;                        // "sub-S01_ses-2_task-forcetraining"
+  std::string stimulus(std::int32_t block) const;  // below stimuli/
+};
+
+std::string dataset_description(std::span<const Session> sessions, const BidsOptions& options);
+std::string readme(std::span<const Session> sessions);
+
+std::string participants_table(std::span<const Session> sessions);
+std::string participants_sidecar(std::span<const Session> sessions);
+/// One row for each session of a subject.
+std::string sessions_table(std::span<const Session> of_subject);
+std::string scans_table(const Session& session);
+
+/// One row for each pass and each event, by time.
+std::string events_table(const Session& session, const record::SessionReader& reader,
+                         const WrittenSamples& samples);
+std::string events_sidecar();
+std::string recording_sidecar(const Session& session, const WrittenSamples& samples);
+
+}  // namespace haptrial::exchange::bids

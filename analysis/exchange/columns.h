@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "analysis/exchange/delimited.h"
+
+namespace haptrial::record {
+struct TableSchema;
+}
+
+namespace haptrial::exchange {
+
+/// What a column of an exported table means.
+struct ColumnDoc {
+  std::string name;
+  std::string unit;  // "" for a text or a pure number
+  std::string description;
+  std::vector<std::pair<std::string, std::string>> levels{};  // value, meaning
+};
+
+/// The column of that name as the session file describes it.
+/// @throws std::invalid_argument when the schema has none.
+ColumnDoc doc_of(const record::TableSchema& schema, std::string_view column);
+
+/// The names as the heading of a table.
+std::string heading(const std::vector<ColumnDoc>& docs, Delimited kind);
+
+/// Columns of the exported samples: those of /samples with the time in seconds.
+const std::vector<ColumnDoc>& sample_docs();
+/// Columns of the exported stimuli.
+const std::vector<ColumnDoc>& stimulus_docs();
+
+}  // namespace haptrial::exchange

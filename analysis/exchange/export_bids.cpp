@@ -1,0 +1,153 @@
+#include "analysis/exchange/export_bids.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "analysis/exchange/bids_text.h"
+#include "analysis/exchange/gzip_file.h"
+#include "analysis/exchange/new_folder.h"
+#include "core/base/error.h"
+#include "core/record/session_reader.h"
+
+namespace haptrial::exchange {
+namespace {
+
+namespace fs = std::filesystem;
+using bids::Session;
+
+/// "force_training" of "force_training.toml".
+std::string experiment_of(const ExportSession& session) {
+  return fs::path(session.info.definition_name).stem().string();
+}
+
+std::string label_of(const std::string& what, const std::string& text, const fs::path& file) {
+  const std::string label = bids_label(text);
+  if (label.empty()) {
+    throw InputError(fmt::format(
+        "{}: the {} '{}' has no letter or digit of ASCII; allowed: a name with some, which is what "
+        "a BIDS data set calls it",
+        file.string(), what, text));
+  }
+  return label;
+}
+
+std::vector<Session> named_sessions(std::span<const fs::path> files) {
+  std::vector<Session> sessions;
+  std::map<std::string, std::string> subjects;  // label to subject
+  const std::vector<ExportSession> sources = sessions_to_export(files);
+  const bool several =
+      std::any_of(sources.begin(), sources.end(), [](const auto& s) { return s.of > 1; });
+  for (const auto& source : sources) {
+    if (source.info.definition != sources.front().info.definition) {
+      throw InputError(fmt::format(
+          "{}: was recorded with another definition than {}; export each study into a folder of "
+          "its own",
+          source.file.string(), sources.front().file.string()));
+    }
+    const std::string label = label_of("subject", source.info.subject, source.file);
+    const auto [twin, is_new] = subjects.emplace(label, source.info.subject);
+    if (!is_new && twin->second != source.info.subject) {
+      throw InputError(
+          fmt::format("{}: subject {} would be sub-{}, as {} is; allowed: subjects that differ in "
+                      "their letters "
+                      "and digits",
+                      source.file.string(), source.info.subject, label, twin->second));
+    }
+    sessions.push_back({source, "sub-" + label, several ? fmt::format("ses-{}", source.number) : "",
+                        label_of("experiment", experiment_of(source), source.file)});
+  }
+  return sessions;
+}
+
+void write_stimuli(const NewFolder& out, const Session& session,
+                   const record::SessionReader& reader) {
+  std::map<std::int32_t, std::vector<record::StimulusRow>> blocks;
+  for (const auto& row : reader.stimuli()) {
+    blocks[row.block].push_back(row);
+  }
+  for (const auto& [block, rows] : blocks) {
+    GzipFile file(out.place("stimuli/" + session.stimulus(block)));
+    file.write(stimulus_text(rows, Delimited::kTsv));
+    file.close();
+  }
+}
+
+WrittenSamples write_session(const NewFolder& out, const Session& session, Counter& counter) {
+  const record::SessionReader reader(session.source.file);
+  const std::string stem = session.folder() + "/beh/" + session.stem();
+  write_stimuli(out, session, reader);
+  GzipFile file(out.place(stem + "_physio.tsv.gz"));
+  WrittenSamples samples = write_samples(reader, Delimited::kTsv, file, counter);
+  file.close();
+  out.write(stem + "_physio.json", bids::recording_sidecar(session, samples));
+  out.write(stem + "_events.tsv", bids::events_table(session, reader, samples));
+  const std::string prefix = session.session.empty() ? "" : "_" + session.session;
+  out.write(fmt::format("{}/{}{}_scans.tsv", session.folder(), session.subject, prefix),
+            bids::scans_table(session));
+  return samples;
+}
+
+void write_whole(const NewFolder& out, std::span<const Session> sessions,
+                 const BidsOptions& options) {
+  const auto& first = sessions.front();
+  out.write("dataset_description.json", bids::dataset_description(sessions, options));
+  out.write("README", bids::readme(sessions));
+  out.write("participants.tsv", bids::participants_table(sessions));
+  out.write("participants.json", bids::participants_sidecar(sessions));
+  out.write(fmt::format("task-{}_events.json", first.task), bids::events_sidecar());
+  out.write("code/" + bids_label(experiment_of(first.source)) + ".toml",
+            first.source.info.definition);
+  if (first.session.empty()) {
+    return;
+  }
+  for (auto at = sessions.begin(); at != sessions.end();) {
+    const auto end = std::find_if(at, sessions.end(),
+                                  [&](const Session& s) { return s.subject != at->subject; });
+    out.write(fmt::format("{0}/{0}_sessions.tsv", at->subject),
+              bids::sessions_table(std::span(at, end)));
+    at = end;
+  }
+}
+
+}  // namespace
+
+std::string bids_label(std::string_view text) {
+  std::string label;
+  for (const char c : text) {
+    if ((c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z')) {
+      label += c;
+    }
+  }
+  return label;
+}
+
+BidsSummary export_bids(std::span<const fs::path> files, const fs::path& folder,
+                        const BidsOptions& options, const Watch& watch) {
+  const std::vector<Session> sessions = named_sessions(files);
+  NewFolder out(folder);
+  write_whole(out, sessions, options);
+  std::vector<WrittenSamples> written(sessions.size());
+  share_out(
+      sessions.size(), options.jobs,
+      [&](std::size_t i, Counter& counter) {
+        written[i] = write_session(out, sessions[i], counter);
+      },
+      watch);
+  out.publish();
+  BidsSummary summary;
+  summary.sessions = sessions.size();
+  std::set<std::string> subjects;
+  for (std::size_t i = 0; i < sessions.size(); ++i) {
+    subjects.insert(sessions[i].subject);
+    summary.samples += written[i].ticks - written[i].missing;
+    summary.missing += written[i].missing;
+    summary.simulated = summary.simulated || sessions[i].source.info.simulated;
+  }
+  summary.subjects = subjects.size();
+  return summary;
+}
+
+}  // namespace haptrial::exchange

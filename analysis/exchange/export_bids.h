@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/exchange/export_sessions.h"
+
+namespace haptrial::exchange {
+
+struct BidsOptions {
+  std::string name{};                  // of the data set; empty: the experiment's
+  std::vector<std::string> authors{};  // as the data set is to name them
+  std::string program_version{};       // of the exporting program
+  int jobs{1};
+};
+
+struct BidsSummary {
+  std::size_t subjects{0};
+  std::size_t sessions{0};
+  std::uint64_t samples{0};
+  std::uint64_t missing{0};  // ticks without a sample, rows of "n/a"
+  bool simulated{false};
+};
+
+/// Writes session files as a data set of the Brain Imaging Data Structure, version 1.10: events,
+/// and every tick of the loop as a continuous recording under beh/ (docs/decisions/0007). What
+/// participants said in free text, and their consent, stays out.
+/// @param folder  new or empty; it appears whole or not at all.
+/// @throws InputError when there is no file, one is damaged or given twice, the files are of
+/// several experiments, or two subjects have the same letters and digits; RunError when the disk is
+/// full.
+BidsSummary export_bids(std::span<const std::filesystem::path> files,
+                        const std::filesystem::path& folder, const BidsOptions& options,
+                        const Watch& watch);
+
+/// The letters and digits of a name, which is all that a label of the data set may have.
+std::string bids_label(std::string_view text);
+
+}  // namespace haptrial::exchange

@@ -1,0 +1,237 @@
+#include "analysis/exchange/export_csv.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "analysis/exchange/columns.h"
+#include "analysis/exchange/delimited.h"
+#include "analysis/exchange/gzip_file.h"
+#include "analysis/exchange/new_folder.h"
+#include "analysis/exchange/sample_text.h"
+#include "core/record/schema.h"
+#include "core/record/session_reader.h"
+
+namespace haptrial::exchange {
+namespace {
+
+namespace fs = std::filesystem;
+using Docs = std::vector<ColumnDoc>;
+
+const ColumnDoc kSubject{"subject", "", "identifier of the participant"};
+const ColumnDoc kSession{"session", "", "number of the participant's session, from 1"};
+const ColumnDoc kIsSimulated{
+    "simulated", "", "whether the participant is a virtual subject", {{"true", "SIMULATED"}}};
+
+ColumnDoc pass_doc(const char* name) { return doc_of(record::trials_schema(), name); }
+
+Docs session_docs() {
+  return {kSubject,
+          kSession,
+          {"file", "", "session file"},
+          kIsSimulated,
+          {"device", "", "name"},
+          {"clock", "", "real or simulated"},
+          {"rate", "Hz", "of the servo loop, so of the samples"},
+          {"seed", "", "of the session; 64 bits: to be read as text where numbers are doubles"},
+          {"start_utc", "", "ISO 8601"},
+          {"definition", "", "file of the experiment's definition"},
+          {"program_version", "", "what recorded the session"},
+          {"samples", "", "rows of /samples"}};
+}
+
+Docs trial_docs() {
+  return {kSubject,
+          kSession,
+          {"pass", "", "number of the pass from 0, as in the samples"},
+          pass_doc("trial"),
+          pass_doc("condition"),
+          pass_doc("phase"),
+          pass_doc("block"),
+          pass_doc("repetition"),
+          pass_doc("attempt"),
+          pass_doc("practice"),
+          pass_doc("status"),
+          pass_doc("stimulus_seed"),
+          pass_doc("first_sample"),
+          pass_doc("last_sample"),
+          {"onset", "s", "since the first tick of the session"},
+          {"duration", "s", "with approach, wait and return"},
+          kIsSimulated};
+}
+
+Docs happening_docs() {
+  return {kSubject,
+          kSession,
+          {"time", "s", "since the first tick of the session"},
+          {"kind", "", "what happened, in one word"},
+          {"text", "", "details"}};
+}
+
+Docs score_docs() {
+  return {kSubject,
+          pass_doc("trial"),
+          pass_doc("block"),
+          pass_doc("repetition"),
+          pass_doc("condition"),
+          {"score", "", "recall error; 0 is perfect recall"},
+          {"alignment_cost", "", "cost of the alignment for each pair of its path"},
+          {"rms_force", "N", "root mean square difference of forces after the alignment"},
+          {"rms_slope", "N/s", "the same of their slopes"},
+          {"rms_unaligned", "N", "root mean square difference of forces before it"}};
+}
+
+void add_session(RowText& row, const ExportSession& s) {
+  row.add(s.info.subject).add(s.number).add(s.file.filename().string());
+  row.add(s.info.simulated ? "true" : "false").add(s.info.device).add(s.info.clock);
+  row.add(s.info.rate).add(s.info.seed).add(s.info.start_utc).add(s.info.definition_name);
+  row.add(s.info.program_version).add(s.samples).end();
+}
+
+void add_pass(RowText& row, const ExportSession& s, std::size_t index,
+              const record::PassRow& pass) {
+  const bool any = pass.last_sample >= pass.first_sample;
+  const std::uint64_t ticks = any ? pass.last_sample - pass.first_sample + 1 : 0;
+  row.add(s.info.subject).add(s.number).add(static_cast<std::uint64_t>(index)).add(pass.trial);
+  row.add(pass.condition).add(pass.phase == record::Phase::kTest ? "test" : "training");
+  row.add(pass.block).add(pass.repetition).add(pass.attempt).add(pass.practice ? 1 : 0);
+  row.add(pass.status == record::PassStatus::kCompleted ? "completed" : "aborted");
+  row.add(pass.stimulus_seed).add(pass.first_sample).add(pass.last_sample);
+  row.add(static_cast<double>(pass.first_sample) / s.info.rate);
+  row.add(static_cast<double>(ticks) / s.info.rate);
+  row.add(s.info.simulated ? "true" : "false").end();
+}
+
+/// The three small tables.
+class Tables {
+ public:
+  Tables()
+      : sessions(heading(session_docs(), Delimited::kCsv)),
+        trials(heading(trial_docs(), Delimited::kCsv)),
+        events(heading(happening_docs(), Delimited::kCsv)) {}
+
+  void add(const ExportSession& session) {
+    const record::SessionReader reader(session.file);
+    RowText session_row(sessions, Delimited::kCsv);
+    add_session(session_row, session);
+    RowText pass_row(trials, Delimited::kCsv);
+    for (const auto& pass : reader.passes()) {
+      add_pass(pass_row, session, index_++, pass);
+    }
+    passes += index_;
+    index_ = 0;
+    RowText event_row(events, Delimited::kCsv);
+    for (const auto& event : reader.events()) {
+      event_row.add(session.info.subject).add(session.number).add_seconds(event.time_ns);
+      event_row.add(event.kind).add(event.text).end();
+    }
+  }
+
+  std::string sessions;
+  std::string trials;
+  std::string events;
+  std::size_t passes{0};
+
+ private:
+  std::size_t index_{0};
+};
+
+nlohmann::ordered_json described(const char* what, const Docs& docs) {
+  nlohmann::ordered_json json{{"description", what}};
+  for (const auto& doc : docs) {
+    auto& column = json["columns"][doc.name];
+    column["description"] = doc.description;
+    if (!doc.unit.empty()) {
+      column["unit"] = doc.unit;
+    }
+    for (const auto& [value, meaning] : doc.levels) {
+      column["levels"][value] = meaning;
+    }
+  }
+  return json;
+}
+
+std::string dictionary(bool samples, bool simulated) {
+  nlohmann::ordered_json json;
+  json["simulated"] = simulated;
+  json["missing"] = "an empty field";
+  auto& files = json["files"];
+  files["sessions.csv"] = described("a row for each session", session_docs());
+  files["trials.csv"] =
+      described("a row for each pass; a trial is a training pass and a test pass", trial_docs());
+  files["events.csv"] = described("what happened when", happening_docs());
+  if (samples) {
+    files["samples/*.csv.gz"] = described("a row for each tick of the servo loop", sample_docs());
+    files["stimuli/*.csv.gz"] =
+        described("the ideal movement and target force of each block", stimulus_docs());
+  }
+  files["scores.csv"] =
+      described("a row for each scored trial, which haptrial analyze writes", score_docs());
+  return json.dump(2) + "\n";
+}
+
+/// "P01", or "P01-2" for a second session; other characters than in identifiers become '_'.
+std::string file_stem(const ExportSession& session) {
+  std::string stem = session.info.subject;
+  for (char& c : stem) {
+    const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+    c = plain || c == '-' || c == '_' ? c : '_';
+  }
+  return session.of > 1 ? fmt::format("{}-{}", stem, session.number) : stem;
+}
+
+/// One for each session, all different.
+std::vector<std::string> file_stems(const std::vector<ExportSession>& sessions) {
+  std::vector<std::string> stems;
+  std::set<std::string> taken;
+  for (const auto& session : sessions) {
+    std::string stem = file_stem(session);
+    while (!taken.insert(stem).second) {
+      stem += '_';
+    }
+    stems.push_back(stem);
+  }
+  return stems;
+}
+
+void write_ticks(const NewFolder& out, const ExportSession& session, const std::string& stem,
+                 Counter& counter) {
+  const record::SessionReader reader(session.file);
+  GzipFile samples(out.place("samples/" + stem + ".csv.gz"));
+  write_samples(reader, Delimited::kCsv, samples, counter);
+  samples.close();
+  GzipFile stimuli(out.place("stimuli/" + stem + ".csv.gz"));
+  stimuli.write(stimulus_text(reader.stimuli(), Delimited::kCsv));
+  stimuli.close();
+}
+
+}  // namespace
+
+CsvSummary export_csv(std::span<const fs::path> files, const fs::path& folder,
+                      const CsvOptions& options, const Watch& watch) {
+  const std::vector<ExportSession> sessions = sessions_to_export(files);
+  NewFolder out(folder);
+  Tables tables;
+  bool simulated = false;
+  for (const auto& session : sessions) {
+    tables.add(session);
+    simulated = simulated || session.info.simulated;
+    watch(0);
+  }
+  out.write("sessions.csv", tables.sessions);
+  out.write("trials.csv", tables.trials);
+  out.write("events.csv", tables.events);
+  out.write("dictionary.json", dictionary(options.samples, simulated));
+  if (options.samples) {
+    const auto stems = file_stems(sessions);
+    share_out(
+        sessions.size(), options.jobs,
+        [&](std::size_t i, Counter& counter) { write_ticks(out, sessions[i], stems[i], counter); },
+        watch);
+  }
+  out.publish();
+  return {sessions.size(), tables.passes, options.samples ? total_samples(sessions) : 0};
+}
+
+}  // namespace haptrial::exchange

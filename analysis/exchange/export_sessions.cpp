@@ -1,0 +1,129 @@
+#include "analysis/exchange/export_sessions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <map>
+#include <thread>
+
+#include "core/base/error.h"
+#include "core/record/session_reader.h"
+
+namespace haptrial::exchange {
+namespace {
+
+namespace fs = std::filesystem;
+
+void refuse_twins(const std::vector<ExportSession>& sessions) {
+  std::map<fs::path, fs::path> seen;
+  for (const auto& session : sessions) {
+    std::error_code error;
+    const fs::path real = fs::canonical(session.file, error);
+    if (!seen.emplace(real, session.file).second) {
+      throw InputError(
+          fmt::format("{}: is given twice; allowed: each session once", session.file.string()));
+    }
+  }
+}
+
+/// The threads and what came of their work.
+class Crew {
+ public:
+  Crew(std::size_t count, const std::function<void(std::size_t, Counter&)>& work)
+      : work_(work), failures_(count) {}
+
+  void run(int jobs, const Watch& watch) {
+    {
+      std::vector<std::jthread> threads;
+      const std::size_t wanted = std::min(static_cast<std::size_t>(jobs), failures_.size());
+      for (std::size_t k = 0; k < wanted; ++k) {
+        threads.emplace_back([this] { take_turns(); });
+      }
+      try {
+        while (finished_.load() < failures_.size()) {
+          std::this_thread::sleep_for(std::chrono::milliseconds(10));
+          watch(counter_.samples());
+        }
+      } catch (...) {
+        counter_.stop();
+        threads.clear();
+        throw;
+      }
+    }
+    for (const auto& failure : failures_) {
+      if (failure) {
+        std::rethrow_exception(failure);
+      }
+    }
+  }
+
+ private:
+  void take_turns() {
+    for (std::size_t i; (i = next_.fetch_add(1)) < failures_.size(); ++finished_) {
+      try {
+        if (!failed_.load()) {
+          work_(i, counter_);
+        }
+      } catch (...) {
+        failures_[i] = std::current_exception();
+        failed_.store(true);  // what has begun goes on: the failure named is that of the lowest i
+      }
+    }
+  }
+
+  const std::function<void(std::size_t, Counter&)>& work_;
+  std::vector<std::exception_ptr> failures_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<std::size_t> finished_{0};
+  std::atomic<bool> failed_{false};
+  Counter counter_;
+};
+
+}  // namespace
+
+void Counter::check() const {
+  if (stopped_.load()) {
+    throw RunError("the export was stopped");
+  }
+}
+
+std::vector<ExportSession> sessions_to_export(std::span<const fs::path> files) {
+  if (files.empty()) {
+    throw InputError("there is no session file to export; allowed: one or more");
+  }
+  std::vector<ExportSession> sessions;
+  for (const auto& file : files) {
+    const record::SessionReader reader(file);
+    sessions.push_back({file, reader.info(), reader.sample_count()});
+  }
+  refuse_twins(sessions);
+  std::sort(sessions.begin(), sessions.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.info.subject, a.info.start_utc, a.file) <
+           std::tie(b.info.subject, b.info.start_utc, b.file);
+  });
+  std::map<std::string, int> count;
+  for (auto& session : sessions) {
+    session.number = ++count[session.info.subject];
+  }
+  for (auto& session : sessions) {
+    session.of = count[session.info.subject];
+  }
+  return sessions;
+}
+
+std::uint64_t total_samples(std::span<const ExportSession> sessions) {
+  std::uint64_t total = 0;
+  for (const auto& session : sessions) {
+    total += session.samples;
+  }
+  return total;
+}
+
+void share_out(std::size_t count, int jobs, const std::function<void(std::size_t, Counter&)>& work,
+               const Watch& watch) {
+  Crew(count, work).run(jobs, watch);
+}
+
+}  // namespace haptrial::exchange

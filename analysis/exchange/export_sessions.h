@@ -1,0 +1,54 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/record/session_types.h"
+
+namespace haptrial::exchange {
+
+/// A session file and its place among those of its subject.
+struct ExportSession {
+  std::filesystem::path file;
+  record::SessionInfo info;
+  std::uint64_t samples{0};  // rows of /samples
+  int number{1};             // among this subject's sessions in order of start, from 1
+  int of{1};                 // how many this subject has
+};
+
+/// @returns the sessions by subject, then start.
+/// @throws InputError when there is no file, one cannot be read, or one is given twice.
+std::vector<ExportSession> sessions_to_export(std::span<const std::filesystem::path> files);
+
+/// Samples of all sessions together.
+std::uint64_t total_samples(std::span<const ExportSession> sessions);
+
+/// Called now and then on the calling thread with the samples written so far. What it throws stops
+/// the export, of which then nothing is left.
+using Watch = std::function<void(std::uint64_t samples)>;
+
+/// Counts the samples that the threads have written, and stops them. Any thread.
+class Counter {
+ public:
+  void add(std::uint64_t samples) { samples_.fetch_add(samples, std::memory_order_relaxed); }
+  std::uint64_t samples() const { return samples_.load(std::memory_order_relaxed); }
+  void stop() { stopped_.store(true); }
+  /// @throws RunError after stop(): for the end of each piece of work.
+  void check() const;
+
+ private:
+  std::atomic<std::uint64_t> samples_{0};
+  std::atomic<bool> stopped_{false};
+};
+
+/// Calls work(i, counter) once for each i below `count`, over up to `jobs` threads.
+/// @throws what `work` threw for the lowest i, or what `watch` threw.
+void share_out(std::size_t count, int jobs, const std::function<void(std::size_t, Counter&)>& work,
+               const Watch& watch);
+
+}  // namespace haptrial::exchange

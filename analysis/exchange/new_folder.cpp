@@ -1,0 +1,87 @@
+#include "analysis/exchange/new_folder.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+#include "core/base/error.h"
+
+namespace haptrial::exchange {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path without_trailing_slash(const fs::path& path) {
+  const fs::path whole = fs::absolute(path).lexically_normal();
+  return whole.has_filename() ? whole : whole.parent_path();
+}
+
+}  // namespace
+
+NewFolder::NewFolder(const fs::path& folder) : final_(without_trailing_slash(folder)) {
+  std::error_code error;
+  if (fs::exists(final_, error) && !fs::is_directory(final_, error)) {
+    throw InputError(
+        fmt::format("{}: is not a folder; allowed: a new or an empty folder", final_.string()));
+  }
+  if (fs::is_directory(final_, error) && !fs::is_empty(final_, error)) {
+    throw InputError(
+        fmt::format("{}: is not empty; allowed: a new or an empty folder, nothing is overwritten",
+                    final_.string()));
+  }
+  staging_ =
+      final_.parent_path() / fmt::format(".{}.partial-{}", final_.filename().string(), getpid());
+  fs::remove_all(staging_, error);
+  fs::create_directories(staging_, error);
+  if (error || !fs::is_directory(staging_)) {
+    throw InputError(
+        fmt::format("{}: cannot be made ({}); allowed: a folder whose parent may be "
+                    "written",
+                    final_.string(), error.message()));
+  }
+}
+
+NewFolder::~NewFolder() {
+  if (!published_) {
+    std::error_code ignored;
+    fs::remove_all(staging_, ignored);
+  }
+}
+
+fs::path NewFolder::place(const fs::path& name) const {
+  const fs::path file = staging_ / name;
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);
+  if (error) {
+    throw RunError(
+        fmt::format("{}: cannot be made: {}", file.parent_path().string(), error.message()));
+  }
+  return file;
+}
+
+void NewFolder::write(const fs::path& name, std::string_view text) const {
+  errno = 0;
+  std::ofstream file(place(name), std::ios::binary);
+  file.write(text.data(), static_cast<std::streamsize>(text.size()));
+  file.close();
+  if (!file) {
+    throw RunError(fmt::format("{}: could not be written: {}", (final_ / name).string(),
+                               std::strerror(errno)));
+  }
+}
+
+void NewFolder::publish() {
+  std::error_code error;
+  fs::rename(staging_, final_, error);  // takes the place of an empty folder, of no other
+  if (error) {
+    throw RunError(
+        fmt::format("{}: could not be put in place: {}", final_.string(), error.message()));
+  }
+  published_ = true;
+}
+
+}  // namespace haptrial::exchange

@@ -1,0 +1,143 @@
+#include "analysis/exchange/sample_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "analysis/exchange/columns.h"
+#include "analysis/exchange/export_sessions.h"
+#include "analysis/exchange/gzip_file.h"
+#include "core/base/error.h"
+#include "core/record/session_reader.h"
+
+namespace haptrial::exchange {
+namespace {
+
+using record::Sample;
+using record::SessionReader;
+
+constexpr std::uint64_t kPiece = 32768;                // rows read at a time
+constexpr std::uint64_t kMostMissing = 1'000'000'000;  // more is damage, not loss
+
+void add_vector(RowText& row, const Eigen::Vector3d& vector) {
+  for (const double value : vector) {
+    row.add(static_cast<float>(value));  // as the file has it
+  }
+}
+
+void add_sample(RowText& row, const Sample& s, Delimited kind) {
+  if (kind == Delimited::kCsv) {
+    row.add(s.sequence);
+  }
+  row.add_seconds(s.time_ns).add(s.pass).add(static_cast<int>(s.stage));
+  add_vector(row, s.position);
+  add_vector(row, s.velocity);
+  add_vector(row, s.force);
+  row.add(static_cast<float>(s.applied_force)).add(static_cast<float>(s.target_force));
+  row.add(static_cast<int>(s.saturated)).end();
+}
+
+/// Turns one session's samples into text.
+class Writer {
+ public:
+  Writer(const SessionReader& reader, Delimited kind, GzipFile& file)
+      : reader_(reader), kind_(kind), file_(file) {
+    RowText row(missing_, kind);
+    for (std::size_t i = 1; i < sample_docs().size(); ++i) {
+      row.add_missing();
+    }
+    row.end();
+    if (kind == Delimited::kCsv) {
+      file.write(heading(sample_docs(), kind));
+    }
+    result_.runs.resize(reader.passes().size());
+  }
+
+  void take(const std::vector<Sample>& samples) {
+    text_.clear();
+    RowText row(text_, kind_);
+    for (const auto& sample : samples) {
+      close_gap(sample.sequence);
+      add_sample(row, sample, kind_);
+      note_run(sample);
+    }
+    file_.write(text_);
+  }
+
+  WrittenSamples result() { return std::move(result_); }
+
+ private:
+  void close_gap(std::uint64_t sequence) {
+    if (!begun_) {
+      begun_ = true;
+      result_.first_sequence = next_ = sequence;
+    }
+    if (sequence < next_ || sequence - next_ > kMostMissing) {
+      throw InputError(fmt::format(
+          "{}: sequence number {} of /samples follows {}; allowed: ascending ones, with at most "
+          "{} ticks missing between them",
+          reader_.path().string(), sequence, next_ - 1, kMostMissing));
+    }
+    result_.missing += sequence - next_;
+    for (; next_ < sequence; ++next_) {
+      if (kind_ == Delimited::kTsv) {
+        text_ += missing_;
+        if (text_.size() > GzipFile::kMember) {
+          file_.write(text_);
+          text_.clear();
+        }
+      }
+    }
+    ++next_;
+    result_.ticks = next_ - result_.first_sequence;
+  }
+
+  void note_run(const Sample& sample) {
+    if (sample.stage != record::Stage::kRun || sample.pass < 0 ||
+        static_cast<std::size_t>(sample.pass) >= result_.runs.size()) {
+      return;
+    }
+    RunSpan& run = result_.runs[static_cast<std::size_t>(sample.pass)];
+    if (run.ticks == 0) {
+      run.first = sample.sequence;
+    }
+    run.ticks = sample.sequence - run.first + 1;
+  }
+
+  const SessionReader& reader_;
+  Delimited kind_;
+  GzipFile& file_;
+  std::string text_;
+  std::string missing_;  // a row of a tick that is not there
+  std::uint64_t next_{0};
+  bool begun_{false};
+  WrittenSamples result_;
+};
+
+}  // namespace
+
+WrittenSamples write_samples(const SessionReader& reader, Delimited kind, GzipFile& file,
+                             Counter& counter) {
+  Writer writer(reader, kind, file);
+  const std::uint64_t rows = reader.sample_count();
+  for (std::uint64_t row = 0; row < rows; row += kPiece) {
+    const std::uint64_t count = std::min(kPiece, rows - row);
+    writer.take(reader.samples(row, count));
+    counter.add(count);
+    counter.check();
+  }
+  return writer.result();
+}
+
+std::string stimulus_text(std::span<const record::StimulusRow> rows, Delimited kind) {
+  std::string text = heading(stimulus_docs(), kind);
+  RowText row(text, kind);
+  for (const auto& s : rows) {
+    row.add(s.block).add(s.time).add(s.position.x()).add(s.position.y()).add(s.position.z());
+    row.add(s.force).end();
+  }
+  return text;
+}
+
+}  // namespace haptrial::exchange

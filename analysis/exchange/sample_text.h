@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/exchange/delimited.h"
+#include "core/record/session_types.h"
+
+namespace haptrial::record {
+class SessionReader;
+}
+
+namespace haptrial::exchange {
+
+class Counter;
+class GzipFile;
+
+/// The part of a pass in which the trajectory ran (Stage::kRun), in sequence numbers.
+struct RunSpan {
+  std::uint64_t first{0};
+  std::uint64_t ticks{0};  // from first to last, both included; 0 where it never ran
+};
+
+struct WrittenSamples {
+  std::uint64_t first_sequence{0};
+  std::uint64_t ticks{0};     // from the first sequence number to the last
+  std::uint64_t missing{0};   // ticks among them without a row in the session file
+  std::vector<RunSpan> runs;  // (passes)
+};
+
+/// Writes /samples as text, a piece at a time: memory does not grow with the session. Columns as
+/// sample_docs() has them. kTsv: no heading and no sequence numbers, and a row of "n/a" for every
+/// missing tick, so that row k is tick first_sequence + k. kCsv: with heading, without such rows.
+/// @throws InputError when the file is damaged; RunError when the disk is full or `counter` stops.
+WrittenSamples write_samples(const record::SessionReader& reader, Delimited kind, GzipFile& file,
+                             Counter& counter);
+
+/// Rows of /stimuli as text with heading, columns as stimulus_docs() has them.
+std::string stimulus_text(std::span<const record::StimulusRow> rows, Delimited kind);
+
+}  // namespace haptrial::exchange

@@ -1,0 +1,67 @@
+#include <fmt/format.h>
+
+#include <map>
+#include <set>
+
+#include "analysis/report_parts.h"
+#include "analysis/wording.h"
+
+namespace haptrial::analysis {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+/// A paragraph that can go into a paper's methods section.
+std::string methods(const StudyResult& study) {
+  std::vector<std::string> parameters;
+  for (const auto& [name, value] : study.parameters) {
+    parameters.push_back(name + " " + value);
+  }
+  return fmt::format(
+      "Recall was scored as in Morris (2006, §4.3): target and applied force were resampled to a "
+      "common time base, the applied force low-pass filtered, the two aligned by dynamic "
+      "programming over the differences of force and slope, and the score taken as the weighted "
+      "mean of the alignment cost and of the root-mean-square differences of force and slope after "
+      "warping ({}). Scores were compared between training conditions by one-way analysis of "
+      "variance and one-tailed t-tests over pooled trials, as published, and, because the trials "
+      "of a participant are not independent, by repeated-measures analysis of variance with "
+      "Greenhouse and Geisser's correction and paired t-tests over participants' means with Holm's "
+      "adjustment, and by a linear mixed model with random intercepts of participants (restricted "
+      "maximum likelihood, Satterthwaite's degrees of freedom). Intervals are of 95 %; those of "
+      "shares of variance are of 90 % and invert the noncentral F distribution.{}",
+      joined(parameters), study.simulated() ? " All participants were simulated." : "");
+}
+
+void add_versions(Document& document, const StudyResult& study) {
+  std::set<std::string> programs;
+  std::map<std::string, std::string> definitions;  // text to name
+  for (const auto& session : study.sessions) {
+    programs.insert(session.info.program_version + " (" + session.info.program_commit + ")");
+    definitions.emplace(session.info.definition, session.info.definition_name);
+  }
+  document.paragraph("Recorded by haptrial " + joined({programs.begin(), programs.end()}) + ".");
+  if (definitions.size() > 1) {
+    document.paragraph(
+        fmt::format("The sessions come from {} different definitions.", definitions.size()));
+  }
+  for (const auto& [text, name] : definitions) {
+    document.source("Definition " + name, text);
+  }
+}
+
+}  // namespace
+
+void add_methods(Document& document, const StudyResult& study) {
+  document.heading("Methods, parameters and versions");
+  document.paragraph(methods(study));
+  Rows rows;
+  for (const auto& [name, value] : study.parameters) {
+    rows.push_back({name, value});
+  }
+  document.table({"Parameter of the score", "Value"}, rows);
+  if (study.curves_from.empty()) {
+    add_versions(document, study);
+  }
+}
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <span>
+
+#include "analysis/study_statistics.h"
+
+namespace haptrial::analysis {
+
+/// Adds the tests of a study to what study_statistics() has gathered: conditions, subjects and
+/// table_1 are there.
+void add_tests(StudyStatistics& study, std::span<const TrialScore> scores);
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,104 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "analysis/exchange/export_bids.h"
+#include "analysis/exchange/export_csv.h"
+#include "analysis/exchange/export_curves.h"
+#include "core/base/error.h"
+#include "experiments/arguments.h"
+#include "experiments/commands.h"
+#include "experiments/interrupt.h"
+#include "experiments/progress.h"
+#include "experiments/study_run.h"
+#include "experiments/version.h"
+
+namespace haptrial::experiments {
+namespace fs = std::filesystem;
+namespace {
+
+/// Session files as they are, folders as what they hold.
+std::vector<fs::path> all_files(const std::vector<std::string>& given) {
+  std::vector<fs::path> files;
+  for (const std::string& name : given) {
+    std::error_code error;
+    if (fs::is_directory(name, error)) {
+      const auto found = session_files(name);
+      files.insert(files.end(), found.begin(), found.end());
+    } else {
+      files.emplace_back(name);
+    }
+  }
+  return files;
+}
+
+/// Shows how far the export is; an interrupt ends it.
+class ProgressWatch {
+ public:
+  explicit ProgressWatch(const std::vector<fs::path>& files)
+      : sessions_(exchange::sessions_to_export(files)),
+        progress_("export", static_cast<double>(exchange::total_samples(sessions_))) {}
+
+  void operator()(std::uint64_t samples) {
+    if (interrupted()) {
+      throw RunError("interrupted; nothing was exported");
+    }
+    progress_.update(static_cast<double>(samples),
+                     fmt::format("{:.1f} million samples", 1e-6 * static_cast<double>(samples)),
+                     sessions_.front().info.rate);
+  }
+
+ private:
+  std::vector<exchange::ExportSession> sessions_;
+  Progress progress_;
+};
+
+void export_as_bids(const ExportOptions& options, const std::vector<fs::path>& files, int jobs) {
+  ProgressWatch watch(files);
+  const auto done = exchange::export_bids(files, options.bids,
+                                          {options.name, options.authors, program_version(), jobs},
+                                          [&](std::uint64_t samples) { watch(samples); });
+  const std::string missing =
+      done.missing > 0 ? fmt::format(", {} ticks are missing", done.missing) : "";
+  fmt::print("{} sessions of {} subjects, {} samples{}\ndata set: {}\n", done.sessions,
+             done.subjects, done.samples, missing, options.bids);
+}
+
+void export_as_csv(const ExportOptions& options, const std::vector<fs::path>& files, int jobs) {
+  ProgressWatch watch(files);
+  const auto done = exchange::export_csv(files, options.csv, {options.samples, jobs},
+                                         [&](std::uint64_t samples) { watch(samples); });
+  fmt::print("{} sessions, {} passes, {} samples\ntables: {}\n", done.sessions, done.passes,
+             done.samples, options.csv);
+}
+
+void export_as_curves(const ExportOptions& options, const std::vector<fs::path>& files, int jobs) {
+  ProgressWatch watch(files);
+  const auto done = exchange::export_curves(files, options.curves, jobs,
+                                            [&](std::uint64_t samples) { watch(samples); });
+  fmt::print("{} scored trials of {} subjects\ncurves: {}\n", done.trials, done.subjects,
+             options.curves);
+}
+
+}  // namespace
+
+int export_sessions(const ExportOptions& options) {
+  const int jobs = checked_jobs(options.jobs);
+  const int targets = !options.bids.empty() + !options.csv.empty() + !options.curves.empty();
+  if (targets != 1) {
+    throw InputError(
+        fmt::format("{} of --bids, --csv and --curves are given; allowed: exactly one", targets));
+  }
+  watch_for_interrupt();
+  const auto files = all_files(options.files);
+  if (!options.bids.empty()) {
+    export_as_bids(options, files, jobs);
+  } else if (!options.csv.empty()) {
+    export_as_csv(options, files, jobs);
+  } else {
+    export_as_curves(options, files, jobs);
+  }
+  return 0;
+}
+
+}  // namespace haptrial::experiments

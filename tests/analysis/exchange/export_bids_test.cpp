@@ -1,0 +1,214 @@
+#include "analysis/exchange/export_bids.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include "core/base/error.h"
+#include "tests/analysis/exchange/small_session.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::exchange {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+const fs::path kHere = fs::path(HAPTRIAL_SOURCE_DIR) / "tests/analysis/exchange";
+
+std::string read(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void ignore(std::uint64_t) {}
+
+class ExportBidsTest : public testing::Test {
+ protected:
+  fs::path write(const std::string& name, const SmallSession& session) {
+    write_session(folder_ / name, session);
+    files_.push_back(folder_ / name);
+    return files_.back();
+  }
+
+  BidsSummary run(const BidsOptions& options = {}) {
+    return export_bids(files_, folder_ / "out", options, ignore);
+  }
+
+  std::string refusal() {
+    try {
+      run();
+    } catch (const InputError& error) {
+      EXPECT_FALSE(fs::exists(folder_ / "out"));
+      return error.what();
+    }
+    return "nothing was refused";
+  }
+
+  /// Runs a line of shell. @returns its exit status, its output in `output_`.
+  int shell(const std::string& line) {
+    const fs::path log = folder_ / "log";
+    const int status = std::system(("(" + line + ") >'" + log.string() + "' 2>&1").c_str());
+    output_ = read(log);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+  std::string quoted(const fs::path& path) const { return " '" + path.string() + "'"; }
+
+  void expect_equal_to_the_files() {
+    if (std::system("/usr/bin/python3 -c 'import h5py, pandas' 2>/dev/null") != 0) {
+      GTEST_SKIP() << "/usr/bin/python3 has no h5py or no pandas";
+    }
+    std::string line =
+        "/usr/bin/python3" + quoted(kHere / "read_bids.py") + quoted(folder_ / "out");
+    for (const auto& file : files_) {
+      line += quoted(file);
+    }
+    EXPECT_EQ(shell(line), 0) << output_;
+    EXPECT_EQ(output_, "equal\n");
+  }
+
+  test::TemporaryFolder folder_;
+  std::vector<fs::path> files_;
+  std::string output_;
+};
+
+TEST_F(ExportBidsTest, PandasReadsWhatTheSessionFilesHold) {
+  write("a.h5", {.subject = "P-01"});
+  write("b.h5", {.subject = "P-02", .simulated = true, .rate = 1000.0, .odd_values = true});
+  const auto done = run({.jobs = 2});
+  EXPECT_EQ(done.subjects, 2u);
+  EXPECT_EQ(done.samples, 2u * 6 * (kTicksOfPass + 100));
+  EXPECT_EQ(done.missing, 0u);
+  EXPECT_TRUE(done.simulated);
+  expect_equal_to_the_files();
+}
+
+TEST_F(ExportBidsTest, AMissingTickIsARowWithoutValues) {
+  // More rows than one piece, a gap at the border of a pass, a start above 0, a clock that wavers.
+  write("a.h5", {.simulated = false,
+                 .clock = "real",
+                 .trials = 20,
+                 .first_tick = 12345,
+                 .gap_at = 1100,
+                 .gap = 40'000});
+  const auto done = run();
+  EXPECT_EQ(done.missing, 40'000u);
+  EXPECT_EQ(done.samples, 20u * 2 * (kTicksOfPass + 100));
+  EXPECT_FALSE(done.simulated);
+  expect_equal_to_the_files();
+}
+
+TEST_F(ExportBidsTest, TheOfficialValidatorFindsNoErrors) {
+  SmallSession first{.subject = "P-01", .note = "a tab\there, a line\nthere, 5 µm"};
+  first.person = {"P-01", "right", "18-25", "female", "yes", "said that it tickles"};
+  write("a.h5", first);
+  write("b.h5", {.subject = "P-01", .start_utc = "2026-11-21T09:30:00Z"});
+  write("c.h5", {.subject = "P_2", .gap_at = 100, .gap = 3, .odd_values = true});
+  run({.name = "A study", .authors = {"A. Author", "B. Author"}, .program_version = "0.1.0"});
+  if (shell("command -v node") != 0) {
+    GTEST_SKIP() << "there is no node";
+  }
+  const int had = shell("/usr/bin/python3" + quoted(kHere / "bids_validator.py") +
+                        quoted(fs::path(HAPTRIAL_BINARY_DIR)));
+  if (had == 3 || had == 127) {
+    GTEST_SKIP() << "the validator cannot be had here: " << output_;
+  }
+  ASSERT_EQ(had, 0) << output_;
+  const std::string validator = "node '" + output_.substr(0, output_.find('\n')) + "'";
+  EXPECT_EQ(shell(validator + quoted(folder_ / "out")), 0) << output_;
+  EXPECT_THAT(output_, Not(HasSubstr("[ERR]")));
+  EXPECT_THAT(output_, HasSubstr("2 - Subjects"));
+  // It does look: without the rate of a recording it finds an error.
+  const auto sidecar = folder_ / "out/sub-P2/ses-1/beh/sub-P2_ses-1_task-smallstudy_physio.json";
+  std::string text = read(sidecar);
+  const auto at = text.find("\"SamplingFrequency\"");
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, 4, "\"Xxx");
+  std::ofstream(sidecar) << text;
+  EXPECT_NE(shell(validator + quoted(folder_ / "out")), 0) << output_;
+  EXPECT_THAT(output_, HasSubstr("SamplingFrequency"));
+}
+
+TEST_F(ExportBidsTest, SeveralSessionsOfASubjectStandInTheOrderOfTheirStart) {
+  write("late.h5", {.subject = "P1", .rate = 250.0, .start_utc = "2026-11-22T09:30:00Z"});
+  write("early.h5", {.subject = "P1", .start_utc = "2026-11-21T09:30:00Z"});
+  write("other.h5", {.subject = "P2"});
+  EXPECT_EQ(run().subjects, 2u);
+  const fs::path out = folder_ / "out";
+  EXPECT_EQ(read(out / "sub-P1/sub-P1_sessions.tsv"),
+            "session_id\tacq_time\nses-1\t2026-11-21T09:30:00Z\nses-2\t2026-11-22T09:30:00Z\n");
+  EXPECT_THAT(read(out / "sub-P1/ses-2/beh/sub-P1_ses-2_task-smallstudy_physio.json"),
+              HasSubstr("\"SamplingFrequency\": 250.0"));
+  EXPECT_TRUE(fs::exists(out / "sub-P2/ses-1/beh/sub-P2_ses-1_task-smallstudy_events.tsv"));
+  const std::string people = read(out / "participants.tsv");
+  EXPECT_EQ(std::count(people.begin(), people.end(), '\n'), 1 + 2);
+}
+
+TEST_F(ExportBidsTest, ASimulatedParticipantIsMarkedEverywhere) {
+  write("a.h5", {.subject = "P1", .simulated = true});
+  write("b.h5", {.subject = "P2", .simulated = false});
+  run();
+  const fs::path out = folder_ / "out";
+  EXPECT_THAT(read(out / "dataset_description.json"), HasSubstr("\"SIMULATED: small_study\""));
+  EXPECT_THAT(read(out / "README"), testing::StartsWith("SIMULATED PARTICIPANTS"));
+  EXPECT_THAT(read(out / "participants.tsv"), HasSubstr("sub-P1\tP1\tn/a\tn/a\tn/a\ttrue\n"));
+  EXPECT_THAT(read(out / "participants.tsv"), HasSubstr("sub-P2\tP2\tn/a\tn/a\tn/a\tfalse\n"));
+  const auto sidecar = [&](const std::string& name) {
+    return read(out / name / "beh" / (name + "_task-smallstudy_physio.json"));
+  };
+  EXPECT_THAT(sidecar("sub-P1"), HasSubstr("\"TaskDescription\": \"SIMULATED PARTICIPANTS"));
+  EXPECT_THAT(sidecar("sub-P2"), Not(HasSubstr("SIMULATED")));
+}
+
+TEST_F(ExportBidsTest, WhatAParticipantSaidStaysOut) {
+  SmallSession session;
+  session.person = {"P01", "both", "18-25", "male", "2026-11-20", "knows the experimenter"};
+  write("a.h5", session);
+  run();
+  const std::string found = "grep -rlE 'knows the|2026-11-20\\b[^T]'" + quoted(folder_ / "out");
+  EXPECT_EQ(shell(found), 1) << output_;  // grep finds nothing
+  // A hand that BIDS has no word for goes into a column of our own.
+  EXPECT_THAT(read(folder_ / "out/participants.tsv"),
+              HasSubstr("sex\treported_handedness\tage_band"));
+}
+
+TEST_F(ExportBidsTest, BadInputGetsASentenceAndLeavesNothing) {
+  EXPECT_EQ(refusal(), "there is no session file to export; allowed: one or more");
+  const fs::path first = write("a.h5", {.subject = "P-01"});
+  files_.push_back(first);
+  EXPECT_THAT(refusal(), HasSubstr("is given twice"));
+  files_.pop_back();
+  write("b.h5", {.subject = "P_01"});
+  EXPECT_THAT(refusal(), HasSubstr("subject P_01 would be sub-P01, as P-01 is"));
+  files_.pop_back();
+  write("c.h5", {.subject = "P02", .definition = "name = \"other\"\n"});
+  EXPECT_THAT(refusal(), HasSubstr("another definition"));
+  files_.back() = folder_ / "absent.h5";
+  EXPECT_THAT(refusal(), HasSubstr("no such file"));
+}
+
+TEST_F(ExportBidsTest, WhatTheWatchThrowsEndsItAndLeavesNothing) {
+  write("a.h5", {.trials = 40});
+  write("b.h5", {.subject = "P02", .trials = 40});
+  const auto stop = [](std::uint64_t) { throw RunError("enough"); };
+  EXPECT_THROW(export_bids(files_, folder_ / "out", {.jobs = 2}, stop), RunError);
+  std::size_t left = 0;
+  for (const auto& entry : fs::directory_iterator(folder_.path())) {
+    left += entry.path().extension() != ".h5";
+  }
+  EXPECT_EQ(left, 0u);
+}
+
+TEST(BidsLabelTest, KeepsLettersAndDigits) {
+  EXPECT_EQ(bids_label("P-01_a"), "P01a");
+  EXPECT_EQ(bids_label("Jörg 2"), "Jrg2");
+  EXPECT_EQ(bids_label("../.."), "");
+}
+
+}  // namespace
+}  // namespace haptrial::exchange

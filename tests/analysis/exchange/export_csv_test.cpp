@@ -1,0 +1,122 @@
+#include "analysis/exchange/export_csv.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "analysis/scores_csv.h"
+#include "tests/analysis/exchange/small_session.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::exchange {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+std::string read(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void ignore(std::uint64_t) {}
+
+/// Holds the tables against the session file, and the dictionary against the tables.
+const char* const kCheck = R"(
+import json, pathlib, sys
+import h5py, numpy as np, pandas as pd
+root = pathlib.Path(sys.argv[1])
+dictionary = json.loads((root / "dictionary.json").read_text())
+sessions = pd.read_csv(root / "sessions.csv")
+for what, description in dictionary["files"].items():
+    for path in root.glob(what):
+        assert list(pd.read_csv(path, nrows=1).columns) == list(description["columns"]), path
+assert dictionary["simulated"] == bool(sessions.simulated.any())
+trials = pd.read_csv(root / "trials.csv")
+events = pd.read_csv(root / "events.csv")
+for row, name in zip(sessions.itertuples(), sys.argv[2:]):
+    with h5py.File(name) as file:
+        theirs = file["trials"][:]
+        ours = trials[(trials.subject == row.subject) & (trials.session == row.session)]
+        assert len(ours) == len(theirs)
+        for column in theirs.dtype.names:
+            values = theirs[column]
+            values = [v.decode() for v in values] if values.dtype.kind == "S" else values
+            assert (ours[column].to_numpy() == values).all(), column
+        assert np.allclose(ours.onset * file.attrs["rate"], theirs["first_sample"], 0, 1e-6)
+        assert (ours.simulated == bool(file.attrs["simulated"])).all()
+        assert row.rate == file.attrs["rate"] and row.samples == len(file["samples"])
+        notes = events[(events.subject == row.subject) & (events.session == row.session)]
+        assert [t.decode() for t in file["events"]["text"]] == list(notes.text)
+        stem = row.subject if (sessions.subject == row.subject).sum() == 1 else \
+            f"{row.subject}-{row.session}"
+        samples = pd.read_csv(root / "samples" / f"{stem}.csv.gz")
+        assert len(samples) == len(file["samples"])
+        assert (np.round(samples.time * 1e9) == file["samples"]["time_ns"]).all()
+        for column in set(samples.columns) - {"time"}:
+            value = file["samples"][column]
+            assert np.array_equal(samples[column].to_numpy().astype(value.dtype), value,
+                                  equal_nan=value.dtype.kind == "f"), column
+        stimuli = pd.read_csv(root / "stimuli" / f"{stem}.csv.gz")
+        for column in stimuli.columns:
+            assert (stimuli[column].to_numpy() == file["stimuli"][column]).all(), column
+print("equal")
+)";
+
+TEST(ExportCsvTest, PandasReadsWhatTheSessionFilesHold) {
+  if (std::system("/usr/bin/python3 -c 'import h5py, pandas' 2>/dev/null") != 0) {
+    GTEST_SKIP() << "/usr/bin/python3 has no h5py or no pandas";
+  }
+  const test::TemporaryFolder folder;
+  const std::vector<fs::path> files{folder / "1.h5", folder / "2.h5", folder / "3.h5"};
+  write_session(files[0], {.subject = "P01", .note = "quotes \", commas, and\nlines"});
+  write_session(files[1], {.subject = "P01",
+                           .start_utc = "2026-11-21T09:30:00Z",
+                           .gap_at = 1100,
+                           .gap = 5,
+                           .odd_values = true});
+  write_session(files[2], {.subject = "P02", .simulated = false, .trials = 5});
+  const auto done = export_csv(files, folder / "out", {.samples = true, .jobs = 2}, ignore);
+  EXPECT_EQ(done.sessions, 3u);
+  EXPECT_EQ(done.passes, 6u + 6u + 10u);
+  std::ofstream(folder / "check.py") << kCheck;
+  std::string line = "/usr/bin/python3 '" + (folder / "check.py").string() + "' '" +
+                     (folder / "out").string() + "'";
+  for (const auto& file : files) {
+    line += " '" + file.string() + "'";
+  }
+  line += " >'" + (folder / "log").string() + "' 2>&1";
+  EXPECT_EQ(std::system(line.c_str()), 0) << read(folder / "log");
+}
+
+TEST(ExportCsvTest, SamplesAreLeftOutUnlessAskedFor) {
+  const test::TemporaryFolder folder;
+  const std::vector<fs::path> files{folder / "1.h5"};
+  write_session(files[0], {});
+  EXPECT_EQ(export_csv(files, folder / "out", {}, ignore).samples, 0u);
+  EXPECT_FALSE(fs::exists(folder / "out/samples"));
+  EXPECT_THAT(read(folder / "out/dictionary.json"), testing::Not(HasSubstr("samples/*")));
+  EXPECT_THAT(read(folder / "out/dictionary.json"), HasSubstr("\"simulated\": true"));
+  EXPECT_THAT(read(folder / "out/trials.csv"),
+              HasSubstr("\nP01,1,1,1,haptic,test,1,1,1,0,completed,9007199254740994,"));
+}
+
+TEST(ExportCsvTest, TheDictionaryKnowsTheColumnsOfTheScores) {
+  const test::TemporaryFolder folder;
+  const std::vector<fs::path> files{folder / "1.h5"};
+  write_session(files[0], {});
+  export_csv(files, folder / "out", {}, ignore);
+  const auto json = nlohmann::ordered_json::parse(read(folder / "out/dictionary.json"));
+  std::string heading;
+  for (const auto& [name, column] : json["files"]["scores.csv"]["columns"].items()) {
+    heading += (heading.empty() ? "" : ",") + name;
+  }
+  EXPECT_EQ(heading + "\n", analysis::scores_csv({}));
+}
+
+}  // namespace
+}  // namespace haptrial::exchange

@@ -1,0 +1,99 @@
+"""Reads a BIDS data set with pandas and holds it against the session files, read with h5py.
+
+    read_bids.py DATA_SET SESSION.h5 [SESSION.h5 ...]     one session of each subject
+"""
+import json
+import pathlib
+import sys
+
+import h5py
+import numpy as np
+import pandas as pd
+
+root = pathlib.Path(sys.argv[1])
+participants = pd.read_csv(root / "participants.tsv", sep="\t", dtype=str, keep_default_na=False)
+events_sidecar = json.loads(next(root.glob("task-*_events.json")).read_text())
+description = json.loads((root / "dataset_description.json").read_text())
+assert len(participants) == len(sys.argv) - 2
+
+
+def check(file):
+    subject = file.attrs["subject"]
+    person = participants[participants.subject == subject].iloc[0]
+    assert person.simulated == ("true" if file.attrs["simulated"] else "false")
+    assert description["Name"].startswith("SIMULATED") == bool(file.attrs["simulated"])
+    folder = root / person.participant_id / "beh"
+    sidecar = json.loads(next(folder.glob("*_physio.json")).read_text())
+    assert sidecar["SamplingFrequency"] == file.attrs["rate"]
+    assert sidecar["Simulated"] == bool(file.attrs["simulated"])
+    table = pd.read_csv(next(folder.glob("*_physio.tsv.gz")), sep="\t", header=None,
+                        names=sidecar["Columns"], na_values="n/a")
+    samples = file["samples"][:]
+    first = int(samples["sequence"][0])
+    # Row k is tick first + k: units, rate and every value as in the session file.
+    assert len(table) == int(samples["sequence"][-1]) - first + 1
+    assert sidecar["StartTime"] == first / file.attrs["rate"]
+    rows = (samples["sequence"] - first).astype(int)
+    missing = np.setdiff1d(np.arange(len(table)), rows)
+    assert sidecar["MissingTicks"] == len(missing)
+    assert table.iloc[missing].isna().all(axis=None)
+    units = dict(zip(file["samples"].attrs["columns"], file["samples"].attrs["units"]))
+    kept = table.iloc[rows]
+    assert (np.round(kept.time * 1e9) == samples["time_ns"]).all()
+    for name in sidecar["Columns"][1:]:
+        assert np.array_equal(kept[name].to_numpy().astype(samples[name].dtype), samples[name],
+                              equal_nan=samples[name].dtype.kind == "f"), name
+        assert sidecar[name].get("Units", "1") == units[name], name
+        assert sidecar[name]["Description"], name
+    assert sidecar["time"]["Units"] == "s"
+    check_events(file, folder, samples)
+    check_stimuli(file, folder)
+
+
+def read_events(folder):
+    return pd.read_csv(next(folder.glob("*_events.tsv")), sep="\t", na_values="n/a",
+                       keep_default_na=False, dtype={"stimulus_seed": str})
+
+
+def check_events(file, folder, samples):
+    events = read_events(folder)
+    assert set(events.columns) - {"onset", "duration"} <= set(events_sidecar)
+    assert events.onset.is_monotonic_increasing
+    passes = events[events["pass"].notna()].set_index("pass").sort_index()
+    trials = file["trials"][:]
+    assert len(passes) == len(trials)
+    rate = file.attrs["rate"]
+    for i, trial in enumerate(trials):
+        row = passes.loc[i]
+        assert round(row.onset * rate) == trial["first_sample"]
+        assert round(row.duration * rate) == trial["last_sample"] - trial["first_sample"] + 1
+        assert row.stimulus_seed == str(trial["stimulus_seed"])
+        assert row.trial_type == trial["condition"].decode()
+        for name in ("phase", "status"):
+            assert row[name] == trial[name].decode()
+        for name in ("trial", "block", "repetition", "attempt", "practice"):
+            assert row[name] == trial[name]
+        run = samples[(samples["pass"] == i) & (samples["stage"] == 3)]["sequence"]
+        assert round(row.run_onset * rate) == run[0]
+        assert round(row.run_duration * rate) == run[-1] - run[0] + 1
+    others = events[events["pass"].isna()]
+    assert len(others) == len(file["events"])
+    for row, event in zip(others.itertuples(), np.sort(file["events"][:], order="time_ns")):
+        assert round(row.onset * 1e9) == event["time_ns"]
+        assert row.event == event["kind"].decode()
+
+
+def check_stimuli(file, folder):
+    stimuli = pd.DataFrame(file["stimuli"][:])
+    for row in read_events(folder).dropna(subset="pass").itertuples():
+        theirs = pd.read_csv(root / "stimuli" / row.stim_file, sep="\t")
+        ours = stimuli[stimuli.block == row.block]
+        assert len(theirs) == len(ours) > 0
+        for name in ours.columns:
+            assert (theirs[name].to_numpy() == ours[name].to_numpy()).all(), name
+
+
+for name in sys.argv[2:]:
+    with h5py.File(name, "r") as session:
+        check(session)
+print("equal")

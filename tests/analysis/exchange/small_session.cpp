@@ -1,0 +1,112 @@
+#include "tests/analysis/exchange/small_session.h"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/record/session_writer.h"
+
+namespace haptrial::exchange {
+namespace {
+
+constexpr int kApproach = 50;  // ticks before the run and after it
+const char* const kConditions[] = {"haptic", "visual", "visuohaptic"};
+
+record::SessionInfo info_of(const SmallSession& s) {
+  record::SessionInfo info;
+  info.program_version = "0.1.0";
+  info.program_commit = "0123abc";
+  info.definition = s.definition;
+  info.definition_name = "small_study.toml";
+  info.subject = s.subject;
+  info.seed = 18446744073709551615u;
+  info.device = "virtual";
+  info.device_max_force = 12.0;
+  info.device_workspace_radius = 0.075;
+  info.clock = s.clock;
+  info.rate = s.rate;
+  info.start_utc = s.start_utc;
+  info.simulated = s.simulated;
+  info.participant = s.person;
+  return info;
+}
+
+class Writer {
+ public:
+  Writer(const std::filesystem::path& file, const SmallSession& session)
+      : session_(session), writer_(file, info_of(session)), next_(session.first_tick) {}
+
+  void write() {
+    for (int trial = 1; trial <= session_.trials; ++trial) {
+      writer_.add_stimulus(std::vector<record::StimulusRow>{{trial, 0.0, {-0.05, 0.0, 0.01}, 1.0},
+                                                            {trial, 2.0, {0.05, 0.0, -0.01}, 2.5}});
+      add_pass(trial, record::Phase::kTraining);
+      add_pass(trial, record::Phase::kTest);
+    }
+    writer_.add_event({1'500'000'001, "notice", session_.note});
+    writer_.set_timing({}, {next_, 0, 0});
+    writer_.close();
+  }
+
+ private:
+  void add_pass(int trial, record::Phase phase) {
+    record::PassRow row;
+    row.trial = trial;
+    row.condition = kConditions[(trial - 1) % 3];
+    row.phase = phase;
+    row.block = trial;
+    row.repetition = 1;
+    row.stimulus_seed = 9'007'199'254'740'993u + static_cast<std::uint64_t>(trial);  // above 2^53
+    row.first_sample = next_;
+    std::vector<record::Sample> samples;
+    for (int k = -kApproach; k < kTicksOfPass + kApproach; ++k) {
+      add_tick(samples, trial, k);
+    }
+    row.last_sample = next_ - 1;
+    writer_.append(samples);
+    writer_.add_pass(row);
+    ++pass_;
+  }
+
+  void add_tick(std::vector<record::Sample>& samples, int trial, int k) {
+    if (session_.gap > 0 && written_ == session_.gap_at) {
+      next_ += session_.gap;
+    }
+    record::Sample s;
+    s.sequence = next_;
+    s.time_ns = static_cast<std::int64_t>(std::llround(1e9 * double(next_) / session_.rate)) +
+                (session_.clock == "real" ? static_cast<std::int64_t>(next_ % 7) * 1000 : 0);
+    s.pass = pass_;
+    s.stage = k < 0 ? record::Stage::kApproach
+                    : (k < kTicksOfPass ? record::Stage::kRun : record::Stage::kReturn);
+    s.position = {-0.05 + 1e-4 * k, 1e-5 * trial, 0.013 * std::sin(0.01 * k)};
+    s.velocity = {0.016, 0.0, -0.3 * std::cos(0.01 * k)};
+    s.force = {0.25, 3.0 + 1e-3 * k, -1.0 / 3.0};
+    s.target_force = small_target(trial, k);
+    s.applied_force = small_applied(trial, k);
+    if (session_.odd_values && k == 3) {
+      s.applied_force = std::numeric_limits<double>::quiet_NaN();
+    }
+    s.saturated = k == 7;
+    samples.push_back(s);
+    ++next_;
+    ++written_;
+  }
+
+  const SmallSession& session_;
+  record::SessionWriter writer_;
+  std::uint64_t next_;
+  std::uint64_t written_{0};
+  std::int32_t pass_{0};
+};
+
+}  // namespace
+
+double small_target(int trial, int k) { return 5.0 + 3.0 * std::sin(0.008 * k + trial); }
+double small_applied(int trial, int k) { return 4.5 + 2.5 * std::sin(0.0082 * k + trial - 0.2); }
+
+void write_session(const std::filesystem::path& file, const SmallSession& session) {
+  Writer(file, session).write();
+}
+
+}  // namespace haptrial::exchange

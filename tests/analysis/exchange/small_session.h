@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "core/record/session_types.h"
+
+namespace haptrial::exchange {
+
+/// A session of a few seconds whose contents are known.
+struct SmallSession {
+  std::string subject{"P01"};
+  bool simulated{true};
+  std::string clock{"simulated"};
+  double rate{500.0};  // [Hz]
+  std::string start_utc{"2026-11-20T09:30:00Z"};
+  std::string definition{"name = \"small\"\n"};
+  record::Participant person{};
+  int trials{3};                // a condition each
+  std::uint64_t first_tick{0};  // sequence number of the first sample
+  std::uint64_t gap_at{0};      // samples before the gap; 0: no gap
+  std::uint64_t gap{0};         // ticks that are missing there
+  bool odd_values{false};       // an applied force that is not a number
+  std::string note{"all is well"};
+};
+
+constexpr int kTicksOfPass = 1000;
+
+void write_session(const std::filesystem::path& file, const SmallSession& session);
+
+/// Applied and target force of trial `trial` from 1, tick `k` of its run [N].
+double small_target(int trial, int k);
+double small_applied(int trial, int k);
+
+}  // namespace haptrial::exchange

@@ -1,0 +1,191 @@
+// Out to other programs and in from elsewhere, through the command.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/experiments/command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial {
+namespace {
+
+namespace fs = std::filesystem;
+using test::CommandResult;
+using test::run_command;
+using testing::HasSubstr;
+using testing::Not;
+
+class ExchangeTest : public testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return "'" + (folder_ / name).string() + "'"; }
+
+  void make_study(const std::string& more) {
+    const CommandResult dry =
+        run_command("haptrial dry-run '" + test::shipped_definition().string() + "' --out " +
+                    path("study") + " " + more);
+    ASSERT_EQ(dry.status, 0) << dry.errors;
+  }
+
+  std::size_t entries() const {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()));
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ExchangeTest, TheShippedStudyComesBackFromItsCurves) {
+  make_study("--subjects 4 --trials 18");
+  const CommandResult out = run_command("haptrial export --curves " + path("curves") + " " +
+                                        path("study") + " && haptrial analyze " + path("study"));
+  ASSERT_EQ(out.status, 0) << out.errors;
+  EXPECT_THAT(out.output, HasSubstr("72 scored trials of 4 subjects"));
+  const std::string taken = "haptrial analyze --curves " + path("curves") + " --conditions " +
+                            path("curves/conditions.csv") + " --out ";
+  const CommandResult in =
+      run_command(taken + path("report") + " && " + taken + path("again") + " --definition '" +
+                  test::shipped_definition().string() + "'");
+  ASSERT_EQ(in.status, 0) << in.errors;
+  EXPECT_EQ(test::read_text(folder_ / "again/scores.csv"),
+            test::read_text(folder_ / "study/scores.csv"));
+  EXPECT_EQ(test::read_text(folder_ / "report/scores.csv"),
+            test::read_text(folder_ / "study/scores.csv"));
+  const auto ours = nlohmann::json::parse(test::read_text(folder_ / "report/statistics.json"));
+  const auto theirs = nlohmann::json::parse(test::read_text(folder_ / "study/statistics.json"));
+  for (const char* part : {"conditions", "published", "repeated_measures", "comparisons"}) {
+    EXPECT_EQ(ours[part], theirs[part]) << part;
+  }
+  const std::string report = test::read_text(folder_ / "report/report.html");
+  EXPECT_THAT(report, HasSubstr("SIMULATED PARTICIPANTS"));
+  EXPECT_THAT(report, Not(HasSubstr("Timing of the servo loop")));
+}
+
+TEST_F(ExchangeTest, EveryFormOfExportWritesANewFolder) {
+  make_study("--subjects 2 --trials 3");
+  for (const char* form : {"--bids", "--csv", "--csv --samples", "--curves"}) {
+    const std::string option = std::string(form).substr(0, std::string(form).find(' '));
+    const std::string more = std::string(form).substr(option.size());
+    const std::string line = "haptrial export " + option + " " + path("out") + more + " " +
+                             path("study/S01.h5") + " " + path("study/S02.h5");
+    const CommandResult done = run_command(line);
+    EXPECT_EQ(done.status, 0) << done.errors;
+    EXPECT_EQ(done.errors, "");
+    const CommandResult again = run_command(line);
+    EXPECT_EQ(again.status, 2);
+    EXPECT_THAT(again.errors, HasSubstr("is not empty; allowed: a new or an empty folder"));
+    fs::remove_all(folder_ / "out");
+  }
+}
+
+TEST_F(ExchangeTest, BadArgumentsGetASentence) {
+  make_study("--subjects 1 --trials 1");
+  const std::map<std::string, std::string> sentences{
+      {"export " + path("study"), "0 of --bids, --csv and --curves are given"},
+      {"export --bids a --csv b " + path("study"), "2 of --bids, --csv and --curves are given"},
+      {"export --bids " + path("out") + " " + path("absent.h5"), "no such file"},
+      {"analyze", "none of DIR and --curves are given; allowed: exactly one"},
+      {"analyze --curves x " + path("study"), "both of DIR and --curves are given"},
+      {"analyze --curves x --conditions y", "--out is missing"},
+      {"analyze --curves x --conditions y --out z", "y"},
+      {"analyze " + path("study") + " --out z", "--out is given without --curves"}};
+  for (const auto& [line, sentence] : sentences) {
+    const CommandResult result = run_command("haptrial " + line);
+    EXPECT_EQ(result.status, 2) << line;
+    EXPECT_THAT(result.errors, HasSubstr(sentence)) << line;
+    EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
+  }
+  EXPECT_EQ(entries(), 1u);
+}
+
+TEST_F(ExchangeTest, AnInterruptLeavesNothing) {
+  make_study("--subjects 2 --trials 36");
+  // Once the hidden folder is there and samples are being written, the program is told to stop.
+  const CommandResult result = run_command(
+      "cd " + path("") + "\n\"$HAPTRIAL\" export --bids out study --jobs 1 &\npid=$!\n" +
+      "for i in $(seq 500); do ls -d .out.partial-*/sub-*/beh >/dev/null 2>&1 && break; "
+      "sleep 0.01; done\nkill -INT $pid\nwait $pid\n");
+  if (result.status == 0) {
+    GTEST_SKIP() << "the export was faster than the interrupt";
+  }
+  EXPECT_EQ(result.status, 1) << result.errors;
+  EXPECT_THAT(result.errors, HasSubstr("interrupted; nothing was exported"));
+  EXPECT_EQ(entries(), 1u);
+}
+
+/// The lines "name value" of a worked script as numbers.
+std::map<std::string, double> numbers(const std::string& output) {
+  std::map<std::string, double> result;
+  std::istringstream text(output);
+  for (std::string line; std::getline(text, line);) {
+    while (!line.empty() && line.back() == ' ') {
+      line.pop_back();
+    }
+    const auto space = line.rfind(' ');
+    result[line.substr(0, space)] = std::stod(line.substr(space + 1));
+  }
+  return result;
+}
+
+/// The same numbers as the report has them.
+std::map<std::string, double> reported() {
+  const fs::path results = fs::path(HAPTRIAL_SOURCE_DIR) / "results" / "force_training";
+  const auto json = nlohmann::json::parse(test::read_text(results / "statistics.json"));
+  std::map<std::string, double> result;
+  for (const auto& condition : json["conditions"]) {
+    result["mean " + condition["condition"].get<std::string>()] = condition["mean"];
+  }
+  result["anova_F"] = json["published"]["one_way_anova"]["f"];
+  result["anova_p"] = json["published"]["one_way_anova"]["p"];
+  for (const auto& comparison : json["comparisons"]) {
+    std::string name = comparison["hypothesis"];
+    name.erase(name.find(" < ") + 2, 1).erase(name.find(" <"), 1);
+    result["t " + name] = comparison["pooled_student_one_tailed"]["t"];
+    result["p " + name] = comparison["pooled_student_one_tailed"]["p"];
+  }
+  const auto& repeated = json["repeated_measures"]["anova"];
+  result["repeated_F"] = repeated["f"];
+  result["repeated_p"] = repeated["p"];
+  result["repeated_epsilon"] = repeated["greenhouse_geisser_epsilon"];
+  result["repeated_p_corrected"] = repeated["p_corrected"];
+  return result;
+}
+
+void expect_the_reports_numbers(const std::string& program, const std::string& script) {
+  const fs::path source = HAPTRIAL_SOURCE_DIR;
+  const CommandResult run =
+      run_command(program + " '" + (source / "docs" / "worked" / script).string() + "' '" +
+                  (source / "results" / "force_training" / "scores.csv").string() + "'");
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const auto theirs = numbers(run.output);
+  const auto ours = reported();
+  ASSERT_EQ(ours.size(), 13u);
+  ASSERT_EQ(theirs.size(), ours.size()) << run.output;
+  for (const auto& [name, value] : ours) {
+    ASSERT_TRUE(theirs.contains(name)) << name << "\n" << run.output;
+    EXPECT_NEAR(theirs.at(name), value, 1e-10 * std::abs(value)) << name;
+  }
+}
+
+TEST(WorkedScriptTest, PandasGivesTheNumbersOfTheReport) {
+  if (run_command("/usr/bin/python3 -c 'import pandas, scipy.stats'").status != 0) {
+    GTEST_SKIP() << "/usr/bin/python3 has no pandas or no SciPy";
+  }
+  expect_the_reports_numbers("/usr/bin/python3", "analysis.py");
+}
+
+TEST(WorkedScriptTest, RGivesTheNumbersOfTheReport) {
+  if (run_command("command -v Rscript").status != 0) {
+    GTEST_SKIP() << "there is no Rscript";
+  }
+  expect_the_reports_numbers("Rscript", "analysis.R");
+}
+
+}  // namespace
+}  // namespace haptrial
