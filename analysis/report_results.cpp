@@ -93,10 +93,14 @@ void add_design(Document& document, const StudyResult& study) {
   for (const auto& score : study.scores) {
     blocks.insert({score.subject, score.block});
   }
-  document.paragraph(fmt::format(
-      "Training conditions: {}. The scored trials lie in {} that repeat one trajectory and force "
-      "pattern under one training condition.",
-      joined(study.statistics.conditions), counted(blocks.size(), "block")));
+  document.paragraph(
+      fmt::format("Training conditions: {}.", joined(study.statistics.conditions)));
+  if (study.curves_from.empty()) {
+    document.paragraph(fmt::format(
+        "The scored trials lie in {} that repeat one trajectory and force pattern under one "
+        "training condition.",
+        counted(blocks.size(), "block")));
+  }
   study.curves_from.empty() ? add_sessions(document, study) : add_curves(document, study);
   for (const std::string& remark : study.remarks) {
     document.paragraph(remark);

@@ -28,7 +28,9 @@ std::vector<std::string> summary_lines(const StudyResult& study) {
     tests += fmt::format("{}{} below {} {}", tests.empty() ? "" : "; ", c.better, c.worse,
                          t_result(c.pooled));
   }
-  lines.push_back("One-tailed t-tests on pooled trials: " + tests);
+  if (!tests.empty()) {
+    lines.push_back("One-tailed t-tests on pooled trials: " + tests);
+  }
   return lines;
 }
 

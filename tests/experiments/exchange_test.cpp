@@ -24,7 +24,10 @@ using testing::Not;
 
 class ExchangeTest : public testing::Test {
  protected:
-  std::string path(const std::string& name) const { return "'" + (folder_ / name).string() + "'"; }
+  std::string path(const std::string& name) const {
+    const std::string quote = "'";
+    return quote + (folder_ / name).string() + quote;
+  }
 
   void make_study(const std::string& more) {
     const CommandResult dry =
