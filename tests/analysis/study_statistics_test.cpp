@@ -121,7 +121,8 @@ TEST(StudyStatistics, OfNothingAndOfOneTrialIsNotDefined) {
   const auto nothing = study_statistics({});
   EXPECT_FALSE(nothing.anova);
   EXPECT_FALSE(nothing.repeated);
-  EXPECT_FALSE(nothing.comparisons[0].pooled);
+  EXPECT_FALSE(nothing.mixed);
+  EXPECT_TRUE(nothing.comparisons.empty());
   const auto one = study_statistics(std::vector{trial("P01", "haptic", 1, 2.0)});
   EXPECT_THAT(one.anova.because(), HasSubstr("fewer than two groups"));
   EXPECT_FALSE(one.summaries[0].trials);

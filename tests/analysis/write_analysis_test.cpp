@@ -50,7 +50,7 @@ TEST_F(WriteAnalysis, MakesTheFolderAndEveryFile) {
   const auto study = example_study(true);
   write_analysis(study, root_ / "a" / "b");
   const auto found = names(root_ / "a" / "b");
-  EXPECT_EQ(found.size(), 23u);  // table, numbers, report, ten figures twice
+  EXPECT_EQ(found.size(), 26u);  // table, numbers, two reports, eleven figures twice
   EXPECT_EQ(read(root_ / "a" / "b" / "scores.csv"), scores_csv(study.scores));
   const auto report = read(root_ / "a" / "b" / "report.html");
   EXPECT_THAT(report, HasSubstr("SIMULATED PARTICIPANTS</text>"));  // in the pictures too
@@ -63,7 +63,7 @@ TEST_F(WriteAnalysis, ReplacesAnEarlierOneAndTouchesNothingElse) {
   write_analysis(example_study(false), root_);
   EXPECT_THAT(read(root_ / "report.html"), testing::Not(HasSubstr("SIMULATED")));
   EXPECT_EQ(read(root_ / "session.h5"), "data");
-  EXPECT_EQ(names(root_).size(), 24u);  // no temporary folder
+  EXPECT_EQ(names(root_).size(), 27u);  // no temporary folder
 }
 
 TEST_F(WriteAnalysis, GivesTheSameBytesTwice) {
@@ -95,7 +95,7 @@ TEST_F(WriteAnalysis, LeavesAnEarlierOneWhenGnuplotIsAbsent) {
   EXPECT_THROW(write_analysis(example_study(false), root_), RunError);
   ::setenv("PATH", path.c_str(), 1);
   EXPECT_EQ(read(root_ / "report.html"), before);
-  EXPECT_EQ(names(root_).size(), 23u);
+  EXPECT_EQ(names(root_).size(), 26u);
 }
 
 // A limit on the size of files stands in for a full disk.
