@@ -1,0 +1,110 @@
+#include "core/geometry/bvh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/geometry/bvh_data.h"
+#include "core/geometry/parallel.h"
+#include "core/geometry/ray_crossing.h"
+#include "core/geometry/triangle_distance.h"
+#include "core/geometry/triangle_distance_lanes.h"
+
+namespace haptrial::geometry {
+namespace {
+
+kernel::Lanes3<double> lanes(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+
+/// Single-precision boxes and what they are compared with may be wrong by this much in the frame.
+constexpr double kBoxError = 1e-6;
+
+struct Pending {
+  std::int32_t node;
+  double bound;  // no triangle below is nearer, in the frame
+};
+
+/// The distance of a point to a child's box, in the frame.
+double box_distance(const Node& node, int child, const Eigen::Vector3d& p) {
+  double sum = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double outside = std::max(
+        {double{node.low[axis][child]} - p[axis], p[axis] - double{node.high[axis][child]}, 0.0});
+    sum += outside * outside;
+  }
+  return std::sqrt(sum);
+}
+
+void take_if_nearer(const Bvh::Data& data, std::int32_t slot, const Eigen::Vector3d& point,
+                    ClosestPoint& best) {
+  const Corners& corners = data.corners[slot];
+  ClosestPoint here = closest_on_triangle(point, corners[0], corners[1], corners[2]);
+  here.triangle = data.ids[slot];
+  if (here.distance_squared < best.distance_squared ||
+      (here.distance_squared == best.distance_squared && here.triangle < best.triangle)) {
+    best = here;
+  }
+}
+
+}  // namespace
+
+ClosestPoint closest_on_triangle(const Eigen::Vector3d& point, const Eigen::Vector3d& corner0,
+                                 const Eigen::Vector3d& corner1, const Eigen::Vector3d& corner2) {
+  const auto nearest = kernel::nearest_on_triangle<kernel::OneLane>(lanes(point), lanes(corner0),
+                                                                    lanes(corner1), lanes(corner2));
+  return {nearest.distance_squared,
+          {nearest.point.x, nearest.point.y, nearest.point.z},
+          -1,
+          static_cast<TrianglePart>(static_cast<int>(nearest.part))};
+}
+
+Bvh::Bvh(const Mesh& mesh, const BvhOptions& options) {
+  auto data = std::make_unique<Data>();
+  build_hierarchy(mesh, threads_or_all(options.threads), *data);
+  data_ = std::move(data);
+}
+Bvh::~Bvh() = default;
+Bvh::Bvh(Bvh&&) noexcept = default;
+Bvh& Bvh::operator=(Bvh&&) noexcept = default;
+
+std::size_t Bvh::triangles() const noexcept { return data_->ids.size(); }
+
+ClosestPoint Bvh::closest(const Eigen::Vector3d& point) const noexcept {
+  return closest(point, -1);
+}
+
+ClosestPoint Bvh::closest(const Eigen::Vector3d& point, std::int32_t hint) const noexcept {
+  ClosestPoint best;
+  if (data_->nodes.empty() || !point.allFinite()) return best;
+  if (hint >= 0) take_if_nearer(*data_, data_->slots[hint], point, best);
+  const Eigen::Vector3d p = data_->frame.to_frame(point);
+  const double slack = kBoxError + 1e-12 * p.norm();
+  const auto reach = [&] {
+    return std::sqrt(best.distance_squared) * data_->frame.scale * (1.0 + 1e-12) + slack;
+  };
+  std::array<Pending, 16 * kWidth> stack;
+  int top = 0;
+  stack[top++] = {0, 0.0};
+  while (top > 0) {
+    const Pending next = stack[--top];
+    if (next.bound > reach()) continue;
+    const Node& node = data_->nodes[next.node];
+    for (int i = 0; i < kWidth; ++i) {
+      const double bound = box_distance(node, i, p);
+      if (!(bound <= reach()) || std::isinf(node.low[0][i])) continue;
+      if (node.child[i] < 0) {
+        take_if_nearer(*data_, ~node.child[i], point, best);
+      } else {
+        stack[top++] = {node.child[i], bound};
+      }
+    }
+    std::sort(stack.begin() + std::max(0, top - kWidth), stack.begin() + top,
+              [](const Pending& a, const Pending& b) { return a.bound > b.bound; });
+  }
+  return best;
+}
+
+void Bvh::closest(std::span<const Eigen::Vector3d> points, std::span<ClosestPoint> answers) const {
+  for (std::size_t i = 0; i < points.size(); ++i) answers[i] = closest(points[i]);
+}
+
+}  // namespace haptrial::geometry
