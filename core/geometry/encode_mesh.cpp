@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+
 #include <cstring>
 #include <iterator>
 #include <span>

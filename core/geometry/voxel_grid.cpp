@@ -21,6 +21,7 @@ Eigen::AlignedBox3d bounds(const Mesh& mesh) {
 
 VoxelGrid make_grid(const Eigen::AlignedBox3d& box, int resolution, int margin) {
   constexpr int kMaxResolution = 20000;
+  constexpr double kLeastSpacing = 1e-12;  // of the farthest coordinate: doubles tell 1e-16 apart
   if (resolution < 1 || resolution > kMaxResolution) {
     throw InputError(
         fmt::format("a resolution of {} voxels along the longest axis; allowed: 1 to {}",
@@ -36,6 +37,12 @@ VoxelGrid make_grid(const Eigen::AlignedBox3d& box, int resolution, int margin) 
   }
   VoxelGrid grid;
   grid.spacing = sides.maxCoeff() / resolution;
+  const double farthest = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
+  if (!(grid.spacing > kLeastSpacing * farthest)) {
+    throw InputError(fmt::format(
+        "voxels of {:.3g} m are too small {:.3g} m away from the origin; allowed: {:.3g} m or more",
+        grid.spacing, farthest, kLeastSpacing * farthest));
+  }
   for (int axis = 0; axis < 3; ++axis) {
     // A side that is a whole number of voxels stays so in spite of rounding.
     const double voxels = std::ceil(sides[axis] / grid.spacing * (1.0 - 1e-12));

@@ -55,7 +55,8 @@ Eigen::AlignedBox3d bounds(const Mesh& mesh);
 /// touch there; the other sides are covered and centred. `margin` more voxels lie on every side.
 /// Source: Morris 2006, §5.2.2 (isotropic voxels, set by the long axis).
 /// @throws InputError when the box has no volume to speak of (a side that is not finite, or all
-/// zero), or resolution is not from 1 to 20,000.
+/// zero), voxels would be too small for doubles that far from the origin, or resolution is not from
+/// 1 to 20,000.
 VoxelGrid make_grid(const Eigen::AlignedBox3d& box, int resolution, int margin = 0);
 
 }  // namespace haptrial::geometry
