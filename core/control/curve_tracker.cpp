@@ -1,0 +1,61 @@
+#include "core/control/curve_tracker.h"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace haptrial::control {
+
+CurveTracker::CurveTracker(const SampledCurve& curve, const CurveFollowing& following)
+    : curve_(&curve), following_(following) {
+  if (!(following.step > 0.0) || !std::isfinite(following.step)) {
+    throw std::invalid_argument("CurveTracker: step must be finite and above 0");
+  }
+  if (!(following.reach >= following.step)) {
+    throw std::invalid_argument("CurveTracker: reach must be at least step");
+  }
+  if (!(following.margin >= 0.0)) {
+    throw std::invalid_argument("CurveTracker: margin must be at least 0");
+  }
+  if (!(following.tolerance >= 0.0)) {
+    throw std::invalid_argument("CurveTracker: tolerance must be at least 0");
+  }
+  start_at(0.0);
+}
+
+const CurvePlace& CurveTracker::start(const Eigen::Vector3d& tool) noexcept {
+  if (tool.allFinite()) {
+    place_ = curve_->nearest(tool);
+  }
+  return place_;
+}
+
+const CurvePlace& CurveTracker::start_at(double arc) noexcept {
+  place_ = curve_->at(arc);
+  return place_;
+}
+
+const CurvePlace& CurveTracker::follow(const Eigen::Vector3d& tool) noexcept {
+  const CurveFollowing& f = following_;
+  // By material coordinate, so that a curve that was refitted keeps its place.
+  const double before = curve_->arc_of(place_.segment, place_.t);
+  CurveQuery query;
+  query.window = {before - f.step, before + f.step};
+  query.from_segment = place_.segment;
+  query.tolerance = f.tolerance;
+  const auto near = curve_->nearest(tool, query);
+  if (!near) {
+    return place_;
+  }
+  place_ = *near;
+  query.known = query.window;
+  query.window = {before - f.reach, before + f.reach};
+  query.below = near->distance - f.margin;
+  if (f.reach > f.step && query.below > 0.0) {
+    if (const auto far = curve_->nearest(tool, query)) {
+      place_ = *far;
+    }
+  }
+  return place_;
+}
+
+}  // namespace haptrial::control
