@@ -4,16 +4,15 @@
 #include <array>
 #include <cmath>
 
-#include "core/geometry/bvh_data.h"
+#include "core/geometry/bvh_kernel.h"
 #include "core/geometry/parallel.h"
-#include "core/geometry/ray_crossing.h"
 #include "core/geometry/triangle_distance.h"
 #include "core/geometry/triangle_distance_lanes.h"
 
 namespace haptrial::geometry {
 namespace {
 
-kernel::Lanes3<double> lanes(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+kernel::Lanes3<kernel::OneLane> lanes(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
 /// Single-precision boxes and what they are compared with may be wrong by this much in the frame.
 constexpr double kBoxError = 1e-6;
@@ -34,17 +33,6 @@ double box_distance(const Node& node, int child, const Eigen::Vector3d& p) {
   return std::sqrt(sum);
 }
 
-void take_if_nearer(const Bvh::Data& data, std::int32_t slot, const Eigen::Vector3d& point,
-                    ClosestPoint& best) {
-  const Corners& corners = data.corners[slot];
-  ClosestPoint here = closest_on_triangle(point, corners[0], corners[1], corners[2]);
-  here.triangle = data.ids[slot];
-  if (here.distance_squared < best.distance_squared ||
-      (here.distance_squared == best.distance_squared && here.triangle < best.triangle)) {
-    best = here;
-  }
-}
-
 }  // namespace
 
 ClosestPoint closest_on_triangle(const Eigen::Vector3d& point, const Eigen::Vector3d& corner0,
@@ -57,8 +45,60 @@ ClosestPoint closest_on_triangle(const Eigen::Vector3d& point, const Eigen::Vect
           static_cast<TrianglePart>(static_cast<int>(nearest.part))};
 }
 
+namespace kernel {
+
+const Kernels& kernels_for(InstructionSet set) {
+  require_instruction_set(set);
+#ifdef __x86_64__
+  if (set == InstructionSet::kAvx512) return avx512_kernels();
+  if (set == InstructionSet::kAvx2) return avx2_kernels();
+#endif
+  return baseline_kernels();
+}
+
+ClosestPoint closest_in_double(const Bvh::Data& data, const Eigen::Vector3d& point,
+                               std::int32_t slot) {
+  ClosestPoint best;
+  const auto measure = [&](std::int32_t at) {
+    const Corners& corners = data.corners[at];
+    ClosestPoint here = closest_on_triangle(point, corners[0], corners[1], corners[2]);
+    here.triangle = data.ids[at];
+    take_if_nearer(here, best);
+  };
+  if (slot >= 0) measure(slot);
+  const Eigen::Vector3d p = data.frame.to_frame(point);
+  const double slack = kBoxError + 1e-12 * p.norm();
+  const auto reach = [&] {
+    return std::sqrt(best.distance_squared) * data.frame.scale * (1.0 + 1e-12) + slack;
+  };
+  std::array<Pending, kMaxDepth * kWidth> stack;
+  int top = 0;
+  stack[top++] = {0, 0.0};
+  while (top > 0) {
+    const Pending next = stack[--top];
+    if (next.bound > reach()) continue;
+    const Node& node = data.nodes[next.node];
+    const int first = top;
+    for (int i = 0; i < kWidth && !std::isinf(node.low[0][i]); ++i) {
+      const double bound = box_distance(node, i, p);
+      if (!(bound <= reach())) continue;
+      if (node.child[i] < 0) {
+        measure(~node.child[i]);
+      } else {
+        stack[top++] = {node.child[i], bound};
+      }
+    }
+    std::sort(stack.begin() + first, stack.begin() + top,
+              [](const Pending& a, const Pending& b) { return a.bound > b.bound; });
+  }
+  return best;
+}
+
+}  // namespace kernel
+
 Bvh::Bvh(const Mesh& mesh, const BvhOptions& options) {
   auto data = std::make_unique<Data>();
+  data->kernels = &kernel::kernels_for(options.instruction_set);
   build_hierarchy(mesh, threads_or_all(options.threads), *data);
   data_ = std::move(data);
 }
@@ -73,38 +113,12 @@ ClosestPoint Bvh::closest(const Eigen::Vector3d& point) const noexcept {
 }
 
 ClosestPoint Bvh::closest(const Eigen::Vector3d& point, std::int32_t hint) const noexcept {
-  ClosestPoint best;
-  if (data_->nodes.empty() || !point.allFinite()) return best;
-  if (hint >= 0) take_if_nearer(*data_, data_->slots[hint], point, best);
-  const Eigen::Vector3d p = data_->frame.to_frame(point);
-  const double slack = kBoxError + 1e-12 * p.norm();
-  const auto reach = [&] {
-    return std::sqrt(best.distance_squared) * data_->frame.scale * (1.0 + 1e-12) + slack;
-  };
-  std::array<Pending, 16 * kWidth> stack;
-  int top = 0;
-  stack[top++] = {0, 0.0};
-  while (top > 0) {
-    const Pending next = stack[--top];
-    if (next.bound > reach()) continue;
-    const Node& node = data_->nodes[next.node];
-    for (int i = 0; i < kWidth; ++i) {
-      const double bound = box_distance(node, i, p);
-      if (!(bound <= reach()) || std::isinf(node.low[0][i])) continue;
-      if (node.child[i] < 0) {
-        take_if_nearer(*data_, ~node.child[i], point, best);
-      } else {
-        stack[top++] = {node.child[i], bound};
-      }
-    }
-    std::sort(stack.begin() + std::max(0, top - kWidth), stack.begin() + top,
-              [](const Pending& a, const Pending& b) { return a.bound > b.bound; });
+  if (data_->nodes.empty() || !point.allFinite()) return {};
+  const std::int32_t slot = hint < 0 ? -1 : data_->slots[hint];
+  if (!kernel::is_near(data_->frame.to_frame(point))) {
+    return kernel::closest_in_double(*data_, point, slot);
   }
-  return best;
-}
-
-void Bvh::closest(std::span<const Eigen::Vector3d> points, std::span<ClosestPoint> answers) const {
-  for (std::size_t i = 0; i < points.size(); ++i) answers[i] = closest(points[i]);
+  return data_->kernels->one(*data_, point, slot);
 }
 
 }  // namespace haptrial::geometry

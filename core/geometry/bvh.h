@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/instruction_set.h"
 #include "core/geometry/mesh.h"
 
 namespace haptrial::geometry {
@@ -48,6 +49,7 @@ struct RayHit {
 
 struct BvhOptions {
   int threads{0};  // that build; 0: one per processor. The hierarchy is the same for any number
+  InstructionSet instruction_set{best_instruction_set()};  // all give the same answers
 };
 
 /// A bounding-volume hierarchy over the triangles of a mesh: nearest points, rays and winding

@@ -37,6 +37,8 @@ struct Range {
 };
 
 constexpr int kBins = 16;
+// From here on ranges are halved: the rest of the tree is less than kMaxDepth - kDeep deep.
+constexpr int kDeep = 60;
 
 /// Bins along the three axes at once.
 struct Bins {
@@ -114,7 +116,7 @@ class Builder {
   /// Up to sixteen parts of a range: the one of the largest surface is split again and again.
   /// Parts of sixteen triangles or fewer are left whole; a range of so few becomes single
   /// triangles.
-  int divide(const Range& whole, std::array<Range, kWidth>& parts) {
+  int divide(const Range& whole, int depth, std::array<Range, kWidth>& parts) {
     if (whole.count() <= kWidth) {
       for (std::uint32_t i = whole.begin; i < whole.end; ++i) {
         parts[i - whole.begin] = range(i, i + 1);
@@ -135,7 +137,7 @@ class Builder {
         }
       }
       if (widest < 0) break;
-      const auto [left, right] = split(parts[widest]);
+      const auto [left, right] = depth < kDeep ? split(parts[widest]) : halve(parts[widest]);
       parts[widest] = left;
       parts[count++] = right;
     }
@@ -143,18 +145,18 @@ class Builder {
   }
 
   /// The tree below `whole`, its root first.
-  void grow(const Range& whole, std::vector<Node>& nodes) {
+  void grow(const Range& whole, int depth, std::vector<Node>& nodes) {
     const std::size_t at = nodes.size();
     nodes.emplace_back();
     std::array<Range, kWidth> parts;
-    const int count = divide(whole, parts);
+    const int count = divide(whole, depth, parts);
     write_boxes(std::span(parts).first(count), nodes[at]);
     for (int i = 0; i < count; ++i) {
       if (parts[i].count() == 1) {
         nodes[at].child[i] = ~static_cast<std::int32_t>(parts[i].begin);
       } else {
         nodes[at].child[i] = static_cast<std::int32_t>(nodes.size());
-        grow(parts[i], nodes);
+        grow(parts[i], depth + 1, nodes);
       }
     }
   }
@@ -183,11 +185,12 @@ class Builder {
       }
     }
     const Split best = best_split(bins, binning);
-    if (best.axis < 0) {
-      const std::uint32_t middle = whole.begin + whole.count() / 2;
-      return {range(whole.begin, middle), range(middle, whole.end)};
-    }
-    return part(whole, binning, best);
+    return best.axis < 0 ? halve(whole) : part(whole, binning, best);
+  }
+
+  std::pair<Range, Range> halve(const Range& whole) const {
+    const std::uint32_t middle = whole.begin + whole.count() / 2;
+    return {range(whole.begin, middle), range(middle, whole.end)};
   }
 
   std::pair<Range, Range> part(const Range& whole, const Binning& binning, Split at) {
@@ -267,12 +270,12 @@ class Forest {
   std::vector<Node> grow() {
     const auto count = static_cast<std::uint32_t>(builder_.size());
     nodes_.emplace_back();
-    open_.push_back({builder_.range(0, count), 0});
+    open_.push_back({builder_.range(0, count), 0, 0, 0});
     for (std::size_t i = 0; i < open_.size(); ++i) grow_top(open_[i]);
     std::vector<std::vector<Node>> trees(ripe_.size());
     parallel_for(trees.size(), threads_, [&](std::size_t i) {
       trees[i].reserve(ripe_[i].range.count() / 6 + 1);
-      builder_.grow(ripe_[i].range, trees[i]);
+      builder_.grow(ripe_[i].range, ripe_[i].depth, trees[i]);
     });
     join(trees);
     return std::move(nodes_);
@@ -286,22 +289,23 @@ class Forest {
   struct Place {
     Range range;
     std::size_t node;  // where the range's node, or the child that names it, is
-    int slot{0};
+    int slot;
+    int depth;
   };
 
   void grow_top(Place place) {
     std::array<Range, kWidth> parts;
-    const int count = builder_.divide(place.range, parts);
+    const int count = builder_.divide(place.range, place.depth, parts);
     Builder::write_boxes(std::span(parts).first(count), nodes_[place.node]);
     for (int i = 0; i < count; ++i) {
       if (parts[i].count() == 1) {
         nodes_[place.node].child[i] = ~static_cast<std::int32_t>(parts[i].begin);
       } else if (parts[i].count() > kLarge) {
         nodes_[place.node].child[i] = static_cast<std::int32_t>(nodes_.size());
-        open_.push_back({parts[i], nodes_.size()});
+        open_.push_back({parts[i], nodes_.size(), 0, place.depth + 1});
         nodes_.emplace_back();
       } else {
-        ripe_.push_back({parts[i], place.node, i});
+        ripe_.push_back({parts[i], place.node, i, place.depth + 1});
       }
     }
   }

@@ -23,6 +23,7 @@ struct Frame {
 };
 
 inline constexpr int kWidth = 16;
+inline constexpr int kMaxDepth = 96;  // of nodes, whatever the mesh
 
 /// Boxes of up to sixteen children, rounded to nearest; an empty slot has low = infinity.
 struct alignas(64) Node {
@@ -52,7 +53,12 @@ struct alignas(64) Dipoles {
   float radius[kWidth];
 };
 
+namespace kernel {
+struct Kernels;
+}
+
 struct Bvh::Data {
+  const kernel::Kernels* kernels{nullptr};
   Frame frame;
   std::vector<Node> nodes;          // the root first; none: no triangles
   std::vector<FlatTriangle> flat;   // (slots), in the order of the tree

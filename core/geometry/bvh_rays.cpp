@@ -50,7 +50,7 @@ void traverse(const Bvh::Data& data, const Ray& ray, Visit visit) {
   // A crossing's t is rounded apart from its box's.
   const double early = ray.begin - 1e-9 * std::abs(ray.begin);
   double end = ray.end;
-  std::array<std::int32_t, 64 * kWidth> stack;
+  std::array<std::int32_t, kMaxDepth * kWidth> stack;
   int top = 0;
   stack[top++] = 0;
   while (top > 0) {

@@ -81,7 +81,7 @@ double winding(const Bvh::Data& data, const Eigen::Vector3d& point, double accur
   const std::vector<Dipoles>& all_dipoles = data.dipoles();
   const Eigen::Vector3f p = data.frame.to_frame(point).cast<float>();
   double sum = 0.0;
-  std::array<std::int32_t, 64 * kWidth> stack;
+  std::array<std::int32_t, kMaxDepth * kWidth> stack;
   int top = 0;
   stack[top++] = 0;
   while (top > 0) {

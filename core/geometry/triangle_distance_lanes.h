@@ -7,67 +7,67 @@
 namespace haptrial::geometry::kernel {
 namespace {
 
-template <class Number>
+template <class Lanes>
 struct Lanes3 {
-  Number x, y, z;
+  typename Lanes::Number x, y, z;
 };
-template <class Number>
-[[gnu::always_inline]] inline Lanes3<Number> operator-(const Lanes3<Number>& a,
-                                                       const Lanes3<Number>& b) {
+template <class Lanes>
+[[gnu::always_inline]] inline Lanes3<Lanes> operator-(const Lanes3<Lanes>& a,
+                                                      const Lanes3<Lanes>& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-template <class Number>
-[[gnu::always_inline]] inline Number dot(const Lanes3<Number>& a, const Lanes3<Number>& b) {
+template <class Lanes>
+[[gnu::always_inline]] inline typename Lanes::Number dot(const Lanes3<Lanes>& a,
+                                                         const Lanes3<Lanes>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
-template <class Number>
-[[gnu::always_inline]] inline Lanes3<Number> cross(const Lanes3<Number>& a,
-                                                   const Lanes3<Number>& b) {
+template <class Lanes>
+[[gnu::always_inline]] inline Lanes3<Lanes> cross(const Lanes3<Lanes>& a, const Lanes3<Lanes>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
 /// The nearest point and what it is nearest to: `part` counts as TrianglePart does.
-template <class Number>
+template <class Lanes>
 struct Nearest {
-  Number distance_squared;
-  Lanes3<Number> point;
-  Number part;
+  typename Lanes::Number distance_squared;
+  Lanes3<Lanes> point;
+  typename Lanes::Number part;
 };
 
 /// A point of an edge: how far along it, 0 to 1, and the squared distance to it.
-template <class Number>
+template <class Lanes>
 struct AlongEdge {
-  Number t, distance_squared;
+  typename Lanes::Number t, distance_squared;
 };
 
 /// @param from_start, from_end  the query point minus the edge's ends; edge = end - start
 template <class Lanes, class Number = typename Lanes::Number>
-[[gnu::always_inline]] inline AlongEdge<Number> nearest_on_edge(const Lanes3<Number>& from_start,
-                                                                const Lanes3<Number>& from_end,
-                                                                const Lanes3<Number>& edge) {
+[[gnu::always_inline]] inline AlongEdge<Lanes> nearest_on_edge(const Lanes3<Lanes>& from_start,
+                                                               const Lanes3<Lanes>& from_end,
+                                                               const Lanes3<Lanes>& edge) {
   const Number zero = Lanes::all(0.0), one = Lanes::all(1.0);
   const Number length_squared = dot(edge, edge);
   const Number along = dot(from_start, edge) / length_squared;
   const auto usable = Lanes::less(zero, length_squared) & Lanes::less(zero, along);
   const Number t = Lanes::select(usable, Lanes::smaller(along, one), zero);
   const auto at_end = Lanes::less(t, one);  // the end's own difference is exact there
-  const Lanes3<Number> rest{Lanes::select(at_end, from_start.x - t * edge.x, from_end.x),
-                            Lanes::select(at_end, from_start.y - t * edge.y, from_end.y),
-                            Lanes::select(at_end, from_start.z - t * edge.z, from_end.z)};
+  const Lanes3<Lanes> rest{Lanes::select(at_end, from_start.x - t * edge.x, from_end.x),
+                           Lanes::select(at_end, from_start.y - t * edge.y, from_end.y),
+                           Lanes::select(at_end, from_start.z - t * edge.z, from_end.z)};
   return {t, dot(rest, rest)};
 }
 
 template <class Lanes, class Number = typename Lanes::Number>
-[[gnu::always_inline]] inline Nearest<Number> nearest_on_triangle(const Lanes3<Number>& p,
-                                                                  const Lanes3<Number>& a,
-                                                                  const Lanes3<Number>& b,
-                                                                  const Lanes3<Number>& c) {
+[[gnu::always_inline]] inline Nearest<Lanes> nearest_on_triangle(const Lanes3<Lanes>& p,
+                                                                 const Lanes3<Lanes>& a,
+                                                                 const Lanes3<Lanes>& b,
+                                                                 const Lanes3<Lanes>& c) {
   const Number zero = Lanes::all(0.0), one = Lanes::all(1.0);
   const auto ab = b - a, bc = c - b, ca = a - c, ac = c - a;
   const auto ap = p - a, bp = p - b, cp = p - c;
-  const AlongEdge<Number> on_ab = nearest_on_edge<Lanes>(ap, bp, ab);
-  const AlongEdge<Number> on_bc = nearest_on_edge<Lanes>(bp, cp, bc);
-  const AlongEdge<Number> on_ca = nearest_on_edge<Lanes>(cp, ap, ca);
+  const AlongEdge<Lanes> on_ab = nearest_on_edge<Lanes>(ap, bp, ab);
+  const AlongEdge<Lanes> on_bc = nearest_on_edge<Lanes>(bp, cp, bc);
+  const AlongEdge<Lanes> on_ca = nearest_on_edge<Lanes>(cp, ap, ca);
   // Barycentric weights v of b and w of c; the edge that starts at corner e has part 1 + e, the
   // corner itself 4 + e.
   Number best = on_ab.distance_squared, v = on_ab.t, w = zero, along = on_ab.t;
@@ -96,9 +96,9 @@ template <class Lanes, class Number = typename Lanes::Number>
   const Number weight_c = dot(normal, cross(ap, bp));
   const Number sum = weight_a + weight_b + weight_c;
   const Number face_v = weight_b / sum, face_w = weight_c / sum;
-  const Lanes3<Number> rest{ap.x - face_v * ab.x - face_w * ac.x,
-                            ap.y - face_v * ab.y - face_w * ac.y,
-                            ap.z - face_v * ab.z - face_w * ac.z};
+  const Lanes3<Lanes> rest{ap.x - face_v * ab.x - face_w * ac.x,
+                           ap.y - face_v * ab.y - face_w * ac.y,
+                           ap.z - face_v * ab.z - face_w * ac.z};
   const Number from_face = dot(rest, rest);
   const auto take_face = Lanes::less(zero, weight_a) & Lanes::less(zero, weight_b) &
                          Lanes::less(zero, weight_c) & Lanes::less(from_face, best);

@@ -1,0 +1,418 @@
+#pragma once
+
+// The searches for nearest points, written once for every instruction set. Included by the kernel
+// files after their target pragma; Lanes and Doubles are the vector types of that file.
+//
+// Both go the same way. A descent in single precision keeps the least distance seen so far; what it
+// may be wrong by, `error`, is known, so that no triangle farther than that distance + 2 error can
+// be the nearest. Those within are put down, and measured in double precision in the end.
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "core/geometry/bvh_kernel.h"
+#include "core/geometry/flat_triangle.h"
+#include "core/geometry/triangle_distance_lanes.h"
+
+namespace haptrial::geometry::kernel {
+namespace {
+
+constexpr float kUnbounded = std::numeric_limits<float>::max();
+constexpr int kStackSize = kMaxDepth * kWidth;
+
+/// (distance + 2 error)².
+[[gnu::always_inline]] inline float widened(float distance_squared, float error) {
+  const float limit = std::sqrt(distance_squared) + 2.0f * error;
+  return std::min(limit * limit, kUnbounded);
+}
+
+/// A float as lanes of one.
+struct OneFloat {
+  using Number = float;
+  static float all(float x) { return x; }
+  static float fma(float a, float b, float c) { return a * b + c; }
+  static float absolute(float x) { return std::abs(x); }
+  static float smaller(float a, float b) { return a < b ? a : b; }
+  static float larger(float a, float b) { return a > b ? a : b; }
+  static bool less(float a, float b) { return a < b; }
+  static float select(bool mask, float yes, float no) { return mask ? yes : no; }
+};
+
+/// Squared distances from a box (or a point, where low = high) to the boxes of a node's children.
+/// @returns a bit for each child within `limit`.
+template <class Lanes>
+[[gnu::always_inline]] inline unsigned boxes_within(const Node& node, const float low[3],
+                                                    const float high[3], float limit,
+                                                    float distances[kWidth]) {
+  using Number = typename Lanes::Number;
+  unsigned within = 0;
+  const Number zero = Lanes::all(0.0f);
+  for (int first = 0; first < kWidth; first += Lanes::kCount) {
+    Number sum = zero;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Number below = Lanes::load(node.low[axis] + first) - Lanes::all(high[axis]);
+      const Number above = Lanes::all(low[axis]) - Lanes::load(node.high[axis] + first);
+      const Number outside = Lanes::larger(Lanes::larger(below, above), zero);
+      sum = Lanes::fma(outside, outside, sum);
+    }
+    Lanes::store(distances + first, sum);
+    within |= Lanes::bits(Lanes::less_equal(sum, Lanes::all(limit))) << first;
+  }
+  return within;
+}
+
+/// Children in the order in which they will be searched: the nearest on top.
+struct Stack {
+  struct Entry {
+    float bound;          // squared distance to the box
+    std::int32_t parent;  // whose child it is
+    std::int32_t child;
+  };
+  Entry entries[kStackSize];
+  int size{0};
+
+  bool empty() const { return size == 0; }
+  Entry pop() { return entries[--size]; }
+  /// Puts one in its place among those from `first` on.
+  void insert(int first, const Entry& entry) {
+    int at = size++;
+    for (; at > first && entries[at - 1].bound < entry.bound; --at) entries[at] = entries[at - 1];
+    entries[at] = entry;
+  }
+};
+
+/// Measures pairs of a point and a triangle in double precision, several at a time.
+template <class Doubles>
+class Exact {
+  static constexpr int kCount = Doubles::kCount;
+
+ public:
+  explicit Exact(const Bvh::Data& data) : data_(data) {}
+
+  /// The answer goes into *best when it is the nearer one, at the latest in finish().
+  [[gnu::always_inline]] void add(const Eigen::Vector3d& point, std::int32_t slot,
+                                  ClosestPoint* best) {
+    const Corners& corners = data_.corners[slot];
+    for (int axis = 0; axis < 3; ++axis) {
+      values_[axis][used_] = point[axis];
+      for (int k = 0; k < 3; ++k) values_[3 + 3 * k + axis][used_] = corners[k][axis];
+    }
+    slots_[used_] = slot;
+    best_[used_] = best;
+    if (++used_ == kCount) measure();
+  }
+  void finish() {
+    if (used_ > 0) measure();
+  }
+
+ private:
+  void measure() {
+    const auto at = [&](int row) {
+      return Lanes3<Doubles>{Doubles::load(values_[row]), Doubles::load(values_[row + 1]),
+                             Doubles::load(values_[row + 2])};
+    };
+    const Nearest<Doubles> nearest = nearest_on_triangle<Doubles>(at(0), at(3), at(6), at(9));
+    alignas(64) double distance[kCount], x[kCount], y[kCount], z[kCount], part[kCount];
+    Doubles::store(distance, nearest.distance_squared);
+    Doubles::store(x, nearest.point.x);
+    Doubles::store(y, nearest.point.y);
+    Doubles::store(z, nearest.point.z);
+    Doubles::store(part, nearest.part);
+    for (int i = 0; i < used_; ++i) {
+      if (distance[i] > best_[i]->distance_squared) continue;
+      take_if_nearer({distance[i],
+                      {x[i], y[i], z[i]},
+                      data_.ids[slots_[i]],
+                      static_cast<TrianglePart>(static_cast<int>(part[i]))},
+                     *best_[i]);
+    }
+    used_ = 0;
+  }
+
+  const Bvh::Data& data_;
+  alignas(64) double values_[12][kCount]{};  // point and corners
+  std::int32_t slots_[kCount];
+  ClosestPoint* best_[kCount];
+  int used_{0};
+};
+
+/// One point at a time: the boxes of a node side by side.
+template <class Lanes, class Doubles>
+class PointSearch {
+ public:
+  PointSearch(const Bvh::Data& data, const Eigen::Vector3d& point)
+      : data_(data), point_(point), exact_(data) {
+    const Eigen::Vector3d in_frame = data.frame.to_frame(point);
+    float reach = 0.0f;
+    for (int axis = 0; axis < 3; ++axis) {
+      p_[axis] = static_cast<float>(in_frame[axis]);
+      reach = std::max(reach, std::abs(p_[axis]));
+    }
+    error_ = search_error(reach);
+  }
+
+  ClosestPoint find(std::int32_t hint) {
+    if (hint >= 0) try_triangle(hint);
+    Stack stack;
+    open(data_.nodes[0], stack);
+    while (!stack.empty()) {
+      const Stack::Entry next = stack.pop();
+      if (next.bound <= limit_) open(data_.nodes[next.child], stack);
+    }
+    settle();
+    return best_;
+  }
+
+ private:
+  static constexpr int kCandidates = 64;
+
+  void open(const Node& node, Stack& stack) {
+    alignas(64) float distances[kWidth];
+    unsigned within = boxes_within<Lanes>(node, p_, p_, limit_, distances);
+    const int first = stack.size;
+    for (; within != 0; within &= within - 1) {
+      const int i = std::countr_zero(within);
+      const std::int32_t child = node.child[i];
+      if (child >= 0) {
+        stack.insert(first, {distances[i], 0, child});
+      } else if (distances[i] <= limit_) {
+        try_triangle(~child);
+      }
+    }
+  }
+
+  void try_triangle(std::int32_t slot) {
+    const float distance_squared =
+        flat_distance_squared<OneFloat>(data_.flat[slot], p_[0], p_[1], p_[2]);
+    if (!(distance_squared <= limit_)) return;
+    if (used_ == kCandidates) settle();
+    slots_[used_] = slot;
+    distances_[used_++] = distance_squared;
+    if (distance_squared < least_) {
+      least_ = distance_squared;
+      limit_ = widened(least_, error_);
+    }
+  }
+
+  void settle() {
+    for (int i = 0; i < used_; ++i) {
+      if (distances_[i] <= limit_) exact_.add(point_, slots_[i], &best_);
+    }
+    exact_.finish();
+    used_ = 0;
+  }
+
+  const Bvh::Data& data_;
+  Eigen::Vector3d point_;
+  Exact<Doubles> exact_;
+  ClosestPoint best_;
+  float p_[3];
+  float error_, least_{kUnbounded}, limit_{kUnbounded};
+  std::int32_t slots_[kCandidates];
+  float distances_[kCandidates];
+  int used_{0};
+};
+
+/// As many points at a time as a vector holds, side by side: they share the descent.
+template <class Lanes, class Doubles>
+class PacketSearch {
+  static constexpr int kCount = Lanes::kCount;
+  using Number = typename Lanes::Number;
+
+ public:
+  explicit PacketSearch(const Bvh::Data& data) : data_(data), exact_(data) {}
+
+  /// @param points, answers  `count` from 1 to kCount, each near (is_near)
+  void find(const Eigen::Vector3d* const* points, ClosestPoint* const* answers, int count) {
+    points_ = points;
+    answers_ = answers;
+    active_ = (1u << count) - 1u;
+    place(count);
+    bound_by_neighbours();
+    descend();
+    settle();
+    remember(count);
+  }
+
+ private:
+  static constexpr int kCandidates = 128;
+
+  /// The points into the frame; lanes to spare repeat the last.
+  void place(int count) {
+    float reach = 0.0f;
+    for (int i = 0; i < kCount; ++i) {
+      const Eigen::Vector3d in_frame = data_.frame.to_frame(*points_[std::min(i, count - 1)]);
+      for (int axis = 0; axis < 3; ++axis) {
+        p_[axis][i] = static_cast<float>(in_frame[axis]);
+        reach = std::max(reach, std::abs(p_[axis][i]));
+      }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const Number p = Lanes::load(p_[axis]);
+      low_[axis] = Lanes::smallest(p);
+      high_[axis] = Lanes::largest(p);
+    }
+    error_ = search_error(reach);
+  }
+
+  /// What was nearest to the points before is on the surface, so no point is farther from it.
+  void bound_by_neighbours() {
+    Number least = Lanes::all(kUnbounded);
+    const Number px = Lanes::load(p_[0]), py = Lanes::load(p_[1]), pz = Lanes::load(p_[2]);
+    for (int i = 0; i < remembered_; ++i) {
+      const Number x = px - Lanes::all(seen_[0][i]), y = py - Lanes::all(seen_[1][i]),
+                   z = pz - Lanes::all(seen_[2][i]);
+      least = Lanes::smaller(least, Lanes::fma(x, x, Lanes::fma(y, y, z * z)));
+    }
+    set_least(least);
+  }
+
+  void set_least(Number least) {
+    least_ = least;
+    const Number limit = Lanes::root(least) + Lanes::all(2.0f * error_);
+    limits_ = Lanes::smaller(limit * limit, Lanes::all(kUnbounded));
+    limit_ = Lanes::largest(limits_);
+  }
+
+  void descend() {
+    stack_.size = 0;
+    open(0);
+    while (!stack_.empty()) {
+      const Stack::Entry next = stack_.pop();
+      if (next.bound > limit_) continue;
+      const Node& parent = data_.nodes[next.parent];
+      if (any_within(parent, next.child)) open(parent.child[next.child]);
+    }
+  }
+
+  /// Whether a child's box is near enough to any of the points.
+  bool any_within(const Node& node, int child) const {
+    const Number zero = Lanes::all(0.0f);
+    Number sum = zero;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Number p = Lanes::load(p_[axis]);
+      const Number below = Lanes::all(node.low[axis][child]) - p;
+      const Number above = p - Lanes::all(node.high[axis][child]);
+      const Number outside = Lanes::larger(Lanes::larger(below, above), zero);
+      sum = Lanes::fma(outside, outside, sum);
+    }
+    return Lanes::bits(Lanes::less_equal(sum, limits_)) != 0;
+  }
+
+  void open(std::int32_t at) {
+    const Node& node = data_.nodes[at];
+    alignas(64) float distances[kWidth];
+    unsigned within = boxes_within<Lanes>(node, low_, high_, limit_, distances);
+    const int first = stack_.size;
+    for (; within != 0; within &= within - 1) {
+      const int i = std::countr_zero(within);
+      if (node.child[i] >= 0) {
+        stack_.insert(first, {distances[i], at, i});
+      } else if (distances[i] <= limit_) {
+        try_triangle(~node.child[i]);
+      }
+    }
+  }
+
+  void try_triangle(std::int32_t slot) {
+    const Number distances = flat_distance_squared<Lanes>(data_.flat[slot], Lanes::load(p_[0]),
+                                                          Lanes::load(p_[1]), Lanes::load(p_[2]));
+    if (Lanes::bits(Lanes::less_equal(distances, limits_)) == 0) return;
+    if (used_ == kCandidates) make_room();
+    slots_[used_] = slot;
+    Lanes::store(distances_[used_++], distances);
+    if (Lanes::bits(Lanes::less(distances, least_)) != 0) {
+      set_least(Lanes::smaller(distances, least_));
+    }
+  }
+
+  unsigned still_near(int candidate) const {
+    return active_ & Lanes::bits(Lanes::less_equal(Lanes::load(distances_[candidate]), limits_));
+  }
+
+  /// Forgets candidates that have been outdone; measures the rest where they are still many.
+  void make_room() {
+    int kept = 0;
+    for (int i = 0; i < used_; ++i) {
+      if (still_near(i) == 0) continue;
+      slots_[kept] = slots_[i];
+      Lanes::store(distances_[kept++], Lanes::load(distances_[i]));
+    }
+    used_ = kept;
+    if (used_ > kCandidates / 2) settle();
+  }
+
+  void settle() {
+    for (int i = 0; i < used_; ++i) {
+      for (unsigned near = still_near(i); near != 0; near &= near - 1) {
+        const int lane = std::countr_zero(near);
+        exact_.add(*points_[lane], slots_[i], answers_[lane]);
+      }
+    }
+    exact_.finish();
+    used_ = 0;
+  }
+
+  void remember(int count) {
+    for (int i = 0; i < count; ++i) {
+      const Eigen::Vector3d in_frame = data_.frame.to_frame(answers_[i]->point);
+      for (int axis = 0; axis < 3; ++axis) seen_[axis][i] = static_cast<float>(in_frame[axis]);
+    }
+    remembered_ = count;
+  }
+
+  const Bvh::Data& data_;
+  Exact<Doubles> exact_;
+  const Eigen::Vector3d* const* points_{nullptr};
+  ClosestPoint* const* answers_{nullptr};
+  unsigned active_{0};
+  alignas(64) float p_[3][kCount];
+  alignas(64) float seen_[3][kCount];
+  int remembered_{0};
+  float low_[3], high_[3];  // the box of the points
+  float error_{0.0f};
+  Number least_, limits_;  // squared distances seen, and what can still matter
+  float limit_{kUnbounded};
+  Stack stack_;
+  alignas(64) float distances_[kCandidates][kCount];
+  std::int32_t slots_[kCandidates];
+  int used_{0};
+};
+
+template <class Lanes, class Doubles>
+ClosestPoint search_one(const Bvh::Data& data, const Eigen::Vector3d& point, std::int32_t slot) {
+  return PointSearch<Lanes, Doubles>(data, point).find(slot);
+}
+
+template <class Lanes, class Doubles>
+void search_many(const Bvh::Data& data, const Eigen::Vector3d* points, std::size_t count,
+                 ClosestPoint* answers) {
+  PacketSearch<Lanes, Doubles> search(data);
+  const Eigen::Vector3d* packet[Lanes::kCount];
+  ClosestPoint* places[Lanes::kCount];
+  int filled = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    answers[i] = {};
+    const Eigen::Vector3d in_frame = data.frame.to_frame(points[i]);
+    if (is_near(in_frame)) {
+      packet[filled] = points + i;
+      places[filled++] = answers + i;
+    } else if (points[i].allFinite()) {
+      answers[i] = closest_in_double(data, points[i], -1);
+    }
+    if (filled == Lanes::kCount || (i + 1 == count && filled > 0)) {
+      search.find(packet, places, filled);
+      filled = 0;
+    }
+  }
+}
+
+template <class Lanes, class Doubles>
+Kernels kernels_of() {
+  return {search_one<Lanes, Doubles>, search_many<Lanes, Doubles>};
+}
+
+}  // namespace
+}  // namespace haptrial::geometry::kernel
