@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -36,62 +37,67 @@ std::vector<Step> boundary(const Mesh& mesh) {
   return steps;
 }
 
+/// The loop that each step is on: a number by the root of its vertices.
+class Loops {
+ public:
+  Loops(const Mesh& mesh, const std::vector<Step>& steps)
+      : joined_(mesh.vertices.size()), number_(mesh.vertices.size(), -1) {
+    for (const Step& step : steps) {
+      joined_.unite(static_cast<std::uint32_t>(step.from), static_cast<std::uint32_t>(step.to));
+    }
+    for (const Step& step : steps) {
+      std::int32_t& number = number_[joined_.root(static_cast<std::uint32_t>(step.from))];
+      number = number < 0 ? count_++ : number;
+    }
+  }
+  std::int32_t of(const Step& step) {
+    return number_[joined_.root(static_cast<std::uint32_t>(step.from))];
+  }
+  std::int32_t count() const { return count_; }
+
+ private:
+  UnionFind joined_;
+  std::vector<std::int32_t> number_;
+  std::int32_t count_{0};
+};
+
 }  // namespace
 
 BoundaryCone boundary_cone(const Mesh& mesh) {
-  const std::vector<Step> steps = boundary(mesh);
-  UnionFind joined(mesh.vertices.size());
-  for (const Step& step : steps) {
-    joined.unite(static_cast<std::uint32_t>(step.from), static_cast<std::uint32_t>(step.to));
-  }
+  std::vector<Step> steps = boundary(mesh);
+  Loops loops(mesh, steps);
+  std::stable_sort(steps.begin(), steps.end(),
+                   [&](const Step& a, const Step& b) { return loops.of(a) < loops.of(b); });
   BoundaryCone cone;
   cone.mesh.vertices = mesh.vertices;
-  const auto count = static_cast<std::int32_t>(mesh.vertices.size());
-  std::vector<std::int32_t> fan_of(mesh.vertices.size(), -1);  // by root
-  std::vector<double> weights;
-  const auto fan = [&](const Step& step) {
-    return fan_of[joined.root(static_cast<std::uint32_t>(step.from))];
-  };
-  for (const Step& step : steps) {
-    std::int32_t& number = fan_of[joined.root(static_cast<std::uint32_t>(step.from))];
-    if (number < 0) {
-      number = static_cast<std::int32_t>(cone.fans.size());
-      cone.fans.push_back({Eigen::Vector3d::Zero(), 0.0, 0.0});
-      weights.push_back(0.0);
+  for (auto from = steps.begin(); from != steps.end();) {
+    const auto to = std::find_if(
+        from, steps.end(), [&](const Step& step) { return loops.of(step) != loops.of(*from); });
+    BoundaryCone::Fan fan{cone.mesh.triangles.size(), 0, Eigen::Vector3d::Zero(), 0.0, 0.0};
+    for (auto step = from; step != to; ++step) {
+      fan.middle += mesh.vertices[step->from] + mesh.vertices[step->to];
     }
-    cone.fans[number].middle += mesh.vertices[step.from] + mesh.vertices[step.to];
-    weights[number] += 2.0;
-  }
-  for (std::size_t f = 0; f < cone.fans.size(); ++f) {
-    cone.fans[f].middle /= weights[f];
-    cone.mesh.vertices.push_back(cone.fans[f].middle);
-  }
-  for (const Step& step : steps) {
-    BoundaryCone::Fan& of_step = cone.fans[fan(step)];
-    const Triangle triangle{step.to, step.from, count + fan(step)};
-    of_step.radius = std::max({of_step.radius, (mesh.vertices[step.from] - of_step.middle).norm(),
-                               (mesh.vertices[step.to] - of_step.middle).norm()});
-    of_step.area += 0.5 * step.times * doubled_area(cone.mesh, triangle);
-    cone.mesh.triangles.insert(cone.mesh.triangles.end(), static_cast<std::size_t>(step.times),
-                               triangle);
+    fan.middle /= 2.0 * static_cast<double>(to - from);
+    const auto middle = static_cast<std::int32_t>(cone.mesh.vertices.size());
+    cone.mesh.vertices.push_back(fan.middle);
+    for (; from != to; ++from) {
+      const Triangle triangle{from->to, from->from, middle};
+      fan.radius = std::max({fan.radius, (mesh.vertices[from->from] - fan.middle).norm(),
+                             (mesh.vertices[from->to] - fan.middle).norm()});
+      fan.area += 0.5 * from->times * doubled_area(cone.mesh, triangle);
+      fan.count += static_cast<std::size_t>(from->times);
+      cone.mesh.triangles.insert(cone.mesh.triangles.end(), static_cast<std::size_t>(from->times),
+                                 triangle);
+    }
+    cone.fans.push_back(fan);
   }
   return cone;
 }
 
-double winding_sum(const Mesh& mesh, const Eigen::Vector3d& point) {
-  double sum = 0.0;
-  for (const Triangle& t : mesh.triangles) {
-    const Eigen::Vector3d a = mesh.vertices[t[0]] - point;
-    const Eigen::Vector3d b = mesh.vertices[t[1]] - point;
-    const Eigen::Vector3d c = mesh.vertices[t[2]] - point;
-    const double to_a = a.norm();
-    const double to_b = b.norm();
-    const double to_c = c.norm();
-    // Half of the solid angle.
-    sum += std::atan2(a.dot(b.cross(c)),
-                      to_a * to_b * to_c + a.dot(b) * to_c + b.dot(c) * to_a + c.dot(a) * to_b);
-  }
-  return sum / (2.0 * std::numbers::pi);
+double BoundaryCone::most_winding(const Fan& fan, double distance_to_middle) {
+  const double distance = distance_to_middle - fan.radius;
+  return distance > 0.0 ? fan.area / (4.0 * std::numbers::pi * distance * distance)
+                        : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace haptrial::geometry

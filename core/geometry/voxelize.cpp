@@ -57,59 +57,115 @@ void fill_by_parity(const Mesh& mesh, VoxelSolid& solid, const WorkReport& repor
   fill_rows(crossings, solid, [](int crossed, int) { return crossed % 2 == 1; });
 }
 
-/// Corrects the labels near the cone of an open mesh, where it may decide.
+/// Corrects the labels near the cone of an open mesh: where it winds by a half or more.
 class NearCone {
  public:
   NearCone(const Mesh& mesh, const Bvh* hierarchy, const BoundaryCone& cone, VoxelSolid& solid)
       : mesh_(mesh), hierarchy_(hierarchy), cone_(cone), solid_(solid), grid_(solid.grid) {}
 
   void run(const WorkReport& report) {
-    const auto blocks = [&](int axis) { return (grid_.size[axis] + kBlock - 1) / kBlock; };
-    for (std::int32_t k = 0; k < blocks(2); ++k) {
-      report_share(report, static_cast<double>(k) / blocks(2));
-      for (std::int32_t j = 0; j < blocks(1); ++j) {
-        for (std::int32_t i = 0; i < blocks(0); ++i) {
-          const Eigen::Array3i low = kBlock * Eigen::Array3i(i, j, k);
-          const Eigen::Array3i size(grid_.size[0], grid_.size[1], grid_.size[2]);
-          const Eigen::Array3i high = (low + kBlock).min(size) - 1;
-          if (may_decide({grid_.centre(low.x(), low.y(), low.z()),
-                          grid_.centre(high.x(), high.y(), high.z())})) {
-            correct(low, high);
-          }
+    const Eigen::Array3i size(grid_.size[0], grid_.size[1], grid_.size[2]);
+    for (std::int32_t k = 0; k < size.z(); k += kBlock) {
+      report_share(report, static_cast<double>(k) / size.z());
+      for (std::int32_t j = 0; j < size.y(); j += kBlock) {
+        for (std::int32_t i = 0; i < size.x(); i += kBlock) {
+          const Eigen::Array3i low(i, j, k);
+          visit(low, (low + kBlock).min(size) - 1, kBlock / 2);
         }
       }
     }
   }
 
  private:
-  static constexpr std::int32_t kBlock = 8;
+  static constexpr std::int32_t kBlock = 16;
+  static constexpr std::int32_t kLeastBlock = 4;
+  static constexpr std::size_t kFewTriangles = 2000;
+  static constexpr double kHalf = 0.49;  // a little less than a half, for rounding
 
-  /// A surface of area A, seen from a distance of d or more, fills at most A/d² of the 4π.
+  /// Corrects the voxels from `low` to `high`, in halves as long as that may spare some.
+  void visit(const Eigen::Array3i& low, const Eigen::Array3i& high, std::int32_t half) {
+    if ((high < low).any() || !may_decide({grid_.centre(low.x(), low.y(), low.z()),
+                                           grid_.centre(high.x(), high.y(), high.z())})) {
+      return;
+    }
+    if (half < kLeastBlock) {
+      correct(low, high);
+      return;
+    }
+    for (int part = 0; part < 8; ++part) {
+      const Eigen::Array3i from = low + half * Eigen::Array3i(part & 1, part >> 1 & 1, part >> 2);
+      visit(from, (from + half - 1).min(high), half / 2);
+    }
+  }
+
   bool may_decide(const Eigen::AlignedBox3d& box) const {
     double most = 0.0;
     for (const BoundaryCone::Fan& fan : cone_.fans) {
-      const double distance = box.exteriorDistance(fan.middle) - fan.radius;
-      if (distance <= 0.0) {
-        return true;
-      }
-      most += fan.area / (4.0 * std::numbers::pi * distance * distance);
-      if (most >= 0.49) {  // a little less than a half, for rounding
-        return true;
-      }
+      most += BoundaryCone::most_winding(fan, box.exteriorDistance(fan.middle));
     }
-    return false;
+    return most >= kHalf;
   }
 
   void correct(const Eigen::Array3i& low, const Eigen::Array3i& high) {
+    gather_near(
+        {grid_.centre(low.x(), low.y(), low.z()), grid_.centre(high.x(), high.y(), high.z())});
+    std::vector<Eigen::Array3i> batch;
     for (std::int32_t k = low.z(); k <= high.z(); ++k) {
       for (std::int32_t j = low.y(); j <= high.y(); ++j) {
         for (std::int32_t i = low.x(); i <= high.x(); ++i) {
-          const Eigen::Vector3d centre = grid_.centre(i, j, k);
-          if (may_decide({centre, centre})) {
-            VoxelLabel& label = solid_.labels[grid_.index(i, j, k)];
-            label = is_inside(centre) ? kInside : kOutside;
+          batch.emplace_back(i, j, k);
+          if (batch.size() == kPointLanes) {
+            correct(batch);
+            batch.clear();
           }
         }
+      }
+    }
+    correct(batch);
+  }
+
+  /// The fans near a box as triangles in voxels around its middle; the others as a bound.
+  void gather_near(const Eigen::AlignedBox3d& box) {
+    constexpr double kSmall = 0.01;
+    middle_ = box.center();
+    near_.clear();
+    far_ = 0.0;
+    for (const BoundaryCone::Fan& fan : cone_.fans) {
+      const double most = BoundaryCone::most_winding(fan, box.exteriorDistance(fan.middle));
+      if (far_ + most < kSmall) {
+        far_ += most;
+        continue;
+      }
+      for (std::size_t t = fan.first; t < fan.first + fan.count; ++t) {
+        for (const std::int32_t corner : cone_.mesh.triangles[t]) {
+          near_.push_back(in_block(cone_.mesh.vertices[corner]));
+        }
+      }
+    }
+  }
+
+  Eigen::Vector3f in_block(const Eigen::Vector3d& point) const {
+    return ((point - middle_) / grid_.spacing).cast<float>();
+  }
+
+  void correct(const std::vector<Eigen::Array3i>& voxels) {
+    PointLanes points{};
+    std::array<float, kPointLanes> sums{};
+    const bool few = near_.size() <= 3 * kFewTriangles;
+    for (std::size_t v = 0; few && v < voxels.size(); ++v) {
+      const Eigen::Vector3f at =
+          in_block(grid_.centre(voxels[v].x(), voxels[v].y(), voxels[v].z()));
+      points.x[v] = at.x();
+      points.y[v] = at.y();
+      points.z[v] = at.z();
+    }
+    if (few) {
+      winding_sums(near_, points, sums);
+    }
+    for (std::size_t v = 0; v < voxels.size(); ++v) {
+      if (!few || std::abs(sums[v]) + far_ >= kHalf) {
+        const auto [i, j, k] = std::array{voxels[v].x(), voxels[v].y(), voxels[v].z()};
+        solid_.labels[grid_.index(i, j, k)] = is_inside(grid_.centre(i, j, k)) ? kInside : kOutside;
       }
     }
   }
@@ -127,6 +183,9 @@ class NearCone {
   VoxelSolid& solid_;
   const VoxelGrid& grid_;
   std::optional<Bvh> own_;
+  Eigen::Vector3d middle_{Eigen::Vector3d::Zero()};  // of the block at hand [m]
+  std::vector<Eigen::Vector3f> near_;                // corners of the near fans' triangles [voxels]
+  double far_{0.0};                                  // a bound on the winding of the others
 };
 
 void fill_by_winding(const Mesh& mesh, const Bvh* hierarchy, VoxelSolid& solid,
