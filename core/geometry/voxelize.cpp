@@ -60,8 +60,15 @@ void fill_by_parity(const Mesh& mesh, VoxelSolid& solid, const WorkReport& repor
 /// Corrects the labels near the cone of an open mesh: where it winds by a half or more.
 class NearCone {
  public:
-  NearCone(const Mesh& mesh, const Bvh* hierarchy, const BoundaryCone& cone, VoxelSolid& solid)
-      : mesh_(mesh), hierarchy_(hierarchy), cone_(cone), solid_(solid), grid_(solid.grid) {}
+  /// @param crossings  of mesh and cone together
+  NearCone(const Mesh& mesh, const Bvh* hierarchy, const BoundaryCone& cone,
+           const GridCrossings& crossings, VoxelSolid& solid)
+      : mesh_(mesh),
+        hierarchy_(hierarchy),
+        cone_(cone),
+        crossings_(crossings),
+        solid_(solid),
+        grid_(solid.grid) {}
 
   void run(const WorkReport& report) {
     const Eigen::Array3i size(grid_.size[0], grid_.size[1], grid_.size[2]);
@@ -162,12 +169,27 @@ class NearCone {
     if (few) {
       winding_sums(near_, points, sums);
     }
+    constexpr double kDoubt = 1e-3;  // many times what the sums may be wrong by
     for (std::size_t v = 0; v < voxels.size(); ++v) {
-      if (!few || std::abs(sums[v]) + far_ >= kHalf) {
-        const auto [i, j, k] = std::array{voxels[v].x(), voxels[v].y(), voxels[v].z()};
-        solid_.labels[grid_.index(i, j, k)] = is_inside(grid_.centre(i, j, k)) ? kInside : kOutside;
+      const auto [i, j, k] = std::array{voxels[v].x(), voxels[v].y(), voxels[v].z()};
+      if (few && std::abs(sums[v]) + far_ < kHalf) {
+        continue;
       }
+      const double above_half = windings(i, j, k) - static_cast<double>(sums[v]) - 0.5;
+      const bool certain = few && std::abs(above_half) > far_ + kDoubt;
+      const bool inside = certain ? above_half > 0.0 : is_inside(grid_.centre(i, j, k));
+      solid_.labels[grid_.index(i, j, k)] = inside ? kInside : kOutside;
     }
+  }
+
+  /// How often mesh and cone together wind around a voxel's centre.
+  int windings(std::int32_t i, std::int32_t j, std::int32_t k) const {
+    int count = 0;
+    for (const Crossing& crossing :
+         crossings_.on_line(grid_.index(0, j, k) / static_cast<std::size_t>(grid_.size[0]))) {
+      count -= crossing.before <= i ? crossing.leaving : 0;
+    }
+    return count;
   }
 
   bool is_inside(const Eigen::Vector3d& centre) {
@@ -180,6 +202,7 @@ class NearCone {
   const Mesh& mesh_;
   const Bvh* hierarchy_;
   const BoundaryCone& cone_;
+  const GridCrossings& crossings_;
   VoxelSolid& solid_;
   const VoxelGrid& grid_;
   std::optional<Bvh> own_;
@@ -194,11 +217,9 @@ void fill_by_winding(const Mesh& mesh, const Bvh* hierarchy, VoxelSolid& solid,
   Mesh closed{cone.mesh.vertices, mesh.triangles};
   closed.triangles.insert(closed.triangles.end(), cone.mesh.triangles.begin(),
                           cone.mesh.triangles.end());
-  {
-    const GridCrossings crossings(closed, solid.grid, 0, report);
-    fill_rows(crossings, solid, [](int, int windings) { return windings >= 1; });
-  }
-  NearCone(mesh, hierarchy, cone, solid).run(report);
+  const GridCrossings crossings(closed, solid.grid, 0, report);
+  fill_rows(crossings, solid, [](int, int windings) { return windings >= 1; });
+  NearCone(mesh, hierarchy, cone, crossings, solid).run(report);
 }
 
 /// Marks the outside voxels of a row that touch an inside one in it or in a row beside it.
