@@ -100,4 +100,20 @@ double BoundaryCone::most_winding(const Fan& fan, double distance_to_middle) {
                         : std::numeric_limits<double>::infinity();
 }
 
+double winding_sum(const Mesh& mesh, const Eigen::Vector3d& point) {
+  double sum = 0.0;
+  for (const Triangle& t : mesh.triangles) {
+    const Eigen::Vector3d a = mesh.vertices[t[0]] - point;
+    const Eigen::Vector3d b = mesh.vertices[t[1]] - point;
+    const Eigen::Vector3d c = mesh.vertices[t[2]] - point;
+    const double to_a = a.norm();
+    const double to_b = b.norm();
+    const double to_c = c.norm();
+    const double across = a.dot(b.cross(c));
+    const double along = to_a * to_b * to_c + a.dot(b) * to_c + b.dot(c) * to_a + c.dot(a) * to_b;
+    sum += across == 0.0 ? 0.0 : std::atan2(across, along);  // 0: in the triangle's plane
+  }
+  return sum / (2.0 * std::numbers::pi);
+}
+
 }  // namespace haptrial::geometry

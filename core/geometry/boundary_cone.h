@@ -31,17 +31,19 @@ struct BoundaryCone {
 };
 BoundaryCone boundary_cone(const Mesh& mesh);
 
+/// How often triangles wind around a point: the sum of the solid angles that they fill, over 4π.
+/// Source: van Oosterom and Strackee 1983.
+double winding_sum(const Mesh& mesh, const Eigen::Vector3d& point);
+
 /// Points side by side, for kernels that take them at once.
 inline constexpr int kPointLanes = 16;
 struct PointLanes {
   alignas(64) std::array<float, kPointLanes> x, y, z;
 };
 
-/// How often triangles wind around points: the sum of the solid angles that they fill, over 4π, to
-/// about 1e-5. The tangents of half the angles are multiplied as complex numbers, so that one arc
-/// tangent does for all of a point.
+/// The same for many points to about 1e-5. The tangents of half the angles are multiplied as
+/// complex numbers, so that one arc tangent does for all of a point.
 /// @param corners  three after each other are a triangle; near the origin, of size 1 or so
-/// Source: van Oosterom and Strackee 1983.
 void winding_sums(std::span<const Eigen::Vector3f> corners, const PointLanes& points,
                   std::array<float, kPointLanes>& sums);
 /// The same with another kernel: the same bits. @throws std::invalid_argument where it cannot run.

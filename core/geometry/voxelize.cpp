@@ -177,7 +177,7 @@ class NearCone {
       }
       const double above_half = windings(i, j, k) - static_cast<double>(sums[v]) - 0.5;
       const bool certain = few && std::abs(above_half) > far_ + kDoubt;
-      const bool inside = certain ? above_half > 0.0 : is_inside(grid_.centre(i, j, k));
+      const bool inside = certain ? above_half > 0.0 : is_inside(i, j, k);
       solid_.labels[grid_.index(i, j, k)] = inside ? kInside : kOutside;
     }
   }
@@ -192,7 +192,11 @@ class NearCone {
     return count;
   }
 
-  bool is_inside(const Eigen::Vector3d& centre) {
+  bool is_inside(std::int32_t i, std::int32_t j, std::int32_t k) {
+    const Eigen::Vector3d centre = grid_.centre(i, j, k);
+    if (cone_.mesh.triangles.size() <= kFewTriangles) {
+      return windings(i, j, k) - winding_sum(cone_.mesh, centre) > 0.5;
+    }
     if (hierarchy_ == nullptr) {
       hierarchy_ = &own_.emplace(mesh_);
     }
