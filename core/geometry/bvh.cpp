@@ -18,16 +18,16 @@ kernel::Lanes3<kernel::OneLane> lanes(const Eigen::Vector3d& p) { return {p.x(),
 constexpr double kBoxError = 1e-6;
 
 struct Pending {
-  std::int32_t node;
-  double bound;  // no triangle below is nearer, in the frame
+  std::int32_t node;  // or ~leaf
+  double bound;       // no triangle below is nearer, in the frame
 };
 
 /// The distance of a point to a child's box, in the frame.
-double box_distance(const Node& node, int child, const Eigen::Vector3d& p) {
+double box_distance(const Boxes& boxes, int child, const Eigen::Vector3d& p) {
   double sum = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
     const double outside = std::max(
-        {double{node.low[axis][child]} - p[axis], p[axis] - double{node.high[axis][child]}, 0.0});
+        {double{boxes.low[axis][child]} - p[axis], p[axis] - double{boxes.high[axis][child]}, 0.0});
     sum += outside * outside;
   }
   return std::sqrt(sum);
@@ -77,15 +77,16 @@ ClosestPoint closest_in_double(const Bvh::Data& data, const Eigen::Vector3d& poi
   while (top > 0) {
     const Pending next = stack[--top];
     if (next.bound > reach()) continue;
-    const Node& node = data.nodes[next.node];
+    const bool leaf = next.node < 0;
+    const Boxes& boxes = leaf ? data.leaf_boxes[~next.node] : data.nodes[next.node].boxes;
     const int first = top;
-    for (int i = 0; i < kWidth && !std::isinf(node.low[0][i]); ++i) {
-      const double bound = box_distance(node, i, p);
+    for (int i = 0; i < kWidth && !std::isinf(boxes.low[0][i]); ++i) {
+      const double bound = box_distance(boxes, i, p);
       if (!(bound <= reach())) continue;
-      if (node.child[i] < 0) {
-        measure(~node.child[i]);
+      if (leaf) {
+        measure(~next.node * kWidth + i);
       } else {
-        stack[top++] = {node.child[i], bound};
+        stack[top++] = {data.nodes[next.node].child[i], bound};
       }
     }
     std::sort(stack.begin() + first, stack.begin() + top,
@@ -106,7 +107,7 @@ Bvh::~Bvh() = default;
 Bvh::Bvh(Bvh&&) noexcept = default;
 Bvh& Bvh::operator=(Bvh&&) noexcept = default;
 
-std::size_t Bvh::triangles() const noexcept { return data_->ids.size(); }
+std::size_t Bvh::triangles() const noexcept { return data_->slots.size(); }
 
 ClosestPoint Bvh::closest(const Eigen::Vector3d& point) const noexcept {
   return closest(point, -1);
@@ -114,7 +115,8 @@ ClosestPoint Bvh::closest(const Eigen::Vector3d& point) const noexcept {
 
 ClosestPoint Bvh::closest(const Eigen::Vector3d& point, std::int32_t hint) const noexcept {
   if (data_->nodes.empty() || !point.allFinite()) return {};
-  const std::int32_t slot = hint < 0 ? -1 : data_->slots[hint];
+  const bool hinted = static_cast<std::size_t>(hint) < data_->slots.size();  // -1 is too large
+  const std::int32_t slot = hinted ? data_->slots[hint] : -1;
   if (!kernel::is_near(data_->frame.to_frame(point))) {
     return kernel::closest_in_double(*data_, point, slot);
   }

@@ -25,22 +25,34 @@ struct Frame {
 inline constexpr int kWidth = 16;
 inline constexpr int kMaxDepth = 96;  // of nodes, whatever the mesh
 
-/// Boxes of up to sixteen children, rounded to nearest; an empty slot has low = infinity.
-struct alignas(64) Node {
+/// Boxes of up to sixteen children along the axes, rounded to nearest; an empty place has low =
+/// infinity. The full ones come first.
+struct alignas(64) Boxes {
   float low[3][kWidth];
   float high[3][kWidth];
-  std::int32_t child[kWidth];  // a node, or ~slot of a triangle
 };
 
-/// A triangle in single precision for the search. Its longest edge lies along x, the opposite
-/// corner at x = 0, y > 0, and z is along the normal: each row turns (p, 1) into one coordinate.
-/// The altitude divides it into two right triangles with legs `leg` along x and a hypotenuse of
-/// `length` in the direction (-dx, dy). (docs/algorithms/bounding-volume-hierarchy.md)
-struct alignas(16) FlatTriangle {
-  float row[3][4];
-  struct Half {
-    float leg, dx, dy, length;
-  } half[2];  // x < 0, x >= 0
+/// The same children in boxes turned to fit, which surfaces fill far better: each row turns (p, 1)
+/// into one coordinate along the box, 0 in its middle. An empty place is infinitely far.
+struct alignas(64) TurnedBoxes {
+  float row[3][4][kWidth];
+  float half[3][kWidth];
+};
+
+struct alignas(64) Node {
+  TurnedBoxes turned;
+  Boxes boxes;
+  std::int32_t child[kWidth];  // a node, or ~leaf
+};
+
+/// Up to sixteen triangles in single precision for the search. The longest edge of each lies along
+/// x, the opposite corner at x = 0, y > 0, and z is along the normal: each row turns (p, 1) into
+/// one coordinate. The altitude divides it into two right triangles (0: x < 0) with legs `leg`
+/// along x and a hypotenuse of `length` in the direction (-dx, dy) from the longest edge.
+/// (docs/algorithms/bounding-volume-hierarchy.md)
+struct alignas(64) Leaf {
+  float row[3][4][kWidth];
+  float leg[2][kWidth], dx[2][kWidth], dy[2][kWidth], length[2][kWidth];
 };
 
 using Corners = std::array<Eigen::Vector3d, 3>;
@@ -61,9 +73,10 @@ struct Bvh::Data {
   const kernel::Kernels* kernels{nullptr};
   Frame frame;
   std::vector<Node> nodes;          // the root first; none: no triangles
-  std::vector<FlatTriangle> flat;   // (slots), in the order of the tree
+  std::vector<Leaf> leaves;         // slot s is place s % kWidth of leaf s / kWidth
+  std::vector<Boxes> leaf_boxes;    // (leaves) around each triangle, for rays
   std::vector<Corners> corners;     // (slots) as given [m]
-  std::vector<std::int32_t> ids;    // (slots) the triangle of a slot
+  std::vector<std::int32_t> ids;    // (slots) the triangle of a slot; -1: none
   std::vector<std::int32_t> slots;  // (triangles) the slot of a triangle
 
   const std::vector<Dipoles>& dipoles() const;  // (nodes), made when first asked for

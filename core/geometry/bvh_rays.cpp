@@ -27,10 +27,10 @@ struct Slabs {
   }
 
   /// The part of the ray that crosses a child's box, in t; empty where first > last.
-  std::pair<double, double> cross(const Node& node, int child, double begin, double end) const {
+  std::pair<double, double> cross(const Boxes& boxes, int child, double begin, double end) const {
     for (int axis = 0; axis < 3; ++axis) {
-      const double a = (node.low[axis][child] - widen - origin[axis]) * inverse[axis];
-      const double b = (node.high[axis][child] + widen - origin[axis]) * inverse[axis];
+      const double a = (boxes.low[axis][child] - widen - origin[axis]) * inverse[axis];
+      const double b = (boxes.high[axis][child] + widen - origin[axis]) * inverse[axis];
       begin = std::max(begin, std::min(a, b));
       end = std::min(end, std::max(a, b));
     }
@@ -54,15 +54,16 @@ void traverse(const Bvh::Data& data, const Ray& ray, Visit visit) {
   int top = 0;
   stack[top++] = 0;
   while (top > 0) {
-    const Node& node = data.nodes[stack[--top]];
-    for (int i = 0; i < kWidth && !std::isinf(node.low[0][i]); ++i) {
-      const auto [first, last] = slabs.cross(node, i, early, end + 1e-9 * std::abs(end));
+    const std::int32_t at = stack[--top];
+    const Boxes& boxes = at < 0 ? data.leaf_boxes[~at] : data.nodes[at].boxes;
+    for (int i = 0; i < kWidth && !std::isinf(boxes.low[0][i]); ++i) {
+      const auto [first, last] = slabs.cross(boxes, i, early, end + 1e-9 * std::abs(end));
       if (first > last) continue;
-      if (node.child[i] >= 0) {
-        stack[top++] = node.child[i];
+      if (at >= 0) {
+        stack[top++] = data.nodes[at].child[i];
         continue;
       }
-      const std::int32_t slot = ~node.child[i];
+      const std::int32_t slot = ~at * kWidth + i;
       const auto here = crossing(data.corners[slot]);
       if (here && here->t >= ray.begin && here->t <= end) {
         end = visit(RayHit{here->t, data.ids[slot], here->entering});

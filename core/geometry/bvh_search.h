@@ -28,37 +28,51 @@ constexpr int kStackSize = kMaxDepth * kWidth;
   return std::min(limit * limit, kUnbounded);
 }
 
-/// A float as lanes of one.
-struct OneFloat {
-  using Number = float;
-  static float all(float x) { return x; }
-  static float fma(float a, float b, float c) { return a * b + c; }
-  static float absolute(float x) { return std::abs(x); }
-  static float smaller(float a, float b) { return a < b ? a : b; }
-  static float larger(float a, float b) { return a > b ? a : b; }
-  static bool less(float a, float b) { return a < b; }
-  static float select(bool mask, float yes, float no) { return mask ? yes : no; }
+/// The points that a search is about, seen by boxes: a box along the axes around them.
+struct Extent {
+  float middle[3];
+  float half[3];  // 0 for a single point
 };
 
-/// Squared distances from a box (or a point, where low = high) to the boxes of a node's children.
+/// Squared distances from the children's boxes to an extent, or less than that.
 /// @returns a bit for each child within `limit`.
-template <class Lanes>
-[[gnu::always_inline]] inline unsigned boxes_within(const Node& node, const float low[3],
-                                                    const float high[3], float limit,
-                                                    float distances[kWidth]) {
+template <class Lanes, bool kSpread>
+[[gnu::always_inline]] inline unsigned boxes_within(const TurnedBoxes& boxes, const Extent& from,
+                                                    float limit, float distances[kWidth]) {
   using Number = typename Lanes::Number;
   unsigned within = 0;
   const Number zero = Lanes::all(0.0f);
   for (int first = 0; first < kWidth; first += Lanes::kCount) {
     Number sum = zero;
     for (int axis = 0; axis < 3; ++axis) {
-      const Number below = Lanes::load(node.low[axis] + first) - Lanes::all(high[axis]);
-      const Number above = Lanes::all(low[axis]) - Lanes::load(node.high[axis] + first);
-      const Number outside = Lanes::larger(Lanes::larger(below, above), zero);
+      Number at = Lanes::load(boxes.row[axis][3] + first);
+      Number half = Lanes::load(boxes.half[axis] + first);
+      for (int k = 0; k < 3; ++k) {
+        const Number row = Lanes::load(boxes.row[axis][k] + first);
+        at = Lanes::fma(row, Lanes::all(from.middle[k]), at);
+        if (kSpread) half = Lanes::fma(Lanes::absolute(row), Lanes::all(from.half[k]), half);
+      }
+      const Number outside = Lanes::larger(Lanes::absolute(at) - half, zero);
       sum = Lanes::fma(outside, outside, sum);
     }
     Lanes::store(distances + first, sum);
     within |= Lanes::bits(Lanes::less_equal(sum, Lanes::all(limit))) << first;
+  }
+  return within;
+}
+
+/// Squared distances from one point to the triangles of a leaf.
+/// @returns a bit for each triangle within `limit`.
+template <class Lanes>
+[[gnu::always_inline]] inline unsigned triangles_within(const Leaf& leaf, const float p[3],
+                                                        float limit, float distances[kWidth]) {
+  unsigned within = 0;
+  for (int first = 0; first < kWidth; first += Lanes::kCount) {
+    const auto found = flat_distance_squared<Lanes>(
+        leaf, [first](const float* values) { return Lanes::load(values + first); },
+        Lanes::all(p[0]), Lanes::all(p[1]), Lanes::all(p[2]));
+    Lanes::store(distances + first, found);
+    within |= Lanes::bits(Lanes::less_equal(found, Lanes::all(limit))) << first;
   }
   return within;
 }
@@ -147,19 +161,25 @@ class PointSearch {
     const Eigen::Vector3d in_frame = data.frame.to_frame(point);
     float reach = 0.0f;
     for (int axis = 0; axis < 3; ++axis) {
-      p_[axis] = static_cast<float>(in_frame[axis]);
-      reach = std::max(reach, std::abs(p_[axis]));
+      at_.middle[axis] = static_cast<float>(in_frame[axis]);
+      at_.half[axis] = 0.0f;
+      reach = std::max(reach, std::abs(at_.middle[axis]));
     }
     error_ = search_error(reach);
   }
 
   ClosestPoint find(std::int32_t hint) {
-    if (hint >= 0) try_triangle(hint);
+    if (hint >= 0) try_leaf(hint / kWidth);
     Stack stack;
-    open(data_.nodes[0], stack);
+    open(0, stack);
     while (!stack.empty()) {
       const Stack::Entry next = stack.pop();
-      if (next.bound <= limit_) open(data_.nodes[next.child], stack);
+      if (next.bound > limit_) continue;
+      if (next.child >= 0) {
+        open(next.child, stack);
+      } else if (~next.child != hint / kWidth || hint < 0) {
+        try_leaf(~next.child);
+      }
     }
     settle();
     return best_;
@@ -168,31 +188,30 @@ class PointSearch {
  private:
   static constexpr int kCandidates = 64;
 
-  void open(const Node& node, Stack& stack) {
+  void open(std::int32_t at, Stack& stack) {
+    const Node& node = data_.nodes[at];
     alignas(64) float distances[kWidth];
-    unsigned within = boxes_within<Lanes>(node, p_, p_, limit_, distances);
+    unsigned within = boxes_within<Lanes, false>(node.turned, at_, limit_, distances);
     const int first = stack.size;
     for (; within != 0; within &= within - 1) {
       const int i = std::countr_zero(within);
-      const std::int32_t child = node.child[i];
-      if (child >= 0) {
-        stack.insert(first, {distances[i], 0, child});
-      } else if (distances[i] <= limit_) {
-        try_triangle(~child);
-      }
+      stack.insert(first, {distances[i], at, node.child[i]});
     }
   }
 
-  void try_triangle(std::int32_t slot) {
-    const float distance_squared =
-        flat_distance_squared<OneFloat>(data_.flat[slot], p_[0], p_[1], p_[2]);
-    if (!(distance_squared <= limit_)) return;
-    if (used_ == kCandidates) settle();
-    slots_[used_] = slot;
-    distances_[used_++] = distance_squared;
-    if (distance_squared < least_) {
-      least_ = distance_squared;
-      limit_ = widened(least_, error_);
+  void try_leaf(std::int32_t leaf) {
+    alignas(64) float distances[kWidth];
+    unsigned within = triangles_within<Lanes>(data_.leaves[leaf], at_.middle, limit_, distances);
+    for (; within != 0; within &= within - 1) {
+      const int i = std::countr_zero(within);
+      if (distances[i] > limit_) continue;
+      if (used_ == kCandidates) settle();
+      slots_[used_] = leaf * kWidth + i;
+      distances_[used_++] = distances[i];
+      if (distances[i] < least_) {
+        least_ = distances[i];
+        limit_ = widened(least_, error_);
+      }
     }
   }
 
@@ -208,7 +227,7 @@ class PointSearch {
   Eigen::Vector3d point_;
   Exact<Doubles> exact_;
   ClosestPoint best_;
-  float p_[3];
+  Extent at_;
   float error_, least_{kUnbounded}, limit_{kUnbounded};
   std::int32_t slots_[kCandidates];
   float distances_[kCandidates];
@@ -251,10 +270,15 @@ class PacketSearch {
     }
     for (int axis = 0; axis < 3; ++axis) {
       const Number p = Lanes::load(p_[axis]);
-      low_[axis] = Lanes::smallest(p);
-      high_[axis] = Lanes::largest(p);
+      const float low = Lanes::smallest(p), high = Lanes::largest(p);
+      extent_.middle[axis] = 0.5f * (low + high);
+      extent_.half[axis] = 0.5f * (high - low);
     }
     error_ = search_error(reach);
+    const Number x = Lanes::load(p_[0]) - Lanes::all(extent_.middle[0]);
+    const Number y = Lanes::load(p_[1]) - Lanes::all(extent_.middle[1]);
+    const Number z = Lanes::load(p_[2]) - Lanes::all(extent_.middle[2]);
+    from_middle_ = Lanes::root(Lanes::fma(x, x, Lanes::fma(y, y, z * z)));
   }
 
   /// What was nearest to the points before is on the surface, so no point is farther from it.
@@ -274,6 +298,8 @@ class PacketSearch {
     const Number limit = Lanes::root(least) + Lanes::all(2.0f * error_);
     limits_ = Lanes::smaller(limit * limit, Lanes::all(kUnbounded));
     limit_ = Lanes::largest(limits_);
+    const float of_middle = Lanes::largest(limit + from_middle_);
+    limit_of_middle_ = std::min(of_middle * of_middle, kUnbounded);
   }
 
   void descend() {
@@ -283,45 +309,60 @@ class PacketSearch {
       const Stack::Entry next = stack_.pop();
       if (next.bound > limit_) continue;
       const Node& parent = data_.nodes[next.parent];
-      if (any_within(parent, next.child)) open(parent.child[next.child]);
+      if (!any_within(parent.turned, next.child)) continue;
+      const std::int32_t child = parent.child[next.child];
+      if (child >= 0) {
+        open(child);
+      } else {
+        try_leaf(~child);
+      }
     }
   }
 
   /// Whether a child's box is near enough to any of the points.
-  bool any_within(const Node& node, int child) const {
+  bool any_within(const TurnedBoxes& boxes, int child) const {
     const Number zero = Lanes::all(0.0f);
     Number sum = zero;
     for (int axis = 0; axis < 3; ++axis) {
-      const Number p = Lanes::load(p_[axis]);
-      const Number below = Lanes::all(node.low[axis][child]) - p;
-      const Number above = p - Lanes::all(node.high[axis][child]);
-      const Number outside = Lanes::larger(Lanes::larger(below, above), zero);
+      Number at = Lanes::all(boxes.row[axis][3][child]);
+      for (int k = 0; k < 3; ++k) {
+        at = Lanes::fma(Lanes::all(boxes.row[axis][k][child]), Lanes::load(p_[k]), at);
+      }
+      const Number outside =
+          Lanes::larger(Lanes::absolute(at) - Lanes::all(boxes.half[axis][child]), zero);
       sum = Lanes::fma(outside, outside, sum);
     }
     return Lanes::bits(Lanes::less_equal(sum, limits_)) != 0;
   }
 
   void open(std::int32_t at) {
-    const Node& node = data_.nodes[at];
     alignas(64) float distances[kWidth];
-    unsigned within = boxes_within<Lanes>(node, low_, high_, limit_, distances);
+    unsigned within = boxes_within<Lanes, true>(data_.nodes[at].turned, extent_, limit_, distances);
     const int first = stack_.size;
     for (; within != 0; within &= within - 1) {
       const int i = std::countr_zero(within);
-      if (node.child[i] >= 0) {
-        stack_.insert(first, {distances[i], at, i});
-      } else if (distances[i] <= limit_) {
-        try_triangle(~node.child[i]);
-      }
+      stack_.insert(first, {distances[i], at, i});
     }
   }
 
-  void try_triangle(std::int32_t slot) {
-    const Number distances = flat_distance_squared<Lanes>(data_.flat[slot], Lanes::load(p_[0]),
-                                                          Lanes::load(p_[1]), Lanes::load(p_[2]));
+  /// Triangles that are too far from the middle of the points are too far from each.
+  void try_leaf(std::int32_t leaf) {
+    alignas(64) float distances[kWidth];
+    unsigned within =
+        triangles_within<Lanes>(data_.leaves[leaf], extent_.middle, limit_of_middle_, distances);
+    for (; within != 0; within &= within - 1) {
+      const int i = std::countr_zero(within);
+      if (distances[i] <= limit_of_middle_) try_triangle(leaf, i);
+    }
+  }
+
+  void try_triangle(std::int32_t leaf, int place) {
+    const Number distances = flat_distance_squared<Lanes>(
+        data_.leaves[leaf], [place](const float* values) { return Lanes::all(values[place]); },
+        Lanes::load(p_[0]), Lanes::load(p_[1]), Lanes::load(p_[2]));
     if (Lanes::bits(Lanes::less_equal(distances, limits_)) == 0) return;
     if (used_ == kCandidates) make_room();
-    slots_[used_] = slot;
+    slots_[used_] = leaf * kWidth + place;
     Lanes::store(distances_[used_++], distances);
     if (Lanes::bits(Lanes::less(distances, least_)) != 0) {
       set_least(Lanes::smaller(distances, least_));
@@ -371,10 +412,12 @@ class PacketSearch {
   alignas(64) float p_[3][kCount];
   alignas(64) float seen_[3][kCount];
   int remembered_{0};
-  float low_[3], high_[3];  // the box of the points
+  Extent extent_;
+  Number from_middle_;  // each point's distance
   float error_{0.0f};
-  Number least_, limits_;  // squared distances seen, and what can still matter
-  float limit_{kUnbounded};
+  Number least_, limits_;              // squared distances seen, and what can still matter
+  float limit_{kUnbounded};            // the largest of limits_
+  float limit_of_middle_{kUnbounded};  // a triangle farther from the middle is too far for all
   Stack stack_;
   alignas(64) float distances_[kCandidates][kCount];
   std::int32_t slots_[kCandidates];

@@ -26,6 +26,12 @@ struct Cluster {
   Eigen::Vector3d area_vector{Eigen::Vector3d::Zero()};
   Eigen::Vector3d moment{Eigen::Vector3d::Zero()};  // centroids times areas
   double area{0.0};
+
+  void operator+=(const Cluster& other) {
+    area_vector += other.area_vector;
+    moment += other.moment;
+    area += other.area;
+  }
 };
 
 /// Fills the dipoles of one subtree, the deepest nodes first.
@@ -34,15 +40,17 @@ class DipoleMaker {
   DipoleMaker(const Bvh::Data& data, std::vector<Dipoles>& dipoles)
       : data_(data), dipoles_(dipoles) {}
 
+  /// @param at  a node, or ~leaf
   Cluster make(std::int32_t at) {
     Cluster whole;
-    const Node& node = data_.nodes[at];
-    for (int i = 0; i < kWidth && !std::isinf(node.low[0][i]); ++i) {
-      const Cluster part = node.child[i] < 0 ? of_triangle(~node.child[i]) : make(node.child[i]);
-      write(node, i, part, dipoles_[at]);
-      whole.area_vector += part.area_vector;
-      whole.moment += part.moment;
-      whole.area += part.area;
+    for (int i = 0; i < kWidth; ++i) {
+      if (at < 0) {
+        if (data_.ids[~at * kWidth + i] >= 0) whole += of_triangle(~at * kWidth + i);
+      } else if (!std::isinf(data_.nodes[at].boxes.low[0][i])) {
+        const Cluster part = make(data_.nodes[at].child[i]);
+        write(data_.nodes[at].boxes, i, part, dipoles_[at]);
+        whole += part;
+      }
     }
     return whole;
   }
@@ -60,9 +68,9 @@ class DipoleMaker {
     return cluster;
   }
 
-  static void write(const Node& node, int child, const Cluster& part, Dipoles& dipoles) {
-    const Eigen::Vector3d low(node.low[0][child], node.low[1][child], node.low[2][child]);
-    const Eigen::Vector3d high(node.high[0][child], node.high[1][child], node.high[2][child]);
+  static void write(const Boxes& boxes, int child, const Cluster& part, Dipoles& dipoles) {
+    const Eigen::Vector3d low(boxes.low[0][child], boxes.low[1][child], boxes.low[2][child]);
+    const Eigen::Vector3d high(boxes.high[0][child], boxes.high[1][child], boxes.high[2][child]);
     const Eigen::Vector3d centre =
         part.area > 0.0 ? Eigen::Vector3d(part.moment / part.area) : 0.5 * (low + high);
     const Eigen::Vector3d farthest = (centre - low).cwiseMax(high - centre);
@@ -88,7 +96,7 @@ double winding(const Bvh::Data& data, const Eigen::Vector3d& point, double accur
     const std::int32_t at = stack[--top];
     const Node& node = data.nodes[at];
     const Dipoles& dipoles = all_dipoles[at];
-    for (int i = 0; i < kWidth && !std::isinf(node.low[0][i]); ++i) {
+    for (int i = 0; i < kWidth && !std::isinf(node.boxes.low[0][i]); ++i) {
       const float x = dipoles.centre[0][i] - p.x(), y = dipoles.centre[1][i] - p.y(),
                   z = dipoles.centre[2][i] - p.z();
       const float away = x * x + y * y + z * z;
@@ -98,7 +106,9 @@ double winding(const Bvh::Data& data, const Eigen::Vector3d& point, double accur
             x * dipoles.area[0][i] + y * dipoles.area[1][i] + z * dipoles.area[2][i];
         sum += facing / (away * std::sqrt(away));
       } else if (node.child[i] < 0) {
-        sum += solid_angle(data.corners[~node.child[i]], point);
+        for (int k = 0; k < kWidth && data.ids[~node.child[i] * kWidth + k] >= 0; ++k) {
+          sum += solid_angle(data.corners[~node.child[i] * kWidth + k], point);
+        }
       } else {
         stack[top++] = node.child[i];
       }
@@ -121,7 +131,7 @@ double Bvh::winding_number(const Eigen::Vector3d& point, double accuracy) const 
   if (data_->nodes.empty() || !point.allFinite()) return 0.0;
   if (std::isfinite(accuracy)) return winding(*data_, point, accuracy);
   double sum = 0.0;
-  for (const Corners& corners : data_->corners) sum += solid_angle(corners, point);
+  for (const std::int32_t slot : data_->slots) sum += solid_angle(data_->corners[slot], point);
   return sum / kFourPi;
 }
 

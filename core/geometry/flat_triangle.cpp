@@ -13,16 +13,18 @@ Eigen::Vector3d across(const Eigen::Vector3d& u) {
   return u.cross(Eigen::Vector3d::Unit(least)).normalized();
 }
 
-FlatTriangle::Half half_of(double leg, double height) {
+void write_half(double leg, double height, int side, Leaf& leaf, int place) {
   const double length = std::sqrt(leg * leg + height * height);
   const bool has_length = length > 0.0;
-  return {static_cast<float>(leg), static_cast<float>(has_length ? leg / length : 1.0),
-          static_cast<float>(has_length ? height / length : 0.0), static_cast<float>(length)};
+  leaf.leg[side][place] = static_cast<float>(leg);
+  leaf.dx[side][place] = static_cast<float>(has_length ? leg / length : 1.0);
+  leaf.dy[side][place] = static_cast<float>(has_length ? height / length : 0.0);
+  leaf.length[side][place] = static_cast<float>(length);
 }
 
 }  // namespace
 
-FlatTriangle flatten(const Corners& corners, const Frame& frame) {
+void flatten(const Corners& corners, const Frame& frame, Leaf& leaf, int place) {
   // The longest edge runs from a to b; differences of the corners as given lose nothing.
   int start = 0;
   double longest = -1.0;
@@ -47,14 +49,21 @@ FlatTriangle flatten(const Corners& corners, const Frame& frame) {
   const double foot = std::min(std::max(u.dot(ac), 0.0), base);
   const Eigen::Vector3d origin = frame.to_frame(a) + foot * u;
   const Eigen::Vector3d axes[3] = {u, n.cross(u), n};
-  FlatTriangle t;
   for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) t.row[i][k] = static_cast<float>(axes[i][k]);
-    t.row[i][3] = static_cast<float>(-axes[i].dot(origin));
+    for (int k = 0; k < 3; ++k) leaf.row[i][k][place] = static_cast<float>(axes[i][k]);
+    leaf.row[i][3][place] = static_cast<float>(-axes[i].dot(origin));
   }
-  t.half[0] = half_of(foot, height);
-  t.half[1] = half_of(base - foot, height);
-  return t;
+  write_half(foot, height, 0, leaf, place);
+  write_half(base - foot, height, 1, leaf, place);
+}
+
+void leave_empty(Leaf& leaf, int place) {
+  for (auto& row : leaf.row) {
+    for (auto& values : row) values[place] = 0.0f;
+  }
+  leaf.row[2][3][place] = 1e30f;  // its square is infinite
+  write_half(0.0, 0.0, 0, leaf, place);
+  write_half(0.0, 0.0, 1, leaf, place);
 }
 
 }  // namespace haptrial::geometry
