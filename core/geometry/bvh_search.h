@@ -82,18 +82,25 @@ struct Stack {
   struct Entry {
     float bound;          // squared distance to the box
     std::int32_t parent;  // whose child it is
-    std::int32_t child;
+    std::int32_t place;   // and which
   };
   Entry entries[kStackSize];
   int size{0};
 
   bool empty() const { return size == 0; }
   Entry pop() { return entries[--size]; }
-  /// Puts one in its place among those from `first` on.
-  void insert(int first, const Entry& entry) {
-    int at = size++;
-    for (; at > first && entries[at - 1].bound < entry.bound; --at) entries[at] = entries[at - 1];
-    entries[at] = entry;
+  /// Children of a node within the limit, the nearest on top, the others as they come.
+  [[gnu::always_inline]] void push(std::int32_t node, unsigned within,
+                                   const float distances[kWidth]) {
+    if (within == 0) return;
+    int nearest = size;
+    for (; within != 0; within &= within - 1) {
+      const int i = std::countr_zero(within);
+      entries[size] = {distances[i], node, i};
+      if (distances[i] < entries[nearest].bound) nearest = size;
+      ++size;
+    }
+    std::swap(entries[nearest], entries[size - 1]);
   }
 };
 
@@ -175,10 +182,11 @@ class PointSearch {
     while (!stack.empty()) {
       const Stack::Entry next = stack.pop();
       if (next.bound > limit_) continue;
-      if (next.child >= 0) {
-        open(next.child, stack);
-      } else if (~next.child != hint / kWidth || hint < 0) {
-        try_leaf(~next.child);
+      const std::int32_t child = data_.nodes[next.parent].child[next.place];
+      if (child >= 0) {
+        open(child, stack);
+      } else if (~child != hint / kWidth || hint < 0) {
+        try_leaf(~child);
       }
     }
     settle();
@@ -191,12 +199,7 @@ class PointSearch {
   void open(std::int32_t at, Stack& stack) {
     const Node& node = data_.nodes[at];
     alignas(64) float distances[kWidth];
-    unsigned within = boxes_within<Lanes, false>(node.turned, at_, limit_, distances);
-    const int first = stack.size;
-    for (; within != 0; within &= within - 1) {
-      const int i = std::countr_zero(within);
-      stack.insert(first, {distances[i], at, node.child[i]});
-    }
+    stack.push(at, boxes_within<Lanes, false>(node.turned, at_, limit_, distances), distances);
   }
 
   void try_leaf(std::int32_t leaf) {
@@ -234,7 +237,7 @@ class PointSearch {
   int used_{0};
 };
 
-/// As many points at a time as a vector holds, side by side: they share the descent.
+/// As many points at a time as a vector holds: they share the descent down to the leaves.
 template <class Lanes, class Doubles>
 class PacketSearch {
   static constexpr int kCount = Lanes::kCount;
@@ -247,7 +250,6 @@ class PacketSearch {
   void find(const Eigen::Vector3d* const* points, ClosestPoint* const* answers, int count) {
     points_ = points;
     answers_ = answers;
-    active_ = (1u << count) - 1u;
     place(count);
     bound_by_neighbours();
     descend();
@@ -256,10 +258,11 @@ class PacketSearch {
   }
 
  private:
-  static constexpr int kCandidates = 128;
+  static constexpr int kCandidates = 256;
 
-  /// The points into the frame; lanes to spare repeat the last.
+  /// The points into the frame. Lanes to spare repeat the last point, and want nothing.
   void place(int count) {
+    active_ = (1u << count) - 1u;
     float reach = 0.0f;
     for (int i = 0; i < kCount; ++i) {
       const Eigen::Vector3d in_frame = data_.frame.to_frame(*points_[std::min(i, count - 1)]);
@@ -275,10 +278,6 @@ class PacketSearch {
       extent_.half[axis] = 0.5f * (high - low);
     }
     error_ = search_error(reach);
-    const Number x = Lanes::load(p_[0]) - Lanes::all(extent_.middle[0]);
-    const Number y = Lanes::load(p_[1]) - Lanes::all(extent_.middle[1]);
-    const Number z = Lanes::load(p_[2]) - Lanes::all(extent_.middle[2]);
-    from_middle_ = Lanes::root(Lanes::fma(x, x, Lanes::fma(y, y, z * z)));
   }
 
   /// What was nearest to the points before is on the surface, so no point is farther from it.
@@ -290,16 +289,10 @@ class PacketSearch {
                    z = pz - Lanes::all(seen_[2][i]);
       least = Lanes::smaller(least, Lanes::fma(x, x, Lanes::fma(y, y, z * z)));
     }
-    set_least(least);
-  }
-
-  void set_least(Number least) {
-    least_ = least;
+    Lanes::store(least_, least);
     const Number limit = Lanes::root(least) + Lanes::all(2.0f * error_);
-    limits_ = Lanes::smaller(limit * limit, Lanes::all(kUnbounded));
-    limit_ = Lanes::largest(limits_);
-    const float of_middle = Lanes::largest(limit + from_middle_);
-    limit_of_middle_ = std::min(of_middle * of_middle, kUnbounded);
+    Lanes::store(limits_, Lanes::smaller(limit * limit, Lanes::all(kUnbounded)));
+    limit_ = Lanes::largest(Lanes::load(limits_));
   }
 
   void descend() {
@@ -309,18 +302,19 @@ class PacketSearch {
       const Stack::Entry next = stack_.pop();
       if (next.bound > limit_) continue;
       const Node& parent = data_.nodes[next.parent];
-      if (!any_within(parent.turned, next.child)) continue;
-      const std::int32_t child = parent.child[next.child];
+      const unsigned wanting = active_ & wanted_by(parent.turned, next.place);
+      if (wanting == 0) continue;
+      const std::int32_t child = parent.child[next.place];
       if (child >= 0) {
         open(child);
       } else {
-        try_leaf(~child);
+        try_leaf(~child, wanting);
       }
     }
   }
 
-  /// Whether a child's box is near enough to any of the points.
-  bool any_within(const TurnedBoxes& boxes, int child) const {
+  /// The points that a child's box is near enough to.
+  unsigned wanted_by(const TurnedBoxes& boxes, int child) const {
     const Number zero = Lanes::all(0.0f);
     Number sum = zero;
     for (int axis = 0; axis < 3; ++axis) {
@@ -332,54 +326,43 @@ class PacketSearch {
           Lanes::larger(Lanes::absolute(at) - Lanes::all(boxes.half[axis][child]), zero);
       sum = Lanes::fma(outside, outside, sum);
     }
-    return Lanes::bits(Lanes::less_equal(sum, limits_)) != 0;
+    return Lanes::bits(Lanes::less_equal(sum, Lanes::load(limits_)));
   }
 
   void open(std::int32_t at) {
     alignas(64) float distances[kWidth];
-    unsigned within = boxes_within<Lanes, true>(data_.nodes[at].turned, extent_, limit_, distances);
-    const int first = stack_.size;
-    for (; within != 0; within &= within - 1) {
-      const int i = std::countr_zero(within);
-      stack_.insert(first, {distances[i], at, i});
-    }
+    const unsigned within =
+        boxes_within<Lanes, true>(data_.nodes[at].turned, extent_, limit_, distances);
+    stack_.push(at, within, distances);
   }
 
-  /// Triangles that are too far from the middle of the points are too far from each.
-  void try_leaf(std::int32_t leaf) {
+  void try_leaf(std::int32_t leaf, unsigned wanting) {
     alignas(64) float distances[kWidth];
-    unsigned within =
-        triangles_within<Lanes>(data_.leaves[leaf], extent_.middle, limit_of_middle_, distances);
-    for (; within != 0; within &= within - 1) {
-      const int i = std::countr_zero(within);
-      if (distances[i] <= limit_of_middle_) try_triangle(leaf, i);
+    bool nearer = false;
+    for (; wanting != 0; wanting &= wanting - 1) {
+      const int lane = std::countr_zero(wanting);
+      const float p[3] = {p_[0][lane], p_[1][lane], p_[2][lane]};
+      unsigned within = triangles_within<Lanes>(data_.leaves[leaf], p, limits_[lane], distances);
+      for (; within != 0; within &= within - 1) {
+        const int i = std::countr_zero(within);
+        if (distances[i] > limits_[lane]) continue;
+        if (used_ == kCandidates) make_room();
+        candidates_[used_++] = {distances[i], leaf * kWidth + i, lane};
+        if (distances[i] < least_[lane]) {
+          least_[lane] = distances[i];
+          limits_[lane] = widened(distances[i], error_);
+          nearer = true;
+        }
+      }
     }
-  }
-
-  void try_triangle(std::int32_t leaf, int place) {
-    const Number distances = flat_distance_squared<Lanes>(
-        data_.leaves[leaf], [place](const float* values) { return Lanes::all(values[place]); },
-        Lanes::load(p_[0]), Lanes::load(p_[1]), Lanes::load(p_[2]));
-    if (Lanes::bits(Lanes::less_equal(distances, limits_)) == 0) return;
-    if (used_ == kCandidates) make_room();
-    slots_[used_] = leaf * kWidth + place;
-    Lanes::store(distances_[used_++], distances);
-    if (Lanes::bits(Lanes::less(distances, least_)) != 0) {
-      set_least(Lanes::smaller(distances, least_));
-    }
-  }
-
-  unsigned still_near(int candidate) const {
-    return active_ & Lanes::bits(Lanes::less_equal(Lanes::load(distances_[candidate]), limits_));
+    if (nearer) limit_ = Lanes::largest(Lanes::load(limits_));
   }
 
   /// Forgets candidates that have been outdone; measures the rest where they are still many.
   void make_room() {
     int kept = 0;
     for (int i = 0; i < used_; ++i) {
-      if (still_near(i) == 0) continue;
-      slots_[kept] = slots_[i];
-      Lanes::store(distances_[kept++], Lanes::load(distances_[i]));
+      if (still_near(candidates_[i])) candidates_[kept++] = candidates_[i];
     }
     used_ = kept;
     if (used_ > kCandidates / 2) settle();
@@ -387,9 +370,9 @@ class PacketSearch {
 
   void settle() {
     for (int i = 0; i < used_; ++i) {
-      for (unsigned near = still_near(i); near != 0; near &= near - 1) {
-        const int lane = std::countr_zero(near);
-        exact_.add(*points_[lane], slots_[i], answers_[lane]);
+      const Candidate& candidate = candidates_[i];
+      if (still_near(candidate)) {
+        exact_.add(*points_[candidate.lane], candidate.slot, answers_[candidate.lane]);
       }
     }
     exact_.finish();
@@ -404,6 +387,16 @@ class PacketSearch {
     remembered_ = count;
   }
 
+  /// A triangle that may be the nearest to a point.
+  struct Candidate {
+    float distance_squared;
+    std::int32_t slot;
+    int lane;
+  };
+  bool still_near(const Candidate& candidate) const {
+    return candidate.distance_squared <= limits_[candidate.lane];
+  }
+
   const Bvh::Data& data_;
   Exact<Doubles> exact_;
   const Eigen::Vector3d* const* points_{nullptr};
@@ -411,16 +404,14 @@ class PacketSearch {
   unsigned active_{0};
   alignas(64) float p_[3][kCount];
   alignas(64) float seen_[3][kCount];
+  alignas(64) float least_[kCount];   // squared distance to the nearest seen so far
+  alignas(64) float limits_[kCount];  // and how far the nearest can still be
+  float limit_{kUnbounded};           // the largest of these
   int remembered_{0};
   Extent extent_;
-  Number from_middle_;  // each point's distance
   float error_{0.0f};
-  Number least_, limits_;              // squared distances seen, and what can still matter
-  float limit_{kUnbounded};            // the largest of limits_
-  float limit_of_middle_{kUnbounded};  // a triangle farther from the middle is too far for all
   Stack stack_;
-  alignas(64) float distances_[kCandidates][kCount];
-  std::int32_t slots_[kCandidates];
+  Candidate candidates_[kCandidates];
   int used_{0};
 };
 
