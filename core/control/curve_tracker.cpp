@@ -3,7 +3,17 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/base/table.h"
+
 namespace haptrial::control {
+
+CurveFollowing read_curve_following(Table& table) {
+  CurveFollowing f;
+  f.step = table.number("step", {0.0, 1.0, true}, "m");
+  f.reach = table.number("reach", {f.step, 1.0}, "m");
+  f.margin = table.number("margin", {0.0, 1.0}, "m");
+  return f;
+}
 
 CurveTracker::CurveTracker(const SampledCurve& curve, const CurveFollowing& following)
     : curve_(&curve), following_(following) {

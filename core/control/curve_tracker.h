@@ -2,6 +2,10 @@
 
 #include "core/control/sampled_curve.h"
 
+namespace haptrial {
+class Table;
+}
+
 namespace haptrial::control {
 
 /// How a constraint moves along its curve from one tick to the next.
@@ -11,6 +15,9 @@ struct CurveFollowing {
   double margin{0.0001};   // >= 0 [m]
   double tolerance{1e-9};  // of the distance: CurveQuery::tolerance >= 0 [m]
 };
+
+/// Reads the keys step, reach and margin of a table.
+CurveFollowing read_curve_following(Table& table);
 
 /// The place of a curve that belongs to a tool, with continuity: a strand that the tool passes or
 /// crosses is not jumped to, however near it comes, while it is farther along the arc than `reach`.
