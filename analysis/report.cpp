@@ -222,7 +222,36 @@ std::vector<std::string> tracking_row(const TrackingSummary& t) {
           quantity(t.rms_error_in_plane, 1e3, "mm")};
 }
 
+std::vector<std::string> pace_row(const TrackingSummary& t) {
+  return {t.subject,
+          std::to_string(t.passes),
+          quantity(t.run, 1.0, "s"),
+          t.run_deviation ? number(*t.run_deviation) + " s" : "-",
+          quantity(t.rms_error, 1e3, "mm"),
+          quantity(t.rms_error_in_plane, 1e3, "mm")};
+}
+
+std::string pace(const StudyResult& study) {
+  std::string html = heading("Pace and distance from the path");
+  html += paragraph(
+      "The participants moved along the path at their own pace, so forces are compared over the "
+      "place on the path and not over time. How long a run took, over the completed passes "
+      "(training and test), and the hand's root-mean-square distance from the nearest place of the "
+      "path: in space, and without the direction of the force.");
+  Rows rows;
+  for (const auto& session : study.sessions) {
+    rows.push_back(pace_row(session.tracking));
+  }
+  rows.push_back(pace_row(study.tracking));
+  return html + html_table({"Subject", "Passes", "Run", "SD of run", "RMS distance",
+                            "RMS distance in plane"},
+                           rows);
+}
+
 std::string tracking(const StudyResult& study) {
+  if (study.over_path) {
+    return pace(study);
+  }
   std::string html = heading("Tracking of the trajectory");
   html += paragraph(
       "How far the hand lagged behind the ideal path, by cross-correlation along z over each "

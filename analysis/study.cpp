@@ -82,8 +82,10 @@ struct Origin {
 RecallPicture picture_of(const Origin& origin, const std::string& which,
                          const ScoreParameters& parameters) {
   const record::SessionReader reader(origin.session->file);
-  const auto run = run_samples(reader, reader.passes().at(origin.pass->pass));
-  const auto curves = recall_curves(*run, reader.info().rate);
+  const record::PassRow row = reader.passes().at(origin.pass->pass);
+  const auto run = run_samples(reader, row);
+  const auto places = path_places(reader, row.block, parameters);
+  const auto curves = recall_curves(*run, reader.info().rate, places.get());
   auto detail = score_recall_in_detail(curves->target, curves->applied, parameters);
   RecallPicture picture{which,
                         origin.pass->score,
@@ -118,15 +120,23 @@ std::vector<RecallPicture> pictures(const std::vector<Session>& sessions,
 }
 
 std::vector<std::pair<std::string, std::string>> parameter_rows(const ScoreParameters& p) {
-  return {{"samples of the common time base", fmt::format("{}", p.samples)},
-          {"box filter on the applied force", fmt::format("{} s", p.filter_width)},
-          {"error matrix: weight of force", fmt::format("{}", p.alignment.force_weight)},
-          {"error matrix: weight of slope", fmt::format("{}", p.alignment.slope_weight)},
-          {"error matrix: power", fmt::format("{}", p.alignment.power)},
-          {"penalty of a step along one curve", fmt::format("{}", p.alignment.penalty)},
-          {"score: share of the alignment cost", fmt::format("{}", p.cost_share)},
-          {"score: share of the force difference", fmt::format("{} /N", p.force_share)},
-          {"score: share of the slope difference", fmt::format("{} s/N", p.slope_share)}};
+  std::vector<std::pair<std::string, std::string>> rows;
+  if (p.over_path) {
+    rows.emplace_back("forces are compared over",
+                      "the place on the path, as the time that it takes at the definition's speed");
+  }
+  const std::vector<std::pair<std::string, std::string>> numbers{
+      {"samples of the common time base", fmt::format("{}", p.samples)},
+      {"box filter on the applied force", fmt::format("{} s", p.filter_width)},
+      {"error matrix: weight of force", fmt::format("{}", p.alignment.force_weight)},
+      {"error matrix: weight of slope", fmt::format("{}", p.alignment.slope_weight)},
+      {"error matrix: power", fmt::format("{}", p.alignment.power)},
+      {"penalty of a step along one curve", fmt::format("{}", p.alignment.penalty)},
+      {"score: share of the alignment cost", fmt::format("{}", p.cost_share)},
+      {"score: share of the force difference", fmt::format("{} /N", p.force_share)},
+      {"score: share of the slope difference", fmt::format("{} s/N", p.slope_share)}};
+  rows.insert(rows.end(), numbers.begin(), numbers.end());
+  return rows;
 }
 
 }  // namespace
@@ -159,6 +169,7 @@ StudyResult analyze_study(const std::vector<fs::path>& session_files,
   study.recalls = pictures(sessions, parameters);
   study.stimulus = sessions.front().recalls.stimulus;
   study.parameters = parameter_rows(parameters);
+  study.over_path = parameters.over_path;
   return study;
 }
 

@@ -52,6 +52,8 @@ struct ReplayOptions {
 int replay(const ReplayOptions& options);
 
 int analyze(const std::string& folder, std::optional<int> jobs);
+/// @param out  folder for the page, the figure and the numbers; empty: only print
+int compare(const std::string& first, const std::string& second, const std::string& out);
 int info(const std::string& file);
 /// @param out  new session file; empty: beside the damaged one
 /// @returns 0 when something was recovered, else 1.

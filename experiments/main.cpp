@@ -30,6 +30,7 @@ class Commands {
     add_dry_run();
     add_run();
     add_analyze();
+    add_compare();
     add_info();
     add_recover();
     add_replay();
@@ -92,6 +93,16 @@ class Commands {
     sub->callback([this] { status_ = experiments::analyze(path_, jobs_); });
   }
 
+  void add_compare() {
+    CLI::App* sub = subcommand(
+        app_, "compare", "Compare the scores of two analysed studies",
+        "haptrial compare results/force_training results/force_training_curve --out out/compared");
+    sub->add_option("FIRST", path_, "Folder of an analysed study")->required();
+    sub->add_option("SECOND", second_, "Folder of another")->required();
+    sub->add_option("--out", compare_out_, "Folder for a page, a figure and the numbers");
+    sub->callback([this] { status_ = experiments::compare(path_, second_, compare_out_); });
+  }
+
   void add_info() {
     CLI::App* sub =
         subcommand(app_, "info", "Say what a session file holds and whether it is complete",
@@ -152,6 +163,8 @@ class Commands {
   experiments::ReplayOptions replay_;
   experiments::DeviceTestOptions device_test_;
   std::string path_;
+  std::string second_;
+  std::string compare_out_;
   std::string recover_out_;
   std::optional<int> jobs_;
 };
