@@ -172,7 +172,7 @@ TEST(MeshIoTest, PlyOfTheOtherOrderOfBytesIsRead) {
   std::string bytes =
       "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty float x\nproperty short y\n"
       "property float z\nelement face 1\nproperty list uchar ushort vertex_indices\nend_header\n";
-  for (const char last : {1, 2, 3}) {  // 1.0 is 3F 80 00 00
+  for (const char last : {'\x01', '\x02', '\x03'}) {  // 1.0 is 3F 80 00 00
     bytes += std::string("\x3F\x80\x00\x00\xFF", 5) + static_cast<char>(-last) +
              std::string("\x40\x00\x00\x00", 4);
   }
@@ -259,7 +259,7 @@ TEST(MeshIoTest, BadPlyGetsASentence) {
               AllOf(StartsWith("m: at byte "), HasSubstr("promises 4000000000 rows of 'vertex'")));
   EXPECT_EQ(ply(with("ascii", "1") + "0 0 0\n3 0 0 1\n"),
             "m:11: a face has the corner 1; allowed: 0 to 0");
-  EXPECT_THAT(ply(with("ascii", "1") + "0 0 0\n3 0 0\n"),
+  EXPECT_THAT(ply(with("ascii", "1") + "0 0 0\n3 000 000\n"),
               HasSubstr("the file ends where a number"));
   EXPECT_THAT(ply(with("binary_little_endian", "1") + std::string(12, '\0') + "\x03"),
               HasSubstr("a list has 3 values; allowed: 0 to 0"));

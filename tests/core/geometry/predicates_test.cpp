@@ -10,7 +10,7 @@
 namespace haptrial::geometry {
 namespace {
 
-using Wide = __int128;
+__extension__ typedef __int128 Wide;  // holds every determinant below
 
 int sign_of(Wide value) { return (value > 0) - (value < 0); }
 
