@@ -54,6 +54,8 @@ struct Doubles4 {
   static Number all(double x) { return _mm256_set1_pd(x); }
   static Number load(const double* from) { return _mm256_load_pd(from); }
   static void store(double* to, Number x) { _mm256_store_pd(to, x); }
+  static void store_floats(float* to, Number x) { _mm_store_ps(to, _mm256_cvtpd_ps(x)); }
+  static Number root(Number x) { return _mm256_sqrt_pd(x); }
   static Number smaller(Number a, Number b) { return _mm256_min_pd(a, b); }
   static Mask less(Number a, Number b) {
     return _mm256_castpd_si256(_mm256_cmp_pd(a, b, _CMP_LT_OQ));

@@ -50,6 +50,10 @@ struct Doubles8 {
   static Number all(double x) { return _mm512_set1_pd(x); }
   static Number load(const double* from) { return _mm512_load_pd(from); }
   static void store(double* to, Number x) { _mm512_store_pd(to, x); }
+  static void store_floats(float* to, Number x) {
+    _mm256_store_ps(to, _mm512_maskz_cvtpd_ps(0xff, x));
+  }
+  static Number root(Number x) { return _mm512_maskz_sqrt_pd(0xff, x); }
   static Number smaller(Number a, Number b) { return _mm512_maskz_min_pd(0xff, a, b); }
   static unsigned less(Number a, Number b) { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
   static Number select(unsigned mask, Number yes, Number no) {

@@ -59,6 +59,11 @@ struct Doubles2 {
     return x;
   }
   static void store(double* to, Number x) { std::memcpy(to, &x, sizeof x); }
+  static void store_floats(float* to, Number x) {
+    to[0] = static_cast<float>(x[0]);
+    to[1] = static_cast<float>(x[1]);
+  }
+  static Number root(Number x) { return Number{std::sqrt(x[0]), std::sqrt(x[1])}; }
   static Number smaller(Number a, Number b) { return select(a < b, a, b); }
   static Mask less(Number a, Number b) { return a < b; }
   static Number select(Mask mask, Number yes, Number no) {

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "core/base/error.h"
-#include "core/geometry/bvh_data.h"
+#include "core/geometry/bvh_kernel.h"
 #include "core/geometry/bvh_split.h"
 #include "core/geometry/flat_triangle.h"
 #include "core/geometry/parallel.h"
@@ -31,6 +31,7 @@ struct Material {
   const Mesh& mesh;
   std::vector<Four> vertices;
   std::vector<Item> items;
+  std::vector<Item> scratch;  // as many
 };
 
 /// Nodes, numbered from 0, and where each leaf's items begin and end.
@@ -72,7 +73,8 @@ class Builder {
           std::max_element(parts.begin(), parts.begin() + count,
                            [](const Range& a, const Range& b) { return a.count() < b.count(); });
       if (largest->count() <= enough) break;
-      const auto [left, right] = depth < kDeep ? split(items_, *largest) : halve(items_, *largest);
+      const auto [left, right] =
+          depth < kDeep ? split(items_, material_.scratch, *largest) : halve(items_, *largest);
       *largest = left;
       parts[count++] = right;
     }
@@ -234,6 +236,7 @@ Frame frame_of(const Mesh& mesh) {
 
 Material make_material(const Mesh& mesh, const Frame& frame) {
   Material material{mesh, std::vector<Four>(mesh.vertices.size()),
+                    std::vector<Item>(mesh.triangles.size()),
                     std::vector<Item>(mesh.triangles.size())};
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Eigen::Vector3f p = frame.to_frame(mesh.vertices[i]).cast<float>();
@@ -248,24 +251,24 @@ Material make_material(const Mesh& mesh, const Frame& frame) {
 
 void write_leaf(const Material& material, std::size_t at,
                 std::pair<std::uint32_t, std::uint32_t> items, Bvh::Data& data) {
-  for (int place = 0; place < kWidth; ++place) {
-    const std::size_t slot = kWidth * at + place;
-    if (place >= static_cast<int>(items.second - items.first)) {
-      leave_empty(data.leaves[at], place);
-      leave_empty(data.leaf_boxes[at], place);
-      data.ids[slot] = -1;
-      continue;
-    }
+  Corners* const corners = data.corners.data() + kWidth * at;
+  std::int32_t* const ids = data.ids.data() + kWidth * at;
+  const int count = static_cast<int>(items.second - items.first);
+  for (int place = 0; place < count; ++place) {
     const Item& item = material.items[items.first + place];
-    const std::int32_t id = item.triangle();
-    for (int k = 0; k < 3; ++k) {
-      data.corners[slot][k] = material.mesh.vertices[material.mesh.triangles[id][k]];
-    }
-    flatten(data.corners[slot], data.frame, data.leaves[at], place);
+    ids[place] = item.triangle();
+    const Triangle& triangle = material.mesh.triangles[ids[place]];
+    for (int k = 0; k < 3; ++k) corners[place][k] = material.mesh.vertices[triangle[k]];
     write_box(item.box, data.leaf_boxes[at], place);
-    data.ids[slot] = id;
-    data.slots[id] = static_cast<std::int32_t>(slot);
+    data.slots[ids[place]] = static_cast<std::int32_t>(kWidth * at) + place;
   }
+  for (int place = count; place < kWidth; ++place) {
+    ids[place] = -1;
+    corners[place] = corners[0];
+    leave_empty(data.leaf_boxes[at], place);
+  }
+  data.kernels->flatten(corners, data.frame, data.leaves[at]);
+  for (int place = count; place < kWidth; ++place) leave_empty(data.leaves[at], place);
 }
 
 }  // namespace
@@ -278,11 +281,11 @@ void build_hierarchy(const Mesh& mesh, int threads, Bvh::Data& data) {
   Tree tree = Forest(material, threads).grow();
   data.nodes = std::move(tree.nodes);
   const std::size_t leaves = tree.leaves.size();
-  data.leaves.resize(leaves);
-  data.leaf_boxes.resize(leaves);
-  data.corners.resize(kWidth * leaves);
-  data.ids.resize(kWidth * leaves);
-  data.slots.resize(mesh.triangles.size());
+  data.leaves = Unset<Leaf>(leaves);
+  data.leaf_boxes = Unset<Boxes>(leaves);
+  data.corners = Unset<Corners>(kWidth * leaves);
+  data.ids = Unset<std::int32_t>(kWidth * leaves);
+  data.slots = Unset<std::int32_t>(mesh.triangles.size());
   constexpr std::size_t kBlock = 256;
   parallel_for((leaves + kBlock - 1) / kBlock, threads, [&](std::size_t block) {
     for (std::size_t i = block * kBlock; i < std::min(leaves, (block + 1) * kBlock); ++i) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <vector>
 
@@ -57,6 +58,26 @@ struct alignas(64) Leaf {
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 
+/// An array whose elements start unset: a builder writes each of them once.
+template <class T>
+class Unset {
+ public:
+  Unset() = default;
+  explicit Unset(std::size_t size)
+      : data_(std::make_unique_for_overwrite<T[]>(size)), size_(size) {}
+
+  std::size_t size() const noexcept { return size_; }
+  T* data() noexcept { return data_.get(); }
+  T& operator[](std::size_t i) noexcept { return data_[i]; }
+  const T& operator[](std::size_t i) const noexcept { return data_[i]; }
+  const T* begin() const noexcept { return data_.get(); }
+  const T* end() const noexcept { return data_.get() + size_; }
+
+ private:
+  std::unique_ptr<T[]> data_;
+  std::size_t size_{0};
+};
+
 /// Dipoles of a node's children, in frame coordinates: the sum of the triangles' area vectors, the
 /// centre where it acts, and the farthest that a triangle of the child reaches from there.
 struct alignas(64) Dipoles {
@@ -72,12 +93,12 @@ struct Kernels;
 struct Bvh::Data {
   const kernel::Kernels* kernels{nullptr};
   Frame frame;
-  std::vector<Node> nodes;          // the root first; none: no triangles
-  std::vector<Leaf> leaves;         // slot s is place s % kWidth of leaf s / kWidth
-  std::vector<Boxes> leaf_boxes;    // (leaves) around each triangle, for rays
-  std::vector<Corners> corners;     // (slots) as given [m]
-  std::vector<std::int32_t> ids;    // (slots) the triangle of a slot; -1: none
-  std::vector<std::int32_t> slots;  // (triangles) the slot of a triangle
+  std::vector<Node> nodes;    // the root first; none: no triangles
+  Unset<Leaf> leaves;         // slot s is place s % kWidth of leaf s / kWidth
+  Unset<Boxes> leaf_boxes;    // (leaves) around each triangle, for rays
+  Unset<Corners> corners;     // (slots) as given [m]
+  Unset<std::int32_t> ids;    // (slots) the triangle of a slot; -1: none
+  Unset<std::int32_t> slots;  // (triangles) the slot of a triangle
 
   const std::vector<Dipoles>& dipoles() const;  // (nodes), made when first asked for
 

@@ -19,6 +19,8 @@ struct Kernels {
   /// The same for points in an order in which neighbours follow each other, several at a time.
   void (*many)(const Bvh::Data& data, const Eigen::Vector3d* points, std::size_t count,
                ClosestPoint* answers);
+  /// Sixteen triangles, given by their corners [m], into a leaf.
+  void (*flatten)(const Corners* corners, const Frame& frame, Leaf& leaf);
 };
 
 /// The last two exist where the compiler targets x86-64.

@@ -14,6 +14,7 @@
 
 #include "core/geometry/bvh_kernel.h"
 #include "core/geometry/flat_triangle.h"
+#include "core/geometry/flatten_lanes.h"
 #include "core/geometry/triangle_distance_lanes.h"
 
 namespace haptrial::geometry::kernel {
@@ -445,7 +446,7 @@ void search_many(const Bvh::Data& data, const Eigen::Vector3d* points, std::size
 
 template <class Lanes, class Doubles>
 Kernels kernels_of() {
-  return {search_one<Lanes, Doubles>, search_many<Lanes, Doubles>};
+  return {search_one<Lanes, Doubles>, search_many<Lanes, Doubles>, flatten<Doubles>};
 }
 
 }  // namespace

@@ -9,24 +9,26 @@
 
 namespace haptrial::geometry {
 
-/// A triangle while the tree is built: its box, its number in the fourth place of `low`.
+/// A triangle while the tree is built: its box, its number in the fourth place of `low`. The number
+/// is shifted to where floats are normal: vectors add it along, and denormal numbers are slow.
 struct Item {
+  static constexpr std::int32_t kLeastNormal = 0x00800000;
   FourBox box;
 
-  std::int32_t triangle() const { return std::bit_cast<FourInts>(box.low)[3]; }
+  std::int32_t triangle() const { return std::bit_cast<FourInts>(box.low)[3] - kLeastNormal; }
   void set_triangle(std::int32_t number) {
     auto bits = std::bit_cast<FourInts>(box.low);
-    bits[3] = number;
+    bits[3] = number + kLeastNormal;
     box.low = std::bit_cast<Four>(bits);
   }
   /// Twice the middle of the box.
   Four middle() const { return box.low + box.high; }
 };
 
-/// Consecutive items, the hull of their boxes and that of their middles.
+/// Consecutive items and the hull of their boxes.
 struct Range {
   std::uint32_t begin{0}, end{0};
-  FourBox box, middles;
+  FourBox box;
 
   std::uint32_t count() const { return end - begin; }
 };
@@ -35,9 +37,10 @@ Range range_of(std::span<const Item> items, std::uint32_t begin, std::uint32_t e
 
 /// Divides a range of two items or more in two, sorting its items: by the binned surface-area
 /// heuristic, where a part costs its surface times its leaves of sixteen triangles (Wald 2007).
-std::pair<Range, Range> split(std::span<Item> items, const Range& whole);
+/// @param scratch  as long as `items`; its part from range.begin to range.end is used
+std::pair<Range, Range> split(std::span<Item> items, std::span<Item> scratch, const Range& range);
 
 /// Divides it in the middle, whatever is where.
-std::pair<Range, Range> halve(std::span<const Item> items, const Range& whole);
+std::pair<Range, Range> halve(std::span<const Item> items, const Range& range);
 
 }  // namespace haptrial::geometry

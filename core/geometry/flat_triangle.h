@@ -4,8 +4,6 @@
 
 namespace haptrial::geometry {
 
-/// Puts a triangle into a place of a leaf, computed in double precision from its corners as given.
-void flatten(const Corners& corners, const Frame& frame, Leaf& leaf, int place);
 /// A place without a triangle: infinitely far from every point.
 void leave_empty(Leaf& leaf, int place);
 
