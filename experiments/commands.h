@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/record/session_types.h"
+#include "experiments/mesh_command.h"
 
 namespace haptrial::experiments {
 
@@ -68,5 +69,22 @@ struct DeviceTestOptions {
 };
 /// @returns 0 when the device is fit for use, else 1.
 int device_test(const DeviceTestOptions& options);
+
+/// The subcommands of haptrial mesh.
+struct MeshOptions {
+  MeshInput input;
+  std::string out;      // new file; its ending says the format
+  std::string shape;    // make: sphere, torus, gear, rough
+  std::string picture;  // new .png; empty: none
+  std::string up{"y"};  // of pictures: x, y, z
+  double weld{0.0};     // repair [m]
+  VoxelizeOptions voxels;
+  bool overwrite{false};
+};
+int mesh_make(const MeshOptions& options);
+int mesh_info(const MeshOptions& options);
+int mesh_repair(const MeshOptions& options);
+int mesh_voxelize(const MeshOptions& options);
+int mesh_tetrahedralize(const MeshOptions& options);
 
 }  // namespace haptrial::experiments

@@ -37,6 +37,7 @@ class Commands {
     add_validate();
     add_devices();
     add_device_test();
+    add_mesh();
   }
 
  private:
@@ -156,12 +157,81 @@ class Commands {
     sub->callback([this] { status_ = experiments::device_test(device_test_); });
   }
 
+  void add_mesh() {
+    CLI::App* mesh = subcommand(app_, "mesh", "Check, repair, voxelize and split surface meshes",
+                                "haptrial mesh tetrahedralize bunny.ply bunny.vtu");
+    mesh->require_subcommand(1);
+    CLI::App* make = mesh_subcommand(*mesh, "make", "Make a mesh to try things on",
+                                     "haptrial mesh make gear gear.ply");
+    make->add_option("SHAPE", mesh_.shape, "sphere, torus, gear or rough")->required();
+    make->add_option("OUT", mesh_.out, "New mesh (.obj, .ply, .stl, .off)")->required();
+    make->callback([this] { status_ = experiments::mesh_make(mesh_); });
+
+    CLI::App* info = mesh_subcommand(*mesh, "info", "Say what a mesh is and what is wrong with it",
+                                     "haptrial mesh info gear.ply");
+    add_mesh_input(*info);
+    add_mesh_picture(*info);
+    info->callback([this] { status_ = experiments::mesh_info(mesh_); });
+
+    CLI::App* repair = mesh_subcommand(*mesh, "repair", "Weld, clean and orient a mesh",
+                                       "haptrial mesh repair scan.stl clean.ply --weld 1e-5");
+    add_mesh_input(*repair);
+    repair->add_option("OUT", mesh_.out, "New mesh (.obj, .ply, .stl, .off)")->required();
+    repair->add_option("--weld", mesh_.weld, "Vertices within this distance become one [m] (0)");
+    repair->callback([this] { status_ = experiments::mesh_repair(mesh_); });
+
+    CLI::App* voxelize =
+        mesh_subcommand(*mesh, "voxelize", "Label the voxels of a grid as inside or outside",
+                        "haptrial mesh voxelize gear.ply gear.nrrd --resolution 135");
+    add_mesh_input(*voxelize);
+    voxelize->add_option("OUT", mesh_.out, "New volume (.nrrd, .h5)")->required();
+    add_mesh_voxels(*voxelize);
+    add_mesh_picture(*voxelize);
+    voxelize->callback([this] { status_ = experiments::mesh_voxelize(mesh_); });
+
+    CLI::App* split =
+        mesh_subcommand(*mesh, "tetrahedralize", "Fill a mesh with tetrahedra, five to a voxel",
+                        "haptrial mesh tetrahedralize gear.ply gear.vtu --resolution 40");
+    add_mesh_input(*split);
+    split->add_option("OUT", mesh_.out, "New mesh (.node with .ele, .vtu, .msh, .h5)")->required();
+    add_mesh_voxels(*split);
+    add_mesh_picture(*split);
+    split->callback([this] { status_ = experiments::mesh_tetrahedralize(mesh_); });
+  }
+
+  CLI::App* mesh_subcommand(CLI::App& mesh, const char* name, const char* what,
+                            const char* example) {
+    CLI::App* sub = subcommand(mesh, name, what, example);
+    sub->add_flag("--overwrite", mesh_.overwrite, "Replace files that are there");
+    return sub;
+  }
+
+  void add_mesh_input(CLI::App& sub) {
+    sub.add_option("IN", mesh_.input.file, "Mesh (.obj, .ply, .stl, .off)")->required();
+    sub.add_option("--scale", mesh_.input.scale, "Metres to one unit of the file (1)");
+    sub.add_option("--max-memory", mesh_.input.max_memory,
+                   "Refuse what may take more [GB]; what the system has by default");
+  }
+
+  void add_mesh_voxels(CLI::App& sub) {
+    sub.add_option("--resolution", mesh_.voxels.resolution, "Voxels along the longest axis (100)");
+    sub.add_flag("--over", mesh_.voxels.over, "Go one voxel over the surface");
+    sub.add_option("--inside", mesh_.voxels.rule,
+                   "auto, parity, winding or flood: what makes a voxel an inside one (auto)");
+  }
+
+  void add_mesh_picture(CLI::App& sub) {
+    sub.add_option("--picture", mesh_.picture, "New picture (.png)");
+    sub.add_option("--up", mesh_.up, "Axis that points up in it: x, y or z (y)");
+  }
+
   CLI::App& app_;
   int& status_;
   experiments::DryRunOptions dry_run_;
   experiments::RunOptions run_;
   experiments::ReplayOptions replay_;
   experiments::DeviceTestOptions device_test_;
+  experiments::MeshOptions mesh_;
   std::string path_;
   std::string second_;
   std::string compare_out_;
