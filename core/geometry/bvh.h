@@ -90,11 +90,11 @@ class Bvh {
   /// The generalized winding number: 1 inside of a closed mesh whose triangles face outwards, 0
   /// outside, and a smooth step across the holes of an open one.
   /// @param accuracy  a cluster of triangles becomes one dipole where the point is farther from
-  ///     its centre than `accuracy` times its radius; infinite: every triangle is summed.
+  ///     its centre than `accuracy` (above 1) times its radius; infinite: every triangle is summed.
   /// Source: Barill et al. 2018.
   double winding_number(const Eigen::Vector3d& point, double accuracy = 2.0) const;
-  /// Whether the exact winding number is above one half: dipoles where they leave no doubt, then
-  /// more accuracy, then every triangle.
+  /// Whether the exact winding number is above one half: dipoles where the bound on their error
+  /// leaves no doubt, else every triangle.
   bool winds_around(const Eigen::Vector3d& point) const;
 
   struct Data;

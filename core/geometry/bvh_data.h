@@ -79,11 +79,13 @@ class Unset {
 };
 
 /// Dipoles of a node's children, in frame coordinates: the sum of the triangles' area vectors, the
-/// centre where it acts, and the farthest that a triangle of the child reaches from there.
+/// centre where it acts, the farthest that a triangle of the child reaches from there, and the sum
+/// of the triangles' areas.
 struct alignas(64) Dipoles {
   float centre[3][kWidth];
-  float area[3][kWidth];
+  float vector[3][kWidth];
   float radius[kWidth];
+  float area[kWidth];
 };
 
 namespace kernel {
