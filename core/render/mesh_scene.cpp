@@ -86,7 +86,10 @@ using Face = std::array<std::int32_t, 3>;
 }  // namespace
 
 Cut halfway(const Eigen::AlignedBox3d& box, const SceneView& view) {
-  const Eigen::Vector3d normal = view.towards_eye();
+  const Eigen::Vector3d eye = view.towards_eye();
+  Eigen::Index axis = 0;
+  eye.cwiseAbs().maxCoeff(&axis);
+  const Eigen::Vector3d normal = (eye[axis] < 0.0 ? -1.0 : 1.0) * Eigen::Vector3d::Unit(axis);
   return {normal, normal.dot(box.center())};
 }
 

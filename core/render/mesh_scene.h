@@ -16,7 +16,7 @@ struct Cut {
   Eigen::Vector3d normal;
   double offset;  // [m]
 };
-/// Halfway through a box, so that a view looks onto the cut.
+/// Halfway through a box across the axis that a view looks along the most.
 Cut halfway(const Eigen::AlignedBox3d& box, const SceneView& view);
 
 std::vector<SceneTriangle> scene_of(const geometry::Mesh& mesh, const Colour& colour);
