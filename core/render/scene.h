@@ -22,8 +22,8 @@ struct SceneView {
   double elevation{0.35};                        // above the horizon [rad]
   Eigen::Vector3d up{Eigen::Vector3d::UnitY()};  // any length but 0
   bool edges{false};                             // darken the triangles' edges
-  int width{800};                                // [px]
-  int height{600};                               // [px]
+  int width{600};                                // [px]
+  int height{420};                               // [px]
   Colour background{1.0, 1.0, 1.0};
 
   /// Unit length, from the scene to the eye.
