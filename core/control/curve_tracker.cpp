@@ -15,6 +15,25 @@ CurveFollowing read_curve_following(Table& table) {
   return f;
 }
 
+namespace {
+
+/// Where to begin: on a curve that the cache does not hold, at the segment that the tool would be
+/// beside were the curve straight and evenly sampled from here on, so that nothing is read in vain.
+std::size_t likely_segment(const SampledCurve& curve, std::size_t segment,
+                           const Eigen::Vector3d& tool) noexcept {
+  constexpr std::size_t kCached = 20000;  // points
+  if (curve.size() <= kCached) {
+    return segment;
+  }
+  const Eigen::Vector3d from = curve.point(segment);
+  const Eigen::Vector3d chord = curve.point(segment + 1) - from;
+  const double at = static_cast<double>(segment) + (tool - from).dot(chord) / chord.squaredNorm();
+  const auto last = static_cast<double>(curve.size() - 2);
+  return at > 0.0 ? static_cast<std::size_t>(std::fmin(at, last)) : segment;  // not a number: here
+}
+
+}  // namespace
+
 CurveTracker::CurveTracker(const SampledCurve& curve, const CurveFollowing& following)
     : curve_(&curve), following_(following) {
   if (!(following.step > 0.0) || !std::isfinite(following.step)) {
@@ -33,8 +52,11 @@ CurveTracker::CurveTracker(const SampledCurve& curve, const CurveFollowing& foll
 }
 
 const CurvePlace& CurveTracker::start(const Eigen::Vector3d& tool) noexcept {
-  if (tool.allFinite()) {
-    place_ = curve_->nearest(tool);
+  CurveQuery query;
+  query.from_segment = place_.segment;
+  query.tolerance = following_.tolerance;
+  if (const auto found = curve_->nearest(tool, query)) {
+    place_ = *found;
   }
   return place_;
 }
@@ -50,7 +72,7 @@ const CurvePlace& CurveTracker::follow(const Eigen::Vector3d& tool) noexcept {
   const double before = curve_->arc_of(place_.segment, place_.t);
   CurveQuery query;
   query.window = {before - f.step, before + f.step};
-  query.from_segment = place_.segment;
+  query.from_segment = likely_segment(*curve_, place_.segment, tool);
   query.tolerance = f.tolerance;
   const auto near = curve_->nearest(tool, query);
   if (!near) {

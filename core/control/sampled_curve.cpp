@@ -54,8 +54,8 @@ class SampledCurve::Search {
     bool seen = false;  // the node and all below it
     for (std::size_t level = 0; level < curve_.levels_.size(); ++level, node /= kRun) {
       const Pack& pack = curve_.levels_[level][node / kRun];
-      const double begin = pack.arc_begin[node % kRun];
-      const double end = pack.arc_end[node % kRun];
+      const double begin = pack.arc[node % kRun];
+      const double end = pack.arc[node % kRun + 1];
       if (!seen && !is_known(begin, end)) {
         descend(level, node);
         seen = true;
@@ -97,59 +97,8 @@ class SampledCurve::Search {
     }
   }
 
-  void scan_pack(std::size_t level, std::size_t index, std::size_t skip) noexcept {
-    const Pack& p = curve_.levels_[level][index];
-    double square[kRun];
-    double reach[kRun];
-    for (std::size_t c = 0; c < kRun; ++c) {
-      const double ax = x_ - p.x[c];
-      const double ay = y_ - p.y[c];
-      const double az = z_ - p.z[c];
-      double t = (ax * p.dx[c] + ay * p.dy[c] + az * p.dz[c]) * p.inverse[c];
-      t = t > 0.0 ? t : 0.0;
-      t = t < 1.0 ? t : 1.0;
-      const double ex = ax - t * p.dx[c];
-      const double ey = ay - t * p.dy[c];
-      const double ez = az - t * p.dz[c];
-      square[c] = ex * ex + ey * ey + ez * ez;
-      const double far = bound_ + p.stray[c];
-      reach[c] = far * far * (1.0 + kRounding);
-    }
-    unsigned waiting = 0;
-    for (std::size_t c = 0; c < kRun; ++c) {
-      const bool open = square[c] <= reach[c] && p.arc_begin[c] <= high_ && p.arc_end[c] >= low_ &&
-                        !is_known(p.arc_begin[c], p.arc_end[c]);
-      waiting |= static_cast<unsigned>(open && c != skip) << c;
-    }
-    while (waiting != 0) {  // nearest chord first
-      std::size_t next = kRun;
-      double nearest = kInfinity;
-      for (unsigned rest = waiting; rest != 0; rest &= rest - 1) {
-        const auto c = static_cast<std::size_t>(__builtin_ctz(rest));
-        if (next == kRun || square[c] < nearest) {
-          next = c;
-          nearest = square[c];
-        }
-      }
-      waiting &= ~(1u << next);
-      const double far = bound_ + p.stray[next];
-      if (nearest <= far * far * (1.0 + kRounding)) {
-        descend(level, index * kRun + next);
-      }
-    }
-  }
-
-  void scan_strip(std::size_t index) noexcept {
-    const Strip& s = curve_.strips_[index];
-    if (s.arc[0] > high_ || s.arc[kRun] < low_) {
-      return;
-    }
-    if (s.arc[0] < low_ || s.arc[kRun] > high_) {
-      scan_part_of_strip(index);
-      return;
-    }
-    double square[kRun];
-    double along[kRun];
+  /// The squared distance to each of eight chords, and where along them.
+  void measure(const Chords& s, double* square, double* along) const noexcept {
     for (std::size_t c = 0; c < kRun; ++c) {
       const double dx = s.x[c + 1] - s.x[c];
       const double dy = s.y[c + 1] - s.y[c];
@@ -167,6 +116,77 @@ class SampledCurve::Search {
       along[c] = t;
       square[c] = ex * ex + ey * ey + ez * ez;
     }
+  }
+
+  void scan_pack(std::size_t level, std::size_t index, std::size_t skip) noexcept {
+    const Pack& p = curve_.levels_[level][index];
+    double square[kRun];
+    double along[kRun];
+    measure(p, square, along);
+    unsigned waiting = 0;
+    for (std::size_t c = 0; c < kRun; ++c) {
+      const bool open = is_near(square[c], p.stray[c]) && p.arc[c] <= high_ &&
+                        p.arc[c + 1] >= low_ && !is_known(p.arc[c], p.arc[c + 1]);
+      waiting |= static_cast<unsigned>(open && c != skip) << c;
+    }
+    while (waiting != 0) {  // nearest chord first
+      std::size_t next = kRun;
+      double nearest = kInfinity;
+      for (unsigned rest = waiting; rest != 0; rest &= rest - 1) {
+        const auto c = static_cast<std::size_t>(__builtin_ctz(rest));
+        if (next == kRun || square[c] < nearest) {
+          next = c;
+          nearest = square[c];
+        }
+      }
+      waiting &= ~(1u << next);
+      if (is_near(nearest, p.stray[next])) {
+        fetch_ahead(level, index * kRun + next, along[next]);
+        descend(level, index * kRun + next);
+      }
+    }
+  }
+
+  /// Brings what lies below a node into the cache at once, where the nearest place of its chord
+  /// says that it will be: level by level each would wait for the one before.
+  void fetch_ahead(std::size_t level, std::size_t node, double along) const noexcept {
+    if (level != 1 && level != 2) {
+      return;
+    }
+    const auto strips = static_cast<double>(std::size_t{1} << (3 * level));
+    const std::size_t strip =
+        std::min((node << (3 * level)) + static_cast<std::size_t>(along * strips),
+                 curve_.strips_.size() - 1);
+    fetch(&curve_.strips_[strip], sizeof(Strip));
+    if (level == 2) {
+      fetch(&curve_.levels_[0][strip / kRun], sizeof(Pack));
+    }
+  }
+  static void fetch(const void* from, std::size_t bytes) noexcept {
+    constexpr std::size_t kLine = 64;
+    for (std::size_t at = 0; at < bytes; at += kLine) {
+      __builtin_prefetch(static_cast<const char*>(from) + at);
+    }
+  }
+
+  /// Whether a node may hold a nearer place; false where there is no such node.
+  bool is_near(double square, double stray) const noexcept {
+    const double far = bound_ + stray;
+    return square <= far * far * (1.0 + kRounding);
+  }
+
+  void scan_strip(std::size_t index) noexcept {
+    const Strip& s = curve_.strips_[index];
+    if (s.arc[0] > high_ || s.arc[kRun] < low_) {
+      return;
+    }
+    if (s.arc[0] < low_ || s.arc[kRun] > high_) {
+      scan_part_of_strip(index);
+      return;
+    }
+    double square[kRun];
+    double along[kRun];
+    measure(s, square, along);
     for (std::size_t c = 0; c < kRun; ++c) {
       take(square[c], index * kRun + c, along[c]);
     }
@@ -261,14 +281,13 @@ void SampledCurve::fill_strips(std::span<const Vector3d> points) noexcept {
   }
 }
 
-Vector3d SampledCurve::strip_start(std::size_t strip) const noexcept {
-  const Strip& s = strips_[strip];
-  return {s.x[0], s.y[0], s.z[0]};
+/// Where strip `strip` begins; the curve's last point beyond them all.
+Vector3d SampledCurve::strip_boundary(std::size_t strip) const noexcept {
+  return strip < strips_.size() ? point(strip * kRun) : point(size_ - 1);
 }
 
-Vector3d SampledCurve::strip_end(std::size_t strip) const noexcept {
-  const Strip& s = strips_[strip];
-  return {s.x[kRun], s.y[kRun], s.z[kRun]};
+double SampledCurve::arc_at_boundary(std::size_t strip) const noexcept {
+  return strip < strips_.size() ? strips_[strip].arc[0] : length();
 }
 
 /// Chords and strays of one level from those of the level below.
@@ -277,46 +296,38 @@ void SampledCurve::fill_nodes(std::size_t level) noexcept {
   for (std::size_t node = 0; node < levels_[level].size() * kRun; ++node) {
     Pack& pack = levels_[level][node / kRun];
     const std::size_t c = node % kRun;
-    const std::size_t first = node * strips_each;
-    if (first >= strips_.size()) {
-      pack.arc_begin[c] = pack.arc_end[c] = std::numeric_limits<double>::quiet_NaN();
-      pack.x[c] = pack.y[c] = pack.z[c] = pack.dx[c] = pack.dy[c] = pack.dz[c] = 0.0;
-      pack.inverse[c] = pack.stray[c] = 0.0;
-      continue;
-    }
-    const std::size_t last = std::min(first + strips_each, strips_.size()) - 1;
-    const Vector3d from = strip_start(first);
-    const Vector3d chord = strip_end(last) - from;
-    const double square = chord.squaredNorm();
-    const double inverse = square > 0.0 && 1.0 / square < kInfinity ? 1.0 / square : 0.0;
-    double stray = 0.0;
-    if (level == 0) {
-      const Strip& s = strips_[first];
-      for (std::size_t i = 1; i <= kRun; ++i) {
-        stray = std::max(stray, distance_to_chord({s.x[i], s.y[i], s.z[i]}, from, chord, inverse));
-      }
-    } else {
-      const Pack& below = levels_[level - 1][node];
-      const std::size_t child_strips = strips_each / kRun;
-      for (std::size_t i = 0; i < kRun && first + i * child_strips < strips_.size(); ++i) {
-        const std::size_t begin = first + i * child_strips;
-        const std::size_t end = std::min(begin + child_strips, strips_.size()) - 1;
-        const double ends = std::max(distance_to_chord(strip_start(begin), from, chord, inverse),
-                                     distance_to_chord(strip_end(end), from, chord, inverse));
-        stray = std::max(stray, ends + below.stray[i]);
-      }
-    }
+    const std::size_t first = std::min(node * strips_each, strips_.size());
+    const std::size_t last = std::min(first + strips_each, strips_.size());
+    const Vector3d from = strip_boundary(first);
+    const Vector3d to = strip_boundary(last);
     pack.x[c] = from.x();
     pack.y[c] = from.y();
     pack.z[c] = from.z();
-    pack.dx[c] = chord.x();
-    pack.dy[c] = chord.y();
-    pack.dz[c] = chord.z();
-    pack.inverse[c] = inverse;
-    pack.stray[c] = stray * (1.0 + kRounding) + kRounding * chord.norm();
-    pack.arc_begin[c] = strips_[first].arc[0];
-    pack.arc_end[c] = strips_[last].arc[kRun];
+    pack.x[c + 1] = to.x();
+    pack.y[c + 1] = to.y();
+    pack.z[c + 1] = to.z();
+    pack.arc[c] = arc_at_boundary(first);
+    pack.arc[c + 1] = arc_at_boundary(last);
+    pack.stray[c] = first < last ? stray_of(level, node, from, to - from)
+                                 : std::numeric_limits<double>::quiet_NaN();
   }
+}
+
+/// The farthest that any point of a node lies from its chord, rounded up.
+double SampledCurve::stray_of(std::size_t level, std::size_t node, const Vector3d& from,
+                              const Vector3d& chord) const noexcept {
+  const double square = chord.squaredNorm();
+  const double inverse = square > 0.0 && 1.0 / square < kInfinity ? 1.0 / square : 0.0;
+  const auto away = [&](const Vector3d& p) { return distance_to_chord(p, from, chord, inverse); };
+  double stray = 0.0;
+  const Chords& below = level == 0 ? strips_[node] : levels_[level - 1][node];
+  for (std::size_t i = 0; i < kRun; ++i) {
+    const double ends = std::max(away({below.x[i], below.y[i], below.z[i]}),
+                                 away({below.x[i + 1], below.y[i + 1], below.z[i + 1]}));
+    const double own = level == 0 ? 0.0 : levels_[level - 1][node].stray[i];
+    stray = own >= 0.0 ? std::max(stray, ends + own) : stray;  // NaN: no such child
+  }
+  return stray * (1.0 + kRounding) + kRounding * chord.norm();
 }
 
 Vector3d SampledCurve::point(std::size_t i) const noexcept {

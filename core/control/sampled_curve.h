@@ -84,24 +84,25 @@ class SampledCurve {
  private:
   static constexpr std::size_t kRun = 8;
 
-  /// Eight segments; the last strip is filled up with its last point.
-  struct Strip {
-    double x[kRun + 1], y[kRun + 1], z[kRun + 1], arc[kRun + 1];  // [m]
+  /// Eight chords end to end, from (x, y, z)[c] to (x, y, z)[c + 1].
+  struct Chords {
+    double x[kRun + 1], y[kRun + 1], z[kRun + 1];  // [m]
+    double arc[kRun + 1];                          // where they begin and the last ends [m]
   };
-  /// Eight nodes of one level: chord from (x, y, z) by (dx, dy, dz).
-  struct alignas(64) Pack {
-    double x[kRun], y[kRun], z[kRun], dx[kRun], dy[kRun], dz[kRun];
-    double inverse[kRun];    // of the squared length of the chord; 0 for a point [1/m^2]
-    double stray[kRun];      // no point of the node is farther from its chord [m]
-    double arc_begin[kRun];  // NaN for a node that is not there
-    double arc_end[kRun];
+  /// Eight segments; the last strip is filled up with its last point.
+  using Strip = Chords;
+  /// Eight nodes of one level.
+  struct alignas(64) Pack : Chords {
+    double stray[kRun];  // no point of the node is farther from its chord [m]; NaN: no such node
   };
   class Search;
 
   void fill_strips(std::span<const Eigen::Vector3d> points) noexcept;
   void fill_nodes(std::size_t level) noexcept;
-  Eigen::Vector3d strip_start(std::size_t strip) const noexcept;
-  Eigen::Vector3d strip_end(std::size_t strip) const noexcept;
+  double stray_of(std::size_t level, std::size_t node, const Eigen::Vector3d& from,
+                  const Eigen::Vector3d& chord) const noexcept;
+  Eigen::Vector3d strip_boundary(std::size_t strip) const noexcept;
+  double arc_at_boundary(std::size_t strip) const noexcept;
   CurvePlace place(std::size_t segment, double t) const noexcept;
   Eigen::Vector3d direction_after(double arc) const noexcept;
   Eigen::Vector3d direction_before(double arc) const noexcept;

@@ -194,6 +194,23 @@ TEST(CurveTrackerTest, ACurveThatBendsTakesItsPlaceAlong) {
   }
 }
 
+TEST(CurveTrackerTest, FromTheCentreOfACircleAnyPlaceIsNearEnough) {
+  Points points;
+  for (int i = 0; i < 20000; ++i) {
+    const double a = 2.0 * M_PI * i / 20000.0;
+    points.push_back({0.03 * std::cos(a), 0.0, 0.03 * std::sin(a)});
+  }
+  const SampledCurve curve(points);
+  CurveTracker tracker(curve);
+  tracker.start_at(0.05);
+  for (int i = 0; i < 100; ++i) {
+    tracker.follow(Vector3d::Zero());
+    ASSERT_NEAR(tracker.place().distance, 0.03, 1.1e-9);
+  }
+  EXPECT_NEAR(tracker.place().arc, 0.05, 0.001) << "and there is no reason to wander";
+  EXPECT_NEAR(tracker.start({1e-12, 0.0, 0.0}).distance, 0.03, 1.1e-9);
+}
+
 TEST(CurveTrackerTest, AToolThatIsNowhereLeavesThePlace) {
   const SampledCurve curve(hairpin(0.01));
   CurveTracker tracker(curve);
