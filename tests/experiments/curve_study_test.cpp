@@ -112,7 +112,8 @@ TEST_F(CurveStudyTest, EverybodyComesToTheEndAtAPaceOfTheirOwn) {
     const auto first = run_of(reader, reader.passes()[0]).size();
     const auto second = run_of(reader, reader.passes()[2]).size();
     EXPECT_NE(first, second);
-    EXPECT_NEAR(static_cast<double>(first), static_cast<double>(second), 0.5 * first);
+    EXPECT_NEAR(static_cast<double>(first), static_cast<double>(second),
+                0.5 * static_cast<double>(first));
   }
   EXPECT_GT(std::abs(paces[0] - paces[1]), 0.02 * paces[0]);
 }
