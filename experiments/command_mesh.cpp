@@ -116,6 +116,8 @@ int mesh_voxelize(const MeshOptions& options) {
   geometry::write_volume(options.out, geometry::volume_of(made.solid), options.overwrite);
   fmt::print("wrote       {}\n", options.out);
   if (!options.picture.empty()) {
+    constexpr int kFewVoxels = 150;  // along the longest axis: their edges are told apart
+    view.edges = options.voxels.resolution <= kFewVoxels;
     const render::Cut cut = render::halfway(geometry::bounds(mesh), view);
     write_picture(options.picture, render::scene_of(made.solid, cut), view, options.overwrite);
   }

@@ -72,8 +72,8 @@ class VoxelSides {
     const Eigen::Vector3d middle = centre + out;
     const std::array<Eigen::Vector3d, 4> c{middle - u - v, middle + u - v, middle + u + v,
                                            middle - u + v};
-    triangles_.push_back({{c[0], c[1], c[2]}, colour});
-    triangles_.push_back({{c[0], c[2], c[3]}, colour});
+    triangles_.push_back({{c[0], c[1], c[2]}, colour, 1});
+    triangles_.push_back({{c[0], c[2], c[3]}, colour, 2});
   }
 
   const geometry::VoxelSolid& solid_;

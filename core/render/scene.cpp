@@ -69,6 +69,7 @@ std::vector<Vertex> vertices_of(std::span<const SceneTriangle> triangles, const 
   if (box.isEmpty() || !box.sizes().allFinite()) {
     throw std::invalid_argument("draw_scene: a scene of finite triangles is needed");
   }
+  constexpr float kFar = 1e6f;  // from an edge, so that it does not show
   constexpr double kMargin = 1.06;
   const double scale =
       2.0 /
@@ -85,10 +86,13 @@ std::vector<Vertex> vertices_of(std::span<const SceneTriangle> triangles, const 
         floats(light * Eigen::Vector3d(t.colour.red, t.colour.green, t.colour.blue));
     for (std::size_t c = 0; c < 3; ++c) {
       const Eigen::Vector3d place = to_clip.cwiseProduct(axes * t.corners[c] - box.center());
-      std::array<float, 3> corner{1e6f, 1e6f, 1e6f};
+      std::array<float, 3> corner{kFar, kFar, kFar};
       if (view.edges) {
         corner = {0.0f, 0.0f, 0.0f};
         corner[c] = 1.0f;
+        if (t.hidden_edge >= 0) {
+          corner[static_cast<std::size_t>(t.hidden_edge)] = kFar;
+        }
       }
       vertices.push_back({floats(place), shade, corner});
     }

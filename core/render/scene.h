@@ -14,6 +14,7 @@ namespace haptrial::render {
 struct SceneTriangle {
   std::array<Eigen::Vector3d, 3> corners;  // [m]
   Colour colour;
+  int hidden_edge{-1};  // the number of the corner across from an edge that is never darkened
 };
 
 /// A parallel view of the whole scene, lit from the eye.

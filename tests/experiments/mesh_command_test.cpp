@@ -104,7 +104,7 @@ TEST_F(MeshCommandTest, MemoryIsRefusedBeforeItIsTaken) {
 TEST_F(MeshCommandTest, AnInterruptLeavesNothingHalfWritten) {
   const auto result =
       run("haptrial mesh make gear g.ply\n"
-          "haptrial mesh tetrahedralize g.ply g.node --resolution 300 > /dev/null &\n"
+          "\"$HAPTRIAL\" mesh tetrahedralize g.ply g.node --resolution 300 > /dev/null &\n"
           "child=$!\n"
           "for i in $(seq 600); do [ -e g.node.partial-1 ] && break; sleep 0.05; done\n"
           "[ -e g.node.partial-1 ] || echo never began\n"

@@ -94,6 +94,13 @@ TEST(SceneTest, EdgesAreDrawnWhereAsked) {
   EXPECT_EQ(darkest(), 255);
   view.edges = true;
   EXPECT_LT(darkest(), 160);
+  // A square of two triangles without the diagonal between them.
+  const std::array<Eigen::Vector3d, 4> c{Eigen::Vector3d(-1, -1, 0), Eigen::Vector3d(1, -1, 0),
+                                         Eigen::Vector3d(1, 1, 0), Eigen::Vector3d(-1, 1, 0)};
+  const Colour white{1, 1, 1};
+  const std::vector<SceneTriangle> square{{{c[0], c[1], c[2]}, white, 1},
+                                          {{c[0], c[2], c[3]}, white, 2}};
+  EXPECT_EQ(at(draw_scene(square, view), 100, 50), (Pixel{255, 255, 255}));
 }
 
 TEST(SceneTest, ACutShowsTheInnerVoxelsRed) {
