@@ -79,12 +79,15 @@ struct MeshOptions {
   std::string up{"y"};  // of pictures: x, y, z
   double weld{0.0};     // repair [m]
   VoxelizeOptions voxels;
+  bool everywhere{false};  // distance: outside voxels too
+  std::string points;      // distance: new volume of nearest points; empty: none
   bool overwrite{false};
 };
 int mesh_make(const MeshOptions& options);
 int mesh_info(const MeshOptions& options);
 int mesh_repair(const MeshOptions& options);
 int mesh_voxelize(const MeshOptions& options);
+int mesh_distance(const MeshOptions& options);
 int mesh_tetrahedralize(const MeshOptions& options);
 
 }  // namespace haptrial::experiments

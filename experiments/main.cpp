@@ -158,8 +158,9 @@ class Commands {
   }
 
   void add_mesh() {
-    CLI::App* mesh = subcommand(app_, "mesh", "Check, repair, voxelize and split surface meshes",
-                                "haptrial mesh tetrahedralize bunny.ply bunny.vtu");
+    CLI::App* mesh =
+        subcommand(app_, "mesh", "Check, repair, voxelize, measure and split surface meshes",
+                   "haptrial mesh tetrahedralize bunny.ply bunny.vtu");
     mesh->require_subcommand(1);
     CLI::App* make = mesh_subcommand(*mesh, "make", "Make a mesh to try things on",
                                      "haptrial mesh make gear gear.ply");
@@ -189,6 +190,8 @@ class Commands {
     add_mesh_picture(*voxelize);
     voxelize->callback([this] { status_ = experiments::mesh_voxelize(mesh_); });
 
+    add_mesh_distance(*mesh);
+
     CLI::App* split =
         mesh_subcommand(*mesh, "tetrahedralize", "Fill a mesh with tetrahedra, five to a voxel",
                         "haptrial mesh tetrahedralize gear.ply gear.vtu --resolution 40");
@@ -197,6 +200,23 @@ class Commands {
     add_mesh_voxels(*split);
     add_mesh_picture(*split);
     split->callback([this] { status_ = experiments::mesh_tetrahedralize(mesh_); });
+  }
+
+  void add_mesh_distance(CLI::App& mesh) {
+    CLI::App* sub =
+        mesh_subcommand(mesh, "distance", "Give every voxel its exact distance to the surface",
+                        "haptrial mesh distance gear.ply gear-distance.nrrd --everywhere");
+    add_mesh_input(*sub);
+    sub->add_option("OUT", mesh_.out, "New volume of distances [m] (.nrrd, .h5)")->required();
+    sub->add_option("--resolution", mesh_.voxels.resolution, "Voxels along the longest axis (100)");
+    sub->add_option("--inside", mesh_.voxels.rule,
+                    "auto, parity, winding or flood: what makes a voxel an inside one (auto)");
+    sub->add_flag("--everywhere", mesh_.everywhere, "Outside too, where distances are positive");
+    sub->add_option("--margin", mesh_.voxels.margin, "More voxels on every side (0)");
+    sub->add_option("--points", mesh_.points, "Also a new volume of nearest points [m]");
+    sub->add_option("--picture", mesh_.picture, "New picture of the slice in the middle (.png)");
+    sub->add_option("--up", mesh_.up, "Axis that points up in it: x, y or z (y)");
+    sub->callback([this] { status_ = experiments::mesh_distance(mesh_); });
   }
 
   CLI::App* mesh_subcommand(CLI::App& mesh, const char* name, const char* what,

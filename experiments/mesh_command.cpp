@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -105,8 +106,8 @@ const char* name_of(geometry::InsideRule rule) {
 VoxelizedMesh voxelize_mesh(const geometry::Mesh& mesh, const VoxelizeOptions& options,
                             const MemoryBudget& budget) {
   const geometry::InsideRule rule = rule_for(mesh, options.rule);
-  const geometry::VoxelGrid grid =
-      geometry::make_grid(geometry::bounds(mesh), options.resolution, options.over ? 1 : 0);
+  const geometry::VoxelGrid grid = geometry::make_grid(
+      geometry::bounds(mesh), options.resolution, std::max(options.margin, options.over ? 1 : 0));
   budget.check(
       fmt::format("a grid of {} x {} x {} voxels", grid.size[0], grid.size[1], grid.size[2]),
       geometry::voxelizing_memory(mesh, grid, rule));

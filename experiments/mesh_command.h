@@ -46,6 +46,7 @@ geometry::Mesh load_mesh(const MeshInput& input, const MemoryBudget& budget);
 
 struct VoxelizeOptions {
   int resolution{100};       // voxels along the longest axis
+  int margin{0};             // more of them on every side
   bool over{false};          // one voxel over the surface
   std::string rule{"auto"};  // auto, parity, winding, flood
 };
