@@ -42,6 +42,14 @@ void print_voxels(const VoxelizedMesh& made) {
   fmt::print("voxelized   in {:.1f} ms\n", 1e3 * made.seconds);
 }
 
+/// Edges, components and orders of a mesh while it is looked at, and its hierarchy in a repair.
+void check_room(const geometry::Mesh& mesh, double bytes_per_triangle, const MemoryBudget& budget) {
+  constexpr double kPerVertex = 100.0;
+  budget.check(fmt::format("looking at {} triangles", mesh.triangles.size()),
+               bytes_per_triangle * static_cast<double>(mesh.triangles.size()) +
+                   kPerVertex * static_cast<double>(mesh.vertices.size()));
+}
+
 geometry::Mesh made_mesh(const MeshOptions& options) {
   if (options.shape == "sphere") {
     return geometry::make_sphere(0.05, 32);
@@ -73,6 +81,7 @@ int mesh_info(const MeshOptions& options) {
   const MemoryBudget budget(options.input.max_memory);
   render::SceneView view = view_with_up(options.up);
   const geometry::Mesh mesh = load_mesh(options.input, budget);
+  check_room(mesh, 250.0, budget);
   for (const std::string& line : geometry::describe(geometry::check_mesh(mesh))) {
     fmt::print("{}\n", line);
   }
@@ -92,6 +101,7 @@ int mesh_repair(const MeshOptions& options) {
     throw InputError(fmt::format("--weld is {}; allowed: 0 or more [m]", options.weld));
   }
   geometry::Mesh mesh = load_mesh(options.input, budget);
+  check_room(mesh, 500.0, budget);
   const geometry::RepairReport done = geometry::repair(mesh, {.weld_tolerance = options.weld});
   fmt::print("welded      {} vertices\n", done.welded_vertices);
   fmt::print("removed     {} degenerate and {} duplicate triangles, {} unused vertices\n",
