@@ -10,7 +10,7 @@ _haptrial() {
     mapfile -t COMPREPLY < <(compgen -W "$names --help" -- "$word")
   elif [[ $word == -* ]]; then
     [ "$sub" = mesh ] && part=${COMP_WORDS[2]}
-    words=$(haptrial "$sub" ${part:+"$part"} --help 2>/dev/null | grep -o -- '--[a-z-]*')
+    words=$(haptrial "$sub" ${part:+"$part"} --help 2>/dev/null | grep -o -- '--[a-z-]*' | sort -u)
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
   else
     mapfile -t COMPREPLY < <(compgen -f -- "$word")
