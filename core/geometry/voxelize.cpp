@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 #include "core/base/error.h"
 #include "core/geometry/boundary_cone.h"
 #include "core/geometry/flood_fill_internal.h"
 #include "core/geometry/grid_crossings.h"
 #include "core/geometry/mesh_edges_internal.h"
+#include "core/geometry/parallel.h"
 
 namespace haptrial::geometry {
 namespace {
@@ -61,14 +61,8 @@ void fill_by_parity(const Mesh& mesh, VoxelSolid& solid, const WorkReport& repor
 class NearCone {
  public:
   /// @param crossings  of mesh and cone together
-  NearCone(const Mesh& mesh, const Bvh* hierarchy, const BoundaryCone& cone,
-           const GridCrossings& crossings, VoxelSolid& solid)
-      : mesh_(mesh),
-        hierarchy_(hierarchy),
-        cone_(cone),
-        crossings_(crossings),
-        solid_(solid),
-        grid_(solid.grid) {}
+  NearCone(const BoundaryCone& cone, const GridCrossings& crossings, VoxelSolid& solid)
+      : cone_(cone), crossings_(crossings), solid_(solid), grid_(solid.grid) {}
 
   void run(const WorkReport& report) {
     const Eigen::Array3i size(grid_.size[0], grid_.size[1], grid_.size[2]);
@@ -86,7 +80,6 @@ class NearCone {
  private:
   static constexpr std::int32_t kBlock = 16;
   static constexpr std::int32_t kLeastBlock = 4;
-  static constexpr std::size_t kFewTriangles = 2000;
   static constexpr double kHalf = 0.49;  // a little less than a half, for rounding
 
   /// Corrects the voxels from `low` to `high`, in halves as long as that may spare some.
@@ -109,8 +102,11 @@ class NearCone {
     double most = 0.0;
     for (const BoundaryCone::Fan& fan : cone_.fans) {
       most += BoundaryCone::most_winding(fan, box.exteriorDistance(fan.middle));
+      if (most >= kHalf) {
+        return true;
+      }
     }
-    return most >= kHalf;
+    return false;
   }
 
   void correct(const Eigen::Array3i& low, const Eigen::Array3i& high) {
@@ -156,28 +152,27 @@ class NearCone {
   }
 
   void correct(const std::vector<Eigen::Array3i>& voxels) {
+    constexpr double kDoubt = 1e-3;  // many times what the sums may be wrong by
     PointLanes points{};
     std::array<float, kPointLanes> sums{};
-    const bool few = near_.size() <= 3 * kFewTriangles;
-    for (std::size_t v = 0; few && v < voxels.size(); ++v) {
+    for (std::size_t v = 0; v < voxels.size(); ++v) {
       const Eigen::Vector3f at =
           in_block(grid_.centre(voxels[v].x(), voxels[v].y(), voxels[v].z()));
       points.x[v] = at.x();
       points.y[v] = at.y();
       points.z[v] = at.z();
     }
-    if (few) {
-      winding_sums(near_, points, sums);
-    }
-    constexpr double kDoubt = 1e-3;  // many times what the sums may be wrong by
+    winding_sums(near_, points, sums);
     for (std::size_t v = 0; v < voxels.size(); ++v) {
-      const auto [i, j, k] = std::array{voxels[v].x(), voxels[v].y(), voxels[v].z()};
-      if (few && std::abs(sums[v]) + far_ < kHalf) {
+      if (std::abs(sums[v]) + far_ < kHalf) {
         continue;
       }
-      const double above_half = windings(i, j, k) - static_cast<double>(sums[v]) - 0.5;
-      const bool certain = few && std::abs(above_half) > far_ + kDoubt;
-      const bool inside = certain ? above_half > 0.0 : is_inside(i, j, k);
+      const auto [i, j, k] = std::array{voxels[v].x(), voxels[v].y(), voxels[v].z()};
+      double of_cone = sums[v];
+      if (std::abs(windings(i, j, k) - of_cone - 0.5) <= far_ + kDoubt) {
+        of_cone = winding_sum(cone_.mesh, grid_.centre(i, j, k));
+      }
+      const bool inside = windings(i, j, k) - of_cone > 0.5;
       solid_.labels[grid_.index(i, j, k)] = inside ? kInside : kOutside;
     }
   }
@@ -192,38 +187,51 @@ class NearCone {
     return count;
   }
 
-  bool is_inside(std::int32_t i, std::int32_t j, std::int32_t k) {
-    const Eigen::Vector3d centre = grid_.centre(i, j, k);
-    if (cone_.mesh.triangles.size() <= kFewTriangles) {
-      return windings(i, j, k) - winding_sum(cone_.mesh, centre) > 0.5;
-    }
-    if (hierarchy_ == nullptr) {
-      hierarchy_ = &own_.emplace(mesh_);
-    }
-    return hierarchy_->winds_around(centre);
-  }
-
-  const Mesh& mesh_;
-  const Bvh* hierarchy_;
   const BoundaryCone& cone_;
   const GridCrossings& crossings_;
   VoxelSolid& solid_;
   const VoxelGrid& grid_;
-  std::optional<Bvh> own_;
   Eigen::Vector3d middle_{Eigen::Vector3d::Zero()};  // of the block at hand [m]
   std::vector<Eigen::Vector3f> near_;                // corners of the near fans' triangles [voxels]
   double far_{0.0};                                  // a bound on the winding of the others
 };
 
+/// Voxel by voxel, for meshes whose boundary is no small part of them.
+void fill_by_hierarchy(const Bvh& hierarchy, VoxelSolid& solid, const WorkReport& report) {
+  const VoxelGrid& grid = solid.grid;
+  for (std::int32_t k = 0; k < grid.size[2]; ++k) {
+    report_share(report, static_cast<double>(k) / grid.size[2]);
+    parallel_for(static_cast<std::size_t>(grid.size[1]), 0, [&](std::size_t row) {
+      const auto j = static_cast<std::int32_t>(row);
+      for (std::int32_t i = 0; i < grid.size[0]; ++i) {
+        if (hierarchy.winds_around(grid.centre(i, j, k))) {
+          solid.labels[grid.index(i, j, k)] = kInside;
+        }
+      }
+    });
+  }
+}
+
+bool is_small(const BoundaryCone& cone) {
+  constexpr std::size_t kFewFans = 500;
+  constexpr std::size_t kFewTriangles = 20000;
+  return cone.fans.size() <= kFewFans && cone.mesh.triangles.size() <= kFewTriangles;
+}
+
 void fill_by_winding(const Mesh& mesh, const Bvh* hierarchy, VoxelSolid& solid,
                      const WorkReport& report) {
   const BoundaryCone cone = boundary_cone(mesh);
+  if (!is_small(cone)) {
+    hierarchy != nullptr ? fill_by_hierarchy(*hierarchy, solid, report)
+                         : fill_by_hierarchy(Bvh(mesh), solid, report);
+    return;
+  }
   Mesh closed{cone.mesh.vertices, mesh.triangles};
   closed.triangles.insert(closed.triangles.end(), cone.mesh.triangles.begin(),
                           cone.mesh.triangles.end());
   const GridCrossings crossings(closed, solid.grid, 0, report);
   fill_rows(crossings, solid, [](int, int windings) { return windings >= 1; });
-  NearCone(mesh, hierarchy, cone, crossings, solid).run(report);
+  NearCone(cone, crossings, solid).run(report);
 }
 
 /// Marks the outside voxels of a row that touch an inside one in it or in a row beside it.
@@ -291,8 +299,8 @@ VoxelSolid voxelize(const Mesh& mesh, const VoxelGrid& grid, InsideRule rule,
 double voxelizing_memory(const Mesh& mesh, const VoxelGrid& grid, InsideRule rule) {
   const double labels = static_cast<double>(grid.count());
   const double crossings = crossing_memory(mesh, grid);
-  // A flood keeps which neighbours are cut off, and where it has yet to go on; the cone at worst
-  // triples the triangles.
+  // A flood keeps which neighbours are cut off, and where it has yet to go on. A small cone adds
+  // crossings of its own; a hierarchy takes the place of the crossings where it is large.
   return rule == InsideRule::kFlood ? 2.0 * labels + 9.0 * labels + crossings
          : rule == InsideRule::kWinding
              ? labels + 4.0 * crossings + 400.0 * static_cast<double>(mesh.triangles.size())
