@@ -46,7 +46,7 @@ void draw_slice(const geometry::DistanceMap& map, int up, const std::string& fil
     }
   }
   slice.values = values;
-  constexpr int kPixels = 600;
+  constexpr int kPixels = 450;
   render::write_png(file, render::draw_distances(slice, kPixels));
 }
 

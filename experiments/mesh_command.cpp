@@ -106,8 +106,9 @@ const char* name_of(geometry::InsideRule rule) {
 VoxelizedMesh voxelize_mesh(const geometry::Mesh& mesh, const VoxelizeOptions& options,
                             const MemoryBudget& budget) {
   const geometry::InsideRule rule = rule_for(mesh, options.rule);
-  const geometry::VoxelGrid grid = geometry::make_grid(
-      geometry::bounds(mesh), options.resolution, std::max(options.margin, options.over ? 1 : 0));
+  const geometry::VoxelGrid grid =
+      geometry::make_grid(geometry::bounds(mesh), options.resolution,
+                          options.over ? std::max(options.margin, 1) : options.margin);
   budget.check(
       fmt::format("a grid of {} x {} x {} voxels", grid.size[0], grid.size[1], grid.size[2]),
       geometry::voxelizing_memory(mesh, grid, rule));

@@ -32,9 +32,10 @@ class Painter {
     const double value = sample(x, y);
     if (std::isnan(value)) return kNothing;
     if (largest_ == 0.0) return kLine;
-    const double share = std::min(1.0, std::abs(value) / largest_);
-    const Colour field = mix(value < 0.0 ? kInside : kOutside, kPale, std::sqrt(share));
     const double step = largest_ / kContours;
+    const double band = std::min(std::floor(std::abs(value) / step), kContours - 1.0) + 0.5;
+    const Colour field =
+        mix(value < 0.0 ? kInside : kOutside, kPale, 0.85 * std::sqrt(band / kContours));
     const double to_contour = std::abs(value - step * std::round(value / step));
     const double to_surface = std::abs(value);
     const double surface = std::clamp(1.8 - to_surface / pixel_, 0.0, 1.0);

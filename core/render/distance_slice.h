@@ -15,8 +15,8 @@ struct DistanceSlice {
 };
 
 /// A picture with `size` pixels along its longer side: blue inside (below 0), orange outside, paler
-/// with depth; a dark line where the distance is 0 and thin ones at every tenth of the largest;
-/// white where there is no number. Values between samples are linear.
+/// with every tenth of the largest distance, thin lines between; a dark line where the distance is
+/// 0; white where there is no number. Values between samples are linear.
 /// @throws std::invalid_argument where the values are not rows x columns, or size < 1.
 Image draw_distances(const DistanceSlice& slice, int size);
 
