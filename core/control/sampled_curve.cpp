@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 namespace haptrial::control {
@@ -21,6 +22,15 @@ bool within_bounds(const Vector3d& p) noexcept {
 
 bool usable(std::span<const Vector3d> points) noexcept {
   return points.size() >= 2 && std::all_of(points.begin(), points.end(), within_bounds);
+}
+
+/// Two numbers side by side: the loop of eight is too short for the compiler to see them.
+typedef double Pair __attribute__((vector_size(16)));
+
+inline Pair pair(const double* from) noexcept {
+  Pair both;
+  std::memcpy(&both, from, sizeof both);
+  return both;
 }
 
 double distance_to_chord(const Vector3d& point, const Vector3d& from, const Vector3d& chord,
@@ -99,22 +109,23 @@ class SampledCurve::Search {
 
   /// The squared distance to each of eight chords, and where along them.
   void measure(const Chords& s, double* square, double* along) const noexcept {
-    for (std::size_t c = 0; c < kRun; ++c) {
-      const double dx = s.x[c + 1] - s.x[c];
-      const double dy = s.y[c + 1] - s.y[c];
-      const double dz = s.z[c + 1] - s.z[c];
-      const double ax = x_ - s.x[c];
-      const double ay = y_ - s.y[c];
-      const double az = z_ - s.z[c];
+    for (std::size_t c = 0; c < kRun; c += 2) {
+      const Pair dx = pair(s.x + c + 1) - pair(s.x + c);
+      const Pair dy = pair(s.y + c + 1) - pair(s.y + c);
+      const Pair dz = pair(s.z + c + 1) - pair(s.z + c);
+      const Pair ax = x_ - pair(s.x + c);
+      const Pair ay = y_ - pair(s.y + c);
+      const Pair az = z_ - pair(s.z + c);
       // 0 / 0 of a point is not above 0, and so 0.
-      double t = (ax * dx + ay * dy + az * dz) / (dx * dx + dy * dy + dz * dz);
-      t = t > 0.0 ? t : 0.0;
-      t = t < 1.0 ? t : 1.0;
-      const double ex = ax - t * dx;
-      const double ey = ay - t * dy;
-      const double ez = az - t * dz;
-      along[c] = t;
-      square[c] = ex * ex + ey * ey + ez * ez;
+      Pair t = (ax * dx + ay * dy + az * dz) / (dx * dx + dy * dy + dz * dz);
+      t = t > 0.0 ? t : Pair{0.0, 0.0};
+      t = t < 1.0 ? t : Pair{1.0, 1.0};
+      const Pair ex = ax - t * dx;
+      const Pair ey = ay - t * dy;
+      const Pair ez = az - t * dz;
+      const Pair squares = ex * ex + ey * ey + ez * ez;
+      std::memcpy(along + c, &t, sizeof t);
+      std::memcpy(square + c, &squares, sizeof squares);
     }
   }
 
@@ -187,9 +198,11 @@ class SampledCurve::Search {
     double square[kRun];
     double along[kRun];
     measure(s, square, along);
-    for (std::size_t c = 0; c < kRun; ++c) {
-      take(square[c], index * kRun + c, along[c]);
+    std::size_t best = 0;
+    for (std::size_t c = 1; c < kRun; ++c) {
+      best = square[c] < square[best] ? c : best;
     }
+    take(square[best], index * kRun + best, along[best]);
   }
 
   /// Where the window begins or ends within the strip.

@@ -44,7 +44,7 @@ TEST(ComparisonTest, FindsADifferenceWithinPeopleThatLiesWithinTheirSpread) {
   EXPECT_EQ(c.conditions[0].condition, "haptic");
   EXPECT_EQ(c.conditions[0].shared, 6u);
   EXPECT_NEAR(c.conditions[0].second->mean - c.conditions[0].first->mean, 0.2, 1e-12);
-  EXPECT_GT(c.conditions[0].welch->p, 0.5) << "people differ by far more";
+  EXPECT_GT(c.conditions[0].welch->p, 0.3) << "people differ by far more";
   EXPECT_NEAR(c.conditions[1].paired->difference, 0.001 / 6.0, 1e-9);
   EXPECT_NEAR(c.conditions[1].paired->t, 1.0, 1e-6) << "one of six differs";
   EXPECT_NEAR(c.conditions[1].paired->p, 0.363217, 1e-5) << "t(5) = 1, two-sided";

@@ -61,15 +61,15 @@ Points tangled_curve(std::size_t count) {
   return points;
 }
 
-/// Every millisecond along the curve at 1.6 cm/s, up to 4 mm beside it, with an encoder's steps.
+/// Every millisecond along the curve at 1.6 cm/s, up to 2 mm beside it, with an encoder's steps.
 Points probe_path(const SampledCurve& curve) {
   RandomStream random(2, "probe");
   Points path;
   const double a = random.uniform(0.0, 6.0);
   for (double arc = 0.0; arc < std::min(curve.length(), 0.32); arc += 1.6e-5) {
     const double t = arc / 0.016;
-    const Vector3d aside(2e-3 * std::sin(5.0 * t + a), 2e-3 * std::sin(3.0 * t),
-                         2e-3 * std::cos(7.0 * t));
+    const Vector3d aside(1e-3 * std::sin(5.0 * t + a), 1e-3 * std::sin(3.0 * t),
+                         1e-3 * std::cos(7.0 * t));
     path.push_back(1e-5 * ((curve.at(arc).position + aside) / 1e-5).array().round().matrix());
   }
   return path;
