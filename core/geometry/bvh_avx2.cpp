@@ -68,7 +68,7 @@ struct Doubles4 {
 }  // namespace
 }  // namespace haptrial::geometry::kernel
 
-#include "core/geometry/bvh_search.h"
+#include "core/geometry/bvh_packet_search.h"
 
 namespace haptrial::geometry::kernel {
 

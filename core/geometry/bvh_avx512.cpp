@@ -64,7 +64,7 @@ struct Doubles8 {
 }  // namespace
 }  // namespace haptrial::geometry::kernel
 
-#include "core/geometry/bvh_search.h"
+#include "core/geometry/bvh_packet_search.h"
 
 namespace haptrial::geometry::kernel {
 

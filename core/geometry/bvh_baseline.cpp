@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "core/geometry/bvh_kernel.h"
-#include "core/geometry/bvh_search.h"
+#include "core/geometry/bvh_packet_search.h"
 #include "core/geometry/four.h"
 
 namespace haptrial::geometry::kernel {

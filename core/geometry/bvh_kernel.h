@@ -2,6 +2,7 @@
 
 // Between bvh.cpp and the searches, one file per instruction set.
 
+#include <cmath>
 #include <cstddef>
 
 #include "core/base/instruction_set.h"
@@ -35,9 +36,11 @@ const Kernels& kernels_for(InstructionSet set);
 ClosestPoint closest_in_double(const Bvh::Data& data, const Eigen::Vector3d& point,
                                std::int32_t slot);
 
-/// Whether the search in single precision serves a point, given in the frame.
+/// Whether the search in single precision serves a point, given in the frame; not where a
+/// coordinate is no number (a maximum could lose that).
 inline bool is_near(const Eigen::Vector3d& in_frame) {
-  return in_frame.cwiseAbs().maxCoeff() <= kNear;
+  return std::abs(in_frame.x()) <= kNear && std::abs(in_frame.y()) <= kNear &&
+         std::abs(in_frame.z()) <= kNear;
 }
 
 /// `here` into `best` where it is nearer, or as near in a triangle of a lower number.

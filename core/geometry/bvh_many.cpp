@@ -28,7 +28,7 @@ std::uint32_t spread(std::uint32_t bits) {
 std::vector<Place> places_of(std::span<const Eigen::Vector3d> points) {
   Eigen::Array3d low = Eigen::Array3d::Constant(1e100), high = -low;
   for (const Eigen::Vector3d& point : points) {
-    if (!(point.cwiseAbs().maxCoeff() < 1e100)) continue;
+    if (!point.allFinite() || point.cwiseAbs().maxCoeff() > 1e100) continue;
     low = low.min(point.array());
     high = high.max(point.array());
   }

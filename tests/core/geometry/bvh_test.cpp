@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
+#include <sstream>
+#include <string>
 
 #include "core/base/error.h"
 #include "core/geometry/triangle_distance.h"
 #include "tests/core/geometry/mesh_cases.h"
+#include "tests/support/allocation_guard.h"
 
 namespace haptrial::geometry {
 namespace {
@@ -27,12 +29,22 @@ ClosestPoint brute_force(const Mesh& mesh, const Eigen::Vector3d& point) {
   return best;
 }
 
-void expect_same(const ClosestPoint& found, const ClosestPoint& expected) {
-  EXPECT_EQ(found.distance_squared, expected.distance_squared);
-  EXPECT_EQ(found.triangle, expected.triangle);
-  EXPECT_EQ(found.part, expected.part);
-  EXPECT_EQ(found.point, expected.point);
+bool same(const ClosestPoint& a, const ClosestPoint& b) {
+  return a.distance_squared == b.distance_squared && a.triangle == b.triangle && a.part == b.part &&
+         a.point == b.point;
 }
+
+std::string text(const ClosestPoint& a) {
+  std::ostringstream out;
+  out.precision(17);
+  out << a.distance_squared << " to " << a.point.transpose() << " on triangle " << a.triangle
+      << ", part " << static_cast<int>(a.part);
+  return out.str();
+}
+
+#define ASSERT_SAME(found, expected, point) \
+  ASSERT_TRUE(same(found, expected))        \
+      << "of " << (point).transpose() << ": " << text(found) << " instead of " << text(expected)
 
 constexpr int kPoints = 800;  // of each case
 
@@ -41,9 +53,7 @@ TEST(BvhTest, FindsWhatBruteForceFinds) {
     SCOPED_TRACE(mesh_case.name);
     const Bvh bvh(mesh_case.mesh);
     for (const Eigen::Vector3d& point : hard_points(mesh_case.mesh, kPoints, 1)) {
-      SCOPED_TRACE(::testing::Message() << point.transpose());
-      expect_same(bvh.closest(point), brute_force(mesh_case.mesh, point));
-      if (::testing::Test::HasFailure()) return;
+      ASSERT_SAME(bvh.closest(point), brute_force(mesh_case.mesh, point), point);
     }
   }
 }
@@ -55,26 +65,42 @@ TEST(BvhTest, AHintDoesNotChangeTheAnswer) {
     const Bvh bvh(mesh_case.mesh);
     for (const Eigen::Vector3d& point : hard_points(mesh_case.mesh, kPoints, 2)) {
       const auto hint = static_cast<std::int32_t>(random.below(bvh.triangles()));
-      expect_same(bvh.closest(point, hint), bvh.closest(point));
-      if (::testing::Test::HasFailure()) return;
+      ASSERT_SAME(bvh.closest(point, hint), bvh.closest(point), point);
     }
   }
 }
 
-TEST(BvhTest, ManyPointsGetTheAnswersOfEach) {
+TEST(BvhTest, ManyPointsGetTheAnswersOfEachOnEveryInstructionSet) {
   for (const MeshCase& mesh_case : mesh_cases()) {
     SCOPED_TRACE(mesh_case.name);
     const Bvh bvh(mesh_case.mesh);
     std::vector<Eigen::Vector3d> points = hard_points(mesh_case.mesh, 3 * kPoints + 5, 3);
     points[7].y() = std::numeric_limits<double>::quiet_NaN();
-    std::vector<ClosestPoint> answers(points.size());
-    bvh.closest(points, answers);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      SCOPED_TRACE(i);
-      expect_same(answers[i], bvh.closest(points[i]));
-      if (::testing::Test::HasFailure()) return;
+    for (const InstructionSet set : available_instruction_sets()) {
+      SCOPED_TRACE(name_of(set));
+      const Bvh with_set(mesh_case.mesh, {.threads = 2, .instruction_set = set});
+      std::vector<ClosestPoint> answers(points.size());
+      with_set.closest(points, answers);
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        ASSERT_SAME(answers[i], bvh.closest(points[i]), points[i]);
+        ASSERT_SAME(with_set.closest(points[i]), answers[i], points[i]);
+      }
     }
   }
+}
+
+TEST(BvhTest, OneNearestPointDoesNotAllocate) {
+  const Bvh bvh(make_gear());
+  const auto points = hard_points(make_gear(), 64, 4);
+  double sum = 0.0;
+  std::size_t allocations = 0;
+  {
+    const test::AllocationGuard guard;
+    for (const Eigen::Vector3d& point : points) sum += bvh.closest(point).distance_squared;
+    allocations = guard.count();
+  }
+  EXPECT_EQ(allocations, 0u);
+  EXPECT_GT(sum, 0.0);
 }
 
 TEST(BvhTest, WithoutTrianglesThereIsNoAnswer) {
