@@ -8,7 +8,18 @@
 #include "core/base/instruction_set.h"
 #include "core/geometry/bvh_data.h"
 
-namespace haptrial::geometry::kernel {
+namespace haptrial::geometry {
+
+/// A place without a triangle: infinitely far from every point.
+void leave_empty(Leaf& leaf, int place);
+
+/// How far the single-precision distances of the search may be from the true ones, in the frame:
+/// kErrorUnits u (1 + reach), with u = 2^-24 and `reach` the largest coordinate of the query.
+/// docs/algorithms/bounding-volume-hierarchy.md counts the roundings.
+inline constexpr float kErrorUnits = 128.0f;
+inline float search_error(float reach) { return kErrorUnits * 0x1p-24f * (1.0f + reach); }
+
+namespace kernel {
 
 /// The search in single precision serves points whose frame coordinates are within ±kNear; farther
 /// out, what it may be wrong by would let too many triangles through.
@@ -51,4 +62,5 @@ inline void take_if_nearer(const ClosestPoint& here, ClosestPoint& best) {
   }
 }
 
-}  // namespace haptrial::geometry::kernel
+}  // namespace kernel
+}  // namespace haptrial::geometry

@@ -1,17 +1,11 @@
 #pragma once
 
-#include "core/geometry/bvh_data.h"
+// Included by the kernels after their target pragma, so nothing here may have external linkage for
+// all of them: only a template over their own types.
+
+#include "core/geometry/bvh_kernel.h"
 
 namespace haptrial::geometry {
-
-/// A place without a triangle: infinitely far from every point.
-void leave_empty(Leaf& leaf, int place);
-
-/// How far the single-precision distances of the search may be from the true ones, in the frame:
-/// kErrorUnits u (1 + reach), with u = 2^-24 and `reach` the largest coordinate of the query.
-/// docs/algorithms/bounding-volume-hierarchy.md counts the roundings.
-inline constexpr float kErrorUnits = 128.0f;
-inline float search_error(float reach) { return kErrorUnits * 0x1p-24f * (1.0f + reach); }
 
 /// Squared distances between points of the frame and triangles in single precision. Lanes is what
 /// the kernels define; fetch(values) takes what is needed of the sixteen values of a leaf: one
