@@ -12,6 +12,7 @@
 #include "core/geometry/flood_fill_internal.h"
 #include "core/geometry/grid_crossings.h"
 #include "core/geometry/mesh_edges_internal.h"
+#include "core/geometry/mesh_repair.h"
 #include "core/geometry/parallel.h"
 
 namespace haptrial::geometry {
@@ -213,22 +214,31 @@ void fill_by_hierarchy(const Bvh& hierarchy, VoxelSolid& solid, const WorkReport
 }
 
 bool is_small(const BoundaryCone& cone) {
-  constexpr std::size_t kFewFans = 500;
-  constexpr std::size_t kFewTriangles = 20000;
+  constexpr std::size_t kFewFans = 20000;
+  constexpr std::size_t kFewTriangles = 200000;
   return cone.fans.size() <= kFewFans && cone.mesh.triangles.size() <= kFewTriangles;
 }
 
 void fill_by_winding(const Mesh& mesh, const Bvh* hierarchy, VoxelSolid& solid,
                      const WorkReport& report) {
-  const BoundaryCone cone = boundary_cone(mesh);
+  BoundaryCone cone = boundary_cone(mesh);
+  if (!is_small(cone)) {  // perhaps only because neighbours do not share their vertices
+    Mesh welded = mesh;
+    weld(welded, 0.0);
+    cone = boundary_cone(welded);
+  }
   if (!is_small(cone)) {
     hierarchy != nullptr ? fill_by_hierarchy(*hierarchy, solid, report)
                          : fill_by_hierarchy(Bvh(mesh), solid, report);
     return;
   }
-  Mesh closed{cone.mesh.vertices, mesh.triangles};
-  closed.triangles.insert(closed.triangles.end(), cone.mesh.triangles.begin(),
-                          cone.mesh.triangles.end());
+  Mesh closed = mesh;
+  const auto moved = static_cast<std::int32_t>(mesh.vertices.size());
+  closed.vertices.insert(closed.vertices.end(), cone.mesh.vertices.begin(),
+                         cone.mesh.vertices.end());
+  for (const Triangle& t : cone.mesh.triangles) {
+    closed.triangles.push_back({t[0] + moved, t[1] + moved, t[2] + moved});
+  }
   const GridCrossings crossings(closed, solid.grid, 0, report);
   fill_rows(crossings, solid, [](int, int windings) { return windings >= 1; });
   NearCone(cone, crossings, solid).run(report);

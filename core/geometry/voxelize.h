@@ -26,7 +26,7 @@ InsideRule fitting_rule(const Mesh& mesh);
 /// where the triangles are summed. A flood starts a short step inside of the first triangle whose
 /// step lands on an inside voxel and fills that region only. Source: Morris 2006, §5.2.2.
 /// @param hierarchy  of the mesh, where there is one: it serves meshes of which the boundary is a
-///     large part (more than 500 loops or 20,000 edges), voxel by voxel, on all processors
+///     large part (more than 20,000 loops or 200,000 edges), voxel by voxel, on all processors
 /// @throws InputError where parity or flood is asked of an open mesh, or a flood finds no seed.
 VoxelSolid voxelize(const Mesh& mesh, const VoxelGrid& grid, InsideRule rule,
                     const WorkReport& report = {}, const Bvh* hierarchy = nullptr);

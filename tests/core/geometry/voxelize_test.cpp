@@ -248,19 +248,37 @@ TEST(VoxelizeTest, OpenMeshesFollowTheWindingNumber) {
   expect_winding(make_gear(), 20, "closed");
 }
 
-TEST(VoxelizeTest, TrianglesThatShareNothingFollowTheWindingNumberToo) {
-  const Mesh sphere =
-      make_sphere(1.0, 9);  // 1,620 triangles: a cone of 4,860, left to the hierarchy
-  Mesh apart;
-  for (const Triangle& t : sphere.triangles) {
-    const auto first = static_cast<std::int32_t>(apart.vertices.size());
+/// Every triangle with vertices of its own, drawn towards its middle by a share.
+Mesh apart(const Mesh& mesh, double share) {
+  Mesh result;
+  for (const Triangle& t : mesh.triangles) {
+    const auto first = static_cast<std::int32_t>(result.vertices.size());
+    const Eigen::Vector3d middle =
+        (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3.0;
     for (const std::int32_t corner : t) {
-      apart.vertices.push_back(1.001 * sphere.vertices[corner]);
+      result.vertices.push_back(mesh.vertices[corner] + share * (middle - mesh.vertices[corner]));
     }
-    apart.triangles.push_back({first, first + 1, first + 2});
+    result.triangles.push_back({first, first + 1, first + 2});
   }
-  EXPECT_EQ(fitting_rule(apart), InsideRule::kWinding);
-  expect_winding(apart, 12, "soup");
+  return result;
+}
+
+TEST(VoxelizeTest, TrianglesThatShareNothingFollowTheWindingNumberToo) {
+  const Mesh gaps = apart(make_sphere(1.0, 9), 0.1);
+  EXPECT_EQ(fitting_rule(gaps), InsideRule::kWinding);
+  expect_winding(gaps, 12, "1,620 cones");
+  expect_winding(apart(make_sphere(1.0, 9), 0.0), 12, "equal places");
+}
+
+TEST(VoxelizeTest, AMeshThatIsMostlyBoundaryIsLeftToTheHierarchy) {
+  expect_winding(apart(make_sphere(1.0, 32), 0.1), 5, "20,480 cones");
+}
+
+TEST(VoxelizeTest, ASoupOfManyTrianglesIsClosedByItsPlaces) {
+  const Mesh whole = make_rough_solid(1.0, 40, 4);  // 32,000 triangles
+  const VoxelGrid grid = grid_for(whole, 40);
+  EXPECT_EQ(inside(voxelize(apart(whole, 0.0), grid, InsideRule::kWinding)),
+            inside(voxelize(whole, grid, InsideRule::kParity)));
 }
 
 TEST(VoxelizeTest, TwiceTheSurfaceIsOutsideByParityAndInsideByWinding) {
