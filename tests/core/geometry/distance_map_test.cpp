@@ -44,7 +44,7 @@ void for_each_voxel(const VoxelGrid& grid, Visit visit) {
 TEST(DistanceMapTest, IsBruteForceAtEveryVoxel) {
   for (const Mesh& mesh : {make_gear(), make_torus(1.0, 0.3, 24, 12), make_rough_solid(1.0, 6, 3),
                            moved(make_sphere(1.0, 4), 1e-6, {1.0, 1.0, 1.0})}) {
-    const VoxelSolid solid = solid_of(mesh, 21, 2);
+    const VoxelSolid solid = solid_of(mesh, 13, 2);
     const DistanceMap map = make_distance_map(Bvh(mesh), solid, {.everywhere = true});
     int inside = 0;
     for_each_voxel(solid.grid, [&](std::size_t voxel, const Eigen::Vector3d& centre) {
@@ -56,7 +56,7 @@ TEST(DistanceMapTest, IsBruteForceAtEveryVoxel) {
       ASSERT_EQ(map.triangle[voxel], expected.triangle);
       inside += is_inside ? 1 : 0;
     });
-    EXPECT_GT(inside, 100);
+    EXPECT_GT(inside, 50);
   }
 }
 
