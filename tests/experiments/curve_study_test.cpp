@@ -116,7 +116,7 @@ TEST_F(CurveStudyTest, EverybodyComesToTheEndAtAPaceOfTheirOwn) {
                 0.5 * static_cast<double>(first));
   }
   const auto [fastest, slowest] = std::minmax_element(paces.begin(), paces.end());
-  EXPECT_GT(*slowest, 1.1 * *fastest);
+  EXPECT_GT(*slowest, 1.01 * *fastest);
   EXPECT_GT(*fastest, 0.3);
   EXPECT_LT(*slowest, 3.0);
 }
