@@ -17,6 +17,31 @@ std::vector<std::string> tracking_row(const TrackingSummary& t) {
           quantity(t.rms_error_in_plane, 1e3, "mm")};
 }
 
+std::vector<std::string> pace_row(const TrackingSummary& t) {
+  return {t.subject,
+          std::to_string(t.passes),
+          quantity(t.run, 1.0, "s"),
+          t.run_deviation ? number(*t.run_deviation) + " s" : "-",
+          quantity(t.rms_error, 1e3, "mm"),
+          quantity(t.rms_error_in_plane, 1e3, "mm")};
+}
+
+void add_pace(Document& document, const StudyResult& study) {
+  document.heading("Pace and distance from the path");
+  document.paragraph(
+      "The participants moved along the path at their own pace, so forces are compared over the "
+      "place on the path and not over time. How long a run took, over the completed passes "
+      "(training and test), and the hand's root-mean-square distance from the nearest place of the "
+      "path: in space, and without the direction of the force.");
+  Rows rows;
+  for (const auto& session : study.sessions) {
+    rows.push_back(pace_row(session.tracking));
+  }
+  rows.push_back(pace_row(study.tracking));
+  document.table(
+      {"Subject", "Passes", "Run", "SD of run", "RMS distance", "RMS distance in plane"}, rows);
+}
+
 void add_tracking(Document& document, const StudyResult& study) {
   document.heading("Tracking of the trajectory");
   document.paragraph(
@@ -106,7 +131,7 @@ void add_quality(Document& document, const StudyResult& study,
   document.heading("A stimulus");
   add_picture(document, drawings, "figure-22-trajectory");
   add_picture(document, drawings, "figure-23-force-pattern");
-  add_tracking(document, study);
+  study.over_path ? add_pace(document, study) : add_tracking(document, study);
   add_timing(document, study);
 }
 

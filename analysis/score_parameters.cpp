@@ -66,13 +66,19 @@ ScoreParameters read_score_parameters(Table& analysis) {
 
 std::vector<std::pair<std::string, std::string>> described(const ScoreParameters& p) {
   const AlignmentOptions& a = p.alignment;
-  std::vector<std::pair<std::string, std::string>> rows{
+  std::vector<std::pair<std::string, std::string>> rows;
+  if (p.over_path) {
+    rows.emplace_back("forces are compared over",
+                      "the place on the path, as the time that it takes at the definition's speed");
+  }
+  const std::vector<std::pair<std::string, std::string>> always{
       {"samples of the common time base", fmt::format("{}", p.samples)},
       {"box filter on the applied force", fmt::format("{} s", p.filter_width)},
       {"error matrix: weight of force", fmt::format("{}", a.force_weight)},
       {"error matrix: weight of slope", fmt::format("{}", a.slope_weight)},
       {"error matrix: power", fmt::format("{}", a.power)},
       {"penalty of a step along one curve", fmt::format("{}", a.penalty)}};
+  rows.insert(rows.end(), always.begin(), always.end());
   if (a.pattern != StepPattern::kPublished) {
     rows.emplace_back("step pattern", std::string(name_of(a.pattern)));
   }

@@ -13,6 +13,9 @@ namespace haptrial::analysis {
 /// How a recall is scored. The source says that its weights were set by eye and does not print
 /// them; docs/algorithms/alignment.md gives the reason for each default. Source: Morris 2006, §4.3.
 struct ScoreParameters {
+  /// Curves over the place on the path (analysis/path_places.h) in place of time: for participants
+  /// who set their own pace. Not a key: it follows from the guidance of the definition.
+  bool over_path{false};
   int samples{1000};         // of the common time base, 2 to 10,000
   double filter_width{0.1};  // box filter on the applied force, 0 to 10 [s]
   AlignmentOptions alignment;

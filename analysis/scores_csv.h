@@ -2,6 +2,8 @@
 
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "analysis/trial_score.h"
 
@@ -11,5 +13,9 @@ namespace haptrial::analysis {
 /// Numbers are the shortest decimals that read back to the same double; equal input gives equal
 /// bytes.
 std::string scores_csv(std::span<const TrialScore> scores);
+
+/// The scores of such a table. @param file_name  for messages.
+/// @throws InputError with the line of the first thing that scores_csv() does not write.
+std::vector<TrialScore> read_scores_csv(std::string_view text, const std::string& file_name);
 
 }  // namespace haptrial::analysis

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -43,6 +44,29 @@ std::map<std::int32_t, IdealPath> ideal_paths(const SessionReader& reader,
     }
   }
   return paths;
+}
+
+std::vector<Eigen::Vector3d> positions_of(const std::vector<Sample>& run) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const auto& sample : run) {
+    positions.push_back(sample.position);
+  }
+  return positions;
+}
+
+/// Of a run whose pace the participant set.
+PassTracking tracking_at_own_pace(const std::vector<Sample>& run, const PathPlaces& path) {
+  PassTracking result;
+  result.lag = Undefined{"the participant set the pace"};
+  result.samples = run.size();
+  result.duration = 1e-9 * static_cast<double>(run.back().time_ns - run.front().time_ns);
+  const HandPlaces places = path.of(positions_of(run));
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    const double in_plane = places.distance[i] * places.distance[i];
+    result.squares_in_plane += in_plane;
+    result.squares += in_plane + run[i].position.y() * run[i].position.y();
+  }
+  return result;
 }
 
 PassTracking tracking_of(const std::vector<Sample>& run, const IdealPath& ideal, double rate) {
@@ -100,19 +124,20 @@ std::vector<Sample> pass_samples(const SessionReader& reader, std::uint64_t sequ
 // Everything about one file while it is read.
 class Extraction {
  public:
-  explicit Extraction(const SessionReader& reader) : reader_(reader), passes_(reader.passes()) {
+  Extraction(const SessionReader& reader, const ScoreParameters& parameters)
+      : reader_(reader), parameters_(parameters), passes_(reader.passes()) {
     result_.summary.file = reader.path().filename().string();
     result_.summary.info = reader.info();
     paths_ = ideal_paths(reader, result_.stimulus);
     counted_ = counted_passes(passes_);
   }
 
-  SessionRecalls run(const ScoreParameters& parameters, int jobs) {
+  SessionRecalls run(int jobs) {
     for (std::size_t i = 0; i < passes_.size(); ++i) {
       take(i);
     }
     exclude_missing_tests();
-    score(parameters, jobs);
+    score(jobs);
     finish();
     return std::move(result_);
   }
@@ -146,7 +171,7 @@ class Extraction {
       exclude(pass.trial, "its training pass was aborted");
       return;
     }
-    const auto curves = samples ? recall_curves(*samples, reader_.info().rate)
+    const auto curves = samples ? recall_curves(*samples, reader_.info().rate, places(pass.block))
                                 : Defined<RecallCurves>(Undefined{samples.because()});
     if (!curves) {
       exclude(pass.trial, curves.because());
@@ -171,9 +196,20 @@ class Extraction {
   }
 
   void track(const PassRow& pass, const std::vector<Sample>& samples) {
-    if (const auto path = paths_.find(pass.block); path != paths_.end()) {
+    if (const PathPlaces* own_pace = places(pass.block)) {
+      result_.tracking.push_back(tracking_at_own_pace(samples, *own_pace));
+    } else if (const auto path = paths_.find(pass.block); path != paths_.end()) {
       result_.tracking.push_back(tracking_of(samples, path->second, reader_.info().rate));
     }
+  }
+
+  /// Of the block's path, where the curves are over it; else null.
+  const PathPlaces* places(std::int32_t block) {
+    auto& known = places_[block];
+    if (!known) {
+      known = path_places(reader_, block, parameters_);
+    }
+    return known.get();
   }
 
   TrialScore trial_of(const PassRow& pass) const {
@@ -206,13 +242,13 @@ class Extraction {
     }
   }
 
-  void score(const ScoreParameters& parameters, int jobs) {
+  void score(int jobs) {
     std::vector<RecallPair> pairs;
     for (const auto& curve : curves_) {
       pairs.push_back({&curve.target, &curve.applied});
     }
     try {
-      const auto scores = score_recalls(pairs, parameters, jobs);
+      const auto scores = score_recalls(pairs, parameters_, jobs);
       for (std::size_t k = 0; k < scores.size(); ++k) {
         fill(result_.scored[k].score, scores[k]);
       }
@@ -232,10 +268,12 @@ class Extraction {
   }
 
   const SessionReader& reader_;
+  const ScoreParameters& parameters_;
   std::vector<PassRow> passes_;
-  std::map<std::int32_t, IdealPath> paths_;      // by block
-  std::map<std::int32_t, std::size_t> counted_;  // row of the test pass, by trial
-  std::vector<RecallCurves> curves_;             // one for each of result_.scored
+  std::map<std::int32_t, std::unique_ptr<PathPlaces>> places_;  // by block
+  std::map<std::int32_t, IdealPath> paths_;                     // by block
+  std::map<std::int32_t, std::size_t> counted_;                 // row of the test pass, by trial
+  std::vector<RecallCurves> curves_;                            // one for each of result_.scored
   SessionRecalls result_;
 };
 
@@ -258,7 +296,8 @@ Defined<std::vector<Sample>> run_samples(const SessionReader& reader, const Pass
   return samples;
 }
 
-Defined<RecallCurves> recall_curves(const std::vector<Sample>& run, double rate) {
+Defined<RecallCurves> recall_curves(const std::vector<Sample>& run, double rate,
+                                    const PathPlaces* places) {
   RecallCurves curves;
   curves.target.rate = rate;
   curves.applied.rate = rate;
@@ -269,12 +308,32 @@ Defined<RecallCurves> recall_curves(const std::vector<Sample>& run, double rate)
     curves.target.force.push_back(sample.target_force);
     curves.applied.force.push_back(sample.applied_force);
   }
+  if (places != nullptr) {
+    const std::vector<double> along = places->of(positions_of(run)).along;
+    curves.target = over_path(along, curves.target.force, places->duration());
+    curves.applied = over_path(along, curves.applied.force, places->duration());
+  }
   return curves;
+}
+
+std::unique_ptr<PathPlaces> path_places(const SessionReader& reader, std::int32_t block,
+                                        const ScoreParameters& parameters) {
+  if (!parameters.over_path) {
+    return nullptr;
+  }
+  std::vector<StimulusRow> rows = reader.stimuli();
+  std::erase_if(rows, [&](const StimulusRow& row) { return row.block != block; });
+  if (rows.size() < 2) {
+    throw InputError(
+        fmt::format("{}: lacks the path of block {}, on which forces are to be compared",
+                    reader.path().string(), block));
+  }
+  return std::make_unique<PathPlaces>(rows);
 }
 
 SessionRecalls session_recalls(const SessionReader& reader, const ScoreParameters& parameters,
                                int jobs) {
-  return Extraction(reader).run(parameters, jobs);
+  return Extraction(reader, parameters).run(jobs);
 }
 
 }  // namespace haptrial::analysis

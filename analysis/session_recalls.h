@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "analysis/defined.h"
+#include "analysis/path_places.h"
 #include "analysis/score.h"
 #include "analysis/study.h"
 
@@ -43,7 +44,15 @@ struct RecallCurves {
 };
 
 /// The curves while the trajectory runs, or why the pass cannot be scored.
-Defined<RecallCurves> recall_curves(const std::vector<record::Sample>& run, double rate);
+/// @param places  of the pass's block: then the curves are over the place on the path; else null,
+///   and they are over time.
+Defined<RecallCurves> recall_curves(const std::vector<record::Sample>& run, double rate,
+                                    const PathPlaces* places);
+
+/// Of the block's ideal path; nothing where the parameters ask for curves over time.
+/// @throws InputError when the file lacks the path.
+std::unique_ptr<PathPlaces> path_places(const record::SessionReader& reader, std::int32_t block,
+                                        const ScoreParameters& parameters);
 
 /// Samples of the pass during Stage::kRun, or why there are none to use.
 Defined<std::vector<record::Sample>> run_samples(const record::SessionReader& reader,

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "analysis/path_places.h"
 #include "analysis/score.h"
 #include "analysis/session_recalls.h"
 #include "analysis/study_parts.h"
@@ -83,8 +84,10 @@ struct Origin {
 RecallPicture picture_of(const Origin& origin, const std::string& which,
                          const ScoreParameters& parameters) {
   const record::SessionReader reader(origin.session->file);
-  const auto run = run_samples(reader, reader.passes().at(origin.pass->pass));
-  const auto curves = recall_curves(*run, reader.info().rate);
+  const record::PassRow row = reader.passes().at(origin.pass->pass);
+  const auto run = run_samples(reader, row);
+  const auto places = path_places(reader, row.block, parameters);
+  const auto curves = recall_curves(*run, reader.info().rate, places.get());
   return recall_picture(which, origin.pass->score,
                         score_recall_in_detail(curves->target, curves->applied, parameters));
 }
@@ -163,6 +166,7 @@ StudyResult analyze_study(const std::vector<fs::path>& session_files,
   study.recalls = pictures(sessions, study.scores, parameters);
   study.stimulus = sessions.front().recalls.stimulus;
   study.parameters = described(parameters);
+  study.over_path = parameters.over_path;
   return study;
 }
 

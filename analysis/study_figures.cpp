@@ -170,19 +170,23 @@ std::string recall_title(const char* what, const RecallPicture& picture) {
                      picture.score.trial, picture.score.condition);
 }
 
-Figure force_figure(const char* name, const RecallPicture& picture, const char* what) {
+constexpr const char* kTime = "Time [s]";
+constexpr const char* kPlace = "Place on the path, at its speed [s]";
+
+Figure force_figure(const char* name, const RecallPicture& picture, const char* what,
+                    bool over_path) {
   Figure figure;
   figure.name = fmt::format("{}-{}", name, picture.which);
   figure.title = recall_title(what, picture);
-  figure.x_label = "Time [s]";
+  figure.x_label = over_path ? kPlace : kTime;
   figure.y_label = "Normal force [N]";
   figure.x_range = Range{0.0, picture.duration};
   return figure;
 }
 
-Figure alignment(const RecallPicture& picture) {
+Figure alignment(const RecallPicture& picture, bool over_path) {
   constexpr std::size_t kPairs = 60;  // drawn of the path
-  Figure figure = force_figure("figure-26-alignment", picture, "Alignment");
+  Figure figure = force_figure("figure-26-alignment", picture, "Alignment", over_path);
   const auto times = time_base(picture);
   Series pairs{"aligned points", Mark::kSegments, {kGrey, kSolid, 0, 0.8}};
   const std::size_t stride = std::max<std::size_t>(1, picture.pairs.size() / kPairs);
@@ -204,8 +208,8 @@ Figure alignment(const RecallPicture& picture) {
   return figure;
 }
 
-Figure warped(const RecallPicture& picture) {
-  Figure figure = force_figure("figure-27-warped", picture, "After warping");
+Figure warped(const RecallPicture& picture, bool over_path) {
+  Figure figure = force_figure("figure-27-warped", picture, "After warping", over_path);
   const auto times = time_base(picture);
   figure.series = {{"target", Mark::kLine, {kOrange, kSolid, 0, 2.5}, times, picture.target},
                    {"applied, warped", Mark::kLine, {kBlue, kLong, 0, 2.5}, times, picture.warped}};
@@ -266,8 +270,8 @@ std::vector<Figure> study_figures(const StudyResult& study) {
     figures.push_back(learning_over_blocks(study));
   }
   for (const auto& picture : study.recalls) {
-    figures.push_back(alignment(picture));
-    figures.push_back(warped(picture));
+    figures.push_back(alignment(picture, study.over_path));
+    figures.push_back(warped(picture, study.over_path));
   }
   if (study.stimulus.size() > 1) {
     figures.push_back(trajectory(study.stimulus));

@@ -192,7 +192,20 @@ Json learning(const StudyStatistics& s) {
   return rows;
 }
 
-Json tracking(const TrackingSummary& t) {
+/// At the participants' own pace there is no lag but a duration.
+Json pace(const TrackingSummary& t) {
+  return {{"subject", t.subject},
+          {"passes", t.passes},
+          {"run_s", to_json(t.run)},
+          {"run_standard_deviation_s", to_json(t.run_deviation)},
+          {"rms_distance_m", to_json(t.rms_error)},
+          {"rms_distance_in_plane_m", to_json(t.rms_error_in_plane)}};
+}
+
+Json tracking(const TrackingSummary& t, bool own_pace) {
+  if (own_pace) {
+    return pace(t);
+  }
   return {{"subject", t.subject},
           {"passes", t.passes},
           {"passes_without_lag", t.passes_without_lag},
@@ -236,11 +249,11 @@ Json session(const SessionSummary& s) {
 }
 
 void add_sessions(Json& root, const StudyResult& study) {
-  root["tracking"] = {{"overall", tracking(study.tracking)}, {"participants", Json::array()}};
+  root["tracking"] = {{"overall", tracking(study.tracking, study.over_path)}, {"participants", Json::array()}};
   root["timing"] = Json::array();
   root["sessions"] = Json::array();
   for (const auto& one : study.sessions) {
-    root["tracking"]["participants"].push_back(tracking(one.tracking));
+    root["tracking"]["participants"].push_back(tracking(one.tracking, study.over_path));
     root["timing"].push_back(timing(one));
     root["sessions"].push_back(session(one));
   }

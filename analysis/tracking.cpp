@@ -122,6 +122,7 @@ PassTracking track_pass(std::span<const double> times, std::span<const Eigen::Ve
                         const IdealPath& ideal, double rate) {
   PassTracking result;
   result.samples = times.size();
+  result.duration = times.empty() ? 0.0 : times.back();
   std::vector<double> actual_z(times.size());
   std::vector<double> ideal_z(times.size());
   for (std::size_t k = 0; k < times.size(); ++k) {
@@ -141,6 +142,7 @@ TrackingSummary summarize_tracking(std::string subject, std::span<const PassTrac
   result.subject = std::move(subject);
   result.passes = passes.size();
   std::vector<double> lags;
+  std::vector<double> runs;
   std::uint64_t samples = 0;
   double squares = 0.0;
   double squares_in_plane = 0.0;
@@ -148,6 +150,7 @@ TrackingSummary summarize_tracking(std::string subject, std::span<const PassTrac
     if (pass.lag) {
       lags.push_back(*pass.lag);
     }
+    runs.push_back(pass.duration);
     samples += pass.samples;
     squares += pass.squares;
     squares_in_plane += pass.squares_in_plane;
@@ -157,6 +160,12 @@ TrackingSummary summarize_tracking(std::string subject, std::span<const PassTrac
     result.lag = m->mean();
     if (m->count > 1) {
       result.lag_deviation = std::sqrt(m->variance());
+    }
+  }
+  if (const auto m = moments(runs)) {
+    result.run = m->mean();
+    if (m->count > 1) {
+      result.run_deviation = std::sqrt(m->variance());
     }
   }
   result.rms_error = root_mean(squares, samples);

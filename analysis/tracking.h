@@ -37,11 +37,14 @@ Defined<double> lag_behind(std::span<const double> actual, std::span<const doubl
                            double rate, double max_lag = 0.25);
 
 /// How well the device led the hand along the path of one pass.
+/// Where the participant set the pace there is no lag, and the distance is that to the nearest
+/// place of the path.
 struct PassTracking {
   Defined<double> lag{Undefined{"there are no samples"}};  // along z [s]
   std::uint64_t samples{0};
   double squares{0.0};           // sum of squared distances to the ideal position [m²]
   double squares_in_plane{0.0};  // the same without the direction of the force, y [m²]
+  double duration{0.0};          // of the run [s]
 };
 
 /// @param times  since the start of the run [s]; @param positions  p_W [m], one for each time.
@@ -57,6 +60,8 @@ struct TrackingSummary {
   Defined<double> lag_deviation{Undefined{"no pass has one"}};            // between passes [s]
   Defined<double> rms_error{Undefined{"there are no samples"}};           // [m]
   Defined<double> rms_error_in_plane{Undefined{"there are no samples"}};  // [m]
+  Defined<double> run{Undefined{"there are no passes"}};            // mean duration of a run [s]
+  Defined<double> run_deviation{Undefined{"there are no passes"}};  // between passes [s]
 };
 
 TrackingSummary summarize_tracking(std::string subject, std::span<const PassTracking> passes);

@@ -93,6 +93,8 @@ function(haptrial_tests)
     endif()
   endforeach()
   target_link_libraries(test_experiments PRIVATE nlohmann_json::nlohmann_json)
+  find_package(assimp REQUIRED)  # a peer of the mesh readers
+  target_link_libraries(test_geometry PRIVATE assimp::assimp)
   add_executable(test_architecture ${CMAKE_SOURCE_DIR}/tests/architecture/includes_test.cpp)
   target_link_libraries(test_architecture PRIVATE GTest::gmock GTest::gtest GTest::gtest_main)
   target_compile_definitions(test_architecture PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")

@@ -33,6 +33,7 @@ if(HAPTRIAL_SANITIZER)
 endif()
 
 option(HAPTRIAL_TESTS "Build the tests (needs GoogleTest)" ON)
+option(HAPTRIAL_FUZZ "Build the libFuzzer targets (needs clang)" OFF)
 option(HAPTRIAL_BENCHMARKS "Build the benchmarks (needs Google Benchmark and the peers)" OFF)
 
 find_program(CCACHE ccache)

@@ -6,8 +6,10 @@
 #include "analysis/exchange/export_csv.h"
 #include "analysis/exchange/export_curves.h"
 #include "core/base/error.h"
+#include "core/record/session_reader.h"
 #include "experiments/arguments.h"
 #include "experiments/commands.h"
+#include "experiments/definition.h"
 #include "experiments/interrupt.h"
 #include "experiments/progress.h"
 #include "experiments/study_run.h"
@@ -74,7 +76,10 @@ void export_as_csv(const ExportOptions& options, const std::vector<fs::path>& fi
 
 void export_as_curves(const ExportOptions& options, const std::vector<fs::path>& files, int jobs) {
   ProgressWatch watch(files);
-  const auto done = exchange::export_curves(files, options.curves, jobs,
+  const record::SessionReader reader(files.front());
+  const Definition definition =
+      parse_definition(reader.info().definition, reader.info().definition_name);
+  const auto done = exchange::export_curves(files, options.curves, definition.scoring, jobs,
                                             [&](std::uint64_t samples) { watch(samples); });
   fmt::print("{} scored trials of {} subjects\ncurves: {}\n", done.trials, done.subjects,
              options.curves);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/record/session_types.h"
+#include "experiments/mesh_command.h"
 
 namespace haptrial::experiments {
 
@@ -100,6 +101,8 @@ struct AlignOptions {
 };
 int align(const AlignOptions& options);
 
+/// @param out  folder for the page, the figure and the numbers; empty: only print
+int compare(const std::string& first, const std::string& second, const std::string& out);
 int info(const std::string& file);
 /// @param out  new session file; empty: beside the damaged one
 /// @returns 0 when something was recovered, else 1.
@@ -131,5 +134,25 @@ struct DeviceTestOptions {
 };
 /// @returns 0 when the device is fit for use, else 1.
 int device_test(const DeviceTestOptions& options);
+
+/// The subcommands of haptrial mesh.
+struct MeshOptions {
+  MeshInput input;
+  std::string out;      // new file; its ending says the format
+  std::string shape;    // make: sphere, torus, gear, rough
+  std::string picture;  // new .png; empty: none
+  std::string up{"y"};  // of pictures: x, y, z
+  double weld{0.0};     // repair [m]
+  VoxelizeOptions voxels;
+  bool everywhere{false};  // distance: outside voxels too
+  std::string points;      // distance: new volume of nearest points; empty: none
+  bool overwrite{false};
+};
+int mesh_make(const MeshOptions& options);
+int mesh_info(const MeshOptions& options);
+int mesh_repair(const MeshOptions& options);
+int mesh_voxelize(const MeshOptions& options);
+int mesh_distance(const MeshOptions& options);
+int mesh_tetrahedralize(const MeshOptions& options);
 
 }  // namespace haptrial::experiments

@@ -1,12 +1,16 @@
 # Completion of the haptrial command: source this file, or copy it to /etc/bash_completion.d/haptrial.
 _haptrial() {
   local word=${COMP_WORDS[COMP_CWORD]} sub=${COMP_WORDS[1]}
-  local names words
+  local names words part
   names=$(haptrial --help 2>/dev/null | sed -n '/^Subcommands:/,/^$/s/^  \([a-z-]*\) .*/\1/p')
   if [ "$COMP_CWORD" -eq 1 ]; then
     mapfile -t COMPREPLY < <(compgen -W "$names --help --version" -- "$word")
+  elif [ "$COMP_CWORD" -eq 2 ] && [ "$sub" = mesh ]; then
+    names=$(haptrial mesh --help 2>/dev/null | sed -n '/^Subcommands:/,/^$/s/^  \([a-z-]*\) .*/\1/p')
+    mapfile -t COMPREPLY < <(compgen -W "$names --help" -- "$word")
   elif [[ $word == -* ]]; then
-    words=$(haptrial "$sub" --help 2>/dev/null | grep -o -- '--[a-z-]*')
+    [ "$sub" = mesh ] && part=${COMP_WORDS[2]}
+    words=$(haptrial "$sub" ${part:+"$part"} --help 2>/dev/null | grep -o -- '--[a-z-]*' | sort -u)
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
   else
     mapfile -t COMPREPLY < <(compgen -f -- "$word")

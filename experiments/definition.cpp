@@ -7,12 +7,15 @@
 #include <cmath>
 
 #include "core/base/table.h"
+#include "experiments/recorded_path.h"
 #include "protocols/training_pass.h"
 
 namespace haptrial::experiments {
 namespace {
 
 constexpr double kLongestPass = 300.0;  // along x; the curve itself is a few times longer [s]
+
+void check_path(Table& root, const Definition& d);
 
 /// What no table can see alone.
 void check_together(Table& root, const Definition& d) {
@@ -46,18 +49,42 @@ void check_together(Table& root, const Definition& d) {
     root.table("experiment")
         .reject("name", fmt::format("'{}'", d.name), "letters, digits, '-' and '_'");
   }
+  check_path(root, d);
+}
+
+/// The path and how long it takes.
+void check_path(Table& root, const Definition& d) {
+  if (!d.trajectory.from.empty() && d.trajectory.points.empty()) {
+    return;  // a recorded path that is not read
+  }
   Table trajectory = root.table("trajectory");
-  if (d.trajectory.length_x / d.trajectory.speed > kLongestPass) {
+  const bool recorded = !d.trajectory.from.empty();
+  double length = d.trajectory.length_x;  // at least
+  double reach = 0.5 * std::hypot(d.trajectory.length_x, d.trajectory.range_z);
+  if (recorded) {
+    length = reach = 0.0;
+    Eigen::Vector3d before = d.trajectory.points.front();
+    for (const Eigen::Vector3d& point : d.trajectory.points) {
+      length += (point - before).norm();
+      reach = std::max(reach, point.norm());
+      before = point;
+    }
+  }
+  if (length / d.trajectory.speed > kLongestPass) {
     trajectory.reject("speed", fmt::format("{}", d.trajectory.speed),
-                      fmt::format("so fast that length_x takes at most {} s", kLongestPass));
+                      fmt::format("so fast that {} takes at most {} s",
+                                  recorded ? "the recorded path" : "length_x", kLongestPass));
   }
-  const double reach = 0.5 * std::hypot(d.trajectory.length_x, d.trajectory.range_z);
   if (reach > d.envelope.workspace_radius) {
-    trajectory.reject("length_x", fmt::format("{}", d.trajectory.length_x),
-                      fmt::format("with range_z, a curve within envelope.workspace_radius, {} [m]",
-                                  d.envelope.workspace_radius));
+    const char* key = recorded ? "from" : "length_x";
+    trajectory.reject(
+        key,
+        recorded ? fmt::format("a path that reaches {:.3g} m from the middle", reach)
+                 : fmt::format("{}", d.trajectory.length_x),
+        fmt::format("{} within envelope.workspace_radius, {} [m]",
+                    recorded ? "a path" : "with range_z, a curve", d.envelope.workspace_radius));
   }
-  const double shortest = d.trajectory.length_x / d.trajectory.speed;
+  const double shortest = length / d.trajectory.speed;
   Table force_pattern = root.table("force_pattern");
   if (2.0 * d.force_pattern.ramp > shortest) {
     force_pattern.reject(
@@ -78,7 +105,8 @@ void read_devices(Table& root, Definition& d) {
   read("mouse", d.mouse, device::read_mouse_parameters);
 }
 
-Definition read(Table root, std::string_view file_name) {
+/// @param folder  of the file, where a recorded path is to be read; else null
+Definition read(Table root, std::string_view file_name, const std::filesystem::path* folder) {
   Table experiment = root.table("experiment");
   Table design = root.table("design");
   Table trajectory = root.table("trajectory");
@@ -107,12 +135,21 @@ Definition read(Table root, std::string_view file_name) {
                subject::read_hand_parameters(hand),
                cvode ? Integrator::kCvode : Integrator::kExact,
                subject::Population(subject),
+               std::nullopt,
                render::read_trial_display_style(display),
                read_screen_options(screen),
                read_session_texts(texts),
                recording.number("stimulus_rate", {10.0, 10000.0}, "Hz"),
                analysis::read_score_parameters(scoring)};
   read_devices(root, d);
+  if (d.guidance.kind == protocols::Guidance::kCurve) {
+    Table pace = root.table("pace");
+    d.pace.emplace(pace);
+    d.scoring.over_path = true;
+  }
+  if (folder != nullptr && !d.trajectory.from.empty()) {
+    d.trajectory.points = recorded_path(d.trajectory.from, *folder);
+  }
   check_together(root, d);
   root.finish();
   return d;
@@ -121,11 +158,12 @@ Definition read(Table root, std::string_view file_name) {
 }  // namespace
 
 Definition load_definition(const std::filesystem::path& file) {
-  return read(Table::load(file), file.string());
+  const std::filesystem::path folder = file.parent_path();
+  return read(Table::load(file), file.string(), &folder);
 }
 
 Definition parse_definition(std::string_view text, std::string_view file_name) {
-  return read(Table::parse(text, file_name), file_name);
+  return read(Table::parse(text, file_name), file_name, nullptr);
 }
 
 }  // namespace haptrial::experiments

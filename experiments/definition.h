@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,7 @@
 #include "core/render/trial_display_style.h"
 #include "core/stimulus/stimulus.h"
 #include "core/subject/hand_parameters.h"
+#include "core/subject/pacer.h"
 #include "core/subject/subject_parameters.h"
 #include "experiments/screen_options.h"
 #include "protocols/schedule.h"
@@ -37,6 +39,7 @@ struct Definition {
   subject::HandParameters hand;
   Integrator integrator;
   subject::Population population;
+  std::optional<subject::PaceHabits> pace;  // where participants set their own
   render::TrialDisplayStyle display;
   ScreenOptions screen;
   SessionTexts texts;
@@ -52,7 +55,8 @@ struct Definition {
 /// @throws InputError with a sentence for every problem of the file.
 Definition load_definition(const std::filesystem::path& file);
 
-/// A definition from its text, as a session file keeps it.
+/// A definition from its text, as a session file keeps it. A path that it takes from a recorded
+/// pass is not read: the session file holds the path itself.
 Definition parse_definition(std::string_view text, std::string_view file_name);
 
 }  // namespace haptrial::experiments

@@ -38,6 +38,7 @@ class Commands {
     add_analyze();
     add_export();
     add_align();
+    add_compare();
     add_info();
     add_recover();
     add_replay();
@@ -45,6 +46,7 @@ class Commands {
     add_power();
     add_devices();
     add_device_test();
+    add_mesh();
   }
 
  private:
@@ -156,6 +158,16 @@ class Commands {
     sub->callback([this] { status_ = experiments::align(align_); });
   }
 
+  void add_compare() {
+    CLI::App* sub = subcommand(
+        app_, "compare", "Compare the scores of two analysed studies",
+        "haptrial compare results/force_training results/force_training_curve --out out/compared");
+    sub->add_option("FIRST", path_, "Folder of an analysed study")->required();
+    sub->add_option("SECOND", second_, "Folder of another")->required();
+    sub->add_option("--out", compare_out_, "Folder for a page, a figure and the numbers");
+    sub->callback([this] { status_ = experiments::compare(path_, second_, compare_out_); });
+  }
+
   void add_info() {
     CLI::App* sub =
         subcommand(app_, "info", "Say what a session file holds and whether it is complete",
@@ -228,6 +240,94 @@ class Commands {
     sub->callback([this] { status_ = experiments::device_test(device_test_); });
   }
 
+  void add_mesh() {
+    CLI::App* mesh =
+        subcommand(app_, "mesh", "Check, repair, voxelize, measure and split surface meshes",
+                   "haptrial mesh tetrahedralize bunny.ply bunny.vtu");
+    mesh->require_subcommand(1);
+    CLI::App* make = mesh_subcommand(*mesh, "make", "Make a mesh to try things on",
+                                     "haptrial mesh make gear gear.ply");
+    make->add_option("SHAPE", mesh_.shape, "sphere, torus, gear or rough")->required();
+    make->add_option("OUT", mesh_.out, "New mesh (.obj, .ply, .stl, .off)")->required();
+    make->callback([this] { status_ = experiments::mesh_make(mesh_); });
+
+    CLI::App* info = mesh_subcommand(*mesh, "info", "Say what a mesh is and what is wrong with it",
+                                     "haptrial mesh info gear.ply");
+    add_mesh_input(*info);
+    add_mesh_picture(*info);
+    info->callback([this] { status_ = experiments::mesh_info(mesh_); });
+
+    CLI::App* repair = mesh_subcommand(*mesh, "repair", "Weld, clean and orient a mesh",
+                                       "haptrial mesh repair scan.stl clean.ply --weld 1e-5");
+    add_mesh_input(*repair);
+    repair->add_option("OUT", mesh_.out, "New mesh (.obj, .ply, .stl, .off)")->required();
+    repair->add_option("--weld", mesh_.weld, "Vertices within this distance become one [m] (0)");
+    repair->callback([this] { status_ = experiments::mesh_repair(mesh_); });
+
+    CLI::App* voxelize =
+        mesh_subcommand(*mesh, "voxelize", "Label the voxels of a grid as inside or outside",
+                        "haptrial mesh voxelize gear.ply gear.nrrd --resolution 135");
+    add_mesh_input(*voxelize);
+    voxelize->add_option("OUT", mesh_.out, "New volume (.nrrd, .h5)")->required();
+    add_mesh_voxels(*voxelize);
+    add_mesh_picture(*voxelize);
+    voxelize->callback([this] { status_ = experiments::mesh_voxelize(mesh_); });
+
+    add_mesh_distance(*mesh);
+
+    CLI::App* split =
+        mesh_subcommand(*mesh, "tetrahedralize", "Fill a mesh with tetrahedra, five to a voxel",
+                        "haptrial mesh tetrahedralize gear.ply gear.vtu --resolution 40");
+    add_mesh_input(*split);
+    split->add_option("OUT", mesh_.out, "New mesh (.node with .ele, .vtu, .msh, .h5)")->required();
+    add_mesh_voxels(*split);
+    add_mesh_picture(*split);
+    split->callback([this] { status_ = experiments::mesh_tetrahedralize(mesh_); });
+  }
+
+  void add_mesh_distance(CLI::App& mesh) {
+    CLI::App* sub =
+        mesh_subcommand(mesh, "distance", "Give every voxel its exact distance to the surface",
+                        "haptrial mesh distance gear.ply gear-distance.nrrd --everywhere");
+    add_mesh_input(*sub);
+    sub->add_option("OUT", mesh_.out, "New volume of distances [m] (.nrrd, .h5)")->required();
+    sub->add_option("--resolution", mesh_.voxels.resolution, "Voxels along the longest axis (100)");
+    sub->add_option("--inside", mesh_.voxels.rule,
+                    "auto, parity, winding or flood: what makes a voxel an inside one (auto)");
+    sub->add_flag("--everywhere", mesh_.everywhere, "Outside too, where distances are positive");
+    sub->add_option("--margin", mesh_.voxels.margin, "More voxels on every side (0)");
+    sub->add_option("--points", mesh_.points, "Also a new volume of nearest points [m]");
+    sub->add_option("--picture", mesh_.picture, "New picture of the slice in the middle (.png)");
+    sub->add_option("--up", mesh_.up, "Axis that points up in it: x, y or z (y)");
+    sub->callback([this] { status_ = experiments::mesh_distance(mesh_); });
+  }
+
+  CLI::App* mesh_subcommand(CLI::App& mesh, const char* name, const char* what,
+                            const char* example) {
+    CLI::App* sub = subcommand(mesh, name, what, example);
+    sub->add_flag("--overwrite", mesh_.overwrite, "Replace files that are there");
+    return sub;
+  }
+
+  void add_mesh_input(CLI::App& sub) {
+    sub.add_option("IN", mesh_.input.file, "Mesh (.obj, .ply, .stl, .off)")->required();
+    sub.add_option("--scale", mesh_.input.scale, "Metres to one unit of the file (1)");
+    sub.add_option("--max-memory", mesh_.input.max_memory,
+                   "Refuse what may take more [GB]; what the system has by default");
+  }
+
+  void add_mesh_voxels(CLI::App& sub) {
+    sub.add_option("--resolution", mesh_.voxels.resolution, "Voxels along the longest axis (100)");
+    sub.add_flag("--over", mesh_.voxels.over, "Go one voxel over the surface");
+    sub.add_option("--inside", mesh_.voxels.rule,
+                   "auto, parity, winding or flood: what makes a voxel an inside one (auto)");
+  }
+
+  void add_mesh_picture(CLI::App& sub) {
+    sub.add_option("--picture", mesh_.picture, "New picture (.png)");
+    sub.add_option("--up", mesh_.up, "Axis that points up in it: x, y or z (y)");
+  }
+
   CLI::App& app_;
   int& status_;
   experiments::DryRunOptions dry_run_;
@@ -238,7 +338,10 @@ class Commands {
   experiments::ExportOptions export_;
   experiments::AlignOptions align_;
   experiments::AnalyzeOptions analyze_;
+  experiments::MeshOptions mesh_;
   std::string path_;
+  std::string second_;
+  std::string compare_out_;
   std::string recover_out_;
 };
 

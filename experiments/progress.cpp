@@ -33,9 +33,14 @@ void Progress::update(double done, const std::string& detail, double real_time_r
   }
   last_ = now;
   const double share = std::min(done / total_, 0.99);  // the total is an estimate
-  const std::string line =
-      fmt::format("{}: {:2.0f} %, {}, {:.0f} times real time, {:.0f} s left", what_, 100.0 * share,
-                  detail, done / real_time_rate / elapsed, elapsed * (1.0 - share) / share);
+  std::string line = fmt::format("{}: {:2.0f} %, ", what_, 100.0 * share);
+  if (!detail.empty()) {
+    line += detail + ", ";
+  }
+  if (real_time_rate > 0.0) {
+    line += fmt::format("{:.0f} times real time, ", done / real_time_rate / elapsed);
+  }
+  line += fmt::format("{:.0f} s left", elapsed * (1.0 - share) / share);
   fmt::print(stderr, "\r{:{}}", line, width_);
   std::fflush(stderr);
   width_ = std::max(width_, line.size());

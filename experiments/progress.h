@@ -15,8 +15,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// @param done  of the total.  @param detail  such as "3 of 12 sessions"
-  /// @param real_time_rate  units of work that are one second of real time
+  /// @param done  of the total.  @param detail  such as "3 of 12 sessions"; may be empty
+  /// @param real_time_rate  units of work that are one second of real time; 0: none are
   void update(double done, const std::string& detail, double real_time_rate);
 
  private:

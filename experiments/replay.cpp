@@ -98,12 +98,17 @@ stimulus::Stimulus Replay::stimulus_of(const record::SessionReader& reader,
                                        const record::PassRow& row) {
   stimulus::Stimulus made =
       stimulus::make_stimulus(definition_.trajectory, definition_.force_pattern, row.stimulus_seed);
+  const bool recorded = !definition_.trajectory.from.empty();  // and not made of a seed at all
   std::vector<Eigen::Vector3d> points;
   std::vector<double> forces;
   bool same = true;
   double end = 0.0;
-  for (const record::StimulusRow& s : reader.stimuli()) {
-    if (s.block == row.block) {
+  const std::vector<record::StimulusRow> stored = reader.stimuli();
+  // Practice is not stored; a recorded path is the same in every block.
+  const bool borrows = recorded && row.practice && !stored.empty();
+  const std::int32_t block = borrows ? stored.front().block : row.block;
+  for (const record::StimulusRow& s : stored) {
+    if (s.block == block) {
       points.push_back(s.position);
       forces.push_back(s.force);
       end = s.time;
@@ -111,13 +116,18 @@ stimulus::Stimulus Replay::stimulus_of(const record::SessionReader& reader,
              std::abs(made.force.at(s.time) - s.force) < kSame;
     }
   }
-  if (same || points.size() < 2 || row.practice) {
+  if ((same || row.practice) && !recorded) {
     return made;
   }
-  notice_ = fmt::format(
-      "block {}: drawn as recorded, for this version makes another stimulus of "
-      "its seed",
-      row.block);
+  if (points.size() < 2) {
+    return made;
+  }
+  if (!recorded) {
+    notice_ = fmt::format(
+        "block {}: drawn as recorded, for this version makes another stimulus of "
+        "its seed",
+        row.block);
+  }
   double length = 0.0;
   for (std::size_t i = 1; i < points.size(); ++i) {
     length += (points[i] - points[i - 1]).norm();

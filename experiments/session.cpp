@@ -283,7 +283,8 @@ const char* Session::why_broken_off() {
   if (wishes.skip) {
     return "skipped";
   }
-  return wishes.abort ? "the session was ended" : "the tool did not settle at the start in time";
+  return wishes.abort ? "the session was ended"
+                      : "the tool did not come to the start, or to the end, in time";
 }
 
 void Session::drive_until_idle() {

@@ -23,8 +23,12 @@ std::unique_ptr<subject::HandModel> make_hand(const Definition& d) {
 VirtualRig::VirtualRig(const Definition& d, std::uint64_t session_seed)
     : hand_(make_hand(d)), device_(d.device, *hand_, d.rate) {
   const std::uint64_t seed = derived_seed(session_seed, "subject");
+  std::optional<subject::PaceParameters> pace;
+  if (d.pace) {
+    pace = d.pace->draw(seed);
+  }
   subject_ = std::make_unique<subject::VirtualSubject>(d.population.draw(seed), d.hand, *hand_,
-                                                       seed, 1.0 / d.rate);
+                                                       seed, 1.0 / d.rate, pace);
 }
 
 }  // namespace haptrial::experiments

@@ -20,14 +20,20 @@ std::vector<stimulus::Presentation> presentations(const TrajectoryPass& pass,
                                                   double rate) {
   std::vector<stimulus::Presentation> seen;
   seen.reserve(samples.size());
-  double run_time = 0.0;
+  double along = 0.0;
   bool running = false;
+  std::optional<CurveGuide> guide = pass.curve_guide();
   for (const record::Sample& s : samples) {
     const bool runs = s.stage == record::Stage::kRun;
-    run_time = runs && running ? run_time + 1.0 / rate : 0.0;  // the run's first tick is its time 0
+    along = runs && running ? along + 1.0 / rate : 0.0;  // the run's first tick is its time 0
     running = runs;
-    seen.push_back(pass.presentation(
-        {s.position, s.stage, run_time, s.target_force, s.applied_force, s.saturated}));
+    PassMoment moment{s.position, s.stage, along, s.target_force, s.applied_force, s.saturated};
+    if (runs && guide) {
+      guide->follow({s.position, s.velocity});
+      moment.along = guide->along();
+      moment.direction = guide->direction();
+    }
+    seen.push_back(pass.presentation(moment));
   }
   return seen;
 }

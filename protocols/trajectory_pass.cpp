@@ -10,6 +10,7 @@ using record::Stage;
 
 GuidanceParameters read_guidance_parameters(Table& table) {
   GuidanceParameters p;
+  const bool curve = table.has("kind") && table.choice("kind", {"trajectory", "curve"}) == "curve";
   Table trajectory = table.table("trajectory");
   Table plane = table.table("plane");
   p.trajectory = control::read_pd_gains(trajectory);
@@ -20,6 +21,12 @@ GuidanceParameters read_guidance_parameters(Table& table) {
   p.wait = table.number("wait", {0.0, 60.0}, "s");
   p.wait_timeout = table.number("wait_timeout", {p.wait, 600.0, true}, "s");
   p.recovery = table.number("recovery", {0.0, 600.0}, "s");
+  if (curve) {
+    p.kind = Guidance::kCurve;
+    p.run_timeout = table.number("run_timeout", {0.0, 3600.0, true}, "s");
+    Table following = table.table("curve");
+    p.curve = control::read_curve_following(following);
+  }
   return p;
 }
 
@@ -29,7 +36,15 @@ TrajectoryPass::TrajectoryPass(const stimulus::Stimulus& stimulus,
       parameters_(parameters),
       trajectory_controller_(parameters.trajectory),
       plane_controller_(parameters.plane),
-      block_(block) {}
+      block_(block),
+      guide_(curve_guide()) {}
+
+std::optional<CurveGuide> TrajectoryPass::curve_guide() const {
+  if (parameters_.kind != Guidance::kCurve) {
+    return std::nullopt;
+  }
+  return CurveGuide(stimulus_.path, parameters_.curve);
+}
 
 void TrajectoryPass::enter(Stage stage) noexcept {
   stage_ = stage;
@@ -38,6 +53,8 @@ void TrajectoryPass::enter(Stage stage) noexcept {
   const Eigen::Vector3d& start = stimulus_.path.points().front();
   if (stage == Stage::kApproach || stage == Stage::kReturn) {
     move_ = control::MinimumJerkMove(target_, start, parameters_.approach_speed);
+  } else if (stage == Stage::kRun && guide_) {
+    guide_->start();
   }
 }
 
@@ -57,9 +74,7 @@ PointState TrajectoryPass::guide_target(const PointState& tool, double dt) noexc
       settle(tool, dt);
       break;
     case Stage::kRun:
-      if (time_ >= stimulus_.path.duration()) {
-        enter(Stage::kReturn);
-      }
+      end_run_if_over();
       break;
     case Stage::kReturn:
       if (time_ >= move_.duration()) {
@@ -69,7 +84,7 @@ PointState TrajectoryPass::guide_target(const PointState& tool, double dt) noexc
   }
   switch (stage_) {
     case Stage::kRun:
-      return stimulus_.path.at(time_);
+      return run_target(tool);
     case Stage::kWait:
       return {stimulus_.path.points().front(), Eigen::Vector3d::Zero()};
     default:
@@ -87,6 +102,25 @@ void TrajectoryPass::settle(const PointState& tool, double dt) noexcept {
   }
 }
 
+void TrajectoryPass::end_run_if_over() noexcept {
+  const bool over = guide_ ? guide_->at_end() : time_ >= stimulus_.path.duration();
+  if (over) {
+    enter(Stage::kReturn);
+  } else if (guide_ && time_ >= parameters_.run_timeout) {
+    state_ = PassState::kAborted;
+  }
+}
+
+PointState TrajectoryPass::run_target(const PointState& tool) noexcept {
+  if (!guide_) {
+    along_ = time_;
+    return stimulus_.path.at(time_);
+  }
+  const PointState target = guide_->follow(tool);
+  along_ = guide_->along();
+  return target;
+}
+
 PassOutput TrajectoryPass::tick(const PointState& tool, double dt) noexcept {
   const PointState target = guide_target(tool, dt);
   const PassOutput out = output(tool, target);
@@ -101,7 +135,7 @@ PassOutput TrajectoryPass::output(const PointState& tool, const PointState& targ
   const bool runs = stage_ == Stage::kRun;
   PassOutput out;
   out.stage = stage_;
-  out.target_force = runs ? stimulus_.force.at(time_) : 0.0;
+  out.target_force = runs ? stimulus_.force.at(along_) : 0.0;
   const double plane_force = plane_controller_.force(target, tool).y();
   Eigen::Vector3d wanted = trajectory_controller_.force(target, tool);
   wanted.y() = runs && !plane_holds() ? out.target_force : plane_force;
@@ -109,8 +143,12 @@ PassOutput TrajectoryPass::output(const PointState& tool, const PointState& targ
   out.saturated = wanted.norm() > parameters_.force_limit;
   out.applied_force = out.force.y();
 
-  out.presentation = presentation(
-      {tool.position, stage_, time_, out.target_force, out.applied_force, out.saturated});
+  PassMoment moment{tool.position,     stage_,       along_, out.target_force,
+                    out.applied_force, out.saturated};
+  if (runs && guide_) {
+    moment.direction = guide_->direction();
+  }
+  out.presentation = presentation(moment);
   return out;
 }
 
@@ -125,7 +163,9 @@ stimulus::Presentation TrajectoryPass::presentation(const PassMoment& moment) co
   seen.pass_duration = stimulus_.path.duration();
   seen.block = block_;
   if (moment.stage == Stage::kRun) {
-    seen.progress = std::clamp(moment.run_time / seen.pass_duration, 0.0, 1.0);
+    seen.progress = std::clamp(moment.along / seen.pass_duration, 0.0, 1.0);
+    seen.self_paced = guide_.has_value();
+    seen.direction = moment.direction;
     present(seen);
     // What is not shown is not there: nobody who is presented with it can know more than a person.
     seen.target_force = seen.show_target_bar ? moment.target_force : 0.0;

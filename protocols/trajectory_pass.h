@@ -1,8 +1,11 @@
 #pragma once
 
+#include <optional>
+
 #include "core/control/minimum_jerk.h"
 #include "core/control/pd_controller.h"
 #include "core/stimulus/stimulus.h"
+#include "protocols/curve_guide.h"
 #include "protocols/pass.h"
 
 namespace haptrial {
@@ -11,8 +14,15 @@ class Table;
 
 namespace haptrial::protocols {
 
+/// What leads the hand during the run.
+enum class Guidance {
+  kTrajectory,  // a target that moves along the path at its speed (§4.2.4)
+  kCurve,       // the path itself, at the participant's own pace (§6.2)
+};
+
 /// How a hand is guided along a trajectory. Source: Morris 2006, §4.2.4.
 struct GuidanceParameters {
+  Guidance kind{Guidance::kTrajectory};
   control::PdGains trajectory{900.0, 100.0};  // in the xz plane
   control::PdGains plane{2000.0, 300.0};      // along y
   double force_limit{12.0};                   // the device saturates here > 0 [N]
@@ -21,25 +31,31 @@ struct GuidanceParameters {
   double wait{0.5};                           // at the start, without a break >= 0 [s]
   double wait_timeout{10.0};                  // then the pass is aborted > 0 [s]
   double recovery{3.0};                       // without force after an abort >= 0 [s]
+  double run_timeout{120.0};                  // at one's own pace; then it is aborted > 0 [s]
+  control::CurveFollowing curve{};            // at one's own pace
 };
 
-/// Reads a [guidance] table with its inner tables trajectory and plane.
+/// Reads a [guidance] table with its inner tables trajectory and plane, and curve where its `kind`
+/// is that; without a `kind` it is "trajectory".
 GuidanceParameters read_guidance_parameters(Table& table);
 
 /// An instant of a pass, as far as it can be seen; a recorded sample holds the same.
 struct PassMoment {
   Eigen::Vector3d tool{Eigen::Vector3d::Zero()};  // p_W [m]
   record::Stage stage{record::Stage::kIdle};
-  double run_time{0.0};       // since the run began; only during the run [s]
+  double along{0.0};          // the path, at its speed: time since the run began, or the place [s]
   double target_force{0.0};   // [N]
   double applied_force{0.0};  // [N]
   bool saturated{false};
+  Eigen::Vector3d direction{Eigen::Vector3d::Zero()};  // on along the path, where self-paced
 };
 
 /// One pass along a trajectory:
 ///
 ///     approach the start -> wait there, settled -> run along it -> return to the start
 ///
+/// The run is over when the path's time is, or, at the participant's own pace, when the hand has
+/// come to its end. The force pattern is a function of how far along the path it is, either way.
 /// The kinds of pass differ in what happens along y during the run and in what is shown; each is a
 /// file of its own. The guide never jumps: every stage begins where the last one left its target.
 class TrajectoryPass : public Pass {
@@ -53,6 +69,8 @@ class TrajectoryPass : public Pass {
   /// What the participant sees at an instant: tick() shows it, and a replay shows it again. Before
   /// the pass and after a fault, when the stage is idle, that is nothing. Servo thread.
   stimulus::Presentation presentation(const PassMoment& moment) const noexcept;
+  /// A guide along this pass's path, at its start; nothing where the path sets the pace.
+  std::optional<CurveGuide> curve_guide() const;
 
  protected:
   /// During the run, the plane constraint holds the hand along y; where it does not, the device
@@ -65,6 +83,8 @@ class TrajectoryPass : public Pass {
   void enter(record::Stage stage) noexcept;
   PointState guide_target(const PointState& tool, double dt) noexcept;
   void settle(const PointState& tool, double dt) noexcept;
+  void end_run_if_over() noexcept;
+  PointState run_target(const PointState& tool) noexcept;
   PassOutput output(const PointState& tool, const PointState& target) const noexcept;
 
   const stimulus::Stimulus& stimulus_;
@@ -76,8 +96,10 @@ class TrajectoryPass : public Pass {
   PassState state_{PassState::kRunning};
   double time_{0.0};                                 // in the stage [s]
   double settled_{0.0};                              // at the start without a break [s]
+  double along_{0.0};                                // the path during the run, at its speed [s]
   Eigen::Vector3d target_{Eigen::Vector3d::Zero()};  // where the guide was last [m]
   control::MinimumJerkMove move_;
+  std::optional<CurveGuide> guide_;  // where the participant sets the pace
 };
 
 }  // namespace haptrial::protocols

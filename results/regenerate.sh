@@ -2,6 +2,7 @@
 # Runs a shipped study anew and keeps what it gave: results/STUDY with report, tables, figures and a
 # manifest that says how. Session files stay out. Needs a build (quickstart.sh makes one).
 #   results/regenerate.sh force_training [SEED]
+# A variant, force_training_..., is also compared with force_training.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 study=${1:?which study? a definition in experiments/, without .toml}
@@ -14,10 +15,17 @@ out=$(mktemp -d)/sessions
 trap 'rm -rf "$(dirname "$out")"' EXIT
 build/haptrial dry-run "$definition" --seed "$seed" --out "$out"
 build/haptrial analyze "$out"
+compare=
+if [[ $study == force_training_* ]]; then
+  build/haptrial compare results/force_training "$out" --out "$out"
+  compare=',
+    "haptrial compare results/force_training OUT --out OUT"'
+fi
 
 sum() { sha256sum "$1" | cut -d' ' -f1; }
 rm -rf "results/$study"
 mkdir -p "results/$study"
+[ -z "$compare" ] || cp "$out"/comparison.html "$out"/comparison.json "results/$study/"
 cp "$out"/report.html "$out"/scores.csv "$out"/statistics.json "$out"/*.svg "results/$study/"
 cat >"results/$study/manifest.json" <<EOF
 {
@@ -25,7 +33,7 @@ cat >"results/$study/manifest.json" <<EOF
   "simulated": true,
   "commands": [
     "haptrial dry-run $definition --seed $seed --out OUT",
-    "haptrial analyze OUT"
+    "haptrial analyze OUT"$compare
   ],
   "definition_sha256": "$(sum "$definition")",
   "seed": $seed,

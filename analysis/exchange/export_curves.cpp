@@ -7,6 +7,7 @@
 
 #include "analysis/exchange/delimited.h"
 #include "analysis/exchange/new_folder.h"
+#include "analysis/path_places.h"
 #include "analysis/session_recalls.h"
 #include "core/base/error.h"
 #include "core/record/session_reader.h"
@@ -37,19 +38,22 @@ std::string curves_text(const analysis::RecallCurves& curves) {
 
 /// The curves of one session. @returns its rows of conditions.csv.
 std::string write_session(const NewFolder& out, const ExportSession& session, std::size_t place,
-                          Counter& counter, std::size_t& trials) {
+                          const analysis::ScoreParameters& parameters, Counter& counter,
+                          std::size_t& trials) {
   const record::SessionReader reader(session.file);
   const auto passes = reader.passes();
-  const auto recalls = analysis::session_recalls(reader, {}, 1);
+  const auto recalls = analysis::session_recalls(reader, parameters, 1);
   std::string table;
   RowText row(table, Delimited::kCsv);
   for (const auto& [score, pass] : recalls.scored) {
     const auto run = analysis::run_samples(reader, passes.at(pass));
     const auto name = fmt::format("{:03}/trial-{:03}.csv", place + 1, score.trial);
-    out.write(name, curves_text(*analysis::recall_curves(*run, session.info.rate)));
+    const auto places = analysis::path_places(reader, score.block, parameters);
+    const auto curves = analysis::recall_curves(*run, session.info.rate, places.get());
+    out.write(name, curves_text(*curves));
     row.add(score.subject).add(score.trial).add(score.condition).add(score.block);
     row.add(score.repetition).add(session.info.simulated ? "true" : "false");
-    row.add(session.info.rate).add(name).end();
+    row.add(curves->target.rate).add(name).end();
     ++trials;
     counter.check();
   }
@@ -59,7 +63,8 @@ std::string write_session(const NewFolder& out, const ExportSession& session, st
 
 }  // namespace
 
-CurvesSummary export_curves(std::span<const fs::path> files, const fs::path& folder, int jobs,
+CurvesSummary export_curves(std::span<const fs::path> files, const fs::path& folder,
+                            const analysis::ScoreParameters& parameters, int jobs,
                             const Watch& watch) {
   const std::vector<ExportSession> sessions = sessions_to_export(files);
   refuse_second_sessions(sessions);
@@ -69,7 +74,7 @@ CurvesSummary export_curves(std::span<const fs::path> files, const fs::path& fol
   share_out(
       sessions.size(), jobs,
       [&](std::size_t i, Counter& counter) {
-        tables[i] = write_session(out, sessions[i], i, counter, trials[i]);
+        tables[i] = write_session(out, sessions[i], i, parameters, counter, trials[i]);
       },
       watch);
   std::string table = "subject,trial,condition,block,repetition,simulated,rate,file\n";

@@ -94,6 +94,9 @@ void TrialDisplay::draw(const stimulus::Presentation& presentation) {
     if (presentation.show_applied_bar) {
       draw_bar(marker, Side::kRight, presentation.applied_force, style_.applied_colour);
     }
+    if (presentation.show_trajectory && presentation.self_paced) {  // a ring: it is one's turn
+      painter_.disc(marker, style_.marker_radius + 2.5 * style_.marker_halo, style_.marker_colour);
+    }
     if (presentation.show_trajectory) {
       draw_marker(marker);
     }

@@ -25,9 +25,11 @@ struct Presentation {
   bool show_saturation{false};   // small square: the device is at its force limit
   double target_force{0.0};      // [N]; 0 where its bar is hidden
   double applied_force{0.0};     // [N]; 0 where its bar is hidden
-  double progress{0.0};          // time along the pass as a fraction, 0 before and 1 after the run
-  double pass_duration{0.0};     // of the run [s]
-  std::int32_t block{0};         // changes with the stimulus
+  double progress{0.0};          // along the path as a fraction, 0 before and 1 after the run
+  double pass_duration{0.0};     // of the run; where it is self-paced, at the path's own speed [s]
+  bool self_paced{false};        // the participant moves along the path, now
+  Eigen::Vector3d direction{Eigen::Vector3d::Zero()};  // on along the path, while self-paced
+  std::int32_t block{0};                               // changes with the stimulus
   Instruction instruction{Instruction::kRest};
 };
 

@@ -41,6 +41,11 @@ std::vector<Eigen::Vector3d> random_curve(const TrajectoryParameters& p, RandomS
 
 TrajectoryParameters read_trajectory_parameters(Table& table) {
   TrajectoryParameters p;
+  if (table.has("from")) {
+    p.from = table.text("from");
+    p.speed = table.number("speed", {0.0, 1.0, true}, "m/s");
+    return p;
+  }
   p.length_x = table.number("length_x", {0.0, 1.0, true}, "m");
   p.range_z = table.number("range_z", {0.0, 1.0, true}, "m");
   p.sinusoids = static_cast<int>(table.integer("sinusoids", 1, 1000));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "core/base/point_state.h"
@@ -14,14 +15,16 @@ namespace haptrial::stimulus {
 
 /// How the spatial trajectories of a study are drawn. Source: Morris 2006, §4.2.3.
 struct TrajectoryParameters {
-  double length_x{0.10};               // extent from left to right > 0 [m]
-  double range_z{0.06};                // extent of z after scaling > 0 [m]
-  int sinusoids{20};                   // number summed >= 1
-  double max_spatial_frequency{30.0};  // of each sinusoid >= 0.1 [cycles/m]
-  double speed{0.016};                 // along the arc > 0 [m/s]
+  double length_x{0.10};                  // extent from left to right > 0 [m]
+  double range_z{0.06};                   // extent of z after scaling > 0 [m]
+  int sinusoids{20};                      // number summed >= 1
+  double max_spatial_frequency{30.0};     // of each sinusoid >= 0.1 [cycles/m]
+  double speed{0.016};                    // along the arc > 0 [m/s]
+  std::string from{};                     // a recorded pass in place of the above, FILE.h5:TRIAL
+  std::vector<Eigen::Vector3d> points{};  // its path, once it is read // (N x 3) [m]
 };
 
-/// Reads the keys of a [trajectory] table.
+/// Reads the keys of a [trajectory] table: `speed`, and either `from` or those of a random path.
 TrajectoryParameters read_trajectory_parameters(Table& table);
 
 /// A curve in the xz plane, travelled at constant speed along its arc:

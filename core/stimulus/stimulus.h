@@ -13,7 +13,8 @@ struct Stimulus {
   ForcePattern force;
 };
 
-/// The stimulus of a seed: same parameters and seed, same stimulus.
+/// The stimulus of a seed: same parameters and seed, same stimulus. A recorded path is the same
+/// for every seed.
 Stimulus make_stimulus(const TrajectoryParameters& trajectory,
                        const ForcePatternParameters& force_pattern, std::uint64_t seed);
 

@@ -12,18 +12,24 @@ using stimulus::Presentation;
 
 namespace {
 constexpr double kHomeStiffness = 100.0;  // [N/m]
-}
+constexpr double kSpeedSpan = 0.05;       // over which one's own speed is felt [s]
+}  // namespace
 
 VirtualSubject::VirtualSubject(const SubjectParameters& person,
                                const HandParameters& hand_parameters, HandModel& hand,
-                               std::uint64_t seed, double step)
+                               std::uint64_t seed, double step,
+                               const std::optional<PaceParameters>& pace)
     : person_(person),
       hand_(hand),
       step_(step),
       muscle_lag_(hand_parameters.excitation_time + hand_parameters.activation_time),
       random_(seed, "mind"),
       motor_(person, step, RandomStream(seed, "motor")),
-      bar_(person, random_) {}
+      bar_(person, random_) {
+  if (pace) {
+    pacer_.emplace(*pace, hand_parameters, RandomStream(seed, "pace"), step);
+  }
+}
 
 void VirtualSubject::observe(const Presentation& seen, const Eigen::Vector3d& device_force,
                              double dt) noexcept {
@@ -31,11 +37,13 @@ void VirtualSubject::observe(const Presentation& seen, const Eigen::Vector3d& de
   now.height = seen.show_target_bar ? seen.target_force : 0.0;
   now.mismatch = seen.show_applied_bar ? seen.target_force - seen.applied_force : 0.0;
   now.felt = device_force.y();
-  now.height_of_hand = seen.tool.y();
+  now.hand = seen.tool;
+  now.progress = seen.progress;
   now.saturated = seen.show_saturation;
   past_[++now_ % kDelayLine] = now;
 
-  const bool running = seen.progress > 0.0 && seen.progress < 1.0;
+  // Before the first step along the path its progress is 0 still, but it is one's turn.
+  const bool running = (seen.progress > 0.0 || seen.self_paced) && seen.progress < 1.0;
   if (running && !in_run_) {
     begin_pass(seen);
   }
@@ -50,6 +58,9 @@ void VirtualSubject::observe(const Presentation& seen, const Eigen::Vector3d& de
   command.press = running ? motor_.press(hold_back(intended_press(seen, dt), dt)) : 0.0;
   command.holds_posture = running && seen.instruction == Instruction::kHoldPlane;
   command.force = motor_.tremor();
+  if (running && seen.self_paced && pacer_) {
+    command.force += move_on(seen);
+  }
   if (!seen.show_trajectory) {  // nobody guides the hand: it rests in the middle
     command.force -= kHomeStiffness * seen.tool;
   }
@@ -68,6 +79,9 @@ void VirtualSubject::begin_pass(const Presentation& seen) noexcept {
   correction_ = 0.0;
   boldness_ = 1.0;
   produced_scale_ = std::exp(person_.production_bias * random_.normal());
+  if (pacer_) {
+    pacer_->begin();
+  }
   const double knot_time = pass_duration_ / ForceProfile::kKnots;
   SmoothNoise timing(knot_time, person_.timing_correlation);
   timing.restart(random_);
@@ -115,7 +129,7 @@ double VirtualSubject::oppose() const noexcept {
   // below the posture's own stiffness, or it would oscillate.
   constexpr double kPushBack = 100.0;  // [N/m]
   const Sensed& sensed = delayed(person_.haptic_delay);
-  return sensed.felt + kPushBack * sensed.height_of_hand;
+  return sensed.felt + kPushBack * sensed.hand.y();
 }
 
 double VirtualSubject::hold_back(double press, double dt) noexcept {
@@ -149,8 +163,22 @@ double VirtualSubject::match_bars(double dt) noexcept {
 double VirtualSubject::recall(const Presentation& seen) const noexcept {
   const double u =
       std::clamp(seen.progress * ForceProfile::kKnots - 0.5, 0.0, ForceProfile::kKnots - 1.0);
-  const double ahead = muscle_lag_ + warp_[static_cast<int>(u)];
-  return std::max(0.0, produced_scale_ * memory_.at(seen.progress + ahead / pass_duration_));
+  const double error = warp_[static_cast<int>(u)];
+  double ahead = (muscle_lag_ + error) / pass_duration_;
+  if (seen.self_paced) {
+    // How far the hand comes within the muscle's lag follows from its own speed; what is wrong with
+    // the memory of places is as much of the path as it is of the time that is set.
+    const double rate = (seen.progress - delayed(kSpeedSpan).progress) / kSpeedSpan;
+    ahead = muscle_lag_ * rate + error / pass_duration_;
+  }
+  return std::max(0.0, produced_scale_ * memory_.at(seen.progress + ahead));
+}
+
+Eigen::Vector3d VirtualSubject::move_on(const Presentation& seen) noexcept {
+  const Sensed& felt = delayed(person_.haptic_delay);
+  const Sensed& before = delayed(person_.haptic_delay + kSpeedSpan);
+  const double speed = (felt.hand - before.hand).dot(seen.direction) / kSpeedSpan;
+  return pacer_->drive(seen.direction, speed);
 }
 
 const VirtualSubject::Sensed& VirtualSubject::delayed(double delay) const noexcept {

@@ -2,12 +2,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "core/stimulus/observer.h"
 #include "core/subject/force_memory.h"
 #include "core/subject/hand_model.h"
 #include "core/subject/hand_parameters.h"
 #include "core/subject/motor_noise.h"
+#include "core/subject/pacer.h"
 #include "core/subject/perception.h"
 
 namespace haptrial::subject {
@@ -19,8 +21,10 @@ class VirtualSubject final : public stimulus::Observer {
  public:
   /// @param hand  outlives the subject.
   /// @param step  servo period > 0 [s]
+  /// @param pace  how the subject moves where it sets its own pace; without, it waits there
   VirtualSubject(const SubjectParameters& person, const HandParameters& hand_parameters,
-                 HandModel& hand, std::uint64_t seed, double step);
+                 HandModel& hand, std::uint64_t seed, double step,
+                 const std::optional<PaceParameters>& pace = std::nullopt);
 
   void observe(const stimulus::Presentation& seen, const Eigen::Vector3d& device_force,
                double dt) noexcept override;
@@ -29,11 +33,12 @@ class VirtualSubject final : public stimulus::Observer {
   static constexpr int kDelayLine = 16384;  // ticks: 0.8 s at the highest rate, 20 kHz
 
   struct Sensed {
-    double height{0.0};          // target bar [N of its scale]
-    double mismatch{0.0};        // target bar minus applied bar [N of its scale]
-    double felt{0.0};            // [N]
-    double height_of_hand{0.0};  // over the plane [m]
-    bool saturated{false};       // the square is seen, or the handle gives way
+    double height{0.0};                             // target bar [N of its scale]
+    double mismatch{0.0};                           // target bar minus applied bar [N of its scale]
+    double felt{0.0};                               // [N]
+    bool saturated{false};                          // the square is seen, or the handle gives way
+    double progress{0.0};                           // along the path
+    Eigen::Vector3d hand{Eigen::Vector3d::Zero()};  // where it is [m]
   };
 
   void begin_pass(const stimulus::Presentation& seen) noexcept;
@@ -44,6 +49,7 @@ class VirtualSubject final : public stimulus::Observer {
   double oppose() const noexcept;
   double recall(const stimulus::Presentation& seen) const noexcept;
   double hold_back(double press, double dt) noexcept;
+  Eigen::Vector3d move_on(const stimulus::Presentation& seen) noexcept;
   const Sensed& delayed(double delay) const noexcept;
 
   SubjectParameters person_;
@@ -52,6 +58,7 @@ class VirtualSubject final : public stimulus::Observer {
   double muscle_lag_;  // a recalled force is commanded this much ahead [s]
   RandomStream random_;
   MotorNoise motor_;
+  std::optional<Pacer> pacer_;
   BarCalibration bar_;
   ForceMemory memory_;
   Exposure exposure_;

@@ -28,6 +28,7 @@ TEST(ResultsTest, ManifestsReproduce) {
     GTEST_SKIP() << "whole studies take too long here; other builds make them anew";
   }
   int studies = 0;
+  int comparisons = 0;
   const fs::path source = HAPTRIAL_SOURCE_DIR;
   for (const auto& entry : fs::directory_iterator(source / "results")) {
     if (!entry.is_directory()) {
@@ -44,6 +45,12 @@ TEST(ResultsTest, ManifestsReproduce) {
     ASSERT_EQ(result.status, 0) << result.errors;
     EXPECT_EQ(test::read_text(out / "study" / "scores.csv"), test::read_text(folder / "scores.csv"))
         << folder << " is not what its manifest gives; results/regenerate.sh makes it anew";
+    for (const char* name : {"comparison.json", "comparison.html", "comparison.svg"}) {
+      if (fs::exists(folder / name)) {
+        EXPECT_EQ(test::read_text(out / "study" / name), test::read_text(folder / name)) << name;
+        ++comparisons;
+      }
+    }
     const auto sum = [](const fs::path& file) {
       return test::run_command("sha256sum < '" + file.string() + "'").output.substr(0, 64);
     };
@@ -55,7 +62,8 @@ TEST(ResultsTest, ManifestsReproduce) {
     EXPECT_FALSE(fs::exists(folder / "S01.h5")) << "session files stay out";
     ++studies;
   }
-  EXPECT_GE(studies, 1);
+  EXPECT_GE(studies, 2);
+  EXPECT_EQ(comparisons, 3);
 }
 
 }  // namespace

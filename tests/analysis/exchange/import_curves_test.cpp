@@ -70,7 +70,7 @@ TEST_F(ImportCurvesTest, ExportedCurvesGetTheScoresOfTheirSessionFiles) {
   const std::vector<fs::path> files{folder_ / "a.h5", folder_ / "b.h5"};
   write_session(files[0], {.subject = "P01", .simulated = false, .trials = 6});
   write_session(files[1], {.subject = "P02", .simulated = true, .rate = 1000.0, .trials = 5});
-  EXPECT_EQ(export_curves(files, folder_ / "out", 2, ignore).trials, 11u);
+  EXPECT_EQ(export_curves(files, folder_ / "out", {}, 2, ignore).trials, 11u);
   const StudyResult theirs = analysis::analyze_study(files, {}, 1);
   const StudyResult ours =
       analyze_curves({folder_ / "out", folder_ / "out/conditions.csv"}, {}, 2, ignore);
@@ -193,7 +193,7 @@ TEST_F(ImportCurvesTest, TwoSessionsOfASubjectHaveNoCommonTable) {
   const std::vector<fs::path> files{folder_ / "a.h5", folder_ / "b.h5"};
   write_session(files[0], {});
   write_session(files[1], {.start_utc = "2026-11-21T09:30:00Z"});
-  EXPECT_THROW(export_curves(files, folder_ / "out", 1, ignore), InputError);
+  EXPECT_THROW(export_curves(files, folder_ / "out", {}, 1, ignore), InputError);
   EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 

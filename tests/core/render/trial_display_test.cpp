@@ -103,6 +103,18 @@ TEST_F(TrialDisplayTest, ElementsAppearOnlyWhereAskedFor) {
   }
 }
 
+TEST_F(TrialDisplayTest, ARingSaysThatTheHandMayMove) {
+  const double radius = style_.marker_radius;
+  const Blob before = find(draw(), style_.marker_colour);
+  EXPECT_NEAR(before.right - before.left + 1, 2.0 * radius, 2.0);
+  shown_.self_paced = true;
+  const Blob ring = find(draw(), style_.marker_colour);
+  EXPECT_NEAR(ring.right - ring.left + 1, 2.0 * radius + 5.0 * style_.marker_halo, 2.0);
+  EXPECT_LT((ring.centre - before.centre).norm(), 0.5);
+  shown_.show_trajectory = false;
+  EXPECT_EQ(find(draw(), style_.marker_colour).count, 0);
+}
+
 TEST_F(TrialDisplayTest, ForcesDoNotShowWithoutTheirBars) {
   const Image still = draw();
   shown_.target_force = 9.0;

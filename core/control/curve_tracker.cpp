@@ -1,0 +1,93 @@
+#include "core/control/curve_tracker.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "core/base/table.h"
+
+namespace haptrial::control {
+
+CurveFollowing read_curve_following(Table& table) {
+  CurveFollowing f;
+  f.step = table.number("step", {0.0, 1.0, true}, "m");
+  f.reach = table.number("reach", {f.step, 1.0}, "m");
+  f.margin = table.number("margin", {0.0, 1.0}, "m");
+  return f;
+}
+
+namespace {
+
+/// Where to begin: on a curve that the cache does not hold, at the segment that the tool would be
+/// beside were the curve straight and evenly sampled from here on, so that nothing is read in vain.
+std::size_t likely_segment(const SampledCurve& curve, std::size_t segment,
+                           const Eigen::Vector3d& tool) noexcept {
+  constexpr std::size_t kCached = 20000;  // points
+  if (curve.size() <= kCached) {
+    return segment;
+  }
+  const Eigen::Vector3d from = curve.point(segment);
+  const Eigen::Vector3d chord = curve.point(segment + 1) - from;
+  const double at = static_cast<double>(segment) + (tool - from).dot(chord) / chord.squaredNorm();
+  const auto last = static_cast<double>(curve.size() - 2);
+  return at > 0.0 ? static_cast<std::size_t>(std::fmin(at, last)) : segment;  // not a number: here
+}
+
+}  // namespace
+
+CurveTracker::CurveTracker(const SampledCurve& curve, const CurveFollowing& following)
+    : curve_(&curve), following_(following) {
+  if (!(following.step > 0.0) || !std::isfinite(following.step)) {
+    throw std::invalid_argument("CurveTracker: step must be finite and above 0");
+  }
+  if (!(following.reach >= following.step)) {
+    throw std::invalid_argument("CurveTracker: reach must be at least step");
+  }
+  if (!(following.margin >= 0.0)) {
+    throw std::invalid_argument("CurveTracker: margin must be at least 0");
+  }
+  if (!(following.tolerance >= 0.0)) {
+    throw std::invalid_argument("CurveTracker: tolerance must be at least 0");
+  }
+  start_at(0.0);
+}
+
+const CurvePlace& CurveTracker::start(const Eigen::Vector3d& tool) noexcept {
+  CurveQuery query;
+  query.from_segment = place_.segment;
+  query.tolerance = following_.tolerance;
+  if (const auto found = curve_->nearest(tool, query)) {
+    place_ = *found;
+  }
+  return place_;
+}
+
+const CurvePlace& CurveTracker::start_at(double arc) noexcept {
+  place_ = curve_->at(arc);
+  return place_;
+}
+
+const CurvePlace& CurveTracker::follow(const Eigen::Vector3d& tool) noexcept {
+  const CurveFollowing& f = following_;
+  // By material coordinate, so that a curve that was refitted keeps its place.
+  const double before = curve_->arc_of(place_.segment, place_.t);
+  CurveQuery query;
+  query.window = {before - f.step, before + f.step};
+  query.from_segment = likely_segment(*curve_, place_.segment, tool);
+  query.tolerance = f.tolerance;
+  const auto near = curve_->nearest(tool, query);
+  if (!near) {
+    return place_;
+  }
+  place_ = *near;
+  query.known = query.window;
+  query.window = {before - f.reach, before + f.reach};
+  query.below = near->distance - f.margin;
+  if (f.reach > f.step && query.below > 0.0) {
+    if (const auto far = curve_->nearest(tool, query)) {
+      place_ = *far;
+    }
+  }
+  return place_;
+}
+
+}  // namespace haptrial::control

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "core/control/sampled_curve.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::control {
+
+/// How a constraint moves along its curve from one tick to the next.
+struct CurveFollowing {
+  double step{0.001};      // of arc that it may move freely in a tick, to either side > 0 [m]
+  double reach{0.005};     // and at most, where that brings it nearer by `margin` >= step [m]
+  double margin{0.0001};   // >= 0 [m]
+  double tolerance{1e-9};  // of the distance: CurveQuery::tolerance >= 0 [m]
+};
+
+/// Reads the keys step, reach and margin of a table.
+CurveFollowing read_curve_following(Table& table);
+
+/// The place of a curve that belongs to a tool, with continuity: a strand that the tool passes or
+/// crosses is not jumped to, however near it comes, while it is farther along the arc than `reach`.
+///
+///     near = nearest place with |arc - arc before| <= step
+///     far  = nearest place with |arc - arc before| <= reach
+///     place = far where it is nearer than near by more than margin, else near
+///
+/// So the tool may cut a corner, and between two places that are about equally near the answer
+/// stays where it is. The place before is always among those compared: no change of place brings it
+/// farther from the tool, and the energy of a spring to it never rises by one. The source penalises
+/// distance along the arc instead, which drags on a tool that moves along.
+/// Source: Morris 2006, §6.2.2, Figure 46.
+class CurveTracker {
+ public:
+  /// @param curve  outlives the tracker.
+  /// @throws std::invalid_argument naming the parameter that breaks its bound.
+  explicit CurveTracker(const SampledCurve& curve, const CurveFollowing& following = {});
+
+  // Servo thread, all of them.
+  /// The nearest place of the whole curve, however far from the place before.
+  const CurvePlace& start(const Eigen::Vector3d& tool) noexcept;
+  const CurvePlace& start_at(double arc) noexcept;  // held at the ends [m]
+  /// Where `tool` is not finite the place stays as it is.
+  const CurvePlace& follow(const Eigen::Vector3d& tool) noexcept;
+
+  const CurvePlace& place() const noexcept { return place_; }
+  const SampledCurve& curve() const noexcept { return *curve_; }
+
+ private:
+  const SampledCurve* curve_;
+  CurveFollowing following_;
+  CurvePlace place_;
+};
+
+}  // namespace haptrial::control

@@ -1,0 +1,452 @@
+#include "core/control/sampled_curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+namespace haptrial::control {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// More than the rounding of a distance to a chord, relative to that distance and to the chord.
+constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+
+/// False for what is not a number.
+bool within_bounds(const Vector3d& p) noexcept {
+  constexpr double kMost = SampledCurve::kMostCoordinate;
+  return std::abs(p.x()) <= kMost && std::abs(p.y()) <= kMost && std::abs(p.z()) <= kMost;
+}
+
+bool usable(std::span<const Vector3d> points) noexcept {
+  return points.size() >= 2 && std::all_of(points.begin(), points.end(), within_bounds);
+}
+
+/// Two numbers side by side: the loop of eight is too short for the compiler to see them.
+typedef double Pair __attribute__((vector_size(16)));
+
+inline Pair pair(const double* from) noexcept {
+  Pair both;
+  std::memcpy(&both, from, sizeof both);
+  return both;
+}
+
+double distance_to_chord(const Vector3d& point, const Vector3d& from, const Vector3d& chord,
+                         double inverse) noexcept {
+  const Vector3d away = point - from;
+  const double t = std::clamp(away.dot(chord) * inverse, 0.0, 1.0);
+  return (away - t * chord).norm();
+}
+
+}  // namespace
+
+/// One query on its way through the tree.
+class SampledCurve::Search {
+ public:
+  Search(const SampledCurve& curve, const Vector3d& point, const CurveQuery& query)
+      : curve_(curve),
+        x_(point.x()),
+        y_(point.y()),
+        z_(point.z()),
+        low_(std::max(query.window.low, 0.0)),
+        high_(std::min(query.window.high, curve.length())),
+        known_low_(query.known.low),
+        known_high_(query.known.high),
+        slack_(query.tolerance),
+        bound_(query.below),
+        best_square_(query.below * query.below) {}
+
+  /// Outwards from a strip and up the tree, until the nodes seen cover the window.
+  void run_from(std::size_t strip) noexcept {
+    std::size_t node = strip;
+    bool seen = false;  // the node and all below it
+    for (std::size_t level = 0; level < curve_.levels_.size(); ++level, node /= kRun) {
+      const Pack& pack = curve_.levels_[level][node / kRun];
+      const double begin = pack.arc[node % kRun];
+      const double end = pack.arc[node % kRun + 1];
+      if (!seen && !is_known(begin, end)) {
+        descend(level, node);
+        seen = true;
+      }
+      if (begin <= low_ && end >= high_) {
+        return;
+      }
+      if (seen) {
+        scan_pack(level, node / kRun, node % kRun);
+      }
+    }
+    if (!seen) {
+      run_from_top();
+    }
+  }
+  void run_from_top() noexcept { scan_pack(curve_.levels_.size() - 1, 0, kRun); }
+
+  std::optional<CurvePlace> result() const noexcept {
+    if (!found_) {
+      return std::nullopt;
+    }
+    // The points that fill up the last strip lie on the curve's last point.
+    const bool beyond = segment_ > curve_.size_ - 2;
+    CurvePlace place = curve_.place(beyond ? curve_.size_ - 2 : segment_, beyond ? 1.0 : t_);
+    place.distance = std::sqrt(best_square_);
+    return place;
+  }
+
+ private:
+  bool is_known(double begin, double end) const noexcept {
+    return begin >= known_low_ && end <= known_high_;
+  }
+
+  void descend(std::size_t level, std::size_t node) noexcept {
+    if (level == 0) {
+      scan_strip(node);
+    } else {
+      scan_pack(level - 1, node, kRun);
+    }
+  }
+
+  /// The squared distance to each of eight chords, and where along them.
+  void measure(const Chords& s, double* square, double* along) const noexcept {
+    for (std::size_t c = 0; c < kRun; c += 2) {
+      const Pair dx = pair(s.x + c + 1) - pair(s.x + c);
+      const Pair dy = pair(s.y + c + 1) - pair(s.y + c);
+      const Pair dz = pair(s.z + c + 1) - pair(s.z + c);
+      const Pair ax = x_ - pair(s.x + c);
+      const Pair ay = y_ - pair(s.y + c);
+      const Pair az = z_ - pair(s.z + c);
+      // 0 / 0 of a point is not above 0, and so 0.
+      Pair t = (ax * dx + ay * dy + az * dz) / (dx * dx + dy * dy + dz * dz);
+      t = t > 0.0 ? t : Pair{0.0, 0.0};
+      t = t < 1.0 ? t : Pair{1.0, 1.0};
+      const Pair ex = ax - t * dx;
+      const Pair ey = ay - t * dy;
+      const Pair ez = az - t * dz;
+      const Pair squares = ex * ex + ey * ey + ez * ez;
+      std::memcpy(along + c, &t, sizeof t);
+      std::memcpy(square + c, &squares, sizeof squares);
+    }
+  }
+
+  void scan_pack(std::size_t level, std::size_t index, std::size_t skip) noexcept {
+    const Pack& p = curve_.levels_[level][index];
+    double square[kRun];
+    double along[kRun];
+    measure(p, square, along);
+    unsigned waiting = 0;
+    for (std::size_t c = 0; c < kRun; ++c) {
+      const bool open = is_near(square[c], p.stray[c]) && p.arc[c] <= high_ &&
+                        p.arc[c + 1] >= low_ && !is_known(p.arc[c], p.arc[c + 1]);
+      waiting |= static_cast<unsigned>(open && c != skip) << c;
+    }
+    while (waiting != 0) {  // nearest chord first
+      std::size_t next = kRun;
+      double nearest = kInfinity;
+      for (unsigned rest = waiting; rest != 0; rest &= rest - 1) {
+        const auto c = static_cast<std::size_t>(__builtin_ctz(rest));
+        if (next == kRun || square[c] < nearest) {
+          next = c;
+          nearest = square[c];
+        }
+      }
+      waiting &= ~(1u << next);
+      if (is_near(nearest, p.stray[next])) {
+        fetch_ahead(level, index * kRun + next, along[next]);
+        descend(level, index * kRun + next);
+      }
+    }
+  }
+
+  /// Brings what lies below a node into the cache at once, where the nearest place of its chord
+  /// says that it will be: level by level each would wait for the one before.
+  void fetch_ahead(std::size_t level, std::size_t node, double along) const noexcept {
+    if (level != 1 && level != 2) {
+      return;
+    }
+    const auto strips = static_cast<double>(std::size_t{1} << (3 * level));
+    const std::size_t strip =
+        std::min((node << (3 * level)) + static_cast<std::size_t>(along * strips),
+                 curve_.strips_.size() - 1);
+    fetch(&curve_.strips_[strip], sizeof(Strip));
+    if (level == 2) {
+      fetch(&curve_.levels_[0][strip / kRun], sizeof(Pack));
+    }
+  }
+  static void fetch(const void* from, std::size_t bytes) noexcept {
+    constexpr std::size_t kLine = 64;
+    for (std::size_t at = 0; at < bytes; at += kLine) {
+      __builtin_prefetch(static_cast<const char*>(from) + at);
+    }
+  }
+
+  /// Whether a node may hold a nearer place; false where there is no such node.
+  bool is_near(double square, double stray) const noexcept {
+    const double far = bound_ + stray;
+    return square <= far * far * (1.0 + kRounding);
+  }
+
+  void scan_strip(std::size_t index) noexcept {
+    const Strip& s = curve_.strips_[index];
+    if (s.arc[0] > high_ || s.arc[kRun] < low_) {
+      return;
+    }
+    if (s.arc[0] < low_ || s.arc[kRun] > high_) {
+      scan_part_of_strip(index);
+      return;
+    }
+    double square[kRun];
+    double along[kRun];
+    measure(s, square, along);
+    std::size_t best = 0;
+    for (std::size_t c = 1; c < kRun; ++c) {
+      best = square[c] < square[best] ? c : best;
+    }
+    take(square[best], index * kRun + best, along[best]);
+  }
+
+  /// Where the window begins or ends within the strip.
+  void scan_part_of_strip(std::size_t index) noexcept {
+    const Strip& s = curve_.strips_[index];
+    for (std::size_t c = 0; c < kRun; ++c) {
+      if (s.arc[c] > high_ || s.arc[c + 1] < low_) {
+        continue;
+      }
+      const double length = s.arc[c + 1] - s.arc[c];
+      const double first = s.arc[c] < low_ ? std::min(1.0, (low_ - s.arc[c]) / length) : 0.0;
+      const double last = s.arc[c + 1] > high_ ? std::max(0.0, (high_ - s.arc[c]) / length) : 1.0;
+      const Vector3d start(s.x[c], s.y[c], s.z[c]);
+      const Vector3d chord = Vector3d(s.x[c + 1], s.y[c + 1], s.z[c + 1]) - start;
+      const Vector3d away = Vector3d(x_, y_, z_) - start;
+      const double whole = chord.squaredNorm();
+      double t = whole > 0.0 ? away.dot(chord) / whole : 0.0;
+      t = std::min(std::max(t, first), std::max(first, last));
+      take((away - t * chord).squaredNorm(), index * kRun + c, t);
+    }
+  }
+
+  void take(double square, std::size_t segment, double t) noexcept {
+    if (square < best_square_) {
+      best_square_ = square;
+      bound_ = std::max(0.0, std::sqrt(square) - slack_);
+      segment_ = segment;
+      t_ = t;
+      found_ = true;
+    }
+  }
+
+  const SampledCurve& curve_;
+  double x_, y_, z_;
+  double low_, high_;
+  double known_low_, known_high_;
+  double slack_;
+  double bound_;  // what is not nearer than this is of no interest
+  double best_square_;
+  std::size_t segment_{0};
+  double t_{0.0};
+  bool found_{false};
+};
+
+SampledCurve::SampledCurve(std::span<const Vector3d> points) : size_(points.size()) {
+  if (!usable(points)) {
+    throw std::invalid_argument(
+        "SampledCurve: at least two points, all of them finite and within 1e100 m");
+  }
+  strips_.resize((size_ - 2) / kRun + 1);
+  // A curve's last point begins no segment of a strip of its own, but point() looks for it there.
+  if ((size_ - 1) / kRun >= strips_.size()) {
+    strips_.resize(strips_.size() + 1);
+  }
+  for (std::size_t nodes = strips_.size(); levels_.empty() || levels_.back().size() > 1;) {
+    levels_.emplace_back((nodes + kRun - 1) / kRun);
+    nodes = levels_.back().size();
+  }
+  refit(points);
+}
+
+bool SampledCurve::refit(std::span<const Vector3d> points) noexcept {
+  if (points.size() != size_ || !usable(points)) {
+    return false;
+  }
+  fill_strips(points);
+  for (std::size_t level = 0; level < levels_.size(); ++level) {
+    fill_nodes(level);
+  }
+  return true;
+}
+
+void SampledCurve::fill_strips(std::span<const Vector3d> points) noexcept {
+  double arc = 0.0;
+  Vector3d before = points.front();
+  for (std::size_t strip = 0; strip < strips_.size(); ++strip) {
+    Strip& s = strips_[strip];
+    for (std::size_t c = 0; c <= kRun; ++c) {
+      const Vector3d& p = points[std::min(strip * kRun + c, size_ - 1)];
+      if (c > 0) {
+        arc += (p - before).norm();
+      }
+      before = p;
+      s.x[c] = p.x();
+      s.y[c] = p.y();
+      s.z[c] = p.z();
+      s.arc[c] = arc;
+    }
+  }
+}
+
+/// Where strip `strip` begins; the curve's last point beyond them all.
+Vector3d SampledCurve::strip_boundary(std::size_t strip) const noexcept {
+  return strip < strips_.size() ? point(strip * kRun) : point(size_ - 1);
+}
+
+double SampledCurve::arc_at_boundary(std::size_t strip) const noexcept {
+  return strip < strips_.size() ? strips_[strip].arc[0] : length();
+}
+
+/// Chords and strays of one level from those of the level below.
+void SampledCurve::fill_nodes(std::size_t level) noexcept {
+  const std::size_t strips_each = std::size_t{1} << (3 * level);
+  for (std::size_t node = 0; node < levels_[level].size() * kRun; ++node) {
+    Pack& pack = levels_[level][node / kRun];
+    const std::size_t c = node % kRun;
+    const std::size_t first = std::min(node * strips_each, strips_.size());
+    const std::size_t last = std::min(first + strips_each, strips_.size());
+    const Vector3d from = strip_boundary(first);
+    const Vector3d to = strip_boundary(last);
+    pack.x[c] = from.x();
+    pack.y[c] = from.y();
+    pack.z[c] = from.z();
+    pack.x[c + 1] = to.x();
+    pack.y[c + 1] = to.y();
+    pack.z[c + 1] = to.z();
+    pack.arc[c] = arc_at_boundary(first);
+    pack.arc[c + 1] = arc_at_boundary(last);
+    pack.stray[c] = first < last ? stray_of(level, node, from, to - from)
+                                 : std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+/// The farthest that any point of a node lies from its chord, rounded up.
+double SampledCurve::stray_of(std::size_t level, std::size_t node, const Vector3d& from,
+                              const Vector3d& chord) const noexcept {
+  const double square = chord.squaredNorm();
+  const double inverse = square > 0.0 && 1.0 / square < kInfinity ? 1.0 / square : 0.0;
+  const auto away = [&](const Vector3d& p) { return distance_to_chord(p, from, chord, inverse); };
+  double stray = 0.0;
+  const Chords& below = level == 0 ? strips_[node] : levels_[level - 1][node];
+  for (std::size_t i = 0; i < kRun; ++i) {
+    const double ends = std::max(away({below.x[i], below.y[i], below.z[i]}),
+                                 away({below.x[i + 1], below.y[i + 1], below.z[i + 1]}));
+    const double own = level == 0 ? 0.0 : levels_[level - 1][node].stray[i];
+    stray = own >= 0.0 ? std::max(stray, ends + own) : stray;  // NaN: no such child
+  }
+  return stray * (1.0 + kRounding) + kRounding * chord.norm();
+}
+
+Vector3d SampledCurve::point(std::size_t i) const noexcept {
+  const Strip& s = strips_[i / kRun];
+  return {s.x[i % kRun], s.y[i % kRun], s.z[i % kRun]};
+}
+
+double SampledCurve::arc_of(std::size_t segment, double t) const noexcept {
+  const Strip& s = strips_[segment / kRun];
+  const std::size_t c = segment % kRun;
+  return t < 1.0 ? s.arc[c] + t * (s.arc[c + 1] - s.arc[c]) : s.arc[c + 1];
+}
+
+CurvePlace SampledCurve::place(std::size_t segment, double t) const noexcept {
+  const Strip& s = strips_[segment / kRun];
+  const std::size_t c = segment % kRun;
+  const Vector3d from(s.x[c], s.y[c], s.z[c]);
+  const Vector3d to(s.x[c + 1], s.y[c + 1], s.z[c + 1]);
+  CurvePlace place;
+  place.segment = segment;
+  place.t = t;
+  place.arc = arc_of(segment, t);
+  place.position = t < 1.0 ? Vector3d(from + t * (to - from)) : to;
+  return place;
+}
+
+CurvePlace SampledCurve::nearest(const Vector3d& point) const noexcept {
+  if (within_bounds(point)) {
+    Search search(*this, point, {});
+    search.run_from_top();
+    if (const auto found = search.result()) {
+      return *found;
+    }
+  }
+  CurvePlace none = place(0, 0.0);
+  none.distance = kInfinity;
+  return none;
+}
+
+std::optional<CurvePlace> SampledCurve::nearest(const Vector3d& point,
+                                                const CurveQuery& query) const noexcept {
+  if (!within_bounds(point)) {
+    return std::nullopt;
+  }
+  Search search(*this, point, query);
+  search.run_from(std::min(query.from_segment, size_ - 2) / kRun);
+  return search.result();
+}
+
+CurvePlace SampledCurve::at(double wanted) const noexcept {
+  // The last segment that begins at or before the position.
+  std::size_t low = 0;
+  std::size_t high = size_ - 1;
+  while (high - low > 1) {
+    const std::size_t middle = low + (high - low) / 2;
+    (arc(middle) <= wanted ? low : high) = middle;
+  }
+  const double span = arc(low + 1) - arc(low);
+  return place(low, span > 0.0 ? std::clamp((wanted - arc(low)) / span, 0.0, 1.0) : 0.0);
+}
+
+/// Of the first segment that ends beyond `position`; zero where none does.
+Vector3d SampledCurve::direction_after(double position) const noexcept {
+  std::size_t low = 0;
+  std::size_t high = size_ - 1;
+  if (!(arc(high) > position)) {
+    return Vector3d::Zero();
+  }
+  while (high - low > 1) {
+    const std::size_t middle = low + (high - low) / 2;
+    (arc(middle) > position ? high : low) = middle;
+  }
+  return (point(high) - point(low)).stableNormalized();
+}
+
+/// Of the last segment that begins before `position`; zero where none does.
+Vector3d SampledCurve::direction_before(double position) const noexcept {
+  std::size_t low = 0;
+  std::size_t high = size_ - 1;
+  if (!(arc(low) < position)) {
+    return Vector3d::Zero();
+  }
+  while (high - low > 1) {
+    const std::size_t middle = low + (high - low) / 2;
+    (arc(middle) < position ? low : high) = middle;
+  }
+  return (point(low + 1) - point(low)).stableNormalized();
+}
+
+Vector3d SampledCurve::tangent(const CurvePlace& at, const Vector3d& from) const noexcept {
+  if (at.t > 0.0 && at.t < 1.0 && arc(at.segment + 1) > arc(at.segment)) {
+    return (point(at.segment + 1) - point(at.segment)).stableNormalized();
+  }
+  const Vector3d before = direction_before(at.arc);
+  const Vector3d after = direction_after(at.arc);
+  if (before.isZero(0.0) || after.isZero(0.0)) {
+    return before + after;
+  }
+  // At a corner the point lies ahead of the one segment and behind the other.
+  const Vector3d away = from - at.position;
+  const double ahead = std::max(0.0, away.dot(before));
+  const double behind = std::max(0.0, -away.dot(after));
+  const double share = ahead + behind > 0.0 ? ahead / (ahead + behind) : 0.5;
+  const Vector3d mixed = (1.0 - share) * before + share * after;
+  const double length = mixed.norm();
+  return length > 1e-6 ? Vector3d(mixed / length) : before;  // a hairpin turns on the spot
+}
+
+}  // namespace haptrial::control

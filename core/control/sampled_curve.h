@@ -1,0 +1,115 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace haptrial::control {
+
+/// A place on a sampled curve.
+struct CurvePlace {
+  std::size_t segment{0};  // between the points `segment` and `segment` + 1
+  double t{0.0};           // 0 at the segment's first point, 1 at its second
+  double arc{0.0};         // along the curve from its first point [m]
+  double distance{0.0};    // of the point that was asked for [m]
+  Eigen::Vector3d position{Eigen::Vector3d::Zero()};  // [m]
+};
+
+/// A stretch of a curve, both ends included [m].
+struct ArcWindow {
+  double low{0.0};
+  double high{std::numeric_limits<double>::infinity()};
+};
+
+/// Which places of a curve a search is about.
+struct CurveQuery {
+  ArcWindow window;
+  /// Where to begin. The answer does not depend on it but where several places are equally near;
+  /// near the answer it saves most of the time.
+  std::size_t from_segment{0};
+  double below{std::numeric_limits<double>::infinity()};  // only places nearer than this [m]
+  /// A stretch known to hold no place that is nearer than `below`: it need not be looked at.
+  ArcWindow known{std::numeric_limits<double>::infinity(), 0.0};
+  /// An answer may be farther than the nearest place by so much. Bounds the time where a long
+  /// stretch is equally far, as it is from the centre of a circle >= 0 [m].
+  double tolerance{0.0};
+};
+
+/// The polyline through sampled points, and the nearest point on it: exact over its segments.
+///
+/// Runs of eight segments lie side by side; over them stands a tree with eight children a node. A
+/// node knows its chord and how far the curve strays from it, so that its distance is bounded from
+/// below by (distance to the chord) - (stray), which for a smooth curve is far tighter than a box:
+/// the stray falls with the square of the length. docs/algorithms/curve-constraints.md has the
+/// figures. Points may repeat. Source: Morris 2006, §6.2.2, which looks among the N nearest points.
+class SampledCurve {
+ public:
+  static constexpr double kMostCoordinate = 1e100;  // [m]
+
+  /// @param points  (N x 3) [m], N >= 2, none beyond kMostCoordinate
+  /// @throws std::invalid_argument otherwise.
+  explicit SampledCurve(std::span<const Eigen::Vector3d> points);
+
+  std::size_t size() const noexcept { return size_; }  // points
+  double length() const noexcept { return arc(size_ - 1); }
+  Eigen::Vector3d point(std::size_t i) const noexcept;
+  double arc(std::size_t i) const noexcept { return strips_[i / kRun].arc[i % kRun]; }
+  double arc_of(std::size_t segment, double t) const noexcept;
+
+  /// The nearest place of the whole curve. Servo thread. A point that is not finite gives the
+  /// curve's first place with a distance of infinity.
+  CurvePlace nearest(const Eigen::Vector3d& point) const noexcept;
+
+  /// The nearest place of those that `query` is about, if there is one. Servo thread.
+  std::optional<CurvePlace> nearest(const Eigen::Vector3d& point,
+                                    const CurveQuery& query) const noexcept;
+
+  /// The place at an arc position, held at the ends; distance 0. Servo thread.
+  CurvePlace at(double arc) const noexcept;
+
+  /// The curve's direction at a place, unit length (zero where all points coincide). Where the
+  /// place is a corner the direction turns with the point, so that it stays perpendicular to the
+  /// line that joins them; at either end it is that of the last segment. Servo thread.
+  Eigen::Vector3d tangent(const CurvePlace& place, const Eigen::Vector3d& point) const noexcept;
+
+  /// The same curve with its points elsewhere, as it bends or stretches; O(N), no allocation. Not
+  /// while another thread asks.
+  /// @returns false, and leaves the curve as it was, where the constructor would throw or the
+  ///   number of points is another.
+  bool refit(std::span<const Eigen::Vector3d> points) noexcept;
+
+ private:
+  static constexpr std::size_t kRun = 8;
+
+  /// Eight chords end to end, from (x, y, z)[c] to (x, y, z)[c + 1].
+  struct Chords {
+    double x[kRun + 1], y[kRun + 1], z[kRun + 1];  // [m]
+    double arc[kRun + 1];                          // where they begin and the last ends [m]
+  };
+  /// Eight segments; the last strip is filled up with its last point.
+  using Strip = Chords;
+  /// Eight nodes of one level.
+  struct alignas(64) Pack : Chords {
+    double stray[kRun];  // no point of the node is farther from its chord [m]; NaN: no such node
+  };
+  class Search;
+
+  void fill_strips(std::span<const Eigen::Vector3d> points) noexcept;
+  void fill_nodes(std::size_t level) noexcept;
+  double stray_of(std::size_t level, std::size_t node, const Eigen::Vector3d& from,
+                  const Eigen::Vector3d& chord) const noexcept;
+  Eigen::Vector3d strip_boundary(std::size_t strip) const noexcept;
+  double arc_at_boundary(std::size_t strip) const noexcept;
+  CurvePlace place(std::size_t segment, double t) const noexcept;
+  Eigen::Vector3d direction_after(double arc) const noexcept;
+  Eigen::Vector3d direction_before(double arc) const noexcept;
+
+  std::size_t size_;
+  std::vector<Strip> strips_;
+  std::vector<std::vector<Pack>> levels_;  // [0]: its nodes are strips; the last has one pack
+};
+
+}  // namespace haptrial::control

@@ -1,0 +1,30 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "analysis/comparison.h"
+#include "core/base/error.h"
+#include "experiments/commands.h"
+
+namespace haptrial::experiments {
+namespace fs = std::filesystem;
+
+int compare(const std::string& first, const std::string& second, const std::string& out) {
+  const analysis::StudyComparison comparison = analysis::compare_studies(
+      analysis::read_scored_study(first), analysis::read_scored_study(second));
+  for (const std::string& line : analysis::comparison_lines(comparison)) {
+    fmt::print("{}\n", line);
+  }
+  if (!out.empty()) {
+    std::error_code error;
+    fs::create_directories(out, error);
+    if (!fs::is_directory(out)) {
+      throw InputError(fmt::format("{}: is not a folder and cannot become one", out));
+    }
+    analysis::write_comparison(comparison, out);
+    fmt::print("comparison: {}\n", (fs::path(out) / "comparison.html").string());
+  }
+  return 0;
+}
+
+}  // namespace haptrial::experiments
