@@ -26,7 +26,7 @@ sum() { sha256sum "$1" | cut -d' ' -f1; }
 rm -rf "results/$study"
 mkdir -p "results/$study"
 [ -z "$compare" ] || cp "$out"/comparison.html "$out"/comparison.json "results/$study/"
-cp "$out"/report.html "$out"/scores.csv "$out"/statistics.json "$out"/*.svg "results/$study/"
+cp "$out"/report.html "$out"/report.md "$out"/scores.csv "$out"/statistics.json "$out"/*.svg "results/$study/"
 cat >"results/$study/manifest.json" <<EOF
 {
   "study": "$study",
