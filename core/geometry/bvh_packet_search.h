@@ -108,23 +108,28 @@ class PacketSearch {
     stack_.push(at, within, distances);
   }
 
+  /// First the distances for all points, which do not wait for each other; then what they mean.
   void try_leaf(std::int32_t leaf, unsigned wanting) {
-    alignas(64) float distances[kWidth];
-    bool nearer = false;
-    for (; wanting != 0; wanting &= wanting - 1) {
-      const int lane = std::countr_zero(wanting);
+    alignas(64) float distances[kCount][kWidth];
+    unsigned within[kCount];
+    for (unsigned rest = wanting; rest != 0; rest &= rest - 1) {
+      const int lane = std::countr_zero(rest);
       const float p[3] = {p_[0][lane], p_[1][lane], p_[2][lane]};
-      unsigned within = triangles_within<Lanes>(data_.leaves[leaf], p, limits_[lane], distances);
-      for (; within != 0; within &= within - 1) {
-        const int i = std::countr_zero(within);
-        if (distances[i] > limits_[lane]) continue;
+      within[lane] = triangles_within<Lanes>(data_.leaves[leaf], p, limits_[lane], distances[lane]);
+    }
+    bool nearer = false;
+    for (unsigned rest = wanting; rest != 0; rest &= rest - 1) {
+      const int lane = std::countr_zero(rest);
+      for (unsigned found = within[lane]; found != 0; found &= found - 1) {
+        const int i = std::countr_zero(found);
+        const float distance_squared = distances[lane][i];
+        if (distance_squared > limits_[lane]) continue;
         if (used_ == kCandidates) make_room();
-        candidates_[used_++] = {distances[i], leaf * kWidth + i, lane};
-        if (distances[i] < least_[lane]) {
-          least_[lane] = distances[i];
-          limits_[lane] = widened(distances[i], error_);
-          nearer = true;
-        }
+        candidates_[used_++] = {distance_squared, leaf * kWidth + i, lane};
+        if (distance_squared >= least_[lane]) continue;
+        least_[lane] = distance_squared;
+        limits_[lane] = widened(distance_squared, error_);
+        nearer = true;
       }
     }
     if (nearer) limit_ = Lanes::largest(Lanes::load(limits_));

@@ -176,16 +176,17 @@ class PointSearch {
   }
 
   ClosestPoint find(std::int32_t hint) {
-    if (hint >= 0) try_leaf(hint / kWidth);
+    if (hint >= 0) __builtin_prefetch(&data_.corners[hint]);
     Stack stack;
     open(0, stack);
+    if (hint >= 0) bound_by(data_.corners[hint]);
     while (!stack.empty()) {
       const Stack::Entry next = stack.pop();
       if (next.bound > limit_) continue;
       const std::int32_t child = data_.nodes[next.parent].child[next.place];
       if (child >= 0) {
         open(child, stack);
-      } else if (~child != hint / kWidth || hint < 0) {
+      } else {
         try_leaf(~child);
       }
     }
@@ -195,6 +196,21 @@ class PointSearch {
 
  private:
   static constexpr int kCandidates = 64;
+
+  /// Corners are on the surface, so it is no farther than they. That costs next to nothing, and so
+  /// a hint that misleads does.
+  void bound_by(const Corners& corners) {
+    for (const Eigen::Vector3d& corner : corners) {
+      const Eigen::Vector3d in_frame = data_.frame.to_frame(corner);
+      float sum = 0.0f;
+      for (int axis = 0; axis < 3; ++axis) {
+        const float away = static_cast<float>(in_frame[axis]) - at_.middle[axis];
+        sum += away * away;
+      }
+      least_ = std::min(least_, sum);
+    }
+    limit_ = widened(least_, error_);
+  }
 
   void open(std::int32_t at, Stack& stack) {
     const Node& node = data_.nodes[at];
