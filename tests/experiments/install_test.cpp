@@ -18,18 +18,22 @@ TEST(InstallTest, AnotherProjectFindsLinksAndRunsTheLibraries) {
     GTEST_SKIP() << "the other project is built without the sanitizer of this one";
   }
   const test::TemporaryFolder folder;
-  const test::CommandResult built =
-      test::run_command("set -e; cd '" + folder.path().string() +
-                        "'\ncmake --install '" HAPTRIAL_BINARY_DIR
-                        "' --prefix installed\n"
-                        "cmake -S '" HAPTRIAL_SOURCE_DIR
-                        "/docs/worked/geometry' -B build -DCMAKE_PREFIX_PATH=\"$PWD/installed\"\n"
-                        "cmake --build build\n");
+  const std::string root = folder.path().string();
+  std::string line = "set -e; cd '";
+  line += root;
+  line += "'\ncmake --install '" HAPTRIAL_BINARY_DIR
+          "' --prefix installed\n"
+          "cmake -S '" HAPTRIAL_SOURCE_DIR
+          "/docs/worked/geometry' -B build -DCMAKE_PREFIX_PATH=\"$PWD/installed\"\n"
+          "cmake --build build\n";
+  const test::CommandResult built = test::run_command(line);
   ASSERT_EQ(built.status, 0) << built.output << built.errors;
   EXPECT_EQ(built.output.find(HAPTRIAL_SOURCE_DIR "/core"), std::string::npos)
       << "nothing is taken from the source tree";
 
-  const test::CommandResult ran = test::run_command("'" + folder.path().string() + "/build/near'");
+  line = root;
+  line += "/build/near";
+  const test::CommandResult ran = test::run_command(line);
   ASSERT_EQ(ran.status, 0) << ran.errors;
   double distance = 0.0;
   double along = 0.0;
@@ -44,8 +48,9 @@ TEST(InstallTest, AnotherProjectFindsLinksAndRunsTheLibraries) {
   EXPECT_NEAR(length, around, 1e-6);
   EXPECT_NEAR(along, 0.75 * around, 1e-6);
 
-  const test::CommandResult command =
-      test::run_command("'" + folder.path().string() + "/installed/bin/haptrial' --version");
+  line = root;
+  line += "/installed/bin/haptrial --version";
+  const test::CommandResult command = test::run_command(line);
   EXPECT_EQ(command.status, 0) << command.errors;
   EXPECT_TRUE(std::filesystem::exists(folder / "installed/include/haptrial/core/geometry/bvh.h"));
 }
