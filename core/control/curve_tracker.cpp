@@ -79,15 +79,40 @@ const CurvePlace& CurveTracker::follow(const Eigen::Vector3d& tool) noexcept {
     return place_;
   }
   place_ = *near;
-  query.known = query.window;
-  query.window = {before - f.reach, before + f.reach};
-  query.below = near->distance - f.margin;
-  if (f.reach > f.step && query.below > 0.0) {
-    if (const auto far = curve_->nearest(tool, query)) {
-      place_ = *far;
-    }
+  const double nearer = near->distance - f.margin;
+  if (f.reach > f.step && nearer > 0.0 && !is_clear(tool, before, nearer)) {
+    look_further(tool, before, query);
   }
   return place_;
+}
+
+/// Whether no place beyond `step` of `arc` and within `reach` can be nearer than `distance`. A tool
+/// that moved by m is at most m nearer to any place; a place that has come within reach since lies
+/// within the shift of one that was.
+bool CurveTracker::is_clear(const Eigen::Vector3d& tool, double arc,
+                            double distance) const noexcept {
+  if (clearance_.near < 0.0 || clearance_.revision != curve_->revision()) {
+    return false;
+  }
+  const double moved = (tool - clearance_.tool).norm();
+  const double shifted = std::abs(arc - clearance_.arc);
+  return std::fmin(clearance_.near, clearance_.far - shifted) - moved >= distance;
+}
+
+/// @param query  that found place_, the nearest within `step`
+void CurveTracker::look_further(const Eigen::Vector3d& tool, double arc,
+                                CurveQuery query) noexcept {
+  const CurveFollowing& f = following_;
+  const double nearer = place_.distance - f.margin;
+  query.known = query.window;
+  query.window = {arc - f.reach, arc + f.reach};
+  query.below = nearer + f.step;  // farther than it need be: what it shows holds for some ticks
+  const auto found = curve_->nearest(tool, query);
+  const double far = (found ? found->distance : query.below) - f.tolerance;
+  clearance_ = {tool, arc, place_.distance - f.tolerance, far, curve_->revision()};
+  if (found && found->distance < nearer) {
+    place_ = *found;
+  }
 }
 
 }  // namespace haptrial::control

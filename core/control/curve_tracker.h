@@ -48,9 +48,23 @@ class CurveTracker {
   const SampledCurve& curve() const noexcept { return *curve_; }
 
  private:
+  /// What the last look beyond `step` showed, so that it need not be made on every tick: as seen
+  /// from `tool` and about `arc`, places within `step` were no nearer than `near`, those beyond it
+  /// no nearer than `far`.
+  struct Clearance {
+    Eigen::Vector3d tool{Eigen::Vector3d::Zero()};
+    double arc{0.0};
+    double near{-1.0};  // below 0: nothing is known
+    double far{-1.0};
+    unsigned revision{0};  // of the curve
+  };
+  bool is_clear(const Eigen::Vector3d& tool, double arc, double distance) const noexcept;
+  void look_further(const Eigen::Vector3d& tool, double arc, CurveQuery query) noexcept;
+
   const SampledCurve* curve_;
   CurveFollowing following_;
   CurvePlace place_;
+  Clearance clearance_;
 };
 
 }  // namespace haptrial::control

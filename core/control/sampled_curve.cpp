@@ -272,6 +272,7 @@ bool SampledCurve::refit(std::span<const Vector3d> points) noexcept {
   for (std::size_t level = 0; level < levels_.size(); ++level) {
     fill_nodes(level);
   }
+  ++revision_;
   return true;
 }
 

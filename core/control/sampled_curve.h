@@ -80,6 +80,8 @@ class SampledCurve {
   /// @returns false, and leaves the curve as it was, where the constructor would throw or the
   ///   number of points is another.
   bool refit(std::span<const Eigen::Vector3d> points) noexcept;
+  /// Another number after every refit.
+  unsigned revision() const noexcept { return revision_; }
 
  private:
   static constexpr std::size_t kRun = 8;
@@ -108,6 +110,7 @@ class SampledCurve {
   Eigen::Vector3d direction_before(double arc) const noexcept;
 
   std::size_t size_;
+  unsigned revision_{0};
   std::vector<Strip> strips_;
   std::vector<std::vector<Pack>> levels_;  // [0]: its nodes are strips; the last has one pack
 };

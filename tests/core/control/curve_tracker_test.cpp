@@ -120,6 +120,37 @@ TEST(CurveTrackerTest, FollowsTheRuleOnRandomWays) {
   EXPECT_GT(far_moves, 5);
 }
 
+TEST(CurveTrackerTest, WhatItRemembersOfTheCurveAroundChangesNoAnswer) {
+  // A tool that moves as a hand does, in small steps past strands that come near each other; beside
+  // it a tracker that remembers nothing. Now and then the curve bends.
+  RandomStream random(5, "memory");
+  Points points = figure_of_eight(3000);
+  for (Vector3d& p : points) {
+    p += 2e-4 * Vector3d(random.normal(), random.normal(), random.normal());
+  }
+  SampledCurve curve(points);
+  CurveTracker tracker(curve);
+  Vector3d off = Vector3d::Zero();
+  int far_moves = 0;
+  for (int i = 0; i < 30000; ++i) {
+    if (i % 5000 == 4999) {
+      points[static_cast<std::size_t>(i) % points.size()] += Vector3d(0.0, 1e-3, 0.0);
+      ASSERT_TRUE(curve.refit(points));
+    }
+    off += 5e-5 * Vector3d(random.normal(), random.normal(), random.normal()) - 0.002 * off;
+    const Vector3d tool = curve.at(curve.length() * i / 30000.0).position + off;
+    CurveTracker forgetful(curve);
+    const double before = curve.arc_of(tracker.place().segment, tracker.place().t);
+    forgetful.start_at(before);
+    const CurvePlace expected = forgetful.follow(tool);
+    const CurvePlace place = tracker.follow(tool);
+    ASSERT_NEAR(place.distance, expected.distance, 2.0 * CurveFollowing{}.tolerance) << i;
+    ASSERT_NEAR(place.arc, expected.arc, 1e-6) << i;
+    far_moves += std::abs(place.arc - before) > CurveFollowing{}.step;
+  }
+  EXPECT_GT(far_moves, 20) << "there was something to remember wrongly";
+}
+
 TEST(CurveTrackerTest, AChangeOfPlaceNeverBringsItFarther) {
   RandomStream random(2, "energy");
   const SampledCurve curve(figure_of_eight(2000));
