@@ -24,7 +24,7 @@ TEST(InstallTest, AnotherProjectFindsLinksAndRunsTheLibraries) {
   line += "'\ncmake --install '" HAPTRIAL_BINARY_DIR
           "' --prefix installed\n"
           "cmake -S '" HAPTRIAL_SOURCE_DIR
-          "/docs/worked/geometry' -B build -DCMAKE_PREFIX_PATH=\"$PWD/installed\"\n"
+          "/docs/worked/geometry' -B build -G Ninja -DCMAKE_PREFIX_PATH=\"$PWD/installed\"\n"
           "cmake --build build\n";
   const test::CommandResult built = test::run_command(line);
   ASSERT_EQ(built.status, 0) << built.output << built.errors;
