@@ -150,16 +150,13 @@ StudyComparison compare_studies(ScoredStudy first, ScoredStudy second) {
     throw InputError(
         fmt::format("{} and {} have no training condition in common", first.name, second.name));
   }
-  std::vector<double> p_values;
+  std::vector<Defined<TTest>> paired;
   for (const auto& c : comparison.conditions) {
-    if (c.paired) {
-      p_values.push_back(c.paired->p);
-    }
+    paired.push_back(c.paired);
   }
-  const std::vector<double> adjusted = holm_adjusted(p_values);
-  auto next = adjusted.begin();
-  for (auto& c : comparison.conditions) {
-    c.paired_holm = c.paired ? Defined<double>(*next++) : Undefined{c.paired.because()};
+  const auto adjusted = holm_over(paired);
+  for (std::size_t i = 0; i < adjusted.size(); ++i) {
+    comparison.conditions[i].paired_holm = adjusted[i];
   }
   comparison.first = std::move(first);
   comparison.second = std::move(second);

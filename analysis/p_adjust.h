@@ -3,6 +3,8 @@
 #include <span>
 #include <vector>
 
+#include "analysis/defined.h"
+
 namespace haptrial::analysis {
 
 /// p values of hypotheses tested together, adjusted, in the order given: a hypothesis is rejected
@@ -21,5 +23,23 @@ std::vector<double> bonferroni_adjusted(std::span<const double> p_values);
 /// positively dependent tests.
 /// Source: Benjamini and Hochberg 1995, Journal of the Royal Statistical Society B 57.
 std::vector<double> benjamini_hochberg_adjusted(std::span<const double> p_values);
+
+/// Holm's p over the tests that are defined, each at its own place.
+template <class Test>
+std::vector<Defined<double>> holm_over(const std::vector<Defined<Test>>& tests) {
+  std::vector<double> p_values;
+  for (const auto& test : tests) {
+    if (test) {
+      p_values.push_back(test->p);
+    }
+  }
+  const std::vector<double> adjusted = holm_adjusted(p_values);
+  auto next = adjusted.begin();
+  std::vector<Defined<double>> result;
+  for (const auto& test : tests) {
+    result.push_back(test ? Defined<double>(*next++) : Undefined{test.because()});
+  }
+  return result;
+}
 
 }  // namespace haptrial::analysis

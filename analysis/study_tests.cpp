@@ -27,24 +27,6 @@ Values table_column(const StudyStatistics& study, std::size_t column) {
   return result;
 }
 
-/// Holm's p over the tests that are defined, each at its own place.
-template <class Test>
-std::vector<Defined<double>> holm_over(const std::vector<Defined<Test>>& tests) {
-  Values p_values;
-  for (const auto& test : tests) {
-    if (test) {
-      p_values.push_back(test->p);
-    }
-  }
-  const Values adjusted = holm_adjusted(p_values);
-  auto next = adjusted.begin();
-  std::vector<Defined<double>> result;
-  for (const auto& test : tests) {
-    result.push_back(test ? Defined<double>(*next++) : Undefined{test.because()});
-  }
-  return result;
-}
-
 void add_planned(StudyStatistics& study, std::span<const TrialScore> scores) {
   std::vector<Defined<TTest>> paired;
   for (const auto& [better, worse] : kHypotheses) {
