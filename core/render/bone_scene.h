@@ -1,0 +1,112 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/base/tool_state.h"
+#include "core/bone/bone_volume.h"
+#include "core/bone/surface_depths.h"
+#include "core/geometry/mesh.h"
+#include "core/render/bone_camera.h"
+#include "core/render/colour.h"
+#include "core/render/gl.h"
+
+namespace haptrial::render {
+
+/// How bone looks.
+struct BoneStyle {
+  Colour background{0.08, 0.09, 0.11};
+  Colour hard_bone{0.93, 0.88, 0.78};  // of density 1
+  Colour soft_bone{0.80, 0.58, 0.45};  // of density 0
+  Colour dust{0.95, 0.92, 0.84};
+  double ambient{0.25};              // light from everywhere
+  double diffuse{0.80};              // light at the eye, by the cosine
+  double specular{0.18};             // its reflection, ...
+  double shininess{24.0};            // ... by this power of the cosine
+  double through_length{0.0007};     // the share of a structure's colour in the bone over it is
+  double through_share{0.85};        // share exp(-depth / length) [m]
+  bool background_visibility{true};  // the visibility pass on a thread of its own
+  bool visible_array{true};          // else the complete array always
+};
+
+/// A bone or a piece of one. A new id brings a new surface; an id that is left out of a frame lets
+/// its surface go; the volume of an id stays the same.
+struct SceneBone {
+  std::uint32_t id{0};
+  const bone::BoneVolume* volume{nullptr};                // alive during draw()
+  Eigen::Isometry3d pose{Eigen::Isometry3d::Identity()};  // from B to W
+};
+
+/// A tool, a plate or anything else with a mesh; kept by the mesh's address while it is drawn.
+struct SceneMesh {
+  std::shared_ptr<const geometry::Mesh> mesh;             // in its own frame [m]
+  Eigen::Isometry3d pose{Eigen::Isometry3d::Identity()};  // from that frame to W
+  Colour colour{0.75, 0.77, 0.80};                        // alpha below 1: translucent
+};
+
+/// A square of dust that faces the eye.
+struct DustQuad {
+  Eigen::Vector3f position{Eigen::Vector3f::Zero()};  // in W [m]
+  float size{0.0005F};                                // of a side [m]
+  float alpha{0.5F};                                  // from 0 to 1
+};
+
+/// All that a picture shows.
+struct BoneFrame {
+  BoneCamera camera;
+  std::optional<StereoPair> stereo;
+  std::vector<SceneBone> bones;
+  std::vector<SceneMesh> meshes;
+  std::vector<DustQuad> dust;  // in any order
+};
+
+/// What the last draw() did.
+struct BoneFrameFigures {
+  std::size_t triangles{0};  // of the bones, alive
+  std::size_t drawn{0};      // of them sent to OpenGL, for each eye
+  std::size_t uploaded{0};   // bytes of bone
+  bool visible_only{false};  // the visible arrays were drawn
+};
+
+/// Draws bones while they are drilled, tools and dust in OpenGL 3.3 core, off screen or in a
+/// window. One thread calls everything, with the context current, also for the destructor; the
+/// volumes may change meanwhile. Source: Morris 2006, §3.2.7.
+///
+/// While the camera moves all triangles are drawn; after it has come to rest those with a vertex
+/// whose normal is less than 90 degrees away from the eye's direction, once these are found.
+class BoneScene {
+ public:
+  /// @param structures  by label, for their colours
+  /// @param depths      for what shows through; may be null
+  /// @throws RunError when OpenGL does not give what is needed.
+  BoneScene(const Gl& gl, const BoneStyle& style, std::span<const bone::Structure> structures,
+            std::shared_ptr<const bone::StructureDepths> depths);
+  ~BoneScene();
+  BoneScene(const BoneScene&) = delete;
+  BoneScene& operator=(const BoneScene&) = delete;
+
+  /// Brings the surfaces up to date and draws into the bound framebuffer, which has depth, all of
+  /// its lower left width x height pixels. @throws std::invalid_argument for a frame that cannot be
+  /// drawn: a camera or pose that is not finite, a bone without a volume, an id twice.
+  void draw(const BoneFrame& frame, int width, int height);
+  const BoneFrameFigures& figures() const noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Meshes of tools in the tool frame T, whose origin is the burr's centre or the tube's opening and
+/// whose z axis runs along the handle.
+geometry::Mesh burr_mesh(double diameter, double shaft_diameter, double length);
+geometry::Mesh suction_mesh(double inner_diameter, double outer_diameter, double length);
+/// A rectangle in the plane z = 0 around the origin, seen from both sides.
+geometry::Mesh plane_mesh(double width, double height);
+/// From T to W.
+Eigen::Isometry3d pose_of(const ToolState& tool);
+
+}  // namespace haptrial::render
