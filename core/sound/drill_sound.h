@@ -1,0 +1,76 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "core/base/tool_state.h"
+#include "core/sound/harmonics.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::sound {
+
+/// What a drill does, as far as it can be heard. Plain data.
+struct DrillState {
+  Burr burr{Burr::kCutting};
+  double speed{0.0};      // of its full speed, 0 (off) to 1
+  bool contact{false};    // touches bone
+  double force{0.0};      // with which it presses on bone >= 0 [N]
+  double thickness{1.0};  // of the bone under the burr >= 0 [m]
+};
+
+/// Pitch against the thickness of bone: 1 where it is thick, and
+///
+///     1 + rise (1 - thickness / threshold)   below the threshold.
+///
+/// Source: Morris 2006, §3.2.9, which chose both by ear and from its recordings.
+struct ThinBone {
+  double threshold{2e-3};  // > 0 [m]
+  double rise{0.3};        // of the pitch where no bone is left >= 0
+};
+double pitch(const ThinBone& thin, const DrillState& drill) noexcept;
+
+/// Reads the keys `thin_threshold` and `thin_rise` of a table.
+ThinBone read_thin_bone(Table& table);
+
+/// The sound of a drill, sample by sample. Frequencies and amplitudes follow the drill's speed.
+/// One thread; no allocation, lock or throw after construction.
+class DrillSound {
+ public:
+  static constexpr double kRate = 48'000.0;  // [Hz]
+
+  /// @throws std::invalid_argument as check(table) does, and for thin bone out of its bounds.
+  DrillSound(SpectrumTable table, const ThinBone& thin, std::uint64_t seed);
+
+  void set(const DrillState& drill) noexcept;
+  /// From -1 to 1: louder sound is cut off.
+  float next() noexcept;
+
+ private:
+  SpectrumTable table_;
+  ThinBone thin_;
+  Harmonics harmonics_;
+};
+
+/// The vibration of a drill as a force on the hand, across the drill's axis (along x of the tool
+/// frame T), at the rate of the servo loop. Servo thread: no allocation, lock or throw.
+/// Source: Morris 2006, §3.2.3.8.
+class DrillVibration {
+ public:
+  /// @param rate  of the servo loop > 0 [Hz]
+  /// @param gain  >= 0; multiplies the table's amplitudes
+  /// @throws std::invalid_argument as check(table) does, and for another rate or gain.
+  DrillVibration(SpectrumTable table, double gain, double rate, std::uint64_t seed);
+
+  /// @returns the force of this tick on the tool in W [N]; zero where the tool is not finite.
+  Eigen::Vector3d tick(const DrillState& drill, const ToolState& tool) noexcept;
+
+ private:
+  SpectrumTable table_;
+  double gain_;
+  Harmonics harmonics_;
+};
+
+}  // namespace haptrial::sound
