@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+
+// The inner loop of Drill::touch(), compiled once for each instruction set. Integers only, so that
+// the same bits come out of all of them.
+namespace haptrial::bone::kernel {
+
+/// Where a burr is in a grid, in fixed point: a sample at (x, y, z) of Burr::Arrays lies in voxel
+/// base + floor((turn (x, y, z) + offset) / 2^shift).
+struct Placement {
+  std::int32_t turn[3][3];
+  std::int32_t offset[3];
+  std::int32_t base[3];
+  std::int32_t shift;
+};
+
+/// BoneVolume::View without its types.
+struct Bricks {
+  std::int32_t size[3];        // of the grid, in voxels
+  std::int32_t table_size[2];  // of the table along x and y, in bricks
+  const std::int32_t* table;
+  const float* densities;
+};
+
+/// The samples' arrays (Burr::Arrays).
+struct Cloud {
+  const std::int16_t* x;
+  const std::int16_t* y;
+  const std::int16_t* z;
+  const std::int16_t* dx;
+  const std::int16_t* dy;
+  const std::int16_t* dz;
+  std::int32_t count;
+};
+
+/// A sample that lies in bone.
+struct Hit {
+  std::int32_t address;
+  std::int32_t sample;
+};
+
+/// Sums over the samples that lie in bone.
+struct Sums {
+  std::int64_t count;
+  std::int64_t direction[3];
+  std::int64_t position[3];
+};
+
+/// @param hits  room for `room` of them; the first ones are kept, in order of sample
+/// @returns how many were kept
+using TouchBurr = std::int32_t (*)(const Cloud&, const Placement&, const Bricks&, Hit* hits,
+                                   std::int32_t room, Sums& sums);
+
+std::int32_t touch_burr_baseline(const Cloud&, const Placement&, const Bricks&, Hit*, std::int32_t,
+                                 Sums&);
+/// These exist where the compiler targets x86-64.
+std::int32_t touch_burr_avx2(const Cloud&, const Placement&, const Bricks&, Hit*, std::int32_t,
+                             Sums&);
+std::int32_t touch_burr_avx512(const Cloud&, const Placement&, const Bricks&, Hit*, std::int32_t,
+                               Sums&);
+
+}  // namespace haptrial::bone::kernel
