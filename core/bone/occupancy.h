@@ -26,6 +26,11 @@ class Occupancy {
     const auto at = static_cast<std::size_t>(address);
     return at / 64 < bits_.size() && ((bits_[at / 64] >> (at % 64)) & 1U) != 0;
   }
+  /// The same for the 64 voxels of a layer of z, from 0 to 7, of a brick: bit x + 8 y.
+  std::uint64_t layer(std::int32_t brick, int z) const noexcept {
+    const auto at = static_cast<std::size_t>(brick) * 8 + static_cast<std::size_t>(z);
+    return at < bits_.size() ? bits_[at] : 0;
+  }
   std::size_t count() const noexcept { return count_; }  // of voxels that hold bone
 
  private:
