@@ -145,21 +145,23 @@ Removal Drill::remove(BoneVolume& volume, const Contact& contact, double force, 
   }
   const auto rate_f = static_cast<float>(rate);
   const float* powers = burr_.arrays().power;
+  const float* softness = softness_.data();
   const kernel::Hit* hits = hits_.data() + contact.first;
-  std::size_t emptied = 0;
+  EmptiedVoxel* emptied = emptied_.data();
+  double amount = 0.0;
   for (std::int32_t n = 0; n < contact.kept; ++n) {
     const std::int32_t at = hits[n].address;
     const std::uint8_t label = volume.label(at);
-    const float wanted = rate_f * powers[hits[n].sample] * softness_[label];
+    const float wanted = rate_f * powers[hits[n].sample] * softness[label];
     // Adding 1 rounds to a multiple of 2^-23.
-    const float amount = wanted < 1.0F ? (wanted + 1.0F) - 1.0F : 1.0F;
-    const float taken = volume.take(at, amount);
-    removal.amount += static_cast<double>(taken);
+    const float taken = volume.take(at, wanted < 1.0F ? (wanted + 1.0F) - 1.0F : 1.0F);
+    amount += static_cast<double>(taken);
     if (taken > 0.0F && !(volume.density(at) > 0.0F)) {
-      emptied_[emptied++] = {at, label};
+      *emptied++ = {at, label};
     }
   }
-  removal.volume = removal.amount * voxel;
+  removal.amount = amount;
+  removal.volume = amount * voxel;
   removal.emptied = {emptied_.data(), emptied};
   return removal;
 }

@@ -7,7 +7,7 @@
 namespace haptrial::bone::kernel {
 namespace {
 
-constexpr std::int32_t kBlock = 2048;  // samples a pass; sums of a pass fit 32 bits
+constexpr std::int32_t kBlock = 512;  // samples a pass; sums of a pass fit 32 bits
 
 /// Products and sums may leave 32 bits on the way to a result that does not: no overflow of a
 /// signed number.
@@ -89,14 +89,18 @@ inline void add_up(const Cloud& cloud, const float* densities, std::int32_t firs
     look_up(cloud, at, bricks, first, count, address);
     const std::int64_t before = sums.count;
     add_up(cloud, bricks.densities, first, count, address, immersed, sums);
-    if (sums.count == before) {
-      continue;
-    }
-    // The next place is always written, and kept only if the sample is immersed: no branch.
-    for (std::int32_t s = 0; s < count && kept < room; ++s) {
-      hits[kept].address = address[s];
-      hits[kept].sample = first + s;
-      kept += immersed[s];
+    const auto in_bone = static_cast<std::int32_t>(sums.count - before);
+    if (in_bone == count && count <= room - kept) {
+      for (std::int32_t s = 0; s < count; ++s) {
+        hits[kept + s] = {address[s], first + s};
+      }
+      kept += count;
+    } else if (in_bone > 0) {
+      // The next place is always written, and kept only if the sample is immersed: no branch.
+      for (std::int32_t s = 0; s < count && kept < room; ++s) {
+        hits[kept] = {address[s], first + s};
+        kept += immersed[s];
+      }
     }
   }
   return kept;
