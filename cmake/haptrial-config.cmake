@@ -6,6 +6,7 @@ find_dependency(fmt)
 find_dependency(nlohmann_json)
 find_dependency(Threads)
 find_dependency(PNG)
+find_dependency(meshoptimizer)
 find_dependency(SUNDIALS)
 find_dependency(PkgConfig)
 foreach(library hdf5:hdf5-serial gsl:gsl osmesa:osmesa freetype:freetype2 glfw:glfw3

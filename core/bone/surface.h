@@ -34,8 +34,8 @@ class Surface {
   explicit Surface(std::shared_ptr<const StructureDepths> depths = nullptr);
 
   /// Follows the volume, always the same one: retessellates around voxels that were filled or
-  /// emptied and refreshes densities where any changed. The first call, and one after most of the
-  /// bone has changed, builds the whole and orders it for the vertex cache.
+  /// emptied and refreshes densities where any changed. The first call builds the whole and orders
+  /// it for the vertex cache; so does one that leaves most slots dead, which gives them back.
   /// @returns whether anything changed.
   bool update(const BoneVolume& volume);
 
@@ -54,35 +54,54 @@ class Surface {
   /// triangle t belongs to quad t / 2.
   std::int32_t quad_of(const Voxel& voxel, int axis) const noexcept;
 
-  /// Slots that the last update() changed, each once, in no order. After a full build all are.
+  /// Slots that the last update() changed, each once, in no order; all where it
+  /// gave out the slots anew. A quad also counts where a vertex of it moved or turned.
   std::span<const std::int32_t> changed_vertices() const noexcept { return changed_vertices_; }
   std::span<const std::int32_t> changed_quads() const noexcept { return changed_quads_; }
+  /// Whether the last update() gave out all slots anew.
   bool rebuilt() const noexcept { return rebuilt_; }
 
  private:
   struct VertexLinks {
     Voxel cell;
     std::array<std::int32_t, 3> quads;  // of the pairs from the cell's first voxel along each axis
+    std::uint8_t corners;               // bit b: CellField::corners
   };
   struct CellBrick {
     std::array<std::int32_t, BoneVolume::kBrickVoxels> vertices;  // -1: none
     std::int32_t living{0};
   };
+  struct QuadOwner {
+    std::int32_t vertex;
+    int axis;
+  };
 
-  std::size_t place_of(const Voxel& brick) const noexcept;
   void begin(const BoneVolume& volume);
+  void forget_changes();
+  std::size_t place_of(const Voxel& brick) const noexcept;
+  Voxel brick_at(std::size_t place) const noexcept;
+  void mark_box(const Voxel& low, const Voxel& high, std::uint8_t flag,
+                std::vector<std::size_t>& list);
   void mark(const Voxel& voxel);
-  void mark_density(const BoneVolume& volume, std::int32_t brick);
+  void mark_density(const Voxel& brick_origin);
+
   void place_vertices(const BoneVolume& volume, std::size_t place);
-  void place_quads(std::size_t place);
-  void refresh_densities(const BoneVolume& volume, std::size_t place);
-  void set_vertex(CellBrick& brick, std::size_t at, const Voxel& cell, const SurfaceVertex& vertex);
+  SurfaceVertex make_vertex(const BoneVolume& volume, const Voxel& cell, unsigned corners,
+                            const Eigen::Vector3f& offset, const Eigen::Vector3f& normal) const;
+  static std::uint8_t mean_density(const BoneVolume& volume, const Voxel& cell, unsigned corners);
+  void set_vertex(CellBrick& brick, std::size_t at, const Voxel& cell, std::uint8_t corners,
+                  const SurfaceVertex& vertex);
   void remove_vertex(CellBrick& brick, std::size_t at);
-  void set_quad(std::int32_t vertex, int axis, const SurfaceQuad& quad);
+  void place_quads(std::size_t place);
+  void set_quad(std::int32_t vertex, int axis, bool outwards);
   void remove_quad(std::int32_t vertex, int axis);
+  void refresh_densities(const BoneVolume& volume, std::size_t place);
   void touch_vertex(std::int32_t vertex);
   void touch_quad(std::int32_t quad);
+
+  QuadOwner owner_of(const SurfaceTriangle& triangle) const noexcept;
   void order_for_the_vertex_cache();
+  void take_all_as_changed();
 
   std::shared_ptr<const StructureDepths> depths_;
   Occupancy occupancy_;
@@ -96,6 +115,7 @@ class Surface {
   std::vector<std::int32_t> free_quads_;
 
   // Of the update at hand; kept for their room.
+  CellField field_;
   std::vector<Voxel> changed_voxels_;
   std::vector<std::int32_t> changed_bricks_;
   std::vector<std::uint8_t> marks_;          // by place

@@ -24,7 +24,6 @@ struct SurfaceVertex {
 
 /// Numbers of three vertices.
 using SurfaceTriangle = std::array<std::uint32_t, 3>;
-using SurfaceQuad = std::array<SurfaceTriangle, 2>;
 
 /// Which voxels are filled in and around a brick of 8 x 8 x 8 cells, and how many are around each:
 /// the sum over the 5 x 5 x 5 voxels around, weighted 1, 4, 6, 4, 1 along each axis. Whole numbers,

@@ -34,7 +34,9 @@ class StructureDepths {
     std::uint8_t label{0};
     std::uint16_t squared{0};  // distance in voxels
   };
+  void keep(const Voxel& voxel, const Entry& entry);
   std::size_t table_index(const Voxel& voxel) const noexcept;
+  static std::size_t entry_index(std::int32_t brick, const Voxel& voxel) noexcept;
 
   geometry::VoxelGrid grid_;
   std::array<std::int32_t, 3> table_size_{};  // in bricks of 8 x 8 x 8 voxels
