@@ -1,7 +1,7 @@
 #include "core/bone/surface_cells.h"
 
 #include <algorithm>
-#include <bit>
+#include <cmath>
 
 namespace haptrial::bone {
 namespace {
@@ -114,13 +114,12 @@ Eigen::Vector3f CellField::place(int i, int j, int k, unsigned corners,
   if (total == 0) {
     return Eigen::Vector3f::Zero();
   }
-  // Half full; in what is thin, where no voxel is that full, between filled and empty corners.
-  constexpr float kNearCorners = 0.8F;
+  // To where the field is half full, unless the voxels that are filled are less than that, as in
+  // what is thin, or the empty ones more: the more they are, the less far.
   const float middle = 0.5F * static_cast<float>(lowest_filled + highest_empty);
-  const float half = 0.5F * static_cast<float>(std::max(lowest_filled - highest_empty, 0));
-  const float level =
-      std::clamp(0.5F * kFull, middle - kNearCorners * half, middle + kNearCorners * half);
-  const float way = (level - static_cast<float>(total) / 8.0F) / squared;
+  const float half = 0.5F * static_cast<float>(std::max(lowest_filled - highest_empty, 1));
+  const float share = std::clamp(2.0F - std::abs(0.5F * kFull - middle) / half, 0.0F, 1.0F);
+  const float way = share * (0.5F * kFull - static_cast<float>(total) / 8.0F) / squared;
   return (way * gradient).cwiseMax(-0.5F).cwiseMin(0.5F);
 }
 
