@@ -36,8 +36,8 @@ class CutPlaneTool {
     std::array<std::uint32_t, 256> by_label{};  // voxels
   };
 
-  /// Begins a cut; one that is under way is given up. A plane that is not finite or has no area
-  /// cuts nothing.
+  /// Begins a cut; one that is under way is given up. A plane that is not finite, has no area or is
+  /// more than 10,000 voxels long cuts nothing.
   void begin(const BoneWorld& world, const CutPlane& plane) noexcept;
   bool busy() const noexcept { return busy_; }
   /// Goes on with the cut through the pieces of the same world.
@@ -47,11 +47,12 @@ class CutPlaneTool {
   const Removed& removed() const noexcept { return removed_; }
 
  private:
-  int trace(BoneWorld& world) noexcept;
+  bool next_piece() noexcept;
+  int trace(BoneWorld& world, PieceSet volumes) noexcept;
 
   bool busy_{false};
   CutPlane plane_;
-  int known_{0};  // pieces whose pose_BC_ is set
+  PieceSet pieces_{0};  // that were born at begin(): rays pass them one after the other
   std::array<Eigen::Isometry3d, kMaxPieces> pose_BC_;
   int columns_{0};
   int rows_{0};

@@ -111,6 +111,8 @@ class BoneWorld {
   BoneVolume& volume(int piece) noexcept { return *at(piece).volume; }
   const Eigen::Isometry3d& pose(int piece) const noexcept { return at(piece).pose; }
   bool is_born(int piece) const noexcept { return at(piece).born; }
+  /// Of a piece that is born, with what is about to leave it: 0 for one in the making.
+  float density(int piece, const Voxel& voxel) const noexcept;
   int parent(int piece) const noexcept { return at(piece).parent; }
   const Eigen::Isometry3d& plate_pose(int plate) const noexcept { return plate_at(plate).pose; }
 
@@ -122,7 +124,7 @@ class BoneWorld {
   std::span<const Voxel> seeds(int piece) const noexcept { return at(piece).seeds; }
 
   /// The bone voxel whose centre is nearest to a point, in any piece.
-  /// @param reach  how far to look; voxels farther than 16 spacings are not looked at [m]
+  /// @param reach  how far to look; voxels farther than 8 spacings are not looked at [m]
   std::optional<PieceTouch> touch(const Eigen::Vector3d& p_W, double reach) const noexcept;
   /// The piece that holds bone in a voxel; -1 where none does.
   int holder(const Voxel& voxel) const noexcept;
@@ -135,6 +137,8 @@ class BoneWorld {
   void drag(const Eigen::Isometry3d& pose_WT) noexcept;
   void release() noexcept;
   int held() const noexcept { return held_; }  // piece; -1: none
+  /// The sum of all densities that crumbs had [voxels].
+  double crumbled() const noexcept { return crumbled_; }
 
   /// Fixes a plate to the bone in these voxels: it moves with every piece that holds one of them,
   /// and joins them where they are several.
@@ -156,9 +160,9 @@ class BoneWorld {
 
   /// Does at once what a recorded kBorn did. Call right after step() of the recorded tick.
   /// @returns false when a seed holds no bone, or there is no room.
-  bool split_at(std::span<const Voxel> seeds);
+  bool split_at(int parent, std::span<const Voxel> seeds);
   /// Does what a recorded kCrumb did.
-  bool crumble_at(const Voxel& seed);
+  bool crumble_at(int piece, const Voxel& seed);
 
  private:
   enum class Phase : int { kIdle, kOffered, kSettled, kConfirmed, kCrumbs };
@@ -168,8 +172,10 @@ class BoneWorld {
     bool born{false};
     int parent{-1};
     std::vector<Voxel> seeds;  // searcher's until birth
-    Occupancy occupancy;       // searcher's
-    bool searched{false};      // searcher's: nothing loose at the last look
+    // Searcher's:
+    Occupancy occupancy;
+    bool searched{false};      // unless something changes, there is nothing to do
+    std::int64_t unplaced{0};  // voxels in loose parts without room
   };
   struct Plate {
     Eigen::Isometry3d pose{Eigen::Isometry3d::Identity()};  // X_WP
@@ -186,6 +192,8 @@ class BoneWorld {
     std::vector<std::int32_t> to_addresses;
     std::size_t moved{0};
     std::vector<std::uint32_t> versions;  // by brick of the new piece, when its seeds were noted
+    std::int64_t voxels{0};               // in the new piece, by then
+    double amount{0.0};
     std::vector<std::int32_t> crumbs;     // addresses in `from`
     std::vector<std::size_t> crumb_ends;  // in `crumbs`, by crumb
   };
@@ -198,13 +206,14 @@ class BoneWorld {
   void note_islands();
   std::vector<Part> cut_loose(int piece);
   bool look_at(int piece);
-  void offer_piece(int from, const Part& part);
-  void offer_crumbs(int from, const std::vector<const Part*>& crumbs);
-  void confirm();
+  void make_offer(int from, const Part& part);
+  bool add_crumb(const Part& part);
+  void note_seeds();
+  void begin_move() noexcept;
   bool move_some(std::size_t most) noexcept;
   void take_crumbs() noexcept;
+  bool unchanged_since_noted() const noexcept;
   void bear() noexcept;
-  bool unchanged_since_confirmed() const noexcept;
   void add_event(const WorldEvent& event) noexcept;
   PieceSet anchored(const Plate& plate) const noexcept;
   void hold_group() noexcept;
@@ -225,6 +234,7 @@ class BoneWorld {
   std::atomic<int> plate_count_{0};
   WorldPoses poses_;
   WorldPoses plate_poses_;
+  double crumbled_{0.0};
   int held_{-1};
   Voxel held_voxel_{Voxel::Zero()};
   PieceSet held_group_{0};
