@@ -38,6 +38,9 @@ void load_state(Gl& gl, const Loader& load) {
   load(gl.disable, "glDisable");
   load(gl.blend_func_separate, "glBlendFuncSeparate");
   load(gl.blend_equation, "glBlendEquation");
+  load(gl.depth_func, "glDepthFunc");
+  load(gl.depth_mask, "glDepthMask");
+  load(gl.cull_face, "glCullFace");
   load(gl.pixel_storei, "glPixelStorei");
   load(gl.finish, "glFinish");
   load(gl.read_pixels, "glReadPixels");
@@ -59,7 +62,10 @@ void load_shaders(Gl& gl, const Loader& load) {
   load(gl.use_program, "glUseProgram");
   load(gl.get_uniform_location, "glGetUniformLocation");
   load(gl.uniform1i, "glUniform1i");
+  load(gl.uniform1f, "glUniform1f");
   load(gl.uniform2f, "glUniform2f");
+  load(gl.uniform4f, "glUniform4f");
+  load(gl.uniform_matrix4fv, "glUniformMatrix4fv");
 }
 
 void load_vertices(Gl& gl, const Loader& load) {
@@ -69,11 +75,14 @@ void load_vertices(Gl& gl, const Loader& load) {
   load(gl.gen_buffers, "glGenBuffers");
   load(gl.bind_buffer, "glBindBuffer");
   load(gl.buffer_data, "glBufferData");
+  load(gl.buffer_sub_data, "glBufferSubData");
   load(gl.delete_buffers, "glDeleteBuffers");
   load(gl.enable_vertex_attrib_array, "glEnableVertexAttribArray");
   load(gl.vertex_attrib_pointer, "glVertexAttribPointer");
+  load(gl.vertex_attrib4f, "glVertexAttrib4f");
   load(gl.vertex_attrib_divisor, "glVertexAttribDivisor");
   load(gl.draw_arrays_instanced, "glDrawArraysInstanced");
+  load(gl.draw_elements, "glDrawElements");
 }
 
 void load_textures(Gl& gl, const Loader& load) {

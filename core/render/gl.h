@@ -27,6 +27,9 @@ struct Gl {
   void (*disable)(Enum what);
   void (*blend_func_separate)(Enum src_rgb, Enum dst_rgb, Enum src_alpha, Enum dst_alpha);
   void (*blend_equation)(Enum mode);
+  void (*depth_func)(Enum when);
+  void (*depth_mask)(unsigned char write);
+  void (*cull_face)(Enum side);
   void (*pixel_storei)(Enum what, int value);
   void (*finish)();
   void (*read_pixels)(int x, int y, int width, int height, Enum format, Enum type, void* pixels);
@@ -47,7 +50,10 @@ struct Gl {
   void (*use_program)(Name program);
   int (*get_uniform_location)(Name program, const char* name);
   void (*uniform1i)(int location, int value);
+  void (*uniform1f)(int location, float x);
   void (*uniform2f)(int location, float x, float y);
+  void (*uniform4f)(int location, float x, float y, float z, float w);
+  void (*uniform_matrix4fv)(int location, int count, unsigned char transposed, const float* values);
 
   // Vertices
   void (*gen_vertex_arrays)(int count, Name* names);
@@ -56,12 +62,16 @@ struct Gl {
   void (*gen_buffers)(int count, Name* names);
   void (*bind_buffer)(Enum target, Name name);
   void (*buffer_data)(Enum target, std::ptrdiff_t size, const void* data, Enum usage);
+  void (*buffer_sub_data)(Enum target, std::ptrdiff_t offset, std::ptrdiff_t size,
+                          const void* data);
   void (*delete_buffers)(int count, const Name* names);
   void (*enable_vertex_attrib_array)(unsigned index);
   void (*vertex_attrib_pointer)(unsigned index, int size, Enum type, unsigned char normalized,
                                 int stride, const void* offset);
+  void (*vertex_attrib4f)(unsigned index, float x, float y, float z, float w);
   void (*vertex_attrib_divisor)(unsigned index, unsigned divisor);
   void (*draw_arrays_instanced)(Enum mode, int first, int count, int instances);
+  void (*draw_elements)(Enum mode, int count, Enum type, const void* offset);
 
   // Textures and framebuffers
   void (*gen_textures)(int count, Name* names);

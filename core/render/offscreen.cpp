@@ -34,7 +34,7 @@ OffscreenContext::OffscreenContext(int width, int height)
   constexpr std::array kAttributes{OSMESA_FORMAT,
                                    OSMESA_RGBA,
                                    OSMESA_DEPTH_BITS,
-                                   0,
+                                   24,
                                    OSMESA_PROFILE,
                                    OSMESA_CORE_PROFILE,
                                    OSMESA_CONTEXT_MAJOR_VERSION,

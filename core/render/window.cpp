@@ -104,7 +104,7 @@ void Window::Impl::open(const WindowOptions& options) {
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
   glfwWindowHint(GLFW_RESIZABLE, GLFW_FALSE);
   glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);  // the experimenter may use another monitor
-  glfwWindowHint(GLFW_DEPTH_BITS, 0);
+  glfwWindowHint(GLFW_DEPTH_BITS, 24);
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
   glfwWindowHint(GLFW_RED_BITS, mode->redBits);  // as the monitor has them: no mode is changed
   glfwWindowHint(GLFW_GREEN_BITS, mode->greenBits);
