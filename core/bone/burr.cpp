@@ -80,12 +80,13 @@ BurrParameters default_burr(BurrKind kind, double diameter) {
   BurrParameters p;
   p.kind = kind;
   p.diameter = diameter;
-  p.sample_spacing = std::min(p.sample_spacing, diameter / 8.0);
+  // Small burrs need the same number of samples to push as evenly as large ones.
+  p.sample_spacing = std::min(p.sample_spacing, diameter / 28.0);
   const bool cutting = kind == BurrKind::kCutting;
   p.removal_rate = cutting ? 25.0 : 10.0;
   p.falloff = cutting ? 12.0 : 2.0;
   const double radius = 0.5 * diameter;
-  p.tangential_gain = (cutting ? 3e5 : 1e5) / (radius * radius);
+  p.tangential_gain = (cutting ? 1.2e6 : 0.4e6) / (radius * radius);
   return p;
 }
 

@@ -17,15 +17,16 @@ enum class BurrKind : std::uint8_t { kDiamond, kCutting };
 struct BurrParameters {
   BurrKind kind{BurrKind::kDiamond};
   double diameter{4e-3};           // from 0.0005 to 0.03 [m]
-  double sample_spacing{0.25e-3};  // edge of a cell with one sample > 0; at most 1e6 samples [m]
+  double sample_spacing{0.14e-3};  // edge of a cell with one sample > 0; at most 1e6 samples [m]
   double removal_rate{10.0};       // R_max, share of the immersed volume >= 0 [1/(N·s)]
   double falloff{2.0};             // of the rate with latitude >= 0 [1/(N·s·rad)]
-  double tangential_gain{0.0};     // per immersed volume and distance from the axis >= 0 [N/m^4]
+  double tangential_gain{1e11};    // per immersed volume and distance from the axis >= 0 [N/m^4]
   bool right_handed{true};         // turns the tangential force around where false
 };
 
-/// What a burr of this kind and size does unless told otherwise: a cutting burr has a higher rate,
-/// a higher falloff and a stronger pull along the bone. Source: Morris 2006, §3.2.3.6.
+/// What a burr of this kind and size does unless told otherwise: samples 0.25 mm apart, or 28 over
+/// the diameter where that is less; a cutting burr has a higher rate, a higher falloff and a
+/// stronger pull along the bone. Source: Morris 2006, §3.2.3.6.
 BurrParameters default_burr(BurrKind kind, double diameter);
 
 /// Reads a [burr] table: kind ("diamond", "cutting") and diameter [m]; the others are optional.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "core/base/table.h"
@@ -21,9 +22,10 @@ Eigen::Vector3d shortened(const Eigen::Vector3d& force, double longest) {
 
 FeelParameters default_feel(double burr_radius) {
   FeelParameters p;
-  p.first_gain = 2e6 / burr_radius;
-  p.second_gain = 6e6 / burr_radius;
-  p.threshold = 2e-8 * burr_radius;
+  const double burr_volume = 4.0 / 3.0 * std::numbers::pi * std::pow(burr_radius, 3);
+  p.second_gain = std::max(4e6 / burr_radius, 1.25 * p.force_limit / burr_volume);
+  p.first_gain = p.second_gain / 3.0;
+  p.threshold = std::min(1e-7 * burr_radius, 0.05 * burr_volume);
   return p;
 }
 

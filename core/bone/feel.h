@@ -12,15 +12,16 @@ namespace haptrial::bone {
 
 /// How hard immersed bone pushes back.
 struct FeelParameters {
-  double first_gain{2e8};       // g_1 just after contact > 0 [N/m^3]
-  double second_gain{6e8};      // g_2 deeper >= g_1 [N/m^3]
-  double threshold{1e-10};      // immersed volume V_t where the gain changes > 0 [m^3]
-  double force_limit{10.0};     // > 0 [N]
+  double first_gain{0.67e9};    // g_1 just after contact > 0 [N/m^3]
+  double second_gain{2e9};      // g_2 deeper >= g_1 [N/m^3]
+  double threshold{2e-10};      // immersed volume V_t where the gain changes > 0 [m^3]
+  double force_limit{12.0};     // > 0 [N]
   double least_agreement{0.1};  // below this |push| / volume the force fades, from 0 to 1
 };
 
-/// Gains in proportion to 1 / radius: the depth under a given force is then nearly the same for
-/// every burr. @param burr_radius  > 0 [m]
+/// Gains in proportion to 1 / radius, so that the depth under a given force is nearly the same for
+/// every burr, but high enough for the smallest ones to carry the force limit before they sink in
+/// whole. How stiff and how stable: docs/algorithms/bone-feel.md. @param burr_radius  > 0 [m]
 FeelParameters default_feel(double burr_radius);
 
 /// Reads a [feel] table, whose keys are all optional: what is absent is default_feel().
