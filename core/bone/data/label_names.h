@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/bone/bone_model.h"
+
+namespace haptrial::bone {
+
+/// Structures by label as a volume's key/values name them: "label_NN:=Name", or the segments of 3D
+/// Slicer ("Segment0_LabelValue", "Segment0_Name"). Names that nobody gave stay empty.
+std::vector<Structure> structures_in(const std::map<std::string, std::string>& keys);
+
+/// Structures by label from a table:
+///
+///     [labels.7]
+///     name = "facial nerve"       # known names bring the rest
+///     colour = [1.0, 0.9, 0.2]    # may be absent, as the following
+///     hardness = 0.25
+///     vital = true
+///
+/// @throws InputError
+std::vector<Structure> read_label_table(const std::filesystem::path& file);
+
+/// The key/values that structures_in() reads back, and 3D Slicer as segments.
+std::map<std::string, std::string> keys_of(const std::vector<Structure>& structures);
+
+}  // namespace haptrial::bone

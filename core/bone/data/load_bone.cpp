@@ -1,0 +1,348 @@
+#include "core/bone/data/load_bone.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <sstream>
+
+#include "core/base/error.h"
+#include "core/bone/data/anatomy.h"
+#include "core/bone/data/grey_bone.h"
+#include "core/bone/data/label_names.h"
+#include "core/bone/data/resample.h"
+#include "core/bone/data/volume_source.h"
+
+namespace haptrial::bone {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kSmallTurn = 1.0 * kDegree;  // taken as it is
+constexpr double kSmallShift = 0.25;          // of a corner from where cubes would put it [voxels]
+constexpr double kGreySpacing = 0.5e-3;       // Morris 2006, §3.2.1 [m]
+constexpr double kThreshold = 300.0;          // [HU]
+constexpr double kDense = 1500.0;             // [HU]
+constexpr double kAirBelow = -500.0;          // a CT in Hounsfield units has values down here [HU]
+
+/// What the steps of an import share.
+struct Import {
+  std::string name;
+  const LoadOptions& options;
+  const Room& room;
+  const geometry::WorkReport& report;
+};
+
+void check_options(const LoadOptions& options) {
+  if (options.spacing && !(*options.spacing >= 0.05e-3 && *options.spacing <= 10e-3)) {
+    throw InputError(
+        fmt::format("the spacing is {:.4g} mm; allowed: 0.05 to 10 mm", 1e3 * *options.spacing));
+  }
+}
+
+bool whole_from_0_to_255(std::span<const float> values) {
+  return std::ranges::all_of(values, [](float value) {
+    return value >= 0.0F && value <= 255.0F && value == std::floor(value);
+  });
+}
+
+VolumeKind kind_of(const VolumeHead& head, std::span<const float> values,
+                   const LoadOptions& options) {
+  if (options.kind != VolumeKind::kAuto) return options.kind;
+  if (head.labels) return VolumeKind::kLabels;
+  if (head.hounsfield || !whole_from_0_to_255(values)) return VolumeKind::kGrey;
+  std::array<bool, 256> seen{};
+  for (const float value : values) seen[static_cast<std::size_t>(value)] = true;
+  constexpr auto kManyLabels = 64;
+  return std::ranges::count(seen, true) <= kManyLabels ? VolumeKind::kLabels : VolumeKind::kGrey;
+}
+
+void check_room(const Import& import, const geometry::VoxelGrid& grid, double bytes_per_voxel) {
+  const double count = static_cast<double>(grid.size[0]) * grid.size[1] * grid.size[2];
+  constexpr double kMost = 2e9;
+  if (count > kMost) {
+    throw InputError(fmt::format(
+        "{}: would have {} x {} x {} voxels of {:.4g} mm; allowed: {:.1e} in all, with a larger "
+        "spacing",
+        import.name, grid.size[0], grid.size[1], grid.size[2], 1e3 * grid.spacing, kMost));
+  }
+  import.room(
+      fmt::format("{}: {} x {} x {} voxels", import.name, grid.size[0], grid.size[1], grid.size[2]),
+      bytes_per_voxel * count);
+}
+
+/// How a volume becomes cubes.
+struct Plan {
+  geometry::VoxelGrid grid;
+  bool own_axes;  // the grid's axes are the volume's
+  bool as_it_is;  // its voxels are the grid's
+  std::string sentence;
+};
+
+Plan plan_for(const UprightVolume& volume, std::optional<double> spacing) {
+  const Pose pose = pose_of(volume);
+  const double edge = std::cbrt(std::abs(volume.steps.determinant()));
+  const double smallest = volume.steps.colwise().norm().minCoeff();
+  const bool cubes = pose.shape <= kSmallShift;
+  Plan plan;
+  plan.own_axes = pose.turn < kSmallTurn;
+  const double wanted = spacing.value_or(cubes ? edge : smallest);
+  plan.as_it_is = plan.own_axes && cubes && std::abs(wanted - edge) < 1e-3 * edge;
+  if (plan.as_it_is) {
+    plan.grid = {volume.size, volume.origin, edge};
+    plan.sentence = fmt::format("as it is, in voxels of {:.4g} mm", 1e3 * edge);
+  } else {
+    plan.grid = grid_over(volume, wanted, plan.own_axes);
+    const Eigen::Vector3d edges = 1e3 * volume.steps.colwise().norm();
+    plan.sentence = fmt::format("resampled from {:.4g} x {:.4g} x {:.4g} to {:.4g} mm", edges[0],
+                                edges[1], edges[2], 1e3 * wanted);
+  }
+  constexpr double kNoTurn = 0.01 * kDegree;
+  if (pose.turn > kNoTurn) {
+    plan.sentence +=
+        fmt::format("; turned by {:.2f} degrees, {}", pose.turn / kDegree,
+                    plan.own_axes ? "whose axes are kept" : "now along the axes of the patient");
+  }
+  return plan;
+}
+
+std::vector<std::uint8_t> labels_of(const Import& import, std::span<const float> values) {
+  if (!whole_from_0_to_255(values)) {
+    const auto [low, high] = std::ranges::minmax(values);
+    throw InputError(
+        fmt::format("{}: its labels run from {} to {}; allowed: whole numbers from 0 to 255",
+                    import.name, low, high));
+  }
+  std::vector<std::uint8_t> labels(values.size());
+  std::ranges::transform(values, labels.begin(),
+                         [](float value) { return static_cast<std::uint8_t>(value); });
+  return labels;
+}
+
+/// Every label that is used gets a structure, named or not.
+void name_labels(const Import& import, std::vector<Structure> structures, BoneModel& model) {
+  if (!import.options.label_file.empty()) {
+    std::vector<Structure> named = read_label_table(import.options.label_file);
+    structures.resize(std::max(structures.size(), named.size()));
+    for (std::size_t label = 1; label < named.size(); ++label) {
+      if (!named[label].name.empty()) structures[label] = std::move(named[label]);
+    }
+  }
+  std::array<bool, 256> used{};
+  for (const std::uint8_t label : model.labels) used[label] = true;
+  for (std::size_t label = 1; label < used.size(); ++label) {
+    if (!used[label]) continue;
+    if (structures.size() <= label) structures.resize(label + 1);
+    if (structures[label].name.empty()) {
+      const bool alone = std::ranges::count(used.begin() + 1, used.end(), true) == 1;
+      structures[label] = structure_named(alone ? "bone" : fmt::format("label {}", label),
+                                          static_cast<std::uint8_t>(label));
+    }
+  }
+  model.structures = std::move(structures);
+}
+
+void leave_out(const Import& import, BoneModel& model) {
+  for (const std::string& name : import.options.without) {
+    const Structure wanted = structure_named(name, 0);
+    std::string known;
+    std::size_t label = 0;
+    for (std::size_t i = 1; i < model.structures.size(); ++i) {
+      if (model.structures[i].name.empty()) continue;
+      known += (known.empty() ? "" : ", ") + model.structures[i].name;
+      if (model.structures[i].name == wanted.name) label = i;
+    }
+    if (label == 0) {
+      throw InputError(
+          fmt::format("{}: has no '{}' to leave out; allowed: {}", import.name, name, known));
+    }
+    for (std::size_t i = 0; i < model.labels.size(); ++i) {
+      if (model.labels[i] != label) continue;
+      model.labels[i] = 0;
+      if (!model.density.empty()) model.density[i] = 0.0F;
+    }
+  }
+}
+
+/// Only what holds bone, with two empty voxels around it.
+void crop(BoneModel& model) {
+  const geometry::VoxelGrid old = model.grid;
+  std::array<std::int32_t, 3> low = old.size;
+  std::array<std::int32_t, 3> high{-1, -1, -1};
+  for (std::int32_t k = 0; k < old.size[2]; ++k) {
+    for (std::int32_t j = 0; j < old.size[1]; ++j) {
+      for (std::int32_t i = 0; i < old.size[0]; ++i) {
+        if (model.labels[old.index(i, j, k)] == 0) continue;
+        const std::array<std::int32_t, 3> voxel{i, j, k};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          low[axis] = std::min(low[axis], voxel[axis]);
+          high[axis] = std::max(high[axis], voxel[axis]);
+        }
+      }
+    }
+  }
+  constexpr std::int32_t kMargin = 2;
+  geometry::VoxelGrid grid = old;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    low[axis] = std::max(0, low[axis] - kMargin);
+    grid.size[axis] = std::min(old.size[axis], high[axis] + kMargin + 1) - low[axis];
+  }
+  grid.origin = old.centre(low[0], low[1], low[2]);
+  BoneModel cropped = model;
+  cropped.grid = grid;
+  cropped.labels.assign(grid.count(), 0);
+  cropped.density.assign(model.density.empty() ? 0 : grid.count(), 0.0F);
+  for (std::int32_t k = 0; k < grid.size[2]; ++k) {
+    for (std::int32_t j = 0; j < grid.size[1]; ++j) {
+      const std::size_t from = old.index(low[0], low[1] + j, low[2] + k);
+      const auto to = static_cast<std::ptrdiff_t>(grid.index(0, j, k));
+      const auto length = static_cast<std::size_t>(grid.size[0]);
+      std::copy_n(model.labels.data() + from, length, cropped.labels.begin() + to);
+      if (!model.density.empty()) {
+        std::copy_n(model.density.data() + from, length, cropped.density.begin() + to);
+      }
+    }
+  }
+  model = std::move(cropped);
+}
+
+BoneModel labelled_bone(const Import& import, const VolumeHead& head, const UprightVolume& volume) {
+  const Plan plan = plan_for(volume, import.options.spacing);
+  check_room(import, plan.grid, 2.0);
+  BoneModel model;
+  model.grid = plan.grid;
+  model.labels = labels_of(import, volume.components[0]);
+  if (!plan.as_it_is) {
+    model.labels = resample_labels(model.labels, volume, plan.grid, plan.own_axes, import.report);
+  }
+  model.source = fmt::format("{} ({}), labels {}", import.name, head.format, plan.sentence);
+  name_labels(import, structures_in(head.keys), model);
+  return model;
+}
+
+GreyLevels levels_of(const Import& import, const VolumeHead& head, std::span<const float> values) {
+  const LoadOptions& options = import.options;
+  const auto [low, high] = std::ranges::minmax(values);
+  const bool hounsfield = head.hounsfield || low <= kAirBelow;
+  if (!options.threshold && !options.find_threshold && !hounsfield) {
+    throw InputError(fmt::format(
+        "{}: its values run from {:.6g} to {:.6g}, which are not Hounsfield units; allowed: a "
+        "threshold for bone, such as the {:.6g} that 'auto' finds",
+        import.name, low, high, find_threshold(values)));
+  }
+  GreyLevels levels{};
+  levels.threshold =
+      options.find_threshold ? find_threshold(values) : options.threshold.value_or(kThreshold);
+  constexpr double kMostBone = 0.99;
+  const bool usual = hounsfield && levels.threshold < kDense;
+  levels.dense =
+      options.dense.value_or(usual ? kDense : quantile_from(values, levels.threshold, kMostBone));
+  if (!options.dense && !(levels.dense > levels.threshold)) levels.dense = levels.threshold + 1.0;
+  if (!(levels.dense > levels.threshold)) {
+    throw InputError(fmt::format("dense bone is {:.6g}; allowed: above the threshold, {:.6g}",
+                                 levels.dense, levels.threshold));
+  }
+  if (!(high >= levels.threshold)) {
+    throw InputError(fmt::format(
+        "{}: holds no bone: its values run from {:.6g} to {:.6g}; allowed: some of {:.6g} or more",
+        import.name, low, high, levels.threshold));
+  }
+  return levels;
+}
+
+BoneModel grey_bone(const Import& import, const VolumeHead& head, const UprightVolume& volume) {
+  const GreyLevels levels = levels_of(import, head, volume.components[0]);
+  const Plan plan = plan_for(volume, import.options.spacing.value_or(kGreySpacing));
+  check_room(import, plan.grid, 4.0 * sizeof(float) + 2.0);
+  BoneModel model;
+  model.grid = plan.grid;
+  geometry::BigArray<float> resampled;
+  if (!plan.as_it_is) {
+    resampled = resample_grey(volume, plan.grid, plan.own_axes, import.report);
+  }
+  const geometry::BigArray<float>& values = plan.as_it_is ? volume.components[0] : resampled;
+  model.labels.resize(values.size());
+  model.density.resize(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    model.density[i] = density_of(values[i], levels);
+    model.labels[i] = model.density[i] > 0.0F ? 1 : 0;
+  }
+  model.source = fmt::format("{} ({}), bone from {:.6g}{} on and dense at {:.6g}, {}", import.name,
+                             head.format, levels.threshold, head.hounsfield ? " HU" : "",
+                             levels.dense, plan.sentence);
+  name_labels(import, {Structure{}, structure_named("bone", 1)}, model);
+  return model;
+}
+
+/// The grid to the last bit, where the key says the same as the head.
+void take_exact_grid(const VolumeHead& head, geometry::VoxelGrid& grid) {
+  const auto key = head.keys.find("haptrial_grid");
+  if (key == head.keys.end()) return;
+  std::istringstream in(key->second);
+  geometry::VoxelGrid exact = grid;
+  if (in >> exact.spacing >> exact.origin.x() >> exact.origin.y() >> exact.origin.z() &&
+      std::abs(exact.spacing - grid.spacing) < 1e-9 && (exact.origin - grid.origin).norm() < 1e-9) {
+    grid = exact;
+  }
+}
+
+/// One that save_bone() wrote.
+BoneModel saved_bone(const Import& import, const VolumeHead& head, const UprightVolume& volume) {
+  BoneModel model = labelled_bone(import, head, volume);
+  const bool same = model.grid.size == volume.size;
+  if (same) take_exact_grid(head, model.grid);
+  const auto source = head.keys.find("haptrial_source");
+  if (same && source != head.keys.end()) model.source = source->second;
+  if (volume.components.size() < 2) return model;
+  model.density.assign(model.labels.size(), 0.0F);
+  UprightVolume second = volume;
+  second.components = {volume.components[1]};
+  const Plan plan = plan_for(volume, import.options.spacing);
+  const geometry::BigArray<float> values =
+      plan.as_it_is ? second.components[0]
+                    : resample_grey(second, plan.grid, plan.own_axes, import.report);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (model.labels[i] == 0) continue;
+    model.density[i] = static_cast<float>(std::clamp(std::round(values[i]), 1.0F, 255.0F) / 255.0F);
+  }
+  return model;
+}
+
+}  // namespace
+
+BoneModel load_bone(const fs::path& file, const LoadOptions& options,
+                    const geometry::WorkReport& report) {
+  check_options(options);
+  const Room room = options.room ? Room(options.room) : Room(check_system_memory);
+  const Import import{file.string(), options, room, report};
+  SourceVolume source = read_volume(file, room, report);
+  const VolumeHead head = source.head;
+  const auto saved = head.keys.find("haptrial_bone");
+  if (saved == head.keys.end() && head.components > 1) {
+    throw InputError(
+        fmt::format("{}: has {} values per voxel; allowed: 1", import.name, head.components));
+  }
+  const VolumeKind kind =
+      saved != head.keys.end() ? VolumeKind::kLabels : kind_of(head, source.values, options);
+  const UprightVolume volume = upright(std::move(source));
+  BoneModel model = saved != head.keys.end()      ? saved_bone(import, head, volume)
+                    : kind == VolumeKind::kLabels ? labelled_bone(import, head, volume)
+                                                  : grey_bone(import, head, volume);
+  model.name = saved != head.keys.end() ? saved->second : file.filename().string();
+  leave_out(import, model);
+  if (std::ranges::all_of(model.labels, [](std::uint8_t label) { return label == 0; })) {
+    throw InputError(fmt::format("{}: holds no bone; allowed: at least one voxel", import.name));
+  }
+  if (kind == VolumeKind::kGrey) crop(model);
+  try {
+    check(model);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: {}", import.name, error.what()));
+  }
+  return model;
+}
+
+}  // namespace haptrial::bone

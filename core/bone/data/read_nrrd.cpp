@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+#include <teem/nrrd.h>
+
+#include <cmath>
+#include <fstream>
+#include <memory>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/bone/data/read_volume_internal.h"
+
+namespace haptrial::bone {
+namespace {
+
+struct Forget {
+  void operator()(Nrrd* nrrd) const { nrrdNuke(nrrd); }
+  void operator()(NrrdIoState* state) const { nrrdIoStateNix(state); }
+};
+using Holder = std::unique_ptr<Nrrd, Forget>;
+
+/// What teem complained about, as one line: its last one says the most.
+std::string complaint() {
+  const std::unique_ptr<char, decltype(&std::free)> text(biffGetDone(NRRD), &std::free);
+  std::string words = text ? text.get() : "";
+  while (!words.empty() && words.back() == '\n') {
+    words.pop_back();
+  }
+  const std::size_t line = words.rfind('\n');
+  words = line == std::string::npos ? words : words.substr(line + 1);
+  const std::size_t colon = words.find("] ");  // "[nrrd] function: what"
+  return colon == std::string::npos ? words : words.substr(colon + 2);
+}
+
+/// teem would take other formats as well.
+void check_magic(const std::string& name) {
+  std::ifstream in(name, std::ios::binary);
+  std::string magic(7, ' ');
+  if (!in.read(magic.data(), 7) || magic != "NRRD000") {
+    throw InputError(
+        fmt::format("{}: does not begin with 'NRRD000'; allowed: a volume in NRRD format", name));
+  }
+}
+
+double metres(const char* unit) {
+  const std::string name = unit == nullptr ? "" : unit;
+  if (name == "m") return 1.0;
+  if (name == "cm") return 1e-2;
+  if (name == "um" || name == "microns") return 1e-6;
+  return 1e-3;  // as good as every program takes it
+}
+
+/// From the file's space to LPS: signs of x and y.
+std::optional<Eigen::Vector3d> to_lps(int space) {
+  switch (space) {
+    case nrrdSpaceLeftPosteriorSuperior:
+    case nrrdSpaceUnknown:
+    case nrrdSpace3DRightHanded:
+    case nrrdSpaceScannerXYZ:
+      return Eigen::Vector3d(1.0, 1.0, 1.0);
+    case nrrdSpaceRightAnteriorSuperior:
+      return Eigen::Vector3d(-1.0, -1.0, 1.0);
+    case nrrdSpaceLeftAnteriorSuperior:
+      return Eigen::Vector3d(1.0, -1.0, 1.0);
+    default:
+      return std::nullopt;
+  }
+}
+
+void take_places(const std::string& name, const Nrrd& nrrd, unsigned first, VolumeHead& head) {
+  const bool placed = nrrd.spaceDim == 3;
+  const auto signs = to_lps(nrrd.space);
+  if (nrrd.spaceDim != 0 && (!placed || !signs)) {
+    throw InputError(
+        fmt::format("{}: its space is '{}' with {} axes; allowed: left-posterior-superior, "
+                    "right-anterior-superior, left-anterior-superior",
+                    name, airEnumStr(nrrdSpace, nrrd.space), nrrd.spaceDim));
+  }
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    const NrrdAxisInfo& info = nrrd.axis[first + axis];
+    Eigen::Vector3d step = Eigen::Vector3d::Zero();
+    if (placed) {
+      for (int i = 0; i < 3; ++i) {
+        step[i] = (*signs)[i] * info.spaceDirection[i] * metres(nrrd.spaceUnits[i]);
+      }
+    } else {
+      step[axis] = info.spacing * metres(info.units);
+    }
+    head.steps.col(axis) = step;
+  }
+  for (int i = 0; i < 3 && placed; ++i) {
+    const double place = nrrd.spaceOrigin[i];
+    head.origin[i] = std::isfinite(place) ? (*signs)[i] * place * metres(nrrd.spaceUnits[i]) : 0.0;
+  }
+  if (!head.steps.allFinite()) {
+    throw InputError(fmt::format(
+        "{}: does not say how large its voxels are; allowed: 'space directions' or 'spacings'",
+        name));
+  }
+}
+
+VolumeHead head_of(const std::string& name, const Nrrd& nrrd) {
+  VolumeHead head;
+  head.format = "NRRD";
+  const unsigned first = nrrd.dim == 4 ? 1 : 0;
+  if (nrrd.dim < 3 || nrrd.dim > 4 || (first == 1 && nrrd.axis[0].size > 2)) {
+    throw InputError(fmt::format(
+        "{}: has {} axes{}; allowed: 3, with one value per voxel", name, nrrd.dim,
+        first == 1 ? fmt::format(", {} values along the first", nrrd.axis[0].size) : ""));
+  }
+  if (nrrd.type == nrrdTypeBlock || nrrd.type <= nrrdTypeUnknown || nrrd.type >= nrrdTypeLast) {
+    throw InputError(fmt::format("{}: its values are not numbers; allowed: whole or real", name));
+  }
+  head.components = first == 1 ? static_cast<int>(nrrd.axis[0].size) : 1;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    const std::size_t size = nrrd.axis[first + axis].size;
+    head.size[axis] = static_cast<std::int32_t>(std::min<std::size_t>(size, 1U << 30));
+  }
+  take_places(name, nrrd, first, head);
+  for (unsigned i = 0; i < nrrdKeyValueSize(&nrrd); ++i) {
+    char* key = nullptr;
+    char* value = nullptr;
+    nrrdKeyValueIndex(&nrrd, &key, &value, i);
+    if (key != nullptr && value != nullptr) {
+      head.keys[key] = value;
+      head.labels = head.labels || std::string(key).starts_with("label_") ||
+                    std::string(key).starts_with("Segment0_");
+    }
+    std::free(key);  // NOLINT: teem takes them from malloc
+    std::free(value);
+  }
+  return head;
+}
+
+Holder load(const std::string& name, bool head_only) {
+  Holder nrrd(nrrdNew());
+  const std::unique_ptr<NrrdIoState, Forget> state(nrrdIoStateNew());
+  nrrdIoStateSet(state.get(), nrrdIoStateSkipData, head_only ? 1 : 0);
+  if (nrrdLoad(nrrd.get(), name.c_str(), state.get()) != 0) {
+    throw InputError(fmt::format("{}: cannot be read as NRRD: {}", name, complaint()));
+  }
+  return nrrd;
+}
+
+}  // namespace
+
+SourceVolume read_nrrd(const std::filesystem::path& file, const Room& room) {
+  const std::string name = file.string();
+  check_magic(name);
+  SourceVolume volume{head_of(name, *load(name, true)), {}};
+  check_head(name, volume.head, room);
+  const Holder nrrd = load(name, false);
+  const std::size_t count = volume.head.count() * static_cast<std::size_t>(volume.head.components);
+  if (nrrd->data == nullptr || nrrdElementNumber(nrrd.get()) != count) {
+    throw InputError(fmt::format("{}: holds less than its head promises", name));
+  }
+  volume.values.resize(count);
+  const auto look_up = nrrdFLookup[nrrd->type];
+  for (std::size_t i = 0; i < count; ++i) {
+    volume.values[i] = look_up(nrrd->data, i);
+  }
+  return volume;
+}
+
+}  // namespace haptrial::bone

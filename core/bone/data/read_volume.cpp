@@ -1,0 +1,255 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <Eigen/LU>
+#include <cerrno>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <new>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/bone/data/read_volume_internal.h"
+
+namespace haptrial::bone {
+namespace fs = std::filesystem;
+namespace {
+
+using nlohmann::json;
+
+constexpr rlim_t kPatience = 300;  // of the reading process [s of its processor]
+
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return number_; }
+  void close() {
+    if (number_ >= 0) ::close(number_);
+    number_ = -1;
+  }
+
+ private:
+  int number_;
+};
+
+bool put(int to, const void* from, std::size_t bytes) {
+  const char* at = static_cast<const char*>(from);
+  while (bytes > 0) {
+    const ssize_t done = write(to, at, bytes);
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) return false;
+    at += done;
+    bytes -= static_cast<std::size_t>(done);
+  }
+  return true;
+}
+
+json told(const VolumeHead& head) {
+  const auto* steps = head.steps.data();
+  const auto* origin = head.origin.data();
+  return {{"size", head.size},
+          {"components", head.components},
+          {"steps", std::vector<double>(steps, steps + 9)},
+          {"origin", std::vector<double>(origin, origin + 3)},
+          {"labels", head.labels},
+          {"hounsfield", head.hounsfield},
+          {"keys", head.keys},
+          {"format", head.format}};
+}
+
+VolumeHead heard(const json& words) {
+  VolumeHead head;
+  words.at("size").get_to(head.size);
+  words.at("components").get_to(head.components);
+  const auto steps = words.at("steps").get<std::vector<double>>();
+  const auto origin = words.at("origin").get<std::vector<double>>();
+  head.steps = Eigen::Map<const Eigen::Matrix3d>(steps.data());
+  head.origin = Eigen::Map<const Eigen::Vector3d>(origin.data());
+  words.at("labels").get_to(head.labels);
+  words.at("hounsfield").get_to(head.hounsfield);
+  words.at("keys").get_to(head.keys);
+  words.at("format").get_to(head.format);
+  return head;
+}
+
+/// In the other process: what comes back is JSON on the pipe, values in the shared memory.
+json read_and_share(const fs::path& file, const Room& room, int memory) {
+  try {
+    const SourceVolume volume = read_here(file, room);
+    if (!put(memory, volume.values.data(), volume.values.size() * sizeof(float))) {
+      return {{"run_error", fmt::format("{}: no memory to hand it over", file.string())}};
+    }
+    return {{"head", told(volume.head)}};
+  } catch (const InputError& error) {
+    return {{"input_error", error.what()}};
+  } catch (const std::bad_alloc&) {
+    return {{"input_error", fmt::format("{}: needs more memory than there is", file.string())}};
+  } catch (const std::exception& error) {
+    return {{"input_error", fmt::format("{}: cannot be read: {}", file.string(), error.what())}};
+  } catch (...) {
+    return {{"input_error", fmt::format("{}: cannot be read", file.string())}};
+  }
+}
+
+[[noreturn]] void be_the_reader(const fs::path& file, const Room& room, int pipe, int memory) {
+  const rlimit none{};
+  const rlimit patience{kPatience, kPatience};
+  setrlimit(RLIMIT_CORE, &none);
+  setrlimit(RLIMIT_CPU, &patience);
+  for (const int crash : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGTERM, SIGINT}) {
+    std::signal(crash, SIG_DFL);
+  }
+  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);  // libraries chatter
+  dup2(nowhere, STDERR_FILENO);
+  dup2(nowhere, STDOUT_FILENO);
+  const std::string words =
+      read_and_share(file, room, memory).dump(-1, ' ', true, json::error_handler_t::replace);
+  put(pipe, words.data(), words.size());
+  _exit(0);
+}
+
+/// All that the other process says; it is ended where the report asks to stop.
+std::string listen(int pipe, pid_t reader, const geometry::WorkReport& report) {
+  std::string words;
+  char piece[4096];
+  for (;;) {
+    pollfd wait{pipe, POLLIN, 0};
+    if (poll(&wait, 1, 100) == 0 || errno == EINTR) {
+      errno = 0;
+      if (report && !report(0.0)) {
+        kill(reader, SIGKILL);
+        waitpid(reader, nullptr, 0);
+        throw geometry::Cancelled();
+      }
+      continue;
+    }
+    const ssize_t size = read(pipe, piece, sizeof piece);
+    if (size < 0 && errno == EINTR) continue;
+    if (size <= 0) return words;
+    words.append(piece, static_cast<std::size_t>(size));
+  }
+}
+
+geometry::BigArray<float> fetch(const std::string& name, int memory, std::size_t count) {
+  geometry::BigArray<float> values(count);
+  auto* bytes = reinterpret_cast<char*>(values.data());
+  std::size_t done = 0;
+  while (done < count * sizeof(float)) {
+    const ssize_t size =
+        pread(memory, bytes + done, count * sizeof(float) - done, static_cast<off_t>(done));
+    if (size <= 0) throw RunError(fmt::format("{}: cannot be handed over", name));
+    done += static_cast<std::size_t>(size);
+  }
+  return values;
+}
+
+void make_finite(geometry::BigArray<float>& values) {
+  float lowest = std::numeric_limits<float>::max();
+  for (const float value : values) {
+    lowest = std::isfinite(value) ? std::min(lowest, value) : lowest;
+  }
+  for (float& value : values) {
+    value = std::isfinite(value) ? value : lowest;
+  }
+}
+
+}  // namespace
+
+void check_system_memory(const std::string& what, double bytes) {
+  std::ifstream info("/proc/meminfo");
+  std::string key;
+  double kilobytes = 0.0;
+  for (std::string rest; info >> key >> kilobytes && std::getline(info, rest);) {
+    if (key == "MemAvailable:" && bytes > 1024.0 * kilobytes) {
+      throw InputError(fmt::format("{} may take {:.3g} GB of memory; the system has {:.3g} GB",
+                                   what, bytes / 1e9, 1024.0 * kilobytes / 1e9));
+    }
+  }
+}
+
+void check_head(const std::string& name, const VolumeHead& head, const Room& room) {
+  constexpr std::int32_t kLargest = 32767;
+  for (const std::int32_t size : head.size) {
+    if (size < 1 || size > kLargest) {
+      throw InputError(fmt::format("{}: has {} x {} x {} voxels; allowed: 1 to {} along an axis",
+                                   name, head.size[0], head.size[1], head.size[2], kLargest));
+    }
+  }
+  const Eigen::Vector3d edges = head.steps.colwise().norm();
+  const double volume = std::abs(head.steps.determinant());
+  if (!head.steps.allFinite() || !head.origin.allFinite() || !(edges.minCoeff() > 1e-6) ||
+      !(edges.maxCoeff() < 0.1) || !(volume > 0.1 * edges.prod())) {
+    throw InputError(fmt::format(
+        "{}: its voxels are {:.4g} x {:.4g} x {:.4g} mm; allowed: 0.001 to 100 mm along axes that "
+        "span a volume",
+        name, 1e3 * edges[0], 1e3 * edges[1], 1e3 * edges[2]));
+  }
+  // The library's values, ours, the copy handed over and the one received.
+  constexpr double kBytes = 8.0 + 3.0 * sizeof(float);
+  room(fmt::format("{}: {} x {} x {} voxels", name, head.size[0], head.size[1], head.size[2]),
+       kBytes * static_cast<double>(head.count()) * head.components);
+}
+
+SourceVolume read_here(const fs::path& path, const Room& room) {
+  const std::string name = path.filename().string();
+  if (fs::is_directory(path)) return read_dicom(path, room);
+  const auto ends = [&](const char* ending) { return name.ends_with(ending); };
+  if (ends(".nrrd") || ends(".nhdr")) return read_nrrd(path, room);
+  if (ends(".nii") || ends(".nii.gz")) return read_nifti(path, room);
+  if (ends(".dcm")) return read_dicom(path, room);
+  throw InputError(fmt::format(
+      "{}: is no volume by its name; allowed: .nrrd, .nhdr, .nii, .nii.gz, .dcm, or a folder with "
+      "a DICOM series",
+      path.string()));
+}
+
+SourceVolume read_volume(const fs::path& file, const Room& room,
+                         const geometry::WorkReport& report) {
+  if (!fs::exists(file)) {
+    throw InputError(fmt::format("{}: is not there; allowed: a file or folder", file.string()));
+  }
+  const Descriptor memory(memfd_create("volume", MFD_CLOEXEC));
+  int ends[2];
+  if (memory.get() < 0 || pipe2(ends, O_CLOEXEC) != 0) {
+    throw RunError(
+        fmt::format("{}: no memory to read it into: {}", file.string(), std::strerror(errno)));
+  }
+  const Descriptor in(ends[0]);
+  Descriptor out(ends[1]);
+  const pid_t reader = fork();
+  if (reader < 0) {
+    throw RunError(
+        fmt::format("{}: no process to read it: {}", file.string(), std::strerror(errno)));
+  }
+  if (reader == 0) be_the_reader(file, room, out.get(), memory.get());
+  out.close();
+  errno = 0;
+  const std::string words = listen(in.get(), reader, report);
+  while (waitpid(reader, nullptr, 0) < 0 && errno == EINTR) {
+  }
+  const json answer = json::parse(words, nullptr, false);
+  if (answer.is_discarded()) {
+    throw InputError(fmt::format(
+        "{}: is damaged so that its reader broke off; allowed: a whole file", file.string()));
+  }
+  if (answer.contains("input_error")) throw InputError(answer["input_error"].get<std::string>());
+  if (answer.contains("run_error")) throw RunError(answer["run_error"].get<std::string>());
+  SourceVolume volume{heard(answer.at("head")), {}};
+  const auto components = static_cast<std::size_t>(volume.head.components);
+  volume.values = fetch(file.string(), memory.get(), components * volume.head.count());
+  make_finite(volume.values);
+  return volume;
+}
+
+}  // namespace haptrial::bone

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/geometry/big_array.h"
+#include "core/geometry/work.h"
+
+namespace haptrial::bone {
+
+/// What a file says about the volume in it, in metres and in the frame of the patient (LPS: x to
+/// the left, y to the back, z up).
+struct VolumeHead {
+  std::array<std::int32_t, 3> size{0, 0, 0};           // voxels along i, j, k, i fastest
+  int components{1};                                   // values of a voxel, side by side: 1 or 2
+  Eigen::Matrix3d steps{Eigen::Matrix3d::Identity()};  // columns: one voxel along i, j, k [m]
+  Eigen::Vector3d origin{Eigen::Vector3d::Zero()};     // centre of voxel (0, 0, 0) [m]
+  bool labels{false};                                  // the file says that they are
+  bool hounsfield{false};                              // likewise
+  std::map<std::string, std::string> keys;             // key/values of the file
+  std::string format;                                  // "NRRD", "NIfTI", "DICOM, 240 slices"
+
+  std::size_t count() const {
+    return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *
+           static_cast<std::size_t>(size[2]);
+  }
+};
+
+struct SourceVolume {
+  VolumeHead head;
+  geometry::BigArray<float> values;  // count() x components
+};
+
+/// Asked before memory is taken: what for, and how many bytes; throws InputError to refuse.
+using Room = std::function<void(const std::string& what, double bytes)>;
+/// Refuses what the system does not have.
+void check_system_memory(const std::string& what, double bytes);
+
+/// Reads a volume in a process of its own, so that a library which crashes, hangs or takes all
+/// memory over a damaged file costs a sentence. Values that are not finite become the smallest
+/// finite one.
+/// @throws InputError, RunError, geometry::Cancelled
+SourceVolume read_volume(const std::filesystem::path& file, const Room& room,
+                         const geometry::WorkReport& report);
+
+}  // namespace haptrial::bone
