@@ -80,8 +80,8 @@ BurrParameters default_burr(BurrKind kind, double diameter) {
   BurrParameters p;
   p.kind = kind;
   p.diameter = diameter;
-  // Small burrs need the same number of samples to push as evenly as large ones.
-  p.sample_spacing = std::min(p.sample_spacing, diameter / 28.0);
+  // Small burrs need as many samples as large ones to push as evenly.
+  p.sample_spacing = std::min(0.25e-3, diameter / 28.0);
   const bool cutting = kind == BurrKind::kCutting;
   p.removal_rate = cutting ? 25.0 : 10.0;
   p.falloff = cutting ? 12.0 : 2.0;

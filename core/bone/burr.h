@@ -16,12 +16,12 @@ enum class BurrKind : std::uint8_t { kDiamond, kCutting };
 /// sample: a finer sampling feels and drills the same.
 struct BurrParameters {
   BurrKind kind{BurrKind::kDiamond};
-  double diameter{4e-3};           // from 0.0005 to 0.03 [m]
-  double sample_spacing{0.14e-3};  // edge of a cell with one sample > 0; at most 1e6 samples [m]
-  double removal_rate{10.0};       // R_max, share of the immersed volume >= 0 [1/(N·s)]
-  double falloff{2.0};             // of the rate with latitude >= 0 [1/(N·s·rad)]
-  double tangential_gain{1e11};    // per immersed volume and distance from the axis >= 0 [N/m^4]
-  bool right_handed{true};         // turns the tangential force around where false
+  double diameter{4e-3};             // from 0.0005 to 0.03 [m]
+  double sample_spacing{4e-3 / 28};  // edge of a cell with one sample > 0; at most 1e6 samples [m]
+  double removal_rate{10.0};         // R_max, share of the immersed volume >= 0 [1/(N·s)]
+  double falloff{2.0};               // of the rate with latitude >= 0 [1/(N·s·rad)]
+  double tangential_gain{1e11};      // per immersed volume and distance from the axis >= 0 [N/m^4]
+  bool right_handed{true};           // turns the tangential force around where false
 };
 
 /// What a burr of this kind and size does unless told otherwise: samples 0.25 mm apart, or 28 over
