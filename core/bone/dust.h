@@ -20,7 +20,7 @@ struct DustParameters {
   double voxel{0.5e-3};          // edge of the voxels in whose volumes dust is counted > 0 [m]
   double bulking{1.6};           // loose dust takes this many times the room of solid bone >= 1
   double fall_speed{0.15};       // > 0 [m/s]
-  double repose_angle{0.6};      // of a pile at rest, 0.05 to 0.61 [rad]
+  double slope{0.65};            // of a pile at rest, rise over run, 0.05 to 0.7
   double suction_rate{1.5e-6};   // solid volume a second > 0 [m3/s]
   double suction_reach{2.5e-3};  // from the nozzle's mouth > 0 [m]
   Eigen::Vector3d up{Eigen::Vector3d::UnitY()};  // against gravity in W, of any length but 0
@@ -29,7 +29,7 @@ struct DustParameters {
   int max_blocks{4096};  // of 512 cells: bounds the memory, 1 to 100,000
 };
 
-/// Reads the keys of a [dust] table: cell, bulking, fall_speed, repose_angle, suction_rate,
+/// Reads the keys of a [dust] table: cell, bulking, fall_speed, slope, suction_rate,
 /// suction_reach.
 DustParameters read_dust_parameters(Table& table);
 
@@ -73,12 +73,12 @@ struct DustBalance {
   double lying{0.0};  // in cells, moving or at rest
   double held{0.0};   // at the burr, for want of room
   double suctioned{0.0};
-  double fallen{0.0};  // out of the region
+  double fallen{0.0};  // out of the region, or of the memory that there may be
 };
 
 /// Bone dust as amounts in the cells of a hashed grid, without particles. In steps of
 /// cell / fall_speed, amounts go down a cell where there is room and no bone; what rests on
-/// something flows to lower neighbours where it stands steeper than the angle of repose; tools push
+/// something flows to lower neighbours where it stands steeper than the slope of repose; tools push
 /// out what lies in their way. Nothing crosses a voxel of bone: the straight line between two cells
 /// must be free.
 ///
