@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kEdge = BoneVolume::kEdge;
 constexpr int kNone = -1;
-constexpr int kVoxelReach = 3;  // how far from a voxel, in cells, a quad may follow from it
+constexpr int kVoxelReach = CellField::kReach + 1;  // how far, in cells, a quad follows a voxel
 
 constexpr std::uint8_t kTessellate = 1;
 constexpr std::uint8_t kDensity = 2;

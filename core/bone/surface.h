@@ -21,7 +21,7 @@ namespace haptrial::bone {
 /// which one is filled has one quad, of the vertices of the four cells around the pair, as two
 /// triangles that run anticlockwise seen from outside. Every edge is therefore closed: it is
 /// shared by as many triangles one way as the other. All of a vertex and a quad follows from the
-/// voxels at most 2 from the cells: a local update gives what a full one gives, to the bit.
+/// voxels at most 4 from the cells: a local update gives what a full one gives, to the bit.
 ///
 /// Vertices and quads keep their slots while they live; slots of dead ones are used again.
 /// One thread, any; it may run while the servo thread changes the volume.

@@ -6,11 +6,44 @@
 namespace haptrial::bone {
 namespace {
 
-constexpr int kReach = 2;  // voxels on either side that count
+/// Five neighbours `step` apart, weighted 1, 4, 6, 4, 1.
+template <class Number>
+Number weighted(const Number* p, int step) {
+  return static_cast<Number>(p[0] + p[4 * step] + 4 * (p[step] + p[3 * step]) + 6 * p[2 * step]);
+}
 
-/// The brick's voxels in the volume's addresses; 0 where there is none.
-std::int32_t first_address(const BoneVolume& volume, const Voxel& brick_origin) {
-  return volume.address(brick_origin);
+/// Smooths a cube of kFrom³ numbers to one of (kFrom - 4)³.
+template <int kFrom, class Number>
+void smooth_cube(const Number* from, Number* to) {
+  constexpr int kTo = kFrom - 4;
+  std::array<Number, kFrom * kFrom * kTo> along_x;
+  std::array<Number, kFrom * kTo * kTo> along_y;
+  for (int row = 0; row < kFrom * kFrom; ++row) {
+    for (int i = 0; i < kTo; ++i) {
+      along_x[static_cast<std::size_t>(kTo * row + i)] = weighted(from + kFrom * row + i, 1);
+    }
+  }
+  for (int k = 0; k < kFrom; ++k) {
+    const Number* plane = along_x.data() + kTo * kFrom * k;
+    for (int at = 0; at < kTo * kTo; ++at) {
+      along_y[static_cast<std::size_t>(kTo * kTo * k + at)] = weighted(plane + at, kTo);
+    }
+  }
+  for (int at = 0; at < kTo * kTo * kTo; ++at) {
+    to[at] = weighted(along_y.data() + at, kTo * kTo);
+  }
+}
+
+/// Four times the slope in a cell of a cube of kSide³ numbers, from its eight corners.
+template <int kSide, class Number>
+Eigen::Vector3f slope_of(const Number* first) {
+  Eigen::Vector3i slope = Eigen::Vector3i::Zero();
+  for (int b = 0; b < 8; ++b) {
+    const Voxel side(b & 1, b >> 1 & 1, b >> 2);
+    const auto number = static_cast<int>(first[side.x() + kSide * (side.y() + kSide * side.z())]);
+    slope += number * (2 * side - Voxel::Ones());
+  }
+  return slope.cast<float>();
 }
 
 }  // namespace
@@ -19,99 +52,82 @@ bool CellField::read(const BoneVolume& volume, const Occupancy& occupancy,
                      const Voxel& origin) noexcept {
   std::array<std::int32_t, 27> bricks{};
   for (int b = 0; b < 27; ++b) {
-    bricks[static_cast<std::size_t>(b)] =
-        first_address(volume, origin + kEdge * (Voxel(b % 3, b / 3 % 3, b / 9) - Voxel::Ones()));
+    const Voxel brick = origin + kEdge * (Voxel(b % 3, b / 3 % 3, b / 9) - Voxel::Ones());
+    bricks[static_cast<std::size_t>(b)] = volume.address(brick) / BoneVolume::kBrickVoxels;
   }
-  std::size_t at = 0;
-  int corners_filled = 0;
-  for (int k = -kReach; k < kWide - kReach; ++k) {
-    for (int j = -kReach; j < kWide - kReach; ++j) {
-      const auto row =
-          static_cast<std::size_t>(3 * ((j + kEdge) / kEdge) + 9 * ((k + kEdge) / kEdge));
-      const int in_brick = kEdge * ((j + kEdge) % kEdge + kEdge * ((k + kEdge) % kEdge));
-      const bool corner_row = j >= 0 && j < kCorner && k >= 0 && k < kCorner;
-      for (int i = -kReach; i < kWide - kReach; ++i, ++at) {
-        const std::int32_t first = bricks[row + static_cast<std::size_t>((i + kEdge) / kEdge)];
-        const bool filled = first != 0 && occupancy.holds(first + in_brick + (i + kEdge) % kEdge);
-        filled_[at] = filled ? 1 : 0;
-        corners_filled += filled && corner_row && i >= 0 && i < kCorner ? 1 : 0;
+  constexpr std::uint32_t kCorners = (1U << kCorner) - 1;
+  std::uint32_t any = 0;
+  std::uint32_t all = kCorners;
+  std::size_t row = 0;
+  for (int k = kEdge - kReach; k < kEdge - kReach + kWide; ++k) {
+    for (int j = kEdge - kReach; j < kEdge - kReach + kWide; ++j, ++row) {
+      const auto first = static_cast<std::size_t>(3 * (j / kEdge) + 9 * (k / kEdge));
+      std::uint32_t bits = 0;
+      for (std::size_t b = 0; b < 3; ++b) {
+        const std::uint64_t layer = occupancy.layer(bricks[first + b], k % kEdge);
+        bits |= static_cast<std::uint32_t>(layer >> (kEdge * (j % kEdge)) & 0xFF) << (kEdge * b);
+      }
+      rows_[row] = bits >> (kEdge - kReach);
+      const bool corners = j >= kEdge && j <= 2 * kEdge && k >= kEdge && k <= 2 * kEdge;
+      if (corners) {
+        any |= rows_[row] >> kReach & kCorners;
+        all &= rows_[row] >> kReach;
       }
     }
   }
-  return corners_filled > 0 && corners_filled < kCorner * kCorner * kCorner;
+  return any != 0 && all != kCorners;
 }
 
 unsigned CellField::corners(int i, int j, int k) const noexcept {
-  const std::uint16_t* first =
-      filled_.data() + (i + kReach) + kWide * ((j + kReach) + kWide * (k + kReach));
-  unsigned bits = 0;
-  for (int b = 0; b < 8; ++b) {
-    const int step = (b & 1) + kWide * ((b >> 1 & 1) + kWide * (b >> 2));
-    bits |= static_cast<unsigned>(first[step]) << b;
-  }
-  return bits;
+  const std::uint32_t* row = rows_.data() + (j + kReach) + kWide * (k + kReach);
+  const auto two = [&](int step) { return row[step] >> (i + kReach) & 3U; };
+  return two(0) | two(1) << 2 | two(kWide) << 4 | two(kWide + 1) << 6;
 }
 
 void CellField::smooth() noexcept {
-  constexpr int kRow = kWide * kWide;
-  std::array<std::uint16_t, kCorner * kRow> along_x;  // [k][j][i], i only of corners
-  std::array<std::uint16_t, kCorner * kCorner * kWide> along_y;
-  const auto sum = [](const std::uint16_t* p, int step) {
-    return static_cast<std::uint16_t>(p[0] + 4 * p[step] + 6 * p[2 * step] + 4 * p[3 * step] +
-                                      p[4 * step]);
-  };
-  for (int row = 0; row < kRow; ++row) {
-    for (int i = 0; i < kCorner; ++i) {
-      along_x[static_cast<std::size_t>(kCorner * row + i)] =
-          sum(filled_.data() + kWide * row + i, 1);
+  std::array<std::uint16_t, kWide * kWide * kWide> filled;
+  for (std::size_t row = 0; row < rows_.size(); ++row) {
+    for (std::size_t i = 0; i < kWide; ++i) {
+      filled[kWide * row + i] = static_cast<std::uint16_t>(rows_[row] >> i & 1U);
     }
   }
-  for (int k = 0; k < kWide; ++k) {
-    for (int j = 0; j < kCorner; ++j) {
-      for (int i = 0; i < kCorner; ++i) {
-        along_y[static_cast<std::size_t>(kCorner * (kCorner * k + j) + i)] =
-            sum(along_x.data() + kCorner * (kWide * k + j) + i, kCorner);
-      }
-    }
-  }
-  for (int at = 0; at < kCorner * kCorner * kCorner; ++at) {
-    sums_[static_cast<std::size_t>(at)] = sum(along_y.data() + at, kCorner * kCorner);
-  }
+  std::array<std::uint16_t, kSums * kSums * kSums> sums;
+  smooth_cube<kWide>(filled.data(), sums.data());
+  std::copy(sums.begin(), sums.end(), sums_.begin());
+  smooth_cube<kSums>(sums_.data(), wide_sums_.data());
 }
 
 Eigen::Vector3f CellField::place(int i, int j, int k, unsigned corners,
                                  Eigen::Vector3f& normal) const noexcept {
+  constexpr int kInner = kReach - 2;  // of sums_ before the first corner
+  const std::uint32_t* sums =
+      sums_.data() + (i + kInner) + kSums * ((j + kInner) + kSums * (k + kInner));
   int total = 0;
   int lowest_filled = kFull;
   int highest_empty = 0;
-  Eigen::Vector3i slope = Eigen::Vector3i::Zero();  // 4 times that of the sums
-  Eigen::Vector3i step = Eigen::Vector3i::Zero();   // the same of filled and empty alone
+  Eigen::Vector3f step = Eigen::Vector3f::Zero();  // of filled and empty alone
   for (int b = 0; b < 8; ++b) {
     const Voxel side(b & 1, b >> 1 & 1, b >> 2);
-    const int sum = sums_[static_cast<std::size_t>(
-        (i + side.x()) + kCorner * ((j + side.y()) + kCorner * (k + side.z())))];
-    const bool filled = (corners >> b & 1U) != 0;
+    const auto sum = static_cast<int>(sums[side.x() + kSums * (side.y() + kSums * side.z())]);
     total += sum;
-    slope += sum * (2 * side - Voxel::Ones());
-    if (filled) {
+    if ((corners >> b & 1U) != 0) {
       lowest_filled = std::min(lowest_filled, sum);
-      step += 2 * side - Voxel::Ones();
+      step += (2 * side - Voxel::Ones()).cast<float>();
     } else {
       highest_empty = std::max(highest_empty, sum);
     }
   }
-  if (slope.dot(step) <= 0) {  // in a sheet or gap thinner than the smoothing
-    slope = step;
-    total = 0;
+  const Eigen::Vector3f slope = slope_of<kSums>(sums) / 4.0F;
+  Eigen::Vector3f inwards = slope_of<kCorner>(wide_sums_.data() + i + kCorner * (j + kCorner * k));
+  if (inwards.dot(step) <= 0.0F) {  // something else close by outweighs this
+    inwards = slope;
   }
-  const Eigen::Vector3f gradient = slope.cast<float>() / 4.0F;
-  const float squared = gradient.squaredNorm();
-  if (squared == 0.0F) {
-    normal = Eigen::Vector3f::UnitZ();
-    return Eigen::Vector3f::Zero();
+  if (inwards.dot(step) <= 0.0F) {
+    inwards = step;
   }
-  normal = gradient / -std::sqrt(squared);
-  if (total == 0) {
+  const float length = inwards.norm();
+  normal = length > 0.0F ? Eigen::Vector3f(inwards / -length) : Eigen::Vector3f::UnitZ();
+  if (slope.dot(step) <= 0.0F) {
     return Eigen::Vector3f::Zero();
   }
   // To where the field is half full, unless the voxels that are filled are less than that, as in
@@ -119,8 +135,8 @@ Eigen::Vector3f CellField::place(int i, int j, int k, unsigned corners,
   const float middle = 0.5F * static_cast<float>(lowest_filled + highest_empty);
   const float half = 0.5F * static_cast<float>(std::max(lowest_filled - highest_empty, 1));
   const float share = std::clamp(2.0F - std::abs(0.5F * kFull - middle) / half, 0.0F, 1.0F);
-  const float way = share * (0.5F * kFull - static_cast<float>(total) / 8.0F) / squared;
-  return (way * gradient).cwiseMax(-0.5F).cwiseMin(0.5F);
+  const float way = share * (0.5F * kFull - static_cast<float>(total) / 8.0F) / slope.squaredNorm();
+  return (way * slope).cwiseMax(-0.5F).cwiseMin(0.5F);
 }
 
 }  // namespace haptrial::bone

@@ -26,11 +26,13 @@ struct SurfaceVertex {
 using SurfaceTriangle = std::array<std::uint32_t, 3>;
 
 /// Which voxels are filled in and around a brick of 8 x 8 x 8 cells, and how many are around each:
-/// the sum over the 5 x 5 x 5 voxels around, weighted 1, 4, 6, 4, 1 along each axis. Whole numbers,
-/// so that the sum is the same in any order.
+/// the sum over the 5 x 5 x 5 voxels around, weighted 1, 4, 6, 4, 1 along each axis, for places,
+/// and the same of these sums for normals, which want to be smoother. Whole numbers, so that a sum
+/// is the same in any order.
 class CellField {
  public:
   static constexpr int kEdge = BoneVolume::kEdge;
+  static constexpr int kReach = 4;            // voxels around a cell that count
   static constexpr int kFull = 16 * 16 * 16;  // the sum deep inside
 
   /// Reads the voxels around the cells from `origin`, a multiple of 8 along each axis.
@@ -41,17 +43,19 @@ class CellField {
   unsigned corners(int i, int j, int k) const noexcept;
   /// Works out the sums; needed before place().
   void smooth() noexcept;
-  /// Where the smoothed field of the cell is half filled, and its direction there.
+  /// Where the smoothed field of a cell is half full, and its direction there.
   /// @param normal  outwards, of unit length
   /// @returns the place from the cell's middle, each coordinate from -0.5 to 0.5 [voxels]
   Eigen::Vector3f place(int i, int j, int k, unsigned corners,
                         Eigen::Vector3f& normal) const noexcept;
 
  private:
-  static constexpr int kWide = kEdge + 5;    // voxels -2 .. 10 of the brick
-  static constexpr int kCorner = kEdge + 1;  // voxels 0 .. 8
-  std::array<std::uint16_t, kWide * kWide * kWide> filled_;
-  std::array<std::uint16_t, kCorner * kCorner * kCorner> sums_;
+  static constexpr int kCorner = kEdge + 1;           // voxels 0 .. 8
+  static constexpr int kSums = kCorner + 4;           // voxels -2 .. 10
+  static constexpr int kWide = kCorner + 2 * kReach;  // voxels -4 .. 12
+  std::array<std::uint32_t, kWide * kWide> rows_;     // bit i + 4 of row (j, k): filled
+  std::array<std::uint32_t, kSums * kSums * kSums> sums_;
+  std::array<std::uint32_t, kCorner * kCorner * kCorner> wide_sums_;
 };
 
 }  // namespace haptrial::bone

@@ -55,10 +55,19 @@ BoneCamera looking_at(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& fro
   if (box.isEmpty() || !box.sizes().allFinite()) {
     throw std::invalid_argument("looking_at: a box of finite size is needed");
   }
-  constexpr double kRoom = 1.04;
-  const double across = std::atan(std::tan(0.5 * field_of_view) * std::min(aspect, 1.0));
-  const double distance = kRoom * std::max(0.5 * box.sizes().norm(), 1e-6) / std::sin(across);
-  return {box.center() + distance * from.normalized(), box.center(), up, field_of_view};
+  constexpr double kRoom = 1.05;
+  BoneCamera camera{box.center() + from.normalized(), box.center(), up, field_of_view};
+  const Eigen::Matrix3d axes = camera.pose().linear();
+  const double above = std::tan(0.5 * field_of_view) / kRoom;
+  double distance = 1e-6;
+  for (int c = 0; c < 8; ++c) {  // as far away as the corner that needs the most
+    const Eigen::Vector3d corner = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(c));
+    const Eigen::Vector3d p = axes.transpose() * (corner - box.center());
+    distance = std::max(
+        {distance, p.z() + std::abs(p.y()) / above, p.z() + std::abs(p.x()) / (above * aspect)});
+  }
+  camera.eye = box.center() + distance * from.normalized();
+  return camera;
 }
 
 BoneCamera orbited(const BoneCamera& camera, double right, double above) {

@@ -23,9 +23,9 @@ struct BoneStyle {
   Colour hard_bone{0.93, 0.88, 0.78};  // of density 1
   Colour soft_bone{0.80, 0.58, 0.45};  // of density 0
   Colour dust{0.95, 0.92, 0.84};
-  double ambient{0.25};              // light from everywhere
-  double diffuse{0.80};              // light at the eye, by the cosine
-  double specular{0.18};             // its reflection, ...
+  double ambient{0.22};              // light from everywhere
+  double diffuse{0.72};              // light at the eye, by the cosine
+  double specular{0.10};             // its reflection, ...
   double shininess{24.0};            // ... by this power of the cosine
   double through_length{0.0007};     // the share of a structure's colour in the bone over it is
   double through_share{0.85};        // share exp(-depth / length) [m]
