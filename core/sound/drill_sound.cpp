@@ -1,0 +1,72 @@
+#include "core/sound/drill_sound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "core/base/table.h"
+
+namespace haptrial::sound {
+namespace {
+
+SpectrumTable checked(SpectrumTable table) {
+  check(table);
+  return table;
+}
+
+double part(double x) { return x >= 0.0 ? std::min(x, 1.0) : 0.0; }  // 0 for what is no number
+
+}  // namespace
+
+double pitch(const ThinBone& thin, const DrillState& drill) noexcept {
+  if (!drill.contact || !(drill.thickness < thin.threshold)) {
+    return 1.0;
+  }
+  return 1.0 + thin.rise * (1.0 - std::max(0.0, drill.thickness) / thin.threshold);
+}
+
+ThinBone read_thin_bone(Table& table) {
+  ThinBone thin;
+  thin.threshold = table.number("thin_threshold", {0.0, 0.1, true}, "m");
+  thin.rise = table.number("thin_rise", {0.0, 10.0}, "");
+  return thin;
+}
+
+DrillSound::DrillSound(SpectrumTable table, const ThinBone& thin, std::uint64_t seed)
+    : table_(checked(std::move(table))),
+      thin_(thin),
+      harmonics_(kRate, RandomStream(seed, "drill sound")) {
+  if (!(thin.threshold > 0.0 && thin.rise >= 0.0 && std::isfinite(thin.rise))) {
+    throw std::invalid_argument(
+        "DrillSound: the threshold must be above 0 m, the rise not below 0");
+  }
+}
+
+void DrillSound::set(const DrillState& drill) noexcept {
+  const double speed = part(drill.speed);
+  harmonics_.aim(table_.at(drill.burr, drill.contact, drill.force), speed * pitch(thin_, drill),
+                 speed);
+}
+
+float DrillSound::next() noexcept {
+  return static_cast<float>(std::clamp(harmonics_.next(), -1.0, 1.0));
+}
+
+DrillVibration::DrillVibration(SpectrumTable table, double gain, double rate, std::uint64_t seed)
+    : table_(checked(std::move(table))),
+      gain_(gain),
+      harmonics_(rate, RandomStream(seed, "drill vibration")) {
+  if (!(gain >= 0.0 && std::isfinite(gain))) {
+    throw std::invalid_argument("DrillVibration: the gain must not be below 0");
+  }
+}
+
+Eigen::Vector3d DrillVibration::tick(const DrillState& drill, const ToolState& tool) noexcept {
+  const double speed = part(drill.speed);
+  harmonics_.aim(table_.at(drill.burr, drill.contact, drill.force), speed, speed * gain_);
+  const Eigen::Vector3d force = harmonics_.next() * (tool.orientation * Eigen::Vector3d::UnitX());
+  return force.allFinite() ? force : Eigen::Vector3d(Eigen::Vector3d::Zero());
+}
+
+}  // namespace haptrial::sound

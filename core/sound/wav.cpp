@@ -1,0 +1,150 @@
+#include "core/sound/wav.h"
+
+#include <fmt/format.h>
+#include <sndfile.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "core/base/error.h"
+
+namespace haptrial::sound {
+namespace {
+
+struct Close {
+  void operator()(SNDFILE* file) const { sf_close(file); }
+};
+using File = std::unique_ptr<SNDFILE, Close>;
+
+}  // namespace
+
+Recording read_recording(const std::filesystem::path& file) {
+  SF_INFO info{};
+  const File source(sf_open(file.c_str(), SFM_READ, &info));
+  if (!source) {
+    throw InputError(
+        fmt::format("{}: cannot be read ({}); allowed: a sound file (.wav, .flac, .aiff)",
+                    file.string(), sf_strerror(nullptr)));
+  }
+  constexpr sf_count_t kLongest = 3600;  // [s]
+  if (info.frames < 1 || info.frames > kLongest * info.samplerate || info.channels < 1) {
+    throw InputError(fmt::format("{}: has {} samples; allowed: from 1 to an hour of them",
+                                 file.string(), info.frames));
+  }
+  Recording recording;
+  recording.rate = info.samplerate;
+  recording.samples.reserve(static_cast<std::size_t>(info.frames));
+  constexpr sf_count_t kFrames = 16'384;
+  std::vector<float> frames(static_cast<std::size_t>(kFrames * info.channels));
+  while (const sf_count_t count = sf_readf_float(source.get(), frames.data(), kFrames)) {
+    for (sf_count_t i = 0; i < count; ++i) {
+      const float* const frame = frames.data() + i * info.channels;
+      float sum = 0.0F;
+      for (int channel = 0; channel < info.channels; ++channel) {
+        sum += frame[channel];
+      }
+      if (!std::isfinite(sum)) {
+        throw InputError(fmt::format("{}: sample {} is not a number; allowed: finite samples",
+                                     file.string(), recording.samples.size()));
+      }
+      recording.samples.push_back(sum / static_cast<float>(info.channels));
+    }
+  }
+  return recording;
+}
+
+struct WavWriter::Impl {
+  std::filesystem::path file;
+  std::filesystem::path part;
+  File sink;
+  std::vector<short> values{};
+};
+
+WavWriter::WavWriter(std::filesystem::path file, int rate, bool overwrite)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->file = std::move(file);
+  if (!overwrite && std::filesystem::exists(impl_->file)) {
+    throw InputError(fmt::format("{}: is there already; allowed: a new name, or --overwrite",
+                                 impl_->file.string()));
+  }
+  impl_->part = impl_->file;
+  impl_->part += ".partial";
+  SF_INFO info{};
+  info.samplerate = rate;
+  info.channels = 1;
+  info.format = SF_FORMAT_WAV | SF_FORMAT_PCM_16;
+  impl_->sink.reset(sf_open(impl_->part.c_str(), SFM_WRITE, &info));
+  if (!impl_->sink) {
+    throw InputError(
+        fmt::format("{}: cannot be made ({}); allowed: a folder that may be written to",
+                    impl_->file.string(), sf_strerror(nullptr)));
+  }
+}
+
+WavWriter::~WavWriter() {
+  if (impl_->sink) {
+    impl_->sink.reset();
+    std::error_code ignored;
+    std::filesystem::remove(impl_->part, ignored);
+  }
+}
+
+void WavWriter::write(std::span<const float> samples) {
+  constexpr float kFull = 32'767.0F;
+  impl_->values.clear();
+  for (const float sample : samples) {
+    impl_->values.push_back(
+        static_cast<short>(std::lround(kFull * std::clamp(sample, -1.0F, 1.0F))));
+  }
+  const auto count = static_cast<sf_count_t>(samples.size());
+  if (sf_write_short(impl_->sink.get(), impl_->values.data(), count) != count) {
+    throw RunError(fmt::format("{}: {}", impl_->file.string(), sf_strerror(impl_->sink.get())));
+  }
+}
+
+void WavWriter::finish() {
+  if (sf_close(impl_->sink.release()) != 0) {
+    throw RunError(fmt::format("{}: cannot be written to its end", impl_->file.string()));
+  }
+  std::error_code error;
+  std::filesystem::rename(impl_->part, impl_->file, error);
+  if (error) {
+    throw RunError(fmt::format("{}: {}", impl_->file.string(), error.message()));
+  }
+}
+
+SoundTrack::SoundTrack(const std::filesystem::path& file, double rate, SpectrumTable table,
+                       const ThinBone& thin, std::uint64_t seed, bool overwrite)
+    : rate_(rate),
+      sound_(std::move(table), thin, seed),
+      writer_(file, static_cast<int>(DrillSound::kRate), overwrite) {
+  if (!(rate > 0.0 && rate <= DrillSound::kRate)) {
+    throw std::invalid_argument("SoundTrack: the rate of the states must be from 0 to 48,000 Hz");
+  }
+}
+
+void SoundTrack::add(const DrillState& drill) {
+  sound_.set(drill);
+  ++states_;
+  const auto end =
+      static_cast<std::uint64_t>(static_cast<double>(states_) * DrillSound::kRate / rate_);
+  buffer_.clear();
+  for (; samples_ < end; ++samples_) {
+    buffer_.push_back(sound_.next());
+  }
+  writer_.write(buffer_);
+}
+
+void write_drill_sound(const std::filesystem::path& file, std::span<const DrillState> states,
+                       double rate, const SpectrumTable& table, const ThinBone& thin,
+                       std::uint64_t seed, bool overwrite) {
+  SoundTrack track(file, rate, table, thin, seed, overwrite);
+  for (const DrillState& state : states) {
+    track.add(state);
+  }
+  track.finish();
+}
+
+}  // namespace haptrial::sound
