@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/drilling/procedure.h"
+#include "core/bone/distance_field.h"
+
+namespace haptrial::analysis::drilling {
+
+/// What happened to a vital structure.
+struct Injury {
+  std::string structure;
+  std::uint8_t label{0};
+  std::uint64_t voxels{0};              // of it that a burr emptied
+  std::uint64_t crumbled{0};            // that went with parts that turned to dust
+  std::optional<double> first_contact;  // a burr that turns reached it [s of the procedure]
+  std::optional<double> first_removal;  // [s of the procedure]
+
+  bool operator==(const Injury&) const = default;
+};
+
+/// Goes along with a drilling. Contact is exact: the burr's sphere reaches into the cube of a voxel
+/// of the structure as it was at first. One thread, not the servo thread.
+class InjuryMeter {
+ public:
+  /// @param fields  by vital label, each reaching farther than any burr: contacts beyond are missed
+  InjuryMeter(std::shared_ptr<const bone::BoneModel> bone, const Eigen::Isometry3d& pose_WB,
+              std::vector<std::shared_ptr<const bone::DistanceField>> fields);
+
+  /// @param time  of the procedure [s]; radius of the burr [m], 0 for none
+  void tick(const ToolTick& tick, double radius, double time);
+  void remove(const Removal& removal, double time);
+  void crumble(const std::vector<bone::Voxel>& voxels);
+
+  const std::vector<Injury>& injuries() const noexcept { return injuries_; }
+  std::uint64_t voxels() const noexcept;  // of all, emptied by a burr
+
+ private:
+  bool touches(const Injury& injury, const Eigen::Vector3d& centre, double radius) const;
+
+  std::shared_ptr<const bone::BoneModel> bone_;
+  Eigen::Isometry3d pose_BW_;
+  std::vector<std::shared_ptr<const bone::DistanceField>> fields_;  // (injuries)
+  std::vector<Injury> injuries_;
+};
+
+class StudyBones;
+
+/// Of a whole procedure: one for each vital structure of its bone, in the order of labels.
+std::vector<Injury> injuries(const Procedure& procedure, StudyBones& bones);
+
+}  // namespace haptrial::analysis::drilling

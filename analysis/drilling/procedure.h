@@ -1,0 +1,114 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/bone/bone_model.h"
+#include "core/bone/bone_volume.h"
+#include "core/record/drilling_types.h"
+#include "core/record/session_types.h"
+
+namespace haptrial::record {
+class SessionReader;
+}
+
+namespace haptrial::analysis::drilling {
+
+/// A tool as far as metrics need it.
+struct ProcedureTool {
+  std::string name;
+  double burr_radius{0.0};  // [m]; 0: no burr
+};
+
+/// What the definition of a session says and its tables do not.
+struct ProcedureSetup {
+  std::string group;                                         // of the participant
+  Eigen::Isometry3d pose_WB{Eigen::Isometry3d::Identity()};  // of the bone
+  double scale{1.0};                 // the device's motions are this many times the scene's > 0
+  std::vector<ProcedureTool> tools;  // in the definition's order
+};
+
+/// One tick of a drilling; the tip in the scene's frame W.
+struct ToolTick {
+  std::uint64_t sequence{0};
+  Eigen::Vector3d position{Eigen::Vector3d::Zero()};  // [m]
+  Eigen::Vector3d velocity{Eigen::Vector3d::Zero()};  // [m/s]
+  double force{0.0};                                  // magnitude of the contact force [N]
+  double removed{0.0};                                // density on this tick [voxels]
+  std::int32_t tool{0};                               // in hand, of Procedure::tools
+  bool drives_tool{true};  // the hand does not steer the camera or a piece
+  bool power{false};       // the burr turns
+  bool in_bone{false};     // at least one sample of the burr
+};
+
+/// A voxel that the burr emptied.
+struct Removal {
+  std::uint64_t sequence{0};
+  bone::Voxel voxel{bone::Voxel::Zero()};
+  std::uint8_t label{0};
+  double force{0.0};  // [N]
+  double speed{0.0};  // of the tip [m/s]
+};
+
+/// How the scene was seen from a tick on.
+struct View {
+  std::uint64_t sequence{0};
+  Eigen::Vector3d eye{Eigen::Vector3d::Zero()};     // in W [m]
+  Eigen::Vector3d target{Eigen::Vector3d::Zero()};  // in W [m]
+};
+
+/// A voxel of a part that turned to dust, with all that hung together with it.
+struct Crumb {
+  std::uint64_t sequence{0};
+  bone::Voxel voxel{bone::Voxel::Zero()};
+};
+
+/// One drilling of one participant: everything that metrics are made from. Rows of every list are
+/// in ascending order of their sequence numbers, and of one tick a crumb went before the removals.
+///
+/// What a session file does not say is not here: voxels that the cut plane took stand for ever, and
+/// pieces that were carried stay where they were.
+struct Procedure {
+  std::string session;  // name of the file
+  std::string participant;
+  std::string group;
+  int number{1};         // of this participant's procedures, from 1
+  bool simulated{true};  // the participant is a virtual subject
+  bool completed{true};  // its last pass came to its end
+  double rate{1000.0};   // of ticks [Hz]
+  std::shared_ptr<const bone::BoneModel> bone;
+  Eigen::Isometry3d pose_WB{Eigen::Isometry3d::Identity()};
+  std::vector<ProcedureTool> tools;
+  std::vector<ToolTick> ticks;
+  std::vector<Removal> removals;
+  std::vector<View> views;
+  std::vector<Crumb> crumbs;
+
+  /// Of a tool's burr; 0 for a tool that is none, or out of range. [m]
+  double burr_radius(std::int32_t tool) const noexcept;
+};
+
+class StudyBones;
+
+/// The drillings of a session file, those of practice left out, in the order of their bones. A
+/// drilling that was broken off and went on is one procedure with the ticks of all its passes.
+/// @param bones  where equal bones of several files become one; may be null
+/// @throws InputError where the file is damaged, has no drillings, or a table names what is not
+/// there.
+std::vector<Procedure> load_procedures(const record::SessionReader& file,
+                                       const ProcedureSetup& setup, StudyBones* bones = nullptr);
+
+/// The bone of a record. @throws std::invalid_argument where its rows do not fit together.
+bone::BoneModel bone_of(const record::BoneRecord& record);
+
+// Rows of a session file as metrics use them.
+ToolTick tick_of(const record::Sample& sample, const record::ToolRow& tool, double scale);
+Removal removal_of(const record::RemovalRow& row);
+View view_of(const record::CameraRow& row);
+
+}  // namespace haptrial::analysis::drilling

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace haptrial::analysis::drilling {
+
+/// The region that one procedure removed, for naive Bayes.
+struct RemovedRegion {
+  std::string participant;
+  bool expert{false};
+  std::span<const std::uint32_t> voxels;  // ascending, each once; all of one grid
+};
+
+enum class RegionTraining : std::uint8_t {
+  kResubstitution,   // on everyone, those scored among them, as the source
+  kLeaveSubjectOut,  // without the participant scored
+  /// Without the participant scored and one of the other group, the mean over each of these: so
+  /// both groups are as large whoever is scored, and the score does not say who was left out.
+  kLeavePairOut,
+};
+
+enum class RegionTerms : std::uint8_t {
+  kAll,      // every voxel, removed or left: the likelihood of the model
+  kRemoved,  // removed voxels only, as the source
+};
+
+struct RegionParameters {
+  double smoothing{1.0};  // Laplace's pseudo-count alpha, of removals and of the contrary > 0
+};
+
+/// log(p_expert / p_novice) of one procedure:
+///
+///     p_g(v) = (k_g(v) + alpha_g) / (n_g + 2 alpha_g),    alpha_g = alpha n_g / n
+///     kAll:      sum over removed v of log p_e/p_n + over others of log (1 - p_e)/(1 - p_n)
+///     kRemoved:  the first sum alone
+///
+/// k_g(v) of a group's n_g procedures removed the voxel; n is the mean of both n_g, so that groups
+/// of one size have Laplace's rule and a voxel that nobody removed says nothing with any sizes.
+/// Not defined where the training leaves a group without procedures.
+/// Source: Morris 2006, §3.5.3.
+/// @returns (regions). @throws std::invalid_argument for smoothing not above 0, or a participant in
+/// both groups.
+std::vector<std::optional<double>> region_log_ratios(std::span<const RemovedRegion> regions,
+                                                     RegionTraining training,
+                                                     RegionTerms terms = RegionTerms::kAll,
+                                                     const RegionParameters& parameters = {});
+
+/// One procedure, scored each way. The first is the default: kLeavePairOut, kAll.
+struct RegionScores {
+  std::optional<double> score;
+  std::optional<double> leave_subject_out;  // kAll
+  std::optional<double> resubstitution;     // kAll
+  std::optional<double> removed_only;       // kLeavePairOut, kRemoved
+  std::optional<double> removed_leave_subject_out;
+  std::optional<double> removed_resubstitution;  // as the source
+};
+
+std::vector<RegionScores> region_scores(std::span<const RemovedRegion> regions,
+                                        const RegionParameters& parameters = {});
+
+}  // namespace haptrial::analysis::drilling
