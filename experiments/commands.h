@@ -155,4 +155,23 @@ int mesh_voxelize(const MeshOptions& options);
 int mesh_distance(const MeshOptions& options);
 int mesh_tetrahedralize(const MeshOptions& options);
 
+/// The subcommands of haptrial bone.
+struct BoneOptions {
+  std::string in;                    // bone, volume, or folder with a DICOM series
+  std::string out;                   // new file (.nrrd)
+  std::string shape;                 // make: temporal, mandible
+  std::string seed{"1"};             // make
+  std::optional<double> spacing;     // [mm]
+  std::string as{"auto"};            // auto, labels, grey
+  std::string threshold;             // of grey volumes: a number, or auto
+  std::optional<double> dense;       // of grey volumes: the number of bone with density 1
+  std::string labels;                // names of labels (.toml)
+  std::vector<std::string> without;  // names of structures that are left out
+  std::optional<double> max_memory;  // [GB]
+  bool overwrite{false};
+};
+int bone_import(const BoneOptions& options);
+int bone_info(const BoneOptions& options);
+int bone_make(const BoneOptions& options);
+
 }  // namespace haptrial::experiments

@@ -5,11 +5,11 @@ _haptrial() {
   names=$(haptrial --help 2>/dev/null | sed -n '/^Subcommands:/,/^$/s/^  \([a-z-]*\) .*/\1/p')
   if [ "$COMP_CWORD" -eq 1 ]; then
     mapfile -t COMPREPLY < <(compgen -W "$names --help --version" -- "$word")
-  elif [ "$COMP_CWORD" -eq 2 ] && [ "$sub" = mesh ]; then
-    names=$(haptrial mesh --help 2>/dev/null | sed -n '/^Subcommands:/,/^$/s/^  \([a-z-]*\) .*/\1/p')
+  elif [ "$COMP_CWORD" -eq 2 ] && [[ $sub =~ ^(mesh|bone)$ ]]; then
+    names=$(haptrial "$sub" --help 2>/dev/null | sed -n '/^Subcommands:/,/^$/s/^  \([a-z-]*\) .*/\1/p')
     mapfile -t COMPREPLY < <(compgen -W "$names --help" -- "$word")
   elif [[ $word == -* ]]; then
-    [ "$sub" = mesh ] && part=${COMP_WORDS[2]}
+    [[ $sub =~ ^(mesh|bone)$ ]] && part=${COMP_WORDS[2]}
     words=$(haptrial "$sub" ${part:+"$part"} --help 2>/dev/null | grep -o -- '--[a-z-]*' | sort -u)
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
   else

@@ -47,6 +47,7 @@ class Commands {
     add_devices();
     add_device_test();
     add_mesh();
+    add_bone();
   }
 
  private:
@@ -302,6 +303,53 @@ class Commands {
     sub->callback([this] { status_ = experiments::mesh_distance(mesh_); });
   }
 
+  void add_bone() {
+    CLI::App* bone = subcommand(app_, "bone", "Import bones, make them and say what they hold",
+                                "haptrial bone make temporal ear.nrrd --seed 3");
+    bone->require_subcommand(1);
+    CLI::App* taking =
+        subcommand(*bone, "import", "Make a bone of a CT or of labels",
+                   "haptrial bone import head.nii.gz head.nrrd --threshold 300 --spacing 0.5");
+    add_bone_input(*taking);
+    add_bone_output(*taking);
+    taking->callback([this] { status_ = experiments::bone_import(bone_); });
+
+    CLI::App* info = subcommand(*bone, "info", "Say what a bone holds, structure by structure",
+                                "haptrial bone info ear.nrrd");
+    add_bone_input(*info);
+    info->callback([this] { status_ = experiments::bone_info(bone_); });
+
+    CLI::App* make = subcommand(*bone, "make", "Make a bone from shapes and a seed",
+                                "haptrial bone make mandible jaw.nrrd --seed 2 --spacing 0.5");
+    make->add_option("BONE", bone_.shape, "temporal or mandible")->required();
+    add_bone_output(*make);
+    make->add_option("--seed", bone_.seed, "Of the anatomy (1)");
+    make->add_option("--spacing", bone_.spacing, "Edge of a voxel [mm] (0.5)");
+    make->callback([this] { status_ = experiments::bone_make(bone_); });
+  }
+
+  void add_bone_input(CLI::App& sub) {
+    sub.add_option("IN", bone_.in,
+                   "Bone or volume (.nrrd, .nhdr, .nii, .nii.gz), or folder with a DICOM series")
+        ->required();
+    sub.add_option("--as", bone_.as, "auto, labels or grey: what its numbers are (auto)");
+    sub.add_option("--spacing", bone_.spacing,
+                   "Edge of a voxel [mm]; of grey volumes 0.5, of labels their own by default");
+    sub.add_option("--threshold", bone_.threshold,
+                   "Bone begins at this number, or auto (300 in Hounsfield units)");
+    sub.add_option("--dense", bone_.dense,
+                   "Bone is dense from this number on (1500 in Hounsfield units)");
+    sub.add_option("--labels", bone_.labels, "Names of labels (.toml)");
+    sub.add_option("--without", bone_.without, "Structures to leave out, by name")->delimiter(',');
+    sub.add_option("--max-memory", bone_.max_memory,
+                   "Refuse what may take more [GB]; what the system has by default");
+  }
+
+  void add_bone_output(CLI::App& sub) {
+    sub.add_option("OUT", bone_.out, "New bone (.nrrd)")->required();
+    sub.add_flag("--overwrite", bone_.overwrite, "Replace a file that is there");
+  }
+
   CLI::App* mesh_subcommand(CLI::App& mesh, const char* name, const char* what,
                             const char* example) {
     CLI::App* sub = subcommand(mesh, name, what, example);
@@ -339,11 +387,12 @@ class Commands {
   experiments::AlignOptions align_;
   experiments::AnalyzeOptions analyze_;
   experiments::MeshOptions mesh_;
+  experiments::BoneOptions bone_;
   std::string path_;
   std::string second_;
   std::string compare_out_;
   std::string recover_out_;
-};
+};  // namespace
 
 /// A mistyped subcommand by its name, rather than as one that is missing.
 void check_subcommand(CLI::App& app, int argc, char** argv) {

@@ -60,17 +60,17 @@ VolumeKind kind_of(const VolumeHead& head, std::span<const float> values,
   return std::ranges::count(seen, true) <= kManyLabels ? VolumeKind::kLabels : VolumeKind::kGrey;
 }
 
-void check_room(const Import& import, const geometry::VoxelGrid& grid, double bytes_per_voxel) {
+void check_room(const Import& job, const geometry::VoxelGrid& grid, double bytes_per_voxel) {
   const double count = static_cast<double>(grid.size[0]) * grid.size[1] * grid.size[2];
   constexpr double kMost = 2e9;
   if (count > kMost) {
     throw InputError(fmt::format(
         "{}: would have {} x {} x {} voxels of {:.4g} mm; allowed: {:.1e} in all, with a larger "
         "spacing",
-        import.name, grid.size[0], grid.size[1], grid.size[2], 1e3 * grid.spacing, kMost));
+        job.name, grid.size[0], grid.size[1], grid.size[2], 1e3 * grid.spacing, kMost));
   }
-  import.room(
-      fmt::format("{}: {} x {} x {} voxels", import.name, grid.size[0], grid.size[1], grid.size[2]),
+  job.room(
+      fmt::format("{}: {} x {} x {} voxels", job.name, grid.size[0], grid.size[1], grid.size[2]),
       bytes_per_voxel * count);
 }
 
@@ -109,12 +109,12 @@ Plan plan_for(const UprightVolume& volume, std::optional<double> spacing) {
   return plan;
 }
 
-std::vector<std::uint8_t> labels_of(const Import& import, std::span<const float> values) {
+std::vector<std::uint8_t> labels_of(const Import& job, std::span<const float> values) {
   if (!whole_from_0_to_255(values)) {
     const auto [low, high] = std::ranges::minmax(values);
     throw InputError(
         fmt::format("{}: its labels run from {} to {}; allowed: whole numbers from 0 to 255",
-                    import.name, low, high));
+                    job.name, low, high));
   }
   std::vector<std::uint8_t> labels(values.size());
   std::ranges::transform(values, labels.begin(),
@@ -123,9 +123,9 @@ std::vector<std::uint8_t> labels_of(const Import& import, std::span<const float>
 }
 
 /// Every label that is used gets a structure, named or not.
-void name_labels(const Import& import, std::vector<Structure> structures, BoneModel& model) {
-  if (!import.options.label_file.empty()) {
-    std::vector<Structure> named = read_label_table(import.options.label_file);
+void name_labels(const Import& job, std::vector<Structure> structures, BoneModel& model) {
+  if (!job.options.label_file.empty()) {
+    std::vector<Structure> named = read_label_table(job.options.label_file);
     structures.resize(std::max(structures.size(), named.size()));
     for (std::size_t label = 1; label < named.size(); ++label) {
       if (!named[label].name.empty()) structures[label] = std::move(named[label]);
@@ -145,8 +145,8 @@ void name_labels(const Import& import, std::vector<Structure> structures, BoneMo
   model.structures = std::move(structures);
 }
 
-void leave_out(const Import& import, BoneModel& model) {
-  for (const std::string& name : import.options.without) {
+void leave_out(const Import& job, BoneModel& model) {
+  for (const std::string& name : job.options.without) {
     const Structure wanted = structure_named(name, 0);
     std::string known;
     std::size_t label = 0;
@@ -157,7 +157,7 @@ void leave_out(const Import& import, BoneModel& model) {
     }
     if (label == 0) {
       throw InputError(
-          fmt::format("{}: has no '{}' to leave out; allowed: {}", import.name, name, known));
+          fmt::format("{}: has no '{}' to leave out; allowed: {}", job.name, name, known));
     }
     for (std::size_t i = 0; i < model.labels.size(); ++i) {
       if (model.labels[i] != label) continue;
@@ -209,29 +209,29 @@ void crop(BoneModel& model) {
   model = std::move(cropped);
 }
 
-BoneModel labelled_bone(const Import& import, const VolumeHead& head, const UprightVolume& volume) {
-  const Plan plan = plan_for(volume, import.options.spacing);
-  check_room(import, plan.grid, 2.0);
+BoneModel labelled_bone(const Import& job, const VolumeHead& head, const UprightVolume& volume) {
+  const Plan plan = plan_for(volume, job.options.spacing);
+  check_room(job, plan.grid, 2.0);
   BoneModel model;
   model.grid = plan.grid;
-  model.labels = labels_of(import, volume.components[0]);
+  model.labels = labels_of(job, volume.components[0]);
   if (!plan.as_it_is) {
-    model.labels = resample_labels(model.labels, volume, plan.grid, plan.own_axes, import.report);
+    model.labels = resample_labels(model.labels, volume, plan.grid, plan.own_axes, job.report);
   }
-  model.source = fmt::format("{} ({}), labels {}", import.name, head.format, plan.sentence);
-  name_labels(import, structures_in(head.keys), model);
+  model.source = fmt::format("{} ({}), labels {}", job.name, head.format, plan.sentence);
+  name_labels(job, structures_in(head.keys), model);
   return model;
 }
 
-GreyLevels levels_of(const Import& import, const VolumeHead& head, std::span<const float> values) {
-  const LoadOptions& options = import.options;
+GreyLevels levels_of(const Import& job, const VolumeHead& head, std::span<const float> values) {
+  const LoadOptions& options = job.options;
   const auto [low, high] = std::ranges::minmax(values);
   const bool hounsfield = head.hounsfield || low <= kAirBelow;
   if (!options.threshold && !options.find_threshold && !hounsfield) {
     throw InputError(fmt::format(
         "{}: its values run from {:.6g} to {:.6g}, which are not Hounsfield units; allowed: a "
         "threshold for bone, such as the {:.6g} that 'auto' finds",
-        import.name, low, high, find_threshold(values)));
+        job.name, low, high, find_threshold(values)));
   }
   GreyLevels levels{};
   levels.threshold =
@@ -248,20 +248,20 @@ GreyLevels levels_of(const Import& import, const VolumeHead& head, std::span<con
   if (!(high >= levels.threshold)) {
     throw InputError(fmt::format(
         "{}: holds no bone: its values run from {:.6g} to {:.6g}; allowed: some of {:.6g} or more",
-        import.name, low, high, levels.threshold));
+        job.name, low, high, levels.threshold));
   }
   return levels;
 }
 
-BoneModel grey_bone(const Import& import, const VolumeHead& head, const UprightVolume& volume) {
-  const GreyLevels levels = levels_of(import, head, volume.components[0]);
-  const Plan plan = plan_for(volume, import.options.spacing.value_or(kGreySpacing));
-  check_room(import, plan.grid, 4.0 * sizeof(float) + 2.0);
+BoneModel grey_bone(const Import& job, const VolumeHead& head, const UprightVolume& volume) {
+  const GreyLevels levels = levels_of(job, head, volume.components[0]);
+  const Plan plan = plan_for(volume, job.options.spacing.value_or(kGreySpacing));
+  check_room(job, plan.grid, 4.0 * sizeof(float) + 2.0);
   BoneModel model;
   model.grid = plan.grid;
   geometry::BigArray<float> resampled;
   if (!plan.as_it_is) {
-    resampled = resample_grey(volume, plan.grid, plan.own_axes, import.report);
+    resampled = resample_grey(volume, plan.grid, plan.own_axes, job.report);
   }
   const geometry::BigArray<float>& values = plan.as_it_is ? volume.components[0] : resampled;
   model.labels.resize(values.size());
@@ -270,10 +270,10 @@ BoneModel grey_bone(const Import& import, const VolumeHead& head, const UprightV
     model.density[i] = density_of(values[i], levels);
     model.labels[i] = model.density[i] > 0.0F ? 1 : 0;
   }
-  model.source = fmt::format("{} ({}), bone from {:.6g}{} on and dense at {:.6g}, {}", import.name,
-                             head.format, levels.threshold, head.hounsfield ? " HU" : "",
-                             levels.dense, plan.sentence);
-  name_labels(import, {Structure{}, structure_named("bone", 1)}, model);
+  model.source =
+      fmt::format("{} ({}), bone from {:.6g}{} on and dense at {:.6g}, {}", job.name, head.format,
+                  levels.threshold, head.hounsfield ? " HU" : "", levels.dense, plan.sentence);
+  name_labels(job, {Structure{}, structure_named("bone", 1)}, model);
   return model;
 }
 
@@ -290,8 +290,8 @@ void take_exact_grid(const VolumeHead& head, geometry::VoxelGrid& grid) {
 }
 
 /// One that save_bone() wrote.
-BoneModel saved_bone(const Import& import, const VolumeHead& head, const UprightVolume& volume) {
-  BoneModel model = labelled_bone(import, head, volume);
+BoneModel saved_bone(const Import& job, const VolumeHead& head, const UprightVolume& volume) {
+  BoneModel model = labelled_bone(job, head, volume);
   const bool same = model.grid.size == volume.size;
   if (same) take_exact_grid(head, model.grid);
   const auto source = head.keys.find("haptrial_source");
@@ -300,10 +300,10 @@ BoneModel saved_bone(const Import& import, const VolumeHead& head, const Upright
   model.density.assign(model.labels.size(), 0.0F);
   UprightVolume second = volume;
   second.components = {volume.components[1]};
-  const Plan plan = plan_for(volume, import.options.spacing);
+  const Plan plan = plan_for(volume, job.options.spacing);
   const geometry::BigArray<float> values =
       plan.as_it_is ? second.components[0]
-                    : resample_grey(second, plan.grid, plan.own_axes, import.report);
+                    : resample_grey(second, plan.grid, plan.own_axes, job.report);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (model.labels[i] == 0) continue;
     model.density[i] = static_cast<float>(std::clamp(std::round(values[i]), 1.0F, 255.0F) / 255.0F);
@@ -317,30 +317,30 @@ BoneModel load_bone(const fs::path& file, const LoadOptions& options,
                     const geometry::WorkReport& report) {
   check_options(options);
   const Room room = options.room ? Room(options.room) : Room(check_system_memory);
-  const Import import{file.string(), options, room, report};
+  const Import job{file.string(), options, room, report};
   SourceVolume source = read_volume(file, room, report);
   const VolumeHead head = source.head;
   const auto saved = head.keys.find("haptrial_bone");
   if (saved == head.keys.end() && head.components > 1) {
     throw InputError(
-        fmt::format("{}: has {} values per voxel; allowed: 1", import.name, head.components));
+        fmt::format("{}: has {} values per voxel; allowed: 1", job.name, head.components));
   }
   const VolumeKind kind =
       saved != head.keys.end() ? VolumeKind::kLabels : kind_of(head, source.values, options);
   const UprightVolume volume = upright(std::move(source));
-  BoneModel model = saved != head.keys.end()      ? saved_bone(import, head, volume)
-                    : kind == VolumeKind::kLabels ? labelled_bone(import, head, volume)
-                                                  : grey_bone(import, head, volume);
+  BoneModel model = saved != head.keys.end()      ? saved_bone(job, head, volume)
+                    : kind == VolumeKind::kLabels ? labelled_bone(job, head, volume)
+                                                  : grey_bone(job, head, volume);
   model.name = saved != head.keys.end() ? saved->second : file.filename().string();
-  leave_out(import, model);
+  leave_out(job, model);
   if (std::ranges::all_of(model.labels, [](std::uint8_t label) { return label == 0; })) {
-    throw InputError(fmt::format("{}: holds no bone; allowed: at least one voxel", import.name));
+    throw InputError(fmt::format("{}: holds no bone; allowed: at least one voxel", job.name));
   }
   if (kind == VolumeKind::kGrey) crop(model);
   try {
     check(model);
   } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: {}", import.name, error.what()));
+    throw InputError(fmt::format("{}: {}", job.name, error.what()));
   }
   return model;
 }

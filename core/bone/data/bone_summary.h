@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/bone/bone_model.h"
+
+namespace haptrial::bone {
+
+/// What a bone holds of one structure.
+struct StructureSummary {
+  std::uint8_t label;
+  std::size_t voxels;
+  double volume;            // [m3]
+  double mean_density;      // 0 to 1
+  std::size_t pieces;       // that do not touch, not even at a corner
+  Eigen::AlignedBox3d box;  // around the voxels' centres, in B [m]
+};
+
+struct BoneSummary {
+  std::vector<StructureSummary> structures;  // those that have voxels, by label
+  std::size_t voxels{0};
+  double volume{0.0};  // [m3]
+  Eigen::AlignedBox3d box;
+  /// Of the outside [m2]: faces between full and empty voxels, by 3/2, the mean of |x| + |y| + |z|
+  /// over all directions that a surface can have.
+  double surface{0.0};
+};
+
+/// @throws std::invalid_argument as check() does. Any thread.
+BoneSummary summary_of(const BoneModel& model);
+
+}  // namespace haptrial::bone
