@@ -29,7 +29,7 @@ class StudyBones {
       double reach);
 
  private:
-  using Key = std::tuple<const bone::BoneModel*, std::vector<bool>, double>;
+  using Key = std::tuple<std::shared_ptr<const bone::BoneModel>, std::vector<bool>, double>;
   std::shared_ptr<const bone::DistanceField> made(const std::shared_ptr<const bone::BoneModel>&,
                                                   const std::vector<bool>& labels, double reach);
 
