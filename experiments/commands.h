@@ -174,4 +174,39 @@ int bone_import(const BoneOptions& options);
 int bone_info(const BoneOptions& options);
 int bone_make(const BoneOptions& options);
 
+/// A picture of a bone off screen.
+struct BonePictureOptions {
+  std::string in;
+  std::string out;                          // new .png
+  std::vector<std::string> without;         // names of structures that are left out
+  std::vector<std::string> drill;           // strokes: see experiments/bone_carving.h
+  std::vector<std::string> cut;             // planes
+  bool spare{false};                        // nothing but bone is drilled or cut
+  std::vector<double> from{-1.0, 0.2, 0.1};  // towards the eye: the side of a right ear
+  std::vector<double> at;                   // what is in the middle [mm]; default: the bone's
+  double zoom{1.0};
+  std::string burr;                         // from its centre to a place on its handle
+  std::optional<double> stereo;             // between the eyes [mm]
+  int width{1280};                          // [px]
+  int height{720};
+  std::optional<double> max_memory;         // [GB]
+  bool overwrite{false};
+};
+int bone_picture(const BonePictureOptions& options);
+
+struct SpectrumOptions {
+  std::string file;              // a recording
+  std::string out;               // table of spectra (.toml); empty: only print
+  std::string burr{"cutting"};   // diamond, cutting
+  std::string level{"typical"};  // of the table; "free": in the air
+  double force{0.0};             // of a level in contact [N]
+  int peaks{24};
+  int segment{0};       // samples; 0: 40 ms or more
+  bool add{false};      // to the table that is there
+  std::string wav;      // new sound from the peaks; empty: none
+  std::string picture;  // new .png or .svg; empty: none
+  bool overwrite{false};
+};
+int spectrum(const SpectrumOptions& options);
+
 }  // namespace haptrial::experiments

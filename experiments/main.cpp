@@ -48,6 +48,7 @@ class Commands {
     add_device_test();
     add_mesh();
     add_bone();
+    add_spectrum();
   }
 
  private:
@@ -304,7 +305,7 @@ class Commands {
   }
 
   void add_bone() {
-    CLI::App* bone = subcommand(app_, "bone", "Import bones, make them and say what they hold",
+    CLI::App* bone = subcommand(app_, "bone", "Import bones, make and draw them, say what they hold",
                                 "haptrial bone make temporal ear.nrrd --seed 3");
     bone->require_subcommand(1);
     CLI::App* taking =
@@ -326,6 +327,32 @@ class Commands {
     make->add_option("--seed", bone_.seed, "Of the anatomy (1)");
     make->add_option("--spacing", bone_.spacing, "Edge of a voxel [mm] (0.5)");
     make->callback([this] { status_ = experiments::bone_make(bone_); });
+    add_bone_picture(*bone);
+  }
+
+  void add_bone_picture(CLI::App& bone) {
+    CLI::App* sub = subcommand(bone, "picture", "Draw a bone, whole or drilled",
+                               "haptrial bone picture ear.nrrd ear.png --from -1,0.2,0.1");
+    auto& o = bone_picture_;
+    sub->add_option("IN", o.in, "Bone (.nrrd)")->required();
+    sub->add_option("OUT", o.out, "New picture (.png)")->required();
+    sub->add_option("--from", o.from, "From the bone towards the eye: X,Y,Z (-1,0.2,0.1)")
+        ->delimiter(',');
+    sub->add_option("--at", o.at, "What is in the middle: X,Y,Z [mm]; the bone's by default")
+        ->delimiter(',');
+    sub->add_option("--zoom", o.zoom, "Things become so many times as large (1)");
+    sub->add_option("--without", o.without, "Structures to leave out, by name")->delimiter(',');
+    sub->add_option("--drill", o.drill, "Drilled away: X,Y,Z,[X2,Y2,Z2,]DIAMETER [mm], any number");
+    sub->add_option("--cut", o.cut, "Sawn away: X,Y,Z,NX,NY,NZ,WIDTH [mm], any number");
+    sub->add_flag("--spare", o.spare, "Drill and saw bone only");
+    sub->add_option("--burr", o.burr, "Show one: X,Y,Z,X2,Y2,Z2,DIAMETER [mm], from its centre on");
+    sub->add_option("--stereo", o.stereo, "Two pictures, for eyes so far apart [mm]");
+    sub->add_option("--width", o.width, "[px] (1280)");
+    sub->add_option("--height", o.height, "[px] (720)");
+    sub->add_option("--max-memory", o.max_memory,
+                    "Refuse what may take more [GB]; what the system has by default");
+    sub->add_flag("--overwrite", o.overwrite, "Replace a file that is there");
+    sub->callback([this] { status_ = experiments::bone_picture(bone_picture_); });
   }
 
   void add_bone_input(CLI::App& sub) {
@@ -376,6 +403,25 @@ class Commands {
     sub.add_option("--up", mesh_.up, "Axis that points up in it: x, y or z (y)");
   }
 
+  void add_spectrum() {
+    CLI::App* sub = subcommand(app_, "spectrum", "Make a table of a drill's sound from a recording",
+                               "haptrial spectrum drill.wav drill.toml --level free");
+    sub->add_option("FILE", spectrum_.file, "Recording (.wav, .flac, .aiff)")->required();
+    sub->add_option("OUT", spectrum_.out, "New table (.toml); printed only by default");
+    sub->add_option("--burr", spectrum_.burr, "diamond or cutting (cutting)");
+    sub->add_option("--level", spectrum_.level,
+                    "Name of the level; 'free': the drill is in the air (typical)");
+    sub->add_option("--force", spectrum_.force, "With which the burr pressed on bone [N] (0)");
+    sub->add_option("--peaks", spectrum_.peaks, "At most so many (24)");
+    sub->add_option("--segment", spectrum_.segment,
+                    "Samples in a segment, a power of two; 40 ms or more by default");
+    sub->add_flag("--add", spectrum_.add, "Add the level to the table that is there");
+    sub->add_option("--wav", spectrum_.wav, "Also make a new sound from the peaks (.wav)");
+    sub->add_option("--picture", spectrum_.picture, "Draw both spectra (.png, .svg)");
+    sub->add_flag("--overwrite", spectrum_.overwrite, "Replace files that are there");
+    sub->callback([this] { status_ = experiments::spectrum(spectrum_); });
+  }
+
   CLI::App& app_;
   int& status_;
   experiments::DryRunOptions dry_run_;
@@ -388,6 +434,8 @@ class Commands {
   experiments::AnalyzeOptions analyze_;
   experiments::MeshOptions mesh_;
   experiments::BoneOptions bone_;
+  experiments::BonePictureOptions bone_picture_;
+  experiments::SpectrumOptions spectrum_;
   std::string path_;
   std::string second_;
   std::string compare_out_;

@@ -93,6 +93,29 @@ void write_bytes(std::unique_ptr<std::FILE, CloseFile> file, const std::vector<s
 
 }  // namespace
 
+Image coarser(const Image& fine, int times) {
+  Image image{fine.width / times, fine.height / times, {}};
+  image.rgb.reserve(3 * static_cast<std::size_t>(image.width) *
+                    static_cast<std::size_t>(image.height));
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      for (int channel = 0; channel < 3; ++channel) {
+        int sum = 0;
+        for (int part = 0; part < times * times; ++part) {
+          const int row = times * y + part / times;
+          const int column = times * x + part % times;
+          sum +=
+              fine.rgb[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(fine.width) +
+                            static_cast<std::size_t>(column)) +
+                       static_cast<std::size_t>(channel)];
+        }
+        image.rgb.push_back(static_cast<std::uint8_t>(sum / (times * times)));
+      }
+    }
+  }
+  return image;
+}
+
 void write_png(const std::filesystem::path& path, const Image& image) {
   const auto expected = static_cast<std::size_t>(std::max(image.width, 0)) *
                         static_cast<std::size_t>(std::max(image.height, 0)) * kChannels;

@@ -13,6 +13,10 @@ struct Image {
   std::vector<std::uint8_t> rgb;  // (height x width x 3), rows from the top
 };
 
+/// Each pixel the mean of `times` x `times` of them; what is left over at right and below is lost.
+/// @param times  > 0
+Image coarser(const Image& fine, int times);
+
 /// Writes a PNG file whole or not at all: the bytes go to a temporary file beside `path`, which
 /// then takes its name; an older picture there is replaced.
 /// @throws InputError when `path` cannot be written to; RunError when writing fails half-way, as on

@@ -160,30 +160,6 @@ void draw(const Gl& gl, const std::vector<Vertex>& vertices) {
   gl.delete_program(program);
 }
 
-/// Each pixel the mean of kFiner² of them.
-Image coarser(const Image& fine) {
-  Image image{fine.width / kFiner, fine.height / kFiner, {}};
-  image.rgb.reserve(3 * static_cast<std::size_t>(image.width) *
-                    static_cast<std::size_t>(image.height));
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      for (int channel = 0; channel < 3; ++channel) {
-        int sum = 0;
-        for (int part = 0; part < kFiner * kFiner; ++part) {
-          const int row = kFiner * y + part / kFiner;
-          const int column = kFiner * x + part % kFiner;
-          sum +=
-              fine.rgb[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(fine.width) +
-                            static_cast<std::size_t>(column)) +
-                       static_cast<std::size_t>(channel)];
-        }
-        image.rgb.push_back(static_cast<std::uint8_t>(sum / (kFiner * kFiner)));
-      }
-    }
-  }
-  return image;
-}
-
 }  // namespace
 
 Eigen::Vector3d SceneView::towards_eye() const {
@@ -212,7 +188,7 @@ Image draw_scene(std::span<const SceneTriangle> triangles, const SceneView& view
                  static_cast<float>(view.background.blue), 1.0f);
   gl.clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   draw(gl, vertices);
-  return coarser(read_frame(gl, width, height));
+  return coarser(read_frame(gl, width, height), kFiner);
 }
 
 }  // namespace haptrial::render
