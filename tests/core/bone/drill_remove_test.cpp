@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 constexpr double kSpacing = 1.0 / 2048;
 constexpr double kVoxel = kSpacing * kSpacing * kSpacing;
 const Quaterniond kUpright = Quaterniond::Identity();
-const Quaterniond kLying = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), Vector3d::UnitX());
+const Quaterniond kLying(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitY()));
 
 /// What one tick takes from fresh flat bone, the burr `depth` deep.
 double removed(const BurrParameters& burr, double depth, const Quaterniond& turn, double force,

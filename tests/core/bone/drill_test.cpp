@@ -230,7 +230,7 @@ TEST(DrillTest, TeethPullAcrossTheAxisAndAlongTheBone) {
   const BurrParameters burr = default_burr(BurrKind::kCutting, 4e-3);
   Drill drill(burr, {});
   // The handle lies along x, the bone below: (p - sc) points down, times d it points along -y.
-  const Quaterniond lying = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), Vector3d::UnitX());
+  const Quaterniond lying(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitY()));
   const Contact c = drill.touch(bone, Vector3d(0, 0, 1.6e-3), lying);
   const Vector3d expected = (-Vector3d::UnitZ()).cross(Vector3d::UnitX());
   const Vector3d drag = drag_force(c, burr, 1.0);
