@@ -217,7 +217,7 @@ double dominant(const Spectrum& spectrum) {
 
 double fundamental(const Spectrum& spectrum) {
   constexpr int kHighest = 8;         // harmonic that may be the strongest
-  constexpr double kNear = 0.015;     // of the fundamental: a peak is a multiple of it
+  constexpr double kNear = 0.01;      // of a peak's frequency: it is a multiple
   constexpr double kNearlyAll = 0.9;  // of what the best one explains
   const double strongest = dominant(spectrum);
   std::array<double, kHighest> explained{};
@@ -225,8 +225,9 @@ double fundamental(const Spectrum& spectrum) {
     for (int i = 0; i < spectrum.count; ++i) {
       const Peak& peak = spectrum.peaks[static_cast<std::size_t>(i)];
       const double multiple = peak.frequency * n / strongest;
-      if (std::abs(multiple - std::round(multiple)) < kNear * n && std::round(multiple) > 0.0) {
-        explained[static_cast<std::size_t>(n - 1)] += peak.amplitude * peak.amplitude;
+      const double whole = std::round(multiple);
+      if (whole > 0.0 && std::abs(multiple - whole) < std::min(kNear * whole, 0.1)) {
+        explained[static_cast<std::size_t>(n - 1)] += peak.amplitude;
       }
     }
   }

@@ -42,8 +42,8 @@ Spectrum find_peaks(const PowerSpectrum& spectrum, const PeakSearch& search = {}
 
 /// The strongest peak's frequency [Hz]; 0 without peaks.
 double dominant(const Spectrum& spectrum);
-/// The frequency of which most of the peaks' power is a multiple: the largest of dominant / n that
-/// explains nearly as much as any [Hz]; 0 without peaks.
+/// The frequency of which most peaks, by their amplitudes, are multiples: the largest of dominant /
+/// n that explains nearly as much as any [Hz]; 0 without peaks.
 double fundamental(const Spectrum& spectrum);
 
 }  // namespace haptrial::sound

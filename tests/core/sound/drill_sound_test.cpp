@@ -1,0 +1,135 @@
+#include "core/sound/drill_sound.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <thread>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/sound/sound_output.h"
+#include "core/sound/wav.h"
+#include "tests/support/allocation_guard.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::sound {
+namespace {
+
+using ::testing::HasSubstr;
+
+Spectrum lines(std::initializer_list<Peak> peaks, double noise = 0.0) {
+  Spectrum spectrum;
+  for (const Peak& peak : peaks) {
+    spectrum.peaks[static_cast<std::size_t>(spectrum.count++)] = peak;
+  }
+  spectrum.noise = noise;
+  return spectrum;
+}
+
+TEST(DrillSoundTest, PitchRisesLinearlyWhereBoneIsThin) {
+  const ThinBone thin{2e-3, 0.4};
+  DrillState drill{Burr::kCutting, 1.0, true, 1.0, 5e-3};
+  EXPECT_EQ(pitch(thin, drill), 1.0);
+  drill.thickness = 1e-3;
+  EXPECT_DOUBLE_EQ(pitch(thin, drill), 1.2);
+  drill.thickness = 0.0;
+  EXPECT_DOUBLE_EQ(pitch(thin, drill), 1.4);
+  drill.contact = false;
+  EXPECT_EQ(pitch(thin, drill), 1.0);
+}
+
+TEST(DrillSoundTest, IsSilentWhenOffAndKeepsToFullScale) {
+  DrillSound sound(default_sound(), {}, 1);
+  sound.set({});
+  for (int i = 0; i < 1000; ++i) {
+    ASSERT_EQ(sound.next(), 0.0F);
+  }
+  SpectrumTable loud = default_sound();
+  for (auto& level : loud.of(Burr::kCutting).free) {
+    level.spectrum.noise = 10.0;
+  }
+  DrillSound shouting(loud, {}, 1);
+  shouting.set({Burr::kCutting, 1.0, false, 0.0, 1.0});
+  for (int i = 0; i < 10'000; ++i) {
+    ASSERT_LE(std::abs(shouting.next()), 1.0F);
+  }
+}
+
+TEST(DrillVibrationTest, IsAcrossTheDrillAndAsStrongAsTheTableSays) {
+  SpectrumTable table;
+  table.unit = "N";
+  table.of(Burr::kCutting).contact = {{"one", 1.0, false, lines({{100.0, 0.25, 0.0}})}};
+  DrillVibration vibration(table, 2.0, 1000.0, 3);
+  ToolState tool;
+  tool.orientation = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2).normalized();
+  const DrillState drill{Burr::kCutting, 1.0, true, 1.0, 1.0};
+  double square = 0.0;
+  const test::AllocationGuard guard;
+  for (int i = 0; i < 2200; ++i) {
+    const Eigen::Vector3d force = vibration.tick(drill, tool);
+    ASSERT_NEAR(force.dot(tool.axis()), 0.0, 1e-12);
+    square += i < 200 ? 0.0 : force.squaredNorm();  // the line has come up by then
+  }
+  EXPECT_EQ(guard.count(), 0U);
+  EXPECT_NEAR(std::sqrt(square / 2000.0), 0.5 / std::sqrt(2.0), 1e-3);
+  tool.orientation.coeffs().setConstant(std::nan(""));
+  EXPECT_TRUE(vibration.tick(drill, tool).isZero(0.0));
+}
+
+TEST(SoundTrackTest, IsAsLongAsTheStatesAndTheSameEachTime) {
+  const test::TemporaryFolder folder;
+  std::vector<DrillState> states(700, {Burr::kDiamond, 1.0, true, 1.0, 1e-3});
+  const auto bytes = [&](const char* name, std::uint64_t seed) {
+    write_drill_sound(folder / name, states, 1000.0, default_sound(), {}, seed);
+    std::ifstream in(folder / name, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const std::string first = bytes("a.wav", 1);
+  EXPECT_EQ(first, bytes("b.wav", 1));
+  EXPECT_NE(first, bytes("c.wav", 2));
+  EXPECT_EQ(read_recording(folder / "a.wav").samples.size(), 33'600U);
+  EXPECT_THROW(bytes("a.wav", 1), InputError);  // is there already
+  EXPECT_THROW(write_drill_sound(folder / "no" / "d.wav", states, 1e3, default_sound(), {}, 1),
+               InputError);
+  { const SoundTrack unfinished(folder / "e.wav", 1000.0, default_sound(), {}, 1); }
+  EXPECT_FALSE(std::filesystem::exists(folder / "e.wav"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "e.wav.partial"));
+}
+
+TEST(RecordingTest, WhatIsNoSoundGetsASentence) {
+  const test::TemporaryFolder folder;
+  EXPECT_THROW(read_recording(folder / "absent.wav"), InputError);
+  std::ofstream(folder / "text.wav") << "this is no sound";
+  EXPECT_THROW(read_recording(folder / "text.wav"), InputError);
+  WavWriter empty(folder / "empty.wav", 48'000);
+  empty.finish();
+  EXPECT_THROW(read_recording(folder / "empty.wav"), InputError);
+}
+
+TEST(SoundOutputTest, FeedsACardAtItsRate) {
+  SoundOutput output(default_sound(), {}, 1, "null");  // ALSA's card that swallows everything
+  const test::AllocationGuard guard;
+  output.set({Burr::kCutting, 1.0, true, 1.0, 1.0});
+  EXPECT_EQ(guard.count(), 0U);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const auto played = static_cast<double>(output.played());
+  EXPECT_GT(played, 0.05 * 48'000.0);
+  EXPECT_LT(played, 1.0 * 48'000.0);  // and no more than a card would
+  EXPECT_FALSE(output.lost());
+}
+
+TEST(SoundOutputTest, WithoutACardThereIsASentence) {
+  try {
+    const SoundOutput output(default_sound(), {}, 1, "hw:no-such-card");
+    FAIL() << "a card that is not there was opened";
+  } catch (const RunError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("sound card 'hw:no-such-card'"));
+    EXPECT_THAT(error.what(), HasSubstr("WAV"));
+  }
+}
+
+}  // namespace
+}  // namespace haptrial::sound
