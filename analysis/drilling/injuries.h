@@ -11,6 +11,8 @@
 
 namespace haptrial::analysis::drilling {
 
+class StudyBones;
+
 /// What happened to a vital structure.
 struct Injury {
   std::string structure;
@@ -27,9 +29,8 @@ struct Injury {
 /// of the structure as it was at first. One thread, not the servo thread.
 class InjuryMeter {
  public:
-  /// @param fields  by vital label, each reaching farther than any burr: contacts beyond are missed
   InjuryMeter(std::shared_ptr<const bone::BoneModel> bone, const Eigen::Isometry3d& pose_WB,
-              std::vector<std::shared_ptr<const bone::DistanceField>> fields);
+              const std::vector<ProcedureTool>& tools, StudyBones& bones);
 
   /// @param time  of the procedure [s]; radius of the burr [m], 0 for none
   void tick(const ToolTick& tick, double radius, double time);
@@ -40,15 +41,13 @@ class InjuryMeter {
   std::uint64_t voxels() const noexcept;  // of all, emptied by a burr
 
  private:
-  bool touches(const Injury& injury, const Eigen::Vector3d& centre, double radius) const;
+  bool touches(std::size_t injury, const Eigen::Vector3d& centre, double radius) const;
 
   std::shared_ptr<const bone::BoneModel> bone_;
   Eigen::Isometry3d pose_BW_;
   std::vector<std::shared_ptr<const bone::DistanceField>> fields_;  // (injuries)
   std::vector<Injury> injuries_;
 };
-
-class StudyBones;
 
 /// Of a whole procedure: one for each vital structure of its bone, in the order of labels.
 std::vector<Injury> injuries(const Procedure& procedure, StudyBones& bones);

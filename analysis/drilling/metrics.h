@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/drilling/injuries.h"
@@ -34,9 +36,8 @@ std::vector<MetricKind> metric_kinds();
 struct MetricOptions {
   std::vector<std::string> structures;  // to look at forces near them; empty: all that are vital
   double near{5e-3};                    // how far from them is near > 0 [m]
-  NearBins bins;
+  NearBins bins;                        // at most 250 voxels far
   StrokeParameters strokes;
-  RegionParameters region;
 };
 
 /// Everything that a study keeps of a procedure: a few megabytes where the procedure has hundreds.
@@ -58,6 +59,8 @@ struct ProcedureSummary {
   /// (metric_kinds()); nothing where it is not defined, as the share of no voxels. That of the
   /// region is filled by add_region_scores().
   std::vector<std::optional<double>> values;
+
+  /// @throws std::invalid_argument for a name that metric_kinds() does not have.
 
   std::optional<double> value(std::string_view metric) const;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,9 +38,9 @@ struct NearBins {
   std::size_t count() const;
 };
 
-/// @param field  of the structure, reaching at least as far as bins.reach
+/// Those within reach [m] of a structure. @param field  of it, reaching at least as far
 NearRemovals near_removals(const Procedure& procedure, const std::string& structure,
-                           const bone::DistanceField& field, const NearBins& bins = {});
+                           const bone::DistanceField& field, double reach = NearBins{}.reach);
 
 /// Whose removals these are.
 struct NearCase {

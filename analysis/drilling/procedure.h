@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,8 +28,9 @@ struct ProcedureTool {
 
 /// What the definition of a session says and its tables do not.
 struct ProcedureSetup {
-  std::string group;                                         // of the participant
-  Eigen::Isometry3d pose_WB{Eigen::Isometry3d::Identity()};  // of the bone
+  std::string group;  // of the participant
+  /// X_WB, how a bone lies in the scene; null: B is W.
+  std::function<Eigen::Isometry3d(const geometry::VoxelGrid&)> pose_WB;
   double scale{1.0};                 // the device's motions are this many times the scene's > 0
   std::vector<ProcedureTool> tools;  // in the definition's order
 };
@@ -44,6 +46,9 @@ struct ToolTick {
   bool drives_tool{true};  // the hand does not steer the camera or a piece
   bool power{false};       // the burr turns
   bool in_bone{false};     // at least one sample of the burr
+
+  /// The hand drives a burr that turns and is in bone, where the tool is a burr.
+  bool drills() const noexcept { return drives_tool && power && in_bone; }
 };
 
 /// A voxel that the burr emptied.
@@ -77,7 +82,7 @@ struct Procedure {
   std::string session;  // name of the file
   std::string participant;
   std::string group;
-  int number{1};         // of this participant's procedures, from 1
+  int number{1};         // of this participant's procedures: the trial, from 1
   bool simulated{true};  // the participant is a virtual subject
   bool completed{true};  // its last pass came to its end
   double rate{1000.0};   // of ticks [Hz]
@@ -95,18 +100,20 @@ struct Procedure {
 
 class StudyBones;
 
-/// The drillings of a session file, those of practice left out, in the order of their bones. A
-/// drilling that was broken off and went on is one procedure with the ticks of all its passes.
+/// The drillings of a session file in the order of their trials, those of practice left out. A
+/// drilling that was broken off and went on is one procedure with the ticks of all its passes; of
+/// one that was begun anew on a fresh bone only the last bone counts.
 /// @param bones  where equal bones of several files become one; may be null
 /// @throws InputError where the file is damaged, has no drillings, or a table names what is not
-/// there.
+/// there; std::invalid_argument for a scale that is not above 0.
 std::vector<Procedure> load_procedures(const record::SessionReader& file,
                                        const ProcedureSetup& setup, StudyBones* bones = nullptr);
 
 /// The bone of a record. @throws std::invalid_argument where its rows do not fit together.
 bone::BoneModel bone_of(const record::BoneRecord& record);
 
-// Rows of a session file as metrics use them.
+// Rows of a session file as metrics use them; of rows that are not in a file yet, what the file
+// will give.
 ToolTick tick_of(const record::Sample& sample, const record::ToolRow& tool, double scale);
 Removal removal_of(const record::RemovalRow& row);
 View view_of(const record::CameraRow& row);

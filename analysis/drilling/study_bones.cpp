@@ -36,21 +36,10 @@ std::shared_ptr<const bone::DistanceField> StudyBones::field(
     const std::shared_ptr<const bone::BoneModel>& bone, std::uint8_t label, double reach) {
   std::vector<bool> labels(bone->structures.size(), false);
   labels.at(label) = true;
-  return made(bone, labels, reach);
+  return field(bone, labels, reach);
 }
 
 std::shared_ptr<const bone::DistanceField> StudyBones::field(
-    const std::shared_ptr<const bone::BoneModel>& bone, const std::string& structure,
-    double reach) {
-  std::vector<bool> labels(bone->structures.size(), false);
-  for (std::size_t label = 1; label < labels.size(); ++label) {
-    labels[label] = bone->structures[label].name == structure;
-  }
-  auto field = made(bone, labels, reach);
-  return field->empty() ? nullptr : field;
-}
-
-std::shared_ptr<const bone::DistanceField> StudyBones::made(
     const std::shared_ptr<const bone::BoneModel>& bone, const std::vector<bool>& labels,
     double reach) {
   // Made under the lock: several threads ask for the same field at once, and one has to make it.

@@ -4,7 +4,6 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <string>
 #include <tuple>
 #include <vector>
 
@@ -23,15 +22,13 @@ class StudyBones {
   /// @param reach  of the field [m]
   std::shared_ptr<const bone::DistanceField> field(
       const std::shared_ptr<const bone::BoneModel>& bone, std::uint8_t label, double reach);
-  /// To all structures with a name; null where the bone has no voxel of one.
+  /// To all of a set of labels.
   std::shared_ptr<const bone::DistanceField> field(
-      const std::shared_ptr<const bone::BoneModel>& bone, const std::string& structure,
+      const std::shared_ptr<const bone::BoneModel>& bone, const std::vector<bool>& labels,
       double reach);
 
  private:
   using Key = std::tuple<std::shared_ptr<const bone::BoneModel>, std::vector<bool>, double>;
-  std::shared_ptr<const bone::DistanceField> made(const std::shared_ptr<const bone::BoneModel>&,
-                                                  const std::vector<bool>& labels, double reach);
 
   std::mutex mutex_;
   std::vector<std::shared_ptr<const bone::BoneModel>> bones_;

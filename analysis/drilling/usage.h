@@ -60,12 +60,15 @@ class UsageMeter {
   double period_;  // [s]
   Usage usage_;
   std::vector<std::uint64_t> tool_ticks_, tool_drilling_;  // (tools)
+  std::vector<bool> burrs_;                                // (tools)
   std::uint64_t ticks_{0};
   std::uint64_t drilling_{0};
   double force_sum_{0.0};
   double removed_{0.0};  // [voxels]
   std::int32_t tool_{-1};
   std::optional<View> view_;
+  std::uint64_t moved_{0};  // when the view last changed
+  bool has_moved_{false};
 };
 
 Usage usage(const Procedure& procedure);

@@ -44,8 +44,10 @@ class VisibilityMeter {
 
   /// From now on. @param eye  in W [m]
   void look_from(const Eigen::Vector3d& eye);
-  /// A part that turned to dust.
-  void crumble(const bone::Voxel& voxel) { bone_.take_part(voxel); }
+  /// A part that turned to dust. @param taken  its voxels are appended; may be null
+  void crumble(const bone::Voxel& voxel, std::vector<bone::Voxel>* taken = nullptr) {
+    bone_.take_part(voxel, taken);
+  }
   /// A removed voxel. @param tip, radius  of the burr, in W [m]
   /// @returns whether it was visible; never before the first look_from()
   bool remove(const bone::Voxel& voxel, const Eigen::Vector3d& tip, double radius);
