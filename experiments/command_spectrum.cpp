@@ -153,7 +153,7 @@ void draw(const SpectrumOptions& options, const sound::PowerSpectrum& recorded,
   figure.name = "spectrum";
   figure.title = fmt::format("{}", fs::path(options.file).filename().string());
   figure.x_label = "frequency [kHz]";
-  figure.y_label = "power density [dB re full scale^2/Hz]";
+  figure.y_label = "power density [dB re full scale²/Hz]";
   figure.series.push_back(
       curve(recorded, "recorded", {.color = "#1f6f8b", .width = 2.0}, kHighest));
   figure.series.push_back(

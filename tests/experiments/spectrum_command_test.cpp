@@ -1,0 +1,79 @@
+// haptrial spectrum, as it is called from a shell.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <vector>
+
+#include "core/sound/spectrum_table.h"
+#include "core/sound/wav.h"
+#include "tests/experiments/command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial {
+namespace {
+
+using ::testing::HasSubstr;
+
+class SpectrumCommandTest : public ::testing::Test {
+ protected:
+  /// A second of two sines, as a file.
+  void record(const char* name, double frequency) {
+    std::vector<float> samples(48'000);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const double turn = 2.0 * std::numbers::pi * frequency * static_cast<double>(i) / 48'000.0;
+      samples[i] = static_cast<float>(0.2 * std::sin(turn) + 0.1 * std::sin(2.0 * turn + 1.0));
+    }
+    sound::WavWriter wav(folder_ / name, 48'000);
+    wav.write(samples);
+    wav.finish();
+  }
+  test::CommandResult run(const std::string& line) {
+    return test::run_command("cd '" + folder_.path().string() + "'\n" + line);
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(SpectrumCommandTest, MakesATableLevelByLevel) {
+  record("air.wav", 1140.0);
+  record("bone.wav", 1000.0);
+  const auto result =
+      run("haptrial spectrum air.wav t.toml --level free\n"
+          "haptrial spectrum bone.wav t.toml --add --level light --force 0.5 --wav again.wav\n"
+          "haptrial spectrum again.wav --picture p.png");
+  ASSERT_EQ(result.status, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("dominant    1140.0 Hz; fundamental 1140.0 Hz"));
+  const auto table = sound::read_spectrum_table(folder_ / "t.toml");
+  const auto& kind = table.of(sound::Burr::kCutting);
+  ASSERT_EQ(kind.free.size(), 1U);
+  ASSERT_EQ(kind.contact.size(), 1U);
+  EXPECT_TRUE(kind.contact[0].measured);
+  EXPECT_EQ(kind.contact[0].force, 0.5);
+  EXPECT_NEAR(kind.contact[0].spectrum.peaks[0].frequency, 1000.0, 1.0);
+  EXPECT_NEAR(kind.contact[0].spectrum.peaks[0].amplitude, 0.2, 0.002);
+  EXPECT_NEAR(kind.contact[0].spectrum.peaks[1].amplitude, 0.1, 0.001);
+  EXPECT_GT(std::filesystem::file_size(folder_ / "p.png"), 1000U);
+}
+
+TEST_F(SpectrumCommandTest, BadInputGetsASentence) {
+  record("air.wav", 1140.0);
+  const auto refused = [&](const std::string& line, const std::string& why) {
+    const auto result = run(line);
+    EXPECT_EQ(result.status, 2) << line;
+    EXPECT_THAT(result.errors, HasSubstr(why)) << line;
+  };
+  refused("haptrial spectrum absent.wav", "absent.wav: cannot be read");
+  refused("haptrial spectrum air.wav --burr blunt", "--burr is 'blunt'; allowed: diamond, cutting");
+  refused("haptrial spectrum air.wav --level 'a b'", "--level is 'a b'");
+  refused("haptrial spectrum air.wav --segment 1000", "--segment is 1000");
+  refused("haptrial spectrum air.wav --peaks 0", "--peaks is 0");
+  refused("haptrial spectrum air.wav --picture p.jpg", "allowed: .png, .svg");
+  refused("touch t.toml; haptrial spectrum air.wav t.toml", "t.toml: is there already");
+}
+
+}  // namespace
+}  // namespace haptrial
