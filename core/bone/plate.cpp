@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -106,15 +108,24 @@ std::vector<PlateSample> spread(const std::vector<PlateSample>& places, std::siz
   return chosen;
 }
 
+/// A piece, and what is about to leave it.
+struct Bone {
+  const BoneVolume& volume;
+  const BoneVolume* leaving;
+
+  bool holds(const Voxel& voxel) const noexcept {
+    return volume.density(voxel) > 0.0F || (leaving != nullptr && leaving->density(voxel) > 0.0F);
+  }
+};
+
 /// How far a segment of `length` that begins in bone runs before it leaves the bone; nothing where
 /// it does not.
-std::optional<double> way_out(const BoneWorld& world, int piece, const Vector3d& from_B,
-                              const Vector3d& to_B, double length) noexcept {
-  const geometry::VoxelGrid& grid = world.volume(piece).grid();
+std::optional<double> way_out(const Bone& bone, const Vector3d& from_B, const Vector3d& to_B,
+                              double length) noexcept {
   double out = 0.0;
   bool left = false;
-  walk_voxels(grid, from_B, to_B, [&](const Voxel& voxel, double in, double end) {
-    left = !(world.density(piece, voxel) > 0.0F);
+  walk_voxels(bone.volume.grid(), from_B, to_B, [&](const Voxel& voxel, double in, double end) {
+    left = !bone.holds(voxel);
     out = left ? in : end;
     return !left;
   });
@@ -192,19 +203,22 @@ PlateContact press(const PlateModel& plate, const Eigen::Isometry3d& pose_WP,
   }
   const double reach = plate.parameters().reach;
   for (int piece = 0; piece < world.pieces(); ++piece) {
-    const geometry::VoxelGrid& grid = world.volume(piece).grid();
+    if (!world.is_born(piece)) {
+      continue;  // felt with its parent
+    }
+    const Bone bone{world.volume(piece), world.leaving(piece)};
     const Eigen::Isometry3d pose_BP = world.pose(piece).inverse() * pose_WP;
     Vector3d force_P = Vector3d::Zero();
     Vector3d torque_P = Vector3d::Zero();
     for (const PlateSample& sample : plate.samples()) {
       const Vector3d p_B = pose_BP * sample.point;
-      if (!(world.density(piece, voxel_of(grid, p_B)) > 0.0F)) {
+      if (!bone.holds(voxel_of(bone.volume.grid(), p_B))) {
         continue;
       }
       ++contact.touching;
       contact.pieces |= PieceSet{1} << piece;
       const Vector3d to_B = pose_BP * (sample.point - reach * sample.normal);
-      const double depth = way_out(world, piece, p_B, to_B, reach).value_or(0.0);
+      const double depth = way_out(bone, p_B, to_B, reach).value_or(0.0);
       const Vector3d push = -plate.parameters().stiffness * depth * sample.normal;
       force_P += push;
       torque_P += sample.point.cross(push);

@@ -199,12 +199,9 @@ void BoneWorld::add_event(const WorldEvent& event) noexcept {
   }
 }
 
-float BoneWorld::density(int piece, const Voxel& voxel) const noexcept {
+const BoneVolume* BoneWorld::leaving(int piece) const noexcept {
   const int last = pieces() - 1;  // only the last one can be in the making
-  const bool leaving = !is_born(last) && parent(last) == piece;
-  return !is_born(piece) ? 0.0F
-                         : at(piece).volume->density(voxel) +
-                               (leaving ? at(last).volume->density(voxel) : 0.0F);
+  return !is_born(last) && parent(last) == piece ? at(last).volume.get() : nullptr;
 }
 
 int BoneWorld::holder(const Voxel& voxel) const noexcept {

@@ -29,7 +29,7 @@ using PieceSet = std::uint64_t;  // bit i: piece i
 struct WorldParameters {
   int capacity{32};           // pieces, from 1 to kMaxPieces; the first is the bone itself
   int smallest_piece{64};     // parts of fewer voxels turn to dust; 1: none does [voxels]
-  int moves_per_tick{2000};   // voxels that change their object in a tick, >= smallest_piece
+  int moves_per_tick{5000};   // voxels that change their object in a tick, >= smallest_piece
   bool split_initial{false};  // parts that are separate from the start become pieces too
 };
 
@@ -111,8 +111,8 @@ class BoneWorld {
   BoneVolume& volume(int piece) noexcept { return *at(piece).volume; }
   const Eigen::Isometry3d& pose(int piece) const noexcept { return at(piece).pose; }
   bool is_born(int piece) const noexcept { return at(piece).born; }
-  /// Of a piece that is born, with what is about to leave it: 0 for one in the making.
-  float density(int piece, const Voxel& voxel) const noexcept;
+  /// The volume in the making that bone of a piece is moving to; null where there is none.
+  const BoneVolume* leaving(int piece) const noexcept;
   int parent(int piece) const noexcept { return at(piece).parent; }
   const Eigen::Isometry3d& plate_pose(int plate) const noexcept { return plate_at(plate).pose; }
 
