@@ -332,12 +332,18 @@ EarAnatomy::Material EarAnatomy::at(const Point& p) const {
   if (ear_canal(p) < 0.0) return {Anatomy::kEarCanal, 1.0};
   const Material condyle = jaw(p);
   if (condyle.label != Anatomy::kNothing) return condyle;
-  if (depth >= 0.0) return {};
+  constexpr double kPlate = 1.0;  // over dura and sinus, also where the shapes leave a gap
+  const bool plate = inside < kPlate || sinus(p) < kPlate;
+  if (depth >= 0.0) {
+    return plate && depth < kDura + 0.8 ? Material{Anatomy::kBone, 1.0} : Material{};
+  }
   const double middle = middle_ear(p);
   if (middle < 0.0) {
+    if (plate) return {Anatomy::kBone, 1.0};
     // The canal of the facial nerve and the capsule of the labyrinth bulge into the cavity.
     for (const Part& part : parts_) {
-      const bool walled = part.label == Anatomy::kFacialNerve || part.label == Anatomy::kLabyrinth;
+      const bool walled = part.label == Anatomy::kFacialNerve ||
+                          part.label == Anatomy::kLabyrinth || part.label == Anatomy::kCarotid;
       if (walled && part.worm.distance(p) < 0.55) return {Anatomy::kBone, 1.0};
     }
     return {};

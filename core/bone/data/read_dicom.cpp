@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <optional>
 #include <set>
 
@@ -31,7 +32,26 @@ struct Slice {
   Eigen::Vector3d along_column{Eigen::Vector3d::Zero()};  // where rows count up
   Eigen::Vector2d spacing{Eigen::Vector2d::Zero()};       // between rows, between columns
   bool placed{false};
+  bool whole{true};  // as far as its size says
 };
+
+/// Whether the pixels have room behind their tag; unknown where they are compressed.
+bool is_whole(const gdcm::Reader& reader, const Slice& slice, int bits) {
+  const gdcm::TransferSyntax& syntax = reader.GetFile().GetHeader().GetDataSetTransferSyntax();
+  if (syntax.IsEncapsulated() || syntax == gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian) {
+    return true;
+  }
+  const double pixels = static_cast<double>(slice.rows) * slice.columns * slice.frames;
+  const double head = static_cast<double>(fs::file_size(slice.file)) - pixels * bits / 8.0 - 8.0;
+  constexpr double kLargest = 1e8;
+  if (!(head >= 0.0 && head <= kLargest)) return head > 0.0;
+  std::string bytes(static_cast<std::size_t>(head) + 4, '\0');
+  std::ifstream(slice.file, std::ios::binary)
+      .read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  constexpr std::string_view kTag("\xE0\x7F\x10\x00", 4);
+  constexpr std::string_view kBigEndianTag("\x7F\xE0\x00\x10", 4);
+  return bytes.find(kTag) != std::string::npos || bytes.find(kBigEndianTag) != std::string::npos;
+}
 
 template <class Attribute>
 std::optional<Attribute> find(const gdcm::DataSet& data) {
@@ -74,6 +94,8 @@ std::optional<Slice> read_slice(const fs::path& file) {
   const auto place = find<gdcm::Attribute<0x0020, 0x0032>>(data);
   const auto turned = find<gdcm::Attribute<0x0020, 0x0037>>(data);
   const auto spacing = find<gdcm::Attribute<0x0028, 0x0030>>(data);
+  const auto bits = find<gdcm::Attribute<0x0028, 0x0100>>(data);
+  slice.whole = !bits || is_whole(reader, slice, bits->GetValue());
   slice.placed = place && turned && spacing;
   if (slice.placed) {
     for (unsigned i = 0; i < 3; ++i) {
@@ -116,6 +138,9 @@ void check_alike(const std::string& name, const std::vector<Slice>& slices) {
   const Slice& first = slices.front();
   for (const Slice& slice : slices) {
     const std::string file = slice.file.filename().string();
+    if (!slice.whole) {
+      throw InputError(fmt::format("{}: {} is cut short; allowed: whole files", name, file));
+    }
     if (!slice.placed) {
       throw InputError(
           fmt::format("{}: {} does not say where its slice lies; allowed: position, "

@@ -1,0 +1,288 @@
+// What a file says of its volume comes out at the right place; what it says wrongly is refused.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <numbers>
+
+#include "core/base/error.h"
+#include "core/bone/data/bone_summary.h"
+#include "core/bone/data/load_bone.h"
+#include "tests/core/bone/data/volume_bytes.h"
+#include "tests/support/shared_data.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::bone {
+namespace {
+
+using test::PlainVolume;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class ImportTest : public ::testing::Test {
+ protected:
+  BoneModel load(const std::string& name, const std::string& bytes,
+                 const LoadOptions& options = {}) {
+    test::write_bytes(folder_ / name, bytes);
+    return load_bone(folder_ / name, options);
+  }
+  std::string refusal(const std::string& name, const std::string& bytes,
+                      const LoadOptions& options = {}) {
+    try {
+      load(name, bytes, options);
+    } catch (const InputError& error) {
+      const std::string words = error.what();
+      EXPECT_EQ(std::ranges::count(words, '\n'), 0) << words;
+      return words;
+    }
+    return "none";
+  }
+  test::TemporaryFolder folder_;
+};
+
+/// The place of the only voxel with a label [mm].
+Eigen::Vector3d place_of(const BoneModel& model, std::uint8_t label) {
+  Eigen::Vector3d place = Eigen::Vector3d::Constant(1e9);
+  int count = 0;
+  for (int k = 0; k < model.grid.size[2]; ++k) {
+    for (int j = 0; j < model.grid.size[1]; ++j) {
+      for (int i = 0; i < model.grid.size[0]; ++i) {
+        if (model.labels[model.grid.index(i, j, k)] != label) continue;
+        place = 1e3 * model.grid.centre(i, j, k);
+        ++count;
+      }
+    }
+  }
+  EXPECT_EQ(count, 1);
+  return place;
+}
+
+/// Every way to lay a file's axes along the patient's.
+std::vector<Eigen::Matrix3d> signed_permutations() {
+  std::vector<Eigen::Matrix3d> all;
+  std::array<int, 3> order{0, 1, 2};
+  do {
+    for (int signs = 0; signs < 8; ++signs) {
+      Eigen::Matrix3d steps = Eigen::Matrix3d::Zero();
+      for (int axis = 0; axis < 3; ++axis) {
+        steps(order[static_cast<std::size_t>(axis)], axis) = (signs >> axis) % 2 == 0 ? 0.4 : -0.4;
+      }
+      all.push_back(steps);
+    }
+  } while (std::ranges::next_permutation(order).found);
+  return all;
+}
+
+TEST_F(ImportTest, APlaceStaysWhereItIsHoweverTheFileLaysItsAxes) {
+  for (const Eigen::Matrix3d& steps : signed_permutations()) {
+    PlainVolume volume({4, 5, 6});
+    volume.steps = steps;
+    volume.origin = {-3.0, 7.0, 11.0};
+    volume.more = "label_07:=Facial_Nerve\n";
+    volume.at(1, 3, 2) = 7;
+    for (const bool ras : {false, true}) {
+      const BoneModel model = load("v.nrrd", nrrd_of(volume, ras));
+      EXPECT_LT((place_of(model, 7) - volume.place(1, 3, 2)).norm(), 1e-9) << steps;
+    }
+    const BoneModel nifti = load("v.nii", nifti_of(volume, true, 1002));
+    EXPECT_LT((place_of(nifti, 7) - volume.place(1, 3, 2)).norm(), 1e-5) << steps;
+  }
+}
+
+TEST_F(ImportTest, CompressedVolumesAreTheSame) {
+  PlainVolume volume({4, 5, 6});
+  volume.more = "label_01:=Bone\n";
+  volume.fill([](const Eigen::Vector3d& p) { return p.sum() > 7.0 ? 1 : 0; });
+  const BoneModel plain = load("p.nrrd", nrrd_of(volume));
+  EXPECT_EQ(load("z.nrrd", nrrd_of(volume, false, true)).labels, plain.labels);
+  // Without a word on orientation NIfTI counts to the right, to the front and up.
+  PlainVolume ras = volume;
+  ras.steps = Eigen::Vector3d(-1, -1, 1).asDiagonal();
+  const std::string bare = nifti_of(ras, false);
+  EXPECT_EQ(load("z.nii.gz", test::gzip(bare)).labels, load("p.nii", nifti_of(ras)).labels);
+}
+
+TEST_F(ImportTest, NamesBringWhatIsKnownOfThem) {
+  PlainVolume volume({2, 2, 2});
+  volume.more = "label_03:=Chorda_Tympani\nlabel_04:=Thing of its own\n";
+  volume.at(0, 0, 0) = 3;
+  volume.at(1, 0, 0) = 4;
+  const BoneModel model = load("v.nrrd", nrrd_of(volume));
+  EXPECT_EQ(model.structures[3].name, "chorda tympani");
+  EXPECT_TRUE(model.structures[3].vital);
+  EXPECT_EQ(model.structures[4].name, "Thing of its own");
+  EXPECT_FALSE(model.structures[4].vital);
+}
+
+/// A ball of labels [mm].
+PlainVolume ball(const Eigen::Matrix3d& steps, std::array<int, 3> size, double radius) {
+  PlainVolume volume(size);
+  volume.steps = steps;
+  const Eigen::Vector3d half(size[0] - 1, size[1] - 1, size[2] - 1);
+  volume.origin = Eigen::Vector3d(5, 6, 7) - steps * half / 2.0;
+  return volume.fill([&](const Eigen::Vector3d& p) {
+    return (p - Eigen::Vector3d(5, 6, 7)).norm() < radius ? 1 : 0;
+  });
+}
+
+TEST_F(ImportTest, ASmallTurnIsKeptAndALargeOneResampled) {
+  const auto turned = [](double degrees) {
+    const Eigen::AngleAxisd turn(degrees * std::numbers::pi / 180.0,
+                                 Eigen::Vector3d(1, 2, 3).normalized());
+    return ball(0.5 * turn.toRotationMatrix(), {40, 40, 40}, 7.0);
+  };
+  const PlainVolume little = turned(0.9);
+  const BoneModel kept = load("a.nrrd", nrrd_of(little));
+  EXPECT_TRUE(std::ranges::equal(kept.labels, little.values));
+  EXPECT_THAT(kept.source, HasSubstr("turned by 0.90 degrees, whose axes are kept"));
+  for (const double degrees : {1.1, 20.0, 44.0, 70.0}) {
+    const BoneSummary summary = summary_of(load("b.nrrd", nrrd_of(turned(degrees))));
+    const double exact = 4.0 / 3.0 * std::numbers::pi * 343.0;
+    EXPECT_NEAR(1e9 * summary.volume, exact, 0.02 * exact) << degrees;
+    EXPECT_LT((1e3 * summary.box.center() - Eigen::Vector3d(5, 6, 7)).norm(), 0.5) << degrees;
+    EXPECT_LT((1e3 * summary.box.sizes() - Eigen::Vector3d::Constant(14)).norm(), 1.2) << degrees;
+  }
+}
+
+TEST_F(ImportTest, LabelsOfFlatVoxelsKeepTheirVolumeAndMixNothing) {
+  const Eigen::Matrix3d steps = Eigen::Vector3d(0.4, 0.5, 1.3).asDiagonal();
+  PlainVolume volume = ball(steps, {60, 50, 20}, 8.0);
+  for (std::int16_t& value : volume.values) value = static_cast<std::int16_t>(9 * value);
+  const BoneModel model = load("v.nrrd", nrrd_of(volume));
+  EXPECT_DOUBLE_EQ(model.grid.spacing, 0.4e-3);
+  const BoneSummary summary = summary_of(model);
+  ASSERT_EQ(summary.structures.size(), 1U);
+  EXPECT_EQ(summary.structures[0].label, 9);
+  const double exact = 4.0 / 3.0 * std::numbers::pi * 512.0;
+  EXPECT_NEAR(1e9 * summary.volume, exact, 0.02 * exact);
+}
+
+TEST_F(ImportTest, ABallOfGreyKeepsItsVolumeAtAnySpacing) {
+  // An edge 2 mm wide around 8 mm, so that every scan can hold it; the middle value is the edge.
+  const Eigen::Matrix3d steps = Eigen::Vector3d(0.8, 0.8, 1.6).asDiagonal();
+  PlainVolume volume = ball(steps, {36, 36, 18}, 8.0);
+  volume.fill([](const Eigen::Vector3d& p) {
+    const double r = (p - Eigen::Vector3d(5, 6, 7)).norm();
+    return -1000.0 + 2600.0 * std::clamp(0.5 - (r - 8.0) / 3.0, 0.0, 1.0);
+  });
+  LoadOptions options;
+  const double exact = 4.0 / 3.0 * std::numbers::pi * 512.0;
+  for (const double spacing : {0.4, 0.5, 0.8, 1.2}) {
+    options.spacing = 1e-3 * spacing;
+    const BoneModel model = load("v.nrrd", nrrd_of(volume), options);
+    const BoneSummary summary = summary_of(model);
+    EXPECT_DOUBLE_EQ(model.grid.spacing, 1e-3 * spacing);
+    EXPECT_NEAR(1e9 * summary.volume, exact, 0.03 * exact) << spacing;
+    EXPECT_LT((1e3 * summary.box.center() - Eigen::Vector3d(5, 6, 7)).norm(), spacing);
+    EXPECT_NEAR(1e6 * summary.surface, 4.0 * std::numbers::pi * 64.0, 40.0);
+    EXPECT_FLOAT_EQ(*std::ranges::max_element(model.density), 1.0F);
+  }
+}
+
+TEST_F(ImportTest, NumbersThatAreNotHounsfieldUnitsNeedAThreshold) {
+  PlainVolume volume({20, 20, 20});
+  volume.fill([](const Eigen::Vector3d& p) {
+    return p.x() < 8 ? 10.0 + p.y() : p.x() < 14 ? 1000.0 + p.y() : 2000.0 + p.y();
+  });
+  EXPECT_THAT(refusal("v.nrrd", nrrd_of(volume)),
+              AllOf(HasSubstr("from 10 to 2019"), HasSubstr("not Hounsfield units")));
+  LoadOptions options;
+  options.find_threshold = true;
+  options.spacing = 1e-3;
+  const BoneModel found = load("v.nrrd", nrrd_of(volume), options);
+  EXPECT_EQ(summary_of(found).voxels, 6U * 20U * 20U);
+  options.find_threshold = false;
+  options.threshold = 500.0;
+  EXPECT_EQ(summary_of(load("v.nrrd", nrrd_of(volume), options)).voxels, 12U * 20U * 20U);
+}
+
+TEST_F(ImportTest, FewWholeNumbersAreLabelsAndManyAreGrey) {
+  PlainVolume labels({8, 8, 8});
+  labels.fill([](const Eigen::Vector3d& p) { return p.x() > 3 ? 3 : 0; });
+  EXPECT_EQ(load("l.nrrd", nrrd_of(labels)).labels.back(), 3);
+  PlainVolume grey({8, 8, 8});
+  int next = 0;
+  for (std::int16_t& value : grey.values) value = static_cast<std::int16_t>(next++ % 256);
+  EXPECT_THAT(refusal("g.nrrd", nrrd_of(grey)), HasSubstr("not Hounsfield units"));
+}
+
+TEST_F(ImportTest, WhatCannotBeABoneIsRefusedInASentence) {
+  PlainVolume volume({4, 4, 4});
+  volume.more = "label_01:=Bone\n";
+  EXPECT_THAT(refusal("v.nrrd", nrrd_of(volume)), HasSubstr("holds no bone"));
+  volume.at(1, 1, 1) = 300;
+  EXPECT_THAT(refusal("v.nrrd", nrrd_of(volume)), HasSubstr("whole numbers from 0 to 255"));
+  volume.at(1, 1, 1) = 1;
+  const std::string good = nrrd_of(volume);
+  EXPECT_THAT(refusal("v.nrrd", good.substr(0, good.size() - 5)), HasSubstr("v.nrrd"));
+  EXPECT_THAT(refusal("v.nrrd", good.substr(0, 40)), HasSubstr("v.nrrd"));
+  EXPECT_THAT(refusal("v.nrrd", ""), HasSubstr("does not begin with 'NRRD000'"));
+  EXPECT_THAT(refusal("v.mha", good), HasSubstr("no volume by its name"));
+  std::string zipped = nrrd_of(volume, false, true);
+  for (std::size_t i = zipped.size() - 20; i < zipped.size() - 8; ++i) zipped[i] ^= 0x55;
+  EXPECT_THAT(refusal("v.nrrd", zipped), HasSubstr("v.nrrd"));
+  EXPECT_THAT(refusal("v.nii", nifti_of(volume).substr(0, 300)), HasSubstr("NIfTI"));
+  EXPECT_THAT(refusal("v.nii", nifti_of(volume).substr(0, 400)), HasSubstr("v.nii"));
+  PlainVolume flat = volume;
+  flat.steps.col(2) = flat.steps.col(1);
+  EXPECT_THAT(refusal("v.nrrd", nrrd_of(flat)), HasSubstr("span a volume"));
+  PlainVolume air({4, 4, 4});
+  air.fill([](const Eigen::Vector3d& p) { return -1000.0 + p.x(); });
+  EXPECT_THAT(refusal("v.nrrd", nrrd_of(air)), HasSubstr("some of 300 or more"));
+  EXPECT_THROW(load_bone(folder_ / "absent.nrrd"), InputError);
+}
+
+TEST_F(ImportTest, AHeadThatPromisesTooMuchIsRefusedBeforeMemoryIsTaken) {
+  PlainVolume volume({4, 4, 4});
+  volume.at(0, 0, 0) = 1;
+  std::string lie = nrrd_of(volume);
+  const std::string sizes = "sizes: 4 4 4";
+  lie.replace(lie.find(sizes), sizes.size(), "sizes: 30000 30000 30000");
+  EXPECT_THAT(refusal("v.nrrd", lie), AllOf(HasSubstr("30000"), HasSubstr("GB of memory")));
+  lie.replace(lie.find("30000 30000"), 11, "99999 30000");
+  EXPECT_THAT(refusal("v.nrrd", lie), HasSubstr("1 to 32767 along an axis"));
+  LoadOptions options;
+  options.room = [](const std::string& what, double bytes) {
+    throw InputError(fmt::format("{} needs {} bytes", what, bytes));
+  };
+  EXPECT_THAT(refusal("v.nrrd", nrrd_of(volume), options), HasSubstr("needs 1280 bytes"));
+}
+
+TEST_F(ImportTest, ATableNamesLabelsAndStructuresCanBeLeftOut) {
+  PlainVolume volume({4, 4, 4});
+  volume.at(0, 0, 0) = 1;
+  volume.at(3, 3, 3) = 12;
+  test::write_bytes(folder_ / "names.toml",
+                    "[labels.1]\nname = \"mandible\"\n[labels.12]\nname = \"IAN\"\n"
+                    "colour = [0.1, 0.2, 0.3]\nhardness = 0.5\nvital = false\n");
+  LoadOptions options;
+  options.label_file = (folder_ / "names.toml").string();
+  const BoneModel model = load("v.nrrd", nrrd_of(volume), options);
+  EXPECT_EQ(model.structures[1].name, "mandible");
+  EXPECT_EQ(model.structures[12].name, "inferior alveolar nerve");
+  EXPECT_DOUBLE_EQ(model.structures[12].colour[2], 0.3);
+  EXPECT_DOUBLE_EQ(model.structures[12].hardness, 0.5);
+  EXPECT_FALSE(model.structures[12].vital);
+  options.without = {"ian"};
+  EXPECT_EQ(summary_of(load("v.nrrd", nrrd_of(volume), options)).voxels, 1U);
+  options.without = {"tooth"};
+  EXPECT_THAT(refusal("v.nrrd", nrrd_of(volume), options), HasSubstr("no 'tooth' to leave out"));
+  test::write_bytes(folder_ / "names.toml", "[labels.300]\nname = \"x\"\n");
+  EXPECT_THAT(refusal("v.nrrd", nrrd_of(volume), options), HasSubstr("labels.300"));
+}
+
+TEST_F(ImportTest, TheRealTemporalBoneComesAsItIs) {
+  const auto file = test::shared_data("bone/ear3_171_labels.nrrd");
+  if (!file) GTEST_SKIP() << "HAPTRIAL_DATA has no bone/ear3_171_labels.nrrd";
+  const BoneModel model = load_bone(*file);
+  EXPECT_EQ(model.grid.size, (std::array<std::int32_t, 3>{171, 171, 169}));
+  EXPECT_EQ(std::ranges::count(model.labels, 1), 825395);  // as its publishers count
+  EXPECT_EQ(model.structures[10].name, "facial nerve");
+  EXPECT_EQ(model.structures[13].name, "sigmoid sinus and dura");
+  EXPECT_TRUE(model.density.empty());
+}
+
+}  // namespace
+}  // namespace haptrial::bone
