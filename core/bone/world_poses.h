@@ -8,8 +8,8 @@
 
 namespace haptrial::bone {
 
-/// Rigid poses that one thread writes and any number of threads read whole, without waiting for the
-/// writer: a reader that met a change takes the poses again.
+/// Rigid poses that one thread writes, never waiting, and any number of threads read whole, without
+/// a lock: a reader that met a change takes the poses again.
 class WorldPoses {
  public:
   explicit WorldPoses(int capacity)

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/error.h"
+#include "core/base/table.h"
 #include "tests/core/bone/pieces_support.h"
 #include "tests/support/allocation_guard.h"
 
@@ -149,6 +151,18 @@ TEST(CutPlaneTest, BesideBoneAndWithoutAPlaneNothingHappens) {
   EXPECT_TRUE(nothing({looking(Vector3d::UnitX(), middle), 0.02, 1e9, 0.1}));
   EXPECT_TRUE(nothing({looking(Vector3d::UnitX(), middle), 0.02, 0.02, -0.1}));
   EXPECT_EQ(world.volume(0).amount(), 20.0 * 20 * 18);
+}
+
+TEST(CutPlaneTest, ItsSidesAreReadFromADefinition) {
+  Table good = Table::parse("width = 0.02\nheight = 0.03\ndepth = 0.0\n", "c.toml");
+  const CutPlane plane = read_cut_plane(good);
+  good.finish();
+  EXPECT_EQ(plane.width, 0.02);
+  EXPECT_EQ(plane.height, 0.03);
+  EXPECT_EQ(plane.depth, 0.0);
+  Table bad = Table::parse("width = 0.0\nheight = 0.03\ndepth = 0.0\n", "c.toml");
+  read_cut_plane(bad);
+  EXPECT_THROW(bad.finish(), InputError);
 }
 
 TEST(CutPlaneTest, TheCutIsTheSameHoweverItIsSpreadAndThoughPiecesMoveAndSplitMeanwhile) {

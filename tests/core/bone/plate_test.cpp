@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "core/base/error.h"
+#include "core/base/table.h"
 #include "core/bone/plate_shapes.h"
 #include "core/geometry/mesh_check.h"
 #include "core/geometry/mesh_io.h"
@@ -282,6 +283,20 @@ TEST(PlateModelTest, LoadsMeshesOfOtherMakers) {
   EXPECT_THROW(PlateModel::load(flat), InputError);
   EXPECT_THROW(PlateModel::load(folder.path() / "none.obj"), InputError);
   EXPECT_THROW(PlateModel("bad", make_plate(l_plate()), {.samples = 101}), std::invalid_argument);
+}
+
+TEST(PlateModelTest, ParametersAreReadFromADefinition) {
+  Table good =
+      Table::parse("samples = 50\nextrusion = 0.0002\nreach = 0.004\nstiffness = 80.0\n", "p.toml");
+  const PlateParameters read = read_plate_parameters(good);
+  good.finish();
+  EXPECT_EQ(read.samples, 50);
+  EXPECT_EQ(read.extrusion, 0.0002);
+  EXPECT_EQ(read.reach, 0.004);
+  EXPECT_EQ(read.stiffness, 80.0);
+  Table bad = Table::parse("samples = 101\nextrusion = 0\nreach = 1\nstiffness = 1\n", "p.toml");
+  read_plate_parameters(bad);
+  EXPECT_THROW(bad.finish(), InputError);
 }
 
 TEST(PlateModelTest, ACoarseMeshIsFeltAllOver) {

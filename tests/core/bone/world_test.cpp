@@ -6,6 +6,8 @@
 #include <set>
 #include <thread>
 
+#include "core/base/error.h"
+#include "core/base/table.h"
 #include "core/bone/pieces_search.h"
 #include "tests/core/bone/pieces_support.h"
 #include "tests/support/allocation_guard.h"
@@ -296,6 +298,21 @@ TEST(BoneWorldTest, ParametersOutOfBoundsAreRefused) {
   EXPECT_THROW(make({.capacity = 65}), std::invalid_argument);
   EXPECT_THROW(make({.smallest_piece = 0}), std::invalid_argument);
   EXPECT_THROW(make({.smallest_piece = 101, .moves_per_tick = 100}), std::invalid_argument);
+}
+
+TEST(BoneWorldTest, ParametersAreReadFromADefinition) {
+  Table good = Table::parse(
+      "capacity = 5\nsmallest_piece = 20\nmoves_per_tick = 300\nsplit_initial = true\n", "w.toml");
+  const WorldParameters read = read_world_parameters(good);
+  good.finish();
+  EXPECT_EQ(read.capacity, 5);
+  EXPECT_EQ(read.smallest_piece, 20);
+  EXPECT_EQ(read.moves_per_tick, 300);
+  EXPECT_TRUE(read.split_initial);
+  Table bad = Table::parse(
+      "capacity = 5\nsmallest_piece = 400\nmoves_per_tick = 300\nsplit_initial = true\n", "w.toml");
+  read_world_parameters(bad);
+  EXPECT_THROW(bad.finish(), InputError);
 }
 
 /// A drill that wanders through a grid, straight cuts among its ways: a function of the tick.
