@@ -13,7 +13,7 @@
 #include "core/device/mouse.h"
 #include "core/device/open_haptics.h"
 #include "experiments/commands.h"
-#include "experiments/definition.h"
+#include "experiments/experiment.h"
 #include "experiments/device_check.h"
 #include "experiments/interrupt.h"
 
@@ -48,17 +48,18 @@ Eigen::Vector3d sweep(CheckPart part, double share, double radius) {
 }
 
 /// How the devices are set up; a stop button is a button like any other here.
-struct Setup {
+struct DeviceSetup {
   device::VirtualDeviceParameters electronics;
   device::MouseParameters mouse;
   device::ForceDimensionParameters force_dimension;
   device::OpenHapticsParameters open_haptics;
 };
 
-Setup setup_of(const DeviceTestOptions& options) {
-  Setup setup;
+DeviceSetup setup_of(const DeviceTestOptions& options) {
+  DeviceSetup setup;
   if (!options.definition.empty()) {
-    const Definition d = load_definition(options.definition);
+    const Experiment experiment = load_experiment(options.definition);
+    const Setup& d = experiment.setup();
     setup = {d.device, d.mouse, d.force_dimension, d.open_haptics};
   }
   setup.mouse.stop_button = -1;
@@ -93,7 +94,7 @@ Bench mouse_bench(device::MouseParameters parameters) {
   return bench;
 }
 
-Bench vendor_bench(const DeviceTestOptions& options, const Setup& setup) {
+Bench vendor_bench(const DeviceTestOptions& options, const DeviceSetup& setup) {
   Bench bench;
   if (options.name == "force-dimension") {
     bench.device = std::make_unique<device::ForceDimensionDevice>(setup.force_dimension, kRate,
@@ -110,7 +111,7 @@ Bench vendor_bench(const DeviceTestOptions& options, const Setup& setup) {
 }
 
 Bench make_bench(const DeviceTestOptions& options) {
-  const Setup setup = setup_of(options);
+  const DeviceSetup setup = setup_of(options);
   Bench bench = options.name == "virtual" ? virtual_bench(setup.electronics)
                 : options.name == "mouse" ? mouse_bench(setup.mouse)
                                           : vendor_bench(options, setup);

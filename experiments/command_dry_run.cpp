@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "experiments/arguments.h"
+#include "experiments/experiment.h"
 #include "experiments/interrupt.h"
 #include "experiments/study_run.h"
 
@@ -27,16 +28,18 @@ fs::path fresh_folder(const std::string& name) {
 
 int dry_run(const DryRunOptions& options) {
   watch_for_interrupt();
-  const Definition definition = load_definition(options.definition);
+  const Experiment experiment = load_experiment(options.definition);
+  const Setup& setup = experiment.setup();
   DryRun dry;
   dry.participants = checked_number(
-      "--subjects", options.subjects.value_or(definition.design.participants), 1, 10000);
+      "--subjects", options.subjects.value_or(setup.design.participants), 1, 10000);
   dry.seed = checked_seed(options.seed);
   dry.jobs = checked_jobs(options.jobs);
   dry.frames_per_pass = checked_number("--frames", options.frames, 0, 1000);
-  dry.max_trials = checked_number("--trials", options.trials, 0, definition.design.trials);
-  dry.folder = options.out.empty() ? fresh_folder(definition.name) : fs::path(options.out);
-  const DryRunSummary done = run_dry(definition, dry);
+  dry.max_trials = checked_number("--trials", options.trials, 0, setup.design.trials);
+  dry.folder = options.out.empty() ? fresh_folder(setup.name) : fs::path(options.out);
+  const DryRunSummary done =
+      experiment.bone ? run_dry(*experiment.bone, dry) : run_dry(*experiment.force, dry);
   fmt::print("{} sessions, {:.0f} s of simulated time in {:.1f} s ({:.0f} times real time)\n",
              dry.participants, done.recorded_seconds, done.elapsed_seconds,
              done.recorded_seconds / done.elapsed_seconds);
@@ -48,7 +51,12 @@ int dry_run(const DryRunOptions& options) {
     fmt::print("{} passes were aborted; haptrial info FILE says which and why\n",
                done.aborted_passes);
   }
-  fmt::print("sessions: {}\nnext: haptrial analyze {}\n", dry.folder.string(), dry.folder.string());
+  fmt::print("sessions: {}\n", dry.folder.string());
+  if (experiment.bone) {
+    fmt::print("next: haptrial replay {}\n", (dry.folder / "S01.h5").string());
+  } else {
+    fmt::print("next: haptrial analyze {}\n", dry.folder.string());
+  }
   return 0;
 }
 

@@ -2,10 +2,16 @@
 
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/base/error.h"
+#include "core/sound/wav.h"
 #include "experiments/arguments.h"
+#include "experiments/bone_display.h"
+#include "experiments/bone_replay.h"
+#include "experiments/bone_sound.h"
 #include "experiments/commands.h"
 #include "experiments/interrupt.h"
 #include "experiments/progress.h"
@@ -71,10 +77,147 @@ class PictureFolder {
 
 }  // namespace
 
+namespace {
+
+/// What is written of a drilling that is simulated again.
+class DrillingOutputs {
+ public:
+  DrillingOutputs(const ReplayOptions& options, const BoneReplay& replay, int fps)
+      : replay_(replay), every_(replay.rate() / fps) {
+    if (!options.video.empty()) {
+      video_.emplace(options.video, fps);
+    }
+    if (!options.frames.empty()) {
+      pictures_.emplace(options.frames);
+    }
+    if (!options.sound.empty()) {
+      const BoneDefinition& d = replay.definition();
+      sound_.emplace(options.sound, replay.rate(), d.sound_table, d.thin_bone, 1);
+    }
+  }
+  bool any() const { return video_ || pictures_ || sound_; }
+
+  void watch(std::uint64_t tick, const stimulus::DrillingView& seen,
+             const std::shared_ptr<const BoneStage>& stage) {
+    if (stage != stage_) {
+      stage_ = stage;
+      renderer_.reset();
+      probe_.emplace(stage);
+      if (video_ || pictures_) {
+        renderer_ = std::make_unique<BoneRenderer>(replay_.definition(), stage);
+      }
+    }
+    constexpr std::uint64_t kProbeEvery = 20;  // ticks
+    if (sound_) {
+      thickness_ = tick % kProbeEvery == 0 ? probe_->under(seen) : thickness_;
+      sound_->add(sound_of(seen, stage->simulator->tools(), thickness_));
+    }
+    if (renderer_ && static_cast<double>(tick) >= next_) {
+      next_ += every_;
+      const render::Image image = renderer_->draw(seen);
+      if (video_) {
+        video_->add(image);
+      }
+      if (pictures_) {
+        pictures_->add(image);
+      }
+      ++count_;
+    }
+  }
+
+  void finish(const ReplayOptions& options) {
+    renderer_.reset();
+    if (video_) {
+      video_->finish();
+      fmt::print("video: {}\n", options.video);
+    }
+    if (pictures_) {
+      pictures_->keep();
+      fmt::print("pictures: {}\n", options.frames);
+    }
+    if (sound_) {
+      sound_->finish();
+      fmt::print("sound: {}\n", options.sound);
+    }
+    if (count_ > 0) {
+      fmt::print("{} pictures\n", count_);
+    }
+  }
+
+ private:
+  const BoneReplay& replay_;
+  double every_;  // ticks from picture to picture
+  double next_{0.0};
+  int count_{0};
+  std::optional<VideoWriter> video_;
+  std::optional<PictureFolder> pictures_;
+  std::optional<sound::SoundTrack> sound_;
+  std::shared_ptr<const BoneStage> stage_;
+  std::unique_ptr<BoneRenderer> renderer_;
+  std::optional<ThicknessProbe> probe_;
+  double thickness_{1.0};  // [m]
+};
+
+void print_verdict(const ReplayOptions& options, const ReplayVerdict& verdict) {
+  if (!verdict.difference.empty()) {
+    throw RunError(fmt::format("{}: trial {} is not the same when it is simulated again: {}",
+                               options.file, verdict.trial, verdict.difference));
+  }
+  fmt::print("trial {}: the same bone, {} ticks in {} passes, {} voxels emptied, checksum {:016x}{}\n",
+             verdict.trial, verdict.ticks, verdict.passes, verdict.emptied, verdict.checksum,
+             verdict.whole ? "" : "; a pass did not come to its end and has no checksum");
+}
+
+int replay_drilling(const ReplayOptions& options, int fps) {
+  const BoneReplay replay(options.file);
+  DrillingOutputs outputs(options, replay, fps);
+  std::vector<int> trials = replay.trials();
+  if (options.trial != 0) {
+    trials = {options.trial};
+  } else if (outputs.any() && trials.size() > 1) {
+    trials.resize(1);
+  }
+  if (trials.empty()) {
+    throw InputError(fmt::format("{}: holds no trials", options.file));
+  }
+  for (const int trial : trials) {
+    Progress progress("replay", static_cast<double>(replay.ticks(trial)));
+    BoneReplay::Watch watch;
+    if (outputs.any()) {
+      watch = [&](std::uint64_t tick, const stimulus::DrillingView& seen,
+                  const std::shared_ptr<const BoneStage>& stage) {
+        if (interrupted()) {
+          throw RunError("interrupted");
+        }
+        outputs.watch(tick, seen, stage);
+        constexpr std::uint64_t kBetween = 100;  // ticks
+        if (tick % kBetween == 0) {
+          progress.update(static_cast<double>(tick), fmt::format("trial {}", trial),
+                          replay.rate());
+        }
+      };
+    }
+    print_verdict(options, replay.run(trial, watch));
+  }
+  outputs.finish(options);
+  return 0;
+}
+
+}  // namespace
+
 int replay(const ReplayOptions& options) {
   const auto phase = phase_of(options.phase);
   constexpr int kMostFps = 240;
   const int fps = checked_number("--fps", options.fps, 1, kMostFps);
+  if (record::SessionReader(options.file).drills()) {
+    return replay_drilling(options, fps);
+  }
+  if (options.trial == 0) {
+    throw InputError("replay needs --trial, the number of the trial to show");
+  }
+  if (!options.sound.empty()) {
+    throw InputError("--sound is for sessions that drill");
+  }
   if (options.video.empty() && options.frames.empty()) {
     throw InputError("replay needs --video FILE.mp4 or --frames FOLDER to write to");
   }

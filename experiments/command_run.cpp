@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "experiments/arguments.h"
 #include "experiments/console.h"
+#include "experiments/experiment.h"
 #include "experiments/interrupt.h"
 #include "experiments/keyboard.h"
 #include "experiments/rig.h"
@@ -80,7 +81,8 @@ SessionSummary attended_session(SessionRequest& request, const RunOptions& optio
 
 int run(const RunOptions& options) {
   watch_for_interrupt();
-  const Definition definition = load_definition(options.definition);
+  const Experiment experiment = load_experiment(options.definition);
+  const Setup& setup = experiment.setup();
   check_subject(options.subject);
   check_device_name(options.device);
   if (options.device == "mouse" && !options.window) {
@@ -88,12 +90,13 @@ int run(const RunOptions& options) {
         "--device mouse takes its pointer from the participant's screen; add --window");
   }
   SessionRequest request;
-  request.definition = &definition;
+  request.definition = experiment.force ? &*experiment.force : nullptr;
+  request.bone = experiment.bone ? &*experiment.bone : nullptr;
   request.subject = options.subject;
   request.participant = participant_of(options);
   request.seed = checked_seed(options.seed);
   request.clock = realtime::ClockKind::kReal;
-  request.max_trials = checked_number("--trials", options.trials, 0, definition.design.trials);
+  request.max_trials = checked_number("--trials", options.trials, 0, setup.design.trials);
   std::error_code error;
   fs::create_directories(options.out, error);
   if (error) {
@@ -112,7 +115,7 @@ int run(const RunOptions& options) {
     fmt::print("{}\n", notice);
   }
   fmt::print("session: {}\n{} ticks at {} Hz, {} overruns, {} records lost, {} passes aborted\n",
-             request.file.string(), done.ticks, definition.rate, done.overruns, done.dropped,
+             request.file.string(), done.ticks, setup.rate, done.overruns, done.dropped,
              done.aborted_passes);
   return 0;
 }

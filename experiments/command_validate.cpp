@@ -3,14 +3,42 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "experiments/definition.h"
+#include <algorithm>
+
+#include "experiments/experiment.h"
 #include "experiments/session.h"
 
 namespace haptrial::experiments {
 
+namespace {
+
+void print_bones(const BoneDefinition& d) {
+  fmt::print("{}: {} participants, {} procedures of at most {:.0f} s each, {} Hz\n", d.name,
+             d.design.participants, d.design.trials, d.drilling.time_limit, d.rate);
+  for (const auto& bone : d.bones) {
+    const auto filled = std::count_if(bone->labels.begin(), bone->labels.end(),
+                                      [](std::uint8_t label) { return label != 0; });
+    fmt::print("bone: {}, {} x {} x {} voxels of {:.3g} mm, {} of them filled\n", bone->name,
+               bone->grid.size[0], bone->grid.size[1], bone->grid.size[2],
+               1e3 * bone->grid.spacing, filled);
+  }
+  std::vector<std::string> tools;
+  for (const bone::ToolSpec& tool : d.simulator.tools) {
+    tools.push_back(tool.name);
+  }
+  fmt::print("tools: {}\n", fmt::join(tools, ", "));
+}
+
+}  // namespace
+
 int validate(const std::string& file) {
-  const Definition d = load_definition(file);
+  const Experiment experiment = load_experiment(file);
   fmt::print("{}: valid\n", file);
+  if (experiment.bone) {
+    print_bones(*experiment.bone);
+    return 0;
+  }
+  const Definition& d = *experiment.force;
   fmt::print("{}: {} participants, {} trials in {} blocks of {}, conditions {}, {} Hz\n", d.name,
              d.design.participants, d.design.trials, d.design.blocks(), d.design.repetitions,
              fmt::join(d.design.conditions, ", "), d.rate);

@@ -50,6 +50,7 @@ struct ReplayOptions {
   std::string phase;   // "training", "test"; empty: both
   std::string video;   // .mp4
   std::string frames;  // folder
+  std::string sound;   // .wav, of a drilling
   int fps{30};
 };
 int replay(const ReplayOptions& options);

@@ -189,13 +189,15 @@ class Commands {
 
   void add_replay() {
     CLI::App* sub =
-        subcommand(app_, "replay", "Show a recorded trial as the participant saw it, with forces",
+        subcommand(app_, "replay", "Show a recorded trial as the participant saw it; drill a bone again",
                    "haptrial replay out/force_training-001/S01.h5 --trial 3 --video trial-3.mp4");
     sub->add_option("FILE", replay_.file, "Session file (.h5)")->required();
-    sub->add_option("--trial", replay_.trial, "Number from 1")->required();
+    sub->add_option("--trial", replay_.trial,
+                    "Number from 1; of a drilling all by default, and the first for a video");
     sub->add_option("--phase", replay_.phase, "training or test; both by default");
     sub->add_option("--video", replay_.video, "New video (.mp4), written by ffmpeg");
     sub->add_option("--frames", replay_.frames, "New folder for pictures (.png)");
+    sub->add_option("--sound", replay_.sound, "New sound of a drilling (.wav)");
     sub->add_option("--fps", replay_.fps, "Pictures a second (30)");
     sub->callback([this] { status_ = experiments::replay(replay_); });
   }

@@ -8,7 +8,6 @@
 #include "core/device/open_haptics.h"
 #include "core/device/replay.h"
 #include "core/record/session_reader.h"
-#include "experiments/virtual_rig.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -27,7 +26,7 @@ class DeviceRig final : public Rig {
 
 class MouseRig final : public Rig {
  public:
-  explicit MouseRig(const Definition& d) : device_(d.mouse, d.rate) {}
+  explicit MouseRig(const Setup& d) : device_(d.mouse, d.rate) {}
   device::Device& device() override { return device_; }
   device::MouseDevice* mouse() override { return &device_; }
 
@@ -61,8 +60,8 @@ std::unique_ptr<device::Device> replayed(const std::string& file, double rate) {
   return std::make_unique<device::ReplayDevice>(std::move(hand), rate, info, std::move(starts));
 }
 
-std::unique_ptr<Rig> open_rig(const DeviceChoice& choice, const Definition& d,
-                              std::uint64_t session_seed) {
+std::unique_ptr<Rig> open_rig(const DeviceChoice& choice, const Setup& d,
+                              const std::function<std::unique_ptr<Rig>()>& virtual_rig) {
   const auto with = [](auto device) { return std::make_unique<DeviceRig>(std::move(device)); };
   if (choice.name == "mouse") {
     return std::make_unique<MouseRig>(d);
@@ -79,11 +78,11 @@ std::unique_ptr<Rig> open_rig(const DeviceChoice& choice, const Definition& d,
     return with(replayed(choice.name.substr(kReplay.size()), d.rate));
   }
   check_device_name(choice.name);
-  return std::make_unique<VirtualRig>(d, session_seed);
+  return virtual_rig();
 }
 
 /// A weaker device would saturate unseen, a smaller one would stop at its walls.
-void check_reach(const device::DeviceInfo& info, const Definition& d) {
+void check_reach(const device::DeviceInfo& info, const Setup& d) {
   const auto check = [&](const char* key, double wanted, double most, const char* unit) {
     if (wanted > most) {
       throw InputError(
@@ -112,9 +111,9 @@ void check_device_name(const std::string& name) {
   }
 }
 
-std::unique_ptr<Rig> make_rig(const DeviceChoice& choice, const Definition& d,
-                              std::uint64_t session_seed) {
-  std::unique_ptr<Rig> rig = open_rig(choice, d, session_seed);
+std::unique_ptr<Rig> make_rig(const DeviceChoice& choice, const Setup& d,
+                              const std::function<std::unique_ptr<Rig>()>& virtual_rig) {
+  std::unique_ptr<Rig> rig = open_rig(choice, d, virtual_rig);
   check_reach(rig->device().info(), d);
   return rig;
 }

@@ -1,11 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
 #include "core/device/device.h"
 #include "core/stimulus/observer.h"
-#include "experiments/definition.h"
+#include "experiments/setup.h"
 
 namespace haptrial::device {
 class MouseDevice;
@@ -31,11 +32,11 @@ struct DeviceChoice {
 };
 
 /// Opens a device, set up as the definition says; replay:FILE plays a recorded session's hand back.
-/// @param session_seed  the virtual person, and every random number of theirs, follows from it
+/// @param virtual_rig  makes a virtual device with a virtual person
 /// @throws InputError for an unknown name, an absent library or an envelope that the device cannot
 ///         fill; RunError where no device answers.
-std::unique_ptr<Rig> make_rig(const DeviceChoice& choice, const Definition& definition,
-                              std::uint64_t session_seed);
+std::unique_ptr<Rig> make_rig(const DeviceChoice& choice, const Setup& setup,
+                              const std::function<std::unique_ptr<Rig>()>& virtual_rig);
 
 /// @throws InputError unless make_rig knows the name.
 void check_device_name(const std::string& name);

@@ -55,6 +55,7 @@ render::TrialDisplayStyle fitted(render::TrialDisplayStyle style, const render::
 struct Scene {
   std::uint64_t version{0};
   bool trial{true};
+  MakeDrawing make;  // else one of the others
   std::vector<Eigen::Vector3d> points;
   render::TextPage page;
   Clock::time_point shown;  // when the page was asked for
@@ -172,6 +173,7 @@ class Easel {
       return false;
     }
     scene_ = scene;
+    drawing_ = scene_.make ? scene_.make(window_.gl(), style_.width, style_.height) : nullptr;
     if (scene_.trial) {
       trial_.set_trajectory(scene_.points);
     }
@@ -179,7 +181,9 @@ class Easel {
   }
 
   void draw(const stimulus::Presentation& presentation) {
-    if (scene_.trial) {
+    if (drawing_) {
+      drawing_->draw(presentation);
+    } else if (scene_.trial) {
       trial_.draw(presentation);
     } else {
       render::TextPage page = scene_.page;
@@ -219,7 +223,7 @@ class Easel {
     if (photodiode_ == Photodiode::kOff) {
       return;
     }
-    const bool runs = scene_.trial && presentation.instruction != stimulus::Instruction::kRest;
+    const bool runs = (scene_.trial || drawing_) && presentation.instruction != stimulus::Instruction::kRest;
     const bool white = photodiode_ == Photodiode::kRun ? runs : frames_ % 2 == 0;
     const double side = std::round(kPatchSide * std::min(style_.width, style_.height));
     const double shade = white ? 1.0 : 0.0;
@@ -236,6 +240,7 @@ class Easel {
   render::TextScreen text_;
   render::Painter patch_;
   Scene scene_;
+  std::unique_ptr<Drawing> drawing_;
   std::uint64_t frames_{0};
 };
 
@@ -272,6 +277,7 @@ void Screen::Impl::run() {
     opened.set_value();
     stimulus::Presentation seen;
     render::Pointer pointer = window.pointer();
+    std::vector<int> held;
     bool closed = false;
     while (!stop.load(std::memory_order_relaxed)) {
       pace.wait();
@@ -298,6 +304,11 @@ void Screen::Impl::run() {
         if (callbacks.key) {
           callbacks.key(press);
         }
+      }
+      if (const std::vector<int> now_held = window.held_keys();
+          callbacks.held && now_held != held) {
+        held = now_held;
+        callbacks.held(held);
       }
       const bool moved = std::exchange(pointer, window.pointer()) != pointer;
       if (callbacks.pointer && (moved || other_view)) {  // a view may move under the pointer
@@ -351,12 +362,17 @@ Screen::~Screen() {
 
 void Screen::show_text(render::TextPage page) {
   const std::lock_guard lock(impl_->mutex);
-  impl_->scene = {impl_->scene.version + 1, false, {}, std::move(page), Clock::now()};
+  impl_->scene = {impl_->scene.version + 1, false, {}, {}, std::move(page), Clock::now()};
 }
 
 void Screen::show_trial(std::vector<Eigen::Vector3d> points) {
   const std::lock_guard lock(impl_->mutex);
-  impl_->scene = {impl_->scene.version + 1, true, std::move(points), {}, {}};
+  impl_->scene = {impl_->scene.version + 1, true, {}, std::move(points), {}, {}};
+}
+
+void Screen::show(MakeDrawing make) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->scene = {impl_->scene.version + 1, false, std::move(make), {}, {}, {}};
 }
 
 void Screen::observe(const stimulus::Presentation& presentation, const Eigen::Vector3d&,

@@ -37,11 +37,22 @@ struct ScreenPointer {
   std::uint32_t buttons{0};  // bit 0 left, 1 right, 2 middle
 };
 
+/// Draws something else than a path or a page, on the screen's thread.
+class Drawing {
+ public:
+  virtual ~Drawing() = default;
+  virtual void draw(const stimulus::Presentation& seen) = 0;
+};
+/// Called on the screen's thread, with its OpenGL context current and its size [px].
+using MakeDrawing =
+    std::function<std::unique_ptr<Drawing>(const render::Gl& gl, int width, int height)>;
+
 /// What happens at the screen; called on its thread. They must not call back into the screen.
 struct ScreenCallbacks {
   std::function<void(const render::KeyPress&)> key;
   std::function<void(const ScreenPointer&)> pointer;  // when it or the view under it changed
   std::function<void()> closed;                       // the window's close button, once
+  std::function<void(const std::vector<int>&)> held;  // keys that are held, when they change
 };
 
 /// What a key in the participant's window asks for, as on the console's keyboard: Escape is the
@@ -72,6 +83,9 @@ class Screen final : public stimulus::Observer {
   /// From the next picture on, what observe() is given.
   /// @param points  the path of the block, p_W (N x 3) [m]
   void show_trial(std::vector<Eigen::Vector3d> points);
+
+  /// From the next picture on, whatever this makes.
+  void show(MakeDrawing make);
 
   /// Servo thread: hands the newest presentation over; no allocation, lock, I/O or throw.
   void observe(const stimulus::Presentation& presentation, const Eigen::Vector3d& device_force,

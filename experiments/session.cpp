@@ -12,14 +12,12 @@
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "experiments/interrupt.h"
-#include "experiments/pass_pictures.h"
 #include "experiments/rig.h"
 #include "experiments/session_desk.h"
 #include "experiments/session_opening.h"
 #include "experiments/session_record.h"
-#include "protocols/recall_test.h"
+#include "experiments/trials.h"
 #include "protocols/session_task.h"
-#include "protocols/training_pass.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -39,11 +37,9 @@ class Session {
   SessionDesk::Actions desk_actions();
 
   void run_plan(const std::vector<PlannedTrial>& plan);
-  void prepare(const PlannedTrial& trial);
   void present(const PlannedTrial& trial);
   bool run_trial(const PlannedTrial& trial, int attempt);
-  bool run_pass(std::unique_ptr<protocols::TrajectoryPass> pass, const PlannedTrial& trial,
-                record::Phase phase, int attempt);
+  bool run_pass(const PlannedTrial& trial, record::Phase phase, int attempt);
   void after_abort(const protocols::PassResult& result);
   const char* why_broken_off();
 
@@ -66,39 +62,37 @@ class Session {
   void note_troubles();
 
   const SessionRequest& request_;
-  const Definition& d_;
+  const Setup& d_;
   const bool real_;
   std::uint64_t session_seed_;
   SessionSummary summary_;
   realtime::ServoLoop loop_;
+  // Before the task: the servo thread may be using its pass when an error leaves a function.
+  std::unique_ptr<Trials> trials_;
   std::unique_ptr<Rig> rig_;
-  PassPictures pictures_;
+  std::atomic<std::uint32_t> held_keys_{0};  // functions, from the screen's thread
   std::unique_ptr<Screen> screen_;
   SessionRecord record_;  // opened when everything else is there
   SessionDesk desk_;
   protocols::SessionTask task_;
-  // Kept here, not in a function: the servo thread may be using them when an error leaves it.
-  std::optional<stimulus::Stimulus> stimulus_;
-  std::uint64_t stimulus_seed_{0};
-  std::unique_ptr<protocols::TrajectoryPass> pass_;
   std::thread servo_;  // on a real clock
 };
 
 Session::Session(const SessionRequest& request)
     : request_(request),
-      d_(*request.definition),
+      d_(setup_of(request)),
       real_(request.clock == ClockKind::kReal),
       session_seed_(derived_seed(request.seed, "participant " + request.subject)),
       loop_(request.clock, d_.rate),
-      rig_(make_rig(request.device, d_, session_seed_)),
-      pictures_(request),
-      screen_(open_screen(request, rig_->mouse())),
-      record_(request, rig_->device().info(), loop_),
+      trials_(make_trials(request, session_seed_)),
+      rig_(make_rig(request.device, d_, [this] { return trials_->virtual_rig(session_seed_); })),
+      screen_(open_screen(request, rig_->mouse(), &held_keys_)),
+      record_(request, rig_->device().info(), loop_, trials_->bones()),
       desk_(request.control, desk_actions()),
       task_(rig_->device(), d_.envelope, record_.log(), observers(),
             real_ ? protocols::SessionTask::Leave::kNever
                   : protocols::SessionTask::Leave::kAfterPassOrSlice,
-            record_.origin()) {
+            record_.origin(), record_.tool_log(), &held_keys_) {
   const auto stop = [](void* task) {
     static_cast<protocols::SessionTask*>(task)->emergency_stop();
   };
@@ -129,8 +123,8 @@ std::vector<stimulus::Observer*> Session::observers() {
   if (rig_->subject() != nullptr) {
     all.push_back(rig_->subject());
   }
-  if (pictures_.observer() != nullptr) {
-    all.push_back(pictures_.observer());
+  for (stimulus::Observer* observer : trials_->observers()) {
+    all.push_back(observer);
   }
   if (screen_) {
     all.push_back(screen_.get());
@@ -139,8 +133,7 @@ std::vector<stimulus::Observer*> Session::observers() {
 }
 
 SessionSummary Session::run() {
-  const auto plan =
-      protocols::plan_trials(d_.design, request_.participant, request_.seed, session_seed_);
+  const std::vector<PlannedTrial> plan = trials_->plan();
   try {
     record_.open(fmt::format("{} trials planned", plan.size()));
     if (real_) {
@@ -169,7 +162,7 @@ void Session::run_plan(const std::vector<PlannedTrial>& plan) {
     if (enough || desk_.wishes().abort) {
       break;
     }
-    if (record_.holds(trial)) {
+    if (record_.holds(trial, trials_->phases().back())) {
       continue;
     }
     if (trial.practice && !std::exchange(practised, true) && desk_.attended()) {
@@ -188,25 +181,18 @@ void Session::run_plan(const std::vector<PlannedTrial>& plan) {
   }
 }
 
-void Session::prepare(const PlannedTrial& trial) {
-  if (!stimulus_ || stimulus_seed_ != trial.stimulus_seed) {
-    stimulus_ = stimulus::make_stimulus(d_.trajectory, d_.force_pattern, trial.stimulus_seed);
-    stimulus_seed_ = trial.stimulus_seed;
-    pictures_.set_trajectory(stimulus_->path.points());
-  }
-  record_.keep_stimulus(trial, *stimulus_);
-}
-
 /// One trial until it is done: again when the experimenter repeats it, or when it was aborted while
 /// an experimenter is there to see to the cause.
 void Session::present(const PlannedTrial& trial) {
-  prepare(trial);
+  trials_->prepare(trial, record_);
   Wishes& wishes = desk_.wishes();
   for (int attempt = record_.attempts(trial) + 1; !wishes.abort; ++attempt) {
-    wishes.repeat = wishes.skip = false;
+    const bool anew = std::exchange(wishes.repeat, false);
+    wishes.skip = false;
     desk_.status().screen.clear();
+    trials_->begin_attempt(trial, anew);
     if (screen_) {
-      screen_->show_trial(stimulus_->path.points());
+      trials_->show(*screen_);
     }
     const bool done = run_trial(trial, attempt);
     pause_where_asked();
@@ -216,23 +202,25 @@ void Session::present(const PlannedTrial& trial) {
   }
 }
 
-/// @returns whether both passes were completed.
+/// @returns whether all passes were completed.
 bool Session::run_trial(const PlannedTrial& trial, int attempt) {
-  const bool learnt =
-      run_pass(protocols::make_training_pass(trial.condition, *stimulus_, d_.guidance, trial.block),
-               trial, record::Phase::kTraining, attempt);
-  if (!learnt && desk_.attended()) {
-    return false;  // the trial is presented again, from its training on
+  bool done = true;
+  const std::span<const record::Phase> phases = trials_->phases();
+  for (std::size_t i = 0; i < phases.size(); ++i) {
+    if (i > 0) {
+      pause_where_asked();
+      const Wishes& wishes = desk_.wishes();
+      if (wishes.repeat || wishes.skip || wishes.abort) {
+        return false;
+      }
+    }
+    const bool completed = run_pass(trial, phases[i], attempt);
+    if (!completed && desk_.attended()) {
+      return false;  // the trial is presented again, from its first pass on
+    }
+    done = done && completed;
   }
-  pause_where_asked();
-  const Wishes& wishes = desk_.wishes();
-  if (wishes.repeat || wishes.skip || wishes.abort) {
-    return false;
-  }
-  const bool tested =
-      run_pass(std::make_unique<protocols::RecallTest>(*stimulus_, d_.guidance, trial.block), trial,
-               record::Phase::kTest, attempt);
-  return learnt && tested;
+  return done;
 }
 
 void Session::pause_where_asked() {
@@ -242,19 +230,21 @@ void Session::pause_where_asked() {
   }
 }
 
-bool Session::run_pass(std::unique_ptr<protocols::TrajectoryPass> pass, const PlannedTrial& trial,
-                       record::Phase phase, int attempt) {
-  pass_ = std::move(pass);
-  task_.start(*pass_, record_.begin_pass(trial, phase, attempt));
+bool Session::run_pass(const PlannedTrial& trial, record::Phase phase, int attempt) {
+  PlannedTrial row = trial;
+  protocols::Pass& pass = trials_->make_pass(row, phase, record_);
+  const std::int32_t number = record_.begin_pass(row, phase, attempt);
+  task_.start(pass, number);
   ++summary_.passes;
   drive_until_idle();
   const protocols::PassResult& result = task_.result();
   const bool aborted = result.state == protocols::PassState::kAborted;
+  trials_->close_pass(record_, number);
   record_.end_pass(result);
   if (aborted) {
     after_abort(result);
   }
-  pictures_.draw(trial, phase);
+  trials_->draw_pictures(trial, phase);
   return !aborted;
 }
 
@@ -283,8 +273,7 @@ const char* Session::why_broken_off() {
   if (wishes.skip) {
     return "skipped";
   }
-  return wishes.abort ? "the session was ended"
-                      : "the tool did not come to the start, or to the end, in time";
+  return wishes.abort ? "the session was ended" : trials_->why_aborted();
 }
 
 void Session::drive_until_idle() {
@@ -346,10 +335,10 @@ void Session::wait_for_experimenter(const char* state) {
 /// For the hand to come back into the workspace; ticks are recorded all the same.
 void Session::recover() {
   if (real_) {
-    wait(d_.guidance.recovery, "recovering");
+    wait(d_.recovery, "recovering");
   } else {
     const std::uint64_t end =
-        loop_.ticks() + static_cast<std::uint64_t>(d_.guidance.recovery * d_.rate);
+        loop_.ticks() + static_cast<std::uint64_t>(d_.recovery * d_.rate);
     task_.leave_before(end);
     while (loop_.ticks() < end) {
       loop_.run(task_);
@@ -394,7 +383,7 @@ void Session::publish(const char* state) {
   status.trial = pass.trial;
   status.block = pass.block;
   status.condition = pass.condition;
-  status.phase = pass.phase == record::Phase::kTest ? "test" : "training";
+  status.phase = record::name_of(pass.phase);
   status.ticks = loop_.ticks();
   status.overruns = loop_.overruns();
   status.dropped = record_.dropped();
@@ -461,6 +450,9 @@ void Session::note_troubles() {
     }
   };
   note(record_.notice());
+  for (const std::string& notice : trials_->notices()) {
+    note(notice);
+  }
   note(loop_.real_time_status().notice);
   if (loop_.resynchronised() > 0) {
     note(fmt::format("the loop was suspended {} times and took up the present time",
@@ -475,6 +467,10 @@ void Session::note_troubles() {
 }  // namespace
 
 SessionSummary run_session(const SessionRequest& request) { return Session(request).run(); }
+
+double estimated_ticks(const BoneDefinition& d, int trials) {
+  return d.rate * trials * d.drilling.time_limit;
+}
 
 double estimated_ticks(const Definition& d, int trials) {
   // A wandering curve is about twice as long as its extent; approach and return take seconds.

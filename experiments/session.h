@@ -8,6 +8,7 @@
 
 #include "core/realtime/servo_loop.h"
 #include "core/record/session_types.h"
+#include "experiments/bone_definition.h"
 #include "experiments/definition.h"
 #include "experiments/rig.h"
 #include "experiments/session_control.h"
@@ -17,7 +18,8 @@ namespace haptrial::experiments {
 /// One participant's session: the unit of work. What it records is a pure function of definition,
 /// subject and seed on a simulated clock.
 struct SessionRequest {
-  const Definition* definition{nullptr};
+  const Definition* definition{nullptr};  // of one of the two protocols
+  const BoneDefinition* bone{nullptr};
   std::string subject;    // identifier, such as "S01"
   int participant{0};     // from 0; chooses the order of conditions
   std::uint64_t seed{0};  // of the study
@@ -38,6 +40,10 @@ struct SessionRequest {
   record::Participant person;
 };
 
+inline const Setup& setup_of(const SessionRequest& request) {
+  return request.bone != nullptr ? static_cast<const Setup&>(*request.bone) : *request.definition;
+}
+
 struct SessionSummary {
   std::uint64_t ticks{0};
   int passes{0};  // in this run
@@ -54,5 +60,6 @@ SessionSummary run_session(const SessionRequest& request);
 
 /// Ticks that a session takes at most on a simulated clock, roughly; for a progress line.
 double estimated_ticks(const Definition& definition, int trials);
+double estimated_ticks(const BoneDefinition& definition, int trials);
 
 }  // namespace haptrial::experiments

@@ -14,7 +14,7 @@
 namespace haptrial::experiments {
 
 record::SessionInfo session_info(const SessionRequest& request, const device::DeviceInfo& device) {
-  const Definition& d = *request.definition;
+  const Setup& d = setup_of(request);
   record::SessionInfo info;
   info.program_version = program_version();
   info.program_commit = program_commit();
@@ -34,12 +34,15 @@ record::SessionInfo session_info(const SessionRequest& request, const device::De
 }
 
 record::SessionWriter open_writer(const SessionRequest& request, const device::DeviceInfo& device,
-                                  record::Resumed& before) {
+                                  record::Resumed& before,
+                                  const std::optional<std::vector<record::BoneRecord>>& bones) {
   if (!request.resume || !record::SessionWriter::can_resume(request.file)) {
-    return record::SessionWriter(request.file, session_info(request, device));
+    const record::SessionInfo info = session_info(request, device);
+    return bones ? record::SessionWriter(request.file, info, *bones)
+                 : record::SessionWriter(request.file, info);
   }
   record::SessionWriter writer = record::SessionWriter::resume(request.file, before);
-  if (before.info.definition != request.definition->text || before.info.seed != request.seed) {
+  if (before.info.definition != setup_of(request).text || before.info.seed != request.seed) {
     throw InputError(
         fmt::format("{}.partial: was recorded with another definition or seed ({}); "
                     "resume it with the same ones",
@@ -48,15 +51,26 @@ record::SessionWriter open_writer(const SessionRequest& request, const device::D
   return writer;
 }
 
-std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::MouseDevice* mouse) {
+namespace {
+
+/// Whether a key is for the bone and not for the session.
+bool is_of_drilling(const SessionRequest& request, int key) {
+  return request.bone != nullptr &&
+         protocols::functions_of_keys(request.bone->drilling.controls, {key}) != 0;
+}
+
+}  // namespace
+
+std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::MouseDevice* mouse,
+                                    std::atomic<std::uint32_t>* held) {
   if (!request.window) {
     return nullptr;
   }
   ScreenCallbacks callbacks;
   SessionControl* control = request.control;
   if (control != nullptr) {
-    callbacks.key = [control](const render::KeyPress& press) {
-      if (const auto asked = request_of(press)) {
+    callbacks.key = [control, &request](const render::KeyPress& press) {
+      if (const auto asked = request_of(press); asked && !is_of_drilling(request, press.key)) {
         control->ask(*asked);
       }
     };
@@ -76,8 +90,14 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::Mouse
       mouse->press(device::is_pressed(pointer.buttons, 0) ? mouse->press_at(pointer.wheel) : 0.0);
     };
   }
-  return std::make_unique<Screen>(request.definition->screen, request.definition->display,
-                                  std::move(callbacks));
+  if (request.bone != nullptr) {
+    callbacks.held = [held, &request](const std::vector<int>& keys) {
+      held->store(protocols::functions_of_keys(request.bone->drilling.controls, keys),
+                  std::memory_order_relaxed);
+    };
+  }
+  const Setup& setup = setup_of(request);
+  return std::make_unique<Screen>(setup.screen, setup.display, std::move(callbacks));
 }
 
 std::unique_ptr<stream::LslOutlet> open_outlet(const SessionRequest& request, bool simulated,
@@ -85,10 +105,10 @@ std::unique_ptr<stream::LslOutlet> open_outlet(const SessionRequest& request, bo
   if (!request.stream) {
     return nullptr;
   }
-  return stream::LslOutlet::open({.study = request.definition->name,
+  return stream::LslOutlet::open({.study = setup_of(request).name,
                                   .subject = request.subject,
                                   .device = request.device.name,
-                                  .rate = request.definition->rate,
+                                  .rate = setup_of(request).rate,
                                   .simulated = simulated},
                                  notice);
 }

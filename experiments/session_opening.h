@@ -1,6 +1,8 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,12 +26,15 @@ record::SessionInfo session_info(const SessionRequest& request, const device::De
 /// A new session file, or the one that is gone on with; `before` says what that one holds.
 /// @throws InputError as SessionWriter does, and where the file is of another definition or seed.
 record::SessionWriter open_writer(const SessionRequest& request, const device::DeviceInfo& device,
-                                  record::Resumed& before);
+                                  record::Resumed& before,
+                                  const std::optional<std::vector<record::BoneRecord>>& bones);
 
 /// The participant's screen, where one was asked for; else null. Its keys reach the session's
 /// control, its pointer the mouse device.
 /// @param mouse  null for any other device
-std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::MouseDevice* mouse);
+/// @param held   receives the functions of a drilling that keys hold; outlives the screen
+std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::MouseDevice* mouse,
+                                    std::atomic<std::uint32_t>* held);
 
 /// The streams, where they were asked for and can be had; else null and, where they cannot, a
 /// sentence in `notice`.

@@ -11,13 +11,17 @@ namespace haptrial::experiments {
 using protocols::PlannedTrial;
 
 SessionRecord::SessionRecord(const SessionRequest& request, const device::DeviceInfo& device,
-                             const realtime::ServoLoop& loop)
+                             const realtime::ServoLoop& loop,
+                             const std::optional<std::vector<record::BoneRecord>>& bones)
     : request_(request),
       loop_(loop),
       real_(request.clock == realtime::ClockKind::kReal),
-      writer_(open_writer(request, device, before_)),
+      writer_(open_writer(request, device, before_, bones)),
       blocks_(before_.blocks),
       passes_(static_cast<std::int32_t>(before_.passes.size() + before_.open_passes.size())) {
+  if (bones) {
+    drilling_ = std::make_unique<Drilling>();
+  }
   outlet_ = open_outlet(request, device.simulated, notice_);
 }
 
@@ -34,10 +38,23 @@ void SessionRecord::open(const std::string& text) {
   event(before_.rows > 0 ? "session_resumed" : "session_start", text);
 }
 
-bool SessionRecord::holds(const PlannedTrial& trial) const {
+std::uint64_t SessionRecord::dropped() const {
+  return log_.dropped() +
+         (drilling_ ? drilling_->tool.dropped() + drilling_->logs.dropped() : std::uint64_t{0});
+}
+
+std::int32_t SessionRecord::bones_used(const PlannedTrial& trial) const {
+  std::int32_t most = 0;
+  for (const record::PassRow& pass : before_.passes) {
+    most = pass.trial == trial.trial ? std::max(most, pass.repetition) : most;
+  }
+  return most;
+}
+
+bool SessionRecord::holds(const PlannedTrial& trial, record::Phase last) const {
   return std::any_of(before_.passes.begin(), before_.passes.end(), [&](const auto& pass) {
     return pass.trial == trial.trial && pass.practice == trial.practice &&
-           pass.condition == trial.condition && pass.phase == record::Phase::kTest &&
+           pass.condition == trial.condition && pass.phase == last &&
            pass.status == record::PassStatus::kCompleted;
   });
 }
@@ -99,6 +116,7 @@ std::size_t SessionRecord::collect(const Follower& follow) {
     append(samples);
     follow(samples);
   };
+  append_drilling(real_);
   const std::size_t count = real_ ? log_.flush(take) : log_.drain(take);
   constexpr std::chrono::milliseconds kFlushEvery{500};
   const auto now = std::chrono::steady_clock::now();
@@ -116,7 +134,23 @@ void SessionRecord::append(std::span<const record::Sample> samples) {
   }
 }
 
+/// Before the samples of the same ticks. @param all  also the ones of blocks that are not full
+void SessionRecord::append_drilling(bool all) {
+  if (!drilling_) {
+    return;
+  }
+  const auto append_from = [&](auto& log) {
+    const auto give = [this](auto rows) { writer_.add(rows); };
+    all ? log.flush(give) : log.drain(give);
+  };
+  append_from(drilling_->tool);
+  append_from(drilling_->logs.removals);
+  append_from(drilling_->logs.camera);
+  append_from(drilling_->logs.splits);
+}
+
 void SessionRecord::append_rest() {
+  append_drilling(true);
   log_.flush([this](std::span<const record::Sample> samples) { append(samples); });
 }
 
@@ -165,7 +199,7 @@ void SessionRecord::write_timing() {
       rows.push_back({period.low, period.high, period.count, lateness.count, compute.count});
     }
   }
-  writer_.set_timing(rows, {loop_.ticks(), loop_.overruns(), log_.dropped()});
+  writer_.set_timing(rows, {loop_.ticks(), loop_.overruns(), dropped()});
 }
 
 }  // namespace haptrial::experiments

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "core/stimulus/stimulus.h"
 #include "core/stream/lsl_outlet.h"
 #include "experiments/session.h"
+#include "protocols/drilling_pass.h"
 #include "protocols/schedule.h"
 #include "protocols/session_task.h"
 
@@ -27,21 +29,30 @@ class SessionRecord {
  public:
   /// Opens the session file, or goes on with it, and the streams.
   /// @param loop  whose ticks are recorded and give events their time; outlives the record
+  /// @param bones  of a session that drills
   SessionRecord(const SessionRequest& request, const device::DeviceInfo& device,
-                const realtime::ServoLoop& loop);
+                const realtime::ServoLoop& loop,
+                const std::optional<std::vector<record::BoneRecord>>& bones);
 
   /// Where the servo thread leaves its records.
   protocols::SessionTask::Log& log() { return log_; }
+  /// Likewise of a session that drills; null in others.
+  protocols::SessionTask::ToolLog* tool_log() { return drilling_ ? &drilling_->tool : nullptr; }
+  /// Only in a session that drills.
+  protocols::DrillingLogs& drilling_logs() { return drilling_->logs; }
+  void keep_procedure(const record::ProcedureRow& row) { writer_.add(std::span(&row, 1)); }
   /// Of the first tick of this run.
   protocols::Origin origin() const;
-  std::uint64_t dropped() const { return log_.dropped(); }
+  std::uint64_t dropped() const;
   /// Why there are no streams though they were asked for, in a sentence; else empty.
   const std::string& notice() const { return notice_; }
 
   /// The first event, after rows for the passes during which an earlier run ended.
   void open(const std::string& text);
-  /// Whether a resumed file holds the trial's test already.
-  bool holds(const protocols::PlannedTrial& trial) const;
+  /// Whether a resumed file holds the trial's last pass already.
+  bool holds(const protocols::PlannedTrial& trial, record::Phase last) const;
+  /// How many bones a trial of drilling has had in a resumed file.
+  std::int32_t bones_used(const protocols::PlannedTrial& trial) const;
   /// Of a trial in a resumed file; 0 where it has none.
   int attempts(const protocols::PlannedTrial& trial) const;
   /// Once a block, also over several runs.
@@ -70,6 +81,7 @@ class SessionRecord {
   std::int64_t now_ns() const;
   void append(std::span<const record::Sample> samples);
   void append_rest();
+  void append_drilling(bool all);
   void add_pass(record::PassStatus status, std::uint64_t first_sample, std::uint64_t last_sample);
   void write_timing();
 
@@ -81,6 +93,11 @@ class SessionRecord {
   std::string notice_;
   std::unique_ptr<stream::LslOutlet> outlet_;
   protocols::SessionTask::Log log_;
+  struct Drilling {
+    protocols::SessionTask::ToolLog tool;
+    protocols::DrillingLogs logs;
+  };
+  std::unique_ptr<Drilling> drilling_;
   std::vector<std::int32_t> blocks_;  // whose stimuli are in the file
   record::PassRow row_;
   bool row_open_{false};  // and is not in the file yet

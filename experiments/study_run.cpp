@@ -53,8 +53,9 @@ class OutputFolder {
 /// Shares the participants out over threads and gathers what came of them.
 class Crew {
  public:
-  Crew(const Definition& definition, const DryRun& dry_run)
-      : definition_(definition), dry_run_(dry_run) {}
+  /// @param first  with the definition, to be completed for each participant
+  Crew(const SessionRequest& first, double ticks_each, const DryRun& dry_run)
+      : first_(first), setup_(setup_of(first)), ticks_each_(ticks_each), dry_run_(dry_run) {}
 
   DryRunSummary run() {
     const auto start = std::chrono::steady_clock::now();
@@ -71,7 +72,7 @@ class Crew {
     }
     summary_.elapsed_seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    summary_.recorded_seconds = static_cast<double>(summary_.ticks) / definition_.rate;
+    summary_.recorded_seconds = static_cast<double>(summary_.ticks) / setup_.rate;
     return summary_;
   }
 
@@ -96,8 +97,7 @@ class Crew {
   }
 
   SessionRequest request(int participant) {
-    SessionRequest r;
-    r.definition = &definition_;
+    SessionRequest r = first_;
     r.subject = participant_name(participant);
     r.participant = participant;
     r.seed = dry_run_.seed;
@@ -111,18 +111,19 @@ class Crew {
   }
 
   void show_progress() {
-    const int trials = dry_run_.max_trials > 0 ? dry_run_.max_trials : definition_.design.trials;
-    Progress progress("dry run", estimated_ticks(definition_, trials) * dry_run_.participants);
+    Progress progress("dry run", ticks_each_ * dry_run_.participants);
     while (finished_ < dry_run_.participants && !cancel_) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
       const auto done = static_cast<double>(ticks_.load(std::memory_order_relaxed));
       progress.update(done,
                       fmt::format("{} of {} sessions", finished_.load(), dry_run_.participants),
-                      definition_.rate);
+                      setup_.rate);
     }
   }
 
-  const Definition& definition_;
+  const SessionRequest& first_;
+  const Setup& setup_;
+  double ticks_each_;
   const DryRun& dry_run_;
   std::atomic<int> next_{0};
   std::atomic<int> finished_{0};
@@ -135,14 +136,36 @@ class Crew {
 
 }  // namespace
 
-DryRunSummary run_dry(const Definition& definition, const DryRun& dry_run) {
+namespace {
+
+DryRunSummary run_dry(const SessionRequest& first, double ticks_each, const DryRun& dry_run) {
   OutputFolder folder(dry_run.folder);
   if (dry_run.frames_per_pass > 0) {
     fs::create_directory(dry_run.folder / "frames");
   }
-  const DryRunSummary summary = Crew(definition, dry_run).run();
+  const DryRunSummary summary = Crew(first, ticks_each, dry_run).run();
   folder.keep();
   return summary;
+}
+
+template <class Definition>
+double ticks_each(const Definition& definition, const DryRun& dry_run) {
+  return estimated_ticks(definition, dry_run.max_trials > 0 ? dry_run.max_trials
+                                                            : definition.design.trials);
+}
+
+}  // namespace
+
+DryRunSummary run_dry(const Definition& definition, const DryRun& dry_run) {
+  SessionRequest first;
+  first.definition = &definition;
+  return run_dry(first, ticks_each(definition, dry_run), dry_run);
+}
+
+DryRunSummary run_dry(const BoneDefinition& definition, const DryRun& dry_run) {
+  SessionRequest first;
+  first.bone = &definition;
+  return run_dry(first, ticks_each(definition, dry_run), dry_run);
 }
 
 std::string participant_name(int participant) { return fmt::format("S{:02}", participant + 1); }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "experiments/bone_definition.h"
 #include "experiments/definition.h"
 
 namespace haptrial::experiments {
@@ -29,6 +30,7 @@ struct DryRunSummary {
 /// Where anything fails the other sessions are stopped and nothing is left.
 /// @throws InputError when the folder exists or cannot be made.
 DryRunSummary run_dry(const Definition& definition, const DryRun& dry_run);
+DryRunSummary run_dry(const BoneDefinition& definition, const DryRun& dry_run);
 
 /// "S01" for participant 0.
 std::string participant_name(int participant);

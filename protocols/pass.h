@@ -3,7 +3,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "core/base/point_state.h"
+#include "core/device/device.h"
+#include "core/record/drilling_types.h"
 #include "core/record/session_types.h"
 #include "core/stimulus/presentation.h"
 
@@ -17,6 +18,7 @@ struct PassOutput {
   double applied_force{0.0};  // by the participant, downward > 0 [N]
   record::Stage stage{record::Stage::kIdle};
   bool saturated{false};  // the device's force limit was reached
+  record::ToolRow tool;   // of a drilling; what the device gave is filled in by the task
 };
 
 enum class PassState : std::uint8_t { kRunning, kCompleted, kAborted };
@@ -26,9 +28,13 @@ enum class PassState : std::uint8_t { kRunning, kCompleted, kAborted };
 class Pass {
  public:
   virtual ~Pass() = default;
-  /// @param tool  as read from the device, in W;  @param dt  since the previous tick [s]
-  virtual PassOutput tick(const PointState& tool, double dt) noexcept = 0;
+  /// Before the first tick. @param sequence  of that tick in the session file
+  virtual void begin(std::uint64_t sequence) noexcept { static_cast<void>(sequence); }
+  /// @param reading  of the device, in W;  @param dt  since the previous tick [s]
+  virtual PassOutput tick(const device::DeviceReading& reading, double dt) noexcept = 0;
   virtual PassState state() const noexcept = 0;
+  /// On a simulated clock: whether the session's thread has to empty this pass's own logs.
+  virtual bool wants_attention() noexcept { return false; }
 };
 
 }  // namespace haptrial::protocols

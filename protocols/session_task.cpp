@@ -5,10 +5,13 @@
 namespace haptrial::protocols {
 
 SessionTask::SessionTask(device::Device& device, const device::EnvelopeLimits& limits, Log& log,
-                         std::vector<stimulus::Observer*> observers, Leave leave, Origin origin)
+                         std::vector<stimulus::Observer*> observers, Leave leave, Origin origin,
+                         ToolLog* tool_log, const std::atomic<std::uint32_t>* keys)
     : device_(device),
       envelope_(limits),
       log_(log),
+      tool_log_(tool_log),
+      keys_(keys),
       observers_(std::move(observers)),
       leave_(leave),
       origin_(origin) {}
@@ -32,6 +35,7 @@ bool SessionTask::tick(const realtime::Tick& tick) noexcept {
   take_requests(tick.index);
 
   const bool read_ok = device_.read(reading_);
+  reading_.keys = keys_ != nullptr ? keys_->load(std::memory_order_relaxed) : 0;
   envelope_.check(read_ok, reading_);
   PassOutput out = ask_pass(reading_, tick.dt);
   const Eigen::Vector3d force = envelope_.limit(out.force, tick.dt);
@@ -54,10 +58,24 @@ bool SessionTask::tick(const realtime::Tick& tick) noexcept {
   sample.stage = out.stage;
   sample.saturated = out.saturated;
   log_.push(sample);
+  if (tool_log_ != nullptr) {
+    push_tool(out.tool, sample.sequence);
+  }
 
+  const bool attention = pass_ != nullptr && pass_->wants_attention();
   const bool ended = end_if_over(tick.index);
   const std::uint64_t next = tick.index + 1;
-  return leave_ == Leave::kNever || !(ended || next % kSlice == 0 || next == leave_before_);
+  return leave_ == Leave::kNever ||
+         !(ended || attention || next % kSlice == 0 || next == leave_before_);
+}
+
+void SessionTask::push_tool(record::ToolRow row, std::uint64_t sequence) noexcept {
+  row.sequence = sequence;
+  row.orientation = reading_.orientation;
+  row.buttons = reading_.buttons;
+  row.keys = reading_.keys;
+  row.pedal = reading_.pedal;
+  tool_log_->push(row);
 }
 
 void SessionTask::take_requests(std::uint64_t sequence) noexcept {
@@ -101,12 +119,13 @@ void SessionTask::begin(std::uint64_t sequence) noexcept {
   broken_off_ = false;
   result_.begun = true;
   result_.first_sample = origin_.sequence + sequence;
+  pass_->begin(result_.first_sample);
   envelope_.engage();
 }
 
 PassOutput SessionTask::ask_pass(const device::DeviceReading& reading, double dt) noexcept {
   if (pass_ != nullptr && !broken_off_ && envelope_.fault() == device::Fault::kNone) {
-    return pass_->tick(reading.tool, dt);
+    return pass_->tick(reading, dt);
   }
   PassOutput nothing;
   nothing.presentation.tool = reading.tool.position;

@@ -32,12 +32,14 @@ struct Origin {
 ///
 ///     device -> envelope -> pass -> envelope -> device, observers, log
 ///
-/// The same on a real and on a simulated clock. After a pass the force is let go over the envelope's
-/// ramp_out, and the next one begins when it has gone and the device is ready; between passes it is
-/// zero, and ticks are recorded all the same. The servo thread calls tick(); the session's thread calls the rest.
+/// The same on a real and on a simulated clock. After a pass the force is let go over the
+/// envelope's ramp_out, and the next one begins when it has gone and the device is ready; between
+/// passes it is zero, and ticks are recorded all the same. The servo thread calls tick(); the
+/// session's thread calls the rest.
 class SessionTask final : public realtime::ServoTask {
  public:
   using Log = realtime::BlockLog<record::Sample>;
+  using ToolLog = realtime::BlockLog<record::ToolRow>;
 
   /// When tick() asks ServoLoop::run to return. On a simulated clock the session's thread runs the
   /// loop itself and has to be let out, to empty the log, before the log is full.
@@ -45,8 +47,11 @@ class SessionTask final : public realtime::ServoTask {
   static constexpr std::uint64_t kSlice = 16384;  // [ticks]
 
   /// Everything given outlives the task.
+  /// @param tool_log  of a session that drills, else null
+  /// @param keys      DeviceReading::keys, from the screen's thread; null: none
   SessionTask(device::Device& device, const device::EnvelopeLimits& limits, Log& log,
-              std::vector<stimulus::Observer*> observers, Leave leave, Origin origin = Origin{});
+              std::vector<stimulus::Observer*> observers, Leave leave, Origin origin = Origin{},
+              ToolLog* tool_log = nullptr, const std::atomic<std::uint32_t>* keys = nullptr);
 
   /// Hands a pass to the servo thread; it outlives the pass. Call only when idle().
   /// @param row  of /trials, for the samples
@@ -70,11 +75,14 @@ class SessionTask final : public realtime::ServoTask {
   bool may_begin() noexcept;
   void begin(std::uint64_t sequence) noexcept;
   bool end_if_over(std::uint64_t sequence) noexcept;
+  void push_tool(record::ToolRow row, std::uint64_t sequence) noexcept;
   PassOutput ask_pass(const device::DeviceReading& reading, double dt) noexcept;
 
   device::Device& device_;
   device::Envelope envelope_;
   Log& log_;
+  ToolLog* tool_log_;
+  const std::atomic<std::uint32_t>* keys_;
   std::vector<stimulus::Observer*> observers_;
   Leave leave_;
   Origin origin_;

@@ -121,7 +121,8 @@ PointState TrajectoryPass::run_target(const PointState& tool) noexcept {
   return target;
 }
 
-PassOutput TrajectoryPass::tick(const PointState& tool, double dt) noexcept {
+PassOutput TrajectoryPass::tick(const device::DeviceReading& reading, double dt) noexcept {
+  const PointState& tool = reading.tool;
   const PointState target = guide_target(tool, dt);
   const PassOutput out = output(tool, target);
   target_ = target.position;

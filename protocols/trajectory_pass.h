@@ -64,7 +64,7 @@ class TrajectoryPass : public Pass {
   TrajectoryPass(const stimulus::Stimulus& stimulus, const GuidanceParameters& parameters,
                  std::int32_t block);
 
-  PassOutput tick(const PointState& tool, double dt) noexcept final;
+  PassOutput tick(const device::DeviceReading& reading, double dt) noexcept final;
   PassState state() const noexcept final { return state_; }
   /// What the participant sees at an instant: tick() shows it, and a replay shows it again. Before
   /// the pass and after a fault, when the stage is idle, that is nothing. Servo thread.

@@ -138,7 +138,7 @@ EventLine line_of(const Session& session, const record::PassRow& pass, std::size
   row.add(line.onset).add(any ? seconds(pass.last_sample - pass.first_sample + 1) : 0.0);
   row.add(pass.condition).add(stimulus ? session.stimulus(pass.block) : "");
   row.add(static_cast<std::uint64_t>(index));
-  row.add(pass.phase == record::Phase::kTest ? "test" : "training");
+  row.add(record::name_of(pass.phase));
   row.add(pass.trial).add(pass.block).add(pass.repetition).add(pass.attempt);
   row.add(pass.practice ? 1 : 0);
   row.add(pass.status == record::PassStatus::kCompleted ? "completed" : "aborted");

@@ -94,7 +94,7 @@ void add_pass(RowText& row, const ExportSession& s, std::size_t index,
   const bool any = pass.last_sample >= pass.first_sample;
   const std::uint64_t ticks = any ? pass.last_sample - pass.first_sample + 1 : 0;
   row.add(s.info.subject).add(s.number).add(static_cast<std::uint64_t>(index)).add(pass.trial);
-  row.add(pass.condition).add(pass.phase == record::Phase::kTest ? "test" : "training");
+  row.add(pass.condition).add(record::name_of(pass.phase));
   row.add(pass.block).add(pass.repetition).add(pass.attempt).add(pass.practice ? 1 : 0);
   row.add(pass.status == record::PassStatus::kCompleted ? "completed" : "aborted");
   row.add(pass.stimulus_seed).add(pass.first_sample).add(pass.last_sample);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <string>
 
@@ -14,6 +14,7 @@ struct DeviceInfo {
   double max_force{12.0};          // sustained [N]
   double workspace_radius{0.075};  // about the origin [m]
   bool simulated{false};           // no hardware and no person behind it
+  bool senses_orientation{false};  // else every reading has the identity
 };
 
 /// One reading of a device, in the world frame W (docs/conventions.md).
@@ -22,6 +23,11 @@ struct DeviceReading {
   std::uint32_t buttons{0};  // bit i: button i is pressed
   bool forces_on{true};      // false: the device has switched its motors off
   bool stop_pressed{false};  // the button that the device's set-up names as emergency stop
+  /// From the handle's own frame to W, unit length; identity where the device does not sense it.
+  /// Which way the handle runs in its frame is a parameter of what is held.
+  Eigen::Quaterniond orientation{Eigen::Quaterniond::Identity()};
+  std::uint32_t keys{0};  // bit i: function i of the definition is held by a key of the window
+  double pedal{0.0};      // how far an analog pedal is down, 0 to 1
 };
 
 /// Whether a button is among those pressed. @param button  from 0; below 0 there is none

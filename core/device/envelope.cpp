@@ -46,6 +46,8 @@ const char* describe(Fault fault) noexcept {
       return "the device's stop button was pressed";
     case Fault::kEmergencyStop:
       return "emergency stop";
+    case Fault::kOrientationNotFinite:
+      return "the device gave an orientation that is none";
   }
   return "unknown fault";
 }
@@ -67,6 +69,11 @@ Fault Envelope::check(bool read_ok, const DeviceReading& reading) noexcept {
   const Eigen::Vector3d& p = reading.tool.position;
   if (!p.allFinite() || !reading.tool.velocity.allFinite()) {
     trip(Fault::kPositionNotFinite);
+    return fault_;
+  }
+  constexpr double kLengthError = 1e-3;  // of a unit quaternion; not met by what is not a number
+  if (!(std::abs(reading.orientation.norm() - 1.0) <= kLengthError)) {
+    trip(Fault::kOrientationNotFinite);
     return fault_;
   }
   if (reading.stop_pressed) {

@@ -38,6 +38,7 @@ enum class Fault : std::uint8_t {
   kForcesOff,
   kStopButton,
   kEmergencyStop,
+  kOrientationNotFinite,
 };
 
 /// One sentence, such as "the tool left the workspace".

@@ -110,6 +110,8 @@ struct ForceDimensionDevice::Api {
   int (*get_linear_velocity)(double*, double*, double*, char);
   int (*set_force)(double, double, double, char);
   unsigned (*get_button_mask)(char);
+  bool (*has_wrist)(char);  // null in libraries before 3
+  int (*get_orientation)(double (*)[3], char);
   int (*get_status)(int*, char);
   int (*set_max_force)(double, char);
   int (*enable_expert_mode)();
@@ -154,6 +156,8 @@ ForceDimensionDevice::Api::Api(const std::string& path) : library(open_library(p
   library.get(set_watchdog, "dhdSetWatchdog");
   library.get(set_velocity_threshold, "dhdSetVelocityThreshold");
   library.get(last_error, "dhdErrorGetLast");
+  library.find(has_wrist, "dhdHasWrist");
+  library.find(get_orientation, "dhdGetOrientationFrame");
   library.find(drd_open, "drdOpenID");
   library.find(drd_close, "drdClose");
   library.find(drd_is_supported, "drdIsSupported");
@@ -251,6 +255,8 @@ void ForceDimensionDevice::configure() {
   require(api.enable_force(kOn, id_), "switch its forces on");
   const char* const name = api.system_name(id_);
   info_.name = fmt::format("Force Dimension {}", name != nullptr ? name : "device");
+  info_.senses_orientation =
+      api.has_wrist != nullptr && api.get_orientation != nullptr && api.has_wrist(id_);
 }
 
 void ForceDimensionDevice::close() noexcept {
@@ -285,11 +291,30 @@ bool ForceDimensionDevice::read(DeviceReading& reading) noexcept {
   DeviceReading fresh;
   fresh.tool.position = {py, pz, px};
   fresh.tool.velocity = {vy, vz, vx};
+  if (info_.senses_orientation && !read_orientation(fresh.orientation)) {
+    return fail();
+  }
   fresh.buttons = api_->get_button_mask(id_);
   fresh.stop_pressed = is_pressed(fresh.buttons, parameters_.stop_button);
   trouble_ = "";
   judge_status(fresh);
   reading = fresh;
+  return true;
+}
+
+bool ForceDimensionDevice::read_orientation(Eigen::Quaterniond& orientation) noexcept {
+  double rows[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+  if (api_->get_orientation(rows, id_) < 0) {
+    return false;
+  }
+  constexpr int kTheirs[3] = {1, 2, 0};  // the vendor's axis that is our x, y, z
+  Eigen::Matrix3d turn;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      turn(i, j) = rows[kTheirs[i]][kTheirs[j]];
+    }
+  }
+  orientation = Eigen::Quaterniond(turn).normalized();
   return true;
 }
 

@@ -68,6 +68,7 @@ class ForceDimensionDevice final : public Device {
   void close() noexcept;
   void require(int result, const char* what) const;
   bool fail() noexcept;
+  bool read_orientation(Eigen::Quaterniond& orientation) noexcept;
   void judge_status(DeviceReading& reading) noexcept;
 
   ForceDimensionParameters parameters_;

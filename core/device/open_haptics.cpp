@@ -18,6 +18,7 @@ namespace {
 constexpr unsigned kButtons = 0x2000;
 constexpr unsigned kPosition = 0x2050;  // [mm]
 constexpr unsigned kVelocity = 0x2051;  // [mm/s]
+constexpr unsigned kTransform = 0x2052;  // 4 x 4, by columns
 constexpr unsigned kForce = 0x2700;
 constexpr unsigned kNominalMaxForce = 0x2603;
 constexpr unsigned kForceOutput = 0x4000;
@@ -154,7 +155,7 @@ void OpenHapticsDevice::start(double rate) {
   info_ = {
       fmt::format("OpenHaptics {}", parameters_.name.empty() ? "default device" : parameters_.name),
       nominal > 0.0 ? std::min(nominal, parameters_.max_force) : parameters_.max_force,
-      parameters_.workspace_radius, false};
+      parameters_.workspace_radius, false, true};
   api_->enable(kForceOutput);
   require("switch its forces on");
   callback_ = api_->schedule(&OpenHapticsDevice::frame, this, kPriority);
@@ -205,10 +206,12 @@ void OpenHapticsDevice::exchange() noexcept {
   }
   double p[3] = {0.0, 0.0, 0.0};
   double v[3] = {0.0, 0.0, 0.0};
+  Eigen::Matrix4d transform = Eigen::Matrix4d::Identity();
   int buttons = 0;
   api.begin_frame(device_);
   api.get_double(kPosition, p);
   api.get_double(kVelocity, v);
+  api.get_double(kTransform, transform.data());
   api.get_integer(kButtons, &buttons);
   api.set_double(kForce, force_.data());
   api.end_frame(device_);
@@ -216,6 +219,8 @@ void OpenHapticsDevice::exchange() noexcept {
   Sensed now;
   now.reading.tool.position = kMillimetre * Eigen::Vector3d(p[0], p[1], p[2]);
   now.reading.tool.velocity = kMillimetre * Eigen::Vector3d(v[0], v[1], v[2]);
+  now.reading.orientation =
+      Eigen::Quaterniond(Eigen::Matrix3d(transform.topLeftCorner<3, 3>())).normalized();
   now.reading.buttons = static_cast<std::uint32_t>(buttons);
   now.reading.stop_pressed = is_pressed(now.reading.buttons, parameters_.stop_button);
   note_error(api.get_error().code);

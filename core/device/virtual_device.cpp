@@ -52,7 +52,9 @@ bool VirtualDevice::read(DeviceReading& reading) noexcept {
   }
   reading.tool.position = history_[newest_];
   reading.tool.velocity = slope_gain_ * slope;
-  reading.buttons = 0;
+  reading.buttons = held_.buttons;
+  reading.pedal = held_.pedal;
+  reading.orientation = held_.orientation;
   return true;
 }
 

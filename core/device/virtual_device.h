@@ -36,6 +36,14 @@ class VirtualDevice final : public Device {
   bool read(DeviceReading& reading) noexcept override;
   bool write(const Eigen::Vector3d& force) noexcept override;
 
+  /// What the hand on the handle does beside moving it, until the next call. Servo thread.
+  /// @param pedal  0 to 1
+  void hold(std::uint32_t buttons, double pedal, const Eigen::Quaterniond& orientation) noexcept {
+    held_.buttons = buttons;
+    held_.pedal = pedal;
+    held_.orientation = orientation;
+  }
+
  private:
   static constexpr int kMaxWindow = 64;
   void sense(const Eigen::Vector3d& position) noexcept;
@@ -44,7 +52,8 @@ class VirtualDevice final : public Device {
   DeviceInfo info_;
   HandlePhysics& physics_;
   double period_;
-  double slope_gain_;  // of the least-squares slope [1/s]
+  double slope_gain_;   // of the least-squares slope [1/s]
+  DeviceReading held_;  // but for the tool itself
   Eigen::Vector3d pending_force_{Eigen::Vector3d::Zero()};
   std::array<Eigen::Vector3d, kMaxWindow> history_;  // ring of readings
   int newest_{0};

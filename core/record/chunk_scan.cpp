@@ -19,10 +19,14 @@ bool is_header(const std::uint8_t* at) {
 
 std::size_t longest_chunk() {
   std::size_t bytes = 0;
-  for (const TableSchema* schema :
+  for (const TableSchema* each :
        {&samples_schema(), &trials_schema(), &events_schema(), &stimuli_schema(), &timing_schema(),
         &frames_schema(), &attributes_schema()}) {
-    bytes = std::max(bytes, schema->row_bytes() * schema->chunk_rows);
+    bytes = std::max(bytes, each->row_bytes() * each->chunk_rows);
+  }
+  for (std::size_t i = 0; i < kDrillingTables; ++i) {
+    const TableSchema& each = schema(static_cast<DrillingTable>(i));
+    bytes = std::max(bytes, each.row_bytes() * each.chunk_rows);
   }
   return bytes;
 }

@@ -140,6 +140,11 @@ Id open_table(const Id& file, const TableSchema& schema, std::size_t& chunk_rows
   return table;
 }
 
+bool has_table(const Id& file, const char* name) {
+  const Lock lock;
+  return H5Lexists(file.get(), name, H5P_DEFAULT) > 0;
+}
+
 std::uint64_t row_count(const Id& table) {
   const Lock lock;
   const Id space = take(H5Dget_space(table.get()), "row count");

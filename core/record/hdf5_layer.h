@@ -81,6 +81,7 @@ Id create_table(const Id& file, const TableSchema& schema);
 /// @param chunk_rows  receives the chunk length of the file.
 Id open_table(const Id& file, const TableSchema& schema, std::size_t& chunk_rows);
 
+bool has_table(const Id& file, const char* name);
 std::uint64_t row_count(const Id& table);
 void set_row_count(const Id& table, std::uint64_t rows);
 /// A chunk that went through the filters already. @param row  its first row.

@@ -103,6 +103,32 @@ void check_counts(const SessionReader& reader, Integrity& result) {
   }
 }
 
+/// A drilling has a row of /tool for each of /samples, and only voxels that ticks emptied.
+void check_drilling(const SessionReader& reader, Integrity& result) {
+  const std::uint64_t tool = reader.count<ToolRow>();
+  if (tool != result.rows) {
+    result.problems.push_back("/tool has " + number(tool) + " rows, and /samples " +
+                              number(result.rows));
+  }
+  Fault order;
+  std::uint64_t next = result.first_sequence;
+  for (std::uint64_t first = 0; first < tool; first += kPiece) {
+    for (const ToolRow& row : reader.rows<ToolRow>(first, std::min(kPiece, tool - first))) {
+      if (row.sequence < next) {
+        order.note("sequence number " + number(row.sequence) + " of /tool follows " +
+                   number(next - 1));
+      }
+      next = row.sequence + 1;
+    }
+  }
+  for (const RemovalRow& row : reader.rows<RemovalRow>()) {
+    if (row.sequence < result.first_sequence || row.sequence > result.last_sequence) {
+      order.note("a voxel was emptied on tick " + number(row.sequence) + ", which is not there");
+    }
+  }
+  order.report(result.problems);
+}
+
 }  // namespace
 
 Integrity check_session(const SessionReader& reader) {
@@ -125,6 +151,7 @@ Integrity check_session(const SessionReader& reader) {
   check.gaps.report(result.problems);
   check.clock.report(result.problems);
   check_counts(reader, result);
+  if (reader.drills()) check_drilling(reader, result);
   check_ranges(passes, result);
   check.labels.report(result.problems);
   result.ok = result.problems.empty();

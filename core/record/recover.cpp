@@ -87,9 +87,35 @@ std::string sentence(const fs::path& file, const Recovery& found) {
       found.passes_cut, found.info ? "" : "; what the session was is not known");
 }
 
+template <class Row>
+void add(SessionWriter& writer, const std::vector<Row>& rows) {
+  writer.add(std::span(rows));
+}
+
+void write_drillings(SessionWriter& writer, const RecoveredRows& rows) {
+  add(writer, rows.bones);
+  add(writer, rows.structures);
+  add(writer, rows.bone_runs);
+  add(writer, rows.bone_densities);
+  for (std::size_t piece = 0; piece < rows.tool_pieces(); ++piece) {
+    add(writer, rows.tool(piece));
+  }
+  add(writer, rows.removals);
+  add(writer, rows.camera);
+  add(writer, rows.splits);
+  add(writer, rows.procedures);
+}
+
 void write(const fs::path& file, const fs::path& out, const RecoveredRows& rows,
            const SessionInfo& info, Recovery& found) {
-  SessionWriter writer(out, info);
+  std::optional<SessionWriter> opened;
+  if (rows.drills()) {
+    opened.emplace(out, info, std::span<const BoneRecord>{});
+    write_drillings(*opened, rows);
+  } else {
+    opened.emplace(out, info);
+  }
+  SessionWriter& writer = *opened;
   Count count(rows.passes, found);
   for (std::size_t piece = 0; piece < rows.sample_pieces(); ++piece) {
     const std::vector<Sample> samples = rows.samples(piece);

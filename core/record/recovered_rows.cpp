@@ -9,6 +9,7 @@
 #include "core/record/byte_planes.h"
 #include "core/record/chunk_scan.h"
 #include "core/record/deflate.h"
+#include "core/record/drilling_codec.h"
 #include "core/record/row_codec.h"
 #include "core/record/schema.h"
 
@@ -70,6 +71,26 @@ class Chunks {
   std::map<std::string, std::vector<Row>> by_key_;
 };
 
+/// The chunks of one table of drillings.
+template <class Row>
+class DrillingChunks {
+ public:
+  /// @returns whether the chunk is of this table.
+  bool take_if_ours(std::span<const std::uint8_t> raw) {
+    const TableSchema& table = schema(table_of<Row>());
+    if (raw.size() != chunk_bytes(table)) return false;
+    chunks_.add(Chunk(raw, table.row_bytes()), get_row<Row>);
+    return true;
+  }
+  template <typename Order>
+  std::vector<Row> take(Order order) {
+    return chunks_.take(order);
+  }
+
+ private:
+  Chunks<Row> chunks_;
+};
+
 /// Events in the order of their chunks: several may have one time, so chunks are sorted, not rows.
 class EventChunks {
  public:
@@ -129,6 +150,16 @@ RecoveredRows::RecoveredRows(std::span<const std::uint8_t> file) : file_(file) {
   Chunks<EventPart> attribute_chunks;
   EventChunks event_chunks;
   std::map<std::uint64_t, Piece> sample_chunks;  // by first sequence number
+  std::map<std::uint64_t, Piece> tool_chunks;
+  DrillingChunks<RemovalRow> removal_chunks;
+  DrillingChunks<CameraRow> camera_chunks;
+  DrillingChunks<SplitRow> split_chunks;
+  DrillingChunks<BoneRow> bone_chunks;
+  DrillingChunks<StructureRow> structure_chunks;
+  DrillingChunks<BoneRunRow> run_chunks;
+  DrillingChunks<BoneDensityRow> density_chunks;
+  DrillingChunks<ProcedureRow> procedure_chunks;
+  const std::size_t tool_bytes = schema(DrillingTable::kTool).row_bytes();
 
   const auto add_samples = [&](std::uint64_t offset, std::span<const std::uint8_t> raw) {
     const Chunk chunk(raw, samples_schema().row_bytes());
@@ -137,6 +168,13 @@ RecoveredRows::RecoveredRows(std::span<const std::uint8_t> file) : file_(file) {
     get_samples(chunk.planes, 0, {&first, 1});
     Piece& piece = sample_chunks[first.sequence];
     if (chunk.rows >= piece.rows) piece = {offset, chunk.rows, first.sequence};
+  };
+  const auto add_tool = [&](std::uint64_t offset, std::span<const std::uint8_t> raw) {
+    const Chunk chunk(raw, tool_bytes);
+    if (chunk.rows == 0) return;
+    const auto sequence = get_row<ToolRow>(chunk.planes, 0).sequence;
+    Piece& piece = tool_chunks[sequence];
+    if (chunk.rows >= piece.rows) piece = {offset, chunk.rows, sequence};
   };
   scan_chunks(file, [&](std::uint64_t offset, std::span<const std::uint8_t> raw) {
     const auto is = [&](const TableSchema& schema) { return raw.size() == chunk_bytes(schema); };
@@ -155,12 +193,31 @@ RecoveredRows::RecoveredRows(std::span<const std::uint8_t> file) : file_(file) {
       frame_chunks.add(chunk(frames_schema()), get_frame);
     } else if (is(attributes_schema())) {
       attribute_chunks.add(chunk(attributes_schema()), get_attribute);
+    } else if (removal_chunks.take_if_ours(raw) || camera_chunks.take_if_ours(raw) ||
+               split_chunks.take_if_ours(raw) || bone_chunks.take_if_ours(raw) ||
+               structure_chunks.take_if_ours(raw) || run_chunks.take_if_ours(raw) ||
+               density_chunks.take_if_ours(raw) || procedure_chunks.take_if_ours(raw)) {
+      return;
+    } else if (raw.size() % (kLiveChunkStep * tool_bytes) == 0) {
+      add_tool(offset, raw);
     } else if (raw.size() % (kLiveChunkStep * samples_schema().row_bytes()) == 0) {
       add_samples(offset, raw);
     }
   });
 
   for (const auto& [sequence, piece] : sample_chunks) pieces_.push_back(piece);
+  for (const auto& [sequence, piece] : tool_chunks) tool_pieces_.push_back(piece);
+  const auto when = [](const auto& row) { return row.sequence; };
+  removals = removal_chunks.take(when);
+  camera = camera_chunks.take(when);
+  splits = split_chunks.take(when);
+  bones = bone_chunks.take([](const BoneRow& row) { return row.bone; });
+  structures =
+      structure_chunks.take([](const StructureRow& row) { return std::pair(row.bone, row.label); });
+  bone_runs = run_chunks.take([](const BoneRunRow& row) { return std::pair(row.bone, row.first); });
+  bone_densities =
+      density_chunks.take([](const BoneDensityRow& row) { return std::pair(row.bone, row.voxel); });
+  procedures = procedure_chunks.take([](const ProcedureRow& row) { return row.pass; });
   passes = pass_chunks.take([](const PassRow& row) { return row.first_sample; });
   events = event_chunks.take();
   stimuli =
@@ -173,21 +230,42 @@ RecoveredRows::RecoveredRows(std::span<const std::uint8_t> file) : file_(file) {
 }
 
 std::vector<Sample> RecoveredRows::samples(std::size_t piece) const {
-  const Piece& from = pieces_.at(piece);
-  std::vector<Sample> rows(from.rows);
-  std::vector<std::uint8_t> raw(chunk_bytes(samples_schema()));
+  std::vector<Sample> rows(pieces_.at(piece).rows);
+  get_samples(Chunk(inflated(pieces_[piece]), samples_schema().row_bytes()).planes, 0, rows);
+  keep_in_order(rows, pieces_, piece);
+  return rows;
+}
+
+std::vector<ToolRow> RecoveredRows::tool(std::size_t piece) const {
+  const Chunk chunk(inflated(tool_pieces_.at(piece)), schema(DrillingTable::kTool).row_bytes());
+  std::vector<ToolRow> rows;
+  for (std::size_t i = 0; i < tool_pieces_[piece].rows; ++i) {
+    rows.push_back(get_row<ToolRow>(chunk.planes, i));
+  }
+  keep_in_order(rows, tool_pieces_, piece);
+  return rows;
+}
+
+std::vector<std::uint8_t> RecoveredRows::inflated(const Piece& piece) const {
+  const std::size_t most =
+      std::max(chunk_bytes(samples_schema()), chunk_bytes(schema(DrillingTable::kTool)));
+  std::vector<std::uint8_t> raw(most);
   Inflater inflater;
-  const Inflater::Lengths lengths = inflater.decompress_prefix(file_.subspan(from.offset), raw);
-  get_samples(Chunk({raw.data(), lengths.raw}, samples_schema().row_bytes()).planes, 0, rows);
-  // A piece never reaches into the next, and zeros before the last row would be rows of no tick.
-  const std::uint64_t end = piece + 1 < pieces_.size() ? pieces_[piece + 1].first_sequence : ~0ull;
-  std::uint64_t last = from.first_sequence;
-  std::erase_if(rows, [&](const Sample& row) {
+  raw.resize(inflater.decompress_prefix(file_.subspan(piece.offset), raw).raw);
+  return raw;
+}
+
+/// A piece never reaches into the next, and zeros before the last row would be rows of no tick.
+template <class Row>
+void RecoveredRows::keep_in_order(std::vector<Row>& rows, const std::vector<Piece>& pieces,
+                                  std::size_t piece) {
+  const std::uint64_t end = piece + 1 < pieces.size() ? pieces[piece + 1].first_sequence : ~0ull;
+  std::uint64_t last = pieces[piece].first_sequence;
+  std::erase_if(rows, [&](const Row& row) {
     const bool wrong = row.sequence < last || row.sequence >= end;
     if (!wrong) last = row.sequence;
     return wrong;
   });
-  return rows;
 }
 
 }  // namespace haptrial::record

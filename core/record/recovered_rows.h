@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/record/drilling_types.h"
 #include "core/record/session_types.h"
 
 namespace haptrial::record {
@@ -20,6 +21,10 @@ class RecoveredRows {
   /// In ascending order of sequence numbers, from piece to piece as well.
   std::vector<Sample> samples(std::size_t piece) const;
 
+  /// Likewise of /tool.
+  std::size_t tool_pieces() const { return tool_pieces_.size(); }
+  std::vector<ToolRow> tool(std::size_t piece) const;
+
   std::vector<PassRow> passes;
   std::vector<EventRow> events;
   std::vector<StimulusRow> stimuli;
@@ -27,6 +32,16 @@ class RecoveredRows {
   std::vector<FrameRow> frames;
   std::vector<EventRow> attributes;
   std::optional<TimingSummary> summary;
+  // Of drillings.
+  std::vector<RemovalRow> removals;
+  std::vector<CameraRow> camera;
+  std::vector<SplitRow> splits;
+  std::vector<BoneRow> bones;
+  std::vector<StructureRow> structures;
+  std::vector<BoneRunRow> bone_runs;
+  std::vector<BoneDensityRow> bone_densities;
+  std::vector<ProcedureRow> procedures;
+  bool drills() const { return !tool_pieces_.empty() || !bones.empty() || !removals.empty(); }
 
  private:
   struct Piece {
@@ -34,8 +49,14 @@ class RecoveredRows {
     std::size_t rows{0};
     std::uint64_t first_sequence{0};
   };
+  std::vector<std::uint8_t> inflated(const Piece& piece) const;
+  template <class Row>
+  static void keep_in_order(std::vector<Row>& rows, const std::vector<Piece>& pieces,
+                            std::size_t piece);
+
   std::span<const std::uint8_t> file_;
   std::vector<Piece> pieces_;
+  std::vector<Piece> tool_pieces_;
 };
 
 }  // namespace haptrial::record

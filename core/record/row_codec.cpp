@@ -7,11 +7,10 @@
 #include <string_view>
 #include <utility>
 
+#include "core/record/packed_row.h"
 #include "core/record/schema.h"
 
 namespace haptrial::record {
-namespace {
-
 void check_text(std::string_view text, std::size_t bytes, const char* what) {
   if (text.size() > bytes) {
     throw std::invalid_argument(std::string(what) + " '" + std::string(text) + "' has " +
@@ -23,52 +22,18 @@ void check_text(std::string_view text, std::size_t bytes, const char* what) {
   }
 }
 
-/// One packed row, written or read field by field in column order.
-class PackedRow {
- public:
-  explicit PackedRow(std::size_t bytes) : size_(bytes) {}
+namespace {
 
-  template <typename T>
-  void put(T value) {
-    std::memcpy(row_.data() + at_, &value, sizeof(T));
-    at_ += sizeof(T);
-  }
-  void put_text(std::string_view text, std::size_t bytes, const char* what) {
-    check_text(text, bytes, what);
-    std::memcpy(row_.data() + at_, text.data(), text.size());
-    at_ += bytes;
-  }
-  template <typename T>
-  T get() {
-    T value;
-    std::memcpy(&value, row_.data() + at_, sizeof(T));
-    at_ += sizeof(T);
-    return value;
-  }
-  std::string get_text(std::size_t bytes) {
-    const char* text = reinterpret_cast<const char*>(row_.data()) + at_;
-    at_ += bytes;
-    return {text, strnlen(text, bytes)};
-  }
-  std::span<std::uint8_t> bytes() { return {row_.data(), size_}; }
-
- private:
-  std::array<std::uint8_t, 512> row_{};  // longer than any row of schema.h
-  std::size_t size_;
-  std::size_t at_{0};
-};
-
-PackedRow read(const BytePlanes& planes, std::size_t at) {
-  PackedRow row(planes.row_bytes());
-  planes.get_row(at, row.bytes());
-  return row;
-}
+PackedRow read(const BytePlanes& planes, std::size_t at) { return {planes, at}; }
 
 PassRow read_pass_1(PackedRow& row) {
   PassRow pass;
   pass.trial = row.get<std::int32_t>();
   pass.condition = row.get_text(kConditionBytes);
-  pass.phase = row.get_text(kPhaseBytes) == "training" ? Phase::kTraining : Phase::kTest;
+  const std::string phase = row.get_text(kPhaseBytes);
+  pass.phase = phase == "training" ? Phase::kTraining
+               : phase == "test"   ? Phase::kTest
+                                   : Phase::kDrilling;
   pass.block = row.get<std::int32_t>();
   pass.repetition = row.get<std::int32_t>();
   pass.stimulus_seed = row.get<std::uint64_t>();
@@ -85,7 +50,7 @@ void put_pass(BytePlanes& planes, std::size_t at, const PassRow& pass) {
   PackedRow row(planes.row_bytes());
   row.put(pass.trial);
   row.put_text(pass.condition, kConditionBytes, "condition");
-  row.put_text(pass.phase == Phase::kTraining ? "training" : "test", kPhaseBytes, "phase");
+  row.put_text(name_of(pass.phase), kPhaseBytes, "phase");
   row.put(pass.block);
   row.put(pass.repetition);
   row.put(pass.stimulus_seed);

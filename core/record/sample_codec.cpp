@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 
+#include "core/record/rounding.h"
 #include "core/record/row_codec.h"
 #include "core/record/schema.h"
 
@@ -11,15 +12,6 @@ namespace {
 
 // Rows are split in batches that stay in the first-level cache.
 constexpr std::size_t kBatch = 256;
-
-/// The nearest multiple of `resolution` (a power of two); adding and subtracting 1.5 * 2^52 rounds
-/// to a whole number without a call, so the loop vectorises. NaN and infinity stay.
-float on_grid(double value, double resolution) {
-  constexpr double kMagic = 0x1.8p52;
-  const double steps = value / resolution;
-  const double rounded = (steps + kMagic) - kMagic;
-  return static_cast<float>(std::abs(steps) < 0x1p51 ? rounded * resolution : value);
-}
 
 /// Writes one column of a batch after the other, each from `field(sample)`.
 class BatchWriter {
@@ -41,7 +33,7 @@ class BatchWriter {
     std::array<std::uint32_t, kBatch> bits;
     for (std::size_t i = 0; i < rows_.size(); ++i) values[i] = field(rows_[i]);
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      bits[i] = std::bit_cast<std::uint32_t>(on_grid(values[i], resolution));
+      bits[i] = std::bit_cast<std::uint32_t>(static_cast<float>(on_grid(values[i], resolution)));
     }
     planes_.put_column<std::uint32_t>(offset_, at_,
                                       std::span<const std::uint32_t>(bits.data(), rows_.size()));

@@ -54,11 +54,11 @@ constexpr std::array kSamples{
 };
 
 constexpr std::array kTrials{
-    i32("trial", "trial number from 1; a training pass and a test pass"),
+    i32("trial", "trial number from 1; a training pass and a test pass, or a drilling"),
     text("condition", kConditionBytes, "training condition of the block"),
-    text("phase", kPhaseBytes, "training or test"),
+    text("phase", kPhaseBytes, "training, test or drilling"),
     i32("block", "block number from 1"),
-    i32("repetition", "number from 1 within the block"),
+    i32("repetition", "number from 1 within the block; of a drilling the number of its bone"),
     u64("stimulus_seed", "seed of the block's stimulus"),
     u64("first_sample", "sequence number of the first sample, inclusive"),
     u64("last_sample", "sequence number of the last sample, inclusive"),
@@ -108,9 +108,8 @@ constexpr std::array kAttributes{
 constexpr std::size_t kSampleChunk = 4096;
 constexpr TableSchema kSamplesSchema{"samples", "one row for each tick of the servo loop",
                                      kSampleChunk, kSamples};
-constexpr TableSchema kTrialsSchema{"trials", "one row for each pass along the trajectory", 64,
-                                    kTrials};
-constexpr TableSchema kTrialsSchema1{"trials", "one row for each pass along the trajectory", 64,
+constexpr TableSchema kTrialsSchema{"trials", "one row for each pass", 64, kTrials};
+constexpr TableSchema kTrialsSchema1{"trials", "one row for each pass", 64,
                                      std::span(kTrials).first(kTrials.size() - kNewInTrials)};
 constexpr TableSchema kEventsSchema{"events", "what happened when", 64, kEvents};
 constexpr TableSchema kStimuliSchema{"stimuli", "the ideal movement and force of each block", 4096,

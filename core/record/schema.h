@@ -7,9 +7,10 @@
 
 namespace haptrial::record {
 
-/// Version of the layout below. Version 1, which is still read, has no practice and attempt in
-/// /trials, no /frames and no /attributes.
-inline constexpr std::int64_t kSchemaVersion = 2;
+/// Version of the layout below. Versions 1 and 2 are still read: 1 has no practice and attempt in
+/// /trials, no /frames and no /attributes; 2 has no tables of drillings, and 3 has them only in
+/// sessions that drill.
+inline constexpr std::int64_t kSchemaVersion = 3;
 
 enum class ColumnType : std::uint8_t { kU8, kI32, kI64, kU64, kF32, kF64, kText };
 
@@ -46,8 +47,24 @@ const TableSchema& timing_schema();
 const TableSchema& frames_schema();
 const TableSchema& attributes_schema();
 
-/// Chunk length of /samples on a real clock: at most 0.8 s, so that a chunk is in the file before a
-/// second has passed; a multiple of kLiveChunkStep, no longer than samples_schema() has it.
+/// The tables of a drilling session, in the order in which they are created.
+enum class DrillingTable : std::uint8_t {
+  kTool,
+  kRemovals,
+  kCamera,
+  kSplits,
+  kBones,
+  kStructures,
+  kBoneRuns,
+  kBoneDensities,
+  kProcedures
+};
+inline constexpr std::size_t kDrillingTables = 9;
+const TableSchema& schema(DrillingTable table);
+
+/// Chunk length of /samples and /tool on a real clock: at most 0.8 s, so that a chunk is in the
+/// file before a second has passed; a multiple of kLiveChunkStep, no longer than samples_schema()
+/// has it.
 inline constexpr std::size_t kLiveChunkStep = 64;
 std::size_t live_chunk_rows(double rate);
 
@@ -57,10 +74,13 @@ inline constexpr std::size_t kPhaseBytes = 16;
 inline constexpr std::size_t kStatusBytes = 16;
 inline constexpr std::size_t kKindBytes = 32;
 inline constexpr std::size_t kTextBytes = 256;
+inline constexpr std::size_t kNameBytes = 64;
 
 /// Grids of the 32-bit columns of /samples, each a tenth of a device quantum or finer.
-inline constexpr double kPositionResolution = 0x1p-20;  // about 1 micrometre [m]
-inline constexpr double kVelocityResolution = 0x1p-16;  // about 15 micrometres a second [m/s]
-inline constexpr double kForceResolution = 0x1p-13;     // about 0.12 mN [N]
+inline constexpr double kPositionResolution = 0x1p-20;     // about 1 micrometre [m]
+inline constexpr double kVelocityResolution = 0x1p-16;     // about 15 micrometres a second [m/s]
+inline constexpr double kForceResolution = 0x1p-13;        // about 0.12 mN [N]
+inline constexpr double kOrientationResolution = 0x1p-20;  // about 2 microradians [1]
+inline constexpr double kPedalResolution = 0x1p-10;
 
 }  // namespace haptrial::record

@@ -1,6 +1,7 @@
 #include "core/record/session_reader.h"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -9,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/record/byte_planes.h"
 #include "core/record/deflate.h"
+#include "core/record/drilling_codec.h"
 #include "core/record/hdf5_layer.h"
 #include "core/record/row_codec.h"
 #include "core/record/schema.h"
@@ -66,6 +68,10 @@ struct SessionReader::Impl {
       if (attributes.rows == 0) throw h5::Error("/attributes is empty");
       info = info_of(joined_events(all(attributes, get_attribute)));
     }
+    drills = version > 2 && h5::has_table(file, schema(DrillingTable::kTool).name);
+    for (std::size_t i = 0; drills && i < kDrillingTables; ++i) {
+      drilling[i] = open_table(file, schema(static_cast<DrillingTable>(i)));
+    }
   }
 
   [[noreturn]] void damaged(const Table& table, std::uint64_t row, const std::string& why) const {
@@ -118,6 +124,13 @@ struct SessionReader::Impl {
   std::int64_t version{0};
   SessionInfo info;
   Table samples, trials, events, stimuli, timing, frames, attributes;
+  bool drills{false};
+  std::array<Table, kDrillingTables> drilling;
+
+  template <class Row>
+  const Table& table() const {
+    return drilling[static_cast<std::size_t>(table_of<Row>())];
+  }
 };
 
 SessionReader::SessionReader(const fs::path& path) {
@@ -191,6 +204,64 @@ std::vector<FrameRow> SessionReader::frames() const { return impl_->all(impl_->f
 
 std::vector<StimulusRow> SessionReader::stimuli() const {
   return impl_->all(impl_->stimuli, get_stimulus);
+}
+
+bool SessionReader::drills() const { return impl_->drills; }
+
+template <class Row>
+std::uint64_t SessionReader::count() const {
+  return impl_->table<Row>().rows;
+}
+
+template <class Row>
+std::vector<Row> SessionReader::rows(std::uint64_t first, std::uint64_t count) const {
+  std::vector<Row> result;
+  result.reserve(std::min(count, impl_->table<Row>().rows));
+  impl_->each_chunk(impl_->table<Row>(), first, count,
+                    [&](const BytePlanes& planes, std::size_t at, std::size_t, std::size_t rows) {
+                      for (std::size_t i = 0; i < rows; ++i) {
+                        result.push_back(get_row<Row>(planes, at + i));
+                      }
+                    });
+  return result;
+}
+
+template <class Row>
+std::vector<Row> SessionReader::rows() const {
+  return rows<Row>(0, count<Row>());
+}
+
+#define HAPTRIAL_DRILLING_ROWS(Row)                           \
+  template std::uint64_t SessionReader::count<Row>() const;   \
+  template std::vector<Row> SessionReader::rows<Row>() const; \
+  template std::vector<Row> SessionReader::rows<Row>(std::uint64_t, std::uint64_t) const;
+HAPTRIAL_DRILLING_ROWS(ToolRow)
+HAPTRIAL_DRILLING_ROWS(RemovalRow)
+HAPTRIAL_DRILLING_ROWS(CameraRow)
+HAPTRIAL_DRILLING_ROWS(SplitRow)
+HAPTRIAL_DRILLING_ROWS(BoneRow)
+HAPTRIAL_DRILLING_ROWS(StructureRow)
+HAPTRIAL_DRILLING_ROWS(BoneRunRow)
+HAPTRIAL_DRILLING_ROWS(BoneDensityRow)
+HAPTRIAL_DRILLING_ROWS(ProcedureRow)
+#undef HAPTRIAL_DRILLING_ROWS
+
+std::vector<BoneRecord> SessionReader::bones() const {
+  std::vector<BoneRecord> bones;
+  for (const BoneRow& bone : rows<BoneRow>()) {
+    bones.push_back({bone, {}, {}, {}});
+  }
+  const auto share_out = [&]<class Row>(std::vector<Row> BoneRecord::*to) {
+    for (Row& row : rows<Row>()) {
+      if (row.bone >= 0 && static_cast<std::size_t>(row.bone) < bones.size()) {
+        (bones[static_cast<std::size_t>(row.bone)].*to).push_back(std::move(row));
+      }
+    }
+  };
+  share_out(&BoneRecord::structures);
+  share_out(&BoneRecord::runs);
+  share_out(&BoneRecord::densities);
+  return bones;
 }
 
 std::vector<TimingRow> SessionReader::timing() const {

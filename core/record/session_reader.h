@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/record/drilling_types.h"
 #include "core/record/session_types.h"
 
 namespace haptrial::record {
@@ -50,6 +51,19 @@ class SessionReader {
   std::uint64_t attribute_rows() const;
   std::vector<FrameRow> frames() const;  // none in a file of schema version 1
   std::vector<StimulusRow> stimuli() const;
+  /// Whether the file has the tables of drillings.
+  bool drills() const;
+  /// Rows of a table of drillings, all or [first, first + count); none in a file without them.
+  /// @tparam Row  a type of drilling_types.h
+  template <class Row>
+  std::uint64_t count() const;
+  template <class Row>
+  std::vector<Row> rows() const;
+  template <class Row>
+  std::vector<Row> rows(std::uint64_t first, std::uint64_t count) const;
+  /// The bones of the session, in their order.
+  std::vector<BoneRecord> bones() const;
+
   std::vector<TimingRow> timing() const;
   /// Nothing when the session did not come to its end.
   std::optional<TimingSummary> timing_summary() const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/record/drilling_codec.h"
 #include "core/record/schema.h"
 #include "core/record/session_reader.h"
 #include "core/record/session_target.h"
@@ -29,11 +30,12 @@ class SampleWalk {
   SampleWalk(const SessionReader& reader, Resumed& found) : reader_(reader), found_(found) {}
 
   void run() {
-    const std::uint64_t rows = reader_.sample_count();
+    std::uint64_t rows = reader_.sample_count();
+    if (reader_.drills()) rows = std::min(rows, reader_.count<ToolRow>());
     const std::uint64_t chunk = reader_.chunk_rows();
     while (found_.rows < rows && take(found_.rows, std::min(chunk, rows - found_.rows))) {
     }
-    found_.dropped_rows = rows - found_.rows;
+    found_.dropped_rows = reader_.sample_count() - found_.rows;
     if (found_.dropped_rows > kTailChunks * chunk) {
       refuse(reader_.path(),
              "rows of /samples from " + std::to_string(found_.rows) + " on cannot be read");
@@ -71,6 +73,49 @@ class SampleWalk {
   std::vector<OpenPass> passes_;
 };
 
+/// How many rows from the beginning are of ticks before `end`. Those of a chunk that cannot be read
+/// are not.
+template <class Row>
+std::uint64_t rows_before(const SessionReader& reader, std::uint64_t end) {
+  std::uint64_t kept = 0;
+  const std::uint64_t count = reader.count<Row>();
+  const std::uint64_t piece = schema(table_of<Row>()).chunk_rows;
+  while (kept < count) {
+    std::vector<Row> rows;
+    try {
+      rows = reader.rows<Row>(kept, std::min(piece, count - kept));
+    } catch (const InputError&) {
+      break;
+    }
+    for (const Row& row : rows) {
+      if (row.sequence >= end) return kept;
+      ++kept;
+    }
+  }
+  return kept;
+}
+
+void examine_drilling(const SessionReader& reader, const Resumed& found, KeptRows& rows) {
+  rows.drills = reader.drills();
+  if (!rows.drills) return;
+  const auto kept = [&](DrillingTable table) -> std::uint64_t& {
+    return rows.drilling[static_cast<std::size_t>(table)];
+  };
+  kept(DrillingTable::kTool) = found.rows;
+  kept(DrillingTable::kRemovals) = rows_before<RemovalRow>(reader, found.next_sequence);
+  kept(DrillingTable::kCamera) = rows_before<CameraRow>(reader, found.next_sequence);
+  kept(DrillingTable::kSplits) = rows_before<SplitRow>(reader, found.next_sequence);
+  kept(DrillingTable::kBones) = reader.count<BoneRow>();
+  kept(DrillingTable::kStructures) = reader.count<StructureRow>();
+  kept(DrillingTable::kBoneRuns) = reader.count<BoneRunRow>();
+  kept(DrillingTable::kBoneDensities) = reader.count<BoneDensityRow>();
+  for (const ProcedureRow& row : reader.rows<ProcedureRow>()) {
+    if (row.pass < static_cast<std::int32_t>(found.passes.size())) {
+      ++kept(DrillingTable::kProcedures);
+    }
+  }
+}
+
 Resumed examine(const fs::path& partial, KeptRows& rows) {
   const SessionReader reader(partial);
   if (reader.version() != kSchemaVersion) {
@@ -104,6 +149,7 @@ Resumed examine(const fs::path& partial, KeptRows& rows) {
   rows.stimuli = stimuli.size();
   rows.timing = found.ended ? reader.timing().size() : 0;
   rows.attributes = reader.attribute_rows();
+  examine_drilling(reader, found, rows);
   return found;
 }
 

@@ -24,16 +24,31 @@ struct Sample {
   bool saturated{false};  // the force limit was reached
 };
 
-enum class Phase : std::uint8_t { kTraining, kTest };
+enum class Phase : std::uint8_t { kTraining, kTest, kDrilling };
+
+/// As /trials has it.
+constexpr const char* name_of(Phase phase) noexcept {
+  switch (phase) {
+    case Phase::kTraining:
+      return "training";
+    case Phase::kTest:
+      return "test";
+    case Phase::kDrilling:
+      break;
+  }
+  return "drilling";
+}
+
 enum class PassStatus : std::uint8_t { kCompleted, kAborted };
 
-/// One pass along the trajectory, a row of /trials. A trial is a training pass and a test pass.
+/// One pass, a row of /trials. A trial is a training pass and a test pass, or a drilling, which has
+/// more passes where it was broken off and went on.
 struct PassRow {
   std::int32_t trial{0};  // from 1
   std::string condition;  // training condition of the block: "haptic", "visual", "visuohaptic"
   Phase phase{Phase::kTraining};
   std::int32_t block{0};       // from 1
-  std::int32_t repetition{0};  // from 1 within the block
+  std::int32_t repetition{0};  // from 1 within the block; of a drilling the number of its bone
   std::uint64_t stimulus_seed{0};
   std::uint64_t first_sample{0};  // sequence numbers, both inclusive
   std::uint64_t last_sample{0};

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "core/base/error.h"
+#include "core/record/drilling_codec.h"
 #include "core/record/row_codec.h"
 #include "core/record/schema.h"
 #include "core/record/session_info.h"
@@ -21,9 +22,10 @@ constexpr int kLiveLevel = 3;
 
 bool is_live(const SessionInfo& info) { return info.clock == "real"; }
 
-TableSchema sized(const TableSchema& schema, const SessionInfo& info) {
-  const bool short_chunks = is_live(info) && &schema == &samples_schema();
-  return short_chunks ? schema.with_chunks(live_chunk_rows(info.rate)) : schema;
+TableSchema sized(const TableSchema& each, const SessionInfo& info) {
+  const bool ticks = &each == &samples_schema() || &each == &schema(DrillingTable::kTool);
+  const bool short_chunks = is_live(info) && ticks;
+  return short_chunks ? each.with_chunks(live_chunk_rows(info.rate)) : each;
 }
 
 void put_attributes(TableWriter& table, const std::vector<EventRow>& rows) {
@@ -37,24 +39,32 @@ void put_attributes(TableWriter& table, const std::vector<EventRow>& rows) {
 
 }  // namespace
 
-SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info)
+SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info,
+                          std::optional<std::span<const BoneRecord>> bones)
     : final_path(file_path),
       partial(partial_path(file_path)),
       live(is_live(info)),
-      lock(FileLock::take(new_path(file_path), true)) {
+      lock(FileLock::take(new_path(file_path), true)),
+      drills(bones.has_value()) {
   const fs::path created = new_path(file_path);
   try {
     file = h5::create_file(created, true);
     space.ensure(h5::descriptor(file), 0);
     put_info(file, info);
-    for (auto [table, schema] : tables()) {
-      table->emplace(file, sized(*schema, info), live ? kLiveLevel : kFastLevel, ensure_space());
+    for (auto [table, each] : tables()) {
+      table->emplace(file, sized(*each, info), live ? kLiveLevel : kFastLevel, ensure_space());
     }
     for (const char* count : {"ticks", "overruns", "dropped"}) {
       h5::put(timing->dataset(), count, std::int64_t{-1});
     }
     put_attributes(*attributes, info_rows(info));
     h5::start_swmr(file);
+    for (const BoneRecord& bone : bones.value_or(std::span<const BoneRecord>{})) {
+      put(std::span(&bone.bone, 1));
+      put(std::span(bone.structures));
+      put(std::span(bone.runs));
+      put(std::span(bone.densities));
+    }
     write(true);
     rename_to_new(created, partial);
   } catch (...) {
@@ -73,15 +83,17 @@ SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info, Fi
       live(is_live(info)),
       lock(std::move(held)),
       file(h5::open_to_go_on(partial)),
+      drills(rows.drills),
       resumed(true) {
   // In the order of tables().
-  const std::array kept{rows.samples, rows.frames, rows.trials,    rows.events,
-                        rows.stimuli, rows.timing, rows.attributes};
+  std::vector<std::uint64_t> kept{rows.samples, rows.frames, rows.trials,    rows.events,
+                                  rows.stimuli, rows.timing, rows.attributes};
+  kept.insert(kept.end(), rows.drilling.begin(), rows.drilling.end());
   try {
     space.ensure(h5::descriptor(file), 0);
     std::size_t i = 0;
-    for (auto [table, schema] : tables()) {
-      table->emplace(TableWriter::go_on(file, *schema, kept[i++], live ? kLiveLevel : kFastLevel,
+    for (auto [table, each] : tables()) {
+      table->emplace(TableWriter::go_on(file, *each, kept[i++], live ? kLiveLevel : kFastLevel,
                                         ensure_space()));
     }
     h5::flush(file);
@@ -93,13 +105,31 @@ SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info, Fi
 }
 
 SessionWriter::Impl::Tables SessionWriter::Impl::tables() {
-  return {{{&samples, &samples_schema()},
-           {&frames, &frames_schema()},
-           {&trials, &trials_schema()},
-           {&events, &events_schema()},
-           {&stimuli, &stimuli_schema()},
-           {&timing, &timing_schema()},
-           {&attributes, &attributes_schema()}}};
+  Tables all{{&samples, &samples_schema()},      {&frames, &frames_schema()},
+             {&trials, &trials_schema()},        {&events, &events_schema()},
+             {&stimuli, &stimuli_schema()},      {&timing, &timing_schema()},
+             {&attributes, &attributes_schema()}};
+  for (std::size_t i = 0; drills && i < kDrillingTables; ++i) {
+    all.emplace_back(&drilling[i], &schema(static_cast<DrillingTable>(i)));
+  }
+  return all;
+}
+
+TableWriter& SessionWriter::Impl::table(DrillingTable which) {
+  std::optional<TableWriter>& found = drilling[static_cast<std::size_t>(which)];
+  if (!found) {
+    throw std::invalid_argument(final_path.string() + ": is the file of a session that drills not");
+  }
+  return *found;
+}
+
+template <class Row>
+void SessionWriter::Impl::put(std::span<const Row> rows) {
+  TableWriter& to = table(table_of<Row>());
+  for (const Row& row : rows) {
+    put_row(to.planes(), to.used(), row);
+    to.added(1);
+  }
 }
 
 TableWriter::EnsureSpace SessionWriter::Impl::ensure_space() {
@@ -120,6 +150,7 @@ void SessionWriter::Impl::give_up(const std::string& why) {
 /// Before a row of /trials that refers to them, whenever the process is killed.
 void SessionWriter::Impl::write_samples() {
   samples->write_unfinished();
+  if (drills) table(DrillingTable::kTool).write_unfinished();
   h5::flush(file);
 }
 
@@ -128,6 +159,9 @@ void SessionWriter::Impl::write(bool all) {
   if (all) frames->write_unfinished();
   for (auto* table : {&trials, &events, &stimuli, &timing, &attributes}) {
     (*table)->write_unfinished();
+  }
+  for (std::size_t i = 1; drills && i < kDrillingTables; ++i) {  // but /tool
+    drilling[i]->write_unfinished();
   }
   h5::flush(file);
 }
@@ -150,18 +184,26 @@ bool SessionWriter::Impl::closable() noexcept {
 }
 
 void SessionWriter::Impl::close_tables() noexcept {
-  for (auto [table, schema] : tables()) {
+  for (auto [table, each] : tables()) {
     if (*table) (*table)->close();
   }
 }
 
-SessionWriter::SessionWriter(const fs::path& final_path, const SessionInfo& info) {
+SessionWriter::SessionWriter(const fs::path& final_path, const SessionInfo& info)
+    : SessionWriter(std::nullopt, final_path, info) {}
+
+SessionWriter::SessionWriter(const fs::path& final_path, const SessionInfo& info,
+                             std::span<const BoneRecord> bones)
+    : SessionWriter(std::optional(bones), final_path, info) {}
+
+SessionWriter::SessionWriter(std::optional<std::span<const BoneRecord>> bones,
+                             const fs::path& final_path, const SessionInfo& info) {
   check_target(final_path);
   if (const auto name = text_with_nul(info)) {
     throw InputError(final_path.string() + ": " + *name + " holds a NUL byte; allowed: text");
   }
   try {
-    impl_ = std::make_unique<Impl>(final_path, info);
+    impl_ = std::make_unique<Impl>(final_path, info, bones);
   } catch (const h5::Error& error) {
     throw RunError(final_path.string() + ": the session file cannot be created (" + error.what() +
                    ")");
@@ -234,6 +276,21 @@ void SessionWriter::add_frames(std::span<const FrameRow> rows) {
     }
   });
 }
+
+template <class Row>
+void SessionWriter::add(std::span<const Row> rows) {
+  impl_->guarded([&] { impl_->put(rows); });
+}
+
+template void SessionWriter::add(std::span<const ToolRow>);
+template void SessionWriter::add(std::span<const RemovalRow>);
+template void SessionWriter::add(std::span<const CameraRow>);
+template void SessionWriter::add(std::span<const SplitRow>);
+template void SessionWriter::add(std::span<const ProcedureRow>);
+template void SessionWriter::add(std::span<const BoneRow>);
+template void SessionWriter::add(std::span<const StructureRow>);
+template void SessionWriter::add(std::span<const BoneRunRow>);
+template void SessionWriter::add(std::span<const BoneDensityRow>);
 
 void SessionWriter::set_timing(std::span<const TimingRow> histogram, const TimingSummary& summary) {
   if (impl_->has_timing) throw std::invalid_argument("the timing of a session is set once");

@@ -2,8 +2,10 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 
+#include "core/record/drilling_types.h"
 #include "core/record/session_types.h"
 
 namespace haptrial::record {
@@ -27,6 +29,9 @@ class SessionWriter {
   /// @throws InputError when FILE or FILE.partial exists, or their folder is missing or may not be
   /// written, or another process creates the same file, or a text of `info` holds a NUL byte.
   SessionWriter(const std::filesystem::path& final_path, const SessionInfo& info);
+  /// The same with the tables of drillings, in which the bones are from the beginning.
+  SessionWriter(const std::filesystem::path& final_path, const SessionInfo& info,
+                std::span<const BoneRecord> bones);
 
   /// Whether FILE.partial exists. It has that name from the moment on in which it can take samples:
   /// where this is false no sample of the session was ever recorded, and it starts anew.
@@ -53,6 +58,13 @@ class SessionWriter {
   void add_event(const EventRow& event);
   void add_stimulus(std::span<const StimulusRow> rows);
   void add_frames(std::span<const FrameRow> rows);
+  /// Rows of the tables of drillings, in ascending order of their sequence numbers. Rows of /tool
+  /// go with those of /samples: as many, with the same numbers, before append() is given the next
+  /// ones. Reals are rounded to the grids of the schema.
+  /// @tparam Row  a type of drilling_types.h
+  /// @throws std::invalid_argument in a session without drillings.
+  template <class Row>
+  void add(std::span<const Row> rows);
   /// Once, when the loop has ended. @param summary  of this run: the ticks recorded before a
   /// resume() are added. @throws std::invalid_argument for a second call.
   void set_timing(std::span<const TimingRow> histogram, const TimingSummary& summary);
@@ -78,6 +90,8 @@ class SessionWriter {
  private:
   struct Impl;
   explicit SessionWriter(std::unique_ptr<Impl> impl);
+  SessionWriter(std::optional<std::span<const BoneRecord>> bones,
+                const std::filesystem::path& final_path, const SessionInfo& info);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/record/disk_space.h"
 #include "core/record/file_lock.h"
@@ -20,17 +21,23 @@ namespace haptrial::record {
 /// Rows of each table of a file to go on with.
 struct KeptRows {
   std::uint64_t samples{0}, frames{0}, trials{0}, events{0}, stimuli{0}, timing{0}, attributes{0};
+  bool drills{false};  // the tables of drillings are there
+  std::array<std::uint64_t, kDrillingTables> drilling{};
 };
 
 struct SessionWriter::Impl {
   /// Creates the file. @throws h5::Error, InputError, RunError; then nothing is left of it.
-  Impl(const std::filesystem::path& file_path, const SessionInfo& info);
+  Impl(const std::filesystem::path& file_path, const SessionInfo& info,
+       std::optional<std::span<const BoneRecord>> bones);
   /// Goes on with the file, which is locked.
   Impl(const std::filesystem::path& file_path, const SessionInfo& info, FileLock held,
        const KeptRows& rows);
 
-  using Tables = std::array<std::pair<std::optional<TableWriter>*, const TableSchema*>, 7>;
+  using Tables = std::vector<std::pair<std::optional<TableWriter>*, const TableSchema*>>;
   Tables tables();
+  TableWriter& table(DrillingTable which);
+  template <class Row>
+  void put(std::span<const Row> rows);
 
   /// Runs one step of writing; its first failure ends all writing.
   template <typename Step>
@@ -63,6 +70,8 @@ struct SessionWriter::Impl {
   h5::Id file;
   DiskSpace space;
   std::optional<TableWriter> samples, frames, trials, events, stimuli, timing, attributes;
+  bool drills{false};
+  std::array<std::optional<TableWriter>, kDrillingTables> drilling;
   std::uint64_t earlier_ticks{0};  // before a resume
   bool resumed{false};
   bool has_timing{false};

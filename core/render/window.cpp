@@ -84,6 +84,7 @@ struct Window::Impl {
   int height{0};
   double refresh_rate{0.0};
   std::vector<KeyPress> keys;
+  std::vector<int> held;
   Pointer pointer;
 
   void open(const WindowOptions& options);
@@ -144,6 +145,9 @@ void Window::Impl::listen() {
   glfwSetKeyCallback(window.get(), [](GLFWwindow* w, int key, int, int action, int) {
     if (action == GLFW_PRESS) {
       of(w).keys.push_back({key_of(key)});
+      of(w).held.push_back(key_of(key));
+    } else if (action == GLFW_RELEASE) {  // also when another window takes the keyboard
+      std::erase(of(w).held, key_of(key));
     }
   });
   glfwSetCursorPosCallback(window.get(),
@@ -186,6 +190,7 @@ Image Window::read() { return read_frame(impl_->gl, impl_->width, impl_->height)
 
 bool Window::close_asked() const { return glfwWindowShouldClose(impl_->window.get()) != 0; }
 std::vector<KeyPress> Window::take_keys() { return std::exchange(impl_->keys, {}); }
+std::vector<int> Window::held_keys() const { return impl_->held; }
 Pointer Window::pointer() const { return impl_->pointer; }
 
 }  // namespace haptrial::render

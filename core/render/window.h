@@ -65,6 +65,7 @@ class Window {
 
   bool close_asked() const;           // by the window's button
   std::vector<KeyPress> take_keys();  // since the last call
+  std::vector<int> held_keys() const;  // as KeyPress has them, in the order of their presses
   Pointer pointer() const;
 
  private:

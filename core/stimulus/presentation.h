@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 
 namespace haptrial::stimulus {
@@ -12,6 +12,23 @@ enum class Instruction : std::uint8_t {
   kWatch,      // watch the target bar (visual training)
   kMatch,      // make the applied bar as high as the target bar (visuohaptic training)
   kRecall,     // apply the learnt pattern (test)
+  kDrill,      // work on the bone
+};
+
+/// What there is to see of a drilling beside the bone itself, which the screen follows by itself.
+struct DrillingView {
+  bool shown{false};
+  Eigen::Vector3d tip{Eigen::Vector3d::Zero()};  // of the tool, in the scene's W [m]
+  Eigen::Quaterniond orientation{
+      Eigen::Quaterniond::Identity()};            // of the tool in W, z to the hand
+  std::int32_t tool{0};                           // in hand
+  bool power{false};                              // it turns, or sucks
+  bool contact{false};                            // it touches bone
+  double sound_force{0.0};                        // what can be heard of it [N]
+  Eigen::Vector3d eye{Eigen::Vector3d::UnitZ()};  // in W [m]
+  Eigen::Vector3d target{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d up{Eigen::Vector3d::UnitY()};
+  double field_of_view{0.35};  // [rad]
 };
 
 /// What the participant is to see at one instant. Written whole by the servo thread each tick; read
@@ -31,6 +48,7 @@ struct Presentation {
   Eigen::Vector3d direction{Eigen::Vector3d::Zero()};  // on along the path, while self-paced
   std::int32_t block{0};                               // changes with the stimulus
   Instruction instruction{Instruction::kRest};
+  DrillingView drilling;
 };
 
 }  // namespace haptrial::stimulus

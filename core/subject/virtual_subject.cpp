@@ -119,6 +119,7 @@ double VirtualSubject::intended_press(const Presentation& seen, double dt) noexc
       return recall(seen);
     case Instruction::kRest:
     case Instruction::kWatch:
+    case Instruction::kDrill:
       break;
   }
   return 0.0;

@@ -62,7 +62,7 @@ std::vector<Moment> run(TrajectoryPass& pass, const std::function<double(double)
       tool.velocity = (tool.position - before) / kDt;
     }
     before = tool.position;
-    moments.push_back({tool, pass.tick(tool, kDt)});
+    moments.push_back({tool, pass.tick({tool}, kDt)});
     running = moments.back().out.stage == Stage::kRun;
   }
   return moments;

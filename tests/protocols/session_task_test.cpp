@@ -29,14 +29,14 @@ class ConstantPass final : public Pass {
  public:
   ConstantPass(const Vector3d& force, int ticks, PassState end = PassState::kCompleted)
       : force_(force), ticks_(ticks), end_(end) {}
-  PassOutput tick(const PointState& tool, double) noexcept override {
+  PassOutput tick(const device::DeviceReading& reading, double) noexcept override {
     ++done_;
     PassOutput out;
     out.force = force_;
     out.stage = record::Stage::kRun;
     out.target_force = 1.5;
     out.applied_force = 2.5;
-    out.presentation.tool = tool.position;
+    out.presentation.tool = reading.tool.position;
     out.presentation.block = 9;
     return out;
   }

@@ -77,9 +77,9 @@ TEST(StartAwayTest, NeverJerksWhereverTheHandIs) {
 /// Pulls at once with all that it has, as a protocol should not.
 class Tug final : public Pass {
  public:
-  PassOutput tick(const PointState& tool, double) noexcept override {
+  PassOutput tick(const device::DeviceReading& reading, double) noexcept override {
     PassOutput out;
-    out.force = -12.0 * tool.position.normalized();
+    out.force = -12.0 * reading.tool.position.normalized();
     return out;
   }
   PassState state() const noexcept override { return PassState::kRunning; }

@@ -61,7 +61,7 @@ std::vector<Moment> run(TrajectoryPass& pass, Hand& hand, int most_ticks = 60000
   std::vector<Moment> moments;
   while (pass.state() == PassState::kRunning && static_cast<int>(moments.size()) < most_ticks) {
     const PointState tool = hand.mass.state();
-    moments.push_back({tool, pass.tick(tool, kDt)});
+    moments.push_back({tool, pass.tick({tool}, kDt)});
     hand.move(moments.back().out.force);
   }
   return moments;
@@ -72,7 +72,7 @@ std::vector<Moment> run_still(TrajectoryPass& pass, const Vector3d& where) {
   std::vector<Moment> moments;
   while (pass.state() == PassState::kRunning && moments.size() < 60000) {
     const PointState tool{where, Vector3d::Zero()};
-    moments.push_back({tool, pass.tick(tool, kDt)});
+    moments.push_back({tool, pass.tick({tool}, kDt)});
   }
   return moments;
 }
@@ -258,8 +258,8 @@ TEST_P(EveryPass, SaturationIsSaidWhereTheLimitIsReachedAndOnlyThere) {
   while (limited->state() == PassState::kRunning && ++ticks < 60000) {
     hand.push = 6.0 * std::sin(0.002 * ticks);
     const PointState tool = hand.mass.state();
-    const PassOutput a = limited->tick(tool, kDt);
-    const PassOutput b = unlimited->tick(tool, kDt);
+    const PassOutput a = limited->tick({tool}, kDt);
+    const PassOutput b = unlimited->tick({tool}, kDt);
     ASSERT_EQ(a.saturated, b.force.norm() > 3.0) << ticks;
     ASSERT_LE(a.force.norm(), 3.0 * (1 + 1e-12));
     ASSERT_NEAR(a.force.dot(b.force), a.force.norm() * b.force.norm(), 1e-9) << "same direction";
@@ -302,7 +302,7 @@ TEST_P(EveryPass, ATickDoesNotAllocate) {
   Hand hand({0.0, 0.0, 0.0});
   const test::AllocationGuard guard;
   while (pass->state() == PassState::kRunning) {
-    hand.move(pass->tick(hand.mass.state(), kDt).force);
+    hand.move(pass->tick({hand.mass.state()}, kDt).force);
   }
   EXPECT_EQ(guard.count(), 0u);
 }

@@ -48,6 +48,7 @@ struct StandInSetup {
 //   void stand_in_reset()                       as if just plugged in
 //   void stand_in_fail(int failure, long tick)  from that tick on
 //   void stand_in_place(const double p[3])      the handle rests there; its spring too
+//   void stand_in_turn(const double r[9])       a rotation by rows, from now on
 //   void stand_in_buttons(unsigned mask)
 //   void stand_in_view(StandInView*)
 //   void stand_in_setup(StandInSetup*)

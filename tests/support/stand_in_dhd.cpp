@@ -70,6 +70,10 @@ void stand_in_fail(int failure, long tick) {
   handle.failure_tick = tick;
 }
 void stand_in_place(const double* p) { handle.place(p); }
+void stand_in_turn(const double* rows) {
+  std::copy_n(rows, 9, handle.turn.begin());
+  handle.wrist = true;
+}
 void stand_in_buttons(unsigned mask) { handle.buttons = mask; }
 void stand_in_view(StandInView* out) { handle.view(out, 1.0); }
 void stand_in_setup(StandInSetup* out) { *out = handle.setup; }
@@ -175,6 +179,16 @@ int dhdSetForce(double x, double y, double z, char) {
   handle.step(kPeriod);
   handle.forces_on = handle.forces_on && force_off_cause() == 0;
   return saturated ? 2 : 0;
+}
+bool dhdHasWrist(char) { return handle.wrist; }
+int dhdGetOrientationFrame(double (*rows)[3], char) {
+  if (link() < 0) {
+    return -1;
+  }
+  for (std::size_t i = 0; i < 9; ++i) {
+    rows[i / 3][i % 3] = handle.turn[i];
+  }
+  return 0;
 }
 unsigned dhdGetButtonMask(char) { return handle.buttons; }
 int dhdGetStatus(int* status, char) {

@@ -25,6 +25,8 @@ struct StandInHandle {
   Vector velocity{};
   Vector anchor{};
   Vector force{};  // that the motors give [N]
+  std::array<double, 9> turn{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};  // by rows
+  bool wrist{false};  // it says how it is turned
   long ticks{0};
   unsigned buttons{0};
   bool forces_on{false};

@@ -91,6 +91,10 @@ void stand_in_place(const double* p) {
   const double in_metres[3] = {kMillimetre * p[0], kMillimetre * p[1], kMillimetre * p[2]};
   handle.place(in_metres);
 }
+void stand_in_turn(const double* rows) {
+  const std::lock_guard lock(mutex);
+  std::copy_n(rows, 9, handle.turn.begin());
+}
 void stand_in_buttons(unsigned mask) {
   const std::lock_guard lock(mutex);
   handle.buttons = mask;
@@ -161,6 +165,14 @@ void hdEndFrame(unsigned) { error = present_error(); }
 void hdGetDoublev(unsigned what, double* out) {
   if (what == 0x2603) {
     *out = 3.3;
+    return;
+  }
+  if (what == 0x2052) {
+    std::fill_n(out, 16, 0.0);
+    for (std::size_t i = 0; i < 9; ++i) {
+      out[4 * (i % 3) + i / 3] = handle.turn[i];
+    }
+    out[15] = 1.0;
     return;
   }
   const StandInHandle::Vector& from = what == 0x2050 ? handle.position : handle.velocity;

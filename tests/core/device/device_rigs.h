@@ -58,6 +58,7 @@ struct StandIn {
   void (*reset)();
   void (*fail)(int, long);
   void (*place)(const double*);
+  void (*turn)(const double*);
   void (*buttons)(unsigned);
   void (*view)(StandInView*);
   void (*set_up)(StandInSetup*);

@@ -353,5 +353,44 @@ TEST(CatalogTest, ALibraryWithoutADeviceIsTold) {
   EXPECT_THAT(list[3].what, HasSubstr("no device answers"));
 }
 
+/// A quarter turn about an axis, by rows.
+using Rows = std::array<double, 9>;
+
+TEST(ForceDimensionTest, AWristsTurnIsMappedLikeItsPositions) {
+  const StandIn stand_in("stand_in_dhd");
+  // About the vendor's z, which points up: that is our y, so that our z turns to our x.
+  const Rows about_up{0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0};
+  stand_in.turn(about_up.data());
+  ForceDimensionDevice device({}, kRigRate, stand_in.path);
+  EXPECT_TRUE(device.info().senses_orientation);
+  DeviceReading reading;
+  ASSERT_TRUE(device.read(reading));
+  EXPECT_LT((reading.orientation * Vector3d::UnitY() - Vector3d::UnitY()).norm(), 1e-12);
+  EXPECT_LT((reading.orientation * Vector3d::UnitZ() - Vector3d::UnitX()).norm(), 1e-12);
+}
+
+TEST(ForceDimensionTest, WithoutAWristNothingIsTurned) {
+  const StandIn stand_in("stand_in_dhd");
+  ForceDimensionDevice device({}, kRigRate, stand_in.path);
+  EXPECT_FALSE(device.info().senses_orientation);
+  DeviceReading reading;
+  ASSERT_TRUE(device.read(reading));
+  EXPECT_EQ(reading.orientation.coeffs(), Eigen::Quaterniond::Identity().coeffs());
+}
+
+TEST(OpenHapticsStylusTest, ItsTurnComesFromItsTransform) {
+  const StandIn stand_in("stand_in_hd");
+  stand_in.manual(1);
+  const Rows about_x{1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0};
+  stand_in.turn(about_x.data());
+  OpenHapticsDevice device({}, kRigRate, stand_in.path);
+  EXPECT_TRUE(device.info().senses_orientation);
+  stand_in.step();
+  DeviceReading reading;
+  ASSERT_TRUE(device.read(reading));
+  EXPECT_LT((reading.orientation * Vector3d::UnitY() - Vector3d::UnitZ()).norm(), 1e-12);
+  stand_in.manual(0);
+}
+
 }  // namespace
 }  // namespace haptrial::device

@@ -345,6 +345,22 @@ TEST(EnvelopeTest, LimitsOutOfBoundsAreRefused) {
   refused(&EnvelopeLimits::ramp_out, kNan);
 }
 
+TEST(EnvelopeTest, AnOrientationThatIsNoneStopsTheForce) {
+  const auto fault_of = [](const Eigen::Quaterniond& orientation) {
+    Envelope envelope{EnvelopeLimits{}};
+    DeviceReading reading;
+    reading.orientation = orientation;
+    return envelope.check(true, reading);
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(fault_of({nan, 0.0, 0.0, 0.0}), Fault::kOrientationNotFinite);
+  EXPECT_EQ(fault_of({0.0, 0.0, 0.0, 0.0}), Fault::kOrientationNotFinite);
+  EXPECT_EQ(fault_of({0.0, 2.0, 0.0, 0.0}), Fault::kOrientationNotFinite);
+  EXPECT_EQ(fault_of({0.0, 0.6, 0.0, 0.8}), Fault::kNone);
+  EXPECT_STREQ(describe(Fault::kOrientationNotFinite),
+               "the device gave an orientation that is none");
+}
+
 TEST(EnvelopeTest, LimitsAreReadWithTheirBounds) {
   Table good = Table::parse(
       "max_force = 8.0\nmax_force_rate = 100.0\nworkspace_radius = 0.05\nmax_speed = 0.5\n"

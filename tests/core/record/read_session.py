@@ -22,9 +22,9 @@ def check(condition, message):
 
 
 def documented_columns(page):
-    """(dataset, column) -> (type, unit) from the first table of the page."""
+    """(dataset, column) -> (type, unit) from a table of the page."""
     columns, dataset = {}, None
-    for line in page.split("## Root attributes")[0].splitlines():
+    for line in page.splitlines():
         cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
         if len(cells) != 5 or not cells[1].startswith("`"):
             continue
@@ -35,7 +35,15 @@ def documented_columns(page):
 
 
 def check_layout(file, page):
-    expected = documented_columns(page)
+    expected = documented_columns(page.split("## Root attributes")[0])
+    if "tool" in file:
+        drillings = page.split("## Drillings")[1]
+        expected.update(documented_columns(drillings))
+        names = {"numpy": numpy}
+        exec(re.search(r"```python\n(.*?)```", drillings, re.S).group(1), names)
+        volume = names["labels"](file)
+        check([list(map(int, cell)) for cell in numpy.argwhere(volume > 0)] == [[1, 0, 0], [2, 0, 0], [2, 3, 1]] and
+              volume[2, 3, 1] == 7 and volume[1, 0, 0] == 1, "the labels of the bone")
     found = {}
     for name, dataset in file.items():
         check(dataset.chunks and dataset.maxshape == (None,), f"/{name} is not extendible")

@@ -93,4 +93,38 @@ bool same(const Sample& a, const Sample& b) {
          a.saturated == b.saturated;
 }
 
+record::BoneRecord small_bone() {
+  record::BoneRecord record;
+  record.bone = {0, "Röhre", "made by hand", {3, 4, 2}, {0.1, -0.2, 0.3}, 5e-4};
+  record.structures = {{0, 1, "bone", {0.9, 0.8, 0.7}, 1.0, false},
+                       {0, 7, "nerve", {1.0, 1.0, 0.0}, 0.5, true}};
+  record.runs = {{0, 1, 2, 1}, {0, 2 + 3 * (3 + 4 * 1), 1, 7}};
+  record.densities = {{0, 2, 0.25F}};
+  return record;
+}
+
+std::vector<record::ToolRow> tool_motion(std::size_t count, std::uint64_t seed) {
+  RandomStream random(seed, "tool motion");
+  std::vector<record::ToolRow> rows(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    record::ToolRow& row = rows[i];
+    row.sequence = i;
+    row.orientation =
+        Eigen::Quaterniond(random.normal(), random.normal(), random.normal(), random.normal())
+            .normalized();
+    row.buttons = static_cast<std::uint32_t>(random.below(1u << 31));
+    row.keys = static_cast<std::uint32_t>(random.below(2048));
+    row.pedal = random.uniform();
+    row.tool = static_cast<std::int32_t>(random.below(5));
+    row.mode = static_cast<std::uint8_t>(random.below(4));
+    row.active = random.below(2) == 1;
+    row.power = random.below(2) == 1;
+    row.piece = static_cast<std::int32_t>(random.below(65)) - 1;
+    row.immersed = static_cast<std::int32_t>(random.below(11500));
+    row.removed = random.uniform();
+    row.contact = {random.normal(), random.normal(), random.normal()};
+  }
+  return rows;
+}
+
 }  // namespace haptrial::test

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/record/drilling_types.h"
 #include "core/record/session_types.h"
 #include "tests/support/temporary_folder.h"
 
@@ -16,6 +17,12 @@ std::vector<record::Sample> hand_motion(std::size_t count, std::uint64_t seed);
 /// The row as it must come back: each value on the grid of its column, computed with
 /// std::nearbyint.
 record::Sample on_file(const record::Sample& sample);
+
+/// 3 x 4 x 2 voxels, of which (1, 0, 0), (2, 0, 0) and (2, 3, 1) hold something.
+record::BoneRecord small_bone();
+
+/// What a tool does on as many ticks, with another value in every field of every row.
+std::vector<record::ToolRow> tool_motion(std::size_t count, std::uint64_t seed);
 
 bool same(const record::Sample& a, const record::Sample& b);
 

@@ -29,7 +29,7 @@ void write_csv(const std::filesystem::path& path, const std::vector<Sample>& sam
 
 // Written by hand from the rows below: the file is compared with the source, not with a reader.
 constexpr const char* kExpected = R"({
-"attributes": {"schema_version": 2, "program_version": "0.1.0", "program_commit": "0123abc",
+"attributes": {"schema_version": 3, "program_version": "0.1.0", "program_commit": "0123abc",
   "definition": "[trajectory]\nspeed = 0.016  # größer als 0\n", "definition_name": "recall.toml",
   "subject": "P07", "seed": 18364758544493064720, "device": "virtual", "device_max_force": 8.5,
   "device_workspace_radius": 0.16, "clock": "simulated", "rate": 1000.0,
@@ -45,11 +45,13 @@ constexpr const char* kExpected = R"({
 "frames": [[16666667, 2000000, 0], [50000000, 3500000, 1]],
 "timing": [[-1000, 0, 1, 2, 3], [0, 1000, 4, 5, 6]]})";
 
-TEST(SessionPythonTest, ReadsWithH5pyAndPandasAsTheDocumentSays) {
-  if (!python_has_libraries()) GTEST_SKIP() << "/usr/bin/python3 has no h5py or no pandas";
+/// A session that h5py is to read. @param drills  with the tables of drillings
+void expect_that_python_reads(bool drills) {
   const test::TemporaryFolder folder;
   const std::vector<Sample> samples = test::hand_motion(9001, 3);
-  SessionWriter writer(folder / "session.h5", test::example_info());
+  const std::vector<BoneRecord> bones{test::small_bone()};
+  SessionWriter writer = drills ? SessionWriter(folder / "session.h5", test::example_info(), bones)
+                                : SessionWriter(folder / "session.h5", test::example_info());
   writer.append(std::span(samples).first(5000));
   writer.flush();  // the unfinished chunk is written twice
   writer.append(std::span(samples).subspan(5000));
@@ -70,6 +72,16 @@ TEST(SessionPythonTest, ReadsWithH5pyAndPandasAsTheDocumentSays) {
       "session-file.md",
       HAPTRIAL_SOURCE_DIR, folder.path().string());
   EXPECT_EQ(std::system(command.c_str()), 0) << command;
+}
+
+TEST(SessionPythonTest, ReadsWithH5pyAndPandasAsTheDocumentSays) {
+  if (!python_has_libraries()) GTEST_SKIP() << "/usr/bin/python3 has no h5py or no pandas";
+  expect_that_python_reads(false);
+}
+
+TEST(SessionPythonTest, ReadsDrillingsAsTheDocumentSays) {
+  if (!python_has_libraries()) GTEST_SKIP() << "/usr/bin/python3 has no h5py or no pandas";
+  expect_that_python_reads(true);
 }
 
 }  // namespace

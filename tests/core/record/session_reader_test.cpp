@@ -88,7 +88,7 @@ TEST(SessionReaderTest, RefusesOtherLayouts) {
     const h5::Id file = h5::create_file(folder / "future.h5");
     h5::put(file, "schema_version", std::int64_t{kSchemaVersion + 1});
   }
-  EXPECT_THAT(refusal(folder / "future.h5"), HasSubstr("schema version 3 instead of 1 to 2"));
+  EXPECT_THAT(refusal(folder / "future.h5"), HasSubstr("schema version 4 instead of 1 to 3"));
   {
     const h5::Id file = h5::create_file(folder / "text_version.h5");
     h5::put(file, "schema_version", std::string("1"));

@@ -1,0 +1,110 @@
+#include "core/bone/companions.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace haptrial::bone {
+namespace {
+
+std::uint64_t ticks_of(double period, double rate) {
+  return static_cast<std::uint64_t>(std::max(1.0, std::round(period * rate)));
+}
+
+/// The pieces that dust cannot pass, where they are published to be.
+void list_bones(const BoneWorld& world, std::vector<DustBone>& bones) {
+  const int count = world.pieces();
+  bones.resize(static_cast<std::size_t>(count));
+  world.published_poses().read(count, [&](int piece, const Eigen::Isometry3d& pose) {
+    bones[static_cast<std::size_t>(piece)] = {&world.volume(piece), pose};
+  });
+}
+
+}  // namespace
+
+SteppedCompanions::SteppedCompanions(Simulator& simulator, const CompanionParameters& parameters,
+                                     double rate, bool search)
+    : simulator_(simulator),
+      dust_(parameters.dust),
+      dust_every_(ticks_of(parameters.dust_period, rate)),
+      search_every_(search ? ticks_of(parameters.search_period, rate) : 0) {}
+
+void SteppedCompanions::after_tick(const Simulator& simulator, double dt) noexcept {
+  for (const DustDeposit& deposit : simulator.deposits()) {
+    dust_.deposit(deposit);
+  }
+  unstepped_ += dt;
+  ++ticks_;
+  if (ticks_ % dust_every_ == 0) {
+    dust_.place(simulator.dust_tools());
+    step_dust(unstepped_);
+  }
+  if (search_every_ > 0 && ticks_ % search_every_ == 0) {
+    simulator_.world().search();
+  }
+}
+
+void SteppedCompanions::step_dust(double dt) {
+  list_bones(simulator_.world(), bones_);
+  dust_.follow(bones_);
+  dust_.step(dt);
+  unstepped_ = 0.0;
+}
+
+bool SteppedCompanions::quads(std::vector<DustQuad>& quads, std::uint64_t& version) const {
+  if (version == dust_.version()) {
+    return false;
+  }
+  version = dust_.version();
+  dust_.quads(quads);
+  return true;
+}
+
+void SteppedCompanions::settle() { step_dust(unstepped_); }
+
+ThreadedCompanions::ThreadedCompanions(Simulator& simulator, const CompanionParameters& parameters)
+    : simulator_(simulator),
+      search_period_(parameters.search_period),
+      dust_(
+          parameters.dust,
+          [&simulator](std::vector<DustBone>& bones) {
+            list_bones(std::as_const(simulator).world(), bones);
+          },
+          parameters.dust_period),
+      searcher_([this] { search(); }) {}
+
+ThreadedCompanions::~ThreadedCompanions() {
+  stop_.store(true, std::memory_order_relaxed);
+  if (searcher_.joinable()) {
+    searcher_.join();
+  }
+}
+
+void ThreadedCompanions::after_tick(const Simulator& simulator, double) noexcept {
+  for (const DustDeposit& deposit : simulator.deposits()) {
+    dust_.deposit(deposit);
+  }
+  dust_.place(simulator.dust_tools());
+}
+
+void ThreadedCompanions::search() {
+  const auto period = std::chrono::duration<double>(search_period_);
+  while (!stop_.load(std::memory_order_relaxed)) {
+    simulator_.world().search();
+    std::this_thread::sleep_for(period);
+  }
+}
+
+void ThreadedCompanions::settle() {
+  constexpr double kRounding = 1e-3;  // of the dust's amounts [voxels]
+  constexpr int kMostRounds = 400;
+  for (int i = 0; i < kMostRounds; ++i) {
+    if (dust_.balance().deposited + kRounding >= simulator_.removed_so_far()) {
+      return;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
+}  // namespace haptrial::bone

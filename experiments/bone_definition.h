@@ -1,0 +1,68 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/bone/bone_model.h"
+#include "core/bone/companions.h"
+#include "core/bone/simulator.h"
+#include "core/sound/drill_sound.h"
+#include "core/subject/drilling_hand.h"
+#include "experiments/setup.h"
+#include "protocols/drilling_pass.h"
+
+namespace haptrial::experiments {
+
+/// How a bone lies in the scene.
+struct BonePlacement {
+  Eigen::Vector3d centre{Eigen::Vector3d::Zero()};    // of its grid, in W [m]
+  Eigen::Matrix3d turn{Eigen::Matrix3d::Identity()};  // from B to W: a rotation
+};
+Eigen::Isometry3d pose_of(const BonePlacement& placement, const geometry::VoxelGrid& grid);
+
+/// An experiment of drillings (`protocol = "bone_drilling"`), read from a definition file and valid
+/// as a whole. A trial is one procedure on one bone.
+struct BoneDefinition : Setup {
+  std::vector<std::string>
+      sources;                    // of bones: "procedural temporal", "procedural mandible", files
+  std::uint64_t bone_seed{1};     // of procedural ones
+  std::optional<double> spacing;  // of voxels [m]; default: as the source has it
+  BonePlacement placement;
+  bone::SimulatorParameters simulator;  // but for the pose
+  bone::CompanionParameters companions;
+  protocols::DrillingParameters drilling;
+  subject::DrillingHandParameters hand_plan;  // of the virtual hand
+  bool sound_card{false};                     // whether a live session is heard
+  sound::SpectrumTable sound_table;
+  sound::ThinBone thin_bone;
+  sound::SpectrumTable vibration_table;
+  double vibration_gain{0.0};  // >= 0
+  bool stereo{false};
+  double eye_distance{0.02};  // between the eyes, in the scene >= 0 [m]
+  /// By source; procedures take them in turn. None where only a text was parsed: a session file has
+  /// its bones in it.
+  std::vector<std::shared_ptr<const bone::BoneModel>> bones;
+};
+
+/// @throws InputError with a sentence for every problem of the file; as bone::load_bone does.
+BoneDefinition load_bone_definition(const std::filesystem::path& file);
+/// From the text that a session file keeps, without bones.
+BoneDefinition parse_bone_definition(std::string_view text, std::string_view file_name);
+/// From a table that is read already. @param folder  of the file, where bones are looked for; else
+/// null: bones are not loaded
+BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
+                                    const std::filesystem::path* folder);
+
+/// The simulator of a procedure: the definition's, around a bone.
+bone::SimulatorParameters simulator_for(const BoneDefinition& definition,
+                                        const geometry::VoxelGrid& grid);
+bone::CompanionParameters companions_for(const BoneDefinition& definition,
+                                         const geometry::VoxelGrid& grid);
+
+}  // namespace haptrial::experiments

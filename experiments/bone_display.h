@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <vector>
+
+#include "core/render/bone_scene.h"
+#include "core/render/image.h"
+#include "core/render/offscreen.h"
+#include "experiments/bone_definition.h"
+#include "experiments/bone_stage.h"
+#include "experiments/screen.h"
+
+namespace haptrial::experiments {
+
+/// How deep structures lie, for what shows through. Takes a second for a large bone.
+std::shared_ptr<const bone::StructureDepths> depths_of(const bone::BoneModel& model);
+
+/// Draws a stage as a participant sees it. One thread with its OpenGL context current.
+class BoneDisplay {
+ public:
+  /// @throws RunError where OpenGL does not give what is needed.
+  BoneDisplay(const render::Gl& gl, const BoneDefinition& definition,
+              std::shared_ptr<const BoneStage> stage, int width, int height);
+
+  /// @param seen  of this stage; whatever moves beside it is taken as published
+  void draw(const stimulus::DrillingView& seen);
+
+ private:
+  std::shared_ptr<const geometry::Mesh> mesh_of(int tool) const;
+
+  std::shared_ptr<const BoneStage> stage_;
+  int width_;
+  int height_;
+  render::BoneScene scene_;
+  render::BoneFrame frame_;
+  std::vector<std::shared_ptr<const geometry::Mesh>> meshes_;  // by tool
+  std::vector<bone::DustQuad> quads_;
+  std::uint64_t quads_version_{~std::uint64_t{0}};
+};
+
+/// The same for a screen. The definition outlives the screen.
+MakeDrawing bone_drawing(const BoneDefinition& definition, std::shared_ptr<const BoneStage> stage);
+
+/// The same off screen.
+class BoneRenderer {
+ public:
+  BoneRenderer(const BoneDefinition& definition, std::shared_ptr<const BoneStage> stage);
+  render::Image draw(const stimulus::DrillingView& seen);
+
+ private:
+  render::OffscreenContext context_;
+  BoneDisplay display_;
+};
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/bone/bone_model.h"
+#include "core/record/drilling_types.h"
+
+namespace haptrial::experiments {
+
+/// A bone as a session file keeps it. @param number  of the bone, from 0
+record::BoneRecord record_of(const bone::BoneModel& model, std::int32_t number);
+
+/// The bone of a session file. @throws InputError where its rows do not fit together.
+bone::BoneModel model_of(const record::BoneRecord& record);
+
+}  // namespace haptrial::experiments

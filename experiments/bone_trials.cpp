@@ -1,0 +1,153 @@
+#include "experiments/bone_trials.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "core/base/error.h"
+#include "core/base/random.h"
+#include "experiments/bone_display.h"
+#include "experiments/bone_record.h"
+#include "experiments/drilling_rig.h"
+#include "experiments/session_record.h"
+
+namespace haptrial::experiments {
+
+BoneTrials::BoneTrials(const SessionRequest& request, std::uint64_t session_seed)
+    : request_(request), d_(*request.bone), session_seed_(session_seed) {
+  if (d_.bones.empty()) {
+    throw InputError(fmt::format("{}: has no bones to drill", d_.file_name));
+  }
+  if (d_.sound_card && request.clock == realtime::ClockKind::kReal) {
+    try {
+      sound_ = std::make_unique<BoneSound>(d_, derived_seed(session_seed, "sound"));
+    } catch (const RunError& error) {
+      notice_ = error.what();
+    }
+  }
+  if (request.frames_per_pass > 0) {
+    pictures_ = std::make_unique<BonePictures>(d_, request.frames_per_pass);
+  }
+}
+
+std::vector<stimulus::Observer*> BoneTrials::observers() {
+  std::vector<stimulus::Observer*> all;
+  if (pictures_) {
+    all.push_back(pictures_.get());
+  }
+  if (sound_) {
+    all.push_back(sound_.get());
+  }
+  return all;
+}
+
+std::vector<std::string> BoneTrials::notices() const {
+  return notice_.empty() ? std::vector<std::string>{} : std::vector{notice_};
+}
+
+std::vector<protocols::PlannedTrial> BoneTrials::plan() const {
+  std::vector<protocols::PlannedTrial> plan;
+  for (int trial = 1; trial <= d_.design.trials; ++trial) {
+    const std::uint64_t seed = derived_seed(session_seed_, fmt::format("procedure {}", trial));
+    plan.push_back({trial, trial, 1, "drilling", seed, false});
+  }
+  return plan;
+}
+
+std::span<const record::Phase> BoneTrials::phases() const {
+  static constexpr std::array kPhases{record::Phase::kDrilling};
+  return kPhases;
+}
+
+std::optional<std::vector<record::BoneRecord>> BoneTrials::bones() const {
+  std::vector<record::BoneRecord> records;
+  for (const auto& model : d_.bones) {
+    records.push_back(record_of(*model, static_cast<std::int32_t>(records.size())));
+  }
+  return records;
+}
+
+std::unique_ptr<Rig> BoneTrials::virtual_rig(std::uint64_t session_seed) const {
+  return std::make_unique<DrillingRig>(d_, session_seed);
+}
+
+void BoneTrials::prepare(const protocols::PlannedTrial& trial, SessionRecord& record) {
+  bone_ = static_cast<std::size_t>(trial.trial - 1) % d_.bones.size();
+  bones_used_ = record.bones_used(trial);
+  stage_.reset();
+}
+
+void BoneTrials::begin_attempt(const protocols::PlannedTrial& trial, bool anew) {
+  if (stage_ && !anew) {
+    return;
+  }
+  pass_.reset();
+  auto stage = std::make_shared<BoneStage>();
+  stage->model = d_.bones[bone_];
+  const geometry::VoxelGrid& grid = stage->model->grid;
+  stage->start_view = d_.simulator.camera.start;
+  stage->simulator = std::make_unique<bone::Simulator>(*stage->model, simulator_for(d_, grid));
+  const bone::CompanionParameters companions = companions_for(d_, grid);
+  if (request_.clock == realtime::ClockKind::kReal) {
+    stage->companions = std::make_unique<bone::ThreadedCompanions>(*stage->simulator, companions);
+  } else {
+    stage->companions =
+        std::make_unique<bone::SteppedCompanions>(*stage->simulator, companions, d_.rate);
+  }
+  if (request_.window || pictures_) {
+    stage->depths = depths_of(*stage->model);
+  }
+  stage_ = std::move(stage);
+  ++bones_used_;
+  spent_ = 0;
+  vibration_.reset();
+  if (d_.vibration_gain > 0.0) {
+    vibration_.emplace(d_.vibration_table, d_.vibration_gain, d_.rate, trial.stimulus_seed);
+  }
+  if (sound_) {
+    sound_->listen_to(stage_);
+  }
+}
+
+void BoneTrials::show(Screen& screen) { screen.show(bone_drawing(d_, stage_)); }
+
+protocols::Pass& BoneTrials::make_pass(protocols::PlannedTrial& trial, record::Phase,
+                                       SessionRecord& record) {
+  trial.repetition = bones_used_;
+  pass_ = std::make_unique<protocols::DrillingPass>(*stage_->simulator, *stage_->companions,
+                                                    d_.drilling, record.drilling_logs(), d_.rate,
+                                                    spent_, vibration_ ? &*vibration_ : nullptr);
+  if (pictures_) {
+    pictures_->watch(stage_);
+  }
+  return *pass_;
+}
+
+void BoneTrials::close_pass(SessionRecord& record, std::int32_t row) {
+  spent_ = pass_->ticks();
+  stage_->companions->settle();
+  const bone::Simulator& simulator = *stage_->simulator;
+  const bone::DustBalance dust = stage_->companions->dust();
+  record::ProcedureRow procedure;
+  procedure.pass = row;
+  procedure.bone = static_cast<std::int32_t>(bone_);
+  procedure.pieces = simulator.world().pieces();
+  procedure.emptied = simulator.emptied_so_far();
+  procedure.before = simulator.amount_at_start();
+  procedure.left = simulator.amount_left();
+  procedure.cut = simulator.cut_so_far();
+  procedure.dust = dust.lying + dust.held;
+  procedure.suctioned = dust.suctioned;
+  procedure.fallen = dust.fallen;
+  procedure.checksum = simulator.checksum();
+  record.keep_procedure(procedure);
+}
+
+void BoneTrials::draw_pictures(const protocols::PlannedTrial& trial, record::Phase) {
+  if (pictures_) {
+    pictures_->write(request_.frames_folder,
+                     fmt::format("{}-trial{:02}-drilling", request_.subject, trial.trial));
+  }
+}
+
+}  // namespace haptrial::experiments

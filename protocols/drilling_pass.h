@@ -1,0 +1,101 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+
+#include "core/bone/companions.h"
+#include "core/bone/simulator.h"
+#include "core/realtime/block_log.h"
+#include "core/sound/drill_sound.h"
+#include "protocols/controls.h"
+#include "protocols/pass.h"
+
+namespace haptrial::protocols {
+
+/// How a device becomes a tool on the bone.
+struct DrillingParameters {
+  Controls controls;
+  /// Which way the handle runs, from the tip to the hand, in the frame of the device's orientation;
+  /// in W where the device senses none. Any length but 0.
+  Eigen::Vector3d handle{Eigen::Vector3d::UnitY()};
+  /// The device's workspace is this many times as large as the scene's: motions are scaled down by
+  /// it, forces are not. > 0
+  double scale{1.0};
+  double force_limit{10.0};  // of what the device is asked for > 0 [N]
+  double time_limit{900.0};  // of a drilling > 0 [s]
+};
+
+/// Where the servo thread leaves what happens to the bone; emptied by the session's thread.
+struct DrillingLogs {
+  realtime::BlockLog<record::RemovalRow> removals{1024, 128};
+  realtime::BlockLog<record::CameraRow> camera{256, 64};
+  realtime::BlockLog<record::SplitRow> splits{1024, 16};
+
+  std::uint64_t dropped() const noexcept {
+    return removals.dropped() + camera.dropped() + splits.dropped();
+  }
+};
+
+/// A reading on the grids of the session file: what is simulated from it, is simulated again from
+/// the file. Servo thread.
+device::DeviceReading as_recorded(const device::DeviceReading& reading) noexcept;
+
+/// What a reading, as it is recorded, asks of the simulator.
+class DrillingInput {
+ public:
+  /// @throws std::invalid_argument for a handle without length or a scale not above 0.
+  explicit DrillingInput(const DrillingParameters& parameters);
+  bone::SimulatorInput of(const device::DeviceReading& recorded, double dt) const noexcept;
+
+ private:
+  DrillingParameters parameters_;
+  Eigen::Quaterniond grip_;  // from the tool frame T to the handle's
+};
+
+/// What a participant is to see of a simulator.
+stimulus::DrillingView view_of(const bone::Simulator& simulator,
+                               const bone::SimulatorInput& input) noexcept;
+
+/// Work on a bone: drilling, suction, cutting, plating, looking around. Ends when the time is over
+/// or the participant says so. Source: Morris 2006, §3.2 and §8.2.2.
+class DrillingPass final : public Pass {
+ public:
+  /// Everything given outlives the pass.
+  /// @param spent      ticks of the time limit that passes before this one have taken
+  /// @param vibration  of the burr; null: it does not shake
+  DrillingPass(bone::Simulator& simulator, bone::Companions& companions,
+               const DrillingParameters& parameters, DrillingLogs& logs, double rate,
+               std::uint64_t spent = 0, sound::DrillVibration* vibration = nullptr);
+
+  void begin(std::uint64_t sequence) noexcept override;
+  PassOutput tick(const device::DeviceReading& reading, double dt) noexcept override;
+  PassState state() const noexcept override { return state_; }
+  bool wants_attention() noexcept override;
+
+  /// Of this pass and those before it. Not the servo thread while it ticks.
+  std::uint64_t ticks() const noexcept { return ticks_; }
+
+ private:
+  Eigen::Vector3d shaking(const bone::SimulatorInput& input) noexcept;
+  void log(const bone::SimulatorOutput& out, double speed) noexcept;
+  void log_camera(bool changed) noexcept;
+
+  bone::Simulator& simulator_;
+  bone::Companions& companions_;
+  DrillingParameters parameters_;
+  DrillingInput input_;
+  DrillingLogs& logs_;
+  double rate_;
+  sound::DrillVibration* vibration_;
+  std::uint64_t time_limit_;  // [ticks]
+  std::uint64_t ticks_;
+  std::uint64_t sequence_{0};
+  bool first_{true};
+  bool camera_due_{false};                   // a change is not logged yet
+  std::uint64_t camera_logged_{0};           // sequence number of the last row
+  std::array<std::uint64_t, 3> attended_{};  // rows of each log, when attention was asked for last
+  PassState state_{PassState::kRunning};
+};
+
+}  // namespace haptrial::protocols
