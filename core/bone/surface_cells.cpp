@@ -46,6 +46,44 @@ Eigen::Vector3f slope_of(const Number* first) {
   return slope.cast<float>();
 }
 
+/// The mean of the middles of the edges that are crossed, from the cell's middle, by its corners.
+std::array<Eigen::Vector3f, 256> make_middles() {
+  std::array<Eigen::Vector3f, 256> middles;
+  for (unsigned corners = 0; corners < 256; ++corners) {
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    int crossed = 0;
+    for (unsigned b = 0; b < 8; ++b) {
+      for (unsigned axis = 1; axis < 8; axis *= 2) {
+        if ((b & axis) == 0 && (corners >> b & 1U) != (corners >> (b | axis) & 1U)) {
+          const auto along = [&](unsigned a) {
+            return a == axis ? 0.0F : (b & a) != 0 ? 0.5F : -0.5F;
+          };
+          sum += Eigen::Vector3f(along(1), along(2), along(4));
+          ++crossed;
+        }
+      }
+    }
+    middles[corners] = crossed == 0 ? sum : Eigen::Vector3f(sum / static_cast<float>(crossed));
+  }
+  return middles;
+}
+const std::array<Eigen::Vector3f, 256> kMiddles = make_middles();
+constexpr float kThinShare = 0.5F;  // of the way there, or what is thin gets too thin
+constexpr float kNear = 1.1F;       // a way that a bump or the surface itself may have [voxels]
+constexpr float kFar = 1.4F;        // less than the 1.5 of a sheet of one voxel
+
+/// What is added to the wide slope where other things close by outweigh the surface in it: the
+/// less it agrees with the cell's own corners, the more of what lies nearer.
+Eigen::Vector3f nearer_slopes(const Eigen::Vector3f& wide, const Eigen::Vector3f& slope,
+                              const Eigen::Vector3f& step) {
+  constexpr float kAgrees = 0.5F;  // cosine from which on the wide slope is enough
+  constexpr float kStep = 200.0F;  // as long as a slope of the sums
+  const float lengths = wide.norm() * step.norm();
+  const float cosine = lengths > 0.0F ? wide.dot(step) / lengths : 0.0F;
+  const float doubt = 1.0F - std::clamp(cosine / kAgrees, 0.0F, 1.0F);
+  return doubt * (slope + kStep * step);
+}
+
 }  // namespace
 
 bool CellField::read(const BoneVolume& volume, const Occupancy& occupancy,
@@ -103,40 +141,34 @@ Eigen::Vector3f CellField::place(int i, int j, int k, unsigned corners,
   const std::uint32_t* sums =
       sums_.data() + (i + kInner) + kSums * ((j + kInner) + kSums * (k + kInner));
   int total = 0;
-  int lowest_filled = kFull;
-  int highest_empty = 0;
   Eigen::Vector3f step = Eigen::Vector3f::Zero();  // of filled and empty alone
   for (int b = 0; b < 8; ++b) {
     const Voxel side(b & 1, b >> 1 & 1, b >> 2);
     const auto sum = static_cast<int>(sums[side.x() + kSums * (side.y() + kSums * side.z())]);
     total += sum;
     if ((corners >> b & 1U) != 0) {
-      lowest_filled = std::min(lowest_filled, sum);
       step += (2 * side - Voxel::Ones()).cast<float>();
-    } else {
-      highest_empty = std::max(highest_empty, sum);
     }
   }
   const Eigen::Vector3f slope = slope_of<kSums>(sums) / 4.0F;
-  Eigen::Vector3f inwards = slope_of<kCorner>(wide_sums_.data() + i + kCorner * (j + kCorner * k));
-  if (inwards.dot(step) <= 0.0F) {  // something else close by outweighs this
-    inwards = slope;
-  }
-  if (inwards.dot(step) <= 0.0F) {
-    inwards = step;
-  }
+  const Eigen::Vector3f wide =
+      slope_of<kCorner>(wide_sums_.data() + i + kCorner * (j + kCorner * k)) / (4.0F * kFull);
+  const Eigen::Vector3f inwards = wide + nearer_slopes(wide, slope, step);
   const float length = inwards.norm();
   normal = length > 0.0F ? Eigen::Vector3f(inwards / -length) : Eigen::Vector3f::UnitZ();
-  if (slope.dot(step) <= 0.0F) {
-    return Eigen::Vector3f::Zero();
+
+  // Along the slope to where the field is half full, which is no way off. In what is thin it never
+  // is, or far away: there to the middle of the cell's crossed edges.
+  const float missing = 0.5F * kFull - static_cast<float>(total) / 8.0F;
+  const float steepness = slope.norm();
+  const Eigen::Vector3f thin = kThinShare * kMiddles[corners];
+  if (slope.dot(step) <= 0.0F || std::abs(missing) >= kFar * steepness) {
+    return thin;
   }
-  // To where the field is half full, unless the voxels that are filled are less than that, as in
-  // what is thin, or the empty ones more: the more they are, the less far.
-  const float middle = 0.5F * static_cast<float>(lowest_filled + highest_empty);
-  const float half = 0.5F * static_cast<float>(std::max(lowest_filled - highest_empty, 1));
-  const float share = std::clamp(2.0F - std::abs(0.5F * kFull - middle) / half, 0.0F, 1.0F);
-  const float way = share * (0.5F * kFull - static_cast<float>(total) / 8.0F) / slope.squaredNorm();
-  return (way * slope).cwiseMax(-0.5F).cwiseMin(0.5F);
+  const float share =
+      std::clamp((kFar - std::abs(missing) / steepness) / (kFar - kNear), 0.0F, 1.0F);
+  const Eigen::Vector3f way = missing / (steepness * steepness) * slope;
+  return (share * way + (1.0F - share) * thin).cwiseMax(-0.5F).cwiseMin(0.5F);
 }
 
 }  // namespace haptrial::bone
