@@ -35,7 +35,7 @@ BurrParameters read_burr_parameters(Table& table);
 /// A burr as a cloud of samples that fills it: the sphere is cut into cubic cells, and each cell
 /// has one sample at an uneven place, so that samples do not enter a flat bone by whole layers.
 /// Cells of at most half a voxel's edge put a sample into every voxel that lies in the burr; with
-/// wider ones (up to a voxel) a burr at rest misses some, and gets them as it moves.
+/// wider ones a burr misses some until it moves across.
 /// With every sample its mirror image through the centre is one too. All in the tool frame T
 /// (core/base/tool_state.h), all precomputed. Immutable: any thread.
 /// Source: Morris 2006, §3.2.3.4 to §3.2.3.7.

@@ -101,7 +101,8 @@ Contact Drill::touch(const BoneVolume& volume, const Eigen::Vector3d& tip_B,
   contact.first = kept_;
   const Eigen::Matrix3d turn = orientation_B.normalized().toRotationMatrix();
   kernel::Placement at{};
-  if (!(orientation_B.squaredNorm() > 0.0) ||
+  const double length = orientation_B.squaredNorm();
+  if (!(length > 0.0 && std::isfinite(length)) ||
       !place(volume.grid(), tip_B, burr_.radius(), turn, at)) {
     return contact;
   }

@@ -75,8 +75,8 @@ class Drill {
   /// The burr's samples that lie in bone.
   /// @param tip_B           the burr's centre in the bone's frame [m]
   /// @param orientation_B   from the tool frame to the bone's
-  /// @returns nothing in contact where a number is not finite, the orientation is zero, or the
-  /// burr is wider than 10,000 voxels.
+  /// @returns nothing in contact where a number is not finite, the orientation has no length, or
+  /// the burr is wider than 10,000 voxels.
   Contact touch(const BoneVolume& volume, const Eigen::Vector3d& tip_B,
                 const Eigen::Quaterniond& orientation_B) noexcept;
 

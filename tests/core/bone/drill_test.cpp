@@ -267,6 +267,7 @@ TEST(DrillTest, APoseThatIsNoneTouchesNothing) {
     EXPECT_FALSE(drill.touch(bone, Vector3d::Zero(), Quaterniond(1, 0, bad, 0)));
   }
   EXPECT_FALSE(drill.touch(bone, Vector3d::Zero(), Quaterniond(0, 0, 0, 0)));
+  EXPECT_FALSE(drill.touch(bone, Vector3d::Zero(), Quaterniond(1e200, 0, 0, 0)));
   // One that is only not of unit length is scaled.
   EXPECT_TRUE(drill.touch(bone, Vector3d::Zero(), Quaterniond(3, 0, 0, 0)));
 }
