@@ -27,6 +27,4 @@ find_package(Imath QUIET)
 if(OPENVDB_HEADERS AND TBB_FOUND AND Imath_FOUND)
   target_link_libraries(bench_bone PRIVATE openvdb TBB::tbb Imath::Imath)
   target_compile_definitions(bench_bone PRIVATE HAPTRIAL_OPENVDB)
-  set_source_files_properties(${CMAKE_SOURCE_DIR}/tests/benchmarks/bone_bench.cpp PROPERTIES
-    COMPILE_OPTIONS "-Wno-conversion;-Wno-shadow;-Wno-pedantic;-Wno-error")
 endif()
