@@ -33,6 +33,5 @@ LAYERS
   --at=-45,-152,-174 --zoom 1.5 --spare "${strokes[@]}" --burr=-37,-145,-176,-70,-132,-160,4
 "${draw[@]}" "$ear" "$out/bone-through.png" "${hidden[@]}" "${size[@]}" --from -1,0.3,0.1 \
   --at=-35,-149,-174 --zoom 3.5 --spare "${strokes[@]}"
-if [ -f "$jaw" ]; then
-  "${draw[@]}" "$jaw" "$out/bone-mandible-cut.png" "${size[@]}" --from -0.8,-1,0.3
-fi
+"${draw[@]}" "$jaw" "$out/bone-mandible-cut.png" "${size[@]}" --from -0.35,-1,0.45 \
+  --at=0,20,30 --zoom 1.3 --cut=-13,0,0,1,0,0,4

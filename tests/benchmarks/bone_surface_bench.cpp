@@ -76,6 +76,48 @@ void draw(const bone::BoneModel& model, geometry::Mesh mesh, const std::filesyst
   render::write_png(file, render::coarser(context.read(), 2));
 }
 
+/// A burr of 6 mm goes 12 mm along the surface in 60 steps.
+void time_updates(const char* name, const bone::BoneModel& model, const Eigen::Vector3d& begin) {
+  bone::BoneVolume volume(model);
+  bone::Surface surface;
+  surface.update(volume);
+  const std::size_t triangles = surface.triangle_count();
+  std::vector<double> times;
+  for (int step = 0; step < 60; ++step) {
+    const Eigen::Vector3d at = begin + 0.0002 * step * Eigen::Vector3d::UnitY();
+    experiments::carve(volume, experiments::Stroke{at, at, 0.003}, {});
+    const double start = seconds();
+    surface.update(volume);
+    times.push_back(seconds() - start);
+  }
+  const double start = seconds();
+  surface.update(volume);
+  const double idle = seconds() - start;
+  std::sort(times.begin() + 1, times.end());
+  fmt::print(
+      "{:10} {:9} triangles  update: median {:.3f} ms, worst {:.3f} ms after the first; "
+      "nothing changed {:.4f} ms\n",
+      name, triangles, 1e3 * times[30], 1e3 * times.back(), 1e3 * idle);
+}
+
+/// What lies within 15 mm of a point.
+bone::BoneModel part_of(bone::BoneModel model, const Eigen::Vector3d& middle) {
+  const geometry::VoxelGrid& grid = model.grid;
+  for (int k = 0; k < grid.size[2]; ++k) {
+    for (int j = 0; j < grid.size[1]; ++j) {
+      for (int i = 0; i < grid.size[0]; ++i) {
+        if ((grid.centre(i, j, k) - middle).norm() > 0.015) {
+          model.labels[grid.index(i, j, k)] = 0;
+          if (!model.density.empty()) {
+            model.density[grid.index(i, j, k)] = 0.0F;
+          }
+        }
+      }
+    }
+  }
+  return model;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -100,6 +142,13 @@ int main(int argc, char** argv) {
   const double time = seconds() - start;
   const geometry::Mesh ours = mesh_of(surface);
   print("cells", ours, time, voxels);
+  // From the vertex that is farthest to the right of the patient.
+  const auto side = std::min_element(ours.vertices.begin(), ours.vertices.end(),
+                                     [](const auto& a, const auto& b) { return a.x() < b.x(); });
+  const Eigen::Vector3d middle = *side + Eigen::Vector3d(0.001, 0.0, 0.0);
+  const Eigen::Vector3d begin = middle - Eigen::Vector3d(0.0, 0.006, 0.0);
+  time_updates("whole", model, begin);
+  time_updates("part", part_of(model, middle), begin);
   if (argc > 2) {
     const std::filesystem::path folder = argv[2];
     draw(model, theirs.mesh(), folder / "bone-surface-neighbours.png");
