@@ -219,13 +219,12 @@ double EarAnatomy::fossa_floor(const Point& p) const {
 double EarAnatomy::hull(const Point& p) const {
   const double uneven = 0.3 * noise(v_.noise + 7, p / 6.0);
   const double outer = outer_side(p);
-  const double squama =
-      std::max({outer, -outer - wall(p) - 0.8, 27.0 + 0.14 * (24.0 - p.y()) - p.z()});
-  const Point tip(17.0, 33.5, 6.5 - v_.mastoid_tip);
+  const double squama = std::max({outer, -outer - wall(p) - 0.8, 23.5 - p.z()});
+  const Point tip(14.5, 35.0, 8.0 - v_.mastoid_tip);
   const double mastoid =
-      std::min(smooth_union(round_cone(p, {14.5, 36.0, 24.0}, tip, 11.5, 4.6),
-                            round_cone(p, {16.0, 43.0, 25.0}, {15.0, 40.0, 14.0}, 10.5, 6.5), 3.0),
-               round_cone(p, {11.0, 50.0, 30.0}, {13.0, 46.0, 14.0}, 11.0, 8.0));
+      std::min(smooth_union(round_cone(p, {13.0, 36.0, 24.0}, tip, 12.0, 6.2),
+                            round_cone(p, {13.5, 43.0, 25.0}, {13.5, 41.0, 11.0}, 12.0, 7.0), 3.0),
+               round_cone(p, {11.0, 50.0, 30.0}, {12.5, 47.0, 11.0}, 11.0, 7.0));
   double bone = smooth_union(squama, std::max(mastoid, outer - 1.0), 2.0);
   const double petrous = round_cone(p, {20.0, 31.0, 24.5}, {52.0, 16.0, 26.0}, 12.5, 9.0);
   bone = smooth_union(bone, std::max(petrous, outer), 2.5);
@@ -249,10 +248,10 @@ double EarAnatomy::hull(const Point& p) const {
   bone = smooth_union(bone, round_cone(p, {4.4, 12.0, 26.0}, {2.2, 40.0, 31.0}, 1.7, 1.5), 2.0);
   bone = smooth_union(bone, round_cone(p, {6.2, 30.4, 20.4}, {5.4, 29.2, 21.0}, 1.2, 0.9), 1.0);
   const double low = fossa_floor(p) - p.z();
-  bone = smooth_union(
-      bone,
-      std::max({-low - 0.5, low - 4.0, ellipsoid(p, {13.0, 47.0, 8.0}, {19.0, 12.0, 9.0}), outer}),
-      2.5);
+  bone = smooth_union(bone,
+                      std::max({-low - 0.5, low - 4.0,
+                                ellipsoid(p, {16.0, 47.0, 8.0}, {16.0, 12.0, 9.0}), 13.0 - p.x()}),
+                      2.5);
   bone = std::max(bone, -round_cone(p, {23.0, 31.0, 1.0}, {21.5, 44.0, 6.0}, 2.6, 2.2));
   return bone + uneven;
 }
@@ -269,7 +268,7 @@ double EarAnatomy::ear_canal(const Point& p) const {
   const double tube =
       std::min(round_cone(p, kMeatus, {13.0, 24.6, 17.3}, v_.canal + 0.9, v_.canal - 0.3),
                round_cone(p, {13.0, 24.6, 17.3}, kDrum, v_.canal - 0.3, v_.canal));
-  return std::max({tube, (p - kDrum).dot(inward), kBony - p.x()});
+  return std::max(tube, (p - kDrum).dot(inward));
 }
 
 double EarAnatomy::middle_ear(const Point& p) const {
@@ -329,7 +328,9 @@ EarAnatomy::Material EarAnatomy::at(const Point& p) const {
     const bool lined = inside > -kDura && depth < kDura + 0.7;
     return lined ? Material{Anatomy::kSinusAndDura, 1.0} : Material{};
   }
-  if (ear_canal(p) < 0.0) return {Anatomy::kEarCanal, 1.0};
+  if (ear_canal(p) < 0.0) {  // its outer part is cartilage: open
+    return p.x() < kBony ? Material{} : Material{Anatomy::kEarCanal, 1.0};
+  }
   const Material condyle = jaw(p);
   if (condyle.label != Anatomy::kNothing) return condyle;
   constexpr double kPlate = 1.0;  // over dura and sinus, also where the shapes leave a gap

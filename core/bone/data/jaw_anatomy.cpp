@@ -78,7 +78,7 @@ JawAnatomy::JawAnatomy(const JawVariation& variation, double least) : v_(variati
                  4);
   const double g = v_.gonion;
   outline_ = {{58.0, 7.5},  {66.0 + g, 7.0}, {76.0 + g, 10.5}, {80.5 + g, 18.0}, {83.0, 34.0},
-              {88.0, 52.0}, {89.0, 63.0},    {82.0, 63.0},     {78.0, 53.0},     {71.0, 49.5},
+              {88.0, 52.0}, {89.0, 63.0},    {80.5, 61.0},     {75.5, 51.5},     {70.0, 49.0},
               {65.0, 54.0}, {59.0, 64.0},    {56.0, 62.0},     {55.0, 48.0},     {53.5, 38.0},
               {49.0, 30.0}, {53.0, 22.0}};
   const double up = v_.canal;
@@ -117,7 +117,7 @@ void JawAnatomy::add_teeth() {
     const Point base = arch_[bead].at + (middle - passed) * forward + (n > 4 ? 1.2 : 0.0) * across +
                        crest * Point::UnitZ();
     const double half = size.width / 2.0;
-    const double top = n > 2 ? half - 0.25 : 1.3;
+    const double top = n == 2 ? 1.5 : n < 2 ? 0.85 * half : half - 0.25;
     const Point crown = base + (size.crown - top) * Point::UnitZ();
     Tooth tooth;
     if (size.roots == 2) {
