@@ -141,7 +141,8 @@ Removal Drill::remove(BoneVolume& volume, const Contact& contact, double force, 
   const double spacing = volume.grid().spacing;
   const double voxel = spacing * spacing * spacing;
   const double rate = force * power * dt * burr_.sample_volume() / voxel;
-  if (!(force > 0.0 && power > 0.0 && dt > 0.0) || !std::isfinite(rate)) {
+  if (!(force > 0.0 && power > 0.0 && dt > 0.0) || !std::isfinite(rate) ||
+      contact.first + contact.kept > kept_) {  // of a tick that was forgotten
     return removal;
   }
   const auto rate_f = static_cast<float>(rate);

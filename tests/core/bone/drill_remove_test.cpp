@@ -168,6 +168,15 @@ TEST(DrillRemoveTest, WhatDoesNotFitTheListIsFeltButStays) {
   EXPECT_EQ(drill.remove(bone, last, 1.0, 1.0, 1.0).amount, 0.0);
 }
 
+TEST(DrillRemoveTest, AContactOfAForgottenTickRemovesNothing) {
+  BoneVolume bone(test::flat_bone(40, kSpacing));
+  Drill drill(default_burr(BurrKind::kCutting, 4e-3), {});
+  const Contact c = drill.touch(bone, Vector3d(0, 0, 1e-3), kLying);
+  ASSERT_TRUE(c);
+  drill.begin_tick();
+  EXPECT_EQ(drill.remove(bone, c, 1.0, 1.0, 1e-2).amount, 0.0);
+}
+
 TEST(DrillRemoveTest, NothingIsTakenWithoutForcePowerOrTime) {
   BoneVolume bone(test::flat_bone(40, kSpacing));
   Drill drill(default_burr(BurrKind::kCutting, 4e-3), {});
