@@ -146,12 +146,14 @@ void name_labels(const Import& job, std::vector<Structure> structures, BoneModel
 }
 
 void leave_out(const Import& job, BoneModel& model) {
+  std::array<bool, 256> used{};
+  for (const std::uint8_t label : model.labels) used[label] = true;
   for (const std::string& name : job.options.without) {
     const Structure wanted = structure_named(name, 0);
     std::string known;
     std::size_t label = 0;
     for (std::size_t i = 1; i < model.structures.size(); ++i) {
-      if (model.structures[i].name.empty()) continue;
+      if (model.structures[i].name.empty() || !used[i]) continue;
       known += (known.empty() ? "" : ", ") + model.structures[i].name;
       if (model.structures[i].name == wanted.name) label = i;
     }

@@ -7,8 +7,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/random.h"
 #include "core/bone/data/bone_summary.h"
 #include "core/bone/data/load_bone.h"
 #include "tests/core/bone/data/volume_bytes.h"
@@ -131,6 +133,30 @@ TEST_F(DicomTest, SpoiledFilesAreNamed) {
     std::filesystem::remove(folder_ / fmt::format("{:02}.dcm", 90 - slice));
   }
   EXPECT_THAT(refusal(), HasSubstr("has 1 slice; allowed: 2 or more"));
+}
+
+TEST_F(DicomTest, ASpoiledSliceGivesABoneOrASentence) {
+  write_series(Eigen::Matrix3d::Identity());
+  const std::string whole = test::read_bytes(folder_ / "80.dcm");
+  RandomStream random(3, "dicom");
+  int refused = 0;
+  constexpr int kTrials = 25;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::string bytes = whole;
+    for (std::uint64_t change = random.below(6); change < 6; ++change) {
+      const std::size_t at = random.below(std::min<std::size_t>(bytes.size(), 900));
+      if (random.below(3) == 0) {
+        bytes.erase(at, 1 + random.below(12));
+      } else {
+        bytes[at] = static_cast<char>(random.below(256));
+      }
+    }
+    test::write_bytes(folder_ / "80.dcm", bytes);
+    const std::string words = refusal();
+    EXPECT_EQ(std::ranges::count(words, '\n'), 0) << words;
+    refused += words != "none";
+  }
+  EXPECT_GT(refused, 0);
 }
 
 }  // namespace
