@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "analysis/drilling/drilling_meter.h"
 #include "analysis/drilling/in_order.h"
@@ -121,21 +122,27 @@ std::size_t place_of(std::string_view metric) {
   throw std::invalid_argument("no metric is called '" + std::string(metric) + "'");
 }
 
-std::vector<std::uint32_t> removed_voxels(const Procedure& procedure) {
+/// The voxels in ascending order, each once, and whether they were visible.
+void sort_removed(const Procedure& procedure, ProcedureSummary& summary) {
   const geometry::VoxelGrid& grid = procedure.bone->grid;
-  std::vector<std::uint32_t> voxels;
+  std::vector<std::pair<std::uint32_t, std::uint8_t>> voxels;
   voxels.reserve(procedure.removals.size());
-  for (const Removal& removal : procedure.removals) {
-    const auto& v = removal.voxel;
+  for (std::size_t n = 0; n < procedure.removals.size(); ++n) {
+    const bone::Voxel& v = procedure.removals[n].voxel;
     const bool inside = (v.array() >= 0).all() && v.x() < grid.size[0] && v.y() < grid.size[1] &&
                         v.z() < grid.size[2];
     if (inside) {
-      voxels.push_back(static_cast<std::uint32_t>(grid.index(v.x(), v.y(), v.z())));
+      voxels.emplace_back(static_cast<std::uint32_t>(grid.index(v.x(), v.y(), v.z())),
+                          summary.visibility.visible[n]);
     }
   }
   std::sort(voxels.begin(), voxels.end());
-  voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
-  return voxels;
+  for (const auto& [voxel, seen] : voxels) {
+    if (summary.removed.empty() || summary.removed.back() != voxel) {
+      summary.removed.push_back(voxel);
+      summary.removed_seen.push_back(seen);
+    }
+  }
 }
 
 /// Those asked for, or all that are vital, by name.
@@ -207,10 +214,10 @@ ProcedureSummary summarize(const Procedure& procedure, const MetricOptions& opti
   summary.simulated = procedure.simulated;
   summary.completed = procedure.completed;
   summary.bone = procedure.bone;
-  summary.removed = removed_voxels(procedure);
   DrillingMeter meter(procedure.bone, procedure.pose_WB, procedure.tools, procedure.rate, bones);
   visit_in_order(procedure, meter);
   summary.visibility = meter.visibility();
+  sort_removed(procedure, summary);
   summary.injuries = meter.injuries().injuries();
   summary.usage = meter.usage();
   summary.strokes = stroke_figures(procedure, options.strokes);

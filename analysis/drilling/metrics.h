@@ -50,6 +50,7 @@ struct ProcedureSummary {
   bool completed{true};
   std::shared_ptr<const bone::BoneModel> bone;
   std::vector<std::uint32_t> removed;  // voxels that a burr emptied, ascending index in the grid
+  std::vector<std::uint8_t> removed_seen;  // (removed) 1: visible when it was removed
   Visibility visibility;
   std::vector<Injury> injuries;
   StrokeFigures strokes;

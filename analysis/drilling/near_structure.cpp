@@ -13,7 +13,7 @@ std::optional<double> mean(const std::vector<NearRemoval>& removals, double with
   double sum = 0.0;
   std::size_t count = 0;
   for (const NearRemoval& removal : removals) {
-    if (static_cast<double>(removal.distance) <= within) {
+    if (removal.distance <= static_cast<float>(within)) {
       sum += static_cast<double>(removal.*value);
       ++count;
     }

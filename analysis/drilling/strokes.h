@@ -14,7 +14,7 @@ struct StrokeParameters {
   double turn_back{0.5e-3};  // a reversal is this far towards the beginning > 0 [m]
   double lift{0.05};         // shorter breaks of contact are none >= 0 [s]
   double shortest{1e-3};     // shorter paths are no strokes >= 0 [m]
-  double step{0.02};         // over which path and jerk are taken > 0 [s]
+  double step{0.01};         // over which path and jerk are taken > 0 [s]
 };
 
 struct Stroke {
