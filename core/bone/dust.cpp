@@ -121,13 +121,13 @@ bool Dust::Impl::passage(Ref ref, int step) {
   }
   const auto& s = kDustSteps[static_cast<std::size_t>(step)];
   const DustCell cell = grid.cell(ref);
-  const bool free = !bones.cross(centre(cell), centre(cell + DustCell(s[0], s[1], s[2])));
+  const bool free = bones.open(centre(cell), centre(cell + DustCell(s[0], s[1], s[2])));
   grid.at(ref).flags |= known(step) | (free ? open(step) : 0U);
   return free;
 }
 
 bool Dust::Impl::passage(const Look& from, const Look& to) const {
-  return !bones.cross(centre(from.cell), centre(to.cell));
+  return bones.open(centre(from.cell), centre(to.cell));
 }
 
 bool Dust::Impl::solid(Ref ref) {

@@ -24,6 +24,11 @@ class DustBones {
   /// Whether the straight line between two points of W passes through bone.
   bool cross(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
   bool hold(const Eigen::Vector3d& point) const { return cross(point, point); }
+  /// Whether dust may go from one to the other: a point on the face of a voxel may lie in bone that
+  /// no line to it crosses, and dust that went there would come back out for ever.
+  bool open(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+    return !cross(from, to) && !hold(to);
+  }
 
  private:
   struct Replica {

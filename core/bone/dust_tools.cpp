@@ -201,7 +201,7 @@ std::int64_t Dust::Impl::place_in_shell(double inner, double outer, std::int64_t
           continue;
         }
         const Look there = look(cell, grid.find(cell));
-        if (there.room > 0 && outside_tools(at) >= 0.0 && !bones.cross(pending.centre, at)) {
+        if (there.room > 0 && outside_tools(at) >= 0.0 && bones.open(pending.centre, at)) {
           free.emplace_back(cell, there.room);
         }
       }
