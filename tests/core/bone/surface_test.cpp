@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <set>
+#include <thread>
 
 #include "core/base/random.h"
 #include "tests/core/bone/surface_checks.h"
@@ -278,6 +280,32 @@ TEST(SurfaceTest, DensitiesAreThoseOfTheVoxelsAround) {
   for (const SurfaceVertex& vertex : surface.vertices()) {
     EXPECT_EQ(vertex.density, 128);
   }
+}
+
+TEST(SurfaceTest, FollowsWhileAnotherThreadDrills) {
+  const BoneModel model = rich_model(40, 5);
+  BoneVolume volume(model);
+  Surface surface;
+  surface.update(volume);
+  std::atomic<bool> done{false};
+  std::thread servo([&] {
+    RandomStream random(8, "servo");
+    for (int step = 0; step < 25; ++step) {
+      carve(volume, random);
+    }
+    done = true;
+  });
+  int updates = 0;
+  while (!done) {
+    surface.update(volume);
+    ++updates;
+  }
+  servo.join();
+  surface.update(volume);
+  Surface fresh;
+  fresh.update(volume);
+  EXPECT_TRUE(plain(surface) == plain(fresh)) << updates << " updates meanwhile";
+  EXPECT_EQ(open_edges(living(surface.triangles())), 0);
 }
 
 TEST(SurfaceTest, SlotsOfWhatIsGoneAreGivenBack) {
