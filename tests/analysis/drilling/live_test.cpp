@@ -46,7 +46,7 @@ TEST(LiveMetricsTest, EqualsTheAnalysisOfTheFile) {
   };
   LiveMetrics live(bone, setup.pose_WB(bone->grid), kTools, setup.scale, 1000.0);
   {
-    record::SessionWriter writer(file, test::example_info(), bones);
+    record::SessionWriter writer(file, test::drilling_info(), bones);
     RandomStream random(2, "live");
     std::vector<bool> gone;
     record::PassRow pass;

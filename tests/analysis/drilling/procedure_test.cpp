@@ -43,7 +43,7 @@ class ProcedureTest : public ::testing::Test {
     const auto file = folder_.path() / "P07.h5";
     const std::vector<record::BoneRecord> bones{test::block_record(0), test::block_record(1)};
     {
-      record::SessionWriter writer(file, test::example_info(), bones);
+      record::SessionWriter writer(file, test::drilling_info(), bones);
       RandomStream random(1, "procedures");
       std::uint64_t at = 0;
       for (std::size_t n = 0; n < passes.size(); ++n) {
@@ -133,7 +133,7 @@ TEST_F(ProcedureTest, ABoneThatIsNotThereIsRefused) {
 TEST_F(ProcedureTest, ASessionWithoutDrillingsIsRefused) {
   const auto file = folder_.path() / "other.h5";
   {
-    record::SessionWriter writer(file, test::example_info());
+    record::SessionWriter writer(file, test::drilling_info());
     writer.close();
   }
   const record::SessionReader reader(file);

@@ -5,9 +5,20 @@
 
 #include "core/base/random.h"
 #include "core/record/session_writer.h"
-#include "tests/core/record/session_fixture.h"
+#include "tests/support/temporary_folder.h"
 
 namespace haptrial::test {
+
+inline record::SessionInfo drilling_info() {
+  record::SessionInfo info;
+  info.subject = "P07";
+  info.definition = "# made by hand";
+  info.definition_name = "drilling.toml";
+  info.device = "virtual";
+  info.clock = "simulated";
+  info.start_utc = "2026-11-20T09:30:00Z";
+  return info;
+}
 
 /// The rows of one drilling as a session has them, in their order.
 struct DrillingRows {
