@@ -14,6 +14,7 @@
 #include "core/record/session_reader.h"
 #include "experiments/arguments.h"
 #include "experiments/definition.h"
+#include "experiments/drilling_study.h"
 #include "experiments/interrupt.h"
 #include "experiments/study_run.h"
 
@@ -78,6 +79,18 @@ analysis::StudyResult analyzed_curves(const AnalyzeOptions& options, int threads
                                   });
 }
 
+bool holds_drillings(const std::string& folder) {
+  return record::SessionReader(session_files(folder).front()).drills();
+}
+
+int analyze_procedures(const std::string& folder, int threads) {
+  for (const std::string& line : analyze_drillings(folder, session_files(folder), threads)) {
+    fmt::print("{}\n", line);
+  }
+  fmt::print("report: {}\n", (fs::absolute(folder) / "report.html").lexically_normal().string());
+  return 0;
+}
+
 /// A folder of sessions, or one of curves with all that it needs.
 void check_source(const AnalyzeOptions& options) {
   if (options.folder.empty() == options.curves.empty()) {
@@ -106,6 +119,9 @@ int analyze(const AnalyzeOptions& options) {
   const int threads = checked_jobs(options.jobs);
   check_source(options);
   const bool curves = !options.curves.empty();
+  if (!curves && holds_drillings(options.folder)) {
+    return analyze_procedures(options.folder, threads);
+  }
   const analysis::StudyResult study =
       curves ? analyzed_curves(options, threads) : analyzed_sessions(options.folder, threads);
   const fs::path out = curves ? options.out : options.folder;

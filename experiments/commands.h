@@ -195,6 +195,25 @@ struct BonePictureOptions {
 };
 int bone_picture(const BonePictureOptions& options);
 
+/// The subcommands of haptrial rate.
+struct RatePrepareOptions {
+  std::string folder;   // of drilling sessions
+  std::string out;      // new folder for the raters; default: beside the study's
+  bool sheets{false};   // pictures in place of films
+  bool halves{false};   // half points are allowed
+  int frames{12};       // on a sheet
+  double speed{8.0};    // of films, times as fast as it went
+  std::optional<int> jobs;
+};
+int rate_prepare(const RatePrepareOptions& options);
+
+struct RateImportOptions {
+  std::string folder;               // of the study
+  std::vector<std::string> sheets;  // one for each rater
+  bool overwrite{false};
+};
+int rate_import(const RateImportOptions& options);
+
 struct SpectrumOptions {
   std::string file;              // a recording
   std::string out;               // table of spectra (.toml); empty: only print

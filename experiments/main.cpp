@@ -49,6 +49,7 @@ class Commands {
     add_mesh();
     add_bone();
     add_spectrum();
+    add_rate();
   }
 
  private:
@@ -344,8 +345,10 @@ class Commands {
         ->delimiter(',');
     sub->add_option("--zoom", o.zoom, "Things become so many times as large (1)");
     sub->add_option("--without", o.without, "Structures to leave out, by name")->delimiter(',');
-    sub->add_option("--drill", o.drill, "Drilled away: X,Y,Z,[X2,Y2,Z2,]DIAMETER [mm], any number");
-    sub->add_option("--cut", o.cut, "Sawn away: X,Y,Z,NX,NY,NZ,WIDTH [mm], any number");
+    sub->add_option("--drill", o.drill, "Drilled away: X,Y,Z,[X2,Y2,Z2,]DIAMETER [mm], any number")
+        ->allow_extra_args(false);
+    sub->add_option("--cut", o.cut, "Sawn away: X,Y,Z,NX,NY,NZ,WIDTH [mm], any number")
+        ->allow_extra_args(false);
     sub->add_flag("--spare", o.spare, "Drill and saw bone only");
     sub->add_option("--burr", o.burr, "Show one: X,Y,Z,X2,Y2,Z2,DIAMETER [mm], from its centre on");
     sub->add_option("--stereo", o.stereo, "Two pictures, for eyes so far apart [mm]");
@@ -424,6 +427,29 @@ class Commands {
     sub->callback([this] { status_ = experiments::spectrum(spectrum_); });
   }
 
+  void add_rate() {
+    CLI::App* rate = subcommand(app_, "rate", "Let raters score drillings blindly",
+                                "haptrial rate prepare out/validity-001 --sheets");
+    rate->require_subcommand(1);
+    CLI::App* prepare = rate->add_subcommand(
+        "prepare", "Make films or sheets under random codes, a rating sheet and a sealed key");
+    prepare->add_option("DIR", rate_prepare_.folder, "Folder of drilling sessions (.h5)")
+        ->required();
+    prepare->add_option("--out", rate_prepare_.out, "New folder for the raters (DIR-rating)");
+    prepare->add_flag("--sheets", rate_prepare_.sheets, "Pictures in place of films");
+    prepare->add_option("--frames", rate_prepare_.frames, "Pictures on a sheet (12)");
+    prepare->add_option("--speed", rate_prepare_.speed, "Of films, times as fast as it went (8)");
+    prepare->add_flag("--half-points", rate_prepare_.halves, "Allow scores such as 3.5");
+    prepare->add_option("--jobs", rate_prepare_.jobs, "Threads; one per processor by default");
+    prepare->callback([this] { status_ = experiments::rate_prepare(rate_prepare_); });
+    CLI::App* import = rate->add_subcommand("import", "Read filled-in sheets into a study");
+    import->add_option("SHEET", rate_import_.sheets, "Filled-in sheets (.csv), one for each rater")
+        ->required();
+    import->add_option("--study", rate_import_.folder, "Folder that was prepared")->required();
+    import->add_flag("--overwrite", rate_import_.overwrite, "Replace ratings that are there");
+    import->callback([this] { status_ = experiments::rate_import(rate_import_); });
+  }
+
   CLI::App& app_;
   int& status_;
   experiments::DryRunOptions dry_run_;
@@ -438,6 +464,8 @@ class Commands {
   experiments::BoneOptions bone_;
   experiments::BonePictureOptions bone_picture_;
   experiments::SpectrumOptions spectrum_;
+  experiments::RatePrepareOptions rate_prepare_;
+  experiments::RateImportOptions rate_import_;
   std::string path_;
   std::string second_;
   std::string compare_out_;

@@ -1,0 +1,201 @@
+#include "experiments/drilling_study.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <optional>
+#include <system_error>
+
+#include "analysis/drilling/visibility_picture.h"
+#include "core/base/error.h"
+#include "core/record/session_reader.h"
+#include "core/render/scene.h"
+#include "experiments/bone_definition.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+namespace drilling = analysis::drilling;
+
+constexpr const char* kNovices = "novices";
+constexpr const char* kEverybody = "participants";
+
+std::optional<int> number_at_end(const std::string& subject) {
+  const auto letter = subject.find_last_not_of("0123456789");
+  const std::string digits = subject.substr(letter == std::string::npos ? 0 : letter + 1);
+  constexpr std::size_t kLongest = 5;
+  return digits.empty() || digits.size() > kLongest ? std::nullopt
+                                                    : std::optional<int>(std::stoi(digits));
+}
+
+// Pictures on their way into a report; gone at the end.
+class PictureFolder {
+ public:
+  explicit PictureFolder(const fs::path& study)
+      : path_(study / fmt::format(".pictures-{}", getpid())) {
+    std::error_code error;
+    if (!fs::create_directories(path_, error)) {
+      throw InputError(
+          fmt::format("{}: cannot be written ({}); allowed: a folder that may be "
+                      "written",
+                      study.string(), error.message()));
+    }
+  }
+  ~PictureFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  PictureFolder(const PictureFolder&) = delete;
+  PictureFolder& operator=(const PictureFolder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+drilling::StudyPicture visibility_picture(const drilling::ProcedureSummary& procedure,
+                                          const std::string& name, const std::string& which,
+                                          const fs::path& folder) {
+  const auto triangles =
+      drilling::visibility_scene(*procedure.bone, procedure.removed, procedure.removed_seen,
+                                 drilling::vital_labels(*procedure.bone));
+  render::SceneView view;
+  view.up = Eigen::Vector3d::UnitZ();
+  constexpr double kFromTheRight = -1.9;
+  view.azimuth = kFromTheRight;
+  view.width = 900;
+  view.height = 600;
+  const fs::path file = folder / (name + ".png");
+  render::write_png(file, render::draw_scene(triangles, view));
+  return {name, fmt::format("Removed voxels of the procedure with the {} share in sight", which),
+          fmt::format("Voxels that were visible when they were removed in green, those hidden by "
+                      "other bone in red; bone is not drawn, vital structures are ({:.0f} % were "
+                      "visible).",
+                      100.0 * procedure.value("visible_share").value_or(0.0)),
+          "Green and red voxels of a cavity among vital structures.", file};
+}
+
+// Figure 18: the two ends of the study.
+std::vector<drilling::StudyPicture> visibility_pictures(
+    const std::vector<drilling::ProcedureSummary>& procedures, const fs::path& folder) {
+  const drilling::ProcedureSummary *least = nullptr, *most = nullptr;
+  for (const auto& p : procedures) {
+    if (const auto share = p.value("visible_share")) {
+      least = least == nullptr || *share < *least->value("visible_share") ? &p : least;
+      most = most == nullptr || *share > *most->value("visible_share") ? &p : most;
+    }
+  }
+  std::vector<drilling::StudyPicture> pictures;
+  if (least != nullptr) {
+    pictures.push_back(visibility_picture(*least, "figure-18-undercut", "smallest", folder));
+    pictures.push_back(visibility_picture(*most, "figure-18-saucerized", "largest", folder));
+  }
+  return pictures;
+}
+
+}  // namespace
+
+std::vector<StudyGroup> study_groups(std::string_view definition, std::string_view file_name) {
+  toml::table root;
+  try {
+    root = toml::parse(definition);
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}: is not TOML: {}", file_name, error.description()));
+  }
+  std::vector<std::pair<toml::source_position, StudyGroup>> found;
+  if (const toml::table* groups = root["groups"].as_table()) {
+    for (const auto& [key, value] : *groups) {
+      const auto count = value.value<std::int64_t>();
+      constexpr std::int64_t kMost = 10000;
+      if (!value.is_integer() || *count < 1 || *count > kMost) {
+        throw InputError(
+            fmt::format("{}: groups.{} is not a number of participants; allowed: 1 "
+                        "to {}",
+                        file_name, key.str(), kMost));
+      }
+      found.push_back({key.source().begin,
+                       {std::string(key.str()), static_cast<int>(*count), key.str() != kNovices}});
+    }
+  }
+  std::sort(found.begin(), found.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<StudyGroup> result;
+  for (auto& [position, group] : found) {
+    result.push_back(std::move(group));
+  }
+  if (result.empty()) {
+    result.push_back({kEverybody, 0, false});
+  }
+  return result;
+}
+
+std::string group_of(const std::vector<StudyGroup>& groups, const std::string& subject) {
+  if (groups.size() == 1) {
+    return groups.front().name;
+  }
+  const std::optional<int> number = number_at_end(subject);
+  int last = 0;
+  for (const StudyGroup& group : groups) {
+    last += group.participants;
+    if (number && *number >= 1 && *number <= last) {
+      return group.name;
+    }
+  }
+  throw InputError(
+      fmt::format("participant {} belongs to no group; allowed: an identifier that "
+                  "ends in a number from 1 to {}",
+                  subject, last));
+}
+
+drilling::ProcedureSetup procedure_setup(const record::SessionReader& session,
+                                         const std::vector<StudyGroup>& groups) {
+  const record::SessionInfo& info = session.info();
+  const BoneDefinition definition = parse_bone_definition(info.definition, info.definition_name);
+  drilling::ProcedureSetup setup;
+  setup.group = group_of(groups, info.subject);
+  setup.scale = definition.drilling.scale;
+  setup.pose_WB = [placement = definition.placement](const geometry::VoxelGrid& grid) {
+    return pose_of(placement, grid);
+  };
+  for (const bone::ToolSpec& tool : definition.simulator.tools) {
+    const bool burr = tool.kind == bone::ToolKind::kBurr;
+    setup.tools.push_back({tool.name, burr ? 0.5 * tool.burr.diameter : 0.0});
+  }
+  return setup;
+}
+
+std::vector<std::string> analyze_drillings(const fs::path& folder,
+                                           const std::vector<fs::path>& files, int threads) {
+  const record::SessionInfo first = record::SessionReader(files.front()).info();
+  const std::vector<StudyGroup> groups = study_groups(first.definition, first.definition_name);
+  drilling::ValidityStudy study;
+  study.title = "Construct validity of simulated bone surgery";
+  study.files = files;
+  study.threads = threads;
+  study.ratings = folder / kRatingsFile;
+  study.setup = [&](const record::SessionReader& session) {
+    if (session.info().definition != first.definition) {
+      throw InputError(
+          fmt::format("{}: was recorded with another definition than {}; analyse each "
+                      "study in a folder of its own",
+                      session.path().string(), files.front().string()));
+    }
+    return procedure_setup(session, groups);
+  };
+  for (const StudyGroup& group : groups) {
+    study.plan.groups.push_back(group.name);
+    if (group.expert) {
+      study.plan.expert_groups.push_back(group.name);
+    }
+  }
+  drilling::ValidityResult result = drilling::analyze(study);
+  const PictureFolder pictures(folder);
+  result.pictures = visibility_pictures(result.procedures, pictures.path());
+  drilling::write_validity(result, folder);
+  return drilling::summary_lines(result);
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/drilling/validity_study.h"
+
+namespace haptrial::experiments {
+
+/// A group of a study, in the order in which participants belong to them.
+struct StudyGroup {
+  std::string name;
+  int participants{0};
+  bool expert{false};  // every group but one that is called novices
+
+  bool operator==(const StudyGroup&) const = default;
+};
+
+/// The [groups] of a definition's text, in its order; one group of everybody where it has none.
+/// @throws InputError for a number of participants that is none.
+std::vector<StudyGroup> study_groups(std::string_view definition, std::string_view file_name);
+
+/// The group of a participant from the number at the end of the identifier: participants 1 to n
+/// belong to the first group of n, those that follow to the next.
+/// @throws InputError for a number beyond the last group, or none where there are several groups.
+std::string group_of(const std::vector<StudyGroup>& groups, const std::string& subject);
+
+/// What metrics need of a session's definition.
+analysis::drilling::ProcedureSetup procedure_setup(const record::SessionReader& session,
+                                                   const std::vector<StudyGroup>& groups);
+
+/// The name of the ratings within a study's folder.
+inline constexpr const char* kRatingsFile = "ratings.csv";
+
+/// Analyses a folder of drilling sessions and writes the report into it.
+/// @returns lines for the terminal
+std::vector<std::string> analyze_drillings(const std::filesystem::path& folder,
+                                           const std::vector<std::filesystem::path>& files,
+                                           int threads);
+
+}  // namespace haptrial::experiments
