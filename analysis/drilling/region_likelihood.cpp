@@ -5,6 +5,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "core/base/random.h"
+
 namespace haptrial::analysis::drilling {
 namespace {
 
@@ -64,9 +66,45 @@ class Regions {
       places_.push_back(places_of(voxels, region.voxels));
       add(region);
     }
+    fill_groups();
+  }
+
+  /// Who is an expert, in the order of participants' names.
+  std::vector<bool> labels() const {
+    std::vector<bool> experts;
     for (const auto& [name, person] : people_) {
-      (person.expert ? experts_ : novices_).add(person);
+      experts.push_back(person.expert);
     }
+    return experts;
+  }
+  void relabel(const std::vector<bool>& experts) {
+    std::size_t at = 0;
+    for (auto& [name, person] : people_) {
+      person.expert = experts[at++];
+    }
+    fill_groups();
+  }
+
+  /// Mean over participants of their mean scores, experts minus novices.
+  std::optional<double> gap(std::span<const RemovedRegion> regions,
+                            const std::vector<std::optional<double>>& scores) const {
+    std::map<std::string, double> sums;
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+      if (!scores[r]) {
+        return std::nullopt;
+      }
+      sums[regions[r].participant] += *scores[r];
+    }
+    double means[2] = {0.0, 0.0};
+    int counts[2] = {0, 0};
+    for (const auto& [name, person] : people_) {
+      means[person.expert] += sums[name] / person.procedures;
+      ++counts[person.expert];
+    }
+    if (counts[0] == 0 || counts[1] == 0) {
+      return std::nullopt;
+    }
+    return means[1] / counts[1] - means[0] / counts[0];
   }
 
   std::vector<std::optional<double>> score(std::span<const RemovedRegion> regions,
@@ -116,6 +154,16 @@ class Regions {
     ++person.procedures;
     for (const std::uint32_t place : places_.back()) {
       ++person.counts[place];
+    }
+  }
+
+  void fill_groups() {
+    for (Group* group : {&experts_, &novices_}) {
+      group->procedures = 0;
+      std::fill(group->counts.begin(), group->counts.end(), std::uint16_t{0});
+    }
+    for (const auto& [name, person] : people_) {
+      group(person.expert).add(person);
     }
   }
 
@@ -216,6 +264,37 @@ std::vector<RegionScores> region_scores(std::span<const RemovedRegion> regions,
   fill(kLeaveSubjectOut, kRemoved, &RegionScores::removed_leave_subject_out);
   fill(kResubstitution, kRemoved, &RegionScores::removed_resubstitution);
   return scores;
+}
+
+std::optional<RegionLabelTest> region_label_test(std::span<const RemovedRegion> regions,
+                                                 std::uint64_t seed, int rounds, RegionTerms terms,
+                                                 const RegionParameters& parameters) {
+  if (rounds < 1) {
+    throw std::invalid_argument("region_label_test: at least one round is needed");
+  }
+  Regions all(regions, parameters.smoothing);
+  const auto gap = [&] {
+    return all.gap(regions, all.score(regions, RegionTraining::kLeavePairOut, terms));
+  };
+  const std::optional<double> found = gap();
+  if (!found) {
+    return std::nullopt;
+  }
+  RandomStream random(seed, "labels of participants");
+  std::vector<bool> labels = all.labels();
+  int as_large = 0;
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t left = labels.size(); left > 1; --left) {
+      const auto other = static_cast<std::size_t>(random.below(left));
+      const bool held = labels[left - 1];
+      labels[left - 1] = labels[other];
+      labels[other] = held;
+    }
+    all.relabel(labels);
+    const std::optional<double> dealt = gap();
+    as_large += dealt && *dealt >= *found - 1e-9 * std::abs(*found) ? 1 : 0;
+  }
+  return RegionLabelTest{*found, (1.0 + as_large) / (1.0 + rounds), rounds};
 }
 
 }  // namespace haptrial::analysis::drilling

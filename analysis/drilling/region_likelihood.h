@@ -63,4 +63,21 @@ struct RegionScores {
 std::vector<RegionScores> region_scores(std::span<const RemovedRegion> regions,
                                         const RegionParameters& parameters = {});
 
+/// Whether experts have higher scores than novices, by what the labels are worth: scores share
+/// their training and are not independent, so a t-test of them is not exact; this is, because all
+/// is done again with the labels of participants dealt out anew.
+struct RegionLabelTest {
+  double gap{0.0};  // mean over experts of their mean score, minus that over novices
+  double p{1.0};    // (1 + rounds with a gap at least as large) / (1 + rounds), one-tailed
+  int rounds{0};
+};
+
+/// With kLeavePairOut. Nothing where a score is not defined.
+/// @param rounds  >= 1; the seed decides on the dealing
+/// @throws std::invalid_argument as region_log_ratios() does.
+std::optional<RegionLabelTest> region_label_test(std::span<const RemovedRegion> regions,
+                                                 std::uint64_t seed, int rounds = 199,
+                                                 RegionTerms terms = RegionTerms::kAll,
+                                                 const RegionParameters& parameters = {});
+
 }  // namespace haptrial::analysis::drilling

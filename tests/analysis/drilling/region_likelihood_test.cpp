@@ -156,6 +156,24 @@ TEST(RegionLikelihoodTest, ARealDifferenceIsFound) {
   EXPECT_GT(gap(study, kLeaveSubjectOut), 50.0);
 }
 
+TEST(RegionLikelihoodTest, DealingOutLabelsKeepsItsLevel) {
+  RandomStream random(7, "labels");
+  int below = 0;
+  for (std::uint64_t n = 0; n < 200; ++n) {
+    const Study study(4, 5, 60, random, [](bool, std::uint32_t v) { return v < 30 ? 0.7 : 0.1; });
+    const auto test = region_label_test(study.regions, n, 39);
+    ASSERT_TRUE(test);
+    EXPECT_NEAR(test->gap, gap(study, kLeavePairOut), 1e-9);
+    below += test->p <= 0.05 ? 1 : 0;
+  }
+  // 10 of 200 are expected; 21 or more come in one of a thousand.
+  EXPECT_GE(below, 2);
+  EXPECT_LE(below, 20);
+  const Study real(4, 5, 60, random,
+                   [](bool expert, std::uint32_t v) { return expert == (v < 30) ? 0.7 : 0.3; });
+  EXPECT_LE(region_label_test(real.regions, 1)->p, 0.02) << "one of 126 ways to deal them";
+}
+
 TEST(RegionLikelihoodTest, AVoxelThatNobodyRemovedSaysNothing) {
   const Voxels a{1}, b{2}, c{3}, d{4}, e{5};
   const std::vector<RemovedRegion> regions{
