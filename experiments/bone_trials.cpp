@@ -131,7 +131,7 @@ void BoneTrials::close_pass(SessionRecord& record, std::int32_t row) {
   record::ProcedureRow procedure;
   procedure.pass = row;
   procedure.bone = static_cast<std::int32_t>(bone_);
-  procedure.pieces = simulator.world().pieces();
+  procedure.pieces = simulator.pieces();
   procedure.emptied = simulator.emptied_so_far();
   procedure.before = simulator.amount_at_start();
   procedure.left = simulator.amount_left();

@@ -31,8 +31,8 @@ int dry_run(const DryRunOptions& options) {
   const Experiment experiment = load_experiment(options.definition);
   const Setup& setup = experiment.setup();
   DryRun dry;
-  dry.participants = checked_number(
-      "--subjects", options.subjects.value_or(setup.design.participants), 1, 10000);
+  dry.participants =
+      checked_number("--subjects", options.subjects.value_or(setup.design.participants), 1, 10000);
   dry.seed = checked_seed(options.seed);
   dry.jobs = checked_jobs(options.jobs);
   dry.frames_per_pass = checked_number("--frames", options.frames, 0, 1000);

@@ -163,24 +163,22 @@ void print_verdict(const ReplayOptions& options, const ReplayVerdict& verdict) {
     throw RunError(fmt::format("{}: trial {} is not the same when it is simulated again: {}",
                                options.file, verdict.trial, verdict.difference));
   }
-  fmt::print("trial {}: the same bone, {} ticks in {} passes, {} voxels emptied, checksum {:016x}{}\n",
-             verdict.trial, verdict.ticks, verdict.passes, verdict.emptied, verdict.checksum,
-             verdict.whole ? "" : "; a pass did not come to its end and has no checksum");
+  fmt::print(
+      "trial {}: the same bone, {} ticks in {} passes, {} voxels emptied, checksum {:016x}{}\n",
+      verdict.trial, verdict.ticks, verdict.passes, verdict.emptied, verdict.checksum,
+      verdict.whole ? "" : "; a pass did not come to its end and has no checksum");
 }
 
 int replay_drilling(const ReplayOptions& options, int fps) {
   const BoneReplay replay(options.file);
   DrillingOutputs outputs(options, replay, fps);
-  std::vector<int> trials = replay.trials();
-  if (options.trial != 0) {
-    trials = {options.trial};
-  } else if (outputs.any() && trials.size() > 1) {
-    trials.resize(1);
-  }
-  if (trials.empty()) {
+  const std::vector<int> all = replay.trials();
+  if (all.empty()) {
     throw InputError(fmt::format("{}: holds no trials", options.file));
   }
-  for (const int trial : trials) {
+  const int first = options.trial != 0 ? options.trial : all.front();
+  const int last = options.trial != 0 || outputs.any() ? first : all.back();
+  for (int trial = first; trial <= last; ++trial) {
     Progress progress("replay", static_cast<double>(replay.ticks(trial)));
     BoneReplay::Watch watch;
     if (outputs.any()) {
@@ -192,8 +190,7 @@ int replay_drilling(const ReplayOptions& options, int fps) {
         outputs.watch(tick, seen, stage);
         constexpr std::uint64_t kBetween = 100;  // ticks
         if (tick % kBetween == 0) {
-          progress.update(static_cast<double>(tick), fmt::format("trial {}", trial),
-                          replay.rate());
+          progress.update(static_cast<double>(tick), fmt::format("trial {}", trial), replay.rate());
         }
       };
     }

@@ -19,8 +19,8 @@ void print_bones(const BoneDefinition& d) {
     const auto filled = std::count_if(bone->labels.begin(), bone->labels.end(),
                                       [](std::uint8_t label) { return label != 0; });
     fmt::print("bone: {}, {} x {} x {} voxels of {:.3g} mm, {} of them filled\n", bone->name,
-               bone->grid.size[0], bone->grid.size[1], bone->grid.size[2],
-               1e3 * bone->grid.spacing, filled);
+               bone->grid.size[0], bone->grid.size[1], bone->grid.size[2], 1e3 * bone->grid.spacing,
+               filled);
   }
   std::vector<std::string> tools;
   for (const bone::ToolSpec& tool : d.simulator.tools) {

@@ -135,7 +135,11 @@ std::vector<stimulus::Observer*> Session::observers() {
 SessionSummary Session::run() {
   const std::vector<PlannedTrial> plan = trials_->plan();
   try {
-    record_.open(fmt::format("{} trials planned", plan.size()));
+    const record::Phase last = trials_->phases().back();
+    const auto under_way = std::find_if(
+        plan.begin(), plan.end(), [&](const auto& trial) { return !record_.holds(trial, last); });
+    const bool drills = last == record::Phase::kDrilling && under_way != plan.end();
+    record_.open(fmt::format("{} trials planned", plan.size()), drills ? &*under_way : nullptr);
     if (real_) {
       servo_ = std::thread([this] { loop_.run(task_); });
     }
@@ -337,8 +341,7 @@ void Session::recover() {
   if (real_) {
     wait(d_.recovery, "recovering");
   } else {
-    const std::uint64_t end =
-        loop_.ticks() + static_cast<std::uint64_t>(d_.recovery * d_.rate);
+    const std::uint64_t end = loop_.ticks() + static_cast<std::uint64_t>(d_.recovery * d_.rate);
     task_.leave_before(end);
     while (loop_.ticks() < end) {
       loop_.run(task_);

@@ -29,11 +29,16 @@ protocols::Origin SessionRecord::origin() const {
   return {before_.next_sequence, before_.last_time_ns + 1};
 }
 
-void SessionRecord::open(const std::string& text) {
+void SessionRecord::open(const std::string& text, const protocols::PlannedTrial* drilled) {
   for (const record::OpenPass& open : before_.open_passes) {
     row_ = {};
     row_.condition = "unknown";
+    if (drilled != nullptr) {
+      fill_row(*drilled, record::Phase::kDrilling, attempts(*drilled) + 1);
+      row_.repetition = bones_used(*drilled) + 1;
+    }
     add_pass(record::PassStatus::kAborted, open.first_sample, open.last_sample);
+    before_.passes.push_back(row_);
   }
   event(before_.rows > 0 ? "session_resumed" : "session_start", text);
 }
@@ -79,6 +84,12 @@ void SessionRecord::keep_stimulus(const PlannedTrial& trial, const stimulus::Sti
 
 std::int32_t SessionRecord::begin_pass(const PlannedTrial& trial, record::Phase phase,
                                        int attempt) {
+  fill_row(trial, phase, attempt);
+  row_open_ = true;
+  return passes_++;
+}
+
+void SessionRecord::fill_row(const PlannedTrial& trial, record::Phase phase, int attempt) {
   row_ = {};
   row_.trial = trial.trial;
   row_.condition = trial.condition;
@@ -88,8 +99,6 @@ std::int32_t SessionRecord::begin_pass(const PlannedTrial& trial, record::Phase 
   row_.stimulus_seed = trial.stimulus_seed;
   row_.practice = trial.practice;
   row_.attempt = attempt;
-  row_open_ = true;
-  return passes_++;
 }
 
 void SessionRecord::end_pass(const protocols::PassResult& result) {
@@ -116,7 +125,6 @@ std::size_t SessionRecord::collect(const Follower& follow) {
     append(samples);
     follow(samples);
   };
-  append_drilling(real_);
   const std::size_t count = real_ ? log_.flush(take) : log_.drain(take);
   constexpr std::chrono::milliseconds kFlushEvery{500};
   const auto now = std::chrono::steady_clock::now();
@@ -128,20 +136,19 @@ std::size_t SessionRecord::collect(const Follower& follow) {
 }
 
 void SessionRecord::append(std::span<const record::Sample> samples) {
+  append_drilling();  // at least what these ticks did: a tick's own record is pushed after it
   writer_.append(samples);
   if (outlet_) {
     outlet_->push(samples);
   }
 }
 
-/// Before the samples of the same ticks. @param all  also the ones of blocks that are not full
-void SessionRecord::append_drilling(bool all) {
+void SessionRecord::append_drilling() {
   if (!drilling_) {
     return;
   }
-  const auto append_from = [&](auto& log) {
-    const auto give = [this](auto rows) { writer_.add(rows); };
-    all ? log.flush(give) : log.drain(give);
+  const auto append_from = [this](auto& log) {
+    log.flush([this](auto rows) { writer_.add(rows); });
   };
   append_from(drilling_->tool);
   append_from(drilling_->logs.removals);
@@ -150,7 +157,6 @@ void SessionRecord::append_drilling(bool all) {
 }
 
 void SessionRecord::append_rest() {
-  append_drilling(true);
   log_.flush([this](std::span<const record::Sample> samples) { append(samples); });
 }
 

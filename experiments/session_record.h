@@ -48,7 +48,8 @@ class SessionRecord {
   const std::string& notice() const { return notice_; }
 
   /// The first event, after rows for the passes during which an earlier run ended.
-  void open(const std::string& text);
+  /// @param drilled  the trial that was under way, of a session that drills; else null
+  void open(const std::string& text, const protocols::PlannedTrial* drilled);
   /// Whether a resumed file holds the trial's last pass already.
   bool holds(const protocols::PlannedTrial& trial, record::Phase last) const;
   /// How many bones a trial of drilling has had in a resumed file.
@@ -81,7 +82,8 @@ class SessionRecord {
   std::int64_t now_ns() const;
   void append(std::span<const record::Sample> samples);
   void append_rest();
-  void append_drilling(bool all);
+  void append_drilling();
+  void fill_row(const protocols::PlannedTrial& trial, record::Phase phase, int attempt);
   void add_pass(record::PassStatus status, std::uint64_t first_sample, std::uint64_t last_sample);
   void write_timing();
 

@@ -339,6 +339,14 @@ void Simulator::place_for_dust(const SimulatorInput& input) noexcept {
   }
 }
 
+int Simulator::pieces() const noexcept {
+  int born = 1;
+  for (int piece = 1; piece < world_.pieces(); ++piece) {
+    born += world_.is_born(piece) ? 1 : 0;
+  }
+  return born;
+}
+
 double Simulator::amount_left() const noexcept {
   double amount = 0.0;
   for (int piece = 0; piece < world_.pieces(); ++piece) {

@@ -124,6 +124,8 @@ class Simulator {
   BoneWorld& world() noexcept { return world_; }
   const BoneWorld& world() const noexcept { return world_; }
 
+  /// Pieces that can be moved by themselves, the bone itself among them.
+  int pieces() const noexcept;
   std::uint64_t emptied_so_far() const noexcept { return emptied_count_; }
   double amount_at_start() const noexcept { return start_; }   // of bone [voxels]
   double removed_so_far() const noexcept { return removed_; }  // by burrs and as crumbs [voxels]

@@ -154,15 +154,19 @@ void SessionWriter::Impl::write_samples() {
   h5::flush(file);
 }
 
+void SessionWriter::Impl::write_drilling() {
+  for (std::size_t i = 1; drills && i < kDrillingTables; ++i) {  // but /tool
+    drilling[i]->write_unfinished();
+  }
+}
+
 void SessionWriter::Impl::write(bool all) {
   if (all || trials->has_unwritten()) write_samples();
   if (all) frames->write_unfinished();
   for (auto* table : {&trials, &events, &stimuli, &timing, &attributes}) {
     (*table)->write_unfinished();
   }
-  for (std::size_t i = 1; drills && i < kDrillingTables; ++i) {  // but /tool
-    drilling[i]->write_unfinished();
-  }
+  write_drilling();
   h5::flush(file);
 }
 
@@ -230,6 +234,8 @@ void SessionWriter::append(std::span<const Sample> rows) {
   impl_->guarded([&] {
     TableWriter& table = *impl_->samples;
     bool finished_chunk = false;
+    // What the ticks did is there before they are, whenever the process is killed.
+    if (impl_->drills && impl_->live && rows.size() >= table.room()) impl_->write_drilling();
     while (!rows.empty()) {
       const std::size_t count = std::min(table.room(), rows.size());
       put_samples(table.planes(), table.used(), rows.first(count));

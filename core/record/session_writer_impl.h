@@ -58,6 +58,7 @@ struct SessionWriter::Impl {
   /// Chunks of samples that are not full stay out, unless `all` or a pass refers to them.
   void write(bool all);
   void write_samples();
+  void write_drilling();
   TableWriter::EnsureSpace ensure_space();
   void divert_file() noexcept;
   bool closable() noexcept;

@@ -15,7 +15,7 @@ constexpr double kStiffness = 300.0;  // of the arm about where it wants to be [
 constexpr double kDamping = 25.0;     // [N·s/m]
 constexpr double kStrongest = 5.0;    // of the arm across the press [N]
 constexpr double kTravel = 0.06;      // speed between strokes [m/s]
-constexpr double kDescent = 0.01;     // towards the bone [m/s]
+constexpr double kDescent = 0.03;     // towards the bone [m/s]
 constexpr double kNear = 0.002;       // is there [m]
 constexpr double kPatience = 4.0;     // without bone below, then on to the next line [s]
 constexpr double kPressing = 0.05;    // of a button, and its rest [s]
@@ -220,7 +220,7 @@ Eigen::Vector3d DrillingHand::push(const stimulus::DrillingView& seen, const Eig
       break;
     }
     case Doing::kDescend:
-      inward = noise_.press(0.0) + kDamping * (kDescent - fall) * (seen.contact ? 0.0 : 2.0);
+      inward = noise_.press(0.0) + kDamping * (kDescent - fall) * (seen.contact ? 0.0 : 3.0);
       break;
     case Doing::kSuck:
       goal = p.start;

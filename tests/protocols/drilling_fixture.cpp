@@ -90,8 +90,8 @@ std::vector<device::DeviceReading> through_the_bridge(int ticks) {
   std::vector<device::DeviceReading> readings;
   for (int i = 0; i < ticks; ++i) {
     const double share = static_cast<double>(i) / ticks;
-    // Down from above the bridge, swaying so that the groove is wide enough.
-    const double y = 0.004 - 0.006 * share;
+    // Down from above the blocks, which the burr touches first, through the bridge between them.
+    const double y = 0.005 - 0.008 * share;
     const double sway = 0.0004 * std::sin(2.0 * std::numbers::pi * 0.003 * i);
     readings.push_back(at({sway, y, 0.5 * sway}, 1u));
   }

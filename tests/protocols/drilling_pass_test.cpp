@@ -61,7 +61,7 @@ TEST(DrillingPassTest, EveryEmptiedVoxelIsLoggedOnceWithItsTick) {
   std::uint64_t tick = 0;
   shop.new_pass(1000);
   std::vector<double> forces;
-  for (const auto& reading : test::through_the_bridge(3000)) {
+  for (const auto& reading : test::through_the_bridge(6000)) {
     forces.push_back(shop.pass->tick(reading, kDt).tool.contact.norm());
     ++tick;
   }
@@ -71,7 +71,7 @@ TEST(DrillingPassTest, EveryEmptiedVoxelIsLoggedOnceWithItsTick) {
     EXPECT_TRUE(voxels.insert({row.voxel[0], row.voxel[1], row.voxel[2]}).second);
     EXPECT_EQ(row.label, 1);
     ASSERT_GE(row.sequence, 1000u);
-    ASSERT_LT(row.sequence, 4000u);
+    ASSERT_LT(row.sequence, 7000u);
     EXPECT_EQ(row.force, forces[row.sequence - 1000]);
   }
   ASSERT_GT(rows.size(), 20u);
@@ -127,7 +127,7 @@ void expect_the_same_again(Workshop& first, const std::vector<device::DeviceRead
   EXPECT_EQ(removal, removals.size());
   EXPECT_EQ(split, splits.size());
   EXPECT_EQ(again.checksum(), first.simulator->checksum());
-  EXPECT_EQ(again.world().pieces(), first.simulator->world().pieces());
+  EXPECT_EQ(again.pieces(), first.simulator->pieces());
 }
 
 TEST(DrillingPassTest, ACutBridgeMakesTwoPiecesThatAReplayMakesToo) {
@@ -201,13 +201,14 @@ TEST(DrillingPassTest, TheCameraMovesWithTheHandWhileItsButtonIsHeldAndNothingIs
   EXPECT_EQ(out.tool.mode, 1);
   const Vector3d motion(0.01, -0.02, 0.0);
   const Vector3d expected = start.axes() * motion;
-  EXPECT_LT((shop.simulator->camera().eye - start.eye - expected).norm(), 1e-12);
-  EXPECT_LT((shop.simulator->camera().target - start.target - expected).norm(), 1e-12);
+  constexpr double kGrid = 0x1p-19;  // two positions, each rounded
+  EXPECT_LT((shop.simulator->camera().eye - start.eye - expected).norm(), kGrid);
+  EXPECT_LT((shop.simulator->camera().target - start.target - expected).norm(), kGrid);
   // Back from the camera inside the bone: nothing before the burr has been free.
   EXPECT_EQ(shop.pass->tick(at({0.005, 0.0, 0.0}, 1u), kDt).force, Vector3d::Zero());
   EXPECT_EQ(rows_of(shop.logs.removals).size(), 0u);
   shop.pass->tick(at(away), kDt);
-  EXPECT_GT(shop.pass->tick(at({0.005, 0.0035, 0.0}, 1u), kDt).force.norm(), 0.0);
+  EXPECT_GT(shop.pass->tick(at({0.005, 0.0042, 0.0}, 1u), kDt).force.norm(), 0.0);
   const auto camera = rows_of(shop.logs.camera);
   ASSERT_GE(camera.size(), 2u);
   EXPECT_EQ(camera.front().eye, start.eye);
@@ -224,7 +225,7 @@ TEST(DrillingPassTest, TurningKeepsTheDistanceAndTheTarget) {
   EXPECT_NEAR((now.eye - now.target).norm(), (start.eye - start.target).norm(), 1e-12);
   // The default turns 12 rad for a metre, about the axis that is up.
   const auto flat = [](const Vector3d& v) { return Vector3d(v.x(), 0.0, v.z()).normalized(); };
-  EXPECT_NEAR(std::acos(flat(now.eye).dot(flat(start.eye))), 0.12, 1e-9);
+  EXPECT_NEAR(std::acos(flat(now.eye).dot(flat(start.eye))), 0.12, 12.0 * 0x1p-19);
 }
 
 TEST(DrillingPassTest, EndsByButtonOrWhenTheTimeIsOver) {

@@ -1,0 +1,93 @@
+// A drilling on the real clock, with servo, recorder, search and dust on threads of their own; a
+// kill in the middle of it, and how it goes on.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+
+#include "core/record/integrity.h"
+#include "core/record/session_reader.h"
+#include "experiments/bone_replay.h"
+#include "tests/experiments/live_command.h"
+#include "tests/experiments/small_drilling.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+std::string run_arguments(const test::TemporaryFolder& folder, const std::string& more = "") {
+  return "run '" + (folder / "study.toml").string() + "' --subject S01 --out '" +
+         (folder / "out").string() + "' " + more;
+}
+
+void expect_the_same_bones(const fs::path& file, int passes) {
+  const experiments::BoneReplay replay(file);
+  const experiments::ReplayVerdict verdict = replay.run(1);
+  EXPECT_EQ(verdict.difference, "");
+  EXPECT_EQ(verdict.passes, passes);
+  EXPECT_GT(verdict.emptied, 10u);
+}
+
+TEST(LiveBoneTest, NothingIsLostAndAReplayGivesTheSameBone) {
+  const test::TemporaryFolder folder;
+  test::write_small_drilling(folder.path(), 8.0);
+  test::LiveCommand session(run_arguments(folder));
+  const test::CommandResult ended = session.wait(60.0);
+  ASSERT_EQ(ended.status, 0) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr(" 0 records lost"));
+  const fs::path file = folder / "out" / "S01.h5";
+  const record::SessionReader reader(file);
+  const record::Integrity integrity = record::check_session(reader);
+  EXPECT_TRUE(integrity.ok) << integrity.problems.front();
+  const auto procedures = reader.rows<record::ProcedureRow>();
+  ASSERT_EQ(procedures.size(), 1u);
+  const record::ProcedureRow& p = procedures.front();
+  EXPECT_NEAR(p.left + p.cut + p.dust + p.suctioned + p.fallen, p.before, 0.05);
+  expect_the_same_bones(file, 1);
+}
+
+TEST(LiveBoneTest, AfterAKillTheSessionGoesOnWithANewBone) {
+  const test::TemporaryFolder folder;
+  test::write_small_drilling(folder.path(), 8.0);
+  const fs::path partial = folder / "out" / "S01.h5.partial";
+  std::uint64_t removed = 0;
+  {
+    test::LiveCommand session(run_arguments(folder));
+    ASSERT_TRUE(test::eventually(
+        [&] {
+          std::error_code ignored;
+          if (!fs::exists(partial, ignored)) {
+            return false;
+          }
+          removed = record::SessionReader(partial).count<record::RemovalRow>();
+          return removed > 10;
+        },
+        60.0))
+        << session.errors();
+    session.signal(SIGKILL);
+    session.wait();
+  }
+  EXPECT_TRUE(record::SessionReader(partial).drills());
+  test::LiveCommand session(run_arguments(folder, "--resume"));
+  const test::CommandResult ended = session.wait(60.0);
+  ASSERT_EQ(ended.status, 0) << ended.errors;
+  const fs::path file = folder / "out" / "S01.h5";
+  const record::SessionReader reader(file);
+  const record::Integrity integrity = record::check_session(reader);
+  EXPECT_TRUE(integrity.ok) << integrity.problems.front();
+  EXPECT_GE(reader.count<record::RemovalRow>(), removed);
+  const auto passes = reader.passes();
+  ASSERT_EQ(passes.size(), 2u);
+  EXPECT_EQ(passes[0].status, record::PassStatus::kAborted);
+  EXPECT_EQ(passes[1].status, record::PassStatus::kCompleted);
+  EXPECT_EQ(passes[1].repetition, passes[0].repetition + 1) << "another bone";
+  expect_the_same_bones(file, 2);
+}
+
+}  // namespace
+}  // namespace haptrial
