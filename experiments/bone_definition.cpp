@@ -6,6 +6,7 @@
 #include "core/base/table.h"
 #include "core/bone/data/load_bone.h"
 #include "core/bone/data/temporal_bone.h"
+#include "experiments/drilling_study.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -83,6 +84,81 @@ void read_display(Table& table, BoneDefinition& d) {
   d.display.height = static_cast<int>(table.integer("height", 120, 8192));
   d.stereo = table.has("stereo") && table.boolean("stereo");
   optional(table, "eye_distance", d.eye_distance, {0.0, 0.1}, "m");
+}
+
+void read_groups(Table& root, BoneDefinition& d) {
+  if (!root.has("groups")) {
+    return;
+  }
+  Table table = root.table("groups");
+  constexpr long kMost = 10000;
+  long all = 0;
+  bool good = true;
+  for (const std::string& name : table.keys()) {
+    const long participants = table.integer(name, 1, kMost);
+    good = good && participants > 0;
+    all += participants;
+  }
+  if (good && all != d.design.participants) {
+    root.reject("groups", fmt::format("{} participants", all),
+                fmt::format("as many as design.participants, {}", d.design.participants));
+  } else if (good) {
+    for (const StudyGroup& group : study_groups(root.source(), d.file_name)) {
+      d.groups.push_back({group.name, group.participants, 0.5});
+    }
+  }
+}
+
+int tool_named(Table& table, const char* key, const BoneDefinition& d) {
+  const std::string name = table.text(key);
+  for (std::size_t tool = 0; tool < d.simulator.tools.size(); ++tool) {
+    const bone::ToolSpec& spec = d.simulator.tools[tool];
+    if (spec.name == name && spec.kind == bone::ToolKind::kBurr) {
+      return static_cast<int>(tool);
+    }
+  }
+  table.reject(key, fmt::format("\"{}\"", name), "a burr of tools.in_hand");
+  return 0;
+}
+
+void read_surgeons(Table& root, BoneDefinition& d) {
+  if (!root.has("virtual_surgeons")) {
+    return;
+  }
+  Table table = root.table("virtual_surgeons");
+  subject::SurgeonParameters p;
+  const auto burr = [&](const char* key) {
+    const int tool = tool_named(table, key, d);
+    const double diameter = d.simulator.tools.empty()
+                                ? 1e-3
+                                : d.simulator.tools[static_cast<std::size_t>(tool)].burr.diameter;
+    return subject::SurgeonBurr{tool, 0.5 * diameter};
+  };
+  p.rough = burr("rough");
+  p.fine = burr("fine");
+  optional(table, "between", p.spread.between, {0.0, 1.0}, "");
+  optional(table, "within", p.spread.within, {0.0, 1.0}, "");
+  optional(table, "learning", p.spread.learning, kFraction, "");
+  const auto button = [&](const char* key, int& value, long low) {
+    value = table.has(key) ? static_cast<int>(table.integer(key, low, 30)) : value;
+  };
+  button("power_button", p.power_button, 0);
+  button("next_button", p.next_button, 0);
+  button("previous_button", p.previous_button, 0);
+  button("look_button", p.look_button, -1);
+  button("finish_button", p.finish_button, -1);
+  if (d.groups.empty()) {
+    p.skill = table.number("skill", kFraction, "");
+  } else {
+    Table skill = table.table("skill");
+    for (ParticipantGroup& group : d.groups) {
+      group.skill = skill.number(group.name, kFraction, "");
+    }
+  }
+  if (!root.has("cavity")) {
+    root.reject("virtual_surgeons", "without a cavity", "beside a table [cavity]");
+  }
+  d.surgeon = p;
 }
 
 /// @param folder  of the file; null: tables of spectra are not read
@@ -181,7 +257,8 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
     Table pieces = root.table("pieces");
     d.simulator.world = bone::read_world_parameters(pieces);
   }
-  if (root.has("dust")) {
+  d.companions.dusty = root.has("dust");
+  if (d.companions.dusty) {
     Table dust = root.table("dust");
     d.companions.dust = bone::read_dust_parameters(dust);
   }
@@ -192,6 +269,16 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
     Table hand = root.table("drilling_hand");
     d.hand_plan = subject::read_drilling_hand_parameters(hand);
   }
+  if (root.has("practice")) {
+    Table practice = root.table("practice");
+    d.practice = practice.number("duration", {0.0, 36000.0}, "s");
+  }
+  if (root.has("cavity")) {
+    Table cavity = root.table("cavity");
+    d.cavity = read_cavity_parameters(cavity);
+  }
+  read_groups(root, d);
+  read_surgeons(root, d);
   read_display(display, d);
   read_sound(root, d, folder);
   check_setup(root, d);
@@ -200,9 +287,24 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
   if (folder != nullptr) {
     for (const std::string& source : d.sources) {
       d.bones.push_back(std::make_shared<const bone::BoneModel>(load_source(source, d, *folder)));
+      if (d.cavity) {
+        const bone::BoneModel& model = *d.bones.back();
+        d.charts.push_back(std::make_shared<const subject::DrillingChart>(
+            make_chart(model, pose_of(d.placement, model.grid), *d.cavity)));
+      }
     }
   }
   return d;
+}
+
+const ParticipantGroup* group_of(const BoneDefinition& d, int participant) {
+  for (const ParticipantGroup& group : d.groups) {
+    if (participant < group.participants) {
+      return participant < 0 ? nullptr : &group;
+    }
+    participant -= group.participants;
+  }
+  return nullptr;
 }
 
 BoneDefinition load_bone_definition(const fs::path& file) {

@@ -13,7 +13,10 @@
 #include "core/bone/companions.h"
 #include "core/bone/simulator.h"
 #include "core/sound/drill_sound.h"
+#include "core/subject/drilling_chart.h"
 #include "core/subject/drilling_hand.h"
+#include "core/subject/drilling_surgeon.h"
+#include "experiments/cavity.h"
 #include "experiments/setup.h"
 #include "protocols/drilling_pass.h"
 
@@ -25,6 +28,13 @@ struct BonePlacement {
   Eigen::Matrix3d turn{Eigen::Matrix3d::Identity()};  // from B to W: a rotation
 };
 Eigen::Isometry3d pose_of(const BonePlacement& placement, const geometry::VoxelGrid& grid);
+
+/// Participants of one kind. The first ones belong to the first group, and so on.
+struct ParticipantGroup {
+  std::string name;
+  int participants{0};
+  double skill{0.5};  // of virtual ones, 0 to 1
+};
 
 /// An experiment of drillings (`protocol = "bone_drilling"`), read from a definition file and valid
 /// as a whole. A trial is one procedure on one bone.
@@ -38,7 +48,13 @@ struct BoneDefinition : Setup {
   bone::CompanionParameters companions;
   protocols::DrillingParameters drilling;
   subject::DrillingHandParameters hand_plan;  // of the virtual hand
-  bool sound_card{false};                     // whether a live session is heard
+  std::vector<ParticipantGroup> groups;       // none: everybody is alike
+  double practice{0.0};                       // before the first procedure, of people only [s]
+  std::optional<CavityParameters> cavity;     // that is asked for
+  /// Virtual participants are surgeons (drilling_surgeon.h) and not hands that drill; skill is that
+  /// of their group.
+  std::optional<subject::SurgeonParameters> surgeon;
+  bool sound_card{false};  // whether a live session is heard
   sound::SpectrumTable sound_table;
   sound::ThinBone thin_bone;
   sound::SpectrumTable vibration_table;
@@ -48,7 +64,11 @@ struct BoneDefinition : Setup {
   /// By source; procedures take them in turn. None where only a text was parsed: a session file has
   /// its bones in it.
   std::vector<std::shared_ptr<const bone::BoneModel>> bones;
+  std::vector<std::shared_ptr<const subject::DrillingChart>> charts;  // (bones) with a cavity
 };
+
+/// @param participant  from 0. @returns null where there are no groups, or none for the number
+const ParticipantGroup* group_of(const BoneDefinition& definition, int participant);
 
 /// @throws InputError with a sentence for every problem of the file; as bone::load_bone does.
 BoneDefinition load_bone_definition(const std::filesystem::path& file);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "core/base/error.h"
@@ -45,8 +46,16 @@ std::vector<std::string> BoneTrials::notices() const {
   return notice_.empty() ? std::vector<std::string>{} : std::vector{notice_};
 }
 
+/// People practise; whoever is virtual has nothing to learn from it.
+bool BoneTrials::practises() const {
+  return d_.practice > 0.0 && request_.clock == realtime::ClockKind::kReal;
+}
+
 std::vector<protocols::PlannedTrial> BoneTrials::plan() const {
   std::vector<protocols::PlannedTrial> plan;
+  if (practises()) {
+    plan.push_back({0, 0, 1, "practice", derived_seed(session_seed_, "practice"), true});
+  }
   for (int trial = 1; trial <= d_.design.trials; ++trial) {
     const std::uint64_t seed = derived_seed(session_seed_, fmt::format("procedure {}", trial));
     plan.push_back({trial, trial, 1, "drilling", seed, false});
@@ -68,11 +77,11 @@ std::optional<std::vector<record::BoneRecord>> BoneTrials::bones() const {
 }
 
 std::unique_ptr<Rig> BoneTrials::virtual_rig(std::uint64_t session_seed) const {
-  return std::make_unique<DrillingRig>(d_, session_seed);
+  return std::make_unique<DrillingRig>(d_, session_seed, request_.participant);
 }
 
 void BoneTrials::prepare(const protocols::PlannedTrial& trial, SessionRecord& record) {
-  bone_ = static_cast<std::size_t>(trial.trial - 1) % d_.bones.size();
+  bone_ = static_cast<std::size_t>(std::max(trial.trial, 1) - 1) % d_.bones.size();
   bones_used_ = record.bones_used(trial);
   stage_.reset();
 }
@@ -114,8 +123,10 @@ void BoneTrials::show(Screen& screen) { screen.show(bone_drawing(d_, stage_)); }
 protocols::Pass& BoneTrials::make_pass(protocols::PlannedTrial& trial, record::Phase,
                                        SessionRecord& record) {
   trial.repetition = bones_used_;
+  protocols::DrillingParameters drilling = d_.drilling;
+  drilling.time_limit = trial.practice ? d_.practice : drilling.time_limit;
   pass_ = std::make_unique<protocols::DrillingPass>(*stage_->simulator, *stage_->companions,
-                                                    d_.drilling, record.drilling_logs(), d_.rate,
+                                                    drilling, record.drilling_logs(), d_.rate,
                                                     spent_, vibration_ ? &*vibration_ : nullptr);
   if (pictures_) {
     pictures_->watch(stage_);

@@ -34,6 +34,8 @@ class BoneTrials final : public Trials {
   const char* why_aborted() const override { return "the procedure was broken off"; }
 
  private:
+  bool practises() const;
+
   const SessionRequest& request_;
   const BoneDefinition& d_;
   std::uint64_t session_seed_;

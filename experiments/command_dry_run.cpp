@@ -38,6 +38,10 @@ int dry_run(const DryRunOptions& options) {
   dry.frames_per_pass = checked_number("--frames", options.frames, 0, 1000);
   dry.max_trials = checked_number("--trials", options.trials, 0, setup.design.trials);
   dry.folder = options.out.empty() ? fresh_folder(setup.name) : fs::path(options.out);
+  if (experiment.bone && experiment.bone->practice > 0.0) {
+    fmt::print("the {:.0f} minutes of practice are for people: left out\n",
+               experiment.bone->practice / 60.0);
+  }
   const DryRunSummary done =
       experiment.bone ? run_dry(*experiment.bone, dry) : run_dry(*experiment.force, dry);
   fmt::print("{} sessions, {:.0f} s of simulated time in {:.1f} s ({:.0f} times real time)\n",

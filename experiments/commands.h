@@ -214,6 +214,13 @@ struct RateImportOptions {
 };
 int rate_import(const RateImportOptions& options);
 
+struct RateSimulateOptions {
+  std::string folder;  // of a study
+  std::optional<int> jobs;
+  bool overwrite{false};
+};
+int rate_simulate(const RateSimulateOptions& options);
+
 struct SpectrumOptions {
   std::string file;              // a recording
   std::string out;               // table of spectra (.toml); empty: only print

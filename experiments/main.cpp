@@ -448,6 +448,13 @@ class Commands {
     import->add_option("--study", rate_import_.folder, "Folder that was prepared")->required();
     import->add_flag("--overwrite", rate_import_.overwrite, "Replace ratings that are there");
     import->callback([this] { status_ = experiments::rate_import(rate_import_); });
+    CLI::App* simulate = rate->add_subcommand(
+        "simulate", "Let two simulated raters score a dry run by the written rubric");
+    simulate->add_option("DIR", rate_simulate_.folder, "Folder of drilling sessions (.h5)")
+        ->required();
+    simulate->add_flag("--overwrite", rate_simulate_.overwrite, "Replace ratings that are there");
+    simulate->add_option("--jobs", rate_simulate_.jobs, "Threads; one per processor by default");
+    simulate->callback([this] { status_ = experiments::rate_simulate(rate_simulate_); });
   }
 
   CLI::App& app_;
@@ -466,6 +473,7 @@ class Commands {
   experiments::SpectrumOptions spectrum_;
   experiments::RatePrepareOptions rate_prepare_;
   experiments::RateImportOptions rate_import_;
+  experiments::RateSimulateOptions rate_simulate_;
   std::string path_;
   std::string second_;
   std::string compare_out_;

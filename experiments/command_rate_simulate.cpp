@@ -1,0 +1,43 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "analysis/staging.h"
+#include "core/base/error.h"
+#include "core/record/session_reader.h"
+#include "experiments/arguments.h"
+#include "experiments/commands.h"
+#include "experiments/drilling_study.h"
+#include "experiments/interrupt.h"
+#include "experiments/simulated_rater.h"
+#include "experiments/study_run.h"
+
+namespace haptrial::experiments {
+
+int rate_simulate(const RateSimulateOptions& options) {
+  namespace fs = std::filesystem;
+  watch_for_interrupt();
+  const int jobs = checked_jobs(options.jobs);
+  const fs::path study(options.folder);
+  for (const fs::path& file : session_files(study)) {
+    if (!record::SessionReader(file).info().simulated) {
+      throw InputError(fmt::format(
+          "{}: is the session of a person; simulated raters score simulated sessions only",
+          file.string()));
+    }
+  }
+  if (fs::exists(study / kRatingsFile) && !options.overwrite) {
+    throw InputError(
+        fmt::format("{}: is there already; allowed: a study without ratings, or --overwrite",
+                    (study / kRatingsFile).string()));
+  }
+  const auto ratings = simulate_ratings(study, jobs);
+  const analysis::Staging staging(study);
+  staging.write(kRatingsFile, analysis::drilling::ratings_csv(ratings));
+  staging.publish();
+  fmt::print("{} simulated ratings by {} raters: {}\n", ratings.size(), simulated_raters().size(),
+             (study / kRatingsFile).string());
+  return 0;
+}
+
+}  // namespace haptrial::experiments
