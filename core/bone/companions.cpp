@@ -21,23 +21,35 @@ void list_bones(const BoneWorld& world, std::vector<DustBone>& bones) {
   });
 }
 
+DustBalance only_counted(double amount) {
+  DustBalance balance;
+  balance.deposited = balance.lying = amount;
+  return balance;
+}
+
 }  // namespace
 
 SteppedCompanions::SteppedCompanions(Simulator& simulator, const CompanionParameters& parameters,
                                      double rate, bool search)
     : simulator_(simulator),
-      dust_(parameters.dust),
       dust_every_(ticks_of(parameters.dust_period, rate)),
-      search_every_(search ? ticks_of(parameters.search_period, rate) : 0) {}
+      search_every_(search ? ticks_of(parameters.search_period, rate) : 0) {
+  if (parameters.dusty) {
+    dust_.emplace(parameters.dust);
+  }
+}
 
 void SteppedCompanions::after_tick(const Simulator& simulator, double dt) noexcept {
   for (const DustDeposit& deposit : simulator.deposits()) {
-    dust_.deposit(deposit);
+    counted_ += deposit.amount;
+    if (dust_) {
+      dust_->deposit(deposit);
+    }
   }
   unstepped_ += dt;
   ++ticks_;
-  if (ticks_ % dust_every_ == 0) {
-    dust_.place(simulator.dust_tools());
+  if (dust_ && ticks_ % dust_every_ == 0) {
+    dust_->place(simulator.dust_tools());
     step_dust(unstepped_);
   }
   if (search_every_ > 0 && ticks_ % search_every_ == 0) {
@@ -47,32 +59,40 @@ void SteppedCompanions::after_tick(const Simulator& simulator, double dt) noexce
 
 void SteppedCompanions::step_dust(double dt) {
   list_bones(simulator_.world(), bones_);
-  dust_.follow(bones_);
-  dust_.step(dt);
+  dust_->follow(bones_);
+  dust_->step(dt);
   unstepped_ = 0.0;
 }
 
 bool SteppedCompanions::quads(std::vector<DustQuad>& quads, std::uint64_t& version) const {
-  if (version == dust_.version()) {
+  if (!dust_ || version == dust_->version()) {
     return false;
   }
-  version = dust_.version();
-  dust_.quads(quads);
+  version = dust_->version();
+  dust_->quads(quads);
   return true;
 }
 
-void SteppedCompanions::settle() { step_dust(unstepped_); }
+DustBalance SteppedCompanions::dust() const {
+  return dust_ ? dust_->balance() : only_counted(counted_);
+}
+
+void SteppedCompanions::settle() {
+  if (dust_) {
+    step_dust(unstepped_);
+  }
+}
 
 ThreadedCompanions::ThreadedCompanions(Simulator& simulator, const CompanionParameters& parameters)
-    : simulator_(simulator),
-      search_period_(parameters.search_period),
-      dust_(
-          parameters.dust,
-          [&simulator](std::vector<DustBone>& bones) {
-            list_bones(std::as_const(simulator).world(), bones);
-          },
-          parameters.dust_period),
-      searcher_([this] { search(); }) {}
+    : simulator_(simulator), search_period_(parameters.search_period) {
+  if (parameters.dusty) {
+    const auto bones = [&simulator](std::vector<DustBone>& list) {
+      list_bones(std::as_const(simulator).world(), list);
+    };
+    dust_.emplace(parameters.dust, bones, parameters.dust_period);
+  }
+  searcher_ = std::thread([this] { search(); });
+}
 
 ThreadedCompanions::~ThreadedCompanions() {
   stop_.store(true, std::memory_order_relaxed);
@@ -82,10 +102,21 @@ ThreadedCompanions::~ThreadedCompanions() {
 }
 
 void ThreadedCompanions::after_tick(const Simulator& simulator, double) noexcept {
+  double counted = counted_.load(std::memory_order_relaxed);
   for (const DustDeposit& deposit : simulator.deposits()) {
-    dust_.deposit(deposit);
+    counted += deposit.amount;
+    if (dust_) {
+      dust_->deposit(deposit);
+    }
   }
-  dust_.place(simulator.dust_tools());
+  counted_.store(counted, std::memory_order_relaxed);
+  if (dust_) {
+    dust_->place(simulator.dust_tools());
+  }
+}
+
+DustBalance ThreadedCompanions::dust() const {
+  return dust_ ? dust_->balance() : only_counted(counted_.load(std::memory_order_relaxed));
 }
 
 void ThreadedCompanions::search() {
@@ -99,8 +130,8 @@ void ThreadedCompanions::search() {
 void ThreadedCompanions::settle() {
   constexpr double kRounding = 1e-3;  // of the dust's amounts [voxels]
   constexpr int kMostRounds = 400;
-  for (int i = 0; i < kMostRounds; ++i) {
-    if (dust_.balance().deposited + kRounding >= simulator_.removed_so_far()) {
+  for (int i = 0; dust_ && i < kMostRounds; ++i) {
+    if (dust_->balance().deposited + kRounding >= simulator_.removed_so_far()) {
       return;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -28,6 +29,8 @@ class Companions {
 };
 
 struct CompanionParameters {
+  /// Whether dust falls and piles; else it is only counted, as lying, which takes no time.
+  bool dusty{true};
   DustParameters dust;
   double dust_period{0.02};    // > 0 [s]
   double search_period{0.05};  // > 0 [s]
@@ -44,7 +47,7 @@ class SteppedCompanions final : public Companions {
                     bool search = true);
 
   void after_tick(const Simulator& simulator, double dt) noexcept override;
-  DustBalance dust() const override { return dust_.balance(); }
+  DustBalance dust() const override;
   bool quads(std::vector<DustQuad>& quads, std::uint64_t& version) const override;
   void settle() override;
 
@@ -52,7 +55,8 @@ class SteppedCompanions final : public Companions {
   void step_dust(double dt);
 
   Simulator& simulator_;
-  Dust dust_;
+  std::optional<Dust> dust_;
+  double counted_{0.0};         // of dust that is only counted [voxels]
   std::uint64_t dust_every_;    // [ticks]
   std::uint64_t search_every_;  // [ticks]; 0: never
   std::uint64_t ticks_{0};
@@ -68,9 +72,9 @@ class ThreadedCompanions final : public Companions {
   ~ThreadedCompanions() override;
 
   void after_tick(const Simulator& simulator, double dt) noexcept override;
-  DustBalance dust() const override { return dust_.balance(); }
+  DustBalance dust() const override;
   bool quads(std::vector<DustQuad>& quads, std::uint64_t& version) const override {
-    return dust_.quads(quads, version);
+    return dust_ && dust_->quads(quads, version);
   }
   void settle() override;
 
@@ -79,7 +83,8 @@ class ThreadedCompanions final : public Companions {
 
   Simulator& simulator_;
   double search_period_;
-  DustWorker dust_;
+  std::optional<DustWorker> dust_;
+  std::atomic<double> counted_{0.0};  // of dust that is only counted [voxels]
   std::atomic<bool> stop_{false};
   std::thread searcher_;
 };

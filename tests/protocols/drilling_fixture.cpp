@@ -62,9 +62,10 @@ protocols::DrillingParameters by_buttons() {
   return p;
 }
 
-Workshop::Workshop(bone::BoneModel bone, bool threads) : model(std::move(bone)) {
+Workshop::Workshop(bone::BoneModel bone, bool threads, bool dusty) : model(std::move(bone)) {
   simulator = std::make_unique<bone::Simulator>(model, workshop(model));
   bone::CompanionParameters beside;
+  beside.dusty = dusty;
   if (threads) {
     companions = std::make_unique<bone::ThreadedCompanions>(*simulator, beside);
   } else {

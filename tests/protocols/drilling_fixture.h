@@ -20,7 +20,7 @@ protocols::DrillingParameters by_buttons();
 
 /// All that a drilling needs but a device.
 struct Workshop {
-  explicit Workshop(bone::BoneModel bone = dumbbell(), bool threads = false);
+  explicit Workshop(bone::BoneModel bone = dumbbell(), bool threads = false, bool dusty = true);
 
   bone::BoneModel model;
   std::unique_ptr<bone::Simulator> simulator;

@@ -94,6 +94,19 @@ TEST(DrillingPassTest, BoneDustAndWhatWasSuckedOffAreTheBoneOfTheStart) {
   EXPECT_NEAR(accounted, start, 6000 * 0x1p-20);
 }
 
+TEST(DrillingPassTest, DustThatIsOnlyCountedIsTheSameAmount) {
+  for (const bool threads : {false, true}) {
+    Workshop shop(test::dumbbell(), threads, false);
+    for (const auto& reading : test::through_the_bridge(3000)) {
+      shop.pass->tick(reading, kDt);
+    }
+    shop.companions->settle();
+    EXPECT_GT(shop.companions->dust().lying, 10.0);
+    EXPECT_NEAR(shop.companions->dust().lying,
+                shop.simulator->amount_at_start() - shop.simulator->amount_left(), 1e-6);
+  }
+}
+
 /// Simulates the logged ticks again, on a bone of its own.
 void expect_the_same_again(Workshop& first, const std::vector<device::DeviceReading>& readings) {
   const auto splits = rows_of(first.logs.splits);
