@@ -51,11 +51,17 @@ Figure ratings_figure(const ValidityResult& result) {
                              "Rating (5 is best)");
   std::vector<const GroupValues*> order{&v.rating_groups.back(), &*(v.rating_groups.end() - 2)};
   for (std::size_t g = 0; g < v.plan.groups.size(); ++g) {
-    order.push_back(&v.rating_groups[g]);
+    const GroupValues& group = v.rating_groups[g];
+    const bool whole_side = std::any_of(order.begin(), order.begin() + 2, [&](const auto* side) {
+      return side->procedures == group.procedures && group.procedures > 0;
+    });
+    if (!whole_side) {
+      order.push_back(&group);
+    }
   }
-  Series pooled{"mean of all procedures, 95 % CI", Mark::kBars, kBlack};
-  Series means{"mean of participants' means, 95 % CI", Mark::kBars, kExperts};
-  Series dots{"one procedure", Mark::kPoints, {"#9aa0a6", "solid", 6, 1.5, 0.8}};
+  Series pooled{"mean, procedures", Mark::kBars, kBlack};
+  Series means{"mean, participants", Mark::kBars, kExperts};
+  Series dots{"procedure", Mark::kPoints, {"#9aa0a6", "solid", 6, 1.5, 0.8}};
   constexpr double kAside = 0.12;
   for (std::size_t k = 0; k < order.size(); ++k) {
     const double place = static_cast<double>(k + 1);
@@ -85,11 +91,11 @@ Figure ratings_figure(const ValidityResult& result) {
     }
   }
   figure.x_range = Range{0.5, static_cast<double>(order.size()) + 0.6};
-  figure.y_range = Range{0.8, 5.9};
+  figure.y_range = Range{0.8, 5.2};
   figure.caption =
       "Ratings of procedures by novices and by participants with surgical experience, then of each "
-      "group: black over all procedures, as published; blue over participants' means, whose "
-      "procedures are not independent of each other.";
+      "group, with 95 % confidence intervals: black over all procedures, as published; blue over "
+      "participants' means, as a participant's procedures are not independent of each other.";
   figure.alt =
       fmt::format("Mean rating of novices {}; with experience {}.",
                   mean_with_interval(order[0]->pooled), mean_with_interval(order[1]->pooled));
@@ -194,7 +200,7 @@ void add_curve(Figure& figure, const Defined<Roc>& roc, const std::string& label
   if (!roc) {
     return;
   }
-  Series curve{fmt::format("{} (area {:.2f})", label, roc->area), Mark::kLine, look};
+  Series curve{fmt::format("{} {:.2f}", label, roc->area), Mark::kLine, look};
   for (const RocPoint& p : roc->curve) {
     curve.x.push_back(p.false_positives);
     curve.y.push_back(p.true_positives);
@@ -206,22 +212,30 @@ Figure roc_figure(const ValidityResult& result) {
   const Validity& v = result.validity;
   Figure figure = new_figure(result, "roc-experts-novices", "Telling experts from novices",
                              "Share of novices called experts", "Share of experts called experts");
-  add_curve(figure, v.combined.roc, "all metrics, cross-validated", kBlack);
+  add_curve(figure, v.combined.roc, "all metrics", kBlack);
   add_curve(figure, v.rating_contrast.roc, "rating", kThird);
-  const std::array<std::pair<const char*, Look>, 3> shown{
-      {{"visible_share", kExperts}, {"near_force", kNovices}, {"region_log_ratio", kFourth}}};
-  for (const auto& [name, look] : shown) {
-    if (const MetricValidity* metric = metric_of(v, name)) {
-      add_curve(figure, metric->contrast.roc, metric->kind.title, look);
+  struct Shown {
+    const char* metric;
+    const char* label;
+    Look look;
+  };
+  const std::array<Shown, 3> shown{{{"visible_share", "visibility", kExperts},
+                                    {"near_force", "force", kNovices},
+                                    {"region_log_ratio", "region", kFourth}}};
+  for (const Shown& one : shown) {
+    if (const MetricValidity* metric = metric_of(v, one.metric)) {
+      add_curve(figure, metric->contrast.roc, one.label, one.look);
     }
   }
-  figure.series.push_back(Series{"chance", Mark::kLine, kGrey, {0.0, 1.0}, {0.0, 1.0}});
+  figure.series.push_back(Series{"", Mark::kLine, kGrey, {0.0, 1.0}, {0.0, 1.0}});
   figure.x_range = Range{0.0, 1.0};
   figure.y_range = Range{0.0, 1.02};
   figure.height = 0.75;
   figure.caption =
-      "ROC curves of procedures by experts against those by novices. The combined score of a "
-      "procedure comes from a regression that saw nothing of its participant.";
+      "ROC curves of procedures by experts against those by novices, with their areas: all metrics "
+      "together (each procedure scored by a regression that saw nothing of its participant), the "
+      "rating, the share of voxels removed in sight, the force near vital structures, and the "
+      "likelihood ratio of the removed region. The diagonal is chance.";
   figure.alt = "ROC curves; their areas are in the key and the table.";
   return figure;
 }
