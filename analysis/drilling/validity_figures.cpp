@@ -227,7 +227,9 @@ Figure roc_figure(const ValidityResult& result) {
       add_curve(figure, metric->contrast.roc, one.label, one.look);
     }
   }
-  figure.series.push_back(Series{"", Mark::kLine, kGrey, {0.0, 1.0}, {0.0, 1.0}});
+  if (!figure.series.empty()) {
+    figure.series.push_back(Series{"", Mark::kLine, kGrey, {0.0, 1.0}, {0.0, 1.0}});
+  }
   figure.x_range = Range{0.0, 1.0};
   figure.y_range = Range{0.0, 1.02};
   figure.height = 0.75;
