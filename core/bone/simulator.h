@@ -92,7 +92,7 @@ struct RecordedSplit {
 /// neither felt nor drills before it has been free: it would be thrown out.
 ///
 /// Servo thread: no allocation, lock, wait or throw after construction
-/// (SimulatorTest.TickDoesNotAllocate).
+/// (DrillingPassTest.ATickDoesNotAllocateBesideThreads).
 class Simulator {
  public:
   /// @throws std::invalid_argument as the parts do, or without tools.
