@@ -1,0 +1,196 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <stdexcept>
+
+#include "core/base/error.h"
+#include "experiments/bone_definition.h"
+#include "experiments/commands.h"
+#include "experiments/drilling_study.h"
+#include "experiments/rating_pictures.h"
+#include "experiments/study_run.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+std::string contents(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::string message_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "nothing was thrown";
+}
+
+/// Names and bytes of all files.
+std::map<std::string, std::string> files_in(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    files[entry.path().filename().string()] = contents(entry.path());
+  }
+  return files;
+}
+
+/// Two participants, one short procedure each, on a coarse bone.
+class RateTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<test::TemporaryFolder>();
+    const fs::path source = fs::path(HAPTRIAL_SOURCE_DIR) / "experiments/bone_drilling.toml";
+    std::string text = contents(source);
+    const auto replace = [&](const std::string& from, const std::string& to) {
+      const auto at = text.find(from);
+      ASSERT_NE(at, std::string::npos) << from;
+      text.replace(at, from.size(), to);
+    };
+    replace("participants = 1", "participants = 2");
+    replace("time_limit = 60.0", "time_limit = 4.0");
+    std::ofstream(*folder_ / "short.toml") << text;
+    const BoneDefinition definition = load_bone_definition(*folder_ / "short.toml");
+    DryRun dry_run;
+    dry_run.participants = 2;
+    dry_run.folder = *folder_ / "study";
+    run_dry(definition, dry_run);
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  static fs::path study() { return *folder_ / "study"; }
+  /// The same sessions under other names, in another order.
+  static fs::path renamed() {
+    const fs::path other = *folder_ / "renamed";
+    if (!fs::exists(other)) {
+      fs::create_directories(other);
+      fs::copy_file(study() / "S01.h5", other / "zoe.h5");
+      fs::copy_file(study() / "S02.h5", other / "anna.h5");
+    }
+    return other;
+  }
+  static void prepare(const fs::path& sessions, const fs::path& out) {
+    fs::remove(sessions / "ratings.key");
+    RatePrepareOptions options;
+    options.folder = sessions.string();
+    options.out = out.string();
+    options.sheets = true;
+    options.frames = 4;
+    EXPECT_EQ(rate_prepare(options), 0);
+  }
+
+  static std::unique_ptr<test::TemporaryFolder> folder_;
+};
+std::unique_ptr<test::TemporaryFolder> RateTest::folder_;
+
+TEST_F(RateTest, WhatRatersGetDoesNotDependOnNames) {
+  prepare(study(), *folder_ / "a");
+  prepare(renamed(), *folder_ / "b");
+  const auto a = files_in(*folder_ / "a"), b = files_in(*folder_ / "b");
+  EXPECT_EQ(a.size(), 4u);
+  EXPECT_TRUE(a == b);
+  std::vector<fs::file_time_type> times;
+  for (const auto& entry : fs::directory_iterator(*folder_ / "a")) {
+    times.push_back(entry.last_write_time());
+    EXPECT_EQ(times.back(), times.front()) << entry.path();
+  }
+  for (const auto& [name, bytes] : a) {
+    EXPECT_EQ(bytes.find("S01"), std::string::npos) << name;
+  }
+}
+
+TEST_F(RateTest, ScoresComeBackUnderTheirSession) {
+  prepare(study(), *folder_ / "c");
+  std::string sheet = contents(*folder_ / "c" / "rating-sheet.csv");
+  int score = 2;
+  for (std::size_t at; (at = sheet.find(",,\n")) != std::string::npos;) {
+    sheet.replace(at, 3, "," + std::to_string(score++) + ",\n");
+  }
+  std::ofstream(*folder_ / "li.csv") << sheet;
+  RateImportOptions options;
+  options.folder = study().string();
+  options.sheets = {(*folder_ / "li.csv").string()};
+  fs::remove(study() / kRatingsFile);
+  EXPECT_EQ(rate_import(options), 0);
+  const auto ratings = analysis::drilling::load_ratings(study() / kRatingsFile);
+  ASSERT_EQ(ratings.size(), 2u);
+  EXPECT_NE(ratings[0].session, ratings[1].session);
+  EXPECT_EQ(ratings[0].score + ratings[1].score, 5.0);
+  EXPECT_THAT(message_of([&] { rate_import(options); }), HasSubstr("is there already"));
+  options.overwrite = true;
+  options.sheets.push_back(options.sheets.front());
+  EXPECT_THAT(message_of([&] { rate_import(options); }), HasSubstr("has another sheet"));
+  fs::remove(study() / kRatingsFile);
+}
+
+TEST_F(RateTest, NothingIsOverwritten) {
+  prepare(study(), *folder_ / "d");
+  RatePrepareOptions options;
+  options.folder = study().string();
+  options.out = (*folder_ / "d").string();
+  EXPECT_THAT(message_of([&] { rate_prepare(options); }), HasSubstr("a new folder"));
+  options.out = (*folder_ / "e").string();
+  EXPECT_THAT(message_of([&] { rate_prepare(options); }), HasSubstr("without a key"));
+  EXPECT_FALSE(fs::exists(*folder_ / "e"));
+}
+
+TEST_F(RateTest, AStudyOfDrillingsIsAnalysed) {
+  AnalyzeOptions options;
+  options.folder = study().string();
+  EXPECT_EQ(analyze(options), 0);
+  const std::string report = contents(study() / "report.md");
+  EXPECT_THAT(report, HasSubstr("proves nothing about people"));
+  EXPECT_THAT(report, HasSubstr("Nothing is rated yet"));
+  EXPECT_TRUE(fs::exists(study() / "metrics.csv"));
+}
+
+TEST(ContactSheet, PutsEveryPictureInItsPlace) {
+  const auto plain = [](std::uint8_t value, int width) {
+    return render::Image{width, 2,
+                         std::vector<std::uint8_t>(static_cast<std::size_t>(6) * width, value)};
+  };
+  const render::Image sheet =
+      contact_sheet({plain(10, 3), plain(20, 3), plain(30, 3)}, 2, plain(40, 6));
+  ASSERT_EQ(sheet.width, 6);
+  ASSERT_EQ(sheet.height, 6);
+  const auto at = [&](int x, int y) {
+    return static_cast<int>(sheet.rgb[static_cast<std::size_t>(3) * (6 * y + x)]);
+  };
+  EXPECT_THAT(
+      (std::vector<int>{at(0, 0), at(2, 1), at(3, 0), at(0, 2), at(3, 2), at(0, 4), at(5, 5)}),
+      testing::ElementsAre(10, 10, 20, 30, 0, 40, 40));
+  EXPECT_THROW(contact_sheet({plain(1, 3), plain(1, 2)}, 2, plain(1, 6)), std::invalid_argument);
+  EXPECT_THROW(contact_sheet({}, 2, plain(1, 6)), std::invalid_argument);
+}
+
+TEST(StudyGroups, AreThoseOfTheDefinitionInItsOrder) {
+  const auto groups =
+      study_groups("[groups]\nsurgeons = 4\nresidents = 4\nnovices = 7\n", "d.toml");
+  const std::vector<StudyGroup> expected{
+      {"surgeons", 4, true}, {"residents", 4, true}, {"novices", 7, false}};
+  EXPECT_EQ(groups, expected);
+  EXPECT_EQ(group_of(groups, "S04"), "surgeons");
+  EXPECT_EQ(group_of(groups, "S05"), "residents");
+  EXPECT_EQ(group_of(groups, "P-9"), "novices");
+  EXPECT_EQ(group_of(groups, "S15"), "novices");
+  for (const char* subject : {"S16", "S00", "Ann", "S99999999"}) {
+    EXPECT_THAT(message_of([&] { group_of(groups, subject); }), HasSubstr("belongs to no group"));
+  }
+  EXPECT_EQ(group_of(study_groups("x = 1", "d.toml"), "Ann"), "participants");
+  EXPECT_THAT(message_of([] { study_groups("[groups]\na = 0\n", "d.toml"); }),
+              HasSubstr("groups.a is not a number of participants"));
+}
+
+}  // namespace
+}  // namespace haptrial::experiments
