@@ -28,6 +28,7 @@ stimulus::DrillingView from_the_start(stimulus::DrillingView seen, const BoneSta
   seen.target = stage.start_view.target;
   seen.up = stage.start_view.up;
   seen.field_of_view = stage.start_view.field_of_view;
+  seen.tip = seen.eye + 10.0 * (seen.eye - seen.target);  // the tool would hide the cavity
   return seen;
 }
 
