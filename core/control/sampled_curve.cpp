@@ -11,8 +11,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// More than the rounding of a distance to a chord, relative to that distance and to the chord.
-constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+constexpr double kRounding = kChordRounding;
 
 /// False for what is not a number.
 bool within_bounds(const Vector3d& p) noexcept {
@@ -24,20 +23,19 @@ bool usable(std::span<const Vector3d> points) noexcept {
   return points.size() >= 2 && std::all_of(points.begin(), points.end(), within_bounds);
 }
 
-/// Two numbers side by side: the loop of eight is too short for the compiler to see them.
-typedef double Pair __attribute__((vector_size(16)));
-
-inline Pair pair(const double* from) noexcept {
-  Pair both;
-  std::memcpy(&both, from, sizeof both);
-  return both;
-}
-
 double distance_to_chord(const Vector3d& point, const Vector3d& from, const Vector3d& chord,
                          double inverse) noexcept {
   const Vector3d away = point - from;
   const double t = std::clamp(away.dot(chord) * inverse, 0.0, 1.0);
   return (away - t * chord).norm();
+}
+
+template <class T>
+void fetch(const T& what) noexcept {
+  constexpr std::size_t kLine = 64;
+  for (std::size_t at = 0; at < sizeof what; at += kLine) {
+    __builtin_prefetch(reinterpret_cast<const char*>(&what) + at);
+  }
 }
 
 }  // namespace
@@ -47,15 +45,16 @@ class SampledCurve::Search {
  public:
   Search(const SampledCurve& curve, const Vector3d& point, const CurveQuery& query)
       : curve_(curve),
-        x_(point.x()),
-        y_(point.y()),
-        z_(point.z()),
-        low_(std::max(query.window.low, 0.0)),
-        high_(std::min(query.window.high, curve.length())),
-        known_low_(query.known.low),
-        known_high_(query.known.high),
+        kernel_(curve.kernel_),
+        q_{point.x(),
+           point.y(),
+           point.z(),
+           std::max(query.window.low, 0.0),
+           std::min(query.window.high, curve.length()),
+           query.known.low,
+           query.known.high,
+           query.below},
         slack_(query.tolerance),
-        bound_(query.below),
         best_square_(query.below * query.below) {}
 
   /// Outwards from a strip and up the tree, until the nodes seen cover the window.
@@ -70,7 +69,7 @@ class SampledCurve::Search {
         descend(level, node);
         seen = true;
       }
-      if (begin <= low_ && end >= high_) {
+      if (begin <= q_.low && end >= q_.high) {
         return;
       }
       if (seen) {
@@ -96,7 +95,7 @@ class SampledCurve::Search {
 
  private:
   bool is_known(double begin, double end) const noexcept {
-    return begin >= known_low_ && end <= known_high_;
+    return begin >= q_.known_low && end <= q_.known_high;
   }
 
   void descend(std::size_t level, std::size_t node) noexcept {
@@ -107,52 +106,26 @@ class SampledCurve::Search {
     }
   }
 
-  /// The squared distance to each of eight chords, and where along them.
-  void measure(const Chords& s, double* square, double* along) const noexcept {
-    for (std::size_t c = 0; c < kRun; c += 2) {
-      const Pair dx = pair(s.x + c + 1) - pair(s.x + c);
-      const Pair dy = pair(s.y + c + 1) - pair(s.y + c);
-      const Pair dz = pair(s.z + c + 1) - pair(s.z + c);
-      const Pair ax = x_ - pair(s.x + c);
-      const Pair ay = y_ - pair(s.y + c);
-      const Pair az = z_ - pair(s.z + c);
-      // 0 / 0 of a point is not above 0, and so 0.
-      Pair t = (ax * dx + ay * dy + az * dz) / (dx * dx + dy * dy + dz * dz);
-      t = t > 0.0 ? t : Pair{0.0, 0.0};
-      t = t < 1.0 ? t : Pair{1.0, 1.0};
-      const Pair ex = ax - t * dx;
-      const Pair ey = ay - t * dy;
-      const Pair ez = az - t * dz;
-      const Pair squares = ex * ex + ey * ey + ez * ez;
-      std::memcpy(along + c, &t, sizeof t);
-      std::memcpy(square + c, &squares, sizeof squares);
-    }
-  }
-
   void scan_pack(std::size_t level, std::size_t index, std::size_t skip) noexcept {
     const Pack& p = curve_.levels_[level][index];
-    double square[kRun];
-    double along[kRun];
-    measure(p, square, along);
-    unsigned waiting = 0;
-    for (std::size_t c = 0; c < kRun; ++c) {
-      const bool open = is_near(square[c], p.stray[c]) && p.arc[c] <= high_ &&
-                        p.arc[c + 1] >= low_ && !is_known(p.arc[c], p.arc[c + 1]);
-      waiting |= static_cast<unsigned>(open && c != skip) << c;
+    ChordLooks looks;
+    unsigned waiting = kernel_.scan(p, q_, looks);
+    if (skip < kRun) {
+      waiting &= ~(1u << skip);
     }
     while (waiting != 0) {  // nearest chord first
       std::size_t next = kRun;
       double nearest = kInfinity;
       for (unsigned rest = waiting; rest != 0; rest &= rest - 1) {
         const auto c = static_cast<std::size_t>(__builtin_ctz(rest));
-        if (next == kRun || square[c] < nearest) {
+        if (next == kRun || looks.square[c] < nearest) {
           next = c;
-          nearest = square[c];
+          nearest = looks.square[c];
         }
       }
       waiting &= ~(1u << next);
       if (is_near(nearest, p.stray[next])) {
-        fetch_ahead(level, index * kRun + next, along[next]);
+        fetch_ahead(level, index * kRun + next, looks.along[next]);
         descend(level, index * kRun + next);
       }
     }
@@ -168,56 +141,50 @@ class SampledCurve::Search {
     const std::size_t strip =
         std::min((node << (3 * level)) + static_cast<std::size_t>(along * strips),
                  curve_.strips_.size() - 1);
-    fetch(&curve_.strips_[strip], sizeof(Strip));
+    fetch(curve_.strips_[strip]);
     if (level == 2) {
-      fetch(&curve_.levels_[0][strip / kRun], sizeof(Pack));
-    }
-  }
-  static void fetch(const void* from, std::size_t bytes) noexcept {
-    constexpr std::size_t kLine = 64;
-    for (std::size_t at = 0; at < bytes; at += kLine) {
-      __builtin_prefetch(static_cast<const char*>(from) + at);
+      fetch(curve_.levels_[0][strip / kRun]);
     }
   }
 
   /// Whether a node may hold a nearer place; false where there is no such node.
   bool is_near(double square, double stray) const noexcept {
-    const double far = bound_ + stray;
+    const double far = q_.bound + stray;
     return square <= far * far * (1.0 + kRounding);
   }
 
   void scan_strip(std::size_t index) noexcept {
     const Strip& s = curve_.strips_[index];
-    if (s.arc[0] > high_ || s.arc[kRun] < low_) {
+    if (s.arc[0] > q_.high || s.arc[kRun] < q_.low) {
       return;
     }
-    if (s.arc[0] < low_ || s.arc[kRun] > high_) {
+    if (s.arc[0] < q_.low || s.arc[kRun] > q_.high) {
       scan_part_of_strip(index);
       return;
     }
-    double square[kRun];
-    double along[kRun];
-    measure(s, square, along);
+    ChordLooks looks;
+    kernel_.measure(s, q_, looks);
     std::size_t best = 0;
     for (std::size_t c = 1; c < kRun; ++c) {
-      best = square[c] < square[best] ? c : best;
+      best = looks.square[c] < looks.square[best] ? c : best;
     }
-    take(square[best], index * kRun + best, along[best]);
+    take(looks.square[best], index * kRun + best, looks.along[best]);
   }
 
   /// Where the window begins or ends within the strip.
   void scan_part_of_strip(std::size_t index) noexcept {
     const Strip& s = curve_.strips_[index];
     for (std::size_t c = 0; c < kRun; ++c) {
-      if (s.arc[c] > high_ || s.arc[c + 1] < low_) {
+      if (s.arc[c] > q_.high || s.arc[c + 1] < q_.low) {
         continue;
       }
       const double length = s.arc[c + 1] - s.arc[c];
-      const double first = s.arc[c] < low_ ? std::min(1.0, (low_ - s.arc[c]) / length) : 0.0;
-      const double last = s.arc[c + 1] > high_ ? std::max(0.0, (high_ - s.arc[c]) / length) : 1.0;
+      const double first = s.arc[c] < q_.low ? std::min(1.0, (q_.low - s.arc[c]) / length) : 0.0;
+      const double last =
+          s.arc[c + 1] > q_.high ? std::max(0.0, (q_.high - s.arc[c]) / length) : 1.0;
       const Vector3d start(s.x[c], s.y[c], s.z[c]);
       const Vector3d chord = Vector3d(s.x[c + 1], s.y[c + 1], s.z[c + 1]) - start;
-      const Vector3d away = Vector3d(x_, y_, z_) - start;
+      const Vector3d away = Vector3d(q_.x, q_.y, q_.z) - start;
       const double whole = chord.squaredNorm();
       double t = whole > 0.0 ? away.dot(chord) / whole : 0.0;
       t = std::min(std::max(t, first), std::max(first, last));
@@ -228,7 +195,7 @@ class SampledCurve::Search {
   void take(double square, std::size_t segment, double t) noexcept {
     if (square < best_square_) {
       best_square_ = square;
-      bound_ = std::max(0.0, std::sqrt(square) - slack_);
+      q_.bound = std::max(0.0, std::sqrt(square) - slack_);
       segment_ = segment;
       t_ = t;
       found_ = true;
@@ -236,11 +203,9 @@ class SampledCurve::Search {
   }
 
   const SampledCurve& curve_;
-  double x_, y_, z_;
-  double low_, high_;
-  double known_low_, known_high_;
+  const ChordKernel kernel_;
+  ChordQuery q_;
   double slack_;
-  double bound_;  // what is not nearer than this is of no interest
   double best_square_;
   std::size_t segment_{0};
   double t_{0.0};

@@ -7,6 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "core/base/big_array.h"
+#include "core/control/curve_chords.h"
+
 namespace haptrial::control {
 
 /// A place on a sampled curve.
@@ -84,19 +87,8 @@ class SampledCurve {
   unsigned revision() const noexcept { return revision_; }
 
  private:
-  static constexpr std::size_t kRun = 8;
-
-  /// Eight chords end to end, from (x, y, z)[c] to (x, y, z)[c + 1].
-  struct Chords {
-    double x[kRun + 1], y[kRun + 1], z[kRun + 1];  // [m]
-    double arc[kRun + 1];                          // where they begin and the last ends [m]
-  };
-  /// Eight segments; the last strip is filled up with its last point.
-  using Strip = Chords;
-  /// Eight nodes of one level.
-  struct alignas(64) Pack : Chords {
-    double stray[kRun];  // no point of the node is farther from its chord [m]; NaN: no such node
-  };
+  using Strip = Chords;  // eight segments; the last strip is filled up with its last point
+  using Pack = ChordPack;
   class Search;
 
   void fill_strips(std::span<const Eigen::Vector3d> points) noexcept;
@@ -109,10 +101,11 @@ class SampledCurve {
   Eigen::Vector3d direction_after(double arc) const noexcept;
   Eigen::Vector3d direction_before(double arc) const noexcept;
 
+  ChordKernel kernel_{chord_kernel()};
   std::size_t size_;
   unsigned revision_{0};
-  std::vector<Strip> strips_;
-  std::vector<std::vector<Pack>> levels_;  // [0]: its nodes are strips; the last has one pack
+  BigArray<Strip> strips_;
+  std::vector<BigArray<Pack>> levels_;  // [0]: its nodes are strips; the last has one pack
 };
 
 }  // namespace haptrial::control

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "core/geometry/big_array.h"
+#include "core/base/big_array.h"
 #include "core/geometry/voxel_grid.h"
 
 namespace haptrial::geometry {

@@ -74,7 +74,7 @@ std::vector<Case> cases() {
 
 /// How fast this core writes memory that it has written before, past the caches [bytes/ms].
 double write_speed(std::size_t bytes) {
-  geometry::BigArray<unsigned char> memory(bytes);
+  haptrial::BigArray<unsigned char> memory(bytes);
   const auto fill = [&] {
 #ifdef __SSE2__
     const __m128i value = _mm_set1_epi8(1);

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace haptrial::geometry {
+namespace haptrial {
 
 /// Memory that begins at a cache line; from 4 MB on in large pages where the system has them.
 /// @throws std::bad_alloc
@@ -42,4 +42,4 @@ struct PageAllocator {
 template <class T>
 using BigArray = std::vector<T, PageAllocator<T>>;
 
-}  // namespace haptrial::geometry
+}  // namespace haptrial

@@ -1,10 +1,10 @@
-#include "core/geometry/big_array.h"
+#include "core/base/big_array.h"
 
 #include <sys/mman.h>
 
 #include <cstdlib>
 
-namespace haptrial::geometry {
+namespace haptrial {
 
 void* take_pages(std::size_t bytes) {
   constexpr std::size_t kLine = 64;
@@ -27,4 +27,4 @@ void* take_pages(std::size_t bytes) {
 
 void give_pages(void* memory) noexcept { std::free(memory); }
 
-}  // namespace haptrial::geometry
+}  // namespace haptrial
