@@ -12,8 +12,10 @@
 #include "core/base/random.h"
 #include "core/record/rounding.h"
 #include "core/record/schema.h"
+#include "protocols/session_task.h"
 #include "tests/protocols/drilling_fixture.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/scripted_device.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -185,6 +187,45 @@ TEST(DrillingPassTest, WhatIsSimulatedIsOnTheGridsOfTheFile) {
     }
     EXPECT_EQ(stored(once.pedal), once.pedal);
     EXPECT_EQ(as_recorded(once).orientation.coeffs(), once.orientation.coeffs());
+  }
+}
+
+/// Through the task, as a session has it: a jump of the device while the burr is pressed in.
+TEST(DrillingPassTest, AFaultBringsTheForceToZeroAndEveryTickIsLoggedAllTheSame) {
+  Workshop shop;
+  test::ScriptedDevice device;
+  constexpr std::size_t kFault = 1500;
+  constexpr std::size_t kTicks = 2000;
+  device.on_read = [&](std::size_t tick, device::DeviceReading& reading) {
+    const double depth = std::min(0.006, 2e-6 * static_cast<double>(tick));
+    reading = at({0.005, 0.0052 - depth, 0.0}, 1u);
+    reading.tool.position.x() += tick == kFault ? 0.02 : 0.0;
+    return true;
+  };
+  device::EnvelopeLimits limits;
+  limits.ramp_in = 0.0;
+  SessionTask::Log log;
+  SessionTask::ToolLog tool_log;
+  SessionTask task(device, limits, log, {}, SessionTask::Leave::kNever, {}, &tool_log);
+  task.start(*shop.pass, 0);
+  for (std::uint64_t i = 0; i < kTicks; ++i) {
+    task.tick({i, static_cast<std::int64_t>(i) * 1'000'000, kDt});
+  }
+  EXPECT_GT(device.written[kFault - 1].norm(), 0.1);
+  for (std::size_t i = kFault; i < kTicks; ++i) {
+    ASSERT_EQ(device.written[i], Vector3d::Zero());
+  }
+  ASSERT_TRUE(task.idle());
+  EXPECT_EQ(task.result().fault, device::Fault::kJump);
+  EXPECT_EQ(task.result().state, PassState::kAborted);
+  const auto tool = rows_of(tool_log);
+  const auto samples = rows_of(log);
+  ASSERT_EQ(tool.size(), kTicks);
+  ASSERT_EQ(samples.size(), kTicks);
+  for (std::size_t i = 0; i < kTicks; ++i) {
+    ASSERT_EQ(tool[i].sequence, samples[i].sequence);
+    ASSERT_EQ(tool[i].active, i < kFault);
+    ASSERT_EQ(tool[i].buttons, 1u);
   }
 }
 
