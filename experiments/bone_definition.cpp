@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/base/table.h"
 #include "core/bone/data/load_bone.h"
+#include "core/bone/data/mandible.h"
 #include "core/bone/data/temporal_bone.h"
 #include "experiments/drilling_study.h"
 
@@ -209,6 +210,12 @@ bone::BoneModel load_source(const std::string& source, const BoneDefinition& d,
     options.seed = d.bone_seed;
     options.spacing = d.spacing.value_or(options.spacing);
     return bone::make_temporal_bone(options);
+  }
+  if (source == "procedural mandible") {
+    bone::MandibleOptions options;
+    options.seed = d.bone_seed;
+    options.spacing = d.spacing.value_or(options.spacing);
+    return bone::make_mandible(options);
   }
   bone::LoadOptions options;
   options.spacing = d.spacing;
