@@ -261,11 +261,11 @@ BoneModel grey_bone(const Import& job, const VolumeHead& head, const UprightVolu
   check_room(job, plan.grid, 4.0 * sizeof(float) + 2.0);
   BoneModel model;
   model.grid = plan.grid;
-  geometry::BigArray<float> resampled;
+  BigArray<float> resampled;
   if (!plan.as_it_is) {
     resampled = resample_grey(volume, plan.grid, plan.own_axes, job.report);
   }
-  const geometry::BigArray<float>& values = plan.as_it_is ? volume.components[0] : resampled;
+  const BigArray<float>& values = plan.as_it_is ? volume.components[0] : resampled;
   model.labels.resize(values.size());
   model.density.resize(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -303,7 +303,7 @@ BoneModel saved_bone(const Import& job, const VolumeHead& head, const UprightVol
   UprightVolume second = volume;
   second.components = {volume.components[1]};
   const Plan plan = plan_for(volume, job.options.spacing);
-  const geometry::BigArray<float> values =
+  const BigArray<float> values =
       plan.as_it_is ? second.components[0]
                     : resample_grey(second, plan.grid, plan.own_axes, job.report);
   for (std::size_t i = 0; i < values.size(); ++i) {

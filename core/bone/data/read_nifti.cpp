@@ -63,7 +63,7 @@ VolumeHead head_of(const std::string& name, const nifti_image& image) {
 }
 
 template <class T>
-void convert(const void* data, double slope, double offset, geometry::BigArray<float>& values) {
+void convert(const void* data, double slope, double offset, BigArray<float>& values) {
   const auto* bytes = static_cast<const char*>(data);
   for (std::size_t i = 0; i < values.size(); ++i) {
     T value;
@@ -73,7 +73,7 @@ void convert(const void* data, double slope, double offset, geometry::BigArray<f
 }
 
 /// @returns false for a type that is no number.
-bool convert(const nifti_image& image, geometry::BigArray<float>& values) {
+bool convert(const nifti_image& image, BigArray<float>& values) {
   const bool scaled = std::isfinite(image.scl_slope) && image.scl_slope != 0.0;
   const double slope = scaled ? image.scl_slope : 1.0;
   const double offset = scaled && std::isfinite(image.scl_inter) ? image.scl_inter : 0.0;

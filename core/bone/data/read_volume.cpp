@@ -141,8 +141,8 @@ std::string listen(int pipe, pid_t reader, const geometry::WorkReport& report) {
   }
 }
 
-geometry::BigArray<float> fetch(const std::string& name, int memory, std::size_t count) {
-  geometry::BigArray<float> values(count);
+BigArray<float> fetch(const std::string& name, int memory, std::size_t count) {
+  BigArray<float> values(count);
   auto* bytes = reinterpret_cast<char*>(values.data());
   std::size_t done = 0;
   while (done < count * sizeof(float)) {
@@ -154,7 +154,7 @@ geometry::BigArray<float> fetch(const std::string& name, int memory, std::size_t
   return values;
 }
 
-void make_finite(geometry::BigArray<float>& values) {
+void make_finite(BigArray<float>& values) {
   float lowest = std::numeric_limits<float>::max();
   for (const float value : values) {
     lowest = std::isfinite(value) ? std::min(lowest, value) : lowest;

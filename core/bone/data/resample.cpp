@@ -50,7 +50,7 @@ Taps taps_at(double at, double width, std::int32_t size) {
 }
 
 /// Replaces one axis of an array by as many values as there are taps.
-geometry::BigArray<float> filter_axis(const geometry::BigArray<float>& from,
+BigArray<float> filter_axis(const BigArray<float>& from,
                                       std::array<std::int32_t, 3> size, int axis,
                                       const std::vector<Taps>& taps) {
   const auto a = static_cast<std::size_t>(axis);
@@ -59,7 +59,7 @@ geometry::BigArray<float> filter_axis(const geometry::BigArray<float>& from,
   std::size_t outer = 1;
   for (std::size_t i = a + 1; i < 3; ++i) outer *= static_cast<std::size_t>(size[i]);
   const auto length = static_cast<std::size_t>(size[a]);
-  geometry::BigArray<float> to(stride * taps.size() * outer);
+  BigArray<float> to(stride * taps.size() * outer);
   geometry::parallel_for(outer, geometry::threads_or_all(0), [&](std::size_t o) {
     for (std::size_t t = 0; t < taps.size(); ++t) {
       float* row = to.data() + (o * taps.size() + t) * stride;
@@ -79,11 +79,11 @@ geometry::BigArray<float> filter_axis(const geometry::BigArray<float>& from,
 bool within(double at, std::int32_t size) { return at >= -0.5 && at <= size - 0.5; }
 
 /// Grid and volume have the same axes: one axis after the other.
-geometry::BigArray<float> resample_straight(const UprightVolume& volume,
+BigArray<float> resample_straight(const UprightVolume& volume,
                                             const geometry::VoxelGrid& grid, const VoxelMap& map,
                                             const geometry::WorkReport& report) {
   std::array<std::int32_t, 3> size = volume.size;
-  geometry::BigArray<float> values = volume.components[0];
+  BigArray<float> values = volume.components[0];
   for (int axis = 2; axis >= 0; --axis) {  // the coarsest axis of a scan first
     const auto a = static_cast<std::size_t>(axis);
     const double scale = map.turn(axis, axis);
@@ -100,8 +100,8 @@ geometry::BigArray<float> resample_straight(const UprightVolume& volume,
 }
 
 /// What voxels as coarse as the grid's can hold, at the volume's own places.
-geometry::BigArray<float> smoothed(const UprightVolume& volume, double spacing) {
-  geometry::BigArray<float> values = volume.components[0];
+BigArray<float> smoothed(const UprightVolume& volume, double spacing) {
+  BigArray<float> values = volume.components[0];
   for (int axis = 0; axis < 3; ++axis) {
     const double width = spacing / volume.steps.col(axis).norm();
     if (width <= 1.0) continue;
@@ -114,10 +114,10 @@ geometry::BigArray<float> smoothed(const UprightVolume& volume, double spacing) 
 }
 
 /// Any axes: 6 x 6 x 6 values for each voxel.
-geometry::BigArray<float> resample_turned(const UprightVolume& volume,
+BigArray<float> resample_turned(const UprightVolume& volume,
                                           const geometry::VoxelGrid& grid, const VoxelMap& map,
                                           float beyond, const geometry::WorkReport& report) {
-  const geometry::BigArray<float> source = smoothed(volume, grid.spacing);
+  const BigArray<float> source = smoothed(volume, grid.spacing);
   const auto nx = static_cast<std::size_t>(volume.size[0]);
   const auto ny = static_cast<std::size_t>(volume.size[1]);
   const auto value_at = [&](const Eigen::Vector3d& at) {
@@ -141,7 +141,7 @@ geometry::BigArray<float> resample_turned(const UprightVolume& volume,
     }
     return sum;
   };
-  geometry::BigArray<float> values(grid.count());
+  BigArray<float> values(grid.count());
   for (std::int32_t k = 0; k < grid.size[2]; ++k) {
     geometry::parallel_for(
         static_cast<std::size_t>(grid.size[1]), geometry::threads_or_all(0), [&](std::size_t row) {
@@ -210,7 +210,7 @@ UprightVolume upright(SourceVolume&& source) {
     return result;
   }
   for (std::size_t part = 0; part < parts; ++part) {
-    geometry::BigArray<float>& values = result.components.emplace_back(head.count());
+    BigArray<float>& values = result.components.emplace_back(head.count());
     std::size_t at = 0;
     for (std::int64_t k = 0; k < result.size[2]; ++k) {
       for (std::int64_t j = 0; j < result.size[1]; ++j) {
@@ -277,12 +277,12 @@ VoxelMap map_to(const UprightVolume& volume, const geometry::VoxelGrid& grid, bo
   return {turn, -(turn * volume.origin)};
 }
 
-geometry::BigArray<float> resample_grey(const UprightVolume& volume,
+BigArray<float> resample_grey(const UprightVolume& volume,
                                         const geometry::VoxelGrid& grid, bool own_axes,
                                         const geometry::WorkReport& report) {
   const auto [low, high] = std::ranges::minmax(volume.components[0]);
   const VoxelMap map = map_to(volume, grid, own_axes);
-  geometry::BigArray<float> values = own_axes ? resample_straight(volume, grid, map, report)
+  BigArray<float> values = own_axes ? resample_straight(volume, grid, map, report)
                                               : resample_turned(volume, grid, map, low, report);
   for (float& value : values) value = std::clamp(value, low, high);
   return values;

@@ -16,7 +16,7 @@ struct UprightVolume {
   std::array<std::int32_t, 3> size{0, 0, 0};
   Eigen::Matrix3d steps;  // columns: one voxel along i, j, k, in LPS [m]; diagonal above 0
   Eigen::Vector3d origin;
-  std::vector<geometry::BigArray<float>> components;  // count of voxels each
+  std::vector<BigArray<float>> components;  // count of voxels each
 };
 UprightVolume upright(SourceVolume&& source);
 
@@ -42,7 +42,7 @@ VoxelMap map_to(const UprightVolume& volume, const geometry::VoxelGrid& grid, bo
 /// coarser of both, so that what the new voxels cannot hold is filtered out before. Values stay in
 /// the range of the volume's; beyond its outer voxels they are its lowest.
 /// The same bytes on any number of threads.
-geometry::BigArray<float> resample_grey(const UprightVolume& volume,
+BigArray<float> resample_grey(const UprightVolume& volume,
                                         const geometry::VoxelGrid& grid, bool own_axes,
                                         const geometry::WorkReport& report);
 

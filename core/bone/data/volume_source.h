@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/big_array.h"
+#include "core/base/big_array.h"
 #include "core/geometry/work.h"
 
 namespace haptrial::bone {
@@ -35,7 +35,7 @@ struct VolumeHead {
 
 struct SourceVolume {
   VolumeHead head;
-  geometry::BigArray<float> values;  // count() x components
+  BigArray<float> values;  // count() x components
 };
 
 /// Asked before memory is taken: what for, and how many bytes; throws InputError to refuse.

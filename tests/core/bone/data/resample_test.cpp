@@ -19,7 +19,7 @@ UprightVolume volume_of(std::array<std::int32_t, 3> size, const Eigen::Matrix3d&
   volume.size = size;
   volume.steps = steps;
   volume.origin = Eigen::Vector3d(0.01, -0.02, 0.03);
-  geometry::BigArray<float>& values = volume.components.emplace_back();
+  BigArray<float>& values = volume.components.emplace_back();
   for (int k = 0; k < size[2]; ++k) {
     for (int j = 0; j < size[1]; ++j) {
       for (int i = 0; i < size[0]; ++i) {
@@ -37,7 +37,7 @@ Eigen::Matrix3d edges(double x, double y, double z) {
 
 /// The largest difference from value(place), away from the borders.
 template <class Value>
-double worst_error(const geometry::VoxelGrid& grid, const geometry::BigArray<float>& values,
+double worst_error(const geometry::VoxelGrid& grid, const BigArray<float>& values,
                    int border, Value&& value) {
   double worst = 0.0;
   for (int k = border; k < grid.size[2] - border; ++k) {
