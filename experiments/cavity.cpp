@@ -178,8 +178,8 @@ subject::DrillingChart make_chart(const bone::BoneModel& model, const Eigen::Iso
 }
 
 std::vector<float> cavity_depths(const bone::BoneModel& model, const Eigen::Isometry3d& X_WB,
-                                 const subject::DrillingChart& chart) {
-  const std::vector<float> floor = subject::cavity_floor(chart);
+                                 const subject::DrillingChart& chart,
+                                 const std::vector<float>& floor) {
   std::vector<float> depths(model.grid.count(), -1.0F);
   std::size_t at = 0;
   for (int k = 0; k < model.grid.size[2]; ++k) {

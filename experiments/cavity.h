@@ -22,8 +22,8 @@ struct CavityParameters {
   Eigen::Vector3d inward{-Eigen::Vector3d::UnitY()};  // into the bone, in W, unit length
   std::string beside{"incus"};                        // name of a structure
   Eigen::Vector3d offset_B{-2.0e-3, 7.0e-3, 1.0e-3};  // of the end from its middle, in B [m]
-  double radius{4e-3};                                // at the end > 0 [m]
-  double slope{0.6};                                  // radius by height >= 0
+  double radius{3.5e-3};                              // at the end > 0 [m]
+  double slope{0.45};                                 // radius by height >= 0
   double margin{1e-3};                                // to any structure >= 0 [m]
   std::vector<std::string> structures;                // with margins of their own
   std::vector<double> margins;                        // theirs >= 0 [m]
@@ -38,8 +38,10 @@ subject::DrillingChart make_chart(const bone::BoneModel& model, const Eigen::Iso
                                   const CavityParameters& cavity);
 
 /// Of each voxel of a bone (grid.count()): how deep below the first bone of its column it lies,
-/// where it is bone that the cavity asks to be removed; -1 elsewhere. [m]
+/// where it is plain bone that the cavity asks to be removed; -1 elsewhere. [m]
+/// @param floor  of the columns: cavity_floor(), or as far as a burr reaches
 std::vector<float> cavity_depths(const bone::BoneModel& model, const Eigen::Isometry3d& X_WB,
-                                 const subject::DrillingChart& chart);
+                                 const subject::DrillingChart& chart,
+                                 const std::vector<float>& floor);
 
 }  // namespace haptrial::experiments

@@ -125,6 +125,15 @@ struct RatedBone {
   std::vector<float> planned;
 };
 
+double smallest_burr(const BoneDefinition& d) {
+  double radius = 1.0;
+  for (const bone::ToolSpec& tool : d.simulator.tools) {
+    radius =
+        tool.kind == bone::ToolKind::kBurr ? std::min(radius, 0.5 * tool.burr.diameter) : radius;
+  }
+  return radius;
+}
+
 std::vector<RatedBone> bones_of(const record::SessionReader& session) {
   const record::SessionInfo& info = session.info();
   const BoneDefinition d = parse_bone_definition(info.definition, info.definition_name);
@@ -139,7 +148,10 @@ std::vector<RatedBone> bones_of(const record::SessionReader& session) {
     bone.model = drilling::bone_of(record);
     bone.X_WB = pose_of(d.placement, bone.model.grid);
     bone.chart = make_chart(bone.model, bone.X_WB, *d.cavity);
-    bone.planned = cavity_depths(bone.model, bone.X_WB, bone.chart);
+    // Nobody can be blamed for corners that no burr gets into.
+    const subject::BurrReach reach =
+        subject::burr_reach(bone.chart, subject::cavity_floor(bone.chart), smallest_burr(d));
+    bone.planned = cavity_depths(bone.model, bone.X_WB, bone.chart, reach.floor);
     bones.push_back(std::move(bone));
   }
   return bones;

@@ -14,8 +14,8 @@ DrillingSkill drilling_skill(double skill) noexcept {
   DrillingSkill k{};
   k.near_force = line(0.24, 0.13);
   k.far_force = line(2.4, 2.2);
-  k.near_distance = line(0.3e-3, 1.0e-3);
-  k.far_distance = line(2.0e-3, 6.0e-3);
+  k.near_distance = line(0.0, 0.5e-3);
+  k.far_distance = line(1.0e-3, 3.0e-3);
   k.stroke_rate = line(1.0, 1.4);
   k.stroke_length = line(4e-3, 8e-3);
   k.pause = line(0.30, 0.05);
@@ -25,12 +25,12 @@ DrillingSkill drilling_skill(double skill) noexcept {
   k.region_error = line(2.5e-3, 0.4e-3);
   k.saucer = line(0.60, 1.0);
   k.evenness = line(0.10, 1.0);
-  k.bite = line(3.0e-3, 1.0e-3);
+  k.bite = line(3.0e-3, 1.5e-3);
   k.undercut = line(0.25, 0.0);
   k.looking = line(0.10, 0.90);
   k.look_error = line(0.30, 0.08);
   k.careful = line(0.20, 1.0);
-  k.completeness = line(0.75, 0.97);
+  k.completeness = line(0.70, 0.94);
   return k;
 }
 

@@ -16,21 +16,24 @@ namespace {
 constexpr double kStiffness = 300.0;     // of the arm about where it wants to be [N/m]
 constexpr double kDamping = 25.0;        // [N·s/m]
 constexpr double kDrag = 40.0;           // of the hand itself, that it knows to push against
+constexpr double kFriction = 0.1;        // of the handle, that it has learnt to overcome [N]
 constexpr double kStrongest = 6.0;       // of the arm [N]
 constexpr double kStrongestAside = 1.5;  // while it drills [N]
 constexpr double kVelocityTime = 8e-3;   // over which it feels its velocity [s]
-constexpr double kTravel = 0.08;         // [m/s]
-constexpr double kDown = 0.05;           // through the air [m/s]
+constexpr double kTravel = 0.12;         // [m/s]
+constexpr double kDown = 0.08;           // through the air [m/s]
 constexpr double kOnto = 0.012;          // close to the bone [m/s]
 constexpr double kHover = 1e-3;          // over what it passes [m]
 constexpr double kThere = 1.5e-3;        // [m]
-constexpr double kShell = 1.2e-3;        // that is left to the fine burr beyond the margin [m]
+constexpr double kShell = 1.0e-3;        // that is left to the fine burr beyond the margin [m]
 constexpr double kPressing = 0.05;       // of a button, and its rest [s]
 constexpr double kLookLonger = 3.0;      // than this nobody tries [s]
 constexpr double kLookRate = 0.15;       // of the hand for an error of the view [m/(s·rad)]
+constexpr double kRoomToLook = 0.03;     // over the bone for a hand that turns the view [m]
 constexpr double kSeenWell = 0.06;       // [rad]
-constexpr double kWorthALook = 0.35;     // [rad]
-constexpr double kPatience = 1.0;        // without bone under the burr [s]
+constexpr double kWorthALook = 0.6;      // [rad]
+constexpr double kPatience = 1.0;        // strokes without bone under the burr
+constexpr double kRoughShare = 0.9;      // of the completeness
 constexpr int kSweeps = 6;               // of a bout
 constexpr int kSweepsUnder = 4;
 
@@ -111,7 +114,7 @@ void DrillingSurgeon::begin_procedure() noexcept {
   at_ = std::min<std::size_t>(static_cast<std::size_t>(begun_), procedures_.size() - 1);
   ++begun_;
   fine_ = false;
-  after_look_ = false;
+  looks_ = false;
   now().memory.begin(now().chart->surface);
   now().memory.begin_burr(now().rough, parameters_.rough.radius);
 }
@@ -180,7 +183,9 @@ bool DrillingSurgeon::wants_to_look(const stimulus::DrillingView& seen) noexcept
 
 void DrillingSurgeon::next_bout(const stimulus::DrillingView& seen) noexcept {
   Procedure& p = now();
-  const bool enough = p.memory.left() < 1.0 - p.skill.completeness;
+  // What the rough burr leaves is for the fine one.
+  const double share = p.careful && !fine_ ? kRoughShare : 1.0;
+  const bool enough = p.memory.left() < 1.0 - share * p.skill.completeness;
   const BoutChoice choice{p.skill.evenness, p.skill.stroke_length, p.skill.bite, p.skill.undercut};
   if (enough || !p.memory.choose(choice, last_.head<2>(), p.random, bout_)) {
     lift_to_ = p.memory.opening().z() - 4.0 * parameters_.rough.radius;
@@ -193,8 +198,12 @@ void DrillingSurgeon::next_bout(const stimulus::DrillingView& seen) noexcept {
     }
     return;
   }
+  looks_ = wants_to_look(seen);
   lift_to_ = p.memory.over(last_.head<2>(), bout_.from) - kHover;
-  begin(wants_to_look(seen) ? Doing::kLook : Doing::kLift);
+  if (looks_) {
+    lift_to_ = std::min(lift_to_, p.memory.opening().z() - kRoomToLook);
+  }
+  begin(Doing::kLift);
 }
 
 void DrillingSurgeon::decide(const stimulus::DrillingView& seen,
@@ -203,7 +212,7 @@ void DrillingSurgeon::decide(const stimulus::DrillingView& seen,
   switch (doing_) {
     case Doing::kLift:
       if (place.z() < lift_to_ + kThere) {
-        begin(Doing::kTravel);
+        begin(looks_ ? Doing::kLook : Doing::kTravel);
       }
       break;
     case Doing::kTravel:
@@ -229,8 +238,11 @@ void DrillingSurgeon::decide(const stimulus::DrillingView& seen,
       break;
     case Doing::kLook: {
       const Eigen::Vector3d from = (seen.eye - seen.target).normalized();
-      if (std::acos(std::clamp(look_.dot(from), -1.0, 1.0)) < kSeenWell || time_ > kLookLonger) {
-        lift_to_ = std::min(lift_to_, p.memory.over(place.head<2>(), bout_.from) - kHover);
+      const bool low = place.z() > p.memory.opening().z() - 2.0 * parameters_.rough.radius;
+      if (std::acos(std::clamp(look_.dot(from), -1.0, 1.0)) < kSeenWell || time_ > kLookLonger ||
+          low) {
+        looks_ = false;
+        lift_to_ = p.memory.over(place.head<2>(), bout_.from) - kHover;
         begin(Doing::kLift);
       }
       break;
@@ -250,7 +262,8 @@ void DrillingSurgeon::decide_bout(const stimulus::DrillingView& seen,
   const int sweeps = bout_.under ? kSweepsUnder : kSweeps;
   const bool at_bottom = place.z() > depth_limit(place) - 0.2e-3;
   idle_ = seen.contact && !at_bottom ? 0.0 : idle_ + 1e-3;
-  if (time_ * now().skill.stroke_rate > sweeps || (!bout_.under && idle_ > kPatience)) {
+  if (time_ * now().skill.stroke_rate > sweeps ||
+      (!bout_.under && idle_ * now().skill.stroke_rate > kPatience)) {
     now().memory.end_bout(bout_);
     begin(Doing::kPause);
   }
@@ -343,8 +356,9 @@ double DrillingSurgeon::depth_limit(const Eigen::Vector3d& place) const noexcept
   if (bout_.under) {
     return p.memory.touch(bout_.from) + 0.5e-3;
   }
-  const double limit = std::min(p.memory.limit(place.head<2>()), p.chart->end.z());
-  return doing_ == Doing::kBout ? std::min(limit, bout_depth_ + p.skill.bite) : limit;
+  // Beside the bone there is nothing to stop at.
+  const double begun = doing_ == Doing::kBout ? bout_depth_ : p.memory.touch(bout_.from) + kHover;
+  return std::min(p.memory.limit(place.head<2>()), begun + p.skill.bite);
 }
 
 Eigen::Vector3d DrillingSurgeon::push(const stimulus::DrillingView& seen,
@@ -362,7 +376,7 @@ Eigen::Vector3d DrillingSurgeon::push(const stimulus::DrillingView& seen,
     inward = kStiffness * scale_ * room - kDamping * fall;
   } else if (seen.contact) {
     const double gate = std::min(1.0, room / 0.3e-3);
-    inward = now().noise.press(press(place)) * gate - kDamping * fall;
+    inward = now().noise.press(press(place)) * gate + kFriction - kDamping * fall;
   } else {
     const double wanted = std::min(kOnto, 10.0 * room) * scale_;
     inward = (kDamping + kDrag) * (wanted - fall) + kDrag * fall;

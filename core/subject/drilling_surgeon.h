@@ -109,7 +109,7 @@ class DrillingSurgeon final : public stimulus::Observer {
   double bout_depth_{0.0};                          // of the burr's centre where the bout began [m]
   double idle_{0.0};                                // of the bout, without bone under the burr [s]
   double lift_to_{0.0};                             // depth of the centre [m]
-  bool after_look_{false};                          // goes on to the bout
+  bool looks_{false};                               // before the bout
   Eigen::Vector3d look_{Eigen::Vector3d::UnitZ()};  // direction from which it wants to see, in W
   Eigen::Vector3d goal_{Eigen::Vector3d::Zero()};   // of the arm, a place
   Eigen::Vector3d goal_velocity_{Eigen::Vector3d::Zero()};
