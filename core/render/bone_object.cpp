@@ -2,7 +2,9 @@
 
 #include <GL/glcorearb.h>
 
+#include <algorithm>
 #include <cstring>
+#include <numeric>
 
 namespace haptrial::render {
 namespace {
@@ -39,7 +41,8 @@ BoneObject::BoneObject(const Gl& gl, std::uint32_t id,
       surface_(std::move(depths)),
       vertices_(gl, sizeof(GpuVertex)),
       complete_(gl, sizeof(bone::SurfaceTriangle)),
-      chosen_(gl, sizeof(bone::SurfaceTriangle)) {
+      chosen_(gl, sizeof(bone::SurfaceTriangle)),
+      part_(gl, sizeof(bone::SurfaceTriangle)) {
   gl_.gen_vertex_arrays(1, &array_);
   gl_.bind_vertex_array(array_);
   vertices_.bind(GL_ARRAY_BUFFER);
@@ -59,6 +62,7 @@ BoneObject::~BoneObject() { gl_.delete_vertex_arrays(1, &array_); }
 std::size_t BoneObject::follow(const bone::BoneVolume& volume, const BonePalette& palette,
                                const std::vector<Eigen::Vector3d>& eyes, VisibilityWorker* worker) {
   surface_.update(volume);
+  blocks_.follow(surface_, volume.grid());
   if (surface_.rebuilt()) {
     valid_ = false;
     waiting_ = false;
@@ -134,13 +138,52 @@ std::size_t BoneObject::send(const BonePalette& palette) {
 std::size_t BoneObject::draw(bool visible) const {
   const bool chosen = visible && valid_;
   const std::size_t count = chosen ? visible_.triangles().size() : surface_.triangles().size();
+  draw_triangles(chosen ? chosen_ : complete_, count);
+  return count;
+}
+
+std::size_t BoneObject::draw(bool visible, const PixelBox& part, const Eigen::Matrix4d& to_clip,
+                             int width, int height) {
+  const bool chosen = visible && valid_;
+  places_.clear();
+  for (const BoneBlocks::Block& block : blocks_.blocks()) {
+    if (!block.quads.empty() && part.intersects(pixels_of(block.box, to_clip, width, height))) {
+      gather(chosen, block.quads);
+    }
+  }
+  std::sort(places_.begin(), places_.end());
+  std::vector<std::uint32_t> all(places_.size());
+  std::iota(all.begin(), all.end(), 0U);
+  const auto triangles = chosen ? visible_.triangles() : surface_.triangles();
+  part_.update(places_.size(), std::move(all), [&](ItemRange range, std::byte* to) {
+    for (std::size_t i = 0; i < range.count; ++i) {
+      std::memcpy(to + i * sizeof(bone::SurfaceTriangle), &triangles[places_[range.first + i]],
+                  sizeof(bone::SurfaceTriangle));
+    }
+  });
+  draw_triangles(part_, places_.size());
+  return places_.size();
+}
+
+void BoneObject::gather(bool chosen, std::span<const std::int32_t> quads) {
+  for (const std::int32_t quad : quads) {
+    const auto slot = 2 * static_cast<std::size_t>(quad);
+    for (std::size_t half = slot; half < slot + 2; ++half) {
+      const std::int32_t place = chosen ? visible_.place_of(half) : static_cast<std::int32_t>(half);
+      if (place >= 0) {
+        places_.push_back(static_cast<std::uint32_t>(place));
+      }
+    }
+  }
+}
+
+void BoneObject::draw_triangles(const GlBuffer& from, std::size_t count) const {
   if (count > 0) {
     gl_.bind_vertex_array(array_);
-    (chosen ? chosen_ : complete_).bind(GL_ELEMENT_ARRAY_BUFFER);
+    from.bind(GL_ELEMENT_ARRAY_BUFFER);
     gl_.draw_elements(GL_TRIANGLES, static_cast<int>(3 * count), GL_UNSIGNED_INT, nullptr);
     gl_.bind_vertex_array(0);
   }
-  return count;
 }
 
 }  // namespace haptrial::render

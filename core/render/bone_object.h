@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "core/bone/surface.h"
+#include "core/render/bone_blocks.h"
+#include "core/render/bone_layer.h"
 #include "core/render/bone_palette.h"
 #include "core/render/bone_visibility.h"
 #include "core/render/gl.h"
@@ -35,12 +37,22 @@ class BoneObject {
   /// @param visible  may draw only the visible array, where there is one
   /// @returns triangles sent
   std::size_t draw(bool visible) const;
+  /// Only the triangles that may fall into a part of a picture of width x height pixels, in the
+  /// order of draw(): where two have the same depth, the same one shows.
+  /// @param to_clip  from B to clip space
+  std::size_t draw(bool visible, const PixelBox& part, const Eigen::Matrix4d& to_clip, int width,
+                   int height);
   bool has_visible_array() const noexcept { return valid_; }
+  /// Grows when the visible array is begun anew; 0 while there is none.
+  std::uint64_t array() const noexcept { return valid_ ? generation_ : 0; }
+  const BoneBlocks& blocks() const noexcept { return blocks_; }
   std::size_t triangle_count() const noexcept { return surface_.triangle_count(); }
 
  private:
   void look(const std::vector<Eigen::Vector3d>& eyes, VisibilityWorker* worker);
   std::size_t send(const BonePalette& palette);
+  void gather(bool chosen, std::span<const std::int32_t> quads);
+  void draw_triangles(const GlBuffer& from, std::size_t count) const;
 
   struct GpuVertex {
     std::array<float, 3> place;
@@ -51,6 +63,7 @@ class BoneObject {
   Gl gl_;
   std::uint32_t id_;
   bone::Surface surface_;
+  BoneBlocks blocks_;
   VisibleArray visible_;
   bool valid_{false};                  // visible_ is right for eyes_
   bool waiting_{false};                // for a pass
@@ -60,7 +73,9 @@ class BoneObject {
   std::vector<std::int32_t> since_;    // quads changed since the pass that is waited for
   GlBuffer vertices_;
   GlBuffer complete_;
-  GlBuffer chosen_;  // the visible array
+  GlBuffer chosen_;                    // the visible array
+  GlBuffer part_;                      // what is drawn of a part of the picture
+  std::vector<std::uint32_t> places_;  // of these triangles in their array; kept for its room
   Gl::Name array_{0};
 };
 

@@ -6,8 +6,10 @@
 #include <map>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "core/render/bone_dust.h"
+#include "core/render/bone_layer.h"
 #include "core/render/bone_mesh.h"
 #include "core/render/bone_object.h"
 #include "core/render/bone_palette.h"
@@ -36,6 +38,23 @@ void check(const BoneFrame& frame, int width, int height) {
   }
 }
 
+/// Upside down, as the layer is.
+EyeView turned(EyeView view) {
+  view.projection.row(1) *= -1.0;
+  return view;
+}
+
+bool is_same(const EyeView& a, const EyeView& b) {
+  return a.view == b.view && a.projection == b.projection;
+}
+
+/// A bone as it is in the kept picture.
+struct DrawnBone {
+  Eigen::Matrix4d pose;
+  std::uint64_t array;           // BoneObject::array()
+  std::vector<PixelBox> covers;  // by eye
+};
+
 }  // namespace
 
 struct BoneScene::Impl {
@@ -49,7 +68,8 @@ struct BoneScene::Impl {
         to_eye(gl.get_uniform_location(program, "to_eye")),
         to_clip(gl.get_uniform_location(program, "to_clip")),
         light(gl.get_uniform_location(program, "light")),
-        dust(gl) {
+        dust(gl),
+        layer(gl) {
     if (style.visible_array && style.background_visibility) {
       worker = std::make_unique<VisibilityWorker>();
     }
@@ -60,7 +80,14 @@ struct BoneScene::Impl {
 
   void follow(const BoneFrame& frame, const std::vector<EyeView>& views);
   void begin(const BoneFrame& frame, const std::vector<EyeView>& views);
-  void draw(const BoneFrame& frame, const EyeView& view);
+  std::vector<PixelBox> changed_parts(const BoneFrame& frame, const std::vector<EyeView>& views,
+                                      int width, int height);
+  void keep(const BoneFrame& frame, const std::vector<EyeView>& views, bool there, int across,
+            int height);
+  void draw_bones(const BoneFrame& frame, const EyeView& view, const PixelBox& part, int width,
+                  int height);
+  void draw_over(const BoneFrame& frame, const EyeView& view);
+  void use(const EyeView& view) const;
   void draw_meshes(const BoneFrame& frame, const EyeView& view, bool translucent);
   void use(const EyeView& view, const Eigen::Isometry3d& pose) const;
   void end() const;
@@ -74,6 +101,9 @@ struct BoneScene::Impl {
   int to_clip;
   int light;
   DustDrawing dust;
+  BoneLayer layer;
+  std::vector<EyeView> seen_from;            // as the kept picture is
+  std::map<std::uint32_t, DrawnBone> shown;  // in the kept picture
   std::map<std::uint32_t, std::unique_ptr<BoneObject>> bones;
   std::map<const geometry::Mesh*, std::unique_ptr<BoneMesh>> meshes;
   std::unique_ptr<VisibilityWorker> worker;
@@ -141,20 +171,69 @@ void BoneScene::Impl::draw_meshes(const BoneFrame& frame, const EyeView& view, b
   }
 }
 
-void BoneScene::Impl::draw(const BoneFrame& frame, const EyeView& view) {
+/// What of each eye's picture is not as the kept one has it.
+std::vector<PixelBox> BoneScene::Impl::changed_parts(const BoneFrame& frame,
+                                                     const std::vector<EyeView>& views, int width,
+                                                     int height) {
+  std::vector<PixelBox> parts(views.size());
+  std::map<std::uint32_t, DrawnBone> before = std::exchange(shown, {});
+  for (const SceneBone& bone : frame.bones) {
+    const BoneObject& object = *bones.at(bone.id);
+    DrawnBone now{bone.pose.matrix(), style.visible_array ? object.array() : 0, {}};
+    const auto known = before.find(bone.id);
+    const bool same =
+        known != before.end() && known->second.pose == now.pose && known->second.array == now.array;
+    for (std::size_t eye = 0; eye < views.size(); ++eye) {
+      const Eigen::Matrix4d clip = views[eye].projection * views[eye].view * now.pose;
+      now.covers.push_back(pixels_of(object.blocks().bounds(), clip, width, height));
+      parts[eye].extend(same ? pixels_of(object.blocks().changed(), clip, width, height)
+                             : now.covers[eye]);
+    }
+    if (same) {
+      before.erase(known);
+    }
+    shown.emplace(bone.id, std::move(now));
+  }
+  for (const auto& [id, gone] : before) {  // from here, or away
+    for (std::size_t eye = 0; eye < views.size(); ++eye) {
+      parts[eye].extend(gone.covers[eye]);
+    }
+  }
+  return parts;
+}
+
+void BoneScene::Impl::use(const EyeView& view) const {
   const Eigen::Matrix4f clip = view.projection.cast<float>();
   gl.use_program(program);
   gl.uniform_matrix4fv(to_clip, 1, GL_FALSE, clip.data());
   gl.uniform4f(light, static_cast<float>(style.ambient), static_cast<float>(style.diffuse),
                static_cast<float>(style.specular), static_cast<float>(style.shininess));
-  gl.disable(GL_BLEND);
-  gl.depth_mask(GL_TRUE);
-  draw_meshes(frame, view, false);  // they hide much of the bone
-  figures.drawn = 0;
+}
+
+void BoneScene::Impl::draw_bones(const BoneFrame& frame, const EyeView& view, const PixelBox& part,
+                                 int width, int height) {
+  use(view);
+  const auto count = [](const Eigen::Vector2i& size) {
+    return static_cast<std::size_t>(size.x() + 1) * static_cast<std::size_t>(size.y() + 1);
+  };
+  const std::size_t pixels = count(part.sizes());
+  figures.pixels += pixels;
+  // With much to draw, finding out what would take longer than it saves.
+  const bool all = 2 * pixels > count(all_pixels(width, height).sizes());
   for (const SceneBone& bone : frame.bones) {
     use(view, bone.pose);
-    figures.drawn += bones.at(bone.id)->draw(style.visible_array);
+    BoneObject& object = *bones.at(bone.id);
+    const Eigen::Matrix4d clip = view.projection * view.view * bone.pose.matrix();
+    figures.drawn += all ? object.draw(style.visible_array)
+                         : object.draw(style.visible_array, part, clip, width, height);
   }
+}
+
+void BoneScene::Impl::draw_over(const BoneFrame& frame, const EyeView& view) {
+  use(view);
+  gl.disable(GL_BLEND);
+  gl.depth_mask(GL_TRUE);
+  draw_meshes(frame, view, false);
   gl.enable(GL_BLEND);
   gl.blend_equation(GL_FUNC_ADD);
   gl.blend_func_separate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
@@ -164,12 +243,45 @@ void BoneScene::Impl::draw(const BoneFrame& frame, const EyeView& view) {
   gl.depth_mask(GL_TRUE);
 }
 
+/// Draws of the bones what is not as the kept picture has it.
+void BoneScene::Impl::keep(const BoneFrame& frame, const std::vector<EyeView>& views, bool there,
+                           int across, int height) {
+  std::vector<PixelBox> parts = changed_parts(frame, views, across, height);
+  there = there && style.kept_layer &&
+          std::equal(views.begin(), views.end(), seen_from.begin(), seen_from.end(), is_same);
+  seen_from = views;
+  gl.disable(GL_BLEND);
+  gl.disable(GL_SCISSOR_TEST);
+  if (!there) {
+    gl.clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  }
+  for (std::size_t eye = 0; eye < views.size(); ++eye) {
+    const int left = static_cast<int>(eye) * across;
+    PixelBox& part = parts[eye];
+    if (!there) {
+      part = all_pixels(across, height);
+    }
+    if (part.isEmpty()) {
+      continue;
+    }
+    gl.viewport(left, 0, across, height);
+    if (there) {
+      gl.enable(GL_SCISSOR_TEST);
+      gl.scissor(left + part.min().x(), part.min().y(), part.sizes().x() + 1, part.sizes().y() + 1);
+      gl.clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    }
+    draw_bones(frame, views[eye], part, across, height);
+  }
+}
+
 /// As other drawing expects it.
 void BoneScene::Impl::end() const {
   gl.disable(GL_DEPTH_TEST);
   gl.disable(GL_CULL_FACE);
+  gl.cull_face(GL_BACK);
   gl.disable(GL_BLEND);
   gl.use_program(0);
+  layer.show();
 }
 
 BoneScene::BoneScene(const Gl& gl, const BoneStyle& style,
@@ -193,19 +305,21 @@ void BoneScene::draw(const BoneFrame& frame, int width, int height) {
     views = {view_of(frame.camera, aspect)};
   }
   scene.begin(frame, views);
+  std::transform(views.begin(), views.end(), views.begin(), turned);
+  const bool there = scene.layer.begin(width, height);
   const Colour& ground = scene.style.background;
-  gl.disable(GL_SCISSOR_TEST);
   gl.enable(GL_DEPTH_TEST);
   gl.depth_func(GL_LESS);
   gl.depth_mask(GL_TRUE);
   gl.enable(GL_CULL_FACE);
-  gl.cull_face(GL_BACK);
+  gl.cull_face(GL_FRONT);  // of a picture upside down
   gl.clear_color(static_cast<float>(ground.red), static_cast<float>(ground.green),
                  static_cast<float>(ground.blue), 1.0F);
-  gl.clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  scene.keep(frame, views, there, across, height);
+  scene.layer.copy();
   for (std::size_t eye = 0; eye < views.size(); ++eye) {
     gl.viewport(static_cast<int>(eye) * across, 0, across, height);
-    scene.draw(frame, views[eye]);
+    scene.draw_over(frame, views[eye]);
   }
   scene.end();
   gl.viewport(0, 0, width, height);

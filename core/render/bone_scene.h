@@ -33,6 +33,7 @@ struct BoneStyle {
   /// luck, and with it a pixel here and there: pictures that must be the same each time do without.
   bool background_visibility{false};
   bool visible_array{true};  // else the complete array always
+  bool kept_layer{true};     // what rests is drawn once; else all in every frame
 };
 
 /// A bone or a piece of one. A new id brings a new surface; an id that is left out of a frame lets
@@ -69,8 +70,9 @@ struct BoneFrame {
 /// What the last draw() did.
 struct BoneFrameFigures {
   std::size_t triangles{0};  // of the bones, alive
-  std::size_t drawn{0};      // of them sent to OpenGL, for each eye
-  std::size_t uploaded{0};   // bytes of bone
+  std::size_t drawn{0};      // of them sent to OpenGL, for all eyes
+  std::size_t pixels{0};     // of the bones' picture drawn anew
+  std::size_t uploaded{0};   // bytes of bone that changed
   bool visible_only{false};  // the visible arrays were drawn
 };
 
@@ -79,7 +81,9 @@ struct BoneFrameFigures {
 /// volumes may change meanwhile. Source: Morris 2006, §3.2.7.
 ///
 /// While the camera moves all triangles are drawn; after it has come to rest those with a vertex
-/// whose normal is less than 90 degrees away from the eye's direction, once these are found.
+/// whose normal is less than 90 degrees away from the eye's direction, once these are found. Under
+/// a camera at rest the bones' picture is kept, and drawn anew only where a surface or a pose
+/// changed: what a frame costs then does not follow the size of the bones.
 class BoneScene {
  public:
   /// @param structures  by label, for their colours
@@ -91,8 +95,8 @@ class BoneScene {
   BoneScene(const BoneScene&) = delete;
   BoneScene& operator=(const BoneScene&) = delete;
 
-  /// Brings the surfaces up to date and draws into the bound framebuffer, which has depth, all of
-  /// its lower left width x height pixels. @throws std::invalid_argument for a frame that cannot be
+  /// Brings the surfaces up to date and draws all of the lower left width x height pixels of the
+  /// bound framebuffer, its colours only. @throws std::invalid_argument for a frame that cannot be
   /// drawn: a camera or pose that is not finite, a bone without a volume, an id twice.
   void draw(const BoneFrame& frame, int width, int height);
   const BoneFrameFigures& figures() const noexcept;

@@ -125,6 +125,15 @@ void VisibleArray::put(std::size_t slot, const bone::SurfaceTriangle& triangle) 
   changed_.push_back(static_cast<std::uint32_t>(place));
 }
 
+std::int32_t VisibleArray::place_of(std::size_t slot) const noexcept {
+  const std::int32_t place = slot < place_of_slot_.size() ? place_of_slot_[slot] : -1;
+  if (place < 0) {
+    return -1;
+  }
+  const bone::SurfaceTriangle& t = triangles_[static_cast<std::size_t>(place)];
+  return t[0] == t[1] ? -1 : place;
+}
+
 std::vector<std::uint32_t> VisibleArray::take_changed() { return std::exchange(changed_, {}); }
 
 }  // namespace haptrial::render

@@ -76,6 +76,8 @@ class VisibleArray {
                std::span<const Eigen::Vector3d> eyes);
 
   std::span<const bone::SurfaceTriangle> triangles() const noexcept { return triangles_; }
+  /// Where in triangles() the triangle of a slot is, for as long as it lives; -1: it does not show.
+  std::int32_t place_of(std::size_t slot) const noexcept;
   /// Places in triangles() that changed since the last call; all after set().
   std::vector<std::uint32_t> take_changed();
 

@@ -97,6 +97,12 @@ void load_textures(Gl& gl, const Loader& load) {
   load(gl.framebuffer_texture_2d, "glFramebufferTexture2D");
   load(gl.check_framebuffer_status, "glCheckFramebufferStatus");
   load(gl.delete_framebuffers, "glDeleteFramebuffers");
+  load(gl.gen_renderbuffers, "glGenRenderbuffers");
+  load(gl.bind_renderbuffer, "glBindRenderbuffer");
+  load(gl.renderbuffer_storage, "glRenderbufferStorage");
+  load(gl.framebuffer_renderbuffer, "glFramebufferRenderbuffer");
+  load(gl.delete_renderbuffers, "glDeleteRenderbuffers");
+  load(gl.blit_framebuffer, "glBlitFramebuffer");
 }
 
 }  // namespace

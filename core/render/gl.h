@@ -87,6 +87,14 @@ struct Gl {
                                  int level);
   Enum (*check_framebuffer_status)(Enum target);
   void (*delete_framebuffers)(int count, const Name* names);
+  void (*gen_renderbuffers)(int count, Name* names);
+  void (*bind_renderbuffer)(Enum target, Name name);
+  void (*renderbuffer_storage)(Enum target, Enum format, int width, int height);
+  void (*framebuffer_renderbuffer)(Enum target, Enum attachment, Enum renderbuffer_target,
+                                   Name renderbuffer);
+  void (*delete_renderbuffers)(int count, const Name* names);
+  void (*blit_framebuffer)(int from_x0, int from_y0, int from_x1, int from_y1, int to_x0, int to_y0,
+                           int to_x1, int to_y1, unsigned buffers, Enum filter);
 };
 
 /// @throws RunError naming the first function that is missing.
