@@ -85,6 +85,29 @@ TEST(BoneBlocksTest, OutsideOfTheChangedBoxNothingChanges) {
   EXPECT_TRUE(blocks.changed().isEmpty());
 }
 
+TEST(BoneBlocksTest, WhatVanishesWithoutATraceIsInTheChangedBox) {
+  BoneVolume volume(bone::model_of(40, [](const Voxel& v) {
+    return (v - Voxel(12, 12, 12)).squaredNorm() < 60 || (v - Voxel(33, 30, 31)).squaredNorm() < 9;
+  }));
+  Surface surface;
+  BoneBlocks blocks;
+  surface.update(volume);
+  blocks.follow(surface, volume.grid());
+  const std::vector<Corners> before = corners_of(surface);
+  change(volume, Voxel(33, 30, 31), 4, 1.0F);
+  surface.update(volume);
+  blocks.follow(surface, volume.grid());
+  const std::vector<Corners> after = corners_of(surface);
+  std::vector<Corners> gone;
+  std::set_difference(before.begin(), before.end(), after.begin(), after.end(),
+                      std::back_inserter(gone), comes_first);
+  EXPECT_GT(gone.size(), 100U);
+  EXPECT_EQ(before.size() - after.size(), gone.size());
+  EXPECT_TRUE(std::all_of(gone.begin(), gone.end(), [&](const Corners& corners) {
+    return holds(blocks.changed(), corners);
+  }));
+}
+
 TEST(BoneBlocksTest, EveryQuadIsInOneBlockThatHoldsIt) {
   RandomStream random(6, "blocks");
   BoneVolume volume(bumpy(37));
