@@ -195,6 +195,13 @@ struct BonePictureOptions {
 };
 int bone_picture(const BonePictureOptions& options);
 
+struct BoneStagesOptions {
+  std::string definition;
+  std::string out;  // new folder
+  int count{4};     // of stills
+};
+int bone_stages(const BoneStagesOptions& options);
+
 /// The subcommands of haptrial rate.
 struct RatePrepareOptions {
   std::string folder;   // of drilling sessions

@@ -331,6 +331,14 @@ class Commands {
     make->add_option("--spacing", bone_.spacing, "Edge of a voxel [mm] (0.5)");
     make->callback([this] { status_ = experiments::bone_make(bone_); });
     add_bone_picture(*bone);
+    CLI::App* stages =
+        subcommand(*bone, "stages", "Stills of a cavity, stage by stage, for participants",
+                   "haptrial bone stages experiments/construct_validity.toml --out stills");
+    stages->add_option("DEFINITION", bone_stages_.definition, "With a table [cavity] (.toml)")
+        ->required();
+    stages->add_option("--out", bone_stages_.out, "New folder")->required();
+    stages->add_option("--count", bone_stages_.count, "Stills, the untouched bone first (4)");
+    stages->callback([this] { status_ = experiments::bone_stages(bone_stages_); });
   }
 
   void add_bone_picture(CLI::App& bone) {
@@ -470,6 +478,7 @@ class Commands {
   experiments::MeshOptions mesh_;
   experiments::BoneOptions bone_;
   experiments::BonePictureOptions bone_picture_;
+  experiments::BoneStagesOptions bone_stages_;
   experiments::SpectrumOptions spectrum_;
   experiments::RatePrepareOptions rate_prepare_;
   experiments::RateImportOptions rate_import_;

@@ -13,6 +13,7 @@
 #include "core/base/random.h"
 #include "core/record/session_reader.h"
 #include "experiments/bone_definition.h"
+#include "experiments/stage_stills.h"
 #include "experiments/study_run.h"
 
 namespace haptrial::experiments {
@@ -124,15 +125,6 @@ struct RatedBone {
   DrillingChart chart;
   std::vector<float> planned;
 };
-
-double smallest_burr(const BoneDefinition& d) {
-  double radius = 1.0;
-  for (const bone::ToolSpec& tool : d.simulator.tools) {
-    radius =
-        tool.kind == bone::ToolKind::kBurr ? std::min(radius, 0.5 * tool.burr.diameter) : radius;
-  }
-  return radius;
-}
 
 std::vector<RatedBone> bones_of(const record::SessionReader& session) {
   const record::SessionInfo& info = session.info();

@@ -1,0 +1,29 @@
+#include <fmt/format.h>
+
+#include "analysis/staging.h"
+#include "core/base/error.h"
+#include "core/render/image.h"
+#include "experiments/arguments.h"
+#include "experiments/commands.h"
+#include "experiments/stage_stills.h"
+
+namespace haptrial::experiments {
+
+int bone_stages(const BoneStagesOptions& options) {
+  namespace fs = std::filesystem;
+  const int count = checked_number("--count", options.count, 2, 20);
+  if (fs::exists(options.out)) {
+    throw InputError(fmt::format("{}: is there already; allowed: a new folder", options.out));
+  }
+  const BoneDefinition definition = load_bone_definition(options.definition);
+  const std::vector<StageStill> stills = stage_stills(definition, count);
+  const analysis::Staging staging(options.out);
+  for (std::size_t stage = 0; stage < stills.size(); ++stage) {
+    render::write_png(staging.path() / fmt::format("stage-{}.png", stage + 1), stills[stage].image);
+  }
+  staging.publish();
+  fmt::print("{} stills: {}\n", stills.size(), options.out);
+  return 0;
+}
+
+}  // namespace haptrial::experiments

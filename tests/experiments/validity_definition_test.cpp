@@ -1,0 +1,149 @@
+// The definition of the construct-validity study: groups, cavity, virtual surgeons.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "core/base/table.h"
+#include "experiments/bone_definition.h"
+#include "experiments/stage_stills.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/shared_data.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using testing::HasSubstr;
+
+std::filesystem::path shipped() {
+  return std::filesystem::path(HAPTRIAL_SOURCE_DIR) / "experiments" / "construct_validity.toml";
+}
+
+std::string with(std::string text, const std::string& what, const std::string& by) {
+  const auto at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), by);
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    parse_bone_definition(text, "study.toml");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ValidityDefinitionTest, TheShippedStudyIsThatOfTheSource) {
+  const BoneDefinition d = load_bone_definition(shipped());
+  ASSERT_EQ(d.groups.size(), 3U);
+  EXPECT_EQ(d.groups[0].name, "surgeons");
+  EXPECT_EQ(d.groups[2].name, "novices");
+  EXPECT_EQ(d.groups[0].participants, 4);
+  EXPECT_EQ(d.groups[1].participants, 4);
+  EXPECT_EQ(d.groups[2].participants, 7);
+  EXPECT_EQ(d.design.trials, 2);
+  EXPECT_DOUBLE_EQ(d.practice, 900.0);
+  EXPECT_GT(d.groups[0].skill, d.groups[1].skill);
+  EXPECT_GT(d.groups[1].skill, d.groups[2].skill);
+  EXPECT_EQ(group_of(d, 3), &d.groups[0]);
+  EXPECT_EQ(group_of(d, 4), &d.groups[1]);
+  EXPECT_EQ(group_of(d, 14), &d.groups[2]);
+  EXPECT_EQ(group_of(d, 15), nullptr);
+  ASSERT_TRUE(d.surgeon);
+  EXPECT_EQ(d.simulator.tools[static_cast<std::size_t>(d.surgeon->fine.tool)].name, "diamond");
+}
+
+TEST(ValidityDefinitionTest, TheCavityIsBoneWithItsMarginsAndLeadsInward) {
+  const BoneDefinition d = load_bone_definition(shipped());
+  const bone::BoneModel& model = *d.bones.front();
+  const Eigen::Isometry3d pose = pose_of(d.placement, model.grid);
+  const subject::DrillingChart& chart = *d.charts.front();
+  const std::vector<float> depths = cavity_depths(model, pose, chart, subject::cavity_floor(chart));
+  std::size_t planned = 0;
+  for (std::size_t at = 0; at < depths.size(); ++at) {
+    if (depths[at] >= 0.0F) {
+      ++planned;
+      EXPECT_EQ(model.structures[model.labels[at]].name, "bone");
+    }
+  }
+  const double volume = static_cast<double>(planned) * std::pow(model.grid.spacing, 3);
+  EXPECT_GT(volume, 1e-6);  // a cortical mastoidectomy takes a few cubic centimetres
+  EXPECT_LT(volume, 10e-6);
+  // No planned voxel is next to a structure.
+  const auto& g = model.grid;
+  for (int k = 1; k + 1 < g.size[2]; ++k) {
+    for (int j = 1; j + 1 < g.size[1]; ++j) {
+      for (int i = 1; i + 1 < g.size[0]; ++i) {
+        if (depths[g.index(i, j, k)] < 0.0F) {
+          continue;
+        }
+        for (const std::size_t beside : {g.index(i + 1, j, k), g.index(i - 1, j, k),
+                                         g.index(i, j + 1, k), g.index(i, j - 1, k)}) {
+          EXPECT_FALSE(model.structures[model.labels[beside]].vital);
+        }
+      }
+    }
+  }
+}
+
+TEST(ValidityDefinitionTest, OneLineChangesTheBone) {
+  const auto file = test::shared_data("bone/ear3_171_labels.nrrd");
+  if (!file) {
+    GTEST_SKIP() << "HAPTRIAL_DATA names no folder with bone/ear3_171_labels.nrrd";
+  }
+  const test::TemporaryFolder folder;
+  test::write_text(folder / "study.toml",
+                   with(test::read_text(shipped()), "bones = [\"procedural temporal\"]",
+                        "bones = [\"" + file->string() + "\"]"));
+  const BoneDefinition d = load_bone_definition(folder / "study.toml");
+  const bone::BoneModel& model = *d.bones.front();
+  const subject::DrillingChart& chart = *d.charts.front();
+  const std::vector<float> depths =
+      cavity_depths(model, pose_of(d.placement, model.grid), chart, subject::cavity_floor(chart));
+  const auto planned = std::count_if(depths.begin(), depths.end(), [](float x) { return x >= 0; });
+  const double volume = static_cast<double>(planned) * std::pow(model.grid.spacing, 3);
+  EXPECT_GT(volume, 0.5e-6);
+  EXPECT_LT(volume, 10e-6);
+}
+
+TEST(ValidityDefinitionTest, WhatDoesNotFitIsSaid) {
+  const std::string text = test::read_text(shipped());
+  EXPECT_EQ(refusal(text), "");
+  EXPECT_THAT(refusal(with(text, "novices = 7\n", "novices = 8\n")),
+              HasSubstr("as many as design.participants, 15"));
+  EXPECT_THAT(refusal(with(text, "rough = \"cutting\"", "rough = \"suction\"")),
+              HasSubstr("a burr of tools.in_hand"));
+  EXPECT_THAT(refusal(with(text, "novices = 0.15", "novices = 1.5")), HasSubstr("skill.novices"));
+  EXPECT_THAT(refusal(with(text, "margins = [0.002, 0.002, 0.0015]", "margins = [0.002]")),
+              HasSubstr("a number for each of the 3 structures"));
+}
+
+TEST(ValidityDefinitionTest, ABoneWithoutTheStructureIsRefused) {
+  const test::TemporaryFolder folder;
+  test::write_text(folder / "study.toml",
+                   with(test::read_text(shipped()), "beside = \"incus\"", "beside = \"tooth\""));
+  EXPECT_THROW(load_bone_definition(folder / "study.toml"), InputError);
+}
+
+TEST(StageStillsTest, BoneDisappearsFromStageToStage) {
+  BoneDefinition d = load_bone_definition(shipped());
+  d.display.width = 320;
+  d.display.height = 240;
+  const std::vector<StageStill> stills = stage_stills(d, 3);
+  ASSERT_EQ(stills.size(), 3U);
+  EXPECT_EQ(stills[0].image.width, 320);
+  const auto differs = [&](std::size_t a, std::size_t b) {
+    int count = 0;
+    for (std::size_t at = 0; at < stills[a].image.rgb.size(); ++at) {
+      count += stills[a].image.rgb[at] != stills[b].image.rgb[at] ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_GT(differs(0, 1), 1000);
+  EXPECT_GT(differs(0, 2), differs(0, 1));
+}
+
+}  // namespace
+}  // namespace haptrial::experiments
