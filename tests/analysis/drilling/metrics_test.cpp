@@ -1,5 +1,6 @@
 #include "analysis/drilling/metrics.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -81,8 +82,8 @@ TEST_F(MetricsTest, StructuresCanBeChosen) {
 TEST_F(MetricsTest, RegionScoresComeFromTheOthers) {
   std::vector<ProcedureSummary> all;
   for (int n = 0; n < 3; ++n) {
-    all.push_back(summary("E" + std::to_string(n), "surgeons", 25));
-    all.push_back(summary("N" + std::to_string(n), "novices", 15));
+    all.push_back(summary(fmt::format("E{}", n), "surgeons", 25));
+    all.push_back(summary(fmt::format("N{}", n), "novices", 15));
   }
   const std::vector<std::string> experts{"surgeons"};
   const auto scores = add_region_scores(all, experts);

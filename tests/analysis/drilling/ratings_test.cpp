@@ -1,5 +1,6 @@
 #include "analysis/drilling/ratings.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -90,7 +91,7 @@ TEST_F(RatingsTest, TheOrderIsShuffled) {
 TEST_F(RatingsTest, CodesAreShortAndNeverTwice) {
   std::vector<std::string> many;
   for (int i = 0; i < 2000; ++i) {
-    many.push_back("S" + std::to_string(i));
+    many.push_back(fmt::format("S{}", i));
   }
   std::set<std::string> codes;
   for (const KeyEntry& entry : blinded(items_of(many), 1, false).entries) {

@@ -3,6 +3,7 @@
 
 #include "analysis/drilling/region_likelihood.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -81,7 +82,7 @@ struct Study {
     }
     for (std::size_t i = 0; i < voxels.size(); ++i) {
       regions.push_back(
-          {"P" + std::to_string(i / 2), i < 2 * static_cast<std::size_t>(experts), voxels[i]});
+          {fmt::format("P{}", i / 2), i < 2 * static_cast<std::size_t>(experts), voxels[i]});
     }
   }
 };
