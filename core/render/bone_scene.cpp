@@ -183,9 +183,10 @@ std::vector<PixelBox> BoneScene::Impl::changed_parts(const BoneFrame& frame,
     const auto known = before.find(bone.id);
     const bool same =
         known != before.end() && known->second.pose == now.pose && known->second.array == now.array;
+    const Eigen::AlignedBox3d bounds = object.blocks().bounds();
     for (std::size_t eye = 0; eye < views.size(); ++eye) {
       const Eigen::Matrix4d clip = views[eye].projection * views[eye].view * now.pose;
-      now.covers.push_back(pixels_of(object.blocks().bounds(), clip, width, height));
+      now.covers.push_back(pixels_of(bounds, clip, width, height));
       parts[eye].extend(same ? pixels_of(object.blocks().changed(), clip, width, height)
                              : now.covers[eye]);
     }
