@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/geometry/procedural.h"
+#include "core/bone/surface.h"
 #include "core/render/bone_scene.h"
 #include "core/render/offscreen.h"
 #include "core/render/window.h"
@@ -177,6 +177,26 @@ TEST(BoneLayerScenesTest, SizeFieldOfViewAndStereoBringANewPicture) {
   twice("stereo", kWidth - 1, kHeight);
   frame.camera.eye = frame.camera.target + Eigen::Vector3d(0, 0, 0.002);
   twice("within the bone", kWidth, kHeight);
+}
+
+TEST(BoneLayerScenesTest, ASurfaceThatPacksItsSlotsIsDrawnAsAWhole) {
+  RandomStream random(8, "packed");
+  const BoneModel model = bumpy(72);
+  BoneVolume volume(model);
+  Both both(model);
+  bone::Surface surface;
+  surface.update(volume);
+  BoneFrame frame = frame_of(model, volume);
+  for (int step = 0; step < 3; ++step) {
+    both.draw(frame, "whole", step);
+  }
+  change(volume, Voxel(36, 36, 30), 31, 1.0F);
+  surface.update(volume);
+  ASSERT_TRUE(surface.rebuilt());
+  for (int step = 0; step < 6; ++step) {
+    both.draw(frame, "little is left", step);
+    change_at_random(volume, random);
+  }
 }
 
 TEST(BoneLayerScenesTest, AWindowShowsWhatIsDrawnOffScreen) {
