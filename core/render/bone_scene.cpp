@@ -196,7 +196,7 @@ std::vector<PixelBox> BoneScene::Impl::changed_parts(const BoneFrame& frame,
     shown.emplace(bone.id, std::move(now));
   }
   for (const auto& [id, gone] : before) {  // from here, or away
-    for (std::size_t eye = 0; eye < views.size(); ++eye) {
+    for (std::size_t eye = 0; eye < std::min(views.size(), gone.covers.size()); ++eye) {
       parts[eye].extend(gone.covers[eye]);
     }
   }

@@ -177,6 +177,8 @@ TEST(BoneLayerScenesTest, SizeFieldOfViewAndStereoBringANewPicture) {
   twice("stereo", kWidth - 1, kHeight);
   frame.camera.eye = frame.camera.target + Eigen::Vector3d(0, 0, 0.002);
   twice("within the bone", kWidth, kHeight);
+  frame.stereo.reset();
+  twice("one eye again", kWidth, kHeight);
 }
 
 TEST(BoneLayerScenesTest, ASurfaceThatPacksItsSlotsIsDrawnAsAWhole) {
