@@ -106,7 +106,7 @@ Procedures procedures_in(const fs::path& folder) {
     found.seed = session.info().seed;
     for (const int trial : BoneReplay(file).trials()) {
       found.files.push_back(file);
-      found.items.push_back({file.stem().string(), trial, fingerprint(session, trial)});
+      found.items.push_back({file.filename().string(), trial, fingerprint(session, trial)});
     }
   }
   if (found.items.empty()) {

@@ -149,6 +149,13 @@ std::vector<RatedBone> bones_of(const record::SessionReader& session) {
   return bones;
 }
 
+std::string comment_on(const Outcome& o) {
+  constexpr double kCubic = 1e9;  // [mm3/m3]
+  return fmt::format(
+      "{:.0f} % of the cavity; {:.1f} mm3 beyond; {:.1f} mm3 of vital structures; rough {:.2f} mm",
+      100.0 * o.complete, kCubic * o.beyond, kCubic * o.injured, 1e3 * o.roughness);
+}
+
 std::vector<drilling::Rating> rate_session(const fs::path& file,
                                            const std::vector<RatedBone>& bones) {
   const record::SessionReader session(file);
@@ -161,14 +168,14 @@ std::vector<drilling::Rating> rate_session(const fs::path& file,
   std::vector<drilling::Rating> ratings;
   for (const auto& [trial, passes] : trials) {
     const RatedBone& bone = bones[static_cast<std::size_t>(trial - 1) % bones.size()];
-    const double rubric =
-        rubric_score(outcome_of(bone.model, standing_after(session, bone.model, trial),
-                                bone.planned, bone.X_WB, bone.chart));
-    const std::string name = file.stem().string();
+    const Outcome outcome = outcome_of(bone.model, standing_after(session, bone.model, trial),
+                                       bone.planned, bone.X_WB, bone.chart);
+    const double rubric = rubric_score(outcome);
+    const std::string name = file.filename().string();
     for (const RaterManner& rater : simulated_raters()) {
       const double score = given_score(rubric, rater, session.info().seed,
                                        fmt::format("{} procedure {}", name, trial));
-      ratings.push_back({name, trial, rater.name, score, "", true});
+      ratings.push_back({name, trial, rater.name, score, comment_on(outcome), true});
     }
   }
   return ratings;
@@ -212,10 +219,10 @@ Outcome outcome_of(const bone::BoneModel& model, const std::vector<std::uint8_t>
 double rubric_score(const Outcome& o) noexcept {
   constexpr double kCubicMillimetre = 1e-9;
   double score = 5.0;
-  score -= 4.0 * std::max(0.0, 0.95 - o.complete);
+  score -= 4.0 * std::max(0.0, 0.9 - o.complete);
   score -= o.planned > 0.0 ? 2.0 * o.beyond / o.planned : 0.0;
   if (o.injured > 0.0) {
-    score -= 0.5 + 1.5 * (1.0 - std::exp(-o.injured / (5.0 * kCubicMillimetre)));
+    score -= 0.25 + 2.5 * (1.0 - std::exp(-o.injured / (60.0 * kCubicMillimetre)));
   }
   score -= 2.0 * std::max(0.0, o.roughness / 1e-3 - 0.4);
   return std::max(drilling::kLowestScore, score);

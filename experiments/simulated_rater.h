@@ -28,9 +28,9 @@ Outcome outcome_of(const bone::BoneModel& model, const std::vector<std::uint8_t>
 
 /// The rubric of the rating sheet in numbers: 5 less
 ///
-///     4 (0.95 - complete), where that is above 0       parts of the plan are left
+///     4 (0.9 - complete), where that is above 0        parts of the plan are left
 ///     2 beyond / planned                               removed what should stand
-///     0.5 + 1.5 (1 - exp(-injured / 5 mm3)), if any    a vital structure is touched
+///     0.25 + 2.5 (1 - exp(-injured / 60 mm3)), if any  a vital structure is touched
 ///     2 (roughness - 0.4 mm) / mm, where above 0       not smooth
 ///
 /// and at least 1.

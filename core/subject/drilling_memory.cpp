@@ -8,7 +8,7 @@ namespace haptrial::subject {
 namespace {
 
 constexpr float kLittle = 0.4e-3F;     // of bone in a column that is not worth a stroke [m]
-constexpr double kPlay = 0.15e-3;      // a burr leaves so much of what it passes over [m]
+constexpr double kPlay = 0.25e-3;      // a burr leaves so much of what it passes over [m]
 constexpr float kProgress = 0.15e-3F;  // of a bout that was not in vain [m]
 constexpr double kNearby = 0.35;       // metres of depth that a metre of way is worth
 constexpr int kAngles = 6;
@@ -249,7 +249,7 @@ void DrillingMemory::end_bout(const Bout& bout) noexcept {
       const double along = std::clamp((place - bout.from).dot(way) / square, 0.0, 1.0);
       const std::size_t column = chart_.column(i, j);
       const bool passed = (bout.from + along * way - place).norm() < 0.5 * radius_;
-      if (passed && height_[column] < before_[column] + kProgress && ++tries_[column] >= 2) {
+      if (passed && height_[column] < before_[column] + kProgress && ++tries_[column] >= 3) {
         height_[column] = std::max(height_[column], floor_[column]);
       }
     }

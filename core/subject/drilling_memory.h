@@ -50,7 +50,7 @@ class DrillingMemory {
   /// @returns false where nothing is left. @param now  where the hand is
   bool choose(const BoutChoice& choice, const Eigen::Vector2d& now, RandomStream& random,
               Bout& bout) noexcept;
-  /// After a bout: what it did not get any deeper, after a second try, is taken as gone.
+  /// After a bout: what it did not get any deeper, after a third try, is taken as gone.
   void end_bout(const Bout& bout) noexcept;
 
   /// The middle of all that is to go, (u, v, w) with w at the surface.

@@ -21,7 +21,8 @@ DrillingSkill drilling_skill(double skill) noexcept {
   k.pause = line(0.30, 0.05);
   k.force_noise = line(0.20, 0.05);
   k.tremor = line(0.06, 0.03);
-  k.misjudgement = line(1.6e-3, 0.3e-3);
+  k.misjudgement = line(1.4e-3, 0.2e-3);
+  k.extra_margin = line(0.0, 0.3e-3);
   k.region_error = line(2.5e-3, 0.4e-3);
   k.saucer = line(0.60, 1.0);
   k.evenness = line(0.10, 1.0);

@@ -18,6 +18,7 @@ struct DrillingSkill {
   double force_noise;    // share of the press
   double tremor;         // [N]
   double misjudgement;   // spread of where structures are believed, along each axis [m]
+  double extra_margin;   // of bone that it leaves beyond what is asked for [m]
   double region_error;   // spread of where the cavity is begun, along each axis [m]
   double saucer;         // share of the cavity's slope that is kept
   double evenness;       // 0 digs on where it is; 1 takes the highest bone first

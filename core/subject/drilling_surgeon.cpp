@@ -14,6 +14,8 @@ namespace haptrial::subject {
 namespace {
 
 constexpr double kStiffness = 300.0;     // of the arm about where it wants to be [N/m]
+constexpr double kAhead = 0.06;          // that it looks ahead [s]
+constexpr double kBackOut = 1500.0;      // where it went too deep [N/m]
 constexpr double kDamping = 25.0;        // [N·s/m]
 constexpr double kDrag = 40.0;           // of the hand itself, that it knows to push against
 constexpr double kFriction = 0.1;        // of the handle, that it has learnt to overcome [N]
@@ -30,6 +32,7 @@ constexpr double kPressing = 0.05;       // of a button, and its rest [s]
 constexpr double kLookLonger = 3.0;      // than this nobody tries [s]
 constexpr double kLookRate = 0.15;       // of the hand for an error of the view [m/(s·rad)]
 constexpr double kRoomToLook = 0.03;     // over the bone for a hand that turns the view [m]
+constexpr double kArm = 0.06;            // from the middle, as far as it turns the view [m]
 constexpr double kSeenWell = 0.06;       // [rad]
 constexpr double kWorthALook = 0.6;      // [rad]
 constexpr double kPatience = 1.0;        // strokes without bone under the burr
@@ -67,6 +70,7 @@ DrillingSurgeon::Procedure DrillingSurgeon::plan(const SurgeonParameters& p,
       skill.misjudgement * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
   view.shift = skill.region_error * Eigen::Vector2d(random.normal(), random.normal());
   view.slope = skill.saucer;
+  view.extra = skill.extra_margin;
   const bool careful = random.uniform() < skill.careful;
   BurrReach rough;
   BurrReach fine;
@@ -240,7 +244,7 @@ void DrillingSurgeon::decide(const stimulus::DrillingView& seen,
       const Eigen::Vector3d from = (seen.eye - seen.target).normalized();
       const bool low = place.z() > p.memory.opening().z() - 2.0 * parameters_.rough.radius;
       if (std::acos(std::clamp(look_.dot(from), -1.0, 1.0)) < kSeenWell || time_ > kLookLonger ||
-          low) {
+          low || (seen.tip * scale_).norm() > kArm) {
         looks_ = false;
         lift_to_ = p.memory.over(place.head<2>(), bout_.from) - kHover;
         begin(Doing::kLift);
@@ -358,7 +362,10 @@ double DrillingSurgeon::depth_limit(const Eigen::Vector3d& place) const noexcept
   }
   // Beside the bone there is nothing to stop at.
   const double begun = doing_ == Doing::kBout ? bout_depth_ : p.memory.touch(bout_.from) + kHover;
-  return std::min(p.memory.limit(place.head<2>()), begun + p.skill.bite);
+  // A wall is met before the burr is in it.
+  const Eigen::Vector2d soon = place.head<2>() + kAhead * velocity_.head<2>();
+  const double limit = std::min(p.memory.limit(place.head<2>()), p.memory.limit(soon));
+  return std::min(limit, begun + p.skill.bite);
 }
 
 Eigen::Vector3d DrillingSurgeon::push(const stimulus::DrillingView& seen,
@@ -373,7 +380,7 @@ Eigen::Vector3d DrillingSurgeon::push(const stimulus::DrillingView& seen,
   const double fall = scale_ * velocity_.z();
   double inward = 0.0;
   if (room < 0.0) {
-    inward = kStiffness * scale_ * room - kDamping * fall;
+    inward = kBackOut * scale_ * room - kDamping * fall;
   } else if (seen.contact) {
     const double gate = std::min(1.0, room / 0.3e-3);
     inward = now().noise.press(press(place)) * gate + kFriction - kDamping * fall;
@@ -381,7 +388,9 @@ Eigen::Vector3d DrillingSurgeon::push(const stimulus::DrillingView& seen,
     const double wanted = std::min(kOnto, 10.0 * room) * scale_;
     inward = (kDamping + kDrag) * (wanted - fall) + kDrag * fall;
   }
-  const double most = std::min(kStrongestAside, 2.0 * press(place) + 0.3);
+  // Whoever is too deep comes out first, instead of cutting on into the wall.
+  const double ease = std::clamp(1.0 + room / 0.5e-3, 0.1, 1.0);
+  const double most = ease * std::min(kStrongestAside, 2.0 * press(place) + 0.3);
   Eigen::Vector3d force = saturated(Eigen::Vector3d(follow.x(), follow.y(), 0.0), most);
   force.z() = std::clamp(inward, -kStrongest, kStrongest);
   return force;

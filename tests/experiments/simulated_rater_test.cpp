@@ -56,7 +56,7 @@ TEST_F(SimulatedRaterTest, AnUntouchedBoneIsNoWork) {
   EXPECT_EQ(o.complete, 0.0);
   EXPECT_EQ(o.beyond, 0.0);
   EXPECT_EQ(o.injured, 0.0);
-  EXPECT_NEAR(rubric_score(o), 5.0 - 4.0 * 0.95, 1e-12);
+  EXPECT_NEAR(rubric_score(o), 5.0 - 4.0 * 0.9, 1e-12);
 }
 
 TEST_F(SimulatedRaterTest, ThePlanAndNothingElseIsAlmostPerfect) {
@@ -76,7 +76,7 @@ TEST_F(SimulatedRaterTest, WhatIsTouchedAndTooMuchIsSeen) {
   standing[model.grid.index(7, 20, 16)] = 0;
   const Outcome injured = outcome();
   EXPECT_NEAR(injured.injured, 3e-9, 1e-15);
-  EXPECT_NEAR(good - rubric_score(injured), 0.5 + 1.5 * (1.0 - std::exp(-0.6)), 1e-9);
+  EXPECT_NEAR(good - rubric_score(injured), 0.25 + 2.5 * (1.0 - std::exp(-0.05)), 1e-9);
   for (int j = 30; j < 36; ++j) {
     standing[model.grid.index(2, j, 29)] = 0;
   }
