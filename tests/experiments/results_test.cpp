@@ -36,6 +36,9 @@ TEST(ResultsTest, ManifestsReproduce) {
     }
     const fs::path folder = entry.path();
     const auto manifest = nlohmann::json::parse(test::read_text(folder / "manifest.json"));
+    if (!manifest.contains("scores_sha256")) {
+      continue;  // a study of drillings: ValidityResultsTest
+    }
     const test::TemporaryFolder out;
     std::string script = "set -e; cd '" + source.string() + "'\n";
     for (const std::string command : manifest["commands"]) {
