@@ -38,7 +38,6 @@ mkdir -p "results/$study"
 cp "$out"/report.html "$out"/report.md "$out/$table.csv" "$out"/statistics.json "$out"/*.svg "results/$study/"
 if [ -n "$rate" ]; then
   cp "$out/ratings.csv" "results/$study/"
-  find "$out" -maxdepth 1 -name '*.png' -exec cp {} "results/$study/" \;
 fi
 cat >"results/$study/manifest.json" <<EOF
 {
