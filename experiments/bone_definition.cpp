@@ -103,7 +103,8 @@ void read_groups(Table& root, BoneDefinition& d) {
   if (good && all != d.design.participants) {
     root.reject("groups", fmt::format("{} participants", all),
                 fmt::format("as many as design.participants, {}", d.design.participants));
-  } else if (good) {
+  }
+  if (good) {
     for (const StudyGroup& group : study_groups(root.source(), d.file_name)) {
       d.groups.push_back({group.name, group.participants, 0.5});
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/base/error.h"
 #include "core/base/table.h"
@@ -83,6 +84,24 @@ bone::Voxel voxel_at(const geometry::VoxelGrid& grid, const Eigen::Vector3d& p_B
   return ((p_B - grid.origin) / grid.spacing).array().round().cast<std::int32_t>();
 }
 
+/// Between the centres of voxels a line; nothing where one of the eight is beyond the reach.
+std::optional<double> distance_at(const bone::DistanceField& field, const geometry::VoxelGrid& grid,
+                                  const Eigen::Vector3d& p_B) {
+  const Eigen::Array3d at = (p_B - grid.origin).array() / grid.spacing;
+  const Eigen::Array3i low = at.floor().cast<int>();
+  const Eigen::Array3d share = at - at.floor();
+  double sum = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Array3i up(corner & 1, (corner >> 1) & 1, (corner >> 2) & 1);
+    const auto distance = field.at((low + up).matrix());
+    if (!distance) {
+      return std::nullopt;
+    }
+    sum += *distance * (up == 1).select(share, 1.0 - share).prod();
+  }
+  return sum;
+}
+
 /// Lowers every entry to the distance from one structure, less its margin.
 void keep_away(subject::DrillingChart& chart, const bone::BoneModel& model,
                const Eigen::Isometry3d& X_BW, std::size_t label, double margin) {
@@ -98,7 +117,7 @@ void keep_away(subject::DrillingChart& chart, const bone::BoneModel& model,
     for (int j = 0; j < chart.size[1]; ++j) {
       for (int i = 0; i < chart.size[0]; ++i, ++at) {
         const Eigen::Vector3d place = chart.cell * Eigen::Vector3d(i, j, k);
-        const auto distance = field.at(voxel_at(model.grid, X_BW * chart.world(place)));
+        const auto distance = distance_at(field, model.grid, X_BW * chart.world(place));
         if (distance) {
           chart.clearance[at] =
               std::min(chart.clearance[at], static_cast<float>(*distance - margin));

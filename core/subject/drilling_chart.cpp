@@ -26,16 +26,27 @@ void under_burr(const DrillingChart& chart, int i, int j, double radius, const V
 }  // namespace
 
 float DrillingChart::clearance_at(const Eigen::Vector3d& p) const noexcept {
-  std::size_t index = 0;
-  for (int a = 2; a >= 0; --a) {
-    const auto at = static_cast<int>(std::lround(p[a] / cell));
-    const int limit = size[static_cast<std::size_t>(a)];
-    if (at < 0 || at >= limit) {
-      return kFarInside;
+  const Eigen::Array3d at = p.array() / cell;
+  const Eigen::Array3i low = at.floor().cast<int>();
+  const Eigen::Array3d share = at - at.floor();
+  float sum = 0.0F;
+  for (int of_eight = 0; of_eight < 8; ++of_eight) {
+    double weight = 1.0;
+    std::size_t index = 0;
+    for (int a = 2; a >= 0; --a) {
+      const int up = (of_eight >> a) & 1;
+      const int limit = size[static_cast<std::size_t>(a)];
+      weight *= up == 1 ? share[a] : 1.0 - share[a];
+      const int place = low[a] + up;
+      if (weight > 0.0 && (place < 0 || place >= limit)) {
+        return kFarInside;
+      }
+      index = index * static_cast<std::size_t>(limit) +
+              static_cast<std::size_t>(std::clamp(place, 0, limit - 1));
     }
-    index = index * static_cast<std::size_t>(limit) + static_cast<std::size_t>(at);
+    sum += static_cast<float>(weight) * clearance[index];
   }
-  return clearance[index];
+  return sum;
 }
 
 std::vector<float> cavity_floor(const DrillingChart& chart, const CavityView& view) {
