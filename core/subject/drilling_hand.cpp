@@ -55,7 +55,6 @@ DrillingHandParameters read_drilling_hand_parameters(Table& table) {
   p.start = read_vector(table, "start", "m", false);
   p.inward = read_vector(table, "inward", "", true);
   p.along = read_vector(table, "along", "", true);
-  p.handle = table.has("handle") ? read_vector(table, "handle", "", true) : -p.inward;
   if (!(p.along.cross(p.inward).norm() > 0.1)) {
     table.reject("along", "nearly the direction of inward", "a direction across it");
   }
@@ -95,7 +94,6 @@ DrillingHand::DrillingHand(const DrillingHandParameters& parameters, HandModel& 
       device_(device),
       scale_(scale),
       noise_(person_of(parameters), step, RandomStream(seed, "drilling hand")),
-      orientation_(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), parameters.handle)),
       across_(parameters.inward.cross(parameters.along)),
       lines_(1 + static_cast<int>(parameters.height / parameters.line)) {}
 
@@ -131,7 +129,7 @@ void DrillingHand::observe(const stimulus::Presentation& seen, const Eigen::Vect
   const stimulus::DrillingView& view = seen.drilling;
   if (seen.instruction != stimulus::Instruction::kDrill || !view.shown) {
     hand_.command({0.0, false, noise_.tremor()});
-    device_.hold(0, 0.0, orientation_);
+    device_.hold(0, 0.0, Eigen::Quaterniond::Identity());
     begin(Doing::kReach);
     tip_known_ = false;
     return;
@@ -141,7 +139,7 @@ void DrillingHand::observe(const stimulus::Presentation& seen, const Eigen::Vect
   HandCommand command;
   command.force = push(view, tip, dt) + noise_.tremor();
   hand_.command(command);
-  device_.hold(fingers(view), 0.0, orientation_);
+  device_.hold(fingers(view), 0.0, Eigen::Quaterniond::Identity());
   last_tip_ = tip;
   tip_known_ = true;
   time_ += dt;

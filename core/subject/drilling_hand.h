@@ -19,7 +19,6 @@ struct DrillingHandParameters {
   Eigen::Vector3d start{0.0, 0.03, 0.0};              // over the middle of the region [m]
   Eigen::Vector3d inward{-Eigen::Vector3d::UnitY()};  // into the bone, unit length
   Eigen::Vector3d along{Eigen::Vector3d::UnitX()};    // of strokes, unit length, across `inward`
-  Eigen::Vector3d handle{Eigen::Vector3d::UnitY()};   // where the handle points, unit length
   double width{0.012};                                // of the region, along strokes > 0 [m]
   double height{0.008};                               // of the region, across them >= 0 [m]
   double depth{0.006};           // to drill to, from where bone was met first >= 0 [m]
@@ -77,7 +76,6 @@ class DrillingHand final : public stimulus::Observer {
   device::VirtualDevice& device_;
   double scale_;
   MotorNoise noise_;
-  Eigen::Quaterniond orientation_;
   Eigen::Vector3d across_;
   int lines_;
 
