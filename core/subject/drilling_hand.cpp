@@ -14,6 +14,7 @@ namespace {
 constexpr double kStiffness = 300.0;  // of the arm about where it wants to be [N/m]
 constexpr double kDamping = 25.0;     // [N·s/m]
 constexpr double kStrongest = 5.0;    // of the arm across the press [N]
+constexpr double kHighest = 0.02;     // over where bone was met first [m]
 constexpr double kTravel = 0.06;      // speed between strokes [m/s]
 constexpr double kDescent = 0.03;     // towards the bone [m/s]
 constexpr double kNear = 0.002;       // is there [m]
@@ -153,6 +154,9 @@ void DrillingHand::decide(const stimulus::DrillingView& seen, const Eigen::Vecto
     case Doing::kReach:
       if (sideways < kNear && time_ > kPressing) {
         begin(Doing::kDescend);
+      } else if (time_ > kPatience) {  // bone is in the way: over it to the next
+        higher_ = std::min(higher_ + p.hover, kHighest);
+        next_line();
       }
       break;
     case Doing::kDescend:
@@ -204,7 +208,8 @@ Eigen::Vector3d DrillingHand::push(const stimulus::DrillingView& seen, const Eig
       tip_known_ ? Eigen::Vector3d((tip - last_tip_) / dt) : Eigen::Vector3d::Zero();
   const double height = tip.dot(p.inward);
   const double floor = surface_known_ ? surface_ + p.depth : 1.0;
-  const double above = (surface_known_ ? surface_ : p.start.dot(p.inward) + p.hover) - p.hover;
+  const double above =
+      (surface_known_ ? surface_ : p.start.dot(p.inward) + p.hover) - p.hover - higher_;
   Eigen::Vector3d goal = line_start();
   double inward = 0.0;  // [N]
   const double fall = velocity.dot(p.inward);

@@ -86,6 +86,7 @@ class DrillingHand final : public stimulus::Observer {
   int strokes_{0};
   int wanted_tool_{0};
   bool surface_known_{false};
+  double higher_{0.0};   // than usual between strokes, where bone was in the way [m]
   double surface_{0.0};  // along `inward`, where bone was met first [m]
   Eigen::Vector3d target_{Eigen::Vector3d::Zero()};
   Eigen::Vector3d last_tip_{Eigen::Vector3d::Zero()};
