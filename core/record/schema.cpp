@@ -5,33 +5,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/record/columns.h"
+
 namespace haptrial::record {
 namespace {
 
-using enum ColumnType;
-
-constexpr Column u8(const char* name, const char* description) {
-  return {name, kU8, 1, "1", description};
-}
-constexpr Column i32(const char* name, const char* description) {
-  return {name, kI32, 4, "1", description};
-}
-constexpr Column i64(const char* name, const char* unit, const char* description) {
-  return {name, kI64, 8, unit, description};
-}
-constexpr Column u64(const char* name, const char* description) {
-  return {name, kU64, 8, "1", description};
-}
-constexpr Column f32(const char* name, const char* unit, const char* description,
-                     double resolution) {
-  return {name, kF32, 4, unit, description, resolution};
-}
-constexpr Column f64(const char* name, const char* unit, const char* description) {
-  return {name, kF64, 8, unit, description};
-}
-constexpr Column text(const char* name, std::size_t bytes, const char* description) {
-  return {name, kText, bytes, "", description};
-}
+using namespace columns;
 
 constexpr std::array kSamples{
     u64("sequence", "tick number from 0; a gap is a loss"),
