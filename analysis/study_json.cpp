@@ -2,20 +2,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/result_json_internal.h"
+
 namespace haptrial::analysis {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 Json to_json(double value) { return value; }
-
-Json to_json(const MeanInterval& m) {
-  return {{"count", m.count},
-          {"mean", m.mean},
-          {"standard_deviation", m.deviation},
-          {"low_95", m.low},
-          {"high_95", m.high}};
-}
 
 Json to_json(const Anova& a) {
   return {{"f", a.f},
@@ -40,10 +34,6 @@ Json to_json(const RepeatedAnova& a) {
           {"greenhouse_geisser_epsilon", a.epsilon},
           {"p_corrected", a.p_corrected},
           {"partial_eta_squared", a.partial_eta_squared}};
-}
-
-Json to_json(const EffectSize& e) {
-  return {{"value", e.value}, {"low", e.low}, {"high", e.high}, {"level", e.level}};
 }
 
 Json to_json(const RankAnova& r) {
@@ -73,15 +63,6 @@ Json to_json(const MixedModel& m) {
           {"variance_between", m.variance_between},
           {"variance_within", m.variance_within},
           {"log_likelihood_reml", m.log_likelihood}};
-}
-
-Json to_json(const TTest& t) {
-  return {{"t", t.t},
-          {"df", t.df},
-          {"p", t.p},
-          {"difference", t.difference},
-          {"difference_low_95", t.low},
-          {"difference_high_95", t.high}};
 }
 
 Json to_json(const TimingPercentiles& p) {
@@ -249,7 +230,8 @@ Json session(const SessionSummary& s) {
 }
 
 void add_sessions(Json& root, const StudyResult& study) {
-  root["tracking"] = {{"overall", tracking(study.tracking, study.over_path)}, {"participants", Json::array()}};
+  root["tracking"] = {{"overall", tracking(study.tracking, study.over_path)},
+                      {"participants", Json::array()}};
   root["timing"] = Json::array();
   root["sessions"] = Json::array();
   for (const auto& one : study.sessions) {

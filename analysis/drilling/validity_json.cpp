@@ -2,38 +2,19 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/result_json_internal.h"
+
 namespace haptrial::analysis::drilling {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 template <class T>
-Json json(const Defined<T>& value);
+Json to_json(const Defined<T>& value);
 
-Json json(double value) { return value; }
+Json to_json(double value) { return value; }
 
-Json json(const MeanInterval& m) {
-  return {{"count", m.count},
-          {"mean", m.mean},
-          {"standard_deviation", m.deviation},
-          {"low_95", m.low},
-          {"high_95", m.high}};
-}
-
-Json json(const TTest& t) {
-  return {{"t", t.t},
-          {"df", t.df},
-          {"p", t.p},
-          {"difference", t.difference},
-          {"difference_low_95", t.low},
-          {"difference_high_95", t.high}};
-}
-
-Json json(const EffectSize& e) {
-  return {{"value", e.value}, {"low", e.low}, {"high", e.high}, {"level", e.level}};
-}
-
-Json json(const Coefficient& c) {
+Json to_json(const Coefficient& c) {
   return {
       {"estimate", c.estimate}, {"standard_error", c.error}, {"df", c.df}, {"t", c.t}, {"p", c.p},
       {"low_95", c.low},        {"high_95", c.high}};
@@ -42,12 +23,12 @@ Json json(const Coefficient& c) {
 Json coefficients(const std::vector<Coefficient>& all) {
   Json rows = Json::array();
   for (const Coefficient& c : all) {
-    rows.push_back(json(c));
+    rows.push_back(to_json(c));
   }
   return rows;
 }
 
-Json json(const MixedModel& m) {
+Json to_json(const MixedModel& m) {
   return {{"coefficients", coefficients(m.coefficients)},
           {"variance_between", m.variance_between},
           {"variance_within", m.variance_within},
@@ -56,37 +37,37 @@ Json json(const MixedModel& m) {
           {"procedures", m.observations}};
 }
 
-Json json(const Correlation::Interval& i) { return {{"low_95", i.low}, {"high_95", i.high}}; }
+Json to_json(const Correlation::Interval& i) { return {{"low_95", i.low}, {"high_95", i.high}}; }
 
-Json json(const Correlation& c) {
-  return {{"r", c.r}, {"p", c.p}, {"count", c.count}, {"interval", json(c.interval)}};
+Json to_json(const Correlation& c) {
+  return {{"r", c.r}, {"p", c.p}, {"count", c.count}, {"interval", to_json(c.interval)}};
 }
 
-Json json(const Regression& r) {
+Json to_json(const Regression& r) {
   return {{"coefficients", coefficients(r.coefficients)},
           {"r_squared", r.r_squared},
           {"residual_deviation", r.deviation},
           {"df_error", r.df_error}};
 }
 
-Json json(const RocInterval& i) {
+Json to_json(const RocInterval& i) {
   return {{"standard_error", i.error}, {"low_95", i.low}, {"high_95", i.high}, {"p", i.p}};
 }
 
-Json json(const Roc& r) {
+Json to_json(const Roc& r) {
   Json points = Json::array();
   for (const RocPoint& p : r.curve) {
     points.push_back({p.false_positives, p.true_positives});
   }
-  return {{"area", r.area}, {"interval", json(r.interval)}, {"curve", points}};
+  return {{"area", r.area}, {"interval", to_json(r.interval)}, {"curve", points}};
 }
 
-Json json(const IntraclassForm& f) {
+Json to_json(const IntraclassForm& f) {
   return {{"value", f.value},           {"low_95", f.low},        {"high_95", f.high}, {"f", f.f},
           {"df_targets", f.df_targets}, {"df_error", f.df_error}, {"p", f.p}};
 }
 
-Json json(const Intraclass& c) {
+Json to_json(const Intraclass& c) {
   return {{"targets", c.targets},
           {"raters", c.raters},
           {"mean_squares",
@@ -94,69 +75,69 @@ Json json(const Intraclass& c) {
             {"raters", c.mean_square_raters},
             {"error", c.mean_square_error},
             {"within", c.mean_square_within}}},
-          {"icc_1_1", json(c.one_way)},
-          {"icc_2_1", json(c.random_raters)},
-          {"icc_3_1", json(c.fixed_raters)},
-          {"icc_1_k", json(c.one_way_mean)},
-          {"icc_2_k", json(c.random_raters_mean)},
-          {"icc_3_k", json(c.fixed_raters_mean)}};
+          {"icc_1_1", to_json(c.one_way)},
+          {"icc_2_1", to_json(c.random_raters)},
+          {"icc_3_1", to_json(c.fixed_raters)},
+          {"icc_1_k", to_json(c.one_way_mean)},
+          {"icc_2_k", to_json(c.random_raters_mean)},
+          {"icc_3_k", to_json(c.fixed_raters_mean)}};
 }
 
-Json json(const Agreement& a) { return {{"r", json(a.r)}, {"rmse", a.rmse}}; }
+Json to_json(const Agreement& a) { return {{"r", to_json(a.r)}, {"rmse", a.rmse}}; }
 
 template <class T>
-Json json(const Defined<T>& value) {
-  return value ? json(*value) : Json{{"not_defined", value.because()}};
+Json to_json(const Defined<T>& value) {
+  return value ? to_json(*value) : Json{{"not_defined", value.because()}};
 }
 
-Json json(const std::vector<GroupValues>& groups) {
+Json to_json(const std::vector<GroupValues>& groups) {
   Json rows = Json::array();
   for (const GroupValues& g : groups) {
     rows.push_back({{"group", g.group},
                     {"participants", g.participants},
                     {"procedures", g.procedures},
-                    {"over_procedures", json(g.pooled)},
-                    {"over_participant_means", json(g.participant_means)}});
+                    {"over_procedures", to_json(g.pooled)},
+                    {"over_participant_means", to_json(g.participant_means)}});
   }
   return rows;
 }
 
-Json json(const Contrast& c) {
-  return {{"student_over_procedures", json(c.pooled)},
-          {"welch_over_participant_means", json(c.means)},
-          {"hedges_g_of_participant_means", json(c.g)},
-          {"mixed_model", json(c.mixed)},
-          {"mixed_model_p_for_the_tail", json(c.mixed_p)},
-          {"roc", json(c.roc)}};
+Json to_json(const Contrast& c) {
+  return {{"student_over_procedures", to_json(c.pooled)},
+          {"welch_over_participant_means", to_json(c.means)},
+          {"hedges_g_of_participant_means", to_json(c.g)},
+          {"mixed_model", to_json(c.mixed)},
+          {"mixed_model_p_for_the_tail", to_json(c.mixed_p)},
+          {"roc", to_json(c.roc)}};
 }
 
 const char* name_of(Expected experts) {
   return experts == Expected::kHigher ? "higher" : experts == Expected::kLower ? "lower" : "either";
 }
 
-Json json(const MetricValidity& m) {
+Json to_json(const MetricValidity& m) {
   return {{"name", m.kind.name},
           {"unit", m.kind.unit},
           {"title", m.kind.title},
           {"experts_expected", name_of(m.kind.experts)},
           {"procedures", m.defined},
-          {"groups", json(m.groups)},
-          {"contrast", json(m.contrast)},
-          {"contrast_p_holm", json(m.contrast_holm)},
-          {"rating_over_procedures", json(m.relation.pooled)},
-          {"line_on_rating", json(m.relation.line)},
-          {"rating_over_participant_means", json(m.relation.means)},
-          {"rating_spearman_of_participant_means", json(m.relation.ranks)},
-          {"rating_p_holm", json(m.relation_holm)}};
+          {"groups", to_json(m.groups)},
+          {"contrast", to_json(m.contrast)},
+          {"contrast_p_holm", to_json(m.contrast_holm)},
+          {"rating_over_procedures", to_json(m.relation.pooled)},
+          {"line_on_rating", to_json(m.relation.line)},
+          {"rating_over_participant_means", to_json(m.relation.means)},
+          {"rating_spearman_of_participant_means", to_json(m.relation.ranks)},
+          {"rating_p_holm", to_json(m.relation_holm)}};
 }
 
-Json json(const CrossValidated& c, const std::vector<std::string>& metrics) {
+Json to_json(const CrossValidated& c, const std::vector<std::string>& metrics) {
   Json slopes = Json::object();
   for (std::size_t i = 0; i < metrics.size(); ++i) {
     slopes[metrics[i]] = c.fit.slopes[static_cast<Eigen::Index>(i)];
   }
-  return {{"cross_validated", json(c.validated)},
-          {"resubstitution", json(c.resubstitution)},
+  return {{"cross_validated", to_json(c.validated)},
+          {"resubstitution", to_json(c.resubstitution)},
           {"gain_over_mean", c.gain},
           {"lambda", c.lambda},
           {"lambdas", c.lambdas},
@@ -164,12 +145,12 @@ Json json(const CrossValidated& c, const std::vector<std::string>& metrics) {
           {"predicted", std::vector<double>(c.predicted.begin(), c.predicted.end())}};
 }
 
-Json json(const Combined& c) {
+Json to_json(const Combined& c) {
   return {{"metrics", c.metrics},
           {"left_out", c.left_out},
-          {"fit", c.fit ? json(*c.fit, c.metrics) : Json{{"not_defined", c.fit.because()}}},
-          {"roc", json(c.roc)},
-          {"roc_resubstitution", json(c.resubstitution_roc)}};
+          {"fit", c.fit ? to_json(*c.fit, c.metrics) : Json{{"not_defined", c.fit.because()}}},
+          {"roc", to_json(c.roc)},
+          {"roc_resubstitution", to_json(c.resubstitution_roc)}};
 }
 
 Json procedures_of(const Validity& v, std::span<const ProcedureSummary> procedures) {
@@ -194,19 +175,21 @@ std::string validity_json(const Validity& v, std::span<const ProcedureSummary> p
   root["expert_groups"] = v.plan.expert_groups;
   root["raters"] = v.raters;
   root["rated_procedures"] = v.rated;
-  root["agreement_between_raters"] = json(v.agreement);
-  root["ratings"] = {{"groups", json(v.rating_groups)}, {"contrast", json(v.rating_contrast)}};
+  root["agreement_between_raters"] = to_json(v.agreement);
+  root["ratings"] = {{"groups", to_json(v.rating_groups)},
+                     {"contrast", to_json(v.rating_contrast)}};
   root["metrics"] = Json::array();
   for (const MetricValidity& m : v.metrics) {
-    root["metrics"].push_back(json(m));
+    root["metrics"].push_back(to_json(m));
   }
-  root["combined"] = json(v.combined);
+  root["combined"] = to_json(v.combined);
   root["region_score_by_training"] = Json::array();
   for (const RegionWay& way : v.regions) {
-    root["region_score_by_training"].push_back({{"way", way.name},
-                                                {"rating_over_procedures", json(way.pooled)},
-                                                {"rating_over_participant_means", json(way.means)},
-                                                {"roc", json(way.roc)}});
+    root["region_score_by_training"].push_back(
+        {{"way", way.name},
+         {"rating_over_procedures", to_json(way.pooled)},
+         {"rating_over_participant_means", to_json(way.means)},
+         {"roc", to_json(way.roc)}});
   }
   root["procedures"] = procedures_of(v, procedures);
   return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

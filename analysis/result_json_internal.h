@@ -1,0 +1,16 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace haptrial::analysis {
+
+struct EffectSize;
+struct MeanInterval;
+struct TTest;
+
+// How results that every kind of study has stand in its statistics.json.
+nlohmann::ordered_json to_json(const MeanInterval& mean);
+nlohmann::ordered_json to_json(const EffectSize& size);
+nlohmann::ordered_json to_json(const TTest& test);
+
+}  // namespace haptrial::analysis
