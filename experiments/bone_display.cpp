@@ -93,13 +93,7 @@ void BoneDisplay::draw(const stimulus::DrillingView& seen) {
     const bone::Microscope& start = stage_->start_view;
     frame_.camera = {start.eye, start.target, start.up, start.field_of_view};
   }
-  if (stage_->companions->quads(quads_, quads_version_)) {
-    frame_.dust.clear();
-    for (const bone::DustQuad& quad : quads_) {
-      frame_.dust.push_back(
-          {{quad.centre[0], quad.centre[1], quad.centre[2]}, quad.size, quad.alpha});
-    }
-  }
+  stage_->companions->quads(frame_.dust, dust_version_);
   scene_.draw(frame_, width_, height_);
 }
 

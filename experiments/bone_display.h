@@ -35,8 +35,7 @@ class BoneDisplay {
   render::BoneScene scene_;
   render::BoneFrame frame_;
   std::vector<std::shared_ptr<const geometry::Mesh>> meshes_;  // by tool
-  std::vector<bone::DustQuad> quads_;
-  std::uint64_t quads_version_{~std::uint64_t{0}};
+  std::uint64_t dust_version_{~std::uint64_t{0}};
 };
 
 /// The same for a screen. The definition outlives the screen.

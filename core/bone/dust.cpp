@@ -241,9 +241,9 @@ void Dust::quads(std::vector<DustQuad>& quads) const {
       if (filled < kLeast) {
         continue;
       }
-      const Eigen::Vector3f at = impl_->centre(impl_->grid.cell(ref)).cast<float>();
       const double size = kSize * impl_->parameters.cell * std::cbrt(std::min(1.0, filled));
-      quads.push_back({{at.x(), at.y(), at.z()}, static_cast<float>(size), kAlpha});
+      quads.push_back(
+          {impl_->centre(impl_->grid.cell(ref)).cast<float>(), static_cast<float>(size), kAlpha});
     }
   }
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/bone/bone_volume.h"
+#include "core/bone/dust_quad.h"
 
 namespace haptrial {
 class Table;
@@ -57,13 +58,6 @@ struct DustTool {
 struct DustTools {
   static constexpr int kMost = 4;
   std::array<DustTool, kMost> tools{};  // those of radius 0 are not there
-};
-
-/// A cell to draw as a translucent square that faces the eye.
-struct DustQuad {
-  std::array<float, 3> centre;  // in W [m]
-  float size;                   // edge [m]
-  float alpha;                  // 0 to 1
 };
 
 /// Where all that was deposited is, in solid voxels. The parts add up to `deposited` exactly: each

@@ -11,10 +11,10 @@
 
 namespace haptrial::render {
 
-std::vector<std::uint32_t> back_to_front(std::span<const DustQuad> dust,
+std::vector<std::uint32_t> back_to_front(std::span<const bone::DustQuad> dust,
                                          const Eigen::Vector3d& eye) {
   std::vector<float> distances(dust.size());
-  std::transform(dust.begin(), dust.end(), distances.begin(), [&](const DustQuad& quad) {
+  std::transform(dust.begin(), dust.end(), distances.begin(), [&](const bone::DustQuad& quad) {
     return (quad.position - eye.cast<float>()).squaredNorm();
   });
   std::vector<std::uint32_t> order(dust.size());
@@ -30,7 +30,7 @@ DustDrawing::DustDrawing(const Gl& gl)
       to_eye_(gl.get_uniform_location(program_, "to_eye")),
       to_clip_(gl.get_uniform_location(program_, "to_clip")),
       colour_(gl.get_uniform_location(program_, "dust")),
-      quads_(gl, sizeof(DustQuad)) {
+      quads_(gl, sizeof(bone::DustQuad)) {
   gl_.gen_vertex_arrays(1, &array_);
   gl_.bind_vertex_array(array_);
   quads_.bind(GL_ARRAY_BUFFER);
@@ -38,9 +38,9 @@ DustDrawing::DustDrawing(const Gl& gl)
     gl_.enable_vertex_attrib_array(index);
     gl_.vertex_attrib_divisor(index, 1);
   }
-  gl_.vertex_attrib_pointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(DustQuad), nullptr);
-  gl_.vertex_attrib_pointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(DustQuad),
-                            reinterpret_cast<const void*>(offsetof(DustQuad, size)));
+  gl_.vertex_attrib_pointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(bone::DustQuad), nullptr);
+  gl_.vertex_attrib_pointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(bone::DustQuad),
+                            reinterpret_cast<const void*>(offsetof(bone::DustQuad, size)));
   gl_.bind_vertex_array(0);
 }
 
@@ -49,14 +49,16 @@ DustDrawing::~DustDrawing() {
   gl_.delete_program(program_);
 }
 
-void DustDrawing::draw(std::span<const DustQuad> dust, const EyeView& view, const Colour& colour) {
+void DustDrawing::draw(std::span<const bone::DustQuad> dust, const EyeView& view,
+                       const Colour& colour) {
   if (dust.empty()) {
     return;
   }
   const std::vector<std::uint32_t> order = back_to_front(dust, view.eye);
   quads_.update(dust.size(), order, [&](ItemRange range, std::byte* to) {
     for (std::size_t i = 0; i < range.count; ++i) {
-      std::memcpy(to + i * sizeof(DustQuad), &dust[order[range.first + i]], sizeof(DustQuad));
+      std::memcpy(to + i * sizeof(bone::DustQuad), &dust[order[range.first + i]],
+                  sizeof(bone::DustQuad));
     }
   });
   const Eigen::Matrix4f to_eye = view.view.cast<float>();

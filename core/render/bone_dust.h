@@ -11,7 +11,7 @@
 namespace haptrial::render {
 
 /// The numbers of the quads from the farthest to the nearest, as seen from the eye.
-std::vector<std::uint32_t> back_to_front(std::span<const DustQuad> dust,
+std::vector<std::uint32_t> back_to_front(std::span<const bone::DustQuad> dust,
                                          const Eigen::Vector3d& eye);
 
 /// Draws dust over what is drawn already. One thread, with the context current.
@@ -22,7 +22,7 @@ class DustDrawing {
   DustDrawing(const DustDrawing&) = delete;
   DustDrawing& operator=(const DustDrawing&) = delete;
 
-  void draw(std::span<const DustQuad> dust, const EyeView& view, const Colour& colour);
+  void draw(std::span<const bone::DustQuad> dust, const EyeView& view, const Colour& colour);
 
  private:
   Gl gl_;

@@ -9,6 +9,7 @@
 
 #include "core/base/tool_state.h"
 #include "core/bone/bone_volume.h"
+#include "core/bone/dust_quad.h"
 #include "core/bone/surface_depths.h"
 #include "core/geometry/mesh.h"
 #include "core/render/bone_camera.h"
@@ -51,20 +52,13 @@ struct SceneMesh {
   Colour colour{0.75, 0.77, 0.80};                        // alpha below 1: translucent
 };
 
-/// A square of dust that faces the eye.
-struct DustQuad {
-  Eigen::Vector3f position{Eigen::Vector3f::Zero()};  // in W [m]
-  float size{0.0005F};                                // of a side [m]
-  float alpha{0.5F};                                  // from 0 to 1
-};
-
 /// All that a picture shows.
 struct BoneFrame {
   BoneCamera camera;
   std::optional<StereoPair> stereo;
   std::vector<SceneBone> bones;
   std::vector<SceneMesh> meshes;
-  std::vector<DustQuad> dust;  // in any order
+  std::vector<bone::DustQuad> dust;  // in any order
 };
 
 /// What the last draw() did.

@@ -188,9 +188,8 @@ void draw(const char* file) {
   render::BoneFrame frame;
   frame.bones.push_back({1, &half});
   for (const bone::DustQuad& quad : quads) {
-    if (quad.centre[1] > 0.0F) {
-      frame.dust.push_back(
-          {Eigen::Vector3f(quad.centre[0], quad.centre[1], quad.centre[2]), quad.size, quad.alpha});
+    if (quad.position.y() > 0.0F) {
+      frame.dust.push_back(quad);
     }
   }
   constexpr int kWidth = 900;

@@ -188,7 +188,7 @@ TEST(DustTest, StaysInAClosedShellHoweverTheBoneIsTurned) {
     std::vector<DustQuad> quads;
     dust.quads(quads);
     for (const DustQuad& quad : quads) {
-      const Eigen::Vector3d at(quad.centre[0], quad.centre[1], quad.centre[2]);
+      const Eigen::Vector3d at = quad.position.cast<double>();
       ASSERT_LT(at.norm(), 16.0 * kEdge) << trial;
     }
   }
@@ -368,13 +368,15 @@ std::vector<DustQuad> run_in_parts(int parts) {
 
 TEST(DustTest, TheSameCallsGiveTheSameDustAndTimeMayBeCut) {
   const auto equal = [](const DustQuad& a, const DustQuad& b) {
-    return a.centre == b.centre && a.size == b.size && a.alpha == b.alpha;
+    return a.position == b.position && a.size == b.size && a.alpha == b.alpha;
   };
   const auto once = run_in_parts(1);
   const auto again = run_in_parts(1);
   const auto cut = run_in_parts(6);
   EXPECT_TRUE(std::equal(once.begin(), once.end(), again.begin(), again.end(), equal));
-  const auto key = [](const DustQuad& q) { return q.centre; };
+  const auto key = [](const DustQuad& q) {
+    return std::array{q.position.x(), q.position.y(), q.position.z()};
+  };
   std::map<std::array<float, 3>, float> places;
   for (const DustQuad& quad : once) {
     places[key(quad)] = quad.size;

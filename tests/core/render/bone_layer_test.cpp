@@ -92,7 +92,7 @@ void move_tools(BoneFrame& frame, RandomStream& random) {
     mesh.pose.translation() = near();
   }
   frame.dust.resize(30);
-  for (DustQuad& quad : frame.dust) {
+  for (bone::DustQuad& quad : frame.dust) {
     quad.position = near().cast<float>();
   }
 }

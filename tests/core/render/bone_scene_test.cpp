@@ -317,7 +317,7 @@ TEST(BoneSceneTest, ToolMeshesAreClosedAndOutwards) {
 }
 
 TEST(BoneSceneTest, DustIsDrawnFromTheBack) {
-  const std::vector<DustQuad> dust{
+  const std::vector<bone::DustQuad> dust{
       {{0, 0, 0.1F}, 1, 1}, {{0, 0, 0.3F}, 1, 1}, {{0, 0, -0.2F}, 1, 1}};
   EXPECT_EQ(back_to_front(dust, {0, 0, 1}), (std::vector<std::uint32_t>{2, 0, 1}));
 }
