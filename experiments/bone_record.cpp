@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "analysis/drilling/procedure.h"
 #include "core/base/error.h"
 #include "core/record/schema.h"
 
@@ -19,11 +20,6 @@ std::string cut(const std::string& text, std::size_t bytes) {
     --size;
   }
   return text.substr(0, size);
-}
-
-[[noreturn]] void damaged(const std::string& what) {
-  throw InputError(
-      fmt::format("the bone of the session file is damaged: {}; allowed: an undamaged one", what));
 }
 
 }  // namespace
@@ -60,51 +56,12 @@ record::BoneRecord record_of(const bone::BoneModel& model, std::int32_t number) 
 }
 
 bone::BoneModel model_of(const record::BoneRecord& record) {
-  bone::BoneModel model;
-  model.name = record.bone.name;
-  model.source = record.bone.source;
-  model.grid = {record.bone.size, record.bone.origin, record.bone.spacing};
-  constexpr std::int32_t kLongest = 8192;  // voxels along an axis
-  for (const std::int32_t size : model.grid.size) {
-    if (size < 1 || size > kLongest) {
-      damaged(fmt::format("{} voxels along an axis", size));
-    }
-  }
-  model.labels.assign(model.grid.count(), 0);
-  for (const record::BoneRunRow& run : record.runs) {
-    if (run.count < 1 || run.first > model.labels.size() ||
-        static_cast<std::uint64_t>(run.count) > model.labels.size() - run.first) {
-      damaged(fmt::format("voxels from {} on are outside of its grid", run.first));
-    }
-    std::fill_n(model.labels.begin() + static_cast<std::ptrdiff_t>(run.first), run.count,
-                run.label);
-  }
-  if (!record.densities.empty()) {
-    model.density.assign(model.labels.size(), 0.0F);
-    std::transform(model.labels.begin(), model.labels.end(), model.density.begin(),
-                   [](std::uint8_t label) { return label != 0 ? 1.0F : 0.0F; });
-    for (const record::BoneDensityRow& row : record.densities) {
-      if (row.voxel >= model.density.size()) {
-        damaged(fmt::format("voxel {} is outside of its grid", row.voxel));
-      }
-      model.density[row.voxel] = row.density;
-    }
-  }
-  model.structures.resize(1);
-  for (const record::StructureRow& row : record.structures) {
-    if (row.label < 1 || row.label > 255) {
-      damaged(fmt::format("a structure has the label {}", row.label));
-    }
-    const auto label = static_cast<std::size_t>(row.label);
-    model.structures.resize(std::max(model.structures.size(), label + 1));
-    model.structures[label] = {row.name, row.colour, row.hardness, row.vital};
-  }
   try {
-    check(model);
+    return analysis::drilling::bone_of(record);
   } catch (const std::invalid_argument& error) {
-    damaged(error.what());
+    throw InputError(fmt::format(
+        "the bone of the session file is damaged: {}; allowed: an undamaged one", error.what()));
   }
-  return model;
 }
 
 }  // namespace haptrial::experiments
