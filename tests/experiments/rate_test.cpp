@@ -15,10 +15,13 @@
 #include "experiments/drilling_study.h"
 #include "experiments/rating_pictures.h"
 #include "experiments/study_run.h"
+#include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments {
 namespace {
+
+using test::message_of;
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -26,15 +29,6 @@ using testing::HasSubstr;
 std::string contents(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
 }
 
 /// Names and bytes of all files.

@@ -11,10 +11,13 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::analysis::drilling {
 namespace {
+
+using test::message_of;
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -30,15 +33,6 @@ std::vector<RatedItem> items_of(const std::vector<std::string>& people) {
     }
   }
   return items;
-}
-
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
 }
 
 class RatingsTest : public testing::Test {

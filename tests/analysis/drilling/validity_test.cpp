@@ -15,10 +15,13 @@
 #include "analysis/drilling/validity_table.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
+#include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::analysis::drilling {
 namespace {
+
+using test::message_of;
 
 using testing::HasSubstr;
 using testing::Not;
@@ -65,15 +68,6 @@ Study made(std::uint64_t seed, double effect, double people, int raters = 1) {
 
 ValidityResult result_of(const Study& study) {
   return {"A study", study.procedures, {}, "", study.validity(), {}};
-}
-
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
 }
 
 // Each part is the general procedure on the numbers that belong to it, picked out here by hand.

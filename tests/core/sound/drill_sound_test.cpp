@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/sound/sound_output.h"
 #include "core/sound/wav.h"
+#include "tests/core/sound/lines.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/temporary_folder.h"
 
@@ -19,15 +20,6 @@ namespace haptrial::sound {
 namespace {
 
 using ::testing::HasSubstr;
-
-Spectrum lines(std::initializer_list<Peak> peaks, double noise = 0.0) {
-  Spectrum spectrum;
-  for (const Peak& peak : peaks) {
-    spectrum.peaks[static_cast<std::size_t>(spectrum.count++)] = peak;
-  }
-  spectrum.noise = noise;
-  return spectrum;
-}
 
 TEST(DrillSoundTest, PitchRisesLinearlyWhereBoneIsThin) {
   const ThinBone thin{2e-3, 0.4};

@@ -8,28 +8,13 @@
 #include <numbers>
 #include <vector>
 
+#include "tests/core/sound/lines.h"
 #include "tests/support/allocation_guard.h"
 
 namespace haptrial::sound {
 namespace {
 
 constexpr double kTau = 2.0 * std::numbers::pi;
-
-Spectrum lines(std::initializer_list<Peak> peaks, double noise = 0.0) {
-  Spectrum spectrum;
-  for (const Peak& peak : peaks) {
-    spectrum.peaks[static_cast<std::size_t>(spectrum.count++)] = peak;
-  }
-  spectrum.noise = noise;
-  return spectrum;
-}
-
-std::vector<float> drawn(Harmonics& harmonics, double rate, double seconds) {
-  std::vector<float> samples(static_cast<std::size_t>(rate * seconds));
-  std::generate(samples.begin(), samples.end(),
-                [&] { return static_cast<float>(harmonics.next()); });
-  return samples;
-}
 
 /// Amplitude of a sine of a known frequency, by projection: independent of the FFT.
 double projected(const std::vector<float>& samples, double rate, double frequency) {

@@ -9,6 +9,7 @@
 
 #include "core/sound/harmonics.h"
 #include "core/sound/wav.h"
+#include "tests/core/sound/lines.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"
 
@@ -16,22 +17,6 @@ namespace haptrial::sound {
 namespace {
 
 constexpr double kTau = 2.0 * std::numbers::pi;
-
-Spectrum lines(std::initializer_list<Peak> peaks, double noise = 0.0) {
-  Spectrum spectrum;
-  for (const Peak& peak : peaks) {
-    spectrum.peaks[static_cast<std::size_t>(spectrum.count++)] = peak;
-  }
-  spectrum.noise = noise;
-  return spectrum;
-}
-
-std::vector<float> drawn(Harmonics& harmonics, double rate, double seconds) {
-  std::vector<float> samples(static_cast<std::size_t>(rate * seconds));
-  std::generate(samples.begin(), samples.end(),
-                [&] { return static_cast<float>(harmonics.next()); });
-  return samples;
-}
 
 TEST(PowerSpectrumTest, TheBinsAddUpToTheMeanSquare) {
   RandomStream random(7, "white");

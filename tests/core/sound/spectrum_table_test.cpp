@@ -7,20 +7,12 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "tests/core/sound/lines.h"
 
 namespace haptrial::sound {
 namespace {
 
 using ::testing::HasSubstr;
-
-Spectrum lines(std::initializer_list<Peak> peaks, double noise = 0.0) {
-  Spectrum spectrum;
-  for (const Peak& peak : peaks) {
-    spectrum.peaks[static_cast<std::size_t>(spectrum.count++)] = peak;
-  }
-  spectrum.noise = noise;
-  return spectrum;
-}
 
 TEST(SpectrumTableTest, BlendsBetweenForcesAndFallsBack) {
   SpectrumTable table;
