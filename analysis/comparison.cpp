@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "analysis/p_adjust.h"
 #include "analysis/scores_csv.h"
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -19,14 +18,13 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 std::string text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || fs::is_directory(file)) {
+  if (!fs::is_regular_file(file)) {
     throw InputError(
         fmt::format("{}: cannot be read; allowed: the folder of a study that haptrial "
                     "analyze has analysed",
                     file.string()));
   }
-  return {std::istreambuf_iterator<char>(stream), {}};
+  return file_text(file);
 }
 
 /// Means of each participant's trials of a condition.

@@ -1,14 +1,15 @@
 #include <fmt/format.h>
 
 #include <fstream>
-#include <iterator>
 
 #include "analysis/comparison.h"
 #include "analysis/figure_gnuplot.h"
 #include "analysis/html.h"
+#include "analysis/palette.h"
 #include "analysis/report_style.h"
 #include "analysis/wording.h"
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -30,8 +31,9 @@ Figure figure_of(const StudyComparison& comparison) {
   figure.x_label = "Training condition";
   figure.y_label = "Recall error (0 is perfect)";
   figure.simulated = simulated(comparison);
-  Series first{comparison.first.name, Mark::kBars, {"#0072b2", "solid", 7, 2.5, 1.2}};
-  Series second{comparison.second.name, Mark::kBars, {"#d55e00", "solid", 5, 2.5, 1.2}};
+  Series first{comparison.first.name, Mark::kBars, {palette::kBlue, palette::kSolid, 7, 2.5, 1.2}};
+  Series second{
+      comparison.second.name, Mark::kBars, {palette::kOrange, palette::kSolid, 5, 2.5, 1.2}};
   double highest = 0.0;
   double place = 0.0;
   for (const auto& c : comparison.conditions) {
@@ -134,8 +136,7 @@ std::vector<std::string> comparison_lines(const StudyComparison& comparison) {
 void write_comparison(const StudyComparison& comparison, const std::filesystem::path& folder) {
   const Figure figure = figure_of(comparison);
   draw_figures({figure}, folder);
-  std::ifstream picture(folder / (figure.name + ".svg"), std::ios::binary);
-  const std::string svg{std::istreambuf_iterator<char>(picture), {}};
+  const std::string svg = file_text(folder / (figure.name + ".svg"));
   write(folder / "comparison.json", comparison_json(comparison));
   write(folder / "comparison.html", html_of(comparison, svg, figure));
 }

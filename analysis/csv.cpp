@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <iostream>
 #include <iterator>
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -241,12 +241,7 @@ CsvTable CsvTable::load(const fs::path& file) {
     throw InputError(
         fmt::format("{}: is larger than {} bytes; allowed: at most that", file.string(), kLargest));
   }
-  std::ifstream in(file, std::ios::binary);
-  std::string text(std::istreambuf_iterator<char>(in), {});
-  if (!in.is_open() || in.bad()) {
-    throw InputError(fmt::format("{}: cannot be read; allowed: a file that may be", file.string()));
-  }
-  return parse(std::move(text), file.string());
+  return parse(file_text(file), file.string());
 }
 
 std::string_view CsvTable::view(Field field) const {

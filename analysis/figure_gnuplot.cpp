@@ -10,10 +10,10 @@
 #include <array>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -159,8 +159,7 @@ set rmargin 4
 
 // What a complete file of the kind ends with.
 bool ends_with(const fs::path& file, const std::string& ending) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const std::string text = file_text(file);
   const auto tail = text.substr(text.size() - std::min<std::size_t>(text.size(), 16));
   return tail.find(ending) != std::string::npos;
 }

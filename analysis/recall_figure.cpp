@@ -2,16 +2,17 @@
 
 #include <algorithm>
 
+#include "analysis/palette.h"
+
 namespace haptrial::analysis {
 namespace {
 
 constexpr std::size_t kPairs = 60;  // drawn of the path
 
-// Okabe and Ito's palette, told apart with any colour vision; dashes tell lines apart without any.
-constexpr Look kTarget{"#d55e00", "solid", 0, 2.5};
-constexpr Look kApplied{"#9aa0a6", "(3,3)", 0, 2.0};
-constexpr Look kWarped{"#0072b2", "(9,4)", 0, 2.5};
-constexpr Look kPairing{"#c8ccd0", "solid", 0, 0.8};
+constexpr Look kTarget{palette::kOrange, palette::kSolid, 0, 2.5};
+constexpr Look kApplied{palette::kGrey, palette::kShort, 0, 2.0};
+constexpr Look kWarped{palette::kBlue, palette::kLong, 0, 2.5};
+constexpr Look kPairing{palette::kPale, palette::kSolid, 0, 0.8};
 
 std::vector<double> instants(const TimeBase& base) {
   std::vector<double> times(base.samples);

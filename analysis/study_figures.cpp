@@ -6,23 +6,13 @@
 #include <array>
 #include <cmath>
 
+#include "analysis/palette.h"
 #include "analysis/wording.h"
 
 namespace haptrial::analysis {
 namespace {
 
-// Okabe and Ito's palette, told apart with any colour vision.
-constexpr const char* kBlue = "#0072b2";
-constexpr const char* kOrange = "#d55e00";
-constexpr const char* kGreen = "#009e73";
-constexpr const char* kPurple = "#cc79a7";
-constexpr const char* kGrey = "#9aa0a6";
-constexpr const char* kBlack = "#1a1a1a";
-
-constexpr const char* kSolid = "solid";
-constexpr const char* kLong = "(9,4)";
-constexpr const char* kMixed = "(9,4,2,4)";
-constexpr const char* kShort = "(3,3)";
+using namespace palette;
 
 // By place among the conditions: circle, square, triangle, diamond, each with its dash.
 Look condition_look(std::size_t index) {

@@ -1,7 +1,5 @@
 #include "analysis/write_analysis.h"
 
-#include <fstream>
-#include <iterator>
 #include <vector>
 
 #include "analysis/figure_gnuplot.h"
@@ -10,16 +8,12 @@
 #include "analysis/staging.h"
 #include "analysis/study_figures.h"
 #include "analysis/study_json.h"
+#include "core/base/file_text.h"
 
 namespace haptrial::analysis {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string contents(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 }  // namespace
 
@@ -31,7 +25,7 @@ void write_analysis(const StudyResult& study, const fs::path& folder) {
   draw_figures(figures, staging.path());
   std::vector<Drawing> drawings;
   for (const auto& figure : figures) {
-    drawings.push_back({figure, contents(staging.path() / (figure.name + ".svg"))});
+    drawings.push_back({figure, file_text(staging.path() / (figure.name + ".svg"))});
   }
   const Document report = study_report(study, drawings);
   staging.write("report.html", to_html(report));

@@ -4,22 +4,21 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 
+#include "analysis/palette.h"
 #include "analysis/wording.h"
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 
 namespace haptrial::analysis::drilling {
 namespace {
 
-// Okabe and Ito's palette, told apart with any colour vision; shapes and dashes differ too.
-constexpr Look kExperts{"#0072b2", "solid", 7, 2.0, 1.0};
-constexpr Look kNovices{"#d55e00", "(9,4)", 5, 2.0, 1.0};
-constexpr Look kThird{"#009e73", "(3,3)", 9, 2.0, 1.2};
-constexpr Look kFourth{"#cc79a7", "(9,4,2,4)", 13, 2.0, 1.2};
-constexpr Look kBlack{"#1a1a1a", "solid", 7, 2.5, 1.2};
-constexpr Look kGrey{"#9aa0a6", "(3,3)", 7, 1.5, 1.0};
+constexpr Look kExperts{palette::kBlue, palette::kSolid, 7, 2.0, 1.0};
+constexpr Look kNovices{palette::kOrange, palette::kLong, 5, 2.0, 1.0};
+constexpr Look kThird{palette::kGreen, palette::kShort, 9, 2.0, 1.2};
+constexpr Look kFourth{palette::kPurple, palette::kMixed, 13, 2.0, 1.2};
+constexpr Look kBlack{palette::kBlack, palette::kSolid, 7, 2.5, 1.2};
+constexpr Look kGrey{palette::kGrey, palette::kShort, 7, 1.5, 1.0};
 
 Look look_of(std::size_t group) {
   const std::array<Look, 4> looks{kExperts, kThird, kNovices, kFourth};
@@ -61,7 +60,7 @@ Figure ratings_figure(const ValidityResult& result) {
   }
   Series pooled{"mean, procedures", Mark::kBars, kBlack};
   Series means{"mean, participants", Mark::kBars, kExperts};
-  Series dots{"procedure", Mark::kPoints, {"#9aa0a6", "solid", 6, 1.5, 0.8}};
+  Series dots{"procedure", Mark::kPoints, {palette::kGrey, palette::kSolid, 6, 1.5, 0.8}};
   constexpr double kAside = 0.12;
   for (std::size_t k = 0; k < order.size(); ++k) {
     const double place = static_cast<double>(k + 1);
@@ -296,8 +295,7 @@ std::vector<Figure> validity_figures(const ValidityResult& result) {
 }
 
 Drawing drawing_of(const StudyPicture& picture, bool simulated) {
-  std::ifstream stream(picture.png, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  const std::string bytes = file_text(picture.png);
   constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
   constexpr std::size_t kWidthAt = 16, kHeightAt = 20, kHeader = 24;
   if (bytes.size() < kHeader || bytes.compare(0, kSignature.size(), kSignature) != 0) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 #include <map>
 
@@ -14,6 +13,7 @@
 #include "analysis/parallel.h"
 #include "analysis/staging.h"
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 #include "core/record/session_reader.h"
 
 namespace haptrial::analysis::drilling {
@@ -63,11 +63,6 @@ std::string structure_of(const ValidityStudy& study,
   return most;
 }
 
-std::string contents(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 }  // namespace
 
 ValidityResult analyze(const ValidityStudy& study) {
@@ -101,7 +96,7 @@ void write_validity(const ValidityResult& result, const fs::path& folder) {
     staging.write(picture.name + ".svg", drawings.back().svg);
   }
   for (const Figure& figure : figures) {
-    drawings.push_back({figure, contents(staging.path() / (figure.name + ".svg"))});
+    drawings.push_back({figure, file_text(staging.path() / (figure.name + ".svg"))});
   }
   const Document report = validity_report(result, drawings);
   staging.write("report.html", to_html(report));

@@ -5,12 +5,12 @@
 #include <toml++/toml.h>
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
 
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 
 namespace haptrial {
 
@@ -176,12 +176,7 @@ Table Table::load(const std::filesystem::path& file) {
     throw InputError(
         fmt::format("{}: {} bytes; a definition has at most {}", file.string(), size, kLargest));
   }
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (!(in && (in.peek() == std::ifstream::traits_type::eof() || text << in.rdbuf()))) {
-    throw InputError(fmt::format("{}: cannot be read", file.string()));
-  }
-  return parse(text.str(), file.string());
+  return parse(file_text(file), file.string());
 }
 
 const std::string& Table::source() const { return document_->source; }

@@ -9,6 +9,7 @@
 
 #include "analysis/scores_csv.h"
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 #include "core/base/random.h"
 #include "tests/support/temporary_folder.h"
 
@@ -133,8 +134,7 @@ TEST_F(ScoredStudyTest, TheComparisonIsWrittenAsPageFigureAndNumbers) {
   ScoredStudy second = study("second", {"S1", "S2", "S3"}, 0.4);
   const StudyComparison c = compare_studies(first, second);
   write_comparison(c, folder_.path());
-  std::ifstream page(folder_ / "comparison.html");
-  const std::string html{std::istreambuf_iterator<char>(page), {}};
+  const std::string html = file_text(folder_ / "comparison.html");
   EXPECT_THAT(html, HasSubstr("SIMULATED"));
   EXPECT_THAT(html, HasSubstr("first&lt;"));
   EXPECT_THAT(html, HasSubstr("<svg"));

@@ -11,18 +11,14 @@
 
 #include "analysis/regression.h"
 #include "core/base/random.h"
+#include "tests/analysis/normal_values.h"
 
 namespace haptrial::analysis {
 namespace {
 
+using test::normal_values;
 using testing::HasSubstr;
 using Values = std::vector<double>;
-
-Values normal_values(RandomStream& random, std::size_t count) {
-  Values values(count);
-  std::generate(values.begin(), values.end(), [&] { return random.normal(); });
-  return values;
-}
 
 TEST(Pearson, MatchesACaseWorkedByHand) {
   // Sxx 2, Syy 2, Sxy 1; with one degree of freedom t = 1/sqrt(3) and p = 2/3.

@@ -12,23 +12,17 @@
 #include "analysis/repeated_anova.h"
 #include "analysis/t_test.h"
 #include "core/base/random.h"
+#include "tests/analysis/normal_values.h"
 
 namespace haptrial::analysis {
 namespace {
 
+using test::normal_values;
 using testing::HasSubstr;
 using Values = std::vector<double>;
 using Table = std::vector<Values>;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-Values normal_values(RandomStream& random, std::size_t count, double mean) {
-  Values values(count);
-  for (auto& value : values) {
-    value = mean + random.normal();
-  }
-  return values;
-}
 
 TEST(CohensD, MatchesACaseWorkedByHand) {
   // Means 2 and 6, pooled variance (2 + 8) / 4.

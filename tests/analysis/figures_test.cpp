@@ -11,6 +11,7 @@
 #include "analysis/figure_gnuplot.h"
 #include "analysis/study_figures.h"
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 #include "tests/analysis/example_study.h"
 
 namespace haptrial::analysis {
@@ -28,11 +29,7 @@ class Figures : public testing::Test {
   }
   ~Figures() override { fs::remove_all(folder_); }
 
-  std::string read(const std::string& name) const {
-    std::ifstream file(folder_ / name, std::ios::binary);
-    EXPECT_TRUE(file) << name;
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string read(const std::string& name) const { return file_text(folder_ / name); }
 
   fs::path folder_;
 };

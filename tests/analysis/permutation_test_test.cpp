@@ -9,20 +9,14 @@
 #include <stdexcept>
 
 #include "core/base/random.h"
+#include "tests/analysis/normal_values.h"
 
 namespace haptrial::analysis {
 namespace {
 
+using test::normal_values;
 using testing::HasSubstr;
 using Values = std::vector<double>;
-
-Values normal_values(RandomStream& random, std::size_t count, double mean) {
-  Values values(count);
-  for (auto& value : values) {
-    value = mean + random.normal();
-  }
-  return values;
-}
 
 TEST(PermutationTest, CountsTheArrangementsOfACaseWorkedByHand) {
   // Of the six pairs out of 1, 2, 3, 4 one has the lowest sum and one the highest.

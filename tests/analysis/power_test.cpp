@@ -10,20 +10,14 @@
 #include "analysis/anova.h"
 #include "analysis/t_test.h"
 #include "core/base/random.h"
+#include "tests/analysis/normal_values.h"
 
 namespace haptrial::analysis {
 namespace {
 
+using test::normal_values;
 using testing::HasSubstr;
 using Values = std::vector<double>;
-
-Values normal_values(RandomStream& random, std::size_t count, double mean) {
-  Values values(count);
-  for (auto& value : values) {
-    value = mean + random.normal();
-  }
-  return values;
-}
 
 TEST(Power, WithoutAnEffectIsAlpha) {
   for (const auto design : {TDesign::kOneSample, TDesign::kTwoSample, TDesign::kPaired}) {

@@ -9,11 +9,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <set>
 
 #include "analysis/scores_csv.h"
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 #include "tests/analysis/example_study.h"
 
 namespace haptrial::analysis {
@@ -29,11 +29,6 @@ class WriteAnalysis : public testing::Test {
     fs::create_directories(root_);
   }
   ~WriteAnalysis() override { fs::remove_all(root_); }
-
-  static std::string read(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
 
   static std::set<std::string> names(const fs::path& folder) {
     std::set<std::string> result;
@@ -51,8 +46,8 @@ TEST_F(WriteAnalysis, MakesTheFolderAndEveryFile) {
   write_analysis(study, root_ / "a" / "b");
   const auto found = names(root_ / "a" / "b");
   EXPECT_EQ(found.size(), 26u);  // table, numbers, two reports, eleven figures twice
-  EXPECT_EQ(read(root_ / "a" / "b" / "scores.csv"), scores_csv(study.scores));
-  const auto report = read(root_ / "a" / "b" / "report.html");
+  EXPECT_EQ(file_text(root_ / "a" / "b" / "scores.csv"), scores_csv(study.scores));
+  const auto report = file_text(root_ / "a" / "b" / "report.html");
   EXPECT_THAT(report, HasSubstr("SIMULATED PARTICIPANTS</text>"));  // in the pictures too
   EXPECT_THAT(report, HasSubstr("figure-28-recall-error-gpPt"));
 }
@@ -61,8 +56,8 @@ TEST_F(WriteAnalysis, ReplacesAnEarlierOneAndTouchesNothingElse) {
   std::ofstream(root_ / "session.h5") << "data";
   write_analysis(example_study(true), root_);
   write_analysis(example_study(false), root_);
-  EXPECT_THAT(read(root_ / "report.html"), testing::Not(HasSubstr("SIMULATED")));
-  EXPECT_EQ(read(root_ / "session.h5"), "data");
+  EXPECT_THAT(file_text(root_ / "report.html"), testing::Not(HasSubstr("SIMULATED")));
+  EXPECT_EQ(file_text(root_ / "session.h5"), "data");
   EXPECT_EQ(names(root_).size(), 27u);  // no temporary folder
 }
 
@@ -71,7 +66,7 @@ TEST_F(WriteAnalysis, GivesTheSameBytesTwice) {
   write_analysis(example_study(true), root_ / "2");
   for (const auto& name : names(root_ / "1")) {
     if (!name.ends_with(".png")) {
-      EXPECT_EQ(read(root_ / "1" / name), read(root_ / "2" / name)) << name;
+      EXPECT_EQ(file_text(root_ / "1" / name), file_text(root_ / "2" / name)) << name;
     }
   }
 }
@@ -89,12 +84,12 @@ TEST_F(WriteAnalysis, SaysThatTheFolderCannotBeWritten) {
 
 TEST_F(WriteAnalysis, LeavesAnEarlierOneWhenGnuplotIsAbsent) {
   write_analysis(example_study(true), root_);
-  const std::string before = read(root_ / "report.html");
+  const std::string before = file_text(root_ / "report.html");
   const std::string path = std::getenv("PATH");
   ::setenv("PATH", root_.c_str(), 1);
   EXPECT_THROW(write_analysis(example_study(false), root_), RunError);
   ::setenv("PATH", path.c_str(), 1);
-  EXPECT_EQ(read(root_ / "report.html"), before);
+  EXPECT_EQ(file_text(root_ / "report.html"), before);
   EXPECT_EQ(names(root_).size(), 26u);
 }
 

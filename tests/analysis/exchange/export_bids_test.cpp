@@ -5,9 +5,9 @@
 
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 #include "tests/analysis/exchange/small_session.h"
 #include "tests/support/temporary_folder.h"
 
@@ -19,11 +19,6 @@ using testing::HasSubstr;
 using testing::Not;
 
 const fs::path kHere = fs::path(HAPTRIAL_SOURCE_DIR) / "tests/analysis/exchange";
-
-std::string read(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 void ignore(std::uint64_t) {}
 
@@ -53,7 +48,7 @@ class ExportBidsTest : public testing::Test {
   int shell(const std::string& line) {
     const fs::path log = folder_ / "log";
     const int status = std::system(("(" + line + ") >'" + log.string() + "' 2>&1").c_str());
-    output_ = read(log);
+    output_ = file_text(log);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
@@ -125,7 +120,7 @@ TEST_F(ExportBidsTest, TheOfficialValidatorFindsNoErrors) {
   EXPECT_THAT(output_, HasSubstr("2 - Subjects"));
   // It does look: without the rate of a recording it finds an error.
   const auto sidecar = folder_ / "out/sub-P2/ses-1/beh/sub-P2_ses-1_task-smallstudy_physio.json";
-  std::string text = read(sidecar);
+  std::string text = file_text(sidecar);
   const auto at = text.find("\"SamplingFrequency\"");
   ASSERT_NE(at, std::string::npos);
   text.replace(at, 4, "\"Xxx");
@@ -140,12 +135,12 @@ TEST_F(ExportBidsTest, SeveralSessionsOfASubjectStandInTheOrderOfTheirStart) {
   write("other.h5", {.subject = "P2"});
   EXPECT_EQ(run().subjects, 2u);
   const fs::path out = folder_ / "out";
-  EXPECT_EQ(read(out / "sub-P1/sub-P1_sessions.tsv"),
+  EXPECT_EQ(file_text(out / "sub-P1/sub-P1_sessions.tsv"),
             "session_id\tacq_time\nses-1\t2026-11-21T09:30:00Z\nses-2\t2026-11-22T09:30:00Z\n");
-  EXPECT_THAT(read(out / "sub-P1/ses-2/beh/sub-P1_ses-2_task-smallstudy_physio.json"),
+  EXPECT_THAT(file_text(out / "sub-P1/ses-2/beh/sub-P1_ses-2_task-smallstudy_physio.json"),
               HasSubstr("\"SamplingFrequency\": 250.0"));
   EXPECT_TRUE(fs::exists(out / "sub-P2/ses-1/beh/sub-P2_ses-1_task-smallstudy_events.tsv"));
-  const std::string people = read(out / "participants.tsv");
+  const std::string people = file_text(out / "participants.tsv");
   EXPECT_EQ(std::count(people.begin(), people.end(), '\n'), 1 + 2);
 }
 
@@ -154,12 +149,12 @@ TEST_F(ExportBidsTest, ASimulatedParticipantIsMarkedEverywhere) {
   write("b.h5", {.subject = "P2", .simulated = false});
   run();
   const fs::path out = folder_ / "out";
-  EXPECT_THAT(read(out / "dataset_description.json"), HasSubstr("\"SIMULATED: small_study\""));
-  EXPECT_THAT(read(out / "README"), testing::StartsWith("SIMULATED PARTICIPANTS"));
-  EXPECT_THAT(read(out / "participants.tsv"), HasSubstr("sub-P1\tP1\tn/a\tn/a\tn/a\ttrue\n"));
-  EXPECT_THAT(read(out / "participants.tsv"), HasSubstr("sub-P2\tP2\tn/a\tn/a\tn/a\tfalse\n"));
+  EXPECT_THAT(file_text(out / "dataset_description.json"), HasSubstr("\"SIMULATED: small_study\""));
+  EXPECT_THAT(file_text(out / "README"), testing::StartsWith("SIMULATED PARTICIPANTS"));
+  EXPECT_THAT(file_text(out / "participants.tsv"), HasSubstr("sub-P1\tP1\tn/a\tn/a\tn/a\ttrue\n"));
+  EXPECT_THAT(file_text(out / "participants.tsv"), HasSubstr("sub-P2\tP2\tn/a\tn/a\tn/a\tfalse\n"));
   const auto sidecar = [&](const std::string& name) {
-    return read(out / name / "beh" / (name + "_task-smallstudy_physio.json"));
+    return file_text(out / name / "beh" / (name + "_task-smallstudy_physio.json"));
   };
   EXPECT_THAT(sidecar("sub-P1"), HasSubstr("\"TaskDescription\": \"SIMULATED PARTICIPANTS"));
   EXPECT_THAT(sidecar("sub-P2"), Not(HasSubstr("SIMULATED")));
@@ -173,7 +168,7 @@ TEST_F(ExportBidsTest, WhatAParticipantSaidStaysOut) {
   const std::string found = "grep -rlE 'knows the|2026-11-20\\b[^T]'" + quoted(folder_ / "out");
   EXPECT_EQ(shell(found), 1) << output_;  // grep finds nothing
   // A hand that BIDS has no word for goes into a column of our own.
-  EXPECT_THAT(read(folder_ / "out/participants.tsv"),
+  EXPECT_THAT(file_text(folder_ / "out/participants.tsv"),
               HasSubstr("sex\treported_handedness\tage_band"));
 }
 

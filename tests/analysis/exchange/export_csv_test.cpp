@@ -5,10 +5,10 @@
 
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "analysis/scores_csv.h"
+#include "core/base/file_text.h"
 #include "tests/analysis/exchange/small_session.h"
 #include "tests/support/temporary_folder.h"
 
@@ -17,11 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-std::string read(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 void ignore(std::uint64_t) {}
 
@@ -90,7 +85,7 @@ TEST(ExportCsvTest, PandasReadsWhatTheSessionFilesHold) {
     line += " '" + file.string() + "'";
   }
   line += " >'" + (folder / "log").string() + "' 2>&1";
-  EXPECT_EQ(std::system(line.c_str()), 0) << read(folder / "log");
+  EXPECT_EQ(std::system(line.c_str()), 0) << file_text(folder / "log");
 }
 
 TEST(ExportCsvTest, SamplesAreLeftOutUnlessAskedFor) {
@@ -99,9 +94,9 @@ TEST(ExportCsvTest, SamplesAreLeftOutUnlessAskedFor) {
   write_session(files[0], {});
   EXPECT_EQ(export_csv(files, folder / "out", {}, ignore).samples, 0u);
   EXPECT_FALSE(fs::exists(folder / "out/samples"));
-  EXPECT_THAT(read(folder / "out/dictionary.json"), testing::Not(HasSubstr("samples/*")));
-  EXPECT_THAT(read(folder / "out/dictionary.json"), HasSubstr("\"simulated\": true"));
-  EXPECT_THAT(read(folder / "out/trials.csv"),
+  EXPECT_THAT(file_text(folder / "out/dictionary.json"), testing::Not(HasSubstr("samples/*")));
+  EXPECT_THAT(file_text(folder / "out/dictionary.json"), HasSubstr("\"simulated\": true"));
+  EXPECT_THAT(file_text(folder / "out/trials.csv"),
               HasSubstr("\nP01,1,1,1,haptic,test,1,1,1,0,completed,9007199254740994,"));
 }
 
@@ -110,7 +105,7 @@ TEST(ExportCsvTest, TheDictionaryKnowsTheColumnsOfTheScores) {
   const std::vector<fs::path> files{folder / "1.h5"};
   write_session(files[0], {});
   export_csv(files, folder / "out", {}, ignore);
-  const auto json = nlohmann::ordered_json::parse(read(folder / "out/dictionary.json"));
+  const auto json = nlohmann::ordered_json::parse(file_text(folder / "out/dictionary.json"));
   std::string heading;
   for (const auto& [name, column] : json["files"]["scores.csv"]["columns"].items()) {
     heading += (heading.empty() ? "" : ",") + name;

@@ -11,6 +11,7 @@
 #include "analysis/exchange/gzip_file.h"
 #include "analysis/exchange/new_folder.h"
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 #include "core/base/random.h"
 #include "tests/support/temporary_folder.h"
 
@@ -19,11 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-std::string read(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 std::size_t entries(const fs::path& folder) {
   return static_cast<std::size_t>(
@@ -34,7 +30,7 @@ std::size_t entries(const fs::path& folder) {
 std::string unpacked(const fs::path& file, const fs::path& to) {
   const std::string command = "gzip -dc '" + file.string() + "' >'" + to.string() + "'";
   EXPECT_EQ(std::system(command.c_str()), 0);
-  return read(to);
+  return file_text(to);
 }
 
 TEST(GzipFileTest, OtherProgramsReadTheSameText) {
@@ -97,7 +93,7 @@ TEST(NewFolderTest, AppearsWholeOrNotAtAll) {
   NewFolder folder(root / "kept");
   folder.write("a/b.txt", "text");
   folder.publish();
-  EXPECT_EQ(read(root / "kept/a/b.txt"), "text");
+  EXPECT_EQ(file_text(root / "kept/a/b.txt"), "text");
   EXPECT_EQ(entries(root.path()), 1u);
 }
 
@@ -107,7 +103,7 @@ TEST(NewFolderTest, TakesAnEmptyOneAndNoOther) {
   NewFolder folder(root / "empty/");
   folder.write("x", "1");
   folder.publish();
-  EXPECT_EQ(read(root / "empty/x"), "1");
+  EXPECT_EQ(file_text(root / "empty/x"), "1");
   try {
     const NewFolder again(root / "empty");
     ADD_FAILURE() << "took a folder that holds something";
@@ -126,7 +122,7 @@ TEST(NewFolderTest, DoesNotTakeThePlaceOfWhatCameMeanwhile) {
   fs::create_directory(root / "x");
   std::ofstream(root / "x/theirs") << "x";
   EXPECT_THROW(folder.publish(), RunError);
-  EXPECT_EQ(read(root / "x/theirs"), "x");
+  EXPECT_EQ(file_text(root / "x/theirs"), "x");
 }
 
 }  // namespace

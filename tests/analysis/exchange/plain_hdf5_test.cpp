@@ -5,9 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 
+#include "core/base/file_text.h"
 #include "tests/analysis/exchange/small_session.h"
 #include "tests/support/temporary_folder.h"
 
@@ -20,8 +19,7 @@ std::string output_of(const std::string& line, int& status) {
   const test::TemporaryFolder folder;
   const fs::path log = folder / "log";
   status = std::system((line + " >'" + log.string() + "' 2>&1").c_str());
-  std::ifstream in(log, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  return file_text(log);
 }
 
 TEST(PlainHdf5Test, NothingThatMatlabLacks) {

@@ -1,4 +1,5 @@
 #include "core/sound/drill_sound.h"
+#include "core/base/file_text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -76,8 +77,7 @@ TEST(SoundTrackTest, IsAsLongAsTheStatesAndTheSameEachTime) {
   std::vector<DrillState> states(700, {Burr::kDiamond, 1.0, true, 1.0, 1e-3});
   const auto bytes = [&](const char* name, std::uint64_t seed) {
     write_drill_sound(folder / name, states, 1000.0, default_sound(), {}, seed);
-    std::ifstream in(folder / name, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(in), {});
+    return file_text(folder / name);
   };
   const std::string first = bytes("a.wav", 1);
   EXPECT_EQ(first, bytes("b.wav", 1));
