@@ -13,10 +13,8 @@
 namespace haptrial::render {
 namespace {
 
-constexpr int kCorners = 4;
-constexpr int kAttributes = 3;  // place, form, colour
-constexpr int kFloatsPerAttribute = 4;
-constexpr double kEdge = 1.0;  // pixels beyond a shape that it covers in part
+constexpr unsigned kAttributes = 3;  // place, form, colour
+constexpr double kEdge = 1.0;        // pixels beyond a shape that it covers in part
 constexpr Colour kWhite{1.0, 1.0, 1.0};
 
 std::array<float, 4> floats(double a, double b, double c, double d) {
@@ -30,17 +28,16 @@ std::array<float, 4> floats(const Colour& colour) {
 
 }  // namespace
 
-Painter::Painter(const Gl& gl, int width, int height) : gl_(gl), width_(width), height_(height) {
+Painter::Painter(const Gl& gl, int width, int height)
+    : gl_(gl), width_(width), height_(height), quads_(gl, kAttributes) {
+  static_assert(sizeof(Shape) == kAttributes * 4 * sizeof(float));
   build_program();
-  build_vertices();
   build_mask();
 }
 
 Painter::~Painter() {
   gl_.delete_framebuffers(1, &mask_framebuffer_);
   gl_.delete_textures(1, &mask_texture_);
-  gl_.delete_buffers(1, &shape_buffer_);
-  gl_.delete_vertex_arrays(1, &vertex_array_);
   gl_.delete_program(program_);
 }
 
@@ -51,20 +48,6 @@ void Painter::build_program() {
                 static_cast<float>(height_));
   gl_.uniform1i(gl_.get_uniform_location(program_, "mask"), 0);
   masked_uniform_ = gl_.get_uniform_location(program_, "masked");
-}
-
-void Painter::build_vertices() {
-  gl_.gen_vertex_arrays(1, &vertex_array_);
-  gl_.bind_vertex_array(vertex_array_);
-  gl_.gen_buffers(1, &shape_buffer_);
-  gl_.bind_buffer(GL_ARRAY_BUFFER, shape_buffer_);
-  for (unsigned index = 0; index < kAttributes; ++index) {
-    const std::size_t offset = index * kFloatsPerAttribute * sizeof(float);
-    gl_.enable_vertex_attrib_array(index);
-    gl_.vertex_attrib_pointer(index, kFloatsPerAttribute, GL_FLOAT, GL_FALSE, sizeof(Shape),
-                              reinterpret_cast<const void*>(offset));
-    gl_.vertex_attrib_divisor(index, 1);
-  }
 }
 
 void Painter::build_mask() {
@@ -97,17 +80,10 @@ void Painter::begin_over() {
   int target = 0;
   gl_.get_integerv(GL_FRAMEBUFFER_BINDING, &target);
   target_framebuffer_ = static_cast<Gl::Name>(target);
-  gl_.viewport(0, 0, width_, height_);
-  gl_.disable(GL_SCISSOR_TEST);
-  gl_.disable(GL_DEPTH_TEST);
-  gl_.disable(GL_CULL_FACE);
-  gl_.enable(GL_BLEND);
-  gl_.blend_equation(GL_FUNC_ADD);
-  gl_.blend_func_separate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  begin_flat(gl_, width_, height_);
   gl_.use_program(program_);
   gl_.uniform1i(masked_uniform_, 0);
-  gl_.bind_vertex_array(vertex_array_);
-  gl_.bind_buffer(GL_ARRAY_BUFFER, shape_buffer_);
+  quads_.bind();
   gl_.active_texture(GL_TEXTURE0);
   gl_.bind_texture(GL_TEXTURE_2D, mask_texture_);
   shapes_.clear();
@@ -119,9 +95,7 @@ void Painter::flush() {
   if (shapes_.empty()) {
     return;
   }
-  gl_.buffer_data(GL_ARRAY_BUFFER, static_cast<std::ptrdiff_t>(shapes_.size() * sizeof(Shape)),
-                  shapes_.data(), GL_STREAM_DRAW);
-  gl_.draw_arrays_instanced(GL_TRIANGLE_STRIP, 0, kCorners, static_cast<int>(shapes_.size()));
+  quads_.draw(shapes_.data(), shapes_.size());
   shapes_.clear();
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/render/colour.h"
+#include "core/render/flat_quads.h"
 #include "core/render/gl.h"
 #include "core/render/view.h"
 
@@ -63,7 +64,6 @@ class Painter {
                           const Colour& colour);
   Rectangle pixels_around(std::span<const Eigen::Vector2d> points, double reach) const;
   void build_program();
-  void build_vertices();
   void build_mask();
   void begin_mask(const Rectangle& box);
   void end_mask();
@@ -74,8 +74,7 @@ class Painter {
   int height_;
   std::vector<Shape> shapes_;
   Gl::Name program_{0};
-  Gl::Name vertex_array_{0};
-  Gl::Name shape_buffer_{0};
+  FlatQuads quads_;
   Gl::Name mask_texture_{0};
   Gl::Name mask_framebuffer_{0};
   Gl::Name target_framebuffer_{0};

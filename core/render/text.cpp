@@ -11,11 +11,9 @@
 namespace haptrial::render {
 namespace {
 
-constexpr int kAtlasWidth = 1024;  // [px]
-constexpr int kAtlasRows = 256;    // added when it is full [px]
-constexpr int kCorners = 4;
+constexpr int kAtlasWidth = 1024;    // [px]
+constexpr int kAtlasRows = 256;      // added when it is full [px]
 constexpr unsigned kAttributes = 3;  // place, source, colour
-constexpr int kFloatsPerAttribute = 4;
 
 float f(double value) { return static_cast<float>(value); }
 
@@ -35,16 +33,19 @@ double start_of(double anchor, int width, Align align) {
 }  // namespace
 
 TextPainter::TextPainter(const Gl& gl, int width, int height)
-    : gl_(gl), width_(width), height_(height), regular_(Font::sans()), bold_(Font::sans_bold()) {
+    : gl_(gl),
+      width_(width),
+      height_(height),
+      regular_(Font::sans()),
+      bold_(Font::sans_bold()),
+      quads_(gl, kAttributes) {
+  static_assert(sizeof(Letter) == kAttributes * 4 * sizeof(float));
   build_program();
-  build_vertices();
   gl_.gen_textures(1, &atlas_texture_);
 }
 
 TextPainter::~TextPainter() {
   gl_.delete_textures(1, &atlas_texture_);
-  gl_.delete_buffers(1, &letter_buffer_);
-  gl_.delete_vertex_arrays(1, &vertex_array_);
   gl_.delete_program(program_);
 }
 
@@ -56,20 +57,6 @@ void TextPainter::build_program() {
   gl_.uniform1i(gl_.get_uniform_location(program_, "atlas"), 0);
 }
 
-void TextPainter::build_vertices() {
-  gl_.gen_vertex_arrays(1, &vertex_array_);
-  gl_.bind_vertex_array(vertex_array_);
-  gl_.gen_buffers(1, &letter_buffer_);
-  gl_.bind_buffer(GL_ARRAY_BUFFER, letter_buffer_);
-  for (unsigned index = 0; index < kAttributes; ++index) {
-    const std::size_t offset = index * kFloatsPerAttribute * sizeof(float);
-    gl_.enable_vertex_attrib_array(index);
-    gl_.vertex_attrib_pointer(index, kFloatsPerAttribute, GL_FLOAT, GL_FALSE, sizeof(Letter),
-                              reinterpret_cast<const void*>(offset));
-    gl_.vertex_attrib_divisor(index, 1);
-  }
-}
-
 void TextPainter::begin() { letters_.clear(); }
 
 void TextPainter::end() {
@@ -79,15 +66,8 @@ void TextPainter::end() {
 }
 
 void TextPainter::flush() {
-  gl_.viewport(0, 0, width_, height_);
-  gl_.disable(GL_SCISSOR_TEST);
-  gl_.disable(GL_DEPTH_TEST);
-  gl_.disable(GL_CULL_FACE);
-  gl_.enable(GL_BLEND);
-  gl_.blend_equation(GL_FUNC_ADD);
-  gl_.blend_func_separate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  begin_flat(gl_, width_, height_);
   gl_.use_program(program_);
-  gl_.bind_vertex_array(vertex_array_);
   gl_.active_texture(GL_TEXTURE0);
   gl_.bind_texture(GL_TEXTURE_2D, atlas_texture_);
   if (atlas_changed_) {
@@ -98,10 +78,8 @@ void TextPainter::flush() {
     gl_.tex_parameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     atlas_changed_ = false;
   }
-  gl_.bind_buffer(GL_ARRAY_BUFFER, letter_buffer_);
-  gl_.buffer_data(GL_ARRAY_BUFFER, static_cast<std::ptrdiff_t>(letters_.size() * sizeof(Letter)),
-                  letters_.data(), GL_STREAM_DRAW);
-  gl_.draw_arrays_instanced(GL_TRIANGLE_STRIP, 0, kCorners, static_cast<int>(letters_.size()));
+  quads_.bind();
+  quads_.draw(letters_.data(), letters_.size());
   letters_.clear();
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/render/colour.h"
+#include "core/render/flat_quads.h"
 #include "core/render/font.h"
 #include "core/render/gl.h"
 #include "core/render/view.h"
@@ -75,7 +76,6 @@ class TextPainter {
   std::vector<std::u32string> wrapped(std::string_view text, double width, const TextStyle& style);
   void place(std::u32string_view text, Eigen::Vector2d pen, const TextStyle& style, bool upwards);
   void build_program();
-  void build_vertices();
   void flush();
 
   Gl gl_;
@@ -90,8 +90,7 @@ class TextPainter {
   bool atlas_changed_{true};
   std::vector<Letter> letters_;
   Gl::Name program_{0};
-  Gl::Name vertex_array_{0};
-  Gl::Name letter_buffer_{0};
+  FlatQuads quads_;
   Gl::Name atlas_texture_{0};
 };
 
