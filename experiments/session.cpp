@@ -15,6 +15,7 @@
 #include "experiments/rig.h"
 #include "experiments/session_desk.h"
 #include "experiments/session_opening.h"
+#include "experiments/session_pace.h"
 #include "experiments/session_record.h"
 #include "experiments/trials.h"
 #include "protocols/session_task.h"
@@ -24,7 +25,6 @@ namespace {
 
 using protocols::PlannedTrial;
 using realtime::ClockKind;
-using Clock = std::chrono::steady_clock;
 
 class Session {
  public:
@@ -43,22 +43,10 @@ class Session {
   void after_abort(const protocols::PassResult& result);
   const char* why_broken_off();
 
-  void drive_until_idle();
-  void collect();
-  void wait(double seconds, const char* state, bool until_asked = false);
-  void wait_for_experimenter(const char* state);
-  void recover();
-  void pause_where_asked();
-  void take_break();
-  void show_text(const std::string& text, const std::string& hint, double countdown = 0.0);
-  void publish(const char* state);
-
   void finish();
   void give_up() noexcept;
   void let_go();
   void join_servo();
-  bool asked_to_stop() const;
-  [[noreturn]] void end_early(const std::string& why) const;
   void note_troubles();
 
   const SessionRequest& request_;
@@ -67,7 +55,8 @@ class Session {
   std::uint64_t session_seed_;
   SessionSummary summary_;
   realtime::ServoLoop loop_;
-  // Before the task: the servo thread may be using its pass when an error leaves a function.
+  // Before the task: the servo thread may be using its pass when an error
+  // leaves a function.
   std::unique_ptr<Trials> trials_;
   std::unique_ptr<Rig> rig_;
   std::atomic<std::uint32_t> held_keys_{0};  // functions, from the screen's thread
@@ -75,6 +64,7 @@ class Session {
   SessionRecord record_;  // opened when everything else is there
   SessionDesk desk_;
   protocols::SessionTask task_;
+  SessionPace pace_;
   std::thread servo_;  // on a real clock
 };
 
@@ -92,7 +82,13 @@ Session::Session(const SessionRequest& request)
       task_(rig_->device(), d_.envelope, record_.log(), observers(),
             real_ ? protocols::SessionTask::Leave::kNever
                   : protocols::SessionTask::Leave::kAfterPassOrSlice,
-            record_.origin(), record_.tool_log(), &held_keys_) {
+            record_.origin(), record_.tool_log(), &held_keys_),
+      pace_({request, loop_, record_, desk_, task_, screen_.get()}) {
+  SessionStatus& status = desk_.status();
+  status.subject = request.subject;
+  status.device = request.device.name;
+  status.simulated = rig_->device().info().simulated;
+  status.rate = d_.rate;
   const auto stop = [](void* task) {
     static_cast<protocols::SessionTask*>(task)->emergency_stop();
   };
@@ -156,8 +152,8 @@ void Session::run_plan(const std::vector<PlannedTrial>& plan) {
   desk_.status().trials = d_.design.trials;
   desk_.status().blocks = d_.design.blocks();
   if (desk_.attended()) {
-    show_text(d_.texts.instructions, "The experimenter starts");
-    wait_for_experimenter("instructions");
+    pace_.show_text(d_.texts.instructions, "The experimenter starts");
+    pace_.wait_for_experimenter("instructions");
   }
   bool practised = false;
   for (const PlannedTrial& trial : plan) {
@@ -170,23 +166,23 @@ void Session::run_plan(const std::vector<PlannedTrial>& plan) {
       continue;
     }
     if (trial.practice && !std::exchange(practised, true) && desk_.attended()) {
-      show_text(d_.texts.practice, "The experimenter starts");
-      wait_for_experimenter("instructions");
+      pace_.show_text(d_.texts.practice, "The experimenter starts");
+      pace_.wait_for_experimenter("instructions");
     }
     present(trial);
     if (!trial.practice && trial.trial == d_.design.break_after && !desk_.wishes().abort) {
-      take_break();
+      pace_.take_break();
     }
   }
-  show_text(d_.texts.thanks, "");
+  pace_.show_text(d_.texts.thanks, "");
   if (screen_) {
     constexpr double kTimeToRead = 5.0;  // [s]
-    wait(kTimeToRead, "thanks", true);
+    pace_.wait(kTimeToRead, "thanks", true);
   }
 }
 
-/// One trial until it is done: again when the experimenter repeats it, or when it was aborted while
-/// an experimenter is there to see to the cause.
+/// One trial until it is done: again when the experimenter repeats it, or when
+/// it was aborted while an experimenter is there to see to the cause.
 void Session::present(const PlannedTrial& trial) {
   trials_->prepare(trial, record_);
   Wishes& wishes = desk_.wishes();
@@ -199,7 +195,7 @@ void Session::present(const PlannedTrial& trial) {
       trials_->show(*screen_);
     }
     const bool done = run_trial(trial, attempt);
-    pause_where_asked();
+    pace_.pause_where_asked();
     if ((done && !wishes.repeat) || wishes.skip || !desk_.attended()) {
       return;
     }
@@ -212,7 +208,7 @@ bool Session::run_trial(const PlannedTrial& trial, int attempt) {
   const std::span<const record::Phase> phases = trials_->phases();
   for (std::size_t i = 0; i < phases.size(); ++i) {
     if (i > 0) {
-      pause_where_asked();
+      pace_.pause_where_asked();
       const Wishes& wishes = desk_.wishes();
       if (wishes.repeat || wishes.skip || wishes.abort) {
         return false;
@@ -227,20 +223,13 @@ bool Session::run_trial(const PlannedTrial& trial, int attempt) {
   return done;
 }
 
-void Session::pause_where_asked() {
-  const Wishes& wishes = desk_.wishes();
-  if (wishes.stopped || wishes.pause) {
-    wait_for_experimenter("paused");
-  }
-}
-
 bool Session::run_pass(const PlannedTrial& trial, record::Phase phase, int attempt) {
   PlannedTrial row = trial;
   protocols::Pass& pass = trials_->make_pass(row, phase, record_);
   const std::int32_t number = record_.begin_pass(row, phase, attempt);
   task_.start(pass, number);
   ++summary_.passes;
-  drive_until_idle();
+  pace_.drive_until_idle();
   const protocols::PassResult& result = task_.result();
   const bool aborted = result.state == protocols::PassState::kAborted;
   trials_->close_pass(record_, number);
@@ -253,7 +242,7 @@ bool Session::run_pass(const PlannedTrial& trial, record::Phase phase, int attem
 }
 
 void Session::after_abort(const protocols::PassResult& result) {
-  ++summary_.aborted_passes;
+  desk_.status().aborted_passes = ++summary_.aborted_passes;
   const bool fault = result.fault != device::Fault::kNone;
   const std::string why = fault ? device::describe(result.fault) : why_broken_off();
   const std::string trouble = fault ? rig_->device().trouble() : "";
@@ -263,9 +252,9 @@ void Session::after_abort(const protocols::PassResult& result) {
     desk_.status().fault = trouble.empty() ? why : why + "; " + trouble;
     desk_.wishes().stopped = true;  // a person sees to the cause
   } else if (real_ && device::by_a_person(result.fault)) {
-    end_early(why);  // nobody is at a console or keyboard to say that it may go on
+    pace_.end_early(why);  // nobody is at a console or keyboard to say that it may go on
   } else {
-    recover();
+    pace_.recover();
   }
 }
 
@@ -280,120 +269,6 @@ const char* Session::why_broken_off() {
   return wishes.abort ? "the session was ended" : trials_->why_aborted();
 }
 
-void Session::drive_until_idle() {
-  while (!task_.idle()) {
-    if (real_) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    } else {
-      loop_.run(task_);
-    }
-    collect();
-    publish(record_.pass().practice ? "practice" : "running");
-    if (asked_to_stop()) {
-      task_.emergency_stop();
-      end_early("interrupted");
-    }
-  }
-}
-
-/// What has come since the last call: records, pictures shown, messages.
-void Session::collect() {
-  const std::size_t count = record_.collect(
-      [this](std::span<const record::Sample> samples) { desk_.follow(samples, 1e9 / d_.rate); });
-  if (request_.ticks != nullptr) {
-    request_.ticks->fetch_add(count, std::memory_order_relaxed);
-  }
-  if (screen_) {
-    record_.keep_frames(screen_->take_frames());
-  }
-  desk_.take_messages();
-}
-
-/// On the real clock, without force.
-/// @param until_asked  or until the experimenter starts or stops
-void Session::wait(double seconds, const char* state, bool until_asked) {
-  Wishes& wishes = desk_.wishes();
-  wishes.start = false;
-  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-  while (Clock::now() < end && !asked_to_stop() && !wishes.abort &&
-         !(until_asked && (wishes.start || wishes.stopped))) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    desk_.status().break_left = std::chrono::duration<double>(end - Clock::now()).count();
-    collect();
-    publish(state);
-  }
-  desk_.status().break_left = 0.0;
-}
-
-void Session::wait_for_experimenter(const char* state) {
-  Wishes& wishes = desk_.wishes();
-  wishes.pause = true;
-  while ((wishes.pause || wishes.stopped) && !wishes.abort) {
-    wait(0.02, wishes.stopped ? "stopped" : state);
-    if (asked_to_stop()) {
-      end_early("interrupted");
-    }
-  }
-}
-
-/// For the hand to come back into the workspace; ticks are recorded all the same.
-void Session::recover() {
-  if (real_) {
-    wait(d_.recovery, "recovering");
-  } else {
-    const std::uint64_t end = loop_.ticks() + static_cast<std::uint64_t>(d_.recovery * d_.rate);
-    task_.leave_before(end);
-    while (loop_.ticks() < end) {
-      loop_.run(task_);
-      collect();
-    }
-  }
-  if (!desk_.wishes().stopped) {  // what a person stopped, a person clears
-    task_.clear_fault();
-  }
-}
-
-void Session::take_break() {
-  record_.event("break", fmt::format("{} s", d_.design.break_duration));
-  if (real_) {
-    show_text(d_.texts.rest, "", d_.design.break_duration);
-    wait(d_.design.break_duration, "break", true);
-    pause_where_asked();
-  }
-}
-
-void Session::show_text(const std::string& text, const std::string& hint, double countdown) {
-  if (screen_) {
-    render::TextPage page = page_of(text, hint);
-    if (countdown > 0.0) {
-      page.countdown = countdown;
-    }
-    screen_->show_text(std::move(page));
-  }
-  desk_.status().screen = text;
-}
-
-void Session::publish(const char* state) {
-  if (!desk_.attended()) {
-    return;
-  }
-  SessionStatus& status = desk_.status();
-  status.subject = request_.subject;
-  status.device = request_.device.name;
-  status.simulated = rig_->device().info().simulated;
-  status.rate = d_.rate;
-  const record::PassRow& pass = record_.pass();
-  status.trial = pass.trial;
-  status.block = pass.block;
-  status.condition = pass.condition;
-  status.phase = record::name_of(pass.phase);
-  status.ticks = loop_.ticks();
-  status.overruns = loop_.overruns();
-  status.dropped = record_.dropped();
-  status.aborted_passes = summary_.aborted_passes;
-  desk_.publish(state);
-}
-
 void Session::finish() {
   join_servo();
   if (screen_) {
@@ -404,7 +279,7 @@ void Session::finish() {
   summary_.ticks = loop_.ticks();
   summary_.overruns = loop_.overruns();
   summary_.dropped = record_.dropped();
-  publish("ended");
+  pace_.publish("ended");
 }
 
 void Session::give_up() noexcept {
@@ -413,11 +288,13 @@ void Session::give_up() noexcept {
     join_servo();
     record_.give_up(task_);
   } catch (const std::exception&) {
-    // What stopped the session is the error to report; the writer keeps what it could.
+    // What stopped the session is the error to report; the writer keeps what it
+    // could.
   }
 }
 
-/// The force fades where nothing is wrong with the device; a fault has cut it already.
+/// The force fades where nothing is wrong with the device; a fault has cut it
+/// already.
 void Session::let_go() {
   if (servo_.joinable()) {
     task_.break_off();
@@ -431,18 +308,6 @@ void Session::join_servo() {
     servo_.join();
   }
   rig_->device().write(Eigen::Vector3d::Zero());
-}
-
-bool Session::asked_to_stop() const {
-  return interrupted() ||
-         (request_.cancel != nullptr && request_.cancel->load(std::memory_order_relaxed));
-}
-
-void Session::end_early(const std::string& why) const {
-  throw RunError(real_ ? fmt::format("{}; what was recorded is in {}.partial, and --resume goes on "
-                                     "with it",
-                                     why, request_.file.string())
-                       : why);
 }
 
 void Session::note_troubles() {
@@ -476,7 +341,8 @@ double estimated_ticks(const BoneDefinition& d, int trials) {
 }
 
 double estimated_ticks(const Definition& d, int trials) {
-  // A wandering curve is about twice as long as its extent; approach and return take seconds.
+  // A wandering curve is about twice as long as its extent; approach and return
+  // take seconds.
   const double run = 2.0 * d.trajectory.length_x / d.trajectory.speed;
   const double around =
       d.guidance.wait + 2.0 * 1.875 * d.trajectory.length_x / d.guidance.approach_speed;

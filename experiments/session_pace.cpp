@@ -1,0 +1,147 @@
+#include "experiments/session_pace.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "core/base/error.h"
+#include "experiments/interrupt.h"
+#include "experiments/screen.h"
+
+namespace haptrial::experiments {
+
+using Clock = std::chrono::steady_clock;
+
+SessionPace::SessionPace(const Parts& parts)
+    : p_(parts),
+      d_(setup_of(parts.request)),
+      real_(parts.request.clock == realtime::ClockKind::kReal) {}
+
+void SessionPace::drive_until_idle() {
+  while (!p_.task.idle()) {
+    if (real_) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    } else {
+      p_.loop.run(p_.task);
+    }
+    collect();
+    publish(p_.record.pass().practice ? "practice" : "running");
+    if (asked_to_stop()) {
+      p_.task.emergency_stop();
+      end_early("interrupted");
+    }
+  }
+}
+
+/// What has come since the last call: records, pictures shown, messages.
+void SessionPace::collect() {
+  const std::size_t count = p_.record.collect(
+      [this](std::span<const record::Sample> samples) { p_.desk.follow(samples, 1e9 / d_.rate); });
+  if (p_.request.ticks != nullptr) {
+    p_.request.ticks->fetch_add(count, std::memory_order_relaxed);
+  }
+  if (p_.screen != nullptr) {
+    p_.record.keep_frames(p_.screen->take_frames());
+  }
+  p_.desk.take_messages();
+}
+
+void SessionPace::wait(double seconds, const char* state, bool until_asked) {
+  Wishes& wishes = p_.desk.wishes();
+  wishes.start = false;
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  while (Clock::now() < end && !asked_to_stop() && !wishes.abort &&
+         !(until_asked && (wishes.start || wishes.stopped))) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    p_.desk.status().break_left = std::chrono::duration<double>(end - Clock::now()).count();
+    collect();
+    publish(state);
+  }
+  p_.desk.status().break_left = 0.0;
+}
+
+void SessionPace::wait_for_experimenter(const char* state) {
+  Wishes& wishes = p_.desk.wishes();
+  wishes.pause = true;
+  while ((wishes.pause || wishes.stopped) && !wishes.abort) {
+    wait(0.02, wishes.stopped ? "stopped" : state);
+    if (asked_to_stop()) {
+      end_early("interrupted");
+    }
+  }
+}
+
+void SessionPace::pause_where_asked() {
+  const Wishes& wishes = p_.desk.wishes();
+  if (wishes.stopped || wishes.pause) {
+    wait_for_experimenter("paused");
+  }
+}
+
+void SessionPace::recover() {
+  if (real_) {
+    wait(d_.recovery, "recovering");
+  } else {
+    const std::uint64_t end = p_.loop.ticks() + static_cast<std::uint64_t>(d_.recovery * d_.rate);
+    p_.task.leave_before(end);
+    while (p_.loop.ticks() < end) {
+      p_.loop.run(p_.task);
+      collect();
+    }
+  }
+  if (!p_.desk.wishes().stopped) {  // what a person stopped, a person clears
+    p_.task.clear_fault();
+  }
+}
+
+void SessionPace::take_break() {
+  p_.record.event("break", fmt::format("{} s", d_.design.break_duration));
+  if (real_) {
+    show_text(d_.texts.rest, "", d_.design.break_duration);
+    wait(d_.design.break_duration, "break", true);
+    pause_where_asked();
+  }
+}
+
+void SessionPace::show_text(const std::string& text, const std::string& hint, double countdown) {
+  if (p_.screen != nullptr) {
+    render::TextPage page = page_of(text, hint);
+    if (countdown > 0.0) {
+      page.countdown = countdown;
+    }
+    p_.screen->show_text(std::move(page));
+  }
+  p_.desk.status().screen = text;
+}
+
+void SessionPace::publish(const char* state) {
+  if (!p_.desk.attended()) {
+    return;
+  }
+  SessionStatus& status = p_.desk.status();
+  const record::PassRow& pass = p_.record.pass();
+  status.trial = pass.trial;
+  status.block = pass.block;
+  status.condition = pass.condition;
+  status.phase = record::name_of(pass.phase);
+  status.ticks = p_.loop.ticks();
+  status.overruns = p_.loop.overruns();
+  status.dropped = p_.record.dropped();
+  p_.desk.publish(state);
+}
+
+bool SessionPace::asked_to_stop() const {
+  return interrupted() ||
+         (p_.request.cancel != nullptr && p_.request.cancel->load(std::memory_order_relaxed));
+}
+
+void SessionPace::end_early(const std::string& why) const {
+  throw RunError(real_ ? fmt::format("{}; what was recorded is in {}.partial, and --resume goes on "
+                                     "with it",
+                                     why, p_.request.file.string())
+                       : why);
+}
+
+}  // namespace haptrial::experiments
