@@ -12,6 +12,7 @@ constexpr int kVoxelReach = CellField::kReach + 1;  // how far, in cells, a quad
 
 constexpr std::uint8_t kTessellate = 1;
 constexpr std::uint8_t kDensity = 2;
+constexpr std::uint8_t kNear = 4;
 
 /// The brick that a cell lies in; cells -8 .. -1 are in brick -1.
 Voxel brick_of(const Voxel& cell) { return {cell.x() >> 3, cell.y() >> 3, cell.z() >> 3}; }
@@ -23,9 +24,24 @@ std::size_t place_in_brick(const Voxel& cell) {
 
 Voxel corner(int b) { return {b & 1, b >> 1 & 1, b >> 2}; }
 
+/// The filled corner that is nearest to a vertex.
+std::uint8_t nearest_corner(unsigned corners, const Eigen::Vector3f& offset) {
+  int nearest = 0;
+  float least = 100.0F;
+  for (int b = 0; b < 8; ++b) {
+    const float squared =
+        (corner(b).cast<float>() - Eigen::Vector3f::Constant(0.5F) - offset).squaredNorm();
+    if ((corners >> b & 1U) != 0 && squared < least) {
+      least = squared;
+      nearest = b;
+    }
+  }
+  return static_cast<std::uint8_t>(nearest);
+}
+
 }  // namespace
 
-Surface::Surface(std::shared_ptr<const StructureDepths> depths) : depths_(std::move(depths)) {}
+Surface::Surface(std::shared_ptr<const StructureDepths> depths) : near_(std::move(depths)) {}
 
 bool Surface::update(const BoneVolume& volume) {
   const bool first = bricks_.empty();
@@ -51,14 +67,22 @@ bool Surface::update(const BoneVolume& volume) {
   for (const std::size_t place : density_marked_) {
     refresh_densities(volume, place);
   }
+  for (const Voxel& voxel : changed_voxels_) {
+    mark_near(volume, voxel);
+  }
+  for (const std::size_t place : near_marked_) {
+    refresh_near(volume, place);
+  }
   for (const std::size_t place : marked_) {
     marks_[place] = 0;
     if (bricks_[place] != nullptr && bricks_[place]->living == 0) {
       bricks_[place].reset();
     }
   }
-  for (const std::size_t place : density_marked_) {
-    marks_[place] = 0;
+  for (const auto* list : {&density_marked_, &near_marked_}) {
+    for (const std::size_t place : *list) {
+      marks_[place] = 0;
+    }
   }
   constexpr std::size_t kFew = 4096;  // slots that are not worth packing
   if (first || free_vertices_.size() > std::max(vertices_.size() / 2, kFew)) {
@@ -76,6 +100,7 @@ void Surface::begin(const BoneVolume& volume) {
   }
   bricks_.resize(places);
   marks_.assign(places, 0);
+  near_.begin(volume);
 }
 
 void Surface::forget_changes() {
@@ -89,6 +114,7 @@ void Surface::forget_changes() {
   changed_quads_.clear();
   marked_.clear();
   density_marked_.clear();
+  near_marked_.clear();
   rebuilt_ = false;
 }
 
@@ -117,8 +143,8 @@ void Surface::mark_box(const Voxel& low, const Voxel& high, std::uint8_t flag,
     for (int j = from.y(); j <= to.y(); ++j) {
       for (int i = from.x(); i <= to.x(); ++i) {
         const std::size_t place = place_of({i, j, k});
-        if ((marks_[place]) == 0) {
-          marks_[place] = flag;
+        if ((marks_[place] & (kTessellate | flag)) == 0) {  // a new vertex has it all already
+          marks_[place] |= flag;
           list.push_back(place);
         }
       }
@@ -133,6 +159,13 @@ void Surface::mark(const Voxel& voxel) {
 
 void Surface::mark_density(const Voxel& brick_origin) {
   mark_box(brick_origin - Voxel::Ones(), brick_origin, kDensity, density_marked_);
+}
+
+void Surface::mark_near(const BoneVolume& volume, const Voxel& voxel) {
+  if (near_.shows(volume, voxel)) {
+    const Voxel reach = Voxel::Constant(near_.reach());
+    mark_box(voxel - reach - Voxel::Ones(), voxel + reach, kNear, near_marked_);
+  }
 }
 
 void Surface::place_vertices(const BoneVolume& volume, std::size_t place) {
@@ -160,8 +193,11 @@ void Surface::place_vertices(const BoneVolume& volume, std::size_t place) {
           const Voxel cell = origin + Voxel(i, j, k);
           Eigen::Vector3f normal;
           const Eigen::Vector3f offset = field_.place(i, j, k, corners, normal);
-          const SurfaceVertex vertex = make_vertex(volume, cell, corners, offset, normal);
-          set_vertex(*brick, at, cell, static_cast<std::uint8_t>(corners), vertex);
+          const std::uint8_t nearest = nearest_corner(corners, offset);
+          const VertexLinks links{
+              cell, {kNone, kNone, kNone}, static_cast<std::uint8_t>(corners), nearest};
+          set_vertex(*brick, at, links,
+                     make_vertex(volume, cell, corners, offset, normal, nearest));
         }
       }
     }
@@ -169,8 +205,8 @@ void Surface::place_vertices(const BoneVolume& volume, std::size_t place) {
 }
 
 SurfaceVertex Surface::make_vertex(const BoneVolume& volume, const Voxel& cell, unsigned corners,
-                                   const Eigen::Vector3f& offset,
-                                   const Eigen::Vector3f& normal) const {
+                                   const Eigen::Vector3f& offset, const Eigen::Vector3f& normal,
+                                   std::uint8_t nearest) const {
   SurfaceVertex vertex;
   for (int axis = 0; axis < 3; ++axis) {
     const auto at = static_cast<std::size_t>(axis);
@@ -178,26 +214,18 @@ SurfaceVertex Surface::make_vertex(const BoneVolume& volume, const Voxel& cell, 
     vertex.place[at] = static_cast<float>(middle + grid_.spacing * offset[axis]);
     vertex.normal[at] = static_cast<std::int16_t>(std::lround(32767.0F * normal[axis]));
   }
-  int nearest = 0;
-  float least = 100.0F;
-  for (int b = 0; b < 8; ++b) {
-    const float squared =
-        (corner(b).cast<float>() - Eigen::Vector3f::Constant(0.5F) - offset).squaredNorm();
-    if ((corners >> b & 1U) != 0 && squared < least) {
-      least = squared;
-      nearest = b;
-    }
-  }
   const Voxel voxel = cell + corner(nearest);
   vertex.label = volume.label(voxel);
   vertex.density = mean_density(volume, cell, corners);
-  if (depths_ != nullptr) {
-    const NearStructure near = depths_->at(voxel);
-    vertex.near_label = near.label;
-    vertex.near_depth = static_cast<std::uint8_t>(
-        std::lround(std::min(near.distance / SurfaceVertex::kDepthUnit, 255.0)));
-  }
+  set_near(volume, voxel, vertex);
   return vertex;
+}
+
+void Surface::set_near(const BoneVolume& volume, const Voxel& voxel, SurfaceVertex& vertex) const {
+  const NearStructure near = near_.at(volume, occupancy_, voxel);
+  vertex.near_label = near.label;
+  vertex.near_depth = static_cast<std::uint8_t>(
+      std::lround(std::min(near.distance / SurfaceVertex::kDepthUnit, 255.0)));
 }
 
 std::uint8_t Surface::mean_density(const BoneVolume& volume, const Voxel& cell, unsigned corners) {
@@ -212,7 +240,7 @@ std::uint8_t Surface::mean_density(const BoneVolume& volume, const Voxel& cell, 
   return static_cast<std::uint8_t>(std::lround(255.0F * sum / static_cast<float>(count)));
 }
 
-void Surface::set_vertex(CellBrick& brick, std::size_t at, const Voxel& cell, std::uint8_t corners,
+void Surface::set_vertex(CellBrick& brick, std::size_t at, const VertexLinks& links,
                          const SurfaceVertex& vertex) {
   std::int32_t& slot = brick.vertices[at];
   const bool fresh = slot == kNone;
@@ -227,10 +255,11 @@ void Surface::set_vertex(CellBrick& brick, std::size_t at, const Voxel& cell, st
       slot = free_vertices_.back();
       free_vertices_.pop_back();
     }
-    links_[static_cast<std::size_t>(slot)] = {cell, {kNone, kNone, kNone}, corners};
+    links_[static_cast<std::size_t>(slot)] = links;
   }
   const auto index = static_cast<std::size_t>(slot);
-  links_[index].corners = corners;
+  links_[index].corners = links.corners;
+  links_[index].nearest = links.nearest;
   if (fresh || vertices_[index] != vertex) {
     vertices_[index] = vertex;
     touch_vertex(slot);
@@ -339,6 +368,24 @@ void Surface::refresh_densities(const BoneVolume& volume, std::size_t place) {
     const std::uint8_t density = mean_density(volume, links_[index].cell, links_[index].corners);
     if (density != vertices_[index].density) {
       vertices_[index].density = density;
+      touch_vertex(slot);
+    }
+  }
+}
+
+void Surface::refresh_near(const BoneVolume& volume, std::size_t place) {
+  if (bricks_[place] == nullptr) {
+    return;
+  }
+  for (const std::int32_t slot : bricks_[place]->vertices) {
+    if (slot == kNone) {
+      continue;
+    }
+    const auto index = static_cast<std::size_t>(slot);
+    SurfaceVertex vertex = vertices_[index];
+    set_near(volume, links_[index].cell + corner(links_[index].nearest), vertex);
+    if (vertex != vertices_[index]) {
+      vertices_[index] = vertex;
       touch_vertex(slot);
     }
   }

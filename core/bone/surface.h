@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/bone/bone_volume.h"
+#include "core/bone/near_structures.h"
 #include "core/bone/occupancy.h"
 #include "core/bone/surface_cells.h"
 #include "core/bone/surface_depths.h"
@@ -21,7 +22,8 @@ namespace haptrial::bone {
 /// which one is filled has one quad, of the vertices of the four cells around the pair, as two
 /// triangles that run anticlockwise seen from outside. Every edge is therefore closed: it is
 /// shared by as many triangles one way as the other. All of a vertex and a quad follows from the
-/// voxels at most 4 from the cells: a local update gives what a full one gives, to the bit.
+/// voxels at most 4 from the cells, but for the structure that shows through, which follows from
+/// those in its reach: a local update gives what a full one gives, to the bit.
 ///
 /// Vertices and quads keep their slots while they live; slots of dead ones are used again.
 /// One thread, any; it may run while the servo thread changes the volume.
@@ -66,6 +68,7 @@ class Surface {
     Voxel cell;
     std::array<std::int32_t, 3> quads;  // of the pairs from the cell's first voxel along each axis
     std::uint8_t corners;               // bit b: CellField::corners
+    std::uint8_t nearest;               // corner: the filled one that is nearest to the vertex
   };
   struct CellBrick {
     std::array<std::int32_t, BoneVolume::kBrickVoxels> vertices;  // -1: none
@@ -84,18 +87,22 @@ class Surface {
                 std::vector<std::size_t>& list);
   void mark(const Voxel& voxel);
   void mark_density(const Voxel& brick_origin);
+  void mark_near(const BoneVolume& volume, const Voxel& voxel);
 
   void place_vertices(const BoneVolume& volume, std::size_t place);
   SurfaceVertex make_vertex(const BoneVolume& volume, const Voxel& cell, unsigned corners,
-                            const Eigen::Vector3f& offset, const Eigen::Vector3f& normal) const;
+                            const Eigen::Vector3f& offset, const Eigen::Vector3f& normal,
+                            std::uint8_t nearest) const;
+  void set_near(const BoneVolume& volume, const Voxel& voxel, SurfaceVertex& vertex) const;
   static std::uint8_t mean_density(const BoneVolume& volume, const Voxel& cell, unsigned corners);
-  void set_vertex(CellBrick& brick, std::size_t at, const Voxel& cell, std::uint8_t corners,
+  void set_vertex(CellBrick& brick, std::size_t at, const VertexLinks& links,
                   const SurfaceVertex& vertex);
   void remove_vertex(CellBrick& brick, std::size_t at);
   void place_quads(std::size_t place);
   void set_quad(std::int32_t vertex, int axis, bool outwards);
   void remove_quad(std::int32_t vertex, int axis);
   void refresh_densities(const BoneVolume& volume, std::size_t place);
+  void refresh_near(const BoneVolume& volume, std::size_t place);
   void touch_vertex(std::int32_t vertex);
   void touch_quad(std::int32_t quad);
 
@@ -103,7 +110,7 @@ class Surface {
   void order_for_the_vertex_cache();
   void take_all_as_changed();
 
-  std::shared_ptr<const StructureDepths> depths_;
+  NearStructures near_;
   Occupancy occupancy_;
   geometry::VoxelGrid grid_;
   std::array<std::int32_t, 3> table_size_{0, 0, 0};  // in bricks of cells
@@ -121,6 +128,7 @@ class Surface {
   std::vector<std::uint8_t> marks_;          // by place
   std::vector<std::size_t> marked_;          // places to be tessellated again
   std::vector<std::size_t> density_marked_;  // places whose densities are to be read again
+  std::vector<std::size_t> near_marked_;     // places where something else may show through
   std::vector<std::uint8_t> vertex_touched_;
   std::vector<std::uint8_t> quad_touched_;
   std::vector<std::int32_t> changed_vertices_;

@@ -127,9 +127,9 @@ class NearestPasses {
 
 StructureDepths::StructureDepths(const BoneModel& model, const std::vector<bool>& shows,
                                  double reach)
-    : grid_(model.grid) {
+    : grid_(model.grid), shows_(shows), reach_(reach / model.grid.spacing) {
   check(model);
-  const double voxels = reach / grid_.spacing;
+  const double voxels = reach_;
   if (!(voxels >= 0.0) || voxels > kLargestReach) {
     throw std::invalid_argument("StructureDepths: the reach is from 0 to 250 voxels");
   }

@@ -17,7 +17,8 @@ struct NearStructure {
 };
 
 /// For every voxel the nearest one of the structures that show through bone where it is thin. Made
-/// once from the bone as it was before anything was removed, and never changed: any thread.
+/// once from the bone as it was before anything was removed, and never changed: any thread. What
+/// is left of them while bone is removed: NearStructures.
 /// Source: Morris 2006, §3.1 (structures become visible as the bone over them thins).
 class StructureDepths {
  public:
@@ -28,6 +29,8 @@ class StructureDepths {
 
   /// None outside the grid.
   NearStructure at(const Voxel& voxel) const noexcept;
+  bool shows(std::uint8_t label) const noexcept { return label < shows_.size() && shows_[label]; }
+  double reach_in_voxels() const noexcept { return reach_; }
 
  private:
   struct Entry {
@@ -39,6 +42,8 @@ class StructureDepths {
   static std::size_t entry_index(std::int32_t brick, const Voxel& voxel) noexcept;
 
   geometry::VoxelGrid grid_;
+  std::vector<bool> shows_;                   // by label
+  double reach_{0.0};                         // [voxels]
   std::array<std::int32_t, 3> table_size_{};  // in bricks of 8 x 8 x 8 voxels
   std::vector<std::int32_t> table_;           // number of a brick; 0: nothing within reach there
   std::vector<Entry> entries_;                // 512 to a brick

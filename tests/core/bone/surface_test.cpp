@@ -101,6 +101,44 @@ TEST(SurfaceTest, AfterAnyCarvingItIsClosedAndWhatAFullBuildGives) {
   }
 }
 
+/// A nerve deep in a block, taken away while the surface stays as it is.
+TEST(SurfaceTest, WhatIsGoneDoesNotShowThroughAndWhatIsLeftDoes) {
+  const BoneModel model = model_of(30, [](const Voxel& v) {
+    const bool rod = v.y() == 15 && v.z() == 24 && v.x() >= 8 && v.x() < 22;
+    return rod ? 2 : v.minCoeff() < 2 || v.maxCoeff() > 27 ? 0 : 1;
+  });
+  BoneVolume volume(model);
+  Surface surface(std::make_shared<StructureDepths>(model, all_but_bone(model.structures), 0.008));
+  surface.update(volume);
+  const auto over = [&](int x) {
+    return surface.vertices()[static_cast<std::size_t>(surface.vertex_of({x, 15, 27}))];
+  };
+  for (const int x : {8, 15, 20}) {
+    EXPECT_EQ(over(x).near_label, 2);
+    EXPECT_NEAR(over(x).near_depth * SurfaceVertex::kDepthUnit, 0.003, 1e-4) << "27 - 24 voxels";
+  }
+  for (int x = 8; x < 16; ++x) {
+    empty(volume, {x, 15, 24});
+  }
+  ASSERT_TRUE(surface.update(volume));
+  EXPECT_FALSE(surface.rebuilt());
+  EXPECT_EQ(over(20).near_label, 2);
+  EXPECT_NEAR(over(20).near_depth * SurfaceVertex::kDepthUnit, 0.003, 1e-4);
+  EXPECT_EQ(over(12).near_label, 2) << "the end of the rest";
+  EXPECT_NEAR(over(12).near_depth * SurfaceVertex::kDepthUnit, 1e-3 * std::hypot(3, 3), 1.1e-3);
+  EXPECT_EQ(over(4).near_label, 0) << "12 voxels from the rest";
+  for (int x = 16; x < 22; ++x) {
+    empty(volume, {x, 15, 24});
+  }
+  surface.update(volume);
+  for (const SurfaceVertex& vertex : surface.vertices()) {
+    EXPECT_EQ(vertex.near_label, 0);
+  }
+  volume.put(volume.address({15, 15, 24}), 1.0F);  // as a part that comes back
+  surface.update(volume);
+  EXPECT_EQ(over(15).near_label, 2);
+}
+
 TEST(SurfaceTest, ChangedSlotsAreAllThatChanges) {
   RandomStream random(3, "slots");
   const BoneModel model = rich_model(40, 3);
