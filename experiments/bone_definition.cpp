@@ -85,6 +85,11 @@ void read_display(Table& table, BoneDefinition& d) {
   d.display.height = static_cast<int>(table.integer("height", 120, 8192));
   d.stereo = table.has("stereo") && table.boolean("stereo");
   optional(table, "eye_distance", d.eye_distance, {0.0, 0.1}, "m");
+  d.stills = table.has("stills") ? static_cast<int>(table.integer("stills", 2, 20)) : 0;
+  if (d.stills > 0 && !d.cavity) {
+    table.reject("stills", fmt::format("{} without a cavity", d.stills),
+                 "beside a table [cavity], whose stages they show");
+  }
 }
 
 void read_groups(Table& root, BoneDefinition& d) {

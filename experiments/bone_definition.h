@@ -61,6 +61,7 @@ struct BoneDefinition : Setup {
   double vibration_gain{0.0};  // >= 0
   bool stereo{false};
   double eye_distance{0.02};  // between the eyes, in the scene >= 0 [m]
+  int stills{0};              // of stages of the cavity, which can be called up; 0: none
   /// By source; procedures take them in turn. None where only a text was parsed: a session file has
   /// its bones in it.
   std::vector<std::shared_ptr<const bone::BoneModel>> bones;

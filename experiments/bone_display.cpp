@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "experiments/stage_stills.h"
+
 namespace haptrial::experiments {
 namespace {
 
@@ -29,13 +31,15 @@ std::shared_ptr<const bone::StructureDepths> depths_of(const bone::BoneModel& mo
 
 BoneDisplay::BoneDisplay(const render::Gl& gl, const BoneDefinition& definition,
                          std::shared_ptr<const BoneStage> stage, int width, int height)
-    : stage_(std::move(stage)),
+    : gl_(gl),
+      stage_(std::move(stage)),
       width_(width),
       height_(height),
       scene_(gl, render::BoneStyle{}, stage_->model->structures, stage_->depths) {
   for (std::size_t tool = 0; tool < stage_->simulator->tools().size(); ++tool) {
     meshes_.push_back(mesh_of(static_cast<int>(tool)));
   }
+  set_stills(stage_->stills);
   if (definition.stereo) {
     frame_.stereo = render::StereoPair{definition.eye_distance, std::nullopt};
   }
@@ -95,6 +99,24 @@ void BoneDisplay::draw(const stimulus::DrillingView& seen) {
   }
   stage_->companions->quads(frame_.dust, dust_version_);
   scene_.draw(frame_, width_, height_);
+  draw_still(seen.stills_asked);
+}
+
+void BoneDisplay::set_stills(std::shared_ptr<const std::vector<render::Image>> stills) {
+  const bool any = stills != nullptr && !stills->empty();
+  stills_ = any ? std::make_unique<render::BoneStills>(gl_, std::move(stills)) : nullptr;
+}
+
+/// None, the first, ..., the last, none.
+void BoneDisplay::draw_still(std::int32_t asked) {
+  const std::size_t number = stills_ ? static_cast<std::size_t>(asked) % (stills_->count() + 1) : 0;
+  if (number == 0) {
+    return;
+  }
+  const int eyes = frame_.stereo ? 2 : 1;
+  for (int eye = 0; eye < eyes; ++eye) {
+    stills_->draw(number - 1, eye * (width_ / eyes), width_ / eyes, height_);
+  }
 }
 
 MakeDrawing bone_drawing(const BoneDefinition& definition, std::shared_ptr<const BoneStage> stage) {
@@ -104,11 +126,19 @@ MakeDrawing bone_drawing(const BoneDefinition& definition, std::shared_ptr<const
 }
 
 BoneRenderer::BoneRenderer(const BoneDefinition& definition, std::shared_ptr<const BoneStage> stage)
-    : context_(definition.display.width, definition.display.height),
-      display_(context_.gl(), definition, std::move(stage), definition.display.width,
+    : definition_(definition),
+      stage_(std::move(stage)),
+      has_stills_(stage_->stills != nullptr),
+      context_(definition.display.width, definition.display.height),
+      display_(context_.gl(), definition, stage_, definition.display.width,
                definition.display.height) {}
 
 render::Image BoneRenderer::draw(const stimulus::DrillingView& seen) {
+  if (seen.stills_asked > 0 && !std::exchange(has_stills_, true)) {
+    const auto stills = screen_stills(definition_, *stage_->model);  // in a context of its own
+    context_.make_current();
+    display_.set_stills(stills);
+  }
   context_.make_current();
   display_.draw(seen);
   return context_.read();

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "core/render/bone_scene.h"
+#include "core/render/bone_stills.h"
 #include "core/render/image.h"
 #include "core/render/offscreen.h"
 #include "experiments/bone_definition.h"
@@ -25,9 +27,14 @@ class BoneDisplay {
 
   /// @param seen  of this stage; whatever moves beside it is taken as published
   void draw(const stimulus::DrillingView& seen);
+  /// What can be called up from now on; at first those of the stage. Null: nothing.
+  void set_stills(std::shared_ptr<const std::vector<render::Image>> stills);
 
  private:
   std::shared_ptr<const geometry::Mesh> mesh_of(int tool) const;
+  void draw_still(std::int32_t asked);
+
+  render::Gl gl_;
 
   std::shared_ptr<const BoneStage> stage_;
   int width_;
@@ -36,18 +43,22 @@ class BoneDisplay {
   render::BoneFrame frame_;
   std::vector<std::shared_ptr<const geometry::Mesh>> meshes_;  // by tool
   std::uint64_t dust_version_{~std::uint64_t{0}};
+  std::unique_ptr<render::BoneStills> stills_;  // null where there are none
 };
 
 /// The same for a screen. The definition outlives the screen.
 MakeDrawing bone_drawing(const BoneDefinition& definition, std::shared_ptr<const BoneStage> stage);
 
-/// The same off screen.
+/// The same off screen; stills are made when the first is called up. The definition outlives it.
 class BoneRenderer {
  public:
   BoneRenderer(const BoneDefinition& definition, std::shared_ptr<const BoneStage> stage);
   render::Image draw(const stimulus::DrillingView& seen);
 
  private:
+  const BoneDefinition& definition_;
+  std::shared_ptr<const BoneStage> stage_;
+  bool has_stills_{false};
   render::OffscreenContext context_;
   BoneDisplay display_;
 };

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "core/bone/companions.h"
 #include "core/bone/simulator.h"
 #include "core/bone/surface_depths.h"
+#include "core/render/image.h"
 
 namespace haptrial::experiments {
 
@@ -13,8 +15,9 @@ struct BoneStage {
   std::shared_ptr<const bone::BoneModel> model;
   bone::Microscope start_view;
   std::unique_ptr<bone::Simulator> simulator;
-  std::unique_ptr<bone::Companions> companions;         // end before the simulator
-  std::shared_ptr<const bone::StructureDepths> depths;  // null where nothing is drawn
+  std::unique_ptr<bone::Companions> companions;              // end before the simulator
+  std::shared_ptr<const bone::StructureDepths> depths;       // null where nothing is drawn
+  std::shared_ptr<const std::vector<render::Image>> stills;  // to be called up; may be null
 };
 
 }  // namespace haptrial::experiments

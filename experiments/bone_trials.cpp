@@ -15,6 +15,7 @@
 namespace haptrial::experiments {
 
 BoneTrials::BoneTrials(const SessionRequest& request, std::uint64_t session_seed)
+#include "experiments/stage_stills.h"
     : request_(request), d_(*request.bone), session_seed_(session_seed) {
   if (d_.bones.empty()) {
     throw InputError(fmt::format("{}: has no bones to drill", d_.file_name));
@@ -30,6 +31,9 @@ BoneTrials::BoneTrials(const SessionRequest& request, std::uint64_t session_seed
     pictures_ = std::make_unique<BonePictures>(d_, request.frames_per_pass);
   }
 }
+  for (const auto& bone : d_.bones) {  // before there is a window: it takes seconds
+    stills_.push_back(request.window ? screen_stills(d_, *bone) : nullptr);
+  }
 
 std::vector<stimulus::Observer*> BoneTrials::observers() {
   std::vector<stimulus::Observer*> all;
@@ -149,6 +153,7 @@ void BoneTrials::close_pass(SessionRecord& record, std::int32_t row) {
   procedure.cut = simulator.cut_so_far();
   procedure.dust = dust.lying + dust.held;
   procedure.suctioned = dust.suctioned;
+  stage->stills = stills_[bone_];
   procedure.fallen = dust.fallen;
   procedure.checksum = simulator.checksum();
   record.keep_procedure(procedure);

@@ -43,6 +43,7 @@ class BoneTrials final : public Trials {
   std::shared_ptr<BoneStage> stage_;
   std::size_t bone_{0};         // of the definition's
   std::int32_t bones_used_{0};  // in this trial, earlier runs of the session included
+  std::vector<std::shared_ptr<const std::vector<render::Image>>> stills_;  // by bone
   std::uint64_t spent_{0};      // ticks of the time limit
   std::optional<sound::DrillVibration> vibration_;
   std::unique_ptr<BoneSound> sound_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/bone/bone_volume.h"
@@ -21,13 +22,12 @@ double smallest_burr(const BoneDefinition& d) {
   return radius;
 }
 
-std::vector<StageStill> stage_stills(const BoneDefinition& d, int stages) {
-  if (d.charts.empty() || d.bones.empty()) {
-    throw InputError(
-        fmt::format("{}: has no table [cavity]; stages are those of a cavity", d.file_name));
-  }
-  const bone::BoneModel& model = *d.bones.front();
-  const subject::DrillingChart& chart = *d.charts.front();
+namespace {
+
+/// @param width, height  of each [px]
+std::vector<StageStill> make_stills(const BoneDefinition& d, const bone::BoneModel& model,
+                                    const subject::DrillingChart& chart, int stages, int width,
+                                    int height) {
   const Eigen::Isometry3d pose = pose_of(d.placement, model.grid);
   const subject::BurrReach reach =
       subject::burr_reach(chart, subject::cavity_floor(chart), smallest_burr(d));
@@ -37,7 +37,7 @@ std::vector<StageStill> stage_stills(const BoneDefinition& d, int stages) {
   constexpr int kFiner = 2;  // edges are smoothed
   render::BoneStyle style;
   style.visible_array = false;
-  render::OffscreenContext context(kFiner * d.display.width, kFiner * d.display.height);
+  render::OffscreenContext context(kFiner * width, kFiner * height);
   render::BoneScene scene(context.gl(), style, model.structures, depths_of(model));
   bone::BoneVolume volume(model);
   const bone::Microscope& view = d.simulator.camera.start;
@@ -60,10 +60,36 @@ std::vector<StageStill> stage_stills(const BoneDefinition& d, int stages) {
       }
     }
     context.make_current();
-    scene.draw(frame, kFiner * d.display.width, kFiner * d.display.height);
+    scene.draw(frame, kFiner * width, kFiner * height);
     stills.push_back({share, render::coarser(context.read(), kFiner)});
   }
   return stills;
+}
+
+}  // namespace
+
+std::vector<StageStill> stage_stills(const BoneDefinition& d, int stages) {
+  if (d.charts.empty() || d.bones.empty()) {
+    throw InputError(
+        fmt::format("{}: has no table [cavity]; stages are those of a cavity", d.file_name));
+  }
+  return make_stills(d, *d.bones.front(), *d.charts.front(), stages, d.display.width,
+                     d.display.height);
+}
+
+std::shared_ptr<const std::vector<render::Image>> screen_stills(const BoneDefinition& d,
+                                                                const bone::BoneModel& model) {
+  if (d.stills == 0 || !d.cavity) {
+    return nullptr;
+  }
+  const subject::DrillingChart chart =
+      make_chart(model, pose_of(d.placement, model.grid), *d.cavity);
+  auto images = std::make_shared<std::vector<render::Image>>();
+  for (StageStill& still :
+       make_stills(d, model, chart, d.stills, d.display.width / 2, d.display.height / 2)) {
+    images->push_back(std::move(still.image));
+  }
+  return images;
 }
 
 }  // namespace haptrial::experiments

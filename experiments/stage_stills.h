@@ -1,6 +1,6 @@
 #pragma once
 
-#include <filesystem>
+#include <memory>
 #include <vector>
 
 #include "core/render/image.h"
@@ -20,6 +20,12 @@ struct StageStill {
 /// @param stages  at least 2
 /// @throws InputError where the definition has no [cavity]; RunError without OpenGL.
 std::vector<StageStill> stage_stills(const BoneDefinition& definition, int stages);
+
+/// The stills that a participant can call up, of [display]: null where it asks for none. They are
+/// made of a bone with the definition's cavity, half as wide and high as its pictures.
+/// Takes seconds. @throws InputError as make_chart does; RunError without OpenGL.
+std::shared_ptr<const std::vector<render::Image>> screen_stills(const BoneDefinition& definition,
+                                                                const bone::BoneModel& model);
 
 /// The radius of the smallest burr of a definition; 1 m without any. [m]
 double smallest_burr(const BoneDefinition& definition);

@@ -72,6 +72,7 @@ stimulus::DrillingView view_of(const bone::Simulator& simulator,
   view.target = camera.target;
   view.up = camera.up;
   view.field_of_view = camera.field_of_view;
+  view.stills_asked = simulator.stills_asked();
   return view;
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<std::string_view, kFunctions> kNames{
     "power",    "next_tool", "previous_tool", "camera_move", "camera_turn", "zoom_in",
-    "zoom_out", "carry",     "apply",         "detach",      "finish"};
+    "zoom_out", "carry",     "apply",         "detach",      "finish",      "still"};
 
 // Removal depends on the force: rounded to this, a sum of two contacts gives the same bits as the
 // one contact that it was before a part was separated.
@@ -90,6 +90,7 @@ const SimulatorOutput& Simulator::tick(const SimulatorInput& input,
   const std::uint32_t pressed = input.functions & ~functions_;
   functions_ = input.functions;
   output_.finished = is_held(pressed, Function::kFinish);
+  stills_asked_ += is_held(pressed, Function::kStill) ? 1 : 0;
   change_tool((is_held(pressed, Function::kNextTool) ? 1 : 0) -
               (is_held(pressed, Function::kPreviousTool) ? 1 : 0));
   output_.mode = mode_of(input);

@@ -31,8 +31,9 @@ enum class Function : std::uint8_t {
   kApply,         // when it goes down: cut, fix the plate
   kDetach,        // when it goes down: the plate that was fixed last comes off
   kFinish,        // the participant is done
+  kStill,         // when it goes down: the screen shows the next still; nothing of the bone follows
 };
-inline constexpr std::size_t kFunctions = 11;
+inline constexpr std::size_t kFunctions = 12;
 /// As definitions call them: "power", "next_tool", ...
 std::string_view name_of(Function function) noexcept;
 constexpr std::uint32_t bit(Function function) noexcept {
@@ -107,6 +108,8 @@ class Simulator {
                               std::span<const RecordedSplit> recorded = {});
   const SimulatorOutput& output() const noexcept { return output_; }
 
+  /// How often kStill went down.
+  std::int32_t stills_asked() const noexcept { return stills_asked_; }
   /// Of the last tick.
   std::span<const EmptiedIn> emptied() const noexcept { return emptied_; }
   std::span<const WorldEvent> separations() const noexcept { return world_.events(); }
@@ -161,6 +164,7 @@ class Simulator {
   std::vector<std::unique_ptr<Drill>> drills_;       // by tool; null where it is no burr
   std::vector<std::unique_ptr<PlateModel>> plates_;  // likewise
   CutPlaneTool cutter_;
+  std::int32_t stills_asked_{0};
   double cut_of_present_{0.0};
   Microscope camera_;
   SimulatorOutput output_;

@@ -28,7 +28,8 @@ struct DrillingView {
   Eigen::Vector3d eye{Eigen::Vector3d::UnitZ()};  // in W [m]
   Eigen::Vector3d target{Eigen::Vector3d::Zero()};
   Eigen::Vector3d up{Eigen::Vector3d::UnitY()};
-  double field_of_view{0.35};  // [rad]
+  double field_of_view{0.35};    // [rad]
+  std::int32_t stills_asked{0};  // how often the next still was asked for
 };
 
 /// What the participant is to see at one instant. Written whole by the servo thread each tick; read
