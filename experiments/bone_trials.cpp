@@ -11,11 +11,11 @@
 #include "experiments/bone_record.h"
 #include "experiments/drilling_rig.h"
 #include "experiments/session_record.h"
+#include "experiments/stage_stills.h"
 
 namespace haptrial::experiments {
 
 BoneTrials::BoneTrials(const SessionRequest& request, std::uint64_t session_seed)
-#include "experiments/stage_stills.h"
     : request_(request), d_(*request.bone), session_seed_(session_seed) {
   if (d_.bones.empty()) {
     throw InputError(fmt::format("{}: has no bones to drill", d_.file_name));
@@ -27,13 +27,13 @@ BoneTrials::BoneTrials(const SessionRequest& request, std::uint64_t session_seed
       notice_ = error.what();
     }
   }
+  for (const auto& bone : d_.bones) {  // before there is a window: it takes seconds
+    stills_.push_back(request.window ? screen_stills(d_, *bone) : nullptr);
+  }
   if (request.frames_per_pass > 0) {
     pictures_ = std::make_unique<BonePictures>(d_, request.frames_per_pass);
   }
 }
-  for (const auto& bone : d_.bones) {  // before there is a window: it takes seconds
-    stills_.push_back(request.window ? screen_stills(d_, *bone) : nullptr);
-  }
 
 std::vector<stimulus::Observer*> BoneTrials::observers() {
   std::vector<stimulus::Observer*> all;
@@ -110,6 +110,7 @@ void BoneTrials::begin_attempt(const protocols::PlannedTrial& trial, bool anew) 
   if (request_.window || pictures_) {
     stage->depths = depths_of(*stage->model);
   }
+  stage->stills = stills_[bone_];
   stage_ = std::move(stage);
   ++bones_used_;
   spent_ = 0;
@@ -153,7 +154,6 @@ void BoneTrials::close_pass(SessionRecord& record, std::int32_t row) {
   procedure.cut = simulator.cut_so_far();
   procedure.dust = dust.lying + dust.held;
   procedure.suctioned = dust.suctioned;
-  stage->stills = stills_[bone_];
   procedure.fallen = dust.fallen;
   procedure.checksum = simulator.checksum();
   record.keep_procedure(procedure);
