@@ -8,6 +8,9 @@
 
 #include <filesystem>
 #include <map>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "tests/experiments/shipped.h"
 #include "tests/support/sanitizer.h"
@@ -112,6 +115,42 @@ TEST_F(CommandTest, BashCompletesSubcommandsAndOptions) {
   const CommandResult options = run_command(
       source + "COMP_WORDS=(haptrial dry-run --se) COMP_CWORD=2; _haptrial; echo ${COMPREPLY[@]}");
   EXPECT_EQ(options.output, "--seed\n");
+  const CommandResult nested = run_command(
+      source + "COMP_WORDS=(haptrial rate i) COMP_CWORD=2; _haptrial; echo ${COMPREPLY[@]}");
+  EXPECT_EQ(nested.output, "import\n");
+  const CommandResult nested_options = run_command(
+      source +
+      "COMP_WORDS=(haptrial rate import --st) COMP_CWORD=3; _haptrial; echo ${COMPREPLY[@]}");
+  EXPECT_EQ(nested_options.output, "--study\n");
+}
+
+/// The names below "Subcommands:" in a help.
+std::vector<std::string> subcommands_of(const std::string& line) {
+  std::istringstream help(run_command(line + " --help").output);
+  std::vector<std::string> names;
+  bool listed = false;
+  for (std::string row; std::getline(help, row);) {
+    if (listed && row.starts_with("  ") && row[2] != ' ') {
+      names.push_back(row.substr(2, row.find(' ', 2) - 2));
+    }
+    listed = listed ? !row.empty() : row == "Subcommands:";
+  }
+  return names;
+}
+
+TEST_F(CommandTest, EverySubcommandShowsAnExampleOfItself) {
+  std::vector<std::string> lines;
+  for (const std::string& name : subcommands_of("haptrial")) {
+    lines.push_back("haptrial " + name);
+    for (const std::string& sub : subcommands_of("haptrial " + name)) {
+      lines.push_back("haptrial " + name + " " + sub);
+    }
+  }
+  EXPECT_GT(lines.size(), 25u);
+  for (const std::string& line : lines) {
+    const std::string help = run_command(line + " --help").output;
+    EXPECT_THAT(help, HasSubstr("\nExample:\n  " + line)) << line;
+  }
 }
 
 TEST_F(CommandTest, BadArguments) {
