@@ -129,7 +129,7 @@ PassOutput DrillingPass::tick(const device::DeviceReading& reading, double dt) n
   out.tool.power = done.power > 0.0;
   out.tool.piece = simulator_.world().held();
   out.tool.immersed = done.immersed;
-  out.tool.removed = done.removed;
+  out.tool.removed = done.removed + done.cut;
   out.tool.contact = done.force;
   return out;
 }
@@ -158,7 +158,7 @@ void DrillingPass::log(const bone::SimulatorOutput& out, double speed) noexcept 
     row.piece = gone.piece;
     row.voxel = indices(gone.voxel);
     row.label = gone.label;
-    row.force = force;
+    row.force = gone.by_cut ? 0.0 : force;
     row.speed = speed;
     logs_.removals.push(row);
   }

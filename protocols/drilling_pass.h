@@ -26,9 +26,10 @@ struct DrillingParameters {
   double time_limit{900.0};  // of a drilling > 0 [s]
 };
 
-/// Where the servo thread leaves what happens to the bone; emptied by the session's thread.
+/// Where the servo thread leaves what happens to the bone; emptied by the session's thread. A cut
+/// empties CutPlaneTool::kMostEmptied voxels a tick at most: there is room for 1,024 such ticks.
 struct DrillingLogs {
-  realtime::BlockLog<record::RemovalRow> removals{1024, 128};
+  realtime::BlockLog<record::RemovalRow> removals{1024, 256};
   realtime::BlockLog<record::CameraRow> camera{256, 64};
   realtime::BlockLog<record::SplitRow> splits{1024, 16};
 

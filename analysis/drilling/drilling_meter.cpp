@@ -47,4 +47,10 @@ void DrillingMeter::removal(const Removal& removal) {
   injuries_.remove(removal, time());
 }
 
+void DrillingMeter::cut(const Removal& cut) {
+  visibility_.cut(cut.voxel);
+  usage_.remove(cut);
+  injuries_.remove(cut, time());
+}
+
 }  // namespace haptrial::analysis::drilling

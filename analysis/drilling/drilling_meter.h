@@ -21,6 +21,7 @@ class DrillingMeter {
   void crumb(const Crumb& crumb);
   void tick(const ToolTick& tick);
   void removal(const Removal& removal);
+  void cut(const Removal& cut);
 
   double time() const noexcept { return usage_.time(); }  // [s]
   Usage usage() const { return usage_.usage(); }

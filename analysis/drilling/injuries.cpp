@@ -138,6 +138,7 @@ std::vector<Injury> injuries(const Procedure& procedure, StudyBones& bones) {
       bone.take(removal.voxel);
       meter.remove(removal, time());
     }
+    void cut(const Removal& cut) { removal(cut); }
   };
   Visitor visitor{procedure, InjuryMeter(procedure.bone, procedure.pose_WB, procedure.tools, bones),
                   StandingBone(procedure.bone)};

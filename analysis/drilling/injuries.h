@@ -17,7 +17,7 @@ class StudyBones;
 struct Injury {
   std::string structure;
   std::uint8_t label{0};
-  std::uint64_t voxels{0};              // of it that a burr emptied
+  std::uint64_t voxels{0};              // of it that a burr or the cut plane emptied
   std::uint64_t crumbled{0};            // that went with parts that turned to dust
   std::optional<double> first_contact;  // a burr that turns reached it [s of the procedure]
   std::optional<double> first_removal;  // [s of the procedure]
@@ -38,7 +38,7 @@ class InjuryMeter {
   void crumble(const std::vector<bone::Voxel>& voxels);
 
   const std::vector<Injury>& injuries() const noexcept { return injuries_; }
-  std::uint64_t voxels() const noexcept;  // of all, emptied by a burr
+  std::uint64_t voxels() const noexcept;  // of all, emptied by a burr or the cut plane
 
  private:
   bool touches(std::size_t injury, const Eigen::Vector3d& centre, double radius) const;

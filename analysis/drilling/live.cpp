@@ -36,7 +36,7 @@ void LiveMetrics::add(std::span<const record::Sample> samples,
 
 void LiveMetrics::add(std::span<const record::RemovalRow> rows) {
   for (const record::RemovalRow& row : rows) {
-    waiting_.removals.push_back(removal_of(row));
+    (is_cut(row) ? waiting_.cuts : waiting_.removals).push_back(removal_of(row));
   }
 }
 
@@ -55,12 +55,13 @@ void LiveMetrics::add(std::span<const record::SplitRow> rows) {
 }
 
 void LiveMetrics::advance(std::uint64_t through) {
-  std::array<std::size_t, 4> done{};
+  std::array<std::size_t, 5> done{};
   visit_in_order(waiting_, meter_, done, through);
   drop(waiting_.views, done[0]);
   drop(waiting_.crumbs, done[1]);
   drop(waiting_.ticks, done[2]);
   drop(waiting_.removals, done[3]);
+  drop(waiting_.cuts, done[4]);
 }
 
 LiveFigures LiveMetrics::figures() const {

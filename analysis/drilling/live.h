@@ -56,6 +56,7 @@ class LiveMetrics {
   struct {
     std::vector<ToolTick> ticks;
     std::vector<Removal> removals;
+    std::vector<Removal> cuts;
     std::vector<View> views;
     std::vector<Crumb> crumbs;
   } waiting_;

@@ -156,7 +156,7 @@ class Loader {
       }
     }
     for (const record::RemovalRow& row : removals_.of(pass)) {
-      procedure.removals.push_back(removal_of(row));
+      (is_cut(row) ? procedure.cuts : procedure.removals).push_back(removal_of(row));
     }
     for (const record::CameraRow& row : views_.of(pass)) {
       procedure.views.push_back(view_of(row));

@@ -51,7 +51,7 @@ struct ToolTick {
   bool drills() const noexcept { return drives_tool && power && in_bone; }
 };
 
-/// A voxel that the burr emptied.
+/// A voxel that a tool emptied.
 struct Removal {
   std::uint64_t sequence{0};
   bone::Voxel voxel{bone::Voxel::Zero()};
@@ -74,10 +74,10 @@ struct Crumb {
 };
 
 /// One drilling of one participant: everything that metrics are made from. Rows of every list are
-/// in ascending order of their sequence numbers, and of one tick a crumb went before the removals.
+/// in ascending order of their sequence numbers, and of one tick a crumb went before the removals
+/// and these before the cuts.
 ///
-/// What a session file does not say is not here: voxels that the cut plane took stand for ever, and
-/// pieces that were carried stay where they were.
+/// What a session file does not say is not here: pieces that were carried stay where they were.
 struct Procedure {
   std::string session;  // name of the file
   std::string participant;
@@ -90,7 +90,8 @@ struct Procedure {
   Eigen::Isometry3d pose_WB{Eigen::Isometry3d::Identity()};
   std::vector<ProcedureTool> tools;
   std::vector<ToolTick> ticks;
-  std::vector<Removal> removals;
+  std::vector<Removal> removals;  // by burrs
+  std::vector<Removal> cuts;      // by the cut plane, which has no force
   std::vector<View> views;
   std::vector<Crumb> crumbs;
 
@@ -116,6 +117,8 @@ bone::BoneModel bone_of(const record::BoneRecord& record);
 // will give.
 ToolTick tick_of(const record::Sample& sample, const record::ToolRow& tool, double scale);
 Removal removal_of(const record::RemovalRow& row);
+/// A burr empties voxels with a force, which is never 0.
+inline bool is_cut(const record::RemovalRow& row) noexcept { return row.force == 0.0; }
 View view_of(const record::CameraRow& row);
 
 }  // namespace haptrial::analysis::drilling

@@ -106,6 +106,7 @@ Usage usage(const Procedure& procedure) {
     void crumb(const Crumb&) {}
     void tick(const ToolTick& tick) { meter.tick(tick); }
     void removal(const Removal& removal) { meter.remove(removal); }
+    void cut(const Removal& cut) { meter.remove(cut); }
   };
   Visitor visitor{UsageMeter(procedure.bone, procedure.tools, procedure.rate)};
   visit_in_order(procedure, visitor);

@@ -14,7 +14,7 @@ struct ToolUse {
   std::string tool;
   double in_hand{0.0};   // [s]
   double drilling{0.0};  // [s]
-  double removed{0.0};   // bone in voxels that it emptied [m^3]
+  double removed{0.0};   // bone in voxels that were emptied while it was in hand [m^3]
 };
 
 /// Bone of one structure that was removed.
@@ -49,7 +49,7 @@ class UsageMeter {
              double rate);
 
   void tick(const ToolTick& tick);
-  void remove(const Removal& removal);  // after its tick
+  void remove(const Removal& removal);  // of a burr or the cut plane, after its tick
   void view(const View& view);
 
   Usage usage() const;

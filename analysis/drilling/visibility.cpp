@@ -65,6 +65,7 @@ Visibility visibility(const Procedure& procedure) {
       last = tick;
       any = true;
     }
+    void cut(const Removal& cut) { meter.cut(cut.voxel); }
     void removal(const Removal& removal) {
       const bool now = any && last.sequence == removal.sequence;
       meter.remove(removal.voxel, last.position, now ? procedure.burr_radius(last.tool) : 0.0);

@@ -27,7 +27,7 @@ struct BurrSphere {
 bool is_visible(const StandingBone& bone, const bone::Voxel& voxel, const Eigen::Vector3d& eye,
                 const BurrSphere& burr);
 
-/// How many of the removed voxels were seen.
+/// How many of the voxels that burrs removed were seen.
 struct Visibility {
   std::vector<std::uint8_t> visible;  // (removals) 1: visible when it was removed
   std::size_t count{0};               // of the visible ones
@@ -48,6 +48,8 @@ class VisibilityMeter {
   void crumble(const bone::Voxel& voxel, std::vector<bone::Voxel>* taken = nullptr) {
     bone_.take_part(voxel, taken);
   }
+  /// A voxel that the cut plane took: it hides nothing from now on, and nobody had to see it.
+  void cut(const bone::Voxel& voxel) noexcept { bone_.take(voxel); }
   /// A removed voxel. @param tip, radius  of the burr, in W [m]
   /// @returns whether it was visible; never before the first look_from()
   bool remove(const bone::Voxel& voxel, const Eigen::Vector3d& tip, double radius);

@@ -69,9 +69,14 @@ void CutPlaneTool::step(BoneWorld& world, int most) noexcept {
     }
     return volumes;
   };
+  count_ = 0;
   PieceSet volumes = busy_ ? volumes_of(piece_) : 0;
   for (int passed = 0; busy_ && passed < most;) {
-    passed += trace(world, volumes);
+    const Traced ray = trace(world, volumes);
+    if (!ray.whole) {
+      return;  // the next step traces it again: what it has emptied is not in its way
+    }
+    passed += ray.passed;
     if (++ray_ == std::int64_t{columns_} * rows_) {
       busy_ = next_piece();
       volumes = busy_ ? volumes_of(piece_) : 0;
@@ -86,8 +91,7 @@ bool CutPlaneTool::next_piece() noexcept {
   return rest != 0;
 }
 
-/// @returns voxels passed, at least 1.
-int CutPlaneTool::trace(BoneWorld& world, PieceSet volumes) noexcept {
+CutPlaneTool::Traced CutPlaneTool::trace(BoneWorld& world, PieceSet volumes) noexcept {
   const auto place = [](std::int64_t number, int count, double length) {
     return length * ((static_cast<double>(number) + 0.5) / count - 0.5);
   };
@@ -95,22 +99,31 @@ int CutPlaneTool::trace(BoneWorld& world, PieceSet volumes) noexcept {
                                place(ray_ / columns_, rows_, plane_.height), 0.0);
   const Eigen::Isometry3d& pose_BC = pose_BC_[static_cast<std::size_t>(piece_)];
   const Eigen::Vector3d to_C = from_C + plane_.depth * Eigen::Vector3d::UnitZ();
-  int passed = 0;
+  Traced ray{0, true};
   walk_voxels(world.volume(0).grid(), pose_BC * from_C, pose_BC * to_C,
               [&](const Voxel& voxel, double, double) {
-                ++passed;
+                ++ray.passed;
                 for (PieceSet set = volumes; set != 0; set &= set - 1) {
-                  BoneVolume& volume = world.volume(std::countr_zero(set));
+                  const int piece = std::countr_zero(set);
+                  BoneVolume& volume = world.volume(piece);
                   const std::int32_t address = volume.address(voxel);
-                  if (volume.density(address) > 0.0F) {
-                    removed_.amount += static_cast<double>(volume.take(address, 1.0F));
-                    ++removed_.voxels;
-                    ++removed_.by_label[volume.label(address)];
+                  if (!(volume.density(address) > 0.0F)) {
+                    continue;
                   }
+                  ray.whole = count_ < kMostEmptied;
+                  if (!ray.whole) {
+                    return false;
+                  }
+                  const std::uint8_t label = volume.label(address);
+                  removed_.amount += static_cast<double>(volume.take(address, 1.0F));
+                  ++removed_.voxels;
+                  ++removed_.by_label[label];
+                  emptied_[count_++] = {world.known_as(piece), voxel, label, true};
                 }
                 return true;
               });
-  return std::max(passed, 1);
+  ray.passed = std::max(ray.passed, 1);
+  return ray;
 }
 
 }  // namespace haptrial::bone

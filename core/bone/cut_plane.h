@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "core/bone/world.h"
 
@@ -30,6 +31,9 @@ CutPlane read_cut_plane(Table& table);
 /// lock or throw.
 class CutPlaneTool {
  public:
+  /// Voxels that a step empties at most: what is logged of a cut must not outrun who reads the log.
+  static constexpr std::size_t kMostEmptied = 256;
+
   struct Removed {
     std::int64_t voxels{0};
     double amount{0.0};                         // sum of densities [voxels]
@@ -41,14 +45,21 @@ class CutPlaneTool {
   void begin(const BoneWorld& world, const CutPlane& plane) noexcept;
   bool busy() const noexcept { return busy_; }
   /// Goes on with the cut through the pieces of the same world.
-  /// @param most  voxels to pass, all pieces together; at least one ray is traced
+  /// @param most  voxels to pass, all pieces together; at least one ray is traced, or as far as
+  ///              kMostEmptied goes
   void step(BoneWorld& world, int most = 2000) noexcept;
+  /// By the last step(), in order.
+  std::span<const EmptiedIn> emptied() const noexcept { return {emptied_.data(), count_}; }
   /// What the cut has removed so far.
   const Removed& removed() const noexcept { return removed_; }
 
  private:
   bool next_piece() noexcept;
-  int trace(BoneWorld& world, PieceSet volumes) noexcept;
+  struct Traced {
+    int passed;  // voxels, at least 1
+    bool whole;  // the ray came to its end
+  };
+  Traced trace(BoneWorld& world, PieceSet volumes) noexcept;
 
   bool busy_{false};
   CutPlane plane_;
@@ -59,6 +70,8 @@ class CutPlaneTool {
   int piece_{0};
   std::int64_t ray_{0};  // the next one, in this piece
   Removed removed_;
+  std::array<EmptiedIn, kMostEmptied> emptied_;
+  std::size_t count_{0};
 };
 
 }  // namespace haptrial::bone

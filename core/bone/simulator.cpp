@@ -69,7 +69,7 @@ Simulator::Simulator(const BoneModel& model, const SimulatorParameters& paramete
       most = std::max(most, static_cast<std::size_t>(drills_.back()->burr().samples()));
     }
   }
-  emptied_.reserve(most * Drill::kBonesAtOnce);
+  emptied_.reserve(most * Drill::kBonesAtOnce + CutPlaneTool::kMostEmptied);
   deposits_.reserve(128);
 }
 
@@ -102,7 +102,7 @@ const SimulatorOutput& Simulator::tick(const SimulatorInput& input,
     waits_until_free_ = true;
   }
   if (cutter_.busy()) {
-    cut(input, false);
+    go_on_cutting();
   }
   place_for_dust(input);
   hand_ = input.tool.tip.position;
@@ -200,7 +200,7 @@ void Simulator::work(const SimulatorInput& input, std::uint32_t pressed) noexcep
       break;
     case ToolKind::kCutPlane:
       if (apply) {
-        cut(input, true);
+        begin_cut(input);
       }
       break;
     case ToolKind::kPlate:
@@ -219,7 +219,12 @@ void Simulator::work(const SimulatorInput& input, std::uint32_t pressed) noexcep
   }
 }
 
-bool Simulator::near(int piece, const Eigen::Vector3d& p_B, double radius) noexcept {
+bool Simulator::Reach::is_near(const Eigen::Vector3d& p_B, double radius) const noexcept {
+  return ((p_B - low).array() > -radius).all() && ((high - p_B).array() > -radius).all();
+}
+
+/// Bricks of a piece are there from its beginning.
+const Simulator::Reach& Simulator::reach_of(int piece) noexcept {
   for (; reaches_known_ <= piece; ++reaches_known_) {
     const BoneVolume& volume = std::as_const(world_).volume(reaches_known_);
     Reach& reach = reaches_[static_cast<std::size_t>(reaches_known_)];
@@ -230,13 +235,11 @@ bool Simulator::near(int piece, const Eigen::Vector3d& p_B, double radius) noexc
       const Voxel& first = volume.brick_origin(brick);
       const Eigen::Vector3d centre = volume.grid().centre(first.x(), first.y(), first.z());
       const double width = volume.grid().spacing * BoneVolume::kEdge;
-      reach.low = reach.low.cwiseMin(centre.array().matrix() - Eigen::Vector3d::Constant(half));
+      reach.low = reach.low.cwiseMin(centre - Eigen::Vector3d::Constant(half));
       reach.high = reach.high.cwiseMax(centre + Eigen::Vector3d::Constant(width - half));
     }
   }
-  const Reach& reach = reaches_[static_cast<std::size_t>(piece)];
-  return ((p_B - reach.low).array() > -radius).all() &&
-         ((reach.high - p_B).array() > -radius).all();
+  return reaches_[static_cast<std::size_t>(piece)];
 }
 
 void Simulator::drill(const SimulatorInput& input) noexcept {
@@ -250,7 +253,7 @@ void Simulator::drill(const SimulatorInput& input) noexcept {
     const Eigen::Vector3d tip_B = pose.inverse(Eigen::Isometry) * input.tool.tip.position;
     Contact& contact = contacts_[static_cast<std::size_t>(piece)];
     contact = {};
-    if (!near(piece, tip_B, drill.burr().radius())) {
+    if (!reach_of(piece).is_near(tip_B, drill.burr().radius())) {
       continue;
     }
     const Eigen::Quaterniond turn(pose.linear());
@@ -279,11 +282,9 @@ void Simulator::drill(const SimulatorInput& input) noexcept {
     BoneVolume& volume = world_.volume(piece);
     const Removal removal = drill.remove(volume, contact, force, input.power, input.dt);
     output_.removed += removal.amount;
-    const int known = world_.is_born(piece) || piece == 0 ? piece : world_.parent(piece);
-    for (const EmptiedVoxel& voxel : removal.emptied) {
-      if (emptied_.size() < emptied_.capacity()) {
-        emptied_.push_back({known, volume.voxel_at(voxel.address), voxel.label});
-      }
+    for (const EmptiedVoxel& voxel : removal.emptied) {  // no more than there is room for
+      emptied_.push_back(
+          {world_.known_as(piece), volume.voxel_at(voxel.address), voxel.label, false});
     }
   }
   if (output_.removed > 0.0) {
@@ -291,17 +292,20 @@ void Simulator::drill(const SimulatorInput& input) noexcept {
   }
 }
 
-void Simulator::cut(const SimulatorInput& input, bool begins) noexcept {
-  if (begins) {
-    CutPlane plane = tools_[in_hand()].plane;
-    plane.pose_WC = pose_of(input.tool);
-    cutter_.begin(world_, plane);
-    cut_of_present_ = 0.0;
-    return;  // the tick goes on with it
-  }
+/// The tick goes on with it.
+void Simulator::begin_cut(const SimulatorInput& input) noexcept {
+  CutPlane plane = tools_[in_hand()].plane;
+  plane.pose_WC = pose_of(input.tool);
+  cutter_.begin(world_, plane);
+  cut_of_present_ = 0.0;
+}
+
+/// Whatever is in hand by now.
+void Simulator::go_on_cutting() noexcept {
   cutter_.step(world_);
   output_.cut = cutter_.removed().amount - cut_of_present_;
   cut_of_present_ = cutter_.removed().amount;
+  emptied_.insert(emptied_.end(), cutter_.emptied().begin(), cutter_.emptied().end());
 }
 
 void Simulator::hold_plate(const SimulatorInput& input, bool fixes) noexcept {
@@ -360,8 +364,7 @@ std::uint64_t Simulator::checksum() const noexcept {
   std::uint64_t sum = 0;
   for (int piece = 0; piece < world_.pieces(); ++piece) {
     const BoneVolume& volume = world_.volume(piece);
-    const auto known = static_cast<std::uint64_t>(
-        world_.is_born(piece) || piece == 0 ? piece : world_.parent(piece));
+    const auto known = static_cast<std::uint64_t>(world_.known_as(piece));
     for (std::int32_t address = BoneVolume::kBrickVoxels;
          address < volume.bricks() * BoneVolume::kBrickVoxels; ++address) {
       const float density = volume.density(address);

@@ -57,13 +57,6 @@ struct SimulatorInput {
 
 enum class HandMode : std::uint8_t { kTool, kCameraMove, kCameraTurn, kCarry };
 
-/// A voxel that was emptied by the burr.
-struct EmptiedIn {
-  int piece;
-  Voxel voxel;
-  std::uint8_t label;
-};
-
 /// What came of a tick.
 struct SimulatorOutput {
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // of the bone on the tool [N]
@@ -108,15 +101,15 @@ class Simulator {
                               std::span<const RecordedSplit> recorded = {});
   const SimulatorOutput& output() const noexcept { return output_; }
 
-  /// How often kStill went down.
-  std::int32_t stills_asked() const noexcept { return stills_asked_; }
-  /// Of the last tick.
+  /// Of the last tick: first what the burr emptied, then the cut plane.
   std::span<const EmptiedIn> emptied() const noexcept { return emptied_; }
   std::span<const WorldEvent> separations() const noexcept { return world_.events(); }
   std::span<const DustDeposit> deposits() const noexcept { return deposits_; }
   const DustTools& dust_tools() const noexcept { return dust_tools_; }
 
   const Microscope& camera() const noexcept { return camera_; }
+  /// How often kStill went down.
+  std::int32_t stills_asked() const noexcept { return stills_asked_; }
   const ToolSpec& tool() const noexcept { return tools_[static_cast<std::size_t>(output_.tool)]; }
   std::span<const ToolSpec> tools() const noexcept { return tools_; }
   /// Of a tool that is a plate; else null.
@@ -140,9 +133,11 @@ class Simulator {
   std::uint64_t checksum() const noexcept;
 
  private:
-  struct Reach {  // of a piece's bricks, in B
+  struct Reach {  // of a piece's bricks, in B [m]
     Eigen::Vector3d low;
     Eigen::Vector3d high;
+
+    bool is_near(const Eigen::Vector3d& p_B, double radius) const noexcept;
   };
   std::size_t in_hand() const noexcept { return static_cast<std::size_t>(output_.tool); }
   void take_separations(std::span<const RecordedSplit> recorded);
@@ -152,10 +147,11 @@ class Simulator {
   void carry(const SimulatorInput& input) noexcept;
   void work(const SimulatorInput& input, std::uint32_t pressed) noexcept;
   void drill(const SimulatorInput& input) noexcept;
-  void cut(const SimulatorInput& input, bool begins) noexcept;
+  void begin_cut(const SimulatorInput& input) noexcept;
+  void go_on_cutting() noexcept;
   void hold_plate(const SimulatorInput& input, bool fixes) noexcept;
   void place_for_dust(const SimulatorInput& input) noexcept;
-  bool near(int piece, const Eigen::Vector3d& p_B, double radius) noexcept;
+  const Reach& reach_of(int piece) noexcept;
 
   std::vector<ToolSpec> tools_;
   MicroscopeParameters camera_parameters_;
@@ -164,11 +160,11 @@ class Simulator {
   std::vector<std::unique_ptr<Drill>> drills_;       // by tool; null where it is no burr
   std::vector<std::unique_ptr<PlateModel>> plates_;  // likewise
   CutPlaneTool cutter_;
-  std::int32_t stills_asked_{0};
   double cut_of_present_{0.0};
   Microscope camera_;
   SimulatorOutput output_;
   std::uint32_t functions_{0};  // held on the last tick
+  std::int32_t stills_asked_{0};
   Eigen::Vector3d hand_{Eigen::Vector3d::Zero()};
   bool hand_known_{false};
   bool waits_until_free_{true};

@@ -34,6 +34,28 @@ bool before(const PieceTouch& a, const PieceTouch& b) {
          std::tuple(b.distance, b.piece, b.voxel.z(), b.voxel.y(), b.voxel.x());
 }
 
+/// Calls f(voxel, distance from p_B to its centre) for the voxels of a cube around a point, also
+/// those outside of the grid; for none where the point is nowhere near it.
+/// @param reach  half of the cube's edge at least [m]
+template <class F>
+void for_each_voxel_around(const geometry::VoxelGrid& grid, const Eigen::Vector3d& p_B,
+                           double reach, F&& f) {
+  const Eigen::Vector3d place = (p_B - grid.origin) / grid.spacing;
+  if (!(place.cwiseAbs().maxCoeff() < 1e6)) {
+    return;
+  }
+  const Voxel middle = place.array().round().cast<int>();
+  const int steps = static_cast<int>(std::ceil(reach / grid.spacing));
+  for (int k = -steps; k <= steps; ++k) {
+    for (int j = -steps; j <= steps; ++j) {
+      for (int i = -steps; i <= steps; ++i) {
+        const Voxel voxel = middle + Voxel(i, j, k);
+        f(voxel, (place - voxel.cast<double>()).norm() * grid.spacing);
+      }
+    }
+  }
+}
+
 /// Calls f(i) for each bit i of a set.
 template <class Set, class F>
 void for_each_bit(Set set, F&& f) {
@@ -218,35 +240,23 @@ std::optional<PieceTouch> BoneWorld::touch(const Eigen::Vector3d& p_W,
   std::optional<PieceTouch> nearest;
   for (int i = 0; i < pieces() && p_W.allFinite(); ++i) {
     const BoneVolume& volume = *at(i).volume;
-    const geometry::VoxelGrid& grid = volume.grid();
-    const Eigen::Vector3d p_B = at(i).pose.inverse() * p_W;
-    const Eigen::Vector3d place = (p_B - grid.origin) / grid.spacing;
-    if (!(place.cwiseAbs().maxCoeff() < 1e6)) {
-      continue;  // nowhere near the grid
-    }
-    const Voxel middle = place.array().round().cast<int>();
-    const double most = nearest ? nearest->distance : std::min(reach, kMaxReach * grid.spacing);
-    const int steps = static_cast<int>(std::ceil(most / grid.spacing));
-    for (int k = -steps; k <= steps; ++k) {
-      for (int j = -steps; j <= steps; ++j) {
-        for (int x = -steps; x <= steps; ++x) {
-          const Voxel voxel = middle + Voxel(x, j, k);
-          const double distance = (place - voxel.cast<double>()).norm() * grid.spacing;
-          const PieceTouch found{at(i).born ? i : at(i).parent, voxel, distance};
-          if (distance <= most && (!nearest || before(found, *nearest)) &&
-              volume.density(voxel) > 0.0F) {
-            nearest = found;
-          }
-        }
+    const double widest = kMaxReach * volume.grid().spacing;
+    const double most = nearest ? nearest->distance : std::min(reach, widest);
+    const auto take_if_nearer = [&](const Voxel& voxel, double distance) {
+      const PieceTouch found{known_as(i), voxel, distance};
+      if (distance <= most && (!nearest || before(found, *nearest)) &&
+          volume.density(voxel) > 0.0F) {
+        nearest = found;
       }
-    }
+    };
+    for_each_voxel_around(volume.grid(), at(i).pose.inverse() * p_W, most, take_if_nearer);
   }
   return nearest;
 }
 
 void BoneWorld::grab(const PieceTouch& touch, const Eigen::Isometry3d& pose_WT) noexcept {
   const bool known = touch.piece >= 0 && touch.piece < pieces();
-  held_ = known ? (is_born(touch.piece) ? touch.piece : parent(touch.piece)) : -1;
+  held_ = known ? known_as(touch.piece) : -1;
   held_voxel_ = touch.voxel;
   held_tool_ = pose_WT;
   hold_group();

@@ -51,6 +51,14 @@ struct WorldEvent {
   double amount{0.0};  // sum of densities [voxels]
 };
 
+/// A voxel that a tool emptied.
+struct EmptiedIn {
+  int piece{0};  // that held it, as BoneWorld::known_as() has it
+  Voxel voxel{Voxel::Zero()};
+  std::uint8_t label{0};
+  bool by_cut{false};  // by the cut plane, without any force
+};
+
 /// Where a tool meets bone.
 struct PieceTouch {
   int piece{0};
@@ -114,6 +122,8 @@ class BoneWorld {
   /// The volume in the making that bone of a piece is moving to; null where there is none.
   const BoneVolume* leaving(int piece) const noexcept;
   int parent(int piece) const noexcept { return at(piece).parent; }
+  /// What a volume's bone is told to belong to: one in the making is its parent's until its birth.
+  int known_as(int piece) const noexcept { return is_born(piece) ? piece : parent(piece); }
   const Eigen::Isometry3d& plate_pose(int plate) const noexcept { return plate_at(plate).pose; }
 
   /// Carries on what search() has offered. Once a tick, before the tick's drilling.

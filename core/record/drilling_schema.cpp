@@ -24,7 +24,7 @@ constexpr std::array kTool{
     u8("power", "1 where the burr turns or the suction sucks"),
     i32("piece", "of bone that is carried; -1: none"),
     i32("immersed", "samples of the tool in bone"),
-    f32("removed", "voxel", "density taken in this tick"),
+    f32("removed", "voxel", "density that burr and cut plane took in this tick"),
     f32("contact_x", "N", "contact force before any limit, in the world frame", kForceResolution),
     f32("contact_y", "N", "contact force before any limit, in the world frame", kForceResolution),
     f32("contact_z", "N", "contact force before any limit, in the world frame", kForceResolution),
@@ -118,8 +118,8 @@ constexpr std::array kProcedures{
 
 // Chunks of different tables never inflate to the same size: recovery knows them by it.
 constexpr TableSchema kToolSchema{"tool", "the tool on each tick of the servo loop", 4096, kTool};
-constexpr TableSchema kRemovalsSchema{"removals", "one row for each voxel that a burr emptied", 500,
-                                      kRemovals};
+constexpr TableSchema kRemovalsSchema{
+    "removals", "one row for each voxel that a burr or the cut plane emptied", 500, kRemovals};
 constexpr TableSchema kCameraSchema{"camera", "one row for each change of the view", 64, kCamera};
 constexpr TableSchema kSplitsSchema{"splits", "parts that were separated: voxels that say which",
                                     1024, kSplits};

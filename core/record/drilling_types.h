@@ -25,17 +25,17 @@ struct ToolRow {
   bool power{false};         // the burr turns, the suction sucks
   std::int32_t piece{-1};    // of bone that is carried; -1: none
   std::int32_t immersed{0};  // samples of the tool in bone
-  double removed{0.0};       // density in this tick [voxels]
+  double removed{0.0};       // density that burr and cut plane took in this tick [voxels]
   Eigen::Vector3d contact{Eigen::Vector3d::Zero()};  // force before any limit, in W [N]
 };
 
-/// One voxel that was emptied, a row of /removals. Goes through a block log.
+/// One voxel that a tool emptied, a row of /removals. Goes through a block log.
 struct RemovalRow {
   std::uint64_t sequence{0};            // of the tick
   std::int32_t piece{0};                // that held it
   std::array<std::int32_t, 3> voxel{};  // i, j, k
   std::uint8_t label{0};
-  double force{0.0};  // magnitude of the contact force [N]
+  double force{0.0};  // magnitude of the contact force; 0: by the cut plane, which has none [N]
   double speed{0.0};  // of the tool tip [m/s]
 };
 

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <utility>
+#include <vector>
+
 #include "core/base/error.h"
 #include "core/base/table.h"
 #include "tests/core/bone/pieces_support.h"
@@ -170,7 +174,7 @@ TEST(CutPlaneTest, TheCutIsTheSameHoweverItIsSpreadAndThoughPiecesMoveAndSplitMe
   const CutPlane plane{looking({1.0, 0.4, 0.2}, box.grid.centre(20, 9, 8)), 0.03, 0.03, 1e-3};
   BoneWorld at_once(box);
   CutPlaneTool tool;
-  EXPECT_EQ(cut(at_once, plane, tool, 1'000'000'000), 1);
+  EXPECT_GT(cut(at_once, plane, tool, 1'000'000'000), 0);
   const auto removed = tool.removed();
 
   BoneWorld spread(box, Isometry3d::Identity(), {.smallest_piece = 1, .moves_per_tick = 7});
@@ -207,6 +211,49 @@ TEST(CutPlaneTest, TheCutIsTheSameHoweverItIsSpreadAndThoughPiecesMoveAndSplitMe
   });
   EXPECT_EQ(corner, 0);  // so the counts are the same
   EXPECT_EQ(slow.removed().voxels, removed.voxels);
+}
+
+/// In slices, and thick enough that a single ray empties more than a step may.
+TEST(CutPlaneTest, EachVoxelIsToldOnceWithItsPieceAndLabelAndNoStepEmptiesTooMany) {
+  BoneModel box = test::make_bone({30, 26, 700}, [](const Voxel& v) { return v.x() % 7 != 0; });
+  for (std::size_t i = 0; i < box.labels.size(); ++i) {
+    box.labels[i] = box.labels[i] == 0 ? 0 : i % 3 == 0 ? 2 : 1;
+  }
+  box.structures.resize(3);
+  BoneWorld world(box, Isometry3d::Identity(), {.split_initial = true});
+  test::settle(world);
+  ASSERT_GT(world.pieces(), 3);
+  const auto place = box.grid.centre(15, 13, 0);
+  CutPlaneTool tool;
+  tool.begin(world, {looking(Vector3d::UnitZ(), place, 0.3), 0.012, 0.008, 0.3});
+  std::map<std::size_t, std::pair<int, int>> told;  // piece and label, by index
+  std::vector<int> holders(box.grid.count());
+  for_each_voxel(box.grid, [&](const Voxel& v) {
+    holders[box.grid.index(v.x(), v.y(), v.z())] = world.holder(v);
+  });
+  std::size_t most = 0;
+  while (tool.busy()) {
+    const std::int64_t before = tool.removed().voxels;
+    tool.step(world, 4000);
+    EXPECT_EQ(tool.removed().voxels - before, static_cast<std::int64_t>(tool.emptied().size()));
+    most = std::max(most, tool.emptied().size());
+    for (const EmptiedIn& gone : tool.emptied()) {
+      EXPECT_TRUE(gone.by_cut);
+      const std::size_t index = box.grid.index(gone.voxel.x(), gone.voxel.y(), gone.voxel.z());
+      EXPECT_TRUE(told.insert({index, {gone.piece, gone.label}}).second) << "told twice";
+    }
+  }
+  EXPECT_EQ(most, CutPlaneTool::kMostEmptied) << "or the limit is not tried";
+  EXPECT_EQ(static_cast<std::int64_t>(told.size()), tool.removed().voxels);
+  for_each_voxel(box.grid, [&](const Voxel& v) {
+    const std::size_t index = box.grid.index(v.x(), v.y(), v.z());
+    const auto row = told.find(index);
+    const bool gone = holders[index] >= 0 && world.holder(v) < 0;
+    ASSERT_EQ(gone, row != told.end()) << v.transpose();
+    if (gone) {
+      ASSERT_EQ(row->second, std::pair(holders[index], int{box.labels[index]}));
+    }
+  });
 }
 
 }  // namespace
