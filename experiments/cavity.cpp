@@ -71,6 +71,17 @@ subject::DrillingChart empty_chart(const Eigen::Vector3d& end_W, const CavityPar
   return chart;
 }
 
+/// A margin to what is not there would be one that nobody keeps.
+void check_structures(const bone::BoneModel& model, const CavityParameters& cavity) {
+  for (const std::string& name : cavity.structures) {
+    const auto named = [&](const bone::Structure& s) { return s.name == name; };
+    if (std::none_of(model.structures.begin(), model.structures.end(), named)) {
+      throw InputError(fmt::format("cavity.structures names \"{}\"; {} has no such structure", name,
+                                   model.name.empty() ? "the bone" : model.name));
+    }
+  }
+}
+
 double margin_of(const CavityParameters& cavity, const std::string& structure) {
   for (std::size_t s = 0; s < cavity.structures.size(); ++s) {
     if (cavity.structures[s] == structure) {
@@ -180,6 +191,7 @@ CavityParameters read_cavity_parameters(Table& table) {
 
 subject::DrillingChart make_chart(const bone::BoneModel& model, const Eigen::Isometry3d& X_WB,
                                   const CavityParameters& cavity) {
+  check_structures(model, cavity);
   const Eigen::Vector3d end_B = middle_of(model, cavity.beside) + cavity.offset_B;
   subject::DrillingChart chart = empty_chart(X_WB * end_B, cavity);
   const Eigen::Isometry3d X_BW = X_WB.inverse();

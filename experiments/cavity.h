@@ -33,7 +33,7 @@ struct CavityParameters {
 CavityParameters read_cavity_parameters(Table& table);
 
 /// @param X_WB  pose of the bone
-/// @throws InputError where the bone has no structure of the name, or no bone at all.
+/// @throws InputError where the bone has no structure of a name that the cavity gives.
 subject::DrillingChart make_chart(const bone::BoneModel& model, const Eigen::Isometry3d& X_WB,
                                   const CavityParameters& cavity);
 

@@ -41,56 +41,76 @@ bool near_plan(const geometry::VoxelGrid& grid, const std::vector<float>& planne
 }
 
 /// The first bone of every column now.
-std::vector<float> heights_of(const bone::BoneModel& model,
-                              const std::vector<std::uint8_t>& standing,
-                              const Eigen::Isometry3d& X_BW, const DrillingChart& chart) {
-  std::vector<float> heights(chart.columns(), DrillingChart::kNone);
+struct Floor {
+  std::vector<float> depth;  // (u x v) [m]
+  std::vector<bool> made;    // (u x v) what lay on it was bone: it is no wall of an air cell
+};
+
+Floor floor_of(const bone::BoneModel& model, const std::vector<std::uint8_t>& standing,
+               const Eigen::Isometry3d& X_BW, const DrillingChart& chart) {
+  Floor floor{std::vector<float>(chart.columns(), DrillingChart::kNone),
+              std::vector<bool>(chart.columns(), false)};
   const geometry::VoxelGrid& grid = model.grid;
   for (int v = 0; v < chart.size[1]; ++v) {
     for (int u = 0; u < chart.size[0]; ++u) {
+      bool bone_above = false;
       for (int layer = 0; layer < 2 * chart.size[2]; ++layer) {
         const double w = 0.5 * layer * chart.cell;
         const Eigen::Vector3d p = X_BW * chart.world({u * chart.cell, v * chart.cell, w});
         const Eigen::Array3i at = ((p - grid.origin) / grid.spacing).array().round().cast<int>();
         const bool inside = (at >= 0).all() && at.x() < grid.size[0] && at.y() < grid.size[1] &&
                             at.z() < grid.size[2];
-        if (inside && standing[grid.index(at.x(), at.y(), at.z())] != 0) {
-          heights[chart.column(u, v)] = static_cast<float>(w);
+        const std::size_t index = inside ? grid.index(at.x(), at.y(), at.z()) : 0;
+        if (inside && standing[index] != 0) {
+          floor.depth[chart.column(u, v)] = static_cast<float>(w);
+          floor.made[chart.column(u, v)] = bone_above;
           break;
         }
+        bone_above = inside && model.labels[index] != 0;
       }
     }
   }
-  return heights;
+  return floor;
 }
 
-double roughness_of(const DrillingChart& chart, const std::vector<float>& heights) {
+struct Roughness {
+  double all{0.0};     // [m]
+  double carved{0.0};  // at most as much [m]
+};
+
+Roughness roughness_of(const DrillingChart& chart, const Floor& floor) {
   const auto opened = [&](std::size_t column) {
-    return heights[column] != DrillingChart::kNone &&
-           static_cast<double>(heights[column] - chart.surface[column]) > kOpened;
+    return floor.depth[column] != DrillingChart::kNone &&
+           static_cast<double>(floor.depth[column] - chart.surface[column]) > kOpened;
   };
-  double sum = 0.0;
+  Roughness sum;
   int count = 0;
   for (int v = 1; v + 1 < chart.size[1]; ++v) {
     for (int u = 1; u + 1 < chart.size[0]; ++u) {
+      const std::size_t here = chart.column(u, v);
       std::array<float, 8> around{};
       std::size_t known = 0;
+      bool made = floor.made[here];
       for (int dv = -1; dv <= 1; ++dv) {
         for (int du = -1; du <= 1; ++du) {
           const std::size_t column = chart.column(u + du, v + dv);
-          if ((du != 0 || dv != 0) && opened(column)) {
-            around[known++] = heights[column];
+          if (column != here && opened(column)) {
+            around[known++] = floor.depth[column];
+            made = made && floor.made[column];
           }
         }
       }
-      if (known == around.size() && opened(chart.column(u, v))) {
+      if (known == around.size() && opened(here)) {
         std::nth_element(around.begin(), around.begin() + 4, around.end());
-        sum += std::abs(static_cast<double>(heights[chart.column(u, v)] - around[4]));
+        const auto off = std::abs(static_cast<double>(floor.depth[here] - around[4]));
+        sum.all += off;
+        sum.carved += made ? off : 0.0;
         ++count;
       }
     }
   }
-  return count > 0 ? sum / count : 0.0;
+  const double share = count > 0 ? 1.0 / count : 0.0;
+  return {share * sum.all, share * sum.carved};
 }
 
 /// What is left of the bone of one procedure: its last one, where it was begun anew.
@@ -212,7 +232,9 @@ Outcome outcome_of(const bone::BoneModel& model, const std::vector<std::uint8_t>
   outcome.complete = asked > 0 ? static_cast<double>(done) / static_cast<double>(asked) : 0.0;
   outcome.beyond = voxel * static_cast<double>(beyond);
   outcome.injured = voxel * static_cast<double>(injured);
-  outcome.roughness = roughness_of(chart, heights_of(model, standing, X_WB.inverse(), chart));
+  const Roughness rough = roughness_of(chart, floor_of(model, standing, X_WB.inverse(), chart));
+  outcome.roughness = rough.all;
+  outcome.carved = rough.carved;
   return outcome;
 }
 
@@ -224,7 +246,7 @@ double rubric_score(const Outcome& o) noexcept {
   if (o.injured > 0.0) {
     score -= 0.25 + 2.5 * (1.0 - std::exp(-o.injured / (60.0 * kCubicMillimetre)));
   }
-  score -= 2.0 * std::max(0.0, o.roughness / 1e-3 - 0.4);
+  score -= 2.0 * std::max(0.0, o.carved / 1e-3 - 0.4);
   return std::max(drilling::kLowestScore, score);
 }
 

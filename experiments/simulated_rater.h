@@ -18,6 +18,7 @@ struct Outcome {
   double beyond{0.0};     // bone gone that should stand, more than a voxel off the plan [m3]
   double injured{0.0};    // of vital structures [m3]
   double roughness{0.0};  // mean height of a place of the cavity over or under those around it [m]
+  double carved{0.0};     // the same, places in and beside air cells counting as smooth [m]
 };
 
 /// @param standing  (grid.count()) 1: the voxel is still there
@@ -31,7 +32,7 @@ Outcome outcome_of(const bone::BoneModel& model, const std::vector<std::uint8_t>
 ///     4 (0.9 - complete), where that is above 0        parts of the plan are left
 ///     2 beyond / planned                               removed what should stand
 ///     0.25 + 2.5 (1 - exp(-injured / 60 mm3)), if any  a vital structure is touched
-///     2 (roughness - 0.4 mm) / mm, where above 0       not smooth
+///     2 (carved - 0.4 mm) / mm, where above 0          not smooth; air cells are nobody's fault
 ///
 /// and at least 1.
 double rubric_score(const Outcome& outcome) noexcept;

@@ -87,7 +87,8 @@ TEST_F(SimulatedRaterTest, WhatIsTouchedAndTooMuchIsSeen) {
 
 TEST_F(SimulatedRaterTest, ARoughFloorCosts) {
   remove_plan();
-  const double smooth = outcome().roughness;
+  const Outcome smooth = outcome();
+  EXPECT_DOUBLE_EQ(smooth.carved, smooth.roughness) << "there are no air cells";
   for (std::size_t at = 0; at < planned.size(); ++at) {
     // Every other column keeps its lower half.
     const auto i = static_cast<int>(at % 40);
@@ -96,7 +97,34 @@ TEST_F(SimulatedRaterTest, ARoughFloorCosts) {
       standing[at] = 1;
     }
   }
-  EXPECT_GT(outcome().roughness, smooth + 0.1e-3);
+  EXPECT_GT(outcome().roughness, smooth.roughness + 0.1e-3);
+  EXPECT_GT(outcome().carved, smooth.carved + 0.1e-3);
+  Outcome rough = smooth;
+  rough.carved = 0.7e-3;
+  EXPECT_NEAR(rubric_score(rough), 4.4, 1e-9);
+}
+
+TEST_F(SimulatedRaterTest, AirCellsThatTheCavityOpensAreNobodysFault) {
+  // Every other column is hollow under the plan, four voxels deep.
+  const auto& grid = model.grid;
+  for (int k = 1; k + 4 < grid.size[2]; ++k) {
+    for (int j = 0; j < grid.size[1]; ++j) {
+      for (int i = j % 2; i < grid.size[0]; i += 2) {
+        if (planned[grid.index(i, j, k - 1)] < 0.0F || planned[grid.index(i, j, k)] >= 0.0F) {
+          continue;
+        }
+        for (int deep = k; deep < k + 4; ++deep) {
+          model.labels[grid.index(i, j, deep)] = 0;
+          standing[grid.index(i, j, deep)] = 0;
+        }
+      }
+    }
+  }
+  remove_plan();
+  const Outcome perfect = outcome();
+  EXPECT_GT(perfect.roughness, 0.4e-3);
+  EXPECT_LT(perfect.carved, 0.1 * perfect.roughness);
+  EXPECT_DOUBLE_EQ(rubric_score(perfect), 5.0);
 }
 
 TEST(RaterMannerTest, ScoresAreWholePointsAboutTheRubricWithBiasAndNoise) {
