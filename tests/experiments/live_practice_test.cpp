@@ -1,0 +1,142 @@
+// Practice before the first procedure, with and without an experimenter.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "analysis/drilling/procedure.h"
+#include "core/record/integrity.h"
+#include "core/record/session_reader.h"
+#include "tests/experiments/console_person.h"
+#include "tests/experiments/live_command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/experiments/small_drilling.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial {
+namespace {
+
+namespace fs = std::filesystem;
+using record::PassRow;
+using record::PassStatus;
+using testing::HasSubstr;
+
+class LivePracticeTest : public testing::Test {
+ protected:
+  void write(double practice, double procedure) {
+    const fs::path file = test::write_small_drilling(folder_.path(), procedure);
+    test::write_text(file, test::read_text(file) + fmt_of(practice));
+  }
+  static std::string fmt_of(double seconds) {
+    return "\n[practice]\nduration = " + std::to_string(seconds) + "\n";
+  }
+  std::string run(const std::string& more = "") const {
+    return "run '" + (folder_ / "study.toml").string() + "' --subject S01 --out '" +
+           (folder_ / "out").string() + "' " + more;
+  }
+  fs::path file() const { return folder_ / "out" / "S01.h5"; }
+  fs::path partial() const { return folder_ / "out" / "S01.h5.partial"; }
+  std::vector<PassRow> passes() const {
+    const record::SessionReader reader(file());
+    EXPECT_TRUE(record::check_session(reader).ok);
+    return reader.passes();
+  }
+  static std::uint64_t ticks(const PassRow& pass) {
+    return pass.last_sample - pass.first_sample + 1;
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(LivePracticeTest, ComesOnceIsMarkedAndIsNotAnalysedAlsoAfterAKill) {
+  write(1.5, 30.0);
+  {
+    test::LiveCommand session(run());
+    ASSERT_TRUE(test::eventually(
+        [&] {
+          std::error_code ignored;
+          return fs::exists(partial(), ignored) &&
+                 record::SessionReader(partial()).passes().size() == 1 &&
+                 record::SessionReader(partial()).sample_count() > 3000;
+        },
+        60.0))
+        << session.errors();
+    session.signal(SIGKILL);
+    session.wait();
+  }
+  test::LiveCommand session(run("--resume"));
+  ASSERT_TRUE(test::eventually([&] {
+    return record::SessionReader(partial()).passes().size() >= 2;
+  })) << session.errors();
+  session.signal(SIGINT);
+  session.wait();
+  const record::SessionReader reader(partial());
+  const std::vector<PassRow> all = reader.passes();
+  ASSERT_GE(all.size(), 2u);
+  EXPECT_TRUE(all[0].practice);
+  EXPECT_EQ(all[0].condition, "practice");
+  EXPECT_EQ(all[0].status, PassStatus::kCompleted);
+  EXPECT_EQ(ticks(all[0]), 1500u);
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    EXPECT_FALSE(all[i].practice) << "it is not practised again";
+    EXPECT_EQ(all[i].trial, 1);
+  }
+}
+
+TEST_F(LivePracticeTest, ProceduresThatAreAnalysedDoNotHaveItAmongThem) {
+  write(1.0, 2.0);
+  test::LiveCommand session(run());
+  const test::CommandResult ended = session.wait(60.0);
+  ASSERT_EQ(ended.status, 0) << ended.errors;
+  const std::vector<PassRow> all = passes();
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_TRUE(all[0].practice);
+  EXPECT_EQ(ticks(all[0]), 1000u);
+  EXPECT_FALSE(all[1].practice);
+  EXPECT_EQ(ticks(all[1]), 2000u);
+  const auto analysed = analysis::drilling::load_procedures(record::SessionReader(file()), {});
+  ASSERT_EQ(analysed.size(), 1u);
+  EXPECT_EQ(analysed[0].number, 1);
+  EXPECT_EQ(analysed[0].ticks.size(), 2000u);
+  const test::CommandResult info = test::run_command("haptrial info '" + file().string() + "'");
+  EXPECT_THAT(info.output, HasSubstr("1 for practice"));
+  const test::CommandResult replay = test::run_command("haptrial replay '" + file().string() + "'");
+  EXPECT_EQ(replay.status, 0) << replay.errors;
+  EXPECT_THAT(replay.output, HasSubstr("trial 1: the same bone, 2000 ticks"));
+}
+
+TEST_F(LivePracticeTest, AnExperimenterStartsRepeatsAndSkipsIt) {
+  write(60.0, 2.0);
+  test::LiveCommand session(run("--console"));
+  test::ConsolePerson person(session.line_after("console: "));
+  ASSERT_TRUE(person.sees("instructions", "", 60.0)) << session.errors();
+  ASSERT_TRUE(person.ask("start"));
+  ASSERT_TRUE(test::eventually([&] {
+    const auto now = person.status();
+    return !now.is_null() && now["screen"].get<std::string>().starts_with("Practice");
+  })) << "its own page";
+  ASSERT_TRUE(person.sees("instructions"));
+  ASSERT_TRUE(person.ask("start"));
+  ASSERT_TRUE(person.sees("practice"));
+  ASSERT_TRUE(person.ask("repeat"));
+  ASSERT_TRUE(test::eventually([&] { return person.status()["aborted_passes"] == 1; }));
+  ASSERT_TRUE(person.sees("practice"));
+  ASSERT_TRUE(person.ask("skip"));
+  const test::CommandResult ended = session.wait(60.0);
+  ASSERT_EQ(ended.status, 0) << ended.errors;
+  const std::vector<PassRow> all = passes();
+  ASSERT_EQ(all.size(), 3u);
+  for (const std::size_t i : {0u, 1u}) {
+    EXPECT_TRUE(all[i].practice);
+    EXPECT_EQ(all[i].status, PassStatus::kAborted);
+    EXPECT_EQ(all[i].attempt, static_cast<std::int32_t>(i) + 1);
+    EXPECT_EQ(all[i].repetition, static_cast<std::int32_t>(i) + 1) << "a new bone each";
+  }
+  EXPECT_FALSE(all[2].practice);
+  EXPECT_EQ(all[2].status, PassStatus::kCompleted);
+}
+
+}  // namespace
+}  // namespace haptrial
