@@ -28,6 +28,7 @@ class BoneTrials final : public Trials {
   void show(Screen& screen) override;
   protocols::Pass& make_pass(protocols::PlannedTrial& trial, record::Phase phase,
                              SessionRecord& record) override;
+  std::shared_ptr<const bone::BoneModel> bone() const override { return stage_->model; }
   void close_pass(SessionRecord& record, std::int32_t row) override;
   void draw_pictures(const protocols::PlannedTrial& trial, record::Phase phase) override;
   std::vector<std::string> notices() const override;

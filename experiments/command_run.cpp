@@ -111,6 +111,9 @@ int run(const RunOptions& options) {
   request.person = options.person;
   request.person.identifier = options.subject;
   const SessionSummary done = attended_session(request, options);
+  for (const DrilledProcedure& procedure : done.procedures) {
+    fmt::print("{}\n", line_of(procedure, done.simulated));
+  }
   for (const std::string& notice : done.notices) {
     fmt::print("{}\n", notice);
   }

@@ -35,6 +35,33 @@ std::string only_string(const std::string& text, const char* key) {
   return body[key].get<std::string>();
 }
 
+/// Null in a session that does not drill.
+json drilling_json(const std::optional<DrilledProcedure>& drilling) {
+  if (!drilling) {
+    return nullptr;
+  }
+  const analysis::drilling::LiveFigures& f = drilling->figures;
+  const auto or_null = [](const std::optional<double>& value) {
+    return value ? json(*value) : json(nullptr);
+  };
+  json injuries = json::array();
+  for (const analysis::drilling::Injury& injury : f.injuries) {
+    injuries.push_back({{"structure", injury.structure},
+                        {"voxels", injury.voxels},
+                        {"crumbled", injury.crumbled},
+                        {"first_contact", or_null(injury.first_contact)}});
+  }
+  return {{"trial", drilling->trial},
+          {"practice", drilling->practice},
+          {"time", f.time},
+          {"drilling", f.drilling},
+          {"removed", f.removed},
+          {"voxels", f.voxels},
+          {"visible_share", or_null(f.visible_share)},
+          {"mean_force", or_null(f.mean_force)},
+          {"injuries", injuries}};
+}
+
 }  // namespace
 
 const char* name_of(Request request) noexcept {
@@ -92,6 +119,7 @@ std::string status_json(const SessionStatus& s, std::uint64_t refused) {
       {"fault", s.fault},
       {"simulated", s.simulated},
       {"rate", s.rate},
+      {"rate_measured", s.rate_measured},
       {"ticks", s.ticks},
       {"overruns", s.overruns},
       {"dropped", s.dropped},
@@ -100,6 +128,7 @@ std::string status_json(const SessionStatus& s, std::uint64_t refused) {
       {"lateness_worst_us", s.lateness_worst_us},
       {"aborted_passes", s.aborted_passes},
       {"refused", refused},
+      {"drilling", drilling_json(s.drilling)},
   };
   return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }

@@ -56,31 +56,34 @@ class PictureFolder {
   fs::path path_;
 };
 
+// As the surgeon looked at it first.
+drilling::SurgeonsView surgeons_view(const BoneDefinition& definition,
+                                     const geometry::VoxelGrid& grid) {
+  const bone::Microscope& start = definition.simulator.camera.start;
+  const Eigen::Matrix3d R_BW = pose_of(definition.placement, grid).linear().transpose();
+  return {R_BW * (start.eye - start.target), R_BW * start.up};
+}
+
 drilling::StudyPicture visibility_picture(const drilling::ProcedureSummary& procedure,
-                                          const std::string& name, const std::string& which,
-                                          const fs::path& folder) {
-  const auto triangles =
-      drilling::visibility_scene(*procedure.bone, procedure.removed, procedure.removed_seen,
-                                 drilling::vital_labels(*procedure.bone));
-  render::SceneView view;
-  view.up = Eigen::Vector3d::UnitZ();
-  constexpr double kFromTheRight = -1.9;
-  view.azimuth = kFromTheRight;
-  view.width = 900;
-  view.height = 600;
+                                          const BoneDefinition& definition, const std::string& name,
+                                          const std::string& which, const fs::path& folder) {
   const fs::path file = folder / (name + ".png");
-  render::write_png(file, render::draw_scene(triangles, view));
+  render::write_png(file, drilling::visibility_figure(
+                              {procedure.bone.get(), procedure.removed, procedure.removed_seen},
+                              surgeons_view(definition, procedure.bone->grid)));
   return {name, fmt::format("Removed voxels of the procedure with the {} share in sight", which),
-          fmt::format("Voxels that were visible when they were removed in green, those hidden by "
-                      "other bone in red; bone is not drawn, vital structures are ({:.0f} % were "
-                      "visible).",
+          fmt::format("Green: visible when they were removed ({:.0f} %). Magenta: hidden by other "
+                      "bone. Pale colours: vital structures. Left: as the surgeon looks into the "
+                      "cavity, bone is not drawn. Right: cut open where most was hidden, the way "
+                      "out is up; beige: bone that stands.",
                       100.0 * procedure.value("visible_share").value_or(0.0)),
-          "Green and red voxels of a cavity among vital structures.", file};
+          "Green and magenta voxels of a cavity among vital structures, whole and cut open.", file};
 }
 
 // Figure 18: the two ends of the study.
 std::vector<drilling::StudyPicture> visibility_pictures(
-    const std::vector<drilling::ProcedureSummary>& procedures, const fs::path& folder) {
+    const std::vector<drilling::ProcedureSummary>& procedures, const BoneDefinition& definition,
+    const fs::path& folder) {
   const drilling::ProcedureSummary *least = nullptr, *most = nullptr;
   for (const auto& p : procedures) {
     if (const auto share = p.value("visible_share")) {
@@ -90,8 +93,10 @@ std::vector<drilling::StudyPicture> visibility_pictures(
   }
   std::vector<drilling::StudyPicture> pictures;
   if (least != nullptr) {
-    pictures.push_back(visibility_picture(*least, "figure-18-undercut", "smallest", folder));
-    pictures.push_back(visibility_picture(*most, "figure-18-saucerized", "largest", folder));
+    pictures.push_back(
+        visibility_picture(*least, definition, "figure-18-undercut", "smallest", folder));
+    pictures.push_back(
+        visibility_picture(*most, definition, "figure-18-saucerized", "largest", folder));
   }
   return pictures;
 }
@@ -153,9 +158,14 @@ std::string group_of(const std::vector<StudyGroup>& groups, const std::string& s
 drilling::ProcedureSetup procedure_setup(const record::SessionReader& session,
                                          const std::vector<StudyGroup>& groups) {
   const record::SessionInfo& info = session.info();
-  const BoneDefinition definition = parse_bone_definition(info.definition, info.definition_name);
-  drilling::ProcedureSetup setup;
+  drilling::ProcedureSetup setup =
+      procedure_setup(parse_bone_definition(info.definition, info.definition_name));
   setup.group = group_of(groups, info.subject);
+  return setup;
+}
+
+drilling::ProcedureSetup procedure_setup(const BoneDefinition& definition) {
+  drilling::ProcedureSetup setup;
   setup.scale = definition.drilling.scale;
   setup.pose_WB = [placement = definition.placement](const geometry::VoxelGrid& grid) {
     return pose_of(placement, grid);
@@ -193,7 +203,9 @@ std::vector<std::string> analyze_drillings(const fs::path& folder,
   }
   drilling::ValidityResult result = drilling::analyze(study);
   const PictureFolder pictures(folder);
-  result.pictures = visibility_pictures(result.procedures, pictures.path());
+  result.pictures = visibility_pictures(
+      result.procedures, parse_bone_definition(first.definition, first.definition_name),
+      pictures.path());
   drilling::write_validity(result, folder);
   return drilling::summary_lines(result);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/drilling/validity_study.h"
+#include "experiments/bone_definition.h"
 
 namespace haptrial::experiments {
 
@@ -27,7 +28,9 @@ std::vector<StudyGroup> study_groups(std::string_view definition, std::string_vi
 /// @throws InputError for a number beyond the last group, or none where there are several groups.
 std::string group_of(const std::vector<StudyGroup>& groups, const std::string& subject);
 
-/// What metrics need of a session's definition.
+/// What metrics need of a definition; the group is empty.
+analysis::drilling::ProcedureSetup procedure_setup(const BoneDefinition& definition);
+/// Of the definition in a session file.
 analysis::drilling::ProcedureSetup procedure_setup(const record::SessionReader& session,
                                                    const std::vector<StudyGroup>& groups);
 

@@ -2,6 +2,7 @@
 
 #include <poll.h>
 #include <sys/eventfd.h>
+#include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -13,6 +14,7 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -105,6 +107,7 @@ class Keyboard::Implementation {
     single.c_cc[VTIME] = 0;
     single.c_cc[VSUSP] = _POSIX_VDISABLE;
     set_terminal(input, single);
+    follows_ = ::isatty(output) != 0;
     thread_ = std::thread([this] { read_keys(); });
   }
 
@@ -115,6 +118,7 @@ class Keyboard::Implementation {
     const std::uint64_t one = 1;
     [[maybe_unused]] const ssize_t written = ::write(stop_, &one, sizeof one);
     thread_.join();
+    show("");
     set_terminal(input_, original_);
     unwatch_signals();
     saved_terminal.store(-1);
@@ -143,7 +147,9 @@ class Keyboard::Implementation {
   void read_keys() {
     std::array<char, 64> keys;
     while (!ended_) {
-      if (!wait(-1)) {
+      constexpr int kBetweenStatus = 1000;  // [ms]
+      if (!wait(follows_ ? kBetweenStatus : -1)) {
+        show_status();
         continue;
       }
       ssize_t count = ::read(input_, keys.data(), keys.size());
@@ -159,6 +165,27 @@ class Keyboard::Implementation {
       }
       take({keys.data(), static_cast<std::size_t>(count)});
     }
+  }
+
+  /// How a drilling stands: one line that is written over, where somebody looks at it.
+  void show_status() {
+    if (ended_ || mode_ != Mode::kKeys) {
+      return;
+    }
+    const SessionStatus status = control_.status();
+    if (status.drilling && (status.state == "running" || status.state == "practice")) {
+      say(fit(line_of(*status.drilling, status.simulated)));
+      status_shown_ = true;
+    }
+  }
+
+  /// Cut to the terminal's width: a line that wraps could not be written over.
+  std::string fit(std::string line) const {
+    winsize size{};
+    if (::ioctl(output_, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 && line.size() >= size.ws_col) {
+      line.resize(size.ws_col - 1U);
+    }
+    return "\r" + line + "\x1b[K";
   }
 
   void take(std::string_view keys) {
@@ -278,8 +305,15 @@ class Keyboard::Implementation {
     show(what);
   }
 
+  void show(std::string_view text) {
+    if (std::exchange(status_shown_, false)) {
+      say("\n");
+    }
+    say(text);
+  }
+
   /// Only where there is room: a screen that hangs must not keep the next key waiting.
-  void show(std::string_view text) const {
+  void say(std::string_view text) const {
     pollfd room{output_, POLLOUT, 0};
     if (output_ >= 0 && ::poll(&room, 1, 0) == 1) {
       [[maybe_unused]] const ssize_t written = ::write(output_, text.data(), text.size());
@@ -290,6 +324,8 @@ class Keyboard::Implementation {
   int input_;
   int output_;
   int stop_{-1};
+  bool follows_{false};  // the output is a terminal
+  bool status_shown_{false};
   bool ended_{false};
   Mode mode_{Mode::kKeys};
   std::string note_;

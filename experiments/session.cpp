@@ -11,7 +11,10 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
+#include "core/record/session_reader.h"
+#include "experiments/drilling_study.h"
 #include "experiments/interrupt.h"
+#include "experiments/live_drilling.h"
 #include "experiments/rig.h"
 #include "experiments/session_desk.h"
 #include "experiments/session_opening.h"
@@ -25,6 +28,14 @@ namespace {
 
 using protocols::PlannedTrial;
 using realtime::ClockKind;
+
+/// Where somebody looks at the figures: at a console, or at the end.
+std::unique_ptr<LiveDrilling> open_live(const SessionRequest& request) {
+  const bool seen = request.clock == ClockKind::kReal || request.control != nullptr;
+  return seen && request.bone != nullptr
+             ? std::make_unique<LiveDrilling>(procedure_setup(*request.bone), request.bone->rate)
+             : nullptr;
+}
 
 class Session {
  public:
@@ -40,6 +51,7 @@ class Session {
   void present(const PlannedTrial& trial);
   bool run_trial(const PlannedTrial& trial, int attempt);
   bool run_pass(const PlannedTrial& trial, record::Phase phase, int attempt);
+  std::shared_ptr<const analysis::drilling::Procedure> of_earlier_run(const record::PassRow& pass);
   void after_abort(const protocols::PassResult& result);
   const char* why_broken_off();
 
@@ -52,6 +64,7 @@ class Session {
   const SessionRequest& request_;
   const Setup& d_;
   const bool real_;
+  bool may_go_on_;  // with a bone of an earlier run
   std::uint64_t session_seed_;
   SessionSummary summary_;
   realtime::ServoLoop loop_;
@@ -61,6 +74,7 @@ class Session {
   std::unique_ptr<Rig> rig_;
   std::atomic<std::uint32_t> held_keys_{0};  // functions, from the screen's thread
   std::unique_ptr<Screen> screen_;
+  std::unique_ptr<LiveDrilling> live_;
   SessionRecord record_;  // opened when everything else is there
   SessionDesk desk_;
   protocols::SessionTask task_;
@@ -72,18 +86,20 @@ Session::Session(const SessionRequest& request)
     : request_(request),
       d_(setup_of(request)),
       real_(request.clock == ClockKind::kReal),
+      may_go_on_(request.resume),
       session_seed_(derived_seed(request.seed, "participant " + request.subject)),
       loop_(request.clock, d_.rate),
       trials_(make_trials(request, session_seed_)),
       rig_(make_rig(request.device, d_, [this] { return trials_->virtual_rig(session_seed_); })),
       screen_(open_screen(request, rig_->mouse(), &held_keys_)),
-      record_(request, rig_->device().info(), loop_, trials_->bones()),
+      live_(open_live(request)),
+      record_(request, rig_->device().info(), loop_, trials_->bones(), live_.get()),
       desk_(request.control, desk_actions()),
       task_(rig_->device(), d_.envelope, record_.log(), observers(),
             real_ ? protocols::SessionTask::Leave::kNever
                   : protocols::SessionTask::Leave::kAfterPassOrSlice,
             record_.origin(), record_.tool_log(), &held_keys_),
-      pace_({request, loop_, record_, desk_, task_, screen_.get()}) {
+      pace_({request, loop_, record_, desk_, task_, screen_.get(), live_.get()}) {
   SessionStatus& status = desk_.status();
   status.subject = request.subject;
   status.device = request.device.name;
@@ -227,6 +243,9 @@ bool Session::run_pass(const PlannedTrial& trial, record::Phase phase, int attem
   PlannedTrial row = trial;
   protocols::Pass& pass = trials_->make_pass(row, phase, record_);
   const std::int32_t number = record_.begin_pass(row, phase, attempt);
+  if (live_) {
+    live_->begin(record_.pass(), trials_->bone(), of_earlier_run(record_.pass()));
+  }
   task_.start(pass, number);
   ++summary_.passes;
   pace_.drive_until_idle();
@@ -239,6 +258,30 @@ bool Session::run_pass(const PlannedTrial& trial, record::Phase phase, int attem
   }
   trials_->draw_pictures(trial, phase);
   return !aborted;
+}
+
+/// What the file held of the bone that the first pass after --resume goes on with.
+std::shared_ptr<const analysis::drilling::Procedure> Session::of_earlier_run(
+    const record::PassRow& pass) {
+  if (!std::exchange(may_go_on_, false) || pass.practice || pass.attempt < 2) {
+    return nullptr;
+  }
+  try {
+    const record::SessionReader file(request_.file.string() + ".partial");
+    const auto passes = file.passes();
+    const bool same_bone = std::any_of(passes.begin(), passes.end(), [&](const auto& row) {
+      return row.trial == pass.trial && !row.practice && row.repetition == pass.repetition;
+    });
+    for (auto& procedure : load_procedures(file, procedure_setup(*request_.bone))) {
+      if (same_bone && procedure.number == pass.trial) {
+        return std::make_shared<const analysis::drilling::Procedure>(std::move(procedure));
+      }
+    }
+  } catch (const std::exception& error) {  // nothing that a session should end for
+    record_.event("notice",
+                  fmt::format("live figures leave the earlier run out: {}", error.what()));
+  }
+  return nullptr;
 }
 
 void Session::after_abort(const protocols::PassResult& result) {
@@ -276,6 +319,11 @@ void Session::finish() {
   }
   note_troubles();
   record_.close(desk_.wishes().abort ? "ended by the experimenter" : "");
+  if (live_) {
+    live_->finish();
+    summary_.procedures = live_->procedures();
+  }
+  summary_.simulated = rig_->device().info().simulated;
   summary_.ticks = loop_.ticks();
   summary_.overruns = loop_.overruns();
   summary_.dropped = record_.dropped();
@@ -318,6 +366,7 @@ void Session::note_troubles() {
     }
   };
   note(record_.notice());
+  note(live_ ? live_->trouble() : "");
   for (const std::string& notice : trials_->notices()) {
     note(notice);
   }

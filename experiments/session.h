@@ -10,6 +10,7 @@
 #include "core/record/session_types.h"
 #include "experiments/bone_definition.h"
 #include "experiments/definition.h"
+#include "experiments/drilled_procedure.h"
 #include "experiments/rig.h"
 #include "experiments/session_control.h"
 
@@ -50,7 +51,9 @@ struct SessionSummary {
   int aborted_passes{0};
   std::uint64_t overruns{0};
   std::uint64_t dropped{0};
-  std::vector<std::string> notices;  // sentences: real time, screen, streams
+  bool simulated{false};                     // the device
+  std::vector<DrilledProcedure> procedures;  // those of this run; on the real clock, or attended
+  std::vector<std::string> notices;          // sentences: real time, screen, streams
 };
 
 /// Runs the session and writes its file. On an interrupt or a failure of a simulated session

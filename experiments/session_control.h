@@ -4,8 +4,11 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "experiments/drilled_procedure.h"
 
 namespace haptrial::experiments {
 
@@ -40,7 +43,8 @@ struct SessionStatus {
   std::string device;
   std::string fault;  // one sentence; empty where there is none
   bool simulated{false};
-  double rate{0.0};  // nominal [Hz]
+  double rate{0.0};           // nominal [Hz]
+  double rate_measured{0.0};  // over the last second; 0: not known yet [Hz]
   std::uint64_t ticks{0};
   std::uint64_t overruns{0};
   std::uint64_t dropped{0};
@@ -48,6 +52,7 @@ struct SessionStatus {
   double lateness_99_us{0.0};
   double lateness_worst_us{0.0};
   int aborted_passes{0};
+  std::optional<DrilledProcedure> drilling;  // of a session that drills: the present procedure
 };
 
 /// The only way from a person at a console to a session: messages in, a picture of the state out.

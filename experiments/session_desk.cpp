@@ -66,6 +66,8 @@ void SessionDesk::publish(const std::string& state) {
   }
   published_ = now;
   status_.state = state;
+  rate_.add(now, status_.ticks);
+  status_.rate_measured = rate_.rate();
   live_.fill(status_);
   control_->publish(status_);
 }

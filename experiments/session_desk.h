@@ -8,6 +8,7 @@
 #include "core/record/session_types.h"
 #include "experiments/live_status.h"
 #include "experiments/session_control.h"
+#include "experiments/tick_rate.h"
 
 namespace haptrial::experiments {
 
@@ -50,6 +51,7 @@ class SessionDesk {
   SessionControl* control_;
   Actions actions_;
   LiveStatus live_;
+  TickRate rate_;
   Wishes wishes_;
   SessionStatus status_;
   std::chrono::steady_clock::time_point published_{};

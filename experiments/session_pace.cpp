@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "experiments/interrupt.h"
+#include "experiments/live_drilling.h"
 #include "experiments/screen.h"
 
 namespace haptrial::experiments {
@@ -129,6 +130,9 @@ void SessionPace::publish(const char* state) {
   status.ticks = p_.loop.ticks();
   status.overruns = p_.loop.overruns();
   status.dropped = p_.record.dropped();
+  if (p_.live != nullptr) {
+    status.drilling = p_.live->now();
+  }
   p_.desk.publish(state);
 }
 

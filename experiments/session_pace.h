@@ -17,7 +17,7 @@ class Screen;
 /// stand. Session's thread.
 class SessionPace {
  public:
-  /// All of them outlive the pace. @param screen  null where there is none
+  /// All of them outlive the pace. @param screen, live  null where there is none
   struct Parts {
     const SessionRequest& request;
     realtime::ServoLoop& loop;
@@ -25,6 +25,7 @@ class SessionPace {
     SessionDesk& desk;
     protocols::SessionTask& task;
     Screen* screen{nullptr};
+    const LiveDrilling* live{nullptr};
   };
   explicit SessionPace(const Parts& parts);
 

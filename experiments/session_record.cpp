@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "experiments/live_drilling.h"
 #include "experiments/session_opening.h"
 
 namespace haptrial::experiments {
@@ -12,11 +13,13 @@ using protocols::PlannedTrial;
 
 SessionRecord::SessionRecord(const SessionRequest& request, const device::DeviceInfo& device,
                              const realtime::ServoLoop& loop,
-                             const std::optional<std::vector<record::BoneRecord>>& bones)
+                             const std::optional<std::vector<record::BoneRecord>>& bones,
+                             LiveDrilling* live)
     : request_(request),
       loop_(loop),
       real_(request.clock == realtime::ClockKind::kReal),
       writer_(open_writer(request, device, before_, bones)),
+      live_(live),
       blocks_(before_.blocks),
       passes_(static_cast<std::int32_t>(before_.passes.size() + before_.open_passes.size())) {
   if (bones) {
@@ -138,6 +141,9 @@ std::size_t SessionRecord::collect(const Follower& follow) {
 void SessionRecord::append(std::span<const record::Sample> samples) {
   append_drilling();  // at least what these ticks did: a tick's own record is pushed after it
   writer_.append(samples);
+  if (live_ != nullptr) {
+    live_->add(samples);
+  }
   if (outlet_) {
     outlet_->push(samples);
   }
@@ -148,7 +154,12 @@ void SessionRecord::append_drilling() {
     return;
   }
   const auto append_from = [this](auto& log) {
-    log.flush([this](auto rows) { writer_.add(rows); });
+    log.flush([this](auto rows) {
+      writer_.add(rows);
+      if (live_ != nullptr) {
+        live_->add(rows);
+      }
+    });
   };
   append_from(drilling_->tool);
   append_from(drilling_->logs.removals);

@@ -22,6 +22,8 @@
 
 namespace haptrial::experiments {
 
+class LiveDrilling;
+
 /// What a session writes and streams: the records of its servo thread, passes, events, stimuli,
 /// frames and timing. Session's thread. Every member throws RunError when the file cannot be
 /// written.
@@ -30,9 +32,10 @@ class SessionRecord {
   /// Opens the session file, or goes on with it, and the streams.
   /// @param loop  whose ticks are recorded and give events their time; outlives the record
   /// @param bones  of a session that drills
+  /// @param live   measures the drillings, or null; outlives the record
   SessionRecord(const SessionRequest& request, const device::DeviceInfo& device,
                 const realtime::ServoLoop& loop,
-                const std::optional<std::vector<record::BoneRecord>>& bones);
+                const std::optional<std::vector<record::BoneRecord>>& bones, LiveDrilling* live);
 
   /// Where the servo thread leaves its records.
   protocols::SessionTask::Log& log() { return log_; }
@@ -100,6 +103,7 @@ class SessionRecord {
     protocols::DrillingLogs logs;
   };
   std::unique_ptr<Drilling> drilling_;
+  LiveDrilling* live_;
   std::vector<std::int32_t> blocks_;  // whose stimuli are in the file
   record::PassRow row_;
   bool row_open_{false};  // and is not in the file yet

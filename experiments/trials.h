@@ -46,6 +46,8 @@ class Trials {
   /// @param trial  as planned; what its row is to say else may be changed
   virtual protocols::Pass& make_pass(protocols::PlannedTrial& trial, record::Phase phase,
                                      SessionRecord& record) = 0;
+  /// What the present attempt drills; else null.
+  virtual std::shared_ptr<const bone::BoneModel> bone() const { return nullptr; }
   /// After a pass, before its row of /trials. @param row  its number
   virtual void close_pass(SessionRecord& record, std::int32_t row) = 0;
   /// Pictures of the last pass.

@@ -54,6 +54,17 @@ void LiveMetrics::add(std::span<const record::SplitRow> rows) {
   }
 }
 
+void LiveMetrics::add(const Procedure& earlier) {
+  const auto append = [](auto& to, const auto& rows) {
+    to.insert(to.end(), rows.begin(), rows.end());
+  };
+  append(waiting_.views, earlier.views);
+  append(waiting_.crumbs, earlier.crumbs);
+  append(waiting_.ticks, earlier.ticks);
+  append(waiting_.removals, earlier.removals);
+  append(waiting_.cuts, earlier.cuts);
+}
+
 void LiveMetrics::advance(std::uint64_t through) {
   std::array<std::size_t, 5> done{};
   visit_in_order(waiting_, meter_, done, through);

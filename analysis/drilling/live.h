@@ -3,26 +3,14 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "analysis/drilling/drilling_meter.h"
+#include "analysis/drilling/live_figures.h"
 #include "analysis/drilling/study_bones.h"
 
 namespace haptrial::analysis::drilling {
-
-/// How a drilling stands.
-struct LiveFigures {
-  double time{0.0};                     // [s]
-  double drilling{0.0};                 // [s]
-  double removed{0.0};                  // bone [m^3]
-  std::uint64_t voxels{0};              // emptied
-  std::optional<double> visible_share;  // of them
-  std::uint64_t injured_voxels{0};      // of vital structures, emptied
-  std::vector<Injury> injuries;         // by vital structure
-  std::optional<double> mean_force;     // while drilling [N]
-};
 
 /// The metrics of a drilling while it runs, from the rows that go into the session file: after the
 /// last one they are what an analysis of the file gives, bit for bit
@@ -43,6 +31,9 @@ class LiveMetrics {
   void add(std::span<const record::RemovalRow> rows);
   void add(std::span<const record::CameraRow> rows);
   void add(std::span<const record::SplitRow> rows);
+
+  /// What was done to the bone before the first of these rows, in an earlier run of the session.
+  void add(const Procedure& earlier);
 
   /// All rows up to this tick have been given: measures them.
   void advance(std::uint64_t through);

@@ -158,5 +158,79 @@ TEST(ConsoleBrowserTest, ASessionIsClickedThrough) {
   }
 }
 
+DrilledProcedure drilled() {
+  DrilledProcedure procedure;
+  procedure.trial = 2;
+  analysis::drilling::LiveFigures& f = procedure.figures;
+  f.time = 125.4;
+  f.drilling = 48.9;
+  f.removed = 1234.5e-9;
+  f.voxels = 51973;
+  f.visible_share = 0.876;
+  f.mean_force = 2.351;
+  f.injuries = {{"facial nerve", 2, 12, 0, 30.0, 31.0},
+                {"internal carotid artery", 3, 0, 0, {}, {}},
+                {"sigmoid sinus and dura <b>", 4, 1000, 4, 50.0, 51.0}};
+  return procedure;
+}
+
+TEST(ConsoleBrowserTest, ADrillingHasAPanelOfItsFigures) {
+  if (!is_installed("chromedriver") || !is_installed("chromium") || !is_installed("python3")) {
+    GTEST_SKIP() << "needs Debian's chromium, chromium-driver and python3";
+  }
+  const test::TemporaryFolder folder;
+  SessionControl control;
+  std::atomic<bool> ended{false};
+  std::thread session([&] {
+    SessionStatus status;
+    status.subject = "S01";
+    status.state = "instructions";
+    status.screen = "A mastoidectomy";
+    status.condition = status.phase = "drilling";
+    status.device = "virtual";
+    status.simulated = true;
+    status.trial = status.trials = 2;
+    status.rate = 1000.0;
+    for (; !ended; std::this_thread::sleep_for(std::chrono::milliseconds(20))) {
+      for (const auto& message : control.take()) {
+        if (message.request == Request::kStart) {
+          status.state = "running";
+          status.stage = "run";
+          status.screen.clear();
+          status.rate_measured = 998.3;
+          status.drilling = drilled();
+        }
+      }
+      status.ticks += 20;
+      control.publish(status);
+    }
+  });
+  int status = 0;
+  std::string output;
+  {
+    const Console console(control);
+    const std::string command = "timeout 120 python3 '" HAPTRIAL_SOURCE_DIR
+                                "/tests/experiments/console_drilling.py' '" +
+                                console.url() + "' '" + folder.path().string() + "' 2>&1";
+    FILE* script = ::popen(command.c_str(), "r");
+    for (std::array<char, 512> line; std::fgets(line.data(), line.size(), script) != nullptr;) {
+      output += line.data();
+    }
+    status = ::pclose(script);
+  }
+  ended = true;
+  session.join();
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 77) {
+    GTEST_SKIP() << output;
+  }
+  EXPECT_EQ(status, 0) << output;
+  if (const char* kept = std::getenv("HAPTRIAL_KEEP_PICTURES")) {
+    for (const char* picture : {"console-drilling.png", "console-drilling-narrow.png"}) {
+      fs::copy_file(folder / picture, fs::path(kept) / picture,
+                    fs::copy_options::overwrite_existing);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace haptrial::experiments

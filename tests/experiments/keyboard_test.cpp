@@ -290,6 +290,43 @@ int keyboard_on_a_full_screen() {
   return 1;
 }
 
+int keyboard_beside_a_drilling() {
+  SessionControl control;
+  SessionStatus status;
+  status.state = "running";
+  status.simulated = true;
+  status.drilling.emplace();
+  status.drilling->trial = 3;
+  const Keyboard keyboard(control);
+  for (int i = 0; i < 2000; ++i) {
+    status.drilling->figures.voxels = 7;
+    control.publish(status);
+    for (const auto& message : control.take()) {
+      if (message.request == Request::kAbort) {
+        return 0;
+      }
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return 1;
+}
+
+TEST(KeyboardWithoutTerminalTest, ALineSaysHowADrillingStands) {
+  if (::access("/dev/pts/ptmx", F_OK) != 0) {
+    GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
+  }
+  Terminal terminal(keyboard_beside_a_drilling);
+  ASSERT_TRUE(terminal.shows("\rprocedure 3 (SIMULATED): 0:00, drilling 0:00"));
+  ASSERT_TRUE(terminal.shows("7 voxels"));
+  ASSERT_TRUE(terminal.shows("\rprocedure 3")) << "written over";
+  terminal.press("p");
+  ASSERT_TRUE(terminal.shows("\r\npause")) << "on a line of its own";
+  terminal.press("a");
+  ASSERT_TRUE(terminal.shows("end the session?"));
+  terminal.press("y");
+  EXPECT_EQ(terminal.wait_for_end(), 0);
+}
+
 TEST(KeyboardWithoutTerminalTest, AScreenThatHangsKeepsNoKeyWaiting) {
   if (::access("/dev/pts/ptmx", F_OK) != 0) {
     GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";

@@ -1,12 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
 #include <map>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 
 #include "core/base/error.h"
@@ -15,6 +17,7 @@
 #include "experiments/drilling_study.h"
 #include "experiments/rating_pictures.h"
 #include "experiments/study_run.h"
+#include "tests/experiments/command.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
 
@@ -101,6 +104,87 @@ TEST_F(RateTest, WhatRatersGetDoesNotDependOnNames) {
   }
   for (const auto& [name, bytes] : a) {
     EXPECT_EQ(bytes.find("S01"), std::string::npos) << name;
+  }
+}
+
+/// Of the first stream of a film, as ffprobe prints it.
+std::string probed(const fs::path& film, const std::string& entries) {
+  const test::CommandResult result =
+      test::run_command("ffprobe -v error -of default=nk=1:nw=1 -show_entries " + entries + " '" +
+                        film.string() + "'");
+  EXPECT_EQ(result.status, 0) << result.errors;
+  return result.output;
+}
+
+TEST_F(RateTest, FilmsAreOfOneKindAndTellNothingElse) {
+  for (const char* program : {"ffmpeg", "ffprobe"}) {
+    if (test::run_command(std::string("command -v ") + program).status != 0) {
+      GTEST_SKIP() << program << " is not there; needed: Debian's package ffmpeg";
+    }
+  }
+  RatePrepareOptions options;
+  options.speed = 2.0;
+  for (const auto& [sessions, out] : {std::pair{study(), "films"}, {renamed(), "others"}}) {
+    fs::remove(sessions / "ratings.key");
+    options.folder = sessions.string();
+    options.out = (*folder_ / out).string();
+    ASSERT_EQ(rate_prepare(options), 0);
+  }
+  EXPECT_TRUE(files_in(*folder_ / "films") == files_in(*folder_ / "others"))
+      << "names of participants enter";
+  std::vector<std::string> kinds;
+  for (const auto& [name, bytes] : files_in(*folder_ / "films")) {
+    if (!name.ends_with(".mp4")) {
+      continue;
+    }
+    const fs::path film = *folder_ / "films" / name;
+    kinds.push_back(
+        probed(film, "stream=codec_name,width,height,pix_fmt,r_frame_rate,time_base,profile"));
+    EXPECT_EQ(kinds.back(), kinds.front());
+    // 4 s twice as fast, and 4 s of the cavity; at 15 pictures a second.
+    EXPECT_NEAR(std::stod(probed(film, "stream=duration")), 2.0 + 4.0, 0.1) << name;
+    EXPECT_EQ(probed(film, "stream_tags=creation_time:format_tags=creation_time,title,comment"),
+              "");
+    for (const char* word : {"S01.h5", "anna", "study", "short"}) {
+      EXPECT_EQ(bytes.find(word), std::string::npos) << name << " holds " << word;
+    }
+  }
+  EXPECT_EQ(kinds.size(), 2u);
+  EXPECT_THAT(kinds.front(), HasSubstr("h264"));
+}
+
+TEST_F(RateTest, TheEndOfAFilmStandsStillAndItsBeginningMoves) {
+  const fs::path film = *folder_ / "films";
+  if (!fs::exists(film)) {
+    GTEST_SKIP() << "there are no films without ffmpeg";
+  }
+  for (const auto& entry : fs::directory_iterator(film)) {
+    if (entry.path().extension() != ".mp4") {
+      continue;
+    }
+    // Decoded again, 64 by 36 grey pixels a picture.
+    const test::CommandResult decoded =
+        test::run_command("ffmpeg -v error -i '" + entry.path().string() +
+                          "' -vf scale=64:36 -f rawvideo -pix_fmt gray - | od -An -v -tu1 -w2304");
+    ASSERT_EQ(decoded.status, 0) << decoded.errors;
+    std::vector<std::vector<int>> pictures;
+    std::istringstream lines(decoded.output);
+    for (std::string line; std::getline(lines, line);) {
+      std::istringstream bytes(line);
+      pictures.emplace_back(std::istream_iterator<int>(bytes), std::istream_iterator<int>());
+    }
+    ASSERT_EQ(pictures.size(), 30u + 60u);
+    const auto moved = [&](std::size_t from, std::size_t to) {
+      int pixels = 0;
+      for (std::size_t i = 0; i < pictures[from].size(); ++i) {
+        pixels += std::abs(pictures[from][i] - pictures[to][i]) > 12 ? 1 : 0;
+      }
+      return pixels;
+    };
+    EXPECT_GT(moved(0, 25), 5) << "the tool moves";
+    EXPECT_EQ(moved(35, 89), 0) << "the cavity stands";
+    EXPECT_GT(moved(28, 40), 5) << "and without the tool";
+    EXPECT_GT(*std::max_element(pictures[40].begin(), pictures[40].end()), 100) << "it is lit";
   }
 }
 

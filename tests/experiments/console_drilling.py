@@ -1,0 +1,54 @@
+"""Looks at the panel of a drilling in headless Chromium.
+
+    console_drilling.py URL FOLDER
+
+The session drills from its second status on. Leaves a picture in FOLDER. Exit status 0: all was as
+it should be; 77: there is no Chromium that starts.
+"""
+
+import pathlib
+import sys
+
+from browser import Driver, state, wait
+
+EXPECTED = {
+    "procedure": "Procedure 2",
+    "drilling_simulated": "SIMULATED",
+    "drilling_time": "2:05, 0:48",
+    "removed": "1234.5 mm\u00b3",
+    "voxels": "51\u202f973, 88 %",
+    "mean_force": "2.35 N",
+    "injured": "2 injured",
+    "injuries": "Facial nerve: 12 voxels\nSigmoid sinus and dura <b>: 1\u202f004 voxels",
+    "rate": "998 of 1\u202f000 Hz",
+}
+
+
+def look(page, url, folder):
+    page.call("POST", "/url", {"url": url})
+    state(page, "Instructions")
+    assert page.hidden("drilling"), "no panel where nothing is drilled"
+    page.key(" ")
+    state(page, "Running")
+    wait("the panel", lambda: not page.hidden("drilling"))
+    for name, wanted in EXPECTED.items():
+        shown = page.text(name).strip().removeprefix("\u26a0\ufe0e").strip()
+        assert shown == wanted, f"{name} is {shown!r}, not {wanted!r}"
+    page.picture(folder / "console-drilling.png", height=1060)
+    page.picture(folder / "console-drilling-narrow.png", 620, 1500)
+    wide = page.run("return document.documentElement.scrollWidth > window.innerWidth")
+    assert not wide, "the narrow page scrolls sideways"
+    complaints = page.complaints()
+    assert not complaints, complaints
+
+
+def main():
+    url, folder = sys.argv[1], pathlib.Path(sys.argv[2])
+    page = Driver(folder)
+    try:
+        look(page, url, folder)
+    finally:
+        page.close()
+
+
+main()
