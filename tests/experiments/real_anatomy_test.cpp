@@ -1,0 +1,148 @@
+// The shipped construct-validity study on labelled bones of people: only the line `bones` changes.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/record/session_reader.h"
+#include "experiments/bone_definition.h"
+#include "experiments/drilling_study.h"
+#include "experiments/simulated_rater.h"
+#include "experiments/study_run.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/sanitizer.h"
+#include "tests/support/shared_data.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RealAnatomyTest : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    if (test::kThreadSanitizer || test::kAddressSanitizer) {
+      GTEST_SKIP() << "bones of millions of voxels take too long here";
+    }
+    const auto file = test::shared_data(GetParam());
+    if (!file) {
+      GTEST_SKIP() << "HAPTRIAL_DATA names no folder with " << GetParam();
+    }
+    std::string text =
+        test::read_text(fs::path(HAPTRIAL_SOURCE_DIR) / "experiments/construct_validity.toml");
+    const std::string line = "bones = [\"procedural temporal\"]";
+    const auto at = text.find(line);
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, line.size(), "bones = [\"" + file->string() + "\"]");
+    test::write_text(folder_ / "study.toml", text);
+    d_ = load_bone_definition(folder_ / "study.toml");
+  }
+  const bone::BoneModel& model() const { return *d_.bones.front(); }
+  Eigen::Isometry3d pose() const { return pose_of(d_.placement, model().grid); }
+  std::vector<float> planned() const {
+    const subject::DrillingChart& chart = *d_.charts.front();
+    return cavity_depths(model(), pose(), chart, subject::cavity_floor(chart));
+  }
+  Eigen::Vector3d middle_of(const std::string& name) const {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    int count = 0;
+    each_voxel([&](const Eigen::Vector3d& p_B, std::size_t at) {
+      if (model().structures[model().labels[at]].name == name) {
+        sum += p_B;
+        ++count;
+      }
+    });
+    EXPECT_GT(count, 0) << name;
+    return sum / count;
+  }
+  template <class Visit>
+  void each_voxel(const Visit& visit) const {
+    const geometry::VoxelGrid& g = model().grid;
+    std::size_t at = 0;
+    for (int k = 0; k < g.size[2]; ++k) {
+      for (int j = 0; j < g.size[1]; ++j) {
+        for (int i = 0; i < g.size[0]; ++i, ++at) {
+          visit(g.centre(i, j, k), at);
+        }
+      }
+    }
+  }
+
+  test::TemporaryFolder folder_;
+  BoneDefinition d_;
+};
+
+TEST_P(RealAnatomyTest, TheCavityLiesWhereSurgeonsOpenTheMastoidInSightAndReach) {
+  const std::vector<float> depths = planned();
+  const bone::Microscope& view = d_.simulator.camera.start;
+  const Eigen::Vector3d forward = (view.target - view.eye).normalized();
+  Eigen::Vector3d opening = Eigen::Vector3d::Zero();
+  int top = 0;
+  int all = 0;
+  double widest = 0.0;
+  double farthest = 0.0;
+  each_voxel([&](const Eigen::Vector3d& p_B, std::size_t at) {
+    if (depths[at] < 0.0F) {
+      return;
+    }
+    ++all;
+    const Eigen::Vector3d p_W = pose() * p_B;
+    widest = std::max(widest, std::acos(forward.dot((p_W - view.eye).normalized())));
+    farthest = std::max(farthest, d_.drilling.scale * p_W.norm());
+    if (depths[at] < 1e-3F) {
+      opening += p_B;
+      ++top;
+    }
+  });
+  ASSERT_GT(top, 0);
+  opening /= top;
+  const double volume = all * std::pow(model().grid.spacing, 3);
+  EXPECT_GT(volume, 0.5e-6);  // a cortical mastoidectomy takes a few cubic centimetres
+  EXPECT_LT(volume, 10e-6);
+  EXPECT_LT(widest, 0.5 * view.field_of_view);
+  EXPECT_LT(farthest, d_.envelope.workspace_radius - 0.01);
+  // Right ears, in the patient's axes: x to the left, y to the back, z up.
+  const Eigen::Vector3d canal = middle_of("external auditory canal");
+  EXPECT_LT(opening.x(), middle_of("incus").x() - 5e-3) << "is not on the side of the skull";
+  EXPECT_GT(opening.y(), canal.y() + 5e-3) << "is not behind the canal";
+  EXPECT_LT(opening.y(), canal.y() + 30e-3) << "is not near the canal";
+}
+
+TEST_P(RealAnatomyTest, AVirtualSurgeonDrillsItAndItIsRatedAndReported) {
+  constexpr double kSeconds = 15.0;
+  d_.drilling.time_limit = kSeconds;
+  DryRun dry;
+  dry.participants = 1;
+  dry.max_trials = 1;
+  dry.folder = folder_ / "sessions";
+  const DryRunSummary summary = run_dry(d_, dry);
+  EXPECT_EQ(summary.aborted_passes, 0);
+  const std::vector<fs::path> files = session_files(dry.folder);
+  ASSERT_EQ(files.size(), 1U);
+  const record::SessionReader session(files.front());
+  const std::vector<record::RemovalRow> removals = session.rows<record::RemovalRow>();
+  const std::vector<float> depths = planned();
+  double in_plan = 0.0;
+  for (const record::RemovalRow& row : removals) {
+    EXPECT_FALSE(model().structures[row.label].vital) << model().structures[row.label].name;
+    const auto at = model().grid.index(row.voxel[0], row.voxel[1], row.voxel[2]);
+    in_plan += depths[at] >= 0.0F ? 1.0 : 0.0;
+  }
+  const auto count = static_cast<double>(removals.size());
+  EXPECT_GT(count * std::pow(model().grid.spacing, 3), 50e-9);
+  EXPECT_GT(in_plan, 0.9 * count) << "a skilled one drills what is asked for";
+  const auto ratings = simulate_ratings(dry.folder, 1);
+  ASSERT_EQ(ratings.size(), simulated_raters().size());
+  test::write_text(dry.folder / kRatingsFile, analysis::drilling::ratings_csv(ratings));
+  analyze_drillings(dry.folder, files, 1);
+  EXPECT_THAT(test::read_text(dry.folder / "report.md"), testing::HasSubstr("SIMULATED"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Bones, RealAnatomyTest,
+                         testing::Values("bone/ear3_171_labels.nrrd", "bone/RT138_256_labels.nrrd"),
+                         [](const auto& bone) { return bone.index == 0 ? "Ear3" : "Rt138"; });
+
+}  // namespace
+}  // namespace haptrial::experiments
