@@ -140,6 +140,24 @@ Eigen::AlignedBox3i surroundings(const SeenRemovals& r) {
   return {low, high};
 }
 
+/// Without what lies aside of the removed voxels: the dura would fill the picture.
+/// @param along  the axis of the grid along which everything stays
+void keep_near(std::vector<render::SceneTriangle>& triangles, const SeenRemovals& r, int along) {
+  const Eigen::AlignedBox3i voxels = surroundings(r);
+  const auto centre = [&](const Eigen::Vector3i& v) {
+    return r.bone->grid.centre(v.x(), v.y(), v.z());
+  };
+  Eigen::AlignedBox3d box(centre(voxels.min()), centre(voxels.max()));
+  constexpr double kFar = 1e3;  // [m]
+  box.min()[along] = -kFar;
+  box.max()[along] = kFar;
+  const double most = std::pow(r.bone->grid.spacing, 2);  // the sides of its outermost voxels too
+  std::erase_if(triangles, [&](const render::SceneTriangle& t) {
+    const Eigen::Vector3d middle = 0.5 * (t.corners[0] + t.corners[2]);  // of the voxel's side
+    return box.squaredExteriorDistance(middle) > most;
+  });
+}
+
 void put(render::Image& image, int x, int y, const render::Colour& colour) {
   const std::size_t at = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
                               static_cast<std::size_t>(x));
@@ -243,8 +261,10 @@ render::Image visibility_figure(const SeenRemovals& removals, const SurgeonsView
   scene.width = kWidth;
   scene.height = kHeight;
   render::Image figure = white(2 * kWidth, kHeight);
-  paste(figure, render::draw_scene(visibility_scene(removals, vital_labels(*removals.bone)), scene),
-        0);
+  std::vector<render::SceneTriangle> triangles =
+      visibility_scene(removals, vital_labels(*removals.bone));
+  keep_near(triangles, removals, layer_of(removals, view.towards_eye).up);
+  paste(figure, render::draw_scene(triangles, scene), 0);
   paste(figure, visibility_section(removals, view.towards_eye, kWidth, kHeight), kWidth);
   return figure;
 }

@@ -44,8 +44,8 @@ std::vector<render::SceneTriangle> visibility_scene(const SeenRemovals& removals
 render::Image visibility_section(const SeenRemovals& removals, const Eigen::Vector3d& towards_eye,
                                  int width, int height);
 
-/// The source's Figure 18: on the left the scene as the surgeon looks into it, on the right the
-/// section. 2 x 560 by 520 pixels.
+/// The source's Figure 18: on the left the scene as the surgeon looks into it, without what is more
+/// than 6 mm aside of the removed voxels; on the right the section. 2 x 560 by 520 pixels.
 render::Image visibility_figure(const SeenRemovals& removals, const SurgeonsView& view);
 
 /// Labels of the structures that are vital.

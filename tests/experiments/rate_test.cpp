@@ -173,7 +173,7 @@ TEST_F(RateTest, TheEndOfAFilmStandsStillAndItsBeginningMoves) {
       std::istringstream bytes(line);
       pictures.emplace_back(std::istream_iterator<int>(bytes), std::istream_iterator<int>());
     }
-    ASSERT_EQ(pictures.size(), 30u + 60u);
+    ASSERT_EQ(pictures.size(), 31u + 60u);  // 4000 ticks, every 133rd; 4 s
     const auto moved = [&](std::size_t from, std::size_t to) {
       int pixels = 0;
       for (std::size_t i = 0; i < pictures[from].size(); ++i) {
