@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <tuple>
+#include <vector>
 
 #include "analysis/drilling/procedure.h"
 #include "core/base/error.h"
@@ -22,7 +24,25 @@ std::string cut(const std::string& text, std::size_t bytes) {
   return text.substr(0, size);
 }
 
+/// Whether two lists agree in what `key` gives of each row.
+template <class Row, class Key>
+bool same(const std::vector<Row>& a, const std::vector<Row>& b, const Key& key) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [&](const Row& x, const Row& y) { return key(x) == key(y); });
+}
+
 }  // namespace
+
+bool same_bone(const record::BoneRecord& a, const record::BoneRecord& b) {
+  return a.bone.size == b.bone.size && a.bone.origin == b.bone.origin &&
+         a.bone.spacing == b.bone.spacing &&
+         same(a.structures, b.structures,
+              [](const auto& s) { return std::tuple(s.label, s.name, s.hardness, s.vital); }) &&
+         same(a.runs, b.runs,
+              [](const auto& r) { return std::tuple(r.first, r.count, r.label); }) &&
+         same(a.densities, b.densities,
+              [](const auto& d) { return std::tuple(d.voxel, d.density); });
+}
 
 record::BoneRecord record_of(const bone::BoneModel& model, std::int32_t number) {
   record::BoneRecord record;

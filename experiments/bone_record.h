@@ -10,6 +10,9 @@ namespace haptrial::experiments {
 /// A bone as a session file keeps it. @param number  of the bone, from 0
 record::BoneRecord record_of(const bone::BoneModel& model, std::int32_t number);
 
+/// Whether two records are of one bone, whatever it is called and wherever it came from.
+bool same_bone(const record::BoneRecord& a, const record::BoneRecord& b);
+
 /// The bone of a session file. @throws InputError where its rows do not fit together.
 bone::BoneModel model_of(const record::BoneRecord& record);
 

@@ -77,19 +77,23 @@ std::vector<bone::RecordedSplit> splits_of(std::span<const record::SplitRow> row
   return splits;
 }
 
+std::string words(const record::RemovalRow& row) {
+  return fmt::format("({}, {}, {}) of piece {} with label {}{}", row.voxel[0], row.voxel[1],
+                     row.voxel[2], row.piece, row.label, row.force > 0.0 ? "" : ", cut");
+}
+
+std::string words(const bone::EmptiedIn& gone) {
+  return fmt::format("({}, {}, {}) of piece {} with label {}{}", gone.voxel.x(), gone.voxel.y(),
+                     gone.voxel.z(), gone.piece, gone.label, gone.by_cut ? ", cut" : "");
+}
+
 /// Empty where the voxels of a tick are those of the record.
 std::string difference(std::uint64_t sequence, std::span<const record::RemovalRow> recorded,
                        std::span<const bone::EmptiedIn> emptied) {
-  const auto words = [](int piece, const auto& v, int label) {
-    return fmt::format("({}, {}, {}) of piece {} with label {}", v[0], v[1], v[2], piece, label);
-  };
   for (std::size_t i = 0; i < std::max(recorded.size(), emptied.size()); ++i) {
-    const std::string file = i < recorded.size()
-                                 ? words(recorded[i].piece, recorded[i].voxel, recorded[i].label)
-                                 : "no further voxel";
-    const std::string here =
-        i < emptied.size() ? words(emptied[i].piece, emptied[i].voxel, emptied[i].label) : "none";
-    if (file != here && !(i >= recorded.size() && i >= emptied.size())) {
+    const std::string file = i < recorded.size() ? words(recorded[i]) : "no further voxel";
+    const std::string here = i < emptied.size() ? words(emptied[i]) : "none";
+    if (file != here) {
       return fmt::format("on tick {} the record has {} emptied, and the simulation {}", sequence,
                          file, here);
     }
@@ -134,7 +138,7 @@ std::uint64_t BoneReplay::ticks(int trial) const {
 
 std::shared_ptr<BoneStage> BoneReplay::make_stage(int trial, bool drawn) const {
   auto stage = std::make_shared<BoneStage>();
-  stage->model = bones_[static_cast<std::size_t>(trial - 1) % bones_.size()];
+  stage->model = bones_[static_cast<std::size_t>(std::max(trial, 1) - 1) % bones_.size()];
   const geometry::VoxelGrid& grid = stage->model->grid;
   stage->start_view = definition_.simulator.camera.start;
   stage->simulator =
@@ -163,7 +167,7 @@ ReplayVerdict BoneReplay::run(int trial, const Watch& watch) const {
       bone = pass.repetition;
     }
     ++verdict.passes;
-    run_pass(static_cast<std::int32_t>(row), pass, *stage, verdict.ticks, watch, stage, verdict);
+    run_pass(static_cast<std::int32_t>(row), pass, stage, {watch, {}}, verdict);
     if (!verdict.difference.empty()) {
       break;
     }
@@ -178,13 +182,28 @@ ReplayVerdict BoneReplay::run(int trial, const Watch& watch) const {
   return verdict;
 }
 
-void BoneReplay::run_pass(std::int32_t row, const record::PassRow& pass, BoneStage& stage,
-                          std::uint64_t& tick, const Watch& watch,
-                          const std::shared_ptr<const BoneStage>& shared,
+std::shared_ptr<BoneStage> BoneReplay::restore(int trial, std::int32_t bone, ReplayVerdict& verdict,
+                                               const Pulse& pulse) const {
+  verdict = {};
+  verdict.trial = trial;
+  std::shared_ptr<BoneStage> stage;
+  for (std::size_t row = 0; row < passes_.size() && verdict.difference.empty(); ++row) {
+    if (passes_[row].trial == trial && passes_[row].repetition == bone) {
+      stage = stage ? stage : make_stage(trial, false);
+      ++verdict.passes;
+      run_pass(static_cast<std::int32_t>(row), passes_[row], stage, {{}, pulse}, verdict);
+    }
+  }
+  return stage;
+}
+
+void BoneReplay::run_pass(std::int32_t row, const record::PassRow& pass,
+                          const std::shared_ptr<BoneStage>& stage, const Onlookers& onlookers,
                           ReplayVerdict& verdict) const {
+  constexpr std::uint64_t kBetweenPulses = 500;  // ticks
   const protocols::DrillingInput input(definition_.drilling);
   const double dt = 1.0 / rate();
-  bone::Simulator& simulator = *stage.simulator;
+  bone::Simulator& simulator = *stage->simulator;
   Cursor<record::RemovalRow> removals(removals_, pass.first_sample);
   Cursor<record::SplitRow> splits(splits_, pass.first_sample);
   const std::uint64_t offset = reader_.samples(0, 1).front().sequence;
@@ -210,14 +229,22 @@ void BoneReplay::run_pass(std::int32_t row, const record::PassRow& pass, BoneSta
       if (!verdict.difference.empty()) {
         return;
       }
-      if (watch) {
-        stage.companions->after_tick(simulator, dt);
-        watch(tick, protocols::view_of(simulator, now), shared);
+      if (onlookers.watch) {
+        stage->companions->after_tick(simulator, dt);
+        onlookers.watch(verdict.ticks, protocols::view_of(simulator, now), stage);
       }
-      ++tick;
+      if (onlookers.pulse && verdict.ticks % kBetweenPulses == 0) {
+        onlookers.pulse(verdict.ticks);
+      }
+      ++verdict.ticks;
     }
   }
   verdict.checksum = simulator.checksum();
+  check_end(row, verdict);
+}
+
+/// Whether the bone at the end of a pass is that of the record.
+void BoneReplay::check_end(std::int32_t row, ReplayVerdict& verdict) const {
   const auto procedure =
       std::find_if(procedures_.begin(), procedures_.end(),
                    [row](const record::ProcedureRow& each) { return each.pass == row; });

@@ -40,6 +40,9 @@ class BoneReplay {
   /// Ticks of a trial that were simulated.
   std::uint64_t ticks(int trial) const;
 
+  /// Called about every 500 ticks; what it throws ends the replay. @param tick  of the trial, from
+  /// 0
+  using Pulse = std::function<void(std::uint64_t tick)>;
   /// What is seen on a tick. @param tick  of the trial, from 0
   using Watch = std::function<void(std::uint64_t tick, const stimulus::DrillingView& seen,
                                    const std::shared_ptr<const BoneStage>& stage)>;
@@ -47,11 +50,23 @@ class BoneReplay {
   /// @throws InputError for a trial that is not there.
   ReplayVerdict run(int trial, const Watch& watch = {}) const;
 
+  /// One bone of a trial as it stood after all that is recorded of it.
+  /// @param bone     `repetition` of its passes
+  /// @param verdict  receives how that went; at its first difference the replay ends
+  /// @returns its simulator, without companions and depths; null where no pass is on that bone
+  std::shared_ptr<BoneStage> restore(int trial, std::int32_t bone, ReplayVerdict& verdict,
+                                     const Pulse& pulse = {}) const;
+
  private:
-  struct Splits;
-  void run_pass(std::int32_t row, const record::PassRow& pass, BoneStage& stage,
-                std::uint64_t& tick, const Watch& watch,
-                const std::shared_ptr<const BoneStage>& shared, ReplayVerdict& verdict) const;
+  /// Who looks on.
+  struct Onlookers {
+    const Watch& watch;
+    const Pulse& pulse;
+  };
+  void run_pass(std::int32_t row, const record::PassRow& pass,
+                const std::shared_ptr<BoneStage>& stage, const Onlookers& onlookers,
+                ReplayVerdict& verdict) const;
+  void check_end(std::int32_t row, ReplayVerdict& verdict) const;
   std::shared_ptr<BoneStage> make_stage(int trial, bool drawn) const;
 
   record::SessionReader reader_;

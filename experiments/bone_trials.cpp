@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "experiments/bone_display.h"
 #include "experiments/bone_record.h"
+#include "experiments/bone_restore.h"
 #include "experiments/drilling_rig.h"
+#include "experiments/interrupt.h"
+#include "experiments/progress.h"
 #include "experiments/session_record.h"
 #include "experiments/stage_stills.h"
 
@@ -88,6 +92,37 @@ void BoneTrials::prepare(const protocols::PlannedTrial& trial, SessionRecord& re
   bone_ = static_cast<std::size_t>(std::max(trial.trial, 1) - 1) % d_.bones.size();
   bones_used_ = record.bones_used(trial);
   stage_.reset();
+  if (request_.resume && bones_used_ > 0) {
+    restore(trial, record);
+  }
+}
+
+/// The bone of an earlier run of the session, as it stood. The servo loop ticks meanwhile.
+void BoneTrials::restore(const protocols::PlannedTrial& trial, SessionRecord& record) {
+  const std::filesystem::path session = request_.file.string() + ".partial";
+  Progress progress("making the bone again", d_.rate * d_.drilling.time_limit);
+  const RestoredBone bone =
+      restore_bone(session, trial.trial, bones_used_, [&](std::uint64_t tick) {
+        record.collect([](std::span<const record::Sample>) {});
+        progress.update(static_cast<double>(tick), "", d_.rate);
+        if (interrupted() || (request_.cancel != nullptr && request_.cancel->load())) {
+          throw RunError(
+              fmt::format("interrupted; what was recorded is in {}, and --resume goes "
+                          "on with it",
+                          session.string()));
+        }
+      });
+  const bool lost = bone.stage && record.was_cut_short(trial);
+  const std::string told =
+      bone.told +
+      (lost ? "; what the last 0.8 s before it broke off did may not have reached the file" : "");
+  record.event(bone.stage ? "bone_restored" : "bone_lost", told);
+  fmt::print(stderr, "{}\n", told);
+  if (bone.stage) {
+    spent_ = bone.ticks;
+    old_dust_ = bone.stage->simulator->removed_so_far();
+    set_up(bone.stage, trial);
+  }
 }
 
 void BoneTrials::begin_attempt(const protocols::PlannedTrial& trial, bool anew) {
@@ -100,6 +135,15 @@ void BoneTrials::begin_attempt(const protocols::PlannedTrial& trial, bool anew) 
   const geometry::VoxelGrid& grid = stage->model->grid;
   stage->start_view = d_.simulator.camera.start;
   stage->simulator = std::make_unique<bone::Simulator>(*stage->model, simulator_for(d_, grid));
+  ++bones_used_;
+  spent_ = 0;
+  old_dust_ = 0.0;
+  set_up(std::move(stage), trial);
+}
+
+/// What goes beside a bone.
+void BoneTrials::set_up(std::shared_ptr<BoneStage> stage, const protocols::PlannedTrial& trial) {
+  const geometry::VoxelGrid& grid = stage->model->grid;
   const bone::CompanionParameters companions = companions_for(d_, grid);
   if (request_.clock == realtime::ClockKind::kReal) {
     stage->companions = std::make_unique<bone::ThreadedCompanions>(*stage->simulator, companions);
@@ -112,8 +156,6 @@ void BoneTrials::begin_attempt(const protocols::PlannedTrial& trial, bool anew) 
   }
   stage->stills = stills_[bone_];
   stage_ = std::move(stage);
-  ++bones_used_;
-  spent_ = 0;
   vibration_.reset();
   if (d_.vibration_gain > 0.0) {
     vibration_.emplace(d_.vibration_table, d_.vibration_gain, d_.rate, trial.stimulus_seed);
@@ -154,7 +196,7 @@ void BoneTrials::close_pass(SessionRecord& record, std::int32_t row) {
   procedure.cut = simulator.cut_so_far();
   procedure.dust = dust.lying + dust.held;
   procedure.suctioned = dust.suctioned;
-  procedure.fallen = dust.fallen;
+  procedure.fallen = dust.fallen + old_dust_;
   procedure.checksum = simulator.checksum();
   record.keep_procedure(procedure);
 }

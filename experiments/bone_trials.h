@@ -36,6 +36,8 @@ class BoneTrials final : public Trials {
 
  private:
   bool practises() const;
+  void restore(const protocols::PlannedTrial& trial, SessionRecord& record);
+  void set_up(std::shared_ptr<BoneStage> stage, const protocols::PlannedTrial& trial);
 
   const SessionRequest& request_;
   const BoneDefinition& d_;
@@ -45,7 +47,8 @@ class BoneTrials final : public Trials {
   std::size_t bone_{0};         // of the definition's
   std::int32_t bones_used_{0};  // in this trial, earlier runs of the session included
   std::vector<std::shared_ptr<const std::vector<render::Image>>> stills_;  // by bone
-  std::uint64_t spent_{0};      // ticks of the time limit
+  std::uint64_t spent_{0};  // ticks of the time limit
+  double old_dust_{0.0};    // made in earlier runs of the session, which nobody follows [voxels]
   std::optional<sound::DrillVibration> vibration_;
   std::unique_ptr<BoneSound> sound_;
   std::string notice_;

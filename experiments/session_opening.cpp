@@ -8,10 +8,30 @@
 
 #include "core/base/error.h"
 #include "core/device/mouse.h"
+#include "core/record/session_reader.h"
+#include "experiments/bone_record.h"
 #include "experiments/interrupt.h"
 #include "experiments/version.h"
 
 namespace haptrial::experiments {
+
+namespace {
+
+/// A bone's file beside the definition may have changed since: what follows would be of another.
+void check_bones(const std::filesystem::path& file, const std::vector<record::BoneRecord>& bones) {
+  const std::filesystem::path partial = file.string() + ".partial";
+  const std::vector<record::BoneRecord> before = record::SessionReader(partial).bones();
+  for (std::size_t i = 0; i < std::max(before.size(), bones.size()); ++i) {
+    if (i >= before.size() || i >= bones.size() || !same_bone(before[i], bones[i])) {
+      throw InputError(
+          fmt::format("{}: was recorded with another bone {} ('{}'); resume it with "
+                      "the same ones",
+                      partial.string(), i + 1, i < before.size() ? before[i].bone.name : "none"));
+    }
+  }
+}
+
+}  // namespace
 
 record::SessionInfo session_info(const SessionRequest& request, const device::DeviceInfo& device) {
   const Setup& d = setup_of(request);
@@ -47,6 +67,9 @@ record::SessionWriter open_writer(const SessionRequest& request, const device::D
         fmt::format("{}.partial: was recorded with another definition or seed ({}); "
                     "resume it with the same ones",
                     request.file.string(), before.info.seed));
+  }
+  if (bones) {
+    check_bones(request.file, *bones);
   }
   return writer;
 }

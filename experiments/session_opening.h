@@ -24,7 +24,8 @@ namespace haptrial::experiments {
 record::SessionInfo session_info(const SessionRequest& request, const device::DeviceInfo& device);
 
 /// A new session file, or the one that is gone on with; `before` says what that one holds.
-/// @throws InputError as SessionWriter does, and where the file is of another definition or seed.
+/// @throws InputError as SessionWriter does, and where the file is of another definition or seed or
+/// holds other bones.
 record::SessionWriter open_writer(const SessionRequest& request, const device::DeviceInfo& device,
                                   record::Resumed& before,
                                   const std::optional<std::vector<record::BoneRecord>>& bones);

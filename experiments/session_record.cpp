@@ -11,6 +11,26 @@ namespace haptrial::experiments {
 
 using protocols::PlannedTrial;
 
+namespace {
+
+/// Of passes that go on with the bone of the pass before: after a crash the row of /trials that
+/// would say so is missing.
+constexpr const char* kGoesOn = "goes_on";
+
+std::string pass_name(std::int32_t row) { return fmt::format("pass {} ", row); }
+
+/// Of all that is recorded: the last events may be younger than the last ticks that reached the
+/// file.
+std::int64_t last_time(const record::Resumed& before) {
+  std::int64_t last = before.last_time_ns;
+  for (const record::EventRow& event : before.events) {
+    last = std::max(last, event.time_ns);
+  }
+  return last;
+}
+
+}  // namespace
+
 SessionRecord::SessionRecord(const SessionRequest& request, const device::DeviceInfo& device,
                              const realtime::ServoLoop& loop,
                              const std::optional<std::vector<record::BoneRecord>>& bones,
@@ -22,14 +42,19 @@ SessionRecord::SessionRecord(const SessionRequest& request, const device::Device
       live_(live),
       blocks_(before_.blocks),
       passes_(static_cast<std::int32_t>(before_.passes.size() + before_.open_passes.size())) {
+  start_ns_ = last_time(before_) + 1;
   if (bones) {
     drilling_ = std::make_unique<Drilling>();
   }
   outlet_ = open_outlet(request, device.simulated, notice_);
 }
 
-protocols::Origin SessionRecord::origin() const {
-  return {before_.next_sequence, before_.last_time_ns + 1};
+protocols::Origin SessionRecord::origin() const { return {before_.next_sequence, start_ns_}; }
+
+bool SessionRecord::goes_on(std::int32_t row) const {
+  return std::any_of(before_.events.begin(), before_.events.end(), [&](const auto& event) {
+    return event.kind == kGoesOn && event.text.starts_with(pass_name(row));
+  });
 }
 
 void SessionRecord::open(const std::string& text, const protocols::PlannedTrial* drilled) {
@@ -38,12 +63,22 @@ void SessionRecord::open(const std::string& text, const protocols::PlannedTrial*
     row_.condition = "unknown";
     if (drilled != nullptr) {
       fill_row(*drilled, record::Phase::kDrilling, attempts(*drilled) + 1);
-      row_.repetition = bones_used(*drilled) + 1;
+      row_.repetition = bones_used(*drilled) + (goes_on(open.row) ? 0 : 1);
     }
     add_pass(record::PassStatus::kAborted, open.first_sample, open.last_sample);
     before_.passes.push_back(row_);
   }
   event(before_.rows > 0 ? "session_resumed" : "session_start", text);
+  if (!before_.passes.empty()) {
+    last_ = before_.passes.back();
+  }
+  if (before_.rows > 0) {
+    writer_.sync();  // all of it can be read again from here on
+  }
+}
+
+bool SessionRecord::was_cut_short(const PlannedTrial& trial) const {
+  return !before_.open_passes.empty() && before_.passes.back().trial == trial.trial;
 }
 
 std::uint64_t SessionRecord::dropped() const {
@@ -89,6 +124,15 @@ std::int32_t SessionRecord::begin_pass(const PlannedTrial& trial, record::Phase 
                                        int attempt) {
   fill_row(trial, phase, attempt);
   row_open_ = true;
+  const bool same_bone = phase == record::Phase::kDrilling && last_.trial == row_.trial &&
+                         last_.practice == row_.practice && last_.repetition == row_.repetition;
+  if (same_bone) {
+    event(kGoesOn, fmt::format("{}with bone {} of trial {}", pass_name(passes_), row_.repetition,
+                               row_.trial));
+    if (real_) {
+      writer_.flush();  // it is in the file before any tick of the pass is
+    }
+  }
   return passes_++;
 }
 
@@ -117,6 +161,7 @@ void SessionRecord::add_pass(record::PassStatus status, std::uint64_t first_samp
   row_.first_sample = first_sample;
   row_.last_sample = last_sample;
   writer_.add_pass(row_);
+  last_ = row_;
   row_open_ = false;
   if (real_) {
     writer_.sync();
@@ -180,7 +225,7 @@ void SessionRecord::event(const std::string& kind, const std::string& text) {
 
 std::int64_t SessionRecord::now_ns() const {
   const double seconds = static_cast<double>(loop_.ticks()) / loop_.rate_hz();
-  return before_.last_time_ns + 1 + static_cast<std::int64_t>(seconds * 1e9);
+  return start_ns_ + static_cast<std::int64_t>(seconds * 1e9);
 }
 
 void SessionRecord::close(const std::string& text) {

@@ -57,6 +57,8 @@ class SessionRecord {
   bool holds(const protocols::PlannedTrial& trial, record::Phase last) const;
   /// How many bones a trial of drilling has had in a resumed file.
   std::int32_t bones_used(const protocols::PlannedTrial& trial) const;
+  /// Whether an earlier run ended during the trial without time to write what it held.
+  bool was_cut_short(const protocols::PlannedTrial& trial) const;
   /// Of a trial in a resumed file; 0 where it has none.
   int attempts(const protocols::PlannedTrial& trial) const;
   /// Once a block, also over several runs.
@@ -83,6 +85,7 @@ class SessionRecord {
 
  private:
   std::int64_t now_ns() const;
+  bool goes_on(std::int32_t row) const;
   void append(std::span<const record::Sample> samples);
   void append_rest();
   void append_drilling();
@@ -106,7 +109,9 @@ class SessionRecord {
   LiveDrilling* live_;
   std::vector<std::int32_t> blocks_;  // whose stimuli are in the file
   record::PassRow row_;
-  bool row_open_{false};  // and is not in the file yet
+  record::PassRow last_;      // the pass before, of an earlier run too
+  std::int64_t start_ns_{0};  // of this run
+  bool row_open_{false};      // and is not in the file yet
   std::int32_t passes_{0};
   std::chrono::steady_clock::time_point flushed_{};
 };

@@ -84,7 +84,9 @@ void SteppedCompanions::settle() {
 }
 
 ThreadedCompanions::ThreadedCompanions(Simulator& simulator, const CompanionParameters& parameters)
-    : simulator_(simulator), search_period_(parameters.search_period) {
+    : simulator_(simulator),
+      removed_before_(simulator.removed_so_far()),
+      search_period_(parameters.search_period) {
   if (parameters.dusty) {
     const auto bones = [&simulator](std::vector<DustBone>& list) {
       list_bones(std::as_const(simulator).world(), list);
@@ -131,7 +133,8 @@ void ThreadedCompanions::settle() {
   constexpr double kRounding = 1e-3;  // of the dust's amounts [voxels]
   constexpr int kMostRounds = 400;
   for (int i = 0; dust_ && i < kMostRounds; ++i) {
-    if (dust_->balance().deposited + kRounding >= simulator_.removed_so_far()) {
+    const double expected = simulator_.removed_so_far() - removed_before_;
+    if (dust_->balance().deposited + kRounding >= expected) {
       return;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));

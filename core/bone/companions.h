@@ -82,6 +82,7 @@ class ThreadedCompanions final : public Companions {
   void search();
 
   Simulator& simulator_;
+  double removed_before_;  // dust that others have had [voxels]
   double search_period_;
   std::optional<DustWorker> dust_;
   std::atomic<double> counted_{0.0};  // of dust that is only counted [voxels]

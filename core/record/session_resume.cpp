@@ -137,6 +137,7 @@ Resumed examine(const fs::path& partial, KeptRows& rows) {
       found.open_passes.push_back(pass);
     }
   }
+  found.events = reader.events();
   const std::vector<StimulusRow> stimuli = reader.stimuli();
   for (const StimulusRow& row : stimuli) {
     if (found.blocks.empty() || found.blocks.back() != row.block) found.blocks.push_back(row.block);

@@ -18,6 +18,7 @@ struct OpenPass {
 /// pass (status aborted), and goes on with next_sequence and the time after last_time_ns.
 struct Resumed {
   SessionInfo info;
+  std::vector<EventRow> events;
   std::vector<PassRow> passes;        // with all of their samples
   std::vector<OpenPass> open_passes;  // in order; their rows follow those of `passes`
   std::vector<std::int32_t> blocks;   // whose stimuli are there

@@ -4,8 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <thread>
 
 #include "core/record/integrity.h"
 #include "core/record/session_reader.h"
@@ -51,7 +54,7 @@ TEST(LiveBoneTest, NothingIsLostAndAReplayGivesTheSameBone) {
   expect_the_same_bones(file, 1);
 }
 
-TEST(LiveBoneTest, AfterAKillTheSessionGoesOnWithANewBone) {
+TEST(LiveBoneTest, AfterAKillTheSessionGoesOnWithTheBoneAsItStood) {
   const test::TemporaryFolder folder;
   test::write_small_drilling(folder.path(), 8.0);
   const fs::path partial = folder / "out" / "S01.h5.partial";
@@ -85,8 +88,37 @@ TEST(LiveBoneTest, AfterAKillTheSessionGoesOnWithANewBone) {
   ASSERT_EQ(passes.size(), 2u);
   EXPECT_EQ(passes[0].status, record::PassStatus::kAborted);
   EXPECT_EQ(passes[1].status, record::PassStatus::kCompleted);
-  EXPECT_EQ(passes[1].repetition, passes[0].repetition + 1) << "another bone";
+  EXPECT_EQ(passes[1].repetition, passes[0].repetition) << "the same bone";
+  EXPECT_THAT(ended.errors, HasSubstr("trial 1 goes on with the bone as it stood after"));
   expect_the_same_bones(file, 2);
+  const auto procedures = reader.rows<record::ProcedureRow>();
+  ASSERT_EQ(procedures.size(), 1u);
+  const record::ProcedureRow& p = procedures.front();
+  EXPECT_EQ(p.emptied, reader.count<record::RemovalRow>()) << "those before the kill too";
+  EXPECT_NEAR(p.left + p.cut + p.dust + p.suctioned + p.fallen, p.before, 0.05);
+  const auto tool = reader.rows<record::ToolRow>();
+  EXPECT_EQ(std::count_if(tool.begin(), tool.end(), [](const auto& row) { return row.active; }),
+            8000);
+}
+
+/// A dry run of hours, in a pass, in which dust is followed: nothing of it stays.
+TEST(LiveBoneTest, AnInterruptedDryRunIsGoneAtOnce) {
+  const test::TemporaryFolder folder;
+  test::write_small_drilling(folder.path(), 3600.0);
+  const fs::path out = folder / "out";
+  test::LiveCommand dry("dry-run '" + (folder / "study.toml").string() +
+                        "' --subjects 2 --jobs 2 --out '" + out.string() + "'");
+  ASSERT_TRUE(test::eventually([&] { return fs::exists(out / "S01.h5.partial"); }, 60.0))
+      << dry.errors();
+  std::this_thread::sleep_for(std::chrono::seconds(2));
+  const auto asked = std::chrono::steady_clock::now();
+  dry.signal(SIGINT);
+  const test::CommandResult ended = dry.wait(60.0);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - asked;
+  EXPECT_NE(ended.status, 0);
+  EXPECT_THAT(ended.errors, HasSubstr("interrupted"));
+  EXPECT_FALSE(fs::exists(out));
+  EXPECT_LT(took.count(), 2.0) << "0.5 s on a machine that does nothing else";
 }
 
 }  // namespace

@@ -107,10 +107,11 @@ TEST(CutsTest, OfASessionThatRunsAreKnownByTheirForce) {
   const std::vector<record::RemovalRow> rows{{0, 0, {4, 0, 3}, 1, 0.0, 0.1},
                                              {0, 0, {4, 0, 2}, 1, 0.0, 0.1},
                                              {1, 0, {4, 0, 0}, 2, 0x1p-13, 0.1}};
-  live.add(rows);
+  live.add(std::span<const record::RemovalRow>(rows));
   live.add(samples, tool);
-  const std::vector<record::CameraRow> camera{{0, 0, {4e-3, 0.0, 10.0}, {}, {}, 0.5}};
-  live.add(camera);
+  std::vector<record::CameraRow> camera(1);
+  camera[0].eye = {4e-3, 0.0, 10.0};
+  live.add(std::span<const record::CameraRow>(camera));
   live.advance(1);
   EXPECT_EQ(live.figures().voxels, 1u);
   EXPECT_EQ(live.figures().visible_share, 0.0) << "one voxel is left above it";
