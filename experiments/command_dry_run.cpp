@@ -37,6 +37,9 @@ int dry_run(const DryRunOptions& options) {
   dry.jobs = checked_jobs(options.jobs);
   dry.frames_per_pass = checked_number("--frames", options.frames, 0, 1000);
   dry.max_trials = checked_number("--trials", options.trials, 0, setup.design.trials);
+  if (interrupted()) {  // while the definition was read, which makes its bones
+    throw RunError("interrupted");
+  }
   dry.folder = options.out.empty() ? fresh_folder(setup.name) : fs::path(options.out);
   if (experiment.bone && experiment.bone->practice > 0.0) {
     fmt::print("the {:.0f} minutes of practice are for people: left out\n",

@@ -61,8 +61,9 @@ void print_frames(const std::vector<record::FrameRow>& frames) {
 
 /// What a person did or has to know; the rest is in /events.
 bool is_told(const std::string& kind) {
-  constexpr std::array<std::string_view, 6> kTold{"aborted", "interrupted",    "notice",
-                                                  "note",    "emergency_stop", "recovered"};
+  constexpr std::array<std::string_view, 8> kTold{"aborted",       "interrupted", "notice",
+                                                  "note",          "recovered",   "emergency_stop",
+                                                  "bone_restored", "bone_lost"};
   return std::find(kTold.begin(), kTold.end(), kind) != kTold.end();
 }
 

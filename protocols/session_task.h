@@ -44,7 +44,7 @@ class SessionTask final : public realtime::ServoTask {
   /// When tick() asks ServoLoop::run to return. On a simulated clock the session's thread runs the
   /// loop itself and has to be let out, to empty the log, before the log is full.
   enum class Leave : std::uint8_t { kNever, kAfterPassOrSlice };
-  static constexpr std::uint64_t kSlice = 16384;  // [ticks]
+  static constexpr std::uint64_t kSlice = 512;  // [ticks]
 
   /// Everything given outlives the task.
   /// @param tool_log  of a session that drills, else null

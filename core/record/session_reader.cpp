@@ -21,6 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kRecover = " (haptrial recover saves what a damaged one holds)";
+
 void check_regular(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -77,7 +79,7 @@ struct SessionReader::Impl {
   [[noreturn]] void damaged(const Table& table, std::uint64_t row, const std::string& why) const {
     throw InputError(path.string() + ": rows of /" + table.schema->name + " from " +
                      std::to_string(row) + " on cannot be read (" + why +
-                     "); allowed: an undamaged session file");
+                     "); allowed: an undamaged session file" + kRecover);
   }
 
   /// Calls use(planes, row in planes, row in the result, rows) for each chunk that holds rows
@@ -140,7 +142,7 @@ SessionReader::SessionReader(const fs::path& path) {
   } catch (const h5::Error& error) {
     throw InputError(path.string() + ": cannot be read as a session file (" + error.what() +
                      "); allowed: an HDF5 file written by haptrial, schema version 1 to " +
-                     std::to_string(kSchemaVersion));
+                     std::to_string(kSchemaVersion) + kRecover);
   }
 }
 
@@ -278,7 +280,7 @@ std::optional<TimingSummary> SessionReader::timing_summary() const {
                          static_cast<std::uint64_t>(h5::get_i64(dataset, "dropped"))};
   } catch (const h5::Error& error) {
     throw InputError(path().string() + ": the counts of /timing cannot be read (" + error.what() +
-                     "); allowed: an undamaged session file");
+                     "); allowed: an undamaged session file" + kRecover);
   }
 }
 
