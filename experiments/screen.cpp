@@ -223,7 +223,8 @@ class Easel {
     if (photodiode_ == Photodiode::kOff) {
       return;
     }
-    const bool runs = (scene_.trial || drawing_) && presentation.instruction != stimulus::Instruction::kRest;
+    const bool runs =
+        (scene_.trial || drawing_) && presentation.instruction != stimulus::Instruction::kRest;
     const bool white = photodiode_ == Photodiode::kRun ? runs : frames_ % 2 == 0;
     const double side = std::round(kPatchSide * std::min(style_.width, style_.height));
     const double shade = white ? 1.0 : 0.0;
@@ -300,13 +301,16 @@ void Screen::Impl::run() {
       window.swap();
       count(pace.shown(drawn - start));
       window.poll();
+      std::vector<int> now_held = window.held_keys();
       for (const render::KeyPress& press : window.take_keys()) {
         if (callbacks.key) {
           callbacks.key(press);
         }
+        if (std::find(now_held.begin(), now_held.end(), press.key) == now_held.end()) {
+          now_held.push_back(press.key);  // let go again already: held for a picture all the same
+        }
       }
-      if (const std::vector<int> now_held = window.held_keys();
-          callbacks.held && now_held != held) {
+      if (callbacks.held && now_held != held) {
         held = now_held;
         callbacks.held(held);
       }

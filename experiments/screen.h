@@ -52,7 +52,9 @@ struct ScreenCallbacks {
   std::function<void(const render::KeyPress&)> key;
   std::function<void(const ScreenPointer&)> pointer;  // when it or the view under it changed
   std::function<void()> closed;                       // the window's close button, once
-  std::function<void(const std::vector<int>&)> held;  // keys that are held, when they change
+  /// Keys that are held, when they change; one that was tapped between two pictures is among them
+  /// once.
+  std::function<void(const std::vector<int>&)> held;
 };
 
 /// What a key in the participant's window asks for, as on the console's keyboard: Escape is the

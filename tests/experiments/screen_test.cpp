@@ -317,5 +317,30 @@ TEST_F(ScreenTest, FailuresToOpenAreSentences) {
   }
 }
 
+TEST_F(ScreenTest, AKeyThatIsTappedBetweenTwoPicturesIsHeldForOne) {
+  std::mutex mutex;
+  std::vector<std::vector<int>> held;
+  ScreenCallbacks callbacks;
+  callbacks.held = [&](const std::vector<int>& keys) {
+    const std::lock_guard lock(mutex);
+    held.push_back(keys);
+  };
+  options_.full_screen = false;
+  Screen screen(options_, style(), callbacks);
+  constexpr std::size_t kTaps = 5;
+  for (std::size_t tap = 1; tap <= kTaps; ++tap) {
+    display_->press_key("participant", 't');
+    EXPECT_TRUE(eventually([&] {
+      const std::lock_guard lock(mutex);
+      return held.size() == 2 * tap;
+    })) << "down and up";
+  }
+  const std::lock_guard lock(mutex);
+  ASSERT_EQ(held.size(), 2 * kTaps);
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    EXPECT_EQ(held[i], i % 2 == 0 ? std::vector<int>{'T'} : std::vector<int>{});
+  }
+}
+
 }  // namespace
 }  // namespace haptrial::experiments

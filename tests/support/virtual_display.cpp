@@ -89,6 +89,19 @@ Time next_time() {
   return time += 10;
 }
 
+void send_key(const std::string& title, unsigned long keysym, int type, long mask) {
+  const X x;
+  XEvent event{};
+  event.xkey.type = type;
+  event.xkey.display = x.display();
+  event.xkey.window = x.find(title);
+  event.xkey.root = x.root();
+  event.xkey.same_screen = True;
+  event.xkey.keycode = x.get<decltype(&XKeysymToKeycode)>("XKeysymToKeycode")(x.display(), keysym);
+  event.xkey.time = next_time();
+  x.send(event.xkey.window, mask, event);
+}
+
 void send_button(const std::string& title, unsigned button, int type, long mask) {
   const X x;
   XEvent event{};
@@ -181,18 +194,16 @@ std::vector<std::uint8_t> VirtualDisplay::screenshot() const {
 }
 
 void VirtualDisplay::press_key(const std::string& title, unsigned long keysym) const {
-  const X x;
-  XEvent event{};
-  event.xkey.display = x.display();
-  event.xkey.window = x.find(title);
-  event.xkey.root = x.root();
-  event.xkey.same_screen = True;
-  event.xkey.keycode = x.get<decltype(&XKeysymToKeycode)>("XKeysymToKeycode")(x.display(), keysym);
-  for (const int type : {KeyPress, KeyRelease}) {
-    event.xkey.type = type;
-    event.xkey.time = next_time();
-    x.send(event.xkey.window, type == KeyPress ? KeyPressMask : KeyReleaseMask, event);
-  }
+  hold_key(title, keysym);
+  release_key(title, keysym);
+}
+
+void VirtualDisplay::hold_key(const std::string& title, unsigned long keysym) const {
+  send_key(title, keysym, KeyPress, KeyPressMask);
+}
+
+void VirtualDisplay::release_key(const std::string& title, unsigned long keysym) const {
+  send_key(title, keysym, KeyRelease, KeyReleaseMask);
 }
 
 void VirtualDisplay::press_button(const std::string& title, unsigned button) const {

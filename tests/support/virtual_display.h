@@ -28,7 +28,9 @@ class VirtualDisplay {
   int height() const { return height_; }
 
   /// To the window of that title. @param keysym  as X names it: 'p', ' ', 0xff1b for Escape
-  void press_key(const std::string& title, unsigned long keysym) const;
+  void press_key(const std::string& title, unsigned long keysym) const;  // and let it go
+  void hold_key(const std::string& title, unsigned long keysym) const;
+  void release_key(const std::string& title, unsigned long keysym) const;
   /// @param button  1 left, 2 middle, 3 right, 4 and 5 the wheel up and down
   void press_button(const std::string& title, unsigned button) const;  // and hold it
   void release_button(const std::string& title, unsigned button) const;
