@@ -55,6 +55,8 @@ TEST(ScreenStillsTest, EachPressBringsTheNextAndAfterTheLastNone) {
     seen.stills_asked = asked;
     return renderer.draw(seen);
   };
+  drawn(0);  // from the second on, a view at rest draws what is visible alone
+  drawn(0);
   const render::Image none = drawn(0);
   const render::Image first = drawn(1);
   const render::Image second = drawn(2);
