@@ -28,9 +28,11 @@ def look(page, url, folder):
     page.call("POST", "/url", {"url": url})
     state(page, "Instructions")
     assert page.hidden("drilling"), "no panel where nothing is drilled"
+    assert not page.hidden("target_row"), "a force to follow"
     page.key(" ")
     state(page, "Running")
     wait("the panel", lambda: not page.hidden("drilling"))
+    assert page.hidden("target_row"), "no force to follow in a drilling"
     for name, wanted in EXPECTED.items():
         shown = page.text(name).strip().removeprefix("\u26a0\ufe0e").strip()
         assert shown == wanted, f"{name} is {shown!r}, not {wanted!r}"
