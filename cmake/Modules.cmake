@@ -95,6 +95,7 @@ function(haptrial_tests)
     endif()
   endforeach()
   target_link_libraries(test_experiments PRIVATE nlohmann_json::nlohmann_json)
+  target_link_libraries(test_drilling PRIVATE haptrial_bone_data)
   find_package(assimp REQUIRED)  # a peer of the mesh readers
   target_link_libraries(test_geometry PRIVATE assimp::assimp)
   add_executable(test_architecture ${CMAKE_SOURCE_DIR}/tests/architecture/includes_test.cpp)
