@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 #include "experiments/bone_definition.h"
 #include "experiments/commands.h"
 #include "experiments/drilling_study.h"
@@ -29,16 +30,11 @@ using test::message_of;
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-std::string contents(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 /// Names and bytes of all files.
 std::map<std::string, std::string> files_in(const fs::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    files[entry.path().filename().string()] = contents(entry.path());
+    files[entry.path().filename().string()] = file_text(entry.path());
   }
   return files;
 }
@@ -49,7 +45,7 @@ class RateTest : public testing::Test {
   static void SetUpTestSuite() {
     folder_ = std::make_unique<test::TemporaryFolder>();
     const fs::path source = fs::path(HAPTRIAL_SOURCE_DIR) / "experiments/bone_drilling.toml";
-    std::string text = contents(source);
+    std::string text = file_text(source);
     const auto replace = [&](const std::string& from, const std::string& to) {
       const auto at = text.find(from);
       ASSERT_NE(at, std::string::npos) << from;
@@ -77,13 +73,14 @@ class RateTest : public testing::Test {
     }
     return other;
   }
-  static void prepare(const fs::path& sessions, const fs::path& out) {
+  static void prepare(const fs::path& sessions, const fs::path& out, bool sheets = true) {
     fs::remove(sessions / "ratings.key");
     RatePrepareOptions options;
     options.folder = sessions.string();
     options.out = out.string();
-    options.sheets = true;
+    options.sheets = sheets;
     options.frames = 4;
+    options.speed = 2.0;
     EXPECT_EQ(rate_prepare(options), 0);
   }
 
@@ -107,6 +104,11 @@ TEST_F(RateTest, WhatRatersGetDoesNotDependOnNames) {
   }
 }
 
+constexpr const char* kNoFfmpeg = "ffmpeg or ffprobe is not there; needed: Debian's package ffmpeg";
+bool has_ffmpeg() {
+  return test::run_command("command -v ffmpeg && command -v ffprobe").status == 0;
+}
+
 /// Of the first stream of a film, as ffprobe prints it.
 std::string probed(const fs::path& film, const std::string& entries) {
   const test::CommandResult result =
@@ -117,19 +119,11 @@ std::string probed(const fs::path& film, const std::string& entries) {
 }
 
 TEST_F(RateTest, FilmsAreOfOneKindAndTellNothingElse) {
-  for (const char* program : {"ffmpeg", "ffprobe"}) {
-    if (test::run_command(std::string("command -v ") + program).status != 0) {
-      GTEST_SKIP() << program << " is not there; needed: Debian's package ffmpeg";
-    }
+  if (!has_ffmpeg()) {
+    GTEST_SKIP() << kNoFfmpeg;
   }
-  RatePrepareOptions options;
-  options.speed = 2.0;
-  for (const auto& [sessions, out] : {std::pair{study(), "films"}, {renamed(), "others"}}) {
-    fs::remove(sessions / "ratings.key");
-    options.folder = sessions.string();
-    options.out = (*folder_ / out).string();
-    ASSERT_EQ(rate_prepare(options), 0);
-  }
+  prepare(study(), *folder_ / "films", false);
+  prepare(renamed(), *folder_ / "others", false);
   EXPECT_TRUE(files_in(*folder_ / "films") == files_in(*folder_ / "others"))
       << "names of participants enter";
   std::vector<std::string> kinds;
@@ -154,11 +148,11 @@ TEST_F(RateTest, FilmsAreOfOneKindAndTellNothingElse) {
 }
 
 TEST_F(RateTest, TheEndOfAFilmStandsStillAndItsBeginningMoves) {
-  const fs::path film = *folder_ / "films";
-  if (!fs::exists(film)) {
-    GTEST_SKIP() << "there are no films without ffmpeg";
+  if (!has_ffmpeg()) {
+    GTEST_SKIP() << kNoFfmpeg;
   }
-  for (const auto& entry : fs::directory_iterator(film)) {
+  prepare(study(), *folder_ / "moving", false);
+  for (const auto& entry : fs::directory_iterator(*folder_ / "moving")) {
     if (entry.path().extension() != ".mp4") {
       continue;
     }
@@ -190,7 +184,7 @@ TEST_F(RateTest, TheEndOfAFilmStandsStillAndItsBeginningMoves) {
 
 TEST_F(RateTest, ScoresComeBackUnderTheirSession) {
   prepare(study(), *folder_ / "c");
-  std::string sheet = contents(*folder_ / "c" / "rating-sheet.csv");
+  std::string sheet = file_text(*folder_ / "c" / "rating-sheet.csv");
   int score = 2;
   for (std::size_t at; (at = sheet.find(",,\n")) != std::string::npos;) {
     sheet.replace(at, 3, "," + std::to_string(score++) + ",\n");
@@ -227,7 +221,7 @@ TEST_F(RateTest, AStudyOfDrillingsIsAnalysed) {
   AnalyzeOptions options;
   options.folder = study().string();
   EXPECT_EQ(analyze(options), 0);
-  const std::string report = contents(study() / "report.md");
+  const std::string report = file_text(study() / "report.md");
   EXPECT_THAT(report, HasSubstr("proves nothing about people"));
   EXPECT_THAT(report, HasSubstr("Nothing is rated yet"));
   EXPECT_TRUE(fs::exists(study() / "metrics.csv"));
