@@ -16,6 +16,7 @@
 #include "analysis/parallel.h"
 #include "analysis/staging.h"
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 #include "core/record/session_reader.h"
 #include "experiments/arguments.h"
 #include "experiments/bone_replay.h"
@@ -141,11 +142,6 @@ void make_pictures(const Procedures& procedures, const drilling::RatingKey& key,
   progress.update(done, fmt::format("{} procedures", done.load()), 1.0);
 }
 
-std::string contents(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 void must_be_new(const fs::path& path, const char* remedy) {
   std::error_code error;
   if (fs::exists(path, error) && !(fs::is_directory(path, error) && fs::is_empty(path, error))) {
@@ -203,7 +199,7 @@ int rate_import(const RateImportOptions& options) {
   if (!options.overwrite) {
     must_be_new(study / kRatingsFile, "a study without ratings, or --overwrite");
   }
-  const drilling::RatingKey key = drilling::opened(contents(key_file), key_file.string());
+  const drilling::RatingKey key = drilling::opened(file_text(key_file), key_file.string());
   std::vector<drilling::Rating> ratings;
   std::set<std::string> raters;
   for (const std::string& sheet : options.sheets) {

@@ -7,11 +7,12 @@
 
 namespace haptrial::test {
 
-/// What an InputError that the call throws says.
-inline std::string message_of(const std::function<void()>& call) {
+/// What the error that the call throws says.
+template <class Error = InputError>
+std::string message_of(const std::function<void()>& call) {
   try {
     call();
-  } catch (const InputError& error) {
+  } catch (const Error& error) {
     return error.what();
   }
   return "nothing was thrown";

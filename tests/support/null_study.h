@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "analysis/drilling/validity_table.h"
+#include "core/base/file_text.h"
 #include "core/base/random.h"
 #include "experiments/bone_definition.h"
 #include "experiments/simulated_rater.h"
@@ -49,8 +50,7 @@ inline std::string replaced_line(std::string text, const std::string& begin,
 
 /// The shipped study as NullStudy says.
 inline std::string null_definition(const std::filesystem::path& shipped, const NullStudy& study) {
-  std::ifstream file(shipped);
-  std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::string text = file_text(shipped);
   text = replaced_line(text, "participants =", fmt::format("participants = {}", study.people));
   text = replaced_line(text, "surgeons =", fmt::format("surgeons = {}", study.people - 2));
   text = replaced_line(text, "residents =", "residents = 1");

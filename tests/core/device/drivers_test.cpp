@@ -13,6 +13,7 @@
 #include "core/device/force_dimension.h"
 #include "core/device/open_haptics.h"
 #include "tests/core/device/device_rigs.h"
+#include "tests/support/message_of.h"
 
 namespace haptrial::device {
 namespace {
@@ -20,20 +21,10 @@ namespace {
 using Eigen::Vector3d;
 using test::Failure;
 using test::kRigRate;
+using test::message_of;
 using test::StandIn;
 using testing::AllOf;
 using testing::HasSubstr;
-
-template <class Error, class Action>
-std::string words_of(Action action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return "";
-}
 
 std::vector<std::string> calls(const test::StandInSetup& setup) {
   std::istringstream text(setup.calls);
@@ -54,7 +45,7 @@ std::vector<std::string> order(const test::StandInSetup& setup,
 
 TEST(DynamicLibraryTest, AnAbsentLibraryIsNamedWithWhereToGetIt) {
   const std::string words =
-      words_of<InputError>([] { DynamicLibrary("libnowhere.so.9", "the SDK of nobody"); });
+      message_of<InputError>([] { DynamicLibrary("libnowhere.so.9", "the SDK of nobody"); });
   EXPECT_THAT(words, AllOf(HasSubstr("libnowhere.so.9"), HasSubstr("the SDK of nobody")));
   EXPECT_EQ(words.find('\n'), std::string::npos);
 }
@@ -62,7 +53,7 @@ TEST(DynamicLibraryTest, AnAbsentLibraryIsNamedWithWhereToGetIt) {
 TEST(DynamicLibraryTest, AnAbsentFunctionIsNamedOrNull) {
   const StandIn stand_in("stand_in_dhd");
   void (*function)() = nullptr;
-  EXPECT_THAT(words_of<InputError>([&] { stand_in.library.get(function, "dhdNoSuch"); }),
+  EXPECT_THAT(message_of<InputError>([&] { stand_in.library.get(function, "dhdNoSuch"); }),
               AllOf(HasSubstr("dhdNoSuch"), HasSubstr("libstand_in_dhd.so")));
   stand_in.library.find(function, "dhdNoSuch");
   EXPECT_EQ(function, nullptr);
@@ -70,7 +61,7 @@ TEST(DynamicLibraryTest, AnAbsentFunctionIsNamedOrNull) {
 
 TEST(DynamicLibraryTest, ALibraryOfSomethingElseIsRefused) {
   const std::string path = std::string(HAPTRIAL_BINARY_DIR) + "/libstand_in_hd.so";
-  EXPECT_THAT(words_of<InputError>([&] { ForceDimensionDevice({}, kRigRate, path); }),
+  EXPECT_THAT(message_of<InputError>([&] { ForceDimensionDevice({}, kRigRate, path); }),
               HasSubstr("dhdGetDeviceCount"));
 }
 
@@ -196,7 +187,7 @@ TEST(ForceDimensionTest, SlowCallsAndSaturationAreCounted) {
 TEST(ForceDimensionTest, NoDeviceIsAFailureAndASentence) {
   const StandIn stand_in("stand_in_dhd");
   stand_in.fail(static_cast<int>(Failure::kNoDevice), 0);
-  EXPECT_THAT(words_of<RunError>([&] { ForceDimensionDevice({}, kRigRate, stand_in.path); }),
+  EXPECT_THAT(message_of<RunError>([&] { ForceDimensionDevice({}, kRigRate, stand_in.path); }),
               AllOf(HasSubstr("not found"), HasSubstr("cable")));
 }
 
@@ -282,7 +273,7 @@ TEST_F(OpenHapticsTest, AnErrorOfOneFrameIsNotLost) {
 
 TEST_F(OpenHapticsTest, NoDeviceIsAFailureAndASentence) {
   stand_in_.fail(static_cast<int>(Failure::kNoDevice), 0);
-  EXPECT_THAT(words_of<RunError>([&] { OpenHapticsDevice({}, kRigRate, stand_in_.path); }),
+  EXPECT_THAT(message_of<RunError>([&] { OpenHapticsDevice({}, kRigRate, stand_in_.path); }),
               HasSubstr("cable"));
 }
 

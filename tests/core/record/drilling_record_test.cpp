@@ -10,6 +10,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 #include "core/record/integrity.h"
 #include "core/record/recover.h"
 #include "core/record/schema.h"
@@ -246,8 +247,7 @@ TEST(DrillingRecordTest, AFileThatLostItsHeaderGivesItsDrillingBack) {
     writer.set_timing({}, {9000, 0, 0});
     writer.close();
   }
-  std::ifstream in(folder / "a.h5", std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  std::string bytes = file_text(folder / "a.h5");
   std::fill_n(bytes.begin(), 2048, '\0');
   std::ofstream(folder / "torn.h5", std::ios::binary) << bytes;
   EXPECT_THROW(SessionReader(folder / "torn.h5"), InputError);

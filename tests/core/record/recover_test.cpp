@@ -1,4 +1,5 @@
 #include "core/record/recover.h"
+#include "core/base/file_text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,11 +25,6 @@ using test::TemporaryFolder;
 using testing::HasSubstr;
 
 constexpr std::uint64_t kRows = 60000;
-
-std::string contents(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 /// A live session of a minute, and how long its file was when so many rows were in it.
 struct Original {
@@ -57,7 +53,7 @@ struct Original {
     }
     writer.set_timing(std::vector<TimingRow>{{0, 1, 2, 3, 4}}, {kRows, 1, 0});
     writer.close();
-    bytes = contents(folder / "a.h5");
+    bytes = file_text(folder / "a.h5");
   }
 
   /// Rows that were in the file when it was no longer than this.
@@ -188,7 +184,7 @@ TEST(RecoverTest, RandomDamageNeverCrashesAndNeverMakesRowsUp) {
 
 TEST(RecoverTest, AFileOfVersionOneGivesItsRowsAndItsAttributes) {
   const TemporaryFolder folder;
-  const std::string old = contents(HAPTRIAL_SOURCE_DIR "/tests/core/record/data/version1.hdf5");
+  const std::string old = file_text(HAPTRIAL_SOURCE_DIR "/tests/core/record/data/version1.hdf5");
   const auto recover = [&](const std::string& bytes) {
     fs::remove(folder / "out.h5");
     std::ofstream(folder / "old.h5", std::ios::binary) << bytes;

@@ -17,12 +17,14 @@
 #include "core/record/session_resume.h"
 #include "core/record/session_writer.h"
 #include "tests/core/record/session_fixture.h"
+#include "tests/support/message_of.h"
 
 namespace haptrial::record {
 namespace {
 
 namespace fs = std::filesystem;
 using test::hand_motion;
+using test::message_of;
 using test::on_file;
 using test::same;
 using test::TemporaryFolder;
@@ -32,17 +34,6 @@ SessionInfo live_info() {
   SessionInfo info = test::example_info();
   info.clock = "real";
   return info;
-}
-
-template <typename Error, typename Action>
-std::string message_of(Action action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return "";
 }
 
 double seconds() {
@@ -96,7 +87,7 @@ TEST(SessionLiveTest, AFlushEverySecondForAnHourCostsLittle) {
               1e-6 * static_cast<double>(plain), 1e-6 * static_cast<double>(live), 100.0 * penalty,
               1e3 * cost);
   EXPECT_LT(penalty, 0.4);  // short chunks, and each begins on a page
-  EXPECT_LT(cost, 0.02);  // of a second
+  EXPECT_LT(cost, 0.02);    // of a second
   EXPECT_EQ(SessionReader(folder / "b.h5").sample_count(), kRows);
 }
 

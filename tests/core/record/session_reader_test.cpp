@@ -1,4 +1,5 @@
 #include "core/record/session_reader.h"
+#include "core/base/file_text.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -48,11 +49,6 @@ std::string refusal(const fs::path& file) {
     EXPECT_THAT(message, HasSubstr(file.string()));
   }
   return message;
-}
-
-std::string contents(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 void write_file(const fs::path& file, const std::string& bytes) {
@@ -139,7 +135,7 @@ std::string unfinished_session(const TemporaryFolder& folder) {
   writer.append(test::hand_motion(20000, 1));
   writer.add_event({1, "session_start", "text"});
   writer.flush();
-  return contents(folder / "open.h5.partial");
+  return file_text(folder / "open.h5.partial");
 }
 
 TEST(SessionReaderTest, ReadsWhatAKilledWriterLeaves) {
@@ -162,7 +158,7 @@ TEST(SessionReaderTest, RefusesAnUnfinishedFileCutShortAnywhere) {
 
 TEST(SessionReaderTest, RefusesAFileCutShortAnywhere) {
   const TemporaryFolder folder;
-  const std::string whole = contents(example_session(folder));
+  const std::string whole = file_text(example_session(folder));
   for (const double part : {0.0001, 0.001, 0.01, 0.1, 0.5, 0.9, 0.999}) {
     const auto size = static_cast<std::size_t>(part * static_cast<double>(whole.size()));
     write_file(folder / "cut.h5", whole.substr(0, size));
@@ -175,7 +171,7 @@ TEST(SessionReaderTest, RefusesAFileCutShortAnywhere) {
 TEST(SessionReaderTest, ChangedSamplesAreNotReadAsOthers) {
   const TemporaryFolder folder;
   const fs::path good = example_session(folder);
-  const std::string whole = contents(good);
+  const std::string whole = file_text(good);
   const SessionReader reader(good);
   const std::vector<Sample> samples = reader.samples(0, reader.sample_count());
   RandomStream random(1, "damage");

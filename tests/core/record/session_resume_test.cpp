@@ -1,4 +1,5 @@
 #include "core/record/session_resume.h"
+#include "core/base/file_text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -218,9 +219,7 @@ TEST(SessionResumeTest, RefusesADamagedFileAndLeavesItAsItWas) {
     SessionWriter writer(folder / "a.h5", live_info());
     writer.append(ticks(0, 20000));
   }
-  std::string bytes;
-  std::ifstream in(folder / "a.h5.partial", std::ios::binary);
-  bytes.assign(std::istreambuf_iterator<char>(in), {});
+  std::string bytes = file_text(folder / "a.h5.partial");
   const auto put = [&](const char* name, const std::string& what) {
     std::ofstream(folder / (std::string(name) + ".partial"), std::ios::binary) << what;
     Resumed found;

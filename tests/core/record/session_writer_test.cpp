@@ -17,6 +17,7 @@
 #include "core/base/error.h"
 #include "core/record/session_reader.h"
 #include "tests/core/record/session_fixture.h"
+#include "tests/support/message_of.h"
 
 namespace haptrial::record {
 namespace {
@@ -24,21 +25,11 @@ namespace {
 namespace fs = std::filesystem;
 using test::example_info;
 using test::hand_motion;
+using test::message_of;
 using test::on_file;
 using test::same;
 using test::TemporaryFolder;
 using testing::HasSubstr;
-
-template <typename Error, typename Action>
-std::string message_of(Action action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return "";
-}
 
 void expect_prefix(const fs::path& file, const std::vector<Sample>& samples) {
   const SessionReader reader(file);
