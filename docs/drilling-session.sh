@@ -1,0 +1,31 @@
+#!/bin/bash
+# Makes the pictures of a session in guide-bone.md: a virtual hand drills a real temporal bone for
+# 75 s on the real clock, in a window, and the session is replayed. Needs xvfb-run, ImageMagick and
+# ffmpeg.
+# drilling-session.sh HAPTRIAL EAR FOLDER: the command, ear3_171_labels.nrrd, where to.
+set -eu
+haptrial=$(realpath "$1")
+ear=$(realpath "$2")
+out=$(realpath "$3")
+shipped=$(realpath "$(dirname "$0")/../experiments/bone_drilling.toml")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+cp "$ear" "$work/ear.nrrd"
+sed -e 's/^bones = .*/bones = ["ear.nrrd"]/' -e 's/^time_limit = .*/time_limit = 75.0/' \
+  -e 's/^full_screen = .*/full_screen = false/' -e 's/^start = .*/start = [-0.006, 0.018, 0.012]/' \
+  -e 's/^depth = 0.008/depth = 0.012/' -e 's/^field_of_view = .*/field_of_view = 0.24/' \
+  "$shipped" >"$work/ear.toml"
+cd "$work"
+xvfb-run -a -s "-screen 0 1280x720x24" \
+  "$haptrial" run ear.toml --subject S01 --window --out sessions
+"$haptrial" info sessions/S01.h5
+"$haptrial" replay sessions/S01.h5
+"$haptrial" replay sessions/S01.h5 --video session.mp4 --fps 15
+for moment in 4 18 32 46 60 74; do
+  ffmpeg -v error -ss "$moment" -i session.mp4 -frames:v 1 "still-$moment.png"
+done
+montage still-4.png still-18.png still-32.png still-46.png still-60.png still-74.png \
+  -tile 3x2 -geometry 480x270+1+1 "$out/drilling-session.png"
+ffmpeg -v error -y -i session.mp4 -vf "setpts=PTS/8,fps=8,scale=480:-1:flags=lanczos,split[a][b];\
+[a]palettegen=max_colors=64[p];[b][p]paletteuse=dither=bayer" "$out/drilling-session.gif"
