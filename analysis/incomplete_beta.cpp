@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
-// a log(ratio) - u, where ratio = 1 + u / a, without the digits that cancel when u is small beside a.
+// a log(ratio) - u, where ratio = 1 + u / a, without the digits that cancel when u is small beside
+// a.
 double deviance(double a, double u, double ratio) {
   constexpr double kSmall = 0.5;
   return std::abs(u) < kSmall * a ? a * gsl_sf_log_1plusx_mx(u / a) : a * std::log(ratio) - u;

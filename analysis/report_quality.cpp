@@ -38,8 +38,8 @@ void add_pace(Document& document, const StudyResult& study) {
     rows.push_back(pace_row(session.tracking));
   }
   rows.push_back(pace_row(study.tracking));
-  document.table(
-      {"Subject", "Passes", "Run", "SD of run", "RMS distance", "RMS distance in plane"}, rows);
+  document.table({"Subject", "Passes", "Run", "SD of run", "RMS distance", "RMS distance in plane"},
+                 rows);
 }
 
 void add_tracking(Document& document, const StudyResult& study) {

@@ -93,8 +93,7 @@ void add_design(Document& document, const StudyResult& study) {
   for (const auto& score : study.scores) {
     blocks.insert({score.subject, score.block});
   }
-  document.paragraph(
-      fmt::format("Training conditions: {}.", joined(study.statistics.conditions)));
+  document.paragraph(fmt::format("Training conditions: {}.", joined(study.statistics.conditions)));
   if (study.curves_from.empty()) {
     document.paragraph(fmt::format(
         "The scored trials lie in {} that repeat one trajectory and force pattern under one "

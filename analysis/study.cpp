@@ -116,12 +116,10 @@ std::vector<std::pair<std::string, std::size_t>> notable(const std::vector<Trial
   }
   std::vector<std::size_t> order(scores.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return scores[a].score < scores[b].score;
-  });
-  return {{"best", order.front()},
-          {"median", order[(order.size() - 1) / 2]},
-          {"worst", order.back()}};
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return scores[a].score < scores[b].score; });
+  return {
+      {"best", order.front()}, {"median", order[(order.size() - 1) / 2]}, {"worst", order.back()}};
 }
 
 RecallPicture recall_picture(const std::string& which, const TrialScore& score,

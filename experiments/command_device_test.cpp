@@ -13,8 +13,8 @@
 #include "core/device/mouse.h"
 #include "core/device/open_haptics.h"
 #include "experiments/commands.h"
-#include "experiments/experiment.h"
 #include "experiments/device_check.h"
+#include "experiments/experiment.h"
 #include "experiments/interrupt.h"
 
 namespace haptrial::experiments {

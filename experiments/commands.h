@@ -178,19 +178,19 @@ int bone_make(const BoneOptions& options);
 /// A picture of a bone off screen.
 struct BonePictureOptions {
   std::string in;
-  std::string out;                          // new .png
-  std::vector<std::string> without;         // names of structures that are left out
-  std::vector<std::string> drill;           // strokes: see experiments/bone_carving.h
-  std::vector<std::string> cut;             // planes
-  bool spare{false};                        // nothing but bone is drilled or cut
+  std::string out;                           // new .png
+  std::vector<std::string> without;          // names of structures that are left out
+  std::vector<std::string> drill;            // strokes: see experiments/bone_carving.h
+  std::vector<std::string> cut;              // planes
+  bool spare{false};                         // nothing but bone is drilled or cut
   std::vector<double> from{-1.0, 0.2, 0.1};  // towards the eye: the side of a right ear
-  std::vector<double> at;                   // what is in the middle [mm]; default: the bone's
+  std::vector<double> at;                    // what is in the middle [mm]; default: the bone's
   double zoom{1.0};
-  std::string burr;                         // from its centre to a place on its handle
-  std::optional<double> stereo;             // between the eyes [mm]
-  int width{1280};                          // [px]
+  std::string burr;              // from its centre to a place on its handle
+  std::optional<double> stereo;  // between the eyes [mm]
+  int width{1280};               // [px]
   int height{720};
-  std::optional<double> max_memory;         // [GB]
+  std::optional<double> max_memory;  // [GB]
   bool overwrite{false};
 };
 int bone_picture(const BonePictureOptions& options);
@@ -204,12 +204,12 @@ int bone_stages(const BoneStagesOptions& options);
 
 /// The subcommands of haptrial rate.
 struct RatePrepareOptions {
-  std::string folder;   // of drilling sessions
-  std::string out;      // new folder for the raters; default: beside the study's
-  bool sheets{false};   // pictures in place of films
-  bool halves{false};   // half points are allowed
-  int frames{12};       // on a sheet
-  double speed{8.0};    // of films, times as fast as it went
+  std::string folder;  // of drilling sessions
+  std::string out;     // new folder for the raters; default: beside the study's
+  bool sheets{false};  // pictures in place of films
+  bool halves{false};  // half points are allowed
+  int frames{12};      // on a sheet
+  double speed{8.0};   // of films, times as fast as it went
   std::optional<int> jobs;
 };
 int rate_prepare(const RatePrepareOptions& options);

@@ -150,8 +150,8 @@ DryRunSummary run_dry(const SessionRequest& first, double ticks_each, const DryR
 
 template <class Definition>
 double ticks_each(const Definition& definition, const DryRun& dry_run) {
-  return estimated_ticks(definition, dry_run.max_trials > 0 ? dry_run.max_trials
-                                                            : definition.design.trials);
+  return estimated_ticks(definition,
+                         dry_run.max_trials > 0 ? dry_run.max_trials : definition.design.trials);
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ namespace haptrial::device {
 namespace {
 
 constexpr unsigned kButtons = 0x2000;
-constexpr unsigned kPosition = 0x2050;  // [mm]
-constexpr unsigned kVelocity = 0x2051;  // [mm/s]
+constexpr unsigned kPosition = 0x2050;   // [mm]
+constexpr unsigned kVelocity = 0x2051;   // [mm/s]
 constexpr unsigned kTransform = 0x2052;  // 4 x 4, by columns
 constexpr unsigned kForce = 0x2700;
 constexpr unsigned kNominalMaxForce = 0x2603;

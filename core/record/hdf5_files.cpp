@@ -11,8 +11,8 @@ Id access_list() {
   check(H5Pset_libver_bounds(list.get(), H5F_LIBVER_V110, H5F_LIBVER_V110), "library version");
   // A file system without locks must not keep a session from being recorded.
   check(H5Pset_file_locking(list.get(), true, true), "file locking");
-  // A kill can cut a write between two pages of the system: what HDF5 reads with a checksum, such as
-  // the header of a table, therefore lies within one.
+  // A kill can cut a write between two pages of the system: what HDF5 reads with a checksum, such
+  // as the header of a table, therefore lies within one.
   constexpr hsize_t kPage = 4096;
   constexpr hsize_t kSmallest = 512;  // smaller pieces share a page of their own
   check(H5Pset_alignment(list.get(), kSmallest, kPage), "alignment");

@@ -63,8 +63,8 @@ class Window {
   /// What was drawn and not yet swapped. @throws RunError when OpenGL reports an error.
   Image read();
 
-  bool close_asked() const;           // by the window's button
-  std::vector<KeyPress> take_keys();  // since the last call
+  bool close_asked() const;            // by the window's button
+  std::vector<KeyPress> take_keys();   // since the last call
   std::vector<int> held_keys() const;  // as KeyPress has them, in the order of their presses
   Pointer pointer() const;
 

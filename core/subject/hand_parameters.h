@@ -11,12 +11,12 @@ namespace haptrial::subject {
 /// A hand on a handle, along each axis of W. Sources of the values:
 /// docs/algorithms/virtual-subject.md.
 struct HandParameters {
-  double handle_mass{0.22};       // moving mass of the device at the tool >= 0.001 [kg]
-  double coulomb_friction{0.1};   // of the device >= 0 [N]
-  double hand_mass{0.8};          // effective, at the grip >= 0.001 [kg]
-  double damping{15.0};           // b >= 0 [N·s/m]
-  double stiffness{250.0};        // k about the posture >= 0 [N/m]
-  double posture_time{0.2};       // a yielding posture follows the hand with this constant >= 0.001 [s]
+  double handle_mass{0.22};      // moving mass of the device at the tool >= 0.001 [kg]
+  double coulomb_friction{0.1};  // of the device >= 0 [N]
+  double hand_mass{0.8};         // effective, at the grip >= 0.001 [kg]
+  double damping{15.0};          // b >= 0 [N·s/m]
+  double stiffness{250.0};       // k about the posture >= 0 [N/m]
+  double posture_time{0.2};  // a yielding posture follows the hand with this constant >= 0.001 [s]
   double excitation_time{0.030};  // muscle, first lag >= 0.001 [s]
   double activation_time{0.040};  // muscle, second lag >= 0.001 [s]
 };

@@ -30,9 +30,9 @@ TEST(Bonferroni, MultipliesByTheNumberOfTests) {
 
 TEST(BenjaminiHochberg, StepsUp) {
   // Ordered 0.01, 0.02, 0.03, 0.5 times 4, 2, 4/3, 1; the second and third are both 0.04.
-  EXPECT_THAT(benjamini_hochberg_adjusted(Values{0.5, 0.01, 0.03, 0.02}),
-              ElementsAre(0.5, DoubleNear(0.04, 1e-15), DoubleNear(0.04, 1e-15),
-                          DoubleNear(0.04, 1e-15)));
+  EXPECT_THAT(
+      benjamini_hochberg_adjusted(Values{0.5, 0.01, 0.03, 0.02}),
+      ElementsAre(0.5, DoubleNear(0.04, 1e-15), DoubleNear(0.04, 1e-15), DoubleNear(0.04, 1e-15)));
 }
 
 TEST(PAdjustments, StandInTheirOrder) {

@@ -303,9 +303,9 @@ BoneModel saved_bone(const Import& job, const VolumeHead& head, const UprightVol
   UprightVolume second = volume;
   second.components = {volume.components[1]};
   const Plan plan = plan_for(volume, job.options.spacing);
-  const BigArray<float> values =
-      plan.as_it_is ? second.components[0]
-                    : resample_grey(second, plan.grid, plan.own_axes, job.report);
+  const BigArray<float> values = plan.as_it_is
+                                     ? second.components[0]
+                                     : resample_grey(second, plan.grid, plan.own_axes, job.report);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (model.labels[i] == 0) continue;
     model.density[i] = static_cast<float>(std::clamp(std::round(values[i]), 1.0F, 255.0F) / 255.0F);

@@ -50,9 +50,8 @@ Taps taps_at(double at, double width, std::int32_t size) {
 }
 
 /// Replaces one axis of an array by as many values as there are taps.
-BigArray<float> filter_axis(const BigArray<float>& from,
-                                      std::array<std::int32_t, 3> size, int axis,
-                                      const std::vector<Taps>& taps) {
+BigArray<float> filter_axis(const BigArray<float>& from, std::array<std::int32_t, 3> size, int axis,
+                            const std::vector<Taps>& taps) {
   const auto a = static_cast<std::size_t>(axis);
   std::size_t stride = 1;
   for (std::size_t i = 0; i < a; ++i) stride *= static_cast<std::size_t>(size[i]);
@@ -79,9 +78,8 @@ BigArray<float> filter_axis(const BigArray<float>& from,
 bool within(double at, std::int32_t size) { return at >= -0.5 && at <= size - 0.5; }
 
 /// Grid and volume have the same axes: one axis after the other.
-BigArray<float> resample_straight(const UprightVolume& volume,
-                                            const geometry::VoxelGrid& grid, const VoxelMap& map,
-                                            const geometry::WorkReport& report) {
+BigArray<float> resample_straight(const UprightVolume& volume, const geometry::VoxelGrid& grid,
+                                  const VoxelMap& map, const geometry::WorkReport& report) {
   std::array<std::int32_t, 3> size = volume.size;
   BigArray<float> values = volume.components[0];
   for (int axis = 2; axis >= 0; --axis) {  // the coarsest axis of a scan first
@@ -114,9 +112,9 @@ BigArray<float> smoothed(const UprightVolume& volume, double spacing) {
 }
 
 /// Any axes: 6 x 6 x 6 values for each voxel.
-BigArray<float> resample_turned(const UprightVolume& volume,
-                                          const geometry::VoxelGrid& grid, const VoxelMap& map,
-                                          float beyond, const geometry::WorkReport& report) {
+BigArray<float> resample_turned(const UprightVolume& volume, const geometry::VoxelGrid& grid,
+                                const VoxelMap& map, float beyond,
+                                const geometry::WorkReport& report) {
   const BigArray<float> source = smoothed(volume, grid.spacing);
   const auto nx = static_cast<std::size_t>(volume.size[0]);
   const auto ny = static_cast<std::size_t>(volume.size[1]);
@@ -277,13 +275,12 @@ VoxelMap map_to(const UprightVolume& volume, const geometry::VoxelGrid& grid, bo
   return {turn, -(turn * volume.origin)};
 }
 
-BigArray<float> resample_grey(const UprightVolume& volume,
-                                        const geometry::VoxelGrid& grid, bool own_axes,
-                                        const geometry::WorkReport& report) {
+BigArray<float> resample_grey(const UprightVolume& volume, const geometry::VoxelGrid& grid,
+                              bool own_axes, const geometry::WorkReport& report) {
   const auto [low, high] = std::ranges::minmax(volume.components[0]);
   const VoxelMap map = map_to(volume, grid, own_axes);
   BigArray<float> values = own_axes ? resample_straight(volume, grid, map, report)
-                                              : resample_turned(volume, grid, map, low, report);
+                                    : resample_turned(volume, grid, map, low, report);
   for (float& value : values) value = std::clamp(value, low, high);
   return values;
 }

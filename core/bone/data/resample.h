@@ -42,9 +42,8 @@ VoxelMap map_to(const UprightVolume& volume, const geometry::VoxelGrid& grid, bo
 /// coarser of both, so that what the new voxels cannot hold is filtered out before. Values stay in
 /// the range of the volume's; beyond its outer voxels they are its lowest.
 /// The same bytes on any number of threads.
-BigArray<float> resample_grey(const UprightVolume& volume,
-                                        const geometry::VoxelGrid& grid, bool own_axes,
-                                        const geometry::WorkReport& report);
+BigArray<float> resample_grey(const UprightVolume& volume, const geometry::VoxelGrid& grid,
+                              bool own_axes, const geometry::WorkReport& report);
 
 /// Labels at the centres of a grid: the nearest where it is finer, else, for voxels of which at
 /// least half holds something, the most frequent label there (the higher of two). 0 beyond.

@@ -37,8 +37,8 @@ Eigen::Matrix3d edges(double x, double y, double z) {
 
 /// The largest difference from value(place), away from the borders.
 template <class Value>
-double worst_error(const geometry::VoxelGrid& grid, const BigArray<float>& values,
-                   int border, Value&& value) {
+double worst_error(const geometry::VoxelGrid& grid, const BigArray<float>& values, int border,
+                   Value&& value) {
   double worst = 0.0;
   for (int k = border; k < grid.size[2] - border; ++k) {
     for (int j = border; j < grid.size[1] - border; ++j) {
