@@ -188,7 +188,7 @@ void Dust::follow(std::span<const DustBone> bones) {
 void Dust::step(double dt) {
   require(dt >= 0.0 && std::isfinite(dt), "Dust: time must not run backwards");
   Impl& impl = *impl_;
-  if (impl.held > 0) {
+  if (impl.held >= kWorthPlacing) {
     impl.place_held();
   }
   const double each = step_time();

@@ -22,7 +22,8 @@ inline constexpr std::array<std::array<int, 3>, 9> kDustSteps{{{0, 0, -1},
                                                                {-1, 1, 0}}};
 inline constexpr int kDown = 0;
 
-inline constexpr double kDustUnit = 1.0 / (1 << 20);  // of an amount [solid voxels]
+inline constexpr double kDustUnit = 1.0 / (1 << 20);    // of an amount [solid voxels]
+inline constexpr std::int64_t kWorthPlacing = 1 << 10;  // less that is held waits [units]
 
 struct Dust::Impl {
   using Ref = DustGrid::Ref;
@@ -86,7 +87,11 @@ struct Dust::Impl {
   void suck();
   void set_free(Ref ref);
   void place_held();
-  std::int64_t place_in_shell(double inner, double outer, std::int64_t rest);
+  struct Placed {
+    std::int64_t amount;
+    std::int64_t cells;  // that had room
+  };
+  Placed place_in_shell(double inner, double outer, std::int64_t rest);
 
   DustParameters parameters;
   Eigen::Matrix3d R_WD;  // from the lattice's frame D, whose z axis is up

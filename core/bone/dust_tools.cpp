@@ -174,20 +174,24 @@ void Dust::deposit(const DustDeposit& deposit) {
   impl.deposited += static_cast<std::int64_t>(whole);
 }
 
-/// Puts what is held around the burr, as near as there is room.
+/// Puts what is held around the burr, as near as there is room. A rest that is too little for an
+/// even part to each cell waits: looking for room farther out is what costs time.
 void Dust::Impl::place_held() {
   constexpr int kShells = 8;
   for (int shell = 0; shell < kShells && held > 0; ++shell) {
     // A hair less, so that cells that are as far as each other are in the same shell.
     const double inner = std::max(0.0, pending.radius + (shell - 1e-6) * parameters.cell);
-    const std::int64_t placed = place_in_shell(inner, inner + parameters.cell, held);
+    const auto [placed, cells_with_room] = place_in_shell(inner, inner + parameters.cell, held);
     held -= placed;
     lying += placed;
+    if (held < cells_with_room) {
+      return;
+    }
   }
 }
 
-/// @returns how much of `rest` found room at this distance from the burr's centre, in even parts.
-std::int64_t Dust::Impl::place_in_shell(double inner, double outer, std::int64_t rest) {
+/// Puts even parts of `rest` at this distance from the burr's centre.
+Dust::Impl::Placed Dust::Impl::place_in_shell(double inner, double outer, std::int64_t rest) {
   std::vector<std::pair<DustCell, std::int32_t>> free;
   const DustCell middle = cell_at(pending.centre);
   const int extent = static_cast<int>(std::ceil(outer / parameters.cell)) + 1;
@@ -219,7 +223,7 @@ std::int64_t Dust::Impl::place_in_shell(double inner, double outer, std::int64_t
       }
     }
   }
-  return placed;
+  return {placed, std::ssize(free)};
 }
 
 }  // namespace haptrial::bone
