@@ -30,6 +30,21 @@ Eigen::Vector3d read_vector(Table& table, const char* key, const char* unit) {
   return {n[0], n[1], n[2]};
 }
 
+[[noreturn]] void refuse(const bone::BoneModel& model, const char* key, const std::string& name) {
+  std::vector<bool> there(model.structures.size(), false);
+  for (const std::uint8_t label : model.labels) {
+    there[label] = true;
+  }
+  std::string known;
+  for (std::size_t label = 1; label < there.size(); ++label) {
+    if (there[label]) {
+      known += (known.empty() ? "" : ", ") + model.structures[label].name;
+    }
+  }
+  throw InputError(fmt::format("{} names \"{}\", which {} does not have; allowed: {}", key, name,
+                               model.name.empty() ? "the bone" : model.name, known));
+}
+
 Eigen::Vector3d middle_of(const bone::BoneModel& model, const std::string& name) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   std::size_t count = 0;
@@ -46,8 +61,7 @@ Eigen::Vector3d middle_of(const bone::BoneModel& model, const std::string& name)
     }
   }
   if (count == 0) {
-    throw InputError(fmt::format("cavity.beside is \"{}\"; {} has no such structure", name,
-                                 model.name.empty() ? "the bone" : model.name));
+    refuse(model, "cavity.beside", name);
   }
   return sum / static_cast<double>(count);
 }
@@ -76,8 +90,7 @@ void check_structures(const bone::BoneModel& model, const CavityParameters& cavi
   for (const std::string& name : cavity.structures) {
     const auto named = [&](const bone::Structure& s) { return s.name == name; };
     if (std::none_of(model.structures.begin(), model.structures.end(), named)) {
-      throw InputError(fmt::format("cavity.structures names \"{}\"; {} has no such structure", name,
-                                   model.name.empty() ? "the bone" : model.name));
+      refuse(model, "cavity.structures", name);
     }
   }
 }
