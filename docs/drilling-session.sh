@@ -26,6 +26,6 @@ for moment in 4 18 32 46 60 74; do
   ffmpeg -v error -ss "$moment" -i session.mp4 -frames:v 1 "still-$moment.png"
 done
 montage still-4.png still-18.png still-32.png still-46.png still-60.png still-74.png \
-  -tile 3x2 -geometry 480x270+1+1 "$out/drilling-session.png"
+  -tile 3x2 -geometry 480x270+1+1 -colors 200 "PNG8:$out/drilling-session.png"
 ffmpeg -v error -y -i session.mp4 -vf "setpts=PTS/8,fps=8,scale=480:-1:flags=lanczos,split[a][b];\
 [a]palettegen=max_colors=64[p];[b][p]paletteuse=dither=bayer" "$out/drilling-session.gif"
