@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <span>
 #include <string>
 
 #include "core/base/error.h"
@@ -23,19 +24,24 @@ void complain(const std::string& sentence) {
   [[maybe_unused]] const int written = std::fputs(("haptrial: " + sentence + "\n").c_str(), stderr);
 }
 
-/// A mistyped subcommand by its name, rather than as one that is missing.
-void check_subcommand(CLI::App& app, int argc, char** argv) {
+/// A mistyped or missing subcommand by its name, with those there are.
+/// @param words  what was typed after `name`
+void check_subcommands(const CLI::App& app, const std::string& name, std::span<char* const> words) {
   std::string known;
-  for (const CLI::App* sub : app.get_subcommands([](CLI::App*) { return true; })) {
+  for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; })) {
     known += (known.empty() ? "" : ", ") + sub->get_name();
-    if (argc > 1 && sub->get_name() == argv[1]) {
+    if (!words.empty() && sub->get_name() == words[0]) {
+      check_subcommands(*sub, fmt::format("{} {}", name, words[0]), words.subspan(1));
       return;
     }
   }
-  if (argc > 1 && argv[1][0] != '-') {
-    throw haptrial::InputError(
-        fmt::format("'{}' is not a subcommand; allowed: {}", argv[1], known));
+  if (known.empty() || (!words.empty() && words[0][0] == '-')) {
+    return;
   }
+  throw haptrial::InputError(
+      words.empty()
+          ? fmt::format("{} needs a subcommand; allowed: {}", name, known)
+          : fmt::format("'{}' is not a subcommand of {}; allowed: {}", words[0], name, known));
 }
 
 int run_command(int argc, char** argv) {
@@ -47,7 +53,7 @@ int run_command(int argc, char** argv) {
   app.footer("haptrial SUBCOMMAND --help shows an example of each.");
   int status = 0;
   experiments::declare_subcommands(app, status);
-  check_subcommand(app, argc, argv);
+  check_subcommands(app, "haptrial", std::span(argv, static_cast<std::size_t>(argc)).subspan(1));
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {

@@ -155,6 +155,8 @@ TEST_F(CommandTest, EverySubcommandShowsAnExampleOfItself) {
 
 TEST_F(CommandTest, BadArguments) {
   expect_bad_input("haptrial", "subcommand");
+  expect_bad_input("haptrial bone", "haptrial bone needs a subcommand; allowed: import, info");
+  expect_bad_input("haptrial bone pictur x", "'pictur' is not a subcommand of haptrial bone");
   expect_bad_input("haptrial dryrun x.toml", "dryrun");
   expect_bad_input("haptrial dry-run", "DEFINITION");
   expect_bad_input("haptrial dry-run " + shipped() + " --subjects 0 --out " + path("o"),
