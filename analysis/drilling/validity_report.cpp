@@ -322,8 +322,8 @@ std::vector<std::string> summary_lines(const ValidityResult& result) {
   const std::string mark = v.simulated ? "Simulated: " : "";
   std::vector<std::string> lines;
   if (v.rated == 0) {
-    lines.push_back(fmt::format("{}{} are not rated yet.", mark,
-                                counted(result.procedures.size(), "procedure")));
+    lines.push_back(
+        fmt::format("{}{}: not rated yet.", mark, counted(result.procedures.size(), "procedure")));
   } else {
     const auto& groups = v.rating_groups;
     lines.push_back(fmt::format("{}ratings with experience {}; of novices {} (over procedures).",
