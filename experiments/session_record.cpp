@@ -61,20 +61,37 @@ void SessionRecord::open(const std::string& text, const protocols::PlannedTrial*
   for (const record::OpenPass& open : before_.open_passes) {
     row_ = {};
     row_.condition = "unknown";
-    if (drilled != nullptr) {
+    const auto begun = std::find_if(before_.begun.begin(), before_.begun.end(),
+                                    [&](const auto& each) { return each.row == open.row; });
+    if (begun != before_.begun.end()) {
+      row_ = begun->pass;
+    } else if (drilled != nullptr) {
       fill_row(*drilled, record::Phase::kDrilling, attempts(*drilled) + 1);
       row_.repetition = bones_used(*drilled) + (goes_on(open.row) ? 0 : 1);
     }
     add_pass(record::PassStatus::kAborted, open.first_sample, open.last_sample);
     before_.passes.push_back(row_);
   }
+  if (before_.rows > 0) {
+    tell_what_was_kept();
+  }
   event(before_.rows > 0 ? "session_resumed" : "session_start", text);
+  writer_.note_counts({0, 0, 0});
   if (!before_.passes.empty()) {
     last_ = before_.passes.back();
   }
   if (before_.rows > 0) {
     writer_.sync();  // all of it can be read again from here on
   }
+}
+
+/// To whoever started the session again, before anything else happens.
+void SessionRecord::tell_what_was_kept() {
+  if (!before_.repaired.empty()) {
+    fmt::print(stderr, "{}\n", before_.repaired);
+  }
+  fmt::print(stderr, "{}: goes on after {} ticks and {} passes\n", request_.file.string(),
+             before_.next_sequence, before_.passes.size());
 }
 
 bool SessionRecord::was_cut_short(const PlannedTrial& trial) const {
@@ -124,6 +141,7 @@ std::int32_t SessionRecord::begin_pass(const PlannedTrial& trial, record::Phase 
                                        int attempt) {
   fill_row(trial, phase, attempt);
   row_open_ = true;
+  writer_.begin_pass({passes_, row_});
   const bool same_bone = phase == record::Phase::kDrilling && last_.trial == row_.trial &&
                          last_.practice == row_.practice && last_.repetition == row_.repetition;
   if (same_bone) {
@@ -164,7 +182,7 @@ void SessionRecord::add_pass(record::PassStatus status, std::uint64_t first_samp
   last_ = row_;
   row_open_ = false;
   if (real_) {
-    writer_.sync();
+    writer_.sync_soon();
   }
 }
 
@@ -178,7 +196,12 @@ std::size_t SessionRecord::collect(const Follower& follow) {
   const auto now = std::chrono::steady_clock::now();
   if (real_ && now - flushed_ >= kFlushEvery) {
     flushed_ = now;
+    writer_.note_counts(counts());
     writer_.flush();
+    for (const std::string& notice : writer_.take_notices()) {
+      fmt::print(stderr, "{}\n", notice);
+      event("notice", notice);
+    }
   }
   return count;
 }
@@ -231,7 +254,7 @@ std::int64_t SessionRecord::now_ns() const {
 void SessionRecord::close(const std::string& text) {
   append_rest();
   event("session_end", text);
-  write_timing();
+  write_timing(record::RunState::kEnded);
   writer_.close();
 }
 
@@ -247,10 +270,15 @@ void SessionRecord::give_up(const protocols::SessionTask& task) {
              task.idle() ? result.last_sample : origin().sequence + loop_.ticks() - 1);
   }
   event("interrupted", "the session did not come to its end");
+  write_timing(record::RunState::kStopped);
   writer_.sync();
 }
 
-void SessionRecord::write_timing() {
+record::TimingSummary SessionRecord::counts() const {
+  return {loop_.ticks(), loop_.overruns(), dropped()};
+}
+
+void SessionRecord::write_timing(record::RunState state) {
   const realtime::LoopTiming& timing = loop_.timing();
   std::vector<record::TimingRow> rows;
   for (std::size_t i = 0; i < realtime::DurationHistogram::kBins; ++i) {
@@ -261,7 +289,7 @@ void SessionRecord::write_timing() {
       rows.push_back({period.low, period.high, period.count, lateness.count, compute.count});
     }
   }
-  writer_.set_timing(rows, {loop_.ticks(), loop_.overruns(), dropped()});
+  writer_.set_timing(rows, counts(), state);
 }
 
 }  // namespace haptrial::experiments

@@ -91,7 +91,9 @@ class SessionRecord {
   void append_drilling();
   void fill_row(const protocols::PlannedTrial& trial, record::Phase phase, int attempt);
   void add_pass(record::PassStatus status, std::uint64_t first_sample, std::uint64_t last_sample);
-  void write_timing();
+  void tell_what_was_kept();
+  record::TimingSummary counts() const;
+  void write_timing(record::RunState state);
 
   const SessionRequest& request_;
   const realtime::ServoLoop& loop_;

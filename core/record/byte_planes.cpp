@@ -41,6 +41,18 @@ void BytePlanes::get_column(std::size_t offset, std::size_t row, std::span<T> va
   }
 }
 
+std::size_t BytePlanes::rows_in_use() const {
+  const auto is_zero = [&](std::size_t row) {
+    for (std::size_t b = 0; b < row_bytes_; ++b) {
+      if (bytes_[b * capacity_ + row] != 0) return false;
+    }
+    return true;
+  };
+  std::size_t rows = capacity_;
+  while (rows > 0 && is_zero(rows - 1)) --rows;
+  return rows;
+}
+
 void BytePlanes::clear_from(std::size_t row) {
   for (std::size_t b = 0; b < row_bytes_; ++b) {
     std::fill(bytes_.begin() + static_cast<std::ptrdiff_t>(b * capacity_ + row),

@@ -21,7 +21,7 @@ std::size_t longest_chunk() {
   std::size_t bytes = 0;
   for (const TableSchema* each :
        {&samples_schema(), &trials_schema(), &events_schema(), &stimuli_schema(), &timing_schema(),
-        &frames_schema(), &attributes_schema()}) {
+        &frames_schema(), &attributes_schema(), &runs_schema(), &begun_schema()}) {
     bytes = std::max(bytes, each->row_bytes() * each->chunk_rows);
   }
   for (std::size_t i = 0; i < kDrillingTables; ++i) {

@@ -19,6 +19,8 @@ class FileLock {
   static FileLock take(const std::filesystem::path& file, bool create);
   /// Whether someone has the lock of this file; false for one that is absent.
   static bool taken(const std::filesystem::path& file);
+  /// Of the locked file; -1 where none is.
+  int descriptor() const { return descriptor_; }
 
  private:
   explicit FileLock(int descriptor) : descriptor_(descriptor) {}

@@ -2,16 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <set>
-#include <system_error>
+#include <span>
 #include <vector>
 
 #include "core/base/error.h"
 #include "core/record/file_lock.h"
-#include "core/record/isolated_info.h"
 #include "core/record/recovered_rows.h"
-#include "core/record/session_info.h"
+#include "core/record/rewrite.h"
 #include "core/record/session_target.h"
 #include "core/record/session_writer.h"
 
@@ -19,24 +17,6 @@ namespace haptrial::record {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<std::uint8_t> contents(const fs::path& file) {
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) {
-    throw InputError(file.string() + ": is not a file that can be read; allowed: a session file");
-  }
-  std::ifstream in(file, std::ios::binary);
-  std::vector<std::uint8_t> bytes(fs::file_size(file, error));
-  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (!in) throw InputError(file.string() + ": cannot be read; allowed: a session file");
-  return bytes;
-}
-
-/// From /attributes; from the root attributes where that is lost, or in a file of version 1.
-std::optional<SessionInfo> find_info(const fs::path& file, const RecoveredRows& rows) {
-  if (!rows.attributes.empty()) return info_of(rows.attributes);
-  return isolated_info(file);
-}
 
 std::uint64_t blocks_of(const std::vector<StimulusRow>& rows) {
   std::set<std::int32_t> blocks;
@@ -54,7 +34,7 @@ class Count {
       }
     }
   }
-  void add(const std::vector<Sample>& rows) {
+  void add(std::span<const Sample> rows) {
     for (const Sample& row : rows) {
       if (found_.samples == 0) found_.first_sequence = row.sequence;
       if (found_.samples > 0) found_.missing += row.sequence - found_.last_sequence - 1;
@@ -87,56 +67,30 @@ std::string sentence(const fs::path& file, const Recovery& found) {
       found.passes_cut, found.info ? "" : "; what the session was is not known");
 }
 
-template <class Row>
-void add(SessionWriter& writer, const std::vector<Row>& rows) {
-  writer.add(std::span(rows));
-}
-
-void write_drillings(SessionWriter& writer, const RecoveredRows& rows) {
-  add(writer, rows.bones);
-  add(writer, rows.structures);
-  add(writer, rows.bone_runs);
-  add(writer, rows.bone_densities);
-  for (std::size_t piece = 0; piece < rows.tool_pieces(); ++piece) {
-    add(writer, rows.tool(piece));
-  }
-  add(writer, rows.removals);
-  add(writer, rows.camera);
-  add(writer, rows.splits);
-  add(writer, rows.procedures);
-}
-
 void write(const fs::path& file, const fs::path& out, const RecoveredRows& rows,
            const SessionInfo& info, Recovery& found) {
-  std::optional<SessionWriter> opened;
-  if (rows.drills()) {
-    opened.emplace(out, info, std::span<const BoneRecord>{});
-    write_drillings(*opened, rows);
-  } else {
-    opened.emplace(out, info);
-  }
-  SessionWriter& writer = *opened;
+  SessionWriter writer = open_for(out, info, rows);
   Count count(rows.passes, found);
-  for (std::size_t piece = 0; piece < rows.sample_pieces(); ++piece) {
-    const std::vector<Sample> samples = rows.samples(piece);
-    count.add(samples);
-    writer.append(samples);
-  }
+  write_rows(
+      writer, rows, [](std::uint64_t) { return true; },
+      [&](std::span<const Sample> samples) { count.add(samples); });
   count.finish();
   for (const PassRow& pass : rows.passes) writer.add_pass(pass);
-  for (const EventRow& event : rows.events) writer.add_event(event);
+  for (const ProcedureRow& row : rows.procedures) writer.add(std::span(&row, 1));
   const std::int64_t last = rows.events.empty() ? 0 : rows.events.back().time_ns;
   writer.add_event({last, "recovered", sentence(file, found)});
-  writer.add_stimulus(rows.stimuli);
-  writer.add_frames(rows.frames);
-  if (rows.summary) writer.set_timing(rows.timing, *rows.summary);
+  if (rows.summary) {
+    writer.set_timing(rows.timing, *rows.summary);
+  } else {
+    writer.keep_timing(rows.timing);
+  }
   writer.close();
 }
 
 }  // namespace
 
 Recovery recover_session(const fs::path& file, const fs::path& out) {
-  const std::vector<std::uint8_t> bytes = contents(file);
+  const std::vector<std::uint8_t> bytes = contents_of(file);
   if (FileLock::taken(file)) {
     throw InputError(file.string() +
                      ": another haptrial records into it; allowed: a file that no "

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <map>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "core/record/byte_planes.h"
@@ -11,6 +12,7 @@
 #include "core/record/deflate.h"
 #include "core/record/drilling_codec.h"
 #include "core/record/row_codec.h"
+#include "core/record/run_codec.h"
 #include "core/record/schema.h"
 
 namespace haptrial::record {
@@ -20,19 +22,12 @@ std::size_t chunk_bytes(const TableSchema& schema) {
   return schema.row_bytes() * schema.chunk_rows;
 }
 
-/// The chunk's rows without the zeros behind them. No row of any table is all zeros.
+/// The chunk's rows without the zeros behind them.
 struct Chunk {
   Chunk(std::span<const std::uint8_t> raw, std::size_t row_bytes)
-      : planes(row_bytes, raw.size() / row_bytes), rows(raw.size() / row_bytes) {
+      : planes(row_bytes, raw.size() / row_bytes), rows(0) {
     std::memcpy(planes.data(), raw.data(), raw.size());
-    while (rows > 0 && is_zero(rows - 1)) --rows;
-  }
-  bool is_zero(std::size_t row) const {
-    const std::uint8_t* at = planes.bytes().data() + row;
-    for (std::size_t b = 0; b < planes.row_bytes(); ++b) {
-      if (at[b * planes.capacity()] != 0) return false;
-    }
-    return true;
+    rows = planes.rows_in_use();
   }
   /// The first row, which a chunk keeps when it is written again with more rows.
   std::string key() const {
@@ -66,6 +61,11 @@ class Chunks {
                      [&](const Row& a, const Row& b) { return order(a) < order(b); });
     return all;
   }
+  std::uint64_t count() const {
+    std::uint64_t rows = 0;
+    for (const auto& [key, chunk] : by_key_) rows += chunk.size();
+    return rows;
+  }
 
  private:
   std::map<std::string, std::vector<Row>> by_key_;
@@ -83,7 +83,8 @@ class DrillingChunks {
     return true;
   }
   template <typename Order>
-  std::vector<Row> take(Order order) {
+  std::vector<Row> take(Order order, std::map<std::string, std::uint64_t>& counts) {
+    counts[schema(table_of<Row>()).name] = chunks_.count();
     return chunks_.take(order);
   }
 
@@ -100,6 +101,11 @@ class EventChunks {
     if (chunk.rows < rows.size()) return;
     rows.clear();
     for (std::size_t i = 0; i < chunk.rows; ++i) rows.push_back(get_event(chunk.planes, i));
+  }
+  std::uint64_t count() const {
+    std::uint64_t rows = 0;
+    for (const auto& [key, chunk] : by_key_) rows += chunk.size();
+    return rows;
   }
   std::vector<EventRow> take() {
     std::vector<std::vector<EventPart>> chunks;
@@ -148,6 +154,8 @@ RecoveredRows::RecoveredRows(std::span<const std::uint8_t> file) : file_(file) {
   Chunks<TimingRow> timing_chunks;
   Chunks<FrameRow> frame_chunks;
   Chunks<EventPart> attribute_chunks;
+  Chunks<RunRow> run_rows;
+  Chunks<BegunRow> begun_chunks;
   EventChunks event_chunks;
   std::map<std::uint64_t, Piece> sample_chunks;  // by first sequence number
   std::map<std::uint64_t, Piece> tool_chunks;
@@ -193,6 +201,10 @@ RecoveredRows::RecoveredRows(std::span<const std::uint8_t> file) : file_(file) {
       frame_chunks.add(chunk(frames_schema()), get_frame);
     } else if (is(attributes_schema())) {
       attribute_chunks.add(chunk(attributes_schema()), get_attribute);
+    } else if (is(runs_schema())) {
+      run_rows.add(chunk(runs_schema()), get_run);
+    } else if (is(begun_schema())) {
+      begun_chunks.add(chunk(begun_schema()), get_begun);
     } else if (removal_chunks.take_if_ours(raw) || camera_chunks.take_if_ours(raw) ||
                split_chunks.take_if_ours(raw) || bone_chunks.take_if_ours(raw) ||
                structure_chunks.take_if_ours(raw) || run_chunks.take_if_ours(raw) ||
@@ -208,16 +220,33 @@ RecoveredRows::RecoveredRows(std::span<const std::uint8_t> file) : file_(file) {
   for (const auto& [sequence, piece] : sample_chunks) pieces_.push_back(piece);
   for (const auto& [sequence, piece] : tool_chunks) tool_pieces_.push_back(piece);
   const auto when = [](const auto& row) { return row.sequence; };
-  removals = removal_chunks.take(when);
-  camera = camera_chunks.take(when);
-  splits = split_chunks.take(when);
-  bones = bone_chunks.take([](const BoneRow& row) { return row.bone; });
-  structures =
-      structure_chunks.take([](const StructureRow& row) { return std::pair(row.bone, row.label); });
-  bone_runs = run_chunks.take([](const BoneRunRow& row) { return std::pair(row.bone, row.first); });
-  bone_densities =
-      density_chunks.take([](const BoneDensityRow& row) { return std::pair(row.bone, row.voxel); });
-  procedures = procedure_chunks.take([](const ProcedureRow& row) { return row.pass; });
+  removals = removal_chunks.take(when, counts);
+  camera = camera_chunks.take(when, counts);
+  splits = split_chunks.take(when, counts);
+  bones = bone_chunks.take([](const BoneRow& row) { return row.bone; }, counts);
+  structures = structure_chunks.take(
+      [](const StructureRow& row) { return std::pair(row.bone, row.label); }, counts);
+  bone_runs =
+      run_chunks.take([](const BoneRunRow& row) { return std::pair(row.bone, row.first); }, counts);
+  bone_densities = density_chunks.take(
+      [](const BoneDensityRow& row) { return std::pair(row.bone, row.voxel); }, counts);
+  procedures = procedure_chunks.take([](const ProcedureRow& row) { return row.pass; }, counts);
+  counts[samples_schema().name] = 0;
+  for (const Piece& piece : pieces_) counts[samples_schema().name] += piece.rows;
+  for (const Piece& piece : tool_pieces_) {
+    counts[schema(DrillingTable::kTool).name] += piece.rows;
+  }
+  counts[trials_schema().name] = pass_chunks.count();
+  counts[events_schema().name] = event_chunks.count();
+  counts[stimuli_schema().name] = stimulus_chunks.count();
+  counts[timing_schema().name] = timing_chunks.count();
+  counts[frames_schema().name] = frame_chunks.count();
+  counts[attributes_schema().name] = attribute_chunks.count();
+  counts[runs_schema().name] = run_rows.count();
+  counts[begun_schema().name] = begun_chunks.count();
+  runs = run_rows.take(
+      [](const RunRow& row) { return std::tuple(row.run, row.counts.ticks, row.state); });
+  begun = begun_chunks.take([](const BegunRow& row) { return row.row; });
   passes = pass_chunks.take([](const PassRow& row) { return row.first_sample; });
   events = event_chunks.take();
   stimuli =

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/record/drilling_types.h"
+#include "core/record/run_types.h"
 #include "core/record/session_types.h"
 
 namespace haptrial::record {
@@ -32,6 +35,9 @@ class RecoveredRows {
   std::vector<FrameRow> frames;
   std::vector<EventRow> attributes;
   std::optional<TimingSummary> summary;
+  std::vector<RunRow> runs;
+  std::vector<BegunRow> begun;
+  std::map<std::string, std::uint64_t> counts;  // rows of each table as stored, by its name
   // Of drillings.
   std::vector<RemovalRow> removals;
   std::vector<CameraRow> camera;

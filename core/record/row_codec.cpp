@@ -22,6 +22,12 @@ void check_text(std::string_view text, std::size_t bytes, const char* what) {
   }
 }
 
+Phase phase_of(std::string_view name) {
+  return name == name_of(Phase::kTraining) ? Phase::kTraining
+         : name == name_of(Phase::kTest)   ? Phase::kTest
+                                           : Phase::kDrilling;
+}
+
 namespace {
 
 PackedRow read(const BytePlanes& planes, std::size_t at) { return {planes, at}; }
@@ -30,10 +36,7 @@ PassRow read_pass_1(PackedRow& row) {
   PassRow pass;
   pass.trial = row.get<std::int32_t>();
   pass.condition = row.get_text(kConditionBytes);
-  const std::string phase = row.get_text(kPhaseBytes);
-  pass.phase = phase == "training" ? Phase::kTraining
-               : phase == "test"   ? Phase::kTest
-                                   : Phase::kDrilling;
+  pass.phase = phase_of(row.get_text(kPhaseBytes));
   pass.block = row.get<std::int32_t>();
   pass.repetition = row.get<std::int32_t>();
   pass.stimulus_seed = row.get<std::uint64_t>();

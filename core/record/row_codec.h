@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/record/byte_planes.h"
@@ -40,6 +41,9 @@ std::vector<EventRow> joined_events(std::vector<EventPart> parts);
 /// A row of /attributes: like one of /events without a time; row.kind is the name.
 void put_attribute(BytePlanes& planes, std::size_t at, const EventPart& part);
 EventPart get_attribute(const BytePlanes& planes, std::size_t at);
+
+/// The phase that a text of /trials names.
+Phase phase_of(std::string_view name);
 
 /// The columns that the analysis of a pass needs, doubles from the 32-bit values on file.
 void get_column_i64(const BytePlanes& planes, std::size_t offset, std::size_t at,

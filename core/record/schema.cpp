@@ -83,6 +83,28 @@ constexpr std::array kAttributes{
     i32("part", "0; 1, 2, ... where the row continues the value of the row before"),
 };
 
+constexpr std::array kRuns{
+    i32("run", "number from 1: from one start of the program to its end"),
+    u64("first_sample", "sequence number of the first tick of the run"),
+    u64("ticks", "ticks of the run so far"),
+    u64("overruns", "ticks of the run so far that began after their period had passed"),
+    u64("dropped", "records of the run so far that were lost on the way"),
+    i32("planned", "trials of the study; -1: not known"),
+    text("state", kStatusBytes, "running, stopped (the session goes on in another run) or ended"),
+};
+
+constexpr std::array kBegun{
+    i32("pass", "row of /trials that the pass gets"),
+    i32("trial", "as in /trials, like all that follow"),
+    text("condition", kConditionBytes, "training condition of the block"),
+    text("phase", kPhaseBytes, "training, test or drilling"),
+    i32("block", "block number from 1"),
+    i32("repetition", "number from 1 within the block; of a drilling the number of its bone"),
+    u64("stimulus_seed", "seed of the block's stimulus"),
+    u8("practice", "1 where the pass is not part of the study"),
+    i32("attempt", "number from 1; above 1 the trial was aborted before and queued again"),
+};
+
 // 270 kB a chunk: within the 1 MiB chunk cache that HDF5 gives every reader.
 constexpr std::size_t kSampleChunk = 4096;
 constexpr TableSchema kSamplesSchema{"samples", "one row for each tick of the servo loop",
@@ -101,6 +123,10 @@ constexpr TableSchema kFramesSchema{"frames", "one row for each frame of the par
 constexpr TableSchema kAttributesSchema{
     "attributes", "the root attributes once more: found even where the file's structure is lost",
     512, kAttributes};
+constexpr TableSchema kRunsSchema{
+    "runs", "what the loop of each run of the session counted: its last row counts", 16, kRuns};
+constexpr TableSchema kBegunSchema{"begun", "one row for each pass, written when it begins", 64,
+                                   kBegun};
 
 }  // namespace
 
@@ -127,6 +153,8 @@ const TableSchema& stimuli_schema() { return kStimuliSchema; }
 const TableSchema& timing_schema() { return kTimingSchema; }
 const TableSchema& frames_schema() { return kFramesSchema; }
 const TableSchema& attributes_schema() { return kAttributesSchema; }
+const TableSchema& runs_schema() { return kRunsSchema; }
+const TableSchema& begun_schema() { return kBegunSchema; }
 
 std::size_t live_chunk_rows(double rate) {
   constexpr double kLongest = 0.8;  // [s]

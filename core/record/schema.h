@@ -7,10 +7,10 @@
 
 namespace haptrial::record {
 
-/// Version of the layout below. Versions 1 and 2 are still read: 1 has no practice and attempt in
-/// /trials, no /frames and no /attributes; 2 has no tables of drillings, and 3 has them only in
-/// sessions that drill.
-inline constexpr std::int64_t kSchemaVersion = 3;
+/// Version of the layout below. Versions 1 to 3 are still read: 1 has no practice and attempt in
+/// /trials, no /frames and no /attributes; 2 has no tables of drillings, and later ones have them
+/// only in sessions that drill; 3 has no /runs and no /begun.
+inline constexpr std::int64_t kSchemaVersion = 4;
 
 enum class ColumnType : std::uint8_t { kU8, kI32, kI64, kU64, kF32, kF64, kText };
 
@@ -46,6 +46,8 @@ const TableSchema& stimuli_schema();
 const TableSchema& timing_schema();
 const TableSchema& frames_schema();
 const TableSchema& attributes_schema();
+const TableSchema& runs_schema();
+const TableSchema& begun_schema();
 
 /// The tables of a drilling session, in the order in which they are created.
 enum class DrillingTable : std::uint8_t {

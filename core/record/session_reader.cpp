@@ -13,6 +13,7 @@
 #include "core/record/drilling_codec.h"
 #include "core/record/hdf5_layer.h"
 #include "core/record/row_codec.h"
+#include "core/record/run_codec.h"
 #include "core/record/schema.h"
 #include "core/record/session_info.h"
 
@@ -64,6 +65,10 @@ struct SessionReader::Impl {
     events = open_table(file, events_schema());
     stimuli = open_table(file, stimuli_schema());
     timing = open_table(file, timing_schema());
+    if (version > 3) {
+      runs = open_table(file, runs_schema());
+      begun = open_table(file, begun_schema());
+    }
     if (version > 1) {
       frames = open_table(file, frames_schema());
       attributes = open_table(file, attributes_schema());
@@ -121,11 +126,34 @@ struct SessionReader::Impl {
     return result;
   }
 
+  /// Whether each chunk has the rows that the table says: no row is all zeros, so that an older
+  /// copy of a chunk, which has fewer, shows.
+  TableState state_of(const Table& table) const {
+    TableState state{table.schema->name, table.rows, ""};
+    BytePlanes planes(table.schema->row_bytes(), table.chunk_rows);
+    Inflater inflater;
+    for (std::uint64_t row = 0; row < table.rows && state.fault.empty(); row += table.chunk_rows) {
+      const std::uint64_t rows = std::min<std::uint64_t>(table.chunk_rows, table.rows - row);
+      const std::string from = "rows from " + std::to_string(row) + " on ";
+      try {
+        const std::vector<std::uint8_t> bytes = h5::read_chunk(table.dataset, row);
+        if (!inflater.decompress(bytes, {planes.data(), planes.bytes().size()})) {
+          state.fault = from + "are damaged";
+        } else if (planes.rows_in_use() < rows) {
+          state.fault = from + "are missing";
+        }
+      } catch (const h5::Error&) {
+        state.fault = from + "cannot be found";
+      }
+    }
+    return state;
+  }
+
   fs::path path;
   h5::Id file;
   std::int64_t version{0};
   SessionInfo info;
-  Table samples, trials, events, stimuli, timing, frames, attributes;
+  Table samples, trials, events, stimuli, timing, frames, attributes, runs, begun;
   bool drills{false};
   std::array<Table, kDrillingTables> drilling;
 
@@ -155,8 +183,6 @@ const SessionInfo& SessionReader::info() const { return impl_->info; }
 std::int64_t SessionReader::version() const { return impl_->version; }
 std::uint64_t SessionReader::sample_count() const { return impl_->samples.rows; }
 std::size_t SessionReader::chunk_rows() const { return impl_->samples.chunk_rows; }
-std::uint64_t SessionReader::attribute_rows() const { return impl_->attributes.rows; }
-std::uint64_t SessionReader::event_rows() const { return impl_->events.rows; }
 
 std::vector<Sample> SessionReader::samples(std::uint64_t first, std::uint64_t count) const {
   std::vector<Sample> result(std::min(count, sample_count()));
@@ -267,7 +293,39 @@ std::vector<BoneRecord> SessionReader::bones() const {
 }
 
 std::vector<TimingRow> SessionReader::timing() const {
-  return impl_->all(impl_->timing, get_timing);
+  std::vector<TimingRow> bins;
+  for (const TimingRow& row : impl_->all(impl_->timing, get_timing)) {
+    const auto same = std::find_if(bins.begin(), bins.end(), [&](const TimingRow& bin) {
+      return bin.bin_low_ns == row.bin_low_ns && bin.bin_high_ns == row.bin_high_ns;
+    });
+    if (same == bins.end()) {
+      bins.push_back(row);
+    } else {
+      same->period_count += row.period_count;
+      same->lateness_count += row.lateness_count;
+      same->compute_count += row.compute_count;
+    }
+  }
+  std::stable_sort(bins.begin(), bins.end(), [](const TimingRow& a, const TimingRow& b) {
+    return a.bin_low_ns < b.bin_low_ns;
+  });
+  return bins;
+}
+
+std::vector<RunRow> SessionReader::runs() const { return impl_->all(impl_->runs, get_run); }
+std::vector<BegunRow> SessionReader::begun() const { return impl_->all(impl_->begun, get_begun); }
+
+std::vector<TableState> SessionReader::tables() const {
+  std::vector<TableState> states;
+  for (const Table* table :
+       {&impl_->samples, &impl_->trials, &impl_->events, &impl_->stimuli, &impl_->timing,
+        &impl_->frames, &impl_->attributes, &impl_->runs, &impl_->begun}) {
+    if (table->schema != nullptr) states.push_back(impl_->state_of(*table));
+  }
+  for (const Table& table : impl_->drilling) {
+    if (table.schema != nullptr) states.push_back(impl_->state_of(table));
+  }
+  return states;
 }
 
 std::optional<TimingSummary> SessionReader::timing_summary() const {

@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/record/drilling_types.h"
+#include "core/record/run_types.h"
 #include "core/record/session_types.h"
 
 namespace haptrial::record {
@@ -18,6 +20,13 @@ struct SampleColumns {
   Eigen::Matrix3Xd position;          // (3 x rows)  p_W [m]
   Eigen::VectorXd applied_force;      // (rows)      [N]
   Eigen::VectorXd target_force;       // (rows)      [N]
+};
+
+/// How a table of a file stands.
+struct TableState {
+  std::string name;
+  std::uint64_t rows{0};
+  std::string fault;  // why some of them cannot be had, in words; empty where all can
 };
 
 /// Reads a session file (docs/session-file.md), also the .partial of a session that was killed or
@@ -47,8 +56,6 @@ class SessionReader {
 
   std::vector<PassRow> passes() const;
   std::vector<EventRow> events() const;
-  std::uint64_t event_rows() const;  // with the rows that continue others
-  std::uint64_t attribute_rows() const;
   std::vector<FrameRow> frames() const;  // none in a file of schema version 1
   std::vector<StimulusRow> stimuli() const;
   /// Whether the file has the tables of drillings.
@@ -64,7 +71,13 @@ class SessionReader {
   /// The bones of the session, in their order.
   std::vector<BoneRecord> bones() const;
 
-  std::vector<TimingRow> timing() const;
+  std::vector<TimingRow> timing() const;  // of all runs together, in ascending order
+  /// What the loop counted, as it was written; none in a file before schema version 4.
+  std::vector<RunRow> runs() const;
+  std::vector<BegunRow> begun() const;  // likewise
+  /// Reads every chunk of every table: one that cannot be inflated, or has fewer rows than the
+  /// table says, is a fault of its table.
+  std::vector<TableState> tables() const;
   /// Nothing when the session did not come to its end.
   std::optional<TimingSummary> timing_summary() const;
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/record/drilling_codec.h"
+#include "core/record/repair.h"
 #include "core/record/schema.h"
 #include "core/record/session_reader.h"
 #include "core/record/session_target.h"
@@ -14,143 +14,61 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kTailChunks =
-    2;  // what a kill can at most leave half written, and one more
+constexpr std::uint64_t kPiece = 65536;  // rows read at once
 
 [[noreturn]] void refuse(const fs::path& partial, const std::string& found) {
   throw InputError(partial.string() + ": " + found +
-                   "; allowed: an unfinished session that is whole up to its end (haptrial "
-                   "recover saves what a damaged one holds)");
+                   "; allowed: an unfinished session (haptrial recover saves what a damaged one "
+                   "holds)");
 }
 
-/// Reads every chunk of samples and notes the last row, and where a pass without a row in /trials
-/// lies.
-class SampleWalk {
- public:
-  SampleWalk(const SessionReader& reader, Resumed& found) : reader_(reader), found_(found) {}
-
-  void run() {
-    std::uint64_t rows = reader_.sample_count();
-    if (reader_.drills()) rows = std::min(rows, reader_.count<ToolRow>());
-    const std::uint64_t chunk = reader_.chunk_rows();
-    while (found_.rows < rows && take(found_.rows, std::min(chunk, rows - found_.rows))) {
-    }
-    found_.dropped_rows = reader_.sample_count() - found_.rows;
-    if (found_.dropped_rows > kTailChunks * chunk) {
-      refuse(reader_.path(),
-             "rows of /samples from " + std::to_string(found_.rows) + " on cannot be read");
-    }
-  }
-
-  /// The passes that the samples name, each from its first to its last sample.
-  const std::vector<OpenPass>& passes() const { return passes_; }
-
- private:
-  bool take(std::uint64_t first, std::uint64_t count) {
-    std::vector<Sample> samples;
-    try {
-      samples = reader_.samples(first, count);
-    } catch (const InputError&) {
-      return false;
-    }
-    for (const Sample& sample : samples) note(sample);
-    found_.rows += count;
-    found_.next_sequence = samples.back().sequence + 1;
-    found_.last_time_ns = samples.back().time_ns;
-    return true;
-  }
-
-  void note(const Sample& sample) {
-    if (sample.pass < 0) return;
-    if (passes_.empty() || passes_.back().row != sample.pass) {
-      passes_.push_back({sample.pass, sample.sequence, sample.sequence});
-    }
-    passes_.back().last_sample = sample.sequence;
-  }
-
-  const SessionReader& reader_;
-  Resumed& found_;
-  std::vector<OpenPass> passes_;
-};
-
-/// How many rows from the beginning are of ticks before `end`. Those of a chunk that cannot be read
-/// are not.
-template <class Row>
-std::uint64_t rows_before(const SessionReader& reader, std::uint64_t end) {
-  std::uint64_t kept = 0;
-  const std::uint64_t count = reader.count<Row>();
-  const std::uint64_t piece = schema(table_of<Row>()).chunk_rows;
-  while (kept < count) {
-    std::vector<Row> rows;
-    try {
-      rows = reader.rows<Row>(kept, std::min(piece, count - kept));
-    } catch (const InputError&) {
-      break;
-    }
-    for (const Row& row : rows) {
-      if (row.sequence >= end) return kept;
-      ++kept;
-    }
-  }
-  return kept;
-}
-
-void examine_drilling(const SessionReader& reader, const Resumed& found, KeptRows& rows) {
-  rows.drills = reader.drills();
-  if (!rows.drills) return;
-  const auto kept = [&](DrillingTable table) -> std::uint64_t& {
-    return rows.drilling[static_cast<std::size_t>(table)];
-  };
-  kept(DrillingTable::kTool) = found.rows;
-  kept(DrillingTable::kRemovals) = rows_before<RemovalRow>(reader, found.next_sequence);
-  kept(DrillingTable::kCamera) = rows_before<CameraRow>(reader, found.next_sequence);
-  kept(DrillingTable::kSplits) = rows_before<SplitRow>(reader, found.next_sequence);
-  kept(DrillingTable::kBones) = reader.count<BoneRow>();
-  kept(DrillingTable::kStructures) = reader.count<StructureRow>();
-  kept(DrillingTable::kBoneRuns) = reader.count<BoneRunRow>();
-  kept(DrillingTable::kBoneDensities) = reader.count<BoneDensityRow>();
-  for (const ProcedureRow& row : reader.rows<ProcedureRow>()) {
-    if (row.pass < static_cast<std::int32_t>(found.passes.size())) {
-      ++kept(DrillingTable::kProcedures);
+/// The passes that the samples name and /trials does not, each from its first to its last sample.
+void walk_samples(const SessionReader& reader, Resumed& found) {
+  const auto in_trials = static_cast<std::int32_t>(found.passes.size());
+  for (std::uint64_t first = 0; first < found.rows; first += kPiece) {
+    for (const Sample& sample : reader.samples(first, std::min(kPiece, found.rows - first))) {
+      found.next_sequence = sample.sequence + 1;
+      found.last_time_ns = sample.time_ns;
+      if (sample.pass < in_trials) continue;
+      if (found.open_passes.empty() || found.open_passes.back().row != sample.pass) {
+        found.open_passes.push_back({sample.pass, sample.sequence, sample.sequence});
+      }
+      found.open_passes.back().last_sample = sample.sequence;
     }
   }
 }
 
-Resumed examine(const fs::path& partial, KeptRows& rows) {
+void sum_up_runs(const SessionReader& reader, Resumed& found) {
+  found.runs = reader.runs();
+  for (std::size_t i = 0; i < found.runs.size(); ++i) {
+    const bool last = i + 1 == found.runs.size() || found.runs[i + 1].run != found.runs[i].run;
+    if (!last) continue;
+    found.earlier.overruns += found.runs[i].counts.overruns;
+    found.earlier.dropped += found.runs[i].counts.dropped;
+  }
+  found.earlier.ticks = found.next_sequence;
+  if (!found.runs.empty() && found.runs.back().state != RunState::kRunning) {
+    const RunRow& last = found.runs.back();
+    found.earlier.ticks = std::max(found.earlier.ticks, last.first_sample + last.counts.ticks);
+  }
+  found.ended = !found.runs.empty() && found.runs.back().state == RunState::kEnded;
+}
+
+/// Of a file that is whole.
+Resumed examine(const fs::path& partial, bool& drills) {
   const SessionReader reader(partial);
-  if (reader.version() != kSchemaVersion) {
-    refuse(partial, "is of schema version " + std::to_string(reader.version()));
-  }
+  drills = reader.drills();
   Resumed found;
   found.info = reader.info();
-  SampleWalk walk(reader, found);
-  walk.run();
-  for (const PassRow& pass : reader.passes()) {
-    if (found.dropped_passes == 0 && pass.last_sample < found.next_sequence) {
-      found.passes.push_back(pass);
-    } else {
-      ++found.dropped_passes;
-    }
-  }
-  for (const OpenPass& pass : walk.passes()) {
-    if (pass.row >= static_cast<std::int32_t>(found.passes.size())) {
-      found.open_passes.push_back(pass);
-    }
-  }
+  found.rows = reader.sample_count();
+  found.passes = reader.passes();
+  found.begun = reader.begun();
+  walk_samples(reader, found);
   found.events = reader.events();
-  const std::vector<StimulusRow> stimuli = reader.stimuli();
-  for (const StimulusRow& row : stimuli) {
+  for (const StimulusRow& row : reader.stimuli()) {
     if (found.blocks.empty() || found.blocks.back() != row.block) found.blocks.push_back(row.block);
   }
-  found.ended = reader.timing_summary().has_value();
-  rows.samples = found.rows;
-  rows.frames = reader.frames().size();
-  rows.trials = found.passes.size();
-  rows.events = reader.event_rows();
-  rows.stimuli = stimuli.size();
-  rows.timing = found.ended ? reader.timing().size() : 0;
-  rows.attributes = reader.attribute_rows();
-  examine_drilling(reader, found, rows);
+  sum_up_runs(reader, found);
   return found;
 }
 
@@ -171,22 +89,33 @@ SessionWriter SessionWriter::resume(const fs::path& final_path, Resumed& found) 
     throw InputError(partial.string() + ": no such file; allowed: a session that did not end");
   }
   FileLock lock = FileLock::take(partial, false);
-  KeptRows rows;
-  try {
-    found = examine(partial, rows);
-  } catch (const InputError& error) {
-    const std::string what = error.what();
-    if (what.find("haptrial recover") != std::string::npos) throw;
-    throw InputError(what + " (haptrial recover saves what a damaged one holds)");
+  Repair repair;
+  if (const auto wrong = what_is_wrong(partial)) {
+    repair = repair_session(partial, *wrong);
+    lock = FileLock::take(partial, false);
   }
+  bool drills = false;
+  found = examine(partial, drills);
+  found.repaired = repair.told;
+  found.dropped_rows = repair.dropped_rows;
+  found.dropped_passes = repair.dropped_passes;
   try {
-    auto impl = std::make_unique<Impl>(final_path, found.info, std::move(lock), rows);
-    impl->earlier_ticks = found.rows;
-    impl->has_timing = found.ended;
+    auto impl = std::make_unique<Impl>(final_path, found.info, std::move(lock), drills);
+    impl->take_up(found);
     return SessionWriter(std::move(impl));
   } catch (const h5::Error& error) {
     refuse(partial, std::string("cannot be written (") + error.what() + ")");
   }
+}
+
+/// The counts of a session that had ended may not have reached the file.
+void SessionWriter::Impl::take_up(const Resumed& found) {
+  earlier = found.earlier;
+  if (!found.runs.empty()) run_row = found.runs.back();
+  run.run = found.runs.empty() ? 1 : run_row->run + 1;
+  run.first_sample = found.next_sequence;
+  has_timing = found.ended;
+  if (found.ended && h5::get_i64(timing->dataset(), "ticks") < 0) put_counts();
 }
 
 }  // namespace haptrial::record

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include "core/record/run_types.h"
 #include "core/record/session_types.h"
 
 namespace haptrial::record {
@@ -25,9 +27,13 @@ struct Resumed {
   std::uint64_t rows{0};              // of /samples
   std::uint64_t next_sequence{0};     // of the first sample to append
   std::int64_t last_time_ns{-1};      // of the last sample; -1 where there is none
-  std::uint64_t dropped_rows{0};      // of /samples: an incomplete tail
-  std::uint64_t dropped_passes{0};    // rows of /trials whose samples were not all there
-  bool ended{false};                  // the timing is there: only close() is left to do
+  std::vector<BegunRow> begun;        // what was known of each pass when it began
+  std::vector<RunRow> runs;
+  TimingSummary earlier;            // of all runs; a run that was killed counts what it told
+  std::string repaired;             // what was wrong and what was kept; empty: it was whole
+  std::uint64_t dropped_rows{0};    // of /samples, in a repair
+  std::uint64_t dropped_passes{0};  // rows of /trials whose samples were not all there
+  bool ended{false};                // the counts are there: only close() is left to do
 };
 
 }  // namespace haptrial::record

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/record/drilling_codec.h"
 #include "core/record/row_codec.h"
+#include "core/record/run_codec.h"
 #include "core/record/schema.h"
 #include "core/record/session_info.h"
 #include "core/record/session_target.h"
@@ -66,7 +68,9 @@ SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info,
       put(std::span(bone.densities));
     }
     write(true);
+    if (live) sync_data(h5::descriptor(file));  // what the session is survives whatever follows
     rename_to_new(created, partial);
+    start_syncing();
   } catch (...) {
     divert_file();
     close_tables();
@@ -77,26 +81,15 @@ SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info,
 }
 
 SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info, FileLock held,
-                          const KeptRows& rows)
+                          bool drilled)
     : final_path(file_path),
       partial(partial_path(file_path)),
       live(is_live(info)),
       lock(std::move(held)),
-      file(h5::open_to_go_on(partial)),
-      drills(rows.drills),
+      drills(drilled),
       resumed(true) {
-  // In the order of tables().
-  std::vector<std::uint64_t> kept{rows.samples, rows.frames, rows.trials,    rows.events,
-                                  rows.stimuli, rows.timing, rows.attributes};
-  kept.insert(kept.end(), rows.drilling.begin(), rows.drilling.end());
   try {
-    space.ensure(h5::descriptor(file), 0);
-    std::size_t i = 0;
-    for (auto [table, each] : tables()) {
-      table->emplace(TableWriter::go_on(file, *each, kept[i++], live ? kLiveLevel : kFastLevel,
-                                        ensure_space()));
-    }
-    h5::flush(file);
+    go_on();
   } catch (...) {
     close_tables();
     file.reset();
@@ -104,11 +97,32 @@ SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info, Fi
   }
 }
 
+void SessionWriter::Impl::go_on() {
+  file = h5::open_to_go_on(partial);
+  space = {};
+  space.ensure(h5::descriptor(file), 0);
+  for (auto [table, each] : tables()) {
+    table->emplace(TableWriter::go_on(file, *each, live ? kLiveLevel : kFastLevel, ensure_space()));
+  }
+  h5::flush(file);
+  start_syncing();
+}
+
+void SessionWriter::Impl::start_syncing() {
+  constexpr std::chrono::milliseconds kEvery{500};
+  if (live) syncing = std::make_unique<DiskSync>(lock.descriptor(), partial, kEvery);
+}
+
 SessionWriter::Impl::Tables SessionWriter::Impl::tables() {
-  Tables all{{&samples, &samples_schema()},      {&frames, &frames_schema()},
-             {&trials, &trials_schema()},        {&events, &events_schema()},
-             {&stimuli, &stimuli_schema()},      {&timing, &timing_schema()},
-             {&attributes, &attributes_schema()}};
+  Tables all{{&samples, &samples_schema()},
+             {&frames, &frames_schema()},
+             {&trials, &trials_schema()},
+             {&events, &events_schema()},
+             {&stimuli, &stimuli_schema()},
+             {&timing, &timing_schema()},
+             {&attributes, &attributes_schema()},
+             {&runs, &runs_schema()},
+             {&begun, &begun_schema()}};
   for (std::size_t i = 0; drills && i < kDrillingTables; ++i) {
     all.emplace_back(&drilling[i], &schema(static_cast<DrillingTable>(i)));
   }
@@ -163,11 +177,19 @@ void SessionWriter::Impl::write_drilling() {
 void SessionWriter::Impl::write(bool all) {
   if (all || trials->has_unwritten()) write_samples();
   if (all) frames->write_unfinished();
-  for (auto* table : {&trials, &events, &stimuli, &timing, &attributes}) {
+  for (auto* table : {&begun, &trials, &events, &stimuli, &timing, &runs, &attributes}) {
     (*table)->write_unfinished();
   }
   write_drilling();
   h5::flush(file);
+}
+
+void SessionWriter::Impl::add_run(RunState state) {
+  if (run_row && run_row->state == RunState::kEnded) return;  // of a file that is written anew
+  run.state = state;
+  put_run(runs->planes(), runs->used(), run);
+  runs->added(1);
+  run_row = run;
 }
 
 void SessionWriter::Impl::divert_file() noexcept {
@@ -220,7 +242,12 @@ SessionWriter::SessionWriter(SessionWriter&&) noexcept = default;
 SessionWriter::~SessionWriter() {
   if (!impl_ || !impl_->file) return;
   try {
-    if (impl_->failure.empty()) impl_->guarded([&] { impl_->write(true); });
+    if (impl_->failure.empty()) {
+      impl_->guarded([&] {
+        impl_->put_back();
+        impl_->write(true);
+      });
+    }
   } catch (const std::exception&) {
     // The destructor has no one to tell; close() is for those who want to know.
   }
@@ -243,7 +270,10 @@ void SessionWriter::append(std::span<const Sample> rows) {
       finished_chunk = finished_chunk || table.used() == 0;
       rows = rows.subspan(count);
     }
-    if (finished_chunk && impl_->live) h5::flush(impl_->file);
+    if (finished_chunk && impl_->live) {
+      h5::flush(impl_->file);
+      impl_->syncing->soon();
+    }
   });
 }
 
@@ -261,6 +291,14 @@ void SessionWriter::add_event(const EventRow& event) {
       put_event(impl_->events->planes(), impl_->events->used(), part);
       impl_->events->added(1);
     }
+  });
+}
+
+void SessionWriter::begin_pass(const BegunRow& pass) {
+  impl_->guarded([&] {
+    put_begun(impl_->begun->planes(), impl_->begun->used(), pass);
+    impl_->begun->added(1);
+    if (impl_->live) impl_->write(false);
   });
 }
 
@@ -298,32 +336,81 @@ template void SessionWriter::add(std::span<const StructureRow>);
 template void SessionWriter::add(std::span<const BoneRunRow>);
 template void SessionWriter::add(std::span<const BoneDensityRow>);
 
-void SessionWriter::set_timing(std::span<const TimingRow> histogram, const TimingSummary& summary) {
-  if (impl_->has_timing) throw std::invalid_argument("the timing of a session is set once");
+void SessionWriter::set_planned(std::int32_t trials) { impl_->run.planned = trials; }
+
+void SessionWriter::note_counts(const TimingSummary& so_far) {
   impl_->guarded([&] {
-    for (const TimingRow& row : histogram) {
+    impl_->run.counts = so_far;
+    const auto& told = impl_->run_row;
+    if (!told || told->run != impl_->run.run || told->counts.overruns != so_far.overruns ||
+        told->counts.dropped != so_far.dropped) {
+      impl_->add_run(RunState::kRunning);
+    }
+  });
+}
+
+void SessionWriter::keep_runs(std::span<const RunRow> rows) {
+  impl_->guarded([&] {
+    for (const RunRow& row : rows) {
+      impl_->run = row;
+      impl_->add_run(row.state);
+    }
+  });
+}
+
+void SessionWriter::keep_timing(std::span<const TimingRow> rows) {
+  impl_->guarded([&] {
+    for (const TimingRow& row : rows) {
       put_timing(impl_->timing->planes(), impl_->timing->used(), row);
       impl_->timing->added(1);
     }
-    impl_->write(true);  // the counts say that the session ended: last of all
-    const std::array<std::pair<const char*, std::uint64_t>, 3> counts{
-        {{"ticks", summary.ticks + impl_->earlier_ticks},
-         {"overruns", summary.overruns},
-         {"dropped", summary.dropped}}};
-    for (const auto& [name, count] : counts) {
-      h5::put(impl_->timing->dataset(), name, static_cast<std::int64_t>(count));
-      put_attributes(*impl_->attributes, {{0, name, std::to_string(count)}});
-    }
+  });
+}
+
+void SessionWriter::set_timing(std::span<const TimingRow> histogram, const TimingSummary& summary,
+                               RunState state) {
+  if (impl_->has_timing) throw std::invalid_argument("the timing of a run is set once");
+  keep_timing(histogram);
+  impl_->guarded([&] {
+    impl_->run.counts = summary;
+    impl_->add_run(state);
+    impl_->write(true);  // the counts of the session say that it ended: last of all
+    if (state == RunState::kEnded) impl_->put_counts();
     impl_->has_timing = true;
   });
 }
 
-void SessionWriter::flush() {
-  impl_->guarded([&] { impl_->write(!impl_->live); });
+void SessionWriter::Impl::put_counts() {
+  const std::array<std::pair<const char*, std::uint64_t>, 3> counts{
+      {{"dropped", run.counts.dropped + earlier.dropped},
+       {"overruns", run.counts.overruns + earlier.overruns},
+       {"ticks", run.counts.ticks + earlier.ticks}}};
+  for (const auto& [name, count] : counts) {
+    h5::put(timing->dataset(), name, static_cast<std::int64_t>(count));
+    put_attributes(*attributes, {{0, name, std::to_string(count)}});
+  }
 }
+
+void SessionWriter::flush() {
+  impl_->guarded([&] {
+    impl_->heed_disk();
+    impl_->write(!impl_->live);
+  });
+}
+
+void SessionWriter::sync_soon() {
+  impl_->guarded([&] {
+    impl_->heed_disk();
+    impl_->write(true);
+    if (impl_->syncing) impl_->syncing->soon();
+  });
+}
+
+std::vector<std::string> SessionWriter::take_notices() { return std::exchange(impl_->notices, {}); }
 
 void SessionWriter::sync() {
   impl_->guarded([&] {
+    impl_->heed_disk();
     impl_->write(true);
     sync_data(h5::descriptor(impl_->file));
     if (!impl_->folder_synced) sync_folder_of(impl_->partial);
@@ -335,10 +422,12 @@ bool SessionWriter::can_go_on() const noexcept { return impl_->file && impl_->fa
 
 void SessionWriter::close() {
   impl_->guarded([&] {
+    impl_->put_back();
     impl_->write(true);
     probe(h5::descriptor(impl_->file));
     impl_->close_tables();
     h5::close(impl_->file);
+    impl_->syncing.reset();
     trim(impl_->partial);
     sync_file(impl_->partial);
     rename_to_new(impl_->partial, impl_->final_path);
@@ -356,6 +445,7 @@ void SessionWriter::discard() {
   if (!impl_->resumed) impl_->divert_file();
   impl_->close_tables();
   impl_->file.reset();
+  impl_->syncing.reset();
   if (!impl_->resumed) std::remove(impl_->partial.c_str());
   impl_->lock = FileLock();
 }

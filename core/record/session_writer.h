@@ -4,8 +4,11 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "core/record/drilling_types.h"
+#include "core/record/run_types.h"
 #include "core/record/session_types.h"
 
 namespace haptrial::record {
@@ -19,6 +22,10 @@ struct Resumed;
 /// A session on the real clock loses at most the last 0.8 s of what it appended: a chunk of
 /// samples is that long, and is in the file as soon as it is full. A session on a simulated clock
 /// has longer chunks and is in the file as of the last flush() or sync().
+///
+/// A live session's file is brought to the disk by a thread of its own, every half second and
+/// whenever a chunk or a pass has come to its end; the same thread sees when the file is deleted,
+/// moved or replaced, and the next flush() then puts it back.
 ///
 /// One thread at a time for each writer, never the servo thread; several writers may work in
 /// several threads. Every member throws RunError, in one sentence, when the file cannot be written
@@ -37,10 +44,12 @@ class SessionWriter {
   /// where this is false no sample of the session was ever recorded, and it starts anew.
   /// @throws InputError when FILE exists: the session is complete.
   static bool can_resume(const std::filesystem::path& final_path);
-  /// Goes on with FILE.partial after its writer ended in whatever way. What was begun and did not
-  /// reach the file whole is dropped; `found` says what is there.
-  /// @throws InputError when another process writes it, when it is of an older schema version, or
-  /// when it is damaged (recover_session() then saves what it holds); the file is left as it was.
+  /// Goes on with FILE.partial after its writer ended in whatever way; `found` says what is there.
+  /// Where the file is not whole, or is of an older schema version, every row that it still holds
+  /// is written to a new FILE.partial first, and the old one kept as FILE.partial.damaged
+  /// (core/record/repair.h).
+  /// @throws InputError when another process writes it, or when it does not say what the session
+  /// was; the file is left as it was.
   static SessionWriter resume(const std::filesystem::path& final_path, Resumed& found);
 
   /// Without close(): FILE.partial stays, closed and readable, with everything that came.
@@ -56,6 +65,9 @@ class SessionWriter {
   /// A text above 256 bytes takes several rows, which the reader joins again.
   /// @throws std::invalid_argument for a kind above 32 bytes, or a NUL byte in kind or text.
   void add_event(const EventRow& event);
+  /// When a pass begins: what a kill in mid-pass would lose. On the real clock it is in the file
+  /// when this returns. @throws std::invalid_argument as add_pass() does
+  void begin_pass(const BegunRow& pass);
   void add_stimulus(std::span<const StimulusRow> rows);
   void add_frames(std::span<const FrameRow> rows);
   /// Rows of the tables of drillings, in ascending order of their sequence numbers. Rows of /tool
@@ -65,17 +77,32 @@ class SessionWriter {
   /// @throws std::invalid_argument in a session without drillings.
   template <class Row>
   void add(std::span<const Row> rows);
-  /// Once, when the loop has ended. @param summary  of this run: the ticks recorded before a
-  /// resume() are added. @throws std::invalid_argument for a second call.
-  void set_timing(std::span<const TimingRow> histogram, const TimingSummary& summary);
+  /// Trials of the study that this run has planned, earlier runs' included.
+  void set_planned(std::int32_t trials);
+  /// What the loop counted so far in this run: a row of /runs where something new is to be told.
+  void note_counts(const TimingSummary& so_far);
+  /// Once, when the loop has ended. @param summary  of this run: what was counted before a resume()
+  /// is added in the counts of the session.
+  /// @param state  kStopped: the session goes on in another run, and FILE.partial is left
+  /// @throws std::invalid_argument for a second call.
+  void set_timing(std::span<const TimingRow> histogram, const TimingSummary& summary,
+                  RunState state = RunState::kEnded);
+  /// Rows of earlier runs, for a file that is written anew.
+  void keep_runs(std::span<const RunRow> rows);
+  void keep_timing(std::span<const TimingRow> rows);
 
   /// Passes, events, stimuli and full chunks of samples and frames are in the file for any reader,
   /// and survive kill -9. Cheap enough for every second: no unfinished chunk of samples is cut,
   /// but where a pass was added since.
   void flush();
-  /// Everything given so far is in the file and on the disk, and survives a power cut. Costs the
-  /// space of half a chunk of samples: for the end of a pass.
+  /// Everything given so far is in the file and on the disk, and survives a power cut. Waits for
+  /// the disk. Costs the space of half a chunk of samples.
   void sync();
+  /// The same without waiting: everything is in the file when this returns, and on the disk soon
+  /// after. On a simulated clock it is flush(). For the end of a pass.
+  void sync_soon();
+  /// Sentences about what befell the file since the last call.
+  std::vector<std::string> take_notices();
   /// Whether more can be written: false after the first RunError, and after close() or discard().
   bool can_go_on() const noexcept;
 

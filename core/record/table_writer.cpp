@@ -16,10 +16,11 @@ TableWriter::TableWriter(h5::Id dataset, const TableSchema& schema, std::size_t 
       planes_(schema.row_bytes(), chunk_rows),
       deflater_(level) {}
 
-TableWriter TableWriter::go_on(const h5::Id& file, const TableSchema& schema, std::uint64_t rows,
-                               int level, EnsureSpace ensure_space) {
+TableWriter TableWriter::go_on(const h5::Id& file, const TableSchema& schema, int level,
+                               EnsureSpace ensure_space) {
   std::size_t chunk_rows = 0;
   h5::Id dataset = h5::open_table(file, schema, chunk_rows);
+  const std::uint64_t rows = h5::row_count(dataset);
   TableWriter table(std::move(dataset), schema, chunk_rows, level, std::move(ensure_space));
   table.used_ = rows % chunk_rows;
   table.first_row_ = rows - table.used_;
@@ -32,7 +33,6 @@ TableWriter TableWriter::go_on(const h5::Id& file, const TableSchema& schema, st
     table.written_ = table.used_;
     table.written_bytes_ = bytes.size();
   }
-  if (h5::row_count(table.dataset_) != rows) h5::set_row_count(table.dataset_, rows);
   return table;
 }
 

@@ -20,10 +20,10 @@ class TableWriter {
   /// @param level  of compression, 1 (fast) to 12
   TableWriter(const h5::Id& file, const TableSchema& schema, int level, EnsureSpace ensure_space);
 
-  /// Opens the dataset to go on after its first `rows` rows; those behind them are removed.
+  /// Opens the dataset to go on after its last row.
   /// @throws h5::Error when the chunk to go on in cannot be read.
-  static TableWriter go_on(const h5::Id& file, const TableSchema& schema, std::uint64_t rows,
-                           int level, EnsureSpace ensure_space);
+  static TableWriter go_on(const h5::Id& file, const TableSchema& schema, int level,
+                           EnsureSpace ensure_space);
 
   /// Where the next rows go: rows [used(), used() + room()) of the chunk; then say how many.
   BytePlanes& planes() { return planes_; }

@@ -173,8 +173,9 @@ TEST(DrillingRecordTest, NoTwoTablesHaveChunksOfOneSize) {
   const auto add_size = [&](std::size_t bytes) {
     EXPECT_TRUE(sizes.insert(bytes).second) << bytes;
   };
-  for (const TableSchema* each : {&trials_schema(), &events_schema(), &stimuli_schema(),
-                                  &timing_schema(), &frames_schema(), &attributes_schema()}) {
+  for (const TableSchema* each :
+       {&trials_schema(), &events_schema(), &stimuli_schema(), &timing_schema(), &frames_schema(),
+        &attributes_schema(), &runs_schema(), &begun_schema()}) {
     add_size(each->row_bytes() * each->chunk_rows);
   }
   for (std::size_t i = 1; i < kDrillingTables; ++i) {

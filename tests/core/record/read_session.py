@@ -76,7 +76,7 @@ def check_expected(file, trials, expected):
         check(file.attrs[name] == value, f"attribute {name}: {file.attrs[name]!r}")
     for name, value in expected["counts"].items():
         check(file["timing"].attrs[name] == value, f"attribute {name} of /timing")
-    for table in ("trials", "events", "stimuli", "timing", "frames"):
+    for table in ("trials", "events", "stimuli", "timing", "frames", "begun", "runs"):
         rows = [[v.decode("utf-8") if isinstance(v, bytes) else v for v in row.tolist()]
                 for row in file[table][:]]
         check(rows == expected[table], f"/{table}: {rows}")

@@ -29,7 +29,7 @@ void write_csv(const std::filesystem::path& path, const std::vector<Sample>& sam
 
 // Written by hand from the rows below: the file is compared with the source, not with a reader.
 constexpr const char* kExpected = R"({
-"attributes": {"schema_version": 3, "program_version": "0.1.0", "program_commit": "0123abc",
+"attributes": {"schema_version": 4, "program_version": "0.1.0", "program_commit": "0123abc",
   "definition": "[trajectory]\nspeed = 0.016  # größer als 0\n", "definition_name": "recall.toml",
   "subject": "P07", "seed": 18364758544493064720, "device": "virtual", "device_max_force": 8.5,
   "device_workspace_radius": 0.16, "clock": "simulated", "rate": 1000.0,
@@ -43,7 +43,9 @@ constexpr const char* kExpected = R"({
 "events": [[-5, "session_start", "Grüße", 0], [9000000000, "fault", "", 0]],
 "stimuli": [[1, 0.0, 0.1, -0.2, 0.3, 1.5], [1, 0.001, 0.1, -0.2, 0.30000000000000004, 1.25]],
 "frames": [[16666667, 2000000, 0], [50000000, 3500000, 1]],
-"timing": [[-1000, 0, 1, 2, 3], [0, 1000, 4, 5, 6]]})";
+"timing": [[-1000, 0, 1, 2, 3], [0, 1000, 4, 5, 6]],
+"begun": [[0, 1, "haptic", "training", 1, 1, 18446744073709551615, 1, 3]],
+"runs": [[1, 0, 0, 0, 0, 36, "running"], [1, 0, 9001, 3, 0, 36, "ended"]]})";
 
 /// A session that h5py is to read. @param drills  with the tables of drillings
 void expect_that_python_reads(bool drills) {
@@ -52,6 +54,12 @@ void expect_that_python_reads(bool drills) {
   const std::vector<BoneRecord> bones{test::small_bone()};
   SessionWriter writer = drills ? SessionWriter(folder / "session.h5", test::example_info(), bones)
                                 : SessionWriter(folder / "session.h5", test::example_info());
+  writer.set_planned(36);
+  writer.note_counts({0, 0, 0});
+  PassRow begun{1, "haptic", Phase::kTraining, 1, 1, ~std::uint64_t{0}};
+  begun.practice = true;
+  begun.attempt = 3;
+  writer.begin_pass({0, begun});
   writer.append(std::span(samples).first(5000));
   writer.flush();  // the unfinished chunk is written twice
   writer.append(std::span(samples).subspan(5000));

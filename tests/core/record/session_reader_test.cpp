@@ -84,7 +84,7 @@ TEST(SessionReaderTest, RefusesOtherLayouts) {
     const h5::Id file = h5::create_file(folder / "future.h5");
     h5::put(file, "schema_version", std::int64_t{kSchemaVersion + 1});
   }
-  EXPECT_THAT(refusal(folder / "future.h5"), HasSubstr("schema version 4 instead of 1 to 3"));
+  EXPECT_THAT(refusal(folder / "future.h5"), HasSubstr("schema version 5 instead of 1 to 4"));
   {
     const h5::Id file = h5::create_file(folder / "text_version.h5");
     h5::put(file, "schema_version", std::string("1"));
@@ -111,9 +111,9 @@ void create_with(const fs::path& path, const std::vector<TableSchema>& schemas) 
 
 TEST(SessionReaderTest, RefusesMissingAndForeignDatasets) {
   const TemporaryFolder folder;
-  const std::vector<TableSchema> all{samples_schema(),   trials_schema(), events_schema(),
-                                     stimuli_schema(),   timing_schema(), frames_schema(),
-                                     attributes_schema()};
+  const std::vector<TableSchema> all{samples_schema(),    trials_schema(), events_schema(),
+                                     stimuli_schema(),    timing_schema(), frames_schema(),
+                                     attributes_schema(), runs_schema(),   begun_schema()};
   for (std::size_t gone = 0; gone < all.size(); ++gone) {
     std::vector<TableSchema> rest = all;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(gone));

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "core/base/error.h"
@@ -191,6 +192,7 @@ TEST(SessionResumeTest, ASessionWhoseLoopHadEndedNeedsOnlyToBeClosed) {
   SessionWriter writer = SessionWriter::resume(folder / "a.h5", found);
   EXPECT_TRUE(found.ended);
   EXPECT_THROW(writer.set_timing({}, {}), std::invalid_argument);
+  EXPECT_EQ(found.runs.back().state, RunState::kEnded);
   writer.close();
   EXPECT_EQ(SessionReader(folder / "a.h5").timing().size(), 1u);
   EXPECT_EQ(SessionReader(folder / "a.h5").timing_summary()->ticks, 300u);
@@ -213,31 +215,120 @@ TEST(SessionResumeTest, SaysWhenThereIsNothingToGoOnWith) {
               HasSubstr("the session is complete"));
 }
 
-TEST(SessionResumeTest, RefusesADamagedFileAndLeavesItAsItWas) {
+TEST(SessionResumeTest, RefusesAFileThatDoesNotSayWhatItWasAndLeavesIt) {
   const TemporaryFolder folder;
-  {
-    SessionWriter writer(folder / "a.h5", live_info());
-    writer.append(ticks(0, 20000));
-  }
-  std::string bytes = file_text(folder / "a.h5.partial");
-  const auto put = [&](const char* name, const std::string& what) {
-    std::ofstream(folder / (std::string(name) + ".partial"), std::ios::binary) << what;
+  for (const std::string& what : {std::string(), std::string(9000, '\0'), std::string("no file")}) {
+    std::ofstream(folder / "a.h5.partial", std::ios::binary) << what;
     Resumed found;
-    EXPECT_THAT(refusal([&] { SessionWriter::resume(folder / name, found); }),
-                testing::AllOf(HasSubstr(name), HasSubstr("haptrial recover")));
-    EXPECT_EQ(fs::file_size(folder / (std::string(name) + ".partial")), what.size());
-  };
-  put("empty.h5", "");
-  put("cut.h5", bytes.substr(0, bytes.size() / 2));
-  put("headless.h5", std::string(4096, '\0') + bytes.substr(4096));
-  std::string middle = bytes;
-  middle.replace(bytes.size() / 2, 4096, 4096, '\0');
-  put("hole.h5", middle);
+    EXPECT_THAT(refusal([&] { SessionWriter::resume(folder / "a.h5", found); }),
+                testing::AllOf(HasSubstr("a.h5.partial"), HasSubstr("haptrial recover")));
+    EXPECT_EQ(file_text(folder / "a.h5.partial"), what);
+    EXPECT_FALSE(fs::exists(folder / "a.h5.partial.damaged"));
+  }
+}
+
+/// A damaged file of 20000 ticks in 26 chunks, and what a resume keeps of it.
+struct Damaged {
+  TemporaryFolder folder;
+  std::string bytes;
+  Resumed found;
+
+  Damaged() {
+    SessionWriter writer(folder / "whole.h5", live_info());
+    writer.append(ticks(0, 20000));
+    for (std::uint64_t pass = 0; pass < 7; ++pass) {
+      PassRow begun = pass_row(pass);
+      begun.phase = Phase::kTraining;
+      writer.begin_pass({static_cast<std::int32_t>(pass), begun});
+      writer.add_pass(pass_row(pass));
+    }
+    writer.sync();
+    bytes = file_text(folder / "whole.h5.partial");
+  }
+  void resume(const std::string& damaged) {
+    std::ofstream(folder / "a.h5.partial", std::ios::binary) << damaged;
+    SessionWriter::resume(folder / "a.h5", found);
+    EXPECT_THAT(found.repaired, HasSubstr("a.h5.partial.damaged"));
+    EXPECT_EQ(file_text(folder / "a.h5.partial.damaged"), damaged);
+    EXPECT_FALSE(fs::exists(folder / "a.h5.partial.repaired"));
+    EXPECT_EQ(found.events.back().kind, "repaired");
+    EXPECT_EQ(found.events.back().text, found.repaired);
+    // It is whole from now on.
+    Resumed again;
+    SessionWriter::resume(folder / "a.h5", again);
+    EXPECT_EQ(again.repaired, "");
+    EXPECT_EQ(again.rows, found.rows);
+  }
+};
+
+TEST(SessionResumeTest, AFileWithoutItsHeaderIsRepairedWhole) {
+  Damaged file;
+  file.resume(std::string(512, '\0') + file.bytes.substr(512));
+  EXPECT_EQ(file.found.rows, 20000u);
+  EXPECT_EQ(file.found.passes.size(), 7u);
+}
+
+TEST(SessionResumeTest, OfAFileCutShortWhatIsLeftIsKept) {
+  Damaged file;
+  file.resume(file.bytes.substr(0, file.bytes.size() / 2));
+  EXPECT_GT(file.found.rows, 8000u);
+  EXPECT_GE(file.found.passes.size(), 3u);
+  EXPECT_LT(file.found.passes.size(), 7u);
+  for (const PassRow& pass : file.found.passes) {
+    EXPECT_EQ(pass.status, PassStatus::kCompleted);
+    EXPECT_LT(pass.last_sample, file.found.rows);
+  }
+}
+
+TEST(SessionResumeTest, APassThatLostSamplesIsAbortedAndTheRestIsKept) {
+  Damaged file;
+  std::string bytes = file.bytes;
+  bytes.replace(bytes.size() / 2, 4096, 4096, '\0');
+  file.resume(bytes);
+  EXPECT_LT(file.found.rows, 20000u);
+  EXPECT_GE(file.found.rows, 20000u - 2 * 768u);
+  ASSERT_EQ(file.found.passes.size(), 7u);
+  const auto aborted =
+      std::count_if(file.found.passes.begin(), file.found.passes.end(),
+                    [](const PassRow& pass) { return pass.status == PassStatus::kAborted; });
+  EXPECT_GE(aborted, 1);
+  EXPECT_LE(aborted, 2);
+  EXPECT_EQ(static_cast<std::uint64_t>(aborted), file.found.dropped_passes);
+}
+
+TEST(SessionResumeTest, AFileOfVersionOneGoesOnInTheNewLayout) {
+  const TemporaryFolder folder;
   fs::copy_file(HAPTRIAL_SOURCE_DIR "/tests/core/record/data/version1.hdf5",
                 folder / "old.h5.partial");
   Resumed found;
-  EXPECT_THAT(refusal([&] { SessionWriter::resume(folder / "old.h5", found); }),
-              HasSubstr("schema version 1"));
+  SessionWriter::resume(folder / "old.h5", found);
+  EXPECT_THAT(found.repaired, HasSubstr("schema version 1"));
+  EXPECT_EQ(found.rows, 500u);
+  EXPECT_EQ(found.passes.size(), 2u);
+  EXPECT_EQ(found.info.subject, "P07");
+}
+
+/// A chunk that an older copy stands for is not believed.
+TEST(SessionResumeTest, CopiesOfAFileWhileItIsWrittenAreNeverMisread) {
+  const TemporaryFolder folder;
+  SessionWriter writer(folder / "first.h5", live_info());
+  std::string older;
+  for (std::uint64_t at = 0; at < 8000; at += 500) {
+    writer.append(ticks(at, at + 500));
+    writer.sync();
+    const std::string now = file_text(folder / "first.h5.partial");
+    // The first page, where HDF5 keeps its structure, of a moment before.
+    if (!older.empty()) {
+      std::ofstream(folder / "a.h5.partial", std::ios::binary)
+          << older.substr(0, 4096) << now.substr(4096);
+      Resumed found;
+      SessionWriter::resume(folder / "a.h5", found);
+      ASSERT_EQ(found.rows, at + 500);
+      ASSERT_EQ(found.next_sequence, at + 500);
+      fs::remove(folder / "a.h5.partial.damaged");
+    }
+    older = now;
+  }
 }
 
 TEST(SessionResumeTest, ADiscardAfterAResumeKeepsWhatWasThere) {
@@ -249,6 +340,49 @@ TEST(SessionResumeTest, ADiscardAfterAResumeKeepsWhatWasThere) {
   Resumed found;
   SessionWriter::resume(folder / "a.h5", found).discard();
   EXPECT_EQ(SessionReader(folder / "a.h5.partial").sample_count(), 3000u);
+}
+
+TEST(SessionResumeTest, WhatEarlierRunsCountedIsAdded) {
+  const TemporaryFolder folder;
+  {
+    SessionWriter writer(folder / "a.h5", live_info());
+    writer.set_planned(36);
+    writer.append(ticks(0, 1000));
+    writer.note_counts({500, 2, 0});
+    writer.note_counts({900, 5, 1});
+    writer.flush();  // and is killed
+    leave_as_killed(folder, "a.h5", "b.h5");
+  }
+  Resumed found;
+  std::uint64_t ticks_before = 0;
+  {
+    SessionWriter writer = SessionWriter::resume(folder / "b.h5", found);
+    ticks_before = found.next_sequence;
+    EXPECT_EQ(found.earlier.overruns, 5u);
+    EXPECT_EQ(found.earlier.dropped, 1u);
+    writer.append(ticks(ticks_before, ticks_before + 100));
+    writer.set_timing(std::vector<TimingRow>{{0, 1, 2, 3, 4}}, {100, 7, 0}, RunState::kStopped);
+    writer.sync();
+    EXPECT_FALSE(SessionReader(folder / "b.h5.partial").timing_summary());
+  }
+  SessionWriter writer = SessionWriter::resume(folder / "b.h5", found);
+  EXPECT_FALSE(found.ended);
+  writer.append(ticks(found.next_sequence, found.next_sequence + 10));
+  writer.set_timing(std::vector<TimingRow>{{0, 1, 10, 10, 10}}, {10, 1, 0});
+  writer.close();
+  const SessionReader reader(folder / "b.h5");
+  EXPECT_EQ(reader.timing_summary()->ticks, ticks_before + 110);
+  EXPECT_EQ(reader.timing_summary()->overruns, 13u);
+  EXPECT_EQ(reader.timing_summary()->dropped, 1u);
+  ASSERT_EQ(reader.runs().size(), 4u);
+  EXPECT_EQ(reader.runs()[0].counts.overruns, 2u);
+  EXPECT_EQ(reader.runs()[0].planned, 36);
+  EXPECT_EQ(reader.runs()[2].run, 2);
+  EXPECT_EQ(reader.runs()[2].first_sample, ticks_before);
+  EXPECT_EQ(reader.runs()[2].state, RunState::kStopped);
+  EXPECT_EQ(reader.runs()[3].state, RunState::kEnded);
+  ASSERT_EQ(reader.timing().size(), 1u);  // of both runs
+  EXPECT_EQ(reader.timing()[0].period_count, 12u);
 }
 
 TEST(SessionVersionTest, AFileOfVersionOneIsRead) {

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <filesystem>
+#include <mutex>
+#include <string>
+#include <thread>
+
+namespace haptrial::record {
+
+/// Brings a file to the disk from a thread of its own, so that nobody waits for a slow disk, and
+/// watches that the file is still where its name says. What was written before a sync began is safe
+/// from a power cut when the sync has ended.
+class DiskSync {
+ public:
+  /// @param descriptor  of the file; outlives this
+  /// @param path        where the file is to be found; outlives its renaming, not its moving
+  DiskSync(int descriptor, std::filesystem::path path, std::chrono::milliseconds period);
+  ~DiskSync();  // waits for a sync that is under way
+  DiskSync(const DiskSync&) = delete;
+  DiskSync& operator=(const DiskSync&) = delete;
+
+  /// The next sync begins now, or when the present one has ended.
+  void soon();
+  /// What the system said when a sync failed; empty while none did.
+  std::string failure() const;
+
+  /// Whether the path still leads to the file, as of the last look (one before each sync).
+  enum class Place { kThere, kMissing, kForeign };
+  Place place() const noexcept { return place_.load(std::memory_order_relaxed); }
+
+ private:
+  void run();
+
+  int descriptor_;
+  std::filesystem::path path_;
+  std::chrono::milliseconds period_;
+  std::atomic<Place> place_{Place::kThere};
+  mutable std::mutex mutex_;  // the three below
+  std::condition_variable wake_;
+  bool asked_{false};
+  bool stop_{false};
+  std::string failure_;
+  std::thread thread_;
+};
+
+/// Where the file of a descriptor is, seen from a path.
+DiskSync::Place place_of(int descriptor, const std::filesystem::path& path) noexcept;
+
+}  // namespace haptrial::record

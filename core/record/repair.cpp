@@ -1,0 +1,294 @@
+#include "core/record/repair.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/record/hdf5_layer.h"
+#include "core/record/rewrite.h"
+#include "core/record/schema.h"
+#include "core/record/session_reader.h"
+#include "core/record/session_target.h"
+#include "core/record/tick_ranges.h"
+
+namespace haptrial::record {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kPiece = 65536;  // rows read at once
+
+/// What the samples that are there say of the passes.
+struct SeenPass {
+  std::uint64_t first{0}, last{0}, count{0};
+};
+
+/// The ticks that are kept, and the passes that they make.
+class Plan {
+ public:
+  explicit Plan(const RecoveredRows& rows) : rows_(rows) {
+    find_ticks();
+    find_passes();
+  }
+
+  bool keeps(std::uint64_t sequence) const {
+    return sequence <= last_ && (!rows_.drills() || ticks_.holds(sequence, sequence));
+  }
+  const std::vector<PassRow>& passes() const { return passes_; }
+  std::uint64_t dropped_passes() const { return dropped_passes_; }
+
+ private:
+  void find_ticks() {
+    TickRanges samples, tool;
+    for (std::size_t i = 0; i < rows_.sample_pieces(); ++i) {
+      for (const Sample& sample : rows_.samples(i)) samples.add(sample.sequence);
+    }
+    for (std::size_t i = 0; rows_.drills() && i < rows_.tool_pieces(); ++i) {
+      for (const ToolRow& row : rows_.tool(i)) tool.add(row.sequence);
+    }
+    ticks_ = rows_.drills() ? samples.shared_with(tool) : samples;
+    if (!rows_.drills() || ticks_.ranges().empty()) return;
+    std::uint64_t whole = ticks_.ranges().front().first;
+    for (const PassRow& pass : rows_.passes) {
+      if (ticks_.holds(pass.first_sample, pass.last_sample)) {
+        whole = std::max(whole, pass.last_sample);
+      }
+    }
+    last_ = ticks_.end_of_range(whole);
+  }
+
+  std::map<std::int32_t, SeenPass> seen_passes() const {
+    std::map<std::int32_t, SeenPass> seen;
+    for (std::size_t i = 0; i < rows_.sample_pieces(); ++i) {
+      for (const Sample& sample : rows_.samples(i)) {
+        if (sample.pass < 0 || !keeps(sample.sequence)) continue;
+        SeenPass& pass = seen[sample.pass];
+        if (pass.count++ == 0) pass.first = sample.sequence;
+        pass.last = sample.sequence;
+      }
+    }
+    return seen;
+  }
+
+  /// The number of a row of /trials: its samples say it, and without any its place.
+  static std::int32_t number_of(const PassRow& row, std::size_t place,
+                                const std::map<std::int32_t, SeenPass>& seen) {
+    for (const auto& [number, pass] : seen) {
+      if (row.first_sample <= pass.first && pass.last <= row.last_sample) return number;
+    }
+    return static_cast<std::int32_t>(place);
+  }
+
+  void find_passes() {
+    const std::map<std::int32_t, SeenPass> seen = seen_passes();
+    std::map<std::int32_t, PassRow> known;
+    for (const BegunRow& begun : rows_.begun) known[begun.row] = begun.pass;
+    std::int32_t end = 0;  // behind the last whole pass: what follows is open
+    std::map<std::int32_t, bool> whole;
+    for (std::size_t i = 0; i < rows_.passes.size(); ++i) {
+      const PassRow& row = rows_.passes[i];
+      const std::int32_t number = number_of(row, i, seen);
+      const auto at = seen.find(number);
+      known[number] = row;
+      whole[number] = row.first_sample <= row.last_sample && at != seen.end() &&
+                      at->second.count == row.last_sample - row.first_sample + 1;
+      dropped_passes_ += whole[number] ? 0 : 1;
+      if (whole[number]) end = std::max(end, number + 1);
+    }
+    for (std::int32_t number = 0; number < end; ++number) {
+      PassRow row = known[number];
+      if (!whole[number]) {
+        const auto at = seen.find(number);
+        const std::uint64_t next = passes_.empty() ? 0 : passes_.back().last_sample + 1;
+        row.first_sample = at != seen.end() ? at->second.first : next;
+        row.last_sample = at != seen.end() ? at->second.last : next;
+        row.status = PassStatus::kAborted;
+      }
+      passes_.push_back(row);
+    }
+  }
+
+  const RecoveredRows& rows_;
+  TickRanges ticks_;
+  std::uint64_t last_{~std::uint64_t{0}};
+  std::vector<PassRow> passes_;
+  std::uint64_t dropped_passes_{0};
+};
+
+/// What came of the samples on their way to the new file.
+struct Written {
+  std::uint64_t samples{0}, missing{0}, next{0};
+  std::int64_t last_time{0};
+  void add(std::span<const Sample> rows) {
+    for (const Sample& row : rows) {
+      missing += row.sequence - next;
+      next = row.sequence + 1;
+      last_time = row.time_ns;
+      ++samples;
+    }
+  }
+};
+
+fs::path with(const fs::path& path, const std::string& ending) {
+  fs::path result = path;
+  result += ending;
+  return result;
+}
+
+/// A name for the damaged file: one of its own, or the one that a repair that was cut short gave
+/// it.
+fs::path name_for_damaged(const fs::path& partial) {
+  for (int number = 1;; ++number) {
+    const fs::path name =
+        with(partial, number == 1 ? ".damaged" : fmt::format(".damaged-{}", number));
+    std::error_code error;
+    if (!fs::exists(name, error) || fs::equivalent(name, partial, error)) return name;
+  }
+}
+
+void keep_damaged(const fs::path& partial, const fs::path& damaged) {
+  std::error_code error;
+  if (fs::exists(damaged, error)) return;
+  fs::create_hard_link(partial, damaged, error);
+  if (!error) return;
+  fs::copy_file(partial, damaged, error);
+  if (error) throw RunError(damaged.string() + ": cannot be written (" + error.message() + ")");
+  sync_file(damaged);
+}
+
+void write(const fs::path& out, const SessionInfo& info, const RecoveredRows& rows,
+           const Plan& plan, const std::function<std::string(const Written&)>& sentence) {
+  SessionWriter writer = open_for(out, info, rows);
+  Written written;
+  write_rows(
+      writer, rows, [&](std::uint64_t sequence) { return plan.keeps(sequence); },
+      [&](std::span<const Sample> samples) { written.add(samples); });
+  for (const PassRow& pass : plan.passes()) writer.add_pass(pass);
+  for (const ProcedureRow& row : rows.procedures) {
+    if (row.pass < static_cast<std::int32_t>(plan.passes().size())) {
+      writer.add(std::span(&row, 1));
+    }
+  }
+  const bool told_ended = !rows.runs.empty() && rows.runs.back().state == RunState::kEnded;
+  if (rows.summary && !told_ended) {  // of a schema version without /runs
+    const RunRow ended{1, 0, *rows.summary, -1, RunState::kEnded};
+    writer.keep_runs(std::span(&ended, 1));
+  }
+  writer.keep_timing(rows.timing);
+  const std::int64_t last_event = rows.events.empty() ? 0 : rows.events.back().time_ns;
+  writer.add_event({std::max(last_event, written.last_time), "repaired", sentence(written)});
+  writer.close();
+}
+
+/// Rows that no tick of /samples goes with.
+template <class Row>
+bool any_from(const SessionReader& reader, std::uint64_t end) {
+  const std::uint64_t count = reader.count<Row>();
+  return count > 0 && reader.rows<Row>(count - 1, 1).front().sequence >= end;
+}
+
+std::optional<std::string> wrong_in_drillings(const SessionReader& reader, std::uint64_t end,
+                                              std::size_t passes) {
+  if (reader.count<ToolRow>() != reader.sample_count()) {
+    return fmt::format("/tool has {} rows, and /samples {}", reader.count<ToolRow>(),
+                       reader.sample_count());
+  }
+  if (any_from<RemovalRow>(reader, end) || any_from<CameraRow>(reader, end) ||
+      any_from<SplitRow>(reader, end)) {
+    return "it tells of ticks that are not there";
+  }
+  for (const ProcedureRow& row : reader.rows<ProcedureRow>()) {
+    if (row.pass >= static_cast<std::int32_t>(passes)) {
+      return fmt::format("pass {} of /procedures is not in /trials", row.pass);
+    }
+  }
+  return std::nullopt;
+}
+
+/// Of a file of which every chunk is there.
+std::optional<std::string> wrong_between_rows(const SessionReader& reader) {
+  std::uint64_t next = 0;
+  for (std::uint64_t first = 0; first < reader.sample_count(); first += kPiece) {
+    for (const Sample& sample :
+         reader.samples(first, std::min(kPiece, reader.sample_count() - first))) {
+      if (sample.sequence < next) {
+        return fmt::format("sequence number {} of /samples follows {}", sample.sequence, next - 1);
+      }
+      next = sample.sequence + 1;
+    }
+  }
+  const std::vector<PassRow> passes = reader.passes();
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    if (passes[i].last_sample >= next) {
+      return fmt::format("the samples of pass {} are not all there", i);
+    }
+  }
+  return reader.drills() ? wrong_in_drillings(reader, next, passes.size()) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> what_is_wrong(const fs::path& partial) {
+  const std::vector<std::uint8_t> bytes = contents_of(partial);
+  try {
+    const SessionReader reader(partial);
+    if (reader.version() != kSchemaVersion) {
+      return fmt::format("it is of schema version {}", reader.version());
+    }
+    const RecoveredRows rows(bytes);
+    for (const TableState& table : reader.tables()) {
+      if (!table.fault.empty()) return fmt::format("/{}: {}", table.name, table.fault);
+      const std::uint64_t held = rows.counts.contains(table.name) ? rows.counts.at(table.name) : 0;
+      if (held > table.rows) {
+        return fmt::format("it holds {} rows of /{}, and its structure leads to {}", held,
+                           table.name, table.rows);
+      }
+    }
+    return wrong_between_rows(reader);
+  } catch (const InputError&) {
+    return "its structure cannot be read";
+  }
+}
+
+Repair repair_session(const fs::path& partial, const std::string& wrong) {
+  const std::vector<std::uint8_t> bytes = contents_of(partial);
+  const RecoveredRows rows(bytes);
+  const std::optional<SessionInfo> info = find_info(partial, rows);
+  if (!info) {
+    throw InputError(partial.string() + ": " + wrong +
+                     ", and it does not say what the session was; allowed: an unfinished session "
+                     "(haptrial recover saves what a damaged one holds)");
+  }
+  const Plan plan(rows);
+  const fs::path out = with(partial, ".repaired");
+  for (const fs::path& left : {out, partial_path(out), new_path(out)}) {
+    fs::remove(left);  // of a repair that was cut short
+  }
+  const fs::path damaged = name_for_damaged(partial);
+  Repair repair;
+  repair.dropped_passes = plan.dropped_passes();
+  write(out, *info, rows, plan, [&](const Written& written) {
+    repair.dropped_rows = rows.counts.at(samples_schema().name) - written.samples;
+    repair.told = fmt::format(
+        "{} was not whole ({}); kept: {} samples ({} missing between them), {} passes ({} of them "
+        "without all of their samples, so aborted or open again), {} events, {} rows of /samples "
+        "dropped; it is kept as it was in {}",
+        partial.filename().string(), wrong, written.samples, written.missing, rows.passes.size(),
+        plan.dropped_passes(), rows.events.size(), repair.dropped_rows,
+        damaged.filename().string());
+    return repair.told;
+  });
+  try {
+    keep_damaged(partial, damaged);
+    fs::rename(out, partial);
+    sync_folder_of(partial);
+  } catch (const std::exception& error) {
+    throw RunError(partial.string() + ": cannot be repaired (" + error.what() + ")");
+  }
+  return repair;
+}
+
+}  // namespace haptrial::record

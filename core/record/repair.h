@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace haptrial::record {
+
+/// Why a session file cannot be gone on with as it stands, in words; nothing where it can. A file
+/// is whole when its structure leads to every row that it holds, and the rows agree: after a power
+/// cut, HDF5's structure may be older than the rows, or lead to older ones.
+std::optional<std::string> what_is_wrong(const std::filesystem::path& partial);
+
+/// What a repair kept.
+struct Repair {
+  std::string told;                 // a sentence: what was wrong, what was kept
+  std::uint64_t dropped_rows{0};    // of /samples, that nothing could go on behind
+  std::uint64_t dropped_passes{0};  // rows of /trials without all of their samples: open again
+};
+
+/// Writes every row that the file still holds to a new file, and gives that one the name of the
+/// old, which is kept as FILE.partial.damaged. Killed at any instant it leaves the old or the new
+/// file under the name. A pass in between that lacks samples becomes an aborted one. Of a session
+/// that drills nothing is kept behind the first missing tick of the drilling under way: only so can
+/// its bone be made again.
+/// @param partial  locked by the caller
+/// @throws InputError when it does not say what the session was; it is left as it was.
+Repair repair_session(const std::filesystem::path& partial, const std::string& wrong);
+
+}  // namespace haptrial::record

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/record/recovered_rows.h"
+#include "core/record/session_writer.h"
+
+namespace haptrial::record {
+
+/// The contents of a file. @throws InputError when it is not a regular file or cannot be read.
+std::vector<std::uint8_t> contents_of(const std::filesystem::path& file);
+
+/// From /attributes; from the root attributes where that is lost, or in a file of version 1.
+std::optional<SessionInfo> find_info(const std::filesystem::path& file, const RecoveredRows& rows);
+
+/// A new file for the rows, with the tables of drillings where they are of drillings.
+SessionWriter open_for(const std::filesystem::path& out, const SessionInfo& info,
+                       const RecoveredRows& rows);
+
+/// Writes the rows but those of /trials and the counts of the loop.
+/// @param keeps  of a tick: whether its rows are written
+/// @param told   every piece of samples that was written
+void write_rows(SessionWriter& writer, const RecoveredRows& rows,
+                const std::function<bool(std::uint64_t sequence)>& keeps,
+                const std::function<void(std::span<const Sample>)>& told);
+
+}  // namespace haptrial::record
