@@ -18,19 +18,6 @@ struct Forget {
 };
 using Holder = std::unique_ptr<Nrrd, Forget>;
 
-/// What teem complained about, as one line: its last one says the most.
-std::string complaint() {
-  const std::unique_ptr<char, decltype(&std::free)> text(biffGetDone(NRRD), &std::free);
-  std::string words = text ? text.get() : "";
-  while (!words.empty() && words.back() == '\n') {
-    words.pop_back();
-  }
-  const std::size_t line = words.rfind('\n');
-  words = line == std::string::npos ? words : words.substr(line + 1);
-  const std::size_t colon = words.find("] ");  // "[nrrd] function: what"
-  return colon == std::string::npos ? words : words.substr(colon + 2);
-}
-
 /// teem would take other formats as well.
 void check_magic(const std::string& name) {
   std::ifstream in(name, std::ios::binary);
@@ -136,7 +123,10 @@ Holder load(const std::string& name, bool head_only) {
   const std::unique_ptr<NrrdIoState, Forget> state(nrrdIoStateNew());
   nrrdIoStateSet(state.get(), nrrdIoStateSkipData, head_only ? 1 : 0);
   if (nrrdLoad(nrrd.get(), name.c_str(), state.get()) != 0) {
-    throw InputError(fmt::format("{}: cannot be read as NRRD: {}", name, complaint()));
+    biffDone(NRRD);  // teem's own words name its functions
+    throw InputError(fmt::format("{}: {}; allowed: a whole volume in NRRD format", name,
+                                 head_only ? "its head is damaged, or lacks a field"
+                                           : "its values are damaged, or not all there"));
   }
   return nrrd;
 }

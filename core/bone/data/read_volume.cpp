@@ -95,10 +95,8 @@ json read_and_share(const fs::path& file, const Room& room, int memory) {
     return {{"input_error", error.what()}};
   } catch (const std::bad_alloc&) {
     return {{"input_error", fmt::format("{}: needs more memory than there is", file.string())}};
-  } catch (const std::exception& error) {
-    return {{"input_error", fmt::format("{}: cannot be read: {}", file.string(), error.what())}};
-  } catch (...) {
-    return {{"input_error", fmt::format("{}: cannot be read", file.string())}};
+  } catch (...) {  // a library's own words would be of no use
+    return {{"input_error", fmt::format("{}: is damaged and cannot be read", file.string())}};
   }
 }
 
