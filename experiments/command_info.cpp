@@ -11,7 +11,9 @@
 #include "analysis/timing.h"
 #include "core/record/file_lock.h"
 #include "core/record/integrity.h"
+#include "core/record/readable.h"
 #include "core/record/session_reader.h"
+#include "core/record/trial_progress.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -59,20 +61,36 @@ void print_frames(const std::vector<record::FrameRow>& frames) {
              frames.size(), dropped, 1e-6 * static_cast<double>(longest));
 }
 
+void print_progress(const record::SessionReader& reader, const record::Integrity& integrity) {
+  const record::TrialProgress trials = record::trial_progress(reader);
+  const std::string planned =
+      trials.planned ? fmt::format("of {}", *trials.planned) : "of an unknown number";
+  fmt::print("trials      {} {} done, {} skipped, {} aborted{}\n", trials.done, planned,
+             trials.skipped, trials.aborted,
+             integrity.state == record::RunState::kEnded     ? "; the session has ended"
+             : integrity.state == record::RunState::kStopped ? "; stopped, --resume goes on"
+                                                             : "; the session did not end");
+}
+
 /// What a person did or has to know; the rest is in /events.
 bool is_told(const std::string& kind) {
-  constexpr std::array<std::string_view, 8> kTold{"aborted",       "interrupted", "notice",
-                                                  "note",          "recovered",   "emergency_stop",
-                                                  "bone_restored", "bone_lost"};
+  constexpr std::array<std::string_view, 11> kTold{
+      "repaired", "session_stopped", "ended_for_good", "aborted",       "interrupted", "notice",
+      "note",     "recovered",       "emergency_stop", "bone_restored", "bone_lost"};
   return std::find(kTold.begin(), kTold.end(), kind) != kTold.end();
 }
 
 }  // namespace
 
 int info(const std::string& file) {
+  const std::optional<std::string> unreadable = record::what_cannot_be_read(file);
   const record::SessionReader reader(file);
   const record::SessionInfo& i = reader.info();
-  const record::Integrity integrity = record::check_session(reader);
+  record::Integrity integrity = record::check_session(reader);
+  if (unreadable) {
+    integrity.problems.push_back(*unreadable);
+    integrity.ok = false;
+  }
   fmt::print("subject     {}{}\n", i.subject, i.simulated ? " (simulated)" : "");
   print_participant(i.participant);
   fmt::print("definition  {}, seed {}\n", i.definition_name, i.seed);
@@ -99,8 +117,9 @@ int info(const std::string& file) {
   if (record::FileLock::taken(file)) {
     fmt::print("a haptrial is recording into this file at present\n");
   }
-  fmt::print("{}\n", integrity.ok ? "complete: every tick is recorded" : "NOT complete");
-  return integrity.ok ? 0 : 1;
+  print_progress(reader, integrity);
+  fmt::print("recording   {}\n", integrity.ok ? "intact: every tick is recorded" : "NOT intact");
+  return integrity.ok && integrity.state == record::RunState::kEnded ? 0 : 1;
 }
 
 }  // namespace haptrial::experiments

@@ -117,9 +117,12 @@ int run(const RunOptions& options) {
   for (const std::string& notice : done.notices) {
     fmt::print("{}\n", notice);
   }
-  fmt::print("session: {}\n{} ticks at {} Hz, {} overruns, {} records lost, {} passes aborted\n",
-             request.file.string(), done.ticks, setup.rate, done.overruns, done.dropped,
-             done.aborted_passes);
+  fmt::print("session: {}{}\n", request.file.string(), done.stopped ? ".partial" : "");
+  if (done.stopped) {
+    fmt::print("stopped with trials left: the same command with --resume goes on with them\n");
+  }
+  fmt::print("{} ticks at {} Hz, {} overruns, {} records lost, {} passes aborted\n", done.ticks,
+             setup.rate, done.overruns, done.dropped, done.aborted_passes);
   return 0;
 }
 

@@ -13,12 +13,13 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::pair<Request, const char*>, 7> kNames{{
+constexpr std::array<std::pair<Request, const char*>, 8> kNames{{
     {Request::kStart, "start"},
     {Request::kPause, "pause"},
     {Request::kRepeatTrial, "repeat"},
     {Request::kSkipTrial, "skip"},
     {Request::kAbort, "abort"},
+    {Request::kEnd, "end"},
     {Request::kEmergencyStop, "emergency_stop"},
     {Request::kClear, "clear"},
 }};

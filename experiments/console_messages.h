@@ -11,7 +11,8 @@ namespace haptrial::experiments {
 /// is mended. @param refused  requests that the console has turned away.
 std::string status_json(const SessionStatus& status, std::uint64_t refused);
 
-/// {"request": "pause"}; the names are start, pause, repeat, skip, abort, emergency_stop, clear.
+/// {"request": "pause"}; the names are start, pause, repeat, skip, abort, end, emergency_stop,
+/// clear.
 /// @throws InputError
 Request parse_request(const std::string& json);
 

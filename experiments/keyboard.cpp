@@ -213,7 +213,9 @@ class Keyboard::Implementation {
       case Mode::kConfirmAbort:
         mode_ = Mode::kKeys;
         if (key == 'y' || key == 'Y') {
-          ask(Request::kAbort, "abort\n");
+          ask(Request::kAbort, "abort: --resume goes on\n");
+        } else if (key == 'e' || key == 'E') {
+          ask(Request::kEnd, "ended for good\n");
         } else {
           show("not aborted\n");
         }
@@ -243,7 +245,7 @@ class Keyboard::Implementation {
         break;
       case 'a':
         mode_ = Mode::kConfirmAbort;
-        show("end the session? y: yes, any other key: no ");
+        show("stop the session? y: for now, e: for good, any other key: no ");
         break;
       case 'n':
         mode_ = Mode::kNote;

@@ -48,7 +48,7 @@ class Session {
   SessionDesk::Actions desk_actions();
 
   void run_plan(const std::vector<PlannedTrial>& plan);
-  void present(const PlannedTrial& trial);
+  bool present(const PlannedTrial& trial);
   bool run_trial(const PlannedTrial& trial, int attempt);
   bool run_pass(const PlannedTrial& trial, record::Phase phase, int attempt);
   std::shared_ptr<const analysis::drilling::Procedure> of_earlier_run(const record::PassRow& pass);
@@ -67,6 +67,7 @@ class Session {
   bool may_go_on_;  // with a bone of an earlier run
   std::uint64_t session_seed_;
   SessionSummary summary_;
+  bool left_{false};  // trials that an abort kept from being presented to their end
   realtime::ServoLoop loop_;
   // Before the task: the servo thread may be using its pass when an error
   // leaves a function.
@@ -151,6 +152,9 @@ SessionSummary Session::run() {
     const auto under_way = std::find_if(
         plan.begin(), plan.end(), [&](const auto& trial) { return !record_.holds(trial, last); });
     const bool drills = last == record::Phase::kDrilling && under_way != plan.end();
+    record_.set_planned(std::count_if(plan.begin(), plan.end(), [&](const auto& trial) {
+      return !trial.practice && (request_.max_trials == 0 || trial.trial <= request_.max_trials);
+    }));
     record_.open(fmt::format("{} trials planned", plan.size()), drills ? &*under_way : nullptr);
     if (real_) {
       servo_ = std::thread([this] { loop_.run(task_); });
@@ -175,17 +179,21 @@ void Session::run_plan(const std::vector<PlannedTrial>& plan) {
   for (const PlannedTrial& trial : plan) {
     const bool enough =
         request_.max_trials > 0 && !trial.practice && trial.trial > request_.max_trials;
-    if (enough || desk_.wishes().abort) {
+    if (enough) {
       break;
     }
     if (record_.holds(trial, trials_->phases().back())) {
       continue;
     }
+    if (desk_.wishes().abort) {
+      left_ = true;
+      break;
+    }
     if (trial.practice && !std::exchange(practised, true) && desk_.attended()) {
       pace_.show_text(d_.texts.practice, "The experimenter starts");
       pace_.wait_for_experimenter("instructions");
     }
-    present(trial);
+    left_ = !present(trial) || left_;
     if (!trial.practice && trial.trial == d_.design.break_after && !desk_.wishes().abort) {
       pace_.take_break();
     }
@@ -199,7 +207,8 @@ void Session::run_plan(const std::vector<PlannedTrial>& plan) {
 
 /// One trial until it is done: again when the experimenter repeats it, or when
 /// it was aborted while an experimenter is there to see to the cause.
-void Session::present(const PlannedTrial& trial) {
+/// @returns whether nothing of it is left to do
+bool Session::present(const PlannedTrial& trial) {
   trials_->prepare(trial, record_);
   Wishes& wishes = desk_.wishes();
   for (int attempt = record_.attempts(trial) + 1; !wishes.abort; ++attempt) {
@@ -213,9 +222,10 @@ void Session::present(const PlannedTrial& trial) {
     const bool done = run_trial(trial, attempt);
     pace_.pause_where_asked();
     if ((done && !wishes.repeat) || wishes.skip || !desk_.attended()) {
-      return;
+      return true;
     }
   }
+  return false;
 }
 
 /// @returns whether all passes were completed.
@@ -309,7 +319,10 @@ const char* Session::why_broken_off() {
   if (wishes.skip) {
     return "skipped";
   }
-  return wishes.abort ? "the session was ended" : trials_->why_aborted();
+  if (wishes.abort) {
+    return wishes.for_good ? "the session was ended for good" : "the session was stopped";
+  }
+  return trials_->why_aborted();
 }
 
 void Session::finish() {
@@ -318,7 +331,16 @@ void Session::finish() {
     record_.keep_frames(screen_->take_frames());
   }
   note_troubles();
-  record_.close(desk_.wishes().abort ? "ended by the experimenter" : "");
+  const Wishes& wishes = desk_.wishes();
+  summary_.stopped = left_ && wishes.abort && !wishes.for_good;
+  if (summary_.stopped) {
+    record_.stop("by the experimenter; --resume goes on at the first unfinished trial");
+  } else {
+    if (left_ && wishes.for_good) {
+      record_.event("ended_for_good", "by the experimenter, with trials left");
+    }
+    record_.close(wishes.abort ? "ended by the experimenter" : "");
+  }
   if (live_) {
     live_->finish();
     summary_.procedures = live_->procedures();
@@ -383,7 +405,14 @@ void Session::note_troubles() {
 
 }  // namespace
 
-SessionSummary run_session(const SessionRequest& request) { return Session(request).run(); }
+SessionSummary run_session(const SessionRequest& request) {
+  if (request.resume && close_what_had_ended(request.file)) {
+    SessionSummary closed;
+    closed.notices.push_back("the session had ended before: its file only had to be closed");
+    return closed;
+  }
+  return Session(request).run();
+}
 
 double estimated_ticks(const BoneDefinition& d, int trials) {
   return d.rate * trials * d.drilling.time_limit;

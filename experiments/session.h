@@ -52,11 +52,13 @@ struct SessionSummary {
   std::uint64_t overruns{0};
   std::uint64_t dropped{0};
   bool simulated{false};                     // the device
+  bool stopped{false};                       // trials are left, and --resume goes on with them
   std::vector<DrilledProcedure> procedures;  // those of this run; on the real clock, or attended
   std::vector<std::string> notices;          // sentences: real time, screen, streams
 };
 
-/// Runs the session and writes its file. On an interrupt or a failure of a simulated session
+/// Runs the session and writes its file. One that had ended and was killed before its file had its
+/// name is only closed. On an interrupt or a failure of a simulated session
 /// nothing is left; a session on the real clock keeps what it recorded as FILE.partial.
 /// @throws RunError, InputError
 SessionSummary run_session(const SessionRequest& request);

@@ -18,7 +18,8 @@ enum class Request : std::uint8_t {
   kPause,          // after the present pass
   kRepeatTrial,    // the present trial again, now
   kSkipTrial,      // on to the next trial
-  kAbort,          // end the session; what was recorded stays
+  kAbort,          // stop the session here; --resume goes on with it
+  kEnd,            // the same for good: nobody goes on with it
   kEmergencyStop,  // force to zero within a tick; stays until kClear
   kClear,          // the experimenter has seen to the cause
 };

@@ -41,6 +41,9 @@ void SessionDesk::heed(Request request) {
       wishes_.skip = true;
       actions_.break_off();
       break;
+    case Request::kEnd:
+      wishes_.for_good = true;
+      [[fallthrough]];
     case Request::kAbort:
       wishes_.abort = true;
       actions_.break_off();

@@ -16,10 +16,11 @@ namespace haptrial::experiments {
 struct Wishes {
   bool start{false};  // go on before the time of a break has passed
   bool pause{false};
-  bool repeat{false};   // the present trial
-  bool skip{false};     // the present trial
-  bool abort{false};    // the session
-  bool stopped{false};  // by a fault or an emergency stop, until it is cleared
+  bool repeat{false};    // the present trial
+  bool skip{false};      // the present trial
+  bool abort{false};     // the session
+  bool for_good{false};  // with abort: nobody goes on with it
+  bool stopped{false};   // by a fault or an emergency stop, until it is cleared
 };
 
 /// The session's side of its control: turns messages into wishes and events, and shows how the

@@ -74,6 +74,26 @@ record::SessionWriter open_writer(const SessionRequest& request, const device::D
   return writer;
 }
 
+bool close_what_had_ended(const std::filesystem::path& file) {
+  if (!record::SessionWriter::can_resume(file)) {
+    return false;
+  }
+  try {
+    const auto runs = record::SessionReader(file.string() + ".partial").runs();
+    if (runs.empty() || runs.back().state != record::RunState::kEnded) {
+      return false;
+    }
+  } catch (const InputError&) {
+    // It is damaged: a resume repairs it, and says what it holds.
+  }
+  record::Resumed found;
+  record::SessionWriter writer = record::SessionWriter::resume(file, found);
+  if (found.ended) {
+    writer.close();
+  }
+  return found.ended;
+}
+
 namespace {
 
 /// Whether a key is for the bone and not for the session.

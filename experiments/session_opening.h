@@ -30,6 +30,11 @@ record::SessionWriter open_writer(const SessionRequest& request, const device::D
                                   record::Resumed& before,
                                   const std::optional<std::vector<record::BoneRecord>>& bones);
 
+/// Gives FILE.partial its name where the session in it had come to its end: it was killed on the
+/// last steps. @returns whether it had; else nothing is changed
+/// @throws InputError, RunError as SessionWriter does
+bool close_what_had_ended(const std::filesystem::path& file);
+
 /// The participant's screen, where one was asked for; else null. Its keys reach the session's
 /// control, its pointer the mouse device.
 /// @param mouse  null for any other device

@@ -251,6 +251,13 @@ std::int64_t SessionRecord::now_ns() const {
   return start_ns_ + static_cast<std::int64_t>(seconds * 1e9);
 }
 
+void SessionRecord::stop(const std::string& text) {
+  append_rest();
+  event("session_stopped", text);
+  write_timing(record::RunState::kStopped);
+  writer_.sync();
+}
+
 void SessionRecord::close(const std::string& text) {
   append_rest();
   event("session_end", text);

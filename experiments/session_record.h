@@ -77,6 +77,12 @@ class SessionRecord {
   void keep_frames(const std::vector<record::FrameRow>& frames) { writer_.add_frames(frames); }
   void event(const std::string& kind, const std::string& text);
 
+  /// Of the study, as this run has it; before open().
+  void set_planned(std::ptrdiff_t trials) {
+    writer_.set_planned(static_cast<std::int32_t>(trials));
+  }
+  /// After the loop's end, where trials are left for another run: FILE.partial stays.
+  void stop(const std::string& text);
   /// After the loop's end: the last event and the timing; the file is complete.
   void close(const std::string& text);
   /// After the loop's end, where the session did not come to its own: a simulated one leaves

@@ -86,8 +86,25 @@ void check_ranges(const std::vector<PassRow>& passes, Integrity& result) {
   }
 }
 
+/// Of the session; of one that was stopped to go on later, so far.
+std::optional<TimingSummary> counts_of(const SessionReader& reader, Integrity& result) {
+  std::optional<TimingSummary> summary = reader.timing_summary();
+  if (summary) result.state = RunState::kEnded;
+  const std::vector<RunRow> runs = reader.runs();
+  if (summary || runs.empty() || runs.back().state != RunState::kStopped) return summary;
+  result.state = RunState::kStopped;
+  summary.emplace();
+  summary->ticks = runs.back().first_sample + runs.back().counts.ticks;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (i + 1 < runs.size() && runs[i + 1].run == runs[i].run) continue;
+    summary->overruns += runs[i].counts.overruns;
+    summary->dropped += runs[i].counts.dropped;
+  }
+  return summary;
+}
+
 void check_counts(const SessionReader& reader, Integrity& result) {
-  const std::optional<TimingSummary> summary = reader.timing_summary();
+  const std::optional<TimingSummary> summary = counts_of(reader, result);
   if (!summary) {
     result.problems.push_back("the counts of the loop are missing: the session did not end");
     return;

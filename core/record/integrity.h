@@ -19,6 +19,7 @@ struct Integrity {
   std::uint64_t practice{0};  // passes among them
   std::uint64_t overruns{0};  // late ticks; no problem in itself
   std::uint64_t dropped{0};
+  RunState state{RunState::kRunning};  // how the last run stands
   bool ok{true};
   std::vector<std::string> problems;  // a sentence each, without the file's name
 };

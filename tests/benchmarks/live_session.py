@@ -138,7 +138,7 @@ def main():
         page.ask("start")
         while page.status["ticks"] < rate * seconds:
             time.sleep(0.5)
-        page.ask("abort")
+        page.ask("end")
         print(session.communicate()[0])
         server.terminate()
         print(subprocess.run([build / "haptrial", "info", folder / "S01.h5"],

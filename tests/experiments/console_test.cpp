@@ -95,7 +95,7 @@ TEST_F(ConsoleTest, RequestsAndNotesReachTheSessionInOrder) {
   const Console console(control_);
   std::vector<std::string> sent;
   for (const char* name :
-       {"start", "pause", "repeat", "skip", "abort", "emergency_stop", "clear", "start"}) {
+       {"start", "pause", "repeat", "skip", "abort", "end", "emergency_stop", "clear", "start"}) {
     RawRequest request = good(console);
     request.body = json{{"request", name}}.dump();
     EXPECT_EQ(status_of(exchange(console, request)), 200);

@@ -322,7 +322,7 @@ TEST(KeyboardWithoutTerminalTest, ALineSaysHowADrillingStands) {
   terminal.press("p");
   ASSERT_TRUE(terminal.shows("\r\npause")) << "on a line of its own";
   terminal.press("a");
-  ASSERT_TRUE(terminal.shows("end the session?"));
+  ASSERT_TRUE(terminal.shows("stop the session?"));
   terminal.press("y");
   EXPECT_EQ(terminal.wait_for_end(), 0);
 }

@@ -69,7 +69,7 @@ TEST_F(LiveBreaksTest, ASessionThatIsEndedBeforeItsBreakHasNone) {
   ASSERT_TRUE(person.sees("instructions"));
   ASSERT_TRUE(person.ask("start"));
   ASSERT_TRUE(person.sees("running", "run"));
-  ASSERT_TRUE(person.ask("abort"));
+  ASSERT_TRUE(person.ask("end"));
   ASSERT_EQ(session.wait().status, 0);
   for (const record::EventRow& event : record::SessionReader(folder_ / "out/S01.h5").events()) {
     EXPECT_NE(event.kind, "break");
@@ -104,7 +104,7 @@ TEST_F(LiveBreaksTest, AttemptsAreCountedOnAfterAResume) {
   ASSERT_TRUE(person.sees("instructions"));
   ASSERT_TRUE(person.ask("start"));
   ASSERT_TRUE(person.sees("running", "run"));
-  ASSERT_TRUE(person.ask("abort"));
+  ASSERT_TRUE(person.ask("end"));
   ASSERT_EQ(again.wait().status, 0);
   const auto passes = record::SessionReader(folder_ / "out/S01.h5").passes();
   ASSERT_EQ(passes.size(), 2u);

@@ -122,7 +122,7 @@ def end(page):
     assert page.text("state") == "Running", page.text("state")
     page.click("abort")
     wait("the question", lambda: not page.hidden("confirm"))
-    page.click("really")
+    page.click("for_good")
     state(page, "Ended")
     wait("the end of the link", lambda: page.text("link") == "closed")
     assert page.hidden("lost"), page.text("lost")

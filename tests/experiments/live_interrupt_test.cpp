@@ -84,7 +84,7 @@ class LiveInterruptTest : public testing::TestWithParam<std::tuple<Way, Moment>>
       const nlohmann::json now = person.status();
       return !now.is_null() && now["state"] == "instructions" && now["ticks"] > 0;
     })) << again.errors();
-    ASSERT_TRUE(person.ask("abort"));
+    ASSERT_TRUE(person.ask("end"));
     const CommandResult ended = again.wait();
     EXPECT_EQ(ended.status, 0) << ended.errors;
     const record::SessionReader reader(folder_ / "out/S01.h5");

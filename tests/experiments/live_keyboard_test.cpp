@@ -49,7 +49,7 @@ TEST(LiveKeyboardTest, KeysSteerTheSessionAndTheTerminalIsPutBack) {
   session.press("c");
   session.press("ax");  // not aborted
   ASSERT_TRUE(test::eventually([&] { return session.output().ends_with("not aborted\r\n"); }));
-  session.press("ay");
+  session.press("ae");
   const CommandResult ended = session.wait();
   EXPECT_EQ(ended.status, 0) << ended.output;
   EXPECT_TRUE(session.takes_lines()) << "as before";

@@ -135,7 +135,7 @@ TEST_F(LiveMouseTest, ThePointerLeadsTheToolAndAPressIsAForce) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   display_->release_button(title, 1);
-  ASSERT_TRUE(person.ask("abort"));
+  ASSERT_TRUE(person.ask("end"));
   const CommandResult ended = session.wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
 

@@ -6,12 +6,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <thread>
 
 #include "core/record/integrity.h"
 #include "core/record/session_reader.h"
+#include "core/record/trial_progress.h"
 #include "experiments/session.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/sanitizer.h"
@@ -61,7 +63,7 @@ TEST_F(LiveSessionTest, TrialsAreRepeatedSkippedAndEnded) {
     when(runs, Request::kRepeatTrial);
     when([](const SessionStatus& s) { return s.aborted_passes == 1 && runs(s); },
          Request::kSkipTrial);
-    when([](const SessionStatus& s) { return s.trial == 2 && runs(s); }, Request::kAbort);
+    when([](const SessionStatus& s) { return s.trial == 2 && runs(s); }, Request::kEnd);
     control_.note("a note");
   });
   run_session(request_);
@@ -80,6 +82,94 @@ TEST_F(LiveSessionTest, TrialsAreRepeatedSkippedAndEnded) {
   EXPECT_EQ(passes[2].trial, 2);
 }
 
+TEST_F(LiveSessionTest, AnAbortedSessionGoesOnAndCanBeEndedForGood) {
+  request_.control = &control_;
+  request_.max_trials = 3;
+  const auto ask_when = [](SessionControl& control, const auto& condition, Request request) {
+    while (!condition(control.status())) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    control.ask(request);
+  };
+  std::thread first([&] {
+    ask_when(control_, state("instructions"), Request::kStart);
+    ask_when(
+        control_, [](const SessionStatus& s) { return s.trial == 2 && runs(s); }, Request::kAbort);
+  });
+  EXPECT_TRUE(run_session(request_).stopped);
+  first.join();
+  const std::filesystem::path partial = request_.file.string() + ".partial";
+  ASSERT_TRUE(std::filesystem::exists(partial));
+  EXPECT_FALSE(std::filesystem::exists(request_.file));
+  std::uint64_t overruns = 0;
+  {
+    const record::SessionReader reader(partial);
+    const record::Integrity integrity = record::check_session(reader);
+    EXPECT_TRUE(integrity.ok) << testing::PrintToString(integrity.problems);
+    EXPECT_EQ(integrity.state, record::RunState::kStopped);
+    overruns = integrity.overruns;
+    const record::TrialProgress progress = record::trial_progress(reader);
+    EXPECT_EQ(progress.planned, 3);
+    EXPECT_EQ(progress.done, 1);
+    EXPECT_EQ(progress.aborted, 1);
+  }
+
+  SessionControl second_control;
+  request_.control = &second_control;
+  request_.resume = true;
+  std::thread second([&] {
+    ask_when(second_control, state("instructions"), Request::kStart);
+    ask_when(
+        second_control, [](const SessionStatus& s) { return s.trial == 3 && runs(s); },
+        Request::kEnd);
+  });
+  EXPECT_FALSE(run_session(request_).stopped);
+  second.join();
+  EXPECT_FALSE(std::filesystem::exists(partial));
+  const record::SessionReader reader(request_.file);
+  const record::Integrity integrity = record::check_session(reader);
+  EXPECT_TRUE(integrity.ok) << testing::PrintToString(integrity.problems);
+  EXPECT_EQ(integrity.state, record::RunState::kEnded);
+  EXPECT_GE(integrity.overruns, overruns);
+  const record::TrialProgress progress = record::trial_progress(reader);
+  EXPECT_EQ(progress.done, 2);
+  EXPECT_EQ(progress.aborted, 1);
+  const auto events = reader.events();
+  const auto has = [&](const char* kind) {
+    return std::any_of(events.begin(), events.end(),
+                       [&](const auto& event) { return event.kind == kind; });
+  };
+  EXPECT_TRUE(has("session_stopped"));
+  EXPECT_TRUE(has("session_resumed"));
+  EXPECT_TRUE(has("ended_for_good"));
+  // The trial that was aborted came again, as a second attempt.
+  for (const PassRow& pass : reader.passes()) {
+    if (pass.trial == 2 && pass.status == PassStatus::kCompleted) {
+      EXPECT_EQ(pass.attempt, 2);
+    }
+  }
+}
+
+/// Killed between its end and the name of its file, it needs only the name.
+TEST_F(LiveSessionTest, ASessionThatHadEndedIsOnlyClosed) {
+  request_.control = &control_;
+  std::thread experimenter([this] {
+    when(state("instructions"), Request::kStart);
+    when(runs, Request::kEnd);
+  });
+  run_session(request_);
+  experimenter.join();
+  const std::filesystem::path partial = request_.file.string() + ".partial";
+  std::filesystem::rename(request_.file, partial);
+  request_.resume = true;
+  request_.control = nullptr;
+  const SessionSummary closed = run_session(request_);
+  EXPECT_EQ(closed.ticks, 0u);
+  ASSERT_EQ(closed.notices.size(), 1u);
+  EXPECT_FALSE(std::filesystem::exists(partial));
+  EXPECT_TRUE(record::check_session(record::SessionReader(request_.file)).ok);
+}
+
 TEST_F(LiveSessionTest, AnEmergencyStopStaysUntilItIsClearedAndTheTrialComesAgain) {
   request_.control = &control_;
   std::thread experimenter([this] {
@@ -90,7 +180,7 @@ TEST_F(LiveSessionTest, AnEmergencyStopStaysUntilItIsClearedAndTheTrialComesAgai
     EXPECT_EQ(control_.status().state, "stopped");
     control_.ask(Request::kClear);
     when(state("stopped"), Request::kStart);
-    when([](const SessionStatus& s) { return s.aborted_passes == 1 && runs(s); }, Request::kAbort);
+    when([](const SessionStatus& s) { return s.aborted_passes == 1 && runs(s); }, Request::kEnd);
   });
   run_session(request_);
   experimenter.join();
@@ -118,12 +208,13 @@ TEST_F(LiveSessionTest, AKilledSessionGoesOnAtItsFirstUnfinishedTrial) {
     run_session(request_);
     _exit(0);
   }
-  // Killed in the second trial: its first test is on the disk by then.
+  // Killed in the test pass of the second trial.
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
   const auto tests_done = [this] {
     try {
-      const auto passes = record::SessionReader(folder_ / "P01.h5.partial").passes();
-      return passes.size() >= 2;
+      const record::SessionReader reader(folder_ / "P01.h5.partial");
+      const auto samples = reader.samples(0, reader.sample_count());
+      return !samples.empty() && samples.back().pass == 3;
     } catch (const std::exception&) {
       return false;
     }
@@ -131,7 +222,6 @@ TEST_F(LiveSessionTest, AKilledSessionGoesOnAtItsFirstUnfinishedTrial) {
   while (!tests_done() && std::chrono::steady_clock::now() < end) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
   ASSERT_FALSE(std::filesystem::exists(request_.file));
@@ -154,6 +244,16 @@ TEST_F(LiveSessionTest, AKilledSessionGoesOnAtItsFirstUnfinishedTrial) {
     }
   }
   EXPECT_EQ(tested, (std::vector<int>{1, 2}));
+  // The pass that was killed says what it was, and the trial came again as a second attempt.
+  const auto passes = reader.passes();
+  ASSERT_EQ(passes.size(), 6u);
+  EXPECT_EQ(passes[3].status, PassStatus::kAborted);
+  EXPECT_EQ(passes[3].phase, Phase::kTest);
+  EXPECT_EQ(passes[3].trial, 2);
+  EXPECT_EQ(passes[3].attempt, 1);
+  EXPECT_EQ(passes[3].condition, passes[2].condition);
+  EXPECT_EQ(passes[4].attempt, 2);
+  EXPECT_EQ(passes[5].attempt, 2);
 }
 
 }  // namespace

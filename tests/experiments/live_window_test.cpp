@@ -208,7 +208,7 @@ TEST_P(LiveWindowTest, ShowsWhatTheFileHolds) {
   ASSERT_TRUE(person.sees("stopped"));
   EXPECT_EQ(person.status()["applied_force"], 0.0);
   EXPECT_TRUE(test::eventually([&] { return shade_of_patch() == 0.0; })) << "the run is over";
-  ASSERT_TRUE(person.ask("abort"));
+  ASSERT_TRUE(person.ask("end"));
   const CommandResult ended = session.wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
 

@@ -74,7 +74,7 @@ TEST_F(RecoverCommandTest, AHealthyFileComesBackWithTheSameScores) {
   EXPECT_EQ(test::read_text(file_), before) << "it is as it was";
   const CommandResult info = haptrial("info", saved_);
   EXPECT_EQ(info.status, 0) << info.output;
-  EXPECT_THAT(info.output, AllOf(HasSubstr("recovered"), HasSubstr("complete: every tick")));
+  EXPECT_THAT(info.output, AllOf(HasSubstr("recovered"), HasSubstr("intact: every tick")));
   const fs::path again = in_new_folder("again", saved_);
   const fs::path first = in_new_folder("first", file_);
   ASSERT_EQ(haptrial("analyze", again).status, 0);
@@ -112,7 +112,7 @@ TEST_F(RecoverCommandTest, DamageInTheMiddleCostsWhatItTouchesAndTheRestIsScored
   EXPECT_EQ(result.output.find(" 0 missing between them"), std::string::npos) << result.output;
   const CommandResult info = haptrial("info", saved_);
   EXPECT_EQ(info.status, 1) << info.output;
-  EXPECT_THAT(info.output, AllOf(HasSubstr("gaps"), HasSubstr("NOT complete")));
+  EXPECT_THAT(info.output, AllOf(HasSubstr("gaps"), HasSubstr("NOT intact")));
   const fs::path folder = in_new_folder("part", saved_);
   const CommandResult analysis = haptrial("analyze", folder);
   ASSERT_EQ(analysis.status, 0) << analysis.errors;
