@@ -31,6 +31,15 @@ void SessionTask::emergency_stop() noexcept { stop_asked_.store(true, std::memor
 
 void SessionTask::break_off() noexcept { break_asked_.store(true, std::memory_order_release); }
 
+bool SessionTask::at_rest() const noexcept {
+  return idle() && force_gone_.load(std::memory_order_acquire);
+}
+
+bool SessionTask::stopped() const noexcept {
+  return !stop_asked_.load(std::memory_order_acquire) &&
+         force_gone_.load(std::memory_order_acquire);
+}
+
 bool SessionTask::tick(const realtime::Tick& tick) noexcept {
   take_requests(tick.index);
 
@@ -38,13 +47,18 @@ bool SessionTask::tick(const realtime::Tick& tick) noexcept {
   reading_.keys = keys_ != nullptr ? keys_->load(std::memory_order_relaxed) : 0;
   envelope_.check(read_ok, reading_);
   PassOutput out = ask_pass(reading_, tick.dt);
-  const Eigen::Vector3d force = envelope_.limit(out.force, tick.dt);
+  Eigen::Vector3d force = envelope_.limit(out.force, tick.dt);
+  if (take_stop()) {  // it came during the tick, which a slow device may draw out
+    force.setZero();
+  }
   for (stimulus::Observer* observer : observers_) {
     observer->observe(out.presentation, force, tick.dt);
   }
-  if (!device_.write(force)) {
+  const bool taken = device_.write(force);
+  if (!taken) {
     envelope_.trip(device::Fault::kWriteFailed);
   }
+  force_gone_.store(taken && force.isZero(0.0), std::memory_order_release);
 
   record::Sample sample;
   sample.sequence = origin_.sequence + tick.index;
@@ -86,10 +100,7 @@ void SessionTask::take_requests(std::uint64_t sequence) noexcept {
     clear_asked_.store(false, std::memory_order_relaxed);
     envelope_.reset();
   }
-  if (stop_asked_.load(std::memory_order_acquire)) {
-    stop_asked_.store(false, std::memory_order_relaxed);
-    envelope_.trip(device::Fault::kEmergencyStop);
-  }
+  take_stop();
   if (break_asked_.load(std::memory_order_acquire)) {
     break_asked_.store(false, std::memory_order_relaxed);
     if (waiting_ != nullptr) {
@@ -105,6 +116,16 @@ void SessionTask::take_requests(std::uint64_t sequence) noexcept {
   if (waiting_ != nullptr && may_begin()) {
     begin(sequence);
   }
+}
+
+/// @returns whether an emergency stop was asked for.
+bool SessionTask::take_stop() noexcept {
+  if (!stop_asked_.load(std::memory_order_acquire)) {
+    return false;
+  }
+  envelope_.trip(device::Fault::kEmergencyStop);
+  stop_asked_.store(false, std::memory_order_release);
+  return true;
 }
 
 /// Not before the force of the pass before has gone; a fault lets it begin, to end it.

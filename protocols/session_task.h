@@ -65,13 +65,18 @@ class SessionTask final : public realtime::ServoTask {
   void clear_fault() noexcept;
   /// Ends the present pass as aborted without a fault: to repeat or to skip its trial.
   void break_off() noexcept;
-  /// Force to zero from the next tick on, the present pass aborted.
+  /// Force to zero from the next tick on, the present pass aborted. Also from a signal's handler.
   void emergency_stop() noexcept;
+  /// Whether no pass runs and the device has taken a force of zero. Any thread.
+  bool at_rest() const noexcept;
+  /// After emergency_stop(): whether the device has taken the zero. Also from a signal's handler.
+  bool stopped() const noexcept;
 
   bool tick(const realtime::Tick& tick) noexcept override;
 
  private:
   void take_requests(std::uint64_t sequence) noexcept;
+  bool take_stop() noexcept;
   bool may_begin() noexcept;
   void begin(std::uint64_t sequence) noexcept;
   bool end_if_over(std::uint64_t sequence) noexcept;
@@ -91,6 +96,7 @@ class SessionTask final : public realtime::ServoTask {
   std::atomic<Pass*> asked_{nullptr};  // session thread -> servo thread
   std::atomic<std::int32_t> asked_row_{-1};
   std::atomic<bool> busy_{false};
+  std::atomic<bool> force_gone_{true};  // the device took a force of zero last
   std::atomic<bool> clear_asked_{false};
   std::atomic<bool> stop_asked_{false};
   std::atomic<bool> break_asked_{false};

@@ -346,6 +346,63 @@ TEST_F(SessionTaskTest, AnEmergencyStopBetweenPassesStopsTheNextOne) {
   EXPECT_EQ(pass.done(), 0);
 }
 
+TEST_F(SessionTaskTest, AStopThatComesWhileTheDeviceIsReadTakesTheForceOfThatTick) {
+  ConstantPass pass({0, 5, 0}, 100);
+  device_.on_read = [this](std::size_t tick, DeviceReading&) {
+    if (tick == 20) {
+      task_.emergency_stop();
+    }
+    return true;
+  };
+  task_.start(pass, 1);
+  ticks(30);
+  EXPECT_EQ(device_.written[19], Vector3d(0, 5, 0));
+  EXPECT_TRUE(device_.written[20].isZero(0.0));
+  EXPECT_EQ(task_.result().fault, Fault::kEmergencyStop);
+  EXPECT_EQ(task_.result().last_sample, 20u);
+  expect_all_recorded();
+}
+
+TEST_F(SessionTaskTest, SaysWhenAStopHasReachedTheDevice) {
+  ConstantPass pass({0, 5, 0}, 100);
+  task_.start(pass, 1);
+  ticks(20);
+  EXPECT_FALSE(task_.stopped());
+  EXPECT_FALSE(task_.at_rest());
+  task_.emergency_stop();
+  EXPECT_FALSE(task_.stopped()) << "asked for, not done";
+  ticks(1);
+  EXPECT_TRUE(task_.stopped());
+  EXPECT_TRUE(task_.at_rest());
+}
+
+TEST_F(SessionTaskTest, IsAtRestWhenTheForceThatWasLetGoHasGone) {
+  device::EnvelopeLimits gentle = limits();
+  gentle.ramp_out = 0.05;
+  SessionTask task(device_, gentle, log_, {}, Leave::kNever);
+  ConstantPass pass({0, 5, 0}, 20);
+  EXPECT_TRUE(task.at_rest()) << "nothing was commanded yet";
+  task.start(pass, 1);
+  for (std::uint64_t i = 0; i < 120; ++i) {
+    task.tick({i, 0, kDt});
+    EXPECT_EQ(task.at_rest(), task.idle() && device_.written.back().isZero(0.0)) << i;
+    if (i == 30) {
+      EXPECT_TRUE(task.idle());
+      EXPECT_FALSE(task.at_rest()) << "the pass is over, its force is not";
+    }
+  }
+  EXPECT_TRUE(task.at_rest());
+}
+
+TEST_F(SessionTaskTest, AForceThatTheDeviceDidNotTakeIsNotAtRest) {
+  device_.on_write = [](std::size_t tick) { return tick < 20; };
+  ConstantPass pass({0, 5, 0}, 100);
+  task_.start(pass, 1);
+  ticks(30);
+  EXPECT_TRUE(task_.idle());
+  EXPECT_FALSE(task_.at_rest()) << "nobody knows what its motors do";
+}
+
 TEST_F(SessionTaskTest, ClearingAnOldFaultDoesNotWipeOutAnEmergencyStop) {
   ConstantPass pass({0, 5, 0}, 100);
   task_.clear_fault();
