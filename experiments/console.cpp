@@ -6,15 +6,14 @@
 
 #include <algorithm>
 #include <atomic>
-#include <condition_variable>
 #include <cstring>
-#include <deque>
-#include <thread>
+#include <optional>
 #include <utility>
 
 #include "core/base/error.h"
 #include "experiments/console_address.h"
 #include "experiments/console_connection.h"
+#include "experiments/console_door.h"
 #include "experiments/console_guard.h"
 #include "experiments/console_messages.h"
 #include "experiments/console_page.h"
@@ -26,7 +25,8 @@ using Seconds = Connection::Duration;
 
 constexpr std::size_t kMaxHead = 8192;
 constexpr std::size_t kMaxBody = 4096;
-const Seconds kLastWord(0.2);  // for a client that was cut off to take its answer
+constexpr std::size_t kSilent = 256;  // connections that have said nothing
+const Seconds kLastWord(0.2);         // for a client that was cut off to take its answer
 
 /// What a worker is busy with; the library's handlers run inside it.
 struct Job {
@@ -34,7 +34,6 @@ struct Job {
   bool refused{false};
 };
 thread_local Job* t_job = nullptr;
-thread_local bool t_turn_away = false;  // no worker is free for the socket that comes next
 
 /// The answer to a client that was cut off, or 0.
 int status_of(Connection::Trouble trouble) {
@@ -67,97 +66,42 @@ class SocketStream final : public httplib::Stream {
   Connection& connection_;
 };
 
-/// A fixed number of threads and a bounded queue.
-class Workers final : public httplib::TaskQueue {
- public:
-  /// @param crowded  set while connections wait
-  Workers(int threads, int waiting, std::atomic<bool>& crowded)
-      : waiting_(static_cast<std::size_t>(waiting)), crowded_(crowded) {
-    for (int i = 0; i < threads; ++i) {
-      threads_.emplace_back([this] { work(); });
-    }
-  }
-
-  void enqueue(std::function<void()> task) override {
-    {
-      const std::lock_guard lock(mutex_);
-      if (tasks_.size() < waiting_) {
-        tasks_.push_back(std::exchange(task, nullptr));
-        crowded_ = true;
-      }
-    }
-    if (task) {
-      t_turn_away = true;
-      task();  // closes the socket
-      t_turn_away = false;
-    } else {
-      come_.notify_one();
-    }
-  }
-
-  void shutdown() override {
-    {
-      const std::lock_guard lock(mutex_);
-      ended_ = true;
-    }
-    come_.notify_all();
-    for (std::thread& thread : threads_) {
-      thread.join();
-    }
-  }
-
- private:
-  void work() {
-    std::unique_lock lock(mutex_);
-    for (;;) {
-      come_.wait(lock, [this] { return ended_ || !tasks_.empty(); });
-      if (tasks_.empty()) {
-        return;
-      }
-      const auto task = std::move(tasks_.front());
-      tasks_.pop_front();
-      crowded_ = !tasks_.empty();
-      lock.unlock();
-      task();
-      lock.lock();
-    }
-  }
-
-  const std::size_t waiting_;
-  std::atomic<bool>& crowded_;
-  std::mutex mutex_;
-  std::condition_variable come_;
-  std::deque<std::function<void()>> tasks_;
-  bool ended_{false};
-  std::vector<std::thread> threads_;
-};
-
-/// The library's server over our connections: one request each, bounded in time and size.
+/// The library's way to answer a request, over our connections: one request each, bounded in time
+/// and size. The library's own listener is not used.
 class BoundedServer final : public httplib::Server {
  public:
   BoundedServer(const StopEvent& stop, RefusalLog& log, Seconds time)
       : stop_(stop), log_(log), time_(time) {}
-  std::atomic<bool>& crowded() { return crowded_; }
+  ~BoundedServer() override { close_listener(); }
+
   /// Once bound. The library lets five wait to be accepted; the sixth would try again after a
   /// second.
-  void let_more_wait() { ::listen(svr_sock_, 128); }
-
- private:
-  bool process_and_close_socket(socket_t socket) override {
-    ::fcntl(socket, F_SETFD, FD_CLOEXEC);
-    Connection connection(socket, stop_, crowded_, kMaxHead + kMaxBody, time_);
-    if (t_turn_away) {
-      log_.add(fmt::format("{}: 503: too many connections", connection.peer()));
-    } else {
-      Job job{connection};
-      t_job = &job;
-      serve(connection, job);
-      t_job = nullptr;
+  int listening() {
+    constexpr int kWaiting = 4096;
+    ::listen(svr_sock_, kWaiting);
+    return svr_sock_;
+  }
+  void close_listener() {
+    const socket_t socket = svr_sock_.exchange(INVALID_SOCKET);
+    if (socket != INVALID_SOCKET) {
+      ::close(socket);
     }
-    ::close(socket);
-    return true;
   }
 
+  /// Answers and closes. @param trusted  it has shown the token
+  void answer(int socket, bool trusted, const std::atomic<bool>& crowded) {
+    Connection connection(socket, stop_, crowded, kMaxHead + kMaxBody, time_);
+    if (trusted) {
+      connection.trust();
+    }
+    Job job{connection};
+    t_job = &job;
+    serve(connection, job);
+    t_job = nullptr;
+    ::close(socket);
+  }
+
+ private:
   void serve(Connection& connection, Job& job) {
     const std::string peer = connection.peer();
     SocketStream stream(connection);
@@ -188,7 +132,6 @@ class BoundedServer final : public httplib::Server {
   const StopEvent& stop_;
   RefusalLog& log_;
   Seconds time_;
-  std::atomic<bool> crowded_{false};
 };
 
 RequestHead head_of(const httplib::Request& request) {
@@ -219,9 +162,9 @@ void check_options(const ConsoleOptions& o) {
   require(o.events_per_second >= 1 && o.events_per_second <= 60,
           "the console's events per second must be 1 to 60");
   require(o.request_time > 0 && o.request_time <= 60, "the console's request time must be > 0 s");
-  require(o.workers >= 2 && o.workers <= 256, "the console's workers must be 2 to 256");
-  require(o.event_streams >= 1 && o.event_streams < o.workers,
-          "the console's event streams must be 1 or more and fewer than its workers");
+  require(o.workers >= 1 && o.workers <= 256, "the console's workers must be 1 to 256");
+  require(o.event_streams >= 1 && o.event_streams <= 256,
+          "the console's event streams must be 1 to 256");
   require(o.waiting >= 1, "the console's waiting connections must be 1 or more");
 }
 
@@ -239,19 +182,23 @@ class Console::Implementation {
     const bool loopback = check_console_address(options_.address, options_.allow_remote);
     set_up_server();
     port_ = bind();
-    server_.let_more_wait();
     names_ = console_hosts(options_.address, loopback, port_);
     gate_.emplace(Gate::Rules{token_, names_, kMaxBody});
-    thread_ = std::thread([this] { server_.listen_after_bind(); });
-    while (!server_.is_running()) {  // stop() before that would be without effect
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
+    constexpr int kForRequests = 4;  // beside the event streams
+    ours_.emplace(options_.event_streams + kForRequests, options_.waiting);
+    others_.emplace(options_.workers, options_.waiting);
+    door_.emplace(server_.listening(), stop_,
+                  FrontDoor::Rules{token_, kSilent, Seconds(options_.request_time)},
+                  FrontDoor::Ways{[this](int socket, bool trusted) { admit(socket, trusted); },
+                                  [this](int socket) { turn_away(socket); }});
   }
 
   ~Implementation() {
     stop_.set();
-    server_.stop();
-    thread_.join();
+    door_.reset();
+    server_.close_listener();  // tells the library's event streams that it is over
+    others_.reset();
+    ours_.reset();
   }
 
   std::string url() const { return fmt::format("http://{}/?token={}", names_.front(), token_); }
@@ -273,6 +220,22 @@ class Console::Implementation {
     return port;
   }
 
+  /// To the workers of those who have shown the token, which nobody else can occupy, or the others.
+  void admit(int socket, bool trusted) {
+    Workers& workers = trusted ? *ours_ : *others_;
+    const std::atomic<bool>& crowded = workers.crowded();
+    if (!workers.enqueue(
+            [this, socket, trusted, &crowded] { server_.answer(socket, trusted, crowded); })) {
+      turn_away(socket);
+      ::close(socket);
+    }
+  }
+  void turn_away(int socket) {
+    const std::string address = address_of(socket);
+    log_.add(fmt::format("{}: 503: too many connections",
+                         address.empty() ? "a client that has gone" : address));
+  }
+
   void set_up_server();
   void answer(const httplib::Request& request, httplib::Response& response);
   void send_page(httplib::Response& response);
@@ -289,7 +252,9 @@ class Console::Implementation {
   std::vector<std::string> names_;
   std::optional<Gate> gate_;
   BoundedServer server_;
-  std::thread thread_;
+  std::optional<Workers> ours_;    // who has shown the token
+  std::optional<Workers> others_;  // everybody else
+  std::optional<FrontDoor> door_;
 };
 
 void Console::Implementation::refuse(httplib::Response& response, int status,
@@ -299,9 +264,6 @@ void Console::Implementation::refuse(httplib::Response& response, int status,
 }
 
 void Console::Implementation::set_up_server() {
-  server_.new_task_queue = [this] {
-    return new Workers(options_.workers, options_.waiting, server_.crowded());
-  };
   // Not SO_REUSEPORT, with which another program of this user could share the port.
   server_.set_socket_options([](socket_t socket) {
     const int yes = 1;

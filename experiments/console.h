@@ -16,9 +16,9 @@ struct ConsoleOptions {
   bool allow_remote{false};          // other addresses than loopback
   double events_per_second{15.0};    // to each page, 1 to 60
   double request_time{2.0};          // a request that takes longer is refused > 0 [s]
-  int workers{16};                   // requests and event streams at a time, >= 2
-  int event_streams{4};              // pages at a time, 1 to workers - 1
-  int waiting{32};                   // connections that may wait for a worker
+  int workers{8};        // requests at a time of those who have not shown the token, >= 1
+  int event_streams{4};  // pages at a time, >= 1
+  int waiting{32};       // connections that may wait for a worker
   /// Gets a sentence for each of the first refusals (RefusalLog); on a thread of the console.
   std::function<void(const std::string&)> on_refusal;
 };
@@ -26,7 +26,8 @@ struct ConsoleOptions {
 /// The experimenter's console: one page, served on threads of its own, that shows
 /// SessionControl::status() and turns clicks into SessionControl::ask() and note(). It knows
 /// nothing else of the session, so nothing that a browser does reaches the servo thread but as
-/// a message. The HTTP library makes the process ignore SIGPIPE.
+/// a message. Who shows the token is served by threads that nobody else can occupy, so that no
+/// flood keeps an emergency stop waiting. The HTTP library makes the process ignore SIGPIPE.
 ///
 ///     GET /?token=T        the page
 ///     GET /events?token=T  server-sent events, each a status as JSON

@@ -153,21 +153,38 @@ void Connection::finish() {
   }
 }
 
-std::string Connection::peer() const {
+namespace {
+
+struct Peer {
+  std::string address;
+  int port{0};
+};
+
+Peer peer_of(int socket) {
   sockaddr_storage address{};
   socklen_t size = sizeof address;
   std::array<char, INET6_ADDRSTRLEN> text{};
-  if (::getpeername(socket_, reinterpret_cast<sockaddr*>(&address), &size) != 0) {
-    return "a client that has gone";
+  if (::getpeername(socket, reinterpret_cast<sockaddr*>(&address), &size) != 0) {
+    return {};
   }
   if (address.ss_family == AF_INET6) {
     const auto* v6 = reinterpret_cast<const sockaddr_in6*>(&address);
     ::inet_ntop(AF_INET6, &v6->sin6_addr, text.data(), text.size());
-    return fmt::format("[{}]:{}", text.data(), ntohs(v6->sin6_port));
+    return {fmt::format("[{}]", text.data()), ntohs(v6->sin6_port)};
   }
   const auto* v4 = reinterpret_cast<const sockaddr_in*>(&address);
   ::inet_ntop(AF_INET, &v4->sin_addr, text.data(), text.size());
-  return fmt::format("{}:{}", text.data(), ntohs(v4->sin_port));
+  return {text.data(), ntohs(v4->sin_port)};
+}
+
+}  // namespace
+
+std::string address_of(int socket) { return peer_of(socket).address; }
+
+std::string Connection::peer() const {
+  const Peer peer = peer_of(socket_);
+  return peer.address.empty() ? "a client that has gone"
+                              : fmt::format("{}:{}", peer.address, peer.port);
 }
 
 }  // namespace haptrial::experiments

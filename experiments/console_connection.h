@@ -25,6 +25,9 @@ class StopEvent {
   int descriptor_;
 };
 
+/// Of the other side, without its port: "127.0.0.1"; empty when it has gone.
+std::string address_of(int socket);
+
 /// One accepted socket with a deadline and a limit on what it may send, so that a slow or talkative
 /// client costs a bounded time and memory. Not thread-safe; closed by whoever accepted it.
 class Connection {

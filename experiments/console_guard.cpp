@@ -12,18 +12,6 @@
 namespace haptrial::experiments {
 namespace {
 
-/// In a time that does not tell how many characters were right.
-bool same_secret(const std::string& a, const std::string& b) {
-  if (a.size() != b.size()) {
-    return false;
-  }
-  unsigned difference = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    difference |= static_cast<unsigned>(a[i] ^ b[i]);
-  }
-  return difference == 0;
-}
-
 bool is_json(const std::string& content_type) {
   const std::string type = content_type.substr(0, content_type.find(';'));
   return type == "application/json" || type == "application/json ";
@@ -38,6 +26,17 @@ std::string printable(const std::string& text, std::size_t longest) {
 }
 
 }  // namespace
+
+bool is_same_secret(const std::string& a, const std::string& b) {
+  if (a.size() != b.size()) {
+    return false;
+  }
+  unsigned difference = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    difference |= static_cast<unsigned>(a[i] ^ b[i]);
+  }
+  return difference == 0;
+}
 
 std::string make_token() {
   std::array<unsigned char, 16> bits{};
@@ -85,7 +84,7 @@ std::optional<Refusal> Gate::judge_sender(const RequestHead& head) const {
   // EventSource cannot send a header, so that reading may name the token in the address.
   const bool by_query = head.method == "GET" && head.token_header.empty();
   const std::string& token = by_query ? head.token_query : head.token_header;
-  if (!same_secret(token, rules_.token)) {
+  if (!is_same_secret(token, rules_.token)) {
     return Refusal{403, token.empty() ? "the token is missing" : "the token is wrong"};
   }
   return std::nullopt;

@@ -15,6 +15,9 @@ namespace haptrial::experiments {
 /// @throws RunError
 std::string make_token();
 
+/// In a time that does not tell how many characters were right.
+bool is_same_secret(const std::string& a, const std::string& b);
+
 /// What a request says of itself before its body is read; empty where it does not say.
 struct RequestHead {
   std::string method;
