@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -16,6 +18,7 @@
 #include "experiments/device_check.h"
 #include "experiments/experiment.h"
 #include "experiments/interrupt.h"
+#include "experiments/last_stop.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -148,19 +151,36 @@ const char* prompt(CheckPart part) {
   return "";
 }
 
+/// Takes the force away when the program is interrupted or dies.
+class CheckStop final : public LastStop {
+ public:
+  CheckStop(DeviceCheck& check, device::Device& device) : check_(check), device_(device) {}
+  void set_servo_thread() { servo_ = ::gettid(); }
+  void ask() noexcept override { check_.stop(); }
+  bool done() const noexcept override { return check_.stopped(); }
+  bool on_servo_thread() const noexcept override { return servo_.load() == ::gettid(); }
+  void write_zero() noexcept override { device_.write(Eigen::Vector3d::Zero()); }
+
+ private:
+  DeviceCheck& check_;
+  device::Device& device_;
+  std::atomic<pid_t> servo_{0};
+};
+
 /// Runs the loop on a thread of its own, and tells the person what to do.
-void run_check(DeviceCheck& check, realtime::ServoLoop& loop, bool person) {
-  std::thread servo([&] { loop.run(check); });
+void run_check(DeviceCheck& check, device::Device& device, realtime::ServoLoop& loop, bool person) {
+  CheckStop stop(check, device);
+  const WatchedStop watched(stop);
+  std::thread servo([&] {
+    stop.set_servo_thread();
+    loop.run(check);
+  });
   std::optional<CheckPart> told;
   while (check.part() != CheckPart::kDone) {
     if (person && told != check.part() && check.part() != CheckPart::kDone) {
       told = check.part();
       fmt::print("-> {}\n", prompt(*told));
       std::fflush(stdout);
-    }
-    if (interrupted()) {
-      loop.request_stop();
-      break;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
@@ -173,6 +193,8 @@ void run_check(DeviceCheck& check, realtime::ServoLoop& loop, bool person) {
 }  // namespace
 
 int device_test(const DeviceTestOptions& options) {
+  watch_for_interrupt();
+  watch_fatal_signals();
   constexpr double kLeast = 1.0;
   constexpr double kMost = 3600.0;
   if (!(options.seconds >= kLeast && options.seconds <= kMost)) {
@@ -186,7 +208,7 @@ int device_test(const DeviceTestOptions& options) {
   const auto ticks = static_cast<std::uint64_t>(std::lround(options.seconds * kRate));
   DeviceCheck check(*bench.device, limits_of(info), ticks, bench.hand);
   realtime::ServoLoop loop(realtime::ClockKind::kReal, kRate);
-  run_check(check, loop, !bench.hand);
+  run_check(check, *bench.device, loop, !bench.hand);
 
   bool good = true;
   for (const Verdict& v : judge(check.findings(), loop, bench.reach, bench.has_button)) {

@@ -14,6 +14,7 @@
 #include "experiments/experiment.h"
 #include "experiments/interrupt.h"
 #include "experiments/keyboard.h"
+#include "experiments/last_stop.h"
 #include "experiments/rig.h"
 #include "experiments/session.h"
 
@@ -70,6 +71,11 @@ SessionSummary attended_session(SessionRequest& request, const RunOptions& optio
     std::fflush(stdout);
   }
   const Keyboard keyboard(control);
+  if (!console && !keyboard.active()) {
+    throw InputError(
+        "--keyboard needs a terminal with this program in its foreground, or nobody could clear a "
+        "stop; add --console, or run it in a terminal");
+  }
   if (keyboard.active()) {
     fmt::print("{}\n", Keyboard::help());
     std::fflush(stdout);
@@ -81,6 +87,7 @@ SessionSummary attended_session(SessionRequest& request, const RunOptions& optio
 
 int run(const RunOptions& options) {
   watch_for_interrupt();
+  watch_fatal_signals();
   const Experiment experiment = load_experiment(options.definition);
   const Setup& setup = experiment.setup();
   check_subject(options.subject);

@@ -67,6 +67,9 @@ bool DeviceCheck::tick(const realtime::Tick& tick) noexcept {
     note(part, reading);
     wanted = part == CheckPart::kPush ? push(share, reading.tool.position) : wanted;
   }
+  if (stop_.load(std::memory_order_relaxed)) {
+    envelope_.trip(device::Fault::kEmergencyStop);
+  }
   if (!device_.write(envelope_.limit(wanted, tick.dt)) &&
       envelope_.fault() == device::Fault::kNone) {
     envelope_.trip(device::Fault::kWriteFailed);
@@ -76,6 +79,7 @@ bool DeviceCheck::tick(const realtime::Tick& tick) noexcept {
   const bool more = done_ < ticks_ && findings_.fault == device::Fault::kNone;
   if (!more) {
     device_.write(Eigen::Vector3d::Zero());
+    stopped_.store(true, std::memory_order_release);
     part_.store(CheckPart::kDone, std::memory_order_relaxed);
   }
   return more;

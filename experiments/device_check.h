@@ -44,6 +44,10 @@ class DeviceCheck final : public realtime::ServoTask {
               Hand hand = {});
 
   bool tick(const realtime::Tick& tick) noexcept override;
+  /// Ends the check with a force of zero. Any thread, or a signal's handler.
+  void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
+  /// After stop(): whether the device was given the zero.
+  bool stopped() const noexcept { return stopped_.load(std::memory_order_acquire); }
   CheckPart part() const noexcept { return part_.load(std::memory_order_relaxed); }
   const DeviceFindings& findings() const noexcept { return findings_; }
 
@@ -59,6 +63,8 @@ class DeviceCheck final : public realtime::ServoTask {
   std::uint64_t ticks_;
   std::uint64_t done_{0};
   Hand hand_;
+  std::atomic<bool> stop_{false};
+  std::atomic<bool> stopped_{false};
   std::atomic<CheckPart> part_{CheckPart::kRest};
   DeviceFindings findings_;
   bool has_rest_{false};

@@ -4,6 +4,7 @@
 #include <csignal>
 
 #include "experiments/keyboard.h"
+#include "experiments/last_stop.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -17,7 +18,7 @@ extern "C" void on_signal(int signal) {
   interrupt();
   restore_terminal();
   if (signal != SIGHUP) {  // a shell and the system may both tell of a closed terminal
-    std::signal(signal, SIG_DFL);
+    std::signal(signal, stop_and_die);
   }
 }
 

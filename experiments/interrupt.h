@@ -3,7 +3,7 @@
 namespace haptrial::experiments {
 
 /// From now on SIGINT, SIGTERM and a closed terminal (SIGHUP, unless it was ignored) ask the
-/// program to stop; a second SIGINT or SIGTERM ends it at once.
+/// program to stop; a second SIGINT or SIGTERM ends it at once, once the force is zero.
 void watch_for_interrupt();
 bool interrupted() noexcept;  // any thread
 /// As such a signal does. Any thread.

@@ -9,6 +9,7 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <string>
@@ -17,11 +18,13 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/realtime/real_time.h"
 
 namespace haptrial::experiments {
 namespace {
 
 constexpr char kEscape = '\x1b';
+constexpr int kPriority = 60;  // of SCHED_FIFO, below the servo thread's
 
 // What a signal handler needs to put the terminal back.
 termios saved;
@@ -145,6 +148,7 @@ class Keyboard::Implementation {
   }
 
   void read_keys() {
+    const realtime::RealTimeScope ahead_of_others(kPriority);
     std::array<char, 64> keys;
     while (!ended_) {
       constexpr int kBetweenStatus = 1000;  // [ms]
@@ -152,19 +156,28 @@ class Keyboard::Implementation {
         show_status();
         continue;
       }
-      ssize_t count = ::read(input_, keys.data(), keys.size());
+      const ssize_t count = ::read(input_, keys.data(), keys.size());
       if (count <= 0) {
         ended_ = count == 0 || errno != EINTR;
         continue;
       }
-      // An arrow key is an escape too, but the rest of it follows at once.
-      if (keys[static_cast<std::size_t>(count) - 1] == kEscape &&
-          static_cast<std::size_t>(count) < keys.size() && wait(20)) {
-        const auto more = ::read(input_, keys.data() + count, keys.size() - count);
-        count += more > 0 ? more : 0;
-      }
-      take({keys.data(), static_cast<std::size_t>(count)});
+      take(without_rest({keys.data(), static_cast<std::size_t>(count)}));
     }
+  }
+
+  /// An arrow key is an escape too. A terminal sends it whole; where a slow line tore it apart its
+  /// escape has stopped the session, since a stop does not wait, and the rest means nothing.
+  std::string_view without_rest(std::string_view keys) {
+    constexpr std::chrono::milliseconds kTorn{50};
+    const bool torn = std::chrono::steady_clock::now() - escaped_ < kTorn;
+    escaped_ = {};
+    return torn && !keys.empty() && is_introducer(keys.front()) ? after_sequence(keys) : keys;
+  }
+
+  static bool is_introducer(char key) { return key == '[' || key == 'O'; }
+  static std::string_view after_sequence(std::string_view keys) {
+    const auto end = keys.find_first_not_of("[O0123456789;");
+    return end == std::string_view::npos ? "" : keys.substr(end + 1);
   }
 
   /// How a drilling stands: one line that is written over, where somebody looks at it.
@@ -192,11 +205,11 @@ class Keyboard::Implementation {
     while (!keys.empty()) {
       const char key = keys.front();
       keys.remove_prefix(1);
-      if (key == kEscape && !keys.empty() && (keys.front() == '[' || keys.front() == 'O')) {
-        const auto end = keys.find_first_not_of("[O0123456789;");
-        keys.remove_prefix(end == std::string_view::npos ? keys.size() : end + 1);
+      if (key == kEscape && !keys.empty() && is_introducer(keys.front())) {
+        keys = after_sequence(keys);
       } else if (key == kEscape) {
-        control_.ask(Request::kEmergencyStop);
+        escaped_ = std::chrono::steady_clock::now();
+        control_.ask(Request::kEmergencyStop, Asker::kTerminal);
         leave_mode();
         show("emergency stop\n");
       } else {
@@ -303,7 +316,7 @@ class Keyboard::Implementation {
   }
 
   void ask(Request request, std::string_view what) {
-    control_.ask(request);
+    control_.ask(request, Asker::kTerminal);
     show(what);
   }
 
@@ -331,6 +344,7 @@ class Keyboard::Implementation {
   bool ended_{false};
   Mode mode_{Mode::kKeys};
   std::string note_;
+  std::chrono::steady_clock::time_point escaped_{};  // the last key was an escape
   termios original_{};
   std::thread thread_;
 };

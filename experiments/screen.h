@@ -57,8 +57,8 @@ struct ScreenCallbacks {
   std::function<void(const std::vector<int>&)> held;
 };
 
-/// What a key in the participant's window asks for, as on the console's keyboard: Escape is the
-/// emergency stop, space and Enter go on, P pauses, R repeats, S skips, C clears.
+/// What a key in the participant's window asks for where it may, as on the console's keyboard:
+/// Escape is the emergency stop, space and Enter go on, P pauses, R repeats, S skips, C clears.
 std::optional<Request> request_of(const render::KeyPress& press);
 
 /// What the participant looks at: a window or a full screen, drawn on a thread of its own at every

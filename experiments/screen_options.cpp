@@ -43,6 +43,9 @@ ScreenOptions read_screen_options(Table& table) {
   if (table.has("refresh_lock")) {
     options.refresh_lock = table.boolean("refresh_lock");
   }
+  if (table.has("participant_steers")) {
+    options.participant_steers = table.boolean("participant_steers");
+  }
   if (table.has("photodiode")) {
     options.photodiode = read_photodiode(table);
   }
@@ -55,6 +58,17 @@ SessionTexts read_session_texts(Table& table) {
   texts.practice = read_text(table, "practice");
   texts.rest = read_text(table, "rest");
   texts.thanks = read_text(table, "thanks");
+  const auto read_if_there = [&table](std::string_view key, std::string& text) {
+    if (table.has(key)) {
+      text = read_text(table, key);
+    }
+  };
+  read_if_there("stopped", texts.stopped);
+  read_if_there("paused", texts.paused);
+  read_if_there("recovering", texts.recovering);
+  read_if_there("limit", texts.limit);
+  read_if_there("begin", texts.begin);
+  read_if_there("begin_alone", texts.begin_alone);
   return texts;
 }
 

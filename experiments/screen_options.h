@@ -25,6 +25,7 @@ struct ScreenOptions {
   int monitor{0};          // from 0, the primary one
   bool refresh_lock{true};
   Photodiode photodiode{Photodiode::kOff};
+  bool participant_steers{false};  // by its keys: start, pause, repeat, skip, clear, abort
 };
 
 /// What the participant reads. The first line of a text is its title.
@@ -33,6 +34,17 @@ struct SessionTexts {
   std::string practice;      // before the practice trials
   std::string rest;          // during a break, above the countdown
   std::string thanks;        // at the end
+  std::string stopped{"Stopped\nThe forces are off. Please wait for the experimenter."};
+  std::string paused{"A short pause\nIt goes on in a moment."};
+  std::string recovering{// after a pass that was aborted without a fault
+                         "One moment\nThe forces are off for a few seconds. Hold the handle "
+                         "loosely: it will lead your "
+                         "hand to the start."};
+  std::string limit{
+      // below the instructions
+      "A square in the upper right corner says that the device gives all the force it has."};
+  std::string begin{"The experimenter starts"};  // the small line below a text that waits
+  std::string begin_alone{"Press Enter or the space bar to begin"};  // without an experimenter
 };
 
 /// Reads a [screen] table; every key is optional.
@@ -41,10 +53,11 @@ struct SessionTexts {
 ///     full_screen   true or false
 ///     monitor       from 0
 ///     refresh_lock  true or false: whether drawing waits for the monitor
-///     photodiode    "off", "frames" (white every other frame) or "run" (white during the run)
+///     participant_steers  true or false: whether keys of the participant's window do more than
+///     stop photodiode    "off", "frames" (white every other frame) or "run" (white during the run)
 ScreenOptions read_screen_options(Table& table);
 
-/// Reads a [texts] table; every key is required: instructions, practice, rest, thanks.
+/// Reads a [texts] table. Required: instructions, practice, rest, thanks; the others have defaults.
 SessionTexts read_session_texts(Table& table);
 
 /// A page of a text. @param hint  how to go on; empty where nobody is asked to

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "core/base/error.h"
@@ -14,8 +12,10 @@
 #include "core/record/session_reader.h"
 #include "experiments/drilling_study.h"
 #include "experiments/interrupt.h"
+#include "experiments/last_stop.h"
 #include "experiments/live_drilling.h"
 #include "experiments/rig.h"
+#include "experiments/servo_thread.h"
 #include "experiments/session_desk.h"
 #include "experiments/session_opening.h"
 #include "experiments/session_pace.h"
@@ -42,11 +42,14 @@ class Session {
   explicit Session(const SessionRequest& request);
   ~Session();
   SessionSummary run();
+  bool hangs() const { return servo_.hangs(); }
 
  private:
   std::vector<stimulus::Observer*> observers();
   SessionDesk::Actions desk_actions();
 
+  std::string instructions() const;
+  void show_trial();
   void run_plan(const std::vector<PlannedTrial>& plan);
   bool present(const PlannedTrial& trial);
   bool run_trial(const PlannedTrial& trial, int attempt);
@@ -57,8 +60,7 @@ class Session {
 
   void finish();
   void give_up() noexcept;
-  void let_go();
-  void join_servo();
+  void end_servo();
   void note_troubles();
 
   const SessionRequest& request_;
@@ -74,13 +76,16 @@ class Session {
   std::unique_ptr<Trials> trials_;
   std::unique_ptr<Rig> rig_;
   std::atomic<std::uint32_t> held_keys_{0};  // functions, from the screen's thread
+  std::atomic<bool> begin_pressed_{false};   // likewise, without an experimenter
   std::unique_ptr<Screen> screen_;
   std::unique_ptr<LiveDrilling> live_;
   SessionRecord record_;  // opened when everything else is there
   SessionDesk desk_;
   protocols::SessionTask task_;
   SessionPace pace_;
-  std::thread servo_;  // on a real clock
+  ServoThread servo_;  // on a real clock
+  SessionStop stop_;
+  std::optional<WatchedStop> watched_;  // on a real clock
 };
 
 Session::Session(const SessionRequest& request)
@@ -92,7 +97,7 @@ Session::Session(const SessionRequest& request)
       loop_(request.clock, d_.rate),
       trials_(make_trials(request, session_seed_)),
       rig_(make_rig(request.device, d_, [this] { return trials_->virtual_rig(session_seed_); })),
-      screen_(open_screen(request, rig_->mouse(), &held_keys_)),
+      screen_(open_screen(request, rig_->mouse(), &held_keys_, &begin_pressed_)),
       live_(open_live(request)),
       record_(request, rig_->device().info(), loop_, trials_->bones(), live_.get()),
       desk_(request.control, desk_actions()),
@@ -100,17 +105,16 @@ Session::Session(const SessionRequest& request)
             real_ ? protocols::SessionTask::Leave::kNever
                   : protocols::SessionTask::Leave::kAfterPassOrSlice,
             record_.origin(), record_.tool_log(), &held_keys_),
-      pace_({request, loop_, record_, desk_, task_, screen_.get(), live_.get()}) {
+      pace_({request, loop_, record_, desk_, task_, screen_.get(), &begin_pressed_, live_.get()}),
+      servo_(loop_, task_, longest_fade(d_.envelope)),
+      stop_(task_, servo_, rig_->device()) {
   SessionStatus& status = desk_.status();
   status.subject = request.subject;
   status.device = request.device.name;
   status.simulated = rig_->device().info().simulated;
   status.rate = d_.rate;
-  const auto stop = [](void* task) {
-    static_cast<protocols::SessionTask*>(task)->emergency_stop();
-  };
   if (real_) {
-    call_on_interrupt(stop, &task_);
+    watched_.emplace(stop_);
   }
   if (request.control != nullptr) {
     request.control->on_emergency([this] { task_.emergency_stop(); });
@@ -118,9 +122,7 @@ Session::Session(const SessionRequest& request)
 }
 
 Session::~Session() {
-  if (real_) {
-    call_on_interrupt(nullptr, nullptr);
-  }
+  watched_.reset();
   if (request_.control != nullptr) {
     request_.control->on_emergency(nullptr);
   }
@@ -157,7 +159,7 @@ SessionSummary Session::run() {
     }));
     record_.open(fmt::format("{} trials planned", plan.size()), drills ? &*under_way : nullptr);
     if (real_) {
-      servo_ = std::thread([this] { loop_.run(task_); });
+      servo_.start();
     }
     run_plan(plan);
     finish();
@@ -171,10 +173,7 @@ SessionSummary Session::run() {
 void Session::run_plan(const std::vector<PlannedTrial>& plan) {
   desk_.status().trials = d_.design.trials;
   desk_.status().blocks = d_.design.blocks();
-  if (desk_.attended()) {
-    pace_.show_text(d_.texts.instructions, "The experimenter starts");
-    pace_.wait_for_experimenter("instructions");
-  }
+  pace_.wait_to_begin(instructions());
   bool practised = false;
   for (const PlannedTrial& trial : plan) {
     const bool enough =
@@ -189,19 +188,27 @@ void Session::run_plan(const std::vector<PlannedTrial>& plan) {
       left_ = true;
       break;
     }
-    if (trial.practice && !std::exchange(practised, true) && desk_.attended()) {
-      pace_.show_text(d_.texts.practice, "The experimenter starts");
-      pace_.wait_for_experimenter("instructions");
+    if (trial.practice && !std::exchange(practised, true)) {
+      pace_.wait_to_begin(d_.texts.practice);
     }
     left_ = !present(trial) || left_;
     if (!trial.practice && trial.trial == d_.design.break_after && !desk_.wishes().abort) {
       pace_.take_break();
     }
   }
-  pace_.show_text(d_.texts.thanks, "");
+  pace_.let_read(d_.texts.thanks, "thanks");
+}
+
+/// What a square in the corner means, too, for those who may see one.
+std::string Session::instructions() const {
+  const bool may_see_it = request_.definition != nullptr;
+  return may_see_it ? d_.texts.instructions + "\n" + d_.texts.limit : d_.texts.instructions;
+}
+
+void Session::show_trial() {
+  pace_.clear_text();
   if (screen_) {
-    constexpr double kTimeToRead = 5.0;  // [s]
-    pace_.wait(kTimeToRead, "thanks", true);
+    trials_->show(*screen_);
   }
 }
 
@@ -214,11 +221,8 @@ bool Session::present(const PlannedTrial& trial) {
   for (int attempt = record_.attempts(trial) + 1; !wishes.abort; ++attempt) {
     const bool anew = std::exchange(wishes.repeat, false);
     wishes.skip = false;
-    desk_.status().screen.clear();
     trials_->begin_attempt(trial, anew);
-    if (screen_) {
-      trials_->show(*screen_);
-    }
+    show_trial();
     const bool done = run_trial(trial, attempt);
     pace_.pause_where_asked();
     if ((done && !wishes.repeat) || wishes.skip || !desk_.attended()) {
@@ -250,6 +254,9 @@ bool Session::run_trial(const PlannedTrial& trial, int attempt) {
 }
 
 bool Session::run_pass(const PlannedTrial& trial, record::Phase phase, int attempt) {
+  if (pace_.text_shown()) {
+    show_trial();
+  }
   PlannedTrial row = trial;
   protocols::Pass& pass = trials_->make_pass(row, phase, record_);
   const std::int32_t number = record_.begin_pass(row, phase, attempt);
@@ -301,11 +308,16 @@ void Session::after_abort(const protocols::PassResult& result) {
   const std::string trouble = fault ? rig_->device().trouble() : "";
   record_.event("aborted", fmt::format("trial {}: {}{}{}", record_.pass().trial, why,
                                        trouble.empty() ? "" : "; ", trouble));
+  if (result.fault == device::Fault::kStopButton) {
+    record_.event("emergency_stop", "by the handle");
+  }
   if (fault && desk_.attended()) {
     desk_.status().fault = trouble.empty() ? why : why + "; " + trouble;
     desk_.wishes().stopped = true;  // a person sees to the cause
-  } else if (real_ && device::by_a_person(result.fault)) {
-    pace_.end_early(why);  // nobody is at a console or keyboard to say that it may go on
+  } else if (fault && real_) {
+    // Nobody is at a console or keyboard to see to the cause and say that it may go on.
+    pace_.let_read(d_.texts.stopped, "stopped");
+    pace_.end_early(trouble.empty() ? why : why + "; " + trouble);
   } else {
     pace_.recover();
   }
@@ -326,7 +338,7 @@ const char* Session::why_broken_off() {
 }
 
 void Session::finish() {
-  join_servo();
+  end_servo();
   if (screen_) {
     record_.keep_frames(screen_->take_frames());
   }
@@ -354,8 +366,12 @@ void Session::finish() {
 
 void Session::give_up() noexcept {
   try {
-    let_go();
-    join_servo();
+    task_.break_off();
+    end_servo();
+  } catch (const std::exception&) {
+    // The thread is left behind; what it recorded is kept all the same.
+  }
+  try {
     record_.give_up(task_);
   } catch (const std::exception&) {
     // What stopped the session is the error to report; the writer keeps what it
@@ -363,20 +379,9 @@ void Session::give_up() noexcept {
   }
 }
 
-/// The force fades where nothing is wrong with the device; a fault has cut it
-/// already.
-void Session::let_go() {
-  if (servo_.joinable()) {
-    task_.break_off();
-    std::this_thread::sleep_for(std::chrono::duration<double>(d_.envelope.ramp_out + 0.05));
-  }
-}
-
-void Session::join_servo() {
-  if (servo_.joinable()) {
-    loop_.request_stop();
-    servo_.join();
-  }
+/// The force fades when nothing is wrong with the device; a fault has cut it already.
+void Session::end_servo() {
+  servo_.end();
   rig_->device().write(Eigen::Vector3d::Zero());
 }
 
@@ -411,7 +416,15 @@ SessionSummary run_session(const SessionRequest& request) {
     closed.notices.push_back("the session had ended before: its file only had to be closed");
     return closed;
   }
-  return Session(request).run();
+  auto session = std::make_unique<Session>(request);
+  try {
+    return session->run();
+  } catch (...) {
+    if (session->hangs()) {
+      static_cast<void>(session.release());  // its servo thread may yet come back to it
+    }
+    throw;
+  }
 }
 
 double estimated_ticks(const BoneDefinition& d, int trials) {

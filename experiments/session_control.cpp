@@ -5,16 +5,31 @@
 namespace haptrial::experiments {
 
 void SessionControl::on_emergency(std::function<void()> stop) {
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(stop_mutex_);
   stop_ = std::move(stop);
 }
 
-void SessionControl::ask(Request request) {
-  const std::lock_guard lock(mutex_);
-  if (request == Request::kEmergencyStop && stop_) {
-    stop_();
+const char* name_of(Asker by) noexcept {
+  switch (by) {
+    case Asker::kConsole:
+      return "console";
+    case Asker::kTerminal:
+      return "terminal";
+    case Asker::kWindow:
+      return "window";
   }
-  messages_.push_back({false, request, ""});
+  return "";
+}
+
+void SessionControl::ask(Request request, Asker by) {
+  if (request == Request::kEmergencyStop) {
+    const std::lock_guard lock(stop_mutex_);
+    if (stop_) {
+      stop_();
+    }
+  }
+  const std::lock_guard lock(mutex_);
+  messages_.push_back({false, request, "", by});
 }
 
 void SessionControl::note(std::string text) {
@@ -23,7 +38,7 @@ void SessionControl::note(std::string text) {
     text.resize(kLongest);
   }
   const std::lock_guard lock(mutex_);
-  messages_.push_back({true, Request::kStart, std::move(text)});
+  messages_.push_back({true, Request::kStart, std::move(text), Asker::kConsole});
 }
 
 std::vector<SessionControl::Message> SessionControl::take() {

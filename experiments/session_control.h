@@ -12,6 +12,10 @@
 
 namespace haptrial::experiments {
 
+/// Who asks for something: what stands in the events of the session file.
+enum class Asker : std::uint8_t { kConsole, kTerminal, kWindow };
+const char* name_of(Asker by) noexcept;  // "console", "terminal", "window"
+
 /// What an experimenter asks of a running session, from the console or the keyboard.
 enum class Request : std::uint8_t {
   kStart,          // leave a text screen or a pause
@@ -63,7 +67,7 @@ class SessionControl {
   /// What an emergency stop does at once, before the session's thread takes the message.
   void on_emergency(std::function<void()> stop);
 
-  void ask(Request request);
+  void ask(Request request, Asker by = Asker::kConsole);
   /// @param text  kept as an event of kind "note", at most 2000 bytes; longer ones are cut.
   void note(std::string text);
 
@@ -72,6 +76,7 @@ class SessionControl {
     bool is_note{false};
     Request request{Request::kStart};
     std::string text;
+    Asker by{Asker::kConsole};
   };
   std::vector<Message> take();
 
@@ -79,8 +84,9 @@ class SessionControl {
   SessionStatus status() const;
 
  private:
-  mutable std::mutex mutex_;
+  std::mutex stop_mutex_;  // a stop waits for nobody who reads or publishes
   std::function<void()> stop_;
+  mutable std::mutex mutex_;
   std::vector<Message> messages_;
   SessionStatus status_;
 };

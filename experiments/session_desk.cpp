@@ -1,5 +1,7 @@
 #include "experiments/session_desk.h"
 
+#include <utility>
+
 namespace haptrial::experiments {
 
 SessionDesk::SessionDesk(SessionControl* control, Actions actions)
@@ -19,16 +21,18 @@ void SessionDesk::take_messages() {
     if (message.is_note) {
       actions_.event("note", message.text);
     } else {
-      heed(message.request);
+      heed(message.request, message.by);
     }
   }
 }
 
-void SessionDesk::heed(Request request) {
+void SessionDesk::heed(Request request, Asker by) {
+  const std::string who = std::string("by the ") + name_of(by);
   switch (request) {
     case Request::kStart:
       wishes_.start = true;
       wishes_.pause = false;
+      actions_.event("start", who);
       break;
     case Request::kPause:
       wishes_.pause = true;
@@ -49,14 +53,16 @@ void SessionDesk::heed(Request request) {
       actions_.break_off();
       break;
     case Request::kEmergencyStop:  // the force is zero already
-      wishes_.stopped = true;
-      actions_.event("emergency_stop", "by the experimenter");
+      if (!std::exchange(wishes_.stopped, true)) {
+        actions_.event("emergency_stop", who);
+      }
       break;
     case Request::kClear:
       wishes_.stopped = false;
       wishes_.pause = true;  // goes on when the experimenter says so
       status_.fault.clear();
       actions_.clear_fault();
+      actions_.event("clear", who);
       break;
   }
 }

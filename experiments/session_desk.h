@@ -47,7 +47,7 @@ class SessionDesk {
   void publish(const std::string& state);
 
  private:
-  void heed(Request request);
+  void heed(Request request, Asker by);
 
   SessionControl* control_;
   Actions actions_;

@@ -105,23 +105,30 @@ bool is_of_drilling(const SessionRequest& request, int key) {
 }  // namespace
 
 std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::MouseDevice* mouse,
-                                    std::atomic<std::uint32_t>* held) {
+                                    std::atomic<std::uint32_t>* held, std::atomic<bool>* begin) {
   if (!request.window) {
     return nullptr;
   }
   ScreenCallbacks callbacks;
   SessionControl* control = request.control;
   if (control != nullptr) {
-    callbacks.key = [control, &request](const render::KeyPress& press) {
-      if (const auto asked = request_of(press); asked && !is_of_drilling(request, press.key)) {
-        control->ask(*asked);
+    const bool steers = setup_of(request).screen.participant_steers;
+    callbacks.key = [control, steers, &request](const render::KeyPress& press) {
+      const auto asked = request_of(press);
+      const bool may = asked == Request::kEmergencyStop || steers;
+      if (asked && may && !is_of_drilling(request, press.key)) {
+        control->ask(*asked, Asker::kWindow);
       }
     };
-    callbacks.closed = [control] { control->ask(Request::kAbort); };
+    callbacks.closed = [control, steers] {
+      control->ask(steers ? Request::kAbort : Request::kEmergencyStop, Asker::kWindow);
+    };
   } else {  // nobody is there who could clear a stop or say that it goes on
-    callbacks.key = [](const render::KeyPress& press) {
+    callbacks.key = [begin](const render::KeyPress& press) {
       if (press.key == render::KeyPress::kEscape) {
         interrupt();
+      } else if (press.key == render::KeyPress::kEnter || press.key == render::KeyPress::kSpace) {
+        begin->store(true);
       }
     };
     callbacks.closed = [] { interrupt(); };

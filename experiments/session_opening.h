@@ -35,12 +35,13 @@ record::SessionWriter open_writer(const SessionRequest& request, const device::D
 /// @throws InputError, RunError as SessionWriter does
 bool close_what_had_ended(const std::filesystem::path& file);
 
-/// The participant's screen, where one was asked for; else null. Its keys reach the session's
-/// control, its pointer the mouse device.
+/// The participant's screen, where one was asked for; else null. Its Escape stops the session, its
+/// other keys steer it where the definition says so; its pointer moves the mouse device.
 /// @param mouse  null for any other device
 /// @param held   receives the functions of a drilling that keys hold; outlives the screen
+/// @param begin  set by Enter and space where nobody attends; outlives the screen
 std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::MouseDevice* mouse,
-                                    std::atomic<std::uint32_t>* held);
+                                    std::atomic<std::uint32_t>* held, std::atomic<bool>* begin);
 
 /// The streams, where they were asked for and can be had; else null and, where they cannot, a
 /// sentence in `notice`.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -18,7 +19,8 @@ using Clock = std::chrono::steady_clock;
 SessionPace::SessionPace(const Parts& parts)
     : p_(parts),
       d_(setup_of(parts.request)),
-      real_(parts.request.clock == realtime::ClockKind::kReal) {}
+      real_(parts.request.clock == realtime::ClockKind::kReal),
+      stall_(parts.loop) {}
 
 void SessionPace::drive_until_idle() {
   while (!p_.task.idle()) {
@@ -34,6 +36,9 @@ void SessionPace::drive_until_idle() {
       end_early("interrupted");
     }
   }
+  if (real_ && asked_to_stop()) {  // an interrupt ends the pass, too
+    end_early("interrupted");
+  }
 }
 
 /// What has come since the last call: records, pictures shown, messages.
@@ -47,6 +52,9 @@ void SessionPace::collect() {
     p_.record.keep_frames(p_.screen->take_frames());
   }
   p_.desk.take_messages();
+  if (real_ && stall_.stalled()) {
+    end_early(DeviceHangs().what());
+  }
 }
 
 void SessionPace::wait(double seconds, const char* state, bool until_asked) {
@@ -63,10 +71,25 @@ void SessionPace::wait(double seconds, const char* state, bool until_asked) {
   p_.desk.status().break_left = 0.0;
 }
 
-void SessionPace::wait_for_experimenter(const char* state) {
+void SessionPace::wait_to_begin(const std::string& text) {
+  if (p_.desk.attended()) {
+    wait_for_experimenter("instructions", text, d_.texts.begin);
+  } else if (p_.screen != nullptr) {
+    show_text(text, d_.texts.begin_alone);
+    wait_for_participant();
+  }
+}
+
+void SessionPace::wait_for_experimenter(const char* state, const std::string& text,
+                                        const std::string& hint) {
   Wishes& wishes = p_.desk.wishes();
   wishes.pause = true;
+  std::optional<bool> shown;  // as stopped
   while ((wishes.pause || wishes.stopped) && !wishes.abort) {
+    if (shown != wishes.stopped) {
+      shown = wishes.stopped;
+      show_text(wishes.stopped ? d_.texts.stopped : text, wishes.stopped ? "" : hint);
+    }
     wait(0.02, wishes.stopped ? "stopped" : state);
     if (asked_to_stop()) {
       end_early("interrupted");
@@ -74,15 +97,27 @@ void SessionPace::wait_for_experimenter(const char* state) {
   }
 }
 
+void SessionPace::wait_for_participant() {
+  p_.begin_pressed->store(false);
+  while (!p_.begin_pressed->load()) {
+    wait(0.02, "instructions");
+    if (asked_to_stop()) {
+      end_early("interrupted");
+    }
+  }
+  p_.record.event("start", fmt::format("by the {}", name_of(Asker::kWindow)));
+}
+
 void SessionPace::pause_where_asked() {
   const Wishes& wishes = p_.desk.wishes();
   if (wishes.stopped || wishes.pause) {
-    wait_for_experimenter("paused");
+    wait_for_experimenter("paused", d_.texts.paused, "");
   }
 }
 
 void SessionPace::recover() {
   if (real_) {
+    show_text(d_.texts.recovering, "");
     wait(d_.recovery, "recovering");
   } else {
     const std::uint64_t end = p_.loop.ticks() + static_cast<std::uint64_t>(d_.recovery * d_.rate);
@@ -91,8 +126,6 @@ void SessionPace::recover() {
       p_.loop.run(p_.task);
       collect();
     }
-  }
-  if (!p_.desk.wishes().stopped) {  // what a person stopped, a person clears
     p_.task.clear_fault();
   }
 }
@@ -115,6 +148,20 @@ void SessionPace::show_text(const std::string& text, const std::string& hint, do
     p_.screen->show_text(std::move(page));
   }
   p_.desk.status().screen = text;
+  text_shown_ = true;
+}
+
+void SessionPace::let_read(const std::string& text, const char* state) {
+  constexpr double kTimeToRead = 5.0;  // [s]
+  show_text(text, "");
+  if (p_.screen != nullptr) {
+    wait(kTimeToRead, state, true);
+  }
+}
+
+void SessionPace::clear_text() {
+  p_.desk.status().screen.clear();
+  text_shown_ = false;
 }
 
 void SessionPace::publish(const char* state) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <atomic>
 #include <string>
 
 #include "core/realtime/servo_loop.h"
+#include "experiments/servo_thread.h"
 #include "experiments/session.h"
 #include "experiments/session_desk.h"
 #include "experiments/session_record.h"
@@ -25,6 +27,7 @@ class SessionPace {
     SessionDesk& desk;
     protocols::SessionTask& task;
     Screen* screen{nullptr};
+    std::atomic<bool>* begin_pressed{nullptr};  // in the window of a session without experimenter
     const LiveDrilling* live{nullptr};
   };
   explicit SessionPace(const Parts& parts);
@@ -34,27 +37,37 @@ class SessionPace {
   /// On the real clock, without force. @param until_asked  or until the experimenter starts or
   /// stops
   void wait(double seconds, const char* state, bool until_asked = false);
-  void wait_for_experimenter(const char* state);
+  /// A text until the experimenter starts; without one, until a key in the participant's window.
+  void wait_to_begin(const std::string& text);
   void pause_where_asked();
   /// Without force after an abort, for the hand to come back into the workspace; ticks are recorded
-  /// all the same.
+  /// all the same. On a simulated clock, which drives virtual hands only, a fault is cleared then:
+  /// nobody can be hurt, and a dry run is to go on. On the real clock a person clears it.
   void recover();
   void take_break();
 
   /// On the participant's screen and the experimenter's.
   void show_text(const std::string& text, const std::string& hint, double countdown = 0.0);
   void publish(const char* state);
+  /// A last page, for as long as it takes to read where there is a screen.
+  void let_read(const std::string& text, const char* state);
+  bool text_shown() const { return text_shown_; }
+  void clear_text();  // what shows instead is not the pace's
 
   /// @throws RunError that says where what was recorded is
   [[noreturn]] void end_early(const std::string& why) const;
 
  private:
   void collect();
+  void wait_for_experimenter(const char* state, const std::string& text, const std::string& hint);
+  void wait_for_participant();
   bool asked_to_stop() const;
 
   Parts p_;
   const Setup& d_;
   const bool real_;
+  StallWatch stall_;
+  bool text_shown_{false};
 };
 
 }  // namespace haptrial::experiments

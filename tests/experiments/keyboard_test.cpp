@@ -9,6 +9,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
@@ -221,6 +222,14 @@ TEST_F(KeyboardTest, ArrowKeysAreNoEscape) {
   EXPECT_TRUE(terminal_.shows("<emergency_stop>"));
 }
 
+TEST_F(KeyboardTest, AnArrowKeyThatASlowLineTearsApartStopsAndAsksNothingElse) {
+  ASSERT_TRUE(terminal_.shows("<active>"));
+  expect("\x1b", "emergency_stop");  // which is not kept waiting for the rest
+  terminal_.press("[1;5Cr");
+  EXPECT_TRUE(terminal_.shows("<repeat>")) << terminal_.rest();
+  EXPECT_EQ(terminal_.rest().find('<'), std::string::npos) << "nothing but the key behind it";
+}
+
 TEST_F(KeyboardTest, TheTerminalIsPutBackAtTheEnd) {
   ASSERT_TRUE(terminal_.shows("<active>"));
   EXPECT_EQ(terminal_.local_modes() & (ICANON | ECHO), 0u);
@@ -288,6 +297,43 @@ int keyboard_on_a_full_screen() {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   return 1;
+}
+
+/// Answers each emergency stop at once, as a servo thread would. @returns 0 when it was let go.
+int instant_stops() {
+  SessionControl control;
+  control.on_emergency([] { print("<now>"); });
+  const Keyboard keyboard(control, 0, -1);
+  print("<active>");
+  for (int i = 0; i < 6000; ++i) {
+    for (const auto& message : control.take()) {
+      if (message.request == Request::kAbort) {
+        return 0;
+      }
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return 1;
+}
+
+TEST(KeyboardWithoutTerminalTest, EscapeDoesNotWaitForTheRestOfAnArrowKey) {
+  if (::access("/dev/pts/ptmx", F_OK) != 0) {
+    GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
+  }
+  Terminal terminal(instant_stops);
+  ASSERT_TRUE(terminal.shows("<active>"));
+  double soonest = 1e9;  // [ms]; of several, since the machine may be busy
+  for (int i = 0; i < 20; ++i) {
+    const auto start = Clock::now();
+    terminal.press("\x1b");
+    ASSERT_TRUE(terminal.shows("<now>"));
+    soonest =
+        std::min(soonest, std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+  }
+  RecordProperty("soonest_ms", std::to_string(soonest));
+  EXPECT_LT(soonest, 10.0);
+  terminal.press("ay");
+  EXPECT_EQ(terminal.wait_for_end(), 0);
 }
 
 int keyboard_beside_a_drilling() {

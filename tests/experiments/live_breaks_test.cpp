@@ -112,6 +112,28 @@ TEST_F(LiveBreaksTest, AttemptsAreCountedOnAfterAResume) {
   EXPECT_EQ(passes[1].attempt, 2);
 }
 
+TEST_F(LiveBreaksTest, TheParticipantReadsWhyNothingHappens) {
+  LiveCommand session(run({{"recovery", "recovery = 2.0"}}));
+  ConsolePerson person(session.line_after("console: "));
+  const auto reads = [&person](const std::string& state, const std::string& text) {
+    return person.sees(state) &&
+           person.status()["screen"].get<std::string>().find(text) != std::string::npos;
+  };
+  ASSERT_TRUE(person.sees("instructions"));
+  ASSERT_TRUE(person.ask("start"));
+  ASSERT_TRUE(person.sees("running", "run"));
+  ASSERT_TRUE(person.ask("repeat"));  // the pass is aborted without a fault
+  EXPECT_TRUE(reads("recovering", "One moment"));
+  ASSERT_TRUE(person.sees("running", "run"));
+  EXPECT_EQ(person.status()["screen"], "");
+  ASSERT_TRUE(person.ask("pause"));
+  EXPECT_TRUE(reads("paused", "A short pause"));
+  ASSERT_TRUE(person.ask("emergency_stop"));
+  EXPECT_TRUE(reads("stopped", "The forces are off"));
+  ASSERT_TRUE(person.ask("clear"));
+  EXPECT_TRUE(reads("paused", "A short pause"));
+}
+
 TEST_F(LiveBreaksTest, EscapeInTheParticipantsWindowStopsASessionWithoutAConsole) {
   if (!test::VirtualDisplay::available()) {
     GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
@@ -120,6 +142,7 @@ TEST_F(LiveBreaksTest, EscapeInTheParticipantsWindowStopsASessionWithoutAConsole
   LiveCommand session(run({}, "--window"));
   const auto partial = folder_ / "out/S01.h5.partial";
   ASSERT_TRUE(test::eventually([&] {
+    display.try_key("haptrial", test::VirtualDisplay::kEnter);  // to begin
     try {
       const record::SessionReader reader(partial);
       const std::uint64_t rows = reader.sample_count();

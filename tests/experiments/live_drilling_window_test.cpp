@@ -63,6 +63,7 @@ class LiveDrillingWindowTest : public testing::Test {
              "0.01\n[tools.miniplate]\ntype = \"plate\"\n"
              "shape = \"straight\"\n[tools.forceps]\ntype = \"grip\"\nreach = 0.01");
     text = with(text, "zoom_out = [\"O\"]", "zoom_out = [\"O\"]\nstill = [\"B\"]");
+    text = with(text, "photodiode = \"off\"", "photodiode = \"off\"\nparticipant_steers = true");
     text = with(text, "width = 1280", "width = " + std::to_string(kWidth));
     text = with(text, "height = 720", "height = " + std::to_string(kHeight));
     test::write_text(file,
@@ -79,6 +80,7 @@ class LiveDrillingWindowTest : public testing::Test {
   bool drills() const {
     return test::eventually(
         [&] {
+          display_->try_key("haptrial", test::VirtualDisplay::kEnter);  // to begin
           std::error_code ignored;
           return fs::exists(partial(), ignored) &&
                  record::SessionReader(partial()).count<record::RemovalRow>() > 0;

@@ -59,13 +59,15 @@ TEST(LiveKeyboardTest, KeysSteerTheSessionAndTheTerminalIsPutBack) {
   EXPECT_TRUE(record::check_session(reader).ok);
   std::vector<std::string> done;
   for (const record::EventRow& event : reader.events()) {
-    if (event.kind == "note" || event.kind == "emergency_stop" || event.kind == "aborted") {
+    if (event.kind == "note" || event.kind == "emergency_stop" || event.kind == "aborted" ||
+        event.kind == "start" || event.kind == "clear") {
       done.push_back(event.kind + ": " + event.text);
     }
   }
-  EXPECT_THAT(done, testing::ElementsAre("note: hand rested", "aborted: trial 1: to be repeated",
-                                         "emergency_stop: by the experimenter",
-                                         HasSubstr("trial 1: emergency stop")));
+  EXPECT_THAT(done, testing::ElementsAre(
+                        "start: by the terminal", "note: hand rested",
+                        "aborted: trial 1: to be repeated", "emergency_stop: by the terminal",
+                        HasSubstr("trial 1: emergency stop"), "clear: by the terminal"));
 }
 
 }  // namespace

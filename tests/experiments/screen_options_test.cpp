@@ -53,6 +53,8 @@ TEST(ScreenOptionsTest, EveryKeyIsReadAndNoneIsNeeded) {
   EXPECT_FALSE(options.refresh_lock);
   EXPECT_EQ(options.photodiode, Photodiode::kEveryFrame);
   EXPECT_EQ(screen("photodiode = \"run\"").photodiode, Photodiode::kRun);
+  EXPECT_FALSE(screen("").participant_steers) << "only where the definition says so";
+  EXPECT_TRUE(screen("participant_steers = true").participant_steers);
 }
 
 TEST(ScreenOptionsTest, BadValuesAndUnknownKeysAreNamedWithTheirLine) {
@@ -64,7 +66,7 @@ TEST(ScreenOptionsTest, BadValuesAndUnknownKeysAreNamedWithTheirLine) {
   EXPECT_EQ(screen_problem("monitor = 0"), "");
 }
 
-TEST(SessionTextsTest, AllFourAreNeeded) {
+TEST(SessionTextsTest, FourAreNeeded) {
   const std::string good = "instructions = \"a\"\npractice = \"b\"\nrest = \"c\"\nthanks = \"d\"\n";
   EXPECT_EQ(text_problem(good), "");
   Table table = Table::parse(good, "x.toml");
@@ -77,6 +79,25 @@ TEST(SessionTextsTest, AllFourAreNeeded) {
   EXPECT_THAT(text_problem("instructions = \"" + long_text +
                            "\"\npractice = \"b\"\nrest = \"c\"\nthanks = \"d\"\n"),
               HasSubstr("texts.instructions is 4001 bytes long; allowed: at most 4000"));
+}
+
+TEST(SessionTextsTest, TheOthersHaveDefaultsThatADefinitionMayReplace) {
+  const std::string four = "instructions = \"a\"\npractice = \"b\"\nrest = \"c\"\nthanks = \"d\"\n";
+  Table plain = Table::parse(four, "x.toml");
+  const SessionTexts defaults = read_session_texts(plain);
+  for (const std::string* text : {&defaults.stopped, &defaults.paused, &defaults.recovering,
+                                  &defaults.limit, &defaults.begin, &defaults.begin_alone}) {
+    EXPECT_FALSE(text->empty());
+  }
+  EXPECT_THAT(defaults.limit, HasSubstr("square"));
+  Table own = Table::parse(four +
+                               "stopped = \"e\"\npaused = \"f\"\nrecovering = \"g\"\n"
+                               "limit = \"h\"\nbegin = \"i\"\nbegin_alone = \"j\"\n",
+                           "x.toml");
+  const SessionTexts texts = read_session_texts(own);
+  EXPECT_EQ(texts.stopped + texts.paused + texts.recovering + texts.limit + texts.begin +
+                texts.begin_alone,
+            "efghij");
 }
 
 TEST(PageOfTest, TheFirstLineIsTheTitle) {

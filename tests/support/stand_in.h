@@ -19,6 +19,9 @@ enum class Failure : int {
   kSlowCall,   // 5 ms in every read
   kSaturated,  // these two are return values above zero: no error
   kTimeGuard,
+  kHang,    // a read that never comes back
+  kCrash,   // a read that kills the program
+  kButton,  // the handle's button 0 is pressed
 };
 
 /// What a stand-in knows of itself, in the vendor's axes and units.

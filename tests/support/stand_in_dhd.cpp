@@ -2,10 +2,13 @@
 // period of 1 ms passes with every force that is set.
 
 #include <time.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <limits>
 
 #include "tests/support/stand_in_dhd.h"
+#include "tests/support/stand_in_record.h"
 
 using haptrial::test::Failure;
 using haptrial::test::StandInHandle;
@@ -29,6 +32,8 @@ constexpr int kNotReady = 12;
 
 StandInHandle& handle = haptrial::test::dhd_handle;
 bool expert = false;
+haptrial::test::ForceRecord forces;
+haptrial::test::FailureFromEnvironment told;
 
 int failed(int error) {
   haptrial::test::dhd_error = error;
@@ -147,6 +152,12 @@ int dhdGetPosition(double* x, double* y, double* z, char) {
     const timespec pause{0, 5'000'000};
     nanosleep(&pause, nullptr);
   }
+  if (handle.fails(Failure::kCrash)) {
+    ::raise(SIGSEGV);
+  }
+  while (handle.fails(Failure::kHang)) {
+    ::pause();
+  }
   const bool not_finite = handle.fails(Failure::kNotFinite);
   *x = not_finite ? std::numeric_limits<double>::quiet_NaN() : handle.position[0];
   *y = handle.position[1] + (handle.fails(Failure::kJump) ? 0.02 : 0.0);
@@ -170,6 +181,11 @@ int dhdSetForce(double x, double y, double z, char) {
     return failed(kNotReady);
   }
   const double asked[3] = {x, y, z};
+  constexpr double kWatchdogStep = 125e-6;  // [s]
+  forces.add({x, y, z}, kWatchdogStep * handle.setup.watchdog);
+  if (told.begins(std::hypot(x, y, z))) {
+    stand_in_fail(told.number(), handle.ticks);
+  }
   bool saturated = handle.fails(Failure::kSaturated);
   for (std::size_t i = 0; i < 3; ++i) {
     handle.force[i] = std::clamp(asked[i], -kMotorsGive, kMotorsGive);
@@ -190,7 +206,9 @@ int dhdGetOrientationFrame(double (*rows)[3], char) {
   }
   return 0;
 }
-unsigned dhdGetButtonMask(char) { return handle.buttons; }
+unsigned dhdGetButtonMask(char) {
+  return handle.buttons | (handle.fails(Failure::kButton) ? 1u : 0u);
+}
 int dhdGetStatus(int* status, char) {
   std::fill_n(status, 17, 0);
   status[0] = status[1] = status[2] = 1;

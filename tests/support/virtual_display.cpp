@@ -198,6 +198,13 @@ void VirtualDisplay::press_key(const std::string& title, unsigned long keysym) c
   release_key(title, keysym);
 }
 
+void VirtualDisplay::try_key(const std::string& title, unsigned long keysym) const {
+  try {
+    press_key(title, keysym);
+  } catch (const std::exception&) {  // no such window
+  }
+}
+
 void VirtualDisplay::hold_key(const std::string& title, unsigned long keysym) const {
   send_key(title, keysym, KeyPress, KeyPressMask);
 }

@@ -29,6 +29,10 @@ class VirtualDisplay {
 
   /// To the window of that title. @param keysym  as X names it: 'p', ' ', 0xff1b for Escape
   void press_key(const std::string& title, unsigned long keysym) const;  // and let it go
+  static constexpr unsigned long kEnter = 0xff0d;
+  static constexpr unsigned long kEscape = 0xff1b;
+  /// As press_key, if the window is there yet.
+  void try_key(const std::string& title, unsigned long keysym) const;
   void hold_key(const std::string& title, unsigned long keysym) const;
   void release_key(const std::string& title, unsigned long keysym) const;
   /// @param button  1 left, 2 middle, 3 right, 4 and 5 the wheel up and down

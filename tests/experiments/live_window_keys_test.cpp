@@ -1,0 +1,141 @@
+// What the participant's own keyboard may do to a session, and what begins one without an
+// experimenter.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/record/session_reader.h"
+#include "tests/experiments/console_person.h"
+#include "tests/experiments/live_command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/virtual_display.h"
+
+namespace haptrial {
+namespace {
+
+using test::CommandResult;
+using test::ConsolePerson;
+using test::LiveCommand;
+using test::VirtualDisplay;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class LiveWindowKeysTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!VirtualDisplay::available()) {
+      GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
+    }
+    display_.emplace(640, 480);
+  }
+  std::string run(const std::string& more, const std::string& screen = "") const {
+    test::write_text(folder_ / "study.toml",
+                     test::brisk_text({{"speed", "speed = 0.02"},
+                                       {"full_screen", "full_screen = false"},
+                                       {"width", "width = 600"},
+                                       {"height", "height = 440"},
+                                       {"photodiode", "photodiode = \"off\"" + screen}}));
+    return "run '" + (folder_ / "study.toml").string() + "' --subject S01 --out '" +
+           (folder_ / "out").string() + "' --window " + more;
+  }
+  void press(unsigned long key) const { display_->press_key("haptrial", key); }
+  std::vector<std::string> events(const std::string& file) const {
+    std::vector<std::string> told;
+    for (const record::EventRow& event : record::SessionReader(folder_ / file).events()) {
+      if (event.kind == "start" || event.kind == "clear" || event.kind == "emergency_stop") {
+        told.push_back(event.kind + " " + event.text);
+      }
+    }
+    return told;
+  }
+  int passes() const {
+    try {
+      const record::SessionReader reader(folder_ / "out/S01.h5.partial");
+      const std::uint64_t rows = reader.sample_count();
+      return rows > 0 ? reader.samples(rows - 1, 1)[0].pass + 1 : 0;
+    } catch (const std::exception&) {
+      return 0;
+    }
+  }
+
+  test::TemporaryFolder folder_;
+  std::optional<VirtualDisplay> display_;
+};
+
+TEST_F(LiveWindowKeysTest, StopTheSessionAndDoNothingElse) {
+  LiveCommand session(run("--console"));
+  ConsolePerson person(session.line_after("console: "));
+  ASSERT_TRUE(person.sees("instructions")) << session.errors();
+  EXPECT_THAT(person.status()["screen"].get<std::string>(), HasSubstr("A square in the"));
+  press(' ');
+  press(VirtualDisplay::kEnter);
+  EXPECT_FALSE(person.sees("running", "", 0.5)) << "the experimenter starts";
+  ASSERT_TRUE(person.ask("start"));
+  ASSERT_TRUE(person.sees("running", "run"));
+  for (const char key : {'s', 'r', 'p'}) {
+    press(static_cast<unsigned long>(key));
+  }
+  EXPECT_FALSE(person.sees("paused", "", 0.5));
+  EXPECT_EQ(person.status()["aborted_passes"], 0);
+  press(VirtualDisplay::kEscape);  // anybody may stop
+  ASSERT_TRUE(person.sees("stopped"));
+  EXPECT_THAT(person.status()["screen"].get<std::string>(), HasSubstr("The forces are off"));
+  press('c');
+  press(' ');
+  EXPECT_FALSE(person.sees("paused", "", 0.5));
+  EXPECT_EQ(person.status()["state"], "stopped");
+  ASSERT_TRUE(person.ask("clear"));
+  ASSERT_TRUE(person.sees("paused"));
+  EXPECT_THAT(person.status()["screen"].get<std::string>(), HasSubstr("pause"));
+  ASSERT_TRUE(person.ask("start"));
+  ASSERT_TRUE(person.sees("running", "run"));
+  EXPECT_EQ(person.status()["screen"], "") << "the trial is shown again";
+  display_->ask_to_close("haptrial");  // no way out of a session either, but a stop
+  ASSERT_TRUE(person.sees("stopped"));
+  ASSERT_TRUE(person.ask("abort"));
+  EXPECT_NE(session.wait().status, -1);
+  const bool closed = std::filesystem::exists(folder_ / "out/S01.h5");
+  EXPECT_THAT(
+      events(closed ? "out/S01.h5" : "out/S01.h5.partial"),
+      ElementsAre("start by the console", "emergency_stop by the window", "clear by the console",
+                  "start by the console", "emergency_stop by the window"));
+}
+
+TEST_F(LiveWindowKeysTest, SteerWhereTheDefinitionSaysSo) {
+  LiveCommand session(run("--console", "\nparticipant_steers = true"));
+  ConsolePerson person(session.line_after("console: "));
+  ASSERT_TRUE(person.sees("instructions")) << session.errors();
+  press(' ');
+  ASSERT_TRUE(person.sees("running", "run"));
+  press(VirtualDisplay::kEscape);
+  ASSERT_TRUE(person.sees("stopped"));
+  press('c');
+  ASSERT_TRUE(person.sees("paused"));
+  ASSERT_TRUE(person.ask("abort"));
+  EXPECT_NE(session.wait().status, -1);
+  const bool closed = std::filesystem::exists(folder_ / "out/S01.h5");
+  EXPECT_THAT(
+      events(closed ? "out/S01.h5" : "out/S01.h5.partial"),
+      ElementsAre("start by the window", "emergency_stop by the window", "clear by the window"));
+}
+
+TEST_F(LiveWindowKeysTest, BeginASessionWithoutAnExperimenter) {
+  LiveCommand session(run(""));
+  ASSERT_TRUE(
+      test::eventually([this] { return std::filesystem::exists(folder_ / "out/S01.h5.partial"); }));
+  EXPECT_FALSE(test::eventually([this] { return passes() > 0; }, 2.0)) << "nobody said so";
+  EXPECT_TRUE(test::eventually([this] {
+    display_->try_key("haptrial", VirtualDisplay::kEnter);
+    return passes() > 0;
+  })) << session.errors();
+  EXPECT_THAT(events("out/S01.h5.partial"), ElementsAre("start by the window"));
+  press(VirtualDisplay::kEscape);
+  EXPECT_EQ(session.wait().status, 1);
+}
+
+}  // namespace
+}  // namespace haptrial
