@@ -1,7 +1,7 @@
 #!/bin/bash
 # Makes the pictures of a session in guide-bone.md: a virtual hand drills a real temporal bone for
-# 75 s on the real clock, in a window, and the session is replayed. Needs xvfb-run, ImageMagick and
-# ffmpeg.
+# 75 s on the real clock, in a window, and the session is replayed. Needs xvfb-run, ImageMagick,
+# curl and ffmpeg.
 # drilling-session.sh HAPTRIAL EAR FOLDER: the command, ear3_171_labels.nrrd, where to.
 set -eu
 haptrial=$(realpath "$1")
@@ -18,7 +18,12 @@ sed -e 's/^bones = .*/bones = ["ear.nrrd"]/' -e 's/^time_limit = .*/time_limit =
   "$shipped" >"$work/ear.toml"
 cd "$work"
 xvfb-run -a -s "-screen 0 1280x720x24" \
-  "$haptrial" run ear.toml --subject S01 --window --out sessions
+  "$haptrial" run ear.toml --subject S01 --window --console --out sessions >said &
+until grep -q ^console: said; do sleep 1; done
+url=$(sed -n 's/^console: //p' said)
+curl -s -H "X-Haptrial-Token: ${url##*=}" -H "Content-Type: application/json" \
+  -d '{"request": "start"}' "${url%%\?*}ask"
+wait
 "$haptrial" info sessions/S01.h5
 "$haptrial" replay sessions/S01.h5
 "$haptrial" replay sessions/S01.h5 --video session.mp4 --fps 15
