@@ -19,6 +19,7 @@
 #include "experiments/experiment.h"
 #include "experiments/interrupt.h"
 #include "experiments/last_stop.h"
+#include "experiments/loop_margin.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -56,6 +57,7 @@ struct DeviceSetup {
   device::MouseParameters mouse;
   device::ForceDimensionParameters force_dimension;
   device::OpenHapticsParameters open_haptics;
+  protocols::GuidanceParameters guidance;  // the published one where no definition says another
 };
 
 DeviceSetup setup_of(const DeviceTestOptions& options) {
@@ -63,7 +65,10 @@ DeviceSetup setup_of(const DeviceTestOptions& options) {
   if (!options.definition.empty()) {
     const Experiment experiment = load_experiment(options.definition);
     const Setup& d = experiment.setup();
-    setup = {d.device, d.mouse, d.force_dimension, d.open_haptics};
+    setup = {d.device, d.mouse, d.force_dimension, d.open_haptics, {}};
+    if (experiment.force) {
+      setup.guidance = experiment.force->guidance;
+    }
   }
   setup.mouse.stop_button = -1;
   setup.force_dimension.stop_button = -1;
@@ -113,8 +118,7 @@ Bench vendor_bench(const DeviceTestOptions& options, const DeviceSetup& setup) {
   return bench;
 }
 
-Bench make_bench(const DeviceTestOptions& options) {
-  const DeviceSetup setup = setup_of(options);
+Bench make_bench(const DeviceTestOptions& options, const DeviceSetup& setup) {
   Bench bench = options.name == "virtual" ? virtual_bench(setup.electronics)
                 : options.name == "mouse" ? mouse_bench(setup.mouse)
                                           : vendor_bench(options, setup);
@@ -201,7 +205,8 @@ int device_test(const DeviceTestOptions& options) {
     throw InputError(fmt::format("--seconds is {}; allowed: a number from {} to {} [s]",
                                  options.seconds, kLeast, kMost));
   }
-  Bench bench = make_bench(options);
+  const DeviceSetup setup = setup_of(options);
+  Bench bench = make_bench(options, setup);
   const device::DeviceInfo& info = bench.device->info();
   fmt::print("{}{}: {:.1f} N, workspace radius {:.0f} mm\n", info.name,
              info.simulated ? " (simulated)" : "", info.max_force, 1e3 * info.workspace_radius);
@@ -216,6 +221,11 @@ int device_test(const DeviceTestOptions& options) {
     good = good && v.good;
   }
   fmt::print("      {:<12} {} took longer than a period\n", "calls", bench.device->slow_calls());
+  for (const auto& [name, gains] :
+       {std::pair{"trajectory", setup.guidance.trajectory}, {"plane", setup.guidance.plane}}) {
+    fmt::print("      {:<12} {}\n", "margin",
+               describe(loop_margin(name, gains, setup.guidance.loop)));
+  }
   if (!loop.real_time_status().notice.empty()) {
     fmt::print("{}\n", loop.real_time_status().notice);
   }

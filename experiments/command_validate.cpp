@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "experiments/experiment.h"
+#include "experiments/loop_margin.h"
 #include "experiments/session.h"
 
 namespace haptrial::experiments {
@@ -29,6 +30,20 @@ void print_bones(const BoneDefinition& d) {
   fmt::print("tools: {}\n", fmt::join(tools, ", "));
 }
 
+void print_margins(const Definition& d) {
+  for (const auto& [name, gains] :
+       {std::pair{"trajectory", d.guidance.trajectory}, {"plane", d.guidance.plane}}) {
+    const LoopMargin margin = loop_margin(name, gains, d.guidance.loop);
+    fmt::print("{}\n", describe(margin));
+    if (is_dangerous(margin)) {
+      fmt::print(
+          "warning: guidance.{}.stiffness is {} N/m; a handle that is let go oscillates above "
+          "{:.0f} N/m at {} Hz, and the envelope then ends the pass\n",
+          name, gains.stiffness, margin.bare_stiffness, d.rate);
+    }
+  }
+}
+
 }  // namespace
 
 int validate(const std::string& file) {
@@ -44,6 +59,7 @@ int validate(const std::string& file) {
              fmt::join(d.design.conditions, ", "), d.rate);
   fmt::print("about {:.0f} minutes a participant without the break\n",
              estimated_ticks(d, d.design.trials) / d.rate / 60.0);
+  print_margins(d);
   return 0;
 }
 

@@ -12,6 +12,18 @@
 namespace haptrial::experiments {
 namespace {
 
+/// Of the device whose velocity is the oldest, so that the damping is safe with each.
+control::HandleLoop handle_loop(const Setup& d) {
+  control::HandleLoop loop;
+  loop.handle_mass = d.hand.handle_mass;
+  loop.rate = d.rate;
+  loop.force_delay = d.device.force_delay;
+  loop.velocity_window =
+      std::max({2, d.device.velocity_window,
+                static_cast<int>(std::lround(d.force_dimension.velocity_window * d.rate))});
+  return loop;
+}
+
 constexpr double kLongestPass = 300.0;  // along x; the curve itself is a few times longer [s]
 
 void check_path(Table& root, const Definition& d);
@@ -97,6 +109,7 @@ Definition read_definition(Table& root, std::string_view file_name,
                analysis::read_score_parameters(scoring)};
   d.design = protocols::read_design(design);
   d.recovery = d.guidance.recovery;
+  d.guidance.loop = handle_loop(d);
   d.display = render::read_trial_display_style(display);
   if (d.guidance.kind == protocols::Guidance::kCurve) {
     Table pace = root.table("pace");

@@ -42,6 +42,10 @@ Setup read_setup(Table& root, std::string_view file_name) {
   const bool cvode = hand.choice("integrator", {"exact", "cvode"}) == "cvode";
   setup.integrator = cvode ? Integrator::kCvode : Integrator::kExact;
   setup.hand = subject::read_hand_parameters(hand);
+  if (!envelope.has("holding_force")) {  // friction holds on both sides of a standstill
+    setup.envelope.holding_force =
+        std::max(setup.envelope.holding_force, 3.0 * setup.hand.coulomb_friction);
+  }
   setup.screen = read_screen_options(screen);
   setup.texts = read_session_texts(texts);
   read_devices(root, setup);

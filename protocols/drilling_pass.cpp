@@ -113,8 +113,10 @@ PassOutput DrillingPass::tick(const device::DeviceReading& reading, double dt) n
   }
 
   PassOutput out;
-  const Eigen::Vector3d wanted = done.force + shaking(input);
+  const Eigen::Vector3d shake = shaking(input);
+  const Eigen::Vector3d wanted = done.force + shake;
   out.force = control::saturate(wanted, parameters_.force_limit);
+  out.intent.push = done.drag + shake;
   out.saturated = wanted.norm() > parameters_.force_limit;
   out.applied_force = out.force.y();
   out.stage = record::Stage::kRun;

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "core/device/device.h"
+#include "core/device/energy_watch.h"
 #include "core/record/drilling_types.h"
 #include "core/record/session_types.h"
 #include "core/stimulus/presentation.h"
@@ -13,12 +14,14 @@ namespace haptrial::protocols {
 /// What one tick of a pass asks for.
 struct PassOutput {
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // on the tool, in W [N]
+  device::ForceIntent intent;                      // of the force
   stimulus::Presentation presentation;
   double target_force{0.0};   // [N]
   double applied_force{0.0};  // by the participant, downward > 0 [N]
   record::Stage stage{record::Stage::kIdle};
-  bool saturated{false};  // the device's force limit was reached
-  record::ToolRow tool;   // of a drilling; what the device gave is filled in by the task
+  bool saturated{false};      // the device's force limit was reached
+  double damping_share{1.0};  // of the damping that the definition asks for
+  record::ToolRow tool;       // of a drilling; what the device gave is filled in by the task
 };
 
 enum class PassState : std::uint8_t { kRunning, kCompleted, kAborted };

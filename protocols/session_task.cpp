@@ -47,7 +47,7 @@ bool SessionTask::tick(const realtime::Tick& tick) noexcept {
   reading_.keys = keys_ != nullptr ? keys_->load(std::memory_order_relaxed) : 0;
   envelope_.check(read_ok, reading_);
   PassOutput out = ask_pass(reading_, tick.dt);
-  Eigen::Vector3d force = envelope_.limit(out.force, tick.dt);
+  Eigen::Vector3d force = envelope_.limit(out.force, tick.dt, out.intent);
   if (take_stop()) {  // it came during the tick, which a slow device may draw out
     force.setZero();
   }

@@ -1,12 +1,21 @@
 #include "protocols/trajectory_pass.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/table.h"
 
 namespace haptrial::protocols {
 
 using record::Stage;
+
+namespace {
+
+/// The path begins and ends at its full speed. What the damper makes of that speed comes and goes
+/// over this time, so that the force does not jump; where the target is stays as the path says [s].
+constexpr double kBlend = 0.08;
+
+}  // namespace
 
 GuidanceParameters read_guidance_parameters(Table& table) {
   GuidanceParameters p;
@@ -36,6 +45,8 @@ TrajectoryPass::TrajectoryPass(const stimulus::Stimulus& stimulus,
       parameters_(parameters),
       trajectory_controller_(parameters.trajectory),
       plane_controller_(parameters.plane),
+      trajectory_damping_(parameters.trajectory.damping, parameters.loop),
+      plane_damping_(parameters.plane.damping, parameters.loop),
       block_(block),
       guide_(curve_guide()) {}
 
@@ -114,7 +125,10 @@ void TrajectoryPass::end_run_if_over() noexcept {
 PointState TrajectoryPass::run_target(const PointState& tool) noexcept {
   if (!guide_) {
     along_ = time_;
-    return stimulus_.path.at(time_);
+    PointState target = stimulus_.path.at(time_);
+    const double left = stimulus_.path.duration() - time_;
+    target.velocity *= std::clamp(std::min(time_, left) / kBlend, 0.0, 1.0);
+    return target;
   }
   const PointState target = guide_->follow(tool);
   along_ = guide_->along();
@@ -132,15 +146,19 @@ PassOutput TrajectoryPass::tick(const device::DeviceReading& reading, double dt)
   return out;
 }
 
-PassOutput TrajectoryPass::output(const PointState& tool, const PointState& target) const noexcept {
+PassOutput TrajectoryPass::output(const PointState& tool, const PointState& target) noexcept {
   const bool runs = stage_ == Stage::kRun;
+  const bool pushes = runs && !plane_holds();
+  const double along = trajectory_damping_.share({tool.velocity.x(), 0.0, tool.velocity.z()});
+  const double across = plane_damping_.share({0.0, tool.velocity.y(), 0.0});
   PassOutput out;
   out.stage = stage_;
   out.target_force = runs ? stimulus_.force.at(along_) : 0.0;
-  const double plane_force = plane_controller_.force(target, tool).y();
-  Eigen::Vector3d wanted = trajectory_controller_.force(target, tool);
-  wanted.y() = runs && !plane_holds() ? out.target_force : plane_force;
+  Eigen::Vector3d wanted = trajectory_controller_.force(target, tool, along);
+  wanted.y() = pushes ? out.target_force : plane_controller_.force(target, tool, across).y();
+  out.damping_share = pushes ? along : std::min(along, across);
   out.force = control::saturate(wanted, parameters_.force_limit);
+  out.intent = intent(target, tool, out.force, pushes);
   out.saturated = wanted.norm() > parameters_.force_limit;
   out.applied_force = out.force.y();
 
@@ -151,6 +169,23 @@ PassOutput TrajectoryPass::output(const PointState& tool, const PointState& targ
   }
   out.presentation = presentation(moment);
   return out;
+}
+
+/// The springs follow their target; what pushes the hand up is meant to.
+device::ForceIntent TrajectoryPass::intent(const PointState& target, const PointState& tool,
+                                           const Eigen::Vector3d& force,
+                                           bool pushes) const noexcept {
+  const Eigen::Vector3d stretch = target.position - tool.position;
+  const double limit = parameters_.force_limit;
+  device::ForceIntent intent;
+  intent.drive = target.velocity;
+  intent.stored = trajectory_controller_.stored(std::hypot(stretch.x(), stretch.z()), limit);
+  if (pushes) {
+    intent.push.y() = force.y();
+  } else {
+    intent.stored += plane_controller_.stored(stretch.y(), limit);
+  }
+  return intent;
 }
 
 stimulus::Presentation TrajectoryPass::presentation(const PassMoment& moment) const noexcept {

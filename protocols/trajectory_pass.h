@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/control/damping_governor.h"
 #include "core/control/minimum_jerk.h"
 #include "core/control/pd_controller.h"
 #include "core/stimulus/stimulus.h"
@@ -33,6 +34,7 @@ struct GuidanceParameters {
   double recovery{3.0};                       // without force after an abort >= 0 [s]
   double run_timeout{120.0};                  // at one's own pace; then it is aborted > 0 [s]
   control::CurveFollowing curve{};            // at one's own pace
+  control::HandleLoop loop{};                 // what the damping has to be safe for
 };
 
 /// Reads a [guidance] table with its inner tables trajectory and plane, and curve where its `kind`
@@ -85,12 +87,16 @@ class TrajectoryPass : public Pass {
   void settle(const PointState& tool, double dt) noexcept;
   void end_run_if_over() noexcept;
   PointState run_target(const PointState& tool) noexcept;
-  PassOutput output(const PointState& tool, const PointState& target) const noexcept;
+  PassOutput output(const PointState& tool, const PointState& target) noexcept;
+  device::ForceIntent intent(const PointState& target, const PointState& tool,
+                             const Eigen::Vector3d& force, bool pushes) const noexcept;
 
   const stimulus::Stimulus& stimulus_;
   GuidanceParameters parameters_;
   control::PdController trajectory_controller_;
   control::PdController plane_controller_;
+  control::DampingGovernor trajectory_damping_;
+  control::DampingGovernor plane_damping_;
   std::int32_t block_;
   record::Stage stage_{record::Stage::kIdle};
   PassState state_{PassState::kRunning};

@@ -273,6 +273,7 @@ void Simulator::drill(const SimulatorInput& input) noexcept {
     return;
   }
   output_.force = bone_force(all, tool.feel, tool.burr, input.power);
+  output_.drag = drag_force(all, tool.burr, input.power);
   const double force = kForceStep * std::round(output_.force.norm() / kForceStep);
   for (int piece = 0; piece < pieces; ++piece) {
     const Contact& contact = contacts_[static_cast<std::size_t>(piece)];

@@ -60,6 +60,7 @@ enum class HandMode : std::uint8_t { kTool, kCameraMove, kCameraTurn, kCarry };
 /// What came of a tick.
 struct SimulatorOutput {
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // of the bone on the tool [N]
+  Eigen::Vector3d drag{Eigen::Vector3d::Zero()};   // the part of it that the turning teeth give [N]
   int tool{0};                                     // in hand
   HandMode mode{HandMode::kTool};
   double power{0.0};    // of the tool in hand, 0 where it has none

@@ -23,11 +23,17 @@ PdController::PdController(const PdGains& gains) : gains_(gains) {
   }
 }
 
-Eigen::Vector3d PdController::force(const PointState& target,
-                                    const PointState& tip) const noexcept {
+Eigen::Vector3d PdController::force(const PointState& target, const PointState& tip,
+                                    double damping_share) const noexcept {
   const Eigen::Vector3d f = gains_.stiffness * (target.position - tip.position) +
-                            gains_.damping * (target.velocity - tip.velocity);
+                            damping_share * gains_.damping * (target.velocity - tip.velocity);
   return f.allFinite() ? f : Eigen::Vector3d::Zero();
+}
+
+double PdController::stored(double stretch, double limit) const noexcept {
+  const double force = gains_.stiffness * std::abs(stretch);
+  return force <= limit ? 0.5 * force * std::abs(stretch)
+                        : limit * (std::abs(stretch) - 0.5 * limit / gains_.stiffness);
 }
 
 Eigen::Vector3d saturate(const Eigen::Vector3d& force, double limit) noexcept {

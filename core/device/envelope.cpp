@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "core/base/table.h"
 
 namespace haptrial::device {
+namespace {
 
+constexpr double kGrowthInDoubt = 3.0;  // times the holding force, while readings are suspicious
+
+}  // namespace
 EnvelopeLimits read_envelope_limits(Table& table) {
   EnvelopeLimits limits;
   limits.max_force = table.number("max_force", {0.0, 100.0, true}, "N");
@@ -17,45 +22,23 @@ EnvelopeLimits read_envelope_limits(Table& table) {
   limits.max_jump = table.number("max_jump", {0.0, 0.1, true}, "m");
   limits.ramp_in = table.number("ramp_in", {0.0, 10.0}, "s");
   limits.ramp_out = table.number("ramp_out", {0.0, 10.0}, "s");
+  if (table.has("max_saturation")) {
+    limits.max_saturation = table.number("max_saturation", {0.0, 600.0, true}, "s");
+  }
+  if (table.has("holding_force")) {
+    limits.holding_force = table.number("holding_force", {0.0, 10.0, true}, "N");
+  }
   return limits;
 }
 
-const char* describe(Fault fault) noexcept {
-  switch (fault) {
-    case Fault::kNone:
-      return "no fault";
-    case Fault::kReadFailed:
-      return "the device did not answer";
-    case Fault::kWriteFailed:
-      return "the device refused the force";
-    case Fault::kPositionNotFinite:
-      return "the device gave a position that is not a number";
-    case Fault::kJump:
-      return "the position jumped further between two ticks than a hand can move";
-    case Fault::kSpeed:
-      return "the tool moved faster than the envelope allows";
-    case Fault::kWorkspace:
-      return "the tool left the workspace";
-    case Fault::kForceNotFinite:
-      return "the protocol asked for a force that is not a number";
-    case Fault::kForceTooLarge:
-      return "the protocol asked for more force than the envelope allows";
-    case Fault::kForcesOff:
-      return "the device switched its motors off";
-    case Fault::kStopButton:
-      return "the device's stop button was pressed";
-    case Fault::kEmergencyStop:
-      return "emergency stop";
-    case Fault::kOrientationNotFinite:
-      return "the device gave an orientation that is none";
-  }
-  return "unknown fault";
-}
-
-Envelope::Envelope(const EnvelopeLimits& limits) : limits_(limits) {
+Envelope::Envelope(const EnvelopeLimits& limits)
+    : limits_(limits),
+      readings_(limits.holding_force),
+      forces_(limits.max_force, limits.max_saturation) {
   const bool positive = limits.max_force > 0.0 && limits.max_force_rate > 0.0 &&
                         limits.workspace_radius > 0.0 && limits.max_speed > 0.0 &&
-                        limits.max_jump > 0.0 && limits.ramp_in >= 0.0 && limits.ramp_out >= 0.0;
+                        limits.max_jump > 0.0 && limits.ramp_in >= 0.0 && limits.ramp_out >= 0.0 &&
+                        limits.max_saturation > 0.0 && limits.holding_force > 0.0;
   if (!positive) {
     throw std::invalid_argument("Envelope: every limit must be above 0, and no ramp below");
   }
@@ -91,10 +74,12 @@ Fault Envelope::check(bool read_ok, const DeviceReading& reading) noexcept {
   }
   last_position_ = p;
   has_position_ = true;
+  fresh_ = true;
   return fault_;
 }
 
-Eigen::Vector3d Envelope::limit(const Eigen::Vector3d& wanted, double dt) noexcept {
+Eigen::Vector3d Envelope::limit(const Eigen::Vector3d& wanted, double dt,
+                                const ForceIntent& intent) noexcept {
   // A hair above the limit is rounding of a force that was saturated to it.
   constexpr double kRounding = 1.0 + 1e-9;
   if (!wanted.allFinite() || !(dt > 0.0)) {
@@ -102,16 +87,63 @@ Eigen::Vector3d Envelope::limit(const Eigen::Vector3d& wanted, double dt) noexce
   } else if (wanted.norm() > limits_.max_force * kRounding) {
     trip(Fault::kForceTooLarge);
   }
-  if (fault_ != Fault::kNone) {
-    last_force_.setZero();
-    return last_force_;
+  if (fault_ == Fault::kNone) {
+    watch_readings(dt);
   }
-  const Eigen::Vector3d goal = target(wanted, dt);
+  if (fault_ == Fault::kNone) {
+    const Eigen::Vector3d force = approach(target(wanted, dt), dt);
+    watch_force(force, wanted, dt, intent);
+    before_last_force_ = last_force_;
+    last_force_ = fault_ == Fault::kNone ? force : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  }
+  fresh_ = false;
+  return last_force_;
+}
+
+/// Towards the goal, no faster than max_force_rate.
+Eigen::Vector3d Envelope::approach(const Eigen::Vector3d& goal, double dt) const noexcept {
   const Eigen::Vector3d change = goal - last_force_;
   const double step = change.norm();
   const double allowed = limits_.max_force_rate * dt;
-  last_force_ = step > allowed ? Eigen::Vector3d(last_force_ + change * (allowed / step)) : goal;
-  return last_force_;
+  return step > allowed ? Eigen::Vector3d(last_force_ + change * (allowed / step)) : goal;
+}
+
+void Envelope::watch_readings(double dt) noexcept {
+  if (!fresh_) {
+    return;
+  }
+  const Fault odd = readings_.look(last_position_, last_force_, dt);
+  if (odd != Fault::kNone) {
+    trip(odd);
+  }
+  const bool suspicious = readings_.suspicious();
+  if (suspicious && !bounded_) {
+    bound_ = last_force_.norm() + kGrowthInDoubt * limits_.holding_force;
+  }
+  bounded_ = suspicious;
+}
+
+void Envelope::watch_force(const Eigen::Vector3d& force, const Eigen::Vector3d& wanted, double dt,
+                           ForceIntent intent) noexcept {
+  const Fault odd = forces_.look(force, dt);
+  if (odd != Fault::kNone) {
+    trip(odd);
+  }
+  if (!fresh_) {
+    return;
+  }
+  // While the force ramps, what the springs hold is not what the protocol says.
+  const bool ramps = released_ || since_start_ < limits_.ramp_in;
+  const double asked = wanted.norm();
+  intent.push *= asked > 0.0 ? std::min(1.0, force.norm() / asked) : 0.0;
+  const Eigen::Vector3d moved = last_position_ - watched_position_;
+  const bool first = !std::exchange(has_watched_, true);
+  watched_position_ = last_position_;
+  if (ramps || first) {
+    energy_.reset();
+  } else if (energy_.look(before_last_force_, moved, intent, dt)) {
+    trip(Fault::kEnergy);
+  }
 }
 
 Eigen::Vector3d Envelope::target(const Eigen::Vector3d& wanted, double dt) noexcept {
@@ -125,20 +157,26 @@ Eigen::Vector3d Envelope::target(const Eigen::Vector3d& wanted, double dt) noexc
   const double share = limits_.ramp_in > 0.0 ? std::min(1.0, since_start_ / limits_.ramp_in) : 1.0;
   const Eigen::Vector3d grown = share * wanted;
   const double length = grown.norm();
-  return length > limits_.max_force ? Eigen::Vector3d(grown * (limits_.max_force / length)) : grown;
+  const double most = bounded_ ? std::min(bound_, limits_.max_force) : limits_.max_force;
+  return length > most ? Eigen::Vector3d(grown * (most / length)) : grown;
 }
 
 void Envelope::trip(Fault fault) noexcept {
   if (fault_ == Fault::kNone) {  // the first fault is the cause
     fault_ = fault;
     last_force_.setZero();
+    before_last_force_.setZero();
   }
 }
 
 void Envelope::reset() noexcept {
   fault_ = Fault::kNone;
   last_force_.setZero();
-  has_position_ = false;
+  before_last_force_.setZero();
+  has_position_ = has_watched_ = false;
+  bounded_ = false;
+  readings_.reset();
+  forces_.reset();
   engage();
 }
 

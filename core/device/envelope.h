@@ -1,9 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 
 #include "core/device/device.h"
+#include "core/device/energy_watch.h"
+#include "core/device/fault.h"
+#include "core/device/force_watch.h"
+#include "core/device/reading_watch.h"
 
 namespace haptrial {
 class Table;
@@ -20,40 +23,23 @@ struct EnvelopeLimits {
   double max_jump{0.005};          // between two ticks > 0 [m]
   double ramp_in{0.2};             // force grows from zero over this time after a start >= 0 [s]
   double ramp_out{0.2};            // and falls to zero over this one after release() >= 0 [s]
+  double max_saturation{3.0};      // without a break at max_force > 0 [s]
+  double holding_force{0.3};  // change of force that friction and a still hand may hide > 0 [N]
 };
 
-/// Reads the keys of an [envelope] table.
+/// Reads the keys of an [envelope] table; max_saturation and holding_force may be left
+/// out.
 EnvelopeLimits read_envelope_limits(Table& table);
-
-enum class Fault : std::uint8_t {
-  kNone,
-  kReadFailed,
-  kWriteFailed,
-  kPositionNotFinite,
-  kJump,
-  kSpeed,
-  kWorkspace,
-  kForceNotFinite,
-  kForceTooLarge,
-  kForcesOff,
-  kStopButton,
-  kEmergencyStop,
-  kOrientationNotFinite,
-};
-
-/// One sentence, such as "the tool left the workspace".
-const char* describe(Fault fault) noexcept;
-
-/// Whether a person stopped the device, and so a person has to clear it.
-constexpr bool by_a_person(Fault fault) noexcept {
-  return fault == Fault::kStopButton || fault == Fault::kEmergencyStop;
-}
 
 /// Stands between every protocol and every device on every tick. The force that leaves it is
 /// finite, never longer than max_force and never changes faster than max_force_rate, except that a
 /// fault brings it to zero in the same tick; it then stays zero until reset(). A normal end does
-/// not drop the force but lets it go over ramp_out. Servo thread: no allocation, lock, I/O or
-/// throw.
+/// not drop the force but lets it go over ramp_out.
+///
+/// Beside each tick's own limits it watches what only many ticks show: readings that freeze or
+/// jitter (ReadingWatch; while they are suspicious the force does not grow), a force that swings to
+/// and fro or stays at its limit (ForceWatch), and energy that nobody meant to give (EnergyWatch).
+/// Servo thread: no allocation, lock, I/O or throw.
 class Envelope {
  public:
   /// @throws std::invalid_argument when a limit is not above its bound.
@@ -66,7 +52,9 @@ class Envelope {
   /// @param wanted  the protocol's force [N]; more than max_force is a fault of the protocol, which
   ///                is expected to saturate by itself.
   /// @param dt      since the previous tick [s]
-  Eigen::Vector3d limit(const Eigen::Vector3d& wanted, double dt) noexcept;
+  /// @param intent  of `wanted`
+  Eigen::Vector3d limit(const Eigen::Vector3d& wanted, double dt,
+                        const ForceIntent& intent = ForceIntent{}) noexcept;
 
   /// Latches a fault from outside (a failed write, an emergency stop).
   void trip(Fault fault) noexcept;
@@ -88,6 +76,10 @@ class Envelope {
 
  private:
   Eigen::Vector3d target(const Eigen::Vector3d& wanted, double dt) noexcept;
+  Eigen::Vector3d approach(const Eigen::Vector3d& goal, double dt) const noexcept;
+  void watch_readings(double dt) noexcept;
+  void watch_force(const Eigen::Vector3d& force, const Eigen::Vector3d& wanted, double dt,
+                   ForceIntent intent) noexcept;
 
   EnvelopeLimits limits_;
   Fault fault_{Fault::kNone};
@@ -95,6 +87,15 @@ class Envelope {
   Eigen::Vector3d last_position_{Eigen::Vector3d::Zero()};
   Eigen::Vector3d released_force_{Eigen::Vector3d::Zero()};  // at release()
   bool has_position_{false};
+  bool has_watched_{false};
+  bool fresh_{false};  // a reading has come since the last limit()
+  ReadingWatch readings_;
+  ForceWatch forces_;
+  EnergyWatch energy_;
+  Eigen::Vector3d before_last_force_{Eigen::Vector3d::Zero()};  // it acted until this tick
+  Eigen::Vector3d watched_position_{Eigen::Vector3d::Zero()};   // at the last limit() [m]
+  double bound_{0.0};  // of the force while readings are suspicious [N]
+  bool bounded_{false};
   bool released_{false};
   double since_start_{0.0};    // or engage() [s]
   double since_release_{0.0};  // [s]

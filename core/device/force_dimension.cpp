@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -61,6 +62,26 @@ constexpr std::array<const char*, 23> kErrors{
     "the device refused a value",
     "the device's automatic control is not running"};
 
+/// What the maker says that a device gives, by the number of its system type [N].
+struct Model {
+  int type;
+  const char* name;
+  double max_force;
+};
+constexpr std::array<Model, 6> kModels{{{33, "omega.3", 12.0},
+                                        {60, "Falcon", 8.0},
+                                        {63, "delta.3", 20.0},
+                                        {104, "sigma.7", 20.0},
+                                        {105, "sigma.7", 20.0},
+                                        {206, "sigma.3", 20.0}}};
+constexpr Model kOther{-1, "device of a type that is not known here", 12.0};
+
+Model model_of(int type) noexcept {
+  const auto* const found = std::find_if(kModels.begin(), kModels.end(),
+                                         [type](const Model& model) { return model.type == type; });
+  return found != kModels.end() ? *found : kOther;
+}
+
 template <std::size_t n>
 const char* sentence(const std::array<const char*, n>& sentences, int number) noexcept {
   const bool known = number >= 0 && number < static_cast<int>(n);
@@ -101,6 +122,7 @@ struct ForceDimensionDevice::Api {
   int (*open)(char);
   int (*close)(char);
   const char* (*system_name)(char);
+  int (*system_type)(char);  // null in old libraries
   int (*enable_force)(unsigned char, char);
   int (*stop)(char);
   int (*set_effector_mass)(double, char);
@@ -156,6 +178,7 @@ ForceDimensionDevice::Api::Api(const std::string& path) : library(open_library(p
   library.get(set_watchdog, "dhdSetWatchdog");
   library.get(set_velocity_threshold, "dhdSetVelocityThreshold");
   library.get(last_error, "dhdErrorGetLast");
+  library.find(system_type, "dhdGetSystemType");
   library.find(has_wrist, "dhdHasWrist");
   library.find(get_orientation, "dhdGetOrientationFrame");
   library.find(drd_open, "drdOpenID");
@@ -224,7 +247,19 @@ void ForceDimensionDevice::open() {
   id_ = static_cast<char>(id);
 }
 
+/// No definition may claim more force than the device gives.
+void ForceDimensionDevice::check_force() const {
+  const Model model = model_of(api_->system_type != nullptr ? api_->system_type(id_) : -1);
+  if (parameters_.max_force > model.max_force) {
+    throw InputError(
+        fmt::format("force_dimension.max_force is {} N; allowed: at most {} N, which "
+                    "is what the {} gives",
+                    parameters_.max_force, model.max_force, model.name));
+  }
+}
+
 void ForceDimensionDevice::configure() {
+  check_force();
   const Api& api = *api_;
   const ForceDimensionParameters& p = parameters_;
   if (opened_by_drd_ && api.drd_is_supported(id_)) {

@@ -15,8 +15,8 @@ namespace haptrial::device {
 /// How a Force Dimension device is set up; nothing is left to what its last user chose. The
 /// defaults suit an omega.3.
 struct ForceDimensionParameters {
-  int index{0};                    // of the device, 0 to 3
-  double max_force{12.0};          // the driver saturates here > 0 [N]
+  int index{0};            // of the device, 0 to 3
+  double max_force{12.0};  // the driver saturates here, at most what the model gives > 0 [N]
   double workspace_radius{0.075};  // > 0 [m]
   double effector_mass{0.0};  // what is mounted on the handle, for gravity compensation >= 0 [kg]
   bool gravity_compensation{true};
@@ -43,8 +43,8 @@ class ForceDimensionDevice final : public Device {
   /// seconds and move the handle: nobody should hold it.
   /// @param rate     of the servo loop, for the count of slow calls > 0 [Hz]
   /// @param library  a path in place of the search for libdrd.so.3, then libdhd.so.3
-  /// @throws InputError when the library or one of its functions is missing, RunError when no
-  ///         device answers or one refuses its set-up.
+  /// @throws InputError when the library or one of its functions is missing, or max_force is more
+  ///         than the model gives; RunError when no device answers or one refuses its set-up.
   ForceDimensionDevice(const ForceDimensionParameters& parameters, double rate,
                        const std::string& library = "");
   /// Force to zero, forces off, closed.
@@ -64,6 +64,7 @@ class ForceDimensionDevice final : public Device {
  private:
   struct Api;
   void open();
+  void check_force() const;
   void configure();
   void close() noexcept;
   void require(int result, const char* what) const;

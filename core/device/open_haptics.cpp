@@ -21,6 +21,7 @@ constexpr unsigned kVelocity = 0x2051;   // [mm/s]
 constexpr unsigned kTransform = 0x2052;  // 4 x 4, by columns
 constexpr unsigned kForce = 0x2700;
 constexpr unsigned kNominalMaxForce = 0x2603;
+constexpr double kForceOfATouch = 3.3;  // the weakest of them, where the device says nothing [N]
 constexpr unsigned kForceOutput = 0x4000;
 constexpr unsigned kInvalidDevice = 0xFFFFFFFF;
 constexpr unsigned kGoOn = 1;
@@ -154,7 +155,7 @@ void OpenHapticsDevice::start(double rate) {
   require("say its greatest force");
   info_ = {
       fmt::format("OpenHaptics {}", parameters_.name.empty() ? "default device" : parameters_.name),
-      nominal > 0.0 ? std::min(nominal, parameters_.max_force) : parameters_.max_force,
+      std::min(nominal > 0.0 ? nominal : kForceOfATouch, parameters_.max_force),
       parameters_.workspace_radius, false, true};
   api_->enable(kForceOutput);
   require("switch its forces on");

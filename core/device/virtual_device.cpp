@@ -13,6 +13,9 @@ VirtualDeviceParameters read_virtual_device_parameters(Table& table) {
   p.workspace_radius = table.number("workspace_radius", {0.0, 2.0, true}, "m");
   p.position_quantum = table.number("position_quantum", {0.0, 1e-3}, "m");
   p.velocity_window = static_cast<int>(table.integer("velocity_window", 2, 64));
+  if (table.has("force_delay")) {
+    p.force_delay = static_cast<int>(table.integer("force_delay", 1, 8));
+  }
   return p;
 }
 
@@ -24,13 +27,15 @@ VirtualDevice::VirtualDevice(const VirtualDeviceParameters& parameters, HandlePh
       period_(1.0 / rate) {
   const int n = parameters.velocity_window;
   if (n < 2 || n > kMaxWindow || !(rate > 0.0) || !(parameters.max_force > 0.0) ||
-      !(parameters.position_quantum >= 0.0)) {
+      !(parameters.position_quantum >= 0.0) || parameters.force_delay < 1 ||
+      parameters.force_delay > kMaxDelay) {
     throw std::invalid_argument(
-        "VirtualDevice: rate and max_force must be above 0, position_quantum at least 0 and "
-        "velocity_window from 2 to 64");
+        "VirtualDevice: rate and max_force must be above 0, position_quantum at least 0, "
+        "velocity_window from 2 to 64 and force_delay from 1 to 8");
   }
   slope_gain_ = 12.0 / (static_cast<double>(n) * (n * n - 1.0) * period_);
   history_.fill(Eigen::Vector3d::Zero());
+  pending_.fill(Eigen::Vector3d::Zero());
   for (int i = 0; i < n; ++i) {
     sense(physics_.state().position);
   }
@@ -59,12 +64,14 @@ bool VirtualDevice::read(DeviceReading& reading) noexcept {
 }
 
 bool VirtualDevice::write(const Eigen::Vector3d& force) noexcept {
-  const double length = pending_force_.norm();
+  Eigen::Vector3d& arrived = pending_[static_cast<std::size_t>(oldest_)];
+  const double length = arrived.norm();
   if (length > parameters_.max_force) {
-    pending_force_ *= parameters_.max_force / length;
+    arrived *= parameters_.max_force / length;
   }
-  sense(physics_.step(pending_force_, period_).position);
-  pending_force_ = force;
+  sense(physics_.step(arrived, period_).position);
+  arrived = force;
+  oldest_ = (oldest_ + 1) % parameters_.force_delay;
   return true;
 }
 

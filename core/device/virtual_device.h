@@ -17,13 +17,14 @@ struct VirtualDeviceParameters {
   double workspace_radius{0.075};  // > 0 [m]
   double position_quantum{1e-5};   // resolution of the encoders >= 0 [m]
   int velocity_window{8};          // readings in the slope that estimates velocity, 2 to 64
+  int force_delay{1};              // ticks from write() to the force, 1 to 8
 };
 
-/// Reads the keys of a [device] table.
+/// Reads the keys of a [device] table; force_delay may be left out.
 VirtualDeviceParameters read_virtual_device_parameters(Table& table);
 
 /// A device without hardware. Each write() advances the physics by one period; the force of a tick
-/// acts during the next one (one sample of delay), as it does through a bus.
+/// acts force_delay ticks later, by default during the next one, as it does through a bus.
 /// Velocity is the least-squares slope over the last readings, as drivers estimate it.
 class VirtualDevice final : public Device {
  public:
@@ -46,15 +47,17 @@ class VirtualDevice final : public Device {
 
  private:
   static constexpr int kMaxWindow = 64;
+  static constexpr int kMaxDelay = 8;
   void sense(const Eigen::Vector3d& position) noexcept;
 
   VirtualDeviceParameters parameters_;
   DeviceInfo info_;
   HandlePhysics& physics_;
   double period_;
-  double slope_gain_;   // of the least-squares slope [1/s]
-  DeviceReading held_;  // but for the tool itself
-  Eigen::Vector3d pending_force_{Eigen::Vector3d::Zero()};
+  double slope_gain_;                               // of the least-squares slope [1/s]
+  DeviceReading held_;                              // but for the tool itself
+  std::array<Eigen::Vector3d, kMaxDelay> pending_;  // ring of forces on their way
+  int oldest_{0};
   std::array<Eigen::Vector3d, kMaxWindow> history_;  // ring of readings
   int newest_{0};
 };

@@ -49,7 +49,9 @@ Lived live(Pass& pass, std::size_t jump_at = 0) {
   };
   Witness witness;
   SessionTask::Log log;
-  SessionTask task(device, {}, log, {&witness}, SessionTask::Leave::kAfterPassOrSlice);
+  device::EnvelopeLimits limits;
+  limits.max_saturation = 600.0;  // this hand does not follow
+  SessionTask task(device, limits, log, {&witness}, SessionTask::Leave::kAfterPassOrSlice);
   realtime::ServoLoop loop(realtime::ClockKind::kSimulated, kRate);
   Lived lived;
   const auto keep = [&](std::span<const record::Sample> rows) {

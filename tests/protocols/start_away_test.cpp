@@ -39,6 +39,10 @@ Start start_from(const Vector3d& where, Pass& pass) {
   }
   log.flush([&](auto samples) {
     for (const record::Sample& sample : samples) {
+      if (task.result().fault != device::Fault::kNone &&
+          sample.sequence >= task.result().last_sample) {
+        break;  // a fault cuts the force
+      }
       start.greatest_change = std::max(start.greatest_change, (sample.force - before).norm());
       start.greatest_force = std::max(start.greatest_force, sample.force.norm());
       start.fastest = std::max(start.fastest, sample.velocity.norm());

@@ -166,7 +166,8 @@ TEST_P(EveryPass, PullsTheHandAlongThePath) {
   Hand hand({0.0, 0.0, 0.0});
   const auto moments = run(*pass, hand);
   const auto running = of_stage(moments, Stage::kRun);
-  for (std::size_t i = 1000; i < running.size(); ++i) {
+  const std::size_t blending_out = running.size() - 80;  // the damper's part of the target goes
+  for (std::size_t i = 1000; i < blending_out; ++i) {
     Vector3d apart = running[i].tool.position -
                      stimulus_of_study().path.at(static_cast<double>(i) * kDt).position;
     apart.y() = 0.0;
@@ -193,6 +194,7 @@ TEST_P(EveryPass, TheForceDoesNotJumpAtAChangeOfStage) {
 TEST_P(EveryPass, TheForceAlongYFollowsTheKindOfPass) {
   GuidanceParameters p;
   p.force_limit = 1e9;
+  p.loop.handle_mass = 1000.0;  // it carries all the damping, whatever the hand does
   const auto pass = make_pass(GetParam(), p);
   Hand hand({0.0, 0.005, 0.0});
   hand.push = -4.0;

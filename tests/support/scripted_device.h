@@ -8,7 +8,8 @@
 namespace haptrial::test {
 
 /// A device that does what its script says, tick by tick, and keeps every force that it was given.
-/// The hand lies still at `position` unless on_read() moves it.
+/// The hand trembles by a nanometre about `position` unless on_read() moves it: a reading that
+/// stays the same to the last bit would be a fault.
 class ScriptedDevice final : public device::Device {
  public:
   using OnRead = std::function<bool(std::size_t tick, device::DeviceReading& reading)>;
@@ -20,6 +21,7 @@ class ScriptedDevice final : public device::Device {
   const device::DeviceInfo& info() const noexcept override { return info_; }
   bool read(device::DeviceReading& reading) noexcept override {
     device::DeviceReading answer{{position, Eigen::Vector3d::Zero()}, 0};
+    answer.tool.position.z() += written.size() % 2 == 0 ? 0.0 : 1e-9;
     if (on_read && !on_read(written.size(), answer)) {
       return false;
     }

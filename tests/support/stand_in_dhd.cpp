@@ -86,6 +86,7 @@ void stand_in_setup(StandInSetup* out) { *out = handle.setup; }
 int dhdGetDeviceCount() { return handle.fails(Failure::kNoDevice) ? 0 : 1; }
 int dhdErrorGetLast() { return haptrial::test::dhd_error; }
 const char* dhdGetSystemName(char) { return "omega.3"; }
+int dhdGetSystemType(char) { return 33; }
 
 int dhdOpenID(char index) {
   if (index != 0 || handle.fails(Failure::kNoDevice)) {

@@ -90,6 +90,15 @@ TEST(ForceDimensionTest, EverySettingIsMadeInTheVendorsUnits) {
   EXPECT_FALSE(device.info().simulated);
 }
 
+TEST(ForceDimensionTest, ADefinitionMayNotClaimMoreForceThanTheModelGives) {
+  const StandIn stand_in("stand_in_dhd");  // an omega.3
+  ForceDimensionParameters p;
+  p.max_force = 12.5;
+  EXPECT_THAT(
+      message_of<InputError>([&] { ForceDimensionDevice(p, kRigRate, stand_in.path); }),
+      AllOf(HasSubstr("max_force is 12.5 N"), HasSubstr("at most 12 N"), HasSubstr("omega.3")));
+}
+
 TEST(ForceDimensionTest, StartsInTheVendorsOrder) {
   const std::vector<std::string> all{"drdOpen", "dhdOpen", "auto_init", "drdStop",
                                      "mass",    "gravity", "window",    "force_on"};

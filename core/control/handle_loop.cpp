@@ -1,0 +1,88 @@
+#include "core/control/handle_loop.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <stdexcept>
+#include <unsupported/Eigen/MatrixFunctions>
+
+namespace haptrial::control {
+namespace {
+
+void check(const HandleLoop& loop, const HeldBy& hand) {
+  if (!(loop.handle_mass > 0.0 && loop.rate > 0.0) || loop.velocity_window < 2 ||
+      loop.force_delay < 1 || !(hand.mass >= 0.0 && hand.damping >= 0.0 && hand.stiffness >= 0.0)) {
+    throw std::invalid_argument(
+        "HandleLoop: handle_mass and rate must be above 0, velocity_window at least 2, "
+        "force_delay at least 1, and nothing of the hand below 0");
+  }
+}
+
+/// Position and velocity after a tick, of position, velocity and the force held over it.
+Eigen::Matrix<double, 2, 3> exact_step(const HandleLoop& loop, const HeldBy& hand) {
+  const double mass = loop.handle_mass + hand.mass;
+  Eigen::Matrix3d flow = Eigen::Matrix3d::Zero();
+  flow.row(0) << 0.0, 1.0, 0.0;
+  flow.row(1) << -hand.stiffness / mass, -hand.damping / mass, 1.0 / mass;
+  return Eigen::Matrix3d((flow / loop.rate).exp()).topRows<2>();
+}
+
+}  // namespace
+
+double spectral_radius(const PdGains& gains, const HandleLoop& loop, const HeldBy& hand) {
+  check(loop, hand);
+  // The state: position, velocity, forces on their way (oldest first), readings (newest first).
+  const int n = loop.velocity_window;
+  const int d = loop.force_delay;
+  const int reading = 2 + d;
+  Eigen::RowVectorXd force = Eigen::RowVectorXd::Zero(reading + n);
+  double squares = 0.0;
+  for (int i = 0; i < n; ++i) {
+    const double centred = 0.5 * (n - 1) - i;
+    squares += centred * centred;
+  }
+  for (int i = 0; i < n; ++i) {
+    force[reading + i] = -gains.damping * (0.5 * (n - 1) - i) / squares * loop.rate;
+  }
+  force[reading] -= gains.stiffness;
+
+  Eigen::MatrixXd tick = Eigen::MatrixXd::Zero(reading + n, reading + n);
+  tick.topLeftCorner(2, 3) = exact_step(loop, hand);
+  for (int i = 0; i + 1 < d; ++i) {
+    tick(2 + i, 3 + i) = 1.0;
+  }
+  tick.row(1 + d) = force;
+  tick.row(reading) = tick.row(0);
+  for (int i = 1; i < n; ++i) {
+    tick(reading + i, reading + i - 1) = 1.0;
+  }
+  return Eigen::EigenSolver<Eigen::MatrixXd>(tick, false).eigenvalues().cwiseAbs().maxCoeff();
+}
+
+double lightest_stable_hand(const PdGains& gains, const HandleLoop& loop, double heaviest) {
+  // A free mass that is pushed by nothing stays where it is: an eigenvalue of 1.
+  constexpr double kStable = 1.0 + 1e-9;
+  constexpr double kResolution = 1e-3;  // [kg]
+  const auto stable = [&](double mass) {
+    return spectral_radius(gains, loop, {mass, 0.0, 0.0}) <= kStable;
+  };
+  if (stable(0.0)) {
+    return 0.0;
+  }
+  if (!stable(heaviest)) {
+    return heaviest + 1.0;
+  }
+  double low = 0.0;
+  double high = heaviest;
+  while (high - low > kResolution) {
+    const double middle = 0.5 * (low + high);
+    (stable(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
+double damping_of_bare_handle(double damping, const HandleLoop& loop) noexcept {
+  const double age = (0.5 * loop.velocity_window + 3.0) / loop.rate;
+  return std::min(damping, 0.5 * loop.handle_mass / age);
+}
+
+}  // namespace haptrial::control

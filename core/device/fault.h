@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+
+namespace haptrial::device {
+
+/// Why a device is without force.
+enum class Fault : std::uint8_t {
+  kNone,
+  kReadFailed,
+  kWriteFailed,
+  kPositionNotFinite,
+  kJump,
+  kSpeed,
+  kWorkspace,
+  kForceNotFinite,
+  kForceTooLarge,
+  kForcesOff,
+  kStopButton,
+  kEmergencyStop,
+  kOrientationNotFinite,
+  kFrozen,
+  kJitter,
+  kOscillation,
+  kSaturation,
+  kEnergy,
+};
+constexpr int kFaults = static_cast<int>(Fault::kEnergy) + 1;
+
+/// One sentence, such as "the tool left the workspace".
+const char* describe(Fault fault) noexcept;
+
+/// Whether a person stopped the device, and so a person has to clear it.
+constexpr bool by_a_person(Fault fault) noexcept {
+  return fault == Fault::kStopButton || fault == Fault::kEmergencyStop;
+}
+
+}  // namespace haptrial::device

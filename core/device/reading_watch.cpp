@@ -1,0 +1,67 @@
+#include "core/device/reading_watch.h"
+
+#include <algorithm>
+
+namespace haptrial::device {
+namespace {
+
+constexpr double kHeaviestHand = 2.2;    // with the handle [kg]
+constexpr double kFrozenWay = 6e-5;      // [m]
+constexpr double kForceMemory = 0.020;   // of what the hand held against before [s]
+constexpr double kJitterWithin = 0.050;  // [s]
+constexpr double kAcceleration = 500.0;  // [m/s^2]
+constexpr double kResolution = 1e-4;     // [m]
+
+}  // namespace
+
+Fault ReadingWatch::look(const Eigen::Vector3d& position, const Eigen::Vector3d& force,
+                         double dt) noexcept {
+  time_ += dt;
+  const Eigen::Vector3d step = position - position_;
+  position_ = position;
+  Fault fault = Fault::kNone;
+  if (seen_ == 0) {
+    held_ = force;
+  } else if (frozen(step.isZero(0.0), force, dt)) {
+    fault = Fault::kFrozen;
+  }
+  if (seen_ > 1 && jitters(step, dt)) {
+    fault = Fault::kJitter;
+  }
+  step_ = step;
+  seen_ = std::min(seen_ + 1, 2);
+  return fault;
+}
+
+bool ReadingWatch::frozen(bool equal, const Eigen::Vector3d& force, double dt) noexcept {
+  if (!equal || equal_for_ == 0.0) {
+    held_ += std::min(1.0, (equal_for_ + dt) / kForceMemory) * (force - held_);
+    equal_for_ = equal ? dt : 0.0;
+    free_speed_ = free_way_ = 0.0;
+    return false;
+  }
+  equal_for_ += dt;
+  const double change = (force - held_).norm();
+  if (change <= holding_force_) {
+    free_speed_ = free_way_ = 0.0;
+    return false;
+  }
+  free_speed_ += change / kHeaviestHand * dt;
+  free_way_ += free_speed_ * dt;
+  return free_way_ > kFrozenWay;
+}
+
+bool ReadingWatch::jitters(const Eigen::Vector3d& step, double dt) noexcept {
+  odd_for_ = std::max(0.0, odd_for_ - dt);
+  if ((step - step_).norm() <= std::max(kResolution, kAcceleration * dt * dt)) {
+    return false;
+  }
+  odd_for_ = kJitterWithin;
+  double& oldest = odd_at_[static_cast<std::size_t>(odd_ % (kJitterTicks - 1))];
+  const double since = time_ - oldest;
+  oldest = time_;
+  ++odd_;
+  return odd_ >= kJitterTicks && since <= kJitterWithin;
+}
+
+}  // namespace haptrial::device

@@ -1,0 +1,179 @@
+#include "core/device/reading_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "core/base/random.h"
+#include "core/device/coupled_mass.h"
+#include "core/device/virtual_device.h"
+#include "tests/support/allocation_guard.h"
+#include "tests/support/shared_data.h"
+
+namespace haptrial::device {
+namespace {
+
+using Eigen::Vector3d;
+
+/// When a fault is found, after `before` ticks of good readings; -1: never.
+template <typename Position, typename Force>
+double found_after(double rate, Fault expected, Position position, Force force) {
+  ReadingWatch watch(0.3);
+  const double dt = 1.0 / rate;
+  for (int i = 0; i < static_cast<int>(2.0 * rate); ++i) {
+    const Fault fault = watch.look(position(i * dt), force(i * dt), dt);
+    if (fault != Fault::kNone) {
+      EXPECT_EQ(fault, expected);
+      return i * dt;
+    }
+  }
+  return -1.0;
+}
+
+constexpr double kBegin = 0.5;  // [s]
+
+TEST(ReadingWatchTest, AFrozenReadingIsFoundWithin50Milliseconds) {
+  for (const double rate : {1000.0, 2000.0, 4000.0}) {
+    for (const double slope : {14.4, 100.0, 1000.0}) {  // of the force [N/s]; 900 N/m at 16 mm/s
+      const double at = found_after(
+          rate, Fault::kFrozen,
+          [](double t) {
+            const double x = 0.016 * std::min(t, kBegin);
+            return Vector3d(1e-6 * std::round(1e6 * x), 0.0, 0.0);
+          },
+          [=](double t) { return Vector3d(std::max(0.0, slope * (t - kBegin)), 1.0, 0.0); });
+      EXPECT_GT(at, kBegin) << rate;
+      EXPECT_LE(at, kBegin + 0.050) << rate << " Hz, " << slope << " N/s";
+    }
+  }
+}
+
+TEST(ReadingWatchTest, AHandThatHoldsStillUnderASteadyForceIsNoFault) {
+  EXPECT_EQ(found_after(
+                1000.0, Fault::kNone, [](double) { return Vector3d(0.01, 0.0, 0.0); },
+                [](double t) { return Vector3d(5.0 + 0.2 * std::sin(50.0 * t), 0.0, 0.0); }),
+            -1.0);
+}
+
+TEST(ReadingWatchTest, JitterIsFoundWithin50Milliseconds) {
+  for (const double rate : {1000.0, 2000.0, 4000.0}) {
+    for (const double size : {0.004, 0.0005, 0.0003}) {  // to each side [m]
+      for (const int every : {1, 2, 5}) {                // ticks
+        const double at = found_after(
+            rate, Fault::kJitter,
+            [=](double t) {
+              const int tick = static_cast<int>(std::lround(t * rate));
+              const bool off = t >= kBegin && (tick / every) % 2 == 1;
+              return Vector3d(off ? size : -size, 1e-7 * tick, 0.0);
+            },
+            [](double) { return Vector3d(1.0, 0.0, 0.0); });
+        EXPECT_GE(at, kBegin);
+        EXPECT_LE(at, kBegin + 0.050) << rate << " Hz, " << size << " m, every " << every;
+      }
+    }
+  }
+}
+
+TEST(ReadingWatchTest, KnocksAndFastStrokesAreNoFault) {
+  // A knock against a stop twice a second, strokes of 5 cm at 3 Hz, noise of the encoders.
+  for (const double rate : {1000.0, 4000.0}) {
+    RandomStream random(1, "noise");
+    EXPECT_EQ(found_after(
+                  rate, Fault::kNone,
+                  [&](double t) {
+                    const double triangle = std::abs(std::fmod(2.0 * t, 1.0) - 0.5);
+                    const Vector3d p(0.05 * std::sin(6.0 * 3.14159 * t), 0.4 * triangle,
+                                     random.uniform(-1e-5, 1e-5));
+                    return Vector3d(1e-5 * (1e5 * p).array().round().matrix());
+                  },
+                  [](double t) { return Vector3d(3.0 * std::sin(10.0 * t), 0.0, 0.0); }),
+              -1.0)
+        << rate;
+  }
+}
+
+/// Coulomb friction below the holding force, coarse encoders, and a force that wanders slowly.
+TEST(ReadingWatchTest, AHandOnAVirtualDeviceThatHoldsStillIsNoFault) {
+  for (const double quantum : {1e-6, 1e-5, 6e-5}) {
+    for (const double stiffness : {250.0, 2000.0}) {  // of the hand [N/m]
+      CoupledMass hand({1.0, stiffness, 40.0});
+      VirtualDeviceParameters parameters;
+      parameters.position_quantum = quantum;
+      VirtualDevice device(parameters, hand, 1000.0);
+      ReadingWatch watch(0.3);
+      for (int i = 0; i < 20'000; ++i) {
+        DeviceReading reading;
+        device.read(reading);
+        const double t = 1e-3 * i;
+        const Vector3d force(2.0 * std::sin(t), 5.0 * std::sin(0.3 * t), std::fmod(t, 2.0));
+        ASSERT_EQ(watch.look(reading.tool.position, force, 1e-3), Fault::kNone)
+            << quantum << " " << stiffness << " at " << t;
+        device.write(force);
+      }
+    }
+  }
+}
+
+/// Hands that lead an arm (500 Hz) and a tool along a body (pose at 30 Hz, in rows at events).
+TEST(ReadingWatchTest, RecordedHandsDoNotJitter) {
+  const auto file = test::shared_data("haptic/csrl_ur_admittance_human_500Hz.csv");
+  if (!file) {
+    GTEST_SKIP() << "haptic/csrl_ur_admittance_human_500Hz.csv is not there";
+  }
+  std::ifstream rows(*file);
+  std::string row;
+  std::getline(rows, row);
+  ReadingWatch watch(0.3);
+  int read = 0;
+  while (std::getline(rows, row)) {
+    std::istringstream cells(row);
+    std::array<double, 4> cell{};  // time and position
+    for (double& number : cell) {
+      cells >> number;
+      cells.ignore();
+    }
+    // The device holds still below 4 N by its own law, so the force is left out.
+    ASSERT_EQ(watch.look({cell[1], cell[2], cell[3]}, Vector3d::Zero(), 2e-3), Fault::kNone) << row;
+    ++read;
+  }
+  EXPECT_GT(read, 5000);
+}
+
+TEST(ReadingWatchTest, ItIsSuspiciousBeforeItIsSureAndCalmAgainAfterwards) {
+  ReadingWatch watch(0.3);
+  const Vector3d force(1.0, 0.0, 0.0);
+  double x = 0.0;
+  const auto moves = [&] { return watch.look(Vector3d(x += 1e-5, 0.0, 0.0), force, 1e-3); };
+  for (int i = 0; i < 100; ++i) {
+    moves();
+    ASSERT_FALSE(watch.suspicious());
+  }
+  for (int i = 0; i < 12; ++i) {
+    watch.look(Vector3d(x, 0.0, 0.0), force, 1e-3);
+  }
+  EXPECT_TRUE(watch.suspicious()) << "equal for more than 10 ms";
+  moves();
+  EXPECT_FALSE(watch.suspicious());
+  watch.look(Vector3d(x += 0.004, 0.0, 0.0), force, 1e-3);
+  EXPECT_TRUE(watch.suspicious()) << "an odd step";
+  for (int i = 0; i < 60; ++i) {
+    EXPECT_EQ(moves(), Fault::kNone);
+  }
+  EXPECT_FALSE(watch.suspicious());
+}
+
+TEST(ReadingWatchTest, ATickDoesNotAllocate) {
+  ReadingWatch watch(0.3);
+  const test::AllocationGuard guard;
+  for (int i = 0; i < 1000; ++i) {
+    watch.look(Vector3d(1e-3 * (i % 3), 0.0, 0.0), Vector3d(i, 0.0, 0.0), 1e-3);
+  }
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+}  // namespace
+}  // namespace haptrial::device
