@@ -44,7 +44,7 @@ Setup read_setup(Table& root, std::string_view file_name) {
   setup.hand = subject::read_hand_parameters(hand);
   if (!envelope.has("holding_force")) {  // friction holds on both sides of a standstill
     setup.envelope.holding_force =
-        std::max(setup.envelope.holding_force, 3.0 * setup.hand.coulomb_friction);
+        std::max(setup.envelope.holding_force, 5.0 * setup.hand.coulomb_friction);
   }
   setup.screen = read_screen_options(screen);
   setup.texts = read_session_texts(texts);

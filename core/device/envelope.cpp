@@ -10,7 +10,7 @@
 namespace haptrial::device {
 namespace {
 
-constexpr double kGrowthInDoubt = 3.0;  // times the holding force, while readings are suspicious
+constexpr double kGrowthInDoubt = 2.0;  // times the holding force, while readings are suspicious
 
 }  // namespace
 EnvelopeLimits read_envelope_limits(Table& table) {

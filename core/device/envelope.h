@@ -24,7 +24,7 @@ struct EnvelopeLimits {
   double ramp_in{0.2};             // force grows from zero over this time after a start >= 0 [s]
   double ramp_out{0.2};            // and falls to zero over this one after release() >= 0 [s]
   double max_saturation{3.0};      // without a break at max_force > 0 [s]
-  double holding_force{0.3};  // change of force that friction and a still hand may hide > 0 [N]
+  double holding_force{0.5};  // change of force that friction and a still hand may hide > 0 [N]
 };
 
 /// Reads the keys of an [envelope] table; max_saturation and holding_force may be left

@@ -1,5 +1,6 @@
 #include "core/device/force_watch.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace haptrial::device {
@@ -7,8 +8,9 @@ namespace {
 
 constexpr int kTurns = 4;
 constexpr double kBetweenTurns = 0.080;  // [s]
-constexpr double kLasting = 0.075;       // [s]
+constexpr double kLasting = 0.073;       // [s]
 constexpr double kSwing = 0.4;           // of the limit
+constexpr double kNear = 0.5;            // of the limit
 constexpr double kAtTheLimit = 0.98;     // of it
 
 }  // namespace
@@ -28,7 +30,9 @@ Fault ForceWatch::look(const Eigen::Vector3d& force, double dt) noexcept {
 
 bool ForceWatch::turns_too_often(Axis& axis, double force) const noexcept {
   const double swing = force - axis.extreme;
-  const bool turned = std::abs(swing) > kSwing * limit_ && swing * axis.direction <= 0.0;
+  const bool near_limit = std::max(std::abs(force), std::abs(axis.extreme)) > kNear * limit_;
+  const bool turned =
+      near_limit && std::abs(swing) > kSwing * limit_ && swing * axis.direction <= 0.0;
   const bool goes_on = swing * axis.direction > 0.0;
   if (goes_on || turned) {
     axis.extreme = force;

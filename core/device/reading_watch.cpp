@@ -5,8 +5,8 @@
 namespace haptrial::device {
 namespace {
 
-constexpr double kHeaviestHand = 2.2;    // with the handle [kg]
-constexpr double kFrozenWay = 6e-5;      // [m]
+constexpr double kHeaviestHand = 2.0;    // with the handle [kg]
+constexpr double kFrozenWay = 2.5e-5;    // [m]
 constexpr double kForceMemory = 0.020;   // of what the hand held against before [s]
 constexpr double kJitterWithin = 0.050;  // [s]
 constexpr double kAcceleration = 500.0;  // [m/s^2]
@@ -28,6 +28,10 @@ Fault ReadingWatch::look(const Eigen::Vector3d& position, const Eigen::Vector3d&
   if (seen_ > 1 && jitters(step, dt)) {
     fault = Fault::kJitter;
   }
+  const double size = step.cwiseAbs().maxCoeff();
+  if (seen_ > 0 && size > 0.0 && (smallest_step_ == 0.0 || size < smallest_step_)) {
+    smallest_step_ = size;
+  }
   step_ = step;
   seen_ = std::min(seen_ + 1, 2);
   return fault;
@@ -48,7 +52,7 @@ bool ReadingWatch::frozen(bool equal, const Eigen::Vector3d& force, double dt) n
   }
   free_speed_ += change / kHeaviestHand * dt;
   free_way_ += free_speed_ * dt;
-  return free_way_ > kFrozenWay;
+  return free_way_ > std::max(kFrozenWay, 2.0 * smallest_step_);
 }
 
 bool ReadingWatch::jitters(const Eigen::Vector3d& step, double dt) noexcept {

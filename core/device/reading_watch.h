@@ -10,8 +10,8 @@ namespace haptrial::device {
 /// Finds readings that cannot be those of a hand, though each alone could be.
 ///
 /// - Frozen: every reading equals the one before to the last bit, while the force changed by more
-///   than friction and a still hand hold against, and for so long that a free hand of 2.2 kg would
-///   have moved by 0.06 mm.
+///   than friction and a still hand hold against, and for so long that a free hand of 2 kg would
+///   have moved by 0.025 mm, or by twice the smallest step that was seen.
 /// - Jitter: eight times within 50 ms the velocity between readings changes by more than a hand and
 ///   a device can bring about: 500 m/s², but at least 0.1 mm a tick, which covers the resolution of
 ///   encoders. A knock against a stop is one or two such ticks.
@@ -45,6 +45,7 @@ class ReadingWatch {
   double time_{0.0};  // [s]
   Eigen::Vector3d position_{Eigen::Vector3d::Zero()};
   Eigen::Vector3d step_{Eigen::Vector3d::Zero()};  // between the last two readings [m]
+  double smallest_step_{0.0};                      // that is not zero; 0: none was seen [m]
   double equal_for_{0.0};                          // [s]
   Eigen::Vector3d held_{Eigen::Vector3d::Zero()};  // mean force while the hand moved last [N]
   double free_speed_{0.0};                         // of a free hand since then [m/s]

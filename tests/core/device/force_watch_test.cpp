@@ -61,6 +61,11 @@ TEST(ForceWatchTest, WhatAHandAndAPatternDoIsNoOscillation) {
             -1.0)
       << "a vibration of 3 N";
   EXPECT_EQ(found_after(
+                4000.0, Fault::kNone, 10.0,
+                [](double t) { return Vector3d(0.0, 4.5 * std::sin(2.0 * kPi * 150.0 * t), 0.0); }),
+            -1.0)
+      << "the noise of a velocity";
+  EXPECT_EQ(found_after(
                 1000.0, Fault::kNone, 10.0,
                 [](double t) { return Vector3d(0.0, std::fmod(t, 0.5) < 0.02 ? 11.0 : 0.0, 0.0); }),
             -1.0)

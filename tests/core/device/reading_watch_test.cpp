@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 /// When a fault is found, after `before` ticks of good readings; -1: never.
 template <typename Position, typename Force>
 double found_after(double rate, Fault expected, Position position, Force force) {
-  ReadingWatch watch(0.3);
+  ReadingWatch watch(0.5);
   const double dt = 1.0 / rate;
   for (int i = 0; i < static_cast<int>(2.0 * rate); ++i) {
     const Fault fault = watch.look(position(i * dt), force(i * dt), dt);
@@ -104,7 +104,7 @@ TEST(ReadingWatchTest, AHandOnAVirtualDeviceThatHoldsStillIsNoFault) {
       VirtualDeviceParameters parameters;
       parameters.position_quantum = quantum;
       VirtualDevice device(parameters, hand, 1000.0);
-      ReadingWatch watch(0.3);
+      ReadingWatch watch(0.5);
       for (int i = 0; i < 20'000; ++i) {
         DeviceReading reading;
         device.read(reading);
@@ -127,7 +127,7 @@ TEST(ReadingWatchTest, RecordedHandsDoNotJitter) {
   std::ifstream rows(*file);
   std::string row;
   std::getline(rows, row);
-  ReadingWatch watch(0.3);
+  ReadingWatch watch(0.5);
   int read = 0;
   while (std::getline(rows, row)) {
     std::istringstream cells(row);
@@ -144,7 +144,7 @@ TEST(ReadingWatchTest, RecordedHandsDoNotJitter) {
 }
 
 TEST(ReadingWatchTest, ItIsSuspiciousBeforeItIsSureAndCalmAgainAfterwards) {
-  ReadingWatch watch(0.3);
+  ReadingWatch watch(0.5);
   const Vector3d force(1.0, 0.0, 0.0);
   double x = 0.0;
   const auto moves = [&] { return watch.look(Vector3d(x += 1e-5, 0.0, 0.0), force, 1e-3); };
@@ -167,7 +167,7 @@ TEST(ReadingWatchTest, ItIsSuspiciousBeforeItIsSureAndCalmAgainAfterwards) {
 }
 
 TEST(ReadingWatchTest, ATickDoesNotAllocate) {
-  ReadingWatch watch(0.3);
+  ReadingWatch watch(0.5);
   const test::AllocationGuard guard;
   for (int i = 0; i < 1000; ++i) {
     watch.look(Vector3d(1e-3 * (i % 3), 0.0, 0.0), Vector3d(i, 0.0, 0.0), 1e-3);
