@@ -9,8 +9,8 @@ namespace {
 constexpr int kTurns = 4;
 constexpr double kBetweenTurns = 0.080;  // [s]
 constexpr double kLasting = 0.073;       // [s]
-constexpr double kSwing = 0.4;           // of the limit
-constexpr double kNear = 0.5;            // of the limit
+constexpr double kSwing = 0.5;           // of the limit
+constexpr double kNear = 0.7;            // of the limit
 constexpr double kAtTheLimit = 0.98;     // of it
 
 }  // namespace

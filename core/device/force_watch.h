@@ -10,8 +10,8 @@ namespace haptrial::device {
 /// Finds forces that go wrong though each alone is allowed.
 ///
 /// - Oscillation: along one axis the force turned back at least four times, each time by more than
-///   0.4 of the limit, from or to more than half of it, and at most 80 ms after the time before,
-///   over 73 ms or more. So 6 Hz and more are found, from 20 Hz on within 100 ms. A burst that is
+///   half of the limit, from or to more than 0.7 of it, and at most 80 ms after the time before,
+///   over 73 ms or more. So 6 Hz and more are found, from 22 Hz on within 100 ms. A burst that is
 ///   over sooner is none.
 /// - Saturation: for longer than `longest` the force did not leave the limit.
 ///

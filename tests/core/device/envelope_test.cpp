@@ -281,7 +281,7 @@ class RandomRun {
   }
   Vector3d any_force() {
     if (mood_ == kShakes) {
-      return any_vector(random_, 6.5);
+      return {0.0, mood_left_ / 8 % 2 == 0 ? 11.0 : -11.0, 0.0};
     }
     wanted_ = 0.995 * wanted_ + any_vector(random_, 0.3);
     if (!wanted_.allFinite() || wanted_.norm() > 12.0) {

@@ -33,9 +33,9 @@ double found_after(double rate, Fault expected, double seconds, Course course) {
 
 TEST(ForceWatchTest, AnOscillationNearTheLimitIsFoundWithin100Milliseconds) {
   for (const double rate : {1000.0, 2000.0, 4000.0}) {
-    for (const double f : {20.0, 36.0, 45.0, 100.0, 0.1 * rate}) {
+    for (const double f : {22.0, 36.0, 45.0, 100.0, 0.1 * rate}) {
       for (const double offset : {0.0, 6.0}) {  // about zero, or off and on against a wall
-        const double size = offset > 0.0 ? 5.0 : 11.0;
+        const double size = offset > 0.0 ? 5.5 : 11.0;
         const double at = found_after(rate, Fault::kOscillation, 1.0, [=](double t) {
           return Vector3d(0.3, offset + size * std::sin(2.0 * kPi * f * t), 0.0);
         });

@@ -1,0 +1,119 @@
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "core/device/virtual_device.h"
+#include "protocols/session_task.h"
+#include "protocols/trajectory_pass.h"
+
+namespace haptrial::test {
+
+/// A hand of some mass whose posture yields, on a handle of 0.22 kg with 0.1 N of friction.
+class HandOnHandle final : public device::HandlePhysics {
+ public:
+  explicit HandOnHandle(double mass) { hold(mass); }
+  void hold(double mass) {
+    mass_ = 0.22 + mass;
+    damping_ = 15.0 * mass / 0.8;
+    stiffness_ = 250.0 * mass / 0.8;
+  }
+  double press{0.0};  // downward [N]
+
+  PointState step(const Eigen::Vector3d& motor, double dt) noexcept override {
+    constexpr int kSteps = 4;
+    constexpr double kFriction = 0.1;     // [N]
+    constexpr double kPostureTime = 0.1;  // [s]
+    const double h = dt / kSteps;
+    for (int i = 0; i < kSteps; ++i) {
+      Eigen::Vector3d f =
+          motor - stiffness_ * (state_.position - posture_) - damping_ * state_.velocity;
+      f.y() -= press;
+      posture_ += h / kPostureTime * (state_.position - posture_);
+      state_.velocity += h / mass_ * f;
+      const double stop = kFriction / mass_ * h;
+      const double speed = state_.velocity.norm();
+      state_.velocity *= speed > stop ? 1.0 - stop / speed : 0.0;
+      state_.position += h * state_.velocity;
+    }
+    return state_;
+  }
+  PointState state() const noexcept override { return state_; }
+
+ private:
+  double mass_{0.0};
+  double damping_{0.0};
+  double stiffness_{0.0};
+  PointState state_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  Eigen::Vector3d posture_{Eigen::Vector3d::Zero()};
+};
+
+/// How often, and how late in ticks a force is.
+struct Loop {
+  double rate;
+  int delay;
+};
+/// A pass that runs on a loop, tick by tick.
+class PassRun {
+ public:
+  PassRun(protocols::Pass& pass, const Loop& loop, double hand) : loop_(loop), hand_(hand) {
+    device::VirtualDeviceParameters parameters;
+    parameters.force_delay = loop.delay;
+    device_ = std::make_unique<device::VirtualDevice>(parameters, hand_, loop.rate);
+    task_ = std::make_unique<protocols::SessionTask>(*device_, device::EnvelopeLimits{}, log_,
+                                                     std::vector<stimulus::Observer*>{},
+                                                     protocols::SessionTask::Leave::kNever);
+    task_->start(pass, 0);
+  }
+
+  HandOnHandle& hand() { return hand_; }
+  bool idle() const { return task_->idle(); }
+  device::Fault fault() const { return task_->result().fault; }
+
+  /// @returns the seconds with the force at its limit.
+  double advance(double seconds) {
+    int at_limit = 0;
+    for (int i = 0; i < static_cast<int>(seconds * loop_.rate) && !task_->idle(); ++i) {
+      const auto at =
+          static_cast<std::int64_t>(std::llround(1e9 * static_cast<double>(tick_) / loop_.rate));
+      task_->tick({tick_++, at, 1.0 / loop_.rate});
+      log_.flush([&](auto samples) {
+        for (const record::Sample& sample : samples) {
+          at_limit += sample.force.norm() >= 0.98 * 12.0;
+          stage = sample.stage;
+          force = sample.force;
+        }
+      });
+    }
+    return at_limit / loop_.rate;
+  }
+  double advance_to(record::Stage wanted) {
+    double at_limit = 0.0;
+    for (int i = 0; i < 2000 && stage != wanted && !task_->idle(); ++i) {
+      at_limit += advance(0.01);
+    }
+    return at_limit;
+  }
+
+  record::Stage stage{record::Stage::kIdle};
+  Eigen::Vector3d force{Eigen::Vector3d::Zero()};
+
+ private:
+  Loop loop_;
+  HandOnHandle hand_;
+  std::unique_ptr<device::VirtualDevice> device_;
+  protocols::SessionTask::Log log_;
+  std::unique_ptr<protocols::SessionTask> task_;
+  std::uint64_t tick_{0};
+};
+
+/// The gains of the source on this loop.
+inline protocols::GuidanceParameters published(const Loop& loop) {
+  protocols::GuidanceParameters p;
+  p.loop.rate = loop.rate;
+  p.loop.force_delay = loop.delay;
+  return p;
+}
+
+}  // namespace haptrial::test
