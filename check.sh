@@ -12,6 +12,10 @@ export ASAN_OPTIONS=detect_stack_use_after_return=1
 export LSAN_OPTIONS=suppressions=$root/tests/support/lsan.supp:print_suppressions=0
 export TSAN_OPTIONS=suppressions=$root/tests/support/tsan.supp
 
+# Tests on real data, which the project does not ship, look where HAPTRIAL_DATA says, else here.
+data=${HAPTRIAL_DATA:-$root/../shared/data}
+[ -d "$data" ] || say "no folder $data: tests on real data will skip"
+
 run_tests() {
   ctest --test-dir "$root/$1" --output-on-failure --no-tests=error -j "$(nproc)" "${@:2}"
 }

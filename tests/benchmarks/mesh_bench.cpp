@@ -62,7 +62,7 @@ std::vector<Case> cases() {
     if (const auto file = haptrial::test::shared_data(fmt::format("meshes/{}.obj", stem))) {
       all.push_back({name, geometry::read_mesh(*file)});
     } else {
-      fmt::print("{} takes no part: HAPTRIAL_DATA names no folder with meshes/{}.obj\n", name,
+      fmt::print("{} takes no part: neither HAPTRIAL_DATA nor ../shared/data holds meshes/{}.obj\n", name,
                  stem);
     }
   }

@@ -29,7 +29,7 @@ class RealAnatomyTest : public testing::TestWithParam<const char*> {
     }
     const auto file = test::shared_data(GetParam());
     if (!file) {
-      GTEST_SKIP() << "HAPTRIAL_DATA names no folder with " << GetParam();
+      GTEST_SKIP() << "neither HAPTRIAL_DATA nor ../shared/data holds " << GetParam();
     }
     std::string text =
         test::read_text(fs::path(HAPTRIAL_SOURCE_DIR) / "experiments/construct_validity.toml");

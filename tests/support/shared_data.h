@@ -7,15 +7,23 @@
 
 namespace haptrial::test {
 
-/// A file below the folder that the environment variable HAPTRIAL_DATA names: data from outside
-/// that the project does not ship. Nothing where it is absent; tests then skip, saying so.
+/// The folder of data from outside that the project does not ship: the one that the environment
+/// variable HAPTRIAL_DATA names, else `shared/data` beside the checkout. Nothing where neither is
+/// there.
+inline std::optional<std::filesystem::path> shared_data_folder(
+    const std::filesystem::path& checkout) {
+  const char* named = std::getenv("HAPTRIAL_DATA");
+  const std::filesystem::path folder = named != nullptr && *named != '\0'
+                                           ? std::filesystem::path(named)
+                                           : checkout.parent_path() / "shared" / "data";
+  return std::filesystem::is_directory(folder) ? std::optional(folder) : std::nullopt;
+}
+
+/// A file below that folder; tests skip, saying so, where it is absent.
 inline std::optional<std::filesystem::path> shared_data(const std::string& name) {
-  const char* folder = std::getenv("HAPTRIAL_DATA");
-  if (folder == nullptr || *folder == '\0') {
-    return std::nullopt;
-  }
-  const std::filesystem::path file = std::filesystem::path(folder) / name;
-  return std::filesystem::exists(file) ? std::optional(file) : std::nullopt;
+  const auto folder = shared_data_folder(HAPTRIAL_SOURCE_DIR);
+  return folder && std::filesystem::exists(*folder / name) ? std::optional(*folder / name)
+                                                           : std::nullopt;
 }
 
 }  // namespace haptrial::test

@@ -335,7 +335,7 @@ TEST(MeshIoTest, FilesAreWrittenWholeAndNotOverOthers) {
 TEST(MeshIoTest, TheStanfordBunnyIsOpen) {
   const auto file = test::shared_data("meshes/stanford-bunny.obj");
   if (!file) {
-    GTEST_SKIP() << "set HAPTRIAL_DATA to a folder with meshes/stanford-bunny.obj";
+    GTEST_SKIP() << "neither HAPTRIAL_DATA nor ../shared/data holds meshes/stanford-bunny.obj";
   }
   const MeshReport report = check_mesh(read_mesh(*file));
   EXPECT_EQ(report.vertices, 35947u);

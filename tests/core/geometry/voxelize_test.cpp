@@ -398,7 +398,7 @@ TEST(VoxelizeTest, TheStanfordBunnyVoxelizesLikeItsClosedSister) {
   const auto open = test::shared_data("meshes/stanford-bunny.obj");
   const auto closed = test::shared_data("meshes/bunny_watertight_29k_fcpw.obj");
   if (!open || !closed) {
-    GTEST_SKIP() << "set HAPTRIAL_DATA to a folder with meshes/stanford-bunny.obj and its sister";
+    GTEST_SKIP() << "neither HAPTRIAL_DATA nor ../shared/data holds meshes/stanford-bunny.obj and its sister";
   }
   const auto voxels = [](const Mesh& mesh) {
     return static_cast<double>(

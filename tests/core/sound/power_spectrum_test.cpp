@@ -76,7 +76,7 @@ TEST(PowerSpectrumTest, FindsKnownSinesInNoiseInAFile) {
 TEST(PowerSpectrumTest, WhatIsMadeFromARecordingHasItsPeaks) {
   const auto file = test::shared_data("sound/drill.wav");
   if (!file) {
-    GTEST_SKIP() << "HAPTRIAL_DATA names no folder with sound/drill.wav";
+    GTEST_SKIP() << "neither HAPTRIAL_DATA nor ../shared/data holds sound/drill.wav";
   }
   const Recording recording = read_recording(*file);
   const Spectrum found = find_peaks(power_spectrum(recording.samples, recording.rate), {.most = 8});

@@ -278,7 +278,7 @@ TEST_F(ImportTest, ATableNamesLabelsAndStructuresCanBeLeftOut) {
 
 TEST_F(ImportTest, TheRealTemporalBoneComesAsItIs) {
   const auto file = test::shared_data("bone/ear3_171_labels.nrrd");
-  if (!file) GTEST_SKIP() << "HAPTRIAL_DATA has no bone/ear3_171_labels.nrrd";
+  if (!file) GTEST_SKIP() << "neither HAPTRIAL_DATA nor ../shared/data holds bone/ear3_171_labels.nrrd";
   const BoneModel model = load_bone(*file);
   EXPECT_EQ(model.grid.size, (std::array<std::int32_t, 3>{171, 171, 169}));
   EXPECT_EQ(std::ranges::count(model.labels, 1), 825395);  // as its publishers count
