@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <toml++/toml.h>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -11,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file_text.h"
+#include "core/base/toml_text.h"
 
 namespace haptrial {
 
@@ -111,24 +111,6 @@ std::string shown(const toml::node& node) {
   return text;
 }
 
-/// A key may hold keys in turn ("a.b.c = 1"). Thousands of them on one line are one inside the
-/// other, and a tree that deep overflows the stack when it is destroyed.
-constexpr int kMostDotsInLine = 100;
-
-void refuse_deep_keys(std::string_view text, std::string_view file_name) {
-  unsigned line = 1;
-  int dots = 0;
-  for (const char c : text) {
-    if (c == '\n') {
-      ++line;
-      dots = 0;
-    } else if (c == '.' && ++dots > kMostDotsInLine) {
-      throw InputError(fmt::format("{}:{}: the line has more than {} dots; allowed: shorter lines",
-                                   file_name, line, kMostDotsInLine));
-    }
-  }
-}
-
 std::string joined(const std::vector<std::string>& items) {
   return fmt::format("{}", fmt::join(items, ", "));
 }
@@ -142,13 +124,7 @@ Table Table::parse(std::string_view text, std::string_view file_name) {
   auto document = std::make_shared<Document>();
   document->file_name = file_name;
   document->source = text;
-  refuse_deep_keys(text, file_name);
-  try {
-    document->root = toml::parse(document->source, document->file_name);
-  } catch (const toml::parse_error& error) {
-    throw InputError(fmt::format("{}:{}: not valid TOML: {}", file_name, error.source().begin.line,
-                                 error.description()));
-  }
+  document->root = parse_toml(document->source, document->file_name);
   if (document->root.empty()) {
     throw InputError(
         fmt::format("{}: the definition is empty; allowed: a TOML definition with at "

@@ -1,0 +1,174 @@
+#include "core/base/definition_changes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <sstream>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/toml_text.h"
+
+namespace haptrial {
+namespace {
+
+constexpr const char* kAbsent = "absent";
+using Values = std::map<std::string, std::string>;  // by the key's full path
+
+/// In one form: 1, 1.0 and 1e0 are the same number.
+std::string normal(const toml::node& node) {
+  if (const auto* array = node.as_array()) {
+    std::string all;
+    for (const toml::node& element : *array) {
+      all += (all.empty() ? "" : ", ") + normal(element);
+    }
+    return "[" + all + "]";
+  }
+  if (const auto* table = node.as_table()) {  // within an array
+    std::string all;
+    for (const auto& [key, value] : *table) {
+      all += (all.empty() ? "" : ", ") + fmt::format("{} = {}", key.str(), normal(value));
+    }
+    return "{" + all + "}";
+  }
+  if (const auto* number = node.as_floating_point()) {
+    return fmt::format("{}", number->get());
+  }
+  if (const auto* text = node.as_string()) {
+    return "\"" + text->get() + "\"";
+  }
+  std::ostringstream out;
+  node.visit([&](const auto& value) {
+    if constexpr (!toml::is_table<decltype(value)> && !toml::is_array<decltype(value)>) {
+      out << value;
+    }
+  });
+  return out.str();
+}
+
+void flatten(const toml::table& table, const std::string& path, Values& into) {
+  for (const auto& [key, value] : table) {
+    const std::string name = path.empty() ? std::string(key.str()) : path + "." + std::string(key);
+    if (const auto* inner = value.as_table()) {
+      flatten(*inner, name, into);
+    } else {
+      into[name] = normal(value);
+    }
+  }
+}
+
+/// The order of [groups] says which numbers belong to whom; that of other tables says nothing.
+void add_order_of_groups(const toml::table& root, Values& into) {
+  std::vector<std::pair<toml::source_position, std::string>> names;
+  if (const auto* groups = root["groups"].as_table()) {
+    for (const auto& [key, value] : *groups) {
+      names.emplace_back(key.source().begin, key.str());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  std::string all;
+  for (const auto& [position, name] : names) {
+    all += (all.empty() ? "" : ", ") + name;
+  }
+  if (!all.empty()) {
+    into["groups"] = all;
+  }
+}
+
+Values values_of(std::string_view text) {
+  const toml::table root = parse_toml(text, "definition");
+  Values values;
+  flatten(root, "", values);
+  add_order_of_groups(root, values);
+  return values;
+}
+
+bool within_character(const std::string& text, std::size_t at) {
+  return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xc0U) == 0x80U;
+}
+
+/// Short enough for a sentence, on one line. @param from  what comes before it is left out
+std::string shown(std::string text, std::size_t from) {
+  constexpr std::size_t kLongest = 60;
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
+  while (from > 0 && within_character(text, from)) {
+    --from;
+  }
+  std::size_t end = std::min(text.size(), from + kLongest);
+  while (within_character(text, end)) {
+    --end;
+  }
+  return (from > 0 ? "..." : "") + text.substr(from, end - from) + (end < text.size() ? "..." : "");
+}
+
+/// Both values, long ones from shortly before the place where they part.
+DefinitionChange change_of(const std::string& key, const std::string& was, const std::string& is) {
+  constexpr std::size_t kBefore = 20;
+  const auto part = static_cast<std::size_t>(
+      std::mismatch(was.begin(), was.end(), is.begin(), is.end()).first - was.begin());
+  const std::size_t from = part > 2 * kBefore ? part - kBefore : 0;
+  return {key, shown(was, from), shown(is, from)};
+}
+
+}  // namespace
+
+bool free_to_change(std::string_view key, Hand hand) {
+  constexpr std::array<std::string_view, 5> kAlways{"texts", "screen", "force_dimension",
+                                                    "open_haptics", "mouse"};
+  constexpr std::array<std::string_view, 6> kOfTheVirtualHand{
+      "device", "hand", "subject", "pace", "drilling_hand", "virtual_surgeons"};
+  const std::string_view table = key.substr(0, key.find('.'));
+  const auto has = [table](const auto& tables) {
+    return std::find(tables.begin(), tables.end(), table) != tables.end();
+  };
+  return has(kAlways) || (hand == Hand::kPerson && has(kOfTheVirtualHand)) ||
+         key == "design.participants";
+}
+
+DefinitionChanges definition_changes(std::string_view before, std::string_view after, Hand hand) {
+  DefinitionChanges changes;
+  if (before == after) {
+    return changes;
+  }
+  changes.same_text = false;
+  Values first;
+  Values second;
+  try {
+    first = values_of(before);
+    second = values_of(after);
+  } catch (const InputError&) {
+    changes.binding.push_back(change_of("the text", std::string(before), std::string(after)));
+    return changes;
+  }
+  Values all = first;
+  all.insert(second.begin(), second.end());
+  const auto value_in = [](const Values& values, const std::string& key) {
+    const auto at = values.find(key);
+    return at == values.end() ? std::string(kAbsent) : at->second;
+  };
+  for (const auto& [key, ignored] : all) {
+    const std::string was = value_in(first, key);
+    const std::string is = value_in(second, key);
+    if (was != is) {
+      auto& into = free_to_change(key, hand) ? changes.free : changes.binding;
+      into.push_back(change_of(key, was, is));
+    }
+  }
+  return changes;
+}
+
+std::string sentence_of(const std::vector<DefinitionChange>& changes) {
+  constexpr std::size_t kMost = 8;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kMost, changes.size()); ++i) {
+    const auto& [key, before, after] = changes[i];
+    text += fmt::format("{}{} was {}, is {}", i > 0 ? "; " : "", key, before, after);
+  }
+  return changes.size() > kMost ? fmt::format("{}; and {} more", text, changes.size() - kMost)
+                                : text;
+}
+
+}  // namespace haptrial

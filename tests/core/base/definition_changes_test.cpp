@@ -1,0 +1,101 @@
+#include "core/base/definition_changes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace haptrial {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+std::vector<std::string> keys(const std::vector<DefinitionChange>& changes) {
+  std::vector<std::string> all;
+  for (const DefinitionChange& change : changes) {
+    all.push_back(change.key);
+  }
+  return all;
+}
+
+DefinitionChanges between(std::string_view before, std::string_view after) {
+  return definition_changes(before, after, Hand::kPerson);
+}
+
+TEST(DefinitionChangesTest, CommentsLayoutOrderAndTheFormOfANumberAreNoChanges) {
+  const auto changes =
+      between("[design]\ntrials = 6  # many\nx = 1\n[gains]\nplane = { b = 2, k = [1, 2.50] }\n",
+              "[gains.plane]\nk = [1.0,\n 2.5]\nb = 2.0\n[design]\nx = 1.0\ntrials = 6");
+  EXPECT_THAT(changes.binding, IsEmpty());
+  EXPECT_THAT(changes.free, IsEmpty());
+  EXPECT_FALSE(changes.same_text);
+  EXPECT_TRUE(changes.same_study());
+  EXPECT_TRUE(between("a = 1", "a = 1").same_text);
+}
+
+TEST(DefinitionChangesTest, KeysAreNamedWithBothValues) {
+  const auto changes = between("[guidance]\nwait = 0.5\nplane = { damping = 300.0 }\nold = true\n",
+                               "[guidance]\nwait = 1\nplane = { damping = 100.0 }\nnew = \"n\"\n");
+  EXPECT_EQ(sentence_of(changes.binding),
+            "guidance.new was absent, is \"n\"; guidance.old was true, is absent; "
+            "guidance.plane.damping was 300, is 100; guidance.wait was 0.5, is 1");
+  EXPECT_FALSE(changes.same_study());
+}
+
+TEST(DefinitionChangesTest, TextsScreenAndDevicesMayChange) {
+  const auto changes = between(
+      "[texts]\nrest = \"Time for a rest\"\n[screen]\nmonitor = 0\n[design]\nparticipants = 12\n",
+      "[texts]\nrest = \"Time, for a rest\"\n[screen]\nmonitor = 1\n[design]\nparticipants = 18\n"
+      "[force_dimension]\nindex = 1\n[open_haptics]\nname = \"a\"\n[mouse]\nmax_press = 5\n");
+  EXPECT_THAT(changes.binding, IsEmpty());
+  EXPECT_THAT(keys(changes.free),
+              ElementsAre("design.participants", "force_dimension.index", "mouse.max_press",
+                          "open_haptics.name", "screen.monitor", "texts.rest"));
+}
+
+TEST(DefinitionChangesTest, TheVirtualHandCountsWhereItWasUsed) {
+  const std::string_view before = "[hand]\nhand_mass = 0.8\n[device]\nposition_quantum = 1e-5\n";
+  const std::string_view after = "[hand]\nhand_mass = 0.5\n[device]\nposition_quantum = 2e-5\n";
+  EXPECT_TRUE(definition_changes(before, after, Hand::kPerson).same_study());
+  const auto simulated = definition_changes(before, after, Hand::kVirtual);
+  EXPECT_THAT(keys(simulated.binding), ElementsAre("device.position_quantum", "hand.hand_mass"));
+}
+
+TEST(DefinitionChangesTest, WhatNobodyThoughtOfCounts) {
+  EXPECT_FALSE(between("[texts_of_another]\na = 1", "[texts_of_another]\na = 2").same_study());
+  EXPECT_FALSE(between("[display]\nfull_scale = 12", "[display]\nfull_scale = 10").same_study());
+}
+
+TEST(DefinitionChangesTest, TheOrderOfGroupsCountsForItSaysWhoBelongsWhere) {
+  const auto changes =
+      between("[groups]\nsurgeons = 4\nnovices = 4", "[groups]\nnovices = 4\nsurgeons = 4");
+  EXPECT_EQ(sentence_of(changes.binding), "groups was surgeons, novices, is novices, surgeons");
+}
+
+TEST(DefinitionChangesTest, LongTextsAreShownWhereTheyPart) {
+  const std::string start = "a long beginning that both texts of this test share, and then ";
+  const auto changes =
+      between("[texts]\nrest = \"" + start + "this\"", "[texts]\nrest = \"" + start + "that\"");
+  ASSERT_EQ(changes.free.size(), 1u);
+  EXPECT_NE(changes.free[0].before, changes.free[0].after);
+  EXPECT_THAT(changes.free[0].before, testing::EndsWith("this\""));
+}
+
+TEST(DefinitionChangesTest, LongListsAreCut) {
+  std::string before = "[a]\n";
+  std::string after = "[a]\n";
+  for (int i = 0; i < 12; ++i) {
+    before += "k" + std::to_string(i) + " = 0\n";
+    after += "k" + std::to_string(i) + " = 1\n";
+  }
+  EXPECT_THAT(sentence_of(between(before, after).binding), testing::EndsWith("; and 4 more"));
+}
+
+TEST(DefinitionChangesTest, WhatIsNoTomlIsComparedAsItStands) {
+  EXPECT_TRUE(between("= not toml", "= not toml").same_study());
+  EXPECT_THAT(keys(between("= not toml", "= nor this").binding), ElementsAre("the text"));
+  const std::string deep = "a" + std::string(5000, '.') + "b = 1";
+  EXPECT_THAT(keys(between(deep, "a = 1").binding), ElementsAre("the text"));
+}
+
+}  // namespace
+}  // namespace haptrial
