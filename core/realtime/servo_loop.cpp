@@ -47,6 +47,14 @@ void ServoLoop::run(ServoTask& task) {
   clock_ == ClockKind::kSimulated ? run_simulated(task) : run_real(task);
 }
 
+std::int64_t ServoLoop::elapsed_ns() const noexcept {
+  if (clock_ == ClockKind::kSimulated) {
+    return static_cast<std::int64_t>(static_cast<double>(ticks()) / rate_hz_ * 1e9);
+  }
+  const std::int64_t origin = origin_ns_.load(std::memory_order_acquire);
+  return origin < 0 ? 0 : now_ns() - origin;
+}
+
 void ServoLoop::run_simulated(ServoTask& task) {
   const double dt = 1.0 / rate_hz_;
   bool more = true;
@@ -64,6 +72,7 @@ void ServoLoop::run_real(ServoTask& task) {
   const double dt = 1.0 / rate_hz_;
   const auto spin_ns = static_cast<std::int64_t>(std::min(kSpinNs, kSpinShare * period_ns_));
   Deadlines deadlines(period_ns_, now_ns());
+  std::int64_t origin = origin_ns_.load(std::memory_order_relaxed);
   bool more = true;
   for (std::uint64_t index = ticks(); more && !stop_requested(); ++index) {
     const std::int64_t start = wait_until(deadlines.wake(), spin_ns);
@@ -71,10 +80,11 @@ void ServoLoop::run_real(ServoTask& task) {
       break;
     }
     note_start(deadlines.start(start));
-    if (origin_ns_ < 0) {
-      origin_ns_ = start;
+    if (origin < 0) {
+      origin = start;
+      origin_ns_.store(start, std::memory_order_release);
     }
-    more = task.tick({index, start - origin_ns_, dt});
+    more = task.tick({index, start - origin, dt});
     const std::int64_t end = now_ns();
     timing_.compute.add(end - start);
     overruns_.fetch_add(deadlines.end(end) ? 1 : 0, std::memory_order_relaxed);

@@ -66,6 +66,13 @@ class ServoLoop {
   ClockKind clock() const noexcept { return clock_; }
   double rate_hz() const noexcept { return rate_hz_; }
 
+  /// Whether a real loop has begun its first tick; real_time_status() is there from then on. Any
+  /// thread.
+  bool started() const noexcept { return origin_ns_.load(std::memory_order_acquire) >= 0; }
+  /// The time now on the clock of Tick::time_ns, also after a suspension; 0 before the first tick.
+  /// Simulated: when the next tick will be. Any thread [ns]
+  std::int64_t elapsed_ns() const noexcept;
+
   /// Any thread, also while the loop runs.
   std::uint64_t ticks() const noexcept { return ticks_.load(std::memory_order_relaxed); }
   /// Ticks that ended after the deadline of the next one, through their own work or a late start.
@@ -74,7 +81,7 @@ class ServoLoop {
     return resynchronised_.load(std::memory_order_relaxed);
   }
 
-  /// After run() has returned, or on its thread.
+  /// After run() has returned, or on its thread; the status also once started().
   const LoopTiming& timing() const noexcept { return timing_; }
   const RealTimeStatus& real_time_status() const noexcept { return status_; }
 
@@ -86,7 +93,7 @@ class ServoLoop {
   ClockKind clock_;
   double rate_hz_;
   double period_ns_;
-  std::int64_t origin_ns_{-1};  // start of the first tick on CLOCK_MONOTONIC
+  std::atomic<std::int64_t> origin_ns_{-1};  // start of the first tick on CLOCK_MONOTONIC
   std::atomic<bool> stop_{false};
   std::atomic<std::uint64_t> ticks_{0};
   std::atomic<std::uint64_t> overruns_{0};

@@ -200,6 +200,36 @@ TEST(ServoLoopTest, ASuspendedLoopMovesItsDeadlines) {
   EXPECT_GE(task.ticks.back().time_ns, task.ticks[21].time_ns + 78 * 1'000'000);
 }
 
+TEST(ServoLoopTest, TheTimeOfTheLoopIsThatOfItsTicksAlsoAfterASuspension) {
+  ServoLoop loop(ClockKind::kReal, 1000);
+  EXPECT_FALSE(loop.started());
+  EXPECT_EQ(loop.elapsed_ns(), 0);
+  Recorder task(60);
+  std::vector<std::int64_t> elapsed(60);
+  task.inside = [&](const Tick& tick) {
+    if (tick.index == 20) {
+      work_for(0.15);
+    }
+    elapsed[tick.index] = loop.elapsed_ns();
+  };
+  loop.run(task);
+  EXPECT_TRUE(loop.started());
+  for (std::size_t i = 0; i < 60; ++i) {
+    EXPECT_GE(elapsed[i], task.ticks[i].time_ns) << i;
+    if (i + 1 < 60) {
+      EXPECT_LE(elapsed[i], task.ticks[i + 1].time_ns) << i;
+    }
+  }
+  EXPECT_GE(loop.elapsed_ns(), 200'000'000) << "20 ticks, 150 ms and 40 ticks";
+}
+
+TEST(ServoLoopTest, TheTimeOfASimulatedLoopIsThatOfItsNextTick) {
+  ServoLoop loop(ClockKind::kSimulated, 1000);
+  Recorder task(250);
+  loop.run(task);
+  EXPECT_EQ(loop.elapsed_ns(), 250'000'000);
+}
+
 TEST(ServoLoopTest, RealIndexAndTimeGoOnOverRunsAndThePauseIsNoPeriod) {
   ServoLoop loop(ClockKind::kReal, 1000);
   Recorder first(20), second(20);
