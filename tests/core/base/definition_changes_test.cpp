@@ -84,8 +84,9 @@ TEST(DefinitionChangesTest, LongListsAreCut) {
   std::string before = "[a]\n";
   std::string after = "[a]\n";
   for (int i = 0; i < 12; ++i) {
-    before += "k" + std::to_string(i) + " = 0\n";
-    after += "k" + std::to_string(i) + " = 1\n";
+    const std::string key(1, static_cast<char>('a' + i));
+    before += key + " = 0\n";
+    after += key + " = 1\n";
   }
   EXPECT_THAT(sentence_of(between(before, after).binding), testing::EndsWith("; and 4 more"));
 }
