@@ -117,6 +117,11 @@ void add_timing(Document& document, const StudyResult& study) {
   Rows rows;
   for (const auto& session : study.sessions) {
     rows.push_back(timing_row(session, real));
+    const auto late = too_many_overruns(session.timing.ticks, session.timing.overruns);
+    if (session.timing.applies && late) {
+      document.alarm(fmt::format("The servo loop of {} did not keep its rate: {}.",
+                                 session.info.subject, *late));
+    }
   }
   document.table(names, rows);
 }

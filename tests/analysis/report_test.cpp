@@ -48,6 +48,14 @@ std::size_t count(const std::string& text, const std::string& what) {
   return found;
 }
 
+TEST(Report, ALoopThatDidNotKeepItsRateIsSaid) {
+  auto study = example_study(false);
+  EXPECT_THAT(report(study), Not(HasSubstr("did not keep its rate")));
+  study.sessions[1].timing.overruns = 850'000;
+  EXPECT_THAT(report(study), HasSubstr("The servo loop of P02 did not keep its rate: 850000 of "
+                                       "1000000 ticks (85.0 %) overran their period."));
+}
+
 TEST(Report, SaysThatParticipantsAreSimulatedExactlyWhenTheyAre) {
   const auto simulated = report(example_study(true));
   EXPECT_THAT(simulated, HasSubstr("class=\"banner\" role=\"note\">SIMULATED PARTICIPANTS"));
