@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -152,11 +153,11 @@ EventLine line_of(const Session& session, const record::PassRow& pass, std::size
   return line;
 }
 
-EventLine line_of(const record::EventRow& event) {
+EventLine line_of(const record::EventRow& event, std::int64_t time_ns) {
   EventLine line;
-  line.onset = 1e-9 * static_cast<double>(event.time_ns);
+  line.onset = 1e-9 * static_cast<double>(time_ns);
   RowText row(line.text, Delimited::kTsv);
-  row.add_seconds(event.time_ns).add(0);
+  row.add_seconds(time_ns).add(0);
   for (std::size_t i = 0; i < 13; ++i) {
     row.add_missing();
   }
@@ -173,8 +174,8 @@ std::string Session::stem() const {
 }
 
 std::string Session::stimulus(std::int32_t block) const {
-  return fmt::format("{}{}_block-{:02}.tsv.gz", subject, session.empty() ? "" : "_" + session,
-                     block);
+  return fmt::format("{}{}_{}-{:02}.tsv.gz", subject, session.empty() ? "" : "_" + session,
+                     block < 0 ? "practice" : "block", std::abs(block));
 }
 
 std::string dataset_description(std::span<const Session> sessions, const BidsOptions& options) {
@@ -264,7 +265,7 @@ std::string events_table(const Session& session, const record::SessionReader& re
         line_of(session, passes[i], i, samples.runs.at(i), blocks.contains(passes[i].block)));
   }
   for (const auto& event : reader.events()) {
-    lines.push_back(line_of(event));
+    lines.push_back(line_of(event, samples.even_time(event.time_ns)));
   }
   std::stable_sort(lines.begin(), lines.end(),
                    [](const auto& a, const auto& b) { return a.onset < b.onset; });

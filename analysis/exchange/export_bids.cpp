@@ -9,6 +9,7 @@
 #include "analysis/exchange/bids_text.h"
 #include "analysis/exchange/gzip_file.h"
 #include "analysis/exchange/new_folder.h"
+#include "core/base/definition_changes.h"
 #include "core/base/error.h"
 #include "core/record/session_reader.h"
 
@@ -34,6 +35,19 @@ std::string label_of(const std::string& what, const std::string& text, const fs:
   return label;
 }
 
+void refuse_other_study(const ExportSession& session, const ExportSession& first) {
+  const bool virtual_hand = session.info.device == "virtual" || first.info.device == "virtual";
+  const DefinitionChanges changes =
+      definition_changes(first.info.definition, session.info.definition,
+                         virtual_hand ? Hand::kVirtual : Hand::kPerson);
+  if (!changes.same_study()) {
+    throw InputError(fmt::format(
+        "{}: was recorded with another definition than {}: {}; export each study into a folder of "
+        "its own",
+        session.file.string(), first.file.string(), sentence_of(changes.binding)));
+  }
+}
+
 std::vector<Session> named_sessions(std::span<const fs::path> files) {
   std::vector<Session> sessions;
   std::map<std::string, std::string> subjects;  // label to subject
@@ -41,12 +55,7 @@ std::vector<Session> named_sessions(std::span<const fs::path> files) {
   const bool several =
       std::any_of(sources.begin(), sources.end(), [](const auto& s) { return s.of > 1; });
   for (const auto& source : sources) {
-    if (source.info.definition != sources.front().info.definition) {
-      throw InputError(fmt::format(
-          "{}: was recorded with another definition than {}; export each study into a folder of "
-          "its own",
-          source.file.string(), sources.front().file.string()));
-    }
+    refuse_other_study(source, sources.front());
     const std::string label = label_of("subject", source.info.subject, source.file);
     const auto [twin, is_new] = subjects.emplace(label, source.info.subject);
     if (!is_new && twin->second != source.info.subject) {
@@ -90,6 +99,18 @@ WrittenSamples write_session(const NewFolder& out, const Session& session, Count
   return samples;
 }
 
+/// Every version that a session was recorded with; more than one where texts, say, were changed.
+void write_definitions(const NewFolder& out, std::span<const Session> sessions) {
+  const std::string stem = "code/" + bids_label(experiment_of(sessions.front().source));
+  std::set<std::string> written;
+  for (const Session& session : sessions) {
+    if (const auto& text = session.source.info.definition; written.insert(text).second) {
+      const std::string number = written.size() > 1 ? fmt::format("-{}", written.size()) : "";
+      out.write(stem + number + ".toml", text);
+    }
+  }
+}
+
 void write_whole(const NewFolder& out, std::span<const Session> sessions,
                  const BidsOptions& options) {
   const auto& first = sessions.front();
@@ -98,8 +119,7 @@ void write_whole(const NewFolder& out, std::span<const Session> sessions,
   out.write("participants.tsv", bids::participants_table(sessions));
   out.write("participants.json", bids::participants_sidecar(sessions));
   out.write(fmt::format("task-{}_events.json", first.task), bids::events_sidecar());
-  out.write("code/" + bids_label(experiment_of(first.source)) + ".toml",
-            first.source.info.definition);
+  write_definitions(out, sessions);
   if (first.session.empty()) {
     return;
   }

@@ -38,7 +38,8 @@ Docs session_docs() {
           {"start_utc", "", "ISO 8601"},
           {"definition", "", "file of the experiment's definition"},
           {"program_version", "", "what recorded the session"},
-          {"samples", "", "rows of /samples"}};
+          {"samples", "", "rows of /samples"},
+          {"pilot", "", "whether the session is no part of the study", {{"true", "a pilot"}}}};
 }
 
 Docs trial_docs() {
@@ -86,7 +87,7 @@ void add_session(RowText& row, const ExportSession& s) {
   row.add(s.info.subject).add(s.number).add(s.file.filename().string());
   row.add(s.info.simulated ? "true" : "false").add(s.info.device).add(s.info.clock);
   row.add(s.info.rate).add(s.info.seed).add(s.info.start_utc).add(s.info.definition_name);
-  row.add(s.info.program_version).add(s.samples).end();
+  row.add(s.info.program_version).add(s.samples).add(s.info.pilot ? "true" : "false").end();
 }
 
 void add_pass(RowText& row, const ExportSession& s, std::size_t index,

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iterator>
 #include <string>
 
 #include "analysis/exchange/columns.h"
@@ -61,6 +64,7 @@ class Writer {
       close_gap(sample.sequence);
       add_sample(row, sample, kind_);
       note_run(sample);
+      note_shift(sample);
     }
     file_.write(text_);
   }
@@ -93,6 +97,16 @@ class Writer {
     result_.ticks = next_ - result_.first_sequence;
   }
 
+  void note_shift(const Sample& sample) {
+    constexpr std::int64_t kTolerance = 2'000'000;
+    const double even = 1e9 * static_cast<double>(sample.sequence) / reader_.info().rate;
+    const std::int64_t by = sample.time_ns - std::llround(even);
+    const std::int64_t before = result_.shifts.empty() ? 0 : result_.shifts.back().by_ns;
+    if (std::abs(by - before) >= kTolerance) {
+      result_.shifts.push_back({sample.time_ns, by});
+    }
+  }
+
   void note_run(const Sample& sample) {
     if (sample.stage != record::Stage::kRun || sample.pass < 0 ||
         static_cast<std::size_t>(sample.pass) >= result_.runs.size()) {
@@ -116,6 +130,16 @@ class Writer {
 };
 
 }  // namespace
+
+std::int64_t WrittenSamples::even_time(std::int64_t time_ns) const {
+  const auto next = std::upper_bound(
+      shifts.begin(), shifts.end(), time_ns,
+      [](std::int64_t time, const ClockShift& shift) { return time < shift.time_ns; });
+  const std::int64_t by = next == shifts.begin() ? 0 : std::prev(next)->by_ns;
+  const std::int64_t even = time_ns - by;
+  // While the loop was suspended there was no tick: not after the one that followed.
+  return next == shifts.end() ? even : std::min(even, next->time_ns - next->by_ns);
+}
 
 WrittenSamples write_samples(const SessionReader& reader, Delimited kind, GzipFile& file,
                              Counter& counter) {

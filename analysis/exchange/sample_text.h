@@ -23,11 +23,22 @@ struct RunSpan {
   std::uint64_t ticks{0};  // from first to last, both included; 0 where it never ran
 };
 
+/// From this sample on the clock reads so much more than the sequence numbers say: after a
+/// suspension, or where a session was resumed.
+struct ClockShift {
+  std::int64_t time_ns{0};
+  std::int64_t by_ns{0};
+};
+
 struct WrittenSamples {
   std::uint64_t first_sequence{0};
-  std::uint64_t ticks{0};     // from the first sequence number to the last
-  std::uint64_t missing{0};   // ticks among them without a row in the session file
-  std::vector<RunSpan> runs;  // (passes)
+  std::uint64_t ticks{0};          // from the first sequence number to the last
+  std::uint64_t missing{0};        // ticks among them without a row in the session file
+  std::vector<RunSpan> runs;       // (passes)
+  std::vector<ClockShift> shifts;  // of 2 ms or more, in order of time
+
+  /// When the tick that the clock read at this time would have been on an even clock [ns].
+  std::int64_t even_time(std::int64_t time_ns) const;
 };
 
 /// Writes /samples as text, a piece at a time: memory does not grow with the session. Columns as

@@ -9,7 +9,9 @@
 namespace haptrial::record {
 namespace {
 
-constexpr std::string_view kParticipant = "participant_";  // new in schema version 2
+/// Not in files of the first schema version; later ones are read from /attributes, whose absent
+/// rows leave a field as it is by default.
+bool is_new(std::string_view name) { return name.starts_with("participant_") || name == "pilot"; }
 
 /// Calls visit(name, field) for every field, in the order of the file.
 template <typename Info, typename Visit>
@@ -27,6 +29,7 @@ void each_field(Info& info, Visit visit) {
   visit("rate", info.rate);
   visit("start_utc", info.start_utc);
   visit("simulated", info.simulated);
+  visit("pilot", info.pilot);
   visit("participant_identifier", info.participant.identifier);
   visit("participant_handedness", info.participant.handedness);
   visit("participant_age_band", info.participant.age_band);
@@ -50,7 +53,7 @@ struct Get {
   std::int64_t version;
   template <typename T>
   void operator()(const char* name, T& value) const {
-    if (version < 2 && std::string_view(name).starts_with(kParticipant)) return;
+    if (version < 2 && is_new(name)) return;
     if constexpr (std::is_same_v<T, std::string>) {
       value = h5::get_text(file, name);
     } else if constexpr (std::is_same_v<T, double>) {

@@ -47,7 +47,7 @@ struct PassRow {
   std::int32_t trial{0};  // from 1
   std::string condition;  // training condition of the block: "haptic", "visual", "visuohaptic"
   Phase phase{Phase::kTraining};
-  std::int32_t block{0};       // from 1
+  std::int32_t block{0};       // from 1; of practice -1, -2, ..., one for each stimulus
   std::int32_t repetition{0};  // from 1 within the block; of a drilling the number of its bone
   std::uint64_t stimulus_seed{0};
   std::uint64_t first_sample{0};  // sequence numbers, both inclusive
@@ -120,6 +120,7 @@ struct SessionInfo {
   double rate{1000.0};                  // [Hz]
   std::string start_utc;                // ISO 8601, "2026-11-20T09:30:00Z"
   bool simulated{true};                 // the participant is a virtual subject
+  bool pilot{false};                    // tried before the study: no part of it
   Participant participant{};
 };
 

@@ -98,6 +98,24 @@ TEST_F(ExportBidsTest, AMissingTickIsARowWithoutValues) {
   expect_equal_to_the_files();
 }
 
+TEST_F(ExportBidsTest, AfterASuspensionEventsStandBesideTheirTicks) {
+  // The event is of 1.5 s on the clock; of that the loop was suspended for half a second from 0.8 s
+  // on in one session, and for a second from 1 s on in the other.
+  const auto onset = [&](std::uint64_t late_at, std::int64_t late_ns) {
+    files_.clear();
+    const std::string name = std::to_string(late_at);
+    write(name + ".h5",
+          {.simulated = false, .clock = "real", .late_at = late_at, .late_ns = late_ns});
+    export_bids(files_, folder_ / name, {}, ignore);
+    const std::string events =
+        file_text(folder_ / name / "sub-P01/beh/sub-P01_task-smallstudy_events.tsv");
+    const auto notice = events.find("notice");
+    return std::stod(events.substr(events.rfind('\n', notice) + 1));
+  };
+  EXPECT_NEAR(onset(400, 500'000'000), 1.0, 1e-5);
+  EXPECT_NEAR(onset(500, 1'000'000'000), 1.0, 1e-5);
+}
+
 TEST_F(ExportBidsTest, TheOfficialValidatorFindsNoErrors) {
   SmallSession first{.subject = "P-01", .note = "a tab\there, a line\nthere, 5 µm"};
   first.person = {"P-01", "right", "18-25", "female", "yes", "said that it tickles"};

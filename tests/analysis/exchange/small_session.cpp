@@ -76,6 +76,7 @@ class Writer {
     s.sequence = next_;
     s.time_ns = static_cast<std::int64_t>(std::llround(1e9 * double(next_) / session_.rate)) +
                 (session_.clock == "real" ? static_cast<std::int64_t>(next_ % 7) * 1000 : 0);
+    s.time_ns += session_.late_at > 0 && written_ >= session_.late_at ? session_.late_ns : 0;
     s.pass = pass_;
     s.stage = k < 0 ? record::Stage::kApproach
                     : (k < kTicksOfPass ? record::Stage::kRun : record::Stage::kReturn);

@@ -21,6 +21,8 @@ struct SmallSession {
   std::uint64_t first_tick{0};  // sequence number of the first sample
   std::uint64_t gap_at{0};      // samples before the gap; 0: no gap
   std::uint64_t gap{0};         // ticks that are missing there
+  std::uint64_t late_at{0};     // samples before the loop was suspended; 0: never
+  std::int64_t late_ns{0};      // how long it was
   bool odd_values{false};       // an applied force that is not a number
   std::string note{"all is well"};
 };
