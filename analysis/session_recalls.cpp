@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/record/even_rows.h"
 #include "core/record/session_reader.h"
 
 namespace haptrial::analysis {
@@ -31,7 +32,7 @@ std::map<std::int32_t, IdealPath> ideal_paths(const SessionReader& reader,
   }
   std::map<std::int32_t, IdealPath> paths;
   for (auto& [block, rows] : blocks) {
-    if (first_block.empty()) {
+    if (first_block.empty() && block >= 0) {  // not of practice
       first_block = rows;
     }
     try {
@@ -328,6 +329,7 @@ std::unique_ptr<PathPlaces> path_places(const SessionReader& reader, std::int32_
         fmt::format("{}: lacks the path of block {}, on which forces are to be compared",
                     reader.path().string(), block));
   }
+  record::keep_even(rows);
   return std::make_unique<PathPlaces>(rows);
 }
 

@@ -16,7 +16,7 @@
 #include "experiments/definition.h"
 #include "experiments/drilling_study.h"
 #include "experiments/interrupt.h"
-#include "experiments/study_run.h"
+#include "experiments/study_files.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
@@ -44,24 +44,21 @@ std::vector<std::string> what_is_missing(const fs::path& folder, std::size_t ses
   return remarks;
 }
 
-analysis::StudyResult analyzed_sessions(const std::string& folder, int threads) {
-  const auto files = session_files(folder);
-  const record::SessionInfo first = record::SessionReader(files.front()).info();
-  for (const fs::path& file : files) {
-    if (record::SessionReader(file).info().definition != first.definition) {
-      throw InputError(
-          fmt::format("{}: was recorded with another definition than {}; analyse each "
-                      "study in a folder of its own",
-                      file.string(), files.front().string()));
-    }
-  }
-  const Definition definition = parse_definition(first.definition, first.definition_name);
-  analysis::StudyResult study = analysis::analyze_study(files, definition.scoring, threads);
+analysis::StudyResult analyzed_sessions(const std::string& folder, Pilots pilots, int threads) {
+  const StudyFiles found = study_files(folder, pilots);
+  const Definition definition =
+      parse_definition(found.first.definition, found.first.definition_name);
+  analysis::StudyResult study = analysis::analyze_study(found.files, definition.scoring, threads);
   if (study.scores.empty()) {
     throw InputError(fmt::format(
         "{}: no session holds a completed test pass, so nothing can be scored", folder));
   }
-  study.remarks = what_is_missing(folder, files.size(), definition);
+  study.remarks = found.remarks;
+  if (pilots == Pilots::kLeftOut) {
+    for (std::string& remark : what_is_missing(folder, found.files.size(), definition)) {
+      study.remarks.push_back(std::move(remark));
+    }
+  }
   return study;
 }
 
@@ -79,12 +76,13 @@ analysis::StudyResult analyzed_curves(const AnalyzeOptions& options, int threads
                                   });
 }
 
-bool holds_drillings(const std::string& folder) {
-  return record::SessionReader(session_files(folder).front()).drills();
+bool holds_drillings(const std::string& folder, Pilots pilots) {
+  return record::SessionReader(files_of(folder, pilots).front()).drills();
 }
 
-int analyze_procedures(const std::string& folder, int threads) {
-  for (const std::string& line : analyze_drillings(folder, session_files(folder), threads)) {
+int analyze_procedures(const std::string& folder, Pilots pilots, int threads) {
+  const StudyFiles study = study_files(folder, pilots);
+  for (const std::string& line : analyze_drillings(folder, study, threads)) {
     fmt::print("{}\n", line);
   }
   fmt::print("report: {}\n", (fs::absolute(folder) / "report.html").lexically_normal().string());
@@ -111,6 +109,9 @@ void check_source(const AnalyzeOptions& options) {
       throw InputError(fmt::format("{} is given without --curves; allowed: only with it", name));
     }
   }
+  if (curves && options.pilots) {
+    throw InputError("--pilots is given with --curves; allowed: only with a folder of sessions");
+  }
 }
 
 }  // namespace
@@ -119,11 +120,12 @@ int analyze(const AnalyzeOptions& options) {
   const int threads = checked_jobs(options.jobs);
   check_source(options);
   const bool curves = !options.curves.empty();
-  if (!curves && holds_drillings(options.folder)) {
-    return analyze_procedures(options.folder, threads);
+  const Pilots pilots = options.pilots ? Pilots::kAlone : Pilots::kLeftOut;
+  if (!curves && holds_drillings(options.folder, pilots)) {
+    return analyze_procedures(options.folder, pilots, threads);
   }
-  const analysis::StudyResult study =
-      curves ? analyzed_curves(options, threads) : analyzed_sessions(options.folder, threads);
+  const analysis::StudyResult study = curves ? analyzed_curves(options, threads)
+                                             : analyzed_sessions(options.folder, pilots, threads);
   const fs::path out = curves ? options.out : options.folder;
   analysis::write_analysis(study, out);
   for (const std::string& line : analysis::summary_lines(study)) {

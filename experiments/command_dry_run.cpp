@@ -36,7 +36,8 @@ int dry_run(const DryRunOptions& options) {
   dry.seed = checked_seed(options.seed);
   dry.jobs = checked_jobs(options.jobs);
   dry.frames_per_pass = checked_number("--frames", options.frames, 0, 1000);
-  dry.max_trials = checked_number("--trials", options.trials, 0, setup.design.trials);
+  dry.max_trials =
+      options.trials ? checked_number("--trials", *options.trials, 1, setup.design.trials) : 0;
   if (interrupted()) {  // while the definition was read, which makes its bones
     throw RunError("interrupted");
   }

@@ -12,6 +12,7 @@
 #include "experiments/definition.h"
 #include "experiments/interrupt.h"
 #include "experiments/progress.h"
+#include "experiments/study_files.h"
 #include "experiments/study_run.h"
 #include "experiments/version.h"
 
@@ -76,6 +77,7 @@ void export_as_csv(const ExportOptions& options, const std::vector<fs::path>& fi
 
 void export_as_curves(const ExportOptions& options, const std::vector<fs::path>& files, int jobs) {
   ProgressWatch watch(files);
+  refuse_mixed(files);  // one definition says how all of them are scored
   const record::SessionReader reader(files.front());
   const Definition definition =
       parse_definition(reader.info().definition, reader.info().definition_name);

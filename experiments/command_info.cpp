@@ -39,6 +39,9 @@ void print_loop(const record::SessionReader& reader) {
     return;
   }
   fmt::print("loop        {} overruns, {} records dropped\n", loop.overruns, loop.dropped);
+  if (const auto late = analysis::too_many_overruns(loop.ticks, loop.overruns)) {
+    fmt::print("loop        NOT kept: {}\n", *late);
+  }
   if (loop.applies && loop.lateness) {
     const analysis::TimingPercentiles& late = *loop.lateness;
     const auto us = [](std::int64_t ns) { return 1e-3 * static_cast<double>(ns); };
@@ -74,9 +77,11 @@ void print_progress(const record::SessionReader& reader, const record::Integrity
 
 /// What a person did or has to know; the rest is in /events.
 bool is_told(const std::string& kind) {
-  constexpr std::array<std::string_view, 11> kTold{
-      "repaired", "session_stopped", "ended_for_good", "aborted",       "interrupted", "notice",
-      "note",     "recovered",       "emergency_stop", "bone_restored", "bone_lost"};
+  constexpr std::array<std::string_view, 14> kTold{
+      "repaired",       "session_stopped", "ended_for_good", "aborted",
+      "interrupted",    "notice",          "note",           "recovered",
+      "emergency_stop", "bone_restored",   "bone_lost",      "definition_changed",
+      "overruns",       "skipped"};
   return std::find(kTold.begin(), kTold.end(), kind) != kTold.end();
 }
 
@@ -91,7 +96,8 @@ int info(const std::string& file) {
     integrity.problems.push_back(*unreadable);
     integrity.ok = false;
   }
-  fmt::print("subject     {}{}\n", i.subject, i.simulated ? " (simulated)" : "");
+  fmt::print("subject     {}{}{}\n", i.subject, i.simulated ? " (simulated)" : "",
+             i.pilot ? " (pilot: no part of the study)" : "");
   print_participant(i.participant);
   fmt::print("definition  {}, seed {}\n", i.definition_name, i.seed);
   fmt::print("recorded    {}, haptrial {} ({})\n", i.start_utc, i.program_version,

@@ -9,6 +9,7 @@ void add_analyze(CLI::App& app, int& status) {
                  "haptrial analyze out/force_training-001");
   auto& o = options_of<AnalyzeOptions>(*sub, status, analyze);
   sub->add_option("DIR", o.folder, "Folder of session files (.h5)");
+  sub->add_flag("--pilots", o.pilots, "The pilot sessions of DIR alone, which are left out else");
   sub->add_option("--curves", o.curves,
                   "In place of DIR: folder of curves that something else recorded (.csv)");
   sub->add_option("--conditions", o.conditions, "With --curves: table of their trials (.csv)");

@@ -33,8 +33,12 @@ void add_run(CLI::App& app, int& status) {
   sub->add_option("--port", o.port, "Of the console (any that is free)");
   sub->add_option("--address", o.address, "Of the console (127.0.0.1); needs --remote");
   sub->add_flag("--remote", o.remote, "Let the console listen on another address");
-  sub->add_flag("--lsl", o.stream, "Stream to the Lab Streaming Layer, where it is installed");
+  sub->add_flag("--lsl", o.stream,
+                "Stream to the Lab Streaming Layer; refused when its library is absent");
+  sub->add_flag("--lsl-optional", o.stream_optional,
+                "Likewise, but go on without streams when the library is absent");
   sub->add_flag("--resume", o.resume, "Go on with the session that did not come to its end");
+  sub->add_flag("--pilot", o.pilot, "No part of the study: analyze leaves the session out");
   sub->add_option("--handedness", o.person.handedness, "Of the participant, for the file");
   sub->add_option("--age-band", o.person.age_band, "Such as 18-25");
   sub->add_option("--sex", o.person.sex, "Of the participant, for the file");

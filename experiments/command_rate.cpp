@@ -25,7 +25,7 @@
 #include "experiments/interrupt.h"
 #include "experiments/progress.h"
 #include "experiments/rating_pictures.h"
-#include "experiments/study_run.h"
+#include "experiments/study_files.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
@@ -102,7 +102,7 @@ struct Procedures {
 
 Procedures procedures_in(const fs::path& folder) {
   Procedures found;
-  for (const fs::path& file : session_files(folder)) {
+  for (const fs::path& file : files_of(folder, Pilots::kLeftOut)) {
     const record::SessionReader session(file);
     found.seed = session.info().seed;
     for (const int trial : BoneReplay(file).trials()) {

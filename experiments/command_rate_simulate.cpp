@@ -10,7 +10,7 @@
 #include "experiments/drilling_study.h"
 #include "experiments/interrupt.h"
 #include "experiments/simulated_rater.h"
-#include "experiments/study_run.h"
+#include "experiments/study_files.h"
 
 namespace haptrial::experiments {
 
@@ -19,7 +19,7 @@ int rate_simulate(const RateSimulateOptions& options) {
   watch_for_interrupt();
   const int jobs = checked_jobs(options.jobs);
   const fs::path study(options.folder);
-  for (const fs::path& file : session_files(study)) {
+  for (const fs::path& file : files_of(study, Pilots::kLeftOut)) {
     if (!record::SessionReader(file).info().simulated) {
       throw InputError(fmt::format(
           "{}: is the session of a person; simulated raters score simulated sessions only",

@@ -8,7 +8,9 @@
 #include <filesystem>
 #include <memory>
 
+#include "analysis/timing.h"
 #include "core/base/error.h"
+#include "core/stream/lsl_outlet.h"
 #include "experiments/arguments.h"
 #include "experiments/console.h"
 #include "experiments/experiment.h"
@@ -48,6 +50,16 @@ int participant_of(const RunOptions& options) {
                     options.subject, kMost));
   }
   return std::stoi(digits) - 1;
+}
+
+/// Before anything moves or is recorded.
+void require_streams() {
+  try {
+    stream::LslOutlet::check_library();
+  } catch (const InputError& error) {
+    throw InputError(
+        fmt::format("{}; --lsl-optional runs the session without streams", error.what()));
+  }
 }
 
 /// With an experimenter at the console's page or at the keyboard, where that was asked for.
@@ -96,6 +108,9 @@ int run(const RunOptions& options) {
     throw InputError(
         "--device mouse takes its pointer from the participant's screen; add --window");
   }
+  if (options.stream && !options.stream_optional) {
+    require_streams();
+  }
   SessionRequest request;
   request.definition = experiment.force ? &*experiment.force : nullptr;
   request.bone = experiment.bone ? &*experiment.bone : nullptr;
@@ -103,7 +118,8 @@ int run(const RunOptions& options) {
   request.participant = participant_of(options);
   request.seed = checked_seed(options.seed);
   request.clock = realtime::ClockKind::kReal;
-  request.max_trials = checked_number("--trials", options.trials, 0, setup.design.trials);
+  request.max_trials =
+      options.trials ? checked_number("--trials", *options.trials, 1, setup.design.trials) : 0;
   std::error_code error;
   fs::create_directories(options.out, error);
   if (error) {
@@ -113,16 +129,19 @@ int run(const RunOptions& options) {
   request.file = fs::path(options.out) / (options.subject + ".h5");
   request.device = {options.device, options.library};
   request.window = options.window;
-  request.stream = options.stream;
+  request.stream = options.stream || options.stream_optional;
+  request.stream_optional = options.stream_optional;
+  request.tell = [](const std::string& line) {
+    fmt::print("{}\n", line);
+    std::fflush(stdout);  // it may be a file that somebody follows
+  };
   request.resume = options.resume;
+  request.pilot = options.pilot;
   request.person = options.person;
   request.person.identifier = options.subject;
   const SessionSummary done = attended_session(request, options);
   for (const DrilledProcedure& procedure : done.procedures) {
     fmt::print("{}\n", line_of(procedure, done.simulated));
-  }
-  for (const std::string& notice : done.notices) {
-    fmt::print("{}\n", notice);
   }
   fmt::print("session: {}{}\n", request.file.string(), done.stopped ? ".partial" : "");
   if (done.stopped) {
@@ -130,6 +149,9 @@ int run(const RunOptions& options) {
   }
   fmt::print("{} ticks at {} Hz, {} overruns, {} records lost, {} passes aborted\n", done.ticks,
              setup.rate, done.overruns, done.dropped, done.aborted_passes);
+  if (const auto late = analysis::too_many_overruns(done.ticks, done.overruns)) {
+    fmt::print("WARNING: the servo loop did not keep its rate: {}\n", *late);
+  }
   return 0;
 }
 

@@ -19,7 +19,7 @@ struct DryRunOptions {
   std::optional<int> jobs;  // default: one per processor
   std::string out;          // default: a new folder out/NAME-001
   int frames{0};
-  int trials{0};
+  std::optional<int> trials;  // default: all
 };
 int dry_run(const DryRunOptions& options);
 
@@ -31,7 +31,7 @@ struct RunOptions {
   std::string seed{"1"};
   std::optional<int> participant;  // default: the number at the end of the subject's identifier
   std::string out{"out/sessions"};
-  int trials{0};
+  std::optional<int> trials;  // default: all
   bool console{false};
   bool keyboard{false};
   std::string address{"127.0.0.1"};
@@ -39,7 +39,9 @@ struct RunOptions {
   bool remote{false};  // the console may listen on another address than the loopback's
   bool window{false};
   bool stream{false};
+  bool stream_optional{false};
   bool resume{false};
+  bool pilot{false};
   record::Participant person;
 };
 int run(const RunOptions& options);
@@ -64,6 +66,7 @@ struct AnalyzeOptions {
   std::string time_column;
   std::string target_column;
   std::string applied_column;
+  bool pilots{false};  // them alone, in place of the study
   std::optional<int> jobs;
 };
 int analyze(const AnalyzeOptions& options);

@@ -107,6 +107,7 @@ std::string status_json(const SessionStatus& s, std::uint64_t refused) {
       {"screen", s.screen},
       {"trial", s.trial},
       {"trials", s.trials},
+      {"trials_defined", s.trials_defined},
       {"block", s.block},
       {"blocks", s.blocks},
       {"condition", s.condition},
@@ -129,6 +130,7 @@ std::string status_json(const SessionStatus& s, std::uint64_t refused) {
       {"lateness_worst_us", s.lateness_worst_us},
       {"aborted_passes", s.aborted_passes},
       {"refused", refused},
+      {"notices", s.notices},
       {"drilling", drilling_json(s.drilling)},
   };
   return out.dump(-1, ' ', false, json::error_handler_t::replace);

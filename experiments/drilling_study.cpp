@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <toml++/toml.h>
 #include <algorithm>
 #include <optional>
 #include <system_error>
 
 #include "analysis/drilling/visibility_picture.h"
 #include "core/base/error.h"
+#include "core/base/toml_text.h"
 #include "core/record/session_reader.h"
 #include "core/render/scene.h"
 #include "experiments/bone_definition.h"
@@ -104,12 +104,7 @@ std::vector<drilling::StudyPicture> visibility_pictures(
 }  // namespace
 
 std::vector<StudyGroup> study_groups(std::string_view definition, std::string_view file_name) {
-  toml::table root;
-  try {
-    root = toml::parse(definition);
-  } catch (const toml::parse_error& error) {
-    throw InputError(fmt::format("{}: is not TOML: {}", file_name, error.description()));
-  }
+  const toml::table root = parse_toml(definition, file_name);
   std::vector<std::pair<toml::source_position, StudyGroup>> found;
   if (const toml::table* groups = root["groups"].as_table()) {
     for (const auto& [key, value] : *groups) {
@@ -177,22 +172,16 @@ drilling::ProcedureSetup procedure_setup(const BoneDefinition& definition) {
   return setup;
 }
 
-std::vector<std::string> analyze_drillings(const fs::path& folder,
-                                           const std::vector<fs::path>& files, int threads) {
-  const record::SessionInfo first = record::SessionReader(files.front()).info();
+std::vector<std::string> analyze_drillings(const fs::path& folder, const StudyFiles& files,
+                                           int threads) {
+  const record::SessionInfo& first = files.first;
   const std::vector<StudyGroup> groups = study_groups(first.definition, first.definition_name);
   drilling::ValidityStudy study;
   study.title = "Construct validity of simulated bone surgery";
-  study.files = files;
+  study.files = files.files;
   study.threads = threads;
   study.ratings = folder / kRatingsFile;
   study.setup = [&](const record::SessionReader& session) {
-    if (session.info().definition != first.definition) {
-      throw InputError(
-          fmt::format("{}: was recorded with another definition than {}; analyse each "
-                      "study in a folder of its own",
-                      session.path().string(), files.front().string()));
-    }
     return procedure_setup(session, groups);
   };
   for (const StudyGroup& group : groups) {
@@ -202,12 +191,15 @@ std::vector<std::string> analyze_drillings(const fs::path& folder,
     }
   }
   drilling::ValidityResult result = drilling::analyze(study);
+  result.remarks = files.remarks;
   const PictureFolder pictures(folder);
   result.pictures = visibility_pictures(
       result.procedures, parse_bone_definition(first.definition, first.definition_name),
       pictures.path());
   drilling::write_validity(result, folder);
-  return drilling::summary_lines(result);
+  std::vector<std::string> lines = drilling::summary_lines(result);
+  lines.insert(lines.end(), result.remarks.begin(), result.remarks.end());
+  return lines;
 }
 
 }  // namespace haptrial::experiments

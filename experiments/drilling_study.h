@@ -7,6 +7,7 @@
 
 #include "analysis/drilling/validity_study.h"
 #include "experiments/bone_definition.h"
+#include "experiments/study_files.h"
 
 namespace haptrial::experiments {
 
@@ -37,10 +38,9 @@ analysis::drilling::ProcedureSetup procedure_setup(const record::SessionReader& 
 /// The name of the ratings within a study's folder.
 inline constexpr const char* kRatingsFile = "ratings.csv";
 
-/// Analyses a folder of drilling sessions and writes the report into it.
+/// Analyses drilling sessions and writes the report into their folder.
 /// @returns lines for the terminal
 std::vector<std::string> analyze_drillings(const std::filesystem::path& folder,
-                                           const std::vector<std::filesystem::path>& files,
-                                           int threads);
+                                           const StudyFiles& files, int threads);
 
 }  // namespace haptrial::experiments

@@ -1,7 +1,8 @@
 #include "experiments/live_status.h"
 
+#include "core/realtime/deadlines.h"
+
 namespace haptrial::experiments {
-namespace {
 
 const char* name_of(record::Stage stage) {
   switch (stage) {
@@ -19,16 +20,18 @@ const char* name_of(record::Stage stage) {
   return "";
 }
 
-}  // namespace
-
 void LiveStatus::follow(std::span<const record::Sample> samples, double period_ns) {
   for (const record::Sample& sample : samples) {
     const double late =
         static_cast<double>(sample.time_ns) - static_cast<double>(sample.sequence) * period_ns;
+    if (started_ && late - before_ns_ > realtime::Deadlines::kHopelesslyLateNs) {
+      earliest_ns_ += late - before_ns_;  // after a suspension the deadlines are new
+    }
     if (!started_ || late < earliest_ns_) {
       earliest_ns_ = late;
       started_ = true;
     }
+    before_ns_ = late;
     lateness_.add(static_cast<std::int64_t>(late - earliest_ns_));
     last_ = sample;
   }

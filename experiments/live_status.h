@@ -8,6 +8,9 @@
 
 namespace haptrial::experiments {
 
+/// "idle", "approach", "wait", "run" or "return".
+const char* name_of(record::Stage stage);
+
 /// What the records of a running session say for the console. Session's thread.
 class LiveStatus {
  public:
@@ -21,6 +24,7 @@ class LiveStatus {
   record::Sample last_;
   realtime::DurationHistogram lateness_;
   double earliest_ns_{0.0};  // of time minus deadline
+  double before_ns_{0.0};    // that of the sample before
   bool started_{false};
 };
 

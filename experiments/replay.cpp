@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/record/even_rows.h"
 #include "protocols/recorded_pass.h"
 
 namespace haptrial::experiments {
@@ -103,18 +104,19 @@ stimulus::Stimulus Replay::stimulus_of(const record::SessionReader& reader,
   std::vector<double> forces;
   bool same = true;
   double end = 0.0;
-  const std::vector<record::StimulusRow> stored = reader.stimuli();
-  // Practice is not stored; a recorded path is the same in every block.
-  const bool borrows = recorded && row.practice && !stored.empty();
+  std::vector<record::StimulusRow> stored = reader.stimuli();
+  // Older files do not have that of practice, whose block is 0 there; a recorded path is the same
+  // in every block.
+  const bool borrows = recorded && row.practice && row.block == 0 && !stored.empty();
   const std::int32_t block = borrows ? stored.front().block : row.block;
+  std::erase_if(stored, [block](const record::StimulusRow& s) { return s.block != block; });
+  record::keep_even(stored);
   for (const record::StimulusRow& s : stored) {
-    if (s.block == block) {
-      points.push_back(s.position);
-      forces.push_back(s.force);
-      end = s.time;
-      same = same && (made.path.at(s.time).position - s.position).norm() < kSame &&
-             std::abs(made.force.at(s.time) - s.force) < kSame;
-    }
+    points.push_back(s.position);
+    forces.push_back(s.force);
+    end = s.time;
+    same = same && (made.path.at(s.time).position - s.position).norm() < kSame &&
+           std::abs(made.force.at(s.time) - s.force) < kSame;
   }
   if ((same || row.practice) && !recorded) {
     return made;

@@ -17,6 +17,7 @@
 #include "experiments/rig.h"
 #include "experiments/servo_thread.h"
 #include "experiments/session_desk.h"
+#include "experiments/session_notices.h"
 #include "experiments/session_opening.h"
 #include "experiments/session_pace.h"
 #include "experiments/session_record.h"
@@ -37,6 +38,18 @@ std::unique_ptr<LiveDrilling> open_live(const SessionRequest& request) {
              : nullptr;
 }
 
+/// The practice, and the first so many trials of the study. @param most  0: all
+std::vector<PlannedTrial> trials_within(std::vector<PlannedTrial> plan, int most) {
+  if (most > 0) {
+    std::erase_if(plan,
+                  [most](const auto& trial) { return !trial.practice && trial.trial > most; });
+  }
+  return plan;
+}
+
+/// Whether somebody feels the forces.
+bool is_felt(Rig& rig) { return !rig.device().info().simulated && rig.mouse() == nullptr; }
+
 class Session {
  public:
   explicit Session(const SessionRequest& request);
@@ -51,12 +64,13 @@ class Session {
   std::string instructions() const;
   void show_trial();
   void run_plan(const std::vector<PlannedTrial>& plan);
+  bool has_break(const PlannedTrial& trial, const PlannedTrial& last) const;
   bool present(const PlannedTrial& trial);
   bool run_trial(const PlannedTrial& trial, int attempt);
   bool run_pass(const PlannedTrial& trial, record::Phase phase, int attempt);
   std::shared_ptr<const analysis::drilling::Procedure> of_earlier_run(const record::PassRow& pass);
   void after_abort(const protocols::PassResult& result);
-  const char* why_broken_off();
+  std::string why_broken_off();
 
   void finish();
   void give_up() noexcept;
@@ -83,6 +97,7 @@ class Session {
   SessionDesk desk_;
   protocols::SessionTask task_;
   SessionPace pace_;
+  SessionNotices notices_;
   ServoThread servo_;  // on a real clock
   SessionStop stop_;
   std::optional<WatchedStop> watched_;  // on a real clock
@@ -105,7 +120,9 @@ Session::Session(const SessionRequest& request)
             real_ ? protocols::SessionTask::Leave::kNever
                   : protocols::SessionTask::Leave::kAfterPassOrSlice,
             record_.origin(), record_.tool_log(), &held_keys_),
-      pace_({request, loop_, record_, desk_, task_, screen_.get(), &begin_pressed_, live_.get()}),
+      pace_({request, loop_, record_, desk_, task_, is_felt(*rig_), screen_.get(), &begin_pressed_,
+             live_.get()}),
+      notices_({request, loop_, record_, desk_, summary_}),
       servo_(loop_, task_, longest_fade(d_.envelope)),
       stop_(task_, servo_, rig_->device()) {
   SessionStatus& status = desk_.status();
@@ -148,19 +165,24 @@ std::vector<stimulus::Observer*> Session::observers() {
 }
 
 SessionSummary Session::run() {
-  const std::vector<PlannedTrial> plan = trials_->plan();
+  const std::vector<PlannedTrial> plan = trials_within(trials_->plan(), request_.max_trials);
   try {
     const record::Phase last = trials_->phases().back();
     const auto under_way = std::find_if(
         plan.begin(), plan.end(), [&](const auto& trial) { return !record_.holds(trial, last); });
     const bool drills = last == record::Phase::kDrilling && under_way != plan.end();
-    record_.set_planned(std::count_if(plan.begin(), plan.end(), [&](const auto& trial) {
-      return !trial.practice && (request_.max_trials == 0 || trial.trial <= request_.max_trials);
-    }));
-    record_.open(fmt::format("{} trials planned", plan.size()), drills ? &*under_way : nullptr);
+    record_.set_planned(
+        std::count_if(plan.begin(), plan.end(), [](const auto& trial) { return !trial.practice; }));
+    record_.open(planned_of(plan, d_.design.trials), drills ? &*under_way : nullptr);
     if (real_) {
       servo_.start();
     }
+    notices_.note(record_.notice());
+    for (const std::string& notice : trials_->notices()) {
+      notices_.note(notice);
+    }
+    notices_.note_real_time();
+    notices_.say_plan(plan, last);
     run_plan(plan);
     finish();
   } catch (...) {
@@ -171,16 +193,9 @@ SessionSummary Session::run() {
 }
 
 void Session::run_plan(const std::vector<PlannedTrial>& plan) {
-  desk_.status().trials = d_.design.trials;
-  desk_.status().blocks = d_.design.blocks();
   pace_.wait_to_begin(instructions());
   bool practised = false;
   for (const PlannedTrial& trial : plan) {
-    const bool enough =
-        request_.max_trials > 0 && !trial.practice && trial.trial > request_.max_trials;
-    if (enough) {
-      break;
-    }
     if (record_.holds(trial, trials_->phases().back())) {
       continue;
     }
@@ -192,7 +207,7 @@ void Session::run_plan(const std::vector<PlannedTrial>& plan) {
       pace_.wait_to_begin(d_.texts.practice);
     }
     left_ = !present(trial) || left_;
-    if (!trial.practice && trial.trial == d_.design.break_after && !desk_.wishes().abort) {
+    if (has_break(trial, plan.back()) && !desk_.wishes().abort) {
       pace_.take_break();
     }
   }
@@ -223,13 +238,27 @@ bool Session::present(const PlannedTrial& trial) {
     wishes.skip = false;
     trials_->begin_attempt(trial, anew);
     show_trial();
+    record_.mark_trial("trial_begin", trial, attempt);
     const bool done = run_trial(trial, attempt);
     pace_.pause_where_asked();
+    const bool skipped = wishes.skip && !done;
+    const char* how = done ? "completed" : skipped ? "skipped" : "aborted";
+    record_.mark_trial("trial_end", trial, attempt, how);
+    notices_.say_trial(trial, how);
+    if (skipped) {
+      record_.skip(trial);
+    }
     if ((done && !wishes.repeat) || wishes.skip || !desk_.attended()) {
       return true;
     }
   }
   return false;
+}
+
+/// Every so many trials, but not after the last one.
+bool Session::has_break(const PlannedTrial& trial, const PlannedTrial& last) const {
+  const int after = d_.design.break_after;
+  return after > 0 && !trial.practice && trial.trial % after == 0 && trial.trial != last.trial;
 }
 
 /// @returns whether all passes were completed.
@@ -266,6 +295,7 @@ bool Session::run_pass(const PlannedTrial& trial, record::Phase phase, int attem
   task_.start(pass, number);
   ++summary_.passes;
   pace_.drive_until_idle();
+  notices_.note_overruns(pace_.watch());
   const protocols::PassResult& result = task_.result();
   const bool aborted = result.state == protocols::PassState::kAborted;
   trials_->close_pass(record_, number);
@@ -306,15 +336,16 @@ void Session::after_abort(const protocols::PassResult& result) {
   const bool fault = result.fault != device::Fault::kNone;
   const std::string why = fault ? device::describe(result.fault) : why_broken_off();
   const std::string trouble = fault ? rig_->device().trouble() : "";
+  const bool overloaded = !pace_.overload().empty();  // and no better the next time
   record_.event("aborted", fmt::format("trial {}: {}{}{}", record_.pass().trial, why,
                                        trouble.empty() ? "" : "; ", trouble));
   if (result.fault == device::Fault::kStopButton) {
     record_.event("emergency_stop", "by the handle");
   }
-  if (fault && desk_.attended()) {
+  if ((fault || overloaded) && desk_.attended()) {
     desk_.status().fault = trouble.empty() ? why : why + "; " + trouble;
     desk_.wishes().stopped = true;  // a person sees to the cause
-  } else if (fault && real_) {
+  } else if ((fault || overloaded) && real_) {
     // Nobody is at a console or keyboard to see to the cause and say that it may go on.
     pace_.let_read(d_.texts.stopped, "stopped");
     pace_.end_early(trouble.empty() ? why : why + "; " + trouble);
@@ -323,8 +354,11 @@ void Session::after_abort(const protocols::PassResult& result) {
   }
 }
 
-const char* Session::why_broken_off() {
+std::string Session::why_broken_off() {
   const Wishes& wishes = desk_.wishes();
+  if (!pace_.overload().empty()) {
+    return pace_.overload();
+  }
   if (wishes.repeat) {
     return "to be repeated";
   }
@@ -386,25 +420,15 @@ void Session::end_servo() {
 }
 
 void Session::note_troubles() {
-  const auto note = [this](const std::string& notice) {
-    if (!notice.empty()) {
-      summary_.notices.push_back(notice);
-      record_.event("notice", notice);
-    }
-  };
-  note(record_.notice());
-  note(live_ ? live_->trouble() : "");
-  for (const std::string& notice : trials_->notices()) {
-    note(notice);
-  }
-  note(loop_.real_time_status().notice);
+  notices_.note(live_ ? live_->trouble() : "");
+  notices_.note(loop_.real_time_status().notice);
   if (loop_.resynchronised() > 0) {
-    note(fmt::format("the loop was suspended {} times and took up the present time",
-                     loop_.resynchronised()));
+    notices_.note(fmt::format("the loop was suspended {} times and took up the present time",
+                              loop_.resynchronised()));
   }
   if (screen_) {
-    note(screen_->summary().notice);
-    note(screen_->trouble());
+    notices_.note(screen_->summary().notice);
+    notices_.note(screen_->trouble());
   }
 }
 

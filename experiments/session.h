@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,11 @@ struct SessionRequest {
   SessionControl* control{nullptr};  // of an experimenter at a console or keyboard
   bool window{false};                // the participant's screen
   bool stream{false};                // to the Lab Streaming Layer
+  bool stream_optional{false};       // go on without where the layer is absent
   bool resume{false};                // go on with FILE.partial where there is one
+  bool pilot{false};                 // no part of the study
+  /// Lines for whoever watches the terminal, while the session runs; from the session's thread.
+  std::function<void(const std::string&)> tell;
   record::Participant person;
 };
 

@@ -33,10 +33,11 @@ struct SessionStatus {
   std::string subject;
   std::string
       state;  // "instructions", "practice", "running", "paused", "break", "stopped", "ended"
-  std::string screen;  // text that the participant reads; empty during a pass
-  int trial{0};        // from 1
-  int trials{0};
-  int block{0};  // from 1
+  std::string screen;     // text that the participant reads; empty during a pass
+  int trial{0};           // from 1
+  int trials{0};          // planned in this session
+  int trials_defined{0};  // of the definition
+  int block{0};           // from 1
   int blocks{0};
   std::string condition;                              // training condition of the block
   std::string phase;                                  // "training" or "test"
@@ -57,6 +58,7 @@ struct SessionStatus {
   double lateness_99_us{0.0};
   double lateness_worst_us{0.0};
   int aborted_passes{0};
+  std::vector<std::string> notices;          // sentences that an experimenter has to know
   std::optional<DrilledProcedure> drilling;  // of a session that drills: the present procedure
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/device/mouse.h"
@@ -15,7 +16,34 @@
 
 namespace haptrial::experiments {
 
+DefinitionChanges changes_since(const SessionRequest& request, const record::SessionInfo& before) {
+  const bool virtual_hand = before.device == "virtual" || request.device.name == "virtual";
+  return definition_changes(before.definition, setup_of(request).text,
+                            virtual_hand ? Hand::kVirtual : Hand::kPerson);
+}
+
 namespace {
+
+/// What a resumed session must have in common with the one that is gone on with.
+void check_same_session(const SessionRequest& request, const record::SessionInfo& before) {
+  const std::string partial = request.file.string() + ".partial";
+  if (before.seed != request.seed) {
+    throw InputError(
+        fmt::format("{}: was recorded with seed {}; resume it with the same one, not with {}",
+                    partial, before.seed, request.seed));
+  }
+  const DefinitionChanges changes = changes_since(request, before);
+  if (!changes.same_study()) {
+    throw InputError(
+        fmt::format("{}: was recorded with another definition: {}; resume it with the same one",
+                    partial, sentence_of(changes.binding)));
+  }
+  if (before.pilot != request.pilot) {
+    throw InputError(fmt::format("{}: was recorded as {}; resume it {} --pilot", partial,
+                                 before.pilot ? "a pilot" : "part of the study",
+                                 before.pilot ? "with" : "without"));
+  }
+}
 
 /// A bone's file beside the definition may have changed since: what follows would be of another.
 void check_bones(const std::filesystem::path& file, const std::vector<record::BoneRecord>& bones) {
@@ -49,6 +77,7 @@ record::SessionInfo session_info(const SessionRequest& request, const device::De
   info.rate = d.rate;
   info.start_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
   info.simulated = device.simulated;
+  info.pilot = request.pilot;
   info.participant = request.person;
   return info;
 }
@@ -62,12 +91,7 @@ record::SessionWriter open_writer(const SessionRequest& request, const device::D
                  : record::SessionWriter(request.file, info);
   }
   record::SessionWriter writer = record::SessionWriter::resume(request.file, before);
-  if (before.info.definition != setup_of(request).text || before.info.seed != request.seed) {
-    throw InputError(
-        fmt::format("{}.partial: was recorded with another definition or seed ({}); "
-                    "resume it with the same ones",
-                    request.file.string(), before.info.seed));
-  }
+  check_same_session(request, before.info);
   if (bones) {
     check_bones(request.file, *bones);
   }
@@ -151,26 +175,34 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::Mouse
 }
 
 std::unique_ptr<stream::LslOutlet> open_outlet(const SessionRequest& request, bool simulated,
-                                               std::string& notice) {
+                                               stream::SessionClock now, std::string& notice) {
   if (!request.stream) {
     return nullptr;
   }
-  return stream::LslOutlet::open({.study = setup_of(request).name,
-                                  .subject = request.subject,
-                                  .device = request.device.name,
-                                  .rate = setup_of(request).rate,
-                                  .simulated = simulated},
-                                 notice);
+  const stream::LslOptions options{.study = setup_of(request).name,
+                                   .subject = request.subject,
+                                   .device = request.device.name,
+                                   .rate = setup_of(request).rate,
+                                   .simulated = simulated};
+  return request.stream_optional ? stream::LslOutlet::open(options, std::move(now), notice)
+                                 : std::make_unique<stream::LslOutlet>(options, std::move(now));
 }
 
 std::vector<record::StimulusRow> stimulus_rows(const stimulus::Stimulus& s, std::int32_t block,
                                                double rate) {
   std::vector<record::StimulusRow> rows;
-  const auto count = static_cast<std::size_t>(s.path.duration() * rate) + 1;
-  rows.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const double t = static_cast<double>(i) / rate;
+  const double end = s.path.duration();
+  const auto add = [&](double t) {
     rows.push_back({block, t, s.path.at(t).position, s.force.at(t)});
+  };
+  const auto steps = static_cast<std::size_t>(end * rate);
+  rows.reserve(steps + 2);
+  for (std::size_t i = 0; i <= steps; ++i) {
+    add(static_cast<double>(i) / rate);
+  }
+  constexpr double kRounding = 1e-9;  // [s]
+  if (end - rows.back().time > kRounding) {
+    add(end);
   }
   return rows;
 }

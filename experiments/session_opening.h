@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition_changes.h"
 #include "core/record/session_resume.h"
 #include "core/record/session_writer.h"
 #include "core/stimulus/stimulus.h"
@@ -23,9 +24,12 @@ namespace haptrial::experiments {
 
 record::SessionInfo session_info(const SessionRequest& request, const device::DeviceInfo& device);
 
+/// What the definition of a resumed session differs in from the one that its file began with.
+DefinitionChanges changes_since(const SessionRequest& request, const record::SessionInfo& before);
+
 /// A new session file, or the one that is gone on with; `before` says what that one holds.
-/// @throws InputError as SessionWriter does, and where the file is of another definition or seed or
-/// holds other bones.
+/// @throws InputError as SessionWriter does, and where the file is of another study, seed or kind,
+/// or holds other bones.
 record::SessionWriter open_writer(const SessionRequest& request, const device::DeviceInfo& device,
                                   record::Resumed& before,
                                   const std::optional<std::vector<record::BoneRecord>>& bones);
@@ -43,12 +47,15 @@ bool close_what_had_ended(const std::filesystem::path& file);
 std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::MouseDevice* mouse,
                                     std::atomic<std::uint32_t>* held, std::atomic<bool>* begin);
 
-/// The streams, where they were asked for and can be had; else null and, where they cannot, a
-/// sentence in `notice`.
+/// The streams, where they were asked for; null where they were not, and, with a sentence in
+/// `notice`, where they cannot be had and the session may do without them.
+/// @param now  of the session
+/// @throws InputError, RunError where it may not
 std::unique_ptr<stream::LslOutlet> open_outlet(const SessionRequest& request, bool simulated,
-                                               std::string& notice);
+                                               stream::SessionClock now, std::string& notice);
 
-/// The ideal curves of a block for the session file. @param rate  [Hz]
+/// The ideal curves of a block for the session file: evenly at `rate` [Hz], and the end of the run,
+/// which may come sooner after the row before.
 std::vector<record::StimulusRow> stimulus_rows(const stimulus::Stimulus& stimulus,
                                                std::int32_t block, double rate);
 

@@ -20,9 +20,22 @@ SessionPace::SessionPace(const Parts& parts)
     : p_(parts),
       d_(setup_of(parts.request)),
       real_(parts.request.clock == realtime::ClockKind::kReal),
-      stall_(parts.loop) {}
+      stall_(parts.loop),
+      watch_(d_.rate) {}
+
+/// A hand is not guided by a loop that does not catch up. Where nobody feels the forces the pass
+/// goes on: what it is worth stands in the file.
+void SessionPace::watch_loop() {
+  const auto sentence = watch_.overloaded(Clock::now(), p_.loop.ticks(), p_.loop.overruns());
+  if (real_ && sentence && p_.felt && overload_.empty()) {
+    overload_ = *sentence;
+    p_.task.break_off();
+  }
+}
 
 void SessionPace::drive_until_idle() {
+  overload_.clear();
+  watch_.begin_pass(p_.loop.ticks(), p_.loop.overruns());
   while (!p_.task.idle()) {
     if (real_) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -30,6 +43,7 @@ void SessionPace::drive_until_idle() {
       p_.loop.run(p_.task);
     }
     collect();
+    watch_loop();
     publish(p_.record.pass().practice ? "practice" : "running");
     if (asked_to_stop()) {
       p_.task.emergency_stop();

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/realtime/servo_loop.h"
+#include "experiments/loop_watch.h"
 #include "experiments/servo_thread.h"
 #include "experiments/session.h"
 #include "experiments/session_desk.h"
@@ -26,6 +27,7 @@ class SessionPace {
     SessionRecord& record;
     SessionDesk& desk;
     protocols::SessionTask& task;
+    bool felt{false};  // somebody feels what the device does
     Screen* screen{nullptr};
     std::atomic<bool>* begin_pressed{nullptr};  // in the window of a session without experimenter
     const LiveDrilling* live{nullptr};
@@ -46,6 +48,11 @@ class SessionPace {
   void recover();
   void take_break();
 
+  /// Whether the loop kept its rate in the present pass, or the last one.
+  const LoopWatch& watch() const { return watch_; }
+  /// Why that pass was broken off, where the loop was overloaded; else empty.
+  const std::string& overload() const { return overload_; }
+
   /// On the participant's screen and the experimenter's.
   void show_text(const std::string& text, const std::string& hint, double countdown = 0.0);
   void publish(const char* state);
@@ -62,12 +69,15 @@ class SessionPace {
   void wait_for_experimenter(const char* state, const std::string& text, const std::string& hint);
   void wait_for_participant();
   bool asked_to_stop() const;
+  void watch_loop();
 
   Parts p_;
   const Setup& d_;
   const bool real_;
   StallWatch stall_;
   bool text_shown_{false};
+  LoopWatch watch_;
+  std::string overload_;
 };
 
 }  // namespace haptrial::experiments

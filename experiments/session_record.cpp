@@ -6,6 +6,7 @@
 
 #include "experiments/live_drilling.h"
 #include "experiments/session_opening.h"
+#include "experiments/study_files.h"
 
 namespace haptrial::experiments {
 
@@ -16,6 +17,27 @@ namespace {
 /// Of passes that go on with the bone of the pass before: after a crash the row of /trials that
 /// would say so is missing.
 constexpr const char* kGoesOn = "goes_on";
+
+/// Of trials that an experimenter skipped for good; which one, in the text.
+constexpr const char* kSkipped = "skipped";
+
+std::string name_of(const PlannedTrial& trial) {
+  return fmt::format("trial={} practice={} condition={}", trial.trial, trial.practice ? 1 : 0,
+                     trial.condition);
+}
+
+record::PassRow row_of(const PlannedTrial& trial, record::Phase phase, int attempt) {
+  record::PassRow row;
+  row.trial = trial.trial;
+  row.condition = trial.condition;
+  row.phase = phase;
+  row.block = trial.block;
+  row.repetition = trial.repetition;
+  row.stimulus_seed = trial.stimulus_seed;
+  row.practice = trial.practice;
+  row.attempt = attempt;
+  return row;
+}
 
 std::string pass_name(std::int32_t row) { return fmt::format("pass {} ", row); }
 
@@ -38,6 +60,9 @@ SessionRecord::SessionRecord(const SessionRequest& request, const device::Device
     : request_(request),
       loop_(loop),
       real_(request.clock == realtime::ClockKind::kReal),
+      outlet_(open_outlet(
+          request, device.simulated, [this] { return now_ns(); }, notice_)),
+      markers_(outlet_.get()),
       writer_(open_writer(request, device, before_, bones)),
       live_(live),
       blocks_(before_.blocks),
@@ -46,7 +71,6 @@ SessionRecord::SessionRecord(const SessionRequest& request, const device::Device
   if (bones) {
     drilling_ = std::make_unique<Drilling>();
   }
-  outlet_ = open_outlet(request, device.simulated, notice_);
 }
 
 protocols::Origin SessionRecord::origin() const { return {before_.next_sequence, start_ns_}; }
@@ -66,7 +90,7 @@ void SessionRecord::open(const std::string& text, const protocols::PlannedTrial*
     if (begun != before_.begun.end()) {
       row_ = begun->pass;
     } else if (drilled != nullptr) {
-      fill_row(*drilled, record::Phase::kDrilling, attempts(*drilled) + 1);
+      row_ = row_of(*drilled, record::Phase::kDrilling, attempts(*drilled) + 1);
       row_.repetition = bones_used(*drilled) + (goes_on(open.row) ? 0 : 1);
     }
     add_pass(record::PassStatus::kAborted, open.first_sample, open.last_sample);
@@ -77,6 +101,7 @@ void SessionRecord::open(const std::string& text, const protocols::PlannedTrial*
   }
   event(before_.rows > 0 ? "session_resumed" : "session_start", text);
   writer_.note_counts({0, 0, 0});
+  keep_definition();
   if (!before_.passes.empty()) {
     last_ = before_.passes.back();
   }
@@ -92,6 +117,20 @@ void SessionRecord::tell_what_was_kept() {
   }
   fmt::print(stderr, "{}: goes on after {} ticks and {} passes\n", request_.file.string(),
              before_.next_sequence, before_.passes.size());
+}
+
+/// Where a resumed session has another definition than it began with.
+void SessionRecord::keep_definition() {
+  if (before_.info.definition.empty()) {
+    return;  // the file is new
+  }
+  const DefinitionChanges changes = changes_since(request_, before_.info);
+  if (changes.same_text) {
+    return;
+  }
+  event(kDefinitionChanged,
+        changes.free.empty() ? "only comments or layout" : sentence_of(changes.free));
+  writer_.add_event({now_ns(), kNewDefinition, setup_of(request_).text});
 }
 
 bool SessionRecord::was_cut_short(const PlannedTrial& trial) const {
@@ -112,11 +151,25 @@ std::int32_t SessionRecord::bones_used(const PlannedTrial& trial) const {
 }
 
 bool SessionRecord::holds(const PlannedTrial& trial, record::Phase last) const {
-  return std::any_of(before_.passes.begin(), before_.passes.end(), [&](const auto& pass) {
-    return pass.trial == trial.trial && pass.practice == trial.practice &&
-           pass.condition == trial.condition && pass.phase == last &&
-           pass.status == record::PassStatus::kCompleted;
+  return was_skipped(trial) ||
+         std::any_of(before_.passes.begin(), before_.passes.end(), [&](const auto& pass) {
+           return pass.trial == trial.trial && pass.practice == trial.practice &&
+                  pass.condition == trial.condition && pass.phase == last &&
+                  pass.status == record::PassStatus::kCompleted;
+         });
+}
+
+bool SessionRecord::was_skipped(const PlannedTrial& trial) const {
+  return std::any_of(before_.events.begin(), before_.events.end(), [&](const auto& event) {
+    return event.kind == kSkipped && event.text == name_of(trial);
   });
+}
+
+void SessionRecord::skip(const PlannedTrial& trial) {
+  event(kSkipped, name_of(trial));
+  if (real_) {
+    writer_.flush();
+  }
 }
 
 int SessionRecord::attempts(const PlannedTrial& trial) const {
@@ -130,7 +183,7 @@ int SessionRecord::attempts(const PlannedTrial& trial) const {
 }
 
 void SessionRecord::keep_stimulus(const PlannedTrial& trial, const stimulus::Stimulus& stimulus) {
-  if (trial.practice || std::find(blocks_.begin(), blocks_.end(), trial.block) != blocks_.end()) {
+  if (std::find(blocks_.begin(), blocks_.end(), trial.block) != blocks_.end()) {
     return;
   }
   writer_.add_stimulus(stimulus_rows(stimulus, trial.block, request_.definition->stimulus_rate));
@@ -139,7 +192,7 @@ void SessionRecord::keep_stimulus(const PlannedTrial& trial, const stimulus::Sti
 
 std::int32_t SessionRecord::begin_pass(const PlannedTrial& trial, record::Phase phase,
                                        int attempt) {
-  fill_row(trial, phase, attempt);
+  row_ = row_of(trial, phase, attempt);
   row_open_ = true;
   writer_.begin_pass({passes_, row_});
   const bool same_bone = phase == record::Phase::kDrilling && last_.trial == row_.trial &&
@@ -152,18 +205,6 @@ std::int32_t SessionRecord::begin_pass(const PlannedTrial& trial, record::Phase 
     }
   }
   return passes_++;
-}
-
-void SessionRecord::fill_row(const PlannedTrial& trial, record::Phase phase, int attempt) {
-  row_ = {};
-  row_.trial = trial.trial;
-  row_.condition = trial.condition;
-  row_.phase = phase;
-  row_.block = trial.block;
-  row_.repetition = trial.repetition;
-  row_.stimulus_seed = trial.stimulus_seed;
-  row_.practice = trial.practice;
-  row_.attempt = attempt;
 }
 
 void SessionRecord::end_pass(const protocols::PassResult& result) {
@@ -179,6 +220,7 @@ void SessionRecord::add_pass(record::PassStatus status, std::uint64_t first_samp
   row_.first_sample = first_sample;
   row_.last_sample = last_sample;
   writer_.add_pass(row_);
+  markers_.end_pass(row_);
   last_ = row_;
   row_open_ = false;
   if (real_) {
@@ -215,6 +257,7 @@ void SessionRecord::append(std::span<const record::Sample> samples) {
   if (outlet_) {
     outlet_->push(samples);
   }
+  markers_.follow(samples, row_);
 }
 
 void SessionRecord::append_drilling() {
@@ -241,14 +284,19 @@ void SessionRecord::append_rest() {
 
 void SessionRecord::event(const std::string& kind, const std::string& text) {
   writer_.add_event({now_ns(), kind, text});
+  mark(kind + (text.empty() ? "" : ": " + text));
+}
+
+void SessionRecord::mark(const std::string& text) {
   if (outlet_) {
-    outlet_->mark(kind + (text.empty() ? "" : ": " + text), now_ns());
+    outlet_->mark(text, now_ns());
   }
 }
 
-std::int64_t SessionRecord::now_ns() const {
-  const double seconds = static_cast<double>(loop_.ticks()) / loop_.rate_hz();
-  return start_ns_ + static_cast<std::int64_t>(seconds * 1e9);
+void SessionRecord::mark_trial(const std::string& kind, const PlannedTrial& trial, int attempt,
+                               const std::string& status) {
+  const std::string fields = marker_fields(row_of(trial, record::Phase::kTraining, attempt));
+  mark(fmt::format("{}: {}{}", kind, status.empty() ? "" : "status=" + status + " ", fields));
 }
 
 void SessionRecord::stop(const std::string& text) {
@@ -257,6 +305,15 @@ void SessionRecord::stop(const std::string& text) {
   write_timing(record::RunState::kStopped);
   writer_.sync();
 }
+
+void SessionRecord::keep_frames(std::vector<record::FrameRow> frames) {
+  for (record::FrameRow& frame : frames) {
+    frame.time_ns += start_ns_;
+  }
+  writer_.add_frames(frames);
+}
+
+std::int64_t SessionRecord::now_ns() const { return start_ns_ + loop_.elapsed_ns(); }
 
 void SessionRecord::close(const std::string& text) {
   append_rest();

@@ -16,6 +16,7 @@
 #include "core/stimulus/stimulus.h"
 #include "core/stream/lsl_outlet.h"
 #include "experiments/session.h"
+#include "experiments/stream_markers.h"
 #include "protocols/drilling_pass.h"
 #include "protocols/schedule.h"
 #include "protocols/session_task.h"
@@ -53,8 +54,10 @@ class SessionRecord {
   /// The first event, after rows for the passes during which an earlier run ended.
   /// @param drilled  the trial that was under way, of a session that drills; else null
   void open(const std::string& text, const protocols::PlannedTrial* drilled);
-  /// Whether a resumed file holds the trial's last pass already.
+  /// Whether a resumed file holds the trial's last pass already, or says that it was skipped.
   bool holds(const protocols::PlannedTrial& trial, record::Phase last) const;
+  /// The trial was skipped for good: it does not come again, not after a resume either.
+  void skip(const protocols::PlannedTrial& trial);
   /// How many bones a trial of drilling has had in a resumed file.
   std::int32_t bones_used(const protocols::PlannedTrial& trial) const;
   /// Whether an earlier run ended during the trial without time to write what it held.
@@ -74,8 +77,12 @@ class SessionRecord {
   /// @returns the number of records.
   using Follower = std::function<void(std::span<const record::Sample>)>;
   std::size_t collect(const Follower& follow);
-  void keep_frames(const std::vector<record::FrameRow>& frames) { writer_.add_frames(frames); }
+  /// @param frames  with times since this run's first tick
+  void keep_frames(std::vector<record::FrameRow> frames);
   void event(const std::string& kind, const std::string& text);
+  /// On the stream only: what the file's tables say already. @param status  empty: none yet
+  void mark_trial(const std::string& kind, const protocols::PlannedTrial& trial, int attempt,
+                  const std::string& status = "");
 
   /// Of the study, as this run has it; before open().
   void set_planned(std::ptrdiff_t trials) {
@@ -91,11 +98,13 @@ class SessionRecord {
 
  private:
   std::int64_t now_ns() const;
+  void mark(const std::string& text);
+  void keep_definition();
+  bool was_skipped(const protocols::PlannedTrial& trial) const;
   bool goes_on(std::int32_t row) const;
   void append(std::span<const record::Sample> samples);
   void append_rest();
   void append_drilling();
-  void fill_row(const protocols::PlannedTrial& trial, record::Phase phase, int attempt);
   void add_pass(record::PassStatus status, std::uint64_t first_sample, std::uint64_t last_sample);
   void tell_what_was_kept();
   record::TimingSummary counts() const;
@@ -105,9 +114,11 @@ class SessionRecord {
   const realtime::ServoLoop& loop_;
   const bool real_;
   record::Resumed before_;  // what a resumed file holds
-  record::SessionWriter writer_;
+  // Before the writer: without the streams that it needs a session leaves no file.
   std::string notice_;
   std::unique_ptr<stream::LslOutlet> outlet_;
+  StreamMarkers markers_;
+  record::SessionWriter writer_;
   protocols::SessionTask::Log log_;
   struct Drilling {
     protocols::SessionTask::ToolLog tool;

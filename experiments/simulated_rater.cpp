@@ -14,7 +14,7 @@
 #include "core/record/session_reader.h"
 #include "experiments/bone_definition.h"
 #include "experiments/stage_stills.h"
-#include "experiments/study_run.h"
+#include "experiments/study_files.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -262,7 +262,7 @@ double given_score(double rubric, const RaterManner& rater, std::uint64_t seed,
 }
 
 std::vector<drilling::Rating> simulate_ratings(const fs::path& folder, int threads) {
-  const std::vector<fs::path> files = session_files(folder);
+  const std::vector<fs::path> files = files_of(folder, Pilots::kLeftOut);
   const std::vector<RatedBone> bones = bones_of(record::SessionReader(files.front()));
   std::vector<std::vector<drilling::Rating>> by_file(files.size());
   analysis::in_groups(files.size(), 1, threads, [&] {

@@ -85,7 +85,8 @@ std::vector<PlannedTrial> plan_trials(const Design& design, int participant,
     for (int trial = 1; trial <= design.practice; ++trial) {
       const std::uint64_t seed =
           derived_seed(session_seed, fmt::format("practice {} {}", condition, trial));
-      plan.push_back({trial, 0, 1, condition, seed, true});
+      const auto block = -static_cast<std::int32_t>(plan.size()) - 1;
+      plan.push_back({trial, block, 1, condition, seed, true});
     }
   }
   const auto practice = static_cast<std::int32_t>(plan.size());

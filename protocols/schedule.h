@@ -29,11 +29,11 @@ Design read_design(Table& table);
 /// One trial of a participant.
 struct PlannedTrial {
   std::int32_t trial{0};       // from 1
-  std::int32_t block{0};       // from 1
+  std::int32_t block{0};       // from 1; of practice -1, -2, ..., one for each stimulus
   std::int32_t repetition{0};  // from 1
   std::string condition;
   std::uint64_t stimulus_seed{0};  // the same within a block
-  bool practice{false};            // before the study: block 0, not scored
+  bool practice{false};            // before the study: not scored
 };
 
 /// The rows of a Williams design for n >= 1 conditions: every condition at every place equally

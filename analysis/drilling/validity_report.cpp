@@ -137,6 +137,9 @@ void Report::add_design() {
                     std::to_string(procedures)});
   }
   document_.table({"group", "counted among", "participants", "procedures"}, rows);
+  for (const std::string& remark : result_.remarks) {
+    document_.paragraph(remark);
+  }
 }
 
 void Report::add_ratings() {

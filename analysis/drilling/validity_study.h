@@ -46,6 +46,7 @@ struct ValidityResult {
   std::string structure;  // whose force profile is drawn; empty: none
   Validity validity;
   std::vector<StudyPicture> pictures;
+  std::vector<std::string> remarks;  // sentences about the files, for the report
 };
 
 /// Reads every session, computes its metrics and the statistics.

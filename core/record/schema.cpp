@@ -36,7 +36,7 @@ constexpr std::array kTrials{
     i32("trial", "trial number from 1; a training pass and a test pass, or a drilling"),
     text("condition", kConditionBytes, "training condition of the block"),
     text("phase", kPhaseBytes, "training, test or drilling"),
-    i32("block", "block number from 1"),
+    i32("block", "block number from 1; of practice -1, -2, ..., 0 in files of older versions"),
     i32("repetition", "number from 1 within the block; of a drilling the number of its bone"),
     u64("stimulus_seed", "seed of the block's stimulus"),
     u64("first_sample", "sequence number of the first sample, inclusive"),

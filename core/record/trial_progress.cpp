@@ -23,7 +23,9 @@ TrialProgress trial_progress(const SessionReader& reader) {
   }
   std::set<std::string> skipped;
   for (const EventRow& event : reader.events()) {
-    if (event.kind == "skipped") skipped.insert(event.text);
+    if (event.kind == "skipped" && event.text.find("practice=1") == std::string::npos) {
+      skipped.insert(event.text);
+    }
   }
   const auto is_done = [&](int trial) { return done.contains(trial); };
   const auto left = static_cast<int>(begun.size()) -

@@ -4,7 +4,9 @@
 
 #include <array>
 #include <exception>
+#include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
@@ -13,6 +15,7 @@
 namespace haptrial::stream {
 namespace {
 
+constexpr const char* kLayer = "the Lab Streaming Layer, https://labstreaminglayer.org";
 constexpr std::int32_t kDouble = 2;  // channel formats
 constexpr std::int32_t kText = 3;
 constexpr double kIrregular = 0.0;          // rate of a stream without one
@@ -87,10 +90,8 @@ double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 }  // namespace
 
 struct LslOutlet::Impl {
-  explicit Impl(const LslOptions& o)
-      : options(o),
-        library(o.library, "the Lab Streaming Layer, https://labstreaminglayer.org"),
-        lsl(load(library)) {}
+  Impl(const LslOptions& o, SessionClock clock)
+      : options(o), now(std::move(clock)), library(o.library, kLayer), lsl(load(library)) {}
   ~Impl() {
     for (const Functions::Outlet outlet : {samples, markers}) {
       if (outlet != nullptr) {
@@ -105,20 +106,37 @@ struct LslOutlet::Impl {
   Functions::Outlet open_markers();
   Functions::Outlet opened(Functions::Info info, const std::string& name);
   void describe(Functions::Info info);
-  void tie(std::int64_t session_ns) { offset = lsl.local_clock() - seconds(session_ns); }
+  void synchronise();
   void note(std::int32_t result, std::size_t count);
 
   LslOptions options;
+  SessionClock now;
   device::DynamicLibrary library;
   Functions lsl;
   Functions::Outlet samples{nullptr};
   Functions::Outlet markers{nullptr};
-  std::optional<double> offset;  // of the layer's clock from the session's [s]
+  double offset{0.0};                    // of the layer's clock from the session's [s]
+  std::optional<std::int64_t> measured;  // when the samples' offset was, on the session's clock
   std::vector<double> values;
   std::vector<double> timestamps;
   std::uint64_t refused{0};
   std::string first_refusal;
 };
+
+/// The closest of a few readings: whatever interrupts one of them does not interrupt them all.
+void LslOutlet::Impl::synchronise() {
+  constexpr int kReadings = 5;
+  double closest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kReadings; ++i) {
+    const double before = seconds(now());
+    const double layer = lsl.local_clock();
+    const double after = seconds(now());
+    if (after - before < closest) {
+      closest = after - before;
+      offset = layer - 0.5 * (before + after);
+    }
+  }
+}
 
 void LslOutlet::Impl::describe(Functions::Info info) {
   const Functions::Xml about = lsl.get_desc(info);
@@ -183,36 +201,42 @@ void LslOutlet::Impl::note(std::int32_t result, std::size_t count) {
 
 std::span<const LslOutlet::Channel> LslOutlet::channels() { return kChannels; }
 
-LslOutlet::LslOutlet(const LslOptions& options) : impl_(std::make_unique<Impl>(options)) {
+void LslOutlet::check_library(const std::string& library) {
+  load(device::DynamicLibrary(library, kLayer));
+}
+
+LslOutlet::LslOutlet(const LslOptions& options, SessionClock now)
+    : impl_(std::make_unique<Impl>(options, std::move(now))) {
   impl_->samples = impl_->open_samples();
   impl_->markers = impl_->open_markers();
 }
 
 LslOutlet::~LslOutlet() = default;
 
-std::unique_ptr<LslOutlet> LslOutlet::open(const LslOptions& options, std::string& notice) {
+std::unique_ptr<LslOutlet> LslOutlet::open(const LslOptions& options, SessionClock now,
+                                           std::string& notice) {
   try {
-    return std::make_unique<LslOutlet>(options);
+    return std::make_unique<LslOutlet>(options, std::move(now));
   } catch (const std::exception& error) {
     notice = fmt::format("{}; the session goes on without its streams", error.what());
     return nullptr;
   }
 }
 
-void LslOutlet::synchronise(std::int64_t session_ns) { impl_->tie(session_ns); }
-
 void LslOutlet::push(std::span<const record::Sample> samples) {
   if (samples.empty()) {
     return;
   }
-  if (!impl_->offset) {
-    impl_->tie(samples.back().time_ns);
+  constexpr std::int64_t kEvery = 1'000'000'000;
+  if (!impl_->measured || samples.back().time_ns - *impl_->measured >= kEvery) {
+    impl_->synchronise();
+    impl_->measured = samples.back().time_ns;
   }
   impl_->values.clear();
   impl_->timestamps.clear();
   for (const record::Sample& sample : samples) {
     append(sample, impl_->values);
-    impl_->timestamps.push_back(*impl_->offset + seconds(sample.time_ns));
+    impl_->timestamps.push_back(impl_->offset + seconds(sample.time_ns));
   }
   impl_->note(impl_->lsl.push_chunk(impl_->samples, impl_->values.data(), impl_->values.size(),
                                     impl_->timestamps.data()),
@@ -220,11 +244,9 @@ void LslOutlet::push(std::span<const record::Sample> samples) {
 }
 
 void LslOutlet::mark(const std::string& text, std::int64_t session_ns) {
-  if (!impl_->offset) {
-    impl_->tie(session_ns);
-  }
+  impl_->synchronise();  // a session's clock stands before its first tick
   const char* marker = text.c_str();
-  impl_->note(impl_->lsl.push_text(impl_->markers, &marker, *impl_->offset + seconds(session_ns)),
+  impl_->note(impl_->lsl.push_text(impl_->markers, &marker, impl_->offset + seconds(session_ns)),
               1);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -18,6 +19,9 @@ struct LslOptions {
   double rate{1000.0};  // of the samples [Hz]
   bool simulated{false};
 };
+
+/// The session's time now, since its first tick: the clock of record::Sample::time_ns [ns].
+using SessionClock = std::function<std::int64_t()>;
 
 /// Sends a session to the Lab Streaming Layer while it runs: every sample in one stream, markers in
 /// another, on the layer's own clock, so that an EEG or eye tracker can be put beside it. The
@@ -37,21 +41,23 @@ class LslOutlet {
   };
   static std::span<const Channel> channels();
 
-  /// @throws InputError when the library is absent or lacks a function; RunError when it refuses a
-  /// stream.
-  explicit LslOutlet(const LslOptions& options);
+  /// @throws InputError when the library is absent or lacks a function.
+  static void check_library(const std::string& library = LslOptions{}.library);
+
+  /// @param now  of the session; asked by the thread that pushes, from time to time
+  /// @throws InputError as check_library() does; RunError when the library refuses a stream.
+  LslOutlet(const LslOptions& options, SessionClock now);
   ~LslOutlet();
   LslOutlet(const LslOutlet&) = delete;
   LslOutlet& operator=(const LslOutlet&) = delete;
 
   /// An outlet where there can be one; else none and a sentence in `notice`: a session goes on
   /// without its streams.
-  static std::unique_ptr<LslOutlet> open(const LslOptions& options, std::string& notice);
+  static std::unique_ptr<LslOutlet> open(const LslOptions& options, SessionClock now,
+                                         std::string& notice);
 
-  /// Ties the session's clock to the layer's. Without it the first push does, as if its last sample
-  /// were of now.
-  /// @param session_ns  the session's time now, since its first tick [ns]
-  void synchronise(std::int64_t session_ns);
+  /// Times are given to the layer on its own clock. How far that is from the session's is measured
+  /// at the first push, then every second, and for each marker.
   void push(std::span<const record::Sample> samples);
   void mark(const std::string& text, std::int64_t session_ns);
 

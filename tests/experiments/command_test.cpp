@@ -269,7 +269,45 @@ TEST_F(CommandTest, MixedStudiesAreRefused) {
                 .status,
             0);
   fs::rename(folder_ / "other" / "S02.h5", folder_ / "study" / "S02.h5");
-  expect_bad_input("haptrial analyze " + path("study"), "another definition");
+  expect_bad_input("haptrial analyze " + path("study"),
+                   "S02.h5: was recorded with another definition than " +
+                       (folder_ / "study/S01.h5").string() +
+                       ": trajectory.range_z was 0.06, is 0.05;");
+}
+
+TEST_F(CommandTest, NoTrialsAreNotAllTrials) {
+  for (const char* number : {"0", "73", "-1"}) {
+    expect_bad_input(
+        "haptrial dry-run " + shipped() + " --out " + path("none") + " --trials " + number,
+        "--trials is " + std::string(number) + "; allowed: a whole number from 1 to 72");
+    expect_bad_input(
+        "haptrial run " + shipped() + " --subject S01 --out " + path("none") + " --trials " +
+            number,
+        "--trials is " + std::string(number) + "; allowed: a whole number from 1 to 72");
+  }
+}
+
+TEST_F(CommandTest, TextsAndCommentsMayChangeWithinAStudyAndTheReportSaysSo) {
+  ASSERT_EQ(brief_study("study", "--subjects 1").status, 0);
+  std::string text = test::shipped_text();
+  const std::string pause = "Time for a rest";
+  text.replace(text.find(pause), pause.size(), "Time, for a rest");
+  test::write_text(folder_ / "other.toml", text + "\n# a comment\n");
+  ASSERT_EQ(run_command("haptrial dry-run " + path("other.toml") +
+                        " --subjects 2 --trials 3 --out " + path("other"))
+                .status,
+            0);
+  fs::rename(folder_ / "other" / "S02.h5", folder_ / "study" / "S02.h5");
+  const CommandResult result = run_command("haptrial analyze " + path("study"));
+  EXPECT_EQ(result.status, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("S02.h5 was recorded with a changed definition: texts.rest "
+                                       "was \"Time for a rest"));
+  EXPECT_THAT(test::read_text(folder_ / "study/report.md"), HasSubstr("texts.rest"));
+  const CommandResult exported =
+      run_command("haptrial export --bids " + path("bids") + " " + path("study"));
+  EXPECT_EQ(exported.status, 0) << exported.errors;
+  EXPECT_EQ(test::read_text(folder_ / "bids/code/forcetraining.toml"), test::shipped_text());
+  EXPECT_EQ(test::read_text(folder_ / "bids/code/forcetraining-2.toml"), text + "\n# a comment\n");
 }
 
 TEST_F(CommandTest, AFullDiskGetsASentenceAndLeavesNothing) {

@@ -134,6 +134,35 @@ TEST_F(LiveBreaksTest, TheParticipantReadsWhyNothingHappens) {
   EXPECT_TRUE(reads("paused", "A short pause"));
 }
 
+TEST_F(LiveBreaksTest, ASkippedTrialDoesNotComeAgainAfterAResume) {
+  {
+    LiveCommand session(run({}));
+    ConsolePerson person(session.line_after("console: "));
+    ASSERT_NO_FATAL_FAILURE(come_to_the_break(person));  // trial 1 is skipped
+    session.signal(SIGTERM);
+    ASSERT_EQ(session.wait().status, 1);
+  }
+  LiveCommand again(run({}, "--console --resume"));
+  ConsolePerson person(again.line_after("console: "));
+  ASSERT_TRUE(person.sees("instructions"));
+  EXPECT_THAT(again.line_after("recording "), HasSubstr("1 of them over already"));
+  ASSERT_TRUE(person.ask("start"));
+  ASSERT_TRUE(person.sees("running", "run"));
+  EXPECT_EQ(person.status()["trial"], 2);
+}
+
+TEST_F(LiveBreaksTest, TheConsoleSpeaksOfThePlannedTrialsAndOfTheDefinitions) {
+  LiveCommand session(run({}, "--console --trials 3 --lsl-optional"));
+  ConsolePerson person(session.line_after("console: "));
+  ASSERT_TRUE(person.sees("instructions"));
+  const nlohmann::json now = person.status();
+  EXPECT_EQ(now["trials"], 3);
+  EXPECT_EQ(now["trials_defined"], 72);
+  EXPECT_EQ(now["blocks"], 3);
+  // What is missing is there before the session is started.
+  EXPECT_THAT(now["notices"].dump(), HasSubstr("the session goes on without its streams"));
+}
+
 TEST_F(LiveBreaksTest, EscapeInTheParticipantsWindowStopsASessionWithoutAConsole) {
   if (!test::VirtualDisplay::available()) {
     GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";

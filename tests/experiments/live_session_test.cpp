@@ -150,6 +150,32 @@ TEST_F(LiveSessionTest, AnAbortedSessionGoesOnAndCanBeEndedForGood) {
   }
 }
 
+TEST_F(LiveSessionTest, WhoeverWatchesTheTerminalIsToldFromTheStartOn) {
+  request_.max_trials = 1;
+  std::vector<std::string> lines;
+  request_.tell = [&](const std::string& line) {
+    if (lines.empty() || line.starts_with("recording ")) {
+      EXPECT_TRUE(std::filesystem::exists(folder_ / "P01.h5.partial")) << "before it is over";
+    }
+    lines.push_back(line);
+  };
+  const SessionSummary summary = run_session(request_);
+  const auto plan = std::find_if(lines.begin(), lines.end(), [](const std::string& line) {
+    return line.starts_with("recording ");
+  });
+  ASSERT_NE(plan, lines.end());
+  EXPECT_EQ(*plan, "recording " + request_.file.string() + ": 1 of 72 trials planned");
+  EXPECT_TRUE(std::any_of(plan, lines.end(), [](const std::string& line) {
+    return line.starts_with("trial 1 of 1, ") && line.find(": completed, ") != std::string::npos;
+  }));
+  // Notices of the loop come before the first trial.
+  for (const std::string& notice : summary.notices) {
+    if (notice.find("CAP_") != std::string::npos) {
+      EXPECT_LT(std::find(lines.begin(), lines.end(), "notice: " + notice), plan);
+    }
+  }
+}
+
 /// Killed between its end and the name of its file, it needs only the name.
 TEST_F(LiveSessionTest, ASessionThatHadEndedIsOnlyClosed) {
   request_.control = &control_;

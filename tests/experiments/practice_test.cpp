@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
 #include <sstream>
 
 #include "core/record/session_reader.h"
@@ -73,7 +74,7 @@ TEST_F(PracticeTest, ComesFirstIsMarkedAndIsNotScored) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_EQ(all[i].practice, i < 6) << i;
     if (i < 6) {
-      EXPECT_EQ(all[i].block, 0) << "no block of the study";
+      EXPECT_EQ(all[i].block, -static_cast<int>(i / 2) - 1) << "no block of the study";
       practised.push_back(all[i].condition);
       for (const PassRow& pass : study_alone) {
         EXPECT_NE(all[i].stimulus_seed, pass.stimulus_seed) << "a stimulus of the study is new";
@@ -82,6 +83,12 @@ TEST_F(PracticeTest, ComesFirstIsMarkedAndIsNotScored) {
   }
   EXPECT_THAT(practised, testing::ElementsAre("haptic", "haptic", "visual", "visual", "visuohaptic",
                                               "visuohaptic"));
+  // Each practice trial has a stimulus of its own, and it is in the file.
+  std::set<std::int32_t> blocks;
+  for (const record::StimulusRow& row : record::SessionReader(folder_ / "with/S01.h5").stimuli()) {
+    blocks.insert(row.block);
+  }
+  EXPECT_THAT(blocks, testing::ElementsAre(-3, -2, -1, 1, 2));
   // The study itself is the one that it would be without practice: same order, same stimuli.
   for (std::size_t i = 0; i < study_alone.size(); ++i) {
     const PassRow& pass = all[6 + i];

@@ -105,6 +105,40 @@ TEST_F(SessionTest, TargetsComeFromTheStoredStimulus) {
   EXPECT_GT(compared, 5000u);
 }
 
+TEST_F(SessionTest, TheStoredStimulusReachesTheEndOfTheRun) {
+  const auto reader = record_session(definition_, folder_ / "S01.h5", 1);
+  const auto stimulus = stimulus::make_stimulus(definition_.trajectory, definition_.force_pattern,
+                                                reader.passes().at(0).stimulus_seed);
+  const auto rows = reader.stimuli();
+  EXPECT_NEAR(rows.back().time, stimulus.path.duration(), 1e-9);
+  EXPECT_EQ(rows.back().force, stimulus.force.at(stimulus.path.duration()));
+  const double step = 1.0 / definition_.stimulus_rate;
+  for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
+    ASSERT_NEAR(rows[i].time, static_cast<double>(i) * step, 1e-9);
+  }
+  EXPECT_GT(rows.back().time, rows[rows.size() - 2].time);
+}
+
+TEST_F(SessionTest, BreaksComeAgainAndAgainButNotAfterTheLastTrial) {
+  const auto breaks = [&](int trials) {
+    definition_.design.break_after = 3;
+    const auto reader =
+        record_session(definition_, folder_ / (std::to_string(trials) + ".h5"), trials);
+    int count = 0;
+    for (const record::EventRow& event : reader.events()) {
+      count += event.kind == "break" ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(breaks(10), 3);
+  EXPECT_EQ(breaks(9), 2);
+}
+
+TEST_F(SessionTest, TheFileSaysHowManyTrialsArePlannedOfHowMany) {
+  const auto reader = record_session(definition_, folder_ / "S01.h5", 3);
+  EXPECT_EQ(reader.events().front().text, "3 of 72 trials planned");
+}
+
 TEST_F(SessionTest, IsAFunctionOfDefinitionSubjectAndSeed) {
   const auto first = record_session(definition_, folder_ / "a.h5", 3);
   const auto again = record_session(definition_, folder_ / "b.h5", 3);

@@ -1,7 +1,9 @@
 // A stand-in for liblsl: the same C functions, which keep what was pushed. For a test in another
-// process, STAND_IN_LSL_FILE names a file to which each outlet writes what it got when it closes.
+// process, STAND_IN_LSL_FILE names a file to which each outlet writes what it got when it closes;
+// the layer's clock then goes as the real one does.
 #include "tests/support/stand_in_lsl.h"
 
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <iomanip>
@@ -35,7 +37,8 @@ LslStream& stream(void* outlet) {
   return record.streams.at(reinterpret_cast<std::size_t>(outlet) - 1);
 }
 
-/// A line for the stream, then one for each sample or text: its time and what it held.
+/// A line for the stream, then one for each sample or text: its time, what it held, and when it was
+/// pushed.
 void tell(const LslStream& s) {
   const char* file = std::getenv("STAND_IN_LSL_FILE");
   if (file == nullptr) {
@@ -53,8 +56,17 @@ void tell(const LslStream& s) {
     for (std::size_t k = i * channels; k < (i + 1) * channels && k < s.values.size(); ++k) {
       out << "\t" << s.values[k];
     }
-    out << "\n";
+    out << "\t" << s.pushed.at(i) << "\n";
   }
+}
+
+double layer_clock() {
+  if (std::getenv("STAND_IN_LSL_FILE") == nullptr) {
+    return record.clock;
+  }
+  constexpr double kAhead = 12345.0;  // of the machine's clock, so that the two are not mixed up
+  return kAhead +
+         std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 }  // namespace
@@ -67,7 +79,7 @@ void* lsl_create_streaminfo(const char* name, const char* type, std::int32_t cha
                             std::int32_t format, const char* source_id) {
   ++record.infos;
   auto* info = new Info;
-  info->stream = {name, type, source_id, channels, format, rate, {}, {}, {}, {}, true};
+  info->stream = {name, type, source_id, channels, format, rate, {}, {}, {}, {}, {}, true};
   info->nodes.push_back(std::make_unique<Node>(Node{info, ""}));
   return info;
 }
@@ -99,16 +111,18 @@ std::int32_t lsl_push_chunk_dtn(void* outlet, const double* values, unsigned lon
   s.values.insert(s.values.end(), values, values + count);
   s.timestamps.insert(s.timestamps.end(), timestamps,
                       timestamps + count / static_cast<unsigned long>(s.channels));
+  s.pushed.resize(s.timestamps.size(), layer_clock());
   return 0;
 }
 std::int32_t lsl_push_sample_strt(void* outlet, const char** text, double timestamp) {
   if (record.push_result == 0) {
     stream(outlet).texts.emplace_back(*text);
     stream(outlet).timestamps.push_back(timestamp);
+    stream(outlet).pushed.push_back(layer_clock());
   }
   return record.push_result;
 }
-double lsl_local_clock() { return record.clock; }
+double lsl_local_clock() { return layer_clock(); }
 const char* lsl_last_error() { return "the stand-in was told to fail"; }
 void lsl_destroy_outlet(void* outlet) {
   stream(outlet).open = false;

@@ -18,6 +18,7 @@ struct LslStream {
   std::vector<std::pair<std::string, std::string>> description;  // "channels/channel/label", value
   std::vector<double> values;
   std::vector<double> timestamps;
+  std::vector<double> pushed;  // when each of them came, on the layer's clock
   std::vector<std::string> texts;
   bool open{false};
 };

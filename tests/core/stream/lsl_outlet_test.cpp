@@ -45,12 +45,18 @@ class LslOutletTest : public testing::Test {
     return s;
   }
 
+  /// The session's clock, set by a test.
+  SessionClock now() {
+    return [this] { return now_ns_; };
+  }
+
   void* library_;
   test::LslRecord* record_;
+  std::int64_t now_ns_{0};
 };
 
 TEST_F(LslOutletTest, OpensASampleAndAMarkerStreamThatDescribeThemselves) {
-  const LslOutlet outlet(options());
+  const LslOutlet outlet(options(), now());
   ASSERT_EQ(record_->streams.size(), 2u);
   const test::LslStream& samples = record_->streams[0];
   EXPECT_EQ(samples.name, "haptrial P07");
@@ -82,11 +88,10 @@ TEST_F(LslOutletTest, OpensASampleAndAMarkerStreamThatDescribeThemselves) {
 }
 
 TEST_F(LslOutletTest, SamplesArriveChannelByChannelOnTheLayersClock) {
-  LslOutlet outlet(options());
+  LslOutlet outlet(options(), now());
   record_->clock = 5000.0;
-  outlet.synchronise(2'000'000'000);
+  now_ns_ = 2'000'000'000;
   outlet.push(std::vector{sample(2000), sample(2001)});
-  record_->clock = 9999.0;  // what the clock says later moves nothing
   outlet.push(std::vector{sample(2002)});
   outlet.push({});
   const test::LslStream& stream = record_->streams[0];
@@ -101,25 +106,54 @@ TEST_F(LslOutletTest, SamplesArriveChannelByChannelOnTheLayersClock) {
   EXPECT_EQ(outlet.refused(), 0u);
 }
 
-TEST_F(LslOutletTest, TheFirstPushTiesTheClocksWhereNobodyDid) {
-  LslOutlet outlet(options());
+TEST_F(LslOutletTest, SamplesAreNotTakenForTheMomentInWhichTheyArePushed) {
+  LslOutlet outlet(options(), now());
   record_->clock = 100.0;
+  now_ns_ = 0;
+  outlet.mark("before the loop begins", 0);  // and 0.3 s pass until it does
+  record_->clock = 100.3;
+  now_ns_ = 25'000'000;  // the first push comes 5 ms after its last sample
   outlet.push(std::vector{sample(10), sample(20)});
-  EXPECT_NEAR(record_->streams[0].timestamps[1], 100.0, 1e-9);
-  EXPECT_NEAR(record_->streams[0].timestamps[0], 99.99, 1e-9);
+  EXPECT_NEAR(record_->streams[1].timestamps.at(0), 100.0, 1e-9);
+  EXPECT_NEAR(record_->streams[0].timestamps.at(0), 100.285, 1e-9);
+  EXPECT_NEAR(record_->streams[0].timestamps.at(1), 100.295, 1e-9);
+}
+
+TEST_F(LslOutletTest, TheClocksAreComparedAgainEverySecond) {
+  LslOutlet outlet(options(), now());
+  record_->clock = 100.0;
+  outlet.push(std::vector{sample(0)});
+  record_->clock = 100.5;
+  now_ns_ = 499'000'000;  // one of the clocks drifts by 2 ms a second
+  outlet.push(std::vector{sample(499)});
+  EXPECT_NEAR(record_->streams[0].timestamps.at(1), 100.499, 1e-9) << "not at each push";
+  record_->clock = 101.0;
+  now_ns_ = 998'000'000;
+  outlet.push(std::vector{sample(1000)});
+  EXPECT_NEAR(record_->streams[0].timestamps.at(2), 101.002, 1e-9);
+}
+
+TEST_F(LslOutletTest, AnInterruptionWhileTheClocksAreComparedIsNoShift) {
+  int readings = 0;
+  LslOutlet outlet(options(), [&readings] {
+    ++readings;
+    return readings == 2 ? std::int64_t{80'000'000} : std::int64_t{0};  // within the first one
+  });
+  record_->clock = 50.0;
+  outlet.push(std::vector{sample(0)});
+  EXPECT_NEAR(record_->streams[0].timestamps.at(0), 50.0, 1e-9);
 }
 
 TEST_F(LslOutletTest, MarkersShareTheClockOfTheSamples) {
-  LslOutlet outlet(options());
+  LslOutlet outlet(options(), now());
   record_->clock = 50.0;
-  outlet.synchronise(0);
   outlet.mark("trial 1 training", 1'500'000'000);
   EXPECT_THAT(record_->streams[1].texts, ElementsAre("trial 1 training"));
   EXPECT_NEAR(record_->streams[1].timestamps.at(0), 51.5, 1e-9);
 }
 
 TEST_F(LslOutletTest, RefusedPushesAreCountedAndTheFirstOneIsKept) {
-  LslOutlet outlet(options());
+  LslOutlet outlet(options(), now());
   record_->push_result = -4;
   outlet.push(std::vector{sample(1), sample(2), sample(3)});
   outlet.mark("lost", 0);
@@ -132,7 +166,7 @@ TEST_F(LslOutletTest, RefusedPushesAreCountedAndTheFirstOneIsKept) {
 
 TEST_F(LslOutletTest, ClosesItsStreams) {
   {
-    const LslOutlet outlet(options());
+    const LslOutlet outlet(options(), now());
     EXPECT_TRUE(record_->streams[0].open && record_->streams[1].open);
   }
   EXPECT_FALSE(record_->streams[0].open || record_->streams[1].open);
@@ -141,21 +175,23 @@ TEST_F(LslOutletTest, ClosesItsStreams) {
 TEST_F(LslOutletTest, WithoutTheLibraryTheSessionGoesOnWithASentence) {
   LslOptions absent = options();
   absent.library = "libnowhere_lsl.so";
-  EXPECT_THROW(const LslOutlet outlet(absent), InputError);
+  EXPECT_THROW(const LslOutlet outlet(absent, now()), InputError);
+  EXPECT_THROW(LslOutlet::check_library(absent.library), InputError);
+  EXPECT_NO_THROW(LslOutlet::check_library(kStandIn));
   std::string notice;
-  EXPECT_EQ(LslOutlet::open(absent, notice), nullptr);
+  EXPECT_EQ(LslOutlet::open(absent, now(), notice), nullptr);
   EXPECT_THAT(notice, HasSubstr("libnowhere_lsl.so"));
   EXPECT_THAT(notice, HasSubstr("Lab Streaming Layer"));
   EXPECT_THAT(notice, HasSubstr("the session goes on without its streams"));
   notice.clear();
-  EXPECT_NE(LslOutlet::open(options(), notice), nullptr);
+  EXPECT_NE(LslOutlet::open(options(), now(), notice), nullptr);
   EXPECT_EQ(notice, "");
 }
 
 TEST_F(LslOutletTest, ALibraryThatOpensNoStreamLeavesNothingBehind) {
   record_->refuse_outlets = true;
   std::string notice;
-  EXPECT_EQ(LslOutlet::open(options(), notice), nullptr);
+  EXPECT_EQ(LslOutlet::open(options(), now(), notice), nullptr);
   EXPECT_THAT(notice, HasSubstr("opens no stream 'haptrial P07': the stand-in was told to fail"));
   EXPECT_EQ(record_->infos, 0);
 }
@@ -164,7 +200,7 @@ TEST_F(LslOutletTest, AnotherLibraryIsNotTakenForIt) {
   LslOptions wrong = options();
   wrong.library = "libm.so.6";
   std::string notice;
-  EXPECT_EQ(LslOutlet::open(wrong, notice), nullptr);
+  EXPECT_EQ(LslOutlet::open(wrong, now(), notice), nullptr);
   EXPECT_THAT(notice, HasSubstr("lsl_create_streaminfo"));
 }
 
