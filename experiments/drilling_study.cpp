@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <toml++/toml.h>
 #include <algorithm>
 #include <optional>
 #include <system_error>
 
 #include "analysis/drilling/visibility_picture.h"
 #include "core/base/error.h"
-#include "core/base/toml_text.h"
 #include "core/record/session_reader.h"
 #include "core/render/scene.h"
 #include "experiments/bone_definition.h"
@@ -104,7 +104,12 @@ std::vector<drilling::StudyPicture> visibility_pictures(
 }  // namespace
 
 std::vector<StudyGroup> study_groups(std::string_view definition, std::string_view file_name) {
-  const toml::table root = parse_toml(definition, file_name);
+  toml::table root;
+  try {
+    root = toml::parse(definition);
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}: is not TOML: {}", file_name, error.description()));
+  }
   std::vector<std::pair<toml::source_position, StudyGroup>> found;
   if (const toml::table* groups = root["groups"].as_table()) {
     for (const auto& [key, value] : *groups) {

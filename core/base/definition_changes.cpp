@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/toml_text.h"
+#include "core/base/toml_text_internal.h"
 
 namespace haptrial {
 namespace {

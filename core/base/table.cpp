@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file_text.h"
-#include "core/base/toml_text.h"
+#include "core/base/toml_text_internal.h"
 
 namespace haptrial {
 

@@ -1,4 +1,4 @@
-#include "core/base/toml_text.h"
+#include "core/base/toml_text_internal.h"
 
 #include <fmt/format.h>
 
