@@ -69,6 +69,7 @@ class Session {
   bool run_trial(const PlannedTrial& trial, int attempt);
   bool run_pass(const PlannedTrial& trial, record::Phase phase, int attempt);
   std::shared_ptr<const analysis::drilling::Procedure> of_earlier_run(const record::PassRow& pass);
+  void note_damping(const protocols::PassResult& result);
   void after_abort(const protocols::PassResult& result);
   std::string why_broken_off();
 
@@ -300,6 +301,7 @@ bool Session::run_pass(const PlannedTrial& trial, record::Phase phase, int attem
   const bool aborted = result.state == protocols::PassState::kAborted;
   trials_->close_pass(record_, number);
   record_.end_pass(result);
+  note_damping(result);
   if (aborted) {
     after_abort(result);
   }
@@ -329,6 +331,16 @@ std::shared_ptr<const analysis::drilling::Procedure> Session::of_earlier_run(
                   fmt::format("live figures leave the earlier run out: {}", error.what()));
   }
   return nullptr;
+}
+
+/// A hand that did not carry all the damping was guided less firmly, which an analyst has to know.
+void Session::note_damping(const protocols::PassResult& result) {
+  if (result.reduced_ticks > 0) {
+    record_.event("damping_reduced",
+                  fmt::format("trial {}: least {:.3f} of it, reduced for {:.3f} s of the run",
+                              record_.pass().trial, result.least_damping,
+                              static_cast<double>(result.reduced_ticks) / d_.rate));
+  }
 }
 
 void Session::after_abort(const protocols::PassResult& result) {

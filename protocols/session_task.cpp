@@ -1,5 +1,6 @@
 #include "protocols/session_task.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace haptrial::protocols {
@@ -146,7 +147,12 @@ void SessionTask::begin(std::uint64_t sequence) noexcept {
 
 PassOutput SessionTask::ask_pass(const device::DeviceReading& reading, double dt) noexcept {
   if (pass_ != nullptr && !broken_off_ && envelope_.fault() == device::Fault::kNone) {
-    return pass_->tick(reading, dt);
+    const PassOutput out = pass_->tick(reading, dt);
+    if (out.stage == record::Stage::kRun && out.damping_share < 1.0) {
+      result_.least_damping = std::min(result_.least_damping, out.damping_share);
+      ++result_.reduced_ticks;
+    }
+    return out;
   }
   PassOutput nothing;
   nothing.presentation.tool = reading.tool.position;

@@ -20,6 +20,8 @@ struct PassResult {
   device::Fault fault{device::Fault::kNone};
   std::uint64_t first_sample{0};  // sequence numbers, both inclusive
   std::uint64_t last_sample{0};
+  double least_damping{1.0};       // during the run, as a share of what the definition asks for
+  std::uint64_t reduced_ticks{0};  // of the run, with less than all of it
 };
 
 /// Where a resumed session goes on: what its first tick is to have.

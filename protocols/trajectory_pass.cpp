@@ -15,6 +15,8 @@ namespace {
 /// over this time, so that the force does not jump; where the target is stays as the path says [s].
 constexpr double kBlend = 0.08;
 
+constexpr double kShortestMove = 0.2;  // a move of a millimetre would jerk at full speed [s]
+
 }  // namespace
 
 GuidanceParameters read_guidance_parameters(Table& table) {
@@ -63,7 +65,9 @@ void TrajectoryPass::enter(Stage stage) noexcept {
   settled_ = 0.0;
   const Eigen::Vector3d& start = stimulus_.path.points().front();
   if (stage == Stage::kApproach || stage == Stage::kReturn) {
-    move_ = control::MinimumJerkMove(target_, start, parameters_.approach_speed);
+    const double gentle = 15.0 / 8.0 * (start - target_).norm() / kShortestMove;
+    move_ = control::MinimumJerkMove(target_, start,
+                                     std::clamp(gentle, 1e-9, parameters_.approach_speed));
   } else if (stage == Stage::kRun && guide_) {
     guide_->start();
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 namespace haptrial::control {
 namespace {
@@ -16,7 +17,7 @@ constexpr double kShareOfSpeed = 0.22;  // of an even 13 Hz; a hand's own moveme
 constexpr double kBandMemory = 0.02;    // of an amplitude: one period of 50 Hz [s]
 constexpr double kSpeedMemory = 0.05;   // [s]
 constexpr double kLettingGo = 0.004;    // [s]
-constexpr double kGivingBack = 1.5;     // from nothing to all of it [s]
+constexpr double kGivingBack = 0.4;     // from nothing to all of it [s]
 constexpr double kTryingAnew = 30.0;    // of what proved too much, from nothing to all of it [s]
 constexpr double kBelowTooMuch = 0.7;   // of the share at which the handle began to oscillate
 
@@ -46,22 +47,26 @@ double DampingGovernor::share(const Eigen::Vector3d& velocity) noexcept {
   watch(velocity);
   const double loudness = damping_ * band_amplitude_;
   if (loudness > kLoud && band_amplitude_ > kShareOfSpeed * speed_amplitude_) {
-    const bool on_the_way_up = share_ < 1.0;
-    if (quiet_ && on_the_way_up) {
+    if (quiet_ && fell_) {  // again, on the way up
       ceiling_ = std::max(least_, std::min(ceiling_, kBelowTooMuch * share_));
     }
+    fell_ = true;
     quiet_ = false;
     share_ = std::max(least_, share_ * (1.0 - std::min(1.0, period_ / kLettingGo)));
   } else if (loudness < kQuiet) {
     quiet_ = true;
     ceiling_ = std::min(1.0, ceiling_ + period_ / kTryingAnew);
     share_ = std::min(ceiling_, share_ + period_ / kGivingBack);
+    fell_ = fell_ && share_ < 1.0;
   }
   return share_;
 }
 
 void DampingGovernor::watch(const Eigen::Vector3d& velocity) noexcept {
   Eigen::Vector3d rest = velocity.allFinite() ? velocity : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  if (!std::exchange(begun_, true)) {
+    slow_[0] = rest;  // a hand that moves already is no step of velocity
+  }
   speed_amplitude_ = std::max(rest.norm(), speed_fade_ * speed_amplitude_);
   for (Eigen::Vector3d& slow : slow_) {
     slow += high_gain_ * (rest - slow);

@@ -11,12 +11,12 @@ namespace haptrial::control {
 /// Damping by a late velocity feeds energy into a light hand instead of taking it out: the handle
 /// then oscillates at 20 Hz and more, where no hand moves by itself. The governor watches the
 /// handle's velocity in that band. It begins with the damping that the bare handle carries and
-/// raises it to b within a second and a half. Where b |v_band| passes 1 N, and v_band is a good
+/// raises it to b within half a second. Where b |v_band| passes 1 N, and v_band is a good
 /// part of all the movement there is, the damping falls again within milliseconds and rises when
-/// the handle is quiet. Where the oscillation comes on the way up, damping stays at 0.7 of what it
-/// had reached and is tried anew only slowly. So a heavy hand has all of b, a light one what it
-/// carries, and a handle that is let go is quiet after a few periods. docs/algorithms/guidance.md
-/// has the figures.
+/// the handle is quiet. Where the oscillation comes back on the way up, damping stays at 0.7 of
+/// what it had reached and is tried anew only slowly. So a heavy hand has all of b, a light one
+/// what it carries, and a handle that is let go is quiet after a few periods.
+/// docs/algorithms/every-hand.md has the figures.
 ///
 /// Servo thread: no allocation, lock, I/O or throw.
 class DampingGovernor {
@@ -45,7 +45,9 @@ class DampingGovernor {
   double speed_fade_;
   double share_;
   double ceiling_{1.0};
+  bool begun_{false};
   bool quiet_{true};
+  bool fell_{false};             // since damping was whole, or since the beginning
   double band_amplitude_{0.0};   // of v_band, falling slowly [m/s]
   double speed_amplitude_{0.0};  // of the velocity [m/s]
   Eigen::Vector3d slow_[2]{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // [m/s]

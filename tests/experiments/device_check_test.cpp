@@ -103,6 +103,7 @@ TEST(DeviceCheckTest, AWorkspaceThatWasTriedAndAButtonPass) {
   device.on_read = [](std::size_t tick, device::DeviceReading& reading) {
     const double share = static_cast<double>(tick) / kTicks;
     reading.tool.position = 0.02 * std::sin(20.0 * std::clamp(share, 0.2, 0.6)) * Vector3d::Ones();
+    reading.tool.position.x() += tick % 2 == 0 ? 0.0 : 1e-9;  // a hand is never quite still
     reading.buttons = share > 0.95 ? 2u : 0u;
     return true;
   };

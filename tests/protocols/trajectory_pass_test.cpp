@@ -113,7 +113,7 @@ TEST_P(EveryPass, EveryStageLastsAsLongAsItsLawSays) {
   const Vector3d start = path.points().front();
   const auto ticks = [&](Stage s) { return static_cast<double>(of_stage(moments, s).size()); };
 
-  const double approach = 1.875 * (start - where).norm() / p.approach_speed;
+  const double approach = std::max(0.2, 1.875 * (start - where).norm() / p.approach_speed);
   EXPECT_NEAR(ticks(Stage::kApproach), approach / kDt, 1.01);
   EXPECT_NEAR(ticks(Stage::kRun), path.duration() / kDt, 1.01);
   const double back = 1.875 * (start - path.points().back()).norm() / p.approach_speed;
@@ -281,7 +281,7 @@ TEST_P(EveryPass, GivesUpOnAHandThatIsHeldAway) {
   const Vector3d where = stimulus_of_study().path.points().front() + Vector3d(0.0, 0.0, 0.0031);
   const auto moments = run_still(*pass, where);
   EXPECT_EQ(pass->state(), PassState::kAborted);
-  const double approach = 1.875 * 0.0031 / p.approach_speed;
+  const double approach = std::max(0.2, 1.875 * 0.0031 / p.approach_speed);
   EXPECT_NEAR(static_cast<double>(moments.size()) * kDt, approach + 2.0, 3 * kDt);
   EXPECT_TRUE(of_stage(moments, Stage::kRun).empty());
 }
