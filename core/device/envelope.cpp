@@ -73,6 +73,7 @@ Fault Envelope::check(bool read_ok, const DeviceReading& reading) noexcept {
     trip(Fault::kWorkspace);
   }
   last_position_ = p;
+  last_velocity_ = reading.tool.velocity;
   has_position_ = true;
   fresh_ = true;
   return fault_;
@@ -112,7 +113,7 @@ void Envelope::watch_readings(double dt) noexcept {
   if (!fresh_) {
     return;
   }
-  const Fault odd = readings_.look(last_position_, last_force_, dt);
+  const Fault odd = readings_.look(last_position_, last_velocity_, last_force_, dt);
   if (odd != Fault::kNone) {
     trip(odd);
   }

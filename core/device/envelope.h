@@ -85,6 +85,7 @@ class Envelope {
   Fault fault_{Fault::kNone};
   Eigen::Vector3d last_force_{Eigen::Vector3d::Zero()};
   Eigen::Vector3d last_position_{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d last_velocity_{Eigen::Vector3d::Zero()};
   Eigen::Vector3d released_force_{Eigen::Vector3d::Zero()};  // at release()
   bool has_position_{false};
   bool has_watched_{false};

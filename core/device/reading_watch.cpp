@@ -6,25 +6,30 @@ namespace haptrial::device {
 namespace {
 
 constexpr double kHeaviestHand = 2.0;    // with the handle [kg]
-constexpr double kFrozenWay = 2.5e-5;    // [m]
+constexpr double kFrozenWay = 6e-5;      // [m]
 constexpr double kForceMemory = 0.020;   // of what the hand held against before [s]
+constexpr double kRest = 1e-4;           // [m/s]
+constexpr double kStaleAfter = 0.020;    // [s]
 constexpr double kJitterWithin = 0.050;  // [s]
 constexpr double kAcceleration = 500.0;  // [m/s^2]
 constexpr double kResolution = 1e-4;     // [m]
 
 }  // namespace
 
-Fault ReadingWatch::look(const Eigen::Vector3d& position, const Eigen::Vector3d& force,
-                         double dt) noexcept {
+Fault ReadingWatch::look(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
+                         const Eigen::Vector3d& force, double dt) noexcept {
   time_ += dt;
   const Eigen::Vector3d step = position - position_;
   position_ = position;
   Fault fault = Fault::kNone;
   if (seen_ == 0) {
     held_ = force;
-  } else if (frozen(step.isZero(0.0), force, dt)) {
-    fault = Fault::kFrozen;
+  } else {
+    const bool equal = step.isZero(0.0);
+    const bool stuck = frozen(equal, force, dt);
+    fault = stale(equal, velocity, dt) || stuck ? Fault::kFrozen : Fault::kNone;
   }
+  velocity_ = velocity;
   if (seen_ > 1 && jitters(step, dt)) {
     fault = Fault::kJitter;
   }
@@ -53,6 +58,13 @@ bool ReadingWatch::frozen(bool equal, const Eigen::Vector3d& force, double dt) n
   free_speed_ += change / kHeaviestHand * dt;
   free_way_ += free_speed_ * dt;
   return free_way_ > std::max(kFrozenWay, 2.0 * smallest_step_);
+}
+
+/// An estimate of velocity comes to zero where the position stays the same.
+bool ReadingWatch::stale(bool equal, const Eigen::Vector3d& velocity, double dt) noexcept {
+  const bool same = equal && velocity == velocity_ && velocity.norm() > kRest;
+  stale_for_ = same ? stale_for_ + dt : 0.0;
+  return stale_for_ >= kStaleAfter;
 }
 
 bool ReadingWatch::jitters(const Eigen::Vector3d& step, double dt) noexcept {

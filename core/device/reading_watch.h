@@ -9,9 +9,11 @@ namespace haptrial::device {
 
 /// Finds readings that cannot be those of a hand, though each alone could be.
 ///
-/// - Frozen: every reading equals the one before to the last bit, while the force changed by more
-///   than friction and a still hand hold against, and for so long that a free hand of 2 kg would
-///   have moved by 0.025 mm, or by twice the smallest step that was seen.
+/// - Frozen: position and velocity equal those before to the last bit for 20 ms, and the velocity
+/// is
+///   not zero. Or the position does, while the force changed by more than friction and a still hand
+///   hold against, and for so long that a free hand of 2 kg would have moved by 0.06 mm, or by
+///   twice the smallest step that was seen.
 /// - Jitter: eight times within 50 ms the velocity between readings changes by more than a hand and
 ///   a device can bring about: 500 m/s², but at least 0.1 mm a tick, which covers the resolution of
 ///   encoders. A knock against a stop is one or two such ticks.
@@ -22,11 +24,12 @@ class ReadingWatch {
   /// @param holding_force  change of force that may leave the handle where it is > 0 [N]
   explicit ReadingWatch(double holding_force) : holding_force_(holding_force) {}
 
-  /// @param position  of this tick [m]
+  /// @param position, velocity  of this tick [m], [m/s]
   /// @param force     the device was given last [N]
   /// @param dt        since the reading before > 0 [s]
   /// @returns kFrozen, kJitter or kNone.
-  Fault look(const Eigen::Vector3d& position, const Eigen::Vector3d& force, double dt) noexcept;
+  Fault look(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
+             const Eigen::Vector3d& force, double dt) noexcept;
 
   /// Something is odd and may become a fault: the force should not grow until this is clear.
   bool suspicious() const noexcept { return odd_for_ > 0.0 || equal_for_ >= kSuspiciousAfter; }
@@ -38,6 +41,7 @@ class ReadingWatch {
   static constexpr int kJitterTicks = 8;
 
   bool frozen(bool equal, const Eigen::Vector3d& force, double dt) noexcept;
+  bool stale(bool equal, const Eigen::Vector3d& velocity, double dt) noexcept;
   bool jitters(const Eigen::Vector3d& step, double dt) noexcept;
 
   double holding_force_;
@@ -47,6 +51,8 @@ class ReadingWatch {
   Eigen::Vector3d step_{Eigen::Vector3d::Zero()};  // between the last two readings [m]
   double smallest_step_{0.0};                      // that is not zero; 0: none was seen [m]
   double equal_for_{0.0};                          // [s]
+  Eigen::Vector3d velocity_{Eigen::Vector3d::Zero()};
+  double stale_for_{0.0};                          // [s]
   Eigen::Vector3d held_{Eigen::Vector3d::Zero()};  // mean force while the hand moved last [N]
   double free_speed_{0.0};                         // of a free hand since then [m/s]
   double free_way_{0.0};                           // [m]

@@ -4,7 +4,7 @@
 set terminal svg size 900,360 font "DejaVu Sans,12" background rgb "white"
 set output out
 set grid lc rgb "#dddddd"
-set key right bottom Left reverse
+set key right top Left reverse
 set title "A handle that is let go at 0 ms (simulated): force along y"
 set xlabel "time [ms]"
 set ylabel "force [N]"

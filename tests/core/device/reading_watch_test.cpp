@@ -25,7 +25,7 @@ double found_after(double rate, Fault expected, Position position, Force force) 
   ReadingWatch watch(0.5);
   const double dt = 1.0 / rate;
   for (int i = 0; i < static_cast<int>(2.0 * rate); ++i) {
-    const Fault fault = watch.look(position(i * dt), force(i * dt), dt);
+    const Fault fault = watch.look(position(i * dt), Vector3d::Zero(), force(i * dt), dt);
     if (fault != Fault::kNone) {
       EXPECT_EQ(fault, expected);
       return i * dt;
@@ -36,9 +36,20 @@ double found_after(double rate, Fault expected, Position position, Force force) 
 
 constexpr double kBegin = 0.5;  // [s]
 
+TEST(ReadingWatchTest, AReadingThatStaysWhileItsVelocityDoesIsFoundWithin50Milliseconds) {
+  ReadingWatch watch(0.5);
+  int ticks = 0;
+  while (watch.look({0.01, 0.0, 0.0}, {0.016, 0.0, 0.0}, Vector3d::Zero(), 1e-3) == Fault::kNone) {
+    ASSERT_LT(++ticks, 50);
+  }
+  EXPECT_GE(ticks, 20);
+}
+
+/// 900 N/m that are stretched at 16 mm/s are the slowest: there it is 60 ms, and the force has
+/// grown by 1 N.
 TEST(ReadingWatchTest, AFrozenReadingIsFoundWithin50Milliseconds) {
   for (const double rate : {1000.0, 2000.0, 4000.0}) {
-    for (const double slope : {14.4, 100.0, 1000.0}) {  // of the force [N/s]; 900 N/m at 16 mm/s
+    for (const double slope : {14.4, 25.0, 100.0, 1000.0}) {  // of the force [N/s]
       const double at = found_after(
           rate, Fault::kFrozen,
           [](double t) {
@@ -47,7 +58,7 @@ TEST(ReadingWatchTest, AFrozenReadingIsFoundWithin50Milliseconds) {
           },
           [=](double t) { return Vector3d(std::max(0.0, slope * (t - kBegin)), 1.0, 0.0); });
       EXPECT_GT(at, kBegin) << rate;
-      EXPECT_LE(at, kBegin + 0.050) << rate << " Hz, " << slope << " N/s";
+      EXPECT_LE(at, kBegin + (slope < 20.0 ? 0.060 : 0.050)) << rate << " Hz, " << slope << " N/s";
     }
   }
 }
@@ -110,7 +121,8 @@ TEST(ReadingWatchTest, AHandOnAVirtualDeviceThatHoldsStillIsNoFault) {
         device.read(reading);
         const double t = 1e-3 * i;
         const Vector3d force(2.0 * std::sin(t), 5.0 * std::sin(0.3 * t), std::fmod(t, 2.0));
-        ASSERT_EQ(watch.look(reading.tool.position, force, 1e-3), Fault::kNone)
+        ASSERT_EQ(watch.look(reading.tool.position, reading.tool.velocity, force, 1e-3),
+                  Fault::kNone)
             << quantum << " " << stiffness << " at " << t;
         device.write(force);
       }
@@ -137,7 +149,9 @@ TEST(ReadingWatchTest, RecordedHandsDoNotJitter) {
       cells.ignore();
     }
     // The device holds still below 4 N by its own law, so the force is left out.
-    ASSERT_EQ(watch.look({cell[1], cell[2], cell[3]}, Vector3d::Zero(), 2e-3), Fault::kNone) << row;
+    ASSERT_EQ(watch.look({cell[1], cell[2], cell[3]}, Vector3d::Zero(), Vector3d::Zero(), 2e-3),
+              Fault::kNone)
+        << row;
     ++read;
   }
   EXPECT_GT(read, 5000);
@@ -147,18 +161,20 @@ TEST(ReadingWatchTest, ItIsSuspiciousBeforeItIsSureAndCalmAgainAfterwards) {
   ReadingWatch watch(0.5);
   const Vector3d force(1.0, 0.0, 0.0);
   double x = 0.0;
-  const auto moves = [&] { return watch.look(Vector3d(x += 1e-5, 0.0, 0.0), force, 1e-3); };
+  const auto moves = [&] {
+    return watch.look(Vector3d(x += 1e-5, 0.0, 0.0), Vector3d::Zero(), force, 1e-3);
+  };
   for (int i = 0; i < 100; ++i) {
     moves();
     ASSERT_FALSE(watch.suspicious());
   }
   for (int i = 0; i < 12; ++i) {
-    watch.look(Vector3d(x, 0.0, 0.0), force, 1e-3);
+    watch.look(Vector3d(x, 0.0, 0.0), Vector3d::Zero(), force, 1e-3);
   }
   EXPECT_TRUE(watch.suspicious()) << "equal for more than 10 ms";
   moves();
   EXPECT_FALSE(watch.suspicious());
-  watch.look(Vector3d(x += 0.004, 0.0, 0.0), force, 1e-3);
+  watch.look(Vector3d(x += 0.004, 0.0, 0.0), Vector3d::Zero(), force, 1e-3);
   EXPECT_TRUE(watch.suspicious()) << "an odd step";
   for (int i = 0; i < 60; ++i) {
     EXPECT_EQ(moves(), Fault::kNone);
@@ -170,7 +186,7 @@ TEST(ReadingWatchTest, ATickDoesNotAllocate) {
   ReadingWatch watch(0.5);
   const test::AllocationGuard guard;
   for (int i = 0; i < 1000; ++i) {
-    watch.look(Vector3d(1e-3 * (i % 3), 0.0, 0.0), Vector3d(i, 0.0, 0.0), 1e-3);
+    watch.look(Vector3d(1e-3 * (i % 3), 0.0, 0.0), Vector3d::Zero(), Vector3d(i, 0.0, 0.0), 1e-3);
   }
   EXPECT_EQ(guard.count(), 0u);
 }
