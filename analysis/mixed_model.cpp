@@ -97,8 +97,10 @@ class Satterthwaite {
   double h11_, h12_, h22_;
 };
 
-MixedModel described(const CenteredDesign& design, const Point& point, double df, double origin,
-                     double level) {
+/// Nothing where a coefficient has no degrees of freedom: the variance between groups cannot be
+/// told from the predictors then.
+std::optional<MixedModel> described(const CenteredDesign& design, const Point& point, double df,
+                                    double origin, double level) {
   MixedModel model;
   const MatrixXd back = design.back();
   VectorXd estimates = back * point.coefficients;
@@ -107,8 +109,11 @@ MixedModel described(const CenteredDesign& design, const Point& point, double df
   for (Eigen::Index k = 0; k < estimates.size(); ++k) {
     const VectorXd contrast = back.row(k).transpose();
     const double error = std::sqrt(point.within) * (point.root.transpose() * contrast).norm();
-    model.coefficients.push_back(
-        coefficient(estimates[k], error, satterthwaite.df(contrast), level));
+    const double freedom = satterthwaite.df(contrast);
+    if (!(freedom > 0.0 && std::isfinite(freedom))) {
+      return std::nullopt;
+    }
+    model.coefficients.push_back(coefficient(estimates[k], error, freedom, level));
   }
   model.variance_within = point.within;
   model.variance_between = point.rho * point.within;
@@ -155,10 +160,13 @@ Defined<MixedModel> random_intercept_model(std::span<const double> response,
   if (!point) {
     return Undefined{exact};
   }
-  MixedModel model = described(*design, *point, likelihood.df(), m->mean(), level);
-  model.observations = response.size();
-  model.groups = grouping.count;
-  return model;
+  auto model = described(*design, *point, likelihood.df(), m->mean(), level);
+  if (!model) {
+    return Undefined{"a coefficient has no degrees of freedom: groups and predictors go together"};
+  }
+  model->observations = response.size();
+  model->groups = grouping.count;
+  return *model;
 }
 
 }  // namespace haptrial::analysis

@@ -28,7 +28,8 @@ struct MixedModel {
 /// @param groups      (observations) which group, any numbers.
 /// Undefined when a value is not finite, there is one group or only groups of one, there are not
 /// more observations than coefficients, a predictor does not vary or follows from others, or
-/// nothing varies within the groups.
+/// nothing varies within the groups, or groups and predictors go together so that a coefficient has
+/// no degrees of freedom.
 /// @throws std::invalid_argument when the lengths differ.
 /// Source: Laird and Ware 1982, Biometrics 38; the likelihood profiled over between / within, as
 /// Bates et al. 2015, Journal of Statistical Software 67; degrees of freedom: Giesbrecht and Burns

@@ -269,5 +269,23 @@ TEST(MixedModel, SaysWhyItIsNotDefined) {
   EXPECT_THROW(fit(bad), std::invalid_argument);
 }
 
+// Each participant under one condition only: whose is the difference?
+TEST(MixedModelTest, ConditionsThatGoWithGroupsAreNeverWithoutDegreesOfFreedom) {
+  RandomStream random(11, "nested");
+  for (int i = 0; i < 500; ++i) {
+    Values response;
+    MatrixXd predictors(6, 1);
+    for (int row = 0; row < 6; ++row) {
+      predictors(row, 0) = row < 3 ? 0.0 : 1.0;
+      response.push_back(1.5 + 0.3 * random.normal() + (row < 3 ? 0.0 : random.normal()));
+    }
+    const std::vector<std::size_t> groups{0, 0, 0, 1, 1, 1};
+    const auto model = random_intercept_model(response, predictors, groups);
+    for (std::size_t k = 0; model && k < model->coefficients.size(); ++k) {
+      ASSERT_GT(model->coefficients[k].df, 0.0) << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace haptrial::analysis
