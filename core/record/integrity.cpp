@@ -32,7 +32,9 @@ class Fault {
 /// Walks the samples in order beside the passes.
 class SampleCheck {
  public:
-  explicit SampleCheck(const std::vector<PassRow>& passes) : passes_(passes) {}
+  /// @param under_way  whether a pass had begun behind these when the program died
+  SampleCheck(const std::vector<PassRow>& passes, bool under_way)
+      : passes_(passes), under_way_(under_way) {}
 
   void add(const Sample& sample) {
     if (last_) {
@@ -47,7 +49,9 @@ class SampleCheck {
     while (at_ < passes_.size() && passes_[at_].last_sample < sample.sequence) ++at_;
     const bool inside = at_ < passes_.size() && passes_[at_].first_sample <= sample.sequence;
     const std::int32_t expected = inside ? static_cast<std::int32_t>(at_) : -1;
-    if (sample.pass != expected) {
+    const bool unfinished = under_way_ && at_ == passes_.size() &&
+                            sample.pass == static_cast<std::int32_t>(passes_.size());
+    if (sample.pass != expected && !unfinished) {
       labels.note("sequence number " + number(sample.sequence) + " is marked as pass " +
                   number(sample.pass) + ", and /trials puts it in pass " + number(expected));
     }
@@ -58,6 +62,7 @@ class SampleCheck {
 
  private:
   const std::vector<PassRow>& passes_;
+  bool under_way_;
   std::size_t at_{0};
   std::optional<Sample> last_;
 };
@@ -153,7 +158,11 @@ Integrity check_session(const SessionReader& reader) {
   const std::vector<PassRow> passes = reader.passes();
   result.rows = reader.sample_count();
   result.passes = passes.size();
-  SampleCheck check(passes);
+  const std::vector<BegunRow> begun = reader.begun();
+  const auto next = static_cast<std::int32_t>(passes.size());
+  const bool under_way = std::any_of(begun.begin(), begun.end(),
+                                     [next](const BegunRow& row) { return row.row == next; });
+  SampleCheck check(passes, under_way);
   for (std::uint64_t first = 0; first < result.rows; first += kPiece) {
     const std::vector<Sample> piece = reader.samples(first, std::min(kPiece, result.rows - first));
     if (first == 0) result.first_sequence = piece.front().sequence;

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/record/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
@@ -128,6 +130,29 @@ TEST(IntegrityTest, PassesOutOfOrderAreFound) {
   session = Session();
   std::swap(session.passes[0].first_sample, session.passes[0].last_sample);
   EXPECT_THAT(session.check().problems, Contains("pass 0 has samples 40000 to 100, in reverse"));
+}
+
+/// A program that dies in mid-pass leaves samples of a pass that has no row in /trials.
+TEST(IntegrityTest, APassThatWasUnderWayWhenTheProgramDiedIsNoProblemOfItsSamples) {
+  const Session session;
+  for (const bool known : {true, false}) {
+    const TemporaryFolder folder;
+    SessionWriter writer(folder / "a.h5", test::example_info());
+    writer.append(session.samples);
+    writer.add_pass(session.passes[0]);
+    if (known) {
+      BegunRow begun;
+      begun.row = 1;
+      writer.begin_pass(begun);
+    }
+    writer.close();
+    const auto problems = check_session(SessionReader(folder / "a.h5")).problems;
+    EXPECT_EQ(std::count_if(problems.begin(), problems.end(),
+                            [](const std::string& text) {
+                              return text.find("is marked as pass 1") != std::string::npos;
+                            }),
+              known ? 0 : 1);
+  }
 }
 
 TEST(IntegrityTest, DroppedRecordsAndAnUnfinishedSessionAreFound) {
