@@ -25,7 +25,7 @@ class StopEvent {
   int descriptor_;
 };
 
-/// Of the other side, without its port: "127.0.0.1"; empty when it has gone.
+/// Address of the other side without its port, such as "127.0.0.1"; empty once it is gone.
 std::string address_of(int socket);
 
 /// One accepted socket with a deadline and a limit on what it may send, so that a slow or talkative

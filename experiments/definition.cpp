@@ -12,7 +12,7 @@
 namespace haptrial::experiments {
 namespace {
 
-/// Of the device whose velocity is the oldest, so that the damping is safe with each.
+/// The loop of the device with the longest velocity window, so that the damping is safe with all.
 control::HandleLoop handle_loop(const Setup& d) {
   control::HandleLoop loop;
   loop.handle_mass = d.hand.handle_mass;

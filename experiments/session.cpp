@@ -38,7 +38,7 @@ std::unique_ptr<LiveDrilling> open_live(const SessionRequest& request) {
              : nullptr;
 }
 
-/// The practice, and the first so many trials of the study. @param most  0: all
+/// Practice, and the first `most` trials of the study. @param most  0: all
 std::vector<PlannedTrial> trials_within(std::vector<PlannedTrial> plan, int most) {
   if (most > 0) {
     std::erase_if(plan,

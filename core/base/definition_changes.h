@@ -24,12 +24,11 @@ struct DefinitionChanges {
   bool same_study() const { return binding.empty(); }
 };
 
-/// Whose hand held the tool: where it was a person's, what a definition says of the virtual one was
-/// never used.
+/// Whose hand held the tool. If it was a person's, the tables of the virtual hand were not used.
 enum class Hand { kPerson, kVirtual };
 
-/// Whether a key may change within a study: participants' texts, the screen's window, the set-up
-/// of devices, the number of participants, and of the virtual hand and device what nobody used.
+/// Whether a key may change within a study: participants' texts, the screen's window, the set-up of
+/// devices, the number of participants, and the virtual hand and device if no session used them.
 /// Unknown keys may not. docs/guide-experimenter.md lists them.
 bool free_to_change(std::string_view key, Hand hand);
 

@@ -19,7 +19,7 @@ class FileLock {
   static FileLock take(const std::filesystem::path& file, bool create);
   /// Whether someone has the lock of this file; false for one that is absent.
   static bool taken(const std::filesystem::path& file);
-  /// Of the locked file; -1 where none is.
+  /// Descriptor of the locked file, or -1 if no file is locked.
   int descriptor() const { return descriptor_; }
 
  private:

@@ -91,7 +91,7 @@ void check_ranges(const std::vector<PassRow>& passes, Integrity& result) {
   }
 }
 
-/// Of the session; of one that was stopped to go on later, so far.
+/// The counts of the whole session, or so far if it was stopped to be resumed.
 std::optional<TimingSummary> counts_of(const SessionReader& reader, Integrity& result) {
   std::optional<TimingSummary> summary = reader.timing_summary();
   if (summary) result.state = RunState::kEnded;

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kPiece = 65536;  // rows read at once
 
-/// What the samples that are there say of the passes.
+/// The samples that were found of a pass.
 struct SeenPass {
   std::uint64_t first{0}, last{0}, count{0};
 };
@@ -208,7 +208,7 @@ std::optional<std::string> wrong_in_drillings(const SessionReader& reader, std::
   return std::nullopt;
 }
 
-/// Of a file of which every chunk is there.
+/// What does not fit between the rows of a file that has all its chunks; nothing if all does.
 std::optional<std::string> wrong_between_rows(const SessionReader& reader) {
   std::uint64_t next = 0;
   for (std::uint64_t first = 0; first < reader.sample_count(); first += kPiece) {

@@ -54,7 +54,7 @@ void sum_up_runs(const SessionReader& reader, Resumed& found) {
   found.ended = !found.runs.empty() && found.runs.back().state == RunState::kEnded;
 }
 
-/// Of a file that is whole.
+/// Where an undamaged file goes on.
 Resumed examine(const fs::path& partial, bool& drills) {
   const SessionReader reader(partial);
   drills = reader.drills();
