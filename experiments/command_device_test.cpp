@@ -57,6 +57,8 @@ struct DeviceSetup {
   device::MouseParameters mouse;
   device::ForceDimensionParameters force_dimension;
   device::OpenHapticsParameters open_haptics;
+  double holding_force{
+      device::EnvelopeLimits{}.holding_force};  // a device may have more friction [N]
   protocols::GuidanceParameters guidance;  // the published one where no definition says another
 };
 
@@ -65,7 +67,7 @@ DeviceSetup setup_of(const DeviceTestOptions& options) {
   if (!options.definition.empty()) {
     const Experiment experiment = load_experiment(options.definition);
     const Setup& d = experiment.setup();
-    setup = {d.device, d.mouse, d.force_dimension, d.open_haptics, {}};
+    setup = {d.device, d.mouse, d.force_dimension, d.open_haptics, d.envelope.holding_force, {}};
     if (experiment.force) {
       setup.guidance = experiment.force->guidance;
     }
@@ -128,8 +130,9 @@ Bench make_bench(const DeviceTestOptions& options, const DeviceSetup& setup) {
 }
 
 /// The speed and jump of a hand that tries the workspace are not those of a trial.
-device::EnvelopeLimits limits_of(const device::DeviceInfo& info) {
+device::EnvelopeLimits limits_of(const device::DeviceInfo& info, const DeviceSetup& setup) {
   device::EnvelopeLimits limits;
+  limits.holding_force = setup.holding_force;
   limits.max_force = 0.4 * info.max_force;
   limits.max_force_rate = 200.0;
   limits.workspace_radius = 2.0 * info.workspace_radius;  // further than the handle can go
@@ -211,7 +214,7 @@ int device_test(const DeviceTestOptions& options) {
   fmt::print("{}{}: {:.1f} N, workspace radius {:.0f} mm\n", info.name,
              info.simulated ? " (simulated)" : "", info.max_force, 1e3 * info.workspace_radius);
   const auto ticks = static_cast<std::uint64_t>(std::lround(options.seconds * kRate));
-  DeviceCheck check(*bench.device, limits_of(info), ticks, bench.hand);
+  DeviceCheck check(*bench.device, limits_of(info, setup), ticks, bench.hand);
   realtime::ServoLoop loop(realtime::ClockKind::kReal, kRate);
   run_check(check, *bench.device, loop, !bench.hand);
 

@@ -256,7 +256,7 @@ bool Session::present(const PlannedTrial& trial) {
   return false;
 }
 
-/// Every so many trials, but not after the last one.
+/// A break follows every `break_after` trials, except the last.
 bool Session::has_break(const PlannedTrial& trial, const PlannedTrial& last) const {
   const int after = d_.design.break_after;
   return after > 0 && !trial.practice && trial.trial % after == 0 && trial.trial != last.trial;

@@ -18,7 +18,7 @@ namespace {
 /// would say so is missing.
 constexpr const char* kGoesOn = "goes_on";
 
-/// Of trials that an experimenter skipped for good; which one, in the text.
+/// Kind of the event for a trial that the experimenter skipped for good; its text says which.
 constexpr const char* kSkipped = "skipped";
 
 std::string name_of(const PlannedTrial& trial) {

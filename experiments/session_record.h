@@ -84,7 +84,7 @@ class SessionRecord {
   void mark_trial(const std::string& kind, const protocols::PlannedTrial& trial, int attempt,
                   const std::string& status = "");
 
-  /// Of the study, as this run has it; before open().
+  /// @param trials  of the study that this run is to present. Call before open().
   void set_planned(std::ptrdiff_t trials) {
     writer_.set_planned(static_cast<std::int32_t>(trials));
   }

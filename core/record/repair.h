@@ -21,9 +21,9 @@ struct Repair {
 
 /// Writes every row that the file still holds to a new file, and gives that one the name of the
 /// old, which is kept as FILE.partial.damaged. Killed at any instant it leaves the old or the new
-/// file under the name. A pass in between that lacks samples becomes an aborted one. Of a session
-/// that drills nothing is kept behind the first missing tick of the drilling under way: only so can
-/// its bone be made again.
+/// file under the name. A pass in between that lacks samples becomes an aborted one. If a drilling
+/// was under way, nothing is kept after its first missing tick, because the bone is made again from
+/// ticks without a gap.
 /// @param partial  locked by the caller
 /// @throws InputError when it does not say what the session was; it is left as it was.
 Repair repair_session(const std::filesystem::path& partial, const std::string& wrong);
