@@ -115,7 +115,7 @@ Json about(const ScoredStudy& study, const StudyStatistics& statistics) {
 ScoredStudy read_scored_study(const fs::path& folder) {
   ScoredStudy study;
   const fs::path table = folder / "scores.csv";
-  study.scores = read_scores_csv(text_of(table), table.string());
+  study.scores = read_scores_csv(text_of(table), table.string()).scores;
   const fs::path statistics = folder / "statistics.json";
   try {
     const Json json = Json::parse(text_of(statistics));

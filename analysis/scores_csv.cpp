@@ -10,9 +10,12 @@
 namespace haptrial::analysis {
 namespace {
 
-constexpr std::string_view kHeading =
-    "subject,trial,block,repetition,condition,score,alignment_cost,rms_force,rms_slope,"
-    "rms_unaligned\n";
+// The levels of several factors stand between the two.
+constexpr std::string_view kTrial = "subject,trial,block,repetition,condition,";
+constexpr std::string_view kScore = "score,alignment_cost,rms_force,rms_slope,rms_unaligned\n";
+constexpr std::size_t kFixedColumns = 10;
+
+bool has_columns(std::span<const std::string> factors) { return factors.size() > 1; }
 
 std::string field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) {
@@ -34,11 +37,23 @@ class Reader {
   Reader(std::string_view text, const std::string& file) : rest_(text), file_(file) {}
 
   bool at_end() const { return rest_.empty(); }
-  void heading() {
-    if (!rest_.starts_with(kHeading)) {
-      fail("is not the heading of a table of scores");
+  /// @returns the names of the factors.
+  std::vector<std::string> heading() {
+    if (!rest_.starts_with(kTrial)) {
+      fail(kNoHeading);
     }
-    rest_.remove_prefix(kHeading.size());
+    rest_.remove_prefix(kTrial.size());
+    std::vector<std::string> factors;
+    while (!rest_.starts_with(kScore)) {
+      const std::size_t end = rest_.find('\n');
+      if (end == rest_.npos || rest_.substr(0, end).find(',') == rest_.npos) {
+        fail(kNoHeading);
+      }
+      factors.push_back(text(','));
+    }
+    rest_.remove_prefix(kScore.size());
+    columns_ = kFixedColumns + factors.size();
+    return factors.empty() ? std::vector<std::string>{"condition"} : factors;
   }
   TrialScore row() {
     ++line_;
@@ -48,6 +63,12 @@ class Reader {
       *value = number<std::int32_t>(',');
     }
     s.condition = text(',');
+    for (std::size_t k = kFixedColumns; k < columns_; ++k) {
+      s.levels.push_back(text(','));
+    }
+    if (s.levels.empty()) {
+      s.levels = {s.condition};
+    }
     for (double* value : {&s.score, &s.alignment_cost, &s.rms_force, &s.rms_slope}) {
       *value = number<double>(',');
     }
@@ -79,7 +100,7 @@ class Reader {
       rest_.remove_prefix(1);
     }
     if (!rest_.starts_with(end)) {
-      fail("the row does not have its ten fields");
+      fail(fmt::format("the row does not have its {} fields", columns_));
     }
     rest_.remove_prefix(1);
     return result;
@@ -97,29 +118,41 @@ class Reader {
     return value;
   }
 
+  static constexpr const char* kNoHeading = "is not the heading of a table of scores";
+
   std::string_view rest_;
   const std::string& file_;
   int line_{1};
+  std::size_t columns_{kFixedColumns};
 };
 
 }  // namespace
 
-std::vector<TrialScore> read_scores_csv(std::string_view text, const std::string& file_name) {
+ScoresTable read_scores_csv(std::string_view text, const std::string& file_name) {
   Reader reader(text, file_name);
-  reader.heading();
-  std::vector<TrialScore> scores;
+  ScoresTable table;
+  table.factors = reader.heading();
   while (!reader.at_end()) {
-    scores.push_back(reader.row());
+    table.scores.push_back(reader.row());
   }
-  return scores;
+  return table;
 }
 
-std::string scores_csv(std::span<const TrialScore> scores) {
-  std::string text(kHeading);
+std::string scores_csv(std::span<const TrialScore> scores, std::span<const std::string> factors) {
+  std::string text(kTrial);
+  const auto columns = has_columns(factors) ? factors : std::span<const std::string>{};
+  for (const std::string& factor : columns) {
+    text += field(factor) + ",";
+  }
+  text += kScore;
   for (const auto& s : scores) {
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", field(s.subject), s.trial, s.block,
-                        s.repetition, field(s.condition), s.score, s.alignment_cost, s.rms_force,
-                        s.rms_slope, s.rms_unaligned);
+    text += fmt::format("{},{},{},{},{},", field(s.subject), s.trial, s.block, s.repetition,
+                        field(s.condition));
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      text += field(s.levels.at(k)) + ",";
+    }
+    text += fmt::format("{},{},{},{},{}\n", s.score, s.alignment_cost, s.rms_force, s.rms_slope,
+                        s.rms_unaligned);
   }
   return text;
 }

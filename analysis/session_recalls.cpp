@@ -220,6 +220,7 @@ class Extraction {
     score.trial = pass.trial;
     score.block = pass.block;
     score.repetition = pass.repetition;
+    score.levels = {pass.condition};
     return score;
   }
 

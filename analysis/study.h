@@ -47,9 +47,10 @@ struct RecallPicture {
 
 /// Everything that analysing the session files of a study gave.
 struct StudyResult {
-  std::vector<SessionSummary> sessions;  // by subject
-  std::vector<TrialScore> scores;        // by subject, then trial
-  std::vector<Exclusion> exclusions;     // by subject, then trial
+  std::vector<SessionSummary> sessions;           // by subject
+  std::vector<TrialScore> scores;                 // by subject, then trial
+  std::vector<std::string> factors{"condition"};  // names; each score has a level of each
+  std::vector<Exclusion> exclusions;              // by subject, then trial
   StudyStatistics statistics;
   TrackingSummary tracking;                                     // over all participants
   std::vector<RecallPicture> recalls;                           // best, median, worst

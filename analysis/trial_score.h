@@ -25,6 +25,10 @@ struct TrialScore {
   double rms_force{0.0};       // after warping [N]
   double rms_slope{0.0};       // after warping [N/s]
   double rms_unaligned{0.0};   // plain RMS difference before any alignment [N]
+
+  /// The level of each of StudyResult::factors, in their order; `condition` is the levels joined by
+  /// ", ". Without several factors one level: the condition.
+  std::vector<std::string> levels{};
 };
 
 }  // namespace haptrial::analysis

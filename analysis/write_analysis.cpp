@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 void write_analysis(const StudyResult& study, const fs::path& folder) {
   const Staging staging(folder);
-  staging.write("scores.csv", scores_csv(study.scores));
+  staging.write("scores.csv", scores_csv(study.scores, study.factors));
   staging.write("statistics.json", statistics_json(study));
   const auto figures = study_figures(study);
   draw_figures(figures, staging.path());

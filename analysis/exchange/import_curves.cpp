@@ -95,6 +95,7 @@ class Conditions {
     Trial trial;
     trial.score.subject = name(row, subject_);
     trial.score.condition = name(row, condition_);
+    trial.score.levels = {trial.score.condition};
     trial.score.trial = number(row, trial_);
     trial.score.block = table_.has("block") ? number(row, table_.column("block")) : 1;
     trial.score.repetition =

@@ -25,6 +25,33 @@ TEST(ScoresCsv, QuotesWhatWouldBreakARow) {
   EXPECT_NE(text.find("\n\"a,\"\"b\"\"\nc\",0,"), std::string::npos);
 }
 
+TEST(ScoresCsv, SeveralFactorsHaveAColumnEachAndReadBack) {
+  TrialScore s{"P01", "visual, young", 1, 1, 1};
+  s.levels = {"visual", "young"};
+  const std::vector<std::string> factors{"training", "age,band"};
+  const auto text = scores_csv(std::vector{s}, factors);
+  EXPECT_EQ(text,
+            "subject,trial,block,repetition,condition,training,\"age,band\",score,alignment_cost,"
+            "rms_force,rms_slope,rms_unaligned\n"
+            "P01,1,1,1,\"visual, young\",visual,young,0,0,0,0,0\n");
+  const ScoresTable read = read_scores_csv(text, "scores.csv");
+  EXPECT_EQ(read.factors, factors);
+  ASSERT_EQ(read.scores.size(), 1u);
+  EXPECT_EQ(read.scores[0].condition, s.condition);
+  EXPECT_EQ(read.scores[0].levels, s.levels);
+}
+
+TEST(ScoresCsv, OneFactorIsTheColumnOfConditions) {
+  TrialScore s{"P01", "visual"};
+  s.levels = {"visual"};
+  const std::vector<std::string> factors{"condition"};
+  const auto text = scores_csv(std::vector{s}, factors);
+  EXPECT_EQ(text, scores_csv(std::vector{s}));
+  const ScoresTable read = read_scores_csv(text, "scores.csv");
+  EXPECT_EQ(read.factors, factors);
+  EXPECT_EQ(read.scores.at(0).levels, s.levels);
+}
+
 TEST(ScoresCsv, NumbersReadBackToTheSameBits) {
   RandomStream random(8, "csv");
   std::vector<TrialScore> scores(200, TrialScore{"x", "y"});
