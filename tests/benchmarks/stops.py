@@ -191,10 +191,10 @@ ATTENDED = "--console --keyboard"
 # name, options, failure of the device, what a person does (None: nothing)
 SCENES = [
     ("EMERGENCY STOP on the page", ATTENDED, None, acted(lambda s: s.ask("emergency_stop"))),
-    ("the same in a flood of connections", ATTENDED, None, flood),
+    ("the same, flood of connections", ATTENDED, None, flood),
     ("Escape in the terminal", ATTENDED, None, presses(b"\x1b")),
     ("stop button of the handle", ATTENDED, "Button", None),
-    ("stop button, nobody attends", "", "Button", None),
+    ("stop button, no experimenter", "", "Button", None),
     ("Ctrl-C", "", None, presses(b"\x03")),
     ("SIGTERM", "", None, sends(signal.SIGTERM)),
     ("SIGTERM twice at once", "", None, sends(signal.SIGTERM, signal.SIGTERM)),
@@ -210,12 +210,12 @@ SCENES = [
     ("SIGKILL: the watchdog", "", None, sends(signal.SIGKILL)),
     ("library hangs: the watchdog", "", "Hang", None),
     ("fault: jump, with experimenter", ATTENDED, "Jump", None),
-    ("fault: jump, nobody attends", "", "Jump", None),
+    ("fault: jump, no experimenter", "", "Jump", None),
     ("fault: motors off", ATTENDED, "ForcesOffByVelocity", None),
     ("Abort on the page", ATTENDED, None, acted(lambda s: s.ask("abort"))),
-    ("finish of the last trial", "--trials 1", None, "finish"),
+    ("end of the last trial", "--trials 1", None, "finish"),
 ]
-FADES = ("Abort on the page", "finish of the last trial")
+FADES = ("Abort on the page", "end of the last trial")
 
 
 def as_felt(rows, watchdog, until):
