@@ -4,28 +4,13 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
+#include <set>
 
 #include "analysis/p_adjust.h"
-#include "analysis/scores_csv.h"
 #include "core/base/error.h"
-#include "core/base/file_text.h"
 
 namespace haptrial::analysis {
 namespace {
-
-namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
-std::string text_of(const fs::path& file) {
-  if (!fs::is_regular_file(file)) {
-    throw InputError(
-        fmt::format("{}: cannot be read; allowed: the folder of a study that haptrial "
-                    "analyze has analysed",
-                    file.string()));
-  }
-  return file_text(file);
-}
 
 /// Means of each participant's trials of a condition.
 std::map<std::string, double> means_of(const std::vector<TrialScore>& scores,
@@ -51,21 +36,66 @@ std::vector<double> values_of(const std::map<std::string, double>& means) {
   return values;
 }
 
-ConditionComparison compare(const ScoredStudy& first, const ScoredStudy& second,
-                            const std::string& condition) {
+/// Those who have scores, by identifier.
+std::map<std::string, Identity> people_of(const ScoredStudy& study) {
+  std::set<std::string> scored;
+  for (const TrialScore& s : study.scores) {
+    scored.insert(s.subject);
+  }
+  std::map<std::string, Identity> people;
+  for (const Identity& who : study.people) {
+    if (scored.contains(who.subject)) {
+      people.emplace(who.subject, who);
+    }
+  }
+  return people;
+}
+
+void add(std::vector<Unpaired>& unpaired, const std::string& reason, const std::string& subject) {
+  auto at = std::find_if(unpaired.begin(), unpaired.end(),
+                         [&](const Unpaired& u) { return u.reason == reason; });
+  if (at == unpaired.end()) {
+    at = unpaired.insert(at, {reason, {}});
+  }
+  at->subjects.push_back(subject);
+}
+
+void pair_participants(StudyComparison& comparison) {
+  const auto first = people_of(comparison.first);
+  const auto second = people_of(comparison.second);
+  for (const auto& [subject, who] : first) {
+    const auto other = second.find(subject);
+    if (other == second.end()) {
+      add(comparison.unpaired, "only in " + comparison.first.name, subject);
+    } else if (const std::string why = why_another(who, other->second); !why.empty()) {
+      add(comparison.unpaired, why, subject);
+    } else {
+      comparison.paired.push_back(subject);
+    }
+  }
+  for (const auto& [subject, who] : second) {
+    if (!first.contains(subject)) {
+      add(comparison.unpaired, "only in " + comparison.second.name, subject);
+    }
+  }
+}
+
+ConditionComparison compare(const StudyComparison& studies, const std::string& condition) {
   ConditionComparison c;
   c.condition = condition;
-  const auto before = means_of(first.scores, condition);
-  const auto after = means_of(second.scores, condition);
+  const auto before = means_of(studies.first.scores, condition);
+  const auto after = means_of(studies.second.scores, condition);
   c.first = mean_interval(values_of(before));
   c.second = mean_interval(values_of(after));
+  c.first_people = before.size();
+  c.second_people = after.size();
   c.welch = welch_t_test(values_of(after), values_of(before), Tail::kTwoSided);
   std::vector<double> a;
   std::vector<double> b;
-  for (const auto& [subject, mean] : before) {
-    if (const auto same = after.find(subject); same != after.end()) {
-      a.push_back(mean);
-      b.push_back(same->second);
+  for (const std::string& subject : studies.paired) {
+    if (before.contains(subject) && after.contains(subject)) {
+      a.push_back(before.at(subject));
+      b.push_back(after.at(subject));
     }
   }
   c.shared = a.size();
@@ -73,111 +103,82 @@ ConditionComparison compare(const ScoredStudy& first, const ScoredStudy& second,
   return c;
 }
 
-Json to_json(const Defined<MeanInterval>& m) {
-  return m ? Json{{"count", m->count},
-                  {"mean", m->mean},
-                  {"standard_deviation", m->deviation},
-                  {"low_95", m->low},
-                  {"high_95", m->high}}
-           : Json{{"not_defined", m.because()}};
+std::vector<ParameterDifference> differences(const ScoredStudy& first, const ScoredStudy& second) {
+  std::set<std::string> names;
+  for (const auto* study : {&first, &second}) {
+    for (const auto& [name, value] : study->parameters) {
+      names.insert(name);
+    }
+  }
+  const auto value_in = [](const ScoredStudy& study, const std::string& name) {
+    const auto at = study.parameters.find(name);
+    return at == study.parameters.end() ? std::string("as published") : at->second;
+  };
+  std::vector<ParameterDifference> result;
+  for (const std::string& name : names) {
+    if (value_in(first, name) != value_in(second, name)) {
+      result.push_back({name, value_in(first, name), value_in(second, name)});
+    }
+  }
+  return result;
 }
 
-Json to_json(const Defined<TTest>& t) {
-  return t ? Json{{"t", t->t},
-                  {"df", t->df},
-                  {"p", t->p},
-                  {"difference", t->difference},
-                  {"difference_low_95", t->low},
-                  {"difference_high_95", t->high}}
-           : Json{{"not_defined", t.because()}};
+void refuse(const ScoredStudy& first, const ScoredStudy& second,
+            const std::vector<ParameterDifference>& scoring) {
+  std::string list;
+  for (const auto& [name, was, is] : scoring) {
+    list += fmt::format("{}{}: {} and {}", list.empty() ? "" : "; ", name, was, is);
+  }
+  throw InputError(fmt::format(
+      "{} and {} were scored with different parameters ({}); analyse both with the same "
+      "parameters, or add --different-scoring",
+      first.name, second.name, list));
 }
 
-Json about(const ScoredStudy& study, const StudyStatistics& statistics) {
-  Json json{{"study", study.name},
-            {"simulated", study.simulated},
-            {"own_pace", study.own_pace},
-            {"participants", statistics.subjects.size()},
-            {"trials", study.scores.size()}};
-  const auto& anova = statistics.repeated;
-  json["repeated_measures_anova"] = anova
-                                        ? Json{{"f", anova->f},
-                                               {"df_condition", anova->df_condition},
-                                               {"df_error", anova->df_error},
-                                               {"p", anova->p},
-                                               {"p_corrected", anova->p_corrected},
-                                               {"partial_eta_squared", anova->partial_eta_squared}}
-                                        : Json{{"not_defined", anova.because()}};
-  return json;
+void adjust(std::vector<ConditionComparison>& conditions) {
+  std::vector<Defined<TTest>> paired;
+  std::vector<Defined<TTest>> welch;
+  for (const auto& c : conditions) {
+    paired.push_back(c.paired);
+    welch.push_back(c.welch);
+  }
+  const auto paired_holm = holm_over(paired);
+  const auto welch_holm = holm_over(welch);
+  for (std::size_t i = 0; i < conditions.size(); ++i) {
+    conditions[i].paired_holm = paired_holm[i];
+    conditions[i].welch_holm = welch_holm[i];
+  }
 }
 
 }  // namespace
 
-ScoredStudy read_scored_study(const fs::path& folder) {
-  ScoredStudy study;
-  const fs::path table = folder / "scores.csv";
-  study.scores = read_scores_csv(text_of(table), table.string()).scores;
-  const fs::path statistics = folder / "statistics.json";
-  try {
-    const Json json = Json::parse(text_of(statistics));
-    study.name = fs::path(json.at("sessions").at(0).at("definition").get<std::string>()).stem();
-    study.simulated = json.at("simulated").get<bool>();
-    study.own_pace = json.at("parameters").contains("forces are compared over");
-  } catch (const Json::exception&) {
-    throw InputError(
-        fmt::format("{}: is not the statistics of a study; allowed: what haptrial analyze writes",
-                    statistics.string()));
-  }
-  return study;
-}
-
-StudyComparison compare_studies(ScoredStudy first, ScoredStudy second) {
+StudyComparison compare_studies(ScoredStudy first, ScoredStudy second, Scoring scoring) {
   if (first.name == second.name) {
     first.name += " (first)";
     second.name += " (second)";
   }
   StudyComparison comparison;
+  comparison.scoring = differences(first, second);
+  if (scoring == Scoring::kSame && !comparison.scoring.empty()) {
+    refuse(first, second, comparison.scoring);
+  }
   comparison.first_statistics = study_statistics(first.scores);
   comparison.second_statistics = study_statistics(second.scores);
+  comparison.first = std::move(first);
+  comparison.second = std::move(second);
+  pair_participants(comparison);
   const auto& others = comparison.second_statistics.conditions;
   for (const std::string& condition : comparison.first_statistics.conditions) {
     if (std::find(others.begin(), others.end(), condition) != others.end()) {
-      comparison.conditions.push_back(compare(first, second, condition));
+      comparison.conditions.push_back(compare(comparison, condition));
     }
   }
   if (comparison.conditions.empty()) {
-    throw InputError(
-        fmt::format("{} and {} have no training condition in common", first.name, second.name));
+    throw InputError(fmt::format("{} and {} have no training condition in common",
+                                 comparison.first.name, comparison.second.name));
   }
-  std::vector<Defined<TTest>> paired;
-  for (const auto& c : comparison.conditions) {
-    paired.push_back(c.paired);
-  }
-  const auto adjusted = holm_over(paired);
-  for (std::size_t i = 0; i < adjusted.size(); ++i) {
-    comparison.conditions[i].paired_holm = adjusted[i];
-  }
-  comparison.first = std::move(first);
-  comparison.second = std::move(second);
+  adjust(comparison.conditions);
   return comparison;
-}
-
-std::string comparison_json(const StudyComparison& comparison) {
-  Json root;
-  root["first"] = about(comparison.first, comparison.first_statistics);
-  root["second"] = about(comparison.second, comparison.second_statistics);
-  root["conditions"] = Json::array();
-  for (const auto& c : comparison.conditions) {
-    root["conditions"].push_back(
-        {{"condition", c.condition},
-         {"first_participant_means", to_json(c.first)},
-         {"second_participant_means", to_json(c.second)},
-         {"welch_two_sided", to_json(c.welch)},
-         {"shared_participants", c.shared},
-         {"paired_two_sided", to_json(c.paired)},
-         {"paired_p_holm",
-          c.paired_holm ? Json(*c.paired_holm) : Json{{"not_defined", c.paired_holm.because()}}}});
-  }
-  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace haptrial::analysis

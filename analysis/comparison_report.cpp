@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
+#include <set>
+#include <tuple>
 
 #include "analysis/comparison.h"
 #include "analysis/figure_gnuplot.h"
@@ -19,10 +22,79 @@ constexpr const char* kFigure = "comparison";
 std::string paragraph(const std::string& text) { return "<p>" + escape_html(text) + "</p>\n"; }
 
 std::string pace_of(const ScoredStudy& study) {
-  return study.own_pace ? "at the participants' own pace" : "at the pace of the trajectory";
+  return study.own_pace
+             ? "at the participants' own pace, forces compared over the place on the path"
+             : "at the pace of the trajectory, forces compared over time";
 }
 
-bool simulated(const StudyComparison& c) { return c.first.simulated || c.second.simulated; }
+bool simulated(const StudyComparison& c) { return c.first.simulated() || c.second.simulated(); }
+
+/// "12 participants, 3 of them simulated".
+std::string people_in(const ScoredStudy& study) {
+  std::set<std::string> scored;
+  for (const TrialScore& s : study.scores) {
+    scored.insert(s.subject);
+  }
+  const auto virtual_ones = static_cast<std::size_t>(std::count_if(
+      study.people.begin(), study.people.end(),
+      [&](const Identity& who) { return who.simulated && scored.contains(who.subject); }));
+  if (virtual_ones == scored.size()) {
+    return counted(scored.size(), "simulated participant");
+  }
+  return counted(scored.size(), "participant") +
+         (virtual_ones > 0 ? fmt::format(", {} of them simulated", virtual_ones) : "");
+}
+
+std::string names_of(const std::vector<std::string>& subjects) {
+  constexpr std::size_t kMost = 6;
+  const auto shown = subjects.size() > kMost ? kMost - 1 : subjects.size();
+  std::string names = fmt::format(
+      "{}", fmt::join(subjects.begin(), subjects.begin() + static_cast<long>(shown), ", "));
+  return shown < subjects.size() ? fmt::format("{} and {} more", names, subjects.size() - shown)
+                                 : names;
+}
+
+std::string pairing(const StudyComparison& comparison) {
+  std::string text = comparison.paired.empty()
+                         ? "No participant is paired"
+                         : "Paired: " + counted(comparison.paired.size(), "participant");
+  std::string others;
+  for (const auto& [reason, subjects] : comparison.unpaired) {
+    others += fmt::format("{}{} ({})", others.empty() ? "" : "; ", names_of(subjects), reason);
+  }
+  return others.empty() ? text + "." : fmt::format("{}. Not paired: {}.", text, others);
+}
+
+/// Nothing when both studies were compared over the same.
+std::string different_pace(const StudyComparison& c) {
+  if (c.first.own_pace == c.second.own_pace) {
+    return "";
+  }
+  const auto& [over_path, over_time] =
+      c.first.own_pace ? std::tie(c.first, c.second) : std::tie(c.second, c.first);
+  return fmt::format(
+      "{} compares forces over the place on the path, {} over time. A place counts as the time "
+      "that "
+      "the definition's speed takes to reach it, so the scores have the same units.",
+      over_path.name, over_time.name);
+}
+
+std::string interval(const TTest& test) {
+  return fmt::format("{} (95 % CI {} to {})", number(test.difference), number(test.low),
+                     number(test.high));
+}
+
+std::string t_value(const Defined<TTest>& test) {
+  return test ? fmt::format("t({:.4g}) = {:.3g}", test->df, test->t)
+              : "not defined, because " + test.because();
+}
+
+std::string adjusted(const Defined<double>& p) { return p ? p_value(*p) : "-"; }
+
+std::string mean_of(const Defined<MeanInterval>& mean, std::size_t people) {
+  return fmt::format("{} ({})", mean ? number(mean->mean) : "not defined",
+                     counted(people, "participant"));
+}
 
 Figure figure_of(const StudyComparison& comparison) {
   Figure figure;
@@ -64,6 +136,23 @@ Figure figure_of(const StudyComparison& comparison) {
   return figure;
 }
 
+std::string table_of(const StudyComparison& comparison) {
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& c : comparison.conditions) {
+    const auto difference = [](const Defined<TTest>& test) {
+      return test ? interval(*test) : std::string("-");
+    };
+    rows.push_back({capitalized(c.condition), mean_with_interval(c.first),
+                    mean_with_interval(c.second), difference(c.paired), t_value(c.paired),
+                    adjusted(c.paired_holm), difference(c.welch), t_value(c.welch),
+                    adjusted(c.welch_holm)});
+  }
+  return html_table(
+      {"Condition", comparison.first.name, comparison.second.name, "Difference within participants",
+       "Paired t-test", "Adjusted p", "Difference between means", "Welch's t-test", "Adjusted p"},
+      rows);
+}
+
 std::string html_of(const StudyComparison& comparison, const std::string& svg,
                     const Figure& figure) {
   std::string html = fmt::format(
@@ -72,10 +161,8 @@ std::string html_of(const StudyComparison& comparison, const std::string& svg,
       "<title>{}Two studies compared</title>\n<style>{}</style>\n</head>\n<body>\n"
       "<h1>Two studies compared</h1>\n",
       simulated(comparison) ? "SIMULATED: " : "", kReportStyle);
-  if (simulated(comparison)) {
-    html +=
-        "<div class=\"banner\">SIMULATED PARTICIPANTS: these data come from virtual subjects. They "
-        "say how the experiments and their analysis work, not how people learn.</div>\n";
+  for (const std::string& alarm : comparison_alarms(comparison)) {
+    html += "<div class=\"banner\">" + escape_html(alarm) + "</div>\n";
   }
   html += "<ul class=\"lines\">\n";
   for (const std::string& line : comparison_lines(comparison)) {
@@ -83,25 +170,14 @@ std::string html_of(const StudyComparison& comparison, const std::string& svg,
   }
   html += "</ul>\n<figure>\n" + inline_svg(svg, kFigure, figure.title + ". " + figure.alt) +
           "\n<figcaption>" + escape_html(figure.caption) + "</figcaption>\n</figure>\n";
-  html += paragraph(
-      "Where one study compares forces over time and the other over the place on the path, the "
-      "place is taken as the time that it takes at the definition's speed, so that the scores have "
-      "the same units. Participants of the same identifier are taken for the same person; Welch's "
-      "test takes nobody for the same.");
-  std::vector<std::vector<std::string>> rows;
-  for (const auto& c : comparison.conditions) {
-    const auto difference = c.paired ? fmt::format("{} ({} to {})", number(c.paired->difference),
-                                                   number(c.paired->low), number(c.paired->high))
-                                     : "not defined, because " + c.paired.because();
-    rows.push_back({capitalized(c.condition), mean_with_interval(c.first),
-                    mean_with_interval(c.second), difference, t_result(c.paired),
-                    c.paired_holm ? p_value(*c.paired_holm) : "-", t_result(c.welch)});
-  }
-  html += html_table(
-      {"Condition", comparison.first.name, comparison.second.name, "Difference within participants",
-       "Paired t-test", "After Holm", "Welch's t-test"},
-      rows);
-  return html + "</body>\n</html>\n";
+  html += paragraph(fmt::format(
+      "Differences are {} minus {}, of participants' means; tests are two-sided. The p values of "
+      "each test are adjusted over the conditions with Holm's method. The paired test takes the "
+      "participants who are the same in both studies: people with the same identifier, and virtual "
+      "subjects with the same identifier, seed and population. Welch's test takes all participants "
+      "for different ones. The tests of each study by itself stand in its report.",
+      comparison.second.name, comparison.first.name));
+  return html + table_of(comparison) + "</body>\n</html>\n";
 }
 
 void write(const std::filesystem::path& file, const std::string& text) {
@@ -115,20 +191,49 @@ void write(const std::filesystem::path& file, const std::string& text) {
 
 }  // namespace
 
+std::vector<std::string> comparison_alarms(const StudyComparison& comparison) {
+  std::vector<std::string> alarms;
+  if (!comparison.scoring.empty()) {
+    std::string list;
+    for (const auto& [name, first, second] : comparison.scoring) {
+      list += fmt::format("{}{}: {} and {}", list.empty() ? "" : "; ", name, first, second);
+    }
+    alarms.push_back(
+        fmt::format("DIFFERENT SCORING: the scores were made with different parameters, so a "
+                    "difference between "
+                    "the studies may come from the scoring alone ({}).",
+                    list));
+  }
+  if (simulated(comparison)) {
+    alarms.emplace_back(
+        "SIMULATED PARTICIPANTS: these data come from virtual subjects. They say how the "
+        "experiments and their analysis work, not how people learn.");
+  }
+  return alarms;
+}
+
 std::vector<std::string> comparison_lines(const StudyComparison& comparison) {
-  const auto opening = [&](const ScoredStudy& study, const StudyStatistics& s) {
-    return fmt::format(
-        "{}: {} of {}, {}; conditions {}", study.name, counted(study.scores.size(), "scored trial"),
-        counted(s.subjects.size(), study.simulated ? "simulated participant" : "participant"),
-        pace_of(study), anova_result(s.repeated));
-  };
-  std::vector<std::string> lines{opening(comparison.first, comparison.first_statistics),
-                                 opening(comparison.second, comparison.second_statistics)};
+  std::vector<std::string> lines;
+  for (const ScoredStudy* study : {&comparison.first, &comparison.second}) {
+    lines.push_back(fmt::format("{}: {}, {}, {}", study->name, people_in(*study),
+                                counted(study->scores.size(), "scored trial"), pace_of(*study)));
+  }
+  if (const std::string pace = different_pace(comparison); !pace.empty()) {
+    lines.push_back(pace);
+  }
+  lines.push_back(pairing(comparison));
   for (const auto& c : comparison.conditions) {
-    lines.push_back(fmt::format("{}: mean recall error {} and {}; within {} {}",
-                                capitalized(c.condition), c.first ? number(c.first->mean) : "-",
-                                c.second ? number(c.second->mean) : "-",
-                                counted(c.shared, "participant"), t_result(c.paired)));
+    std::string result = "the difference is " + t_value(c.welch);
+    if (c.paired) {
+      result = fmt::format("difference within {} {}, adjusted {}", counted(c.shared, "participant"),
+                           interval(*c.paired), adjusted(c.paired_holm));
+    } else if (c.welch) {
+      result = fmt::format("difference between the means {}, adjusted {}", interval(*c.welch),
+                           adjusted(c.welch_holm));
+    }
+    lines.push_back(fmt::format("{}: mean recall error {} and {}; {}", capitalized(c.condition),
+                                mean_of(c.first, c.first_people),
+                                mean_of(c.second, c.second_people), result));
   }
   return lines;
 }

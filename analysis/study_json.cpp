@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/identity.h"
 #include "analysis/result_json_internal.h"
 
 namespace haptrial::analysis {
@@ -264,6 +265,7 @@ std::string statistics_json(const StudyResult& study) {
   } else {
     root["curves_from"] = study.curves_from;
   }
+  root["identities"] = to_json(identities(study));
   root["exclusions"] = Json::array();
   for (const auto& e : study.exclusions) {
     root["exclusions"].push_back(

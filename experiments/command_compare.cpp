@@ -9,9 +9,14 @@
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
 
-int compare(const std::string& first, const std::string& second, const std::string& out) {
+int compare(const CompareOptions& options) {
   const analysis::StudyComparison comparison = analysis::compare_studies(
-      analysis::read_scored_study(first), analysis::read_scored_study(second));
+      analysis::read_scored_study(options.first), analysis::read_scored_study(options.second),
+      options.different_scoring ? analysis::Scoring::kMayDiffer : analysis::Scoring::kSame);
+  const std::string& out = options.out;
+  for (const std::string& alarm : analysis::comparison_alarms(comparison)) {
+    fmt::print("{}\n", alarm);
+  }
   for (const std::string& line : analysis::comparison_lines(comparison)) {
     fmt::print("{}\n", line);
   }

@@ -66,19 +66,15 @@ void add_align(CLI::App& app, int& status) {
 }
 
 void add_compare(CLI::App& app, int& status) {
-  struct Studies {
-    std::string first;
-    std::string second;
-    std::string out;
-  };
   CLI::App* sub = subcommand(
       app, "compare", "Compare the scores of two analysed studies",
       "haptrial compare results/force_training results/force_training_curve --out out/compared");
-  auto& o = options_of<Studies>(*sub, status,
-                                [](const Studies& s) { return compare(s.first, s.second, s.out); });
-  sub->add_option("FIRST", o.first, "Folder of an analysed study")->required();
-  sub->add_option("SECOND", o.second, "Folder of another")->required();
+  auto& o = options_of<CompareOptions>(*sub, status, compare);
+  sub->add_option("FIRST", o.first, "Folder of the first analysed study")->required();
+  sub->add_option("SECOND", o.second, "Folder of the second analysed study")->required();
   sub->add_option("--out", o.out, "Folder for a page, a figure and the numbers");
+  sub->add_flag("--different-scoring", o.different_scoring,
+                "Compare scores that were made with different parameters, with an alarm on top");
 }
 
 void add_power(CLI::App& app, int& status) {

@@ -105,8 +105,14 @@ struct AlignOptions {
 };
 int align(const AlignOptions& options);
 
-/// @param out  folder for the page, the figure and the numbers; empty: only print
-int compare(const std::string& first, const std::string& second, const std::string& out);
+/// Two analysed studies.
+struct CompareOptions {
+  std::string first;  // folder
+  std::string second;
+  std::string out;                // folder for the page, the figure and the numbers; empty: none
+  bool different_scoring{false};  // allowed, with an alarm
+};
+int compare(const CompareOptions& options);
 int info(const std::string& file);
 /// @param out  new session file; empty: beside the damaged one
 /// @returns 0 when something was recovered, else 1.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/random.h"
 #include "core/base/toml_text_internal.h"
 
 namespace haptrial {
@@ -158,6 +159,24 @@ DefinitionChanges definition_changes(std::string_view before, std::string_view a
     }
   }
   return changes;
+}
+
+std::optional<std::uint64_t> table_fingerprint(std::string_view definition,
+                                               std::string_view table) {
+  Values values;
+  try {
+    values = values_of(definition);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+  const std::string prefix = std::string(table) + ".";
+  std::string all;
+  for (const auto& [key, value] : values) {
+    if (key.starts_with(prefix)) {
+      all += key + " = " + value + "\n";
+    }
+  }
+  return all.empty() ? std::nullopt : std::optional(derived_seed(0, all));
 }
 
 std::string sentence_of(const std::vector<DefinitionChange>& changes) {

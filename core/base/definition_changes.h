@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +36,11 @@ bool free_to_change(std::string_view key, Hand hand);
 
 /// Both texts are taken as they are where one of them is not TOML: files may hold anything.
 DefinitionChanges definition_changes(std::string_view before, std::string_view after, Hand hand);
+
+/// A number that equal values of a table of the definition share and different values, but for one
+/// case in 2^64, do not; comments, layout and the order of keys do not count.
+/// @returns nothing when the definition has no such table or is not TOML.
+std::optional<std::uint64_t> table_fingerprint(std::string_view definition, std::string_view table);
 
 /// "guidance.wait was 0.5, is 1; texts.rest was absent, is "Rest""; long lists are cut.
 std::string sentence_of(const std::vector<DefinitionChange>& changes);

@@ -98,5 +98,16 @@ TEST(DefinitionChangesTest, WhatIsNoTomlIsComparedAsItStands) {
   EXPECT_THAT(keys(between(deep, "a = 1").binding), ElementsAre("the text"));
 }
 
+TEST(DefinitionChangesTest, ATableHasAFingerprintOfItsValues) {
+  const char* text = "[a]\nx = 1\ny = { z = \"w\" }\n[b]\nx = 1\n";
+  const auto one = table_fingerprint(text, "a");
+  ASSERT_TRUE(one);
+  EXPECT_EQ(one, table_fingerprint("[a]  # words\ny = { z = \"w\" }\nx = 1.0\n", "a"));
+  EXPECT_NE(one, table_fingerprint("[a]\nx = 1\ny = { z = \"v\" }\n", "a"));
+  EXPECT_NE(one, table_fingerprint(text, "b"));
+  EXPECT_FALSE(table_fingerprint(text, "c"));
+  EXPECT_FALSE(table_fingerprint("[a\nx = ", "a"));
+}
+
 }  // namespace
 }  // namespace haptrial

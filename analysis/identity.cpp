@@ -1,0 +1,88 @@
+#include "analysis/identity.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/study.h"
+#include "core/base/definition_changes.h"
+
+namespace haptrial::analysis {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Identity identity_of(const record::SessionInfo& info) {
+  Identity identity{info.subject, info.simulated};
+  if (!info.simulated || info.definition.empty()) {
+    return identity;
+  }
+  identity.seed = info.seed;
+  for (const char* table : {"hand", "subject", "pace"}) {
+    if (const auto fingerprint = table_fingerprint(info.definition, table)) {
+      identity.population[table] = fmt::format("{:016x}", *fingerprint);
+    }
+  }
+  return identity;
+}
+
+}  // namespace
+
+std::vector<Identity> identities(const StudyResult& study) {
+  std::vector<Identity> all;
+  for (const SessionSummary& session : study.sessions) {
+    all.push_back(identity_of(session.info));
+  }
+  return all;
+}
+
+std::string why_another(const Identity& first, const Identity& second) {
+  if (first.simulated != second.simulated) {
+    return "a virtual subject in one study, a person in the other";
+  }
+  if (!first.simulated) {
+    return "";
+  }
+  if (!first.seed || !second.seed) {
+    return "virtual subjects of unknown seed";
+  }
+  if (*first.seed != *second.seed) {
+    return fmt::format("virtual subjects of different seeds: {} and {}", *first.seed, *second.seed);
+  }
+  for (const auto& [table, fingerprint] : first.population) {
+    const auto other = second.population.find(table);
+    if (other != second.population.end() && other->second != fingerprint) {
+      return fmt::format(
+          "virtual subjects of different populations: [{}] of the definitions differs", table);
+    }
+  }
+  return "";
+}
+
+Json to_json(const std::vector<Identity>& identities) {
+  Json all = Json::array();
+  for (const Identity& identity : identities) {
+    Json one{{"subject", identity.subject}, {"simulated", identity.simulated}};
+    if (identity.seed) {
+      one["seed"] = *identity.seed;
+      one["population"] = identity.population;
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+std::vector<Identity> identities_from(const Json& json) {
+  std::vector<Identity> all;
+  for (const Json& one : json) {
+    Identity identity{one.at("subject").get<std::string>(), one.at("simulated").get<bool>()};
+    if (one.contains("seed")) {
+      identity.seed = one["seed"].get<std::uint64_t>();
+      identity.population = one.at("population").get<std::map<std::string, std::string>>();
+    }
+    all.push_back(std::move(identity));
+  }
+  return all;
+}
+
+}  // namespace haptrial::analysis

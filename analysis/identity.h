@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace haptrial::analysis {
+
+struct StudyResult;
+
+/// Who a participant is. A person is known by the identifier. A virtual subject is drawn from the
+/// seed, the identifier and the population: only all three together make the same one again.
+struct Identity {
+  std::string subject;  // identifier
+  bool simulated{false};
+  std::optional<std::uint64_t> seed{};  // of a virtual subject; unknown for imported curves
+  std::map<std::string, std::string> population{};  // table of the definition, its fingerprint
+};
+
+/// Those of a study's sessions, in their order.
+std::vector<Identity> identities(const StudyResult& study);
+
+/// Why two participants of the same identifier are not the same one, "virtual subjects of different
+/// seeds: 1 and 2"; empty when they are. Populations are compared in the tables that both have:
+/// only a study at the participants' own pace has [pace].
+std::string why_another(const Identity& first, const Identity& second);
+
+/// As statistics.json has them.
+nlohmann::ordered_json to_json(const std::vector<Identity>& identities);
+/// @throws nlohmann::json::exception for what to_json() does not write.
+std::vector<Identity> identities_from(const nlohmann::ordered_json& json);
+
+}  // namespace haptrial::analysis
