@@ -1,146 +1,157 @@
 #include "analysis/mixed_model.h"
 
+#include <Eigen/Cholesky>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <stdexcept>
+#include <string>
 
 #include "analysis/centered_design.h"
 #include "analysis/descriptive.h"
-#include "analysis/profile_likelihood.h"
-#include "analysis/root.h"
+#include "analysis/mixed_contrast.h"
+#include "analysis/variance_search.h"
 
 namespace haptrial::analysis {
 namespace {
 
+using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Point = ProfileLikelihood::Point;
+using Slopes = RestrictedLikelihood::Slopes;
 
-struct Grouping {
-  std::vector<std::size_t> numbers;  // (observations) 0 .. count - 1
-  std::size_t count{0};
-};
+const char* const kExact = "nothing varies within the groups beyond what the predictors explain";
 
-Grouping numbered(std::span<const std::size_t> groups) {
-  std::map<std::size_t, std::size_t> numbers;
-  Grouping result;
-  for (const auto group : groups) {
-    result.numbers.push_back(numbers.try_emplace(group, numbers.size()).first->second);
-  }
-  result.count = numbers.size();
-  return result;
+std::string with_term(const std::string& reason, std::size_t term, std::size_t terms) {
+  return terms == 1 ? reason : "random term " + std::to_string(term + 1) + ": " + reason;
 }
 
-// The lowest point of the criterion: a search by quarters of a decade, then the root of its slope.
-// Nothing where it falls without end.
-std::optional<Point> lowest(const ProfileLikelihood& likelihood) {
-  constexpr double kFirst = -8.0, kLast = 10.0, kStep = 0.25;  // log10 of rho
-  std::vector<double> rho{0.0};
-  for (double power = kFirst; power <= kLast; power += kStep) {
-    rho.push_back(std::pow(10.0, power));
-  }
-  std::size_t best = 0;
-  double least = likelihood.at(0.0).criterion;
-  for (std::size_t i = 1; i < rho.size(); ++i) {
-    if (const double here = likelihood.at(rho[i]).criterion; here < least) {
-      least = here;
-      best = i;
+/// Why the variances of the terms, the residual and the predictors cannot be told apart, at
+/// whatever values.
+std::optional<std::string> confounded(const RestrictedLikelihood& likelihood,
+                                      const std::vector<Grouping>& terms) {
+  constexpr double kRounding = 1e-10;
+  const MatrixXd information = likelihood.at(VectorXd::Zero(likelihood.terms())).expected;
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    VectorXd counts = VectorXd::Zero(static_cast<Index>(terms[k].count));
+    for (const std::size_t group : terms[k].numbers) {
+      counts[static_cast<Index>(group)] += 1.0;
+    }
+    const auto place = static_cast<Index>(k);
+    if (!(information(place, place) > kRounding * counts.squaredNorm())) {
+      return with_term("groups and predictors go together", k, terms.size());
     }
   }
-  const auto slope = [&](double r) { return likelihood.at(r).slope; };
-  if (best == 0 && slope(0.0) >= 0.0) {
-    return likelihood.at(0.0);
+  const VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LDLT<MatrixXd> factor(scale.asDiagonal() * information * scale.asDiagonal());
+  if (terms.size() > 1 && !(factor.vectorD().minCoeff() > kRounding)) {
+    return "two random terms group the observations alike";
   }
-  const bool rising = best > 0 && slope(rho[best]) > 0.0;
-  if (!rising && best + 1 == rho.size()) {
-    return std::nullopt;
-  }
-  const double low = rising ? rho[best - 1] : rho[best];
-  const double high = rising ? rho[best] : rho[best + 1];
-  if (!(slope(low) < 0.0 && slope(high) > 0.0)) {
-    return std::nullopt;
-  }
-  return likelihood.at(find_root(slope, low, high));
+  return std::nullopt;
 }
 
-// Satterthwaite: 2 v² / Var(v) of the variance v of a coefficient, which depends on the estimates
-// of (within, rho); their covariance is twice the inverse Hessian of the criterion.
-class Satterthwaite {
- public:
-  Satterthwaite(const Point& point, double df) : point_(point), df_(df) {
-    const double s = point.within;
-    MatrixXd m = -point.leverage * point.leverage.transpose();  // Z' P Z
-    m.diagonal() += point.weights;
-    h11_ = df / (s * s);
-    h12_ = point.effects.squaredNorm() / (s * s);
-    h22_ = 2.0 * point.effects.dot(m * point.effects) / s - m.squaredNorm();
-  }
-
-  /// @param contrast  of the coefficients.
-  double df(const VectorXd& contrast) const {
-    if (point_.rho == 0.0) {
-      return df_;
+/// Twice the inverse Hessian of the criterion by the logarithms of the residual variance and of the
+/// positive rhos; nothing where it is not positive definite.
+std::optional<MatrixXd> parameter_covariance(const Slopes& s, const std::vector<Index>& positive,
+                                             double df) {
+  const Index count = std::ssize(positive) + 1;
+  MatrixXd hessian(count, count);
+  hessian(0, 0) = df;
+  for (Index i = 1; i < count; ++i) {
+    const Index k = positive[static_cast<std::size_t>(i - 1)];
+    hessian(i, 0) = hessian(0, i) = s.rho[k] * s.effects[k] / s.within;
+    for (Index j = 1; j <= i; ++j) {
+      const Index m = positive[static_cast<std::size_t>(j - 1)];
+      // That of the profiled criterion, and what profiling took away.
+      const double profiled = s.effects[k] * s.effects[m] / (df * s.within * s.within);
+      hessian(i, j) = hessian(j, i) = s.rho[k] * s.rho[m] * (s.hessian(k, m) + profiled);
     }
-    const VectorXd c = point_.root.transpose() * contrast;
-    const double v = point_.within * c.squaredNorm();
-    const double g1 = c.squaredNorm();
-    const double g2 = point_.within * (point_.leverage * c).squaredNorm();
-    const double determinant = h11_ * h22_ - h12_ * h12_;
-    const double quadratic = g1 * g1 * h22_ - 2.0 * g1 * g2 * h12_ + g2 * g2 * h11_;
-    return v * v * determinant / quadratic;
   }
-
- private:
-  const Point& point_;
-  double df_;
-  double h11_, h12_, h22_;
-};
+  const Eigen::LLT<MatrixXd> factor(hessian);
+  if (factor.info() != Eigen::Success) {
+    return std::nullopt;
+  }
+  return MatrixXd(2.0 * factor.solve(MatrixXd::Identity(count, count)));
+}
 
 /// Nothing where a coefficient has no degrees of freedom: the variance between groups cannot be
 /// told from the predictors then.
-std::optional<MixedModel> described(const CenteredDesign& design, const Point& point, double df,
+std::optional<MixedModel> described(const CenteredDesign& design, const Slopes& s, double df,
                                     double origin, double level) {
   MixedModel model;
+  std::vector<Index> positive;
+  for (Index k = 0; k < s.rho.size(); ++k) {
+    model.variances.push_back(s.rho[k] * s.within);
+    if (s.rho[k] > 0.0) {
+      positive.push_back(k);
+    }
+  }
+  model.at_boundary = positive.size() < model.variances.size();
+  model.variance_within = s.within;
+  // The criterion has the determinant of the scaled columns.
+  model.log_likelihood = -0.5 * s.criterion - design.scales.array().log().sum();
   const MatrixXd back = design.back();
-  VectorXd estimates = back * point.coefficients;
+  model.root = std::sqrt(s.within) * back * s.root;
+  model.leverage.push_back(MatrixXd::Identity(back.rows(), back.rows()));
+  for (const Index k : positive) {
+    model.leverage.push_back(s.rho[k] * s.leverage[static_cast<std::size_t>(k)]);
+  }
+  const auto parameters = parameter_covariance(s, positive, df);
+  if (!parameters) {
+    return std::nullopt;
+  }
+  model.parameters = *parameters;
+  VectorXd estimates = back * s.coefficients;
   estimates[0] += origin;
-  const Satterthwaite satterthwaite(point, df);
-  for (Eigen::Index k = 0; k < estimates.size(); ++k) {
-    const VectorXd contrast = back.row(k).transpose();
-    const double error = std::sqrt(point.within) * (point.root.transpose() * contrast).norm();
-    const double freedom = satterthwaite.df(contrast);
-    if (!(freedom > 0.0 && std::isfinite(freedom))) {
+  for (const double estimate : estimates) {
+    model.coefficients.push_back({.estimate = estimate});
+  }
+  for (Index k = 0; k < estimates.size(); ++k) {
+    const auto tested = contrast(model, VectorXd::Unit(estimates.size(), k), level);
+    if (!tested) {
       return std::nullopt;
     }
-    model.coefficients.push_back(coefficient(estimates[k], error, freedom, level));
+    model.coefficients[static_cast<std::size_t>(k)] = *tested;
   }
-  model.variance_within = point.within;
-  model.variance_between = point.rho * point.within;
-  model.at_boundary = point.rho == 0.0;
-  // The criterion has the determinant of the scaled columns.
-  model.log_likelihood = -0.5 * point.criterion - design.scales.array().log().sum();
   return model;
+}
+
+void check_lengths(std::span<const double> response, const MatrixXd& predictors,
+                   const std::vector<std::vector<std::size_t>>& terms) {
+  bool equal = predictors.rows() == std::ssize(response);
+  for (const auto& term : terms) {
+    equal = equal && term.size() == response.size();
+  }
+  if (!equal) {
+    throw std::invalid_argument("mixed_model: the lengths differ");
+  }
+}
+
+/// Why these groups make no random term.
+std::optional<std::string> no_term(const Grouping& term, std::size_t observations) {
+  if (term.count < 2) {
+    return "there is only one group";
+  }
+  if (term.count == observations) {
+    return "every group has a single value";
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
-Defined<MixedModel> random_intercept_model(std::span<const double> response,
-                                           const MatrixXd& predictors,
-                                           std::span<const std::size_t> groups, double level) {
-  if (predictors.rows() != std::ssize(response) || response.size() != groups.size()) {
-    throw std::invalid_argument("random_intercept_model: the lengths differ");
-  }
+Defined<MixedModel> mixed_model(std::span<const double> response, const MatrixXd& predictors,
+                                const std::vector<std::vector<std::size_t>>& terms, double level) {
+  check_lengths(response, predictors, terms);
   const auto m = moments(response);
   if (!m) {
     return Undefined{m.because()};
   }
-  const Grouping grouping = numbered(groups);
-  if (grouping.count < 2) {
-    return Undefined{"there is only one group"};
-  }
-  if (grouping.count == groups.size()) {
-    return Undefined{"every group has a single value"};
+  std::vector<Grouping> groupings;
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    groupings.push_back(grouping_of(terms[k]));
+    if (const auto reason = no_term(groupings.back(), response.size())) {
+      return Undefined{with_term(*reason, k, terms.size())};
+    }
   }
   if (predictors.rows() - predictors.cols() < 2) {
     return Undefined{"there are not more values than coefficients"};
@@ -151,22 +162,32 @@ Defined<MixedModel> random_intercept_model(std::span<const double> response,
   }
   VectorXd shifted = VectorXd::Map(response.data(), std::ssize(response));
   shifted = (shifted.array() - m->origin) - m->offset;
-  const ProfileLikelihood likelihood(design->columns, shifted, grouping.numbers);
-  const char* const exact = "nothing varies within the groups beyond what the predictors explain";
+  const RestrictedLikelihood likelihood(design->columns, shifted, groupings);
   if (likelihood.within_squares() <= rounding_of(response)) {
-    return Undefined{exact};
+    return Undefined{kExact};
   }
-  const auto point = lowest(likelihood);
+  if (const auto reason = confounded(likelihood, groupings)) {
+    return Undefined{*reason};
+  }
+  const auto point = lowest_point(likelihood);
   if (!point) {
-    return Undefined{exact};
+    return Undefined{kExact};
   }
   auto model = described(*design, *point, likelihood.df(), m->mean(), level);
   if (!model) {
     return Undefined{"a coefficient has no degrees of freedom: groups and predictors go together"};
   }
   model->observations = response.size();
-  model->groups = grouping.count;
+  for (const Grouping& term : groupings) {
+    model->groups.push_back(term.count);
+  }
   return *model;
+}
+
+Defined<MixedModel> random_intercept_model(std::span<const double> response,
+                                           const MatrixXd& predictors,
+                                           std::span<const std::size_t> groups, double level) {
+  return mixed_model(response, predictors, {{groups.begin(), groups.end()}}, level);
 }
 
 }  // namespace haptrial::analysis

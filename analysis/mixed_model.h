@@ -10,30 +10,42 @@
 
 namespace haptrial::analysis {
 
-/// A linear mixed model with a random intercept for each group (participant), by REML:
+/// A linear mixed model with any number of random intercepts, crossed or nested, by REML:
 ///
-///     y_ij = b_0 + x_ij' b + u_i + e_ij,   u_i ~ N(0, between),   e_ij ~ N(0, within)
+///     y_i = b_0 + x_i' b + sum_k u_k[group of i in term k] + e_i
+///     u_k ~ N(0, variances[k]),   e ~ N(0, variance_within)
 struct MixedModel {
   std::vector<Coefficient> coefficients;  // intercept, then the predictors; Satterthwaite's df
-  double variance_between{0.0};           // of the groups' intercepts
+  std::vector<double> variances;          // of the terms' intercepts, in the order given
+  std::vector<std::size_t> groups;        // of each term
   double variance_within{0.0};
   double log_likelihood{0.0};  // restricted, at its maximum
   std::size_t observations{0};
-  std::size_t groups{0};
-  bool at_boundary{false};  // variance_between is 0: df are observations less coefficients
+  bool at_boundary{false};  // some variance is 0: the fit is that without its term
+
+  // What mixed_contrast.h needs. The parameters are the logarithms of variance_within and of the
+  // positive variances' ratios to it.
+  Eigen::MatrixXd root;                   // covariance of the coefficients = root root'
+  std::vector<Eigen::MatrixXd> leverage;  // its slope by parameter m = root leverage[m] root'
+  Eigen::MatrixXd parameters;             // covariance of the parameters
 };
 
 /// @param predictors  (observations x predictors) without a column for the intercept; may be none.
 ///                    Any coding of the conditions.
-/// @param groups      (observations) which group, any numbers.
-/// Undefined when a value is not finite, there is one group or only groups of one, there are not
-/// more observations than coefficients, a predictor does not vary or follows from others, or
-/// nothing varies within the groups, or groups and predictors go together so that a coefficient has
-/// no degrees of freedom.
+/// @param terms       of each random term the group of every observation, any numbers. None: the
+///                    linear regression.
+/// Undefined when a value is not finite, a term has one group or only groups of one, there are not
+/// more observations than coefficients, a predictor does not vary or follows from others, nothing
+/// varies within the groups, two terms group alike, or groups and predictors go together so that a
+/// variance cannot be estimated or a coefficient has no degrees of freedom.
 /// @throws std::invalid_argument when the lengths differ.
-/// Source: Laird and Ware 1982, Biometrics 38; the likelihood profiled over between / within, as
-/// Bates et al. 2015, Journal of Statistical Software 67; degrees of freedom: Giesbrecht and Burns
-/// 1985, Biometrics 41.
+/// Source: Bates et al. 2015, Journal of Statistical Software 67; degrees of freedom: Giesbrecht
+/// and Burns 1985, Biometrics 41; Kuznetsova et al. 2017, Journal of Statistical Software 82.
+Defined<MixedModel> mixed_model(std::span<const double> response, const Eigen::MatrixXd& predictors,
+                                const std::vector<std::vector<std::size_t>>& terms,
+                                double level = 0.95);
+
+/// The same with one term, of participants.
 Defined<MixedModel> random_intercept_model(std::span<const double> response,
                                            const Eigen::MatrixXd& predictors,
                                            std::span<const std::size_t> groups,

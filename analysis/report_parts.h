@@ -13,6 +13,7 @@ namespace haptrial::analysis {
 void add_design(Document& document, const StudyResult& study);
 void add_recall(Document& document, const StudyResult& study, const std::vector<Drawing>& drawings);
 void add_tests(Document& document, const StudyResult& study);
+void add_mixed(Document& document, const StudyStatistics& statistics);
 void add_learning(Document& document, const StudyResult& study,
                   const std::vector<Drawing>& drawings);
 void add_alignments(Document& document, const StudyResult& study,

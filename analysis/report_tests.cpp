@@ -99,28 +99,6 @@ void add_repeated(Document& document, const StudyStatistics& s) {
   }
 }
 
-void add_mixed(Document& document, const StudyStatistics& s) {
-  document.subheading("Mixed model: every trial, participants as they differ");
-  if (!s.mixed) {
-    document.paragraph("Not defined, because " + s.mixed.because() + ".");
-    return;
-  }
-  const MixedModel& model = *s.mixed;
-  document.paragraph(fmt::format(
-      "Recall error by condition, with an intercept of each participant's own, by restricted "
-      "maximum likelihood over {}. Standard deviation between participants {}, within {}.",
-      counted(model.observations, "trial"), number(std::sqrt(model.variance_between)),
-      number(std::sqrt(model.variance_within))));
-  Rows rows;
-  for (std::size_t i = 0; i < model.coefficients.size(); ++i) {
-    const Coefficient& c = model.coefficients[i];
-    rows.push_back({i == 0 ? s.conditions[0] : s.conditions[i] + " less " + s.conditions[0],
-                    number(c.estimate), fmt::format("{} to {}", number(c.low), number(c.high)),
-                    fmt::format("t({:.1f}) = {:.3g}, {}", c.df, c.t, p_value(c.p))});
-  }
-  document.table({"Effect", "Estimate", "95 % CI", "Test (Satterthwaite)"}, rows);
-}
-
 }  // namespace
 
 void add_tests(Document& document, const StudyResult& study) {

@@ -49,21 +49,21 @@ Json to_json(const ShapiroWilk& s) { return {{"w", s.w}, {"p", s.p}}; }
 
 Json to_json(const Mauchly& m) { return {{"w", m.w}, {"p", m.p}}; }
 
-Json to_json(const MixedModel& m) {
-  Json coefficients = Json::array();
-  for (const Coefficient& c : m.coefficients) {
-    coefficients.push_back({{"estimate", c.estimate},
-                            {"standard_error", c.error},
-                            {"df_satterthwaite", c.df},
-                            {"t", c.t},
-                            {"p", c.p},
-                            {"low_95", c.low},
-                            {"high_95", c.high}});
-  }
-  return {{"coefficients", coefficients},
-          {"variance_between", m.variance_between},
-          {"variance_within", m.variance_within},
-          {"log_likelihood_reml", m.log_likelihood}};
+Json to_json(const Coefficient& c) {
+  return {{"estimate", c.estimate},
+          {"standard_error", c.error},
+          {"df_satterthwaite", c.df},
+          {"t", c.t},
+          {"p", c.p},
+          {"low_95", c.low},
+          {"high_95", c.high}};
+}
+
+Json to_json(const JointTest& t) {
+  return {{"f", t.f},
+          {"df_numerator", t.df_numerator},
+          {"df_denominator_satterthwaite", t.df_denominator},
+          {"p", t.p}};
 }
 
 Json to_json(const TimingPercentiles& p) {
@@ -114,6 +114,50 @@ Json pairs(const StudyStatistics& s) {
                     {"wilcoxon_signed_rank", to_json(p.signed_rank)}});
   }
   return rows;
+}
+
+Json random_terms(const StudyMixed& mixed) {
+  Json rows = Json::array();
+  for (std::size_t k = 0; k < mixed.terms.size(); ++k) {
+    const StudyTerm& term = mixed.terms[k];
+    rows.push_back({{"term", term.words},
+                    {"lme4", term.notation},
+                    {"groups", term.groups},
+                    {"variance", mixed.model->variances[k]}});
+  }
+  return rows;
+}
+
+Json mixed_pairs(const StudyMixed& mixed) {
+  Json rows = Json::array();
+  for (const MixedPair& pair : mixed.pairs) {
+    rows.push_back({{"conditions", {pair.a, pair.b}},
+                    {"difference", to_json(pair.difference)},
+                    {"p_holm", to_json(pair.holm)}});
+  }
+  return rows;
+}
+
+Json mixed_model(const StudyMixed& mixed) {
+  if (!mixed.model) {
+    return {{"not_defined", mixed.model.because()}};
+  }
+  Json coefficients = Json::array();
+  for (std::size_t i = 0; i < mixed.conditions.size(); ++i) {
+    Json row = to_json(mixed.model->coefficients[i]);
+    row["effect"] =
+        i == 0 ? mixed.conditions[0] : mixed.conditions[i] + " - " + mixed.conditions[0];
+    coefficients.push_back(std::move(row));
+  }
+  return {{"formula", mixed.formula},
+          {"random_terms", random_terms(mixed)},
+          {"terms_left_out", mixed.left_out},
+          {"variance_residual", mixed.model->variance_within},
+          {"at_boundary", mixed.model->at_boundary},
+          {"log_likelihood_reml", mixed.model->log_likelihood},
+          {"conditions_differ", to_json(mixed.omnibus)},
+          {"coefficients", coefficients},
+          {"pairs", mixed_pairs(mixed)}};
 }
 
 Json blocks(const StudyStatistics& s) {
@@ -253,7 +297,7 @@ std::string statistics_json(const StudyResult& study) {
   root["conditions"] = conditions(s);
   root["published"] = published(s);
   root["repeated_measures"] = repeated(s);
-  root["mixed_model"] = to_json(s.mixed);
+  root["mixed_model"] = mixed_model(s.mixed);
   root["comparisons"] = comparisons(s);
   root["pairs"] = pairs(s);
   root["table_1"] = table_1(s);

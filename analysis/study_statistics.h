@@ -9,10 +9,10 @@
 #include "analysis/descriptive.h"
 #include "analysis/effect_size.h"
 #include "analysis/levene.h"
-#include "analysis/mixed_model.h"
 #include "analysis/rank_anova.h"
 #include "analysis/repeated_anova.h"
 #include "analysis/shapiro_wilk.h"
+#include "analysis/study_mixed.h"
 #include "analysis/t_test.h"
 #include "analysis/trial_score.h"
 #include "analysis/wilcoxon.h"
@@ -94,7 +94,7 @@ struct StudyStatistics {
   Defined<double> generalized_eta{Undefined{"there are no trials"}};  // squared
   Defined<RankAnova> friedman{Undefined{"there are no trials"}};
 
-  Defined<MixedModel> mixed{Undefined{"there are no trials"}};  // all trials, first as reference
+  StudyMixed mixed;                     // all trials, the first condition as the reference
   std::vector<Comparison> comparisons;  // visual < haptic, visuohaptic < visual, where they are
   std::vector<PairComparison> pairs;    // every two conditions
 

@@ -1,6 +1,5 @@
 #include "analysis/study_tests.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 
@@ -118,31 +117,6 @@ void add_repeated(StudyStatistics& study) {
       generalized_eta_squared(r.squares_condition, r.squares_participants + r.squares_error);
 }
 
-/// Every trial, the first condition as the reference.
-void add_mixed(StudyStatistics& study, std::span<const TrialScore> scores) {
-  const std::size_t levels = study.conditions.size();
-  if (levels < 2) {
-    study.mixed = Undefined{"there are fewer than two conditions"};
-    return;
-  }
-  Eigen::MatrixXd predictors = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(scores.size()),
-                                                     static_cast<Eigen::Index>(levels) - 1);
-  Values response;
-  std::vector<std::size_t> groups;
-  for (const auto& score : scores) {
-    const std::size_t level = place_of(study, score.condition);
-    if (level > 0) {
-      predictors(static_cast<Eigen::Index>(response.size()), static_cast<Eigen::Index>(level) - 1) =
-          1.0;
-    }
-    const auto subject =
-        std::lower_bound(study.subjects.begin(), study.subjects.end(), score.subject);
-    groups.push_back(static_cast<std::size_t>(subject - study.subjects.begin()));
-    response.push_back(score.score);
-  }
-  study.mixed = random_intercept_model(response, predictors, groups);
-}
-
 }  // namespace
 
 void add_tests(StudyStatistics& study, std::span<const TrialScore> scores) {
@@ -150,7 +124,7 @@ void add_tests(StudyStatistics& study, std::span<const TrialScore> scores) {
   add_repeated(study);
   add_planned(study, scores);
   add_pairs(study);
-  add_mixed(study, scores);
+  study.mixed = study_mixed(scores, study.conditions);
 }
 
 }  // namespace haptrial::analysis

@@ -30,7 +30,7 @@ Json coefficients(const std::vector<Coefficient>& all) {
 
 Json to_json(const MixedModel& m) {
   return {{"coefficients", coefficients(m.coefficients)},
-          {"variance_between", m.variance_between},
+          {"variance_between", m.variances.front()},
           {"variance_within", m.variance_within},
           {"at_boundary", m.at_boundary},
           {"participants", m.groups},

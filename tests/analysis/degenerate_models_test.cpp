@@ -78,7 +78,7 @@ void check(const std::string& what, const Defined<Regression>& r) {
 void check(const std::string& what, const Defined<MixedModel>& m) {
   if (has_value(what, m)) {
     check(what, m->coefficients);
-    expect_numbers(what, {m->variance_between, m->variance_within, m->log_likelihood});
+    expect_numbers(what, {m->variances.front(), m->variance_within, m->log_likelihood});
   }
 }
 

@@ -118,7 +118,7 @@ void compare_model(Answers& r, const std::string& name, const Defined<MixedModel
       .are("df", of(m->coefficients, &Coefficient::df))
       .are("p", of(m->coefficients, &Coefficient::p))
       .are("low", of(m->coefficients, &Coefficient::low))
-      .is("between", m->variance_between)
+      .is("between", m->variances.front())
       .is("within", m->variance_within)
       .is("log_likelihood", m->log_likelihood);
 }

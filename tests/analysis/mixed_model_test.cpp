@@ -6,10 +6,11 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <stdexcept>
 
 #include "analysis/anova.h"
-#include "analysis/profile_likelihood.h"
+#include "analysis/restricted_likelihood.h"
 #include "analysis/regression.h"
 #include "analysis/t_test.h"
 #include "core/base/random.h"
@@ -71,11 +72,11 @@ TEST(MixedModel, OfABalancedLayoutIsItsAnalysisOfVariance) {
   const auto m = random_intercept_model(response, MatrixXd(16, 0), names);
   ASSERT_TRUE(m) << m.because();
   EXPECT_NEAR(m->variance_within, within, 1e-12 * within);
-  EXPECT_NEAR(m->variance_between, (between - within) / 4.0, 1e-11);
+  EXPECT_NEAR(m->variances.front(), (between - within) / 4.0, 1e-11);
   EXPECT_NEAR(m->coefficients[0].estimate, 115.0 / 16.0, 1e-14);
   EXPECT_NEAR(m->coefficients[0].error, std::sqrt(between / 16.0), 1e-13);
   EXPECT_NEAR(m->coefficients[0].df, 3.0, 1e-10);
-  EXPECT_EQ(m->groups, 4u);
+  EXPECT_EQ(m->groups, std::vector<std::size_t>{4});
 }
 
 TEST(MixedModel, OfPairsIsThePairedT) {
@@ -105,7 +106,7 @@ TEST(MixedModel, WithoutDifferencesBetweenGroupsIsTheRegression) {
   const auto plain = linear_regression(x, response);
   ASSERT_TRUE(m && plain);
   EXPECT_TRUE(m->at_boundary);
-  EXPECT_EQ(m->variance_between, 0.0);
+  EXPECT_EQ(m->variances.front(), 0.0);
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_NEAR(m->coefficients[k].estimate, plain->coefficients[k].estimate, 1e-13);
     EXPECT_NEAR(m->coefficients[k].p, plain->coefficients[k].p, 1e-13);
@@ -140,11 +141,11 @@ TEST(MixedModel, IsTheMaximumOfTheFullLikelihood) {
   const auto m = fit(data);
   ASSERT_TRUE(m) << m.because();
   ASSERT_FALSE(m->at_boundary);
-  const double best = full_likelihood(data, m->variance_between, m->variance_within);
+  const double best = full_likelihood(data, m->variances.front(), m->variance_within);
   EXPECT_NEAR(m->log_likelihood, best, 1e-11);
   for (const double step : {-0.01, 0.01}) {
-    EXPECT_LT(full_likelihood(data, m->variance_between * (1.0 + step), m->variance_within), best);
-    EXPECT_LT(full_likelihood(data, m->variance_between, m->variance_within * (1.0 + step)), best);
+    EXPECT_LT(full_likelihood(data, m->variances.front() * (1.0 + step), m->variance_within), best);
+    EXPECT_LT(full_likelihood(data, m->variances.front(), m->variance_within * (1.0 + step)), best);
   }
 }
 
@@ -153,7 +154,7 @@ TEST(MixedModel, DegreesOfFreedomFollowFromTheCurvatureOfTheLikelihood) {
   RandomStream random(2, "curvature");
   const Data data = unbalanced(random, 1.0);
   const auto m = fit(data);
-  const double b = m->variance_between, w = m->variance_within;
+  const double b = m->variances.front(), w = m->variance_within;
   const double hb = 2e-3 * b, hw = 2e-3 * w;
   const auto at = [&](double i, double j) { return full_likelihood(data, b + i * hb, w + j * hw); };
   Eigen::Matrix2d information;
@@ -204,7 +205,7 @@ TEST(MixedModel, DoesNotMindOffsetNamesOrOrder) {
     EXPECT_NEAR(moved->coefficients[k].df, plain->coefficients[k].df, 1e-8);
     EXPECT_NEAR(moved->coefficients[k].p, plain->coefficients[k].p, 1e-11);
   }
-  EXPECT_NEAR(moved->variance_between, plain->variance_between, 1e-10);
+  EXPECT_NEAR(moved->variances.front(), plain->variances.front(), 1e-10);
   EXPECT_NEAR(moved->log_likelihood, plain->log_likelihood, 1e-10);
 }
 
@@ -214,23 +215,58 @@ TEST(MixedModel, FindsTheVariancesThatMadeTheData) {
   constexpr int kStudies = 200;
   for (int i = 0; i < kStudies; ++i) {
     const auto m = fit(unbalanced(random, 2.0));
-    between += m->variance_between / kStudies;
+    between += m->variances.front() / kStudies;
     within += m->variance_within / kStudies;
   }
   EXPECT_NEAR(between, 4.0, 4.0 * 4.0 * std::sqrt(2.0 / 6.0 / kStudies));  // four standard errors
   EXPECT_NEAR(within, 1.0, 4.0 * std::sqrt(2.0 / 30.0 / kStudies));
 }
 
-TEST(ProfileLikelihood, SlopeIsThatOfTheCriterion) {
+// Groups of unequal size, crossed and nested, some cells empty.
+struct Crossed {
+  Data data;
+  std::vector<std::vector<std::size_t>> terms;
+};
+
+Crossed crossed(RandomStream& random, const std::vector<double>& deviations) {
+  Crossed made{unbalanced(random, 0.0), std::vector<std::vector<std::size_t>>(3)};
+  std::map<std::size_t, double> level[3];
+  for (std::size_t i = 0; i < made.data.response.size(); ++i) {
+    const std::size_t subject = made.data.groups[i];
+    const std::size_t item = i * i % 5;
+    const std::size_t block = 100 * subject + i / 3;
+    const std::size_t group[3]{subject, item, block};
+    for (std::size_t k = 0; k < 3; ++k) {
+      made.terms[k].push_back(group[k]);
+      made.data.response[i] +=
+          level[k].try_emplace(group[k], deviations[k] * random.normal()).first->second;
+    }
+  }
+  return made;
+}
+
+TEST(RestrictedLikelihood, SlopeAndHessianAreThoseOfTheCriterion) {
   RandomStream random(4, "slope");
-  const Data data = unbalanced(random, 1.0);
-  const VectorXd y = VectorXd::Map(data.response.data(), std::ssize(data.response));
-  const ProfileLikelihood likelihood(data.predictors, y, data.groups);
-  for (const double rho : {0.01, 0.5, 3.0, 40.0}) {
-    const double h = 1e-4 * rho;
-    const double difference =
-        (likelihood.at(rho + h).criterion - likelihood.at(rho - h).criterion) / (2.0 * h);
-    EXPECT_NEAR(likelihood.at(rho).slope, difference, 1e-6 * (1.0 + std::abs(difference)));
+  const Crossed made = crossed(random, {1.0, 0.5, 0.7});
+  const VectorXd y = VectorXd::Map(made.data.response.data(), std::ssize(made.data.response));
+  std::vector<Grouping> terms;
+  for (const auto& term : made.terms) {
+    terms.push_back(grouping_of(term));
+  }
+  const RestrictedLikelihood likelihood(made.data.predictors, y, terms);
+  for (const double size : {0.01, 0.5, 3.0, 40.0}) {
+    const VectorXd rho = size * Eigen::Vector3d(1.0, 0.3, 2.0);
+    const auto here = likelihood.at(rho);
+    EXPECT_NEAR(here.criterion, likelihood.value(rho).criterion, 1e-12);
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const double h = 1e-4 * rho[k];
+      const auto up = likelihood.at(rho + h * VectorXd::Unit(3, k));
+      const auto down = likelihood.at(rho - h * VectorXd::Unit(3, k));
+      const double slope = (up.criterion - down.criterion) / (2.0 * h);
+      EXPECT_NEAR(here.slope[k], slope, 1e-6 * (1.0 + std::abs(slope)));
+      const VectorXd column = (up.slope - down.slope) / (2.0 * h);
+      EXPECT_LT((here.hessian.col(k) - column).norm(), 1e-6 * (1.0 + column.norm()));
+    }
   }
 }
 

@@ -121,7 +121,7 @@ TEST(StudyStatistics, OfNothingAndOfOneTrialIsNotDefined) {
   const auto nothing = study_statistics({});
   EXPECT_FALSE(nothing.anova);
   EXPECT_FALSE(nothing.repeated);
-  EXPECT_FALSE(nothing.mixed);
+  EXPECT_FALSE(nothing.mixed.model);
   EXPECT_TRUE(nothing.comparisons.empty());
   const auto one = study_statistics(std::vector{trial("P01", "haptic", 1, 2.0)});
   EXPECT_THAT(one.anova.because(), HasSubstr("fewer than two groups"));
