@@ -29,6 +29,9 @@ std::string with_term(const std::string& reason, std::size_t term, std::size_t t
 /// whatever values.
 std::optional<std::string> confounded(const RestrictedLikelihood& likelihood,
                                       const std::vector<Grouping>& terms) {
+  if (terms.empty()) {
+    return std::nullopt;
+  }
   constexpr double kRounding = 1e-10;
   const MatrixXd information = likelihood.at(VectorXd::Zero(likelihood.terms())).expected;
   for (std::size_t k = 0; k < terms.size(); ++k) {

@@ -182,20 +182,30 @@ double RestrictedLikelihood::within_squares() const {
   Index row = data_.deviations.rows();
   rest.topRows(row) = data_.deviations;
   for (const RandomBlock& block : data_.blocks) {
+    if (block.z.cols() == 0) {
+      rest.middleRows(row, block.values.rows()) = block.values;
+      row += block.values.rows();
+      continue;
+    }
     const Eigen::ColPivHouseholderQR<MatrixXd> qr(block.z);
     const MatrixXd turned = qr.householderQ().adjoint() * block.values;
     const Index free = turned.rows() - qr.rank();
     rest.middleRows(row, free) = turned.bottomRows(free);
     row += free;
   }
+  std::vector<Index> varying;  // columns of X that the groups do not explain
   for (Index j = 0; j < q; ++j) {
     constexpr double kRounding = 1e-10;  // of a column of unit length
-    if (rest.col(j).norm() < kRounding) {
-      rest.col(j).setZero();
+    if (rest.col(j).norm() > kRounding) {
+      varying.push_back(j);
     }
   }
-  const MatrixXd r = triangle(rest);
-  return r.rows() > q ? r(q, q) * r(q, q) : 0.0;
+  if (varying.empty()) {
+    return rest.col(q).squaredNorm();
+  }
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(rest(Eigen::all, varying));
+  const VectorXd turned = qr.householderQ().adjoint() * rest.col(q);
+  return turned.tail(turned.size() - qr.rank()).squaredNorm();
 }
 
 }  // namespace haptrial::analysis
