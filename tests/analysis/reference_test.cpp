@@ -144,28 +144,31 @@ std::vector<std::string> table_of_nist() {
 //               differently could have made it.
 std::vector<std::string> page(double scale) {
   std::vector<std::string> lines{
-      "# How close the statistics are",
+      "# Accuracy of the statistics",
       "",
-      "Made by `AccuracyTable`, which fails where this page and the code part; "
-      "`HAPTRIAL_WRITE_REFERENCES=1` before the command of the tests writes it and R's answers "
-      "anew. Scripts, data and kept answers with R's version: `tests/analysis/reference/`. The "
-      "page on the procedures: [statistics](statistics.md).",
+      "The test `AccuracyTable` makes this page and fails if page and code disagree. "
+      "With `HAPTRIAL_WRITE_REFERENCES=1` the tests write the page and R's answers "
+      "again. Scripts, data and stored answers with R's version are in "
+      "`tests/analysis/reference/`. The procedures themselves: "
+      "[statistics](statistics.md).",
       "",
-      "## Beside R",
+      "## Compared with R",
       "",
-      fmt::format("Relative to R's value, the largest over all cases and quantities, as the next "
-                  "power of ten; what is below {:.0e} is not told apart, because R itself is not "
-                  "right to more digits everywhere. Kept answers: {}.",
+      fmt::format("The table gives the largest difference relative to R's value over all cases and "
+                  "quantities, rounded up to a power of ten. Differences below {:.0e} are not "
+                  "distinguished, because R itself is not always accurate to more digits. Stored "
+                  "answers: {}.",
                   kFloor, Answers(answers_of(topics().front())).versions().front()),
       ""};
   const auto add = [&](const std::vector<std::string>& more) {
     lines.insert(lines.end(), more.begin(), more.end());
   };
   add(table_of_r(scale));
-  add({"", "## Beside NIST's certified values", "",
-       "Correct digits (-log10 of the relative error, at most 15) of one-way ANOVA on the sets of "
-       "the Statistical Reference Datasets, beside the cap: what exact rational arithmetic gives "
-       "on the same data once they are read into doubles.",
+  add({"", "## Compared with NIST's certified values", "",
+       "The table gives the correct digits (-log10 of the relative error, at most 15) of"
+       " one-way ANOVA on the Statistical Reference Datasets. The cap is the number of "
+       "correct digits that exact rational arithmetic reaches on the same data after "
+       "they are read into doubles.",
        ""});
   add(table_of_nist());
   return lines;
