@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iostream>
 #include <iterator>
+#include <numeric>
 #include <optional>
 
 #include "core/base/error.h"
@@ -272,9 +273,16 @@ std::string_view CsvTable::text(std::size_t row, std::size_t column) const {
 }
 
 std::vector<double> CsvTable::numbers(std::size_t column) const {
+  std::vector<std::size_t> all(rows());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return numbers(column, all);
+}
+
+std::vector<double> CsvTable::numbers(std::size_t column,
+                                      const std::vector<std::size_t>& rows) const {
   char mark = '.';
   if (separator_ != ',') {
-    for (std::size_t row = 0; row < rows(); ++row) {
+    for (const std::size_t row : rows) {
       const auto at = text(row, column).find_first_of(".,");
       if (at != std::string_view::npos) {
         mark = text(row, column)[at];
@@ -283,8 +291,8 @@ std::vector<double> CsvTable::numbers(std::size_t column) const {
     }
   }
   std::vector<double> values;
-  values.reserve(rows());
-  for (std::size_t row = 0; row < rows(); ++row) {
+  values.reserve(rows.size());
+  for (const std::size_t row : rows) {
     const auto value = number(text(row, column), mark);
     if (!value || !std::isfinite(*value)) {
       refuse(row, column, mark == '.' ? "a finite number" : "a finite number with a decimal comma");

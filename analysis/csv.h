@@ -40,6 +40,8 @@ class CsvTable {
   /// where commas do not separate.
   /// @throws InputError for anything else: empty, NaN, "1.5 N", a number too large.
   std::vector<double> numbers(std::size_t column) const;
+  /// The same for some of the rows, which alone decide about the decimal mark.
+  std::vector<double> numbers(std::size_t column, const std::vector<std::size_t>& rows) const;
 
   /// @throws InputError  FILE:LINE: COLUMN is 'FOUND'; allowed: ALLOWED
   [[noreturn]] void refuse(std::size_t row, std::size_t column, std::string_view allowed) const;

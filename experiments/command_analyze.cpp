@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <tuple>
 
 #include "analysis/exchange/import_curves.h"
 #include "analysis/score_parameters.h"
@@ -67,51 +66,73 @@ analysis::StudyResult analyzed_curves(const AnalyzeOptions& options, int threads
   const analysis::ScoreParameters scoring = options.definition.empty()
                                                 ? analysis::ScoreParameters{}
                                                 : load_definition(options.definition).scoring;
-  return exchange::analyze_curves({options.curves, options.conditions, options.time_column,
-                                   options.target_column, options.applied_column},
-                                  scoring, threads, [](std::uint64_t) {
-                                    if (interrupted()) {
-                                      throw RunError("interrupted; nothing was written");
-                                    }
-                                  });
+  const exchange::CurveStudy study{options.curves,
+                                   options.table.empty() ? options.conditions : options.table,
+                                   exchange::ImportColumns(options.columns), options.factors};
+  return exchange::analyze_curves(study, scoring, threads, [](std::uint64_t) {
+    if (interrupted()) {
+      throw RunError("interrupted; nothing was written");
+    }
+  });
 }
 
 bool holds_drillings(const std::string& folder, Pilots pilots) {
   return record::SessionReader(files_of(folder, pilots).front()).drills();
 }
 
+/// Where the report of a folder of sessions goes: that of its pilots must not replace the study's.
+fs::path report_folder(const fs::path& folder, Pilots pilots) {
+  return pilots == Pilots::kAlone ? folder / "pilots" : folder;
+}
+
 int analyze_procedures(const std::string& folder, Pilots pilots, int threads) {
   const StudyFiles study = study_files(folder, pilots);
-  for (const std::string& line : analyze_drillings(folder, study, threads)) {
+  const fs::path out = report_folder(folder, pilots);
+  for (const std::string& line : analyze_drillings(folder, study, out, threads)) {
     fmt::print("{}\n", line);
   }
-  fmt::print("report: {}\n", (fs::absolute(folder) / "report.html").lexically_normal().string());
+  fmt::print("report: {}\n", (fs::absolute(out) / "report.html").lexically_normal().string());
   return 0;
 }
 
-/// A folder of sessions, or one of curves with all that it needs.
+bool is_import(const AnalyzeOptions& options) { return options.folder.empty(); }
+
+void require_one_source(const AnalyzeOptions& options) {
+  const int sources = !options.folder.empty() + !options.curves.empty() + !options.table.empty();
+  if (sources != 1) {
+    throw InputError(fmt::format("{} of DIR, --curves and --table are given; allowed: exactly one",
+                                 sources == 0 ? "none" : "several"));
+  }
+}
+
+/// Options that the source needs and that only others take.
 void check_source(const AnalyzeOptions& options) {
-  if (options.folder.empty() == options.curves.empty()) {
-    throw InputError(fmt::format("{} of DIR and --curves are given; allowed: exactly one",
-                                 options.folder.empty() ? "none" : "both"));
-  }
+  require_one_source(options);
   const bool curves = !options.curves.empty();
-  for (const auto& [name, value, needed] : {std::tuple{"--conditions", &options.conditions, true},
-                                            {"--out", &options.out, true},
-                                            {"--definition", &options.definition, false},
-                                            {"--time-column", &options.time_column, false},
-                                            {"--target-column", &options.target_column, false},
-                                            {"--applied-column", &options.applied_column, false}}) {
-    if (curves && needed && value->empty()) {
-      throw InputError(fmt::format("{} is missing; --curves needs it", name));
+  const bool table = !options.table.empty();
+  const auto need = [](const char* name, const std::string& value, const char* by) {
+    if (value.empty()) {
+      throw InputError(fmt::format("{} is missing; {} needs it", name, by));
     }
-    if (!curves && !value->empty()) {
-      throw InputError(fmt::format("{} is given without --curves; allowed: only with it", name));
+  };
+  const auto allow = [](bool allowed, const char* name, bool given, const char* with) {
+    if (!allowed && given) {
+      throw InputError(fmt::format("{} is given without {}; allowed: only with it", name, with));
     }
+  };
+  if (curves) {
+    need("--conditions", options.conditions, "--curves");
   }
-  if (curves && options.pilots) {
-    throw InputError("--pilots is given with --curves; allowed: only with a folder of sessions");
+  if (curves || table) {
+    need("--out", options.out, curves ? "--curves" : "--table");
   }
+  allow(curves, "--conditions", !options.conditions.empty(), "--curves");
+  constexpr const char* kImport = "--curves or --table";
+  allow(is_import(options), "--out", !options.out.empty(), kImport);
+  allow(is_import(options), "--definition", !options.definition.empty(), kImport);
+  allow(is_import(options), "--column", !options.columns.empty(), kImport);
+  allow(is_import(options), "--factor", !options.factors.empty(), kImport);
+  allow(!is_import(options), "--pilots", options.pilots, "a folder of sessions");
 }
 
 }  // namespace
@@ -119,14 +140,14 @@ void check_source(const AnalyzeOptions& options) {
 int analyze(const AnalyzeOptions& options) {
   const int threads = checked_jobs(options.jobs);
   check_source(options);
-  const bool curves = !options.curves.empty();
+  const bool import = is_import(options);
   const Pilots pilots = options.pilots ? Pilots::kAlone : Pilots::kLeftOut;
-  if (!curves && holds_drillings(options.folder, pilots)) {
+  if (!import && holds_drillings(options.folder, pilots)) {
     return analyze_procedures(options.folder, pilots, threads);
   }
-  const analysis::StudyResult study = curves ? analyzed_curves(options, threads)
+  const analysis::StudyResult study = import ? analyzed_curves(options, threads)
                                              : analyzed_sessions(options.folder, pilots, threads);
-  const fs::path out = curves ? options.out : options.folder;
+  const fs::path out = import ? fs::path(options.out) : report_folder(options.folder, pilots);
   analysis::write_analysis(study, out);
   for (const std::string& line : analysis::summary_lines(study)) {
     fmt::print("{}\n", line);

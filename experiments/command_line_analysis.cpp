@@ -9,16 +9,23 @@ void add_analyze(CLI::App& app, int& status) {
                  "haptrial analyze out/force_training-001");
   auto& o = options_of<AnalyzeOptions>(*sub, status, analyze);
   sub->add_option("DIR", o.folder, "Folder of session files (.h5)");
-  sub->add_flag("--pilots", o.pilots, "The pilot sessions of DIR alone, which are left out else");
+  sub->add_flag("--pilots", o.pilots,
+                "Analyse the pilot sessions of DIR alone; the report goes into DIR/pilots");
   sub->add_option("--curves", o.curves,
-                  "In place of DIR: folder of curves that something else recorded (.csv)");
-  sub->add_option("--conditions", o.conditions, "With --curves: table of their trials (.csv)");
-  sub->add_option("--out", o.out, "With --curves: folder for the report");
+                  "Folder of curves from another system (.csv), in place of DIR");
+  sub->add_option("--conditions", o.conditions, "Table of the trials of --curves (.csv)");
+  sub->add_option("--table", o.table,
+                  "Table of all samples from another system (.csv), in place of DIR");
+  sub->add_option("--out", o.out, "Folder for the report of --curves or --table");
   sub->add_option("--definition", o.definition,
-                  "With --curves: score as this definition says; as shipped by default");
-  sub->add_option("--time-column", o.time_column, "With --curves (time)");
-  sub->add_option("--target-column", o.target_column, "With --curves (target_force)");
-  sub->add_option("--applied-column", o.applied_column, "With --curves (applied_force)");
+                  "Definition that says how --curves or --table are scored (as shipped)");
+  sub->add_option("--column", o.columns,
+                  "Name of a column of --curves or --table, as in subject=Participant; may be "
+                  "repeated")
+      ->allow_extra_args(false);
+  sub->add_option("--factor", o.factors,
+                  "Column of a factor, in place of condition; may be repeated")
+      ->allow_extra_args(false);
   sub->add_option("--jobs", o.jobs, "Threads; one per processor by default");
 }
 

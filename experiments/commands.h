@@ -61,12 +61,12 @@ struct AnalyzeOptions {
   std::string folder;  // of session files; else the ones below
   std::string curves;  // folder of curves that something else recorded
   std::string conditions;
+  std::string table;  // one table of all samples, in place of the two
   std::string out;
-  std::string definition;  // for its [analysis]; default: as shipped
-  std::string time_column;
-  std::string target_column;
-  std::string applied_column;
-  bool pilots{false};  // them alone, in place of the study
+  std::string definition;            // for its [analysis]; default: as shipped
+  std::vector<std::string> columns;  // "subject=Participant", of curves and table
+  std::vector<std::string> factors;  // columns of the table; default: condition
+  bool pilots{false};                // them alone, in place of the study
   std::optional<int> jobs;
 };
 int analyze(const AnalyzeOptions& options);

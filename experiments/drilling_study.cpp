@@ -178,7 +178,7 @@ drilling::ProcedureSetup procedure_setup(const BoneDefinition& definition) {
 }
 
 std::vector<std::string> analyze_drillings(const fs::path& folder, const StudyFiles& files,
-                                           int threads) {
+                                           const fs::path& out, int threads) {
   const record::SessionInfo& first = files.first;
   const std::vector<StudyGroup> groups = study_groups(first.definition, first.definition_name);
   drilling::ValidityStudy study;
@@ -197,11 +197,11 @@ std::vector<std::string> analyze_drillings(const fs::path& folder, const StudyFi
   }
   drilling::ValidityResult result = drilling::analyze(study);
   result.remarks = files.remarks;
-  const PictureFolder pictures(folder);
+  const PictureFolder pictures(out);
   result.pictures = visibility_pictures(
       result.procedures, parse_bone_definition(first.definition, first.definition_name),
       pictures.path());
-  drilling::write_validity(result, folder);
+  drilling::write_validity(result, out);
   std::vector<std::string> lines = drilling::summary_lines(result);
   lines.insert(lines.end(), result.remarks.begin(), result.remarks.end());
   return lines;

@@ -38,9 +38,12 @@ analysis::drilling::ProcedureSetup procedure_setup(const record::SessionReader& 
 /// The name of the ratings within a study's folder.
 inline constexpr const char* kRatingsFile = "ratings.csv";
 
-/// Analyses drilling sessions and writes the report into their folder.
+/// Analyses drilling sessions.
+/// @param folder  of the study, where its ratings are
+/// @param out  folder for the report
 /// @returns lines for the terminal
 std::vector<std::string> analyze_drillings(const std::filesystem::path& folder,
-                                           const StudyFiles& files, int threads);
+                                           const StudyFiles& files,
+                                           const std::filesystem::path& out, int threads);
 
 }  // namespace haptrial::experiments

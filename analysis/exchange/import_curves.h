@@ -2,32 +2,40 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "analysis/exchange/export_sessions.h"
+#include "analysis/exchange/import_columns.h"
 #include "analysis/study.h"
 
 namespace haptrial::exchange {
 
-/// A study that something else recorded: a folder of curves (.csv) and a table that says of which
-/// trial each is (docs/guide-analyst.md). The table has a row for each trial and the columns
+/// A study that something else recorded (docs/guide-analyst.md), in one of two forms:
 ///
-///     subject, trial, condition     required
+/// - `folder` holds the curves (.csv), and `table` has a row for each trial;
+/// - without a folder `table` holds everything, a row for each sample.
+///
+/// Columns of the table, each under the name that `columns` gives it:
+///
+///     subject, trial, condition     required; `factors` in place of condition
 ///     file                          both curves, below the folder; or `target` and `applied`
 ///     block, repetition             from 1; 1 where the table has no such column
 ///     phase                         "test" is scored and "training" is not; all are tests without
 ///     rate                          of the curves [Hz], which then need no column of times
 ///     simulated                     true or false; false without
+///
+/// and of the curves, in files of their own or in the table: time [s], target_force and
+/// applied_force [N].
 struct CurveStudy {
-  std::filesystem::path folder;
+  std::filesystem::path folder;  // empty: the table holds the samples
   std::filesystem::path table;
-  std::string time_column{};     // empty: "time"
-  std::string target_column{};   // empty: "target_force" of a `file`, the only other of a `target`
-  std::string applied_column{};  // empty: "applied_force", likewise
+  ImportColumns columns{};
+  std::vector<std::string> factors{};  // names of columns; empty: the one column condition
 };
 
 /// Scores and tests such a study as analyze_study() does that of session files. What only session
 /// files hold (tracking, timing, device, stimulus) stays empty, and StudyResult::curves_from says
-/// so.
+/// so. StudyResult::remarks warns about units and signs that cannot be (import_checks.h).
 /// @throws InputError, with file and line, for whatever a table or curve has that it should not.
 analysis::StudyResult analyze_curves(const CurveStudy& study,
                                      const analysis::ScoreParameters& parameters, int jobs,

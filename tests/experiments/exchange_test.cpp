@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -56,6 +57,7 @@ TEST_F(ExchangeTest, TheShippedStudyComesBackFromItsCurves) {
       run_command(taken + path("report") + " && " + taken + path("again") + " --definition '" +
                   test::shipped_definition().string() + "'");
   ASSERT_EQ(in.status, 0) << in.errors;
+  EXPECT_THAT(in.output, Not(HasSubstr("WARNING")));
   EXPECT_EQ(test::read_text(folder_ / "again/scores.csv"),
             test::read_text(folder_ / "study/scores.csv"));
   EXPECT_EQ(test::read_text(folder_ / "report/scores.csv"),
@@ -68,6 +70,34 @@ TEST_F(ExchangeTest, TheShippedStudyComesBackFromItsCurves) {
   const std::string report = test::read_text(folder_ / "report/report.html");
   EXPECT_THAT(report, HasSubstr("SIMULATED PARTICIPANTS"));
   EXPECT_THAT(report, Not(HasSubstr("Timing of the servo loop")));
+}
+
+TEST_F(ExchangeTest, OneTableWithFactorsAndNamesOfItsOwn) {
+  std::ofstream table(folder_ / "table.csv");
+  table << "Participant,No,training,age,t,wanted,pressed\n";
+  for (int person = 1; person <= 4; ++person) {
+    for (int trial = 1; trial <= 4; ++trial) {
+      for (int k = 0; k < 200; ++k) {
+        const double target = 5.0 + 3.0 * std::sin(0.03 * k + trial);
+        table << person << ',' << trial << ',' << (trial % 2 == 0 ? "haptic" : "visual") << ','
+              << (person % 2 == 0 ? "old" : "young") << ',' << 10.0 * k << ',' << target << ','
+              << target + 0.1 * person + 0.05 * trial << '\n';
+      }
+    }
+  }
+  table.close();
+  const CommandResult done = run_command(
+      "haptrial analyze --table " + path("table.csv") + " --out " + path("report") +
+      " --column subject=Participant --column trial=No --column time=t "
+      "--column target_force=wanted --column applied_force=pressed --factor training --factor age");
+  ASSERT_EQ(done.status, 0) << done.errors;
+  EXPECT_THAT(done.output, HasSubstr("WARNING: implausible times in 16 of 16 trials (1, trial 1: "
+                                     "1990 s with 0.1000 rows a second;"));
+  EXPECT_THAT(test::read_text(folder_ / "report/scores.csv"),
+              HasSubstr("repetition,condition,training,age,score"));
+  EXPECT_THAT(test::read_text(folder_ / "report/scores.csv"),
+              HasSubstr("\n1,1,1,1,\"visual, young\",visual,young,"));
+  EXPECT_THAT(test::read_text(folder_ / "report/report.md"), HasSubstr("implausible times"));
 }
 
 TEST_F(ExchangeTest, EveryFormOfExportWritesANewFolder) {
@@ -93,9 +123,17 @@ TEST_F(ExchangeTest, BadArgumentsGetASentence) {
       {"export " + path("study"), "0 of --bids, --csv and --curves are given"},
       {"export --bids a --csv b " + path("study"), "2 of --bids, --csv and --curves are given"},
       {"export --bids " + path("out") + " " + path("absent.h5"), "no such file"},
-      {"analyze", "none of DIR and --curves are given; allowed: exactly one"},
-      {"analyze --curves x " + path("study"), "both of DIR and --curves are given"},
-      {"analyze --curves x --conditions y", "--out is missing"},
+      {"analyze", "none of DIR, --curves and --table are given; allowed: exactly one"},
+      {"analyze --curves x " + path("study"), "several of DIR, --curves and --table are given"},
+      {"analyze --curves x --table y", "several of DIR, --curves and --table are given"},
+      {"analyze --curves x --out z", "--conditions is missing; --curves needs it"},
+      {"analyze --curves x --conditions y", "--out is missing; --curves needs it"},
+      {"analyze --table x", "--out is missing; --table needs it"},
+      {"analyze --table x --out z", "x: no such file"},
+      {"analyze --table x --out z --conditions y", "--conditions is given without --curves"},
+      {"analyze --table x --out z --pilots", "--pilots is given without a folder of sessions"},
+      {"analyze --column a=b " + path("study"), "--column is given without --curves or --table"},
+      {"analyze --factor a " + path("study"), "--factor is given without --curves or --table"},
       {"analyze --curves x --conditions y --out z", "y"},
       {"analyze " + path("study") + " --out z", "--out is given without --curves"}};
   for (const auto& [line, sentence] : sentences) {

@@ -101,13 +101,18 @@ TEST_F(LiveDefinitionTest, APilotIsMarkedAndAnalysedOnlyWhereItIsAskedFor) {
       "set -e; haptrial dry-run '" + (folder_ / "study.toml").string() +
       "' --subjects 2 --trials 3 --out '" + study + "'; cp '" + file().string() + "' '" + study +
       "/P01.h5'; haptrial analyze '" + study + "'; cp '" + study + "/scores.csv' '" +
-      (folder_ / "without.csv").string() + "'; haptrial analyze --pilots '" + study + "'");
+      (folder_ / "without.csv").string() + "'; haptrial analyze --pilots '" + study +
+      "'; haptrial analyze --pilots '" + study + "'");
   ASSERT_EQ(both.status, 0) << both.errors;
   EXPECT_THAT(both.output, HasSubstr("because the session was a pilot: P01.h5."));
   EXPECT_THAT(both.output, HasSubstr("These are pilot sessions, not the study."));
   EXPECT_THAT(test::read_text(folder_ / "without.csv"), HasSubstr("S02,"));
   EXPECT_THAT(test::read_text(folder_ / "without.csv"), testing::Not(HasSubstr("S03,")));
-  EXPECT_THAT(test::read_text(study + "/scores.csv"), testing::Not(HasSubstr("S02,")));
+  EXPECT_THAT(both.output, HasSubstr("report: " + study + "/pilots/report.html"));
+  EXPECT_THAT(test::read_text(study + "/pilots/scores.csv"), testing::Not(HasSubstr("S02,")));
+  EXPECT_THAT(test::read_text(study + "/pilots/scores.csv"), HasSubstr("\nS01,"));
+  EXPECT_EQ(test::read_text(study + "/scores.csv"), test::read_text(folder_ / "without.csv"))
+      << "the study's own report stays";
 }
 
 }  // namespace

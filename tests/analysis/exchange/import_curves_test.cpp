@@ -119,9 +119,7 @@ TEST_F(ImportCurvesTest, TwoFilesAndColumnsOfOtherNames) {
   put("pressed.csv", curves(0.5, "t_s,x,fz_N\n"));
   put("both.csv", curves(0.5));
   CurveStudy names;
-  names.time_column = "t_s";
-  names.target_column = "wanted_N";
-  names.applied_column = "fz_N";
+  names.columns = ImportColumns({"time=t_s", "target_force=wanted_N", "applied_force=fz_N"});
   const auto two = import(
       "subject,trial,condition,target,applied\nA,1,haptic,wanted.csv,pressed.csv\n", 1, names);
   const auto one = import("subject,trial,condition,file\nA,1,haptic,both.csv\n");
@@ -181,7 +179,7 @@ TEST_F(ImportCurvesTest, BadInputGetsASentence) {
   EXPECT_THAT(refusal("subject,trial,condition,file,target\nA,1,haptic,good.csv,good.csv\n"),
               HasSubstr("file, or both of the others"));
   CurveStudy names;
-  names.applied_column = "force";
+  names.columns = ImportColumns({"applied_force=force"});
   EXPECT_THAT(refusal(good, names), HasSubstr("force"));
   put("nan.csv", "time,target_force,applied_force\n0,1,1\n0.1,nan,1\n");
   EXPECT_THAT(refusal(head + "A,1,haptic,nan.csv\n"), HasSubstr("nan.csv:3"));
