@@ -1,8 +1,10 @@
-// Every command that a document shows is run, in the order in which the document shows it.
+// What the documents say is true: commands work, links lead somewhere, quoted messages and named
+// tests exist.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <filesystem>
 #include <regex>
 #include <sstream>
@@ -69,6 +71,26 @@ TEST(DocsTest, EveryCommandShownWorks) {
   EXPECT_GE(commands, 8) << "the documents lost their commands";
 }
 
+/// "#name" of every heading: lower case, blanks as hyphens, other signs left out.
+std::vector<std::string> anchors(const fs::path& document) {
+  std::vector<std::string> found;
+  std::istringstream text(test::read_text(document));
+  for (std::string line; std::getline(text, line);) {
+    if (const auto title = line.find_first_not_of('#'); title != 0 && title != std::string::npos) {
+      std::string anchor = "#";
+      for (const unsigned char c : line.substr(title + 1)) {
+        if (std::isalnum(c) != 0 || c == '-' || c == '_' || c > 127) {
+          anchor += static_cast<char>(std::tolower(c));
+        } else if (c == ' ') {
+          anchor += '-';
+        }
+      }
+      found.push_back(anchor);
+    }
+  }
+  return found;
+}
+
 TEST(DocsTest, EveryLinkLeadsSomewhere) {
   const std::regex link("\\]\\(([^)# ]+)(#[^)]*)?\\)");
   int links = 0;
@@ -79,6 +101,11 @@ TEST(DocsTest, EveryLinkLeadsSomewhere) {
       if (target.find("://") == std::string::npos) {
         EXPECT_TRUE(fs::exists(document.parent_path() / target)) << document << ": " << target;
         ++links;
+        const std::string anchor = (*it)[2];
+        if (!anchor.empty() && target.ends_with(".md")) {
+          EXPECT_THAT(anchors(document.parent_path() / target), testing::Contains(anchor))
+              << document << ": " << target;
+        }
       }
     }
   }
@@ -103,6 +130,47 @@ TEST(DocsTest, NamedTestsExist) {
       EXPECT_TRUE(std::regex_search(tests, definition)) << document << ": " << (*it)[0];
     }
   }
+}
+
+/// All sources of a folder, texts that go on in the next line joined.
+std::string sources(const char* folder) {
+  std::string all;
+  for (const auto& entry : fs::recursive_directory_iterator(kSource / folder)) {
+    const fs::path extension = entry.path().extension();
+    if (extension == ".cpp" || extension == ".h" || extension == ".html" || extension == ".js") {
+      all += test::read_text(entry.path());
+    }
+  }
+  return std::regex_replace(all, std::regex("\"\\s*\n\\s*\""), "");
+}
+
+TEST(DocsTest, QuotedMessagesAreThoseOfTheProgram) {
+  // "When something goes wrong": what the program says, quoted in the first column.
+  std::string program;
+  for (const char* folder : {"core", "protocols", "analysis", "experiments"}) {
+    program += sources(folder);
+  }
+  std::istringstream page(test::read_text(kSource / "docs/guide-first-participant.md"));
+  const std::regex quoted("`([^`]+)`");
+  const std::regex gap(" *(…|FILE\\S*|\\(No space.*\\)) *|  +");
+  int quotes = 0;
+  bool inside = false;
+  for (std::string line; std::getline(page, line);) {
+    inside = (inside || line == "## When something goes wrong") && !line.starts_with("Tests");
+    if (!inside || !line.starts_with("| ")) {
+      continue;
+    }
+    const std::string cell = line.substr(0, line.find('|', 1));
+    for (std::sregex_iterator it(cell.begin(), cell.end(), quoted), end; it != end; ++it) {
+      const std::string quote = (*it)[1];
+      for (std::sregex_token_iterator part(quote.begin(), quote.end(), gap, -1), last; part != last;
+           ++part) {
+        EXPECT_NE(program.find(part->str()), std::string::npos) << quote << ": " << *part;
+        ++quotes;
+      }
+    }
+  }
+  EXPECT_GE(quotes, 15);
 }
 
 }  // namespace
