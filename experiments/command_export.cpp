@@ -5,6 +5,7 @@
 #include "analysis/exchange/export_bids.h"
 #include "analysis/exchange/export_csv.h"
 #include "analysis/exchange/export_curves.h"
+#include "analysis/wording.h"
 #include "core/base/error.h"
 #include "core/record/session_reader.h"
 #include "experiments/arguments.h"
@@ -19,6 +20,8 @@
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
 namespace {
+
+using analysis::counted;
 
 /// Session files as they are, folders as what they hold.
 std::vector<fs::path> all_files(const std::vector<std::string>& given) {
@@ -61,21 +64,57 @@ void export_as_bids(const ExportOptions& options, const std::vector<fs::path>& f
   const auto done = exchange::export_bids(files, options.bids,
                                           {options.name, options.authors, program_version(), jobs},
                                           [&](std::uint64_t samples) { watch(samples); });
-  const std::string missing =
-      done.missing > 0 ? fmt::format(", {} ticks are missing", done.missing) : "";
-  fmt::print("{} sessions of {} subjects, {} samples{}\ndata set: {}\n", done.sessions,
-             done.subjects, done.samples, missing, options.bids);
+  const std::string missing = done.missing > 0 ? ", missing: " + counted(done.missing, "tick") : "";
+  fmt::print("{} of {}, {}{}\ndata set: {}\n", counted(done.sessions, "session"),
+             counted(done.subjects, "participant"), counted(done.samples, "sample"), missing,
+             options.bids);
 }
 
 void export_as_csv(const ExportOptions& options, const std::vector<fs::path>& files, int jobs) {
   ProgressWatch watch(files);
   const auto done = exchange::export_csv(files, options.csv, {options.samples, jobs},
                                          [&](std::uint64_t samples) { watch(samples); });
-  fmt::print("{} sessions, {} passes, {} samples\ntables: {}\n", done.sessions, done.passes,
-             done.samples, options.csv);
+  fmt::print("{}, {}, {}\ntables: {}\n", counted(done.sessions, "session"),
+             counted(done.passes, "pass"), counted(done.samples, "sample"), options.csv);
 }
 
-void export_as_curves(const ExportOptions& options, const std::vector<fs::path>& files, int jobs) {
+/// A drilling has no target force that somebody recalls.
+void refuse_drillings(const std::vector<fs::path>& files) {
+  for (const fs::path& file : files) {
+    if (record::SessionReader(file).drills()) {
+      throw InputError(
+          fmt::format("{}: is a drilling session, which has no target force; --curves exports "
+                      "sessions of force training",
+                      file.string()));
+    }
+  }
+}
+
+/// Curves do not say that they are of a pilot, so pilots must not stand among those of the study.
+std::vector<fs::path> without_pilots(const std::vector<fs::path>& files) {
+  std::vector<fs::path> study;
+  std::vector<std::string> pilots;
+  for (const fs::path& file : files) {
+    if (record::SessionReader(file).info().pilot) {
+      pilots.push_back(file.filename().string());
+    } else {
+      study.push_back(file);
+    }
+  }
+  if (pilots.empty()) {
+    return files;
+  }
+  if (study.empty()) {
+    fmt::print("These are pilot sessions, not the study.\n");
+    return files;
+  }
+  fmt::print("Not exported, because the session was a pilot: {}.\n", fmt::join(pilots, ", "));
+  return study;
+}
+
+void export_as_curves(const ExportOptions& options, const std::vector<fs::path>& given, int jobs) {
+  refuse_drillings(given);
+  const std::vector<fs::path> files = without_pilots(given);
   ProgressWatch watch(files);
   refuse_mixed(files);  // one definition says how all of them are scored
   const record::SessionReader reader(files.front());
@@ -83,8 +122,8 @@ void export_as_curves(const ExportOptions& options, const std::vector<fs::path>&
       parse_definition(reader.info().definition, reader.info().definition_name);
   const auto done = exchange::export_curves(files, options.curves, definition.scoring, jobs,
                                             [&](std::uint64_t samples) { watch(samples); });
-  fmt::print("{} scored trials of {} subjects\ncurves: {}\n", done.trials, done.subjects,
-             options.curves);
+  fmt::print("{} of {}\ncurves: {}\n", counted(done.trials, "scored trial"),
+             counted(done.subjects, "participant"), options.curves);
 }
 
 }  // namespace

@@ -48,14 +48,29 @@ bool any_simulated(std::span<const Session> sessions) {
                      [](const auto& s) { return s.source.info.simulated; });
 }
 
-std::string experiment_name(const Session& session) {
-  return std::filesystem::path(session.source.info.definition_name).stem().string();
+bool any_drills(std::span<const Session> sessions) {
+  return std::any_of(sessions.begin(), sessions.end(),
+                     [](const auto& s) { return s.source.drills; });
 }
 
 constexpr const char* kSimulated =
     "SIMULATED PARTICIPANTS: these data come from virtual subjects. They say how the experiment "
     "and "
     "its analysis work, not how people behave.";
+
+constexpr const char* kPilot = "PILOT SESSION: no part of the study.";
+
+std::string participant_pilots(std::span<const Session> sessions, const Session& participant) {
+  std::size_t all = 0;
+  std::size_t pilots = 0;
+  for (const Session& session : sessions) {
+    if (session.subject == participant.subject) {
+      ++all;
+      pilots += session.source.info.pilot ? 1 : 0;
+    }
+  }
+  return pilots == 0 ? "false" : pilots == all ? "true" : "some";
+}
 
 // ---- participants
 
@@ -89,12 +104,18 @@ std::vector<ColumnDoc> participant_docs(std::span<const Session> sessions) {
           {"simulated",
            "",
            "whether the participant is a virtual subject",
-           {{"true", "SIMULATED: a virtual subject"}, {"false", "a person"}}}};
+           {{"true", "SIMULATED: a virtual subject"}, {"false", "a person"}}},
+          {"pilot",
+           "",
+           "whether the participant's sessions are pilots; the recordings say which",
+           {{"true", "all are pilots, no part of the study"},
+            {"some", "some are pilots"},
+            {"false", "none is a pilot"}}}};
 }
 
 // ---- events
 
-std::vector<ColumnDoc> event_docs() {
+std::vector<ColumnDoc> event_docs(bool drillings) {
   const auto pass = [](const char* name) { return doc_of(record::trials_schema(), name); };
   std::vector<ColumnDoc> docs{
       {"onset", "s",
@@ -105,7 +126,7 @@ std::vector<ColumnDoc> event_docs() {
        "the ideal movement and force of the block, below stimuli/: block, time [s] since the run "
        "began, position_x, position_y, position_z [m], force [N]"},
       {"pass", "", "number of the pass from 0, as in the recording"},
-      pass("phase"),
+      phase_doc(drillings),
       pass("trial"),
       pass("block"),
       pass("repetition"),
@@ -113,12 +134,11 @@ std::vector<ColumnDoc> event_docs() {
       pass("practice"),
       pass("status"),
       pass("stimulus_seed"),
-      {"run_onset", "s", "when the trajectory began to run; the part that is scored"},
+      {"run_onset", "s", "when the run along the trajectory, or the drilling, began"},
       {"run_duration", "s", "how long it ran"},
       {"event", "", "what happened, in one word; n/a for a pass"},
       {"text", "", "details of the event"}};
-  docs[5].levels = {{"training", "the pattern is presented"}, {"test", "it is recalled"}};
-  docs[10].levels = {{"0", "part of the study"}, {"1", "not scored"}};
+  docs[10].levels = {{"0", "part of the study"}, {"1", "practice, never scored"}};
   docs[11].levels = {{"completed", "came to its end"}, {"aborted", "was broken off"}};
   return docs;
 }
@@ -180,7 +200,8 @@ std::string Session::stimulus(std::int32_t block) const {
 
 std::string dataset_description(std::span<const Session> sessions, const BidsOptions& options) {
   const bool simulated = any_simulated(sessions);
-  const std::string name = options.name.empty() ? experiment_name(sessions.front()) : options.name;
+  const std::string name =
+      options.name.empty() ? experiment_name(sessions.front().source.info) : options.name;
   Json json;
   json["Name"] = (simulated ? "SIMULATED: " : "") + name;
   json["BIDSVersion"] = "1.10.0";
@@ -200,33 +221,44 @@ std::string readme(std::span<const Session> sessions) {
   if (any_simulated(sessions)) {
     text = std::string(kSimulated) + "\n\n";
   }
+  const bool drillings = any_drills(sessions);
+  const char* passes = drillings ? "drillings (a trial has more passes if it was interrupted)"
+                                 : "passes along the trajectory (a trial is a training pass and a "
+                                   "test pass)";
+  const char* stimuli =
+      drillings ? "" : "stimuli/           the ideal movement and target force of each block\n";
+  const char* force =
+      drillings ? "" : " The learnt force points down\nand is given as a magnitude.";
   text += fmt::format(
       "{}: a force-feedback experiment, exported from session files of haptrial.\n\n"
-      "beh/*_events.tsv   passes along the trajectory (a trial is a training pass and a test "
-      "pass)\n"
+      "beh/*_events.tsv   {}\n"
       "                   and what else happened\n"
       "beh/*_physio.*     the recording: a row for each tick of the servo loop, without heading;\n"
       "                   columns, units and rate stand in the .json beside it\n"
-      "stimuli/           the ideal movement and target force of each block\n"
+      "{}"
       "code/              the definition of the experiment\n\n"
       "Row k of a recording is tick k after the one of StartTime, also where the session file\n"
       "lacks the tick (a row of n/a), so an onset in the events is exact; the column time is what\n"
       "the clock read. World frame: origin at the centre of the device's workspace, x to the\n"
-      "participant's right, y up, z towards the participant. The learnt force points down and is\n"
-      "given as a magnitude. Reals have 32 bits, as in the session files. Left out on purpose:\n"
-      "consent and free notes about participants.\n",
-      experiment_name(sessions.front()));
+      "participant's right, y up, z towards the participant.{} Reals have 32 bits,\n"
+      "as in the session files. Left out on purpose: consent and free notes about participants.\n"
+      "Practice passes have practice = 1 in the events, and negative numbers of blocks. "
+      "Recordings\n"
+      "of pilot sessions have Pilot = true in the .json beside them.\n",
+      experiment_name(sessions.front().source.info), passes, stimuli, force);
   return text;
 }
 
 std::string participants_table(std::span<const Session> sessions) {
   std::string text = heading(participant_docs(sessions), Delimited::kTsv);
   RowText row(text, Delimited::kTsv);
-  for (const auto& [source, subject, session, task] : sessions) {
+  for (const Session& session : sessions) {
+    const ExportSession& source = session.source;
     if (source.number == 1) {
       const auto& person = source.info.participant;
-      row.add(subject).add(source.info.subject).add(person.sex).add(person.handedness);
-      row.add(person.age_band).add(source.info.simulated ? "true" : "false").end();
+      row.add(session.subject).add(source.info.subject).add(person.sex).add(person.handedness);
+      row.add(person.age_band).add(truth(source.info.simulated));
+      row.add(participant_pilots(sessions, session)).end();
     }
   }
   return text;
@@ -269,21 +301,27 @@ std::string events_table(const Session& session, const record::SessionReader& re
   }
   std::stable_sort(lines.begin(), lines.end(),
                    [](const auto& a, const auto& b) { return a.onset < b.onset; });
-  std::string text = heading(event_docs(), Delimited::kTsv);
+  std::string text = heading(event_docs(session.source.drills), Delimited::kTsv);
   for (const auto& line : lines) {
     text += line.text;
   }
   return text;
 }
 
-std::string events_sidecar() { return sidecar_of(event_docs()); }
+std::string events_sidecar(std::span<const Session> sessions) {
+  return sidecar_of(event_docs(any_drills(sessions)));
+}
 
 std::string recording_sidecar(const Session& session, const WrittenSamples& samples) {
   const auto& info = session.source.info;
   Json json;
-  json["TaskName"] = session.task;
-  if (info.simulated) {
-    json["TaskDescription"] = kSimulated;
+  const std::string name = experiment_name(info);
+  json["TaskName"] = bids_label(name) == session.task ? name : session.task;
+  const std::string marks =
+      fmt::format("{}{}{}", info.simulated ? kSimulated : "",
+                  info.simulated && info.pilot ? " " : "", info.pilot ? kPilot : "");
+  if (!marks.empty()) {
+    json["TaskDescription"] = marks;
   }
   json["SamplingFrequency"] = info.rate;
   json["StartTime"] = static_cast<double>(samples.first_sequence) / info.rate;
@@ -295,6 +333,7 @@ std::string recording_sidecar(const Session& session, const WrittenSamples& samp
   json["SoftwareVersions"] =
       fmt::format("haptrial {} ({})", info.program_version, info.program_commit);
   json["Simulated"] = info.simulated;
+  json["Pilot"] = info.pilot;
   json["Clock"] = info.clock;
   json["Seed"] = std::to_string(info.seed);  // 64 bits are more than a double holds
   json["DeviceMaxForce"] = info.device_max_force;

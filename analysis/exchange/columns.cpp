@@ -27,7 +27,7 @@ std::vector<ColumnDoc> samples() {
       doc.levels = {{"0", "idle"},
                     {"1", "approach to the start of the trajectory"},
                     {"2", "wait there"},
-                    {"3", "run along the trajectory, the part that is scored"},
+                    {"3", "run along the trajectory, the part that is scored; or drilling"},
                     {"4", "return"}};
     } else if (doc.name == "saturated") {
       doc.levels = {{"0", "no"}, {"1", "the force limit was reached"}};
@@ -49,6 +49,15 @@ ColumnDoc doc_of(const record::TableSchema& schema, std::string_view column) {
     }
   }
   throw std::invalid_argument(std::string("no column ") + std::string(column));
+}
+
+ColumnDoc phase_doc(bool drillings) {
+  ColumnDoc doc = doc_of(record::trials_schema(), "phase");
+  doc.levels = {{"training", "the pattern is presented"}, {"test", "the pattern is recalled"}};
+  if (drillings) {
+    doc.levels.emplace_back("drilling", "bone is drilled");
+  }
+  return doc;
 }
 
 std::string heading(const std::vector<ColumnDoc>& docs, Delimited kind) {

@@ -25,6 +25,9 @@ struct ColumnDoc {
 /// @throws std::invalid_argument when the schema has none.
 ColumnDoc doc_of(const record::TableSchema& schema, std::string_view column);
 
+/// The phase of a pass. @param drillings  whether there are any
+ColumnDoc phase_doc(bool drillings);
+
 /// The names as the heading of a table.
 std::string heading(const std::vector<ColumnDoc>& docs, Delimited kind);
 

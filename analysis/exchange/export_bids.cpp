@@ -19,11 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using bids::Session;
 
-/// "force_training" of "force_training.toml".
-std::string experiment_of(const ExportSession& session) {
-  return fs::path(session.info.definition_name).stem().string();
-}
-
 std::string label_of(const std::string& what, const std::string& text, const fs::path& file) {
   const std::string label = bids_label(text);
   if (label.empty()) {
@@ -33,6 +28,13 @@ std::string label_of(const std::string& what, const std::string& text, const fs:
         file.string(), what, text));
   }
   return label;
+}
+
+/// Of the experiment's name, or of its file's when the name has no letter or digit of ASCII.
+std::string task_of(const ExportSession& session) {
+  const std::string label = bids_label(experiment_name(session.info));
+  const fs::path file(session.info.definition_name);
+  return label.empty() ? label_of("experiment", file.stem().string(), session.file) : label;
 }
 
 void refuse_other_study(const ExportSession& session, const ExportSession& first) {
@@ -66,7 +68,7 @@ std::vector<Session> named_sessions(std::span<const fs::path> files) {
                       source.file.string(), source.info.subject, label, twin->second));
     }
     sessions.push_back({source, "sub-" + label, several ? fmt::format("ses-{}", source.number) : "",
-                        label_of("experiment", experiment_of(source), source.file)});
+                        task_of(source)});
   }
   return sessions;
 }
@@ -101,7 +103,7 @@ WrittenSamples write_session(const NewFolder& out, const Session& session, Count
 
 /// Every version that a session was recorded with; more than one where texts, say, were changed.
 void write_definitions(const NewFolder& out, std::span<const Session> sessions) {
-  const std::string stem = "code/" + bids_label(experiment_of(sessions.front().source));
+  const std::string stem = "code/" + sessions.front().task;
   std::set<std::string> written;
   for (const Session& session : sessions) {
     if (const auto& text = session.source.info.definition; written.insert(text).second) {
@@ -118,7 +120,7 @@ void write_whole(const NewFolder& out, std::span<const Session> sessions,
   out.write("README", bids::readme(sessions));
   out.write("participants.tsv", bids::participants_table(sessions));
   out.write("participants.json", bids::participants_sidecar(sessions));
-  out.write(fmt::format("task-{}_events.json", first.task), bids::events_sidecar());
+  out.write(fmt::format("task-{}_events.json", first.task), bids::events_sidecar(sessions));
   write_definitions(out, sessions);
   if (first.session.empty()) {
     return;

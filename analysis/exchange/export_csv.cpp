@@ -24,7 +24,17 @@ const ColumnDoc kSession{"session", "", "number of the participant's session, fr
 const ColumnDoc kIsSimulated{
     "simulated", "", "whether the participant is a virtual subject", {{"true", "SIMULATED"}}};
 
+const ColumnDoc kPilot{
+    "pilot", "", "whether the session is no part of the study", {{"true", "a pilot"}}};
+
 ColumnDoc pass_doc(const char* name) { return doc_of(record::trials_schema(), name); }
+
+/// With the meaning of both values.
+ColumnDoc practice_doc() {
+  ColumnDoc doc = pass_doc("practice");
+  doc.levels = {{"0", "part of the study"}, {"1", "practice, never scored"}};
+  return doc;
+}
 
 Docs session_docs() {
   return {kSubject,
@@ -39,27 +49,32 @@ Docs session_docs() {
           {"definition", "", "file of the experiment's definition"},
           {"program_version", "", "what recorded the session"},
           {"samples", "", "rows of /samples"},
-          {"pilot", "", "whether the session is no part of the study", {{"true", "a pilot"}}}};
+          {"passes", "", "rows of trials.csv; 0 of a session recovered without any"},
+          kPilot,
+          {"sex", "", "as the participant gave it"},
+          {"handedness", "", "as the participant gave it"},
+          {"age_band", "", "range of ages in years, as the participant gave it"}};
 }
 
-Docs trial_docs() {
+Docs trial_docs(bool drillings) {
   return {kSubject,
           kSession,
           {"pass", "", "number of the pass from 0, as in the samples"},
           pass_doc("trial"),
           pass_doc("condition"),
-          pass_doc("phase"),
+          phase_doc(drillings),
           pass_doc("block"),
           pass_doc("repetition"),
           pass_doc("attempt"),
-          pass_doc("practice"),
+          practice_doc(),
           pass_doc("status"),
           pass_doc("stimulus_seed"),
           pass_doc("first_sample"),
           pass_doc("last_sample"),
           {"onset", "s", "since the first tick of the session"},
           {"duration", "s", "with approach, wait and return"},
-          kIsSimulated};
+          kIsSimulated,
+          kPilot};
 }
 
 Docs happening_docs() {
@@ -85,9 +100,12 @@ Docs score_docs() {
 
 void add_session(RowText& row, const ExportSession& s) {
   row.add(s.info.subject).add(s.number).add(s.file.filename().string());
-  row.add(s.info.simulated ? "true" : "false").add(s.info.device).add(s.info.clock);
+  row.add(truth(s.info.simulated)).add(s.info.device).add(s.info.clock);
   row.add(s.info.rate).add(s.info.seed).add(s.info.start_utc).add(s.info.definition_name);
-  row.add(s.info.program_version).add(s.samples).add(s.info.pilot ? "true" : "false").end();
+  row.add(s.info.program_version).add(s.samples);
+  row.add(static_cast<std::uint64_t>(s.passes)).add(truth(s.info.pilot));
+  const auto& person = s.info.participant;
+  row.add(person.sex).add(person.handedness).add(person.age_band).end();
 }
 
 void add_pass(RowText& row, const ExportSession& s, std::size_t index,
@@ -101,7 +119,7 @@ void add_pass(RowText& row, const ExportSession& s, std::size_t index,
   row.add(pass.stimulus_seed).add(pass.first_sample).add(pass.last_sample);
   row.add(static_cast<double>(pass.first_sample) / s.info.rate);
   row.add(static_cast<double>(ticks) / s.info.rate);
-  row.add(s.info.simulated ? "true" : "false").end();
+  row.add(truth(s.info.simulated)).add(truth(s.info.pilot)).end();
 }
 
 /// The three small tables.
@@ -109,7 +127,7 @@ class Tables {
  public:
   Tables()
       : sessions(heading(session_docs(), Delimited::kCsv)),
-        trials(heading(trial_docs(), Delimited::kCsv)),
+        trials(heading(trial_docs(false), Delimited::kCsv)),
         events(heading(happening_docs(), Delimited::kCsv)) {}
 
   void add(const ExportSession& session) {
@@ -153,14 +171,15 @@ nlohmann::ordered_json described(const char* what, const Docs& docs) {
   return json;
 }
 
-std::string dictionary(bool samples, bool simulated) {
+std::string dictionary(bool samples, bool simulated, bool drillings) {
   nlohmann::ordered_json json;
   json["simulated"] = simulated;
   json["missing"] = "an empty field";
   auto& files = json["files"];
   files["sessions.csv"] = described("a row for each session", session_docs());
   files["trials.csv"] =
-      described("a row for each pass; a trial is a training pass and a test pass", trial_docs());
+      described("a row for each pass; a trial is a training pass and a test pass, or a drilling",
+                trial_docs(drillings));
   files["events.csv"] = described("what happened when", happening_docs());
   if (samples) {
     files["samples/*.csv.gz"] = described("a row for each tick of the servo loop", sample_docs());
@@ -215,15 +234,17 @@ CsvSummary export_csv(std::span<const fs::path> files, const fs::path& folder,
   NewFolder out(folder);
   Tables tables;
   bool simulated = false;
+  bool drillings = false;
   for (const auto& session : sessions) {
     tables.add(session);
     simulated = simulated || session.info.simulated;
+    drillings = drillings || session.drills;
     watch(0);
   }
   out.write("sessions.csv", tables.sessions);
   out.write("trials.csv", tables.trials);
   out.write("events.csv", tables.events);
-  out.write("dictionary.json", dictionary(options.samples, simulated));
+  out.write("dictionary.json", dictionary(options.samples, simulated, drillings));
   if (options.samples) {
     const auto stems = file_stems(sessions);
     share_out(

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "core/base/error.h"
+#include "core/base/table.h"
 #include "core/record/session_reader.h"
 
 namespace haptrial::exchange {
@@ -96,7 +97,8 @@ std::vector<ExportSession> sessions_to_export(std::span<const fs::path> files) {
   std::vector<ExportSession> sessions;
   for (const auto& file : files) {
     const record::SessionReader reader(file);
-    sessions.push_back({file, reader.info(), reader.sample_count()});
+    sessions.push_back(
+        {file, reader.info(), reader.sample_count(), reader.passes().size(), reader.drills()});
   }
   refuse_twins(sessions);
   std::sort(sessions.begin(), sessions.end(), [](const auto& a, const auto& b) {
@@ -111,6 +113,21 @@ std::vector<ExportSession> sessions_to_export(std::span<const fs::path> files) {
     session.of = count[session.info.subject];
   }
   return sessions;
+}
+
+std::string experiment_name(const record::SessionInfo& info) {
+  const std::string of_file = fs::path(info.definition_name).stem().string();
+  try {
+    Table root = Table::parse(info.definition, info.definition_name);
+    if (root.has("experiment")) {
+      Table experiment = root.table("experiment");
+      const std::string name = experiment.has("name") ? experiment.text("name") : "";
+      return name.empty() ? of_file : name;
+    }
+  } catch (const InputError&) {
+    // A session file may hold any text: then it has no name.
+  }
+  return of_file;
 }
 
 std::uint64_t total_samples(std::span<const ExportSession> sessions) {

@@ -17,13 +17,21 @@ struct ExportSession {
   std::filesystem::path file;
   record::SessionInfo info;
   std::uint64_t samples{0};  // rows of /samples
-  int number{1};             // among this subject's sessions in order of start, from 1
-  int of{1};                 // how many this subject has
+  std::size_t passes{0};     // 0 of a session that was recovered without any
+  bool drills{false};
+  int number{1};  // among this subject's sessions in order of start, from 1
+  int of{1};      // how many this subject has
 };
 
 /// @returns the sessions by subject, then start.
 /// @throws InputError when there is no file, one cannot be read, or one is given twice.
 std::vector<ExportSession> sessions_to_export(std::span<const std::filesystem::path> files);
+
+/// The experiment's name as its definition has it, or without one that of the definition's file.
+std::string experiment_name(const record::SessionInfo& info);
+
+/// "true", or "false".
+inline const char* truth(bool value) { return value ? "true" : "false"; }
 
 /// Samples of all sessions together.
 std::uint64_t total_samples(std::span<const ExportSession> sessions);

@@ -12,6 +12,7 @@
 
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
+#include "tests/experiments/small_drilling.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial {
@@ -50,7 +51,7 @@ TEST_F(ExchangeTest, TheShippedStudyComesBackFromItsCurves) {
   const CommandResult out = run_command("haptrial export --curves " + path("curves") + " " +
                                         path("study") + " && haptrial analyze " + path("study"));
   ASSERT_EQ(out.status, 0) << out.errors;
-  EXPECT_THAT(out.output, HasSubstr("72 scored trials of 4 subjects"));
+  EXPECT_THAT(out.output, HasSubstr("72 scored trials of 4 participants"));
   const std::string taken = "haptrial analyze --curves " + path("curves") + " --conditions " +
                             path("curves/conditions.csv") + " --out ";
   const CommandResult in =
@@ -115,6 +116,34 @@ TEST_F(ExchangeTest, EveryFormOfExportWritesANewFolder) {
     EXPECT_THAT(again.errors, HasSubstr("is not empty; allowed: a new or an empty folder"));
     fs::remove_all(folder_ / "out");
   }
+}
+
+TEST_F(ExchangeTest, DrillingsAreExportedButHaveNoCurves) {
+  const fs::path definition = test::write_small_drilling(folder_.path(), 1.0);
+  const CommandResult dry = run_command("haptrial dry-run '" + definition.string() +
+                                        "' --subjects 1 --out " + path("study"));
+  ASSERT_EQ(dry.status, 0) << dry.errors;
+  const CommandResult curves =
+      run_command("haptrial export --curves " + path("curves") + " " + path("study"));
+  EXPECT_EQ(curves.status, 2);
+  EXPECT_THAT(curves.errors, HasSubstr("S01.h5: is a drilling session, which has no target force; "
+                                       "--curves exports sessions of force training"));
+  EXPECT_EQ(std::count(curves.errors.begin(), curves.errors.end(), '\n'), 1) << curves.errors;
+  EXPECT_FALSE(fs::exists(folder_ / "curves"));
+  const CommandResult others =
+      run_command("set -e; haptrial export --bids " + path("bids") + " " + path("study") +
+                  "; haptrial export --csv " + path("csv") + " --samples " + path("study"));
+  ASSERT_EQ(others.status, 0) << others.errors;
+  for (const auto& entry : fs::directory_iterator(folder_ / "bids")) {
+    if (entry.path().filename().string().ends_with("_events.json")) {
+      const auto events = nlohmann::json::parse(test::read_text(entry.path()));
+      EXPECT_EQ(events["phase"]["Levels"]["drilling"], "bone is drilled");
+    }
+  }
+  EXPECT_THAT(test::read_text(folder_ / "bids/README"), Not(HasSubstr("training pass")));
+  const auto tables = nlohmann::json::parse(test::read_text(folder_ / "csv/dictionary.json"));
+  const auto& phase = tables["files"]["trials.csv"]["columns"]["phase"];
+  EXPECT_EQ(phase["levels"]["drilling"], "bone is drilled");
 }
 
 TEST_F(ExchangeTest, BadArgumentsGetASentence) {

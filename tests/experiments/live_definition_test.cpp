@@ -113,6 +113,14 @@ TEST_F(LiveDefinitionTest, APilotIsMarkedAndAnalysedOnlyWhereItIsAskedFor) {
   EXPECT_THAT(test::read_text(study + "/pilots/scores.csv"), HasSubstr("\nS01,"));
   EXPECT_EQ(test::read_text(study + "/scores.csv"), test::read_text(folder_ / "without.csv"))
       << "the study's own report stays";
+  const std::string curves = (folder_ / "curves").string();
+  const CommandResult out =
+      test::run_command("haptrial export --curves '" + curves + "' '" + study + "'");
+  EXPECT_THAT(out.output, HasSubstr("Not exported, because the session was a pilot: P01.h5."));
+  EXPECT_THAT(test::read_text(curves + "/conditions.csv"), HasSubstr("\nS02,"));
+  const CommandResult alone_out = test::run_command("haptrial export --curves '" + curves +
+                                                    "-of-pilot' '" + study + "/P01.h5'");
+  EXPECT_THAT(alone_out.output, HasSubstr("These are pilot sessions, not the study."));
 }
 
 }  // namespace

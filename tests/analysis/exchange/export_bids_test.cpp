@@ -122,6 +122,8 @@ TEST_F(ExportBidsTest, TheOfficialValidatorFindsNoErrors) {
   write("a.h5", first);
   write("b.h5", {.subject = "P-01", .start_utc = "2026-11-21T09:30:00Z"});
   write("c.h5", {.subject = "P_2", .gap_at = 100, .gap = 3, .odd_values = true});
+  write("d.h5", {.subject = "P_3", .trials = 0, .pilot = true});
+  write("e.h5", {.subject = "P_4", .pilot = true, .practice = 1, .ticks_of_no_pass = 5});
   run({.name = "A study", .authors = {"A. Author", "B. Author"}, .program_version = "0.1.0"});
   if (shell("command -v node") != 0) {
     GTEST_SKIP() << "there is no node";
@@ -135,7 +137,7 @@ TEST_F(ExportBidsTest, TheOfficialValidatorFindsNoErrors) {
   const std::string validator = "node '" + output_.substr(0, output_.find('\n')) + "'";
   EXPECT_EQ(shell(validator + quoted(folder_ / "out")), 0) << output_;
   EXPECT_THAT(output_, Not(HasSubstr("[ERR]")));
-  EXPECT_THAT(output_, HasSubstr("2 - Subjects"));
+  EXPECT_THAT(output_, HasSubstr("4 - Subjects"));
   // It does look: without the rate of a recording it finds an error.
   const auto sidecar = folder_ / "out/sub-P2/ses-1/beh/sub-P2_ses-1_task-smallstudy_physio.json";
   std::string text = file_text(sidecar);
@@ -169,13 +171,83 @@ TEST_F(ExportBidsTest, ASimulatedParticipantIsMarkedEverywhere) {
   const fs::path out = folder_ / "out";
   EXPECT_THAT(file_text(out / "dataset_description.json"), HasSubstr("\"SIMULATED: small_study\""));
   EXPECT_THAT(file_text(out / "README"), testing::StartsWith("SIMULATED PARTICIPANTS"));
-  EXPECT_THAT(file_text(out / "participants.tsv"), HasSubstr("sub-P1\tP1\tn/a\tn/a\tn/a\ttrue\n"));
-  EXPECT_THAT(file_text(out / "participants.tsv"), HasSubstr("sub-P2\tP2\tn/a\tn/a\tn/a\tfalse\n"));
+  EXPECT_THAT(file_text(out / "participants.tsv"),
+              HasSubstr("sub-P1\tP1\tn/a\tn/a\tn/a\ttrue\tfalse\n"));
+  EXPECT_THAT(file_text(out / "participants.tsv"),
+              HasSubstr("sub-P2\tP2\tn/a\tn/a\tn/a\tfalse\tfalse\n"));
   const auto sidecar = [&](const std::string& name) {
     return file_text(out / name / "beh" / (name + "_task-smallstudy_physio.json"));
   };
   EXPECT_THAT(sidecar("sub-P1"), HasSubstr("\"TaskDescription\": \"SIMULATED PARTICIPANTS"));
   EXPECT_THAT(sidecar("sub-P2"), Not(HasSubstr("SIMULATED")));
+}
+
+TEST_F(ExportBidsTest, TheTaskIsTheExperimentsName) {
+  const std::string definition = "[experiment]\nname = \"Force & recall, part_2\"\n";
+  write("a.h5", {.definition = definition});
+  run();
+  const fs::path out = folder_ / "out";
+  EXPECT_TRUE(fs::exists(out / "task-Forcerecallpart2_events.json"));
+  EXPECT_TRUE(fs::exists(out / "sub-P01/beh/sub-P01_task-Forcerecallpart2_events.tsv"));
+  EXPECT_TRUE(fs::exists(out / "code/Forcerecallpart2.toml"));
+  EXPECT_THAT(file_text(out / "sub-P01/beh/sub-P01_task-Forcerecallpart2_physio.json"),
+              HasSubstr("\"TaskName\": \"Force & recall, part_2\""));
+  EXPECT_THAT(file_text(out / "dataset_description.json"),
+              HasSubstr("\"SIMULATED: Force & recall, part_2\""));
+}
+
+TEST_F(ExportBidsTest, ANameWithoutALetterOfAsciiGivesWayToThatOfTheFile) {
+  write("a.h5", {.definition = "[experiment]\nname = \"力覚\"\n"});
+  run();
+  EXPECT_TRUE(fs::exists(folder_ / "out/task-smallstudy_events.json"));
+  EXPECT_THAT(file_text(folder_ / "out/sub-P01/beh/sub-P01_task-smallstudy_physio.json"),
+              HasSubstr("\"TaskName\": \"smallstudy\""));
+}
+
+TEST_F(ExportBidsTest, APilotIsMarked) {
+  write("a.h5", {.subject = "P1", .pilot = true});
+  write("b.h5", {.subject = "P2", .simulated = false});
+  write("c.h5",
+        {.subject = "P2", .simulated = false, .start_utc = "2026-11-21T09:30:00Z", .pilot = true});
+  write("d.h5", {.subject = "P3"});
+  run();
+  const fs::path out = folder_ / "out";
+  const std::string people = file_text(out / "participants.tsv");
+  EXPECT_THAT(people, HasSubstr("sub-P1\tP1\tn/a\tn/a\tn/a\ttrue\ttrue\n"));
+  EXPECT_THAT(people, HasSubstr("sub-P2\tP2\tn/a\tn/a\tn/a\tfalse\tsome\n"));
+  EXPECT_THAT(people, HasSubstr("sub-P3\tP3\tn/a\tn/a\tn/a\ttrue\tfalse\n"));
+  const auto sidecar = [&](const std::string& subject, const std::string& session) {
+    return file_text(out / subject / session / "beh" /
+                     (subject + "_" + session + "_task-smallstudy_physio.json"));
+  };
+  EXPECT_THAT(sidecar("sub-P1", "ses-1"), HasSubstr("how people behave. PILOT SESSION"));
+  EXPECT_THAT(sidecar("sub-P2", "ses-1"), HasSubstr("\"Pilot\": false"));
+  EXPECT_THAT(sidecar("sub-P2", "ses-1"), Not(HasSubstr("PILOT")));
+  EXPECT_THAT(sidecar("sub-P2", "ses-2"), HasSubstr("\"Pilot\": true"));
+  EXPECT_THAT(sidecar("sub-P2", "ses-2"), HasSubstr("\"TaskDescription\": \"PILOT SESSION"));
+}
+
+TEST_F(ExportBidsTest, PracticeIsMarked) {
+  write("a.h5", {.trials = 2, .practice = 1});
+  run();
+  expect_equal_to_the_files();
+  const std::string events =
+      file_text(folder_ / "out/sub-P01/beh/sub-P01_task-smallstudy_events.tsv");
+  EXPECT_THAT(events, HasSubstr("\tsub-P01_practice-01.tsv.gz\t0\ttraining\t1\t-1\t1\t1\t1\t"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/stimuli/sub-P01_practice-01.tsv.gz"));
+  EXPECT_THAT(file_text(folder_ / "out/task-smallstudy_events.json"),
+              HasSubstr("\"1\": \"practice, never scored\""));
+}
+
+TEST_F(ExportBidsTest, ASessionWithoutPassesIsListed) {
+  write("a.h5", {.subject = "P1", .trials = 0});
+  write("b.h5", {.subject = "P2", .trials = 0, .ticks_of_no_pass = 30});
+  write("c.h5", {.subject = "P3"});
+  EXPECT_EQ(run().samples, 30u + 6u * (kTicksOfPass + 100));
+  const fs::path out = folder_ / "out";
+  EXPECT_THAT(file_text(out / "participants.tsv"), HasSubstr("\nsub-P1\tP1\t"));
+  EXPECT_THAT(file_text(out / "sub-P1/beh/sub-P1_task-smallstudy_events.tsv"), HasSubstr("notice"));
+  EXPECT_TRUE(fs::exists(out / "sub-P1/beh/sub-P1_task-smallstudy_physio.tsv.gz"));
 }
 
 TEST_F(ExportBidsTest, WhatAParticipantSaidStaysOut) {

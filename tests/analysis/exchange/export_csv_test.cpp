@@ -5,7 +5,9 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "analysis/scores_csv.h"
 #include "core/base/file_text.h"
@@ -98,6 +100,85 @@ TEST(ExportCsvTest, SamplesAreLeftOutUnlessAskedFor) {
   EXPECT_THAT(file_text(folder / "out/dictionary.json"), HasSubstr("\"simulated\": true"));
   EXPECT_THAT(file_text(folder / "out/trials.csv"),
               HasSubstr("\nP01,1,1,1,haptic,test,1,1,1,0,completed,9007199254740994,"));
+}
+
+/// The fields of each row of a table without quotes, by the names of its columns.
+std::vector<std::map<std::string, std::string>> rows_of(const fs::path& file) {
+  std::istringstream lines(file_text(file));
+  const auto fields = [](const std::string& line) {
+    std::vector<std::string> all(1);
+    for (const char c : line) {
+      c == ',' ? all.emplace_back() : all.back() += c;
+    }
+    return all;
+  };
+  std::string line;
+  std::getline(lines, line);
+  const auto names = fields(line);
+  std::vector<std::map<std::string, std::string>> rows;
+  while (std::getline(lines, line)) {
+    const auto values = fields(line);
+    EXPECT_EQ(values.size(), names.size()) << line;
+    rows.emplace_back();
+    for (std::size_t i = 0; i < std::min(names.size(), values.size()); ++i) {
+      rows.back()[names[i]] = values[i];
+    }
+  }
+  return rows;
+}
+
+TEST(ExportCsvTest, SessionsSayWhoTookPartAndWhetherInAPilot) {
+  const test::TemporaryFolder folder;
+  const std::vector<fs::path> files{folder / "1.h5", folder / "2.h5"};
+  write_session(files[0], {.subject = "P01", .person = {"P01", "left", "18-25", "female", "", ""}});
+  write_session(files[1], {.subject = "P02", .trials = 2, .pilot = true});
+  export_csv(files, folder / "out", {}, ignore);
+  const auto sessions = rows_of(folder / "out/sessions.csv");
+  ASSERT_EQ(sessions.size(), 2u);
+  EXPECT_EQ(sessions[0].at("handedness"), "left");
+  EXPECT_EQ(sessions[0].at("sex"), "female");
+  EXPECT_EQ(sessions[0].at("age_band"), "18-25");
+  EXPECT_EQ(sessions[0].at("pilot"), "false");
+  EXPECT_EQ(sessions[0].at("passes"), "6");
+  EXPECT_EQ(sessions[1].at("handedness"), "");
+  EXPECT_EQ(sessions[1].at("pilot"), "true");
+  for (const auto& trial : rows_of(folder / "out/trials.csv")) {
+    EXPECT_EQ(trial.at("pilot"), trial.at("subject") == "P02" ? "true" : "false");
+  }
+}
+
+TEST(ExportCsvTest, PracticeIsMarked) {
+  const test::TemporaryFolder folder;
+  const std::vector<fs::path> files{folder / "1.h5"};
+  write_session(files[0], {.trials = 2, .practice = 2});
+  export_csv(files, folder / "out", {.samples = true}, ignore);
+  const auto trials = rows_of(folder / "out/trials.csv");
+  ASSERT_EQ(trials.size(), 8u);
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    EXPECT_EQ(trials[i].at("practice"), i < 4 ? "1" : "0");
+    EXPECT_EQ(trials[i].at("block").starts_with('-'), i < 4);
+  }
+  const auto json = nlohmann::json::parse(file_text(folder / "out/dictionary.json"));
+  const auto& levels = json["files"]["trials.csv"]["columns"]["practice"]["levels"];
+  EXPECT_EQ(levels["1"], "practice, never scored");
+}
+
+TEST(ExportCsvTest, ASessionWithoutPassesIsListed) {
+  const test::TemporaryFolder folder;
+  const std::vector<fs::path> files{folder / "1.h5", folder / "2.h5", folder / "3.h5"};
+  write_session(files[0], {.subject = "P01", .trials = 0});
+  write_session(files[1], {.subject = "P02", .trials = 0, .ticks_of_no_pass = 30});
+  write_session(files[2], {.subject = "P03"});
+  const auto done = export_csv(files, folder / "out", {.samples = true}, ignore);
+  EXPECT_EQ(done.sessions, 3u);
+  EXPECT_EQ(done.samples, 30u + 6u * (kTicksOfPass + 100));
+  const auto sessions = rows_of(folder / "out/sessions.csv");
+  ASSERT_EQ(sessions.size(), 3u);
+  EXPECT_EQ(sessions[0].at("passes"), "0");
+  EXPECT_EQ(sessions[1].at("passes"), "0");
+  EXPECT_EQ(sessions[1].at("samples"), "30");
+  EXPECT_EQ(sessions[2].at("passes"), "6");
+  EXPECT_TRUE(fs::exists(folder / "out/samples/P01.csv.gz"));
 }
 
 TEST(ExportCsvTest, TheDictionaryKnowsTheColumnsOfTheScores) {

@@ -187,6 +187,19 @@ TEST_F(ImportCurvesTest, BadInputGetsASentence) {
   EXPECT_THAT(refusal(head + "A,1,haptic,back.csv\n"), HasSubstr("back.csv:3"));
 }
 
+TEST_F(ImportCurvesTest, PracticeIsNotExportedAndASessionWithoutPassesIsNoError) {
+  const std::vector<fs::path> files{folder_ / "a.h5", folder_ / "b.h5"};
+  write_session(files[0], {.subject = "P01", .trials = 2, .practice = 3});
+  write_session(files[1], {.subject = "P02", .trials = 0});
+  const CurvesSummary done = export_curves(files, folder_ / "out", {}, 1, ignore);
+  EXPECT_EQ(done.trials, 2u);
+  EXPECT_EQ(done.subjects, 2u);
+  const StudyResult study =
+      analyze_curves({folder_ / "out", folder_ / "out/conditions.csv"}, {}, 1, ignore);
+  ASSERT_EQ(study.scores.size(), 2u);
+  EXPECT_EQ(study.scores[0].block, 1);
+}
+
 TEST_F(ImportCurvesTest, TwoSessionsOfASubjectHaveNoCommonTable) {
   const std::vector<fs::path> files{folder_ / "a.h5", folder_ / "b.h5"};
   write_session(files[0], {});

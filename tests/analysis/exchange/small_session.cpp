@@ -27,6 +27,7 @@ record::SessionInfo info_of(const SmallSession& s) {
   info.rate = s.rate;
   info.start_utc = s.start_utc;
   info.simulated = s.simulated;
+  info.pilot = s.pilot;
   info.participant = s.person;
   return info;
 }
@@ -37,6 +38,13 @@ class Writer {
       : session_(session), writer_(file, info_of(session)), next_(session.first_tick) {}
 
   void write() {
+    add_ticks_of_no_pass();
+    for (int block = 1; block <= session_.practice; ++block) {
+      writer_.add_stimulus(std::vector<record::StimulusRow>{{-block, 0.0, {-0.05, 0.0, 0.01}, 1.0},
+                                                            {-block, 2.0, {0.05, 0.0, 0.0}, 2.5}});
+      add_pass(block, record::Phase::kTraining, true);
+      add_pass(block, record::Phase::kTest, true);
+    }
     for (int trial = 1; trial <= session_.trials; ++trial) {
       writer_.add_stimulus(std::vector<record::StimulusRow>{{trial, 0.0, {-0.05, 0.0, 0.01}, 1.0},
                                                             {trial, 2.0, {0.05, 0.0, -0.01}, 2.5}});
@@ -49,12 +57,23 @@ class Writer {
   }
 
  private:
-  void add_pass(int trial, record::Phase phase) {
+  void add_ticks_of_no_pass() {
+    std::vector<record::Sample> samples;
+    for (int k = 0; k < session_.ticks_of_no_pass; ++k) {
+      add_tick(samples, 1, -kApproach);
+      samples.back().pass = -1;
+      samples.back().stage = record::Stage::kIdle;
+    }
+    writer_.append(samples);
+  }
+
+  void add_pass(int trial, record::Phase phase, bool practice = false) {
     record::PassRow row;
     row.trial = trial;
     row.condition = kConditions[(trial - 1) % 3];
     row.phase = phase;
-    row.block = trial;
+    row.block = practice ? -trial : trial;
+    row.practice = practice;
     row.repetition = 1;
     row.stimulus_seed = 9'007'199'254'740'993u + static_cast<std::uint64_t>(trial);  // above 2^53
     row.first_sample = next_;

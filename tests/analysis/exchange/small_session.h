@@ -25,6 +25,9 @@ struct SmallSession {
   std::int64_t late_ns{0};      // how long it was
   bool odd_values{false};       // an applied force that is not a number
   std::string note{"all is well"};
+  bool pilot{false};
+  int practice{0};          // trials of practice before the first
+  int ticks_of_no_pass{0};  // samples before the first pass, as a recovered session may have
 };
 
 constexpr int kTicksOfPass = 1000;
