@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 #include <span>
@@ -116,6 +117,21 @@ inline Scores null_study(const Scores& scores, NullScheme scheme, RandomStream& 
   return simulated(scores, random);
 }
 
+/// The scores of the first participants, by name.
+inline Scores of_participants(const Scores& scores, std::size_t count) {
+  std::set<std::string> names;
+  for (const auto& score : scores) {
+    names.insert(score.subject);
+  }
+  while (names.size() > count) {
+    names.erase(std::prev(names.end()));
+  }
+  Scores kept;
+  std::copy_if(scores.begin(), scores.end(), std::back_inserter(kept),
+               [&](const auto& score) { return names.contains(score.subject); });
+  return kept;
+}
+
 /// Participants' means by condition; a participant without one of them is left out.
 inline std::vector<std::vector<double>> means_table(const Scores& scores) {
   const std::vector<std::string> names = conditions_of(scores);
@@ -137,67 +153,72 @@ inline std::vector<std::vector<double>> means_table(const Scores& scores) {
   return table;
 }
 
-/// In how many studies each test came out below 0.05.
-struct NullCounts {
-  int studies{0};
-  int omnibus{0};                // mixed model with the design's terms
-  std::vector<int> differences;  // its coefficients
-  int boundary{0};               // studies with a variance at 0
-  int intercept_omnibus{0};      // mixed model with an intercept of each participant alone
-  std::vector<int> intercept_differences;
-  int pooled{0};    // analysis of variance of single trials
-  int repeated{0};  // of participants' means, Greenhouse and Geisser
+/// What the tests of one study without a difference say: p values.
+struct NullTests {
+  double mixed{1.0};                // mixed model with the design's terms, F
+  std::vector<double> differences;  // its coefficients
+  bool at_boundary{false};
+  double intercept{1.0};  // mixed model with an intercept of each participant alone, F
+  std::vector<double> intercept_differences;
+  double pooled{1.0};    // analysis of variance of single trials
+  double repeated{1.0};  // of participants' means, Greenhouse and Geisser
 };
 
-inline void count(NullCounts& counts, const Scores& scores) {
-  constexpr double kLevel = 0.05;
-  const std::vector<std::string> names = conditions_of(scores);
-  const auto below = [](const auto& test) { return test && test->p < kLevel ? 1 : 0; };
-  const auto add = [&](std::vector<int>& differences, const analysis::MixedModel& model) {
-    differences.resize(names.size() - 1);
-    for (std::size_t i = 0; i + 1 < names.size(); ++i) {
-      differences[i] += model.coefficients[i + 1].p < kLevel ? 1 : 0;
-    }
-  };
-  const auto study = analysis::study_mixed(scores, names);
-  ++counts.studies;
-  counts.omnibus += below(study.omnibus);
-  counts.boundary += study.model->at_boundary ? 1 : 0;
-  add(counts.differences, *study.model);
+inline std::vector<double> differences_of(const analysis::MixedModel& model) {
+  std::vector<double> p;
+  for (std::size_t i = 1; i < model.coefficients.size(); ++i) {
+    p.push_back(model.coefficients[i].p);
+  }
+  return p;
+}
 
-  Eigen::MatrixXd predictors(std::ssize(scores), std::ssize(names) - 1);
+inline NullTests null_tests(const Scores& scores) {
+  const std::vector<std::string> names = conditions_of(scores);
+  NullTests tests;
+  const auto study = analysis::study_mixed(scores, names);
+  tests.mixed = study.omnibus->p;
+  tests.differences = differences_of(*study.model);
+  tests.at_boundary = study.model->at_boundary;
+
+  Eigen::MatrixXd predictors = Eigen::MatrixXd::Zero(std::ssize(scores), std::ssize(names) - 1);
   std::vector<double> response;
   std::vector<std::size_t> people;
   std::map<std::string, std::size_t> numbers;
   std::vector<std::vector<double>> groups(names.size());
   for (const auto& score : scores) {
     const auto place = std::find(names.begin(), names.end(), score.condition) - names.begin();
-    for (Eigen::Index j = 0; j < predictors.cols(); ++j) {
-      predictors(std::ssize(response), j) = place == j + 1 ? 1.0 : 0.0;
+    if (place > 0) {
+      predictors(std::ssize(response), place - 1) = 1.0;
     }
     response.push_back(score.score);
     people.push_back(numbers.try_emplace(score.subject, numbers.size()).first->second);
     groups[static_cast<std::size_t>(place)].push_back(score.score);
   }
   const auto intercept = analysis::random_intercept_model(response, predictors, people);
-  counts.intercept_omnibus +=
-      below(analysis::joint_test(*intercept, analysis::sequential_contrasts(predictors)));
-  add(counts.intercept_differences, *intercept);
-  counts.pooled += below(analysis::one_way_anova(groups));
-  const auto repeated = analysis::repeated_measures_anova(means_table(scores));
-  counts.repeated += repeated && repeated->p_corrected < kLevel ? 1 : 0;
+  tests.intercept = analysis::joint_test(*intercept, analysis::sequential_contrasts(predictors))->p;
+  tests.intercept_differences = differences_of(*intercept);
+  tests.pooled = analysis::one_way_anova(groups)->p;
+  tests.repeated = analysis::repeated_measures_anova(means_table(scores))->p_corrected;
+  return tests;
 }
 
-inline NullCounts null_counts(const Scores& scores, NullScheme scheme, int studies,
-                              std::uint64_t seed) {
+inline std::vector<NullTests> null_studies(const Scores& scores, NullScheme scheme, int studies,
+                                           std::uint64_t seed) {
   constexpr std::array<const char*, 3> kStreams{"null: blocks", "null: participants",
                                                 "null: simulated"};
   RandomStream random(seed, kStreams[static_cast<std::size_t>(scheme)]);
-  NullCounts counts;
+  std::vector<NullTests> result;
   for (int i = 0; i < studies; ++i) {
-    count(counts, null_study(scores, scheme, random));
+    result.push_back(null_tests(null_study(scores, scheme, random)));
   }
-  return counts;
+  return result;
+}
+
+/// In how many studies a test came out below 0.05. @param p  of a study.
+template <class P>
+int count_below(const std::vector<NullTests>& studies, P&& p) {
+  return static_cast<int>(std::count_if(studies.begin(), studies.end(),
+                                        [&](const NullTests& study) { return p(study) < 0.05; }));
 }
 
 }  // namespace haptrial::test
