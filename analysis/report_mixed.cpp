@@ -42,8 +42,8 @@ void add_terms(Document& document, const StudyMixed& study) {
   }
   if (study.model->at_boundary) {
     document.paragraph(
-        "A standard deviation of 0 means that these groups differ no more than the trials in them "
-        "explain; the tests are then those of the model without that term.");
+        "A standard deviation of 0 means that those groups differ no more than chance makes them "
+        "differ; the tests are those of the model without that term.");
   }
 }
 
@@ -72,7 +72,8 @@ void add_mixed(Document& document, const StudyStatistics& statistics) {
   document.paragraph(fmt::format(
       "A linear mixed model of recall error by condition over {}, fitted by restricted maximum "
       "likelihood. Random intercepts allow for trials that resemble each other because they share "
-      "a participant, a condition of that participant or a block. Do the conditions differ? {}.",
+      "a participant, a condition of that participant or a block. Participants with missing trials "
+      "are kept. Do the conditions differ? {}.",
       counted(study.model->observations, "trial"), tested(study.omnibus)));
   add_effects(document, study);
   add_terms(document, study);

@@ -39,10 +39,12 @@ struct Row {
 constexpr const char* kBlocks = "labels permuted over the blocks of each participant";
 constexpr const char* kNames = "names of the conditions permuted for each participant";
 constexpr const char* kSimulated = "simulated with the study's variances";
+constexpr const char* kMissing = "the same with 30 % of the trials and a whole cell missing";
 constexpr Row kRows[]{
     {NullScheme::kBlocks, kBlocks, 12},       {NullScheme::kParticipants, kNames, 12},
-    {NullScheme::kSimulated, kSimulated, 12}, {NullScheme::kBlocks, kBlocks, 4},
-    {NullScheme::kParticipants, kNames, 4},   {NullScheme::kSimulated, kSimulated, 4}};
+    {NullScheme::kSimulated, kSimulated, 12}, {NullScheme::kMissing, kMissing, 12},
+    {NullScheme::kBlocks, kBlocks, 4},        {NullScheme::kParticipants, kNames, 4},
+    {NullScheme::kSimulated, kSimulated, 4},  {NullScheme::kMissing, kMissing, 4}};
 
 void print(const Row& row, const Studies& studies) {
   fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", row.name, row.participants,

@@ -23,7 +23,8 @@ namespace haptrial::test {
 enum class NullScheme {
   kBlocks,        // each participant's labels are shuffled over that participant's blocks
   kParticipants,  // each participant has the conditions' names permuted
-  kSimulated      // same design, normal scores with the variances of Variances
+  kSimulated,     // same design, normal scores with the variances of Variances
+  kMissing        // the same, three of ten trials missing and a whole cell
 };
 
 /// Of the shipped study, as its mixed model estimates them.
@@ -105,12 +106,22 @@ inline Scores simulated(Scores scores, RandomStream& random, const Variances& v 
   return scores;
 }
 
+inline Scores with_missing(Scores scores, RandomStream& random) {
+  const auto first = std::pair(scores.front().subject, scores.front().condition);
+  std::erase_if(scores, [&](const auto& score) {
+    return random.uniform() < 0.3 || std::pair(score.subject, score.condition) == first;
+  });
+  return scores;
+}
+
 inline Scores null_study(const Scores& scores, NullScheme scheme, RandomStream& random) {
   switch (scheme) {
     case NullScheme::kBlocks:
       return with_shuffled_blocks(scores, random);
     case NullScheme::kParticipants:
       return with_permuted_names(scores, random);
+    case NullScheme::kMissing:
+      return with_missing(simulated(scores, random), random);
     case NullScheme::kSimulated:
       break;
   }
@@ -204,8 +215,8 @@ inline NullTests null_tests(const Scores& scores) {
 
 inline std::vector<NullTests> null_studies(const Scores& scores, NullScheme scheme, int studies,
                                            std::uint64_t seed) {
-  constexpr std::array<const char*, 3> kStreams{"null: blocks", "null: participants",
-                                                "null: simulated"};
+  constexpr std::array<const char*, 4> kStreams{"null: blocks", "null: participants",
+                                                "null: simulated", "null: missing"};
   RandomStream random(seed, kStreams[static_cast<std::size_t>(scheme)]);
   std::vector<NullTests> result;
   for (int i = 0; i < studies; ++i) {
