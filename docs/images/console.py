@@ -69,7 +69,7 @@ def drilling(page, url, images):
     page.click("start")
     state(page, "Running")
     time.sleep(20)
-    page.picture(images / "console-drilling.png", height=1080)
+    page.picture(images / "console-drilling.png", height=1120)
 
 
 def main():
