@@ -78,7 +78,8 @@ void check(const std::string& what, const Defined<Regression>& r) {
 void check(const std::string& what, const Defined<MixedModel>& m) {
   if (has_value(what, m)) {
     check(what, m->coefficients);
-    expect_numbers(what, {m->variances.front(), m->variance_within, m->log_likelihood});
+    expect_numbers(
+        what, {m->variances.front(), m->variances.back(), m->variance_within, m->log_likelihood});
   }
 }
 
@@ -122,6 +123,11 @@ TEST(DegenerateData, GiveNumbersOrASentenceInLinearModels) {
         group /= 2;
       }
       check("mixed model, " + name(i, j), random_intercept_model(b, x, groups));
+      std::vector<std::size_t> crossed(a.size());
+      for (std::size_t row = 0; row < crossed.size(); ++row) {
+        crossed[row] = (row + row / 2) % 2;
+      }
+      check("two terms, " + name(i, j), mixed_model(b, x, {groups, crossed}));
       check("means model, " + name(i, j),
             random_intercept_model(b, Eigen::MatrixXd(std::ssize(b), 0), groups));
     }

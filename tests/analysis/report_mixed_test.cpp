@@ -1,8 +1,10 @@
-// The report's section on the mixed model.
+// The mixed model in the report and in statistics.json.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "analysis/report_parts.h"
+#include "analysis/study_json.h"
+#include "tests/analysis/example_study.h"
 #include "tests/support/condition_null.h"
 
 namespace haptrial::analysis {
@@ -51,6 +53,14 @@ TEST(ReportMixed, SaysWhatAVarianceAtZeroMeansAndWhichTermsAreMissing) {
   std::erase_if(scores, [n = 0](const auto&) mutable { return n++ % 2 == 1; });
   EXPECT_THAT(section(scores),
               HasSubstr("No term for the block within participant: each has a single trial."));
+}
+
+TEST(ReportMixed, StatisticsJsonHasTheTermsAndEveryTwoConditions) {
+  const std::string json = statistics_json(example_study(false));
+  EXPECT_THAT(json, AllOf(HasSubstr("\"formula\": \"score ~ condition + (1 | subject)"),
+                          HasSubstr("\"lme4\": \"(1 | subject:condition)\""),
+                          HasSubstr("\"df_denominator_satterthwaite\""),
+                          HasSubstr("\"variance_residual\"")));
 }
 
 TEST(ReportMixed, SaysWhyThereIsNoModel) {
