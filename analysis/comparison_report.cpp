@@ -136,21 +136,29 @@ Figure figure_of(const StudyComparison& comparison) {
   return figure;
 }
 
-std::string table_of(const StudyComparison& comparison) {
+std::string within_table(const StudyComparison& comparison) {
   std::vector<std::vector<std::string>> rows;
   for (const auto& c : comparison.conditions) {
-    const auto difference = [](const Defined<TTest>& test) {
-      return test ? interval(*test) : std::string("-");
-    };
-    rows.push_back({capitalized(c.condition), mean_with_interval(c.first),
-                    mean_with_interval(c.second), difference(c.paired), t_value(c.paired),
-                    adjusted(c.paired_holm), difference(c.welch), t_value(c.welch),
-                    adjusted(c.welch_holm)});
+    rows.push_back({capitalized(c.condition), std::to_string(c.shared),
+                    c.paired ? interval(*c.paired) : "-", t_value(c.paired),
+                    adjusted(c.paired_holm)});
   }
-  return html_table(
-      {"Condition", comparison.first.name, comparison.second.name, "Difference within participants",
-       "Paired t-test", "Adjusted p", "Difference between means", "Welch's t-test", "Adjusted p"},
-      rows);
+  return "<h2>Within participants</h2>\n" +
+         html_table({"Condition", "Participants", "Difference", "Paired t-test", "Adjusted p"},
+                    rows);
+}
+
+std::string between_table(const StudyComparison& comparison) {
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& c : comparison.conditions) {
+    rows.push_back({capitalized(c.condition), mean_with_interval(c.first),
+                    mean_with_interval(c.second), c.welch ? interval(*c.welch) : "-",
+                    t_value(c.welch), adjusted(c.welch_holm)});
+  }
+  return "<h2>Between all participants</h2>\n" +
+         html_table({"Condition", comparison.first.name, comparison.second.name, "Difference",
+                     "Welch's t-test", "Adjusted p"},
+                    rows);
 }
 
 std::string html_of(const StudyComparison& comparison, const std::string& svg,
@@ -172,12 +180,16 @@ std::string html_of(const StudyComparison& comparison, const std::string& svg,
           "\n<figcaption>" + escape_html(figure.caption) + "</figcaption>\n</figure>\n";
   html += paragraph(fmt::format(
       "Differences are {} minus {}, of participants' means; tests are two-sided. The p values of "
-      "each test are adjusted over the conditions with Holm's method. The paired test takes the "
-      "participants who are the same in both studies: people with the same identifier, and virtual "
-      "subjects with the same identifier, seed and population. Welch's test takes all participants "
-      "for different ones. The tests of each study by itself stand in its report.",
+      "each test are adjusted over the conditions with Holm's method. The paired test uses the "
+      "participants who took part in both studies: people with the same identifier, and virtual "
+      "subjects with the same identifier, seed and population. Welch's test treats all "
+      "participants "
+      "as different ones. The report of each study has the tests of that study alone.",
       comparison.second.name, comparison.first.name));
-  return html + table_of(comparison) + "</body>\n</html>\n";
+  if (!comparison.paired.empty()) {
+    html += within_table(comparison);
+  }
+  return html + between_table(comparison) + "</body>\n</html>\n";
 }
 
 void write(const std::filesystem::path& file, const std::string& text) {

@@ -272,6 +272,10 @@ TEST_F(ScoredStudyTest, TheComparisonIsWrittenAsPageFigureAndNumbers) {
   EXPECT_THAT(html, HasSubstr("first&lt;"));
   EXPECT_THAT(html, HasSubstr("<svg"));
   EXPECT_THAT(html, HasSubstr("Adjusted p"));
+  EXPECT_EQ(html.find("<h2>Within participants"), html.npos) << "nobody is paired";
+  second.people = first.people;
+  write_comparison(compare_studies(first, second), folder_.path());
+  EXPECT_NE(file_text(folder_ / "comparison.html").find("<h2>Within participants"), html.npos);
   std::ifstream numbers(folder_ / "comparison.json");
   const auto json = nlohmann::json::parse(numbers);
   EXPECT_EQ(json["conditions"].size(), 2u);
