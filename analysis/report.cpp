@@ -44,6 +44,9 @@ Document study_report(const StudyResult& study, const std::vector<Drawing>& draw
         "SIMULATED PARTICIPANTS: these data come from virtual subjects. They say how the "
         "experiment and its analysis work, not how people learn.");
   }
+  for (const std::string& alarm : study.alarms) {
+    document.alarm(alarm);
+  }
   document.points(summary_lines(study));
   add_design(document, study);
   add_recall(document, study, drawings);

@@ -20,6 +20,8 @@ void add_alignments(Document& document, const StudyResult& study,
                     const std::vector<Drawing>& drawings);
 void add_quality(Document& document, const StudyResult& study,
                  const std::vector<Drawing>& drawings);
+/// Which recordings of scored trials went wrong.
+void add_trial_quality(Document& document, const StudyResult& study);
 void add_methods(Document& document, const StudyResult& study);
 
 /// The figure of that name; nothing where the study has none.

@@ -133,6 +133,7 @@ void add_quality(Document& document, const StudyResult& study,
   if (!study.curves_from.empty()) {
     return;  // nothing is known of how they were recorded
   }
+  add_trial_quality(document, study);
   document.heading("A stimulus");
   add_picture(document, drawings, "figure-22-trajectory");
   add_picture(document, drawings, "figure-23-force-pattern");

@@ -4,7 +4,9 @@
 
 #include <charconv>
 #include <cmath>
+#include <optional>
 
+#include "analysis/quality_columns.h"
 #include "core/base/error.h"
 
 namespace haptrial::analysis {
@@ -12,8 +14,20 @@ namespace {
 
 // The levels of several factors stand between the two.
 constexpr std::string_view kTrial = "subject,trial,block,repetition,condition,";
-constexpr std::string_view kScore = "score,alignment_cost,rms_force,rms_slope,rms_unaligned\n";
+constexpr std::string_view kScore = "score,alignment_cost,rms_force,rms_slope,rms_unaligned";
 constexpr std::size_t kFixedColumns = 10;
+
+/// The columns of a trial's quality, which tables of older versions do not have.
+const std::string& quality_heading() {
+  static const std::string heading = [] {
+    std::string names;
+    for (const QualityColumn& column : quality_columns()) {
+      names += fmt::format(",{}", column.name);
+    }
+    return names + ",flags";
+  }();
+  return heading;
+}
 
 bool has_columns(std::span<const std::string> factors) { return factors.size() > 1; }
 
@@ -52,7 +66,17 @@ class Reader {
       factors.push_back(text(','));
     }
     rest_.remove_prefix(kScore.size());
-    columns_ = kFixedColumns + factors.size();
+    levels_ = factors.size();
+    columns_ = kFixedColumns + levels_;
+    has_quality_ = rest_.starts_with(quality_heading());
+    if (has_quality_) {
+      rest_.remove_prefix(quality_heading().size());
+      columns_ += quality_columns().size() + 1;
+    }
+    if (!rest_.starts_with('\n')) {
+      fail(kNoHeading);
+    }
+    rest_.remove_prefix(1);
     return factors.empty() ? std::vector<std::string>{"condition"} : factors;
   }
   TrialScore row() {
@@ -63,7 +87,7 @@ class Reader {
       *value = number<std::int32_t>(',');
     }
     s.condition = text(',');
-    for (std::size_t k = kFixedColumns; k < columns_; ++k) {
+    for (std::size_t k = 0; k < levels_; ++k) {
       s.levels.push_back(text(','));
     }
     if (s.levels.empty()) {
@@ -72,7 +96,13 @@ class Reader {
     for (double* value : {&s.score, &s.alignment_cost, &s.rms_force, &s.rms_slope}) {
       *value = number<double>(',');
     }
-    s.rms_unaligned = number<double>('\n');
+    s.rms_unaligned = number<double>(has_quality_ ? ',' : '\n');
+    if (has_quality_) {
+      for (const QualityColumn& column : quality_columns()) {
+        column.field(s.quality) = optional_number(',');
+      }
+      text('\n');  // the flags follow from the numbers
+    }
     return s;
   }
 
@@ -106,9 +136,18 @@ class Reader {
     return result;
   }
 
+  std::optional<double> optional_number(char end) {
+    const std::string found = text(end);
+    return found.empty() ? std::nullopt : std::optional(number_of<double>(found));
+  }
+
   template <class T>
   T number(char end) {
-    const std::string found = text(end);
+    return number_of<T>(text(end));
+  }
+
+  template <class T>
+  T number_of(const std::string& found) {
     T value{};
     const auto [rest, error] = std::from_chars(found.data(), found.data() + found.size(), value);
     if (error != std::errc{} || rest != found.data() + found.size() ||
@@ -124,6 +163,8 @@ class Reader {
   const std::string& file_;
   int line_{1};
   std::size_t columns_{kFixedColumns};
+  std::size_t levels_{0};
+  bool has_quality_{false};
 };
 
 }  // namespace
@@ -145,14 +186,20 @@ std::string scores_csv(std::span<const TrialScore> scores, std::span<const std::
     text += field(factor) + ",";
   }
   text += kScore;
+  text += quality_heading() + "\n";
   for (const auto& s : scores) {
     text += fmt::format("{},{},{},{},{},", field(s.subject), s.trial, s.block, s.repetition,
                         field(s.condition));
     for (std::size_t k = 0; k < columns.size(); ++k) {
       text += field(s.levels.at(k)) + ",";
     }
-    text += fmt::format("{},{},{},{},{}\n", s.score, s.alignment_cost, s.rms_force, s.rms_slope,
+    text += fmt::format("{},{},{},{},{}", s.score, s.alignment_cost, s.rms_force, s.rms_slope,
                         s.rms_unaligned);
+    for (const QualityColumn& column : quality_columns()) {
+      const std::optional<double>& value = column.of(s.quality);
+      text += value ? fmt::format(",{}", *value) : std::string(",");
+    }
+    text += fmt::format(",{}\n", field(flag_names(s.quality)));
   }
   return text;
 }

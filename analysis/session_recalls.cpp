@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "analysis/session_quality.h"
 #include "core/base/error.h"
 #include "core/record/even_rows.h"
 #include "core/record/session_reader.h"
@@ -126,7 +127,7 @@ std::vector<Sample> pass_samples(const SessionReader& reader, std::uint64_t sequ
 class Extraction {
  public:
   Extraction(const SessionReader& reader, const ScoreParameters& parameters)
-      : reader_(reader), parameters_(parameters), passes_(reader.passes()) {
+      : reader_(reader), parameters_(parameters), passes_(reader.passes()), quality_(reader) {
     result_.summary.file = reader.path().filename().string();
     result_.summary.info = reader.info();
     paths_ = ideal_paths(reader, result_.stimulus);
@@ -160,6 +161,7 @@ class Extraction {
     const auto samples = run_samples(reader_, pass);
     if (samples) {
       track(pass, *samples);
+      quality_.add(pass, *samples);
     }
     if (!test) {
       return;
@@ -179,6 +181,7 @@ class Extraction {
       return;
     }
     result_.scored.push_back({trial_of(pass), i});
+    describe_path(pass, result_.scored.back().score.quality);
     curves_.push_back(*curves);
   }
 
@@ -204,6 +207,19 @@ class Extraction {
     }
   }
 
+  /// The scored pass is the one that was tracked last.
+  void describe_path(const PassRow& pass, TrialQuality& quality) {
+    if (const PathPlaces* own_pace = places(pass.block)) {
+      quality.own_pace = true;
+      quality.path_duration = own_pace->duration();
+    } else if (const auto path = paths_.find(pass.block); path != paths_.end()) {
+      quality.path_duration = path->second.duration();
+      if (const auto& lag = result_.tracking.back().lag) {
+        quality.lag = *lag;
+      }
+    }
+  }
+
   /// Of the block's path, where the curves are over it; else null.
   const PathPlaces* places(std::int32_t block) {
     auto& known = places_[block];
@@ -221,6 +237,7 @@ class Extraction {
     score.block = pass.block;
     score.repetition = pass.repetition;
     score.levels = {pass.condition};
+    score.quality = quality_.of(pass);
     return score;
   }
 
@@ -275,7 +292,8 @@ class Extraction {
   std::map<std::int32_t, std::unique_ptr<PathPlaces>> places_;  // by block
   std::map<std::int32_t, IdealPath> paths_;                     // by block
   std::map<std::int32_t, std::size_t> counted_;                 // row of the test pass, by trial
-  std::vector<RecallCurves> curves_;                            // one for each of result_.scored
+  SessionQuality quality_;
+  std::vector<RecallCurves> curves_;  // one for each of result_.scored
   SessionRecalls result_;
 };
 

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "analysis/path_places.h"
+#include "analysis/quality_summary.h"
 #include "analysis/score.h"
 #include "analysis/session_recalls.h"
 #include "analysis/study_parts.h"
@@ -165,6 +166,7 @@ StudyResult analyze_study(const std::vector<fs::path>& session_files,
   study.stimulus = sessions.front().recalls.stimulus;
   study.parameters = described(parameters);
   study.over_path = parameters.over_path;
+  study.alarms = quality_alarms(study.scores);
   return study;
 }
 

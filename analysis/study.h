@@ -57,6 +57,7 @@ struct StudyResult {
   std::vector<record::StimulusRow> stimulus;                    // first block of the first session
   std::vector<std::pair<std::string, std::string>> parameters;  // of the scores: name, value
   std::vector<std::string> remarks;  // sentences for the report: what is missing from the study
+  std::vector<std::string> alarms;   // likewise, which nobody may overlook: flagged trials
   bool over_path{false};  // curves are over the place on the path, at the participants' own pace
 
   /// The table of a study of curves that something else recorded, of which nothing but the forces

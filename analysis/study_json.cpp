@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/identity.h"
+#include "analysis/quality_summary.h"
 #include "analysis/result_json_internal.h"
 
 namespace haptrial::analysis {
@@ -274,7 +275,34 @@ Json session(const SessionSummary& s) {
           {"scored", s.scored}};
 }
 
+Json to_json(const std::optional<Spread>& s) {
+  return s ? Json{{"median", s->median}, {"lowest", s->low}, {"highest", s->high}} : Json();
+}
+
+Json quality(const StudyResult& study) {
+  Json all{{"participants", Json::array()}, {"flagged", Json::array()}};
+  for (const ParticipantQuality& p : participant_quality(study.scores)) {
+    all["participants"].push_back({{"subject", p.subject},
+                                   {"trials", p.trials},
+                                   {"flagged", p.flagged},
+                                   {"saturation", to_json(p.saturation)},
+                                   {"training_saturation", to_json(p.training_saturation)},
+                                   {"duration_s", to_json(p.duration)},
+                                   {"lag_s", to_json(p.lag)}});
+  }
+  for (const TrialScore& score : study.scores) {
+    for (const TrialFlag& flag : flags_of(score.quality)) {
+      all["flagged"].push_back({{"subject", score.subject},
+                                {"trial", score.trial},
+                                {"flag", flag.name},
+                                {"reason", flag.reason}});
+    }
+  }
+  return all;
+}
+
 void add_sessions(Json& root, const StudyResult& study) {
+  root["quality"] = quality(study);
   root["tracking"] = {{"overall", tracking(study.tracking, study.over_path)},
                       {"participants", Json::array()}};
   root["timing"] = Json::array();

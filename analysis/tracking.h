@@ -22,6 +22,8 @@ class IdealPath {
   /// @returns the ideal p_W [m].
   Eigen::Vector3d position(double time) const;
 
+  double duration() const { return rows_.back().time; }  // [s]
+
  private:
   std::vector<record::StimulusRow> rows_;
 };

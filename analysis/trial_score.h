@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/trial_quality.h"
+
 namespace haptrial::analysis {
 
 /// A force curve sampled at a fixed rate from its first instant on.
@@ -29,6 +31,8 @@ struct TrialScore {
   /// The level of each of StudyResult::factors, in their order; `condition` is the levels joined by
   /// ", ". Without several factors one level: the condition.
   std::vector<std::string> levels{};
+
+  TrialQuality quality{};  // how it was recorded
 };
 
 }  // namespace haptrial::analysis

@@ -155,6 +155,9 @@ int analyze(const AnalyzeOptions& options) {
   for (const std::string& remark : study.remarks) {
     fmt::print("{}\n", remark);
   }
+  for (const std::string& alarm : study.alarms) {
+    fmt::print("{}\n", alarm);
+  }
   fmt::print("report: {}\n", (fs::absolute(out) / "report.html").lexically_normal().string());
   return 0;
 }

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
+#include "core/record/damping_event.h"
 #include "core/record/session_reader.h"
 #include "experiments/drilling_study.h"
 #include "experiments/interrupt.h"
@@ -336,10 +337,10 @@ std::shared_ptr<const analysis::drilling::Procedure> Session::of_earlier_run(
 /// A hand that did not carry all the damping was guided less firmly, which an analyst has to know.
 void Session::note_damping(const protocols::PassResult& result) {
   if (result.reduced_ticks > 0) {
-    record_.event("damping_reduced",
-                  fmt::format("trial {}: least {:.3f} of it, reduced for {:.3f} s of the run",
-                              record_.pass().trial, result.least_damping,
-                              static_cast<double>(result.reduced_ticks) / d_.rate));
+    record_.event(
+        record::kDampingReduced,
+        to_text(record::DampingReduced{record_.pass().trial, result.least_damping,
+                                       static_cast<double>(result.reduced_ticks) / d_.rate}));
   }
 }
 

@@ -10,6 +10,7 @@
 #include "analysis/exchange/gzip_file.h"
 #include "analysis/exchange/new_folder.h"
 #include "analysis/exchange/sample_text.h"
+#include "analysis/quality_columns.h"
 #include "core/record/schema.h"
 #include "core/record/session_reader.h"
 
@@ -86,16 +87,21 @@ Docs happening_docs() {
 }
 
 Docs score_docs() {
-  return {kSubject,
-          pass_doc("trial"),
-          pass_doc("block"),
-          pass_doc("repetition"),
-          pass_doc("condition"),
-          {"score", "", "recall error; 0 is perfect recall"},
-          {"alignment_cost", "", "cost of the alignment for each pair of its path"},
-          {"rms_force", "N", "root mean square difference of forces after the alignment"},
-          {"rms_slope", "N/s", "the same of their slopes"},
-          {"rms_unaligned", "N", "root mean square difference of forces before it"}};
+  Docs docs{kSubject,
+            pass_doc("trial"),
+            pass_doc("block"),
+            pass_doc("repetition"),
+            pass_doc("condition"),
+            {"score", "", "recall error; 0 is perfect recall"},
+            {"alignment_cost", "", "cost of the alignment for each pair of its path"},
+            {"rms_force", "N", "root mean square difference of forces after the alignment"},
+            {"rms_slope", "N/s", "the same of their slopes"},
+            {"rms_unaligned", "N", "root mean square difference of forces before it"}};
+  for (const auto& column : analysis::quality_columns()) {
+    docs.push_back({column.name, column.unit, column.description});
+  }
+  docs.push_back({"flags", "", "what is wrong with the recording, in single words"});
+  return docs;
 }
 
 void add_session(RowText& row, const ExportSession& s) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/record/damping_event.h"
 #include "core/record/session_writer.h"
 
 namespace haptrial::analysis {
@@ -68,8 +69,8 @@ class Writer {
 
   void add_trial(int block, int repetition) {
     const int trial = (block - 1) * session_.repetitions + repetition;
-    const record::PassRow row{trial, kConditions[(block - 1) % 3], Phase::kTraining, block,
-                              repetition};
+    record::PassRow row{trial, kConditions[(block - 1) % 3], Phase::kTraining, block, repetition};
+    row.attempt = trial == session_.second_attempt ? 2 : 1;
     record::PassRow training = row;
     if (trial == session_.untrained_trial) {
       training.status = record::PassStatus::kAborted;
@@ -101,6 +102,10 @@ class Writer {
       s.target_force = session_.target(t);
       s.applied_force =
           force_factor * session_.applied(row.condition, row.trial, t, s.target_force);
+      if (session_.force_limit > 0.0 && std::abs(s.applied_force) >= session_.force_limit) {
+        s.saturated = true;
+        s.applied_force = std::copysign(session_.force_limit, s.applied_force);
+      }
     }
     add_rest(samples, Stage::kReturn);
     row.last_sample = next_ - 1;
@@ -110,6 +115,23 @@ class Writer {
     writer_.append(samples);
     writer_.add_pass(row);
     ++pass_;
+    if (row.phase == Phase::kTraining) {
+      add_training_events(row.trial, samples.front().time_ns, samples.back().time_ns);
+    }
+  }
+
+  void add_training_events(int trial, std::int64_t begin, std::int64_t end) {
+    if (trial == session_.reduced_trial) {
+      writer_.add_event(
+          {end, record::kDampingReduced, to_text(record::DampingReduced{trial, 0.25, 1.0})});
+    }
+    if (session_.frozen_trial != 0) {
+      std::vector<record::FrameRow> frames;
+      for (std::int64_t t = begin; t < end; t += 20'000'000) {
+        frames.push_back({t, 1'000'000, trial == session_.frozen_trial ? 1 : 0});
+      }
+      writer_.add_frames(frames);
+    }
   }
 
   // The hand rests far from the path and presses hard: none of it may reach a score.

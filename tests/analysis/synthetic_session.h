@@ -27,6 +27,10 @@ struct SyntheticSession {
   bool stimulus_backwards{false};  // the rows of /stimuli are in the wrong order
   bool finished{true};             // else the session was killed after its last pass
   int repeated_trial{0};           // has two test passes, the first with twice the force
+  double force_limit{0.0};         // the applied force saturates here; 0: nowhere [N]
+  int second_attempt{0};           // trial that was aborted before; 0 for none
+  int reduced_trial{0};            // the damping of its training was reduced for a second
+  int frozen_trial{0};             // half of the frames of its training were dropped; else none
 
   /// Target force [N] of a time since the start of the run [s].
   std::function<double(double)> target;

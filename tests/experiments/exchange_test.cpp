@@ -59,10 +59,13 @@ TEST_F(ExchangeTest, TheShippedStudyComesBackFromItsCurves) {
                   test::shipped_definition().string() + "'");
   ASSERT_EQ(in.status, 0) << in.errors;
   EXPECT_THAT(in.output, Not(HasSubstr("WARNING")));
-  EXPECT_EQ(test::read_text(folder_ / "again/scores.csv"),
-            test::read_text(folder_ / "study/scores.csv"));
-  EXPECT_EQ(test::read_text(folder_ / "report/scores.csv"),
-            test::read_text(folder_ / "study/scores.csv"));
+  // Curves know nothing of the quality of a recording, which the columns after the tenth tell.
+  const auto scores = [&](const char* folder) {
+    return run_command("cut -d, -f-10 " + path(folder) + "/scores.csv").output;
+  };
+  EXPECT_THAT(scores("study"), HasSubstr("rms_unaligned\nS01,1,"));
+  EXPECT_EQ(scores("again"), scores("study"));
+  EXPECT_EQ(scores("report"), scores("study"));
   const auto ours = nlohmann::json::parse(test::read_text(folder_ / "report/statistics.json"));
   const auto theirs = nlohmann::json::parse(test::read_text(folder_ / "study/statistics.json"));
   for (const char* part : {"conditions", "published", "repeated_measures", "comparisons"}) {
