@@ -49,7 +49,7 @@ double combined(const std::vector<double>& df) {
     excess += 2.0 / (each - 2.0);
     sum += each;
   }
-  // Without end where all df are.
+  // Infinite df in every direction leave no excess.
   return excess > 0.0 ? 2.0 * (count + excess) / excess : sum / count;
 }
 

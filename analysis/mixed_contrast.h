@@ -8,7 +8,7 @@ namespace haptrial::analysis {
 
 /// A weighted sum of a model's coefficients held against 0.
 /// @param weights  (coefficients).
-/// Undefined where all weights are 0 or there are no degrees of freedom.
+/// Undefined if all weights are 0 or there are no degrees of freedom.
 /// @throws std::invalid_argument when there are not as many weights as coefficients.
 Defined<Coefficient> contrast(const MixedModel& model, const Eigen::VectorXd& weights,
                               double level = 0.95);
@@ -23,7 +23,7 @@ struct JointTest {
 
 /// @param contrasts  (contrasts x coefficients). df_denominator depends a little on how the same
 ///                   hypothesis is written; f does not.
-/// Undefined where all weights are 0.
+/// Undefined if all weights are 0.
 /// @throws std::invalid_argument when there are not as many columns as coefficients.
 /// Source: Fai and Cornelius 1996, Journal of Statistical Computation and Simulation 54;
 /// Kuznetsova et al. 2017, Journal of Statistical Software 82.

@@ -53,7 +53,7 @@ std::optional<std::string> confounded(const RestrictedLikelihood& likelihood,
 }
 
 /// Twice the inverse Hessian of the criterion by the logarithms of the residual variance and of the
-/// positive rhos; nothing where it is not positive definite.
+/// positive rhos; nothing if it is not positive definite.
 std::optional<MatrixXd> parameter_covariance(const Slopes& s, const std::vector<Index>& positive,
                                              double df) {
   const Index count = std::ssize(positive) + 1;
@@ -76,7 +76,7 @@ std::optional<MatrixXd> parameter_covariance(const Slopes& s, const std::vector<
   return MatrixXd(2.0 * factor.solve(MatrixXd::Identity(count, count)));
 }
 
-/// Nothing where a coefficient has no degrees of freedom: the variance between groups cannot be
+/// Nothing if a coefficient has no degrees of freedom: the variance between groups cannot be
 /// told from the predictors then.
 std::optional<MixedModel> described(const CenteredDesign& design, const Slopes& s, double df,
                                     double origin, double level) {

@@ -102,7 +102,7 @@ MatrixXd coded(std::span<const TrialScore> scores, const std::vector<std::string
   return predictors;
 }
 
-/// Why there is nothing to fit; empty where there is.
+/// Why there is nothing to fit; empty if there is something.
 std::string nothing_to_fit(std::span<const TrialScore> scores,
                            const std::vector<std::string>& conditions, const Terms& terms) {
   if (scores.empty()) {

@@ -37,13 +37,13 @@ struct StudyMixed {
   std::vector<MixedPair> pairs;  // every two conditions, in the order of `conditions`
 };
 
-/// Random terms: the participant where one has several trials; condition within participant where
-/// one had several conditions, each in several blocks or trials; block within participant where
-/// blocks hold several trials. A block is known by subject and block together. Of terms that group
-/// the trials alike the first is kept.
+/// Random terms: participant, if a participant has several trials; condition within participant, if
+/// participants had several conditions with several blocks or trials each; block within
+/// participant, if blocks hold several trials. A block is known by subject and block together. Of
+/// terms that group the trials alike the first is kept.
 /// @param conditions  in the order of the report. @param reference  one of them, or the first.
 /// Undefined with fewer than two conditions, one without trials, no random term (each participant
-/// has one trial), or where mixed_model() is.
+/// has one trial), or if mixed_model() is undefined.
 /// @throws std::invalid_argument when a trial or the reference has a condition that is not listed.
 StudyMixed study_mixed(std::span<const TrialScore> scores,
                        const std::vector<std::string>& conditions,

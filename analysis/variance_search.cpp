@@ -34,7 +34,7 @@ VectorXd scanned(const RestrictedLikelihood& likelihood) {
   return best;
 }
 
-/// The rhos that may move: those above 0, and those at 0 where the criterion falls.
+/// The rhos that may move: those above 0, and those at 0 along which the criterion falls.
 std::vector<Index> free_of(const Slopes& s) {
   std::vector<Index> free;
   for (Index k = 0; k < s.rho.size(); ++k) {
@@ -45,7 +45,7 @@ std::vector<Index> free_of(const Slopes& s) {
   return free;
 }
 
-/// Minus the inverse of the matrix times the slope; nothing where it is not positive definite.
+/// Minus the inverse of the matrix times the slope; nothing if it is not positive definite.
 std::optional<VectorXd> descent(const MatrixXd& matrix, const VectorXd& slope) {
   const VectorXd diagonal = matrix.diagonal();
   if (!(diagonal.minCoeff() > 0.0)) {
@@ -64,7 +64,7 @@ struct Step {
   double expected{0.0};  // fall of the criterion that the slope promises
 };
 
-/// Newton's step; Fisher's, which always descends, where the criterion is not convex.
+/// Newton's step; Fisher's, which always descends, if the criterion is not convex.
 Step step_of(const Slopes& s, bool fisher) {
   Step step{VectorXd::Zero(s.rho.size())};
   const std::vector<Index> free = free_of(s);

@@ -8,7 +8,7 @@ namespace haptrial::analysis {
 
 /// The lowest point of the criterion over rho >= 0, to the last digits: a scan of each rho in turn,
 /// then Newton's method with the rhos held at 0 that would fall below.
-/// Nothing where the criterion falls without end.
+/// Nothing if the criterion falls without end.
 std::optional<RestrictedLikelihood::Slopes> lowest_point(const RestrictedLikelihood& likelihood);
 
 }  // namespace haptrial::analysis

@@ -1,4 +1,4 @@
-// How often tests of conditions come out below 0.05 where there is no difference: labels of a study
+// How often tests of conditions come out below 0.05 without a difference: the labels of a study
 // permuted, and studies simulated with its variances. Prints the table of
 // docs/algorithms/mixed-model.md; with P.csv also writes every p value, for null_conditions.gp.
 //   bench_null_conditions SCORES.csv [STUDIES] [SEED] [P.csv]
