@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "analysis/identity_json_internal.h"
 #include "analysis/scores_csv.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"

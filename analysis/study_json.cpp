@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "analysis/identity.h"
+#include "analysis/identity_json_internal.h"
 #include "analysis/quality_summary.h"
 #include "analysis/result_json_internal.h"
 

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/identity_json_internal.h"
 #include "analysis/study.h"
 
 namespace haptrial::analysis {
