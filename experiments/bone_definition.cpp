@@ -8,6 +8,7 @@
 #include "core/bone/data/mandible.h"
 #include "core/bone/data/temporal_bone.h"
 #include "experiments/drilling_study.h"
+#include "experiments/impossible.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -296,6 +297,9 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
   read_sound(root, d, folder);
   check_setup(root, d);
   check_together(root, d);
+  if (folder != nullptr) {
+    reject_impossible(root, d);
+  }
   root.finish();
   if (folder != nullptr) {
     for (const std::string& source : d.sources) {

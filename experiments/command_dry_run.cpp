@@ -9,6 +9,7 @@
 #include "experiments/experiment.h"
 #include "experiments/interrupt.h"
 #include "experiments/study_run.h"
+#include "experiments/warnings.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
@@ -42,6 +43,7 @@ int dry_run(const DryRunOptions& options) {
     throw RunError("interrupted");
   }
   dry.folder = options.out.empty() ? fresh_folder(setup.name) : fs::path(options.out);
+  print_warnings(experiment);
   if (experiment.bone && experiment.bone->practice > 0.0) {
     fmt::print("the {:.0f} minutes of practice are for people: left out\n",
                experiment.bone->practice / 60.0);

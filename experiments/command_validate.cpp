@@ -5,9 +5,11 @@
 
 #include <algorithm>
 
+#include "experiments/contact_margin.h"
 #include "experiments/experiment.h"
 #include "experiments/loop_margin.h"
 #include "experiments/session.h"
+#include "experiments/warnings.h"
 
 namespace haptrial::experiments {
 
@@ -33,14 +35,7 @@ void print_bones(const BoneDefinition& d) {
 void print_margins(const Definition& d) {
   for (const auto& [name, gains] :
        {std::pair{"trajectory", d.guidance.trajectory}, {"plane", d.guidance.plane}}) {
-    const LoopMargin margin = loop_margin(name, gains, d.guidance.loop);
-    fmt::print("{}\n", describe(margin));
-    if (is_dangerous(margin)) {
-      fmt::print(
-          "warning: guidance.{}.stiffness is {} N/m; a handle that is let go oscillates above "
-          "{:.0f} N/m at {} Hz, and the envelope then ends the pass\n",
-          name, gains.stiffness, margin.bare_stiffness, d.rate);
-    }
+    fmt::print("{}\n", describe(loop_margin(name, gains, d.guidance.loop)));
   }
 }
 
@@ -51,6 +46,10 @@ int validate(const std::string& file) {
   fmt::print("{}: valid\n", file);
   if (experiment.bone) {
     print_bones(*experiment.bone);
+    if (const auto margin = contact_margin(*experiment.bone)) {
+      fmt::print("{}\n", describe(*margin));
+    }
+    print_warnings(experiment);
     return 0;
   }
   const Definition& d = *experiment.force;
@@ -60,6 +59,7 @@ int validate(const std::string& file) {
   fmt::print("about {:.0f} minutes a participant without the break\n",
              estimated_ticks(d, d.design.trials) / d.rate / 60.0);
   print_margins(d);
+  print_warnings(experiment);
   return 0;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/table.h"
+#include "experiments/impossible.h"
 #include "experiments/recorded_path.h"
 #include "protocols/training_pass.h"
 
@@ -121,6 +122,9 @@ Definition read_definition(Table& root, std::string_view file_name,
   }
   check_setup(root, d);
   check_together(root, d);
+  if (folder != nullptr) {
+    reject_impossible(root, d);
+  }
   root.finish();
   return d;
 }
