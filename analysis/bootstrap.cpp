@@ -65,8 +65,8 @@ Defined<double> normal_interpolated(const std::vector<double>& sorted, double fr
   return sorted[k - 1] + part * (sorted[k] - sorted[k - 1]);
 }
 
-Rows drawn_rows(const std::vector<std::size_t>& sizes, RandomStream& random) {
-  Rows rows(sizes.size());
+DrawnRows drawn_rows(const std::vector<std::size_t>& sizes, RandomStream& random) {
+  DrawnRows rows(sizes.size());
   for (std::size_t s = 0; s < sizes.size(); ++s) {
     rows[s].resize(sizes[s]);
     std::generate(rows[s].begin(), rows[s].end(), [&] { return random.below(sizes[s]); });
@@ -74,8 +74,8 @@ Rows drawn_rows(const std::vector<std::size_t>& sizes, RandomStream& random) {
   return rows;
 }
 
-Rows all_rows(const std::vector<std::size_t>& sizes) {
-  Rows rows(sizes.size());
+DrawnRows all_rows(const std::vector<std::size_t>& sizes) {
+  DrawnRows rows(sizes.size());
   for (std::size_t s = 0; s < sizes.size(); ++s) {
     rows[s].resize(sizes[s]);
     std::iota(rows[s].begin(), rows[s].end(), std::size_t{0});
@@ -83,11 +83,11 @@ Rows all_rows(const std::vector<std::size_t>& sizes) {
   return rows;
 }
 
-std::vector<std::vector<double>> jackknife(const Rows& all, const RowStatistic& statistic) {
+std::vector<std::vector<double>> jackknife(const DrawnRows& all, const RowStatistic& statistic) {
   std::vector<std::vector<double>> result(all.size());
   for (std::size_t s = 0; s < all.size(); ++s) {
     for (std::size_t i = 0; i < all[s].size(); ++i) {
-      Rows rows = all;
+      DrawnRows rows = all;
       rows[s].erase(rows[s].begin() + static_cast<std::ptrdiff_t>(i));
       result[s].push_back(statistic(rows));
     }
@@ -147,7 +147,7 @@ Defined<BootstrapInterval> bootstrap(const std::vector<std::size_t>& sizes,
   if (sizes.empty() || *std::min_element(sizes.begin(), sizes.end()) < 2) {
     return Undefined{"resampling needs at least two values in each sample"};
   }
-  const Rows all = all_rows(sizes);
+  const DrawnRows all = all_rows(sizes);
   std::vector<double> replicates(resampling.count);
   for_each_part(resampling, [&](RandomStream& random, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
@@ -166,7 +166,8 @@ Defined<BootstrapInterval> bootstrap(
   }
   return bootstrap(
       std::vector{values.size()},
-      [&](const Rows& rows) { return statistic(picked(values, rows.front())); }, resampling, level);
+      [&](const DrawnRows& rows) { return statistic(picked(values, rows.front())); }, resampling,
+      level);
 }
 
 Defined<BootstrapInterval> bootstrap_difference(std::span<const double> a,
@@ -177,7 +178,7 @@ Defined<BootstrapInterval> bootstrap_difference(std::span<const double> a,
       return Undefined{sample.because()};
     }
   }
-  const auto difference = [&](const Rows& rows) {
+  const auto difference = [&](const DrawnRows& rows) {
     return mean_difference(*moments(picked(a, rows[0])), *moments(picked(b, rows[1])));
   };
   return bootstrap({a.size(), b.size()}, difference, resampling, level);

@@ -22,10 +22,10 @@ struct BootstrapInterval {
 };
 
 /// The rows drawn from each sample; a row may come more than once.
-using Rows = std::vector<std::vector<std::size_t>>;
+using DrawnRows = std::vector<std::vector<std::size_t>>;
 
 /// A number from drawn rows. Called by several threads at once. Not finite: it does not exist.
-using RowStatistic = std::function<double(const Rows& rows)>;
+using RowStatistic = std::function<double(const DrawnRows& rows)>;
 
 /// The interval from given replicates.
 /// @param replicates  the statistic of each resample.

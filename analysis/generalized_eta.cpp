@@ -54,8 +54,8 @@ Defined<BootstrapInterval> generalized_eta_squared_interval(const Table& table,
                    [&](double v) { return v - table.front().front(); });
   }
   return bootstrap(
-      {table.size()}, [&](const Rows& rows) { return share(shifted, rows.front()); }, resampling,
-      level);
+      {table.size()}, [&](const DrawnRows& rows) { return share(shifted, rows.front()); },
+      resampling, level);
 }
 
 }  // namespace haptrial::analysis

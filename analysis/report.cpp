@@ -13,7 +13,7 @@ std::string subtitle(const StudyResult& study) {
       "{} of {} under {}. {} recall error is 0 for a perfect recall and grows with the difference "
       "that remains after aligning the two curves in time.",
       counted(study.scores.size(), "scored recall trial"),
-      counted(study.sessions.size(), "participant"),
+      counted(study.statistics.subjects.size(), "participant"),
       counted(study.statistics.conditions.size(), "training condition"),
       study.curves_from.empty() ? "Each trial trained a force pattern and then asked for it; the"
                                 : "The");

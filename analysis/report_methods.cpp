@@ -11,6 +11,20 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
+constexpr const char* kMixed =
+    "A linear mixed model took every trial (restricted maximum likelihood, Satterthwaite's degrees "
+    "of freedom).";
+
+/// "repeated-measures analysis of variance with Greenhouse and Geisser's correction"
+std::string tests_of(const DesignTests& tests) {
+  for (const auto& effect : tests.effects) {
+    if (effect) {
+      return effect->test + (effect->epsilon ? " with Greenhouse and Geisser's correction" : "");
+    }
+  }
+  return "the tests of the tables";
+}
+
 /// A paragraph that can go into a paper's methods section.
 std::string methods(const StudyResult& study) {
   std::vector<std::string> parameters;
@@ -22,14 +36,15 @@ std::string methods(const StudyResult& study) {
       "common time base, the applied force low-pass filtered, the two aligned by dynamic "
       "programming over the differences of force and slope, and the score taken as the weighted "
       "mean of the alignment cost and of the root-mean-square differences of force and slope after "
-      "warping ({}). Scores were compared between training conditions by one-way analysis of "
-      "variance and one-tailed t-tests over pooled trials, as published, and, because the trials "
-      "of a participant are not independent, by repeated-measures analysis of variance with "
-      "Greenhouse and Geisser's correction and paired t-tests over participants' means with Holm's "
-      "adjustment, and by a linear mixed model with random intercepts of participants (restricted "
-      "maximum likelihood, Satterthwaite's degrees of freedom). Intervals are of 95 %; those of "
-      "shares of variance are of 90 % and invert the noncentral F distribution.{}",
-      joined(parameters), study.simulated() ? " All participants were simulated." : "");
+      "warping ({}). Participants were the unit of analysis: each gave one mean for each "
+      "condition. Conditions were compared by {}, two conditions by paired t-tests if the same "
+      "participants had both and by Welch's t-test otherwise, p values adjusted by Holm's method "
+      "within each family of tests; beside them stand tests on ranks, permutation tests and "
+      "bias-corrected and accelerated bootstrap intervals (9,999 random arrangements or resamples, "
+      "or all arrangements if there are at most 1,000,000). {} Intervals have a coverage of 95 %; "
+      "those of shares of variance have 90 % and invert the noncentral F distribution.{}",
+      joined(parameters), tests_of(study.statistics.tests), kMixed,
+      study.simulated() ? " All participants were simulated." : "");
 }
 
 void add_versions(Document& document, const StudyResult& study) {

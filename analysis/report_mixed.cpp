@@ -75,6 +75,12 @@ void add_mixed(Document& document, const StudyStatistics& statistics) {
       "a participant, a condition of that participant or a block. Participants with missing trials "
       "are kept. Do the conditions differ? {}.",
       counted(study.model->observations, "trial"), tested(study.omnibus)));
+  if (statistics.repeated && statistics.table.factors.size() == 1 &&
+      statistics.conditions.size() > 2) {
+    document.paragraph(
+        "The model takes the differences between any two conditions to vary alike (sphericity). If "
+        "Mauchly's test above speaks against that, trust the tests above.");
+  }
   add_effects(document, study);
   add_terms(document, study);
 }

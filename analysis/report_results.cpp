@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 
+#include "analysis/order_balance.h"
 #include "analysis/report_parts.h"
 #include "analysis/wording.h"
 
@@ -93,12 +94,16 @@ void add_design(Document& document, const StudyResult& study) {
   for (const auto& score : study.scores) {
     blocks.insert({score.subject, score.block});
   }
-  document.paragraph(fmt::format("Training conditions: {}.", joined(study.statistics.conditions)));
+  document.paragraph(fmt::format("Varied {}.", study.statistics.tests.design));
   if (study.curves_from.empty()) {
     document.paragraph(fmt::format(
         "The scored trials lie in {} that repeat one trajectory and force pattern under one "
         "training condition.",
         counted(blocks.size(), "block")));
+  }
+  if (study.statistics.table.factors.size() == 1 && study.statistics.table.factors[0].within &&
+      blocks.size() > study.statistics.subjects.size()) {
+    document.paragraph(sentence_of(order_balance(study.scores, study.statistics.conditions)));
   }
   study.curves_from.empty() ? add_sessions(document, study) : add_curves(document, study);
   for (const std::string& remark : study.remarks) {
@@ -111,16 +116,21 @@ void add_recall(Document& document, const StudyResult& study,
                 const std::vector<Drawing>& drawings) {
   document.heading("Recall error by training condition");
   add_picture(document, drawings, "figure-28-recall-error");
+  add_picture(document, drawings, "interaction");
   Rows rows;
   for (const auto& s : study.statistics.summaries) {
-    rows.push_back({capitalized(s.condition), std::to_string(s.count), quantity(s.mean, 1.0, ""),
-                    s.trials ? number(s.trials->deviation) : "-", interval(s.trials),
-                    interval(s.participants)});
+    rows.push_back({capitalized(s.condition), std::to_string(s.people),
+                    s.participants ? number(s.participants->mean) : quantity(s.mean, 1.0, ""),
+                    s.participants ? number(s.participants->deviation) : "-",
+                    interval(s.participants), std::to_string(s.count), quantity(s.mean, 1.0, ""),
+                    s.trials ? number(s.trials->deviation) : "-", interval(s.trials)});
   }
-  document.table({"Condition", "Trials", "Mean", "SD", "95 % CI, pooled trials",
-                  "95 % CI, participants' means"},
+  document.table({"Condition", "Participants", "Mean", "SD", "95 % CI", "Trials",
+                  "Mean, pooled trials", "SD, pooled trials", "95 % CI, pooled trials"},
                  rows);
-  add_table_1(document, study.statistics);
+  if (study.statistics.table.factors.size() == 1 && study.statistics.table.factors[0].within) {
+    add_table_1(document, study.statistics);
+  }
 }
 
 void add_learning(Document& document, const StudyResult& study,

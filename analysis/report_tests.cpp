@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "analysis/report_parts.h"
 #include "analysis/wording.h"
 
@@ -8,104 +10,186 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-std::string holm(const Defined<double>& p) {
-  return p ? p_value(*p) : "not defined, because " + p.because();
-}
-
-const ConditionSummary& summary_of(const StudyStatistics& s, const std::string& condition) {
+/// What a side's participants have: "M = 1.977, SD = 0.6644" of their means.
+std::string mean_of(const StudyStatistics& s, const std::string& side) {
   const auto found = std::find_if(s.summaries.begin(), s.summaries.end(),
-                                  [&](const auto& each) { return each.condition == condition; });
-  return *found;
+                                  [&](const auto& each) { return each.condition == side; });
+  if (found == s.summaries.end() || !found->participants) {
+    return "";
+  }
+  return fmt::format(" (M = {}, SD = {})", number(found->participants->mean),
+                     number(found->participants->deviation));
 }
 
 /// As journals want a planned test, in one sentence.
-std::string sentence(const StudyStatistics& s, const Comparison& c) {
+std::string sentence(const StudyStatistics& s, const SideTest& test) {
   constexpr double kAlpha = 0.05;
-  if (!c.pooled) {
-    return fmt::format(
-        "Whether error was lower after {} than after {} training is not defined, "
-        "because {}.",
-        c.better, c.worse, c.pooled.because());
+  const auto& [a, b, tail] = test.sides;
+  if (!test.t || !test.holm) {
+    return fmt::format("The planned test {} is not defined, because {}.", text_of(test.sides),
+                       test.t.because());
   }
-  const auto mean = [&](const std::string& condition) {
-    const auto& summary = summary_of(s, condition);
-    return fmt::format("M = {}, SD = {}", number(*summary.mean),
-                       summary.trials ? number(summary.trials->deviation) : "-");
-  };
-  return fmt::format(
-      "Recall error was {} after {} ({}) than after {} training ({}), {}, one-tailed, d = {}.",
-      c.pooled->p < kAlpha ? "significantly lower" : "not significantly lower", c.better,
-      mean(c.better), c.worse, mean(c.worse), t_result(c.pooled), effect(c.pooled_d));
+  const char* direction = tail == Tail::kLess      ? "lower"
+                          : tail == Tail::kGreater ? "higher"
+                                                   : "different";
+  return fmt::format("Recall error was {}significantly {} after {}{} {} after {}{}: {}, {} = {}.",
+                     *test.holm < kAlpha ? "" : "not ", direction, a, mean_of(s, a),
+                     tail == Tail::kTwoSided ? "and" : "than", b, mean_of(s, b), side_result(test),
+                     test.paired ? "d_z" : "d", effect(test.size));
+}
+
+/// A test on ranks and its adjusted p.
+std::string ranks_result(const SideTest& test) {
+  return test.ranks ? fmt::format("{} = {:g}, {}", test.paired ? "V" : "U", test.ranks->statistic,
+                                  p_result(test.ranks_holm))
+                    : "not defined, because " + test.ranks.because();
+}
+
+std::string difference(const Defined<TTest>& test) {
+  return test ? fmt::format("{} ({} to {})", number(test->difference), number(test->low),
+                            number(test->high))
+              : "-";
+}
+
+std::string participants_of(const SideTest& test) {
+  return test.paired ? counted(test.count_a, "pair")
+                     : fmt::format("{} and {}", test.count_a, test.count_b);
+}
+
+/// Whether a family's bootstrap intervals are printed at all.
+bool has_bootstrap(const TestFamily& family) {
+  return std::any_of(family.tests.begin(), family.tests.end(), [](const SideTest& test) {
+    return test.bootstrap && std::min(test.count_a, test.count_b) >= kFewestForBootstrap;
+  });
+}
+
+std::vector<std::string> row_of(const SideTest& test) {
+  return {test.sides.tail == Tail::kTwoSided ? test.sides.a + " and " + test.sides.b
+                                             : text_of(test.sides),
+          participants_of(test),
+          difference(test.t),
+          test.t ? fmt::format("{}: {}", name_of_test(test), t_result(test.t)) : t_result(test.t),
+          p_result(test.holm),
+          effect(test.size),
+          ranks_result(test),
+          p_result(test.permutation_holm)};
+}
+
+void add_family(Document& document, const TestFamily& family, const std::string& heading) {
+  if (family.tests.empty()) {
+    return;
+  }
+  std::vector<std::string> names{
+      heading,   "Participants", "Difference (95 % CI)", "t-test, not adjusted",
+      "p, Holm", "d_z or d",     "Ranks, Holm",          "Permutation, Holm"};
+  Rows rows;
+  for (const SideTest& test : family.tests) {
+    rows.push_back(row_of(test));
+    if (has_bootstrap(family)) {
+      rows.back().push_back(bootstrap_result(test));
+    }
+  }
+  if (has_bootstrap(family)) {
+    names.emplace_back("Bootstrap 95 % CI");
+  }
+  document.table(names, rows);
+}
+
+void add_effects(Document& document, const DesignTests& tests) {
+  Rows rows;
+  for (const auto& effect : tests.effects) {
+    if (!effect) {
+      document.paragraph("Whether conditions differ is not defined, because " + effect.because() +
+                         ".");
+      continue;
+    }
+    rows.push_back({effect->factor, effect_result(*effect),
+                    effect->size ? fmt::format("{} to {}", number(effect->size->low),
+                                               number(effect->size->high))
+                                 : "-"});
+  }
+  if (!rows.empty()) {
+    document.table({"Effect", "Test", "90 % CI of partial η²"}, rows);
+  }
+}
+
+/// What only one factor within participants has.
+void add_repeated(Document& document, const StudyStatistics& s) {
+  if (s.table.factors.size() != 1 || !s.table.factors[0].within || !s.repeated) {
+    return;
+  }
+  document.paragraph(fmt::format(
+      "Without the correction for sphericity {}. {}{}", p_value(s.repeated->p),
+      sphericity_result(s.repeated),
+      s.generalized_eta ? fmt::format(" Generalized η² = {:.2g}.", *s.generalized_eta) : ""));
+}
+
+void add_participants(Document& document, const StudyStatistics& s) {
+  document.subheading("Participants as the unit");
+  document.paragraph(
+      "Each participant gives one mean for each condition, so that trials of one participant are "
+      "not counted as independent evidence. Varied " +
+      s.tests.design + ".");
+  add_effects(document, s.tests);
+  add_repeated(document, s);
+  if (s.table.factors.size() == 1) {
+    document.paragraph(fmt::format("On ranks ({}): {}.",
+                                   s.table.factors[0].within ? "Friedman" : "Kruskal and Wallis",
+                                   rank_result(s.tests.ranks)));
+  }
+  if (!s.tests.incomplete.empty()) {
+    document.paragraph("Left out for lack of a scored trial in some condition: " +
+                       joined(s.tests.incomplete) + ".");
+  }
+  if (s.tests.planned.tests.empty()) {
+    document.paragraph("No test was planned: `planned` of [analysis] in the definition is empty.");
+  }
+  for (const SideTest& test : s.tests.planned.tests) {
+    document.paragraph(sentence(s, test));
+  }
+  add_family(document, s.tests.planned, "Planned test");
+  for (const TestFamily& family : s.tests.families) {
+    add_family(document, family, capitalized(family.name) + " (two-tailed)");
+  }
+  document.paragraph(
+      "d_z and paired tests where the same participants had both conditions, Cohen's d and Welch's "
+      "test where they are different participants. Ranks: Wilcoxon's signed-rank test (V) or Mann "
+      "and Whitney's (U). Adjusted p values of a column are adjusted together. Bootstrap intervals "
+      "are "
+      "printed for 30 participants or more: with fewer they are too narrow.");
 }
 
 void add_published(Document& document, const StudyStatistics& s) {
-  document.subheading("As published: pooled trials");
+  document.subheading("As published (Morris 2006, §4.4): pooled trials");
+  document.paragraph(
+      "These tests assume that all trials are independent. Trials of one participant, and of one "
+      "block, are not: differences between participants and blocks then pass for effects of the "
+      "condition, and p values are too small. They are here for comparison with the source.");
   document.paragraph(
       "One-way analysis of variance over all trials: " + anova_result(s.anova) +
       (s.eta ? fmt::format(", 90 % CI {} to {}", number(s.eta->low), number(s.eta->high)) : "") +
       ". On ranks (Kruskal and Wallis): " + rank_result(s.ranks) + ".");
   Rows rows;
   for (const auto& c : s.comparisons) {
-    document.paragraph(sentence(s, c));
-    rows.push_back(
-        {c.better + " < " + c.worse, t_result(c.pooled), t_result(c.welch), effect(c.pooled_d)});
+    rows.push_back({text_of(c.sides), t_result(c.student), t_result(c.welch), effect(c.d)});
   }
   if (!rows.empty()) {
-    document.table({"Hypothesis (one-tailed)", "Student", "Welch", "Cohen's d"}, rows);
+    document.table({"Planned test, pooled trials", "Student", "Welch", "Cohen's d"}, rows);
   }
-  document.paragraph(
-      fmt::format("Assumptions: equal variances, Levene's test about the medians: {}; normal "
-                  "residuals, Shapiro "
-                  "and Wilk's: {}. Small p speak against them; with many trials small departures "
-                  "are found too.",
-                  levene_result(s.levene), normality_result(s.normality)));
-}
-
-void add_repeated(Document& document, const StudyStatistics& s) {
-  document.subheading("Repeated measures: participants' means");
-  document.paragraph(
-      "The trials of one participant are not independent, so the pooled tests count more evidence "
-      "than there is; here every participant gives one mean for each condition, and conditions are "
-      "compared within participants.");
-  document.paragraph(
-      "One-way repeated-measures analysis of variance: " + anova_result(s.repeated) +
-      (s.partial_eta ? fmt::format(", 90 % CI {} to {}", number(s.partial_eta->low),
-                                   number(s.partial_eta->high))
-                     : "") +
-      (s.generalized_eta ? fmt::format("; generalized η² = {:.2g}", *s.generalized_eta) : "") +
-      ". " + sphericity_result(s.repeated) + " On ranks (Friedman): " + rank_result(s.friedman) +
-      ".");
-  if (!s.incomplete.empty()) {
-    document.paragraph(
-        "Left out for lack of a scored trial in some condition: " + joined(s.incomplete) + ".");
-  }
-  Rows rows;
-  for (const auto& c : s.comparisons) {
-    rows.push_back(
-        {c.better + " < " + c.worse, t_result(c.paired), holm(c.paired_holm), effect(c.paired_dz)});
-  }
-  if (!rows.empty()) {
-    document.table({"Hypothesis (one-tailed)", "Paired t-test", "After Holm", "d_z"}, rows);
-  }
-  rows.clear();
-  for (const auto& pair : s.pairs) {
-    rows.push_back({pair.a + " and " + pair.b, t_result(pair.test), holm(pair.holm),
-                    effect(pair.dz), rank_result(pair.signed_rank)});
-  }
-  if (!rows.empty()) {
-    document.table(
-        {"Every two conditions (two-tailed)", "Paired t-test", "After Holm", "d_z", "Wilcoxon"},
-        rows);
-  }
+  document.paragraph(fmt::format(
+      "Equal variances, Levene's test about the medians: {}; normal residuals, Shapiro and Wilk's "
+      "test: {}. A small p speaks against the assumption; with many trials even small departures "
+      "give a small p.",
+      levene_result(s.levene), normality_result(s.normality)));
 }
 
 }  // namespace
 
 void add_tests(Document& document, const StudyResult& study) {
   document.heading("Analyses");
-  add_published(document, study.statistics);
-  add_repeated(document, study.statistics);
+  add_participants(document, study.statistics);
   add_mixed(document, study.statistics);
+  add_published(document, study.statistics);
 }
 
 }  // namespace haptrial::analysis

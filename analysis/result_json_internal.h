@@ -4,6 +4,7 @@
 
 namespace haptrial::analysis {
 
+struct DesignTests;
 struct EffectSize;
 struct MeanInterval;
 struct TTest;
@@ -12,5 +13,6 @@ struct TTest;
 nlohmann::ordered_json to_json(const MeanInterval& mean);
 nlohmann::ordered_json to_json(const EffectSize& size);
 nlohmann::ordered_json to_json(const TTest& test);
+nlohmann::ordered_json to_json(const DesignTests& tests);
 
 }  // namespace haptrial::analysis

@@ -138,7 +138,7 @@ RecallPicture recall_picture(const std::string& which, const TrialScore& score,
 }
 
 StudyResult analyze_study(const std::vector<fs::path>& session_files,
-                          const ScoreParameters& parameters, int jobs) {
+                          const ScoreParameters& parameters, int jobs, const AnalysisPlan& plan) {
   if (session_files.empty()) {
     throw InputError("there is no session file to analyse; allowed: one or more");
   }
@@ -160,7 +160,7 @@ StudyResult analyze_study(const std::vector<fs::path>& session_files,
                             recalls.exclusions.end());
     tracking.insert(tracking.end(), recalls.tracking.begin(), recalls.tracking.end());
   }
-  study.statistics = study_statistics(study.scores);
+  study.statistics = study_statistics(study.scores, questions_of(study.factors, plan, jobs));
   study.tracking = summarize_tracking("all participants", tracking);
   study.recalls = pictures(sessions, study.scores, parameters);
   study.stimulus = sessions.front().recalls.stimulus;

@@ -73,11 +73,13 @@ struct StudyResult {
 /// The result does not depend on `jobs` nor on the order of the files.
 /// @throws InputError when there is no file, a file cannot be read, or two files share a subject.
 /// Source: Morris 2006, §4.3 and §4.4.
+/// @param plan  the tests that were planned
 StudyResult analyze_study(const std::vector<std::filesystem::path>& session_files,
-                          const ScoreParameters& parameters, int jobs);
+                          const ScoreParameters& parameters, int jobs,
+                          const AnalysisPlan& plan = {});
 
-/// The lines that matter: the mean recall error of each condition, the analysis of variance and the
-/// planned t-tests.
+/// The lines that matter, with participants as the unit: the mean recall error of each condition,
+/// whether conditions differ, and the planned tests.
 std::vector<std::string> summary_lines(const StudyResult& study);
 
 }  // namespace haptrial::analysis

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "analysis/order_balance.h"
 #include "analysis/palette.h"
 #include "analysis/wording.h"
 
@@ -30,21 +31,26 @@ Figure recall_error(const StudyResult& study) {
   figure.x_label = "Training condition";
   figure.y_label = "Recall error (0 is perfect)";
   Series participants{"mean of one participant", Mark::kPoints, {kBlue, kSolid, 6, 1.5, 0.9}};
-  Series intervals{"mean of all trials, 95 % CI", Mark::kBars, {kBlack, kSolid, 7, 2.5, 1.2}};
+  Series intervals{
+      "mean of participants' means, 95 % CI", Mark::kBars, {kBlack, kSolid, 7, 2.5, 1.2}};
   Series means{"", Mark::kPoints, {kBlack, kSolid, 7, 2.5, 1.2}};  // where no interval exists
   double highest = 0.0;
   for (std::size_t c = 0; c < statistics.conditions.size(); ++c) {
     const auto& summary = statistics.summaries[c];
     const auto place = static_cast<double>(c + 1);
     figure.x_names.emplace_back(place, capitalized(summary.condition));
-    const auto people = static_cast<double>(statistics.table_1.size());
-    for (std::size_t p = 0; p < statistics.table_1.size(); ++p) {
+    const auto& means_of = statistics.table.means;
+    const auto people = static_cast<double>(means_of.size());
+    for (std::size_t p = 0; p < means_of.size(); ++p) {
+      if (!means_of[p][c]) {
+        continue;
+      }
       const double spread = people > 1.0 ? 0.24 * static_cast<double>(p) / (people - 1.0) : 0.12;
       participants.x.push_back(place + 0.1 + spread);
-      participants.y.push_back(statistics.table_1[p].means[c]);
+      participants.y.push_back(*means_of[p][c]);
       highest = std::max(highest, participants.y.back());
     }
-    if (const auto& i = summary.trials) {
+    if (const auto& i = summary.participants) {
       intervals.x.push_back(place - 0.1);
       intervals.y.push_back(i->mean);
       intervals.low.push_back(i->low);
@@ -64,13 +70,57 @@ Figure recall_error(const StudyResult& study) {
   figure.x_range = Range{0.4, static_cast<double>(statistics.conditions.size()) + 0.6};
   figure.y_range = Range{0.0, highest > 0.0 ? 1.1 * highest : 1.0};
   figure.caption =
-      "Mean recall error for each training condition with 95 % confidence intervals over the "
-      "pooled trials, as published, and the mean of every participant beside it (participants "
-      "from left to right in order of name).";
+      "Mean recall error for each training condition: the mean of the participants' means with its "
+      "95 % confidence interval, and beside it the mean of every participant (from left to right "
+      "in "
+      "order of name). The source's Figure 28 has intervals over pooled trials; they are in the "
+      "table.";
   figure.alt = "Mean recall error by training condition:";
   for (const auto& s : statistics.summaries) {
-    figure.alt += fmt::format(" {} {};", s.condition, mean_with_interval(s.trials));
+    figure.alt += fmt::format(" {} {};", s.condition, mean_with_interval(s.participants));
   }
+  return figure;
+}
+
+/// Two factors: a line for each level of the first over the levels of the second.
+Figure interaction(const StudyResult& study) {
+  const auto& statistics = study.statistics;
+  const auto& table = statistics.table;
+  Figure figure;
+  figure.name = "interaction";
+  figure.title =
+      fmt::format("Recall error by {} and {}", table.factors[0].name, table.factors[1].name);
+  figure.x_label = capitalized(table.factors[1].name);
+  figure.y_label = "Recall error (0 is perfect)";
+  figure.alt = "Mean recall error:";
+  double highest = 0.0;
+  const auto lines = static_cast<double>(table.factors[0].levels.size());
+  for (std::size_t a = 0; a < table.factors[0].levels.size(); ++a) {
+    Series series{capitalized(table.factors[0].levels[a]), Mark::kLinkedBars, condition_look(a)};
+    const double aside = 0.04 * (static_cast<double>(a) - 0.5 * (lines - 1.0));
+    for (std::size_t cell = 0; cell < table.cells.size(); ++cell) {
+      const auto& interval = statistics.summaries[cell].participants;
+      if (table.cells[cell][0] != a || !interval) {
+        continue;
+      }
+      series.x.push_back(static_cast<double>(table.cells[cell][1]) + 1.0 + aside);
+      series.y.push_back(interval->mean);
+      series.low.push_back(interval->low);
+      series.high.push_back(interval->high);
+      highest = std::max(highest, interval->high);
+      figure.alt += fmt::format(" {} {};", table.names[cell], number(interval->mean));
+    }
+    figure.series.push_back(std::move(series));
+  }
+  const auto& levels = table.factors[1].levels;
+  for (std::size_t b = 0; b < levels.size(); ++b) {
+    figure.x_names.emplace_back(static_cast<double>(b) + 1.0, capitalized(levels[b]));
+  }
+  figure.x_range = Range{0.6, static_cast<double>(levels.size()) + 0.4};
+  figure.y_range = Range{0.0, highest > 0.0 ? 1.1 * highest : 1.0};
+  figure.caption =
+      "Means of the participants' means with 95 % confidence intervals over participants. Lines "
+      "that are not parallel are what the interaction tests.";
   return figure;
 }
 
@@ -140,8 +190,10 @@ Figure learning_over_blocks(const StudyResult& study) {
   figure.series.push_back(std::move(series));
   figure.y_range = Range{0.0, highest > 0.0 ? 1.1 * highest : 1.0};
   figure.caption =
+      std::string() +
       "Recall error in each block of the session: means of the participants' means with 95 % "
-      "confidence intervals over participants. Conditions are counterbalanced over blocks.";
+      "confidence intervals over participants. " +
+      sentence_of(order_balance(study.scores, study.statistics.conditions));
   figure.alt = "Mean recall error by block:" + figure.alt;
   return figure;
 }
@@ -256,8 +308,16 @@ std::vector<Figure> study_figures(const StudyResult& study) {
   std::vector<Figure> figures;
   if (!study.scores.empty()) {
     figures.push_back(recall_error(study));
-    figures.push_back(learning(study));
-    figures.push_back(learning_over_blocks(study));
+    if (study.statistics.table.factors.size() == 2 && study.statistics.table.crossed) {
+      figures.push_back(interaction(study));
+    }
+    if (std::any_of(study.scores.begin(), study.scores.end(),
+                    [&](const auto& s) { return s.repetition != study.scores[0].repetition; })) {
+      figures.push_back(learning(study));
+    }
+    if (study.statistics.blocks.size() > 1) {
+      figures.push_back(learning_over_blocks(study));
+    }
   }
   for (const auto& picture : study.recalls) {
     figures.push_back(alignment(picture, study.over_path));

@@ -42,10 +42,6 @@ Json to_json(const RankAnova& r) {
   return {{"chi_squared", r.chi_squared}, {"df", r.df}, {"p", r.p}};
 }
 
-Json to_json(const RankTest& r) {
-  return {{"statistic", r.statistic}, {"p", r.p}, {"exact", r.exact}};
-}
-
 Json to_json(const ShapiroWilk& s) { return {{"w", s.w}, {"p", s.p}}; }
 
 Json to_json(const Mauchly& m) { return {{"w", m.w}, {"p", m.p}}; }
@@ -84,6 +80,7 @@ Json conditions(const StudyStatistics& s) {
   for (const auto& c : s.summaries) {
     rows.push_back({{"condition", c.condition},
                     {"trials", c.count},
+                    {"participants", c.people},
                     {"mean", to_json(c.mean)},
                     {"pooled_trials", to_json(c.trials)},
                     {"participant_means", to_json(c.participants)}});
@@ -94,25 +91,10 @@ Json conditions(const StudyStatistics& s) {
 Json comparisons(const StudyStatistics& s) {
   Json rows = Json::array();
   for (const auto& c : s.comparisons) {
-    rows.push_back({{"hypothesis", c.better + " < " + c.worse},
-                    {"pooled_student_one_tailed", to_json(c.pooled)},
-                    {"pooled_cohens_d", to_json(c.pooled_d)},
-                    {"pooled_welch_one_tailed", to_json(c.welch)},
-                    {"paired_participant_means_one_tailed", to_json(c.paired)},
-                    {"paired_d_z", to_json(c.paired_dz)},
-                    {"paired_p_holm", to_json(c.paired_holm)}});
-  }
-  return rows;
-}
-
-Json pairs(const StudyStatistics& s) {
-  Json rows = Json::array();
-  for (const auto& p : s.pairs) {
-    rows.push_back({{"conditions", {p.a, p.b}},
-                    {"paired_two_tailed", to_json(p.test)},
-                    {"p_holm", to_json(p.holm)},
-                    {"d_z", to_json(p.dz)},
-                    {"wilcoxon_signed_rank", to_json(p.signed_rank)}});
+    rows.push_back({{"test", text_of(c.sides)},
+                    {"student", to_json(c.student)},
+                    {"welch", to_json(c.welch)},
+                    {"cohens_d", to_json(c.d)}});
   }
   return rows;
 }
@@ -177,15 +159,15 @@ Json published(const StudyStatistics& s) {
           {"eta_squared", to_json(s.eta)},
           {"kruskal_wallis", to_json(s.ranks)},
           {"levene_about_medians", to_json(s.levene)},
-          {"shapiro_wilk_of_residuals", to_json(s.normality)}};
+          {"shapiro_wilk_of_residuals", to_json(s.normality)},
+          {"comparisons", comparisons(s)}};
 }
 
 Json repeated(const StudyStatistics& s) {
   Json all{{"anova", to_json(s.repeated)},
            {"partial_eta_squared", to_json(s.partial_eta)},
            {"generalized_eta_squared", to_json(s.generalized_eta)},
-           {"friedman", to_json(s.friedman)},
-           {"left_out", s.incomplete}};
+           {"friedman", to_json(s.friedman)}};
   if (s.repeated) {
     all["mauchly"] = to_json(s.repeated->sphericity.mauchly);
     all["huynh_feldt_epsilon"] = to_json(s.repeated->sphericity.huynh_feldt);
@@ -276,7 +258,8 @@ Json session(const SessionSummary& s) {
 }
 
 Json to_json(const std::optional<Spread>& s) {
-  return s ? Json{{"median", s->median}, {"lowest", s->low}, {"highest", s->high}} : Json();
+  return s ? Json{{"median", s->median}, {"lowest", s->low}, {"highest", s->high}}
+           : Json{{"not_defined", "it is not known"}};
 }
 
 Json quality(const StudyResult& study) {
@@ -323,11 +306,10 @@ std::string statistics_json(const StudyResult& study) {
   root["participants"] = s.subjects.size();
   root["trials"] = study.scores.size();
   root["conditions"] = conditions(s);
-  root["published"] = published(s);
+  root["participants_as_unit"] = to_json(s.tests);
   root["repeated_measures"] = repeated(s);
   root["mixed_model"] = mixed_model(s.mixed);
-  root["comparisons"] = comparisons(s);
-  root["pairs"] = pairs(s);
+  root["published"] = published(s);
   root["table_1"] = table_1(s);
   root["learning"] = learning(s);
   root["blocks"] = blocks(s);

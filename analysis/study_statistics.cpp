@@ -15,27 +15,25 @@ namespace {
 
 constexpr std::array<const char*, 3> kKnownConditions{"haptic", "visual", "visuohaptic"};
 
-std::vector<std::string> ordered_conditions(std::span<const TrialScore> scores) {
-  std::set<std::string> found;
-  for (const auto& score : scores) {
-    found.insert(score.condition);
+/// The reference condition first.
+std::vector<std::string> first_conditions(const AnalysisPlan& plan) {
+  std::vector<std::string> first;
+  if (!plan.reference.empty()) {
+    first.push_back(plan.reference);
   }
-  std::vector<std::string> result;
-  for (const char* known : kKnownConditions) {
-    if (found.erase(known) > 0) {
-      result.push_back(known);
-    }
-  }
-  result.insert(result.end(), found.begin(), found.end());
-  return result;
+  first.insert(first.end(), kKnownConditions.begin(), kKnownConditions.end());
+  return first;
 }
 
-std::vector<std::string> ordered_subjects(std::span<const TrialScore> scores) {
-  std::set<std::string> found;
+DesignTable table_of(std::span<const TrialScore> scores, const StudyQuestions& questions) {
+  std::vector<Observation> observations;
   for (const auto& score : scores) {
-    found.insert(score.subject);
+    observations.push_back(
+        {score.subject,
+         score.levels.empty() ? std::vector<std::string>{score.condition} : score.levels,
+         score.score});
   }
-  return {found.begin(), found.end()};
+  return design_table(observations, questions.factors, first_conditions(questions.plan));
 }
 
 // Means of the values by subject, in order of subject.
@@ -57,9 +55,10 @@ Defined<double> mean_of(const Values& values) {
 
 ConditionSummary summarize(std::span<const TrialScore> scores, const std::string& condition) {
   const Values values = of_condition(scores, condition);
-  return {condition, values.size(), mean_of(values), mean_interval(values),
-          mean_interval(
-              subject_means(scores, [&](const auto& s) { return s.condition == condition; }))};
+  const Values means =
+      subject_means(scores, [&](const auto& s) { return s.condition == condition; });
+  return {condition,       values.size(),         means.size(),
+          mean_of(values), mean_interval(values), mean_interval(means)};
 }
 
 std::string names_at(const StudyStatistics& study, const Values& means, double value) {
@@ -83,7 +82,6 @@ void add_table_1(StudyStatistics& study, std::span<const TrialScore> scores) {
       }
     }
     if (means.size() < study.conditions.size()) {
-      study.incomplete.push_back(subject);
       continue;
     }
     const auto [low, high] = std::minmax_element(means.begin(), means.end());
@@ -144,15 +142,25 @@ void add_blocks(StudyStatistics& study, std::span<const TrialScore> scores) {
 
 }  // namespace
 
-StudyStatistics study_statistics(std::span<const TrialScore> scores) {
+StudyQuestions questions_of(const std::vector<std::string>& factors, const AnalysisPlan& plan,
+                            int threads) {
+  StudyQuestions questions{plan, factors};
+  questions.resampling.count = 9999;
+  questions.resampling.threads = threads;
+  return questions;
+}
+
+StudyStatistics study_statistics(std::span<const TrialScore> scores,
+                                 const StudyQuestions& questions) {
   StudyStatistics study;
-  study.subjects = ordered_subjects(scores);
-  study.conditions = ordered_conditions(scores);
+  study.table = table_of(scores, questions);
+  study.subjects = study.table.subjects;
+  study.conditions = study.table.names;
   for (const auto& condition : study.conditions) {
     study.summaries.push_back(summarize(scores, condition));
   }
   add_table_1(study, scores);
-  add_tests(study, scores);
+  add_tests(study, scores, questions);
   add_learning(study, scores);
   add_blocks(study, scores);
   return study;

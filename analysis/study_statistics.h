@@ -7,7 +7,7 @@
 
 #include "analysis/anova.h"
 #include "analysis/descriptive.h"
-#include "analysis/effect_size.h"
+#include "analysis/design_tests.h"
 #include "analysis/levene.h"
 #include "analysis/rank_anova.h"
 #include "analysis/repeated_anova.h"
@@ -15,7 +15,6 @@
 #include "analysis/study_mixed.h"
 #include "analysis/t_test.h"
 #include "analysis/trial_score.h"
-#include "analysis/wilcoxon.h"
 
 namespace haptrial::analysis {
 
@@ -23,6 +22,7 @@ namespace haptrial::analysis {
 struct ConditionSummary {
   std::string condition;
   std::size_t count{0};                                            // trials
+  std::size_t people{0};                                           // participants with such a trial
   Defined<double> mean{Undefined{"there are no trials"}};          // over trials
   Defined<MeanInterval> trials{Undefined{"there are no trials"}};  // pooled, as published
   Defined<MeanInterval> participants{Undefined{"there are no participants"}};  // of their means
@@ -36,26 +36,12 @@ struct ParticipantMeans {
   std::string worst;
 };
 
-/// The hypothesis that `better` has the lower mean error than `worse`.
-struct Comparison {
-  std::string better;
-  std::string worse;
-  Defined<TTest> pooled{Undefined{"nothing was compared"}};  // Student, one-tailed, as published
-  Defined<EffectSize> pooled_d{Undefined{"nothing was compared"}};  // Cohen's d
-  Defined<TTest> welch{Undefined{"nothing was compared"}};          // the same, unequal variances
-  Defined<TTest> paired{Undefined{"nothing was compared"}};  // participants' means, one-tailed
-  Defined<EffectSize> paired_dz{Undefined{"nothing was compared"}};
-  Defined<double> paired_holm{Undefined{"nothing was compared"}};  // p of paired, over all planned
-};
-
-/// Two conditions within participants, without a hypothesis: two-tailed.
-struct PairComparison {
-  std::string a;
-  std::string b;
-  Defined<TTest> test{Undefined{"nothing was compared"}};
-  Defined<double> holm{Undefined{"nothing was compared"}};  // its p, adjusted over all pairs
-  Defined<EffectSize> dz{Undefined{"nothing was compared"}};
-  Defined<RankTest> signed_rank{Undefined{"nothing was compared"}};
+/// A planned test as published: single trials, pooled over participants.
+struct PooledComparison {
+  PlannedTest sides;
+  Defined<TTest> student{Undefined{"nothing was compared"}};
+  Defined<TTest> welch{Undefined{"nothing was compared"}};   // the same, unequal variances
+  Defined<EffectSize> d{Undefined{"nothing was compared"}};  // Cohen's
 };
 
 /// Mean error of a condition at a repetition within the block.
@@ -94,18 +80,33 @@ struct StudyStatistics {
   Defined<double> generalized_eta{Undefined{"there are no trials"}};  // squared
   Defined<RankAnova> friedman{Undefined{"there are no trials"}};
 
-  StudyMixed mixed;                     // all trials, the first condition as the reference
-  std::vector<Comparison> comparisons;  // visual < haptic, visuohaptic < visual, where they are
-  std::vector<PairComparison> pairs;    // every two conditions
+  StudyMixed mixed;  // all trials, the first condition as the reference
+
+  // What the design calls for, with participants as the unit: the report leads with these.
+  DesignTable table;
+  DesignTests tests;
+
+  std::vector<PooledComparison> comparisons;  // the planned tests again, as published
 
   std::vector<ParticipantMeans> table_1;  // participants with a trial in every condition
-  std::vector<std::string> incomplete;    // subjects left out of table_1, `repeated` and `paired`
   std::vector<LearningPoint> learning;    // by condition, then repetition
   std::vector<BlockPoint> blocks;         // in order
   Defined<MeanInterval> slope{Undefined{"there are no trials"}};  // participants' own, a block
 };
 
+/// What a study asks, besides its scores.
+struct StudyQuestions {
+  AnalysisPlan plan{};
+  std::vector<std::string> factors{"condition"};  // names, one for each of TrialScore::levels
+  Resampling resampling{1, "", 0, 1};             // of permutation tests and bootstrap; 0: none
+};
+
+/// Those of a report: with permutation tests and bootstrap intervals.
+StudyQuestions questions_of(const std::vector<std::string>& factors, const AnalysisPlan& plan,
+                            int threads);
+
 /// @param scores  in any order; the result does not depend on it but for rounding.
-StudyStatistics study_statistics(std::span<const TrialScore> scores);
+StudyStatistics study_statistics(std::span<const TrialScore> scores,
+                                 const StudyQuestions& questions = {});
 
 }  // namespace haptrial::analysis

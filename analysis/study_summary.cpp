@@ -2,10 +2,20 @@
 
 #include <algorithm>
 
+#include "analysis/design_lines.h"
 #include "analysis/study.h"
 #include "analysis/wording.h"
 
 namespace haptrial::analysis {
+namespace {
+
+std::string line_of(const ConditionSummary& s, const std::string& participants) {
+  return fmt::format("{}: mean recall error {} ({}, {})", capitalized(s.condition),
+                     mean_with_interval(s.participants), counted(s.people, participants),
+                     counted(s.count, "trial"));
+}
+
+}  // namespace
 
 bool StudyResult::simulated() const {
   return std::any_of(sessions.begin(), sessions.end(),
@@ -17,19 +27,10 @@ std::vector<std::string> summary_lines(const StudyResult& study) {
   const char* participants = study.simulated() ? "simulated participant" : "participant";
   std::vector<std::string> lines;
   for (const auto& s : statistics.summaries) {
-    lines.push_back(fmt::format("{}: mean recall error {} ({}, {})", capitalized(s.condition),
-                                mean_with_interval(s.trials), counted(s.count, "trial"),
-                                counted(statistics.subjects.size(), participants)));
+    lines.push_back(line_of(s, participants));
   }
-  lines.push_back(fmt::format("Analysis of variance: pooled trials {}; repeated measures {}",
-                              anova_result(statistics.anova), anova_result(statistics.repeated)));
-  std::string tests;
-  for (const auto& c : statistics.comparisons) {
-    tests += fmt::format("{}{} below {} {}", tests.empty() ? "" : "; ", c.better, c.worse,
-                         t_result(c.pooled));
-  }
-  if (!tests.empty()) {
-    lines.push_back("One-tailed t-tests on pooled trials: " + tests);
+  for (const auto& more : {effect_lines(statistics.tests), planned_lines(statistics.tests)}) {
+    lines.insert(lines.end(), more.begin(), more.end());
   }
   return lines;
 }

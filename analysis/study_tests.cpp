@@ -1,73 +1,22 @@
 #include "analysis/study_tests.h"
 
-#include <algorithm>
-#include <array>
-
-#include "analysis/p_adjust.h"
+#include "analysis/effect_size.h"
 #include "analysis/study_values.h"
 
 namespace haptrial::analysis {
 namespace {
 
-// The planned comparisons: the first is expected to have the lower error.
-constexpr std::array<std::pair<const char*, const char*>, 2> kHypotheses{
-    {{"visual", "haptic"}, {"visuohaptic", "visual"}}};
-
-std::size_t place_of(const StudyStatistics& study, const std::string& condition) {
-  const auto place = std::find(study.conditions.begin(), study.conditions.end(), condition);
-  return static_cast<std::size_t>(place - study.conditions.begin());
-}
-
-Values table_column(const StudyStatistics& study, std::size_t column) {
-  Values result;
-  for (const auto& row : study.table_1) {
-    result.push_back(row.means[column]);
-  }
-  return result;
-}
-
-void add_planned(StudyStatistics& study, std::span<const TrialScore> scores) {
-  std::vector<Defined<TTest>> paired;
-  for (const auto& [better, worse] : kHypotheses) {
-    const std::size_t low = place_of(study, better);
-    const std::size_t high = place_of(study, worse);
-    if (low >= study.conditions.size() || high >= study.conditions.size()) {
-      continue;  // another study: it has its own conditions, compared pair by pair
+/// The planned tests of conditions as the source made them.
+void add_pooled_tests(StudyStatistics& study, std::span<const TrialScore> scores,
+                      const AnalysisPlan& plan) {
+  for (const PlannedTest& sides : plan.tests) {
+    const Values a = of_condition(scores, sides.a);
+    const Values b = of_condition(scores, sides.b);
+    if (a.empty() || b.empty()) {
+      continue;  // a level of several conditions, or one without trials
     }
-    Comparison c{better, worse};
-    const Values a = of_condition(scores, better);
-    const Values b = of_condition(scores, worse);
-    c.pooled = student_t_test(a, b, Tail::kLess);
-    c.pooled_d = cohens_d(a, b);
-    c.welch = welch_t_test(a, b, Tail::kLess);
-    c.paired = paired_t_test(table_column(study, low), table_column(study, high), Tail::kLess);
-    c.paired_dz = cohens_dz(table_column(study, low), table_column(study, high));
-    paired.push_back(c.paired);
-    study.comparisons.push_back(std::move(c));
-  }
-  const auto adjusted = holm_over(paired);
-  for (std::size_t i = 0; i < study.comparisons.size(); ++i) {
-    study.comparisons[i].paired_holm = adjusted[i];
-  }
-}
-
-void add_pairs(StudyStatistics& study) {
-  std::vector<Defined<TTest>> tests;
-  for (std::size_t i = 0; i < study.conditions.size(); ++i) {
-    for (std::size_t k = i + 1; k < study.conditions.size(); ++k) {
-      const Values a = table_column(study, i);
-      const Values b = table_column(study, k);
-      PairComparison pair{study.conditions[i], study.conditions[k]};
-      pair.test = paired_t_test(a, b, Tail::kTwoSided);
-      pair.dz = cohens_dz(a, b);
-      pair.signed_rank = wilcoxon_signed_rank(a, b, Tail::kTwoSided);
-      tests.push_back(pair.test);
-      study.pairs.push_back(std::move(pair));
-    }
-  }
-  const auto adjusted = holm_over(tests);
-  for (std::size_t i = 0; i < study.pairs.size(); ++i) {
-    study.pairs[i].holm = adjusted[i];
+    study.comparisons.push_back(
+        {sides, student_t_test(a, b, sides.tail), welch_t_test(a, b, sides.tail), cohens_d(a, b)});
   }
 }
 
@@ -119,12 +68,13 @@ void add_repeated(StudyStatistics& study) {
 
 }  // namespace
 
-void add_tests(StudyStatistics& study, std::span<const TrialScore> scores) {
-  add_pooled(study, scores);
+void add_tests(StudyStatistics& study, std::span<const TrialScore> scores,
+               const StudyQuestions& questions) {
+  study.tests = design_tests(study.table, questions.plan, questions.resampling);
   add_repeated(study);
-  add_planned(study, scores);
-  add_pairs(study);
   study.mixed = study_mixed(scores, study.conditions);
+  add_pooled(study, scores);
+  add_pooled_tests(study, scores, questions.plan);
 }
 
 }  // namespace haptrial::analysis

@@ -6,8 +6,9 @@
 
 namespace haptrial::analysis {
 
-/// Adds the tests of a study to what study_statistics() has gathered: conditions, subjects and
-/// table_1 are there.
-void add_tests(StudyStatistics& study, std::span<const TrialScore> scores);
+/// Adds the tests of a study to what study_statistics() has gathered: conditions, subjects, table
+/// and table_1 are there.
+void add_tests(StudyStatistics& study, std::span<const TrialScore> scores,
+               const StudyQuestions& questions);
 
 }  // namespace haptrial::analysis

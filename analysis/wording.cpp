@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace haptrial::analysis {
@@ -75,6 +76,39 @@ std::string rank_result(const Defined<RankTest>& test) {
     return not_defined(test.because());
   }
   return fmt::format("V = {:g}, {}", test->statistic, p_value(test->p));
+}
+
+std::string effect_result(const EffectTest& effect) {
+  return fmt::format(
+      "F({}, {}) = {}, {} ({}{}){}", degrees(effect.df_effect), degrees(effect.df_error),
+      number(effect.f), p_value(effect.p), effect.test,
+      effect.epsilon ? fmt::format(", Greenhouse–Geisser ε = {:.2f}", *effect.epsilon) : "",
+      effect.size ? fmt::format(", partial η² = {:.2g}", effect.size->value) : "");
+}
+
+std::string side_result(const SideTest& test) {
+  if (!test.t) {
+    return not_defined(test.t.because());
+  }
+  return fmt::format(
+      "difference {}, 95 % CI {} to {}, {}({}) = {:.3g}, {} after Holm's adjustment, {}",
+      number(test.t->difference), number(test.t->low), number(test.t->high), name_of_test(test),
+      degrees(test.t->df), test.t->t, p_result(test.holm),
+      test.sides.tail == Tail::kTwoSided ? "two-tailed" : "one-tailed");
+}
+
+std::string bootstrap_result(const SideTest& test) {
+  if (!test.bootstrap) {
+    return not_defined(test.bootstrap.because());
+  }
+  if (std::min(test.count_a, test.count_b) < kFewestForBootstrap) {
+    return fmt::format("not given for fewer than {} participants", kFewestForBootstrap);
+  }
+  return fmt::format("{} to {}", number(test.bootstrap->low), number(test.bootstrap->high));
+}
+
+std::string p_result(const Defined<double>& p) {
+  return p ? p_value(*p) : not_defined(p.because());
 }
 
 std::string effect(const Defined<EffectSize>& size) {

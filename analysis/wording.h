@@ -4,6 +4,7 @@
 
 #include "analysis/anova.h"
 #include "analysis/descriptive.h"
+#include "analysis/design_tests.h"
 #include "analysis/effect_size.h"
 #include "analysis/rank_anova.h"
 #include "analysis/repeated_anova.h"
@@ -35,6 +36,16 @@ std::string t_result(const Defined<TTest>& test);
 std::string rank_result(const Defined<RankAnova>& test);
 /// "V = 12, p = 0.034".
 std::string rank_result(const Defined<RankTest>& test);
+/// "F(2, 22) = 12.3, p = 0.013 (repeated-measures analysis of variance, Greenhouse–Geisser ε =
+/// 0.64), partial η² = 0.40".
+std::string effect_result(const EffectTest& effect);
+/// "difference -0.19, 95 % CI -0.50 to 0.11, paired t(11) = -1.39, p = 0.096 after Holm's
+/// adjustment, one-tailed".
+std::string side_result(const SideTest& test);
+/// "-0.51 to 0.11", or that there are too few participants.
+std::string bootstrap_result(const SideTest& test);
+/// "p = 0.0123", or why there is none.
+std::string p_result(const Defined<double>& p);
 /// "-0.42, 95 % CI -0.71 to -0.13".
 std::string effect(const Defined<EffectSize>& size);
 /// "F(2, 861) = 2.1, p = 0.12".
@@ -47,7 +58,7 @@ std::string sphericity_result(const Defined<RepeatedAnova>& anova);
 std::string quantity(const Defined<double>& value, double factor, const std::string& unit);
 /// "Visuohaptic" of "visuohaptic".
 std::string capitalized(std::string text);
-/// "1 trial", "2 passes".
+/// "1 trial", "2 passes", "2 studies" of "study".
 std::string counted(std::size_t count, const std::string& noun);
 
 }  // namespace haptrial::analysis

@@ -43,16 +43,38 @@ std::vector<std::string> what_is_missing(const fs::path& folder, std::size_t ses
   return remarks;
 }
 
-analysis::StudyResult analyzed_sessions(const std::string& folder, Pilots pilots, int threads) {
+/// The definition's plan, unless options say another: then `remark` says so.
+analysis::AnalysisPlan plan_for(const AnalyzeOptions& options, analysis::AnalysisPlan plan,
+                                std::vector<std::string>& remarks) {
+  const analysis::AnalysisPlan given = plan_of(options.planned, options.reference);
+  if (!given.tests.empty()) {
+    plan.tests = given.tests;
+    remarks.emplace_back("The planned tests were given to analyze, not stated in the definition.");
+  }
+  if (!given.reference.empty()) {
+    plan.reference = given.reference;
+  }
+  return plan;
+}
+
+analysis::StudyResult analyzed_sessions(const AnalyzeOptions& options, Pilots pilots, int threads) {
+  const std::string& folder = options.folder;
   const StudyFiles found = study_files(folder, pilots);
   const Definition definition =
       parse_definition(found.first.definition, found.first.definition_name);
-  analysis::StudyResult study = analysis::analyze_study(found.files, definition.scoring, threads);
+  std::vector<std::string> remarks;
+  const analysis::AnalysisPlan plan = plan_for(options, definition.plan, remarks);
+  analysis::StudyResult study =
+      analysis::analyze_study(found.files, definition.scoring, threads, plan);
   if (study.scores.empty()) {
     throw InputError(fmt::format(
         "{}: no session holds a completed test pass, so nothing can be scored", folder));
   }
+  if (!remarks.empty()) {
+    analysis::check_plan(study.statistics.table, plan);
+  }
   study.remarks = found.remarks;
+  study.remarks.insert(study.remarks.end(), remarks.begin(), remarks.end());
   if (pilots == Pilots::kLeftOut) {
     for (std::string& remark : what_is_missing(folder, found.files.size(), definition)) {
       study.remarks.push_back(std::move(remark));
@@ -63,17 +85,26 @@ analysis::StudyResult analyzed_sessions(const std::string& folder, Pilots pilots
 
 analysis::StudyResult analyzed_curves(const AnalyzeOptions& options, int threads) {
   watch_for_interrupt();
-  const analysis::ScoreParameters scoring = options.definition.empty()
-                                                ? analysis::ScoreParameters{}
-                                                : load_definition(options.definition).scoring;
-  const exchange::CurveStudy study{options.curves,
-                                   options.table.empty() ? options.conditions : options.table,
-                                   exchange::ImportColumns(options.columns), options.factors};
-  return exchange::analyze_curves(study, scoring, threads, [](std::uint64_t) {
-    if (interrupted()) {
-      throw RunError("interrupted; nothing was written");
-    }
-  });
+  analysis::ScoreParameters scoring;
+  analysis::AnalysisPlan plan;
+  if (!options.definition.empty()) {
+    const Definition definition = load_definition(options.definition);
+    scoring = definition.scoring;
+    plan = definition.plan;
+  }
+  std::vector<std::string> remarks;
+  plan = plan_for(options, std::move(plan), remarks);
+  analysis::StudyResult study = exchange::analyze_curves(
+      {options.curves, options.table.empty() ? options.conditions : options.table,
+       exchange::ImportColumns(options.columns), options.factors, plan},
+      scoring, threads, [](std::uint64_t) {
+        if (interrupted()) {
+          throw RunError("interrupted; nothing was written");
+        }
+      });
+  analysis::check_plan(study.statistics.table, plan);
+  study.remarks.insert(study.remarks.end(), remarks.begin(), remarks.end());
+  return study;
 }
 
 bool holds_drillings(const std::string& folder, Pilots pilots) {
@@ -145,8 +176,8 @@ int analyze(const AnalyzeOptions& options) {
   if (!import && holds_drillings(options.folder, pilots)) {
     return analyze_procedures(options.folder, pilots, threads);
   }
-  const analysis::StudyResult study = import ? analyzed_curves(options, threads)
-                                             : analyzed_sessions(options.folder, pilots, threads);
+  const analysis::StudyResult study =
+      import ? analyzed_curves(options, threads) : analyzed_sessions(options, pilots, threads);
   const fs::path out = import ? fs::path(options.out) : report_folder(options.folder, pilots);
   analysis::write_analysis(study, out);
   for (const std::string& line : analysis::summary_lines(study)) {

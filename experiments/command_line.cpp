@@ -17,6 +17,7 @@ void declare_subcommands(CLI::App& app, int& status) {
   add_export(app, status);
   add_align(app, status);
   add_compare(app, status);
+  add_statistics(app, status);
   add_info(app, status);
   add_recover(app, status);
   add_replay(app, status);

@@ -26,6 +26,11 @@ void add_analyze(CLI::App& app, int& status) {
   sub->add_option("--factor", o.factors,
                   "Column of a factor, in place of condition; may be repeated")
       ->allow_extra_args(false);
+  sub->add_option("--planned", o.planned,
+                  "Planned test in place of the definition's, 'A < B', 'A > B' or 'A != B'; may be "
+                  "repeated")
+      ->allow_extra_args(false);
+  sub->add_option("--reference", o.reference, "Reference condition in place of the definition's");
   sub->add_option("--jobs", o.jobs, "Threads; one per processor by default");
 }
 
@@ -82,6 +87,27 @@ void add_compare(CLI::App& app, int& status) {
   sub->add_option("--out", o.out, "Folder for a page, a figure and the numbers");
   sub->add_flag("--different-scoring", o.different_scoring,
                 "Compare scores that were made with different parameters, with an alarm on top");
+}
+
+void add_statistics(CLI::App& app, int& status) {
+  CLI::App* sub = subcommand(app, "statistics",
+                             "Test a table with one value in each row, as its design calls for",
+                             "haptrial statistics scores.csv --planned 'visual < haptic'");
+  auto& o = options_of<StatisticsOptions>(*sub, status, statistics);
+  sub->add_option("TABLE", o.table, "Table (.csv); - reads standard input")->required();
+  sub->add_option("--value", o.value, "Column of the values (score)");
+  sub->add_option("--subject", o.subject, "Column of the participants (subject)");
+  sub->add_option("--factor", o.factors, "Column of a factor; may be repeated (condition)")
+      ->allow_extra_args(false);
+  sub->add_option("--planned", o.planned,
+                  "Planned test, 'A < B', 'A > B' or 'A != B'; may be repeated")
+      ->allow_extra_args(false);
+  sub->add_option("--reference", o.reference, "Level that tables and comparisons begin with");
+  sub->add_option("--resamples", o.resamples,
+                  "Random arrangements and resamples; 0 for none (9999)");
+  sub->add_option("--seed", o.seed, "Seed of the random arrangements (1)");
+  sub->add_option("--json", o.json, "File for the numbers, unrounded");
+  sub->add_option("--jobs", o.jobs, "Threads; one per processor by default");
 }
 
 void add_power(CLI::App& app, int& status) {

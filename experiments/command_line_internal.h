@@ -26,6 +26,7 @@ void add_analyze(CLI::App& app, int& status);
 void add_export(CLI::App& app, int& status);
 void add_align(CLI::App& app, int& status);
 void add_compare(CLI::App& app, int& status);
+void add_statistics(CLI::App& app, int& status);
 void add_power(CLI::App& app, int& status);
 
 void add_mesh(CLI::App& app, int& status);      // command_line_mesh.cpp

@@ -7,6 +7,10 @@
 #include "core/record/session_types.h"
 #include "experiments/mesh_command.h"
 
+namespace haptrial::analysis {
+struct AnalysisPlan;
+}
+
 namespace haptrial::experiments {
 
 /// The subcommands of haptrial: each prints to standard output and returns an exit status. Bad
@@ -67,9 +71,30 @@ struct AnalyzeOptions {
   std::vector<std::string> columns;  // "subject=Participant", of curves and table
   std::vector<std::string> factors;  // columns of the table; default: condition
   bool pilots{false};                // them alone, in place of the study
+  std::vector<std::string> planned;  // in place of the definition's
+  std::string reference;             // likewise
   std::optional<int> jobs;
 };
 int analyze(const AnalyzeOptions& options);
+
+/// The tests that the design of a table calls for.
+struct StatisticsOptions {
+  std::string table;
+  std::string subject{"subject"};    // columns
+  std::vector<std::string> factors;  // default: condition
+  std::string value{"score"};
+  std::vector<std::string> planned;
+  std::string reference;
+  int resamples{9999};
+  std::uint32_t seed{1};
+  std::string json;  // file for the numbers
+  std::optional<int> jobs;
+};
+int statistics(const StatisticsOptions& options);
+
+/// @throws InputError for a test that cannot be read
+analysis::AnalysisPlan plan_of(const std::vector<std::string>& planned,
+                               const std::string& reference);
 
 /// Exactly one of bids, csv and curves names a new folder.
 struct ExportOptions {

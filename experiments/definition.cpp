@@ -107,8 +107,10 @@ Definition read_definition(Table& root, std::string_view file_name,
                subject::Population(subject),
                std::nullopt,
                recording.number("stimulus_rate", {10.0, 10000.0}, "Hz"),
-               analysis::read_score_parameters(scoring)};
+               analysis::read_score_parameters(scoring),
+               {}};
   d.design = protocols::read_design(design);
+  d.plan = analysis::read_analysis_plan(scoring, d.design.conditions);
   d.recovery = d.guidance.recovery;
   d.guidance.loop = handle_loop(d);
   d.display = render::read_trial_display_style(display);

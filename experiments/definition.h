@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "analysis/analysis_plan.h"
 #include "analysis/score_parameters.h"
 #include "core/stimulus/stimulus.h"
 #include "core/subject/pacer.h"
@@ -27,6 +28,7 @@ struct Definition : Setup {
   std::optional<subject::PaceHabits> pace;  // where participants set their own
   double stimulus_rate;                     // [Hz]
   analysis::ScoreParameters scoring;
+  analysis::AnalysisPlan plan;
 };
 
 /// @throws InputError with a sentence for every problem of the file.

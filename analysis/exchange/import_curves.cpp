@@ -63,7 +63,8 @@ analysis::StudyResult analyze_curves(const CurveStudy& study,
     result.scores.push_back(trial.score);
   }
   add_subjects(result, trials);
-  result.statistics = study_statistics(result.scores);
+  result.statistics =
+      study_statistics(result.scores, questions_of(result.factors, study.plan, jobs));
   for (const auto& [which, at] : analysis::notable(result.scores)) {
     result.recalls.push_back(recall_picture(
         which, result.scores[at], aligned(found->curves(at), found->place(at), parameters)));

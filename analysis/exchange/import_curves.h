@@ -31,6 +31,7 @@ struct CurveStudy {
   std::filesystem::path table;
   ImportColumns columns{};
   std::vector<std::string> factors{};  // names of columns; empty: the one column condition
+  analysis::AnalysisPlan plan{};
 };
 
 /// Scores and tests such a study as analyze_study() does that of session files. What only session

@@ -126,7 +126,7 @@ bool free_to_change(std::string_view key, Hand hand) {
     return std::find(tables.begin(), tables.end(), table) != tables.end();
   };
   return has(kAlways) || (hand == Hand::kPerson && has(kOfTheVirtualHand)) ||
-         key == "design.participants";
+         key == "design.participants" || key == "analysis.planned" || key == "analysis.reference";
 }
 
 DefinitionChanges definition_changes(std::string_view before, std::string_view after, Hand hand) {

@@ -30,7 +30,7 @@ struct DefinitionChanges {
 enum class Hand { kPerson, kVirtual };
 
 /// Whether a key may change within a study: participants' texts, the screen's window, the set-up of
-/// devices, the number of participants, and the virtual hand and device if no session used them.
+/// devices, the number of participants, the planned tests, and the virtual hand and device if no session used them.
 /// Unknown keys may not. docs/guide-experimenter.md lists them.
 bool free_to_change(std::string_view key, Hand hand);
 

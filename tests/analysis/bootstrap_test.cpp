@@ -53,7 +53,7 @@ TEST(Bootstrap, GivesTheSameBytesForAnyNumberOfThreads) {
 TEST(Bootstrap, DrawsEveryRowEquallyOften) {
   constexpr std::size_t kRows = 10, kDraws = 20000;
   std::vector<std::size_t> counts(kRows, 0);
-  const auto count = [&](const Rows& rows) {
+  const auto count = [&](const DrawnRows& rows) {
     for (const auto row : rows.front()) ++counts[row];
     return static_cast<double>(rows.front().front());
   };

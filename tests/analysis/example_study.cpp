@@ -74,7 +74,11 @@ StudyResult example_study(bool simulated) {
     study.sessions.push_back(session(subject, simulated));
     study.exclusions.push_back({subject, 19, "aborted"});
   }
-  study.statistics = study_statistics(study.scores);
+  StudyQuestions questions;
+  questions.plan.tests = {{"visual", "haptic", Tail::kLess},
+                          {"visuohaptic", "visual", Tail::kLess}};
+  questions.resampling.count = 199;
+  study.statistics = study_statistics(study.scores, questions);
   study.tracking = {"all", 222, 0, 0.0123, 0.0004, 0.0011, 0.0007};
   study.recalls = {picture("best", study.scores[3]), picture("median", study.scores[7]),
                    picture("worst", study.scores[11])};

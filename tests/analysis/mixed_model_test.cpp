@@ -10,6 +10,7 @@
 
 #include "analysis/anova.h"
 #include "analysis/regression.h"
+#include "analysis/restricted_likelihood.h"
 #include "analysis/t_test.h"
 #include "core/base/random.h"
 

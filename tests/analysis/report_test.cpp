@@ -73,9 +73,9 @@ TEST(Report, HoldsEveryPartOfTheAnalysis) {
     EXPECT_THAT(html, HasSubstr("<li>" + escape_html(line) + "</li>"));
   }
   for (const char* part :
-       {"Design and exclusions", "As published", "Repeated measures", "Table 1", "Learning",
+       {"Design and exclusions", "As published", "Participants as the unit", "Table 1", "Learning",
         "How recalls were aligned", "Tracking", "Timing", "Methods, parameters and versions",
-        "Mixed model", "Levene", "Mauchly", "Friedman", "d_z", "generalized", "aborted",
+        "Mixed model", "Levene", "Mauchly", "Friedman", "d_z", "Generalized", "aborted",
         "0.1.0 (0123abc)", "name = &quot;example&quot;", "1000 / 1020 / 1080 / 1500"}) {
     EXPECT_THAT(html, HasSubstr(part));
   }
@@ -86,13 +86,28 @@ TEST(Report, HoldsEveryPartOfTheAnalysis) {
 
 TEST(Report, SaysThePlannedTestsAsJournalsWantThem) {
   const auto study = example_study(false);
-  const Comparison& c = study.statistics.comparisons.at(0);
+  const SideTest& test = study.statistics.tests.planned.tests.at(0);
   const auto html = report(study);
   EXPECT_THAT(html, testing::ContainsRegex("Recall error was (not )?significantly lower after "
                                            "visual \\(M = [0-9.]+, SD = [0-9.]+\\) than after "
-                                           "haptic training"));
-  EXPECT_THAT(
-      html, HasSubstr(escape_html(t_result(c.pooled) + ", one-tailed, d = " + effect(c.pooled_d))));
+                                           "haptic"));
+  EXPECT_THAT(html, HasSubstr(escape_html(side_result(test) + ", d_z = " + effect(test.size))));
+}
+
+TEST(Report, LeadsWithTestsOverParticipants) {
+  const auto html = report(example_study(false));
+  const auto lead = html.find("Planned, visual");
+  const auto participants = html.find("Participants as the unit");
+  const auto mixed = html.find("Mixed model");
+  const auto published = html.find("As published");
+  EXPECT_LT(lead, participants);
+  EXPECT_LT(participants, mixed);
+  EXPECT_LT(mixed, published);
+  EXPECT_NE(published, std::string::npos);
+  EXPECT_THAT(html, HasSubstr("These tests assume that all trials are independent."));
+  for (const auto& line : summary_lines(example_study(false))) {
+    EXPECT_THAT(line, Not(HasSubstr("pooled")));
+  }
 }
 
 TEST(Report, OfOtherConditionsComparesEveryTwo) {
@@ -102,10 +117,17 @@ TEST(Report, OfOtherConditionsComparesEveryTwo) {
   }
   study.statistics = study_statistics(study.scores);
   EXPECT_TRUE(study.statistics.comparisons.empty());
-  ASSERT_EQ(study.statistics.pairs.size(), 3u);
+  ASSERT_EQ(study.statistics.tests.families.size(), 1u);
+  ASSERT_EQ(study.statistics.tests.families[0].tests.size(), 3u);
   const auto html = report(study);
   EXPECT_THAT(html, HasSubstr("haptic fast and slow"));
-  EXPECT_THAT(html, Not(HasSubstr("one-tailed, d")));
+  EXPECT_THAT(html, HasSubstr("No test was planned"));
+}
+
+TEST(Report, SaysWhetherTheOrderIsBalanced) {
+  auto study = example_study(false);
+  EXPECT_THAT(report(study), HasSubstr("Order is not balanced"));  // always haptic first
+  EXPECT_THAT(report(study), Not(HasSubstr("counterbalanced")));
 }
 
 TEST(Report, IsTheSameInMarkdown) {
@@ -230,7 +252,11 @@ TEST(Json, HoldsTheNumbersOfTheStudy) {
             study.statistics.repeated->p_corrected);
   EXPECT_EQ(json["conditions"][1]["pooled_trials"]["low_95"],
             study.statistics.summaries[1].trials->low);
-  EXPECT_EQ(json["comparisons"][0]["hypothesis"], "visual < haptic");
+  EXPECT_EQ(json["published"]["comparisons"][0]["test"], "visual < haptic");
+  EXPECT_EQ(json["participants_as_unit"]["planned"][0]["p_holm"],
+            *study.statistics.tests.planned.tests[0].holm);
+  EXPECT_EQ(json["participants_as_unit"]["effects"][0]["p"],
+            study.statistics.repeated->p_corrected);
   EXPECT_EQ(json["table_1"].size(), 6u);
   EXPECT_EQ(json["exclusions"][2]["subject"], "P03");
   EXPECT_EQ(json["tracking"]["participants"].size(), 6u);

@@ -35,11 +35,11 @@ TEST(StudyFigures, RecallErrorShowsMeansIntervalsAndEveryParticipant) {
   const auto figures = study_figures(study);
   const auto& figure = named(figures, "figure-28-recall-error");
   EXPECT_EQ(figure.x_names[2].second, "Visuohaptic");
-  const auto& bars = labelled(figure, "mean of all trials, 95 % CI");
+  const auto& bars = labelled(figure, "mean of participants' means, 95 % CI");
   const auto& people = labelled(figure, "mean of one participant");
   ASSERT_EQ(people.y.size(), 18u);
   for (std::size_t c = 0; c < 3; ++c) {
-    const auto& interval = *study.statistics.summaries[c].trials;
+    const auto& interval = *study.statistics.summaries[c].participants;
     EXPECT_EQ(bars.y[c], interval.mean);
     EXPECT_EQ(bars.low[c], interval.low);
     EXPECT_EQ(bars.high[c], interval.high);

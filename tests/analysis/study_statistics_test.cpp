@@ -52,23 +52,66 @@ TEST(StudyStatistics, AnalysesPooledTrialsAndParticipantsMeans) {
   EXPECT_NEAR(study.repeated->p, 0.01, 1e-14);
 }
 
-TEST(StudyStatistics, TestsTheTwoPlannedComparisons) {
-  const auto study = study_statistics(small_study());
+/// The shipped study's.
+StudyQuestions planned() {
+  StudyQuestions questions;
+  questions.plan.tests = {{"visual", "haptic", Tail::kLess},
+                          {"visuohaptic", "visual", Tail::kLess}};
+  return questions;
+}
+
+TEST(StudyStatistics, TestsWhatWasPlannedOverParticipantsAndAsPublished) {
+  const auto study = study_statistics(small_study(), planned());
   ASSERT_EQ(study.comparisons.size(), 2u);
-  EXPECT_EQ(study.comparisons[0].better, "visual");
-  EXPECT_EQ(study.comparisons[0].worse, "haptic");
-  EXPECT_EQ(study.comparisons[1].better, "visuohaptic");
+  EXPECT_EQ(study.comparisons[0].sides.a, "visual");
+  EXPECT_EQ(study.comparisons[0].sides.b, "haptic");
   for (const auto& c : study.comparisons) {
-    EXPECT_LT(c.pooled->t, 0.0);
-    EXPECT_EQ(c.pooled->df, 10.0);
-    EXPECT_EQ(c.paired->df, 2.0);
-    EXPECT_LT(c.paired->p, 0.1);
-    EXPECT_GE(*c.paired_holm, c.paired->p);
+    EXPECT_LT(c.student->t, 0.0);
+    EXPECT_EQ(c.student->df, 10.0);
   }
-  const double smaller = std::min(study.comparisons[0].paired->p, study.comparisons[1].paired->p);
-  const double adjusted =
-      std::min(*study.comparisons[0].paired_holm, *study.comparisons[1].paired_holm);
-  EXPECT_DOUBLE_EQ(adjusted, 2.0 * smaller);
+  const auto& tests = study.tests.planned.tests;
+  ASSERT_EQ(tests.size(), 2u);
+  for (const auto& test : tests) {
+    EXPECT_TRUE(test.paired);
+    EXPECT_EQ(test.count_a, 3u);
+    EXPECT_EQ(test.t->df, 2.0);
+    EXPECT_LT(test.t->p, 0.1);
+    EXPECT_GE(*test.holm, test.t->p);
+    EXPECT_FALSE(test.permutation);  // no resampling was asked for
+  }
+  const double smaller = std::min(tests[0].t->p, tests[1].t->p);
+  EXPECT_DOUBLE_EQ(std::min(*tests[0].holm, *tests[1].holm), 2.0 * smaller);
+  EXPECT_TRUE(study_statistics(small_study()).tests.planned.tests.empty());
+}
+
+TEST(StudyStatistics, APlannedConditionWithoutTrialsIsNotDefined) {
+  auto scores = small_study();
+  std::erase_if(scores, [](const TrialScore& s) { return s.condition == "visual"; });
+  const auto study = study_statistics(scores, planned());
+  EXPECT_THAT(study.tests.planned.tests[0].t.because(), HasSubstr("no trials of 'visual'"));
+  EXPECT_TRUE(study.comparisons.empty());
+}
+
+TEST(StudyStatistics, CountsTheParticipantsOfEachCondition) {
+  std::vector<TrialScore> scores;
+  for (int i = 0; i < 5; ++i) {
+    scores.push_back(trial("A" + std::to_string(i), "haptic", 1, 1.0 + i));
+    scores.push_back(trial("A" + std::to_string(i), "haptic", 2, 1.5 + i));
+  }
+  scores.push_back(trial("B1", "visual", 1, 4.0));
+  scores.push_back(trial("B2", "visual", 1, 6.0));
+  const auto study = study_statistics(scores);
+  EXPECT_EQ(study.summaries[0].people, 5u);
+  EXPECT_EQ(study.summaries[0].count, 10u);
+  EXPECT_EQ(study.summaries[1].people, 2u);
+  EXPECT_EQ(study.summaries[1].count, 2u);
+}
+
+TEST(StudyStatistics, TheReferenceConditionComesFirst) {
+  StudyQuestions questions;
+  questions.plan.reference = "visuohaptic";
+  const auto study = study_statistics(small_study(), questions);
+  EXPECT_THAT(study.conditions, ElementsAre("visuohaptic", "haptic", "visual"));
 }
 
 TEST(StudyStatistics, NamesBestAndWorstOfEachParticipant) {
@@ -87,7 +130,7 @@ TEST(StudyStatistics, LeavesOutWhoLacksACondition) {
   auto scores = small_study();
   scores.push_back(trial("P04", "haptic", 1, 1.0));
   const auto study = study_statistics(scores);
-  EXPECT_THAT(study.incomplete, ElementsAre("P04"));
+  EXPECT_THAT(study.tests.incomplete, ElementsAre("P04"));
   EXPECT_EQ(study.table_1.size(), 3u);
   EXPECT_DOUBLE_EQ(study.repeated->f, 18.0);
   EXPECT_EQ(study.summaries[0].count, 7u);

@@ -264,16 +264,18 @@ TEST_F(Study, RefusesWhatIsNoStudy) {
   }
 }
 
-TEST_F(Study, SummaryHasFiveLines) {
+TEST_F(Study, TheSummaryIsOverParticipants) {
   for (const char* subject : {"P01", "P02"}) {
     add(noisy(subject));
   }
-  const auto lines = summary_lines(analyze_study(files_, {}, 1));
+  const AnalysisPlan plan{{{"visuohaptic", "visual", Tail::kLess}}, ""};
+  const auto lines = summary_lines(analyze_study(files_, {}, 1, plan));
   ASSERT_EQ(lines.size(), 5u);
   EXPECT_THAT(lines[0], HasSubstr("Haptic: mean recall error"));
-  EXPECT_THAT(lines[2], HasSubstr("(6 trials, 2 simulated participants)"));
-  EXPECT_THAT(lines[3], HasSubstr("F(2, 15)"));
-  EXPECT_THAT(lines[4], HasSubstr("visuohaptic below visual t(10)"));
+  EXPECT_THAT(lines[2], HasSubstr("(2 simulated participants, 6 trials)"));
+  EXPECT_THAT(lines[3], HasSubstr("F(2, 2)"));
+  EXPECT_THAT(lines[4], HasSubstr("Planned, visuohaptic < visual: "));
+  EXPECT_THAT(lines[4], HasSubstr("paired t(1)"));
 }
 
 }  // namespace

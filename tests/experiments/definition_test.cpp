@@ -45,6 +45,26 @@ TEST(DefinitionTest, TheShippedStudyIsTheSourcesStudy) {
   EXPECT_EQ(d.guidance.plane.damping, 300.0);
   EXPECT_EQ(d.scoring.samples, 1000);
   EXPECT_EQ(d.scoring.filter_width, 0.1);
+  ASSERT_EQ(d.plan.tests.size(), 2u);  // §4.4
+  EXPECT_EQ(text_of(d.plan.tests[0]), "visual < haptic");
+  EXPECT_EQ(text_of(d.plan.tests[1]), "visuohaptic < visual");
+  EXPECT_EQ(d.plan.reference, "haptic");
+}
+
+TEST(DefinitionTest, PlannedTestsNameConditionsOfTheDesign) {
+  const auto with = [](const std::string& key, const std::string& value) {
+    std::string text = test::shipped_text();
+    const auto at = text.find("\n" + key + " = ") + 1;
+    return problem_of(text.replace(at, text.find('\n', at) - at, key + " = " + value));
+  };
+  EXPECT_EQ(with("planned", "[\"haptic != visuohaptic\"]"), "");
+  EXPECT_THAT(
+      with("planned", "[\"visula < haptic\"]"),
+      HasSubstr(
+          "a name that design.conditions lacks, 'visula'; allowed: haptic, visual, visuohaptic"));
+  EXPECT_THAT(with("planned", "[\"visual is lower\"]"),
+              HasSubstr("two conditions with <, > or != between them"));
+  EXPECT_THAT(with("reference", "\"none\""), HasSubstr("lacks, 'none'"));
 }
 
 TEST(DefinitionTest, KeepsItsTextForTheSessionFile) {

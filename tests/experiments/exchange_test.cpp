@@ -66,9 +66,10 @@ TEST_F(ExchangeTest, TheShippedStudyComesBackFromItsCurves) {
   EXPECT_THAT(scores("study"), HasSubstr("rms_unaligned\nS01,1,"));
   EXPECT_EQ(scores("again"), scores("study"));
   EXPECT_EQ(scores("report"), scores("study"));
-  const auto ours = nlohmann::json::parse(test::read_text(folder_ / "report/statistics.json"));
+  const auto ours = nlohmann::json::parse(test::read_text(folder_ / "again/statistics.json"));
   const auto theirs = nlohmann::json::parse(test::read_text(folder_ / "study/statistics.json"));
-  for (const char* part : {"conditions", "published", "repeated_measures", "comparisons"}) {
+  for (const char* part :
+       {"conditions", "participants_as_unit", "published", "repeated_measures"}) {
     EXPECT_EQ(ours[part], theirs[part]) << part;
   }
   const std::string report = test::read_text(folder_ / "report/report.html");
@@ -216,11 +217,11 @@ std::map<std::string, double> reported() {
   }
   result["anova_F"] = json["published"]["one_way_anova"]["f"];
   result["anova_p"] = json["published"]["one_way_anova"]["p"];
-  for (const auto& comparison : json["comparisons"]) {
-    std::string name = comparison["hypothesis"];
+  for (const auto& comparison : json["published"]["comparisons"]) {
+    std::string name = comparison["test"];
     name.erase(name.find(" < ") + 2, 1).erase(name.find(" <"), 1);
-    result["t " + name] = comparison["pooled_student_one_tailed"]["t"];
-    result["p " + name] = comparison["pooled_student_one_tailed"]["p"];
+    result["t " + name] = comparison["student"]["t"];
+    result["p " + name] = comparison["student"]["p"];
   }
   const auto& repeated = json["repeated_measures"]["anova"];
   result["repeated_F"] = repeated["f"];

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace haptrial::analysis {
+
+/// One measured value: whose, and under which level of each factor.
+struct Observation {
+  std::string subject;
+  std::vector<std::string> levels;  // (factors)
+  double value{0.0};
+};
+
+/// What was varied. Within participants: somebody has several of its levels. Between: everybody has
+/// one.
+struct Factor {
+  std::string name;
+  std::vector<std::string> levels;
+  bool within{true};
+};
+
+/// The means of each participant in each cell of a design: the values that every test with
+/// participants as its unit takes.
+struct DesignTable {
+  std::vector<Factor> factors;
+  std::vector<std::vector<std::size_t>> cells;  // (cells x factors) levels; the last runs fastest
+  std::vector<std::string> names;               // (cells) levels joined by ", "
+  std::vector<std::size_t> counts;              // (cells) values
+  std::vector<std::string> subjects;            // in order of name
+  std::vector<std::vector<std::optional<double>>> means;  // (subjects x cells)
+  bool crossed{true};                                     // every combination of levels has a value
+
+  /// Participants that have every cell of their own levels between participants.
+  std::vector<std::size_t> complete() const;
+  std::size_t participants(std::size_t cell) const;
+};
+
+/// @param factors  names, as many as every observation has levels.
+/// @param first    levels in the order wanted; others follow by name. Only levels that occur stay.
+DesignTable design_table(std::span<const Observation> observations,
+                         const std::vector<std::string>& factors,
+                         const std::vector<std::string>& first = {});
+
+}  // namespace haptrial::analysis

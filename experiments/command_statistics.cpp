@@ -1,0 +1,57 @@
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "analysis/design_json.h"
+#include "analysis/design_lines.h"
+#include "core/base/error.h"
+#include "experiments/arguments.h"
+#include "experiments/commands.h"
+
+namespace haptrial::experiments {
+namespace {
+
+void write(const std::string& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text << "\n";
+  out.close();
+  if (!out) {
+    throw RunError(fmt::format("{}: could not be written", file));
+  }
+}
+
+}  // namespace
+
+analysis::AnalysisPlan plan_of(const std::vector<std::string>& planned,
+                               const std::string& reference) {
+  analysis::AnalysisPlan plan{{}, reference};
+  for (const std::string& text : planned) {
+    plan.tests.push_back(analysis::parse_planned_test(text, "--planned"));
+  }
+  return plan;
+}
+
+int statistics(const StatisticsOptions& options) {
+  analysis::Resampling resampling;
+  resampling.seed = static_cast<std::uint64_t>(options.seed);
+  resampling.count =
+      static_cast<std::size_t>(checked_number("--resamples", options.resamples, 0, 10'000'000));
+  resampling.threads = checked_jobs(options.jobs);
+  const analysis::AnalysisPlan plan = plan_of(options.planned, options.reference);
+  const std::vector<std::string> factors =
+      options.factors.empty() ? std::vector<std::string>{"condition"} : options.factors;
+  const analysis::DesignTable table = analysis::design_table(
+      analysis::read_observations(options.table, options.subject, factors, options.value), factors,
+      plan.reference.empty() ? std::vector<std::string>{} : std::vector{plan.reference});
+  analysis::check_plan(table, plan);
+  const analysis::DesignTests tests = analysis::design_tests(table, plan, resampling);
+  for (const std::string& line : analysis::design_lines(table, tests)) {
+    fmt::print("{}\n", line);
+  }
+  if (!options.json.empty()) {
+    write(options.json, analysis::design_json(tests));
+  }
+  return 0;
+}
+
+}  // namespace haptrial::experiments

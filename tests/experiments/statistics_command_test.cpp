@@ -1,0 +1,96 @@
+// haptrial statistics: the tests of a table, and what it says of one that cannot be tested.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/experiments/command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial {
+namespace {
+
+using test::CommandResult;
+using test::run_command;
+using testing::HasSubstr;
+
+class StatisticsCommandTest : public testing::Test {
+ protected:
+  std::string file(const std::string& name, const std::string& text) {
+    test::write_text(folder_ / name, text);
+    return fmt::format("'{}'", (folder_ / name).string());
+  }
+
+  /// Experts and novices, two conditions each, one value for each.
+  std::string groups() {
+    std::string text = "who,group,speed,error\n";
+    for (int i = 0; i < 6; ++i) {
+      const char* group = i < 3 ? "expert" : "novice";
+      text += fmt::format("P{0},{1},slow,{2}\nP{0},{1},fast,{3}\n", i, group, 1 + i * i % 5, 2 + i);
+    }
+    return file("groups.csv", text);
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(StatisticsCommandTest, TestsTheShippedScoresAsTheReportDoes) {
+  const std::string results = fmt::format("{}/results/force_training/", HAPTRIAL_SOURCE_DIR);
+  const std::string json = (folder_ / "tests.json").string();
+  const CommandResult run = run_command(
+      fmt::format("haptrial statistics '{}scores.csv' --planned 'visual < haptic' --planned "
+                  "'visuohaptic < visual' --reference haptic --json '{}'",
+                  results, json));
+  ASSERT_EQ(run.status, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("Varied within participants: condition (haptic, visual, "
+                                    "visuohaptic)"));
+  const auto ours = nlohmann::json::parse(test::read_text(json));
+  const auto theirs = nlohmann::json::parse(test::read_text(results + "statistics.json"));
+  EXPECT_EQ(ours, theirs["participants_as_unit"]);
+}
+
+TEST_F(StatisticsCommandTest, FindsTheDesignOfSeveralFactors) {
+  const CommandResult run = run_command("haptrial statistics " + groups() +
+                                        " --subject who --factor group --factor speed --value "
+                                        "error --planned 'slow < fast' --planned 'expert != "
+                                        "novice'");
+  ASSERT_EQ(run.status, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("Varied within participants: speed (fast, slow); between "
+                                    "participants: group (expert, novice)"));
+  EXPECT_THAT(run.output, HasSubstr("(mixed analysis of variance"));
+  EXPECT_THAT(run.output, HasSubstr("paired t(5)"));
+  EXPECT_THAT(run.output, HasSubstr("Mann-Whitney"));
+}
+
+TEST_F(StatisticsCommandTest, EqualSeedsGiveEqualLinesWhateverTheThreads) {
+  const std::string command =
+      "haptrial statistics " + groups() + " --subject who --factor speed --value error --jobs ";
+  EXPECT_EQ(run_command(command + "1").output, run_command(command + "3").output);
+}
+
+TEST_F(StatisticsCommandTest, WhatCannotBeTestedGetsASentence) {
+  struct Case {
+    const char* options;
+    const char* sentence;
+  };
+  for (const auto& [options, sentence] :
+       {Case{"--value error --factor speed", "subject"},
+        Case{"--subject who --value error --factor speed --planned 'slow < quick'",
+             "names 'quick', of which there are no trials; allowed: fast, slow"},
+        Case{"--subject who --value error --factor speed --planned 'slow'", "--planned is"},
+        Case{"--subject who --value group --factor speed", "group is 'expert'"},
+        Case{"--subject who --value error --factor speed --resamples -1", "--resamples"},
+        Case{"--subject who --value error --factor speed --reference quick",
+             "the reference condition names 'quick'"}}) {
+    const CommandResult run =
+        run_command(fmt::format("haptrial statistics {} {}", groups(), options));
+    EXPECT_EQ(run.status, 2) << options;
+    EXPECT_THAT(run.errors, HasSubstr(sentence));
+  }
+}
+
+}  // namespace
+}  // namespace haptrial
