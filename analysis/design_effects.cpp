@@ -63,7 +63,9 @@ Defined<EffectTest> within_effect(const std::string& factor, const std::string& 
   }
   EffectTest effect =
       described(factor, test, found->f, found->df, found->df_error, found->p_greenhouse_geisser);
-  effect.epsilon = found->sphericity.greenhouse_geisser;
+  if (found->df > 1.0) {
+    effect.epsilon = found->sphericity.greenhouse_geisser;
+  }
   return effect;
 }
 

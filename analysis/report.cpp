@@ -14,7 +14,8 @@ std::string subtitle(const StudyResult& study) {
       "that remains after aligning the two curves in time.",
       counted(study.scores.size(), "scored recall trial"),
       counted(study.statistics.subjects.size(), "participant"),
-      counted(study.statistics.conditions.size(), "training condition"),
+      counted(study.statistics.conditions.size(),
+              study.curves_from.empty() ? "training condition" : "condition"),
       study.curves_from.empty() ? "Each trial trained a force pattern and then asked for it; the"
                                 : "The");
 }

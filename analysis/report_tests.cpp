@@ -51,6 +51,15 @@ std::string difference(const Defined<TTest>& test) {
               : "-";
 }
 
+/// "0.023" or "< 0.001" under a heading that says that they are p values.
+std::string bare(const Defined<double>& p) {
+  const std::string text = p_result(p);
+  const std::string equal = "p = ";
+  return text.starts_with(equal)    ? text.substr(equal.size())
+         : text.starts_with("p < ") ? text.substr(2)
+                                    : text;
+}
+
 std::string participants_of(const SideTest& test) {
   return test.paired ? counted(test.count_a, "pair")
                      : fmt::format("{} and {}", test.count_a, test.count_b);
@@ -68,11 +77,11 @@ std::vector<std::string> row_of(const SideTest& test) {
                                              : text_of(test.sides),
           participants_of(test),
           difference(test.t),
-          test.t ? fmt::format("{}: {}", name_of_test(test), t_result(test.t)) : t_result(test.t),
-          p_result(test.holm),
+          test.t ? (test.paired ? "paired " : "Welch's ") + t_result(test.t) : t_result(test.t),
+          bare(test.holm),
           effect(test.size),
           ranks_result(test),
-          p_result(test.permutation_holm)};
+          bare(test.permutation_holm)};
 }
 
 void add_family(Document& document, const TestFamily& family, const std::string& heading) {
@@ -80,8 +89,8 @@ void add_family(Document& document, const TestFamily& family, const std::string&
     return;
   }
   std::vector<std::string> names{
-      heading,   "Participants", "Difference (95 % CI)", "t-test, not adjusted",
-      "p, Holm", "d_z or d",     "Ranks, Holm",          "Permutation, Holm"};
+      heading,        "Participants", "Difference (95 % CI)", "t-test, not adjusted",
+      "p after Holm", "d_z or d",     "Ranks, p after Holm",  "Permutation, p after Holm"};
   Rows rows;
   for (const SideTest& test : family.tests) {
     rows.push_back(row_of(test));
@@ -152,8 +161,10 @@ void add_participants(Document& document, const StudyStatistics& s) {
     add_family(document, family, capitalized(family.name) + " (two-tailed)");
   }
   document.paragraph(
-      "d_z and paired tests where the same participants had both conditions, Cohen's d and Welch's "
-      "test where they are different participants. Ranks: Wilcoxon's signed-rank test (V) or Mann "
+      "If the same participants had both conditions, tests are paired and the effect size is d_z; "
+      "if "
+      "they are different participants, the test is Welch's and the effect size Cohen's d. Ranks: "
+      "Wilcoxon's signed-rank test (V) or Mann "
       "and Whitney's (U). Adjusted p values of a column are adjusted together. Bootstrap intervals "
       "are "
       "printed for 30 participants or more: with fewer they are too narrow.");

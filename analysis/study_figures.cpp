@@ -119,8 +119,8 @@ Figure interaction(const StudyResult& study) {
   figure.x_range = Range{0.6, static_cast<double>(levels.size()) + 0.4};
   figure.y_range = Range{0.0, highest > 0.0 ? 1.1 * highest : 1.0};
   figure.caption =
-      "Means of the participants' means with 95 % confidence intervals over participants. Lines "
-      "that are not parallel are what the interaction tests.";
+      "Means of the participants' means with 95 % confidence intervals over participants. The test "
+      "of the interaction asks whether the lines are parallel.";
   return figure;
 }
 

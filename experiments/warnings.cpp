@@ -9,6 +9,7 @@
 #include "core/stimulus/stimulus.h"
 #include "experiments/experiment.h"
 #include "experiments/loop_margin.h"
+#include "protocols/schedule.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -187,6 +188,18 @@ std::pair<double, double> extent_of(const Definition& d) {
   return {length, reach};
 }
 
+/// The order of conditions is balanced over as many participants as a Williams design has rows.
+void warn_of_order(const protocols::Design& design, Warnings& warnings) {
+  const auto conditions = static_cast<int>(design.conditions.size());
+  const auto rows = static_cast<int>(protocols::williams_rows(conditions).size());
+  if (conditions > 1 && design.participants % rows != 0) {
+    warnings.push_back(fmt::format(
+        "design.participants is {}; the order of {} conditions is balanced only over multiples of "
+        "{} participants, so an effect of practice can look like one of a condition",
+        design.participants, conditions, rows));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const Definition& d) {
@@ -199,6 +212,7 @@ std::vector<std::string> warnings_of(const Definition& d) {
   warn_of_settling(d, warnings);
   warn_of_durations(d, length, warnings);
   warn_of_scores(d.scoring, warnings);
+  warn_of_order(d.design, warnings);
   return warnings;
 }
 

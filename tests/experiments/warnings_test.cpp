@@ -52,6 +52,13 @@ TEST_F(DefinitionWarningsTest, TheShippedDefinitionsHaveNone) {
   }
 }
 
+TEST_F(DefinitionWarningsTest, ParticipantsThatUnbalanceTheOrderAreSaid) {
+  EXPECT_THAT(warnings("participants", "participants = 7"),
+              ElementsAre(AllOf(HasSubstr("design.participants is 7"),
+                                HasSubstr("multiples of 6 participants"))));
+  EXPECT_THAT(warnings("participants", "participants = 18"), IsEmpty());
+}
+
 struct Spoilt {
   const char* key;
   const char* line;
