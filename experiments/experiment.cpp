@@ -5,13 +5,17 @@
 namespace haptrial::experiments {
 namespace {
 
+/// The protocol decides what the other keys mean, so a mistake in it is reported alone.
 bool drills(Table& root) {
-  if (!root.has("experiment")) {
-    return false;
+  if (root.misspelled("experiment")) {
+    root.check();
   }
   Table experiment = root.table("experiment");
-  return experiment.has("protocol") &&
-         experiment.choice("protocol", {"force_training", "bone_drilling"}) == "bone_drilling";
+  const bool drills =
+      !experiment.misspelled("protocol") && experiment.has("protocol") &&
+      experiment.choice("protocol", {"force_training", "bone_drilling"}) == "bone_drilling";
+  root.check();
+  return drills;
 }
 
 }  // namespace

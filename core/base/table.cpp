@@ -10,6 +10,8 @@
 
 #include "core/base/error.h"
 #include "core/base/file_text.h"
+#include "core/base/nearest.h"
+#include "core/base/table_words_internal.h"
 #include "core/base/toml_text_internal.h"
 
 namespace haptrial {
@@ -42,6 +44,7 @@ struct Table::Node {
   const toml::table* table;  // null where the definition lacks it
   std::string path;          // "trajectory", "gains.plane"; empty for the root
   std::set<std::string, std::less<>> read;
+  std::set<std::string, std::less<>> asked;  // by has(): known, but not known to be read
 
   std::string full(std::string_view key) const {
     return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
@@ -54,24 +57,6 @@ unsigned line_of(const toml::node* node) {
   return node == nullptr ? 0u : static_cast<unsigned>(node->source().begin.line);
 }
 
-std::string words(const Bounds& bounds, std::string_view unit) {
-  const std::string in = unit.empty() ? "" : fmt::format(" [{}]", unit);
-  const bool low = std::isfinite(bounds.low);
-  const bool high = std::isfinite(bounds.high);
-  if (low && high) {
-    return fmt::format("a number {} {} and at most {}{}", bounds.open_low ? "above" : "of at least",
-                       bounds.low, bounds.high, in);
-  }
-  if (low) {
-    return fmt::format("a number {} {}{}", bounds.open_low ? "above" : "of at least", bounds.low,
-                       in);
-  }
-  if (high) {
-    return fmt::format("a number of at most {}{}", bounds.high, in);
-  }
-  return fmt::format("a finite number{}", in);
-}
-
 bool within(double x, const Bounds& b) {
   return std::isfinite(x) && (b.open_low ? x > b.low : x >= b.low) && x <= b.high;
 }
@@ -81,38 +66,6 @@ double fallback(const Bounds& b) {
     return b.open_low ? std::nextafter(b.low, b.high) : b.low;
   }
   return std::isfinite(b.high) ? b.high : 0.0;
-}
-
-/// What stands in the file, short enough for a sentence.
-std::string shown(const toml::node& node) {
-  if (node.is_table()) {
-    return "a table";
-  }
-  std::ostringstream out;
-  node.visit([&](const auto& value) {
-    if constexpr (toml::is_array<decltype(value)>) {
-      out << "an array of " << value.size();
-    } else if constexpr (toml::is_floating_point<decltype(value)>) {
-      const std::string digits = fmt::format("{}", value.get());
-      const bool whole = digits.find_first_not_of("-0123456789") == std::string::npos;
-      out << digits << (whole ? ".0" : "");  // 2.0 is no whole number in TOML
-    } else if constexpr (!toml::is_table<decltype(value)>) {
-      out << value;
-    }
-  });
-  std::string text = out.str();
-  if (text.size() > 60) {
-    std::size_t end = 57;
-    while ((text[end] & 0xc0) == 0x80) {  // not within a character of several bytes
-      --end;
-    }
-    text = text.substr(0, end) + "...";
-  }
-  return text;
-}
-
-std::string joined(const std::vector<std::string>& items) {
-  return fmt::format("{}", fmt::join(items, ", "));
 }
 
 }  // namespace
@@ -127,11 +80,9 @@ Table Table::parse(std::string_view text, std::string_view file_name) {
   document->root = parse_toml(document->source, document->file_name);
   if (document->root.empty()) {
     throw InputError(
-        fmt::format("{}: the definition is empty; allowed: a TOML definition with at "
-                    "least one key",
-                    file_name));
+        fmt::format("{}: the definition is empty; write at least one KEY = VALUE", file_name));
   }
-  auto root = std::make_shared<Node>(Node{&document->root, "", {}});
+  auto root = std::make_shared<Node>(Node{&document->root, "", {}, {}});
   document->nodes.push_back(root);
   return Table(document, root);
 }
@@ -140,17 +91,18 @@ Table Table::load(const std::filesystem::path& file) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status)) {
-    throw InputError(fmt::format("{}: no such file; expected a definition (.toml)", file.string()));
+    throw InputError(
+        fmt::format("{}: no such file; give the name of a definition (.toml)", file.string()));
   }
   if (!std::filesystem::is_regular_file(status)) {
     throw InputError(
-        fmt::format("{}: is {}; expected a definition file (.toml)", file.string(),
+        fmt::format("{}: is {}; give the name of a definition (.toml)", file.string(),
                     std::filesystem::is_directory(status) ? "a directory" : "not a regular file"));
   }
   constexpr std::uintmax_t kLargest = 1 << 20;
   if (const auto size = std::filesystem::file_size(file, error); size > kLargest) {
     throw InputError(
-        fmt::format("{}: {} bytes; a definition has at most {}", file.string(), size, kLargest));
+        fmt::format("{}: has {} bytes; allowed: at most {}", file.string(), size, kLargest));
   }
   return parse(file_text(file), file.string());
 }
@@ -158,6 +110,7 @@ Table Table::load(const std::filesystem::path& file) {
 const std::string& Table::source() const { return document_->source; }
 
 bool Table::has(std::string_view key) const {
+  node_->asked.emplace(key);
   return node_->table != nullptr && node_->table->contains(key);
 }
 
@@ -189,9 +142,10 @@ void Table::reject(std::string_view key, std::string_view found, std::string_vie
                   fmt::format("{} is {}; allowed: {}", node_->full(key), found, allowed));
 }
 
-/// The value under `key`, or nothing with the problem noted.
+/// The value under `key`, or nothing with the problem noted. @param any  other values of the type
+/// may do as well, so that the sentence can say how to write the value
 template <class T>
-std::optional<T> Table::get(std::string_view key, std::string_view allowed) {
+std::optional<T> Table::get(std::string_view key, std::string_view allowed, bool any) {
   if (node_->table == nullptr) {
     return std::nullopt;
   }
@@ -210,7 +164,13 @@ std::optional<T> Table::get(std::string_view key, std::string_view allowed) {
     value = node->value_exact<T>();
   }
   if (!value) {
-    refuse(key, shown(*node), allowed);
+    const std::string hint = any ? rewritten(*node, key, wanted<T>()) : "";
+    if (hint.empty()) {
+      refuse(key, shown(*node), allowed);
+    } else {
+      note(line_of(node),
+           fmt::format("{} is {}; {}", node_->full(key), shown_with_kind(*node), hint));
+    }
   }
   return value;
 }
@@ -248,9 +208,11 @@ std::string Table::text(std::string_view key) {
 }
 
 std::string Table::choice(std::string_view key, const std::vector<std::string>& allowed) {
-  const auto value = get<std::string>(key, joined(allowed));
+  const auto value = get<std::string>(key, joined(allowed), false);
   if (value && std::find(allowed.begin(), allowed.end(), *value) == allowed.end()) {
-    refuse(key, shown(*node_->table->get(key)), joined(allowed));
+    note(line(key), fmt::format("{} is {}{}{} allowed: {}", node_->full(key),
+                                shown(*node_->table->get(key)), did_you_mean(*value, allowed),
+                                nearest(*value, allowed) ? "" : ";", joined(allowed)));
     return allowed.front();
   }
   return value.value_or(allowed.front());
@@ -271,6 +233,12 @@ std::vector<T> Table::array(std::string_view key, const std::string& allowed) {
     return values;
   }
   const toml::array* array = node->as_array();
+  if (const bool good = node->is_string() || node->is_number();
+      good && array == nullptr && node->value_exact<T>()) {
+    note(line_of(node), fmt::format("{} is {}; write it in brackets: {} = [{}]", node_->full(key),
+                                    shown_with_kind(*node), key, shown(*node)));
+    return values;
+  }
   if (array == nullptr || array->empty()) {
     refuse(key, array == nullptr ? shown(*node) : "an empty array", allowed);
     return values;
@@ -279,7 +247,8 @@ std::vector<T> Table::array(std::string_view key, const std::string& allowed) {
     if (const auto value = element.value<T>()) {
       values.push_back(*value);
     } else {
-      refuse(key, fmt::format("an array with {}", shown(element)), allowed);
+      note(line_of(&element), fmt::format("{} is an array with {}; allowed: {}", node_->full(key),
+                                          shown_with_kind(element), allowed));
     }
   }
   return values;
@@ -313,31 +282,60 @@ Table Table::table(std::string_view key) {
       refuse(key, shown(*node), "a table");
     }
   }
-  auto child = std::make_shared<Node>(Node{inner, node_->full(key), {}});
+  auto child = std::make_shared<Node>(Node{inner, node_->full(key), {}, {}});
   document_->nodes.push_back(child);
   return Table(document_, child);
 }
 
-void Table::finish() const {
-  // The same table may have been asked for twice: a key is unknown when no reader knew it.
+void Table::reject(std::string_view key, std::string_view rest) {
+  document_->note(document_->together, line(key), fmt::format("{} {}", node_->full(key), rest));
+}
+
+bool Table::misspelled(std::string_view key) {
+  if (has(key)) {
+    return false;
+  }
+  for (const std::string& there : keys()) {
+    if (nearest(there, {std::string(key)})) {
+      note(line(there), fmt::format("{} is not a known key; did you mean {}?", node_->full(there),
+                                    node_->full(key)));
+      return true;
+    }
+  }
+  return false;
+}
+
+void Table::note_unknown_keys() const {
+  // The same table may have been asked for twice: a key is unknown if no reader knew it.
   std::map<const toml::table*, std::set<std::string, std::less<>>> read;
+  std::map<const toml::table*, std::set<std::string, std::less<>>> known;
   for (const auto& node : document_->nodes) {
     read[node->table].insert(node->read.begin(), node->read.end());
+    known[node->table].insert(node->read.begin(), node->read.end());
+    known[node->table].insert(node->asked.begin(), node->asked.end());
   }
   std::set<const toml::table*> done;
   for (const auto& node : document_->nodes) {
     if (node->table == nullptr || !done.insert(node->table).second) {
       continue;
     }
-    const auto& known = read[node->table];
+    const std::vector<std::string> all(known[node->table].begin(), known[node->table].end());
     for (const auto& [key, value] : *node->table) {
-      if (!known.contains(key.str())) {
-        document_->note(document_->problems, line_of(&value),
-                        fmt::format("{} is not a known key; allowed here: {}",
-                                    node->full(key.str()), joined({known.begin(), known.end()})));
+      if (read[node->table].contains(key.str())) {
+        continue;
       }
+      const std::string hint = did_you_mean(key.str(), all);
+      document_->note(
+          document_->problems, line_of(&value),
+          fmt::format(
+              "{} is not a known {}{}{} known here: {}",
+              value.is_table() ? fmt::format("[{}]", node->full(key.str())) : node->full(key.str()),
+              value.is_table() ? "table" : "key", hint, hint.empty() ? ";" : "", joined(all)));
     }
   }
+}
+
+void Table::check() const {
   const auto& problems = document_->problems.empty() ? document_->together : document_->problems;
   if (problems.empty()) {
     return;
@@ -347,6 +345,11 @@ void Table::finish() const {
     sentences += (sentences.empty() ? "" : "\n") + sentence;
   }
   throw InputError(sentences);
+}
+
+void Table::finish() const {
+  note_unknown_keys();
+  check();
 }
 
 }  // namespace haptrial

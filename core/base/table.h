@@ -27,7 +27,8 @@ inline constexpr Bounds kFraction{0.0, 1.0, false};
 ///
 ///     training.toml:12: trajectory.speed is -1.6; allowed: a number above 0 [m/s]
 ///
-/// Keys that nobody read are problems too. Not thread-safe; never on the servo thread.
+/// Keys that nobody read or asked for are problems too; their sentence names the nearest known key.
+/// Not thread-safe; never on the servo thread.
 class Table {
  public:
   /// @throws InputError when the text is not TOML, with the line.
@@ -53,9 +54,21 @@ class Table {
   std::vector<std::string> keys() const;
 
   /// Notes a problem of values taken together, at the line of `key`. finish() reports these only
-  /// where every value is good by itself: a missing value would make them up.
-  /// @param found, allowed  complete the sentence "KEY is FOUND; allowed: ALLOWED".
+  /// if every value is good by itself: a missing value would make them up.
+  /// @param found, allowed  complete the sentence "KEY is FOUND; allowed: ALLOWED", in which
+  /// ALLOWED
+  ///                        is a value, range, list or form
   void reject(std::string_view key, std::string_view found, std::string_view allowed);
+  /// The same where no value can be named. @param rest  completes the sentence "KEY REST" and says
+  ///                                                    what to do
+  void reject(std::string_view key, std::string_view rest);
+
+  /// Whether a key of this table is probably a misspelling of `key`; notes that if so.
+  bool misspelled(std::string_view key);
+
+  /// @throws InputError with the problems noted so far, before unknown keys are looked for: for a
+  ///         value on which it depends what the other keys mean.
+  void check() const;
 
   /// @throws InputError with every problem of the whole document, one sentence a line, in the order
   ///         of their lines.
@@ -70,9 +83,10 @@ class Table {
   Table(std::shared_ptr<Document> document, std::shared_ptr<Node> node);
   void note(unsigned line, std::string_view problem);
   void refuse(std::string_view key, std::string_view found, std::string_view allowed);
+  void note_unknown_keys() const;
   unsigned line(std::string_view key) const;
   template <class T>
-  std::optional<T> get(std::string_view key, std::string_view allowed);
+  std::optional<T> get(std::string_view key, std::string_view allowed, bool any = true);
   template <class T>
   std::vector<T> array(std::string_view key, const std::string& allowed);
   std::shared_ptr<Document> document_;

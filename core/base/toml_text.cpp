@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "core/base/toml_mistake_internal.h"
 
 namespace haptrial {
 namespace {
@@ -19,7 +20,7 @@ void refuse_deep_keys(std::string_view text, std::string_view file_name) {
       ++line;
       dots = 0;
     } else if (c == '.' && ++dots > kMostDotsInLine) {
-      throw InputError(fmt::format("{}:{}: the line has more than {} dots; allowed: shorter lines",
+      throw InputError(fmt::format("{}:{}: the line has more than {} dots; write shorter keys",
                                    file_name, line, kMostDotsInLine));
     }
   }
@@ -32,6 +33,9 @@ toml::table parse_toml(std::string_view text, std::string_view file_name) {
   try {
     return toml::parse(text, file_name);
   } catch (const toml::parse_error& error) {
+    if (const auto mistake = find_toml_mistake(text)) {
+      throw InputError(fmt::format("{}:{}: {}", file_name, mistake->line, mistake->sentence));
+    }
     throw InputError(fmt::format("{}:{}: not valid TOML: {}", file_name, error.source().begin.line,
                                  error.description()));
   }
