@@ -48,8 +48,8 @@ std::string problem_of(const AlignmentOptions& o) {
   if (o.open_begin && doubles_straight(o.pattern)) {
     return fmt::format(
         "open_begin is true with the pattern {}, whose cost grows with the applied samples that "
-        "are paired, so that leaving them out always looks cheaper; allowed: published, "
-        "symmetric1, asymmetric",
+        "are paired, so that leaving them out always looks cheaper; choose published, symmetric1, "
+        "asymmetric",
         name_of(o.pattern));
   }
   return "";

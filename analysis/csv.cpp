@@ -12,6 +12,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file_text.h"
+#include "core/base/nearest.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -156,7 +157,7 @@ class CsvTable::Parser {
     std::size_t out = begin;
     quoted_ = true;
     for (;; ++at_) {
-      if (at_ == text_.size()) fail(line, "a quote is opened and never closed; allowed: pairs");
+      if (at_ == text_.size()) fail(line, "a quote is opened and never closed; close it");
       if (text_[at_] == '"') {
         if (at_ + 1 == text_.size() || text_[at_ + 1] != '"') break;
         ++at_;
@@ -192,7 +193,7 @@ class CsvTable::Parser {
   /// An empty line among rows could be a sample that is missing.
   void require_end(std::size_t line, std::size_t start) const {
     if (text_.find_first_not_of(" \t\r\n", start) != text_.npos) {
-      fail(line, "the line is empty; allowed: empty lines only after the last row");
+      fail(line, "the line is empty; delete it");
     }
   }
 
@@ -206,13 +207,12 @@ CsvTable::CsvTable(std::string text, std::string name)
     : name_(std::move(name)), text_(std::move(text)) {
   if (text_.size() > kLargest) {
     throw InputError(
-        fmt::format("{}: is larger than {} bytes; allowed: at most that", name_, kLargest));
+        fmt::format("{}: has more than {} bytes; allowed: at most that many", name_, kLargest));
   }
   if (text_.find('\0') != text_.npos) {
-    throw InputError(
-        fmt::format("{}: holds bytes of 0 and so is not plain text; allowed: comma-"
-                    "separated values in UTF-8",
-                    name_));
+    throw InputError(fmt::format(
+        "{}: holds zero bytes, so it is not text; save it as comma-separated values in UTF-8",
+        name_));
   }
   Parser(*this).run();
   if (lines_.empty()) {
@@ -232,15 +232,15 @@ CsvTable CsvTable::load(const fs::path& file) {
   const fs::file_status status = fs::status(file, error);
   if (!fs::exists(status)) {
     throw InputError(
-        fmt::format("{}: no such file; allowed: a file of comma-separated values", file.string()));
+        fmt::format("{}: no such file; give a file of comma-separated values", file.string()));
   }
   if (fs::is_directory(status)) {
-    throw InputError(fmt::format("{}: is a directory; allowed: a file of comma-separated values",
-                                 file.string()));
+    throw InputError(
+        fmt::format("{}: is a directory; give a file of comma-separated values", file.string()));
   }
   if (fs::is_regular_file(status) && fs::file_size(file, error) > kLargest) {
-    throw InputError(
-        fmt::format("{}: is larger than {} bytes; allowed: at most that", file.string(), kLargest));
+    throw InputError(fmt::format("{}: has more than {} bytes; allowed: at most that many",
+                                 file.string(), kLargest));
   }
   return parse(file_text(file), file.string());
 }
@@ -256,13 +256,14 @@ bool CsvTable::has(std::string_view column) const {
 std::size_t CsvTable::column(std::string_view name) const {
   const auto count = std::count(columns_.begin(), columns_.end(), name);
   if (count != 1) {
-    std::string known;
+    std::vector<std::string> known;
     for (const std::string& column : columns_) {
-      known += (known.empty() ? "" : ", ") + shown(column);
+      known.push_back(shown(column));
     }
-    throw InputError(fmt::format("{}: {} column '{}'; allowed: one of {}", name_,
-                                 count == 0 ? "there is no" : "more than one is named", shown(name),
-                                 known));
+    const std::string hint = count == 0 ? did_you_mean(shown(name), known) : "";
+    throw InputError(fmt::format("{}: {} '{}'{} allowed: {}", name_,
+                                 count == 0 ? "there is no column" : "several columns are named",
+                                 shown(name), hint.empty() ? ";" : hint, fmt::join(known, ", ")));
   }
   return static_cast<std::size_t>(std::find(columns_.begin(), columns_.end(), name) -
                                   columns_.begin());

@@ -15,7 +15,7 @@ std::size_t time_column(const CsvTable& table, const std::string& name) {
   const bool unnamed_pair = table.columns() == std::vector<std::string>{"1", "2"};
   if (unnamed_pair) return 0;
   throw InputError(
-      fmt::format("{}: no column is named 'time'; allowed: the name of one of {}, or a rate",
+      fmt::format("{}: no column is named 'time'; name the column of times ({}) or give a rate",
                   table.name(), fmt::join(table.columns(), ", ")));
 }
 
@@ -24,10 +24,12 @@ std::size_t value_column(const CsvTable& table, const std::string& name,
   if (!name.empty()) return table.column(name);
   if (!time && table.has("time")) time = table.column("time");  // passed over for the rate
   const std::size_t others = table.columns().size() - (time ? 1 : 0);
+  if (others == 0) {
+    throw InputError(fmt::format("{}: no column is left for the values; add one", table.name()));
+  }
   if (others != 1) {
-    throw InputError(
-        fmt::format("{}: {} columns could hold the values; allowed: the name of one of {}",
-                    table.name(), others, fmt::join(table.columns(), ", ")));
+    throw InputError(fmt::format("{}: {} columns could hold the values; name one of them ({})",
+                                 table.name(), others, fmt::join(table.columns(), ", ")));
   }
   return time && *time == 0 ? 1 : 0;
 }
@@ -39,9 +41,8 @@ TableCurve read_curve(const CsvTable& table, const CurveColumns& columns) {
   std::optional<std::size_t> time;
   if (columns.rate) {
     if (!columns.time.empty()) {
-      throw InputError(
-          fmt::format("{}: has a rate and a column '{}' of times; allowed: one of them",
-                      table.name(), columns.time));
+      throw InputError(fmt::format("{}: has a rate and a column '{}' of times; give one of them",
+                                   table.name(), columns.time));
     }
     if (!(*columns.rate > 0.0 && std::isfinite(*columns.rate))) {
       throw InputError(fmt::format("the rate of {} is {} Hz; allowed: a finite number above 0",

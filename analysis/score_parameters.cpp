@@ -33,9 +33,10 @@ void read_form(Table& analysis, ScoreParameters& p) {
   if (analysis.has("open_begin")) p.alignment.open_begin = analysis.boolean("open_begin");
   if (analysis.has("open_end")) p.alignment.open_end = analysis.boolean("open_end");
   if (p.alignment.open_begin && doubles_straight(p.alignment.pattern)) {
-    analysis.reject("open_begin",
-                    fmt::format("true with the step pattern {}", name_of(p.alignment.pattern)),
-                    "open_begin with published, symmetric1 or asymmetric");
+    analysis.reject(
+        "open_begin",
+        fmt::format("is true with the step pattern {}; choose published, symmetric1 or asymmetric",
+                    name_of(p.alignment.pattern)));
   }
 }
 
@@ -58,8 +59,8 @@ ScoreParameters read_score_parameters(Table& analysis) {
   const bool all_there =
       analysis.has("cost_share") && analysis.has("force_share") && analysis.has("slope_share");
   if (all_there && p.cost_share + p.force_share + p.slope_share == 0.0) {
-    analysis.reject("cost_share", "0 as are force_share and slope_share",
-                    "at least one share above 0");
+    analysis.reject("cost_share",
+                    "is 0, like force_share and slope_share; set at least one of them above 0");
   }
   return p;
 }

@@ -20,10 +20,8 @@ constexpr const char* kOwnPace = "forces are compared over";
 
 std::string text_of(const fs::path& file) {
   if (!fs::is_regular_file(file)) {
-    throw InputError(
-        fmt::format("{}: cannot be read; allowed: the folder of a study that haptrial "
-                    "analyze has analysed",
-                    file.string()));
+    throw InputError(fmt::format(
+        "{}: cannot be read; analyse the study with haptrial analyze first", file.string()));
   }
   return file_text(file);
 }
@@ -69,16 +67,16 @@ ScoredStudy read_scored_study(const fs::path& folder) {
   try {
     const Json json = Json::parse(text_of(statistics));
     if (json.contains("simulated") && !json.contains("identities")) {
-      throw InputError(fmt::format(
-          "{}: does not say who the participants were, because an older haptrial wrote the file; "
-          "analyse the study again",
-          statistics.string()));
+      throw InputError(
+          fmt::format("{}: does not say who the participants were, because an older haptrial wrote "
+                      "the file; analyse the study again",
+                      statistics.string()));
     }
     read_statistics(json, study);
   } catch (const Json::exception&) {
-    throw InputError(
-        fmt::format("{}: is not the statistics of a study; allowed: what haptrial analyze writes",
-                    statistics.string()));
+    throw InputError(fmt::format(
+        "{}: is not the statistics of a study; analyse the study again with haptrial analyze",
+        statistics.string()));
   }
   require_people(study, statistics);
   return study;

@@ -108,8 +108,8 @@ class Reader {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(
-        fmt::format("{}:{}: {}; allowed: what haptrial analyze writes", file_, line_, what));
+    throw InputError(fmt::format("{}:{}: {}; analyse the study again with haptrial analyze", file_,
+                                 line_, what));
   }
 
   std::string text(char end) {

@@ -40,8 +40,7 @@ std::map<std::int32_t, IdealPath> ideal_paths(const SessionReader& reader,
       paths.emplace(block, std::move(rows));
     } catch (const std::invalid_argument&) {
       throw InputError(fmt::format(
-          "{}: the times of the stimulus of block {} do not increase; allowed: rows in order of "
-          "time",
+          "{}: the times of the stimulus of block {} do not increase; the file is damaged",
           reader.path().string(), block));
     }
   }

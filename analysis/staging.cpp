@@ -20,16 +20,14 @@ Staging::Staging(const fs::path& folder)
   std::error_code error;
   fs::create_directories(final_, error);
   if (!fs::is_directory(final_)) {
-    throw InputError(
-        fmt::format("{}: is not a folder and cannot become one ({}); allowed: a "
-                    "folder that may be written",
-                    final_.string(), error.message()));
+    throw InputError(fmt::format(
+        "{}: is not a folder and cannot be created ({}); choose a folder with write permission",
+        final_.string(), error.message()));
   }
   fs::remove_all(path_, error);
   if (!fs::create_directory(path_, error)) {
     throw InputError(
-        fmt::format("{}: cannot be written ({}); allowed: a folder that may be "
-                    "written",
+        fmt::format("{}: cannot be written ({}); choose a folder with write permission",
                     final_.string(), error.message()));
   }
 }

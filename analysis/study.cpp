@@ -71,7 +71,7 @@ void sort_by_subject(std::vector<Session>& sessions) {
                          [&](const auto& a, const auto& b) { return subject(a) == subject(b); });
   if (twin != sessions.end()) {
     throw InputError(
-        fmt::format("{} and {} are both of subject {}; allowed: one session file for each subject",
+        fmt::format("{} and {} are both of subject {}; keep one session file for each subject",
                     twin->file.string(), (twin + 1)->file.string(), subject(*twin)));
   }
 }
@@ -140,7 +140,7 @@ RecallPicture recall_picture(const std::string& which, const TrialScore& score,
 StudyResult analyze_study(const std::vector<fs::path>& session_files,
                           const ScoreParameters& parameters, int jobs, const AnalysisPlan& plan) {
   if (session_files.empty()) {
-    throw InputError("there is no session file to analyse; allowed: one or more");
+    throw InputError("there is no session file to analyse");
   }
   if (jobs < 1) {
     throw std::invalid_argument("analyze_study: jobs is below 1");

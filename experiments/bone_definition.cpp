@@ -54,10 +54,10 @@ BonePlacement read_placement(Table& table) {
   const Eigen::Vector3d y = read_vector(table, "y_to", {-1.0, 1.0}, "");
   constexpr double kSquare = 1e-3;  // of the angle between them [rad]
   if (!(x.norm() > 0.0)) {
-    table.reject("x_to", "zero", "the direction in the world of the bone's x axis");
+    table.reject("x_to", "is zero; write the direction in the world of the bone's x axis");
   } else if (!(y.norm() > 0.0) || std::abs(x.normalized().dot(y.normalized())) > kSquare) {
-    table.reject("y_to", "not square to x_to",
-                 "the direction in the world of the bone's y axis, square to x_to");
+    table.reject("y_to",
+                 "is not square to x_to; write the direction in the world of the bone's y axis");
   } else {
     placement.turn.col(0) = x.normalized();
     placement.turn.col(2) = x.cross(y).normalized();
@@ -73,7 +73,7 @@ protocols::DrillingParameters read_drilling(Table& root) {
   p.time_limit = table.number("time_limit", {0.1, 36000.0}, "s");
   p.handle = read_vector(table, "handle", {-1.0, 1.0}, "");
   if (!(p.handle.norm() > 0.0)) {
-    table.reject("handle", "zero", "the direction from the tip along the handle");
+    table.reject("handle", "is zero; write the direction from the tip along the handle");
     p.handle = Eigen::Vector3d::UnitY();
   }
   optional(table, "scale", p.scale, {0.1, 20.0}, "");
@@ -88,8 +88,7 @@ void read_display(Table& table, BoneDefinition& d) {
   optional(table, "eye_distance", d.eye_distance, {0.0, 0.1}, "m");
   d.stills = table.has("stills") ? static_cast<int>(table.integer("stills", 2, 20)) : 0;
   if (d.stills > 0 && !d.cavity) {
-    table.reject("stills", fmt::format("{} without a cavity", d.stills),
-                 "beside a table [cavity], whose stages they show");
+    table.reject("stills", "needs a cavity, whose stages the stills show; add a table [cavity]");
   }
 }
 
@@ -107,8 +106,9 @@ void read_groups(Table& root, BoneDefinition& d) {
     all += participants;
   }
   if (good && all != d.design.participants) {
-    root.reject("groups", fmt::format("{} participants", all),
-                fmt::format("as many as design.participants, {}", d.design.participants));
+    root.reject("groups", fmt::format("has {} participants in all; make it {}, as in "
+                                      "design.participants",
+                                      all, d.design.participants));
   }
   if (good) {
     for (const StudyGroup& group : study_groups(root.source(), d.file_name)) {
@@ -164,7 +164,7 @@ void read_surgeons(Table& root, BoneDefinition& d) {
     }
   }
   if (!root.has("cavity")) {
-    root.reject("virtual_surgeons", "without a cavity", "beside a table [cavity]");
+    root.reject("virtual_surgeons", "needs a cavity; add a table [cavity]");
   }
   d.surgeon = p;
 }
@@ -203,9 +203,9 @@ void check_together(Table& root, const BoneDefinition& d) {
         d.hand_plan.start.norm() + 0.5 * std::hypot(d.hand_plan.width, d.hand_plan.height);
     if (reach > d.envelope.workspace_radius) {
       Table hand = root.table("drilling_hand");
-      hand.reject("start", fmt::format("a region that reaches {:.3g} m from the middle", reach),
-                  fmt::format("a region within envelope.workspace_radius, {} [m]",
-                              d.envelope.workspace_radius));
+      hand.reject("start", fmt::format("gives a region that reaches {:.3g} m from the middle; keep "
+                                       "it within envelope.workspace_radius, {} [m]",
+                                       reach, d.envelope.workspace_radius));
     }
   }
 }
@@ -256,7 +256,7 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
   d.design = read_procedures(design);
   d.sources = bone.texts("bones");
   if (d.sources.empty()) {
-    bone.reject("bones", "empty", "\"procedural temporal\", or names of files");
+    bone.reject("bones", "is empty; name \"procedural temporal\" or a file");
   }
   d.bone_seed = bone.has("seed")
                     ? static_cast<std::uint64_t>(bone.integer("seed", 0, 1'000'000'000))

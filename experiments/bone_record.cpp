@@ -79,8 +79,9 @@ bone::BoneModel model_of(const record::BoneRecord& record) {
   try {
     return analysis::drilling::bone_of(record);
   } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format(
-        "the bone of the session file is damaged: {}; allowed: an undamaged one", error.what()));
+    throw InputError(
+        fmt::format("the bone of the session file is damaged: {}; choose an undamaged session file",
+                    error.what()));
   }
 }
 

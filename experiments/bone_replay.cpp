@@ -19,7 +19,7 @@ constexpr std::uint64_t kPiece = 65536;  // rows read at once
 BoneDefinition definition_of(const record::SessionReader& reader) {
   if (!reader.drills()) {
     throw InputError(
-        fmt::format("{}: holds no drillings; allowed: a session with protocol = \"bone_drilling\"",
+        fmt::format("{}: is not a drilling session; choose one with protocol = \"bone_drilling\"",
                     reader.path().string()));
   }
   try {
@@ -252,8 +252,8 @@ void BoneReplay::check_end(std::int32_t row, ReplayVerdict& verdict) const {
     verdict.whole = false;
   } else if (procedure->checksum != verdict.checksum) {
     verdict.difference = fmt::format(
-        "pass {} ends with another bone: its checksum is {:016x}, and the record has "
-        "{:016x}, though the same voxels were emptied",
+        "pass {} ends with another bone: its checksum is {:016x}, and the record has {:016x}, "
+        "though the same voxels were emptied",
         row, verdict.checksum, procedure->checksum);
   }
 }

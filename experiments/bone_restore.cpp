@@ -9,8 +9,7 @@ namespace {
 
 std::string refusal(int trial, const std::string& why) {
   return fmt::format(
-      "trial {} begins anew with a new bone: the one that was under way cannot be "
-      "made again ({})",
+      "trial {} begins anew with a new bone: the one that was under way cannot be made again ({})",
       trial, why);
 }
 
@@ -33,7 +32,7 @@ RestoredBone restore_bone(const std::filesystem::path& session, int trial, std::
     }
     restored.ticks = verdict.ticks;
     restored.told = fmt::format(
-        "trial {} goes on with the bone as it stood after {:.3f} s of drilling: {} voxels emptied",
+        "trial {} continues with the bone as it was after {:.3f} s of drilling: {} voxels emptied",
         trial, static_cast<double>(verdict.ticks) / replay.rate(), verdict.emptied);
   } catch (const InputError& error) {
     restored.stage.reset();

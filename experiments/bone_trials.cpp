@@ -100,22 +100,21 @@ void BoneTrials::prepare(const protocols::PlannedTrial& trial, SessionRecord& re
 /// The bone of an earlier run of the session, as it stood. The servo loop ticks meanwhile.
 void BoneTrials::restore(const protocols::PlannedTrial& trial, SessionRecord& record) {
   const std::filesystem::path session = request_.file.string() + ".partial";
-  Progress progress("making the bone again", d_.rate * d_.drilling.time_limit);
+  Progress progress("restoring the bone", d_.rate * d_.drilling.time_limit);
   const RestoredBone bone =
       restore_bone(session, trial.trial, bones_used_, [&](std::uint64_t tick) {
         record.collect([](std::span<const record::Sample>) {});
         progress.update(static_cast<double>(tick), "", d_.rate);
         if (interrupted() || (request_.cancel != nullptr && request_.cancel->load())) {
           throw RunError(
-              fmt::format("interrupted; what was recorded is in {}, and --resume goes "
-                          "on with it",
+              fmt::format("interrupted; what was recorded is in {}, resume it with --resume",
                           session.string()));
         }
       });
   const bool lost = bone.stage && record.was_cut_short(trial);
   const std::string told =
       bone.told +
-      (lost ? "; what the last 0.8 s before it broke off did may not have reached the file" : "");
+      (lost ? "; changes of the last 0.8 s before the interruption may be missing" : "");
   record.event(bone.stage ? "bone_restored" : "bone_lost", told);
   fmt::print(stderr, "{}\n", told);
   if (bone.stage) {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/base/nearest.h"
 #include "core/base/table.h"
 #include "core/bone/distance_field.h"
 #include "core/geometry/voxel_grid.h"
@@ -35,14 +36,16 @@ Eigen::Vector3d read_vector(Table& table, const char* key, const char* unit) {
   for (const std::uint8_t label : model.labels) {
     there[label] = true;
   }
-  std::string known;
+  std::vector<std::string> known;
   for (std::size_t label = 1; label < there.size(); ++label) {
     if (there[label]) {
-      known += (known.empty() ? "" : ", ") + model.structures[label].name;
+      known.push_back(model.structures[label].name);
     }
   }
-  throw InputError(fmt::format("{} names \"{}\", which {} does not have; allowed: {}", key, name,
-                               model.name.empty() ? "the bone" : model.name, known));
+  const std::string hint = did_you_mean(name, known);
+  throw InputError(fmt::format("{} names \"{}\", which {} does not have{} allowed: {}", key, name,
+                               model.name.empty() ? "the bone" : model.name,
+                               hint.empty() ? ";" : hint, fmt::join(known, ", ")));
 }
 
 Eigen::Vector3d middle_of(const bone::BoneModel& model, const std::string& name) {
@@ -180,7 +183,7 @@ CavityParameters read_cavity_parameters(Table& table) {
   if (table.has("inward")) {
     p.inward = read_vector(table, "inward", "");
     if (!(p.inward.norm() > 0.0)) {
-      table.reject("inward", "zero", "a direction");
+      table.reject("inward", "is zero; write a direction");
       p.inward = -Eigen::Vector3d::UnitY();
     }
     p.inward.normalize();
@@ -194,8 +197,8 @@ CavityParameters read_cavity_parameters(Table& table) {
     p.structures = table.texts("structures");
     p.margins = table.numbers("margins", {0.0, 0.01}, "m");
     if (p.margins.size() != p.structures.size()) {
-      table.reject("margins", fmt::format("a list of {} numbers", p.margins.size()),
-                   fmt::format("a number for each of the {} structures", p.structures.size()));
+      table.reject("margins", fmt::format("has {} numbers; write one for each of the {} structures",
+                                          p.margins.size(), p.structures.size()));
       p.margins.resize(p.structures.size(), 0.0);
     }
   }

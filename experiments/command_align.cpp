@@ -9,6 +9,7 @@
 #include "analysis/recall_figure.h"
 #include "analysis/score.h"
 #include "core/base/error.h"
+#include "core/base/nearest.h"
 #include "experiments/arguments.h"
 #include "experiments/commands.h"
 
@@ -26,8 +27,8 @@ constexpr double kMostWeight = 1e6;
 StepPattern checked_pattern(const std::string& name) {
   const auto pattern = analysis::pattern_of(name);
   if (!pattern) {
-    throw InputError(fmt::format("--pattern is '{}'; allowed: {}", name,
-                                 fmt::join(analysis::pattern_names(), ", ")));
+    throw InputError(
+        not_allowed("--pattern", fmt::format("'{}'", name), analysis::pattern_names()));
   }
   return *pattern;
 }
@@ -47,11 +48,11 @@ ScoreParameters parameters_of(const AlignOptions& o) {
   a.open_begin = o.open_begin;
   a.open_end = o.open_end;
   if (o.open_begin && analysis::doubles_straight(a.pattern)) {
-    throw InputError(fmt::format(
-        "--open-begin is given with --pattern {}, whose cost grows with every applied sample that "
-        "is paired, so that leaving some out always looks cheaper; allowed: published, symmetric1, "
-        "asymmetric",
-        o.pattern));
+    throw InputError(
+        fmt::format("--open-begin is given with --pattern {}, whose cost grows with every applied "
+                    "sample that is paired, so that leaving some out always looks cheaper; choose "
+                    "published, symmetric1 or asymmetric",
+                    o.pattern));
   }
   return p;
 }
@@ -109,7 +110,7 @@ void print(const RecallDetail& recall, const ScoreParameters& p) {
 
 int align(const AlignOptions& options) {
   if (options.target == "-" && options.applied == "-") {
-    throw InputError("TARGET and APPLIED are both '-'; allowed: one of them");
+    throw InputError("TARGET and APPLIED are both '-'; read only one of them from standard input");
   }
   const ScoreParameters parameters = parameters_of(options);
   const TableCurve target = curve_of(options.target, options.value, options);

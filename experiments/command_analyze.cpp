@@ -37,7 +37,7 @@ std::vector<std::string> what_is_missing(const fs::path& folder, std::size_t ses
   }
   std::sort(unfinished.begin(), unfinished.end());
   if (!unfinished.empty()) {
-    remarks.push_back(fmt::format("Not analysed, because the session did not come to its end: {}.",
+    remarks.push_back(fmt::format("Not analysed, because the session is unfinished: {}.",
                                   fmt::join(unfinished, ", ")));
   }
   return remarks;
@@ -131,8 +131,7 @@ bool is_import(const AnalyzeOptions& options) { return options.folder.empty(); }
 void require_one_source(const AnalyzeOptions& options) {
   const int sources = !options.folder.empty() + !options.curves.empty() + !options.table.empty();
   if (sources != 1) {
-    throw InputError(fmt::format("{} of DIR, --curves and --table are given; allowed: exactly one",
-                                 sources == 0 ? "none" : "several"));
+    throw InputError("give exactly one of DIR, --curves and --table");
   }
 }
 
@@ -148,7 +147,7 @@ void check_source(const AnalyzeOptions& options) {
   };
   const auto allow = [](bool allowed, const char* name, bool given, const char* with) {
     if (!allowed && given) {
-      throw InputError(fmt::format("{} is given without {}; allowed: only with it", name, with));
+      throw InputError(fmt::format("{} is given without {}; leave it out", name, with));
     }
   };
   if (curves) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/base/nearest.h"
 #include "core/bone/data/bone_file.h"
 #include "core/bone/data/bone_summary.h"
 #include "core/bone/data/load_bone.h"
@@ -27,7 +28,7 @@ void check_out(const BoneOptions& options) {
   }
   if (!options.overwrite && std::filesystem::exists(out)) {
     throw InputError(
-        fmt::format("{}: is there already; allowed: a new name, or --overwrite", options.out));
+        fmt::format("{}: exists already; choose another name or add --overwrite", options.out));
   }
 }
 
@@ -35,7 +36,7 @@ bone::VolumeKind kind_of(const std::string& name) {
   if (name == "auto") return bone::VolumeKind::kAuto;
   if (name == "labels") return bone::VolumeKind::kLabels;
   if (name == "grey") return bone::VolumeKind::kGrey;
-  throw InputError(fmt::format("--as is '{}'; allowed: auto, labels, grey", name));
+  throw InputError(not_allowed("--as", fmt::format("'{}'", name), {"auto", "labels", "grey"}));
 }
 
 bone::LoadOptions load_options(const BoneOptions& options, const MemoryBudget& budget) {
@@ -119,7 +120,8 @@ int bone_info(const BoneOptions& options) {
 int bone_make(const BoneOptions& options) {
   check_out(options);
   if (options.shape != "temporal" && options.shape != "mandible") {
-    throw InputError(fmt::format("the bone is '{}'; allowed: temporal, mandible", options.shape));
+    throw InputError(
+        not_allowed("the bone", fmt::format("'{}'", options.shape), {"temporal", "mandible"}));
   }
   const std::uint64_t seed = checked_seed(options.seed);
   const double spacing = options.spacing.value_or(0.5) * kMillimetre;

@@ -20,11 +20,11 @@ constexpr int kFiner = 2;  // drawn pixels to one of the picture, each way
 
 void check(const BonePictureOptions& options) {
   if (std::filesystem::path(options.out).extension() != ".png") {
-    throw InputError(fmt::format("{}: is no picture; allowed: .png", options.out));
+    throw InputError(fmt::format("{}: is not a picture by its name; allowed: .png", options.out));
   }
   if (!options.overwrite && std::filesystem::exists(options.out)) {
     throw InputError(
-        fmt::format("{}: is there already; allowed: a new name, or --overwrite", options.out));
+        fmt::format("{}: exists already; choose another name or add --overwrite", options.out));
   }
   constexpr int kLargest = 4096;
   for (const auto& [name, pixels] :
@@ -64,7 +64,7 @@ Eigen::AlignedBox3d box_of(const bone::BoneModel& model) {
     }
   }
   if (box.isEmpty()) {
-    throw InputError("the bone holds nothing; allowed: one with a voxel to show");
+    throw InputError("the bone is empty; choose one with at least one voxel");
   }
   return box;
 }
@@ -73,7 +73,7 @@ render::BoneCamera camera_of(const BonePictureOptions& options, const Eigen::Ali
   const Eigen::Vector3d from = vector_of("--from", options.from);
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   if (from.cross(up).norm() < 1e-3 * from.norm() || from.norm() == 0.0) {
-    throw InputError("--from looks along z, where up is; allowed: any other direction");
+    throw InputError("--from is along z, the up direction; choose another direction");
   }
   const double aspect =
       static_cast<double>(options.width) / (options.stereo ? 2 : 1) / options.height;
@@ -92,7 +92,8 @@ void add_burr(const BonePictureOptions& options, render::BoneFrame& frame) {
   }
   const Stroke burr = parse_stroke("--burr", options.burr);
   if (burr.from == burr.to) {
-    throw InputError("--burr has no handle; allowed: X,Y,Z,X2,Y2,Z2,DIAMETER with two places");
+    throw InputError(
+        "--burr has one place for its centre and its handle; write two: X,Y,Z,X2,Y2,Z2,DIAMETER");
   }
   render::SceneMesh mesh;
   const double diameter = 2.0 * burr.radius;

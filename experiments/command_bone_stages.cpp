@@ -13,7 +13,7 @@ int bone_stages(const BoneStagesOptions& options) {
   namespace fs = std::filesystem;
   const int count = checked_number("--count", options.count, 2, 20);
   if (fs::exists(options.out)) {
-    throw InputError(fmt::format("{}: is there already; allowed: a new folder", options.out));
+    throw InputError(fmt::format("{}: exists already; choose a new folder", options.out));
   }
   const BoneDefinition definition = load_bone_definition(options.definition);
   const std::vector<StageStill> stills = stage_stills(definition, count);

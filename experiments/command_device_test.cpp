@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "core/base/error.h"
+#include "core/base/nearest.h"
 #include "core/device/coupled_mass.h"
 #include "core/device/force_dimension.h"
 #include "core/device/mouse.h"
@@ -113,9 +114,8 @@ Bench vendor_bench(const DeviceTestOptions& options, const DeviceSetup& setup) {
     bench.device =
         std::make_unique<device::OpenHapticsDevice>(setup.open_haptics, kRate, options.library);
   } else {
-    throw InputError(fmt::format(
-        "'{}' is no device to test; allowed: virtual, mouse, force-dimension, open-haptics",
-        options.name));
+    throw InputError(not_allowed("the device to test", fmt::format("'{}'", options.name),
+                                 {"virtual", "mouse", "force-dimension", "open-haptics"}));
   }
   return bench;
 }

@@ -45,7 +45,7 @@ int dry_run(const DryRunOptions& options) {
   dry.folder = options.out.empty() ? fresh_folder(setup.name) : fs::path(options.out);
   print_warnings(experiment);
   if (experiment.bone && experiment.bone->practice > 0.0) {
-    fmt::print("the {:.0f} minutes of practice are for people: left out\n",
+    fmt::print("{:.0f} minutes of practice left out: virtual subjects need none\n",
                experiment.bone->practice / 60.0);
   }
   const DryRunSummary done =

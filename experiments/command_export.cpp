@@ -132,8 +132,7 @@ int export_sessions(const ExportOptions& options) {
   const int jobs = checked_jobs(options.jobs);
   const int targets = !options.bids.empty() + !options.csv.empty() + !options.curves.empty();
   if (targets != 1) {
-    throw InputError(
-        fmt::format("{} of --bids, --csv and --curves are given; allowed: exactly one", targets));
+    throw InputError("give exactly one of --bids, --csv and --curves");
   }
   watch_for_interrupt();
   const auto files = all_files(options.files);

@@ -35,7 +35,7 @@ void print_participant(const record::Participant& participant) {
 void print_loop(const record::SessionReader& reader) {
   const analysis::LoopTiming loop = analysis::loop_timing(reader);
   if (!loop.complete) {
-    fmt::print("loop        unknown: the session did not come to its end\n");
+    fmt::print("loop        unknown: the session is unfinished\n");
     return;
   }
   fmt::print("loop        {} overruns, {} records dropped\n", loop.overruns, loop.dropped);
@@ -60,8 +60,8 @@ void print_frames(const std::vector<record::FrameRow>& frames) {
     longest = std::max(longest, frame.frame_time_ns);
     dropped += frame.dropped;
   }
-  fmt::print("frames      {} drawn, {} refreshes missed, the longest took {:.1f} ms\n",
-             frames.size(), dropped, 1e-6 * static_cast<double>(longest));
+  fmt::print("frames      {} drawn, {} refreshes missed, longest {:.1f} ms\n", frames.size(),
+             dropped, 1e-6 * static_cast<double>(longest));
 }
 
 void print_progress(const record::SessionReader& reader, const record::Integrity& integrity) {
@@ -71,8 +71,8 @@ void print_progress(const record::SessionReader& reader, const record::Integrity
   fmt::print("trials      {} {} done, {} skipped, {} aborted{}\n", trials.done, planned,
              trials.skipped, trials.aborted,
              integrity.state == record::RunState::kEnded     ? "; the session has ended"
-             : integrity.state == record::RunState::kStopped ? "; stopped, --resume goes on"
-                                                             : "; the session did not end");
+             : integrity.state == record::RunState::kStopped ? "; stopped, resume it with --resume"
+                                                             : "; the session is unfinished");
 }
 
 /// What a person did or has to know; the rest is in /events.
@@ -97,7 +97,7 @@ int info(const std::string& file) {
     integrity.ok = false;
   }
   fmt::print("subject     {}{}{}\n", i.subject, i.simulated ? " (simulated)" : "",
-             i.pilot ? " (pilot: no part of the study)" : "");
+             i.pilot ? " (pilot, not part of the study)" : "");
   print_participant(i.participant);
   fmt::print("definition  {}, seed {}\n", i.definition_name, i.seed);
   fmt::print("recorded    {}, haptrial {} ({})\n", i.start_utc, i.program_version,
@@ -121,7 +121,7 @@ int info(const std::string& file) {
     fmt::print("problem     {}\n", problem);
   }
   if (record::FileLock::taken(file)) {
-    fmt::print("a haptrial is recording into this file at present\n");
+    fmt::print("another haptrial is recording into this file\n");
   }
   print_progress(reader, integrity);
   fmt::print("recording   {}\n", integrity.ok ? "intact: every tick is recorded" : "NOT intact");

@@ -1,12 +1,23 @@
 #include "experiments/command_line.h"
 
+#include <fmt/format.h>
+
 #include "experiments/command_line_internal.h"
 
 namespace haptrial::experiments {
 
-CLI::App* subcommand(CLI::App& app, const char* name, const char* what, const char* example) {
+CLI::App* subcommand(CLI::App& app, const char* name, const char* what, const char* example,
+                     const HelpNotes& notes) {
   CLI::App* sub = app.add_subcommand(name, what);
-  sub->footer(std::string("Example:\n  ") + example);
+  std::string footer = fmt::format("Example:\n  {}\n", example);
+  if (*notes.writes != '\0') {
+    footer += fmt::format("\nWrites {}.", notes.writes);
+  }
+  if (*notes.page != '\0') {
+    footer += fmt::format("\nDocumentation: docs/{}", notes.page);
+  }
+  footer += "\nExit status: 0 done, 1 failed, 2 bad input.";
+  sub->footer(footer);
   return sub;
 }
 

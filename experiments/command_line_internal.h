@@ -34,8 +34,15 @@ void add_bone(CLI::App& app, int& status);      // command_line_bone.cpp
 void add_spectrum(CLI::App& app, int& status);  // command_line_sound.cpp
 void add_rate(CLI::App& app, int& status);      // command_line_rating.cpp
 
-/// @param example  a line that may be typed, under the help of the subcommand
-CLI::App* subcommand(CLI::App& app, const char* name, const char* what, const char* example);
+/// What the help says below the options, apart from the example.
+struct HelpNotes {
+  const char* writes{""};  // files: "Writes WRITES."
+  const char* page{""};    // below docs/
+};
+
+/// @param example  a line that may be typed, below the options in the help of the subcommand
+CLI::App* subcommand(CLI::App& app, const char* name, const char* what, const char* example,
+                     const HelpNotes& notes = {});
 
 /// Options that live as long as the subcommand that fills them; the command gets them once the
 /// line was read.

@@ -12,26 +12,27 @@ struct MeshCommand {
 
   void take_input() const {
     sub.add_option("IN", o.input.file, "Mesh (.obj, .ply, .stl, .off)")->required();
-    sub.add_option("--scale", o.input.scale, "Metres to one unit of the file (1)");
+    sub.add_option("--scale", o.input.scale, "Length of one unit of the file [m] (default: 1)");
     sub.add_option("--max-memory", o.input.max_memory,
-                   "Refuse what may take more [GB]; what the system has by default");
+                   "Limit of memory [GB]; a larger input is refused (default: the free memory)");
   }
   void take_output(const char* what) const { sub.add_option("OUT", o.out, what)->required(); }
   void take_resolution() const {
-    sub.add_option("--resolution", o.voxels.resolution, "Voxels along the longest axis (100)");
+    sub.add_option("--resolution", o.voxels.resolution,
+                   "Number of voxels along the longest axis (default: 100)");
   }
   void take_rule() const {
     sub.add_option("--inside", o.voxels.rule,
-                   "auto, parity, winding or flood: what makes a voxel an inside one (auto)");
+                   "Rule for inside voxels: auto, parity, winding or flood (default: auto)");
   }
   void take_voxels() const {
     take_resolution();
-    sub.add_flag("--over", o.voxels.over, "Go one voxel over the surface");
+    sub.add_flag("--over", o.voxels.over, "Extend the solid one voxel beyond the surface");
     take_rule();
   }
   void take_picture(const char* what) const {
     sub.add_option("--picture", o.picture, what);
-    sub.add_option("--up", o.up, "Axis that points up in it: x, y or z (y)");
+    sub.add_option("--up", o.up, "Axis that points up in the picture: x, y or z (default: y)");
   }
 };
 
@@ -40,23 +41,22 @@ constexpr const char* kNewPicture = "New picture (.png)";
 
 MeshCommand begin(CLI::App* sub, int& status, int (*command)(const MeshOptions&)) {
   auto& o = options_of<MeshOptions>(*sub, status, command);
-  sub->add_flag("--overwrite", o.overwrite, "Replace files that are there");
+  sub->add_flag("--overwrite", o.overwrite, "Overwrite existing files");
   return {*sub, o};
 }
 
 void add_make(CLI::App& mesh, int& status) {
-  const MeshCommand make = begin(
-      subcommand(mesh, "make", "Make a mesh to try things on", "haptrial mesh make gear gear.ply"),
-      status, mesh_make);
-  make.sub.add_option("SHAPE", make.o.shape, "sphere, torus, gear or rough")->required();
+  const MeshCommand make =
+      begin(subcommand(mesh, "make", "Make an example mesh", "haptrial mesh make gear gear.ply"),
+            status, mesh_make);
+  make.sub.add_option("SHAPE", make.o.shape, "Shape: sphere, torus, gear or rough")->required();
   make.take_output(kNewMesh);
 }
 
 void add_mesh_info(CLI::App& mesh, int& status) {
-  const MeshCommand info =
-      begin(subcommand(mesh, "info", "Say what a mesh is and what is wrong with it",
-                       "haptrial mesh info gear.ply"),
-            status, mesh_info);
+  const MeshCommand info = begin(
+      subcommand(mesh, "info", "Describe a mesh and its defects", "haptrial mesh info gear.ply"),
+      status, mesh_info);
   info.take_input();
   info.take_picture(kNewPicture);
 }
@@ -69,7 +69,7 @@ void add_repair(CLI::App& mesh, int& status) {
   repair.take_input();
   repair.take_output(kNewMesh);
   repair.sub.add_option("--weld", repair.o.weld,
-                        "Vertices within this distance become one [m] (0)");
+                        "Distance within which vertices are merged [m] (default: 0)");
 }
 
 void add_voxelize(CLI::App& mesh, int& status) {
@@ -85,7 +85,7 @@ void add_voxelize(CLI::App& mesh, int& status) {
 
 void add_distance(CLI::App& mesh, int& status) {
   const MeshCommand distance =
-      begin(subcommand(mesh, "distance", "Give every voxel its exact distance to the surface",
+      begin(subcommand(mesh, "distance", "Compute the exact distance of every voxel to the surface",
                        "haptrial mesh distance gear.ply gear-distance.nrrd --everywhere"),
             status, mesh_distance);
   distance.take_input();
@@ -93,9 +93,11 @@ void add_distance(CLI::App& mesh, int& status) {
   distance.take_resolution();
   distance.take_rule();
   distance.sub.add_flag("--everywhere", distance.o.everywhere,
-                        "Outside too, where distances are positive");
-  distance.sub.add_option("--margin", distance.o.voxels.margin, "More voxels on every side (0)");
-  distance.sub.add_option("--points", distance.o.points, "Also a new volume of nearest points [m]");
+                        "Compute the positive distances outside, too");
+  distance.sub.add_option("--margin", distance.o.voxels.margin,
+                          "Number of extra voxels on every side (default: 0)");
+  distance.sub.add_option("--points", distance.o.points,
+                          "New volume of nearest points [m] (.nrrd, .h5)");
   distance.take_picture("New picture of the slice in the middle (.png)");
 }
 
@@ -115,7 +117,7 @@ void add_tetrahedralize(CLI::App& mesh, int& status) {
 void add_mesh(CLI::App& app, int& status) {
   CLI::App* mesh =
       subcommand(app, "mesh", "Check, repair, voxelize, measure and split surface meshes",
-                 "haptrial mesh tetrahedralize bunny.ply bunny.vtu");
+                 "haptrial mesh tetrahedralize bunny.ply bunny.vtu", {"", "algorithms/meshes.md"});
   mesh->require_subcommand(1);
   add_make(*mesh, status);
   add_mesh_info(*mesh, status);

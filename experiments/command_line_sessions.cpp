@@ -5,56 +5,67 @@ namespace haptrial::experiments {
 
 void add_dry_run(CLI::App& app, int& status) {
   CLI::App* sub =
-      subcommand(app, "dry-run", "Run a study with virtual subjects, as fast as it goes",
-                 "haptrial dry-run experiments/force_training.toml --jobs 2");
+      subcommand(app, "dry-run", "Run a whole study with virtual subjects, faster than real time",
+                 "haptrial dry-run experiments/force_training.toml --jobs 2",
+                 {"a session file for each subject, for analyze", "guide-experimenter.md"});
   auto& o = options_of<DryRunOptions>(*sub, status, dry_run);
   sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
-  sub->add_option("--subjects", o.subjects, "How many; as the definition says by default");
-  sub->add_option("--seed", o.seed, "Of every random number (1)");
-  sub->add_option("--jobs", o.jobs, "Threads; one per processor by default");
-  sub->add_option("--out", o.out, "New folder for the session files (out/NAME-001)");
-  sub->add_option("--trials", o.trials, "Only the first so many of each subject");
+  sub->add_option("--subjects", o.subjects,
+                  "Number of virtual subjects (default: the participants of the definition)");
+  sub->add_option("--seed", o.seed, "Seed of every random number (default: 1)");
+  sub->add_option("--jobs", o.jobs, "Number of threads (default: one per processor)");
+  sub->add_option("--out", o.out, "New folder for the session files (default: out/NAME-001)");
+  sub->add_option("--trials", o.trials,
+                  "Number of trials of each subject, from the first (default: all)");
   sub->add_option("--frames", o.frames,
-                  "Also write so many pictures of each pass, as the subject saw it (0)");
+                  "Number of pictures to write of each pass, as the subject saw it (default: 0)");
 }
 
 void add_run(CLI::App& app, int& status) {
   CLI::App* sub = subcommand(app, "run", "Run one participant's session in real time",
-                             "haptrial run experiments/force_training.toml --subject P01");
+                             "haptrial run experiments/force_training.toml --subject P01",
+                             {"the session file ID.h5, for analyze", "guide-experimenter.md"});
   auto& o = options_of<RunOptions>(*sub, status, run);
   sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
-  sub->add_option("--subject", o.subject, "Identifier: letters, digits, '-', '_'")->required();
+  sub->add_option("--subject", o.subject, "Participant's identifier: letters, digits, '-', '_'")
+      ->required();
   sub->add_option("--device", o.device,
-                  "virtual, mouse, force-dimension, open-haptics or replay:FILE (virtual)");
-  sub->add_option("--library", o.library, "Path of the vendor's library; searched for by default");
+                  "Device: virtual, mouse, force-dimension, open-haptics or replay:FILE "
+                  "(default: virtual)");
+  sub->add_option("--library", o.library,
+                  "Path of the vendor's library (default: found by the system)");
   sub->add_flag("--window", o.window, "Show the participant's screen");
-  sub->add_flag("--keyboard", o.keyboard, "Keys of this terminal steer the session");
+  sub->add_flag("--keyboard", o.keyboard, "Control the session with this terminal's keys");
   sub->add_flag("--console", o.console, "Serve the experimenter's page on the loopback address");
-  sub->add_option("--port", o.port, "Of the console (any that is free)");
-  sub->add_option("--address", o.address, "Of the console (127.0.0.1); needs --remote");
-  sub->add_flag("--remote", o.remote, "Let the console listen on another address");
+  sub->add_option("--port", o.port, "Port of the console (default: any free port)");
+  sub->add_option("--address", o.address,
+                  "Address of the console; needs --remote (default: 127.0.0.1)");
+  sub->add_flag("--remote", o.remote, "Allow a console address that other machines can reach");
   sub->add_flag("--lsl", o.stream,
-                "Stream to the Lab Streaming Layer; refused when its library is absent");
+                "Stream to the Lab Streaming Layer; an error if its library is absent");
   sub->add_flag("--lsl-optional", o.stream_optional,
-                "Likewise, but go on without streams when the library is absent");
-  sub->add_flag("--resume", o.resume, "Go on with the session that did not come to its end");
-  sub->add_flag("--pilot", o.pilot, "No part of the study: analyze leaves the session out");
-  sub->add_option("--handedness", o.person.handedness, "Of the participant, for the file");
-  sub->add_option("--age-band", o.person.age_band, "Such as 18-25");
-  sub->add_option("--sex", o.person.sex, "Of the participant, for the file");
-  sub->add_option("--consent", o.person.consent_confirmed, "Such as yes, or a date");
-  sub->add_option("--notes", o.person.notes, "Free text, for the file");
-  sub->add_option("--seed", o.seed, "Of the study (1)");
+                "Stream to the Lab Streaming Layer if its library is present");
+  sub->add_flag("--resume", o.resume, "Resume the participant's unfinished session");
+  sub->add_flag("--pilot", o.pilot, "Mark the session as a pilot, which analyze leaves out");
+  sub->add_option("--handedness", o.person.handedness, "Participant's handedness");
+  sub->add_option("--age-band", o.person.age_band, "Participant's age band, such as 18-25");
+  sub->add_option("--sex", o.person.sex, "Participant's sex");
+  sub->add_option("--consent", o.person.consent_confirmed,
+                  "Confirmation of consent, such as yes or a date");
+  sub->add_option("--notes", o.person.notes, "Free text for the session file");
+  sub->add_option("--seed", o.seed,
+                  "Seed of the study, the same for all participants (default: 1)");
   sub->add_option("--participant", o.participant,
-                  "Number that sets the order of conditions; at the end of ID by default");
-  sub->add_option("--trials", o.trials, "Only the first so many");
-  sub->add_option("--out", o.out, "Folder for the session file (out/sessions)");
+                  "Participant's number, for the order of conditions (default: the one that ends "
+                  "the identifier)");
+  sub->add_option("--trials", o.trials, "Number of trials, from the first (default: all)");
+  sub->add_option("--out", o.out, "Folder for the session file (default: out/sessions)");
 }
 
 void add_info(CLI::App& app, int& status) {
   CLI::App* sub =
-      subcommand(app, "info", "Say what a session file holds and whether it is complete",
-                 "haptrial info out/force_training-001/S01.h5");
+      subcommand(app, "info", "Show what a session file holds and whether it is complete",
+                 "haptrial info out/force_training-001/S01.h5", {"", "session-file.md"});
   auto& file = options_of<std::string>(*sub, status, info);
   sub->add_option("FILE", file, "Session file (.h5)")->required();
 }
@@ -65,50 +76,59 @@ void add_recover(CLI::App& app, int& status) {
     std::string out;
   };
   CLI::App* sub = subcommand(app, "recover", "Save what a damaged session file still holds",
-                             "haptrial recover out/sessions/P01.h5.partial");
+                             "haptrial recover out/sessions/P01.h5.partial",
+                             {"a session file of what could be read", "session-file.md"});
   auto& o =
       options_of<Files>(*sub, status, [](const Files& f) { return recover(f.damaged, f.out); });
-  sub->add_option("FILE", o.damaged, "Damaged session file (.h5, .partial); it stays as it is")
+  sub->add_option("FILE", o.damaged,
+                  "Damaged session file (.h5, .partial), which is left unchanged")
       ->required();
-  sub->add_option("OUT", o.out, "New session file (FILE.recovered.h5)");
+  sub->add_option("OUT", o.out, "New session file (default: FILE.recovered.h5)");
 }
 
 void add_replay(CLI::App& app, int& status) {
-  CLI::App* sub = subcommand(
-      app, "replay", "Show a recorded trial as the participant saw it; drill a bone again",
-      "haptrial replay out/force_training-001/S01.h5 --trial 3 --video trial-3.mp4");
+  CLI::App* sub =
+      subcommand(app, "replay",
+                 "Replay a recorded trial as the participant saw it, or simulate a drilling again",
+                 "haptrial replay out/force_training-001/S01.h5 --trial 3 --video trial-3.mp4",
+                 {"the video, pictures or sound asked for", "guide-analyst.md"});
   auto& o = options_of<ReplayOptions>(*sub, status, replay);
   sub->add_option("FILE", o.file, "Session file (.h5)")->required();
   sub->add_option("--trial", o.trial,
-                  "Number from 1; of a drilling all by default, and the first for a video");
-  sub->add_option("--phase", o.phase, "training or test; both by default");
-  sub->add_option("--video", o.video, "New video (.mp4), written by ffmpeg");
+                  "Number of the trial, from 1 (default: of a drilling all, in a video the first)");
+  sub->add_option("--phase", o.phase, "Phase of the trial: training or test (default: both)");
+  sub->add_option("--video", o.video, "New video (.mp4); needs ffmpeg");
   sub->add_option("--frames", o.frames, "New folder for pictures (.png)");
-  sub->add_option("--sound", o.sound, "New sound of a drilling (.wav)");
-  sub->add_option("--fps", o.fps, "Pictures a second (30)");
+  sub->add_option("--sound", o.sound, "New sound file of a drilling (.wav)");
+  sub->add_option("--fps", o.fps, "Pictures per second [1/s] (default: 30)");
 }
 
 void add_validate(CLI::App& app, int& status) {
-  CLI::App* sub = subcommand(app, "validate", "Check a definition and say what it plans",
-                             "haptrial validate experiments/force_training.toml");
+  CLI::App* sub = subcommand(app, "validate", "Check a definition and show the study that it plans",
+                             "haptrial validate experiments/force_training.toml",
+                             {"", "guide-experimenter.md"});
   auto& definition = options_of<std::string>(*sub, status, validate);
   sub->add_option("DEFINITION", definition, "Experiment definition (.toml)")->required();
 }
 
 void add_devices(CLI::App& app, int& status) {
-  CLI::App* sub = subcommand(app, "devices", "List the devices", "haptrial devices");
+  CLI::App* sub = subcommand(app, "devices", "List the devices and how to use them",
+                             "haptrial devices", {"", "devices.md"});
   sub->callback([&status] { status = devices(); });
 }
 
 void add_device_test(CLI::App& app, int& status) {
-  CLI::App* sub = subcommand(app, "device-test", "Check a device and say whether it is fit",
-                             "haptrial device-test force-dimension");
+  CLI::App* sub = subcommand(app, "device-test", "Check whether a device is fit for experiments",
+                             "haptrial device-test force-dimension", {"", "devices.md"});
   auto& o = options_of<DeviceTestOptions>(*sub, status, device_test);
-  sub->add_option("NAME", o.name, "virtual, mouse, force-dimension or open-haptics")->required();
-  sub->add_option("--definition", o.definition,
-                  "Set the device up as this experiment does (.toml)");
-  sub->add_option("--seconds", o.seconds, "How long (120)");
-  sub->add_option("--library", o.library, "Path of the vendor's library; searched for by default");
+  sub->add_option("NAME", o.name, "Device: virtual, mouse, force-dimension or open-haptics")
+      ->required();
+  sub->add_option(
+      "--definition", o.definition,
+      "Definition whose set-up of the device is checked (.toml) (default: the driver's own)");
+  sub->add_option("--seconds", o.seconds, "Duration [s] (default: 120)");
+  sub->add_option("--library", o.library,
+                  "Path of the vendor's library (default: found by the system)");
 }
 
 }  // namespace haptrial::experiments

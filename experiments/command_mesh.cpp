@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "core/base/error.h"
+#include "core/base/nearest.h"
 #include "core/geometry/mesh_check.h"
 #include "core/geometry/mesh_io.h"
 #include "core/geometry/mesh_repair.h"
@@ -26,7 +27,7 @@ constexpr render::Colour kBone{0.86, 0.80, 0.70};
 void check_new(const std::string& file, bool overwrite) {
   if (!overwrite && std::filesystem::exists(file)) {
     throw InputError(
-        fmt::format("{}: is there already; allowed: a new name, or --overwrite", file));
+        fmt::format("{}: exists already; choose another name or add --overwrite", file));
   }
 }
 
@@ -64,8 +65,8 @@ geometry::Mesh made_mesh(const MeshOptions& options) {
     constexpr int kFrequency = 100;  // 200,000 triangles
     return geometry::make_rough_solid(0.1, kFrequency, 1);
   }
-  throw InputError(
-      fmt::format("the shape is '{}'; allowed: sphere, torus, gear, rough", options.shape));
+  throw InputError(not_allowed("the shape", fmt::format("'{}'", options.shape),
+                               {"sphere", "torus", "gear", "rough"}));
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ double milliseconds_since(Clock::time_point start) {
 void check_new(const std::string& file, bool overwrite) {
   if (!file.empty() && !overwrite && std::filesystem::exists(file)) {
     throw InputError(
-        fmt::format("{}: is there already; allowed: a new name, or --overwrite", file));
+        fmt::format("{}: exists already; choose another name or add --overwrite", file));
   }
 }
 

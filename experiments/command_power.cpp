@@ -6,6 +6,7 @@
 
 #include "analysis/power.h"
 #include "core/base/error.h"
+#include "core/base/nearest.h"
 #include "experiments/commands.h"
 
 namespace haptrial::experiments {
@@ -34,7 +35,7 @@ std::optional<double> effect_of(const PowerOptions& options) {
 void check_test(const PowerOptions& options) {
   const bool anova = options.test == "anova";
   if (!anova && options.test != "t") {
-    throw InputError(fmt::format("TEST is '{}'; allowed: t or anova", options.test));
+    throw InputError(not_allowed("TEST", fmt::format("'{}'", options.test), {"t", "anova"}));
   }
   for (const auto& [option, given, belongs, test] :
        {std::tuple{"--f", options.f.has_value(), anova, "anova"},
@@ -44,11 +45,11 @@ void check_test(const PowerOptions& options) {
         {"--one-tailed", options.one_tailed, !anova, "t"}}) {
     if (given && !belongs) {
       throw InputError(
-          fmt::format("{} is given with {}; allowed: only with {}", option, options.test, test));
+          fmt::format("{} is given with {}; use it with {} only", option, options.test, test));
     }
   }
   if (anova && !options.groups) {
-    throw InputError("--groups is missing; anova needs it");
+    throw InputError("--groups is missing; give the number of groups");
   }
 }
 
@@ -63,7 +64,7 @@ void check_numbers(const PowerOptions& options) {
                                  *options.groups, kMostGroups));
   }
   if (options.n && *options.n < 2) {
-    throw InputError(fmt::format("--n is {}; allowed: a whole number from 2", *options.n));
+    throw InputError(fmt::format("--n is {}; allowed: a whole number of at least 2", *options.n));
   }
   if (options.f) {
     check_inside("--f", *options.f, 0.0, INFINITY);
@@ -73,13 +74,8 @@ void check_numbers(const PowerOptions& options) {
   }
   const int given = (effect_of(options) ? 1 : 0) + (options.n ? 1 : 0) + (options.power ? 1 : 0);
   if (given != 2) {
-    throw InputError(
-        fmt::format("{} of {}, --n and --power are given; allowed: two, the third is "
-                    "computed",
-                    given == 0   ? "none"
-                    : given == 1 ? "one"
-                                 : "all",
-                    options.test == "anova" ? "--f" : "--delta"));
+    throw InputError(fmt::format("give two of {}, --n and --power; the third is computed",
+                                 options.test == "anova" ? "--f" : "--delta"));
   }
 }
 
@@ -91,8 +87,8 @@ analysis::TPlan t_plan(const PowerOptions& options) {
   } else if (design == "paired") {
     plan.design = analysis::TDesign::kPaired;
   } else if (design != "two-sample") {
-    throw InputError(
-        fmt::format("--design is '{}'; allowed: two-sample, paired or one-sample", design));
+    throw InputError(not_allowed("--design", fmt::format("'{}'", design),
+                                 {"two-sample", "paired", "one-sample"}));
   }
   return plan;
 }
@@ -101,7 +97,7 @@ template <class T>
 T value_of(const analysis::Defined<T>& result) {
   if (!result) {
     throw InputError(
-        fmt::format("power: {}; allowed: another effect, size or power", result.because()));
+        fmt::format("power: {}; choose another effect, --n or --power", result.because()));
   }
   return *result;
 }
@@ -153,8 +149,8 @@ void print_size(const Plan& plan, int groups) {
 
 void print_t(const PowerOptions& options, const Plan& plan) {
   const std::string design = options.design.value_or("two-sample");
-  fmt::print("{} t-test, {}-tailed, alpha {}\n", design, options.one_tailed ? "one" : "two",
-             options.alpha);
+  fmt::print("{} t test, {}-tailed, significance level {}\n", design,
+             options.one_tailed ? "one" : "two", options.alpha);
   fmt::print("difference    {:.6g}, {:.4g} standard deviations{}\n",
              options.delta.value_or(plan.effect * options.sd), plan.effect,
              design == "paired" ? " of the differences" : "");
@@ -171,9 +167,11 @@ int power(const PowerOptions& options) {
     return 0;
   }
   const Plan plan = anova_solution(options);
-  fmt::print("one-way analysis of variance, {} groups, alpha {}\n", *options.groups, options.alpha);
-  fmt::print("effect        f = {:.4g}: standard deviation of the groups' means by that within\n",
-             plan.effect);
+  fmt::print("one-way analysis of variance, {} groups, significance level {}\n", *options.groups,
+             options.alpha);
+  fmt::print(
+      "effect        f = {:.4g}: standard deviation of the group means over that within groups\n",
+      plan.effect);
   print_size(plan, *options.groups);
   return 0;
 }

@@ -40,13 +40,12 @@ std::string instructions(bool sheets, bool halves) {
   const std::string how =
       sheets ? "Each picture CODE.png is one procedure: small pictures at evenly spaced moments, "
                "from left to\nright and from top to bottom, and below them the cavity at the end.\n"
-             : "Each film CODE.mp4 is one procedure, several times as fast as it went; at its end "
-               "the cavity\nstands still for some seconds.\n";
+             : "Each film CODE.mp4 is one procedure, played several times as fast as real time; at "
+               "its end the cavity\nstands still for some seconds.\n";
   return how +
          fmt::format(
              "\nGive every procedure a score in {0}, whole{1} points from 1 to 5, as you would in "
-             "a "
-             "training\nlaboratory:\n\n"
+             "a training\nlaboratory:\n\n"
              "  5  a surgeon's work: everything planned is removed, nothing vital is touched, the\n"
              "     cavity is open and smooth\n"
              "  4  good: small remainders or roughness, nothing vital is touched\n"
@@ -145,7 +144,7 @@ void make_pictures(const Procedures& procedures, const drilling::RatingKey& key,
 void must_be_new(const fs::path& path, const char* remedy) {
   std::error_code error;
   if (fs::exists(path, error) && !(fs::is_directory(path, error) && fs::is_empty(path, error))) {
-    throw InputError(fmt::format("{}: is there already; allowed: {}", path.string(), remedy));
+    throw InputError(fmt::format("{}: exists already; {}", path.string(), remedy));
   }
 }
 
@@ -164,10 +163,9 @@ int rate_prepare(const RatePrepareOptions& options) {
   const fs::path folder =
       options.out.empty() ? fs::path(fs::absolute(study).lexically_normal().string() + "-rating")
                           : fs::path(options.out);
-  must_be_new(folder, "a new folder for the raters");
+  must_be_new(folder, "choose a new folder for the raters");
   must_be_new(study / kKeyFile,
-              "a study without a key; remove it to prepare anew, sheets of the old codes are then "
-              "lost");
+              "remove it to prepare the study again, but sheets with the old codes are then lost");
   watch_for_interrupt();
   const drilling::RatingKey key =
       drilling::blinded(procedures.items, procedures.seed, options.halves);
@@ -192,12 +190,11 @@ int rate_import(const RateImportOptions& options) {
   const fs::path study(options.folder);
   const fs::path key_file = study / kKeyFile;
   if (!fs::exists(key_file)) {
-    throw InputError(
-        fmt::format("{}: is not there; allowed: a study for which haptrial rate prepare made a key",
-                    key_file.string()));
+    throw InputError(fmt::format("{}: no such file; run haptrial rate prepare for the study first",
+                                 key_file.string()));
   }
   if (!options.overwrite) {
-    must_be_new(study / kRatingsFile, "a study without ratings, or --overwrite");
+    must_be_new(study / kRatingsFile, "choose a study without ratings or add --overwrite");
   }
   const drilling::RatingKey key = drilling::opened(file_text(key_file), key_file.string());
   std::vector<drilling::Rating> ratings;
@@ -205,10 +202,9 @@ int rate_import(const RateImportOptions& options) {
   for (const std::string& sheet : options.sheets) {
     const auto own = drilling::read_sheet(sheet, key);
     if (!raters.insert(own.front().rater).second) {
-      throw InputError(
-          fmt::format("{}: rater {} has another sheet; allowed: a file name for each "
-                      "rater",
-                      sheet, own.front().rater));
+      throw InputError(fmt::format(
+          "{}: rater {} has another sheet already; name each rater's sheet after the rater", sheet,
+          own.front().rater));
     }
     ratings.insert(ratings.end(), own.begin(), own.end());
   }

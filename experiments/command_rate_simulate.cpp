@@ -28,7 +28,7 @@ int rate_simulate(const RateSimulateOptions& options) {
   }
   if (fs::exists(study / kRatingsFile) && !options.overwrite) {
     throw InputError(
-        fmt::format("{}: is there already; allowed: a study without ratings, or --overwrite",
+        fmt::format("{}: exists already; choose a study without ratings or add --overwrite",
                     (study / kRatingsFile).string()));
   }
   const auto ratings = simulate_ratings(study, jobs);

@@ -24,17 +24,16 @@ int recover(const std::string& file, const std::string& out) {
                found.file_bytes);
     return 1;
   }
-  fmt::print("subject     {}\n", found.info ? found.subject
-                                            : "not known: the definition and all else about the "
-                                              "session are lost");
+  fmt::print("subject     {}\n",
+             found.info ? found.subject
+                        : "unknown: the definition and the description of the session are lost");
   fmt::print("rows        {}, sequence {} to {}, {} missing between them\n", found.samples,
              found.first_sequence, found.last_sequence, found.missing);
-  fmt::print("passes      {}, {} of them without all of their rows\n", found.passes,
-             found.passes_cut);
+  fmt::print("passes      {}, {} incomplete\n", found.passes, found.passes_cut);
   fmt::print("also        {} events, stimuli of {} blocks, {} frames\n", found.events,
              found.stimulus_blocks, found.frames);
-  fmt::print("loop        {}\n", found.ended ? "came to its end" : "its counts are not there");
-  fmt::print("written to  {}; {} is as it was\n", to.string(), file);
+  fmt::print("loop        {}\n", found.ended ? "complete" : "its counts are lost");
+  fmt::print("written to  {}; {} is unchanged\n", to.string(), file);
   return 0;
 }
 

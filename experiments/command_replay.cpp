@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/nearest.h"
 #include "core/sound/wav.h"
 #include "experiments/arguments.h"
 #include "experiments/bone_display.h"
@@ -27,8 +28,7 @@ std::optional<record::Phase> phase_of(const std::string& name) {
     return std::nullopt;
   }
   if (name != "training" && name != "test") {
-    throw InputError(
-        fmt::format("--phase is '{}'; allowed: training, test, or nothing for both", name));
+    throw InputError(not_allowed("--phase", fmt::format("'{}'", name), {"training", "test"}));
   }
   return name == "test" ? record::Phase::kTest : record::Phase::kTraining;
 }
@@ -40,15 +40,13 @@ class PictureFolder {
     std::error_code error;
     if (fs::exists(folder_, error) &&
         !(fs::is_directory(folder_, error) && fs::is_empty(folder_, error))) {
-      throw InputError(
-          fmt::format("{}: exists and is not an empty folder; name a new one, nothing is "
-                      "overwritten",
-                      folder_.string()));
+      throw InputError(fmt::format(
+          "{}: exists already and is not an empty folder; choose a new folder", folder_.string()));
     }
     made_ = fs::create_directories(folder_, error);
     if (error) {
       throw InputError(
-          fmt::format("{}: the folder cannot be made ({})", folder_.string(), error.message()));
+          fmt::format("{}: the folder cannot be created ({})", folder_.string(), error.message()));
     }
   }
   ~PictureFolder() {
@@ -160,13 +158,13 @@ class DrillingOutputs {
 
 void print_verdict(const ReplayOptions& options, const ReplayVerdict& verdict) {
   if (!verdict.difference.empty()) {
-    throw RunError(fmt::format("{}: trial {} is not the same when it is simulated again: {}",
+    throw RunError(fmt::format("{}: trial {} differs from the recording when simulated again: {}",
                                options.file, verdict.trial, verdict.difference));
   }
   fmt::print(
       "trial {}: the same bone, {} ticks in {} passes, {} voxels emptied, checksum {:016x}{}\n",
       verdict.trial, verdict.ticks, verdict.passes, verdict.emptied, verdict.checksum,
-      verdict.whole ? "" : "; a pass did not come to its end and has no checksum");
+      verdict.whole ? "" : "; an unfinished pass has no checksum");
 }
 
 int replay_drilling(const ReplayOptions& options, int fps) {
@@ -210,13 +208,13 @@ int replay(const ReplayOptions& options) {
     return replay_drilling(options, fps);
   }
   if (options.trial == 0) {
-    throw InputError("replay needs --trial, the number of the trial to show");
+    throw InputError("--trial is missing; give the number of the trial to show");
   }
   if (!options.sound.empty()) {
-    throw InputError("--sound is for sessions that drill");
+    throw InputError("--sound is given for a session without drilling; leave it out");
   }
   if (options.video.empty() && options.frames.empty()) {
-    throw InputError("replay needs --video FILE.mp4 or --frames FOLDER to write to");
+    throw InputError("neither --video nor --frames is given; add one to write to");
   }
   Replay replay(options.file, options.trial, phase);
   std::optional<VideoWriter> video;

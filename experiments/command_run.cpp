@@ -10,6 +10,8 @@
 
 #include "analysis/timing.h"
 #include "core/base/error.h"
+#include "core/record/file_lock.h"
+#include "core/record/session_target.h"
 #include "core/stream/lsl_outlet.h"
 #include "experiments/arguments.h"
 #include "experiments/console.h"
@@ -36,6 +38,25 @@ void check_subject(const std::string& subject) {
   }
 }
 
+/// In the words of this command's options, before a device is opened or anything moves.
+void check_file(const RunOptions& options, const fs::path& file) {
+  std::error_code ignored;
+  if (options.resume) {
+    return;
+  }
+  if (fs::exists(file, ignored)) {
+    throw InputError(
+        fmt::format("{}: {} already has a session here; choose another --subject or --out",
+                    file.string(), options.subject));
+  }
+  const fs::path partial = record::partial_path(file);
+  if (fs::exists(partial, ignored) && !record::FileLock::taken(partial)) {
+    throw InputError(fmt::format(
+        "{}: {} has an unfinished session here; add --resume, or choose another --subject or --out",
+        partial.string(), options.subject));
+  }
+}
+
 int participant_of(const RunOptions& options) {
   constexpr int kMost = 10000;
   if (options.participant) {
@@ -45,8 +66,8 @@ int participant_of(const RunOptions& options) {
   const std::string digits = options.subject.substr(letter == std::string::npos ? 0 : letter + 1);
   if (digits.empty() || digits.size() > 5 || std::stoi(digits) < 1 || std::stoi(digits) > kMost) {
     throw InputError(
-        fmt::format("--subject '{}' does not end in a number from 1 to {}, so the order "
-                    "of conditions is not known; add --participant NUMBER",
+        fmt::format("--subject '{}' does not end in a number from 1 to {}, so the order of "
+                    "conditions is not known; add --participant NUMBER",
                     options.subject, kMost));
   }
   return std::stoi(digits) - 1;
@@ -124,9 +145,10 @@ int run(const RunOptions& options) {
   fs::create_directories(options.out, error);
   if (error) {
     throw InputError(
-        fmt::format("{}: the folder cannot be made ({})", options.out, error.message()));
+        fmt::format("{}: the folder cannot be created ({})", options.out, error.message()));
   }
   request.file = fs::path(options.out) / (options.subject + ".h5");
+  check_file(options, request.file);
   request.device = {options.device, options.library};
   request.window = options.window;
   request.stream = options.stream || options.stream_optional;
@@ -145,7 +167,7 @@ int run(const RunOptions& options) {
   }
   fmt::print("session: {}{}\n", request.file.string(), done.stopped ? ".partial" : "");
   if (done.stopped) {
-    fmt::print("stopped with trials left: the same command with --resume goes on with them\n");
+    fmt::print("stopped with trials left; the same command with --resume continues with them\n");
   }
   fmt::print("{} ticks at {} Hz, {} overruns, {} records lost, {} passes aborted\n", done.ticks,
              setup.rate, done.overruns, done.dropped, done.aborted_passes);

@@ -8,6 +8,7 @@
 
 #include "analysis/figure_gnuplot.h"
 #include "core/base/error.h"
+#include "core/base/nearest.h"
 #include "core/geometry/output_file.h"
 #include "core/sound/power_spectrum.h"
 #include "core/sound/wav.h"
@@ -26,16 +27,15 @@ sound::Burr burr_of(const std::string& name) {
       return burr;
     }
   }
-  throw InputError(fmt::format("--burr is '{}'; allowed: diamond, cutting", name));
+  throw InputError(not_allowed("--burr", fmt::format("'{}'", name), {"diamond", "cutting"}));
 }
 
 void check(const SpectrumOptions& options) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; };
   if (options.level.empty() || !std::all_of(options.level.begin(), options.level.end(), plain)) {
-    throw InputError(
-        fmt::format("--level is '{}'; allowed: letters, digits, '-', '_'; 'free' is a "
-                    "drill in the air",
-                    options.level));
+    throw InputError(fmt::format(
+        "--level is '{}'; allowed: letters, digits, '-', '_'; 'free' is a drill in the air",
+        options.level));
   }
   if (!(options.force >= 0.0 && options.force <= 1000.0)) {
     throw InputError(fmt::format("--force is {}; allowed: 0 to 1000 [N]", options.force));
@@ -51,7 +51,7 @@ void check(const SpectrumOptions& options) {
           fmt::format("{}: ends in '{}'; allowed: .png, .svg", options.picture, ending));
     }
     if (!options.overwrite && fs::exists(options.picture)) {
-      throw InputError(fmt::format("{}: is there already; allowed: a new name, or --overwrite",
+      throw InputError(fmt::format("{}: exists already; choose another name or add --overwrite",
                                    options.picture));
     }
   }
@@ -67,10 +67,9 @@ sound::PowerSpectrum spectrum_of(const sound::Recording& recording, int segment,
   try {
     return sound::power_spectrum(recording.samples, recording.rate, segment);
   } catch (const std::invalid_argument&) {
-    throw InputError(
-        fmt::format("--segment is {}; allowed: a power of two from 16 to the "
-                    "recording's {} samples",
-                    segment, recording.samples.size()));
+    throw InputError(fmt::format(
+        "--segment is {}; allowed: a power of two from 16 to the recording's {} samples", segment,
+        recording.samples.size()));
   }
 }
 
@@ -110,9 +109,8 @@ sound::SpectrumTable table_with(const SpectrumOptions& options, const sound::Spe
   }
   for (const sound::Level& level : kind.contact) {
     if (level.force == options.force) {
-      throw InputError(
-          fmt::format("{}: the level '{}' is at {} N already; allowed: another --force",
-                      options.out, level.name, options.force));
+      throw InputError(fmt::format("{}: the level '{}' is at {} N already; choose another --force",
+                                   options.out, level.name, options.force));
     }
   }
   const auto above = std::find_if(kind.contact.begin(), kind.contact.end(),
@@ -172,8 +170,7 @@ void draw(const SpectrumOptions& options, const sound::PowerSpectrum& recorded,
   } catch (const fs::filesystem_error& error) {
     fs::remove_all(folder, ignored);
     throw InputError(
-        fmt::format("{}: cannot be written ({}); allowed: a folder that may be "
-                    "written to",
+        fmt::format("{}: cannot be written ({}); choose a folder with write permission",
                     options.picture, error.code().message()));
   } catch (...) {
     fs::remove_all(folder, ignored);

@@ -45,7 +45,7 @@ int status_of(Connection::Trouble trouble) {
 const char* sentence_of(int status) {
   return status == 431   ? "the request is too large"
          : status == 408 ? "the request took too long"
-         : status >= 500 ? "the console failed at it"
+         : status >= 500 ? "the console failed on this request"
                          : "the request is malformed";
 }
 
@@ -213,8 +213,8 @@ class Console::Implementation {
                                  : server_.bind_to_port(options_.address, port);
     if (!bound) {
       throw RunError(
-          fmt::format("the console cannot listen at {} port {}: the address is not of "
-                      "this machine, or the port is taken",
+          fmt::format("the console cannot listen at {} port {}: the address is not of this "
+                      "machine, or the port is taken",
                       options_.address, options_.port));
     }
     return port;

@@ -39,10 +39,10 @@ bool check_console_address(const std::string& address, bool allow_remote) {
   const bool loopback =
       is_v4 ? (ntohl(v4.s_addr) >> 24) == IN_LOOPBACKNET : IN6_IS_ADDR_LOOPBACK(&v6) != 0;
   if (!loopback && !allow_remote) {
-    throw InputError(fmt::format(
-        "the console's address {} can be reached from other machines; allowed without the flag for "
-        "that: 127.0.0.1 and ::1",
-        address));
+    throw InputError(
+        fmt::format("the console's address {} can be reached from other machines; add --remote, or "
+                    "choose 127.0.0.1 or ::1",
+                    address));
   }
   return loopback;
 }

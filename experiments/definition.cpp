@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/nearest.h"
 #include "core/base/table.h"
 #include "experiments/impossible.h"
 #include "experiments/recorded_path.h"
@@ -35,8 +36,9 @@ void check_together(Table& root, const Definition& d) {
   Table design = root.table("design");
   for (const std::string& condition : d.design.conditions) {
     if (std::find(known.begin(), known.end(), condition) == known.end()) {
-      design.reject("conditions", fmt::format("an array with '{}'", condition),
-                    fmt::format("{}", fmt::join(known, ", ")));
+      const std::string hint = did_you_mean(condition, known);
+      design.reject("conditions", fmt::format("is an array with '{}'{} allowed: {}", condition,
+                                              hint.empty() ? ";" : hint, fmt::join(known, ", ")));
     }
   }
   Table guidance = root.table("guidance");
@@ -66,18 +68,18 @@ void check_path(Table& root, const Definition& d) {
     }
   }
   if (length / d.trajectory.speed > kLongestPass) {
-    trajectory.reject("speed", fmt::format("{}", d.trajectory.speed),
-                      fmt::format("so fast that {} takes at most {} s",
-                                  recorded ? "the recorded path" : "length_x", kLongestPass));
+    trajectory.reject(
+        "speed", fmt::format("{}", d.trajectory.speed),
+        fmt::format("at least {:.3g} [m/s], so that {} takes at most {} s", length / kLongestPass,
+                    recorded ? "the recorded path" : "length_x", kLongestPass));
   }
   if (reach > d.envelope.workspace_radius) {
     const char* key = recorded ? "from" : "length_x";
     trajectory.reject(
-        key,
-        recorded ? fmt::format("a path that reaches {:.3g} m from the middle", reach)
-                 : fmt::format("{}", d.trajectory.length_x),
-        fmt::format("{} within envelope.workspace_radius, {} [m]",
-                    recorded ? "a path" : "with range_z, a curve", d.envelope.workspace_radius));
+        key, fmt::format("{} reaches {:.3g} m from the middle; keep it within "
+                         "envelope.workspace_radius, {} [m]",
+                         recorded ? "names a path that" : "gives, with range_z, a curve that",
+                         reach, d.envelope.workspace_radius));
   }
   const double shortest = length / d.trajectory.speed;
   Table force_pattern = root.table("force_pattern");

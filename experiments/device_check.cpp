@@ -127,8 +127,9 @@ namespace {
 Verdict judge_rate(const realtime::ServoLoop& loop) {
   const double asked = loop.rate_hz();
   const double mean = 1e9 / loop.timing().period.mean();
-  return {std::abs(mean / asked - 1.0) < kRateError, "rate",
-          fmt::format("{:.2f} Hz over {} ticks; {:.0f} Hz was asked", mean, loop.ticks(), asked)};
+  return {
+      std::abs(mean / asked - 1.0) < kRateError, "rate",
+      fmt::format("{:.2f} Hz over {} ticks; {:.0f} Hz was requested", mean, loop.ticks(), asked)};
 }
 
 Verdict judge_lateness(const realtime::ServoLoop& loop) {

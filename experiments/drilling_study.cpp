@@ -39,8 +39,7 @@ class PictureFolder {
     std::error_code error;
     if (!fs::create_directories(path_, error)) {
       throw InputError(
-          fmt::format("{}: cannot be written ({}); allowed: a folder that may be "
-                      "written",
+          fmt::format("{}: cannot be written ({}); choose a folder with write permission",
                       study.string(), error.message()));
     }
   }
@@ -117,8 +116,7 @@ std::vector<StudyGroup> study_groups(std::string_view definition, std::string_vi
       constexpr std::int64_t kMost = 10000;
       if (!value.is_integer() || *count < 1 || *count > kMost) {
         throw InputError(
-            fmt::format("{}: groups.{} is not a number of participants; allowed: 1 "
-                        "to {}",
+            fmt::format("{}: groups.{} is not a number of participants; allowed: 1 to {}",
                         file_name, key.str(), kMost));
       }
       found.push_back({key.source().begin,
@@ -150,8 +148,8 @@ std::string group_of(const std::vector<StudyGroup>& groups, const std::string& s
     }
   }
   throw InputError(
-      fmt::format("participant {} belongs to no group; allowed: an identifier that "
-                  "ends in a number from 1 to {}",
+      fmt::format("participant {} belongs to no group; allowed: an identifier that ends in a "
+                  "number from 1 to {}",
                   subject, last));
 }
 

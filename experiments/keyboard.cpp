@@ -226,7 +226,7 @@ class Keyboard::Implementation {
       case Mode::kConfirmAbort:
         mode_ = Mode::kKeys;
         if (key == 'y' || key == 'Y') {
-          ask(Request::kAbort, "abort: --resume goes on\n");
+          ask(Request::kAbort, "stopped: resume the session with --resume\n");
         } else if (key == 'e' || key == 'E') {
           ask(Request::kEnd, "ended for good\n");
         } else {
@@ -258,7 +258,7 @@ class Keyboard::Implementation {
         break;
       case 'a':
         mode_ = Mode::kConfirmAbort;
-        show("stop the session? y: for now, e: for good, any other key: no ");
+        show("stop the session? y: for now (it can be resumed), e: for good, any other key: no ");
         break;
       case 'n':
         mode_ = Mode::kNote;

@@ -107,7 +107,8 @@ void LiveDrilling::run() {
       }
     } catch (const std::exception& error) {
       const std::lock_guard lock(mutex_);
-      trouble_ = fmt::format("the drilling is recorded and no longer measured: {}", error.what());
+      trouble_ =
+          fmt::format("the drilling is still recorded but no longer measured: {}", error.what());
       waiting_.clear();
       return;
     }

@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "experiments/command_line.h"
+#include "experiments/command_line_check_internal.h"
 #include "experiments/version.h"
 
 namespace {
@@ -24,42 +25,30 @@ void complain(const std::string& sentence) {
   [[maybe_unused]] const int written = std::fputs(("haptrial: " + sentence + "\n").c_str(), stderr);
 }
 
-/// A mistyped or missing subcommand by its name, with those there are.
-/// @param words  what was typed after `name`
-void check_subcommands(const CLI::App& app, const std::string& name, std::span<char* const> words) {
-  std::string known;
-  for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; })) {
-    known += (known.empty() ? "" : ", ") + sub->get_name();
-    if (!words.empty() && sub->get_name() == words[0]) {
-      check_subcommands(*sub, fmt::format("{} {}", name, words[0]), words.subspan(1));
-      return;
-    }
-  }
-  if (known.empty() || (!words.empty() && words[0][0] == '-')) {
-    return;
-  }
-  throw haptrial::InputError(
-      words.empty()
-          ? fmt::format("{} needs a subcommand; allowed: {}", name, known)
-          : fmt::format("'{}' is not a subcommand of {}; allowed: {}", words[0], name, known));
-}
-
 int run_command(int argc, char** argv) {
-  CLI::App app("Force-feedback experiments: run them, record them, know what they showed.");
+  CLI::App app("Run force-feedback experiments, record them and analyse the results.");
   app.name("haptrial");
   app.set_version_flag("--version", fmt::format("haptrial {} ({})", experiments::program_version(),
                                                 experiments::program_commit()));
   app.require_subcommand(1);
-  app.footer("haptrial SUBCOMMAND --help shows an example of each.");
+  app.footer(
+      "First steps:\n"
+      "  haptrial validate experiments/force_training.toml\n"
+      "  haptrial dry-run experiments/force_training.toml --subjects 4 --out out/try\n"
+      "  haptrial analyze out/try\n"
+      "\n'haptrial SUBCOMMAND --help' shows the options and an example of a subcommand.\n"
+      "Documentation: README.md and docs/ of the source.\n"
+      "Exit status: 0 done, 1 failed, 2 bad input.");
   int status = 0;
   experiments::declare_subcommands(app, status);
-  check_subcommands(app, "haptrial", std::span(argv, static_cast<std::size_t>(argc)).subspan(1));
+  const auto words = std::span(argv, static_cast<std::size_t>(argc)).subspan(1);
+  experiments::check_words(app, words);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {
     return app.exit(asked);
   } catch (const CLI::ParseError& error) {
-    complain(std::string(error.what()) + "; see haptrial --help");
+    complain(experiments::sentence_of(app, words, error));
     return kBadInput;
   }
   return status;

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "core/base/error.h"
+#include "core/base/nearest.h"
 #include "core/geometry/mesh_io.h"
 #include "core/render/image.h"
 #include "experiments/interrupt.h"
@@ -42,7 +43,8 @@ geometry::InsideRule rule_for(const geometry::Mesh& mesh, const std::string& nam
       return rule;
     }
   }
-  throw InputError(fmt::format("--inside is '{}'; allowed: auto, parity, winding, flood", name));
+  throw InputError(
+      not_allowed("--inside", fmt::format("'{}'", name), {"auto", "parity", "winding", "flood"}));
 }
 
 }  // namespace
@@ -126,7 +128,7 @@ void write_picture(const std::string& file, std::span<const render::SceneTriangl
                    const render::SceneView& view, bool overwrite) {
   if (!overwrite && fs::exists(file)) {
     throw InputError(
-        fmt::format("{}: is there already; allowed: a new name, or --overwrite", file));
+        fmt::format("{}: exists already; choose another name or add --overwrite", file));
   }
   if (scene.empty()) {
     throw InputError(fmt::format("{}: there is nothing to draw", file));

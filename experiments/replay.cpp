@@ -42,8 +42,9 @@ std::vector<record::PassRow> chosen(const record::SessionReader& reader, int tri
     throw InputError(fmt::format("{}: holds no trials", reader.path().string()));
   }
   if (last.empty() && known.contains(trial)) {
-    throw InputError(fmt::format("{}: trial {} has no such phase; it was broken off before",
-                                 reader.path().string(), trial));
+    throw InputError(
+        fmt::format("{}: trial {} was aborted before this phase; choose another --phase",
+                    reader.path().string(), trial));
   }
   if (last.empty()) {
     throw InputError(fmt::format("--trial is {}; allowed: {} to {}, the trials of {}", trial,
@@ -126,8 +127,7 @@ stimulus::Stimulus Replay::stimulus_of(const record::SessionReader& reader,
   }
   if (!recorded) {
     notice_ = fmt::format(
-        "block {}: drawn as recorded, for this version makes another stimulus of "
-        "its seed",
+        "block {}: drawn as recorded, for this version makes another stimulus of its seed",
         row.block);
   }
   double length = 0.0;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "core/base/nearest.h"
 #include "core/device/force_dimension.h"
 #include "core/device/mouse.h"
 #include "core/device/open_haptics.h"
@@ -98,16 +99,12 @@ void check_reach(const device::DeviceInfo& info, const Setup& d) {
 }  // namespace
 
 void check_device_name(const std::string& name) {
-  for (const char* known : {"virtual", "mouse", "force-dimension", "open-haptics"}) {
-    if (name == known) {
-      return;
-    }
-  }
-  if (!name.starts_with(kReplay)) {
-    throw InputError(
-        fmt::format("--device is '{}'; allowed: virtual, mouse, force-dimension, "
-                    "open-haptics, replay:FILE (haptrial devices says which are there)",
-                    name));
+  const std::vector<std::string> known{"virtual", "mouse", "force-dimension", "open-haptics",
+                                       "replay:FILE"};
+  if (!name.starts_with(kReplay) &&
+      std::find(known.begin(), known.end() - 1, name) == known.end() - 1) {
+    throw InputError(not_allowed("--device", fmt::format("'{}'", name), known) +
+                     " (haptrial devices lists which are present)");
   }
 }
 

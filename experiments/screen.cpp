@@ -45,7 +45,7 @@ render::TrialDisplayStyle fitted(render::TrialDisplayStyle style, const render::
   if (!style.leaves_room()) {
     throw InputError(fmt::format(
         "the screen has {} x {} pixels, which leaves no room for the path beside bars of {} and "
-        "margins of {} pixels; allowed: a larger screen, or smaller values in [display]",
+        "margins of {} pixels; use a larger screen or smaller values in [display]",
         style.width, style.height, style.bar_height, style.margin));
   }
   return style;

@@ -35,15 +35,14 @@ struct SessionTexts {
   std::string rest;          // during a break, above the countdown
   std::string thanks;        // at the end
   std::string stopped{"Stopped\nThe forces are off. Please wait for the experimenter."};
-  std::string paused{"A short pause\nIt goes on in a moment."};
+  std::string paused{"A short pause\nThe session continues in a moment."};
   std::string recovering{// after a pass that was aborted without a fault
                          "One moment\nThe forces are off for a few seconds. Hold the handle "
-                         "loosely: it will lead your "
-                         "hand to the start."};
+                         "loosely: it will guide your hand to the start."};
   std::string limit{
       // below the instructions
-      "A square in the upper right corner says that the device gives all the force it has."};
-  std::string begin{"The experimenter starts"};  // the small line below a text that waits
+      "A square in the upper right corner shows that the device is at its force limit."};
+  std::string begin{"The experimenter will start"};  // the small line below a text that waits
   std::string begin_alone{"Press Enter or the space bar to begin"};  // without an experimenter
 };
 

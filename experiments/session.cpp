@@ -328,8 +328,10 @@ std::shared_ptr<const analysis::drilling::Procedure> Session::of_earlier_run(
       }
     }
   } catch (const std::exception& error) {  // nothing that a session should end for
-    record_.event("notice",
-                  fmt::format("live figures leave the earlier run out: {}", error.what()));
+    record_.event(
+        "notice",
+        fmt::format("live figures leave out the passes before the session was resumed: {}",
+                    error.what()));
   }
   return nullptr;
 }
@@ -393,7 +395,7 @@ void Session::finish() {
   const Wishes& wishes = desk_.wishes();
   summary_.stopped = left_ && wishes.abort && !wishes.for_good;
   if (summary_.stopped) {
-    record_.stop("by the experimenter; --resume goes on at the first unfinished trial");
+    record_.stop("by the experimenter; --resume continues at the first unfinished trial");
   } else {
     if (left_ && wishes.for_good) {
       record_.event("ended_for_good", "by the experimenter, with trials left");
@@ -436,7 +438,7 @@ void Session::note_troubles() {
   notices_.note(live_ ? live_->trouble() : "");
   notices_.note(loop_.real_time_status().notice);
   if (loop_.resynchronised() > 0) {
-    notices_.note(fmt::format("the loop was suspended {} times and took up the present time",
+    notices_.note(fmt::format("the loop was suspended {} times and continued at the present time",
                               loop_.resynchronised()));
   }
   if (screen_) {

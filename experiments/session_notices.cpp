@@ -82,7 +82,7 @@ void SessionNotices::say_plan(const std::vector<PlannedTrial>& plan, record::Pha
   status.blocks = static_cast<int>(blocks.size());
   tell(fmt::format("recording {}{}: {}{}", p_.request.file.string(),
                    p_.request.pilot ? " as a pilot" : "", planned_of(plan, status.trials_defined),
-                   over > 0 ? fmt::format(", {} of them over already", over) : ""));
+                   over > 0 ? fmt::format(", {} of them done already", over) : ""));
 }
 
 void SessionNotices::say_trial(const PlannedTrial& trial, const char* how) const {

@@ -115,7 +115,7 @@ void SessionRecord::tell_what_was_kept() {
   if (!before_.repaired.empty()) {
     fmt::print(stderr, "{}\n", before_.repaired);
   }
-  fmt::print(stderr, "{}: goes on after {} ticks and {} passes\n", request_.file.string(),
+  fmt::print(stderr, "{}: resumed after {} ticks and {} passes\n", request_.file.string(),
              before_.next_sequence, before_.passes.size());
 }
 
@@ -333,7 +333,7 @@ void SessionRecord::give_up(const protocols::SessionTask& task) {
     add_pass(record::PassStatus::kAborted, result.first_sample,
              task.idle() ? result.last_sample : origin().sequence + loop_.ticks() - 1);
   }
-  event("interrupted", "the session did not come to its end");
+  event("interrupted", "the session was interrupted before its end");
   write_timing(record::RunState::kStopped);
   writer_.sync();
 }

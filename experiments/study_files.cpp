@@ -34,7 +34,7 @@ std::vector<fs::path> taken(const Sorted& sorted, const fs::path& folder, Pilots
     throw InputError(fmt::format("{}: holds {}", folder.string(),
                                  alone
                                      ? "no pilot sessions; leave --pilots out to analyse the study"
-                                     : "only pilot sessions; analyze --pilots takes them"));
+                                     : "only pilot sessions; analyse them with --pilots"));
   }
   return files;
 }
@@ -70,10 +70,10 @@ void compare(const record::SessionReader& reader, const fs::path& file, const fs
   const DefinitionChanges changes =
       definition_changes(study.first.definition, info.definition, hand_of(study.first, info));
   if (!changes.same_study()) {
-    throw InputError(fmt::format(
-        "{}: was recorded with another definition than {}: {}; analyse each study in a folder of "
-        "its own",
-        file.string(), first_file.string(), sentence_of(changes.binding)));
+    throw InputError(
+        fmt::format("{}: was recorded with another definition than {}: {}; analyse each study in a "
+                    "folder of its own",
+                    file.string(), first_file.string(), sentence_of(changes.binding)));
   }
   const std::string name = file.filename().string();
   if (!changes.free.empty()) {

@@ -28,11 +28,11 @@ class OutputFolder {
     const bool made = !error && fs::create_directory(folder_, error);
     if (error && !fs::exists(folder_)) {
       throw InputError(
-          fmt::format("{}: the folder cannot be made ({})", folder_.string(), error.message()));
+          fmt::format("{}: the folder cannot be created ({})", folder_.string(), error.message()));
     }
     if (!made) {
-      throw InputError(fmt::format(
-          "{}: exists; name a new folder with --out, nothing is overwritten", folder_.string()));
+      throw InputError(
+          fmt::format("{}: exists already; choose a new folder with --out", folder_.string()));
     }
   }
   ~OutputFolder() {
@@ -173,7 +173,7 @@ std::string participant_name(int participant) { return fmt::format("S{:02}", par
 std::vector<fs::path> session_files(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
-    throw InputError(fmt::format("{}: {}; expected a folder of session files", folder.string(),
+    throw InputError(fmt::format("{}: {}; give a folder of session files", folder.string(),
                                  fs::exists(folder, error) ? "not a folder" : "no such folder"));
   }
   std::vector<fs::path> files;
@@ -186,8 +186,8 @@ std::vector<fs::path> session_files(const fs::path& folder) {
     throw InputError(fmt::format("{}: cannot be read ({})", folder.string(), error.message()));
   }
   if (files.empty()) {
-    throw InputError(
-        fmt::format("{}: holds no session files; expected at least one .h5", folder.string()));
+    throw InputError(fmt::format("{}: holds no session file (.h5); give a folder with at least one",
+                                 folder.string()));
   }
   std::sort(files.begin(), files.end());
   return files;

@@ -47,16 +47,15 @@ bool installed() {
 VideoWriter::VideoWriter(fs::path file, int fps) : file_(std::move(file)), fps_(fps) {
   if (file_.extension() != ".mp4") {
     throw InputError(
-        fmt::format("video '{}' does not end in .mp4; allowed: a name that does", file_.string()));
+        fmt::format("video '{}' is not a video by its name; allowed: .mp4", file_.string()));
   }
   std::error_code error;
   if (fs::exists(fs::symlink_status(file_, error))) {
-    throw InputError(
-        fmt::format("{}: exists; name a new file, nothing is overwritten", file_.string()));
+    throw InputError(fmt::format("{}: exists already; choose another name", file_.string()));
   }
   const fs::path folder = file_.has_parent_path() ? file_.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, error) || access(folder.c_str(), W_OK) != 0) {
-    throw InputError(fmt::format("{}: cannot be written; allowed: a name in a folder that can be",
+    throw InputError(fmt::format("{}: cannot be written; choose a folder with write permission",
                                  file_.string()));
   }
   if (!installed()) {
@@ -87,7 +86,7 @@ void VideoWriter::start(int width, int height) {
   complaints_ = memfd_create("ffmpeg", MFD_CLOEXEC);
   // A socket rather than a pipe: a write to a child that has ended fails without a signal.
   if (complaints_ < 0 || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
-    throw RunError(fmt::format("ffmpeg cannot be fed: {}", reason(errno)));
+    throw RunError(fmt::format("ffmpeg does not take the pictures: {}", reason(errno)));
   }
   std::vector<std::string> words{kProgram,    "-nostdin",
                                  "-loglevel", "error",
@@ -137,7 +136,7 @@ void VideoWriter::add(const render::Image& image) {
     if (now < 0 && errno != EINTR) {
       const std::string why = reason(errno);
       const std::string complaint = ended();
-      throw RunError(fmt::format("ffmpeg gave up the video '{}': {}", file_.string(),
+      throw RunError(fmt::format("ffmpeg failed to write the video '{}': {}", file_.string(),
                                  complaint.empty() ? why : complaint));
     }
     sent += static_cast<std::size_t>(std::max<ssize_t>(now, 0));

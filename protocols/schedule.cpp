@@ -35,7 +35,7 @@ Design read_design(Table& table) {
   }
   if (std::set<std::string>(d.conditions.begin(), d.conditions.end()).size() !=
       d.conditions.size()) {
-    table.reject("conditions", "a list that names a condition twice", "each condition once");
+    table.reject("conditions", "names a condition twice; name each condition once");
   }
   return d;
 }

@@ -53,8 +53,7 @@ class Rows {
     });
     if (!ordered) {
       throw InputError(fmt::format(
-          "{}: rows of a table of drillings are not in the order of their sequence numbers; "
-          "allowed: ascending ones",
+          "{}: the sequence numbers of a drilling table do not ascend; the file is damaged",
           file.path().string()));
     }
   }
@@ -116,8 +115,9 @@ class Loader {
       return bones_ != nullptr ? bones_->keep(std::move(model))
                                : std::make_shared<const bone::BoneModel>(std::move(model));
     } catch (const std::invalid_argument& error) {
-      throw InputError(fmt::format("{}: bone '{}' is damaged ({}); allowed: what was recorded",
-                                   file_.path().string(), record.bone.name, error.what()));
+      throw InputError(
+          fmt::format("{}: bone '{}' is damaged ({}); choose an undamaged session file",
+                      file_.path().string(), record.bone.name, error.what()));
     }
   }
 
@@ -132,8 +132,8 @@ class Loader {
       }
     }
     if (bone < 0 || std::cmp_greater_equal(bone, models_.size())) {
-      throw InputError(fmt::format("{}: trial {} is on bone {}; allowed: one of its {} bones",
-                                   file_.path().string(), trial, bone, models_.size()));
+      throw InputError(fmt::format("{}: trial {} is on bone {}; allowed: 0 to {}",
+                                   file_.path().string(), trial, bone, std::ssize(models_) - 1));
     }
     return static_cast<std::size_t>(bone);
   }
@@ -202,8 +202,7 @@ std::vector<Procedure> load_procedures(const record::SessionReader& file,
     throw std::invalid_argument("ProcedureSetup: the scale must be above 0");
   }
   if (!file.drills()) {
-    throw InputError(fmt::format("{}: holds no drillings; allowed: a session of a bone experiment",
-                                 file.path().string()));
+    throw InputError(fmt::format("{}: is not a drilling session", file.path().string()));
   }
   const Loader loader(file, setup, bones);
   std::vector<Procedure> procedures;

@@ -128,7 +128,7 @@ RatingKey blinded(std::vector<RatedItem> items, std::uint64_t seed, bool halves)
   std::set<std::pair<std::string, int>> seen;
   for (const RatedItem& item : items) {
     if (!seen.emplace(item.session, item.procedure).second) {
-      throw InputError(fmt::format("{}: has procedure {} twice; allowed: each once", item.session,
+      throw InputError(fmt::format("{}: has procedure {} twice; keep one of them", item.session,
                                    item.procedure));
     }
   }
@@ -240,7 +240,7 @@ std::vector<Rating> read_sheet(const std::filesystem::path& file, const RatingKe
   }
   for (const KeyEntry& entry : key.entries) {
     if (seen.count(entry.code) == 0) {
-      throw InputError(fmt::format("{}: code {} has no line; allowed: a line for each of {} codes",
+      throw InputError(fmt::format("{}: code {} has no line; write a line for each of the {} codes",
                                    file.string(), entry.code, key.entries.size()));
     }
   }

@@ -30,7 +30,7 @@ void add_people(Validity& v, std::span<const ProcedureSummary> procedures) {
     }
     const auto [at, is_new] = people.try_emplace(p.participant, people.size(), p.group);
     if (at->second.second != p.group) {
-      throw InputError(fmt::format("{}: participant {} is in group '{}' and in '{}'; allowed: one",
+      throw InputError(fmt::format("{}: participant {} is in group '{}' and in '{}'; choose one",
                                    p.session, p.participant, p.group, at->second.second));
     }
     v.participant.push_back(at->second.first);
@@ -59,10 +59,9 @@ Eigen::MatrixXd rating_table(Validity& v, std::span<const ProcedureSummary> proc
           return p.session == r.session && p.number == r.procedure;
         });
     if (at == procedures.end()) {
-      throw InputError(
-          fmt::format("rater {} rated procedure {} of {}, which is not among the {} "
-                      "procedures of the study",
-                      r.rater, r.procedure, r.session, procedures.size()));
+      throw InputError(fmt::format(
+          "rater {} rated procedure {} of {}, which is not among the {} procedures of the study",
+          r.rater, r.procedure, r.session, procedures.size()));
     }
     table(at - procedures.begin(), std::distance(names.begin(), names.find(r.rater))) = r.score;
   }

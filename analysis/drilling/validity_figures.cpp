@@ -299,7 +299,7 @@ Drawing drawing_of(const StudyPicture& picture, bool simulated) {
   constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
   constexpr std::size_t kWidthAt = 16, kHeightAt = 20, kHeader = 24;
   if (bytes.size() < kHeader || bytes.compare(0, kSignature.size(), kSignature) != 0) {
-    throw InputError(fmt::format("{}: is no picture; allowed: a PNG file", picture.png.string()));
+    throw InputError(fmt::format("{}: is not a PNG file", picture.png.string()));
   }
   Drawing drawing;
   drawing.figure.name = picture.name;
@@ -310,8 +310,8 @@ Drawing drawing_of(const StudyPicture& picture, bool simulated) {
   const std::uint32_t width = big_endian(bytes, kWidthAt), height = big_endian(bytes, kHeightAt);
   drawing.svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
-      "height=\"{1}\"><image width=\"{0}\" height=\"{1}\" href=\"data:image/png;base64,{2}\"/>"
-      "</svg>\n",
+      "height=\"{1}\"><image width=\"{0}\" height=\"{1}\" "
+      "href=\"data:image/png;base64,{2}\"/></svg>\n",
       width, height, base64(bytes));
   return drawing;
 }

@@ -22,10 +22,10 @@ using bids::Session;
 std::string label_of(const std::string& what, const std::string& text, const fs::path& file) {
   const std::string label = bids_label(text);
   if (label.empty()) {
-    throw InputError(fmt::format(
-        "{}: the {} '{}' has no letter or digit of ASCII; allowed: a name with some, which is what "
-        "a BIDS data set calls it",
-        file.string(), what, text));
+    throw InputError(
+        fmt::format("{}: the {} '{}' has no ASCII letter or digit, which a BIDS label needs; "
+                    "choose another name",
+                    file.string(), what, text));
   }
   return label;
 }
@@ -43,10 +43,10 @@ void refuse_other_study(const ExportSession& session, const ExportSession& first
       definition_changes(first.info.definition, session.info.definition,
                          virtual_hand ? Hand::kVirtual : Hand::kPerson);
   if (!changes.same_study()) {
-    throw InputError(fmt::format(
-        "{}: was recorded with another definition than {}: {}; export each study into a folder of "
-        "its own",
-        session.file.string(), first.file.string(), sentence_of(changes.binding)));
+    throw InputError(
+        fmt::format("{}: was recorded with another definition than {}: {}; export each study into "
+                    "a folder of its own",
+                    session.file.string(), first.file.string(), sentence_of(changes.binding)));
   }
 }
 
@@ -62,9 +62,8 @@ std::vector<Session> named_sessions(std::span<const fs::path> files) {
     const auto [twin, is_new] = subjects.emplace(label, source.info.subject);
     if (!is_new && twin->second != source.info.subject) {
       throw InputError(
-          fmt::format("{}: subject {} would be sub-{}, as {} is; allowed: subjects that differ in "
-                      "their letters "
-                      "and digits",
+          fmt::format("{}: subject {} would be sub-{}, like {}; choose subjects that differ in "
+                      "their letters and digits",
                       source.file.string(), source.info.subject, label, twin->second));
     }
     sessions.push_back({source, "sub-" + label, several ? fmt::format("ses-{}", source.number) : "",

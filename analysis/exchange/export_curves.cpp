@@ -21,7 +21,7 @@ void refuse_second_sessions(const std::vector<ExportSession>& sessions) {
   for (const auto& session : sessions) {
     if (session.number > 1) {
       throw InputError(fmt::format(
-          "{}: is another session of subject {}; allowed: one session file for each subject",
+          "{}: is another session of subject {}; give one session file for each subject",
           session.file.string(), session.info.subject));
     }
   }

@@ -24,7 +24,7 @@ void refuse_twins(const std::vector<ExportSession>& sessions) {
     const fs::path real = fs::canonical(session.file, error);
     if (!seen.emplace(real, session.file).second) {
       throw InputError(
-          fmt::format("{}: is given twice; allowed: each session once", session.file.string()));
+          fmt::format("{}: is given twice; give each session once", session.file.string()));
     }
   }
 }
@@ -92,7 +92,7 @@ void Counter::check() const {
 
 std::vector<ExportSession> sessions_to_export(std::span<const fs::path> files) {
   if (files.empty()) {
-    throw InputError("there is no session file to export; allowed: one or more");
+    throw InputError("there is no session file to export");
   }
   std::vector<ExportSession> sessions;
   for (const auto& file : files) {

@@ -29,7 +29,7 @@ ImportColumns::ImportColumns(const std::vector<std::string>& given) {
                                    column, fmt::join(known, ", ")));
     }
     if (!names_.emplace(column, one.substr(sign + 1)).second) {
-      throw InputError(fmt::format("--column names {} twice; allowed: each column once", column));
+      throw InputError(fmt::format("--column names {} twice; name each column once", column));
     }
   }
 }
@@ -51,7 +51,7 @@ bool ImportColumns::has(const analysis::CsvTable& table, const std::string& colu
 std::size_t ImportColumns::place(const analysis::CsvTable& table, const std::string& column) const {
   if (!has(table, column)) {
     throw InputError(
-        fmt::format("{}: there is no column '{}'; allowed: one of {}, named with --column {}=NAME",
+        fmt::format("{}: there is no column '{}'; name one of {} with --column {}=NAME",
                     table.name(), column, fmt::join(table.columns(), ", "), column));
   }
   return table.column(name(column));

@@ -33,11 +33,11 @@ class TrialRows {
       return;
     }
     if (!columns_.given("condition").empty()) {
-      throw InputError("--column condition=... is given with --factor; allowed: one of the two");
+      throw InputError("--column condition=... is given with --factor; leave one of them out");
     }
     for (const std::string& factor : factors_) {
       if (std::count(factors_.begin(), factors_.end(), factor) > 1) {
-        throw InputError(fmt::format("--factor names {} twice; allowed: each factor once", factor));
+        throw InputError(fmt::format("--factor names {} twice; name each factor once", factor));
       }
       factor_places_.push_back(table.column(factor));
     }
@@ -137,7 +137,8 @@ Key key_of(const ImportedTrial& trial) { return {trial.score.subject, trial.scor
 
 void require_tests(const CsvTable& table, bool any) {
   if (!any) {
-    throw InputError(fmt::format("{}: has no test; allowed: one or more", table.name()));
+    throw InputError(
+        fmt::format("{}: has no row of the phase test; add at least one", table.name()));
   }
 }
 
@@ -159,10 +160,10 @@ class FilesOfTrials final : public ImportedTrials {
                         study.folder / rows.name(row, applied), rows.rate(row)};
       const auto [twin, is_new] = known.emplace(key_of(trial), std::pair(table.line(row), files));
       if (!is_new) {
-        table.refuse(row, rows.trial_column(),
-                     fmt::format("a test that the table has once; line {} is of the same subject "
-                                 "and trial",
-                                 twin->second.first));
+        table.refuse(
+            row, rows.trial_column(),
+            fmt::format("a test that the table has once; line {} is of the same subject and trial",
+                        twin->second.first));
       }
       trials_.push_back(trial);
     }
@@ -205,10 +206,9 @@ class FilesOfTrials final : public ImportedTrials {
       return {names.place(table, "target"), names.place(table, "applied")};
     }
     if (names.has(table, "target") || names.has(table, "applied")) {
-      throw InputError(
-          fmt::format("{}: has a column file and one of target or applied; allowed: file, or both "
-                      "of the others",
-                      table.name()));
+      throw InputError(fmt::format(
+          "{}: has a column file and one of target or applied; keep file, or both of the others",
+          table.name()));
     }
     return {names.place(table, "file"), names.place(table, "file")};
   }
@@ -263,7 +263,7 @@ class RowsOfTrials final : public ImportedTrials {
     } else {
       const auto rate = rows_.rate(rows.front());
       if (!rate) {
-        throw InputError(fmt::format("{}:{}: has neither a time nor a rate; allowed: one of them",
+        throw InputError(fmt::format("{}:{}: has neither a time nor a rate; give one of them",
                                      table_.name(), table_.line(rows.front())));
       }
       curve.rate = *rate;

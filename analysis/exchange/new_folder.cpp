@@ -26,12 +26,11 @@ NewFolder::NewFolder(const fs::path& folder) : final_(without_trailing_slash(fol
   std::error_code error;
   if (fs::exists(final_, error) && !fs::is_directory(final_, error)) {
     throw InputError(
-        fmt::format("{}: is not a folder; allowed: a new or an empty folder", final_.string()));
+        fmt::format("{}: is not a folder; choose a new or an empty folder", final_.string()));
   }
   if (fs::is_directory(final_, error) && !fs::is_empty(final_, error)) {
     throw InputError(
-        fmt::format("{}: is not empty; allowed: a new or an empty folder, nothing is overwritten",
-                    final_.string()));
+        fmt::format("{}: is not empty; choose a new or an empty folder", final_.string()));
   }
   staging_ =
       final_.parent_path() / fmt::format(".{}.partial-{}", final_.filename().string(), getpid());
@@ -39,8 +38,7 @@ NewFolder::NewFolder(const fs::path& folder) : final_(without_trailing_slash(fol
   fs::create_directories(staging_, error);
   if (error || !fs::is_directory(staging_)) {
     throw InputError(
-        fmt::format("{}: cannot be made ({}); allowed: a folder whose parent may be "
-                    "written",
+        fmt::format("{}: cannot be created ({}); choose a folder with write permission",
                     final_.string(), error.message()));
   }
 }

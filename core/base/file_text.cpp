@@ -15,7 +15,8 @@ std::string file_text(const std::filesystem::path& file) {
   // An empty file gives no character to <<, which takes that for a failure.
   const bool empty = in && in.peek() == std::ifstream::traits_type::eof() && !in.bad();
   if (!in.is_open() || !(empty || text << in.rdbuf())) {
-    throw InputError(fmt::format("{}: cannot be read; allowed: a file that may be", file.string()));
+    throw InputError(
+        fmt::format("{}: cannot be read; choose a file with read permission", file.string()));
   }
   return std::move(text).str();
 }

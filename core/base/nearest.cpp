@@ -1,5 +1,8 @@
 #include "core/base/nearest.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <numeric>
 
@@ -40,7 +43,7 @@ std::optional<std::string> nearest(std::string_view word, const std::vector<std:
       continue;
     }
     const std::size_t distance = edit_distance(word, candidate);
-    if (3 * distance <= longer && (!best || distance < least)) {
+    if (3 * distance < longer && (!best || distance < least)) {
       best = candidate;
       least = distance;
     }
@@ -51,6 +54,16 @@ std::optional<std::string> nearest(std::string_view word, const std::vector<std:
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known) {
   const auto best = nearest(word, known);
   return best ? "; did you mean " + *best + "?" : "";
+}
+
+std::string not_allowed(std::string_view what, std::string_view found,
+                        const std::vector<std::string>& allowed) {
+  std::string_view word = found;
+  while (!word.empty() && (word.front() == '\'' || word.front() == '"')) word.remove_prefix(1);
+  while (!word.empty() && (word.back() == '\'' || word.back() == '"')) word.remove_suffix(1);
+  const std::string hint = did_you_mean(word, allowed);
+  return fmt::format("{} is {}{} allowed: {}", what, found, hint.empty() ? ";" : hint,
+                     fmt::join(allowed, ", "));
 }
 
 }  // namespace haptrial

@@ -210,9 +210,7 @@ std::string Table::text(std::string_view key) {
 std::string Table::choice(std::string_view key, const std::vector<std::string>& allowed) {
   const auto value = get<std::string>(key, joined(allowed), false);
   if (value && std::find(allowed.begin(), allowed.end(), *value) == allowed.end()) {
-    note(line(key), fmt::format("{} is {}{}{} allowed: {}", node_->full(key),
-                                shown(*node_->table->get(key)), did_you_mean(*value, allowed),
-                                nearest(*value, allowed) ? "" : ";", joined(allowed)));
+    note(line(key), not_allowed(node_->full(key), shown(*node_->table->get(key)), allowed));
     return allowed.front();
   }
   return value.value_or(allowed.front());
@@ -324,7 +322,11 @@ void Table::note_unknown_keys() const {
       if (read[node->table].contains(key.str())) {
         continue;
       }
-      const std::string hint = did_you_mean(key.str(), all);
+      std::vector<std::string> absent;  // a typo leaves out the key that was meant
+      std::copy_if(all.begin(), all.end(), std::back_inserter(absent), [&node](const auto& name) {
+        return !node->table->contains(name);
+      });
+      const std::string hint = did_you_mean(key.str(), absent);
       document_->note(
           document_->problems, line_of(&value),
           fmt::format(

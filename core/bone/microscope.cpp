@@ -49,10 +49,10 @@ MicroscopeParameters read_microscope_parameters(Table& table) {
   optional("zoom_rate", p.zoom_rate, {0.0, 100.0}, "1/s");
   p.start.field_of_view = table.number("field_of_view", {0.001, 3.0}, "rad");
   if (p.start.eye == p.start.target) {
-    table.reject("eye", "where the target is", "another point");
+    table.reject("eye", "is the same point as target; choose another point");
   } else if (!(p.start.up.cross(p.start.eye - p.start.target).norm() >
                1e-6 * p.start.up.norm() * (p.start.eye - p.start.target).norm())) {
-    table.reject("up", "along the view, or zero", "a direction across the view");
+    table.reject("up", "is zero or along the view; write a direction across the view");
   }
   if (p.narrowest > p.widest || p.start.field_of_view < p.narrowest ||
       p.start.field_of_view > p.widest) {

@@ -25,10 +25,9 @@ void check(const PlateParameters& parameters) {
                     parameters.stiffness >= 0.0 && std::isfinite(parameters.extrusion) &&
                     std::isfinite(parameters.reach) && std::isfinite(parameters.stiffness);
   if (!good) {
-    throw std::invalid_argument(
-        fmt::format("plate: samples must be from 1 to {}, reach above 0, extrusion and stiffness "
-                    "not below",
-                    kMaxAnchors));
+    throw std::invalid_argument(fmt::format(
+        "plate: samples must be from 1 to {}, reach above 0, extrusion and stiffness not below",
+        kMaxAnchors));
   }
 }
 
@@ -190,7 +189,7 @@ PlateModel PlateModel::load(const std::filesystem::path& file, double unit,
     return PlateModel(file.stem().string(), std::move(mesh), parameters);
   } catch (const std::invalid_argument&) {
     check(parameters);  // rethrows what is not the file's
-    throw InputError(fmt::format("{} has no triangle with an area; allowed: a mesh with a surface",
+    throw InputError(fmt::format("{} has no triangle with an area; choose a mesh with a surface",
                                  file.string()));
   }
 }

@@ -64,8 +64,7 @@ std::vector<ToolSpec> read_tools(Table& table) {
   for (const std::string& name : names) {
     for (const ToolSpec& before : tools) {
       if (before.name == name) {
-        table.reject("in_hand", fmt::format("a list that names '{}' twice", name),
-                     "each tool once");
+        table.reject("in_hand", fmt::format("names '{}' twice; name each tool once", name));
       }
     }
     Table own = table.table(name);

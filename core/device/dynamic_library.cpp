@@ -13,7 +13,7 @@ DynamicLibrary::DynamicLibrary(std::string name, std::string_view where)
     : name_(std::move(name)), handle_(dlopen(name_.c_str(), RTLD_NOW | RTLD_LOCAL)) {
   if (handle_ == nullptr) {
     const char* reason = dlerror();
-    throw InputError(fmt::format("the library {} cannot be loaded ({}); it is part of {}", name_,
+    throw InputError(fmt::format("the library {} cannot be loaded ({}); it belongs to {}", name_,
                                  reason != nullptr ? reason : "no reason given", where));
   }
 }
@@ -32,8 +32,8 @@ void* DynamicLibrary::optional(const char* symbol) const noexcept { return dlsym
 void* DynamicLibrary::required(const char* symbol) const {
   void* const address = optional(symbol);
   if (address == nullptr) {
-    throw InputError(fmt::format(
-        "the library {} has no function {}; another version of it is needed", name_, symbol));
+    throw InputError(fmt::format("the library {} has no function {}; install another version of it",
+                                 name_, symbol));
   }
   return address;
 }

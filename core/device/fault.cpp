@@ -31,16 +31,16 @@ const char* describe(Fault fault) noexcept {
     case Fault::kOrientationNotFinite:
       return "the device gave an orientation that is not a unit quaternion";
     case Fault::kFrozen:
-      return "the position stayed the same while the force changed by more than a hand holds still "
-             "against: the reading is frozen";
+      return "the position stayed the same although the force changed by more than a hand can "
+             "resist: the reading is frozen";
     case Fault::kJitter:
       return "the position jitters faster than a hand can move";
     case Fault::kOscillation:
-      return "the force swung to and fro near the limit: the handle oscillates";
+      return "the force alternated near its limit: the handle oscillates";
     case Fault::kSaturation:
       return "the force stayed at the limit for longer than the envelope allows";
     case Fault::kEnergy:
-      return "the force fed more energy into the hand than the protocol meant to give";
+      return "the force gave the hand more energy than the protocol intended";
   }
   return "unknown fault";
 }

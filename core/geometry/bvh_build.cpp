@@ -208,8 +208,8 @@ void check(const Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     if (!(mesh.vertices[i].cwiseAbs().maxCoeff() <= kFarthest) || !mesh.vertices[i].allFinite()) {
       throw InputError(
-          fmt::format("vertex {} has a coordinate that is not finite or beyond 1e100; "
-                      "allowed: finite coordinates of ordinary size",
+          fmt::format("vertex {} has a coordinate that is not finite or beyond 1e100; allowed: "
+                      "finite numbers up to 1e100",
                       i));
     }
   }

@@ -75,7 +75,7 @@ void flood_fill(const Mesh& mesh, VoxelSolid& solid, const WorkReport& report) {
   const GridCrossings along_x(mesh, grid, 0, report);
   const std::optional<std::size_t> start = seed(mesh, grid, along_x);
   if (!start) {
-    throw InputError("no voxel's centre lies inside of the mesh; allowed: a finer resolution");
+    throw InputError("the centre of no voxel lies inside the mesh; choose a finer resolution");
   }
   Walls walls(grid.count(), 0);
   build_walls(along_x, grid, 0, walls);

@@ -113,7 +113,7 @@ void File::close() {
   const hid_t id = id_;
   id_ = -1;
   if (H5Fclose(id) < 0) {
-    fail("cannot be written to its end");
+    fail("cannot be written completely");
   }
 }
 

@@ -23,8 +23,9 @@ struct CloseFile {
 std::string contents(const fs::path& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) {
-    throw InputError(fmt::format("{}: {}; allowed: a mesh file", file.string(),
-                                 fs::exists(file, error) ? "is no regular file" : "is not there"));
+    throw InputError(
+        fmt::format("{}: {}; choose a mesh file", file.string(),
+                    fs::exists(file, error) ? "is not a regular file" : "no such file"));
   }
   const std::unique_ptr<std::FILE, CloseFile> stream(std::fopen(file.c_str(), "rb"));
   const auto size = fs::file_size(file, error);
@@ -64,7 +65,7 @@ MeshFormat mesh_format(const fs::path& file) {
 Mesh parse_mesh(std::string_view bytes, MeshFormat format, std::string_view name,
                 const WorkReport& report) {
   if (bytes.empty()) {
-    throw InputError(fmt::format("{}: is empty; allowed: a mesh with triangles", name));
+    throw InputError(fmt::format("{}: is empty; choose a mesh with triangles", name));
   }
   Mesh mesh;
   switch (format) {
@@ -82,7 +83,7 @@ Mesh parse_mesh(std::string_view bytes, MeshFormat format, std::string_view name
       break;
   }
   if (mesh.triangles.empty()) {
-    throw InputError(fmt::format("{}: has no triangle; allowed: a mesh with triangles", name));
+    throw InputError(fmt::format("{}: has no triangle; choose a mesh with triangles", name));
   }
   return mesh;
 }

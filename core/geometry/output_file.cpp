@@ -22,10 +22,10 @@ OutputFile::OutputFile(fs::path file, bool overwrite)
     : file_(std::move(file)), overwrite_(overwrite) {
   std::error_code unknown;
   if (fs::is_directory(file_, unknown)) {
-    throw InputError(fmt::format("{}: is a folder; allowed: the name of a file", file_.string()));
+    throw InputError(fmt::format("{}: is a folder; give the name of a file", file_.string()));
   }
   if (!overwrite_ && fs::exists(file_, unknown)) {
-    throw InputError(fmt::format("{}: is there already; allowed: a new name", file_.string()));
+    throw InputError(fmt::format("{}: exists already; choose another name", file_.string()));
   }
   int descriptor = -1;
   for (int number = 1; descriptor < 0; ++number) {
@@ -82,7 +82,7 @@ void OutputFile::finish() {
     // A link, unlike a renaming, never replaces a file that came meanwhile.
     if (link(part_.c_str(), file_.c_str()) != 0) {
       if (errno == EEXIST) {
-        throw InputError(fmt::format("{}: is there already; allowed: a new name", file_.string()));
+        throw InputError(fmt::format("{}: exists already; choose another name", file_.string()));
       }
       if (rename(part_.c_str(), file_.c_str()) != 0) {  // a file system without links
         fail("cannot take its name");

@@ -31,7 +31,7 @@ class Off {
     }
     const std::string_view first = text_.word_below("the number of vertices");
     if (first == "BINARY") {
-      text_.fail("this is a binary OFF file; allowed: text");
+      text_.fail("this is a binary OFF file; convert it to text");
     }
     vertices_ = count(first, "vertices");
     faces_ = count(text_.word_below("the number of faces"), "faces");
@@ -45,7 +45,7 @@ class Off {
     // A vertex or face takes four bytes at the least, "3 1 2"; the last may lack its line end.
     const auto most = static_cast<std::int64_t>(text_.bytes_left() / 4 + 1);
     if (number < 0 || number > most || number > std::numeric_limits<std::int32_t>::max()) {
-      text_.fail(fmt::format("the head promises {} {}; the file has bytes for {} at most", number,
+      text_.fail(fmt::format("the header states {} {}; the file has bytes for {} at most", number,
                              what, most));
     }
     return number;

@@ -73,7 +73,7 @@ class HeadReader {
       statement(word);
     }
     if (!coded_) {
-      text_.fail("the head ends without a format");
+      text_.fail("the header ends without a format");
     }
     return std::move(head_);
   }
@@ -91,8 +91,7 @@ class HeadReader {
         head_.coding = Coding::kBig;
       } else {
         text_.fail(
-            fmt::format("the format is {}; allowed: ascii, binary_little_endian, "
-                        "binary_big_endian",
+            fmt::format("the format is {}; allowed: ascii, binary_little_endian, binary_big_endian",
                         quoted(name)));
       }
     } else if (word == "element") {
@@ -106,10 +105,11 @@ class HeadReader {
     } else if (word == "property") {
       property();
     } else if (word != "comment" && word != "obj_info") {
-      text_.fail(word.empty() ? "the file ends in its head"
-                              : fmt::format("found {}; allowed: format, comment, element, "
-                                            "property, end_header",
-                                            quoted(word)));
+      text_.fail(
+          word.empty()
+              ? "the file ends in its header"
+              : fmt::format("found {}; allowed: format, comment, element, property, end_header",
+                            quoted(word)));
     }
   }
 
@@ -137,10 +137,9 @@ class HeadReader {
         return known.type;
       }
     }
-    text_.fail(
-        fmt::format("a property has the type {}; allowed: char, uchar, short, ushort, int, "
-                    "uint, float, double",
-                    quoted(word)));
+    text_.fail(fmt::format(
+        "a property has the type {}; allowed: char, uchar, short, ushort, int, uint, float, double",
+        quoted(word)));
   }
 
   void expect(std::string_view found, std::string_view word) {
@@ -279,7 +278,7 @@ class Ply {
     for (const Element& element : head_.elements) {
       if (element.name == "vertex") {
         if (vertices_ > 0) {
-          text_.fail("the head has two elements vertex");
+          text_.fail("the header has two vertex elements");
         }
         vertices_ = element.rows;
         for (const char* axis : {"x", "y", "z"}) {
@@ -309,7 +308,7 @@ class Ply {
     const std::int64_t most = least == 0 ? element.rows : numbers_.room(least);
     if (element.rows > most || element.rows > std::numeric_limits<std::int32_t>::max()) {
       numbers_.fail(
-          fmt::format("the head promises {} rows of {}; the file has bytes for {} at most",
+          fmt::format("the header states {} rows of {}; the file has bytes for {} at most",
                       element.rows, quoted(element.name), most));
     }
     if (element.name == "vertex") {

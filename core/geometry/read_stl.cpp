@@ -118,8 +118,8 @@ Mesh read_stl(std::string_view bytes, std::string_view name, const WorkReport& r
         bytes.size(), kHead));
   }
   throw InputError(fmt::format(
-      "{}: is a binary STL file that promises {} triangles, which take {} bytes; it has {}", name,
-      count, kHead + kTriangle * count, bytes.size()));
+      "{}: is a binary STL file with {} triangles by its header, which take {} bytes; it has {}",
+      name, count, kHead + kTriangle * count, bytes.size()));
 }
 
 }  // namespace haptrial::geometry::reading

@@ -135,8 +135,9 @@ void write_gmsh(const fs::path& file, const TetMesh& mesh, bool overwrite,
                 const WorkReport& report) {
   constexpr std::int32_t kTetrahedron = 4;
   if (mesh.tetrahedra.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
-    throw InputError(fmt::format("{}: Gmsh numbers no {} tetrahedra; allowed: .vtu or .h5",
-                                 file.string(), mesh.tetrahedra.size()));
+    throw InputError(
+        fmt::format("{}: {} tetrahedra are too many for the Gmsh format; choose .vtu or .h5",
+                    file.string(), mesh.tetrahedra.size()));
   }
   OutputFile out(file, overwrite);
   const std::int32_t one = 1;  // shows the order of bytes

@@ -261,12 +261,12 @@ void write_tetrahedra(const VoxelGrid& grid, const Corners& corners, TetMesh& me
 void tetrahedralize(const VoxelSolid& solid, TetMesh& mesh) {
   const Corners corners(solid);
   if (corners.inside() == 0) {
-    throw InputError("the solid has no inside voxel; allowed: a finer resolution");
+    throw InputError("the solid has no voxel inside; choose a finer resolution");
   }
   constexpr auto kMost = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
   if (corners.vertices() > kMost) {
     throw InputError(
-        fmt::format("the solid has {} voxel corners; allowed: {}, a coarser resolution",
+        fmt::format("the solid has {} voxel corners; allowed: {}; choose a coarser resolution",
                     corners.vertices(), kMost));
   }
   mesh.vertices.resize(corners.vertices());

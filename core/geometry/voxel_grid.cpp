@@ -24,12 +24,12 @@ VoxelGrid make_grid(const Eigen::AlignedBox3d& box, int resolution, int margin) 
   constexpr double kLeastSpacing = 1e-12;  // of the farthest coordinate: doubles tell 1e-16 apart
   if (resolution < 1 || resolution > kMaxResolution) {
     throw InputError(
-        fmt::format("a resolution of {} voxels along the longest axis; allowed: 1 to {}",
+        fmt::format("the resolution is {} voxels along the longest axis; allowed: 1 to {}",
                     resolution, kMaxResolution));
   }
   if (margin < 0 || margin > kMaxResolution) {
     throw InputError(
-        fmt::format("a margin of {} voxels; allowed: 0 to {}", margin, kMaxResolution));
+        fmt::format("the margin is {} voxels; allowed: 0 to {}", margin, kMaxResolution));
   }
   const Eigen::Vector3d sides = box.isEmpty() ? Eigen::Vector3d::Zero().eval() : box.sizes();
   if (!sides.allFinite() || !(sides.maxCoeff() > 0.0)) {

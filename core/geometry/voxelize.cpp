@@ -287,8 +287,8 @@ VoxelSolid voxelize(const Mesh& mesh, const VoxelGrid& grid, InsideRule rule,
                     const WorkReport& report, const Bvh* hierarchy) {
   if (rule != InsideRule::kWinding && !is_closed(mesh)) {
     throw InputError(
-        "the mesh is open, so parity and flood do not tell inside from outside; "
-        "allowed: winding");
+        "the mesh is open, so the rules parity and flood cannot tell inside from outside; choose "
+        "the rule winding");
   }
   VoxelSolid solid{grid, std::vector<VoxelLabel>(grid.count(), kOutside)};
   switch (rule) {

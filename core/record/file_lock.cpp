@@ -56,7 +56,7 @@ FileLock FileLock::take(const std::filesystem::path& file, bool create) {
   // A file system without locks must not keep a session from being recorded.
   if ((refused && (errno == EAGAIN || errno == EACCES)) || !still_there(lock.descriptor_, file)) {
     throw InputError(file.string() +
-                     ": is in use by another haptrial; allowed: a file that no one writes");
+                     ": is in use by another haptrial; wait until it ends or choose another file");
   }
   return lock;
 }

@@ -82,7 +82,7 @@ void check_ranges(const std::vector<PassRow>& passes, Integrity& result) {
       result.problems.push_back(range + ", in reverse");
     } else if (result.rows == 0 || pass.first_sample < result.first_sequence ||
                pass.last_sample > result.last_sequence) {
-      result.problems.push_back(range + ", which are not all there");
+      result.problems.push_back(range + ", some of which are missing");
     }
     if (i > 0 && pass.first_sample <= passes[i - 1].last_sample) {
       result.problems.push_back(range + ", but the pass before ends at " +
@@ -111,7 +111,7 @@ std::optional<TimingSummary> counts_of(const SessionReader& reader, Integrity& r
 void check_counts(const SessionReader& reader, Integrity& result) {
   const std::optional<TimingSummary> summary = counts_of(reader, result);
   if (!summary) {
-    result.problems.push_back("the counts of the loop are missing: the session did not end");
+    result.problems.push_back("the counts of the loop are missing: the session is unfinished");
     return;
   }
   result.overruns = summary->overruns;
@@ -120,8 +120,8 @@ void check_counts(const SessionReader& reader, Integrity& result) {
     result.problems.push_back(number(summary->dropped) + " records were dropped");
   }
   if (summary->ticks != result.rows) {
-    result.problems.push_back("the loop ran " + number(summary->ticks) + " ticks, and " +
-                              number(result.rows) + " rows are there");
+    result.problems.push_back("the loop ran " + number(summary->ticks) + " ticks, but " +
+                              number(result.rows) + " rows were recorded");
   }
 }
 
@@ -145,7 +145,7 @@ void check_drilling(const SessionReader& reader, Integrity& result) {
   }
   for (const RemovalRow& row : reader.rows<RemovalRow>()) {
     if (row.sequence < result.first_sequence || row.sequence > result.last_sequence) {
-      order.note("a voxel was emptied on tick " + number(row.sequence) + ", which is not there");
+      order.note("a voxel was emptied on tick " + number(row.sequence) + ", which is missing");
     }
   }
   order.report(result.problems);

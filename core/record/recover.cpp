@@ -61,10 +61,10 @@ class Count {
 
 std::string sentence(const fs::path& file, const Recovery& found) {
   return fmt::format(
-      "from the damaged {} ({} bytes): {} samples, {} missing between them, {} passes, {} of them "
-      "without all of their samples{}",
+      "from the damaged {} ({} bytes): {} samples, {} missing between them, {} passes, {} "
+      "incomplete{}",
       file.filename().string(), found.file_bytes, found.samples, found.missing, found.passes,
-      found.passes_cut, found.info ? "" : "; what the session was is not known");
+      found.passes_cut, found.info ? "" : "; the description of the session is lost");
 }
 
 void write(const fs::path& file, const fs::path& out, const RecoveredRows& rows,
@@ -93,8 +93,7 @@ Recovery recover_session(const fs::path& file, const fs::path& out) {
   const std::vector<std::uint8_t> bytes = contents_of(file);
   if (FileLock::taken(file)) {
     throw InputError(file.string() +
-                     ": another haptrial records into it; allowed: a file that no "
-                     "one writes");
+                     ": another haptrial records into it; wait until its session ends");
   }
   check_target(out);
   const RecoveredRows rows(bytes);

@@ -198,7 +198,7 @@ std::optional<std::string> wrong_in_drillings(const SessionReader& reader, std::
   }
   if (any_from<RemovalRow>(reader, end) || any_from<CameraRow>(reader, end) ||
       any_from<SplitRow>(reader, end)) {
-    return "it tells of ticks that are not there";
+    return "it refers to ticks that are missing";
   }
   for (const ProcedureRow& row : reader.rows<ProcedureRow>()) {
     if (row.pass >= static_cast<std::int32_t>(passes)) {
@@ -223,7 +223,7 @@ std::optional<std::string> wrong_between_rows(const SessionReader& reader) {
   const std::vector<PassRow> passes = reader.passes();
   for (std::size_t i = 0; i < passes.size(); ++i) {
     if (passes[i].last_sample >= next) {
-      return fmt::format("the samples of pass {} are not all there", i);
+      return fmt::format("samples of pass {} are missing", i);
     }
   }
   return reader.drills() ? wrong_in_drillings(reader, next, passes.size()) : std::nullopt;
@@ -243,7 +243,7 @@ std::optional<std::string> what_is_wrong(const fs::path& partial) {
       if (!table.fault.empty()) return fmt::format("/{}: {}", table.name, table.fault);
       const std::uint64_t held = rows.counts.contains(table.name) ? rows.counts.at(table.name) : 0;
       if (held > table.rows) {
-        return fmt::format("it holds {} rows of /{}, and its structure leads to {}", held,
+        return fmt::format("it holds {} rows of /{}, but its structure points to {}", held,
                            table.name, table.rows);
       }
     }
@@ -259,8 +259,8 @@ Repair repair_session(const fs::path& partial, const std::string& wrong) {
   const std::optional<SessionInfo> info = find_info(partial, rows);
   if (!info) {
     throw InputError(partial.string() + ": " + wrong +
-                     ", and it does not say what the session was; allowed: an unfinished session "
-                     "(haptrial recover saves what a damaged one holds)");
+                     ", and the description of the session is lost; save what the file still holds "
+                     "with haptrial recover");
   }
   const Plan plan(rows);
   const fs::path out = with(partial, ".repaired");
@@ -273,9 +273,9 @@ Repair repair_session(const fs::path& partial, const std::string& wrong) {
   write(out, *info, rows, plan, [&](const Written& written) {
     repair.dropped_rows = rows.counts.at(samples_schema().name) - written.samples;
     repair.told = fmt::format(
-        "{} was not whole ({}); kept: {} samples ({} missing between them), {} passes ({} of them "
-        "without all of their samples, so aborted or open again), {} events, {} rows of /samples "
-        "dropped; it is kept as it was in {}",
+        "{} was damaged ({}); kept: {} samples ({} missing between them), {} passes ({} "
+        "incomplete, which count as aborted or open), {} events, {} rows of /samples dropped; the "
+        "original is kept as {}",
         partial.filename().string(), wrong, written.samples, written.missing, rows.passes.size(),
         plan.dropped_passes(), rows.events.size(), repair.dropped_rows,
         damaged.filename().string());

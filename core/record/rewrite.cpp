@@ -42,12 +42,12 @@ void write_drillings(SessionWriter& writer, const RecoveredRows& rows, const Kee
 std::vector<std::uint8_t> contents_of(const fs::path& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) {
-    throw InputError(file.string() + ": is not a file that can be read; allowed: a session file");
+    throw InputError(file.string() + ": is not a file that can be read; choose a session file");
   }
   std::ifstream in(file, std::ios::binary);
   std::vector<std::uint8_t> bytes(fs::file_size(file, error));
   in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (!in) throw InputError(file.string() + ": cannot be read; allowed: a session file");
+  if (!in) throw InputError(file.string() + ": cannot be read; choose a session file");
   return bytes;
 }
 

@@ -18,7 +18,7 @@ void check_text(std::string_view text, std::size_t bytes, const char* what) {
                                 std::to_string(bytes));
   }
   if (text.find('\0') != std::string_view::npos) {
-    throw std::invalid_argument(std::string(what) + " holds a NUL byte; allowed: text");
+    throw std::invalid_argument(std::string(what) + " holds a NUL byte; remove it");
   }
 }
 

@@ -22,19 +22,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kRecover = " (haptrial recover saves what a damaged one holds)";
+constexpr const char* kRecover = "; save what a damaged file still holds with haptrial recover";
 
 void check_regular(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) {
-    throw InputError(path.string() + ": no such file; allowed: a session file");
+    throw InputError(path.string() + ": no such file; choose a session file (.h5)");
   }
   if (status.type() == fs::file_type::directory) {
-    throw InputError(path.string() + ": is a directory; allowed: a session file");
+    throw InputError(path.string() + ": is a directory; choose a session file (.h5)");
   }
   if (status.type() != fs::file_type::regular) {
-    throw InputError(path.string() + ": is not a regular file; allowed: a session file");
+    throw InputError(path.string() + ": is not a regular file; choose a session file (.h5)");
   }
 }
 
@@ -83,8 +83,8 @@ struct SessionReader::Impl {
 
   [[noreturn]] void damaged(const Table& table, std::uint64_t row, const std::string& why) const {
     throw InputError(path.string() + ": rows of /" + table.schema->name + " from " +
-                     std::to_string(row) + " on cannot be read (" + why +
-                     "); allowed: an undamaged session file" + kRecover);
+                     std::to_string(row) + " on cannot be read (" + why + ")" +
+                     std::string(kRecover));
   }
 
   /// Calls use(planes, row in planes, row in the result, rows) for each chunk that holds rows
@@ -338,7 +338,7 @@ std::optional<TimingSummary> SessionReader::timing_summary() const {
                          static_cast<std::uint64_t>(h5::get_i64(dataset, "dropped"))};
   } catch (const h5::Error& error) {
     throw InputError(path().string() + ": the counts of /timing cannot be read (" + error.what() +
-                     "); allowed: an undamaged session file" + kRecover);
+                     ")" + std::string(kRecover));
   }
 }
 

@@ -18,8 +18,8 @@ constexpr std::uint64_t kPiece = 65536;  // rows read at once
 
 [[noreturn]] void refuse(const fs::path& partial, const std::string& found) {
   throw InputError(partial.string() + ": " + found +
-                   "; allowed: an unfinished session (haptrial recover saves what a damaged one "
-                   "holds)");
+                   "; choose an unfinished session, or save what a damaged file still holds with "
+                   "haptrial recover");
 }
 
 /// The passes that the samples name and /trials does not, each from its first to its last sample.
@@ -78,7 +78,7 @@ bool SessionWriter::can_resume(const fs::path& final_path) {
   std::error_code ignored;
   if (fs::exists(final_path, ignored)) {
     throw InputError(final_path.string() +
-                     ": the session is complete; allowed: a session that did not end");
+                     ": the session is complete; only an unfinished session can be resumed");
   }
   return fs::exists(partial_path(final_path), ignored);
 }
@@ -86,7 +86,9 @@ bool SessionWriter::can_resume(const fs::path& final_path) {
 SessionWriter SessionWriter::resume(const fs::path& final_path, Resumed& found) {
   const fs::path partial = partial_path(final_path);
   if (!can_resume(final_path)) {
-    throw InputError(partial.string() + ": no such file; allowed: a session that did not end");
+    throw InputError(
+        partial.string() +
+        ": no such file, so there is no unfinished session to resume; leave out --resume");
   }
   FileLock lock = FileLock::take(partial, false);
   Repair repair;

@@ -53,23 +53,23 @@ void check_target(const fs::path& final_path) {
   const fs::path folder = folder_of(final_path);
   std::error_code ignored;
   if (!final_path.has_filename()) {
-    throw InputError(name + ": no file name; allowed: a file in an existing folder");
+    throw InputError(name + ": gives no file name; choose a file in an existing folder");
   }
   if (!fs::is_directory(folder, ignored)) {
     throw InputError(name + ": the folder " + folder.string() +
-                     " does not exist; allowed: a file in an existing folder");
+                     " does not exist; create it or choose another folder");
   }
-  if (is_there(final_path)) throw InputError(name + ": exists already; allowed: a new file");
+  if (is_there(final_path)) throw InputError(name + ": exists already; choose another file");
   if (is_there(partial)) {
-    throw InputError(partial.string() + ": exists already, " +
-                     (FileLock::taken(partial)
-                          ? "and another haptrial records into it; allowed: a new file"
-                          : "from a session that did not end; allowed: a new file, or to resume "
-                            "that session"));
+    throw InputError(
+        partial.string() + ": exists already, " +
+        (FileLock::taken(partial)
+             ? "and another haptrial records into it; choose another file"
+             : "from an unfinished session; resume that session or choose another file"));
   }
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
     throw InputError(name + ": the folder " + folder.string() +
-                     " may not be written; allowed: a folder with write permission");
+                     " may not be written; choose a folder with write permission");
   }
 }
 

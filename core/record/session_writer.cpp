@@ -132,7 +132,7 @@ SessionWriter::Impl::Tables SessionWriter::Impl::tables() {
 TableWriter& SessionWriter::Impl::table(DrillingTable which) {
   std::optional<TableWriter>& found = drilling[static_cast<std::size_t>(which)];
   if (!found) {
-    throw std::invalid_argument(final_path.string() + ": is the file of a session that drills not");
+    throw std::invalid_argument(final_path.string() + ": is not a drilling session");
   }
   return *found;
 }
@@ -226,7 +226,7 @@ SessionWriter::SessionWriter(std::optional<std::span<const BoneRecord>> bones,
                              const fs::path& final_path, const SessionInfo& info) {
   check_target(final_path);
   if (const auto name = text_with_nul(info)) {
-    throw InputError(final_path.string() + ": " + *name + " holds a NUL byte; allowed: text");
+    throw InputError(final_path.string() + ": " + *name + " holds a NUL byte; remove it");
   }
   try {
     impl_ = std::make_unique<Impl>(final_path, info, bones);

@@ -19,7 +19,7 @@ class Loader {
   void operator()(Function*& function, const char* name) const {
     function = reinterpret_cast<Function*>(address_of_(name));
     if (function == nullptr) {
-      throw RunError(fmt::format("the OpenGL function {} is missing; needed: OpenGL 3.3", name));
+      throw RunError(fmt::format("the OpenGL function {} is missing; OpenGL 3.3 is needed", name));
     }
   }
 

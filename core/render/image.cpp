@@ -62,10 +62,9 @@ class Temporary {
     std::error_code error;
     std::filesystem::rename(path_, to, error);
     if (error) {
-      throw InputError(
-          fmt::format("picture '{}' cannot be put in place ({}); allowed: a file name "
-                      "in a folder that can be written to",
-                      to.string(), error.message()));
+      throw InputError(fmt::format(
+          "picture '{}' cannot be put in place ({}); choose a folder with write permission",
+          to.string(), error.message()));
     }
     renamed_ = true;
   }
@@ -130,8 +129,7 @@ void write_png(const std::filesystem::path& path, const Image& image) {
   std::unique_ptr<std::FILE, CloseFile> file(std::fopen(part.c_str(), "wb"));
   if (!file) {
     throw InputError(
-        fmt::format("picture '{}' cannot be written ({}); allowed: a file name in a "
-                    "folder that can be written to",
+        fmt::format("picture '{}' cannot be written ({}); choose a folder with write permission",
                     path.string(), reason(errno)));
   }
   Temporary temporary(part);

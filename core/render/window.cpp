@@ -27,13 +27,13 @@ class Library {
  public:
   Library() {
     if (open_window.exchange(true)) {
-      throw RunError("a window is open already; allowed: one in a process");
+      throw RunError("a window is open already; close it first");
     }
     if (glfwInit() != GLFW_TRUE) {
       const std::string reason = last_error();
       open_window = false;
-      throw RunError(
-          fmt::format("no window can be opened ({}); needed: a display, named by DISPLAY", reason));
+      throw RunError(fmt::format(
+          "no window can be opened ({}); set DISPLAY to the name of a display", reason));
     }
   }
   ~Library() {

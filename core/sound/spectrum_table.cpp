@@ -57,15 +57,15 @@ Level read_level(Table& table, const std::string& name) {
   level.spectrum.noise = table.number("noise", kNonNegative, "");
   const std::size_t count = frequencies.size();
   if (count > Spectrum::kMaxPeaks) {
-    table.reject("frequencies", fmt::format("{} numbers", count),
-                 fmt::format("at most {}", Spectrum::kMaxPeaks));
+    table.reject("frequencies",
+                 fmt::format("has {} numbers; allowed: at most {}", count, Spectrum::kMaxPeaks));
     return level;
   }
   for (const auto& [key, size] :
        {std::pair{"amplitudes", amplitudes.size()}, std::pair{"bandwidths", bandwidths.size()}}) {
     if (size != count) {
-      table.reject(key, fmt::format("{} numbers", size),
-                   fmt::format("{}, as many as frequencies", count));
+      table.reject(
+          key, fmt::format("has {} numbers; write {}, as many as frequencies has", size, count));
       return level;
     }
   }
@@ -85,8 +85,10 @@ void read_kind(Table& table, SpectrumTable::Kind& kind) {
                    [](const Level& a, const Level& b) { return a.force < b.force; });
   for (std::size_t i = 1; i < kind.contact.size(); ++i) {
     if (kind.contact[i].force == kind.contact[i - 1].force) {
-      table.reject(kind.contact[i].name, fmt::format("at {:.6g} N", kind.contact[i].force),
-                   "another force for each level");
+      table.reject(
+          kind.contact[i].name,
+          fmt::format("has the same force as another level, {:.6g} N; give each level its own",
+                      kind.contact[i].force));
     }
   }
 }
@@ -104,7 +106,8 @@ SpectrumTable read_document(Table& document) {
     }
   }
   if (!any) {
-    document.reject("source", "without a level", "[diamond.NAME] or [cutting.NAME] tables");
+    document.reject("source",
+                    "is given without a level; add a table [diamond.NAME] or [cutting.NAME]");
   }
   document.finish();
   return table;

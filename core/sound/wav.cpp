@@ -30,7 +30,7 @@ Recording read_recording(const std::filesystem::path& file) {
   }
   constexpr sf_count_t kLongest = 3600;  // [s]
   if (info.frames < 1 || info.frames > kLongest * info.samplerate || info.channels < 1) {
-    throw InputError(fmt::format("{}: has {} samples; allowed: from 1 to an hour of them",
+    throw InputError(fmt::format("{}: has {} samples; allowed: from 1 sample to an hour of samples",
                                  file.string(), info.frames));
   }
   Recording recording;
@@ -46,8 +46,9 @@ Recording read_recording(const std::filesystem::path& file) {
         sum += frame[channel];
       }
       if (!std::isfinite(sum)) {
-        throw InputError(fmt::format("{}: sample {} is not a number; allowed: finite samples",
-                                     file.string(), recording.samples.size()));
+        throw InputError(
+            fmt::format("{}: sample {} is not a finite number; remove it from the recording",
+                        file.string(), recording.samples.size()));
       }
       recording.samples.push_back(sum / static_cast<float>(info.channels));
     }
@@ -66,7 +67,7 @@ WavWriter::WavWriter(std::filesystem::path file, int rate, bool overwrite)
     : impl_(std::make_unique<Impl>()) {
   impl_->file = std::move(file);
   if (!overwrite && std::filesystem::exists(impl_->file)) {
-    throw InputError(fmt::format("{}: is there already; allowed: a new name, or --overwrite",
+    throw InputError(fmt::format("{}: exists already; choose another name or add --overwrite",
                                  impl_->file.string()));
   }
   impl_->part = impl_->file;
@@ -78,7 +79,7 @@ WavWriter::WavWriter(std::filesystem::path file, int rate, bool overwrite)
   impl_->sink.reset(sf_open(impl_->part.c_str(), SFM_WRITE, &info));
   if (!impl_->sink) {
     throw InputError(
-        fmt::format("{}: cannot be made ({}); allowed: a folder that may be written to",
+        fmt::format("{}: cannot be created ({}); choose a folder with write permission",
                     impl_->file.string(), sf_strerror(nullptr)));
   }
 }
@@ -106,7 +107,7 @@ void WavWriter::write(std::span<const float> samples) {
 
 void WavWriter::finish() {
   if (sf_close(impl_->sink.release()) != 0) {
-    throw RunError(fmt::format("{}: cannot be written to its end", impl_->file.string()));
+    throw RunError(fmt::format("{}: cannot be written completely", impl_->file.string()));
   }
   std::error_code error;
   std::filesystem::rename(impl_->part, impl_->file, error);

@@ -218,7 +218,7 @@ std::unique_ptr<LslOutlet> LslOutlet::open(const LslOptions& options, SessionClo
   try {
     return std::make_unique<LslOutlet>(options, std::move(now));
   } catch (const std::exception& error) {
-    notice = fmt::format("{}; the session goes on without its streams", error.what());
+    notice = fmt::format("{}; the session continues without its streams", error.what());
     return nullptr;
   }
 }

@@ -39,7 +39,7 @@ Eigen::Vector3d read_vector(Table& table, const char* key, const char* unit, boo
   }
   const Eigen::Vector3d vector(n[0], n[1], n[2]);
   if (direction && !(vector.norm() > 0.0)) {
-    table.reject(key, "zero", "a direction");
+    table.reject(key, "is zero; write a direction");
     return Eigen::Vector3d::UnitY();
   }
   return direction ? vector.normalized() : vector;
@@ -57,7 +57,7 @@ DrillingHandParameters read_drilling_hand_parameters(Table& table) {
   p.inward = read_vector(table, "inward", "", true);
   p.along = read_vector(table, "along", "", true);
   if (!(p.along.cross(p.inward).norm() > 0.1)) {
-    table.reject("along", "nearly the direction of inward", "a direction across it");
+    table.reject("along", "is nearly the direction of inward; write a direction across it");
   }
   p.along = (p.along - p.along.dot(p.inward) * p.inward).normalized();
   const auto number = [&](const char* key, double& value, const Bounds& bounds, const char* unit) {

@@ -113,9 +113,8 @@ TEST(CsvTest, EveryBadTextGetsASentence) {
   EXPECT_EQ(problem_of_text("t,f\n1,2\n3\n"),
             "a.csv:3: the row has 1 fields; allowed: 2, as in line 1");
   EXPECT_THAT(problem_of_text("t,f\n1,2,\n"), HasSubstr("a.csv:2: the row has 3 fields"));
-  EXPECT_EQ(problem_of_text("f\n1\n\n2\n"),
-            "a.csv:3: the line is empty; allowed: empty lines only after the last row");
-  EXPECT_THAT(problem_of_text(std::string("t\0f\n", 4)), HasSubstr("bytes of 0"));
+  EXPECT_EQ(problem_of_text("f\n1\n\n2\n"), "a.csv:3: the line is empty; delete it");
+  EXPECT_THAT(problem_of_text(std::string("t\0f\n", 4)), HasSubstr("holds zero bytes"));
 }
 
 TEST(CsvTest, EveryBadNumberGetsASentence) {
@@ -131,8 +130,8 @@ TEST(CsvTest, EveryBadNumberGetsASentence) {
 TEST(CsvTest, ColumnsThatAreNotThere) {
   const CsvTable table = parse("t,f,f\n1,2,3\n");
   EXPECT_EQ(problem_of([&] { table.column("force"); }),
-            "a.csv: there is no column 'force'; allowed: one of t, f, f");
-  EXPECT_THAT(problem_of([&] { table.column("f"); }), HasSubstr("more than one is named column"));
+            "a.csv: there is no column 'force'; allowed: t, f, f");
+  EXPECT_THAT(problem_of([&] { table.column("f"); }), HasSubstr("several columns are named"));
 }
 
 TEST(CsvTest, Files) {
@@ -165,7 +164,7 @@ TEST(CsvTest, RandomBytesNeverBreakIt) {
         problem_of([&] { table.numbers(c); });
       }
     } catch (const InputError& error) {
-      ASSERT_THAT(error.what(), HasSubstr("; allowed: "));
+      ASSERT_THAT(error.what(), HasSubstr("; "));
     }
   }
   EXPECT_GT(tables, 1000);

@@ -46,10 +46,10 @@ TEST(CurveCsvTest, ColumnsThatAreClearNeedNoName) {
 
 TEST(CurveCsvTest, WhatIsNotClearIsAskedFor) {
   EXPECT_EQ(problem_of("t,force\n0,1\n1,2\n"),
-            "a.csv: no column is named 'time'; allowed: the name of one of t, force, or a rate");
+            "a.csv: no column is named 'time'; name the column of times (t, force) or give a rate");
   EXPECT_EQ(problem_of("time,x,y\n0,1,1\n1,2,2\n"),
-            "a.csv: 2 columns could hold the values; allowed: the name of one of time, x, y");
-  EXPECT_THAT(problem_of("time\n0\n1\n"), HasSubstr("0 columns could hold the values"));
+            "a.csv: 2 columns could hold the values; name one of them (time, x, y)");
+  EXPECT_THAT(problem_of("time\n0\n1\n"), HasSubstr("no column is left for the values; add one"));
   EXPECT_THAT(problem_of("0,1,2\n1,2,3\n"), HasSubstr("no column is named 'time'"));
   EXPECT_EQ(read("0,1,2\n1,2,3\n", {.time = "1", .value = "3"}).values.back(), 3.0);
 }

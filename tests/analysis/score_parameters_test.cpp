@@ -79,7 +79,7 @@ TEST(ScoreParametersTest, KeysOfOtherFormsMayBeThere) {
   EXPECT_THAT(problem_of(kGood + "window = -1.0\n"), HasSubstr("analysis.window is -1"));
   EXPECT_THAT(problem_of(kGood + "open_end = 1\n"), HasSubstr("analysis.open_end"));
   EXPECT_THAT(problem_of(kGood + "step_pattern = \"symmetric2\"\nopen_begin = true\n"),
-              HasSubstr("analysis.open_begin is true with the step pattern symmetric2; allowed"));
+              HasSubstr("analysis.open_begin is true with the step pattern symmetric2; choose"));
 }
 
 TEST(ScoreParametersTest, DescribedInWords) {
@@ -109,7 +109,7 @@ TEST(ScoreParametersTest, ProblemsNameTheKey) {
               HasSubstr("penalti"));
   std::string no_share = with("cost_share = 3.0\n", "cost_share = 0.0\n");
   no_share.replace(no_share.find("0.75"), 4, "0.0");
-  EXPECT_THAT(problem_of(no_share), HasSubstr("at least one share above 0"));
+  EXPECT_THAT(problem_of(no_share), HasSubstr("set at least one of them above 0"));
 }
 
 TEST(ScoreParametersTest, CheckRefusesWhatTheTableRefuses) {

@@ -141,10 +141,11 @@ TEST_F(AlignCommandTest, ColumnsAreChosenByName) {
   write("both.csv", both);
   EXPECT_EQ(number("both.csv both.csv --time t --value wanted --applied-value got"), plain);
   EXPECT_EQ(number("both.csv both.csv --rate 100 --value wanted --applied-value got"), plain);
-  expect_bad("both.csv both.csv --value wanted", "both.csv: no column is named 'time'; allowed: ");
-  expect_bad("both.csv both.csv --time t", "both.csv: 3 columns could hold the values; allowed: ");
+  expect_bad("both.csv both.csv --value wanted", "both.csv: no column is named 'time'; name ");
+  expect_bad("both.csv both.csv --time t",
+             "both.csv: 3 columns could hold the values; name one of them ");
   expect_bad("both.csv both.csv --time t --value force",
-             "both.csv: there is no column 'force'; allowed: one of t, wanted, got, note");
+             "both.csv: there is no column 'force'; allowed: t, wanted, got, note");
   expect_bad("both.csv both.csv --time t --value note",
              "both.csv:2: note is 'a, b'; allowed: a fin");
 }
@@ -213,7 +214,7 @@ TEST_F(AlignCommandTest, BadFilesGetASentence) {
 TEST_F(AlignCommandTest, BadArgumentsGetASentence) {
   const std::string both = "target.csv applied.csv ";
   expect_bad("target.csv", "APPLIED");
-  expect_bad("- -", "TARGET and APPLIED are both '-'; allowed: one of them");
+  expect_bad("- -", "TARGET and APPLIED are both '-'; read only one of them from standard input");
   expect_bad(both + "--power 0.9", "--power is 0.9; allowed: a number from 1 to 100");
   expect_bad(both + "--power nan", "--power is nan; allowed");
   expect_bad(both + "--penalty -1", "--penalty is -1; allowed: a number from 0");
@@ -225,7 +226,7 @@ TEST_F(AlignCommandTest, BadArgumentsGetASentence) {
              "--open-begin is given with --pattern sym");
   expect_bad(both + "--rate 0", "the rate of target.csv is 0 Hz; allowed: a finite number above 0");
   expect_bad(both + "--rate 10 --time time",
-             "has a rate and a column 'time' of times; allowed: one");
+             "has a rate and a column 'time' of times; give one");
   expect_bad(both + "--out target.csv", "target.csv");
 }
 

@@ -48,9 +48,9 @@ TEST_F(BoneCommandTest, ABoneThatIsMadeSaysWhatItHolds) {
 
 TEST_F(BoneCommandTest, TheSameSeedGivesTheSameFile) {
   const auto result =
-      run("haptrial bone make temporal a.nrrd --seed 4 --spacing 2 && "
-          "haptrial bone make temporal b.nrrd --seed 4 --spacing 2 && cmp a.nrrd b.nrrd && "
-          "haptrial bone make temporal c.nrrd --seed 5 --spacing 2 && ! cmp -s a.nrrd c.nrrd");
+      run("haptrial bone make temporal a.nrrd --seed 4 --spacing 2 && haptrial bone make temporal "
+          "b.nrrd --seed 4 --spacing 2 && cmp a.nrrd b.nrrd && haptrial bone make temporal c.nrrd "
+          "--seed 5 --spacing 2 && ! cmp -s a.nrrd c.nrrd");
   EXPECT_EQ(result.status, 0) << result.errors;
 }
 
@@ -66,12 +66,12 @@ TEST_F(BoneCommandTest, AnImportedBoneCanBeResampledAndPutInPlaceOfItself) {
 TEST_F(BoneCommandTest, WhatIsWrongIsRefusedInASentence) {
   ASSERT_EQ(run("haptrial bone make temporal ear.nrrd --spacing 2").status, 0);
   std::ofstream(folder_ / "text.nrrd") << "nothing";
-  expect_refusal("haptrial bone info absent.nrrd", "absent.nrrd: is not there");
+  expect_refusal("haptrial bone info absent.nrrd", "absent.nrrd: no such file or folder");
   expect_refusal("haptrial bone info text.nrrd", "does not begin with 'NRRD000'");
   expect_refusal("haptrial bone make skull new.nrrd", "allowed: temporal, mandible");
   expect_refusal("haptrial bone make temporal new.stl", "ends in '.stl'; allowed: .nrrd");
   expect_refusal("haptrial bone make temporal new.nrrd --spacing 9", "allowed: 0.1 to 2 mm");
-  expect_refusal("haptrial bone make temporal ear.nrrd", "is there already");
+  expect_refusal("haptrial bone make temporal ear.nrrd", "exists already");
   expect_refusal("haptrial bone make temporal new.nrrd --seed x", "seed");
   expect_refusal("haptrial bone import ear.nrrd new.nrrd --threshold much", "a number, or auto");
   expect_refusal("haptrial bone import ear.nrrd new.nrrd --as bone", "auto, labels, grey");
@@ -81,7 +81,9 @@ TEST_F(BoneCommandTest, WhatIsWrongIsRefusedInASentence) {
 
 TEST_F(BoneCommandTest, ACtBecomesABone) {
   const auto file = test::shared_data("ct/headsq_quarter_64x64x93.nrrd");
-  if (!file) GTEST_SKIP() << "neither HAPTRIAL_DATA nor ../shared/data holds ct/headsq_quarter_64x64x93.nrrd";
+  if (!file)
+    GTEST_SKIP()
+        << "neither HAPTRIAL_DATA nor ../shared/data holds ct/headsq_quarter_64x64x93.nrrd";
   expect_refusal("haptrial bone import " + file->string() + " head.nrrd", "not Hounsfield units");
   const auto result =
       run("haptrial bone import " + file->string() + " head.nrrd --threshold 1324 --spacing 2");

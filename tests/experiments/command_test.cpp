@@ -193,7 +193,7 @@ TEST_F(CommandTest, BadDefinitions) {
 TEST_F(CommandTest, BadSessionFiles) {
   expect_bad_input("haptrial info " + path("absent.h5"), "absent.h5");
   expect_bad_input("haptrial info " + path("."), folder_.path().string());
-  expect_bad_input("haptrial analyze " + path("."), "holds no session files");
+  expect_bad_input("haptrial analyze " + path("."), "holds no session file");
   expect_bad_input("haptrial analyze " + path("absent"), "no such folder");
   ASSERT_EQ(brief_study("study", "--subjects 1").status, 0);
   const std::string whole = test::read_text(folder_ / "study" / "S01.h5");
@@ -207,7 +207,7 @@ TEST_F(CommandTest, NothingIsOverwritten) {
   ASSERT_EQ(brief_study("study", "--subjects 1").status, 0);
   const std::string before = test::read_text(folder_ / "study" / "S01.h5");
   expect_bad_input("haptrial dry-run " + shipped() + " --subjects 1 --out " + path("study"),
-                   "study: exists; name a new folder");
+                   "study: exists already; choose a new folder");
   EXPECT_EQ(test::read_text(folder_ / "study" / "S01.h5"), before);
 }
 
@@ -257,7 +257,7 @@ TEST_F(CommandTest, AFileInPlaceOfTheFolder) {
   test::write_text(folder_ / "file", "mine");
   expect_bad_input("haptrial dry-run " + shipped() + " --out " + path("file"), "file: exists");
   expect_bad_input("haptrial dry-run " + shipped() + " --out " + path("file/below"),
-                   "the folder cannot be made");
+                   "the folder cannot be created");
   EXPECT_EQ(test::read_text(folder_ / "file"), "mine");
 }
 
@@ -300,8 +300,9 @@ TEST_F(CommandTest, TextsAndCommentsMayChangeWithinAStudyAndTheReportSaysSo) {
   fs::rename(folder_ / "other" / "S02.h5", folder_ / "study" / "S02.h5");
   const CommandResult result = run_command("haptrial analyze " + path("study"));
   EXPECT_EQ(result.status, 0) << result.errors;
-  EXPECT_THAT(result.output, HasSubstr("S02.h5 was recorded with a changed definition: texts.rest "
-                                       "was \"Time for a rest"));
+  EXPECT_THAT(
+      result.output,
+      HasSubstr("S02.h5 was recorded with a changed definition: texts.rest was \"Time for a rest"));
   EXPECT_THAT(test::read_text(folder_ / "study/report.md"), HasSubstr("texts.rest"));
   const CommandResult exported =
       run_command("haptrial export --bids " + path("bids") + " " + path("study"));
@@ -334,6 +335,15 @@ TEST_F(CommandTest, AnInterruptStopsAtOnceAndLeavesNothing) {
   EXPECT_EQ(result.status, 1);
   EXPECT_THAT(result.errors, HasSubstr("interrupted"));
   EXPECT_FALSE(fs::exists(folder_ / "cut"));
+}
+
+TEST_F(CommandTest, ASubjectWhoHasASessionIsNamedWithWhatToDo) {
+  const std::string run = "haptrial run " + shipped() + " --subject P01 --out " + path("sessions");
+  fs::create_directory(folder_ / "sessions");
+  test::write_text(folder_ / "sessions" / "P01.h5", "a session");
+  expect_bad_input(run, "P01 already has a session here; choose another --subject or --out");
+  fs::rename(folder_ / "sessions" / "P01.h5", folder_ / "sessions" / "P01.h5.partial");
+  expect_bad_input(run, "P01 has an unfinished session here; add --resume, or choose another ");
 }
 
 }  // namespace

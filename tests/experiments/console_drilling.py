@@ -14,9 +14,9 @@ from browser import Driver, state, wait
 EXPECTED = {
     "procedure": "Procedure 2",
     "drilling_simulated": "SIMULATED",
-    "drilling_time": "2:05, 0:48",
+    "drilling_time": "2:05 (0:48)",
     "removed": "1234.5 mm\u00b3",
-    "voxels": "51\u202f973, 88 %",
+    "voxels": "51\u202f973 (88 %)",
     "mean_force": "2.35 N",
     "injured": "2 injured",
     "injuries": "Facial nerve: 12 voxels\nSigmoid sinus and dura <b>: 1\u202f004 voxels",

@@ -243,7 +243,7 @@ TEST_F(CurveStudyTest, RecordedPathsThatAreNoneGetASentence) {
     load_definition(folder_ / "small.toml");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("trajectory.from is a path that reaches 0.0"));
+    EXPECT_THAT(error.what(), HasSubstr("trajectory.from names a path that reaches 0.0"));
     EXPECT_THAT(error.what(), HasSubstr("within envelope.workspace_radius, 0.02 [m]"));
   }
 }
@@ -260,7 +260,7 @@ TEST_F(CurveStudyTest, DefinitionsThatMixTheKindsAreRefused) {
   const std::string curve = test::read_text(curve_definition());
   EXPECT_EQ(problem(curve), "");
   EXPECT_THAT(problem(replaced(curve, "kind = \"curve\"", "kind = \"trajectory\"")),
-              HasSubstr("pace is not a known key"));
+              HasSubstr("[pace] is not a known table"));
   EXPECT_THAT(problem(replaced(curve, "[pace]", "[pase]")),
               HasSubstr("the table [pace] is missing"));
   EXPECT_THAT(problem(replaced(curve, "median = 0.011", "median = 0.0")),

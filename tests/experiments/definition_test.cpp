@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
+#include "experiments/experiment.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 
@@ -105,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(
             "names a condition twice"},
         Bad{"speed", "speed = nan", "trajectory.speed is nan; allowed: a number above 0"},
         Bad{"speed", "speed = -1.6", "trajectory.speed is -1.6; allowed: a number above 0"},
-        Bad{"length_x", "length_x = 0.5", "a curve within envelope.workspace_radius"},
+        Bad{"length_x", "length_x = 0.5", "keep it within envelope.workspace_radius"},
         Bad{"trajectory", "trajectory = { stiffness = -900.0, damping = 100.0 }",
             "guidance.trajectory.stiffness is -900; allowed: a number of at least 0"},
         Bad{"plane", "plane = 5", "guidance.plane is 5; allowed: a table"},
@@ -130,11 +131,56 @@ TEST(DefinitionTest, ReportsEveryProblemAtOnceInOrderOfLine) {
   const auto missing = problem.find("trajectory.range_z is missing");
   const auto unknown = problem.find("trajectory.range_y is not a known key");
   const auto speed = problem.find("trajectory.speed is -1");
-  const auto surprise = problem.find("surprise is not a known key");
+  const auto surprise = problem.find("[surprise] is not a known table");
   EXPECT_LT(missing, unknown) << problem;
   EXPECT_LT(unknown, speed);
   EXPECT_LT(speed, surprise);
   EXPECT_NE(surprise, std::string::npos);
+}
+
+std::string problem_of_file(const std::string& text) {
+  const test::TemporaryFolder folder;
+  test::write_text(folder / "study.toml", text);
+  try {
+    load_experiment(folder / "study.toml");
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    return what.substr(what.find("study.toml"));
+  }
+  return "";
+}
+
+/// The line in which `what` first stands, from 1.
+std::string line_of(const std::string& text, const std::string& what) {
+  return std::to_string(1 + std::count(text.begin(), text.begin() + text.find(what), '\n'));
+}
+
+TEST(DefinitionTest, AMistakeInTheProtocolIsReportedAlone) {
+  EXPECT_EQ(problem_of_file(test::shipped_text()), "");
+  const std::string shipped = test::shipped_text();
+  const std::string key = "[experiment]\n";
+  ASSERT_NE(shipped.find(key), std::string::npos);
+  const auto with = [&](const std::string& line) {
+    std::string text = shipped;
+    return text.insert(text.find(key) + key.size(), line + "\n");
+  };
+  const std::string line = line_of(with("protocol"), "protocol");
+  EXPECT_EQ(problem_of_file(with("protocol = \"bone_driling\"")),
+            "study.toml:" + line + ": experiment.protocol is 'bone_driling'; did you mean "
+            "bone_drilling? allowed: force_training, bone_drilling");
+  EXPECT_EQ(problem_of_file(with("protocl = \"bone_drilling\"")),
+            "study.toml:" + line +
+                ": experiment.protocl is not a known key; did you mean experiment.protocol?");
+  std::string mistyped = shipped;
+  mistyped.replace(mistyped.find(key), key.size(), "[experimnt]\n");
+  EXPECT_EQ(problem_of_file(mistyped), "study.toml:" + line_of(mistyped, "[experimnt]") +
+                                           ": experimnt is not a known key; did you mean "
+                                           "experiment?");
+}
+
+TEST(DefinitionTest, AMistypedConditionNamesTheNearestOne) {
+  EXPECT_THAT(problem_of(test::shipped_with("conditions", "conditions = [\"hapitc\"]")),
+              HasSubstr("did you mean haptic? allowed: haptic, visual, visuohaptic"));
 }
 
 TEST(DefinitionTest, FilesThatAreNone) {

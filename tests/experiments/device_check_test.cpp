@@ -187,7 +187,7 @@ TEST(DeviceTestCommandTest, WhatIsMissingIsNamed) {
   EXPECT_THAT(absent.errors, HasSubstr("libnowhere.so"));
   const test::CommandResult unknown = run_command("haptrial device-test falcon9");
   EXPECT_EQ(unknown.status, 2);
-  EXPECT_THAT(unknown.errors, HasSubstr("'falcon9' is no device to test; allowed: virtual"));
+  EXPECT_THAT(unknown.errors, HasSubstr("the device to test is 'falcon9'; allowed: virtual"));
   EXPECT_EQ(run_command("haptrial device-test virtual --seconds 0").status, 2);
 }
 

@@ -117,7 +117,7 @@ TEST_F(ExchangeTest, EveryFormOfExportWritesANewFolder) {
     EXPECT_EQ(done.errors, "");
     const CommandResult again = run_command(line);
     EXPECT_EQ(again.status, 2);
-    EXPECT_THAT(again.errors, HasSubstr("is not empty; allowed: a new or an empty folder"));
+    EXPECT_THAT(again.errors, HasSubstr("is not empty; choose a new or an empty folder"));
     fs::remove_all(folder_ / "out");
   }
 }
@@ -153,12 +153,13 @@ TEST_F(ExchangeTest, DrillingsAreExportedButHaveNoCurves) {
 TEST_F(ExchangeTest, BadArgumentsGetASentence) {
   make_study("--subjects 1 --trials 1");
   const std::map<std::string, std::string> sentences{
-      {"export " + path("study"), "0 of --bids, --csv and --curves are given"},
-      {"export --bids a --csv b " + path("study"), "2 of --bids, --csv and --curves are given"},
+      {"export " + path("study"), "give exactly one of --bids, --csv and --curves"},
+      {"export --bids a --csv b " + path("study"),
+       "give exactly one of --bids, --csv and --curves"},
       {"export --bids " + path("out") + " " + path("absent.h5"), "no such file"},
-      {"analyze", "none of DIR, --curves and --table are given; allowed: exactly one"},
-      {"analyze --curves x " + path("study"), "several of DIR, --curves and --table are given"},
-      {"analyze --curves x --table y", "several of DIR, --curves and --table are given"},
+      {"analyze", "give exactly one of DIR, --curves and --table"},
+      {"analyze --curves x " + path("study"), "give exactly one of DIR, --curves and --table"},
+      {"analyze --curves x --table y", "give exactly one of DIR, --curves and --table"},
       {"analyze --curves x --out z", "--conditions is missing; --curves needs it"},
       {"analyze --curves x --conditions y", "--out is missing; --curves needs it"},
       {"analyze --table x", "--out is missing; --table needs it"},

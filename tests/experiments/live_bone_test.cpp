@@ -89,7 +89,7 @@ TEST(LiveBoneTest, AfterAKillTheSessionGoesOnWithTheBoneAsItStood) {
   EXPECT_EQ(passes[0].status, record::PassStatus::kAborted);
   EXPECT_EQ(passes[1].status, record::PassStatus::kCompleted);
   EXPECT_EQ(passes[1].repetition, passes[0].repetition) << "the same bone";
-  EXPECT_THAT(ended.errors, HasSubstr("trial 1 goes on with the bone as it stood after"));
+  EXPECT_THAT(ended.errors, HasSubstr("trial 1 continues with the bone as it was after"));
   expect_the_same_bones(file, 2);
   const auto procedures = reader.rows<record::ProcedureRow>();
   ASSERT_EQ(procedures.size(), 1u);

@@ -145,7 +145,7 @@ TEST_F(LiveBreaksTest, ASkippedTrialDoesNotComeAgainAfterAResume) {
   LiveCommand again(run({}, "--console --resume"));
   ConsolePerson person(again.line_after("console: "));
   ASSERT_TRUE(person.sees("instructions"));
-  EXPECT_THAT(again.line_after("recording "), HasSubstr("1 of them over already"));
+  EXPECT_THAT(again.line_after("recording "), HasSubstr("1 of them done already"));
   ASSERT_TRUE(person.ask("start"));
   ASSERT_TRUE(person.sees("running", "run"));
   EXPECT_EQ(person.status()["trial"], 2);
@@ -160,7 +160,7 @@ TEST_F(LiveBreaksTest, TheConsoleSpeaksOfThePlannedTrialsAndOfTheDefinitions) {
   EXPECT_EQ(now["trials_defined"], 72);
   EXPECT_EQ(now["blocks"], 3);
   // What is missing is there before the session is started.
-  EXPECT_THAT(now["notices"].dump(), HasSubstr("the session goes on without its streams"));
+  EXPECT_THAT(now["notices"].dump(), HasSubstr("the session continues without its streams"));
 }
 
 TEST_F(LiveBreaksTest, EscapeInTheParticipantsWindowStopsASessionWithoutAConsole) {

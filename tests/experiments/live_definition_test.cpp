@@ -90,12 +90,12 @@ TEST_F(LiveDefinitionTest, APilotIsMarkedAndAnalysedOnlyWhereItIsAskedFor) {
   ASSERT_EQ(LiveCommand(run("--resume --pilot")).wait(60.0).status, 0);
   EXPECT_TRUE(record::SessionReader(file()).info().pilot);
   EXPECT_THAT(test::run_command("haptrial info '" + file().string() + "'").output,
-              HasSubstr("S01 (simulated) (pilot: no part of the study)"));
+              HasSubstr("S01 (simulated) (pilot, not part of the study)"));
 
   const std::string analyze = "haptrial analyze '" + (folder_ / "out").string() + "'";
   const CommandResult alone = test::run_command(analyze);
   EXPECT_EQ(alone.status, 2);
-  EXPECT_THAT(alone.errors, HasSubstr("only pilot sessions; analyze --pilots takes them"));
+  EXPECT_THAT(alone.errors, HasSubstr("only pilot sessions; analyse them with --pilots"));
   const std::string study = (folder_ / "study").string();
   const CommandResult both = test::run_command(
       "set -e; haptrial dry-run '" + (folder_ / "study.toml").string() +

@@ -197,7 +197,7 @@ TEST_F(LiveStreamTest, WhereTheStreamsAreOptionalTheSessionGoesOnAndSaysSoBefore
   if (ended.output.find("liblsl.so") == std::string::npos) {
     GTEST_SKIP() << "the layer is installed here";
   }
-  const auto said = ended.output.find("the session goes on without its streams");
+  const auto said = ended.output.find("the session continues without its streams");
   ASSERT_NE(said, std::string::npos);
   EXPECT_LT(said, ended.output.find("trial 1 of 1")) << "before the first trial";
   const record::SessionReader reader(file());

@@ -70,14 +70,14 @@ TEST_F(MeshCommandTest, BadInputGetsASentenceAndLeavesNothing) {
   const std::vector<std::pair<const char*, const char*>> cases{
       {"haptrial mesh info bad.obj",
        "haptrial: bad.obj:2: a face has the corner 3; allowed: 1 to 1"},
-      {"haptrial mesh info none.obj", "haptrial: none.obj: is not there"},
+      {"haptrial mesh info none.obj", "haptrial: none.obj: no such file; choose a mesh file"},
       {"haptrial mesh info open.txt", "haptrial: open.txt: ends in '.txt'; allowed: .obj"},
-      {"haptrial mesh repair open.obj open.obj", "haptrial: open.obj: is there already"},
+      {"haptrial mesh repair open.obj open.obj", "haptrial: open.obj: exists already"},
       {"haptrial mesh repair open.obj new.ply --weld -1", "haptrial: --weld is -1; allowed"},
       {"haptrial mesh voxelize open.obj new.vti", "haptrial: new.vti: ends in '.vti'; allowed"},
       {"haptrial mesh voxelize open.obj a.nrrd --inside parity", "haptrial: the mesh is open"},
       {"haptrial mesh voxelize open.obj a.nrrd --inside best", "haptrial: --inside is 'best'"},
-      {"haptrial mesh voxelize open.obj a.nrrd --resolution 0", "haptrial: a resolution of 0"},
+      {"haptrial mesh voxelize open.obj a.nrrd --resolution 0", "haptrial: the resolution is 0"},
       {"haptrial mesh voxelize open.obj a.nrrd --max-memory 1e-9", "haptrial: open.obj may take"},
       {"haptrial mesh voxelize open.obj a.nrrd --up w", "haptrial: --up is 'w'; allowed: x, y, z"},
       {"haptrial mesh info open.obj --scale 0", "haptrial: --scale is 0; allowed"},
@@ -92,9 +92,9 @@ TEST_F(MeshCommandTest, BadInputGetsASentenceAndLeavesNothing) {
 }
 
 TEST_F(MeshCommandTest, MemoryIsRefusedBeforeItIsTaken) {
-  const auto result = run(
-      "haptrial mesh make sphere s.ply && haptrial mesh voxelize s.ply s.nrrd --resolution 2000 "
-      "--max-memory 1");
+  const auto result =
+      run("haptrial mesh make sphere s.ply && haptrial mesh voxelize s.ply s.nrrd --resolution "
+          "2000 --max-memory 1");
   EXPECT_EQ(result.status, 2);
   EXPECT_THAT(result.errors, HasSubstr("voxels may take 8"));
   EXPECT_THAT(result.errors, HasSubstr("--max-memory allows 1 GB"));

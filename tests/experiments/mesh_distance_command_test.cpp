@@ -64,9 +64,9 @@ TEST_F(MeshDistanceCommandTest, RefusesBeforeItWrites) {
     EXPECT_EQ(result.status, 2);
     EXPECT_THAT(result.errors, HasSubstr(sentence));
   };
-  expect_refused("there.nrrd", "is there already");
+  expect_refused("there.nrrd", "exists already");
   expect_refused("out.xyz", "out.xyz");
-  expect_refused("out.nrrd --points there.nrrd", "is there already");
+  expect_refused("out.nrrd --points there.nrrd", "exists already");
   expect_refused("out.nrrd --resolution 400 --everywhere --max-memory 0.1", "memory");
   expect_refused("out.nrrd --resolution 0", "resolution");
   expect_refused("out.nrrd --margin -1", "margin");

@@ -30,7 +30,7 @@ void expect_refused(const std::string& arguments, const std::string& sentence) {
 // The sizes are those of Cohen 1988, tables 2.4.1 and 8.4.4, and of R's power.t.test.
 TEST(PowerCommand, SaysHowManyParticipants) {
   EXPECT_EQ(printed("t --delta 0.5 --sd 1 --power 0.8"),
-            "two-sample t-test, two-tailed, alpha 0.05\n"
+            "two-sample t test, two-tailed, significance level 0.05\n"
             "difference    0.5, 0.5 standard deviations\n"
             "participants  64 in each of 2 groups, 128 in all\n"
             "power         0.8015\n");
@@ -53,16 +53,16 @@ TEST(PowerCommand, ComputesWhicheverIsMissing) {
   EXPECT_THAT(printed("anova --groups 3 --n 53 --power 0.8049"),
               HasSubstr("effect        f = 0.25"));
   EXPECT_THAT(printed("t --design one-sample --delta 1 --n 10 --alpha 0.01"),
-              HasSubstr("one-sample t-test, two-tailed, alpha 0.01"));
+              HasSubstr("one-sample t test, two-tailed, significance level 0.01"));
 }
 
 TEST(PowerCommand, RefusesWithASentence) {
   expect_refused("", "TEST");
-  expect_refused("u", "TEST is 'u'; allowed: t or anova");
-  expect_refused("t --delta 1", "one of --delta, --n and --power are given; allowed: two");
-  expect_refused("t", "none of --delta");
-  expect_refused("t --delta 1 --n 4 --power 0.9", "all of --delta");
-  expect_refused("t --f 0.2 --n 9", "--f is given with t; allowed: only with anova");
+  expect_refused("u", "TEST is 'u'; allowed: t, anova");
+  expect_refused("t --delta 1", "give two of --delta, --n and --power; the third is computed");
+  expect_refused("t", "give two of --delta, --n and --power");
+  expect_refused("t --delta 1 --n 4 --power 0.9", "give two of --delta, --n and --power");
+  expect_refused("t --f 0.2 --n 9", "--f is given with t; use it with anova only");
   expect_refused("anova --groups 3 --delta 0.2 --n 9", "--delta is given with anova");
   expect_refused("anova --f 0.2 --n 9", "--groups is missing");
   expect_refused("anova --groups 1 --f 0.2 --n 9", "--groups is 1; allowed: a whole number from 2");
@@ -70,11 +70,13 @@ TEST(PowerCommand, RefusesWithASentence) {
   expect_refused("t --delta 0 --power 0.8", "--delta is 0; allowed: a number other than 0");
   expect_refused("t --delta nan --power 0.8", "--delta is nan");
   expect_refused("t --delta 1 --sd 0 --n 9", "--sd is 0; allowed");
-  expect_refused("t --delta 1 --n 1", "--n is 1; allowed: a whole number from 2");
+  expect_refused("t --delta 1 --n 1", "--n is 1; allowed: a whole number of at least 2");
   expect_refused("t --delta 1 --n many", "many");
   expect_refused("t --delta 1 --power 1.5", "--power is 1.5; allowed: a number between 0.05 and 1");
   expect_refused("t --delta 1 --power 0.8 --alpha 2", "--alpha is 2; allowed");
   expect_refused("t --delta 1 --power 0.8 --design triple", "--design is 'triple'; allowed");
+  expect_refused("t --delta 1 --power 0.8 --design piared",
+                 "--design is 'piared'; did you mean paired? allowed: ");
   expect_refused("t --delta -1 --power 0.8 --one-tailed --sd 1e9", "ten million");
   expect_refused("t --delta 1e9 --n 9", "100 standard deviations");
 }

@@ -199,7 +199,7 @@ TEST_F(RateTest, ScoresComeBackUnderTheirSession) {
   ASSERT_EQ(ratings.size(), 2u);
   EXPECT_NE(ratings[0].session, ratings[1].session);
   EXPECT_EQ(ratings[0].score + ratings[1].score, 5.0);
-  EXPECT_THAT(message_of([&] { rate_import(options); }), HasSubstr("is there already"));
+  EXPECT_THAT(message_of([&] { rate_import(options); }), HasSubstr("exists already"));
   options.overwrite = true;
   options.sheets.push_back(options.sheets.front());
   EXPECT_THAT(message_of([&] { rate_import(options); }), HasSubstr("has another sheet"));
@@ -213,7 +213,7 @@ TEST_F(RateTest, NothingIsOverwritten) {
   options.out = (*folder_ / "d").string();
   EXPECT_THAT(message_of([&] { rate_prepare(options); }), HasSubstr("a new folder"));
   options.out = (*folder_ / "e").string();
-  EXPECT_THAT(message_of([&] { rate_prepare(options); }), HasSubstr("without a key"));
+  EXPECT_THAT(message_of([&] { rate_prepare(options); }), HasSubstr("remove it to prepare the study again"));
   EXPECT_FALSE(fs::exists(*folder_ / "e"));
 }
 

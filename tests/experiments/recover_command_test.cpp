@@ -69,8 +69,8 @@ TEST_F(RecoverCommandTest, AHealthyFileComesBackWithTheSameScores) {
   EXPECT_THAT(result.output, AllOf(HasSubstr("subject     S01"),
                                    HasSubstr("rows        " + std::to_string(rows) + ", "),
                                    HasSubstr(" 0 missing between them"),
-                                   HasSubstr("passes      6, 0 of them without all of their rows"),
-                                   HasSubstr("came to its end"), HasSubstr(saved_.string())));
+                                   HasSubstr("passes      6, 0 incomplete"),
+                                   HasSubstr("complete"), HasSubstr(saved_.string())));
   EXPECT_EQ(test::read_text(file_), before) << "it is as it was";
   const CommandResult info = haptrial("info", saved_);
   EXPECT_EQ(info.status, 0) << info.output;

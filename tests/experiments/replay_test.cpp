@@ -185,7 +185,7 @@ TEST_F(ReplayTest, TheCommandWritesPicturesAndOverwritesNothing) {
   EXPECT_TRUE(test::read_text(picture) == test::read_text(pictures / "frame-00003.png"));
   const test::CommandResult second = test::run_command(line);
   EXPECT_EQ(second.status, 2);
-  EXPECT_THAT(second.errors, HasSubstr("nothing is overwritten"));
+  EXPECT_THAT(second.errors, HasSubstr("choose a new folder"));
 }
 
 TEST_F(ReplayTest, TheCommandsBadInputGetsASentence) {
@@ -196,11 +196,12 @@ TEST_F(ReplayTest, TheCommandsBadInputGetsASentence) {
     return result.errors;
   };
   const std::string video = " --video" + quoted(*folder_ / "x.mp4");
-  EXPECT_THAT(errors("--trial 1"), HasSubstr("needs --video FILE.mp4 or --frames FOLDER"));
+  EXPECT_THAT(errors("--trial 1"), HasSubstr("neither --video nor --frames is given; add one"));
   EXPECT_THAT(errors("--trial 7" + video), HasSubstr("--trial is 7; allowed: 1 to 2"));
   EXPECT_THAT(errors("--trial 1 --phase rest" + video), HasSubstr("allowed: training, test"));
   EXPECT_THAT(errors("--trial 1 --fps 0" + video), HasSubstr("--fps is 0; allowed:"));
-  EXPECT_THAT(errors("--trial 1 --video x.avi"), HasSubstr("does not end in .mp4"));
+  EXPECT_THAT(errors("--trial 1 --video x.avi"),
+              HasSubstr("is not a video by its name; allowed: .mp4"));
   EXPECT_THAT(errors("--trial 1 --video /nowhere/x.mp4"), HasSubstr("/nowhere/x.mp4"));
   EXPECT_FALSE(fs::exists(*folder_ / "x.mp4"));
 }

@@ -72,7 +72,7 @@ TEST_F(SpectrumCommandTest, BadInputGetsASentence) {
   refused("haptrial spectrum air.wav --segment 1000", "--segment is 1000");
   refused("haptrial spectrum air.wav --peaks 0", "--peaks is 0");
   refused("haptrial spectrum air.wav --picture p.jpg", "allowed: .png, .svg");
-  refused("touch t.toml; haptrial spectrum air.wav t.toml", "t.toml: is there already");
+  refused("touch t.toml; haptrial spectrum air.wav t.toml", "t.toml: exists already");
 }
 
 }  // namespace

@@ -101,7 +101,10 @@ TEST(ScreenStillsTest, WithoutACavityTheyAreRefusedAndWithoutTheKeyThereAreNone)
     parse_bone_definition(with_stills("stills = 2", false), "study.toml");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("display.stills is 2 without a cavity"));
+    EXPECT_THAT(
+        error.what(),
+        HasSubstr(
+            "display.stills needs a cavity, whose stages the stills show; add a table [cavity]"));
   }
   const BoneDefinition d = parse_bone_definition(with_stills("", true), "study.toml");
   EXPECT_EQ(screen_stills(d, test::two_slabs()), nullptr);

@@ -93,12 +93,12 @@ TEST(ValidityDefinitionTest, WhatDoesNotFitIsSaid) {
   const std::string text = test::read_text(shipped());
   EXPECT_EQ(refusal(text), "");
   EXPECT_THAT(refusal(with(text, "novices = 7\n", "novices = 8\n")),
-              HasSubstr("as many as design.participants, 15"));
+              HasSubstr("make it 15, as in design.participants"));
   EXPECT_THAT(refusal(with(text, "rough = \"cutting\"", "rough = \"suction\"")),
               HasSubstr("a burr of tools.in_hand"));
   EXPECT_THAT(refusal(with(text, "novices = 0.15", "novices = 1.5")), HasSubstr("skill.novices"));
   EXPECT_THAT(refusal(with(text, "margins = [0.002, 0.002, 0.0015]", "margins = [0.002]")),
-              HasSubstr("a number for each of the 3 structures"));
+              HasSubstr("write one for each of the 3 structures"));
 }
 
 TEST(ValidityDefinitionTest, ABoneWithoutTheStructureIsRefused) {

@@ -199,9 +199,9 @@ TEST_F(DesignTest, ABreakWithinABlockOrAfterTheEndIsRefused) {
 }
 
 TEST_F(DesignTest, AConditionNamedTwiceIsRefused) {
-  EXPECT_THAT(problems("\"haptic\"", "\"visual\""),
-              ElementsAre("d.toml:6: conditions is a list that names a condition twice; allowed: "
-                          "each condition once"));
+  EXPECT_THAT(
+      problems("\"haptic\"", "\"visual\""),
+      ElementsAre("d.toml:6: conditions names a condition twice; name each condition once"));
 }
 
 TEST_F(DesignTest, AMissingKeyIsTheOnlyProblem) {

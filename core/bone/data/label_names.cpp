@@ -51,7 +51,8 @@ Structure read_structure(Table& table, std::size_t label) {
     if (colour.size() == 3) {
       std::ranges::copy(colour, structure.colour.begin());
     } else {
-      table.reject("colour", fmt::format("{} numbers", colour.size()), "red, green and blue");
+      table.reject("colour",
+                   fmt::format("has {} numbers; write three: red, green, blue", colour.size()));
     }
   }
   if (table.has("hardness")) structure.hardness = table.number("hardness", {0.01, 100.0}, "");
@@ -97,7 +98,7 @@ std::vector<Structure> read_label_table(const std::filesystem::path& file) {
     const auto label = label_in(key);
     Table entry = labels.table(key);
     if (!label) {
-      labels.reject(key, "no label", "1 to 255");
+      labels.reject(key, "not a label", "1 to 255");
       entry.text("name");
       continue;
     }

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "core/base/error.h"
+#include "core/base/nearest.h"
 #include "core/bone/data/anatomy.h"
 #include "core/bone/data/grey_bone.h"
 #include "core/bone/data/label_names.h"
@@ -64,10 +65,10 @@ void check_room(const Import& job, const geometry::VoxelGrid& grid, double bytes
   const double count = static_cast<double>(grid.size[0]) * grid.size[1] * grid.size[2];
   constexpr double kMost = 2e9;
   if (count > kMost) {
-    throw InputError(fmt::format(
-        "{}: would have {} x {} x {} voxels of {:.4g} mm; allowed: {:.1e} in all, with a larger "
-        "spacing",
-        job.name, grid.size[0], grid.size[1], grid.size[2], 1e3 * grid.spacing, kMost));
+    throw InputError(
+        fmt::format("{}: would have {} x {} x {} voxels of {:.4g} mm; allowed: {:.1e} in all; "
+                    "choose a larger spacing",
+                    job.name, grid.size[0], grid.size[1], grid.size[2], 1e3 * grid.spacing, kMost));
   }
   job.room(
       fmt::format("{}: {} x {} x {} voxels", job.name, grid.size[0], grid.size[1], grid.size[2]),
@@ -150,16 +151,17 @@ void leave_out(const Import& job, BoneModel& model) {
   for (const std::uint8_t label : model.labels) used[label] = true;
   for (const std::string& name : job.options.without) {
     const Structure wanted = structure_named(name, 0);
-    std::string known;
+    std::vector<std::string> known;
     std::size_t label = 0;
     for (std::size_t i = 1; i < model.structures.size(); ++i) {
       if (model.structures[i].name.empty() || !used[i]) continue;
-      known += (known.empty() ? "" : ", ") + model.structures[i].name;
+      known.push_back(model.structures[i].name);
       if (model.structures[i].name == wanted.name) label = i;
     }
     if (label == 0) {
-      throw InputError(
-          fmt::format("{}: has no '{}' to leave out; allowed: {}", job.name, name, known));
+      const std::string hint = did_you_mean(name, known);
+      throw InputError(fmt::format("{}: has no '{}' to leave out{} allowed: {}", job.name, name,
+                                   hint.empty() ? ";" : hint, fmt::join(known, ", ")));
     }
     for (std::size_t i = 0; i < model.labels.size(); ++i) {
       if (model.labels[i] != label) continue;
@@ -230,10 +232,10 @@ GreyLevels levels_of(const Import& job, const VolumeHead& head, std::span<const 
   const auto [low, high] = std::ranges::minmax(values);
   const bool hounsfield = head.hounsfield || low <= kAirBelow;
   if (!options.threshold && !options.find_threshold && !hounsfield) {
-    throw InputError(fmt::format(
-        "{}: its values run from {:.6g} to {:.6g}, which are not Hounsfield units; allowed: a "
-        "threshold for bone, such as the {:.6g} that 'auto' finds",
-        job.name, low, high, find_threshold(values)));
+    throw InputError(
+        fmt::format("{}: its values run from {:.6g} to {:.6g}, which are not Hounsfield units; "
+                    "give a threshold for bone, such as the {:.6g} that 'auto' finds",
+                    job.name, low, high, find_threshold(values)));
   }
   GreyLevels levels{};
   levels.threshold =
@@ -248,9 +250,10 @@ GreyLevels levels_of(const Import& job, const VolumeHead& head, std::span<const 
                                  levels.dense, levels.threshold));
   }
   if (!(high >= levels.threshold)) {
-    throw InputError(fmt::format(
-        "{}: holds no bone: its values run from {:.6g} to {:.6g}; allowed: some of {:.6g} or more",
-        job.name, low, high, levels.threshold));
+    throw InputError(
+        fmt::format("{}: holds no bone: its values run from {:.6g} to {:.6g}, all below the "
+                    "threshold of {:.6g}; choose a lower threshold",
+                    job.name, low, high, levels.threshold));
   }
   return levels;
 }
@@ -336,7 +339,8 @@ BoneModel load_bone(const fs::path& file, const LoadOptions& options,
   model.name = saved != head.keys.end() ? saved->second : file.filename().string();
   leave_out(job, model);
   if (std::ranges::all_of(model.labels, [](std::uint8_t label) { return label == 0; })) {
-    throw InputError(fmt::format("{}: holds no bone; allowed: at least one voxel", job.name));
+    throw InputError(fmt::format(
+        "{}: holds no bone; choose a volume with at least one voxel of bone", job.name));
   }
   if (kind == VolumeKind::kGrey) crop(model);
   try {

@@ -69,7 +69,7 @@ std::string text(const char* value) {
   return words;
 }
 
-/// Nothing where the file is no picture in DICOM format.
+/// Nothing where the file is not an image in DICOM format.
 std::optional<Slice> read_slice(const fs::path& file) {
   gdcm::Reader reader;
   reader.SetFileName(file.c_str());
@@ -120,7 +120,7 @@ std::vector<Slice> slices_in(const fs::path& folder) {
   }
   if (slices.empty()) {
     throw InputError(fmt::format(
-        "{}: none of its {} files is a picture in DICOM format; allowed: a folder with one series",
+        "{}: none of its {} files is an image in DICOM format; choose a folder with one series",
         folder.string(), files.size()));
   }
   return slices;
@@ -131,29 +131,31 @@ void check_alike(const std::string& name, const std::vector<Slice>& slices) {
   std::set<std::string> series;
   for (const Slice& slice : slices) series.insert(slice.series);
   if (series.size() > 1) {
-    throw InputError(fmt::format("{}: holds {} series ({} and {}); allowed: one series in a folder",
-                                 name, series.size(), *series.begin(), *series.rbegin()));
+    throw InputError(
+        fmt::format("{}: holds {} series ({} and {}); give each series a folder of its own", name,
+                    series.size(), *series.begin(), *series.rbegin()));
   }
   constexpr double kSame = 1e-3;
   const Slice& first = slices.front();
   for (const Slice& slice : slices) {
     const std::string file = slice.file.filename().string();
     if (!slice.whole) {
-      throw InputError(fmt::format("{}: {} is cut short; allowed: whole files", name, file));
+      throw InputError(fmt::format("{}: {} is incomplete; copy it again", name, file));
     }
     if (!slice.placed) {
       throw InputError(
-          fmt::format("{}: {} does not say where its slice lies; allowed: position, "
-                      "orientation and pixel spacing in every file",
+          fmt::format("{}: {} does not give the place of its slice; every file needs position, "
+                      "orientation and pixel spacing",
                       name, file));
     }
     if (slice.rows != first.rows || slice.columns != first.columns ||
         !((slice.spacing - first.spacing).norm() < kSame * first.spacing.norm()) ||
         !((slice.along_row - first.along_row).norm() < kSame) ||
         !((slice.along_column - first.along_column).norm() < kSame)) {
-      throw InputError(fmt::format(
-          "{}: {} has another size or orientation than {}; allowed: one series of equal slices",
-          name, file, first.file.filename().string()));
+      throw InputError(
+          fmt::format("{}: {} has another size or orientation than {}; keep only slices of one "
+                      "series in the folder",
+                      name, file, first.file.filename().string()));
     }
   }
   if (slices.size() < 2) {
@@ -176,11 +178,11 @@ Eigen::Vector3d order(const std::string& name, std::vector<Slice>& slices) {
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     constexpr double kPlay = 0.1;  // of a gap
     if (!(std::abs(gaps[i] - usual) <= kPlay * usual)) {
-      throw InputError(fmt::format(
-          "{}: {} and {} lie {:.4g} mm apart, most slices {:.4g} mm; allowed: a series without "
-          "missing or repeated slices",
-          name, slices[i].file.filename().string(), slices[i + 1].file.filename().string(), gaps[i],
-          usual));
+      throw InputError(
+          fmt::format("{}: {} and {} lie {:.4g} mm apart, most slices {:.4g} mm; export the series "
+                      "again without missing or repeated slices",
+                      name, slices[i].file.filename().string(),
+                      slices[i + 1].file.filename().string(), gaps[i], usual));
     }
   }
   return (slices.back().place - slices.front().place) / static_cast<double>(gaps.size());
@@ -205,7 +207,8 @@ void read_pixels(const std::string& name, const gdcm::Image& image, float* value
       bytes.size() != count * static_cast<std::size_t>(format.GetPixelSize()) ||
       !image.GetBuffer(bytes.data())) {
     throw InputError(fmt::format(
-        "{}: its pixels cannot be read; allowed: whole files with one grey value per pixel", name));
+        "{}: its pixels cannot be read; export the series again with one grey value per pixel",
+        name));
   }
   const auto take = [&]<class T>(T) {
     convert<T>(bytes, image.GetSlope(), image.GetIntercept(), values, count);
@@ -224,15 +227,16 @@ void read_pixels(const std::string& name, const gdcm::Image& image, float* value
     case gdcm::PixelFormat::INT32:
       return take(std::int32_t{});
     default:
-      throw InputError(fmt::format("{}: its pixels are {}; allowed: 8 to 32 bit whole numbers",
-                                   name, format.GetScalarTypeAsString()));
+      throw InputError(fmt::format("{}: its pixels are {}; allowed: 8- to 32-bit integers", name,
+                                   format.GetScalarTypeAsString()));
   }
 }
 
 void open(gdcm::ImageReader& reader, const fs::path& file) {
   reader.SetFileName(file.c_str());
   if (!reader.Read()) {
-    throw InputError(fmt::format("{}: cannot be read; allowed: a whole DICOM file", file.string()));
+    throw InputError(
+        fmt::format("{}: cannot be read as a DICOM file; copy or export it again", file.string()));
   }
 }
 
@@ -268,10 +272,8 @@ SourceVolume read_frames(const Slice& slice, const Room& room) {
   open(reader, slice.file);
   const gdcm::Image& image = reader.GetImage();
   if (image.GetNumberOfDimensions() != 3) {
-    throw InputError(
-        fmt::format("{}: has one frame; allowed: a folder with a series, or one file "
-                    "with many frames",
-                    name));
+    throw InputError(fmt::format(
+        "{}: has one frame; choose a folder with a series or a file with several frames", name));
   }
   SourceVolume volume;
   VolumeHead& head = volume.head;
@@ -304,7 +306,7 @@ SourceVolume read_dicom(const fs::path& path, const Room& room) {
   }
   const auto slice = read_slice(path);
   if (!slice) {
-    throw InputError(fmt::format("{}: is no picture in DICOM format", path.string()));
+    throw InputError(fmt::format("{}: is not an image in DICOM format", path.string()));
   }
   return read_frames(*slice, room);
 }

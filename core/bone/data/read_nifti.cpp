@@ -111,17 +111,17 @@ SourceVolume read_nifti(const std::filesystem::path& file, const Room& room) {
   nifti_set_debug_level(0);
   const std::unique_ptr<nifti_image, Forget> image(nifti_image_read(name.c_str(), 0));
   if (!image) {
-    throw InputError(fmt::format("{}: cannot be read as NIfTI: its head is damaged", name));
+    throw InputError(fmt::format("{}: cannot be read as NIfTI: its header is damaged", name));
   }
   SourceVolume volume{head_of(name, *image), {}};
   check_head(name, volume.head, room);
   if (static_cast<std::size_t>(image->nvox) != volume.head.count() ||
       nifti_image_load(image.get()) != 0 || image->data == nullptr) {
-    throw InputError(fmt::format("{}: holds less than its head promises, or is damaged", name));
+    throw InputError(fmt::format("{}: is shorter than its header states, or damaged", name));
   }
   volume.values.resize(volume.head.count());
   if (!convert(*image, volume.values)) {
-    throw InputError(fmt::format("{}: its values are of type {}; allowed: whole or real numbers",
+    throw InputError(fmt::format("{}: its values are of type {}; allowed: integers or real numbers",
                                  name, nifti_datatype_string(image->datatype)));
   }
   return volume;

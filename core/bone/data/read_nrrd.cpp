@@ -24,7 +24,7 @@ void check_magic(const std::string& name) {
   std::string magic(7, ' ');
   if (!in.read(magic.data(), 7) || magic != "NRRD000") {
     throw InputError(
-        fmt::format("{}: does not begin with 'NRRD000'; allowed: a volume in NRRD format", name));
+        fmt::format("{}: does not begin with 'NRRD000'; choose a volume in NRRD format", name));
   }
 }
 
@@ -79,9 +79,10 @@ void take_places(const std::string& name, const Nrrd& nrrd, unsigned first, Volu
     head.origin[i] = std::isfinite(place) ? (*signs)[i] * place * metres(nrrd.spaceUnits[i]) : 0.0;
   }
   if (!head.steps.allFinite()) {
-    throw InputError(fmt::format(
-        "{}: does not say how large its voxels are; allowed: 'space directions' or 'spacings'",
-        name));
+    throw InputError(
+        fmt::format("{}: does not give the size of its voxels; add 'space directions' or "
+                    "'spacings' to its header",
+                    name));
   }
 }
 
@@ -95,7 +96,8 @@ VolumeHead head_of(const std::string& name, const Nrrd& nrrd) {
         first == 1 ? fmt::format(", {} values along the first", nrrd.axis[0].size) : ""));
   }
   if (nrrd.type == nrrdTypeBlock || nrrd.type <= nrrdTypeUnknown || nrrd.type >= nrrdTypeLast) {
-    throw InputError(fmt::format("{}: its values are not numbers; allowed: whole or real", name));
+    throw InputError(
+        fmt::format("{}: its values are not numbers; allowed: integers or real numbers", name));
   }
   head.components = first == 1 ? static_cast<int>(nrrd.axis[0].size) : 1;
   for (unsigned axis = 0; axis < 3; ++axis) {
@@ -124,9 +126,9 @@ Holder load(const std::string& name, bool head_only) {
   nrrdIoStateSet(state.get(), nrrdIoStateSkipData, head_only ? 1 : 0);
   if (nrrdLoad(nrrd.get(), name.c_str(), state.get()) != 0) {
     biffDone(NRRD);  // teem's own words name its functions
-    throw InputError(fmt::format("{}: {}; allowed: a whole volume in NRRD format", name,
-                                 head_only ? "its head is damaged, or lacks a field"
-                                           : "its values are damaged, or not all there"));
+    throw InputError(fmt::format("{}: {}; copy or export the volume again", name,
+                                 head_only ? "its header is damaged or lacks a field"
+                                           : "its values are damaged or incomplete"));
   }
   return nrrd;
 }
@@ -141,7 +143,7 @@ SourceVolume read_nrrd(const std::filesystem::path& file, const Room& room) {
   const Holder nrrd = load(name, false);
   const std::size_t count = volume.head.count() * static_cast<std::size_t>(volume.head.components);
   if (nrrd->data == nullptr || nrrdElementNumber(nrrd.get()) != count) {
-    throw InputError(fmt::format("{}: holds less than its head promises", name));
+    throw InputError(fmt::format("{}: is shorter than its header states", name));
   }
   volume.values.resize(count);
   const auto look_up = nrrdFLookup[nrrd->type];

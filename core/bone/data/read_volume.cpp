@@ -188,10 +188,10 @@ void check_head(const std::string& name, const VolumeHead& head, const Room& roo
   const double volume = std::abs(head.steps.determinant());
   if (!head.steps.allFinite() || !head.origin.allFinite() || !(edges.minCoeff() > 1e-6) ||
       !(edges.maxCoeff() < 0.1) || !(volume > 0.1 * edges.prod())) {
-    throw InputError(fmt::format(
-        "{}: its voxels are {:.4g} x {:.4g} x {:.4g} mm; allowed: 0.001 to 100 mm along axes that "
-        "span a volume",
-        name, 1e3 * edges[0], 1e3 * edges[1], 1e3 * edges[2]));
+    throw InputError(
+        fmt::format("{}: its voxels are {:.4g} x {:.4g} x {:.4g} mm; allowed: 0.001 to 100 mm "
+                    "along axes that span a volume",
+                    name, 1e3 * edges[0], 1e3 * edges[1], 1e3 * edges[2]));
   }
   // The library's values, ours, the copy handed over and the one received.
   constexpr double kBytes = 8.0 + 3.0 * sizeof(float);
@@ -206,29 +206,29 @@ SourceVolume read_here(const fs::path& path, const Room& room) {
   if (ends(".nrrd") || ends(".nhdr")) return read_nrrd(path, room);
   if (ends(".nii") || ends(".nii.gz")) return read_nifti(path, room);
   if (ends(".dcm")) return read_dicom(path, room);
-  throw InputError(fmt::format(
-      "{}: is no volume by its name; allowed: .nrrd, .nhdr, .nii, .nii.gz, .dcm, or a folder with "
-      "a DICOM series",
-      path.string()));
+  throw InputError(
+      fmt::format("{}: is not a volume by its name; allowed: .nrrd, .nhdr, .nii, .nii.gz, .dcm, or "
+                  "a folder with a DICOM series",
+                  path.string()));
 }
 
 SourceVolume read_volume(const fs::path& file, const Room& room,
                          const geometry::WorkReport& report) {
   if (!fs::exists(file)) {
-    throw InputError(fmt::format("{}: is not there; allowed: a file or folder", file.string()));
+    throw InputError(fmt::format("{}: no such file or folder", file.string()));
   }
   const Descriptor memory(memfd_create("volume", MFD_CLOEXEC));
   int ends[2];
   if (memory.get() < 0 || pipe2(ends, O_CLOEXEC) != 0) {
     throw RunError(
-        fmt::format("{}: no memory to read it into: {}", file.string(), std::strerror(errno)));
+        fmt::format("{}: cannot get memory to read it: {}", file.string(), std::strerror(errno)));
   }
   const Descriptor in(ends[0]);
   Descriptor out(ends[1]);
   const pid_t reader = fork();
   if (reader < 0) {
-    throw RunError(
-        fmt::format("{}: no process to read it: {}", file.string(), std::strerror(errno)));
+    throw RunError(fmt::format("{}: cannot start a process to read it: {}", file.string(),
+                               std::strerror(errno)));
   }
   if (reader == 0) be_the_reader(file, room, out.get(), memory.get());
   out.close();
@@ -239,7 +239,7 @@ SourceVolume read_volume(const fs::path& file, const Room& room,
   const json answer = json::parse(words, nullptr, false);
   if (answer.is_discarded()) {
     throw InputError(fmt::format(
-        "{}: is damaged so that its reader broke off; allowed: a whole file", file.string()));
+        "{}: is damaged, so that its reader crashed; copy or export it again", file.string()));
   }
   if (answer.contains("input_error")) throw InputError(answer["input_error"].get<std::string>());
   if (answer.contains("run_error")) throw RunError(answer["run_error"].get<std::string>());

@@ -263,13 +263,13 @@ TEST_F(ExportBidsTest, WhatAParticipantSaidStaysOut) {
 }
 
 TEST_F(ExportBidsTest, BadInputGetsASentenceAndLeavesNothing) {
-  EXPECT_EQ(refusal(), "there is no session file to export; allowed: one or more");
+  EXPECT_EQ(refusal(), "there is no session file to export");
   const fs::path first = write("a.h5", {.subject = "P-01"});
   files_.push_back(first);
   EXPECT_THAT(refusal(), HasSubstr("is given twice"));
   files_.pop_back();
   write("b.h5", {.subject = "P_01"});
-  EXPECT_THAT(refusal(), HasSubstr("subject P_01 would be sub-P01, as P-01 is"));
+  EXPECT_THAT(refusal(), HasSubstr("subject P_01 would be sub-P01, like P-01"));
   files_.pop_back();
   write("c.h5", {.subject = "P02", .definition = "name = \"other\"\n"});
   EXPECT_THAT(refusal(), HasSubstr("another definition"));

@@ -108,7 +108,7 @@ TEST(NewFolderTest, TakesAnEmptyOneAndNoOther) {
     const NewFolder again(root / "empty");
     ADD_FAILURE() << "took a folder that holds something";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("is not empty; allowed: a new or an empty folder"));
+    EXPECT_THAT(error.what(), HasSubstr("is not empty; choose a new or an empty folder"));
   }
   std::ofstream(root / "file") << "x";
   EXPECT_THROW(NewFolder(root / "file"), InputError);

@@ -175,7 +175,7 @@ TEST_F(ImportCurvesTest, BadInputGetsASentence) {
   EXPECT_THAT(refusal("subject,trial,condition,file,phase\nA,1,haptic,good.csv,exam\n"),
               HasSubstr("phase is 'exam'; allowed: test or training"));
   EXPECT_THAT(refusal("subject,trial,condition,file,phase\nA,1,haptic,good.csv,training\n"),
-              HasSubstr("has no test"));
+              HasSubstr("has no row of the phase test"));
   EXPECT_THAT(refusal("subject,trial,condition,file,rate\nA,1,haptic,good.csv,-5\n"),
               HasSubstr("rate is '-5'; allowed: a number above 0 [Hz]"));
   EXPECT_THAT(refusal("subject,trial,condition,file,simulated\nA,1,haptic,good.csv,maybe\n"),

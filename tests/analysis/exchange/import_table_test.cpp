@@ -137,11 +137,10 @@ TEST_F(ImportTableTest, ARateStandsInPlaceOfTimes) {
 
 TEST_F(ImportTableTest, BadInputGetsASentence) {
   const std::string good = kHead + samples("A,1,haptic", 0.3);
-  EXPECT_THAT(
-      refusal("who,trial,condition,time,target_force,applied_force\n"
-              "A,1,haptic,0,1,1\n"),
-      HasSubstr("there is no column 'subject'; allowed: one of who, trial, condition, time, "
-                "target_force, applied_force, named with --column subject=NAME"));
+  EXPECT_THAT(refusal("who,trial,condition,time,target_force,applied_force\n"
+                      "A,1,haptic,0,1,1\n"),
+              HasSubstr("there is no column 'subject'; name one of who, trial, condition, time, "
+                        "target_force, applied_force with --column subject=NAME"));
   EXPECT_THAT(refusal(good, {"subject=Participant"}), HasSubstr("no column 'Participant'"));
   EXPECT_THAT(refusal(good, {"participant=subject"}),
               HasSubstr("--column names 'participant', which no import reads; allowed: subject, "));

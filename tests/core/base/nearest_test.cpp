@@ -24,10 +24,14 @@ TEST(NearestTest, FindsWhatATypoMeantAndNothingElse) {
   EXPECT_EQ(nearest("y", known), std::nullopt) << "every letter differs";
   EXPECT_EQ(nearest("", known), std::nullopt);
   EXPECT_EQ(nearest("sped", {}), std::nullopt);
+  EXPECT_EQ(nearest("run_timeout", {"wait_timeout"}), std::nullopt) << "a third differs";
   EXPECT_EQ(nearest("ab12", {"ab1", "ab2"}), "ab1") << "the first of equally near ones";
   EXPECT_EQ(nearest(std::string(1000000, 'a'), known), std::nullopt) << "and at once";
   EXPECT_EQ(did_you_mean("sped", known), "; did you mean speed?");
   EXPECT_EQ(did_you_mean("colour", known), "");
+  EXPECT_EQ(not_allowed("--mode", "'sped'", known),
+            "--mode is 'sped'; did you mean speed? allowed: damping, speed, stiffness, x");
+  EXPECT_EQ(not_allowed("--mode", "'colour'", {"a", "b"}), "--mode is 'colour'; allowed: a, b");
 }
 
 }  // namespace

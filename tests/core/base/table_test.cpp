@@ -246,6 +246,12 @@ TEST(TableTest, AnUnknownKeyNamesTheNearestAndEveryKnownOne) {
                           "mouse, trajectory"));
 }
 
+TEST(TableTest, AKeyThatIsThereIsNotWhatATypoMeant) {
+  EXPECT_THAT(problems("speed = 1\nspeeds = 2\n",
+                       [](Table& t) { t.number("speed", kPositive, ""); }),
+              ElementsAre("f.toml:2: speeds is not a known key; known here: speed"));
+}
+
 TEST(TableTest, AValueOfAChoiceNamesTheNearestOne) {
   const auto read = [](Table& t) { t.choice("kind", {"trajectory", "curve"}); };
   EXPECT_THAT(problems("kind = \"crve\"\n", read),

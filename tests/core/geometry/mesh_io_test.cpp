@@ -198,8 +198,8 @@ TEST(MeshIoTest, StlTextSharesEqualCorners) {
 
 TEST(MeshIoTest, BadObjGetsASentence) {
   const auto obj = [](std::string_view text) { return refusal(text, MeshFormat::kObj); };
-  EXPECT_EQ(obj(""), "m: is empty; allowed: a mesh with triangles");
-  EXPECT_EQ(obj("# nothing\n"), "m: has no triangle; allowed: a mesh with triangles");
+  EXPECT_EQ(obj(""), "m: is empty; choose a mesh with triangles");
+  EXPECT_EQ(obj("# nothing\n"), "m: has no triangle; choose a mesh with triangles");
   EXPECT_EQ(obj("v 0 0 0\nv 1 nan 0\n"), "m:2: a coordinate is nan; allowed: finite numbers");
   EXPECT_EQ(obj("v 0 0 1e999\n"), "m:1: a coordinate is inf; allowed: finite numbers");
   EXPECT_EQ(obj("v 0 0 1e13\n"), "m:1: a coordinate is 1e+13; allowed: -1e+12 to 1e+12");
@@ -224,10 +224,10 @@ TEST(MeshIoTest, BadOffGetsASentence) {
   const auto off = [](std::string_view text) { return refusal(text, MeshFormat::kOff); };
   EXPECT_EQ(off("PLY\n"), "m:1: the file begins with 'PLY'; allowed: OFF");
   EXPECT_EQ(off("OFF\n"), "m:1: the file ends where the number of vertices should stand");
-  EXPECT_EQ(off("OFF BINARY\n"), "m:1: this is a binary OFF file; allowed: text");
+  EXPECT_EQ(off("OFF BINARY\n"), "m:1: this is a binary OFF file; convert it to text");
   EXPECT_THAT(
       off("OFF\n4000000000 1 0\n0 0 0\n"),
-      AllOf(StartsWith("m:2: the head promises 4000000000 vertices"), HasSubstr("at most")));
+      AllOf(StartsWith("m:2: the header states 4000000000 vertices"), HasSubstr("at most")));
   EXPECT_EQ(off("OFF\n1 1 0\n0 0 0\n"), "m:3: the file ends before the last of its 1 faces");
   EXPECT_EQ(off("OFF\n1 1 0\n0 0 0\n3 0 0 1\n"), "m:4: a face has the corner 1; allowed: 0 to 0");
   EXPECT_EQ(off("OFF\n1 1 0\n0 0 0\n3 0 0\n"),
@@ -244,9 +244,9 @@ TEST(MeshIoTest, BadPlyGetsASentence) {
            faces;
   };
   EXPECT_EQ(ply("OFF\n"), "m:1: the file begins with 'OFF'; allowed: ply");
-  EXPECT_EQ(ply("ply\nformat ascii 1.0\n"), "m:2: the file ends in its head");
+  EXPECT_EQ(ply("ply\nformat ascii 1.0\n"), "m:2: the file ends in its header");
   EXPECT_THAT(ply("ply\nformat binary 1.0\n"), StartsWith("m:2: the format is 'binary'; allowed:"));
-  EXPECT_EQ(ply("ply\nend_header\n"), "m:2: the head ends without a format");
+  EXPECT_EQ(ply("ply\nend_header\n"), "m:2: the header ends without a format");
   EXPECT_EQ(ply("ply\nproperty float x\n"), "m:2: a property stands before the first element");
   EXPECT_THAT(ply("ply\nformat ascii 1.0\nelement vertex 1\nproperty real x\n"),
               StartsWith("m:4: a property has the type 'real'; allowed:"));
@@ -254,9 +254,9 @@ TEST(MeshIoTest, BadPlyGetsASentence) {
               HasSubstr("the vertices need one property y"));
   EXPECT_THAT(ply("ply\nformat ascii 1.0\nelement vertex 0\n" + vertex + "end_header\n"),
               HasSubstr("no faces with a list vertex_indices"));
-  EXPECT_THAT(ply(with("ascii", "4000000000") + "0 0 0\n"), HasSubstr("promises 4000000000 rows"));
+  EXPECT_THAT(ply(with("ascii", "4000000000") + "0 0 0\n"), HasSubstr("states 4000000000 rows"));
   EXPECT_THAT(ply(with("binary_little_endian", "4000000000") + "0 0 0\n"),
-              AllOf(StartsWith("m: at byte "), HasSubstr("promises 4000000000 rows of 'vertex'")));
+              AllOf(StartsWith("m: at byte "), HasSubstr("states 4000000000 rows of 'vertex'")));
   EXPECT_EQ(ply(with("ascii", "1") + "0 0 0\n3 0 0 1\n"),
             "m:11: a face has the corner 1; allowed: 0 to 0");
   EXPECT_THAT(ply(with("ascii", "1") + "0 0 0\n3 000 000\n"),
@@ -273,7 +273,7 @@ TEST(MeshIoTest, BadStlGetsASentence) {
   std::string sphere = encode_mesh(make_sphere(1.0, 1), MeshFormat::kStl);
   EXPECT_EQ(
       stl(sphere.substr(0, 500)),
-      "m: is a binary STL file that promises 20 triangles, which take 1084 bytes; it has 500");
+      "m: is a binary STL file with 20 triangles by its header, which take 1084 bytes; it has 500");
   EXPECT_THAT(stl("stl"), StartsWith("m: has 3 bytes and does not begin with solid"));
   EXPECT_EQ(stl("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"),
             "m:4: the file ends where a vertex should stand");

@@ -86,8 +86,9 @@ TEST(IntegrityTest, MissingTicksAreFound) {
   const Integrity result = session.check();
   EXPECT_FALSE(result.ok);
   EXPECT_EQ(result.gaps, 2u);
-  EXPECT_THAT(result.problems, ElementsAre("sequence number 20 follows 9 (and 1 more like it)",
-                                           "the loop ran 70000 ticks, and 69989 rows are there"));
+  EXPECT_THAT(result.problems,
+              ElementsAre("sequence number 20 follows 9 (and 1 more like it)",
+                          "the loop ran 70000 ticks, but 69989 rows were recorded"));
 }
 
 TEST(IntegrityTest, AMissingBeginningAndEndAreFound) {
@@ -99,8 +100,8 @@ TEST(IntegrityTest, AMissingBeginningAndEndAreFound) {
   EXPECT_EQ(result.first_sequence, 5u);
   EXPECT_THAT(result.problems,
               ElementsAre("the first sequence number is 5 instead of 0",
-                          "the loop ran 70000 ticks, and 69994 rows are there",
-                          "pass 1 has samples 40001 to 69999, which are not all there"));
+                          "the loop ran 70000 ticks, but 69994 rows were recorded",
+                          "pass 1 has samples 40001 to 69999, some of which are missing"));
 }
 
 TEST(IntegrityTest, RepeatedTicksAndAClockThatStandsAreFound) {
@@ -161,7 +162,7 @@ TEST(IntegrityTest, DroppedRecordsAndAnUnfinishedSessionAreFound) {
   EXPECT_EQ(session.check().dropped, 4u);
   EXPECT_THAT(session.check().problems, ElementsAre("4 records were dropped"));
   session.summary.clear();
-  EXPECT_THAT(session.check().problems, ElementsAre(HasSubstr("the session did not end")));
+  EXPECT_THAT(session.check().problems, ElementsAre(HasSubstr("the session is unfinished")));
 }
 
 }  // namespace

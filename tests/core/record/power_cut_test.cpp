@@ -297,7 +297,7 @@ void try_file(const Recording& recording, const std::string& bytes, const Synced
       // Ticks that never came to the disk are missing, and nothing else is wrong.
       EXPECT_TRUE(problem.find("follows") != std::string::npos ||
                   problem.find("first sequence number") != std::string::npos ||
-                  problem.find("ticks, and") != std::string::npos)
+                  problem.find("ticks, but") != std::string::npos)
           << problem;
     }
     if (!found.repaired.empty()) {

@@ -230,7 +230,7 @@ TEST(SessionLiveTest, AFileInUseIsRefusedUntilItsProcessDies) {
   kill(pid, SIGKILL);
   waitpid(pid, nullptr, 0);
   EXPECT_THAT(message_of<InputError>([&] { SessionWriter(folder / "a.h5", live_info()); }),
-              HasSubstr("from a session that did not end"));
+              HasSubstr("from an unfinished session"));
   SessionWriter writer = SessionWriter::resume(folder / "a.h5", found);
   EXPECT_TRUE(writer.can_go_on());
   EXPECT_THAT(message_of<InputError>([&] { SessionWriter::resume(folder / "a.h5", found); }),

@@ -63,7 +63,7 @@ TEST(SpectrumTableTest, ABadFileGetsASentence) {
   EXPECT_THAT(message(head + "[cutting.free]\nx = 1\n" + level), HasSubstr("x"));
   EXPECT_THAT(
       message(head + "[cutting.a]\nforce = 1\n" + level + "[cutting.b]\nforce = 1\n" + level),
-      HasSubstr("another force"));
+      HasSubstr("give each level its own"));
   EXPECT_THAT(message(head + "[cutting.free]\nmeasured = true\nfrequencies = [1, 2]\n"
                              "amplitudes = [1]\nbandwidths = [1, 2]\nnoise = 0\n"),
               HasSubstr("as many as frequencies"));

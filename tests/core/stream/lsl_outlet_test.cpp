@@ -182,7 +182,7 @@ TEST_F(LslOutletTest, WithoutTheLibraryTheSessionGoesOnWithASentence) {
   EXPECT_EQ(LslOutlet::open(absent, now(), notice), nullptr);
   EXPECT_THAT(notice, HasSubstr("libnowhere_lsl.so"));
   EXPECT_THAT(notice, HasSubstr("Lab Streaming Layer"));
-  EXPECT_THAT(notice, HasSubstr("the session goes on without its streams"));
+  EXPECT_THAT(notice, HasSubstr("the session continues without its streams"));
   notice.clear();
   EXPECT_NE(LslOutlet::open(options(), now(), notice), nullptr);
   EXPECT_EQ(notice, "");

@@ -124,7 +124,7 @@ TEST_F(DicomTest, MissingRepeatedAndMixedSlicesAreNamed) {
 }
 
 TEST_F(DicomTest, SpoiledFilesAreNamed) {
-  EXPECT_THAT(refusal(), HasSubstr("none of its 0 files is a picture in DICOM format"));
+  EXPECT_THAT(refusal(), HasSubstr("none of its 0 files is an image in DICOM format"));
   write_series(Eigen::Matrix3d::Identity());
   const std::string whole = test::read_bytes(folder_ / "80.dcm");
   test::write_bytes(folder_ / "80.dcm", whole.substr(0, whole.size() - 100));
