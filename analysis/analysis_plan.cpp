@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/nearest.h"
 #include "core/base/table.h"
 
 namespace haptrial::analysis {
@@ -61,8 +62,10 @@ AnalysisPlan read_analysis_plan(Table& analysis, const std::vector<std::string>&
   AnalysisPlan plan;
   const auto check = [&](const char* key, const std::string& name) {
     if (std::find(conditions.begin(), conditions.end(), name) == conditions.end()) {
-      analysis.reject(key, fmt::format("a name that design.conditions lacks, '{}'", name),
-                      fmt::format("{}", fmt::join(conditions, ", ")));
+      const std::string hint = did_you_mean(name, conditions);
+      analysis.reject(key,
+                      fmt::format("names '{}', which design.conditions lacks{} allowed: {}", name,
+                                  hint.empty() ? ";" : hint, fmt::join(conditions, ", ")));
     }
   };
   if (analysis.has("planned")) {

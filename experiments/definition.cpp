@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/base/nearest.h"
 #include "core/base/table.h"
@@ -29,6 +30,21 @@ control::HandleLoop handle_loop(const Setup& d) {
 constexpr double kLongestPass = 300.0;  // along x; the curve itself is a few times longer [s]
 
 void check_path(Table& root, const Definition& d);
+
+/// The conditions that planned tests may name. If the list of conditions is itself wrong, that
+/// alone is a problem, so that every known one may be named.
+std::vector<std::string> nameable(std::vector<std::string> conditions) {
+  const auto& known = protocols::training_conditions();
+  const bool good =
+      std::set<std::string>(conditions.begin(), conditions.end()).size() == conditions.size() &&
+      std::all_of(conditions.begin(), conditions.end(), [&known](const std::string& condition) {
+        return std::find(known.begin(), known.end(), condition) != known.end();
+      });
+  if (!good) {
+    conditions.insert(conditions.end(), known.begin(), known.end());
+  }
+  return conditions;
+}
 
 /// What no table can see alone.
 void check_together(Table& root, const Definition& d) {
@@ -112,7 +128,7 @@ Definition read_definition(Table& root, std::string_view file_name,
                analysis::read_score_parameters(scoring),
                {}};
   d.design = protocols::read_design(design);
-  d.plan = analysis::read_analysis_plan(scoring, d.design.conditions);
+  d.plan = analysis::read_analysis_plan(scoring, nameable(d.design.conditions));
   d.recovery = d.guidance.recovery;
   d.guidance.loop = handle_loop(d);
   d.display = render::read_trial_display_style(display);

@@ -22,7 +22,7 @@ void warn_of_loop(const Definition& d, Warnings& warnings) {
     const LoopMargin margin = loop_margin(name, gains, d.guidance.loop);
     if (is_dangerous(margin)) {
       warnings.push_back(fmt::format(
-          "guidance.{}.stiffness is {} N/m; a handle that is let go oscillates above {:.0f} N/m at "
+          "guidance.{}.stiffness is {} N/m; a released handle oscillates above {:.0f} N/m at "
           "{} Hz, and the envelope then ends the pass",
           name, gains.stiffness, margin.bare_stiffness, d.rate));
     } else if (margin.lightest > d.hand.hand_mass) {

@@ -59,13 +59,14 @@ TEST(DefinitionTest, PlannedTestsNameConditionsOfTheDesign) {
     return problem_of(text.replace(at, text.find('\n', at) - at, key + " = " + value));
   };
   EXPECT_EQ(with("planned", "[\"haptic != visuohaptic\"]"), "");
-  EXPECT_THAT(
-      with("planned", "[\"visula < haptic\"]"),
-      HasSubstr(
-          "a name that design.conditions lacks, 'visula'; allowed: haptic, visual, visuohaptic"));
+  EXPECT_THAT(with("planned", "[\"visula < haptic\"]"),
+              HasSubstr("names 'visula', which design.conditions lacks; did you mean visual? "
+                        "allowed: haptic, visual, "
+                        "visuohaptic"));
   EXPECT_THAT(with("planned", "[\"visual is lower\"]"),
               HasSubstr("two conditions with <, > or != between them"));
-  EXPECT_THAT(with("reference", "\"none\""), HasSubstr("lacks, 'none'"));
+  EXPECT_THAT(with("reference", "\"none\""),
+              HasSubstr("names 'none', which design.conditions lacks"));
 }
 
 TEST(DefinitionTest, KeepsItsTextForTheSessionFile) {
@@ -166,8 +167,9 @@ TEST(DefinitionTest, AMistakeInTheProtocolIsReportedAlone) {
   };
   const std::string line = line_of(with("protocol"), "protocol");
   EXPECT_EQ(problem_of_file(with("protocol = \"bone_driling\"")),
-            "study.toml:" + line + ": experiment.protocol is 'bone_driling'; did you mean "
-            "bone_drilling? allowed: force_training, bone_drilling");
+            "study.toml:" + line +
+                ": experiment.protocol is 'bone_driling'; did you mean "
+                "bone_drilling? allowed: force_training, bone_drilling");
   EXPECT_EQ(problem_of_file(with("protocl = \"bone_drilling\"")),
             "study.toml:" + line +
                 ": experiment.protocl is not a known key; did you mean experiment.protocol?");
