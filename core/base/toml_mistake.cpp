@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <regex>
+#include <tuple>
 
 #include "core/base/toml_words_internal.h"
 
@@ -78,6 +79,11 @@ class Walk {
     return text_.substr(at_, end - at_);
   }
 
+  std::string_view rest_without_comment() const {
+    const std::string_view rest = rest_of_line();
+    return rest.substr(0, rest.find_last_not_of(" \t", rest.find(" #")) + 1);
+  }
+
   bool fail(unsigned line, std::string sentence) {
     found_ = TomlMistake{line, std::move(sentence)};
     return false;
@@ -98,6 +104,22 @@ class Walk {
                                            first->second));
   }
 
+  /// A letter of another language, or a sign, in the key that begins at `begin`.
+  bool fail_odd_key(std::size_t begin) {
+    const bool odd = static_cast<unsigned char>(peek()) >= 0x80 ||
+                     (peek() != '\0' &&
+                      std::string_view("!$%&()*+/?@^|~").find(peek()) != std::string_view::npos);
+    if (!odd || (at_ > begin && !is_bare(text_[at_ - 1]))) {
+      return false;
+    }
+    const std::string_view name =
+        text_.substr(begin, text_.find_first_of(" \t\r\n=]#", begin) - begin);
+    fail(line_, fmt::format("the key {} has a character that is not allowed; use letters from a to "
+                            "z, digits, _ and -",
+                            short_text(name)));
+    return true;
+  }
+
   bool header() {
     const unsigned line = line_;
     const bool list = starts("[[");
@@ -108,7 +130,11 @@ class Walk {
       return fail(line, fmt::format("{}{} has no name; write {}NAME{}", open, close, open, close));
     }
     Path path;
+    const std::size_t begin = at_;
     if (!key(path)) {
+      return false;
+    }
+    if (fail_look_alike() || fail_odd_key(begin)) {
       return false;
     }
     skip_blanks();
@@ -142,7 +168,7 @@ class Walk {
         const std::size_t begin = at_;
         while (is_bare(peek())) ++at_;
         if (at_ == begin) {
-          return fail_key();
+          return fail_key(begin);
         }
         path += text_.substr(begin, at_ - begin);
       }
@@ -157,8 +183,8 @@ class Walk {
     }
   }
 
-  bool fail_key() {
-    if (fail_look_alike()) {
+  bool fail_key(std::size_t begin) {
+    if (fail_look_alike() || fail_odd_key(begin)) {
       return false;
     }
     return peek() == '=' ? fail(line_, "no key stands before =; write KEY = VALUE") : give_up();
@@ -168,7 +194,11 @@ class Walk {
   bool pair(const Path& table, bool within, int depth = 0) {
     const unsigned line = line_;
     Path name;
+    const std::size_t begin = at_;
     if (!key(name)) {
+      return false;
+    }
+    if (fail_look_alike() || fail_odd_key(begin)) {
       return false;
     }
     skip_blanks();
@@ -194,7 +224,7 @@ class Walk {
       const std::string_view rest = rest_of_line();
       const std::string_view word = rest.substr(0, rest.find_first_of(" \t="));
       if (rest.find('=') != std::string_view::npos) {
-        return fail(line, fmt::format("'{} {}' is not a key; a key has no spaces, such as {}_{}",
+        return fail(line, fmt::format("\"{} {}\" is not a key; a key has no spaces, such as {}_{}",
                                       key, short_text(word), key, short_text(word)));
       }
     }
@@ -259,9 +289,31 @@ class Walk {
         }
       }
     }
+    if (goes_on(quote)) {
+      return fail(line_,
+                  fmt::format("a text of several lines needs {0}{0}{0} at both ends", quote));
+    }
     std::string_view line = text_.substr(begin, at_ - begin);
     return fail(line_, fmt::format("the text {} has no closing quote; write {} at its end",
                                    short_text(line), quote));
+  }
+
+  /// Whether the text that this line leaves open is closed in a later one.
+  bool goes_on(char quote) {
+    const auto [at, line] = std::pair(at_, line_);
+    bool closed = false;
+    while (!closed && !ended()) {
+      while (!line_ended()) ++at_;
+      while (peek() == '\r') ++at_;
+      if (!ended()) next();
+      const std::string_view rest = rest_of_line();
+      if (ended() || statement_begins()) break;
+      const auto quotes = std::count(rest.begin(), rest.end(), quote);
+      closed = quotes % 2 == 1;
+      if (quotes > 0 && !closed) break;
+    }
+    std::tie(at_, line_) = std::pair(at, line);
+    return closed;
   }
 
   /// Whether a key or a table's header stands here, which no array holds.
@@ -304,8 +356,8 @@ class Walk {
       } else if (peek() != ']') {
         return fail_look_alike()
                    ? false
-                   : fail(value_line, fmt::format("a comma or a bracket is missing before '{}'",
-                                                  short_text(rest_of_line())));
+                   : fail(value_line, fmt::format("a comma or a bracket is missing before \"{}\"",
+                                                  short_text(rest_without_comment())));
       }
     }
   }
@@ -344,8 +396,8 @@ class Walk {
       }
       if (peek() != ',') {
         return fail_look_alike() ? false
-                                 : fail(line_, fmt::format("a comma or }} is missing before '{}'",
-                                                           short_text(rest_of_line())));
+                                 : fail(line_, fmt::format("a comma or }} is missing before \"{}\"",
+                                                           short_text(rest_without_comment())));
       }
       ++at_;
     }
@@ -377,8 +429,7 @@ class Walk {
   bool fail_unquoted(std::size_t begin, char end, std::string text) {
     if (end == '\n') {  // names may have spaces
       at_ = begin;
-      const std::string_view rest = rest_of_line();
-      text = std::string(rest.substr(0, rest.find(" #")));
+      text = std::string(rest_without_comment());
     }
     if (!text.empty() && (text.back() == '"' || text.back() == '\'')) {
       return fail(line_, fmt::format("the text {} has no opening quote; write {} before it",
@@ -427,8 +478,9 @@ class Walk {
     }
     return fail_look_alike()
                ? false
-               : fail(line_, fmt::format("'{}' follows the value; delete it, or write # before it",
-                                         short_text(rest_of_line())));
+               : fail(line_,
+                      fmt::format("\"{}\" follows the value; delete it, or write # before it",
+                                  short_text(rest_without_comment())));
   }
 
   std::string_view text_;

@@ -60,6 +60,7 @@ std::string number_advice(const std::string& word) {
   static const std::regex kNoZero("([+-]?)(\\.[0-9]+)");
   static const std::regex kNoDecimals("([+-]?[0-9]+)\\.");
   static const std::regex kZeros("([+-]?)0+([0-9][0-9.]*)");
+  static const std::regex kPunctuated("([+-]?[0-9][0-9._]*)[;:!?]+");
   static const std::regex kUnit("([+-]?[0-9.]+)[A-Za-z%].*");
   std::smatch match;
   if (std::regex_match(word, match, kNoZero)) {
@@ -70,6 +71,9 @@ std::string number_advice(const std::string& word) {
   }
   if (std::regex_match(word, match, kZeros)) {
     return fmt::format("{} begins with a zero; write {}{}", word, match.str(1), match.str(2));
+  }
+  if (std::regex_match(word, match, kPunctuated) && is_number_or_time(match.str(1))) {
+    return fmt::format("{} is not a number; write {}", word, match.str(1));
   }
   if (std::regex_match(word, match, kUnit)) {
     return fmt::format("{} is not a number; write the number alone, without a unit",
