@@ -54,7 +54,7 @@ std::vector<std::string> lines_of(const TestFamily& family) {
     lines.push_back(fmt::format("  {}: {}; {} = {}", sides_of(test), side_result(test),
                                 test.paired ? "d_z" : "d", effect(test.size)));
     lines.push_back(fmt::format("    {} {}; permutation {}; bootstrap 95 % CI {}",
-                                test.paired ? "Wilcoxon" : "Mann-Whitney",
+                                test.paired ? "Wilcoxon" : "Mann–Whitney",
                                 p_result(test.ranks_holm), p_result(test.permutation_holm),
                                 bootstrap_result(test)));
   }
@@ -95,7 +95,7 @@ std::vector<std::string> design_lines(const DesignTable& table, const DesignTest
   append(effect_lines(tests));
   if (table.factors.size() == 1) {
     lines.push_back(fmt::format("On ranks ({}): {}",
-                                table.factors[0].within ? "Friedman" : "Kruskal-Wallis",
+                                table.factors[0].within ? "Friedman" : "Kruskal–Wallis",
                                 rank_result(tests.ranks)));
   }
   if (!tests.planned.tests.empty()) {

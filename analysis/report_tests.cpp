@@ -143,7 +143,7 @@ void add_participants(Document& document, const StudyStatistics& s) {
   add_repeated(document, s);
   if (s.table.factors.size() == 1) {
     document.paragraph(fmt::format("On ranks ({}): {}.",
-                                   s.table.factors[0].within ? "Friedman" : "Kruskal and Wallis",
+                                   s.table.factors[0].within ? "Friedman" : "Kruskal–Wallis",
                                    rank_result(s.tests.ranks)));
   }
   if (!s.tests.incomplete.empty()) {
@@ -164,8 +164,8 @@ void add_participants(Document& document, const StudyStatistics& s) {
       "If the same participants had both conditions, tests are paired and the effect size is d_z; "
       "if "
       "they are different participants, the test is Welch's and the effect size Cohen's d. Ranks: "
-      "Wilcoxon's signed-rank test (V) or Mann "
-      "and Whitney's (U). Adjusted p values of a column are adjusted together. Bootstrap intervals "
+      "Wilcoxon's signed-rank test (V) or the Mann–Whitney test "
+      "(U). Adjusted p values of a column are adjusted together. Bootstrap intervals "
       "are "
       "printed for 30 participants or more: with fewer they are too narrow.");
 }
@@ -179,7 +179,7 @@ void add_published(Document& document, const StudyStatistics& s) {
   document.paragraph(
       "One-way analysis of variance over all trials: " + anova_result(s.anova) +
       (s.eta ? fmt::format(", 90 % CI {} to {}", number(s.eta->low), number(s.eta->high)) : "") +
-      ". On ranks (Kruskal and Wallis): " + rank_result(s.ranks) + ".");
+      ". On ranks (Kruskal–Wallis): " + rank_result(s.ranks) + ".");
   Rows rows;
   for (const auto& c : s.comparisons) {
     rows.push_back({text_of(c.sides), t_result(c.student), t_result(c.welch), effect(c.d)});

@@ -62,7 +62,7 @@ TEST_F(StatisticsCommandTest, FindsTheDesignOfSeveralFactors) {
                                     "participants: group (expert, novice)"));
   EXPECT_THAT(run.output, HasSubstr("(mixed analysis of variance"));
   EXPECT_THAT(run.output, HasSubstr("paired t(5)"));
-  EXPECT_THAT(run.output, HasSubstr("Mann-Whitney"));
+  EXPECT_THAT(run.output, HasSubstr("Mann–Whitney"));
 }
 
 TEST_F(StatisticsCommandTest, EqualSeedsGiveEqualLinesWhateverTheThreads) {
