@@ -107,7 +107,7 @@ void add_timing(Document& document, const StudyResult& study) {
     document.paragraph(
         "Not counted, because the session did not come to its end: " + joined(unfinished) + ".");
   }
-  std::vector<std::string> names{"Subject", "Clock", "Ticks", "Dropped", "Missing"};
+  std::vector<std::string> names{"Subject", "Clock", "Ticks", "Lost records", "Missing"};
   if (real) {
     names.insert(names.end(), {"Overruns", "Period", "Lateness", "Compute"});
     document.paragraph(

@@ -117,7 +117,8 @@ void check_counts(const SessionReader& reader, Integrity& result) {
   result.overruns = summary->overruns;
   result.dropped = summary->dropped;
   if (summary->dropped > 0) {
-    result.problems.push_back(number(summary->dropped) + " records were dropped");
+    result.problems.push_back(number(summary->dropped) +
+                              (summary->dropped == 1 ? " lost record" : " lost records"));
   }
   if (summary->ticks != result.rows) {
     result.problems.push_back("the loop ran " + number(summary->ticks) + " ticks, but " +

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <regex>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -23,6 +24,16 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kRecover = "; save what a damaged file still holds with haptrial recover";
+
+/// The fault without HDF5's own words for a file that was cut short.
+std::string plain(const std::string& fault) {
+  static const std::regex kCut("truncated file: eof = ([0-9]+).*stored_eof = ([0-9]+)");
+  std::smatch match;
+  return std::regex_search(fault, match, kCut)
+             ? "it ends after " + match.str(1) + " of " + match.str(2) + " bytes"
+         : fault.find("truncated") != std::string::npos ? "it is cut short"
+                                                        : fault;
+}
 
 void check_regular(const fs::path& path) {
   std::error_code error;
@@ -168,7 +179,7 @@ SessionReader::SessionReader(const fs::path& path) {
   try {
     impl_ = std::make_unique<Impl>(path);
   } catch (const h5::Error& error) {
-    throw InputError(path.string() + ": cannot be read as a session file (" + error.what() +
+    throw InputError(path.string() + ": cannot be read as a session file (" + plain(error.what()) +
                      "); allowed: an HDF5 file written by haptrial, schema version 1 to " +
                      std::to_string(kSchemaVersion) + kRecover);
   }

@@ -160,7 +160,7 @@ TEST(IntegrityTest, DroppedRecordsAndAnUnfinishedSessionAreFound) {
   Session session;
   session.summary[0].dropped = 4;
   EXPECT_EQ(session.check().dropped, 4u);
-  EXPECT_THAT(session.check().problems, ElementsAre("4 records were dropped"));
+  EXPECT_THAT(session.check().problems, ElementsAre("4 lost records"));
   session.summary.clear();
   EXPECT_THAT(session.check().problems, ElementsAre(HasSubstr("the session is unfinished")));
 }
