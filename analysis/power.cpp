@@ -98,7 +98,7 @@ Defined<SampleSize> size_reaching(const Curve& curve, double power) {
     return SampleSize{kSmallest, static_cast<long>(kSmallest), least};
   }
   const auto exact =
-      reached(curve, power, kSmallest, kMost, "even ten million participants would not do");
+      reached(curve, power, kSmallest, kMost, "more than ten million participants would be needed");
   if (!exact) {
     return Undefined{exact.because()};
   }
@@ -108,7 +108,8 @@ Defined<SampleSize> size_reaching(const Curve& curve, double power) {
 
 Defined<double> effect_reaching(const Curve& curve, double power) {
   constexpr double kSmall = 1e-9;
-  return reached(curve, power, kSmall, 100.0, "even 100 standard deviations would not do");
+  return reached(curve, power, kSmall, 100.0,
+                 "an effect of more than 100 standard deviations would be needed");
 }
 
 }  // namespace

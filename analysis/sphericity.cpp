@@ -27,7 +27,7 @@ Defined<Mauchly> mauchly(const Eigen::MatrixXd& products, double df) {
     return Undefined{"two conditions have a single difference"};
   }
   if (df < c) {
-    return Undefined{"there are too few participants for so many conditions"};
+    return Undefined{"too few participants for this number of conditions"};
   }
   const Eigen::VectorXd variances =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(products, Eigen::EigenvaluesOnly)

@@ -106,9 +106,8 @@ void BoneTrials::restore(const protocols::PlannedTrial& trial, SessionRecord& re
         record.collect([](std::span<const record::Sample>) {});
         progress.update(static_cast<double>(tick), "", d_.rate);
         if (interrupted() || (request_.cancel != nullptr && request_.cancel->load())) {
-          throw RunError(
-              fmt::format("interrupted; what was recorded is in {}, resume it with --resume",
-                          session.string()));
+          throw RunError(fmt::format(
+              "interrupted; what was recorded is in {}; continue with --resume", session.string()));
         }
       });
   const bool lost = bone.stage && record.was_cut_short(trial);

@@ -27,7 +27,8 @@ std::vector<std::string> what_is_missing(const fs::path& folder, std::size_t ses
   std::vector<std::string> remarks;
   const auto planned = static_cast<std::size_t>(definition.design.participants);
   if (sessions != planned) {
-    remarks.push_back(fmt::format("{} of {} planned participants are here.", sessions, planned));
+    remarks.push_back(fmt::format("{} of {} planned participants {} a session in this folder.",
+                                  sessions, planned, sessions == 1 ? "has" : "have"));
   }
   std::vector<std::string> unfinished;
   for (const auto& entry : fs::directory_iterator(folder)) {

@@ -1,4 +1,5 @@
 #include "experiments/commands.h"
+#include "experiments/counted.h"
 
 #include <fmt/format.h>
 
@@ -50,16 +51,16 @@ int dry_run(const DryRunOptions& options) {
   }
   const DryRunSummary done =
       experiment.bone ? run_dry(*experiment.bone, dry) : run_dry(*experiment.force, dry);
-  fmt::print("{} sessions, {:.0f} s of simulated time in {:.1f} s ({:.0f} times real time)\n",
-             dry.participants, done.recorded_seconds, done.elapsed_seconds,
-             done.recorded_seconds / done.elapsed_seconds);
+  fmt::print("{}, {:.0f} s of simulated time in {:.1f} s ({:.0f} times real time)\n",
+             counted(dry.participants, "session", "sessions"), done.recorded_seconds,
+             done.elapsed_seconds, done.recorded_seconds / done.elapsed_seconds);
   if (done.aborted_passes == done.passes) {
     throw RunError(fmt::format("every pass was aborted; haptrial info {} says why",
                                (dry.folder / "S01.h5").string()));
   }
   if (done.aborted_passes > 0) {
-    fmt::print("{} passes were aborted; haptrial info FILE says which and why\n",
-               done.aborted_passes);
+    fmt::print("{}; haptrial info FILE says which and why\n",
+               counted(done.aborted_passes, "pass was aborted", "passes were aborted"));
   }
   fmt::print("sessions: {}\n", dry.folder.string());
   if (experiment.bone) {

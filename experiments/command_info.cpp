@@ -1,4 +1,5 @@
 #include "experiments/commands.h"
+#include "experiments/counted.h"
 
 #include <fmt/format.h>
 
@@ -38,14 +39,15 @@ void print_loop(const record::SessionReader& reader) {
     fmt::print("loop        unknown: the session is unfinished\n");
     return;
   }
-  fmt::print("loop        {} overruns, {} records dropped\n", loop.overruns, loop.dropped);
+  fmt::print("loop        {}, {}\n", counted(loop.overruns, "overrun", "overruns"),
+             counted(loop.dropped, "lost record", "lost records"));
   if (const auto late = analysis::too_many_overruns(loop.ticks, loop.overruns)) {
     fmt::print("loop        NOT kept: {}\n", *late);
   }
   if (loop.applies && loop.lateness) {
     const analysis::TimingPercentiles& late = *loop.lateness;
     const auto us = [](std::int64_t ns) { return 1e-3 * static_cast<double>(ns); };
-    fmt::print("lateness    median {:.2f}, 99 % {:.2f}, 99.9 % {:.2f}, worst {:.2f} us\n",
+    fmt::print("lateness    median {:.2f}, 99 % {:.2f}, 99.9 % {:.2f}, worst {:.2f} µs\n",
                us(late.median_ns), us(late.p99_ns), us(late.p999_ns), us(late.highest_ns));
   }
 }

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cstdint>
+#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -93,7 +95,11 @@ void check_options(const Typed& typed) {
 std::string form_of(const CLI::App& app, const std::string& option) {
   const CLI::Option* found = app.get_option_no_throw(option);
   const std::string type = found == nullptr ? "" : found->get_type_name();
-  return type == "INT" || type == "UINT" ? "a whole number" : type == "FLOAT" ? "a number" : "";
+  return type == "UINT"
+             ? fmt::format("a whole number from 0 to {}", std::numeric_limits<std::uint32_t>::max())
+         : type == "INT"   ? "a whole number"
+         : type == "FLOAT" ? "a number"
+                           : "";
 }
 
 }  // namespace
@@ -109,6 +115,7 @@ std::string sentence_of(const CLI::App& app, std::span<char* const> words,
   const Typed typed = typed_subcommand(app, words);
   std::string what = error.what();
   constexpr std::string_view kUnread = "Could not convert: ";
+  constexpr std::string_view kTwice = ": At Most 1 required but received ";
   if (const auto equals = what.find(" = "); what.starts_with(kUnread) && equals != what.npos) {
     const std::string option = what.substr(kUnread.size(), equals - kUnread.size());
     if (const std::string form = form_of(*typed.app, option); !form.empty()) {
@@ -116,6 +123,9 @@ std::string sentence_of(const CLI::App& app, std::span<char* const> words,
     }
   } else if (const auto required = what.find(": 1 required "); required != what.npos) {
     what = fmt::format("{} has no value; write one after it", what.substr(0, required));
+  } else if (const auto most = what.find(kTwice); most != what.npos) {
+    what = fmt::format("{} is given {} times; give it once", what.substr(0, most),
+                       what.substr(most + kTwice.size()));
   } else if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
     if (const auto end = what.find(" is required"); end != what.npos) {
       what = fmt::format("{} is missing", what.substr(0, end));

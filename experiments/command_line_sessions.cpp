@@ -83,7 +83,7 @@ void add_recover(CLI::App& app, int& status) {
   sub->add_option("FILE", o.damaged,
                   "Damaged session file (.h5, .partial), which is left unchanged")
       ->required();
-  sub->add_option("OUT", o.out, "New session file (default: FILE.recovered.h5)");
+  sub->add_option("OUT", o.out, "New session file (default: S01.recovered.h5 for S01.h5)");
 }
 
 void add_replay(CLI::App& app, int& status) {

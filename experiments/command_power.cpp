@@ -151,8 +151,10 @@ void print_t(const PowerOptions& options, const Plan& plan) {
   const std::string design = options.design.value_or("two-sample");
   fmt::print("{} t test, {}-tailed, significance level {}\n", design,
              options.one_tailed ? "one" : "two", options.alpha);
-  fmt::print("difference    {:.6g}, {:.4g} standard deviations{}\n",
-             options.delta.value_or(plan.effect * options.sd), plan.effect,
+  const double delta = options.delta.value_or(plan.effect * options.sd);
+  const std::string effect = fmt::format("{:.4g}", std::copysign(plan.effect, delta));
+  fmt::print("difference    {:.6g}, {} standard deviation{}{}\n", delta, effect,
+             effect == "1" || effect == "-1" ? "" : "s",
              design == "paired" ? " of the differences" : "");
   print_size(plan, design == "two-sample" ? 2 : 1);
 }

@@ -21,6 +21,7 @@
 #include "experiments/arguments.h"
 #include "experiments/bone_replay.h"
 #include "experiments/commands.h"
+#include "experiments/counted.h"
 #include "experiments/drilling_study.h"
 #include "experiments/interrupt.h"
 #include "experiments/progress.h"
@@ -181,7 +182,8 @@ int rate_prepare(const RatePrepareOptions& options) {
     beside.publish();
     staging.publish();
   }
-  fmt::print("{} procedures under codes: {}\n", key.entries.size(), folder.string());
+  fmt::print("{} under codes: {}\n", counted(key.entries.size(), "procedure", "procedures"),
+             folder.string());
   fmt::print("key, sealed until import: {}\n", (study / kKeyFile).string());
   return 0;
 }

@@ -20,7 +20,14 @@ int rate_simulate(const RateSimulateOptions& options) {
   const int jobs = checked_jobs(options.jobs);
   const fs::path study(options.folder);
   for (const fs::path& file : files_of(study, Pilots::kLeftOut)) {
-    if (!record::SessionReader(file).info().simulated) {
+    const record::SessionReader session(file);
+    if (!session.drills()) {
+      throw InputError(
+          fmt::format("{}: is not a drilling session; choose a folder of sessions with "
+                      "protocol = \"bone_drilling\"",
+                      file.string()));
+    }
+    if (!session.info().simulated) {
       throw InputError(fmt::format(
           "{}: is the session of a person; simulated raters score simulated sessions only",
           file.string()));

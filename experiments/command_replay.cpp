@@ -14,6 +14,7 @@
 #include "experiments/bone_replay.h"
 #include "experiments/bone_sound.h"
 #include "experiments/commands.h"
+#include "experiments/counted.h"
 #include "experiments/interrupt.h"
 #include "experiments/progress.h"
 #include "experiments/replay.h"
@@ -161,10 +162,10 @@ void print_verdict(const ReplayOptions& options, const ReplayVerdict& verdict) {
     throw RunError(fmt::format("{}: trial {} differs from the recording when simulated again: {}",
                                options.file, verdict.trial, verdict.difference));
   }
-  fmt::print(
-      "trial {}: the same bone, {} ticks in {} passes, {} voxels emptied, checksum {:016x}{}\n",
-      verdict.trial, verdict.ticks, verdict.passes, verdict.emptied, verdict.checksum,
-      verdict.whole ? "" : "; an unfinished pass has no checksum");
+  fmt::print("trial {}: the same bone, {} ticks in {}, {} voxels emptied, checksum {:016x}{}\n",
+             verdict.trial, verdict.ticks, counted(verdict.passes, "pass", "passes"),
+             verdict.emptied, verdict.checksum,
+             verdict.whole ? "" : "; an unfinished pass has no checksum");
 }
 
 int replay_drilling(const ReplayOptions& options, int fps) {

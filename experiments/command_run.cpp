@@ -1,4 +1,5 @@
 #include "experiments/commands.h"
+#include "experiments/counted.h"
 
 #include <fmt/format.h>
 
@@ -169,8 +170,10 @@ int run(const RunOptions& options) {
   if (done.stopped) {
     fmt::print("stopped with trials left; the same command with --resume continues with them\n");
   }
-  fmt::print("{} ticks at {} Hz, {} overruns, {} records lost, {} passes aborted\n", done.ticks,
-             setup.rate, done.overruns, done.dropped, done.aborted_passes);
+  fmt::print("{} ticks at {} Hz, {}, {}, {} aborted\n", done.ticks, setup.rate,
+             counted(done.overruns, "overrun", "overruns"),
+             counted(done.dropped, "lost record", "lost records"),
+             counted(done.aborted_passes, "pass", "passes"));
   if (const auto late = analysis::too_many_overruns(done.ticks, done.overruns)) {
     fmt::print("WARNING: the servo loop did not keep its rate: {}\n", *late);
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "experiments/contact_margin.h"
+#include "experiments/counted.h"
 #include "experiments/experiment.h"
 #include "experiments/loop_margin.h"
 #include "experiments/session.h"
@@ -16,8 +17,10 @@ namespace haptrial::experiments {
 namespace {
 
 void print_bones(const BoneDefinition& d) {
-  fmt::print("{}: {} participants, {} procedures of at most {:.0f} s each, {} Hz\n", d.name,
-             d.design.participants, d.design.trials, d.drilling.time_limit, d.rate);
+  fmt::print("{}: {}, {} of at most {:.0f} s{}, {} Hz\n", d.name,
+             counted(d.design.participants, "participant", "participants"),
+             counted(d.design.trials, "procedure", "procedures"), d.drilling.time_limit,
+             d.design.trials == 1 ? "" : " each", d.rate);
   for (const auto& bone : d.bones) {
     const auto filled = std::count_if(bone->labels.begin(), bone->labels.end(),
                                       [](std::uint8_t label) { return label != 0; });
@@ -53,10 +56,13 @@ int validate(const std::string& file) {
     return 0;
   }
   const Definition& d = *experiment.force;
-  fmt::print("{}: {} participants, {} trials in {} blocks of {}, conditions {}, {} Hz\n", d.name,
-             d.design.participants, d.design.trials, d.design.blocks(), d.design.repetitions,
+  fmt::print("{}: {}, {} in {} of {}, {} {}, {} Hz\n", d.name,
+             counted(d.design.participants, "participant", "participants"),
+             counted(d.design.trials, "trial", "trials"),
+             counted(d.design.blocks(), "block", "blocks"), d.design.repetitions,
+             d.design.conditions.size() == 1 ? "condition" : "conditions",
              fmt::join(d.design.conditions, ", "), d.rate);
-  fmt::print("about {:.0f} minutes a participant without the break\n",
+  fmt::print("about {:.0f} minutes per participant, breaks not counted\n",
              estimated_ticks(d, d.design.trials) / d.rate / 60.0);
   print_margins(d);
   print_warnings(experiment);

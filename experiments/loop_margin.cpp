@@ -50,8 +50,10 @@ std::string describe(const LoopMargin& m) {
       "{}: {} N/m and {} N·s/m suit a hand of {} ({} if forces come three ticks late)", m.name,
       m.gains.stiffness, m.gains.damping, hand(m.lightest), hand(m.lightest_late));
   if (m.bare_damping < m.gains.damping) {
-    text += fmt::format("; a lighter hand gets less damping, the bare handle at least {:.1f} N·s/m",
-                        m.bare_damping);
+    text += fmt::format(
+        "; for a lighter hand haptrial reduces the damping, to no less than {:.1f} N·s/m for the "
+        "bare handle",
+        m.bare_damping);
   }
   return text;
 }

@@ -99,6 +99,9 @@ void check_reach(const device::DeviceInfo& info, const Setup& d) {
 }  // namespace
 
 void check_device_name(const std::string& name) {
+  if (name == kReplay) {
+    throw InputError("--device replay: names no file; write replay:FILE");
+  }
   const std::vector<std::string> known{"virtual", "mouse", "force-dimension", "open-haptics",
                                        "replay:FILE"};
   if (!name.starts_with(kReplay) &&

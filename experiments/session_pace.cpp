@@ -203,10 +203,10 @@ bool SessionPace::asked_to_stop() const {
 }
 
 void SessionPace::end_early(const std::string& why) const {
-  throw RunError(
-      real_ ? fmt::format("{}; what was recorded is in {}.partial, resume it with --resume", why,
-                          p_.request.file.string())
-            : why);
+  throw RunError(real_
+                     ? fmt::format("{}; what was recorded is in {}.partial; continue with --resume",
+                                   why, p_.request.file.string())
+                     : why);
 }
 
 }  // namespace haptrial::experiments

@@ -1,6 +1,7 @@
 #include "experiments/study_run.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -177,13 +178,21 @@ std::vector<fs::path> session_files(const fs::path& folder) {
                                  fs::exists(folder, error) ? "not a folder" : "no such folder"));
   }
   std::vector<fs::path> files;
+  std::vector<std::string> unfinished;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     if (entry.path().extension() == ".h5") {
       files.push_back(entry.path());
+    } else if (entry.path().extension() == ".partial") {
+      unfinished.push_back(entry.path().filename().string());
     }
   }
   if (error) {
     throw InputError(fmt::format("{}: cannot be read ({})", folder.string(), error.message()));
+  }
+  if (files.empty() && !unfinished.empty()) {
+    std::sort(unfinished.begin(), unfinished.end());
+    throw InputError(fmt::format("{}: holds only unfinished sessions: {}; resume them",
+                                 folder.string(), fmt::join(unfinished, ", ")));
   }
   if (files.empty()) {
     throw InputError(fmt::format("{}: holds no session file (.h5); give a folder with at least one",

@@ -173,7 +173,7 @@ TEST_F(BoneSessionTest, AReplayGivesTheSameBone) {
   const test::CommandResult command =
       test::run_command("haptrial replay '" + (*folder_ / "S01.h5").string() + "'");
   EXPECT_EQ(command.status, 0) << command.errors;
-  EXPECT_THAT(command.output, HasSubstr("trial 1: the same bone, 14000 ticks in 1 passes"));
+  EXPECT_THAT(command.output, HasSubstr("trial 1: the same bone, 14000 ticks in 1 pass,"));
 }
 
 /// The file with the hand a tenth of a millimetre aside on one tick in the middle of the drilling.

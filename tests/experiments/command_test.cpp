@@ -104,6 +104,7 @@ TEST_F(CommandTest, ValidateAndDevices) {
   const CommandResult valid = run_command("haptrial validate " + shipped());
   EXPECT_EQ(valid.status, 0);
   EXPECT_THAT(valid.output, HasSubstr("12 participants, 72 trials in 24 blocks of 3"));
+  EXPECT_THAT(valid.output, HasSubstr(" minutes per participant, breaks not counted\n"));
   EXPECT_THAT(run_command("haptrial devices").output, HasSubstr("virtual"));
 }
 
@@ -185,6 +186,9 @@ TEST_F(CommandTest, BadDefinitions) {
                    "the definition is empty");
   expect_bad_input("haptrial validate " + path("."), "is a directory");
   expect_bad_input("haptrial validate " + path("absent.toml"), "no such file");
+  expect_bad_input(
+      "haptrial run " + shipped() + " --subject P1 --device replay: --out " + path("o"),
+      "--device replay: names no file; write replay:FILE");
   test::write_text(folder_ / "gains.toml", test::shipped_with("stiffness", "stiffness = nan"));
   expect_bad_input("haptrial dry-run " + path("gains.toml") + " --out " + path("o"),
                    "hand.stiffness is nan");
@@ -195,7 +199,17 @@ TEST_F(CommandTest, BadSessionFiles) {
   expect_bad_input("haptrial info " + path("."), folder_.path().string());
   expect_bad_input("haptrial analyze " + path("."), "holds no session file");
   expect_bad_input("haptrial analyze " + path("absent"), "no such folder");
+  fs::create_directory(folder_ / "unfinished");
+  test::write_text(folder_ / "unfinished" / "Z1.h5.partial", "");
+  expect_bad_input("haptrial analyze " + path("unfinished"),
+                   "holds only unfinished sessions: Z1.h5.partial; resume them");
   ASSERT_EQ(brief_study("study", "--subjects 1").status, 0);
+  expect_bad_input("haptrial validate " + path("study/S01.h5"),
+                   "S01.h5: is a session file; give a definition (.toml)");
+  expect_bad_input("haptrial rate simulate " + path("study"),
+                   "S01.h5: is not a drilling session; choose a folder");
+  EXPECT_THAT(run_command("haptrial info " + path("study/S01.h5")).output,
+              HasSubstr("0 overruns, 0 lost records"));
   const std::string whole = test::read_text(folder_ / "study" / "S01.h5");
   fs::create_directory(folder_ / "cut");
   test::write_text(folder_ / "cut" / "S01.h5", whole.substr(0, whole.size() / 2));
@@ -223,13 +237,18 @@ TEST_F(CommandTest, OfTwoRunsIntoOneFolderOneIsRefused) {
   }
 }
 
+TEST_F(CommandTest, OneIsCountedInTheSingular) {
+  EXPECT_THAT(brief_study("study", "--subjects 1").output, testing::StartsWith("1 session, "));
+}
+
 TEST_F(CommandTest, AnIncompleteStudySaysSo) {
   ASSERT_EQ(brief_study("study", "--subjects 2").status, 0);
   fs::rename(folder_ / "study" / "S02.h5", folder_ / "study" / "S02.h5.partial");
   const CommandResult analysis = run_command("haptrial analyze " + path("study"));
   EXPECT_EQ(analysis.status, 0) << analysis.errors;
   const std::string report = test::read_text(folder_ / "study" / "report.html");
-  for (const char* remark : {"1 of 12 planned participants are here.", "S02.h5.partial"}) {
+  for (const char* remark :
+       {"1 of 12 planned participants has a session in this folder.", "S02.h5.partial"}) {
     EXPECT_THAT(analysis.output, HasSubstr(remark));
     EXPECT_THAT(report, HasSubstr(remark));
   }

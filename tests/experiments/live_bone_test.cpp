@@ -42,7 +42,7 @@ TEST(LiveBoneTest, NothingIsLostAndAReplayGivesTheSameBone) {
   test::LiveCommand session(run_arguments(folder));
   const test::CommandResult ended = session.wait(60.0);
   ASSERT_EQ(ended.status, 0) << ended.errors;
-  EXPECT_THAT(ended.output, HasSubstr(" 0 records lost"));
+  EXPECT_THAT(ended.output, HasSubstr(" 0 lost records"));
   const fs::path file = folder / "out" / "S01.h5";
   const record::SessionReader reader(file);
   const record::Integrity integrity = record::check_session(reader);

@@ -215,7 +215,7 @@ TEST_F(LiveDrillingWindowTest, EscapeStopsASessionThatNobodyAttends) {
   display_->press_key("haptrial", 0xff1b);
   const test::CommandResult ended = session.wait(30.0);
   EXPECT_NE(ended.status, 0);
-  EXPECT_THAT(ended.errors, HasSubstr("resume it with --resume"));
+  EXPECT_THAT(ended.errors, HasSubstr("; continue with --resume"));
   EXPECT_TRUE(fs::exists(partial()));
 }
 

@@ -56,7 +56,7 @@ TEST(LiveSoundTest, TheCardIsGivenTheDrillsSoundWhileTheLoopKeepsItsTime) {
                             "export ALSA_CONFIG_PATH='" + (folder / "card.conf").string() + "'");
   const test::CommandResult ended = session.wait(60.0);
   ASSERT_EQ(ended.status, 0) << ended.errors;
-  EXPECT_THAT(ended.output, HasSubstr(" 0 records lost"));
+  EXPECT_THAT(ended.output, HasSubstr(" 0 lost records"));
   if (ended.output.find("sound card 'default'") != std::string::npos) {
     GTEST_SKIP() << "ALSA has no plugin here that plays into a file: " << ended.output;
   }

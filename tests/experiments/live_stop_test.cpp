@@ -132,7 +132,7 @@ TEST_P(LiveFaultTest, EndsASessionThatNobodyAttends) {
   const CommandResult ended = session.wait(40.0);
   EXPECT_EQ(ended.status, 1);
   EXPECT_THAT(ended.errors, HasSubstr(GetParam().sentence));
-  EXPECT_THAT(ended.errors, HasSubstr("resume it with --resume"));
+  EXPECT_THAT(ended.errors, HasSubstr("; continue with --resume"));
   EXPECT_TRUE(fs::exists(folder_ / "out/S01.h5.partial"));
   if (GetParam().failure != Failure::kLostLink) {  // there the device hears of no zero
     expect_cut();
@@ -177,7 +177,7 @@ TEST_F(LiveStopTest, ALibraryThatHangsEndsTheSessionWithASentence) {
     const CommandResult ended = session.wait(40.0);
     EXPECT_EQ(ended.status, 1) << how;
     EXPECT_THAT(ended.errors, HasSubstr("does not come back")) << how;
-    EXPECT_THAT(ended.errors, HasSubstr("resume it with --resume")) << how;
+    EXPECT_THAT(ended.errors, HasSubstr("; continue with --resume")) << how;
     EXPECT_TRUE(fs::exists(folder_ / out / "S01.h5.partial"));
   }
 }

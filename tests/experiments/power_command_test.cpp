@@ -27,6 +27,13 @@ void expect_refused(const std::string& arguments, const std::string& sentence) {
   EXPECT_EQ(result.output, "") << arguments;
 }
 
+TEST(PowerCommand, TheDifferenceKeepsItsSign) {
+  EXPECT_THAT(printed("t --delta -1 --n 20"),
+              HasSubstr("difference    -1, -1 standard deviation\n"));
+  EXPECT_THAT(printed("t --delta 3 --sd 2 --n 20"),
+              HasSubstr("difference    3, 1.5 standard deviations\n"));
+}
+
 // The sizes are those of Cohen 1988, tables 2.4.1 and 8.4.4, and of R's power.t.test.
 TEST(PowerCommand, SaysHowManyParticipants) {
   EXPECT_EQ(printed("t --delta 0.5 --sd 1 --power 0.8"),
@@ -77,7 +84,8 @@ TEST(PowerCommand, RefusesWithASentence) {
   expect_refused("t --delta 1 --power 0.8 --design triple", "--design is 'triple'; allowed");
   expect_refused("t --delta 1 --power 0.8 --design piared",
                  "--design is 'piared'; did you mean paired? allowed: ");
-  expect_refused("t --delta -1 --power 0.8 --one-tailed --sd 1e9", "ten million");
+  expect_refused("t --delta -1 --power 0.8 --one-tailed --sd 1e9",
+                 "more than ten million participants would be needed");
   expect_refused("t --delta 1e9 --n 9", "100 standard deviations");
 }
 

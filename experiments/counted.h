@@ -1,0 +1,16 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+
+namespace haptrial::experiments {
+
+/// "1 session", "2 sessions".
+template <class Number>
+std::string counted(Number number, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", number, number == Number{1} ? one : many);
+}
+
+}  // namespace haptrial::experiments
