@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "analysis/p_adjust.h"
@@ -99,6 +100,11 @@ ConditionComparison compare(const StudyComparison& studies, const std::string& c
     }
   }
   c.shared = a.size();
+  if (!a.empty()) {
+    c.shared_difference =
+        (std::accumulate(b.begin(), b.end(), 0.0) - std::accumulate(a.begin(), a.end(), 0.0)) /
+        static_cast<double>(a.size());
+  }
   c.paired = paired_t_test(b, a, Tail::kTwoSided);
   return c;
 }

@@ -18,7 +18,8 @@ struct ConditionComparison {
   std::size_t second_people{0};
   Defined<TTest> welch{Undefined{"there are no participants"}};        // of the means, two-sided
   Defined<double> welch_holm{Undefined{"there are no participants"}};  // adjusted over conditions
-  std::size_t shared{0};  // the same participants with the condition in both
+  std::size_t shared{0};          // the same participants with the condition in both
+  double shared_difference{0.0};  // mean of theirs; 0 without any
   Defined<TTest> paired{Undefined{"there are no participants"}};        // of theirs, two-sided
   Defined<double> paired_holm{Undefined{"there are no participants"}};  // adjusted over conditions
 };

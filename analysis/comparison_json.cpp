@@ -65,14 +65,16 @@ std::string comparison_json(const StudyComparison& comparison) {
   }
   root["conditions"] = Json::array();
   for (const auto& c : comparison.conditions) {
-    root["conditions"].push_back({{"condition", c.condition},
-                                  {"first_participant_means", to_json(c.first)},
-                                  {"second_participant_means", to_json(c.second)},
-                                  {"welch_two_sided", to_json(c.welch)},
-                                  {"welch_p_holm", to_json(c.welch_holm)},
-                                  {"shared_participants", c.shared},
-                                  {"paired_two_sided", to_json(c.paired)},
-                                  {"paired_p_holm", to_json(c.paired_holm)}});
+    root["conditions"].push_back(
+        {{"condition", c.condition},
+         {"first_participant_means", to_json(c.first)},
+         {"second_participant_means", to_json(c.second)},
+         {"welch_two_sided", to_json(c.welch)},
+         {"welch_p_holm", to_json(c.welch_holm)},
+         {"shared_participants", c.shared},
+         {"shared_difference", c.shared > 0 ? Json(c.shared_difference) : Json()},
+         {"paired_two_sided", to_json(c.paired)},
+         {"paired_p_holm", to_json(c.paired_holm)}});
   }
   return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -89,6 +89,11 @@ std::string t_value(const Defined<TTest>& test) {
               : "not defined, because " + test.because();
 }
 
+/// Without an interval where the differences do not vary.
+std::string within_people(const ConditionComparison& c) {
+  return c.paired ? interval(*c.paired) : c.shared > 0 ? number(c.shared_difference) : "-";
+}
+
 std::string adjusted(const Defined<double>& p) { return p ? p_value(*p) : "-"; }
 
 std::string mean_of(const Defined<MeanInterval>& mean, std::size_t people) {
@@ -139,9 +144,8 @@ Figure figure_of(const StudyComparison& comparison) {
 std::string within_table(const StudyComparison& comparison) {
   std::vector<std::vector<std::string>> rows;
   for (const auto& c : comparison.conditions) {
-    rows.push_back({capitalized(c.condition), std::to_string(c.shared),
-                    c.paired ? interval(*c.paired) : "-", t_value(c.paired),
-                    adjusted(c.paired_holm)});
+    rows.push_back({capitalized(c.condition), std::to_string(c.shared), within_people(c),
+                    t_value(c.paired), adjusted(c.paired_holm)});
   }
   return "<h2>Within participants</h2>\n" +
          html_table({"Condition", "Participants", "Difference", "Paired t-test", "Adjusted p"},
@@ -236,9 +240,11 @@ std::vector<std::string> comparison_lines(const StudyComparison& comparison) {
   lines.push_back(pairing(comparison));
   for (const auto& c : comparison.conditions) {
     std::string result = "the difference is " + t_value(c.welch);
-    if (c.paired) {
-      result = fmt::format("difference within {} {}, adjusted {}", counted(c.shared, "participant"),
-                           interval(*c.paired), adjusted(c.paired_holm));
+    if (c.shared > 0) {
+      result = fmt::format(
+          "difference within {} {}{}", counted(c.shared, "participant"), within_people(c),
+          c.paired ? ", adjusted " + adjusted(c.paired_holm)
+                   : "; its interval and test are not defined, because " + c.paired.because());
     } else if (c.welch) {
       result = fmt::format("difference between the means {}, adjusted {}", interval(*c.welch),
                            adjusted(c.welch_holm));

@@ -54,6 +54,23 @@ TEST(ComparisonTest, FindsADifferenceWithinPeopleThatLiesWithinTheirSpread) {
   EXPECT_NEAR(c.conditions[1].paired->p, 0.363217, 1e-5) << "t(5) = 1, two-sided";
 }
 
+TEST(ComparisonTest, PairsStayPairsWhereTheirDifferencesDoNotVary) {
+  const std::vector<std::string> people{"S1", "S2", "S3", "S4"};
+  ScoredStudy second = study("b", people, 0.25);
+  const StudyComparison c = compare_studies(study("a", people, 0.0), second);
+  ASSERT_EQ(c.conditions[0].condition, "haptic");
+  EXPECT_FALSE(c.conditions[0].paired);
+  EXPECT_NEAR(c.conditions[0].shared_difference, 0.25, 1e-12);
+  const auto lines = comparison_lines(c);
+  EXPECT_THAT(lines[3], HasSubstr("difference within 4 participants 0.25"));
+  EXPECT_THAT(lines[3], HasSubstr("; its interval and test are not defined, because the "
+                                  "differences do not vary"));
+  EXPECT_THAT(lines[3], Not(HasSubstr("between the means")));
+  EXPECT_NEAR(
+      nlohmann::json::parse(comparison_json(c))["conditions"][0]["shared_difference"].get<double>(),
+      0.25, 1e-12);
+}
+
 TEST(ComparisonTest, OnlySharedPeopleArePaired) {
   const StudyComparison c =
       compare_studies(study("a", {"S1", "S2", "S3"}, 0.0), study("b", {"S2", "S3", "S9"}, 0.1));
