@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "analysis/curve_csv.h"
+#include "analysis/exchange/import_checks.h"
 #include "analysis/exchange/new_folder.h"
 #include "analysis/figure_gnuplot.h"
 #include "analysis/recall_figure.h"
@@ -120,6 +121,10 @@ int align(const AlignOptions& options) {
   const RecallDetail recall = analysis::align_curves(target.view(), applied.view(), parameters);
   if (!options.out.empty()) write(recall, options.out);
   print(recall, parameters);
+  // Not on standard output, which programs read.
+  if (const std::string warning = exchange::time_warning(target, applied); !warning.empty()) {
+    fmt::print(stderr, "{}\n", warning);
+  }
   return 0;
 }
 

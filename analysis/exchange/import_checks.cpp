@@ -84,6 +84,14 @@ bool has_gap(const CurveLook& look) {
   return look.gap > kShortestGap && look.gap * look.rate > kGapSteps;
 }
 
+constexpr const char* kImplausibleTimes = "implausible times";
+constexpr const char* kAreTheyMilliseconds =
+    "Times are read as seconds and rates as hertz; are these milliseconds?";
+
+std::string times_of(const CurveLook& look) {
+  return fmt::format("{} s with {} rows a second", number(look.duration), number(look.rate));
+}
+
 /// The looks of a study and how to speak of them.
 class Warnings {
  public:
@@ -128,13 +136,10 @@ std::string both(double target, double applied, const char* unit) {
 
 void warn_of_times(Warnings& warnings) {
   warnings.add(
-      "implausible times",
+      kImplausibleTimes,
       [](const TrialLook& t) { return has_odd_times(t.target) || has_odd_times(t.applied); },
-      [](const TrialLook& t) {
-        const CurveLook& odd = has_odd_times(t.applied) ? t.applied : t.target;
-        return fmt::format("{} s with {} rows a second", number(odd.duration), number(odd.rate));
-      },
-      "Times are read as seconds and rates as hertz; are these milliseconds?");
+      [](const TrialLook& t) { return times_of(has_odd_times(t.applied) ? t.applied : t.target); },
+      kAreTheyMilliseconds);
   warnings.add(
       "gaps between two rows",
       [](const TrialLook& t) { return has_gap(t.target) || has_gap(t.applied); },
@@ -277,6 +282,16 @@ TrialLook look_at(const ImportedCurves& curves, const analysis::RecallDetail& de
   look.correlation = correlation(detail.target, detail.applied);
   look.better_reversed = is_nearer_reversed(detail.target, detail.applied);
   return look;
+}
+
+std::string time_warning(const analysis::TableCurve& target, const analysis::TableCurve& applied) {
+  const CurveLook first = look_at(target, "the target force");
+  const CurveLook second = look_at(applied, "the applied force");
+  if (!has_odd_times(first) && !has_odd_times(second)) {
+    return "";
+  }
+  return fmt::format("WARNING: {} (target: {}; applied: {}). {}", kImplausibleTimes,
+                     times_of(first), times_of(second), kAreTheyMilliseconds);
 }
 
 std::vector<std::string> import_warnings(const ImportedTrials& trials,

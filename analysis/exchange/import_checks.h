@@ -34,6 +34,10 @@ struct TrialLook {
 /// @param detail  the same curves, aligned.
 TrialLook look_at(const ImportedCurves& curves, const analysis::RecallDetail& detail);
 
+/// A warning about times that can hardly be seconds; empty when all is well. Neither curve may be
+/// one that duration_of() refuses.
+std::string time_warning(const analysis::TableCurve& target, const analysis::TableCurve& applied);
+
 /// Warnings about data that can hardly be what the import takes them for: times that are not
 /// seconds, forces that are not newtons, a reversed sign, a constant force, a handful of rows,
 /// curves or rates that do not fit each other, names that differ in blanks or case. One sentence

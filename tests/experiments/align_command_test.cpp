@@ -130,6 +130,22 @@ TEST_F(AlignCommandTest, EveryWayToWriteACurveReadsTheSame) {
   EXPECT_EQ(number("target.csv applied.csv --rate 100"), plain) << "the times are passed over";
 }
 
+TEST_F(AlignCommandTest, MillisecondsGetTheWarningOfAnImport) {
+  std::string text = "time,force\n";
+  const auto values = peak(2.0);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    text += fmt::format("{},{}\n", 10 * k, values[k]);
+  }
+  write("milliseconds.csv", text);
+  const CommandResult odd = run("milliseconds.csv milliseconds.csv");
+  EXPECT_EQ(odd.status, 0);
+  EXPECT_THAT(odd.errors,
+              StartsWith("WARNING: implausible times (target: 4000 s with 0.1000 rows a second"));
+  EXPECT_THAT(odd.errors, HasSubstr("are these milliseconds?"));
+  EXPECT_THAT(run("target.csv milliseconds.csv").errors, HasSubstr("applied: 4000 s"));
+  EXPECT_EQ(run("target.csv applied.csv").errors, "");
+}
+
 TEST_F(AlignCommandTest, ColumnsAreChosenByName) {
   const double plain = number("target.csv applied.csv");
   std::string both = "t,wanted,got,note\n";
@@ -225,8 +241,7 @@ TEST_F(AlignCommandTest, BadArgumentsGetASentence) {
   expect_bad(both + "--pattern symmetric2 --open-begin",
              "--open-begin is given with --pattern sym");
   expect_bad(both + "--rate 0", "the rate of target.csv is 0 Hz; allowed: a finite number above 0");
-  expect_bad(both + "--rate 10 --time time",
-             "has a rate and a column 'time' of times; give one");
+  expect_bad(both + "--rate 10 --time time", "has a rate and a column 'time' of times; give one");
   expect_bad(both + "--out target.csv", "target.csv");
 }
 
