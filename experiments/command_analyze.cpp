@@ -30,14 +30,7 @@ std::vector<std::string> what_is_missing(const fs::path& folder, std::size_t ses
     remarks.push_back(fmt::format("{} of {} planned participants {} a session in this folder.",
                                   sessions, planned, sessions == 1 ? "has" : "have"));
   }
-  std::vector<std::string> unfinished;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == ".partial") {
-      unfinished.push_back(entry.path().filename().string());
-    }
-  }
-  std::sort(unfinished.begin(), unfinished.end());
-  if (!unfinished.empty()) {
+  if (const auto unfinished = unfinished_sessions(folder); !unfinished.empty()) {
     remarks.push_back(fmt::format("Not analysed, because the session is unfinished: {}.",
                                   fmt::join(unfinished, ", ")));
   }
@@ -164,6 +157,10 @@ void check_source(const AnalyzeOptions& options) {
   allow(is_import(options), "--column", !options.columns.empty(), kImport);
   allow(is_import(options), "--factor", !options.factors.empty(), kImport);
   allow(!is_import(options), "--pilots", options.pilots, "a folder of sessions");
+  if (is_import(options) && holds_sessions(options.out)) {  // whose report this would replace
+    throw InputError(
+        fmt::format("{}: --out holds session files; choose another folder", options.out));
+  }
 }
 
 }  // namespace

@@ -126,14 +126,26 @@ void export_as_curves(const ExportOptions& options, const std::vector<fs::path>&
              counted(done.subjects, "participant"), options.curves);
 }
 
-}  // namespace
-
-int export_sessions(const ExportOptions& options) {
-  const int jobs = checked_jobs(options.jobs);
+void check_form(const ExportOptions& options) {
   const int targets = !options.bids.empty() + !options.csv.empty() + !options.curves.empty();
   if (targets != 1) {
     throw InputError("give exactly one of --bids, --csv and --curves");
   }
+  const auto allow = [](const std::string& form, const char* name, bool given, const char* with) {
+    if (form.empty() && given) {
+      throw InputError(fmt::format("{} is given without {}; leave it out", name, with));
+    }
+  };
+  allow(options.bids, "--author", !options.authors.empty(), "--bids");
+  allow(options.bids, "--name", !options.name.empty(), "--bids");
+  allow(options.csv, "--samples", options.samples, "--csv");
+}
+
+}  // namespace
+
+int export_sessions(const ExportOptions& options) {
+  const int jobs = checked_jobs(options.jobs);
+  check_form(options);
   watch_for_interrupt();
   const auto files = all_files(options.files);
   if (!options.bids.empty()) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <string_view>
@@ -13,6 +14,10 @@
 
 namespace haptrial::experiments {
 namespace {
+
+/// Options that name a file or folder to be written.
+constexpr std::array<std::string_view, 8> kOutputs{"--out",   "--bids",  "--csv",  "--curves",
+                                                   "--video", "--sound", "--json", "--picture"};
 
 /// The subcommand that was typed, and what follows it.
 struct Typed {
@@ -91,6 +96,23 @@ void check_options(const Typed& typed) {
   }
 }
 
+/// An empty name, as a script's unset variable leaves it, would stand for the default.
+void check_outputs(const Typed& typed) {
+  for (std::size_t i = 0; i < typed.rest.size(); ++i) {
+    const std::string_view word = typed.rest[i];
+    const std::string option = option_in(word);
+    if (std::find(kOutputs.begin(), kOutputs.end(), option) == kOutputs.end()) {
+      continue;
+    }
+    const bool joined = word.size() > option.size();
+    const bool empty = joined ? word.size() == option.size() + 1
+                              : i + 1 < typed.rest.size() && typed.rest[i + 1][0] == '\0';
+    if (empty) {
+      throw InputError(fmt::format("{} is empty; write a name after it", option));
+    }
+  }
+}
+
 /// "a whole number", where the option's type says so.
 std::string form_of(const CLI::App& app, const std::string& option) {
   const CLI::Option* found = app.get_option_no_throw(option);
@@ -108,6 +130,7 @@ void check_words(const CLI::App& app, std::span<char* const> words) {
   const Typed typed = typed_subcommand(app, words);
   check_subcommand(typed);
   check_options(typed);
+  check_outputs(typed);
 }
 
 std::string sentence_of(const CLI::App& app, std::span<char* const> words,

@@ -90,6 +90,26 @@ void compare(const record::SessionReader& reader, const fs::path& file, const fs
 
 }  // namespace
 
+std::vector<std::string> unfinished_sessions(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().extension() == ".partial") {
+      names.push_back(entry.path().filename().string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+bool holds_sessions(const fs::path& folder) {
+  std::error_code ignored;
+  const fs::directory_iterator files(folder, ignored);
+  return std::any_of(begin(files), end(files), [](const fs::directory_entry& entry) {
+    return entry.path().extension() == ".h5" || entry.path().extension() == ".partial";
+  });
+}
+
 std::vector<fs::path> files_of(const fs::path& folder, Pilots pilots) {
   return taken(sorted_files(folder), folder, pilots);
 }

@@ -24,6 +24,12 @@ enum class Pilots { kLeftOut, kAlone };
 /// @throws InputError when there are none.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& folder, Pilots pilots);
 
+/// The names of the files of unfinished sessions in a folder, sorted; empty for no folder.
+std::vector<std::string> unfinished_sessions(const std::filesystem::path& folder);
+
+/// Whether a folder holds session files, finished or not.
+bool holds_sessions(const std::filesystem::path& folder);
+
 /// @throws InputError when two files differ in what was presented, recorded or scored; names the
 /// keys.
 void refuse_mixed(const std::vector<std::filesystem::path>& files);

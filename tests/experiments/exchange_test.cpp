@@ -150,12 +150,32 @@ TEST_F(ExchangeTest, DrillingsAreExportedButHaveNoCurves) {
   EXPECT_EQ(phase["levels"]["drilling"], "bone is drilled");
 }
 
+TEST_F(ExchangeTest, AnImportLeavesTheReportOfSessionsAlone) {
+  make_study("--subjects 1 --trials 3");
+  fs::create_directory(folder_ / "begun");
+  test::write_text(folder_ / "begun" / "S01.h5.partial", "a session");
+  test::write_text(folder_ / "study" / "report.html", "of the sessions");
+  for (const std::string& out : {path("study"), path("begun")}) {
+    for (const char* source : {"--table x", "--curves x --conditions y"}) {
+      const CommandResult refused =
+          run_command("haptrial analyze " + std::string(source) + " --out " + out);
+      EXPECT_EQ(refused.status, 2);
+      EXPECT_THAT(refused.errors, HasSubstr("--out holds session files; choose another folder"));
+    }
+  }
+  EXPECT_EQ(test::read_text(folder_ / "study" / "report.html"), "of the sessions");
+}
+
 TEST_F(ExchangeTest, BadArgumentsGetASentence) {
   make_study("--subjects 1 --trials 1");
   const std::map<std::string, std::string> sentences{
       {"export " + path("study"), "give exactly one of --bids, --csv and --curves"},
       {"export --bids a --csv b " + path("study"),
        "give exactly one of --bids, --csv and --curves"},
+      {"export --csv x --author A " + path("study"), "--author is given without --bids"},
+      {"export --curves x --name A " + path("study"), "--name is given without --bids"},
+      {"export --bids x --samples " + path("study"), "--samples is given without --csv"},
+      {"export --csv '' --bids x " + path("study"), "--csv is empty"},
       {"export --bids " + path("out") + " " + path("absent.h5"), "no such file"},
       {"analyze", "give exactly one of DIR, --curves and --table"},
       {"analyze --curves x " + path("study"), "give exactly one of DIR, --curves and --table"},
