@@ -21,6 +21,7 @@
 #include "experiments/interrupt.h"
 #include "experiments/last_stop.h"
 #include "experiments/loop_margin.h"
+#include "experiments/rig.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -121,6 +122,7 @@ Bench vendor_bench(const DeviceTestOptions& options, const DeviceSetup& setup) {
 }
 
 Bench make_bench(const DeviceTestOptions& options, const DeviceSetup& setup) {
+  check_library(options.name, options.library);
   Bench bench = options.name == "virtual" ? virtual_bench(setup.electronics)
                 : options.name == "mouse" ? mouse_bench(setup.mouse)
                                           : vendor_bench(options, setup);

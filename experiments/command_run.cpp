@@ -3,16 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 
 #include "analysis/timing.h"
 #include "core/base/error.h"
-#include "core/record/file_lock.h"
-#include "core/record/session_target.h"
 #include "core/stream/lsl_outlet.h"
 #include "experiments/arguments.h"
 #include "experiments/console.h"
@@ -20,43 +16,12 @@
 #include "experiments/interrupt.h"
 #include "experiments/keyboard.h"
 #include "experiments/last_stop.h"
-#include "experiments/rig.h"
+#include "experiments/run_checks.h"
 #include "experiments/session.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
 namespace {
-
-/// An identifier becomes a file name: no path may hide in it.
-void check_subject(const std::string& subject) {
-  constexpr std::size_t kLongest = 64;
-  const bool plain = std::all_of(subject.begin(), subject.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '-' || c == '_';
-  });
-  if (subject.empty() || subject.size() > kLongest || !plain) {
-    throw InputError(fmt::format("--subject is '{}'; allowed: 1 to {} letters, digits, '-' and '_'",
-                                 subject, kLongest));
-  }
-}
-
-/// In the words of this command's options, before a device is opened or anything moves.
-void check_file(const RunOptions& options, const fs::path& file) {
-  std::error_code ignored;
-  if (options.resume) {
-    return;
-  }
-  if (fs::exists(file, ignored)) {
-    throw InputError(
-        fmt::format("{}: {} already has a session here; choose another --subject or --out",
-                    file.string(), options.subject));
-  }
-  const fs::path partial = record::partial_path(file);
-  if (fs::exists(partial, ignored) && !record::FileLock::taken(partial)) {
-    throw InputError(fmt::format(
-        "{}: {} has an unfinished session here; add --resume, or choose another --subject or --out",
-        partial.string(), options.subject));
-  }
-}
 
 int participant_of(const RunOptions& options) {
   constexpr int kMost = 10000;
@@ -94,8 +59,8 @@ SessionSummary attended_session(SessionRequest& request, const RunOptions& optio
   std::unique_ptr<Console> console;
   if (options.console) {
     ConsoleOptions console_options;
-    console_options.address = options.address;
-    console_options.port = checked_number("--port", options.port, 0, 65535);
+    console_options.address = options.address.value_or(console_options.address);
+    console_options.port = checked_number("--port", options.port.value_or(0), 0, 65535);
     console_options.allow_remote = options.remote;
     console_options.on_refusal = [&control](const std::string& sentence) {
       control.note("console: " + sentence);
@@ -122,14 +87,10 @@ SessionSummary attended_session(SessionRequest& request, const RunOptions& optio
 int run(const RunOptions& options) {
   watch_for_interrupt();
   watch_fatal_signals();
+  check_run_options(options);
   const Experiment experiment = load_experiment(options.definition);
   const Setup& setup = experiment.setup();
-  check_subject(options.subject);
-  check_device_name(options.device);
-  if (options.device == "mouse" && !options.window) {
-    throw InputError(
-        "--device mouse takes its pointer from the participant's screen; add --window");
-  }
+  check_recording(options, setup);
   if (options.stream && !options.stream_optional) {
     require_streams();
   }
@@ -142,14 +103,14 @@ int run(const RunOptions& options) {
   request.clock = realtime::ClockKind::kReal;
   request.max_trials =
       options.trials ? checked_number("--trials", *options.trials, 1, setup.design.trials) : 0;
+  request.file = fs::path(options.out) / (options.subject + ".h5");
+  check_session_file(options, request.file);
   std::error_code error;
   fs::create_directories(options.out, error);
   if (error) {
     throw InputError(
         fmt::format("{}: the folder cannot be created ({})", options.out, error.message()));
   }
-  request.file = fs::path(options.out) / (options.subject + ".h5");
-  check_file(options, request.file);
   request.device = {options.device, options.library};
   request.window = options.window;
   request.stream = options.stream || options.stream_optional;

@@ -38,8 +38,8 @@ struct RunOptions {
   std::optional<int> trials;  // default: all
   bool console{false};
   bool keyboard{false};
-  std::string address{"127.0.0.1"};
-  int port{0};         // of the console; 0: any that is free
+  std::optional<std::string> address;  // of the console; default: the loopback's
+  std::optional<int> port;             // of the console; default: any that is free
   bool remote{false};  // the console may listen on another address than the loopback's
   bool window{false};
   bool stream{false};

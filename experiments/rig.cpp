@@ -75,8 +75,8 @@ std::unique_ptr<Rig> open_rig(const DeviceChoice& choice, const Setup& d,
     return with(
         std::make_unique<device::OpenHapticsDevice>(d.open_haptics, d.rate, choice.library));
   }
-  if (choice.name.starts_with(kReplay)) {
-    return with(replayed(choice.name.substr(kReplay.size()), d.rate));
+  if (const auto file = replayed_file(choice.name)) {
+    return with(replayed(*file, d.rate));
   }
   check_device_name(choice.name);
   return virtual_rig();
@@ -109,6 +109,19 @@ void check_device_name(const std::string& name) {
     throw InputError(not_allowed("--device", fmt::format("'{}'", name), known) +
                      " (haptrial devices lists which are present)");
   }
+}
+
+void check_library(const std::string& device, const std::string& library) {
+  if (!library.empty() && device != "force-dimension" && device != "open-haptics") {
+    throw InputError(
+        fmt::format("--library is given with device {}, which uses no vendor's library; leave it "
+                    "out, or choose force-dimension or open-haptics",
+                    device));
+  }
+}
+
+std::optional<std::string> replayed_file(const std::string& device) {
+  return device.starts_with(kReplay) ? std::optional(device.substr(kReplay.size())) : std::nullopt;
 }
 
 std::unique_ptr<Rig> make_rig(const DeviceChoice& choice, const Setup& d,

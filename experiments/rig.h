@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/device/device.h"
@@ -40,5 +41,11 @@ std::unique_ptr<Rig> make_rig(const DeviceChoice& choice, const Setup& setup,
 
 /// @throws InputError unless make_rig knows the name.
 void check_device_name(const std::string& name);
+
+/// @throws InputError for a library that this device has no use for.
+void check_library(const std::string& device, const std::string& library);
+
+/// FILE of replay:FILE; nothing for any other device.
+std::optional<std::string> replayed_file(const std::string& device);
 
 }  // namespace haptrial::experiments

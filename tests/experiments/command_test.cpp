@@ -365,5 +365,56 @@ TEST_F(CommandTest, ASubjectWhoHasASessionIsNamedWithWhatToDo) {
   expect_bad_input(run, "P01 has an unfinished session here; add --resume, or choose another ");
 }
 
+TEST_F(CommandTest, NothingToResumeIsRefusedWithWhatIsUnfinished) {
+  const std::string run = "haptrial run " + shipped() + " --subject q12 --resume --out ";
+  expect_bad_input(run + path("typo"),
+                   "nothing to resume: q12.h5.partial is not there; there is "
+                   "no such folder; choose another --subject or --out");
+  fs::create_directory(folder_ / "sessions");
+  expect_bad_input(run + path("sessions"), "no session in this folder is unfinished;");
+  for (const char* name : {"q9.h5.partial", "q11.h5.partial", "q10.h5"}) {
+    test::write_text(folder_ / "sessions" / name, "a session");
+  }
+  expect_bad_input(run + path("sessions"),
+                   "nothing to resume: q12.h5.partial is not there; unfinished in this folder: "
+                   "q11.h5.partial, q9.h5.partial; choose another --subject or --out, or leave out "
+                   "--resume");
+  test::write_text(folder_ / "sessions" / "q12.h5", "a session");
+  expect_bad_input(run + path("sessions"), "q12.h5: the session is complete");
+}
+
+TEST_F(CommandTest, ARecordingIsReplayedAsWhatItWas) {
+  ASSERT_EQ(brief_study("study", "--subjects 1").status, 0);
+  const std::string run = "haptrial run " + shipped() + " --out " + path("again") + " --device " +
+                          "replay:" + path("study/S01.h5");
+  expect_bad_input(run + " --subject S02",
+                   "was recorded with subject S01; replay it with "
+                   "--subject S01");
+  expect_bad_input(run + " --subject S01 --seed 2",
+                   "was recorded with seed 1; replay it with "
+                   "--seed 1");
+  expect_bad_input(run + " --subject S01 --resume", "--resume is given with --device replay:FILE");
+  test::write_text(folder_ / "other.toml", test::shipped_with("base_max", "base_max = 9.0"));
+  expect_bad_input("haptrial run " + path("other.toml") + " --subject S01 --out " + path("again") +
+                       " --device replay:" + path("study/S01.h5"),
+                   "was recorded with another definition: force_pattern.base_max was 10, is 9");
+}
+
+TEST_F(CommandTest, OptionsWithoutEffectAreRefused) {
+  const std::string run = "haptrial run " + shipped() + " --subject P01 --out " + path("out") + " ";
+  expect_bad_input(run + "--port 0", "--port is given without --console");
+  expect_bad_input(run + "--remote", "--remote is given without --console");
+  expect_bad_input(run + "--address 127.0.0.1", "--address is given without --console");
+  for (const char* device : {"virtual", "mouse --window", "replay:x.h5"}) {
+    expect_bad_input(run + "--library libdhd.so --device " + device, "--library is given with ");
+  }
+  expect_bad_input("haptrial device-test virtual --library libdhd.so", "--library is given with ");
+  expect_bad_input(run + "--lsl --lsl-optional", "--lsl and --lsl-optional are both given");
+  const std::string in = "cd '" + folder_.path().string() + "' && haptrial ";
+  expect_bad_input(in + "dry-run " + shipped() + " --out ''", "--out is empty");
+  expect_bad_input(in + "dry-run " + shipped() + " --out=", "--out is empty");
+  expect_bad_input(in + "run " + shipped() + " --subject P01 --out ''", "--out is empty");
+}
+
 }  // namespace
 }  // namespace haptrial
