@@ -62,8 +62,6 @@ struct Definition {
   Value (*value)(const Parts&);
 };
 
-constexpr const char* kRegion = "region_log_ratio";
-
 const std::array kDefinitions{
     Definition{"visible_share", "1", "share of voxels removed in sight", Expected::kHigher,
                [](const Parts& p) { return p.summary.visibility.share(); }},
@@ -71,7 +69,7 @@ const std::array kDefinitions{
                [](const Parts& p) { return p.near.mean_force(p.within); }},
     Definition{"near_speed", "mm/s", "speed near vital structures", Expected::kLower,
                [](const Parts& p) { return scaled(p.near.mean_speed(p.within), 1e3); }},
-    Definition{kRegion, "1", "log likelihood ratio of the removed region", Expected::kHigher,
+    Definition{kRegionMetric, "1", "log likelihood ratio of the removed region", Expected::kHigher,
                [](const Parts&) { return Value(); }},
     Definition{"injured_voxels", "1", "voxels of vital structures removed", Expected::kLower,
                injured_voxels},
@@ -190,6 +188,22 @@ std::string column_name(const Definition& definition) {
   return std::string(definition.name) + "_" + unit;
 }
 
+/// Nothing where the bones differ: their voxels are not the same places.
+std::optional<std::vector<RemovedRegion>> regions_of(std::span<const ProcedureSummary> procedures,
+                                                     std::span<const std::string> expert_groups) {
+  std::vector<RemovedRegion> regions;
+  for (const ProcedureSummary& p : procedures) {
+    if (p.bone->grid.size != procedures.front().bone->grid.size ||
+        p.bone->labels != procedures.front().bone->labels) {
+      return std::nullopt;
+    }
+    const bool expert =
+        std::find(expert_groups.begin(), expert_groups.end(), p.group) != expert_groups.end();
+    regions.push_back({p.participant, expert, p.removed});
+  }
+  return regions;
+}
+
 }  // namespace
 
 std::vector<MetricKind> metric_kinds() {
@@ -235,23 +249,24 @@ std::vector<RegionScores> add_region_scores(std::span<ProcedureSummary> procedur
                                             std::span<const std::string> expert_groups,
                                             const RegionParameters& parameters) {
   std::vector<RegionScores> scores(procedures.size());
-  std::vector<RemovedRegion> regions;
-  bool comparable = true;
-  for (const ProcedureSummary& p : procedures) {
-    comparable = comparable && p.bone->grid.size == procedures.front().bone->grid.size &&
-                 p.bone->labels == procedures.front().bone->labels;
-    const bool expert =
-        std::find(expert_groups.begin(), expert_groups.end(), p.group) != expert_groups.end();
-    regions.push_back({p.participant, expert, p.removed});
+  if (const auto regions = regions_of(procedures, expert_groups)) {
+    scores = region_scores(*regions, parameters);
   }
-  if (comparable) {
-    scores = region_scores(regions, parameters);
-  }
-  const std::size_t place = place_of(kRegion);
+  const std::size_t place = place_of(kRegionMetric);
   for (std::size_t i = 0; i < procedures.size(); ++i) {
     procedures[i].values.at(place) = scores[i].score;
   }
   return scores;
+}
+
+std::optional<RegionLabelTest> region_label_test(std::span<const ProcedureSummary> procedures,
+                                                 std::span<const std::string> expert_groups,
+                                                 const RegionParameters& parameters) {
+  constexpr int kRounds = 999;  // least p: 0.001, which Holm's adjustment leaves below 0.05
+  constexpr std::uint64_t kSeed = 1;
+  const auto regions = regions_of(procedures, expert_groups);
+  return regions ? region_label_test(*regions, kSeed, kRounds, RegionTerms::kAll, parameters)
+                 : std::nullopt;
 }
 
 std::string metrics_csv(std::span<const ProcedureSummary> procedures) {

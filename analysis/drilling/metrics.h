@@ -30,6 +30,9 @@ struct MetricKind {
   Expected experts{Expected::kEither};
 };
 
+/// The name of the removed region's score, the one metric that needs the other procedures.
+inline constexpr const char* kRegionMetric = "region_log_ratio";
+
 /// All scalar metrics of a procedure, in the order of summaries, CSV and reports.
 std::vector<MetricKind> metric_kinds();
 
@@ -78,6 +81,13 @@ ProcedureSummary summarize(const Procedure& procedure, const MetricOptions& opti
 std::vector<RegionScores> add_region_scores(std::span<ProcedureSummary> procedures,
                                             std::span<const std::string> expert_groups,
                                             const RegionParameters& parameters = {});
+
+/// Whether experts' "region_log_ratio" is higher than novices', with the labels of participants
+/// permuted (region_likelihood.h): values that share their training need a test of their own.
+/// Nothing where the score is not defined.
+std::optional<RegionLabelTest> region_label_test(std::span<const ProcedureSummary> procedures,
+                                                 std::span<const std::string> expert_groups,
+                                                 const RegionParameters& parameters = {});
 
 /// A tidy table (RFC 4180 with LF): session, participant, group, procedure, simulated, completed,
 /// then a column for each metric, named NAME_UNIT; empty where it is not defined.

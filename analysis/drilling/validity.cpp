@@ -108,11 +108,46 @@ ValueTable metric_table(const Validity& v, std::span<const ProcedureSummary> pro
   return table;
 }
 
-void add_metrics(Validity& v, std::span<const ProcedureSummary> procedures,
-                 const ValueTable& rating) {
-  const std::vector<MetricKind> kinds = metric_kinds();
+// p of experts against novices, see MetricValidity::contrast_p.
+Defined<double> contrast_p(const MetricValidity& metric,
+                           const std::optional<RegionLabelTest>& region_test) {
+  const Defined<TTest>& welch = metric.contrast.means;
+  if (!welch) {
+    return Undefined{welch.because()};
+  }
+  if (metric.kind.name != kRegionMetric) {
+    return welch->p;
+  }
+  return region_test ? Defined<double>(region_test->p)
+                     : Undefined{"the labels of participants were not permuted"};
+}
+
+void adjust(std::vector<MetricValidity>& metrics) {
   std::vector<Defined<Correlation>> relations;
+  std::vector<Defined<Correlation>> ranks;
   std::vector<double> contrasts;
+  for (const MetricValidity& metric : metrics) {
+    relations.push_back(metric.relation.means);
+    ranks.push_back(metric.relation.ranks);
+    if (metric.contrast_p) {
+      contrasts.push_back(*metric.contrast_p);
+    }
+  }
+  const auto relation_holm = holm_over(relations);
+  const auto ranks_holm = holm_over(ranks);
+  const std::vector<double> contrast_holm = holm_adjusted(contrasts);
+  std::size_t next = 0;
+  for (std::size_t m = 0; m < metrics.size(); ++m) {
+    metrics[m].relation_holm = relation_holm[m];
+    metrics[m].ranks_holm = ranks_holm[m];
+    const Defined<double>& p = metrics[m].contrast_p;
+    metrics[m].contrast_holm = p ? Defined<double>(contrast_holm[next++]) : Undefined{p.because()};
+  }
+}
+
+void add_metrics(Validity& v, std::span<const ProcedureSummary> procedures,
+                 const ValueTable& rating, const std::optional<RegionLabelTest>& region_test) {
+  const std::vector<MetricKind> kinds = metric_kinds();
   for (std::size_t m = 0; m < kinds.size(); ++m) {
     const ValueTable table = metric_table(v, procedures, m);
     MetricValidity metric{.kind = kinds[m], .groups = {}, .contrast = {}, .relation = {}};
@@ -121,21 +156,10 @@ void add_metrics(Validity& v, std::span<const ProcedureSummary> procedures,
     metric.groups = group_values(table, v.plan);
     metric.contrast = contrast(table, kinds[m].experts);
     metric.relation = relation_of(table, rating);
-    relations.push_back(metric.relation.means);
-    if (metric.contrast.mixed_p) {
-      contrasts.push_back(*metric.contrast.mixed_p);
-    }
+    metric.contrast_p = contrast_p(metric, region_test);
     v.metrics.push_back(std::move(metric));
   }
-  const auto relation_holm = holm_over(relations);
-  const std::vector<double> contrast_holm = holm_adjusted(contrasts);
-  std::size_t next = 0;
-  for (std::size_t m = 0; m < kinds.size(); ++m) {
-    v.metrics[m].relation_holm = relation_holm[m];
-    const Defined<double>& p = v.metrics[m].contrast.mixed_p;
-    v.metrics[m].contrast_holm =
-        p ? Defined<double>(contrast_holm[next++]) : Undefined{p.because()};
-  }
+  adjust(v.metrics);
 }
 
 Defined<Roc> roc_of(const Validity& v, const std::vector<std::size_t>& rows,
@@ -219,7 +243,7 @@ void add_regions(Validity& v, std::span<const ProcedureSummary> procedures,
 
 Validity validity(std::span<const ProcedureSummary> procedures,
                   std::span<const RegionScores> regions, const std::vector<Rating>& ratings,
-                  const ValidityPlan& plan) {
+                  const ValidityPlan& plan, const std::optional<RegionLabelTest>& region_test) {
   Validity v;
   v.plan = plan;
   add_people(v, procedures);
@@ -230,7 +254,7 @@ Validity validity(std::span<const ProcedureSummary> procedures,
   }
   v.rating_groups = group_values(rating, plan);
   v.rating_contrast = contrast(rating, Expected::kHigher);
-  add_metrics(v, procedures, rating);
+  add_metrics(v, procedures, rating, region_test);
   add_combined(v, procedures);
   add_regions(v, procedures, regions, rating);
   return v;

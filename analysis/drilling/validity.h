@@ -58,18 +58,22 @@ struct RatingRelation {
   Defined<Correlation> pooled{Undefined{""}};  // over procedures, as the source
   Defined<Regression> line{Undefined{""}};     // quantity = a + b rating, the same points
   Defined<Correlation> means{Undefined{""}};   // over participants' means
-  Defined<Correlation> ranks{Undefined{""}};   // Spearman's, of the same
+  Defined<Correlation> ranks{Undefined{""}};   // Spearman's, of the same means
 };
 
 /// One metric of the study.
 struct MetricValidity {
   MetricKind kind;
   std::size_t defined{0};           // procedures that have a value
-  std::vector<GroupValues> groups;  // (groups), then experts, novices
+  std::vector<GroupValues> groups;  // (groups), then all experts, all novices
   Contrast contrast;
-  Defined<double> contrast_holm{Undefined{""}};  // mixed_p among all metrics
+  /// contrast.means.p; of the region's score, that of permuted labels (region_label_test()),
+  /// because its values share their training.
+  Defined<double> contrast_p{Undefined{""}};
+  Defined<double> contrast_holm{Undefined{""}};  // contrast_p among all metrics
   RatingRelation relation;
-  Defined<double> relation_holm{Undefined{""}};  // means.p among all metrics
+  Defined<double> relation_holm{Undefined{""}};  // relation.means.p among all metrics
+  Defined<double> ranks_holm{Undefined{""}};     // relation.ranks.p among all metrics
 };
 
 /// All metrics together, onto the ratings.
@@ -101,7 +105,7 @@ struct Validity {
   bool simulated{false};                      // a participant or a rater
   bool simulated_raters{false};
   Defined<Intraclass> agreement{Undefined{"no rater rated yet"}};
-  std::vector<GroupValues> rating_groups;  // (groups), then experts, novices
+  std::vector<GroupValues> rating_groups;  // (groups), then all experts, all novices
   Contrast rating_contrast;
   std::vector<MetricValidity> metrics;  // (metric_kinds())
   Combined combined;
@@ -110,10 +114,12 @@ struct Validity {
 
 /// The statistics of a construct-validity study. Source: Morris 2006, §3.3 and §3.5.
 /// @param procedures  with the scores of add_region_scores(), which gave `regions`
+/// @param region_test  of the same procedures; nothing: the region's contrast has no p
 /// @throws InputError for a procedure in a group that the plan does not name, an expert group that
 /// is none of the groups, a participant in two groups, or ratings of a procedure that is not there.
 Validity validity(std::span<const ProcedureSummary> procedures,
                   std::span<const RegionScores> regions, const std::vector<Rating>& ratings,
-                  const ValidityPlan& plan);
+                  const ValidityPlan& plan,
+                  const std::optional<RegionLabelTest>& region_test = std::nullopt);
 
 }  // namespace haptrial::analysis::drilling

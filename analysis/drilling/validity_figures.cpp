@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "analysis/drilling/validity_words.h"
 #include "analysis/palette.h"
 #include "analysis/wording.h"
 #include "core/base/error.h"
@@ -91,13 +92,14 @@ Figure ratings_figure(const ValidityResult& result) {
   }
   figure.x_range = Range{0.5, static_cast<double>(order.size()) + 0.6};
   figure.y_range = Range{0.8, 5.2};
-  figure.caption =
-      "Ratings of procedures by novices and by participants with surgical experience, then of each "
-      "group, with 95 % confidence intervals: black over all procedures, as published; blue over "
-      "participants' means, as a participant's procedures are not independent of each other.";
-  figure.alt =
-      fmt::format("Mean rating of novices {}; with experience {}.",
-                  mean_with_interval(order[0]->pooled), mean_with_interval(order[1]->pooled));
+  figure.caption = fmt::format(
+      "Ratings of procedures by novices and by participants with surgical experience{}. Means with "
+      "95 % confidence intervals: blue of participants' means; black over all procedures, as "
+      "published, which takes procedures of one participant as independent.",
+      order.size() > 2 ? ", then by group" : "");
+  figure.alt = fmt::format("Mean of participants' mean ratings: novices {}; with experience {}.",
+                           mean_with_interval(order[0]->participant_means),
+                           mean_with_interval(order[1]->participant_means));
   return figure;
 }
 
@@ -133,11 +135,10 @@ Figure relation_figure(const ValidityResult& result, const MetricValidity& metri
     const double b = relation.line->coefficients[1].estimate;
     figure.series.push_back(
         Series{"linear fit", Mark::kLine, kGrey, {least, most}, {a + b * least, a + b * most}});
-    fit = fmt::format("Over procedures, as published, R = {:.2f}, {}", relation.pooled->r,
-                      p_value(relation.pooled->p));
-    fit += relation.means ? fmt::format("; over participants' means R = {:.2f}, {}.",
-                                        relation.means->r, p_value(relation.means->p))
-                          : ".";
+    fit = fmt::format(
+        "Over participants' means R = {}. Over procedures, as published, R = {}: this takes "
+        "procedures of one participant as independent.",
+        relation_word(v, metric), correlation_word(relation.pooled));
   }
   figure.x_range = Range{0.8, 5.2};
   figure.caption = fmt::format("One dot is one procedure. {}", fit);
@@ -195,10 +196,12 @@ Figure profile_figure(const ValidityResult& result, NearQuantity quantity) {
   return figure;
 }
 
-void add_curve(Figure& figure, const Defined<Roc>& roc, const std::string& label, Look look) {
+void add_curve(Figure& figure, const Defined<Roc>& roc, const std::string& label, Look look,
+               std::vector<std::string>& shown, const char* what) {
   if (!roc) {
     return;
   }
+  shown.emplace_back(what);
   Series curve{fmt::format("{} {:.2f}", label, roc->area), Mark::kLine, look};
   for (const RocPoint& p : roc->curve) {
     curve.x.push_back(p.false_positives);
@@ -211,19 +214,24 @@ Figure roc_figure(const ValidityResult& result) {
   const Validity& v = result.validity;
   Figure figure = new_figure(result, "roc-experts-novices", "Telling experts from novices",
                              "Share of novices called experts", "Share of experts called experts");
-  add_curve(figure, v.combined.roc, "all metrics", kBlack);
-  add_curve(figure, v.rating_contrast.roc, "rating", kThird);
+  std::vector<std::string> curves;
+  add_curve(figure, v.combined.roc, "all metrics", kBlack, curves,
+            "all metrics together (each procedure scored by a regression that saw nothing of its "
+            "participant)");
+  add_curve(figure, v.rating_contrast.roc, "rating", kThird, curves, "the rating");
   struct Shown {
     const char* metric;
     const char* label;
     Look look;
+    const char* what;
   };
-  const std::array<Shown, 3> shown{{{"visible_share", "visibility", kExperts},
-                                    {"near_force", "force", kNovices},
-                                    {"region_log_ratio", "region", kFourth}}};
+  const std::array<Shown, 3> shown{
+      {{"visible_share", "visibility", kExperts, "the share of voxels removed in sight"},
+       {"near_force", "force", kNovices, "the force near vital structures"},
+       {kRegionMetric, "region", kFourth, "the likelihood ratio of the removed region"}}};
   for (const Shown& one : shown) {
     if (const MetricValidity* metric = metric_of(v, one.metric)) {
-      add_curve(figure, metric->contrast.roc, one.label, one.look);
+      add_curve(figure, metric->contrast.roc, one.label, one.look, curves, one.what);
     }
   }
   if (!figure.series.empty()) {
@@ -232,11 +240,10 @@ Figure roc_figure(const ValidityResult& result) {
   figure.x_range = Range{0.0, 1.0};
   figure.y_range = Range{0.0, 1.02};
   figure.height = 0.75;
-  figure.caption =
-      "ROC curves of procedures by experts against those by novices, with their areas: all metrics "
-      "together (each procedure scored by a regression that saw nothing of its participant), the "
-      "rating, the share of voxels removed in sight, the force near vital structures, and the "
-      "likelihood ratio of the removed region. The diagonal is chance.";
+  figure.caption = fmt::format(
+      "ROC curves of procedures by experts against those by novices, with their areas: {}. The "
+      "diagonal is chance.",
+      fmt::join(curves, "; "));
   figure.alt = "ROC curves; their areas are in the key and the table.";
   return figure;
 }

@@ -33,7 +33,7 @@ Json to_json(const MixedModel& m) {
           {"variance_between", m.variances.front()},
           {"variance_within", m.variance_within},
           {"at_boundary", m.at_boundary},
-          {"participants", m.groups},
+          {"participants", m.groups.front()},
           {"procedures", m.observations}};
 }
 
@@ -123,12 +123,14 @@ Json to_json(const MetricValidity& m) {
           {"procedures", m.defined},
           {"groups", to_json(m.groups)},
           {"contrast", to_json(m.contrast)},
+          {"contrast_p", to_json(m.contrast_p)},
           {"contrast_p_holm", to_json(m.contrast_holm)},
           {"rating_over_procedures", to_json(m.relation.pooled)},
           {"line_on_rating", to_json(m.relation.line)},
           {"rating_over_participant_means", to_json(m.relation.means)},
           {"rating_spearman_of_participant_means", to_json(m.relation.ranks)},
-          {"rating_p_holm", to_json(m.relation_holm)}};
+          {"rating_p_holm", to_json(m.relation_holm)},
+          {"rating_spearman_p_holm", to_json(m.ranks_holm)}};
 }
 
 Json to_json(const CrossValidated& c, const std::vector<std::string>& metrics) {

@@ -3,41 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "analysis/drilling/validity_figures.h"
+#include "analysis/drilling/validity_words.h"
 #include "analysis/wording.h"
 
 namespace haptrial::analysis::drilling {
 
 const char* const kRehearsal =
     "SIMULATED: the participants or the raters of this study are programs. It is a rehearsal of "
-    "the "
-    "pipeline and proves nothing about people.";
+    "the pipeline and proves nothing about people.";
 
 namespace {
 
 using Row = std::vector<std::string>;
-
-std::string undefined(const std::string& because) { return "not defined, because " + because; }
-
-std::string word(const Defined<double>& p) { return p ? p_value(*p) : "–"; }
-
-std::string correlation_word(const Defined<Correlation>& c) {
-  return c ? fmt::format("{:.2f}, {}", c->r, p_value(c->p)) : "–";
-}
-
-std::string interval_word(const Defined<MeanInterval>& m) {
-  return m ? fmt::format("{} [{}, {}]", number(m->mean), number(m->low), number(m->high)) : "–";
-}
-
-std::string area_word(const Defined<Roc>& roc) {
-  if (!roc) {
-    return "–";
-  }
-  return roc->interval ? fmt::format("{:.2f} [{:.2f}, {:.2f}]", roc->area, roc->interval->low,
-                                     roc->interval->high)
-                       : fmt::format("{:.2f}", roc->area);
-}
 
 std::string form_word(const Defined<IntraclassForm>& form) {
   return form ? fmt::format("{:.2f}, 95 % CI {:.2f} to {:.2f}, F({:.0f}, {:.0f}) = {}, {}",
@@ -46,15 +26,20 @@ std::string form_word(const Defined<IntraclassForm>& form) {
               : undefined(form.because());
 }
 
-std::string mixed_word(const Contrast& c) {
-  if (!c.mixed) {
-    return undefined(c.mixed.because());
+/// Every group once: a side that is one group is not listed again.
+std::vector<const GroupValues*> shown_groups(const Validity& v) {
+  const auto experts = v.plan.expert_groups.size();
+  std::vector<const GroupValues*> shown;
+  for (std::size_t g = 0; g < v.plan.groups.size(); ++g) {
+    shown.push_back(&v.rating_groups[g]);
   }
-  const Coefficient& b = c.mixed->coefficients[1];
-  return fmt::format("experts are {} higher, 95 % CI {} to {}; t({:.1f}) = {:.2f}, {}{}",
-                     number(b.estimate), number(b.low), number(b.high), b.df, b.t,
-                     p_value(*c.mixed_p),
-                     c.mixed->at_boundary ? " (no variance between participants)" : "");
+  if (experts > 1) {
+    shown.push_back(&*(v.rating_groups.end() - 2));
+  }
+  if (v.plan.groups.size() - experts > 1) {
+    shown.push_back(&v.rating_groups.back());
+  }
+  return shown;
 }
 
 class Report {
@@ -65,13 +50,10 @@ class Report {
   Document made() {
     document_.title = result_.title;
     document_.simulated = v_.simulated;
-    document_.subtitle = fmt::format(
-        "{} by {} in {}, {} of them rated.", counted(result_.procedures.size(), "procedure"),
-        counted(v_.participant.empty()
-                    ? 0
-                    : *std::max_element(v_.participant.begin(), v_.participant.end()) + 1,
-                "participant"),
-        counted(v_.plan.groups.size(), "group"), v_.rated);
+    document_.subtitle =
+        fmt::format("{} ({} rated) by {} in {}.", counted(result_.procedures.size(), "procedure"),
+                    v_.rated, counted(count_of(&ProcedureSummary::participant), "participant"),
+                    counted(count_of(&ProcedureSummary::group), "group"));
     rehearsal();
     document_.points(summary_lines(result_));
     add_design();
@@ -81,11 +63,19 @@ class Report {
     add_regions();
     add_combined();
     add_quality();
+    add_published();
     add_methods();
     return std::move(document_);
   }
 
  private:
+  std::size_t count_of(std::string ProcedureSummary::*name) const {
+    std::set<std::string> names;
+    for (const ProcedureSummary& p : result_.procedures) {
+      names.insert(p.*name);
+    }
+    return names.size();
+  }
   void rehearsal() {
     if (v_.simulated) {
       document_.alarm(kRehearsal);
@@ -109,6 +99,7 @@ class Report {
   void add_regions();
   void add_combined();
   void add_quality();
+  void add_published();
   void add_methods();
 
   const ValidityResult& result_;
@@ -151,25 +142,24 @@ void Report::add_ratings() {
     return;
   }
   document_.paragraph(fmt::format(
-      "{} scored from 1 to 5 without knowing whose procedure it was{}; a procedure's rating is "
-      "the mean over raters.",
-      counted(v_.raters.size(), "rater"), v_.simulated_raters ? " (the raters are programs)" : ""));
+      "{} scored from 1 to 5 without knowing whose procedure it was{}.{}",
+      counted(v_.raters.size(), "rater"),
+      v_.simulated_raters ? " (programs are among the raters)" : "",
+      v_.raters.size() > 1 ? " A procedure's rating is the mean over its raters." : ""));
   picture("figure-16-ratings");
   std::vector<Row> rows;
-  for (const GroupValues& g : v_.rating_groups) {
-    rows.push_back({g.group, std::to_string(g.participants), std::to_string(g.procedures),
-                    interval_word(g.pooled), interval_word(g.participant_means)});
+  for (const GroupValues* g : shown_groups(v_)) {
+    rows.push_back({g->group, std::to_string(g->participants), std::to_string(g->procedures),
+                    interval_word(g->participant_means)});
   }
-  document_.table({"group", "participants", "procedures", "mean over procedures [95 % CI]",
-                   "mean over participants' means [95 % CI]"},
+  document_.table({"group", "participants", "procedures", "mean of participants' means [95 % CI]"},
                   rows);
   const Contrast& c = v_.rating_contrast;
-  document_.table({"test: experts are rated higher (one-tailed)", "result"},
-                  {{"Student's t over procedures, as published", t_result(c.pooled)},
-                   {"Welch's t over participants' means", t_result(c.means)},
+  document_.table({"test: experts are rated higher than novices (one-tailed)", "result"},
+                  {{"Welch's t over participants' means", welch_word(c)},
                    {"mixed model with repeated procedures", mixed_word(c)},
                    {"Hedges' g of participants' means", effect(c.g)},
-                   {"area under the ROC curve", area_word(c.roc)}});
+                   {"area under the ROC curve [95 % CI]", area_word(c.roc)}});
   document_.subheading("Agreement between raters");
   if (!v_.agreement) {
     document_.paragraph(
@@ -184,6 +174,9 @@ void Report::add_ratings() {
                    {"mean of the raters, consistency, ICC(3,k)", form_word(a.fixed_raters_mean)},
                    {"one rater, raters not identified, ICC(1,1)", form_word(a.one_way)},
                    {"mean, raters not identified, ICC(1,k)", form_word(a.one_way_mean)}});
+  document_.paragraph(
+      "Intervals and p values count every procedure as independent, so with several procedures of "
+      "each participant the intervals are too narrow.");
 }
 
 void Report::add_metrics() {
@@ -193,36 +186,39 @@ void Report::add_metrics() {
   }
   std::vector<Row> groups, relations;
   for (const MetricValidity& m : v_.metrics) {
-    const std::string name =
-        m.kind.unit == "1" ? m.kind.title : fmt::format("{} ({})", m.kind.title, m.kind.unit);
     const auto& experts = *(m.groups.end() - 2);
     const char* expected = m.kind.experts == Expected::kHigher  ? "higher"
                            : m.kind.experts == Expected::kLower ? "lower"
                                                                 : "–";
-    groups.push_back({name, expected, interval_word(experts.participant_means),
-                      interval_word(m.groups.back().participant_means), word(m.contrast.mixed_p),
+    groups.push_back({name_of(m.kind), expected, interval_word(experts.participant_means),
+                      interval_word(m.groups.back().participant_means), word(m.contrast_p),
                       word(m.contrast_holm), area_word(m.contrast.roc)});
-    relations.push_back({name, std::to_string(m.defined), correlation_word(m.relation.pooled),
-                         correlation_word(m.relation.means), word(m.relation_holm),
-                         correlation_word(m.relation.ranks)});
+    const auto& r = m.relation.means;
+    relations.push_back({name_of(m.kind), r ? std::to_string(r->count) : "–", correlation_word(r),
+                         word(m.relation_holm), correlation_word(m.relation.ranks),
+                         word(m.ranks_holm)});
   }
   document_.subheading("Experts and novices");
-  document_.table({"metric", "experts expected", "experts' mean [95 % CI]",
-                   "novices' mean [95 % CI]", "p, mixed model", "p, Holm", "ROC area [95 % CI]"},
-                  groups);
+  document_.table(
+      {"metric", "experts expected", "experts' mean [95 % CI]", "novices' mean [95 % CI]",
+       "p, not adjusted", "p after Holm", "ROC area [95 % CI]"},
+      groups);
   document_.paragraph(
-      "Means are over participants' means. p is one-tailed where an end is expected, else "
-      "two-tailed; Holm's is for all metrics of the table together. The ROC area is that of "
-      "experts being where they are expected, or higher where nothing is.");
+      "Means are of participants' means. Tests are Welch's over participants' means, one-tailed if "
+      "an end is expected, else two-tailed; only the region's score, whose values share their "
+      "training, is tested by permuting the participants' labels. Holm's adjustment covers all "
+      "metrics of the table. The ROC area is the probability that an expert is on the expected "
+      "side of a novice, or is higher if no end is expected.");
   if (v_.rated == 0) {
     return;
   }
   document_.subheading("Metrics and ratings");
   picture("figure-19-visibility");
   picture("figure-21-region");
-  document_.table({"metric", "procedures", "R over procedures, as published",
-                   "R over participants' means", "p of that, Holm", "Spearman's rho of the means"},
-                  relations);
+  document_.table(
+      {"metric", "participants", "R over participants' means, p not adjusted", "p of R after Holm",
+       "Spearman's rho of the means, p not adjusted", "p of rho after Holm"},
+      relations);
 }
 
 void Report::add_forces() {
@@ -242,11 +238,10 @@ void Report::add_regions() {
       "without one of the other side, so that both sides stay as large whoever is left out.");
   std::vector<Row> rows;
   for (const RegionWay& way : v_.regions) {
-    rows.push_back(
-        {way.name, correlation_word(way.pooled), correlation_word(way.means), area_word(way.roc)});
+    rows.push_back({way.name, correlation_word(way.means), area_word(way.roc)});
   }
-  document_.table({"counted and trained", "R with ratings over procedures",
-                   "R over participants' means", "ROC area [95 % CI]"},
+  document_.table({"counted and trained", "R with ratings over participants' means, p not adjusted",
+                   "ROC area [95 % CI]"},
                   rows);
 }
 
@@ -267,10 +262,10 @@ void Report::add_combined() {
                    {"tested on the data that were fitted", r_word(c.fit->resubstitution),
                     number(c.fit->resubstitution.rmse), area_word(c.resubstitution_roc)}});
   document_.paragraph(fmt::format(
-      "Predicting from the metrics takes {:.0f} % off the squared error of predicting the other "
-      "participants' mean rating (0 or less: the metrics add nothing). The penalty of the fit to "
-      "all is {}.",
-      100.0 * c.fit->gain, number(c.fit->lambda)));
+      "The squared error for participants left out is {}. (If it is higher, the metrics add "
+      "nothing.) R on the data that were fitted is high even if the metrics say nothing. The "
+      "penalty of the fit to all data is {}.",
+      error_word(*c.fit), number(c.fit->lambda)));
   std::vector<Row> rows;
   for (std::size_t i = 0; i < c.metrics.size(); ++i) {
     rows.push_back({metric_of(v_, c.metrics[i])->kind.title,
@@ -278,9 +273,9 @@ void Report::add_combined() {
   }
   document_.table({"metric", "points per standard deviation"}, rows, "Weights of the metrics");
   if (!c.left_out.empty()) {
-    document_.paragraph(
-        fmt::format("Left out, because a rated procedure has none or all have the same: {}.",
-                    fmt::join(c.left_out, ", ")));
+    document_.paragraph(fmt::format(
+        "Left out, because a rated procedure lacks a value or all values are equal: {}.",
+        fmt::join(c.left_out, ", ")));
   }
 }
 
@@ -293,71 +288,64 @@ void Report::add_quality() {
   }
   if (!broken.empty()) {
     section("Procedures that were not completed");
-    document_.paragraph(
-        fmt::format("They are part of everything above: {}.", fmt::join(broken, ", ")));
+    document_.paragraph(fmt::format("The report includes them: {}.", fmt::join(broken, ", ")));
   }
+}
+
+void Report::add_published() {
+  section("As published (Morris 2006, §3.5): pooled procedures");
+  document_.paragraph(
+      "These tests assume that all procedures are independent. Procedures of one participant are "
+      "not: differences between participants then pass for effects of experience, and p values are "
+      "too small. They are not adjusted either. They are here for comparison with the source.");
+  std::vector<Row> rows;
+  if (v_.rated > 0) {
+    for (const GroupValues* g : shown_groups(v_)) {
+      rows.push_back({"mean rating, " + g->group + " [95 % CI]", interval_word(g->pooled)});
+    }
+    rows.push_back({"experts are rated higher, Student's t-test (one-tailed)",
+                    t_result(v_.rating_contrast.pooled)});
+  }
+  for (const MetricValidity& m : v_.metrics) {
+    if (m.relation.pooled) {
+      rows.push_back({m.kind.title + " and ratings, R", correlation_word(m.relation.pooled)});
+    }
+  }
+  for (const RegionWay& way : v_.regions) {
+    if (way.pooled) {
+      rows.push_back(
+          {"region's score and ratings, " + way.name + ", R", correlation_word(way.pooled)});
+    }
+  }
+  if (rows.empty()) {
+    document_.paragraph("Nothing is rated yet.");
+    return;
+  }
+  document_.table({"over procedures", "result"}, rows);
 }
 
 void Report::add_methods() {
   section("Methods");
   document_.paragraph(
-      "The procedures of one participant depend on each other. The published analysis takes them "
-      "as independent, so that its p values are too small; it is given for comparison. The mixed "
-      "model has a random intercept for each participant, fixed effects of experience and of the "
-      "procedure's number, REML and Satterthwaite's degrees of freedom. Correlations over "
-      "participants' means have one pair of values for each participant.");
+      "The procedures of one participant depend on each other, so tests and correlations take "
+      "participants as the unit: each participant gives one mean. Welch's test allows groups of "
+      "different spread. The mixed model has a random intercept for each participant, fixed "
+      "effects of experience and, if procedures differ in it, of the procedure's number, REML and "
+      "Satterthwaite's degrees of freedom; it assumes the same spread in both groups.");
   document_.paragraph(
       "Areas under ROC curves count all pairs, ties half; their intervals are DeLong's with "
-      "Obuchowski's sums over participants. The combined score is a ridge regression; "
-      "standardising, the choice of the penalty and the fit see nothing of the participant who is "
-      "predicted. The region's score, one of its metrics, is trained on groups, never on ratings; "
-      "those of the other participants do know the region of the one who is left out.");
+      "Obuchowski's sums over participants, and with few participants they are somewhat "
+      "too narrow. The combined score is a ridge regression: standardisation, penalty and fit use "
+      "nothing of the participant who is predicted. The region's score, one of its metrics, is "
+      "trained on groups, never on ratings; the scores of the other participants do depend on the "
+      "region of the participant left out.");
   document_.paragraph(
       "The intraclass correlations follow Shrout and Fleiss (1979) over the procedures that every "
-      "rater scored. A rater's scores of the two procedures of one participant count as two.");
+      "rater scored.");
   rehearsal();
 }
 
 }  // namespace
-
-std::vector<std::string> summary_lines(const ValidityResult& result) {
-  const Validity& v = result.validity;
-  const std::string mark = v.simulated ? "Simulated: " : "";
-  std::vector<std::string> lines;
-  if (v.rated == 0) {
-    lines.push_back(
-        fmt::format("{}{}: not rated yet.", mark, counted(result.procedures.size(), "procedure")));
-  } else {
-    const auto& groups = v.rating_groups;
-    lines.push_back(fmt::format("{}ratings with experience {}; of novices {} (over procedures).",
-                                mark, mean_with_interval((groups.end() - 2)->pooled),
-                                mean_with_interval(groups.back().pooled)));
-    lines.push_back(fmt::format("{}experts rated higher, as published: {}; mixed model: {}.", mark,
-                                t_result(v.rating_contrast.pooled), mixed_word(v.rating_contrast)));
-  }
-  for (const char* name : {"visible_share", "region_log_ratio"}) {
-    const MetricValidity* m = metric_of(v, name);
-    if (m != nullptr && m->relation.pooled) {
-      lines.push_back(
-          fmt::format("{}{} and ratings: R = {} over procedures; R = {} over "
-                      "participants' means.",
-                      mark, m->kind.title, correlation_word(m->relation.pooled),
-                      correlation_word(m->relation.means)));
-    }
-  }
-  if (v.combined.fit && v.combined.fit->validated.r && v.combined.fit->resubstitution.r) {
-    lines.push_back(fmt::format(
-        "{}all metrics together: R = {:.2f} for participants left out, {:.2f} on the fitted data; "
-        "ROC area {}.",
-        mark, *v.combined.fit->validated.r, *v.combined.fit->resubstitution.r,
-        area_word(v.combined.roc)));
-  }
-  if (v.simulated) {
-    lines.emplace_back(
-        "A rehearsal of the pipeline with programs: it proves nothing about people.");
-  }
-  return lines;
-}
 
 Document validity_report(const ValidityResult& result, const std::vector<Drawing>& drawings) {
   return Report(result, drawings).made();

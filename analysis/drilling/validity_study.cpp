@@ -79,7 +79,9 @@ ValidityResult analyze(const ValidityStudy& study) {
   if (!study.ratings.empty() && fs::exists(study.ratings)) {
     ratings = load_ratings(study.ratings);
   }
-  result.validity = validity(result.procedures, regions, ratings, study.plan);
+  const auto region_test =
+      region_label_test(result.procedures, study.plan.expert_groups, study.region);
+  result.validity = validity(result.procedures, regions, ratings, study.plan, region_test);
   result.structure = structure_of(study, result.procedures);
   return result;
 }

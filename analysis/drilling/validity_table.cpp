@@ -131,8 +131,10 @@ std::vector<GroupValues> group_values(const ValueTable& table, const ValidityPla
     groups.push_back(
         values_of(table, means, name, [&](const auto& row) { return row.group == name; }));
   }
-  groups.push_back(values_of(table, means, "experts", [](const auto& row) { return row.expert; }));
-  groups.push_back(values_of(table, means, "novices", [](const auto& row) { return !row.expert; }));
+  groups.push_back(
+      values_of(table, means, "all experts", [](const auto& row) { return row.expert; }));
+  groups.push_back(
+      values_of(table, means, "all novices", [](const auto& row) { return !row.expert; }));
   return groups;
 }
 

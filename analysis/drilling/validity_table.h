@@ -34,7 +34,7 @@ ValueTable participant_means(const ValueTable& table);
 std::pair<std::vector<double>, std::vector<double>> paired(const ValueTable& a,
                                                            const ValueTable& b);
 
-/// (groups), then "experts" and "novices" together.
+/// (groups), then "all experts" and "all novices".
 std::vector<GroupValues> group_values(const ValueTable& table, const ValidityPlan& plan);
 
 Contrast contrast(const ValueTable& table, Expected experts);

@@ -1,11 +1,9 @@
 #include "tests/analysis/null_reports.h"
 
 #include <fmt/format.h>
-#include <gsl/gsl_cdf.h>
 
 #include <algorithm>
 #include <map>
-#include <thread>
 
 #include "analysis/study_statistics.h"
 #include "core/base/random.h"
@@ -132,25 +130,6 @@ std::vector<std::string> relabel(std::vector<TrialScore>& scores, NullDesign des
   return {};
 }
 
-/// Notes of one report, by test.
-class Notes {
- public:
-  void add(const std::string& test, bool leads, bool found) {
-    auto [at, is_new] = places_.try_emplace(test, counts.size());
-    if (is_new) {
-      counts.push_back({test, leads, 0, 0});
-    }
-    auto& count = counts[at->second];
-    count.found += found ? 1 : 0;
-    ++count.replications;
-  }
-
-  std::vector<NullCount> counts;
-
- private:
-  std::map<std::string, std::size_t> places_;
-};
-
 /// Any p of a family: what Holm promises to keep.
 template <class Member>
 bool any_below(const analysis::TestFamily& family, Member member) {
@@ -158,24 +137,24 @@ bool any_below(const analysis::TestFamily& family, Member member) {
                      [&](const auto& test) { return test.*member && *(test.*member) < kAlpha; });
 }
 
-void note_family(Notes& notes, const analysis::TestFamily& family, bool leads) {
+void note_family(NullLevels& notes, const analysis::TestFamily& family, bool leads) {
   using analysis::SideTest;
   const std::string name = family.name + ", ";
-  notes.add(name + "t-tests after Holm", leads, any_below(family, &SideTest::holm));
-  notes.add(name + "rank tests after Holm", false, any_below(family, &SideTest::ranks_holm));
-  notes.add(name + "permutation tests after Holm", false,
-            any_below(family, &SideTest::permutation_holm));
+  notes.note(name + "t-tests after Holm", leads, any_below(family, &SideTest::holm));
+  notes.note(name + "rank tests after Holm", false, any_below(family, &SideTest::ranks_holm));
+  notes.note(name + "permutation tests after Holm", false,
+             any_below(family, &SideTest::permutation_holm));
 }
 
-Notes notes_of(const StudyStatistics& study) {
-  Notes notes;
+NullLevels notes_of(const StudyStatistics& study) {
+  NullLevels notes;
   for (const auto& effect : study.tests.effects) {
     if (effect) {
-      notes.add(effect->factor + ", " + effect->test, true, effect->p < kAlpha);
+      notes.note(effect->factor + ", " + effect->test, true, effect->p < kAlpha);
     }
   }
   if (study.tests.ranks) {
-    notes.add("Friedman or Kruskal-Wallis", false, study.tests.ranks->p < kAlpha);
+    notes.note("Friedman or Kruskal-Wallis", false, study.tests.ranks->p < kAlpha);
   }
   note_family(notes, study.tests.planned, true);
   for (const auto& family : study.tests.families) {
@@ -183,26 +162,26 @@ Notes notes_of(const StudyStatistics& study) {
   }
   for (const auto& test : study.tests.planned.tests) {
     if (test.bootstrap) {
-      notes.add("bootstrap 95 % CI without 0", false,
-                test.bootstrap->low > 0.0 || test.bootstrap->high < 0.0);
+      notes.note("bootstrap 95 % CI without 0", false,
+                 test.bootstrap->low > 0.0 || test.bootstrap->high < 0.0);
     }
   }
   if (study.mixed.omnibus) {
-    notes.add("mixed model, all conditions", false, study.mixed.omnibus->p < kAlpha);
+    notes.note("mixed model, all conditions", false, study.mixed.omnibus->p < kAlpha);
   }
   if (study.anova) {
-    notes.add("as published: pooled analysis of variance", false, study.anova->p < kAlpha);
+    notes.note("as published: pooled analysis of variance", false, study.anova->p < kAlpha);
   }
   for (const auto& test : study.comparisons) {
     if (test.student) {
-      notes.add("as published: pooled t-test", false, test.student->p < kAlpha);
+      notes.note("as published: pooled t-test", false, test.student->p < kAlpha);
     }
   }
   return notes;
 }
 
-Notes report_of(std::span<const TrialScore> scores, NullDesign design, std::size_t replication,
-                std::uint64_t seed) {
+NullLevels report_of(std::span<const TrialScore> scores, NullDesign design, std::size_t replication,
+                     std::uint64_t seed) {
   RandomStream random(seed, fmt::format("null {} {}", name_of(design), replication));
   std::vector<TrialScore> relabelled(scores.begin(), scores.end());
   analysis::StudyQuestions questions;
@@ -238,48 +217,10 @@ const char* name_of(NullDesign design) {
   return "";
 }
 
-std::vector<NullCount> null_reports(std::span<const TrialScore> scores, NullDesign design,
+std::vector<NullLevel> null_reports(std::span<const TrialScore> scores, NullDesign design,
                                     std::size_t replications, std::uint64_t seed, int threads) {
-  std::vector<Notes> all(replications);
-  {
-    std::vector<std::jthread> workers;
-    for (int t = 0; t < threads; ++t) {
-      workers.emplace_back([&, t] {
-        for (std::size_t i = static_cast<std::size_t>(t); i < replications;
-             i += static_cast<std::size_t>(threads)) {
-          all[i] = report_of(scores, design, i, seed);
-        }
-      });
-    }
-  }
-  std::vector<NullCount> sum;
-  for (const Notes& notes : all) {
-    for (const NullCount& count : notes.counts) {
-      const auto at = std::find_if(sum.begin(), sum.end(),
-                                   [&](const auto& each) { return each.test == count.test; });
-      if (at == sum.end()) {
-        sum.push_back(count);
-      } else {
-        at->found += count.found;
-        at->replications += count.replications;
-      }
-    }
-  }
-  return sum;
-}
-
-Band binomial_band(std::size_t replications, double probability) {
-  const auto n = static_cast<unsigned>(replications);
-  const double rest = 0.5 * (1.0 - probability);
-  Band band{0, replications};
-  while (gsl_cdf_binomial_P(static_cast<unsigned>(band.low), kAlpha, n) < rest) {
-    ++band.low;
-  }
-  while (band.high > 0 &&
-         gsl_cdf_binomial_Q(static_cast<unsigned>(band.high - 1), kAlpha, n) < rest) {
-    --band.high;
-  }
-  return band;
+  return null_levels(replications, threads,
+                     [&](std::size_t i) { return report_of(scores, design, i, seed); });
 }
 
 }  // namespace haptrial::test

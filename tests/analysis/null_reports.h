@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "analysis/trial_score.h"
+#include "tests/support/null_levels.h"
 
 namespace haptrial::test {
 
@@ -23,23 +23,9 @@ enum class NullDesign {
 
 const char* name_of(NullDesign design);
 
-/// How often a test of the report was below 0.05.
-struct NullCount {
-  std::string test;
-  bool leads{false};  // the report's first lines rest on it
-  std::size_t found{0};
-  std::size_t replications{0};
-};
-
 /// Reports of as many null studies, each with its own random numbers.
 /// @param scores  of a study with three conditions and blocks of one condition each
-std::vector<NullCount> null_reports(std::span<const analysis::TrialScore> scores, NullDesign design,
+std::vector<NullLevel> null_reports(std::span<const analysis::TrialScore> scores, NullDesign design,
                                     std::size_t replications, std::uint64_t seed, int threads);
-
-/// Bounds of the number of rejections at 0.05 that chance leaves with this probability.
-struct Band {
-  std::size_t low{0}, high{0};
-};
-Band binomial_band(std::size_t replications, double probability);
 
 }  // namespace haptrial::test

@@ -10,6 +10,9 @@ target_sources(bench_servo PRIVATE ${CMAKE_SOURCE_DIR}/tests/experiments/timed_s
                                    ${CMAKE_SOURCE_DIR}/tests/experiments/shipped.cpp
                                    ${CMAKE_SOURCE_DIR}/tests/support/temporary_folder.cpp)
 target_sources(bench_null_reports PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/null_reports.cpp)
+target_sources(bench_null_relabelled
+               PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/null_comparisons.cpp
+                       ${CMAKE_SOURCE_DIR}/tests/analysis/drilling/null_validity.cpp)
 target_compile_definitions(bench_servo PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 target_compile_definitions(bench_mesh PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 # bench_distance compares with those of its peers that are installed.

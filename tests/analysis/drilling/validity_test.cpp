@@ -13,6 +13,7 @@
 #include "analysis/drilling/validity_json.h"
 #include "analysis/drilling/validity_report.h"
 #include "analysis/drilling/validity_table.h"
+#include "analysis/wording.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "tests/support/message_of.h"
@@ -143,10 +144,24 @@ TEST(ValidityTest, ManyMetricsDoNotFindMoreByChance) {
     Study study = made(1000 + seed, 0.0, 0.0);
     study.ratings.clear();
     const Validity v = study.validity();
-    found += std::any_of(v.metrics.begin(), v.metrics.end(),
-                         [](const MetricValidity& m) { return *m.contrast_holm < 0.05; });
+    found += std::any_of(v.metrics.begin(), v.metrics.end(), [](const MetricValidity& m) {
+      return m.contrast_holm && *m.contrast_holm < 0.05;
+    });
   }
   EXPECT_LT(found, 0.15 * kStudies);  // more has a chance of 1 in 300 where 5 % is true
+}
+
+// The region's scores share their training, so their own test takes the place of Welch's.
+TEST(ValidityTest, TheRegionIsTestedByPermutedLabels) {
+  const Study study = made(13, 1.0, 0.5);
+  const auto region_in = [](const Validity& v) { return *metric_of(v, kRegionMetric); };
+  EXPECT_FALSE(region_in(study.validity()).contrast_p);
+  const Validity v = validity(study.procedures, study.regions, study.ratings, kPlan,
+                              RegionLabelTest{1.0, 0.001, 999});
+  EXPECT_EQ(*region_in(v).contrast_p, 0.001);
+  EXPECT_EQ(*metric_of(v, "visible_share")->contrast_p,
+            metric_of(v, "visible_share")->contrast.means->p);
+  EXPECT_GE(*region_in(v).contrast_holm, 0.001);
 }
 
 TEST(ValidityTest, RelatesMetricsToRatings) {
@@ -264,12 +279,91 @@ TEST(ValidityTest, ASimulatedStudySaysSoEverywhere) {
   }
 }
 
+// The first lines rest on participants' means and adjusted p values; pooled procedures stay below.
+TEST(ValidityTest, LeadsWithParticipantsAsTheUnit) {
+  const ValidityResult result = result_of(made(1, 1.2, 0.3));
+  const Validity& v = result.validity;
+  const std::vector<std::string> lines = summary_lines(result);
+  ASSERT_EQ(lines.size(), 6u);
+  EXPECT_THAT(lines[0], HasSubstr(mean_with_interval(v.rating_groups[3].participant_means) +
+                                  " (8 participants, 16 procedures)"));
+  EXPECT_THAT(lines[1],
+              HasSubstr("significant; difference " + number(v.rating_contrast.means->difference)));
+  EXPECT_THAT(lines[1], HasSubstr(p_value(v.rating_contrast.means->p)));
+  EXPECT_THAT(lines[2], HasSubstr("after Holm's adjustment over 20 metrics"));
+  EXPECT_THAT(lines[3], HasSubstr(fmt::format("R = {:.2f} ({} after Holm's adjustment over 21",
+                                              v.metrics[0].relation.means->r,
+                                              p_value(*v.metrics[0].relation_holm))));
+  EXPECT_THAT(lines[3], HasSubstr("over the means of 15 participants"));
+  EXPECT_THAT(lines[5], HasSubstr("participants left out"));
+  EXPECT_THAT(lines[5], Not(HasSubstr("fitted")));
+  const std::string report = to_markdown(validity_report(result, {}));
+  const std::size_t published = report.find("## As published");
+  ASSERT_NE(published, report.npos);
+  EXPECT_LT(published, report.find("over procedures"));
+  EXPECT_LT(published, report.find("Student's t"));
+  EXPECT_GT(report.find("all procedures are independent"), published);
+}
+
+TEST(ValidityTest, CountsWhatThereIsAndListsEveryGroupOnce) {
+  Study study = made(14, 1.0, 0.5);
+  const auto occurrences = [](const std::string& text, const std::string& part) {
+    int count = 0;
+    for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) {
+      ++count;
+    }
+    return count;
+  };
+  std::string report = to_markdown(validity_report(result_of(study), {}));
+  EXPECT_THAT(report, HasSubstr("30 procedures (30 rated) by 15 participants in 3 groups."));
+  EXPECT_EQ(occurrences(report, "\n| novices | 7 | 14 |"), 1);
+  EXPECT_EQ(occurrences(report, "\n| all experts | 8 | 16 |"), 1);
+  EXPECT_THAT(report, HasSubstr("1 rater scored from 1 to 5"));
+  EXPECT_THAT(report, Not(HasSubstr("mean over its raters"))) << "there is one";
+  // One procedure of one surgeon and one of one novice: no residents took part.
+  const std::size_t kept[] = {0, 16};
+  Study small;
+  for (const std::size_t i : kept) {
+    small.procedures.push_back(study.procedures[i]);
+    small.ratings.push_back(study.ratings[i]);
+  }
+  small.regions.resize(2);
+  report = to_markdown(validity_report(result_of(small), {}));
+  EXPECT_THAT(report, HasSubstr("2 procedures (2 rated) by 2 participants in 2 groups."));
+  EXPECT_THAT(summary_lines(result_of(small))[0], HasSubstr("(1 participant, 1 procedure)"));
+  EXPECT_THAT(report, Not(testing::ContainsRegex("[^0-9]1 (participants|procedures|metrics)")));
+}
+
+TEST(ValidityTest, CaptionsSayOnlyWhatIsDrawn) {
+  Study study = made(15, 1.0, 0.5);
+  const auto caption_of = [](const Study& of, const std::string& name) {
+    for (const Figure& figure : validity_figures(result_of(of))) {
+      if (figure.name == name) {
+        return figure.caption;
+      }
+    }
+    return std::string();
+  };
+  EXPECT_THAT(caption_of(study, "roc-experts-novices"), HasSubstr("the rating;"));
+  EXPECT_THAT(caption_of(study, "figure-16-ratings"), HasSubstr("then by group"));
+  EXPECT_THAT(caption_of(study, "figure-19-visibility"),
+              testing::ContainsRegex("Over participants' means R = .* after Holm's adjustment"));
+  study.ratings.clear();
+  const std::string without = caption_of(study, "roc-experts-novices");
+  EXPECT_THAT(without, HasSubstr("the share of voxels removed in sight"));
+  EXPECT_THAT(without, Not(HasSubstr("the rating")));
+  EXPECT_THAT(without, Not(HasSubstr("all metrics")));
+}
+
 TEST(ValidityTest, JsonHoldsWhatTheReportPrints) {
   const Study study = made(10, 1.0, 0.5, 2);
   const Validity v = study.validity();
   const auto json = nlohmann::json::parse(validity_json(v, study.procedures));
   EXPECT_EQ(json["ratings"]["contrast"]["student_over_procedures"]["p"].get<double>(),
             v.rating_contrast.pooled->p);
+  EXPECT_EQ(json["ratings"]["contrast"]["mixed_model"]["participants"], 15);
+  EXPECT_EQ(json["metrics"][0]["contrast_p"].get<double>(), *v.metrics[0].contrast_p);
+  EXPECT_EQ(json["metrics"][0]["rating_spearman_p_holm"].get<double>(), *v.metrics[0].ranks_holm);
   EXPECT_EQ(json["agreement_between_raters"]["icc_2_1"]["value"].get<double>(),
             v.agreement->random_raters->value);
   EXPECT_EQ(json["combined"]["fit"]["cross_validated"]["r"].get<double>(),
