@@ -1,7 +1,5 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <string>
 #include <string_view>
 
@@ -10,7 +8,7 @@ namespace haptrial::experiments {
 /// "1 session", "2 sessions".
 template <class Number>
 std::string counted(Number number, std::string_view one, std::string_view many) {
-  return fmt::format("{} {}", number, number == Number{1} ? one : many);
+  return std::to_string(number).append(" ").append(number == Number{1} ? one : many);
 }
 
 }  // namespace haptrial::experiments
