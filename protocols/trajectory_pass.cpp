@@ -150,6 +150,12 @@ PassOutput TrajectoryPass::tick(const device::DeviceReading& reading, double dt)
   return out;
 }
 
+/// After a run in which the hand was free along y it may be moving there: the plane's damper then
+/// comes by degrees.
+double TrajectoryPass::takes_hold() const noexcept {
+  return stage_ == Stage::kReturn && !plane_holds() ? std::clamp(time_ / kBlend, 0.0, 1.0) : 1.0;
+}
+
 PassOutput TrajectoryPass::output(const PointState& tool, const PointState& target) noexcept {
   const bool runs = stage_ == Stage::kRun;
   const bool pushes = runs && !plane_holds();
@@ -159,7 +165,8 @@ PassOutput TrajectoryPass::output(const PointState& tool, const PointState& targ
   out.stage = stage_;
   out.target_force = runs ? stimulus_.force.at(along_) : 0.0;
   Eigen::Vector3d wanted = trajectory_controller_.force(target, tool, along);
-  wanted.y() = pushes ? out.target_force : plane_controller_.force(target, tool, across).y();
+  const double held = takes_hold() * across;
+  wanted.y() = pushes ? out.target_force : plane_controller_.force(target, tool, held).y();
   out.damping_share = pushes ? along : std::min(along, across);
   out.force = control::saturate(wanted, parameters_.force_limit);
   out.intent = intent(target, tool, out.force, pushes);

@@ -87,6 +87,7 @@ class TrajectoryPass : public Pass {
   void settle(const PointState& tool, double dt) noexcept;
   void end_run_if_over() noexcept;
   PointState run_target(const PointState& tool) noexcept;
+  double takes_hold() const noexcept;
   PassOutput output(const PointState& tool, const PointState& target) noexcept;
   device::ForceIntent intent(const PointState& target, const PointState& tool,
                              const Eigen::Vector3d& force, bool pushes) const noexcept;
