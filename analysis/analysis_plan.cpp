@@ -25,27 +25,39 @@ std::string_view trimmed(std::string_view text) {
              : text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
+/// Blanks around the sign are no matter.
 std::optional<PlannedTest> parsed(std::string_view text) {
   std::optional<PlannedTest> found;
-  for (const auto& [sign, tail] : kSigns) {
-    const auto at = text.find(sign);
-    if (at == std::string_view::npos) {
-      continue;
+  for (const auto& [spaced, tail] : kSigns) {
+    const std::string_view sign = trimmed(spaced);
+    for (auto at = text.find(sign); at != std::string_view::npos; at = text.find(sign, at + 1)) {
+      if (found) {
+        return std::nullopt;  // a second sign
+      }
+      found = PlannedTest{std::string(trimmed(text.substr(0, at))),
+                          std::string(trimmed(text.substr(at + sign.size()))), tail};
     }
-    const auto a = trimmed(text.substr(0, at));
-    const auto b = trimmed(text.substr(at + sign.size()));
-    if (found || a.empty() || b.empty() || a == b || b.find(sign) != std::string_view::npos) {
-      return std::nullopt;
-    }
-    found = PlannedTest{std::string(a), std::string(b), tail};
   }
-  return found;
+  return found && !found->a.empty() && !found->b.empty() ? found : std::nullopt;
+}
+
+/// What is wrong with tests that can be read; empty where nothing is.
+std::string problem_with(const std::vector<PlannedTest>& tests) {
+  for (const PlannedTest& test : tests) {
+    if (test.a == test.b) {
+      return fmt::format("compares {} with itself; name two conditions", test.a);
+    }
+  }
+  return repeated_test(tests);
 }
 
 }  // namespace
 
 PlannedTest parse_planned_test(std::string_view text, std::string_view where) {
   auto test = parsed(text);
+  if (test && test->a == test->b) {
+    throw InputError(fmt::format("{} {}", where, problem_with({*test})));
+  }
   if (!test) {
     throw InputError(fmt::format("{} is \"{}\"; allowed: {}", where, text, kForm));
   }
@@ -56,6 +68,18 @@ std::string text_of(const PlannedTest& test) {
   const auto sign = std::find_if(kSigns.begin(), kSigns.end(),
                                  [&](const auto& each) { return each.second == test.tail; });
   return fmt::format("{}{}{}", test.a, sign->first, test.b);
+}
+
+std::string repeated_test(const std::vector<PlannedTest>& tests) {
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    for (std::size_t k = i + 1; k < tests.size(); ++k) {
+      if (std::minmax(tests[i].a, tests[i].b) == std::minmax(tests[k].a, tests[k].b)) {
+        return fmt::format("compares {} and {} twice; state each pair once", tests[i].a,
+                           tests[i].b);
+      }
+    }
+  }
+  return "";
 }
 
 AnalysisPlan read_analysis_plan(Table& analysis, const std::vector<std::string>& conditions) {
@@ -79,6 +103,9 @@ AnalysisPlan read_analysis_plan(Table& analysis, const std::vector<std::string>&
       check("planned", test->b);
       plan.tests.push_back(*test);
     }
+  }
+  if (const std::string problem = problem_with(plan.tests); !problem.empty()) {
+    analysis.reject("planned", problem);
   }
   if (analysis.has("reference")) {
     plan.reference = analysis.text("reference");

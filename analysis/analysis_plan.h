@@ -25,12 +25,16 @@ struct AnalysisPlan {
   std::string reference;  // the condition that the others are compared with; empty: the first
 };
 
-/// "visual < haptic", with a blank on each side of the sign. A side is a condition, or in a study
+/// "visual < haptic". A side is a condition, or in a study
 /// of several factors a level of one of them. @throws InputError, with `where` in front.
 PlannedTest parse_planned_test(std::string_view text, std::string_view where);
 
 /// The same again.
 std::string text_of(const PlannedTest& test);
+
+/// Sentence on two tests of the same two sides, which the adjustment would count twice; empty
+/// without.
+std::string repeated_test(const std::vector<PlannedTest>& tests);
 
 /// The optional keys `planned` and `reference` of an [analysis] table. Names that are not of
 /// `conditions` are noted as problems of the table.

@@ -86,7 +86,9 @@ Effects one_within(const DesignTable& table) {
   }
   EffectTest effect = described(table.factors[0].name, "repeated-measures analysis of variance",
                                 found->f, found->df_condition, found->df_error, found->p_corrected);
-  effect.epsilon = found->epsilon;
+  if (found->df_condition > 1.0) {
+    effect.epsilon = found->epsilon;
+  }
   return {effect};
 }
 
@@ -156,9 +158,24 @@ Effects two_between(const DesignTable& table) {
           between_effect(together(table.factors[0], table.factors[1]), test, found->interaction)};
 }
 
+/// Without factors of one level, which vary nothing.
+DesignTable varied(DesignTable table) {
+  for (std::size_t f = table.factors.size(); f-- > 0;) {
+    if (table.factors[f].levels.size() < 2) {
+      const auto at = static_cast<std::ptrdiff_t>(f);
+      table.factors.erase(table.factors.begin() + at);
+      for (auto& levels : table.cells) {
+        levels.erase(levels.begin() + at);
+      }
+    }
+  }
+  return table;
+}
+
 }  // namespace
 
-Effects design_effects(const DesignTable& table) {
+Effects design_effects(const DesignTable& all) {
+  const DesignTable table = varied(all);
   const auto& factors = table.factors;
   if (factors.empty() || table.cells.size() < 2) {
     return {Undefined{"there are fewer than two conditions"}};
@@ -178,7 +195,8 @@ Effects design_effects(const DesignTable& table) {
   return factors[0].within ? mixed(table, 1, 0) : mixed(table, 0, 1);
 }
 
-Defined<RankAnova> design_ranks(const DesignTable& table) {
+Defined<RankAnova> design_ranks(const DesignTable& all) {
+  const DesignTable table = varied(all);
   if (table.factors.size() != 1) {
     return Undefined{"it is for one factor"};
   }

@@ -51,8 +51,9 @@ std::string sides_of(const SideTest& test) {
 std::vector<std::string> lines_of(const TestFamily& family) {
   std::vector<std::string> lines{capitalized(family.name) + ":"};
   for (const SideTest& test : family.tests) {
-    lines.push_back(fmt::format("  {}: {}; {} = {}", sides_of(test), side_result(test),
-                                test.paired ? "d_z" : "d", effect(test.size)));
+    lines.push_back(fmt::format("  {}: {}; {}{}", sides_of(test), side_result(test),
+                                test.paired ? "d_z" : "d",
+                                (test.size ? " = " : " ") + effect(test.size)));
     lines.push_back(fmt::format("    {} {}; permutation {}; bootstrap 95 % CI {}",
                                 test.paired ? "Wilcoxon" : "Mann–Whitney",
                                 p_result(test.ranks_holm), p_result(test.permutation_holm),

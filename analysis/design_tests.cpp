@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <numeric>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "analysis/design_effects.h"
 #include "analysis/p_adjust.h"
@@ -70,29 +74,105 @@ std::optional<double> side_of(const DesignTable& table, std::size_t subject, con
   return count > 0 ? std::optional(sum / static_cast<double>(count)) : std::nullopt;
 }
 
+/// The values of two sides: pairs of the same participants, or different people. By stratum where
+/// other factors between participants lie across both sides.
 struct Sides {
   std::vector<double> a, b;
+  std::map<std::vector<std::size_t>, std::pair<std::vector<double>, std::vector<double>>> strata;
   bool paired{false};
-};
 
-Sides values_of(const DesignTable& table, const Cells& a, const Cells& b) {
-  Sides paired{{}, {}, true};
-  Sides apart;
-  for (const std::size_t subject : table.complete()) {
-    const auto first = side_of(table, subject, a);
-    const auto second = side_of(table, subject, b);
-    if (first && second) {
-      paired.a.push_back(*first);
-      paired.b.push_back(*second);
-    }
+  void add(const std::vector<std::size_t>& stratum, std::optional<double> first,
+           std::optional<double> second) {
+    auto& [in_a, in_b] = strata[stratum];
     if (first) {
-      apart.a.push_back(*first);
+      a.push_back(*first);
+      in_a.push_back(*first);
     }
     if (second) {
-      apart.b.push_back(*second);
+      b.push_back(*second);
+      in_b.push_back(*second);
     }
   }
+};
+
+std::set<std::size_t> levels_in(const DesignTable& table, const Cells& cells, std::size_t factor) {
+  std::set<std::size_t> levels;
+  for (const std::size_t cell : cells) {
+    levels.insert(table.cells[cell][factor]);
+  }
+  return levels;
+}
+
+/// Factors between participants of which both sides have the same levels, several.
+std::vector<std::size_t> factors_across(const DesignTable& table, const Cells& a, const Cells& b) {
+  std::vector<std::size_t> across;
+  for (std::size_t f = 0; f < table.factors.size(); ++f) {
+    const auto levels = levels_in(table, a, f);
+    if (!table.factors[f].within && levels.size() > 1 && levels == levels_in(table, b, f)) {
+      across.push_back(f);
+    }
+  }
+  return across;
+}
+
+std::vector<std::size_t> stratum_of(const DesignTable& table, std::size_t subject,
+                                    const std::vector<std::size_t>& factors) {
+  const auto& means = table.means[subject];
+  const auto own = std::find_if(means.begin(), means.end(), [](const auto& m) { return !!m; });
+  std::vector<std::size_t> stratum;
+  for (const std::size_t f : factors) {
+    stratum.push_back(table.cells[static_cast<std::size_t>(own - means.begin())][f]);
+  }
+  return stratum;
+}
+
+/// A side of one cell takes everybody who has it; one of several takes who has all of their own.
+Sides values_of(const DesignTable& table, const Cells& a, const Cells& b) {
+  const bool single = a.size() == 1 && b.size() == 1;
+  std::vector<std::size_t> subjects = table.complete();
+  if (single) {
+    subjects.resize(table.subjects.size());
+    std::iota(subjects.begin(), subjects.end(), std::size_t{0});
+  }
+  const auto across = factors_across(table, a, b);
+  Sides paired;
+  paired.paired = true;
+  Sides apart;
+  for (const std::size_t subject : subjects) {
+    const auto first = side_of(table, subject, a);
+    const auto second = side_of(table, subject, b);
+    const auto stratum = stratum_of(table, subject, across);
+    if (first && second) {
+      paired.add(stratum, first, second);
+    }
+    apart.add(stratum, first, second);
+  }
   return paired.a.empty() ? apart : paired;
+}
+
+bool equally_large(const Sides& sides) {
+  const auto& [a, b] = sides.strata.begin()->second;
+  return std::all_of(sides.strata.begin(), sides.strata.end(), [&](const auto& stratum) {
+    return stratum.second.first.size() == a.size() && stratum.second.second.size() == b.size();
+  });
+}
+
+Defined<TTest> stratified(const Sides& sides, Tail tail) {
+  std::vector<std::vector<double>> a;
+  std::vector<std::vector<double>> b;
+  for (const auto& [key, values] : sides.strata) {
+    const auto& [first, second] = values;
+    if (!sides.paired) {
+      a.push_back(first);
+      b.push_back(second);
+      continue;
+    }
+    auto& differences = a.emplace_back();
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      differences.push_back(first[i] - second[i]);
+    }
+  }
+  return stratified_t_test(a, b, tail);
 }
 
 void resample(SideTest& test, const Sides& values, Resampling resampling) {
@@ -129,6 +209,15 @@ SideTest compared(const DesignTable& table, PlannedTest sides, const Cells& a, c
   test.count_a = values.a.size();
   test.count_b = values.b.size();
   const Tail tail = test.sides.tail;
+  if (values.strata.size() > 1 && !equally_large(values)) {
+    const Undefined why{"groups of different size are weighed alike, which only the t-test does"};
+    test.t = stratified(values, tail);
+    test.size = why;
+    test.ranks = why;
+    test.permutation = why;
+    test.bootstrap = why;
+    return test;
+  }
   if (values.paired) {
     test.t = paired_t_test(values.a, values.b, tail);
     test.size = cohens_dz(values.a, values.b);
@@ -137,6 +226,9 @@ SideTest compared(const DesignTable& table, PlannedTest sides, const Cells& a, c
     test.t = welch_t_test(values.a, values.b, tail);
     test.size = cohens_d(values.a, values.b);
     test.ranks = mann_whitney(values.a, values.b, tail);
+  }
+  if (values.strata.size() > 1) {
+    test.t = stratified(values, tail);
   }
   if (resampling.count > 0) {
     resample(test, values, resampling);
@@ -228,7 +320,7 @@ std::string design_in_words(const DesignTable& table) {
   for (const bool within : {true, false}) {
     std::vector<std::string> names;
     for (const Factor& factor : table.factors) {
-      if (factor.within == within) {
+      if (factor.within == within && factor.levels.size() > 1) {
         names.push_back(fmt::format("{} ({})", factor.name, fmt::join(factor.levels, ", ")));
       }
     }
@@ -237,7 +329,9 @@ std::string design_in_words(const DesignTable& table) {
                           within ? "within" : "between", fmt::join(names, " and "));
     }
   }
-  return text;
+  return text.empty()
+             ? fmt::format("nothing: there is one condition, {}", fmt::join(table.names, ", "))
+             : text;
 }
 
 }  // namespace
@@ -246,8 +340,8 @@ void check_plan(const DesignTable& table, const AnalysisPlan& plan) {
   const auto known = known_sides(table);
   const auto require = [&](const std::string& side, const char* what) {
     if (cells_of(table, side).empty()) {
-      throw InputError(fmt::format("the {} names '{}', of which there are no trials; allowed: {}",
-                                   what, side, fmt::join(known, ", ")));
+      throw InputError(fmt::format("the {} names '{}', which the data do not have; allowed: '{}'",
+                                   what, side, fmt::join(known, "', '")));
     }
   };
   for (const PlannedTest& test : plan.tests) {
@@ -285,7 +379,9 @@ DesignTests design_tests(const DesignTable& table, const AnalysisPlan& plan,
       tests.families.push_back(levels_of(table, f, resampling));
     }
   }
-  if (table.factors.size() > 1) {
+  const auto varied = std::count_if(table.factors.begin(), table.factors.end(),
+                                    [](const Factor& f) { return f.levels.size() > 1; });
+  if (varied > 1) {
     tests.families.push_back(neighbouring_cells(table, resampling));
   }
   return tests;

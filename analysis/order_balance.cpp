@@ -120,7 +120,7 @@ std::string sentence_of(const OrderBalance& balance) {
         "Order is balanced: in groups of {} blocks each condition came {} times at each place{}.",
         balance.conditions.size(), balance.at_place.front().front(),
         balance.sequences_balanced()
-            ? fmt::format(" and {} times right after each other one", balance.after[0][1])
+            ? fmt::format(" and {} times directly after each other condition", balance.after[0][1])
             : "; which condition follows which is not balanced");
   }
   std::string counts;

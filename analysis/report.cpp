@@ -16,8 +16,9 @@ std::string subtitle(const StudyResult& study) {
       counted(study.statistics.subjects.size(), "participant"),
       counted(study.statistics.conditions.size(),
               study.curves_from.empty() ? "training condition" : "condition"),
-      study.curves_from.empty() ? "Each trial trained a force pattern and then asked for it; the"
-                                : "The");
+      study.curves_from.empty()
+          ? "In each trial the participant learned a force pattern and then reproduced it; the"
+          : "The");
 }
 
 }  // namespace

@@ -11,14 +11,14 @@ namespace {
 using Rows = std::vector<std::vector<std::string>>;
 
 std::string tested(const Coefficient& c) {
-  return fmt::format("t({:.1f}) = {:.3g}, {}", c.df, c.t, p_value(c.p));
+  return fmt::format("t({:.1f}) = {:.2f}, {}", c.df, c.t, p_value(c.p));
 }
 
 std::string tested(const Defined<JointTest>& test) {
   if (!test) {
     return "not defined, because " + test.because();
   }
-  return fmt::format("F({:.0f}, {:.1f}) = {:.3g}, {}", test->df_numerator, test->df_denominator,
+  return fmt::format("F({:.0f}, {:.1f}) = {:.2f}, {}", test->df_numerator, test->df_denominator,
                      test->f, p_value(test->p));
 }
 

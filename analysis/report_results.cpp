@@ -58,7 +58,7 @@ std::string interval(const Defined<MeanInterval>& i) {
 }
 
 void add_table_1(Document& document, const StudyStatistics& s) {
-  document.heading("Table 1: best and worst condition of each participant");
+  document.heading("Table 1: best and worst condition of each participant by mean recall error");
   if (s.table_1.empty()) {
     document.paragraph("No participant has a scored trial in every condition.");
     return;
@@ -96,10 +96,11 @@ void add_design(Document& document, const StudyResult& study) {
   }
   document.paragraph(fmt::format("Varied {}.", study.statistics.tests.design));
   if (study.curves_from.empty()) {
-    document.paragraph(fmt::format(
-        "The scored trials lie in {} that repeat one trajectory and force pattern under one "
-        "training condition.",
-        counted(blocks.size(), "block")));
+    document.paragraph(
+        fmt::format("The scored trials belong to {}; in each, one trajectory and force pattern are "
+                    "repeated under "
+                    "one training condition.",
+                    counted(blocks.size(), "block")));
   }
   if (study.statistics.table.factors.size() == 1 && study.statistics.table.factors[0].within &&
       blocks.size() > study.statistics.subjects.size()) {

@@ -10,9 +10,10 @@ namespace haptrial::analysis {
 namespace {
 
 std::string line_of(const ConditionSummary& s, const std::string& participants) {
+  const bool only_a_mean = !s.participants && s.mean;
   return fmt::format("{}: mean recall error {} ({}, {})", capitalized(s.condition),
-                     mean_with_interval(s.participants), counted(s.people, participants),
-                     counted(s.count, "trial"));
+                     only_a_mean ? number(*s.mean) : mean_with_interval(s.participants),
+                     counted(s.people, participants), counted(s.count, "trial"));
 }
 
 }  // namespace

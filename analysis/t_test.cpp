@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "analysis/descriptive.h"
@@ -114,6 +115,34 @@ Defined<TTest> paired_t_test(std::span<const double> a, std::span<const double> 
     return Undefined{"the differences do not vary"};
   }
   return from_error(m->mean(), std::sqrt(m->variance() / n), n - 1.0, tail, level);
+}
+
+Defined<TTest> stratified_t_test(const std::vector<std::vector<double>>& a,
+                                 const std::vector<std::vector<double>>& b, Tail tail,
+                                 double level) {
+  const auto strata = static_cast<double>(a.size());
+  double difference = 0.0;
+  double variance = 0.0;
+  double spread = 0.0;  // of the variance
+  for (const auto& [side, sign] : {std::pair{&a, 1.0}, std::pair{&b, -1.0}}) {
+    for (const auto& stratum : *side) {
+      const auto m = moments(stratum);
+      if (!m) {
+        return Undefined{m.because()};
+      }
+      if (m->count < 2) {
+        return Undefined{"a group has a single participant"};
+      }
+      const double part = m->variance() / (static_cast<double>(m->count) * strata * strata);
+      difference += sign * m->mean() / strata;
+      variance += part;
+      spread += part * part / static_cast<double>(m->count - 1);
+    }
+  }
+  if (variance == 0.0) {
+    return Undefined{"the values do not vary within any group"};
+  }
+  return from_error(difference, std::sqrt(variance), variance * variance / spread, tail, level);
 }
 
 }  // namespace haptrial::analysis

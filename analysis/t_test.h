@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "analysis/defined.h"
 
@@ -40,5 +41,17 @@ Defined<TTest> welch_t_test(std::span<const double> a, std::span<const double> b
 /// @throws std::invalid_argument when the lengths differ.
 Defined<TTest> paired_t_test(std::span<const double> a, std::span<const double> b, Tail tail,
                              double level = 0.95);
+
+/// Strata of participants weighed alike, however many each has:
+///
+///     mean over s of mean(a[s]) - mean over s of mean(b[s])
+///
+/// with the variance of each stratum its own and Welch and Satterthwaite's degrees of freedom.
+/// @param b  as many strata as `a`; none: `a` holds differences of pairs.
+/// Undefined with a stratum of fewer than two values, no variance in any, or a value that is not
+/// finite.
+Defined<TTest> stratified_t_test(const std::vector<std::vector<double>>& a,
+                                 const std::vector<std::vector<double>>& b, Tail tail,
+                                 double level = 0.95);
 
 }  // namespace haptrial::analysis

@@ -55,9 +55,9 @@ double exact_p(const std::vector<double>& distribution, double statistic, Tail t
   const auto at_least = std::accumulate(distribution.rbegin(), distribution.rend() - place, 0.0);
   switch (tail) {
     case Tail::kLess:
-      return at_most;
+      return std::min(1.0, at_most);  // sums may round to just above 1
     case Tail::kGreater:
-      return at_least;
+      return std::min(1.0, at_least);
     case Tail::kTwoSided:
       break;
   }

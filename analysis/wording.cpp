@@ -26,7 +26,7 @@ std::string p_value(double p) {
   if (p < 0.001) {
     return "p < 0.001";
   }
-  return p < 0.1 ? fmt::format("p = {:.2g}", p) : fmt::format("p = {:.2f}", p);
+  return p < 0.1 ? fmt::format("p = {:#.2g}", p) : fmt::format("p = {:.2f}", p);
 }
 
 std::string mean_with_interval(const Defined<MeanInterval>& interval) {
@@ -41,7 +41,7 @@ std::string anova_result(const Defined<Anova>& anova) {
   if (!anova) {
     return not_defined(anova.because());
   }
-  return fmt::format("F({}, {}) = {}, {}, η² = {:.2g}", degrees(anova->df_between),
+  return fmt::format("F({}, {}) = {}, {}, η² = {:#.2g}", degrees(anova->df_between),
                      degrees(anova->df_within), number(anova->f), p_value(anova->p),
                      anova->eta_squared);
 }
@@ -50,7 +50,7 @@ std::string anova_result(const Defined<RepeatedAnova>& anova) {
   if (!anova) {
     return not_defined(anova.because());
   }
-  return fmt::format("F({}, {}) = {}, {}; Greenhouse–Geisser ε = {:.2f}, {}; partial η² = {:.2g}",
+  return fmt::format("F({}, {}) = {}, {}; Greenhouse–Geisser ε = {:.2f}, {}; partial η² = {:#.2g}",
                      degrees(anova->df_condition), degrees(anova->df_error), number(anova->f),
                      p_value(anova->p), anova->epsilon, p_value(anova->p_corrected),
                      anova->partial_eta_squared);
@@ -60,7 +60,7 @@ std::string t_result(const Defined<TTest>& test) {
   if (!test) {
     return not_defined(test.because());
   }
-  return fmt::format("t({}) = {:.3g}, {}", degrees(test->df), test->t, p_value(test->p));
+  return fmt::format("t({}) = {:.2f}, {}", degrees(test->df), test->t, p_value(test->p));
 }
 
 std::string rank_result(const Defined<RankAnova>& test) {
@@ -83,7 +83,7 @@ std::string effect_result(const EffectTest& effect) {
       "F({}, {}) = {}, {} ({}{}){}", degrees(effect.df_effect), degrees(effect.df_error),
       number(effect.f), p_value(effect.p), effect.test,
       effect.epsilon ? fmt::format(", Greenhouse–Geisser ε = {:.2f}", *effect.epsilon) : "",
-      effect.size ? fmt::format(", partial η² = {:.2g}", effect.size->value) : "");
+      effect.size ? fmt::format(", partial η² = {:#.2g}", effect.size->value) : "");
 }
 
 std::string side_result(const SideTest& test) {
@@ -91,7 +91,7 @@ std::string side_result(const SideTest& test) {
     return not_defined(test.t.because());
   }
   return fmt::format(
-      "difference {}, 95 % CI {} to {}, {}({}) = {:.3g}, {} after Holm's adjustment, {}",
+      "difference {}, 95 % CI {} to {}, {}({}) = {:.2f}, {} after Holm's adjustment, {}",
       number(test.t->difference), number(test.t->low), number(test.t->high), name_of_test(test),
       degrees(test.t->df), test.t->t, p_result(test.holm),
       test.sides.tail == Tail::kTwoSided ? "two-tailed" : "one-tailed");

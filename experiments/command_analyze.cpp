@@ -47,6 +47,8 @@ analysis::AnalysisPlan plan_for(const AnalyzeOptions& options, analysis::Analysi
   }
   if (!given.reference.empty()) {
     plan.reference = given.reference;
+    remarks.emplace_back(
+        "The reference condition was given to analyze, not stated in the definition.");
   }
   return plan;
 }
@@ -64,9 +66,7 @@ analysis::StudyResult analyzed_sessions(const AnalyzeOptions& options, Pilots pi
     throw InputError(fmt::format(
         "{}: no session holds a completed test pass, so nothing can be scored", folder));
   }
-  if (!remarks.empty()) {
-    analysis::check_plan(study.statistics.table, plan);
-  }
+  analysis::check_plan(study.statistics.table, plan_of(options.planned, options.reference));
   study.remarks = found.remarks;
   study.remarks.insert(study.remarks.end(), remarks.begin(), remarks.end());
   if (pilots == Pilots::kLeftOut) {
@@ -96,7 +96,7 @@ analysis::StudyResult analyzed_curves(const AnalyzeOptions& options, int threads
           throw RunError("interrupted; nothing was written");
         }
       });
-  analysis::check_plan(study.statistics.table, plan);
+  analysis::check_plan(study.statistics.table, plan_of(options.planned, options.reference));
   study.remarks.insert(study.remarks.end(), remarks.begin(), remarks.end());
   return study;
 }

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <fstream>
 
 #include "analysis/design_json.h"
@@ -20,6 +22,20 @@ void write(const std::string& file, const std::string& text) {
   }
 }
 
+/// Every column has one part. @throws InputError
+void check_columns(const StatisticsOptions& options, const std::vector<std::string>& factors) {
+  std::vector<std::string> columns{options.subject, options.value};
+  columns.insert(columns.end(), factors.begin(), factors.end());
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (std::find(columns.begin(), columns.begin() + static_cast<std::ptrdiff_t>(i), columns[i]) !=
+        columns.begin() + static_cast<std::ptrdiff_t>(i)) {
+      throw InputError(fmt::format(
+          "--subject, --value and --factor name the column '{}' twice; name each column once",
+          columns[i]));
+    }
+  }
+}
+
 }  // namespace
 
 analysis::AnalysisPlan plan_of(const std::vector<std::string>& planned,
@@ -27,6 +43,9 @@ analysis::AnalysisPlan plan_of(const std::vector<std::string>& planned,
   analysis::AnalysisPlan plan{{}, reference};
   for (const std::string& text : planned) {
     plan.tests.push_back(analysis::parse_planned_test(text, "--planned"));
+  }
+  if (const std::string problem = analysis::repeated_test(plan.tests); !problem.empty()) {
+    throw InputError("--planned " + problem);
   }
   return plan;
 }
@@ -40,6 +59,10 @@ int statistics(const StatisticsOptions& options) {
   const analysis::AnalysisPlan plan = plan_of(options.planned, options.reference);
   const std::vector<std::string> factors =
       options.factors.empty() ? std::vector<std::string>{"condition"} : options.factors;
+  check_columns(options, factors);
+  if (!options.json.empty() && std::filesystem::exists(options.json)) {
+    throw InputError(fmt::format("{}: exists already; choose another --json", options.json));
+  }
   const analysis::DesignTable table = analysis::design_table(
       analysis::read_observations(options.table, options.subject, factors, options.value), factors,
       plan.reference.empty() ? std::vector<std::string>{} : std::vector{plan.reference});

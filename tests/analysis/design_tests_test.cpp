@@ -1,6 +1,7 @@
 // The tests that a design calls for, against the procedures called by hand.
 #include "analysis/design_tests.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -199,6 +200,83 @@ TEST(DesignTests, TwoFactorsBetweenTakeTheTwoWayAnalysis) {
   expect_effect(tests.effects[1], "shape", both->b->f, both->b->p);
 }
 
+TEST(DesignTests, LevelsAcrossUnequalGroupsAreWeighedAlike) {
+  // x is 1 above y in each group, but the groups differ by 10 and have x and y in unequal numbers:
+  // pooled people would have x below y.
+  Made made("confounded");
+  const auto add = [&](const char* level, const char* group, int count, double mean) {
+    for (int i = 0; i < count; ++i) {
+      made.add(fmt::format("{}{}{}", level, group, i), {level, group}, mean);
+    }
+  };
+  add("x", "low", 9, 1.0);
+  add("y", "low", 3, 0.0);
+  add("x", "high", 3, 11.0);
+  add("y", "high", 9, 10.0);
+  AnalysisPlan plan;
+  plan.tests = {{"x", "y", Tail::kGreater}};
+  const DesignTests tests =
+      design_tests(design_table(made.observations, {"level", "group"}), plan, kNone);
+  const SideTest& test = tests.planned.tests[0];
+  EXPECT_NEAR(test.t->difference, 1.0, 1.2);
+  EXPECT_GT(test.t->difference, 0.0);
+  EXPECT_LT(test.t->error, 1.0);
+  EXPECT_THAT(test.ranks.because(), HasSubstr("different size"));
+}
+
+TEST(DesignTests, StrataOfOneAreTheSimpleTests) {
+  const std::vector<double> a{1.0, 4.0, 2.5, 3.0};
+  const std::vector<double> b{2.0, 6.0, 5.5};
+  const auto welch = welch_t_test(a, b, Tail::kLess);
+  const auto one = stratified_t_test({a}, {b}, Tail::kLess);
+  EXPECT_NEAR(one->t, welch->t, 1e-12);
+  EXPECT_NEAR(one->df, welch->df, 1e-12);
+  EXPECT_NEAR(one->p, welch->p, 1e-12);
+}
+
+TEST(DesignTests, WhoHasBothSidesIsCompared) {
+  // Nobody has all three conditions; each pair has its own people.
+  Made made("partly");
+  for (int i = 0; i < 4; ++i) {
+    made.add(person("A", i), {"c1"}, 0.0);
+    made.add(person("A", i), {"c2"}, 0.0);
+    made.add(person("B", i), {"c1"}, 0.0);
+    made.add(person("B", i), {"c3"}, 0.0);
+  }
+  const DesignTests tests = design_tests(design_table(made.observations, {"c"}), {}, kNone);
+  EXPECT_FALSE(tests.effects[0]);
+  ASSERT_EQ(tests.families[0].tests.size(), 3u);
+  EXPECT_TRUE(tests.families[0].tests[0].paired);
+  EXPECT_EQ(tests.families[0].tests[0].count_a, 4u);
+  EXPECT_FALSE(tests.families[0].tests[2].paired);  // c2 and c3: different people
+}
+
+TEST(DesignTests, AFactorOfOneLevelVariesNothing) {
+  Made made("one level");
+  for (int i = 0; i < 4; ++i) {
+    made.add(person("A", i), {"expert", "all"}, 0.0);
+    made.add(person("B", i), {"novice", "all"}, 1.0);
+  }
+  const DesignTests tests =
+      design_tests(design_table(made.observations, {"group", "condition"}), {}, kNone);
+  EXPECT_EQ(tests.design, "between participants: group (expert, novice)");
+  ASSERT_TRUE(tests.effects[0]);
+  EXPECT_EQ(tests.effects[0]->factor, "group");
+  EXPECT_EQ(tests.families.size(), 1u);
+}
+
+TEST(DesignTests, AnExactPIsNeverAboveOne) {
+  Made made("separated");
+  for (int i = 0; i < 2; ++i) {
+    made.observations.push_back({person("A", i), {"a"}, 11.0 + i});
+    made.observations.push_back({person("B", i), {"b"}, 1.0 + i});
+  }
+  AnalysisPlan plan;
+  plan.tests = {{"a", "b", Tail::kLess}};
+  const DesignTests tests = design_tests(design_table(made.observations, {"c"}), plan, kNone);
+  EXPECT_EQ(*tests.planned.tests[0].ranks_holm, 1.0);
+}
+
 TEST(DesignTests, CombinationsThatNobodyHadAreComparedTwoByTwo) {
   Made made("hole");
   for (int i = 0; i < 4; ++i) {
@@ -229,11 +307,16 @@ TEST(AnalysisPlan, IsReadAndWrittenAlike) {
   for (const char* text : {"visual < haptic", "a b > c", "x, y != x, z"}) {
     EXPECT_EQ(text_of(parse_planned_test(text, "planned")), text);
   }
-  EXPECT_EQ(parse_planned_test(" a  <  b ", "planned").a, "a");
-  for (const char* text :
-       {"", "a", "a <b", "a < ", " < b", "a < a", "a < b < c", "a < b != c", "a = b"}) {
+  EXPECT_EQ(text_of(parse_planned_test(" a<b ", "planned")), "a < b");
+  for (const char* text : {"", "a", "a < ", " < b", "a < a", "a < b < c", "a < b != c", "a = b"}) {
     EXPECT_THROW(parse_planned_test(text, "--planned"), InputError) << text;
   }
+}
+
+TEST(AnalysisPlan, APairStatedTwiceIsFoundWhateverItsDirection) {
+  EXPECT_EQ(repeated_test({{"a", "b", Tail::kLess}, {"b", "c", Tail::kLess}}), "");
+  EXPECT_EQ(repeated_test({{"a", "b", Tail::kLess}, {"b", "a", Tail::kGreater}}),
+            "compares a and b twice; state each pair once");
 }
 
 TEST(AnalysisPlan, NamesWithoutTrialsAreRefusedWithTheKnownOnes) {
@@ -256,7 +339,7 @@ TEST(AnalysisPlan, NamesWithoutTrialsAreRefusedWithTheKnownOnes) {
   EXPECT_EQ(problem({{{"soon", "x", Tail::kLess}}, ""}),
             "the planned test \"soon < x\" compares trials with themselves");
   EXPECT_THAT(problem({{{"sone", "x", Tail::kLess}}, ""}),
-              HasSubstr("names 'sone', of which there are no trials; allowed: now, now"));
+              HasSubstr("names 'sone', which the data do not have; allowed: 'now, now'"));
   EXPECT_THAT(problem({{{"now", "soon", Tail::kLess}}, ""}), HasSubstr("several factors"));
   EXPECT_THAT(problem({{}, "late"}), HasSubstr("the reference condition names 'late'"));
   EXPECT_EQ(problem({{{"now, x", "soon, x", Tail::kLess}}, ""}), "");

@@ -123,14 +123,25 @@ TEST_F(DesignReportsTest, TwoFactorsWithin) {
   EXPECT_TRUE(effects[0].contains("greenhouse_geisser_epsilon"));
 }
 
+TEST_F(DesignReportsTest, AnUnknownReferenceOfSessionsIsRefusedToo) {
+  const CommandResult run =
+      run_command(fmt::format("haptrial analyze '{}' --reference hap", in("study")));
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.errors, HasSubstr("the reference condition names 'hap'"));
+  const CommandResult good =
+      run_command(fmt::format("haptrial analyze '{}' --reference visual", in("study")));
+  EXPECT_EQ(good.status, 0) << good.errors;
+  EXPECT_THAT(good.output, HasSubstr("The reference condition was given to analyze"));
+}
+
 TEST_F(DesignReportsTest, APlannedTestOfAnUnknownConditionIsRefused) {
   const CommandResult run = run_command(
       fmt::format("haptrial analyze --curves '{}' --conditions '{}/conditions.csv' --out '{}' "
                   "--planned 'visula < haptic'",
                   in("curves"), in("curves"), in("report")));
   EXPECT_EQ(run.status, 2);
-  EXPECT_THAT(run.errors, HasSubstr("names 'visula', of which there are no trials; allowed: "
-                                    "haptic, visual, visuohaptic"));
+  EXPECT_THAT(run.errors, HasSubstr("names 'visula', which the data do not have; allowed: "
+                                    "'haptic', 'visual', 'visuohaptic'"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "report"));
 }
 

@@ -65,6 +65,25 @@ TEST_F(StatisticsCommandTest, FindsTheDesignOfSeveralFactors) {
   EXPECT_THAT(run.output, HasSubstr("Mann–Whitney"));
 }
 
+TEST_F(StatisticsCommandTest, NothingThatExistsIsWrittenOver) {
+  const std::string table = groups();
+  const CommandResult run =
+      run_command(fmt::format("haptrial statistics {0} --subject who --factor speed --value error "
+                              "--json {0}",
+                              table));
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.errors, HasSubstr("exists already; choose another --json"));
+  EXPECT_THAT(test::read_text(folder_ / "groups.csv"), HasSubstr("who,group,speed,error"));
+}
+
+TEST_F(StatisticsCommandTest, OneParticipantAndOneConditionAreSaidPlainly) {
+  const std::string one = file("one.csv", "subject,condition,score\nP,x,1\nP,x,3\n");
+  const CommandResult run = run_command("haptrial statistics " + one);
+  ASSERT_EQ(run.status, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("Varied nothing: there is one condition, x"));
+  EXPECT_THAT(run.output, HasSubstr("x: mean 2.000 (1 participant, 2 values)"));
+}
+
 TEST_F(StatisticsCommandTest, EqualSeedsGiveEqualLinesWhateverTheThreads) {
   const std::string command =
       "haptrial statistics " + groups() + " --subject who --factor speed --value error --jobs ";
@@ -79,7 +98,7 @@ TEST_F(StatisticsCommandTest, WhatCannotBeTestedGetsASentence) {
   for (const auto& [options, sentence] :
        {Case{"--value error --factor speed", "subject"},
         Case{"--subject who --value error --factor speed --planned 'slow < quick'",
-             "names 'quick', of which there are no trials; allowed: fast, slow"},
+             "names 'quick', which the data do not have; allowed: 'fast', 'slow'"},
         Case{"--subject who --value error --factor speed --planned 'slow'", "--planned is"},
         Case{"--subject who --value group --factor speed", "group is 'expert'"},
         Case{"--subject who --value error --factor speed --resamples -1", "--resamples"},
