@@ -146,7 +146,10 @@ RestrictedLikelihood::Slopes RestrictedLikelihood::at(const VectorXd& rho) const
   const Index q = s.coefficients.size();
   Sums sums(terms_, q);
   for (const Whitened& white : blocks) {
-    const MatrixXd z = white.factor.matrixL().solve(white.block.z);
+    MatrixXd z = white.block.z;
+    if (z.cols() > 0) {  // Eigen takes the address of the first element
+      white.factor.matrixL().solveInPlace(z);
+    }
     sums.add(white.block, z, white.values.leftCols(q) * s.root,
              white.values.col(q) - white.values.leftCols(q) * s.coefficients);
   }

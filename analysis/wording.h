@@ -58,7 +58,7 @@ std::string sphericity_result(const Defined<RepeatedAnova>& anova);
 std::string quantity(const Defined<double>& value, double factor, const std::string& unit);
 /// "Visuohaptic" of "visuohaptic".
 std::string capitalized(std::string text);
-/// "1 trial", "2 passes", "2 studies" of "study".
+/// "1 trial", "2 passes".
 std::string counted(std::size_t count, const std::string& noun);
 
 }  // namespace haptrial::analysis
