@@ -39,8 +39,6 @@ class LiveMouseTest : public testing::Test {
     display_.emplace(kWidth, kHeight);
     test::write_text(folder_ / "study.toml",
                      test::brisk_text({{"conditions", "conditions = [\"visual\"]"},
-                                       {"planned", ""},
-                                       {"reference", ""},
                                        {"speed", "speed = 0.03"},
                                        {"wait_timeout", "wait_timeout = 30.0"}}));
     definition_ = experiments::load_definition(folder_ / "study.toml");

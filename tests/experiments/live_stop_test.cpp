@@ -36,7 +36,6 @@ class LiveStopTest : public testing::Test {
   /// Passes of a slow run, in which the handle's spring pulls for long.
   static std::string study() {
     return test::brisk_text({{"conditions", "conditions = [\"haptic\"]"},
-                             {"planned", ""},
                              {"repetitions", "repetitions = 1"},
                              {"break_after", "break_after = 0"},
                              {"settle_distance", "settle_distance = 0.02"},

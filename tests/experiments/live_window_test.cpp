@@ -59,8 +59,6 @@ class LiveWindowTest : public testing::TestWithParam<bool> {
     test::write_text(
         folder_ / "study.toml",
         test::brisk_text({{"conditions", "conditions = [\"visuohaptic\"]"},
-                          {"planned", ""},
-                          {"reference", ""},
                           {"speed", "speed = 0.03"},
                           {"full_screen", full() ? "full_screen = true" : "full_screen = false"},
                           {"width", "width = 800"},
