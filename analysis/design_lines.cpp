@@ -37,9 +37,10 @@ std::string line_of_cell(const DesignTable& table, std::size_t cell) {
       means.push_back(*row[cell]);
     }
   }
-  return fmt::format("{}: mean {} ({}, {})", capitalized(table.names[cell]),
-                     mean_with_interval(mean_interval(means)), counted(means.size(), "participant"),
-                     counted(table.counts[cell], "value"));
+  const auto interval = mean_interval(means);
+  return fmt::format("{}: mean {} ({}, {})", table.names[cell],
+                     interval ? mean_with_interval(interval) : number(moments(means)->mean()),
+                     counted(means.size(), "participant"), counted(table.counts[cell], "value"));
 }
 
 /// "visual < haptic", "haptic and visual".
@@ -94,7 +95,7 @@ std::vector<std::string> design_lines(const DesignTable& table, const DesignTest
     lines.push_back(line_of_cell(table, cell));
   }
   append(effect_lines(tests));
-  if (table.factors.size() == 1) {
+  if (table.factors.size() == 1 && table.cells.size() > 1) {
     lines.push_back(fmt::format("On ranks ({}): {}",
                                 table.factors[0].within ? "Friedman" : "Kruskal–Wallis",
                                 rank_result(tests.ranks)));

@@ -104,7 +104,7 @@ TEST_F(BoneRestoreTest, OfAWholeRecordGivesTheBoneOfTheSession) {
   EXPECT_EQ(bone.stage->simulator->emptied_so_far(), procedures[0].emptied);
   EXPECT_EQ(bone.stage->simulator->pieces(), procedures[0].pieces);
   EXPECT_EQ(bone.ticks, kTicks);
-  EXPECT_THAT(bone.told, HasSubstr("as it stood after 8.000 s of drilling"));
+  EXPECT_THAT(bone.told, HasSubstr("as it was after 8.000 s of drilling"));
 }
 
 TEST_F(BoneRestoreTest, AfterACrashTheBoneIsThatOfAnUninterruptedSimulationOnThatTick) {
@@ -163,7 +163,7 @@ TEST_F(BoneRestoreTest, ASessionGoesOnWithTheBoneAndTheTimeThatIsLeft) {
   const auto told = texts_of(reader, "bone_restored");
   ASSERT_EQ(told.size(), 1u);
   EXPECT_THAT(told[0], testing::AllOf(HasSubstr("after 5.000 s of drilling"),
-                                      HasSubstr("may not have reached the file")));
+                                      HasSubstr("before the interruption may be missing")));
   EXPECT_THAT(said, HasSubstr(told[0]));
 }
 

@@ -203,7 +203,8 @@ TEST_F(BoneSessionTest, AReplaySaysWhereItFirstDiffers) {
   const test::CommandResult command =
       test::run_command("haptrial replay '" + (*folder_ / "moved.h5").string() + "'");
   EXPECT_EQ(command.status, 1);
-  EXPECT_THAT(command.errors, HasSubstr("is not the same when it is simulated again: on tick"));
+  EXPECT_THAT(command.errors,
+              HasSubstr("differs from the recording when simulated again: on tick"));
 }
 
 TEST_F(BoneSessionTest, ATrialThatIsNotThereIsNamed) {

@@ -67,7 +67,7 @@ TEST(LightHandTest, TheMarginOfTheShippedStudySaysWhichHandsCarryIt) {
   EXPECT_GT(plane.lightest, 0.5);
   EXPECT_GT(plane.lightest_late, plane.lightest);
   EXPECT_FALSE(is_dangerous(plane));
-  EXPECT_NE(describe(plane).find("the bare handle at least 15.7"), std::string::npos)
+  EXPECT_NE(describe(plane).find("no less than 15.7 N·s/m for the bare handle"), std::string::npos)
       << describe(plane);
   EXPECT_TRUE(is_dangerous(loop_margin("stiff", {20000.0, 300.0}, d.guidance.loop)));
 }

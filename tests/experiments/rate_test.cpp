@@ -213,7 +213,8 @@ TEST_F(RateTest, NothingIsOverwritten) {
   options.out = (*folder_ / "d").string();
   EXPECT_THAT(message_of([&] { rate_prepare(options); }), HasSubstr("a new folder"));
   options.out = (*folder_ / "e").string();
-  EXPECT_THAT(message_of([&] { rate_prepare(options); }), HasSubstr("remove it to prepare the study again"));
+  EXPECT_THAT(message_of([&] { rate_prepare(options); }),
+              HasSubstr("remove it to prepare the study again"));
   EXPECT_FALSE(fs::exists(*folder_ / "e"));
 }
 

@@ -66,11 +66,11 @@ TEST_F(RecoverCommandTest, AHealthyFileComesBackWithTheSameScores) {
   const std::uint64_t rows = record::SessionReader(file_).sample_count();
   const CommandResult result = haptrial("recover", file_);
   ASSERT_EQ(result.status, 0) << result.errors;
-  EXPECT_THAT(result.output, AllOf(HasSubstr("subject     S01"),
-                                   HasSubstr("rows        " + std::to_string(rows) + ", "),
-                                   HasSubstr(" 0 missing between them"),
-                                   HasSubstr("passes      6, 0 incomplete"),
-                                   HasSubstr("complete"), HasSubstr(saved_.string())));
+  EXPECT_THAT(
+      result.output,
+      AllOf(HasSubstr("subject     S01"), HasSubstr("rows        " + std::to_string(rows) + ", "),
+            HasSubstr(" 0 missing between them"), HasSubstr("passes      6, 0 incomplete"),
+            HasSubstr("complete"), HasSubstr(saved_.string())));
   EXPECT_EQ(test::read_text(file_), before) << "it is as it was";
   const CommandResult info = haptrial("info", saved_);
   EXPECT_EQ(info.status, 0) << info.output;

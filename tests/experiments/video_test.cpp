@@ -74,7 +74,7 @@ TEST_F(VideoWriterTest, NeverOverwritesAlsoWhenTheNameIsTakenMeanwhile) {
     const VideoWriter another(file, 10);
     FAIL() << "it was taken";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("nothing is overwritten"));
+    EXPECT_THAT(error.what(), HasSubstr("exists already; choose another name"));
   }
 }
 
