@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/record/deflate.h"
-#include "core/record/schema.h"
 
 namespace haptrial::record {
 namespace {
@@ -17,26 +16,12 @@ bool is_header(const std::uint8_t* at) {
   return (at[0] * 256 + at[1]) % 31 == 0 && (at[1] & 0x20) == 0;
 }
 
-std::size_t longest_chunk() {
-  std::size_t bytes = 0;
-  for (const TableSchema* each :
-       {&samples_schema(), &trials_schema(), &events_schema(), &stimuli_schema(), &timing_schema(),
-        &frames_schema(), &attributes_schema(), &runs_schema(), &begun_schema()}) {
-    bytes = std::max(bytes, each->row_bytes() * each->chunk_rows);
-  }
-  for (std::size_t i = 0; i < kDrillingTables; ++i) {
-    const TableSchema& each = schema(static_cast<DrillingTable>(i));
-    bytes = std::max(bytes, each.row_bytes() * each.chunk_rows);
-  }
-  return bytes;
-}
-
 }  // namespace
 
 void scan_chunks(
-    std::span<const std::uint8_t> file,
+    std::span<const std::uint8_t> file, std::size_t longest,
     const std::function<void(std::uint64_t offset, std::span<const std::uint8_t> raw)>& found) {
-  std::vector<std::uint8_t> raw(longest_chunk());
+  std::vector<std::uint8_t> raw(longest);
   Inflater inflater;
   std::size_t at = 0;
   while (at + 2 <= file.size()) {

@@ -115,14 +115,10 @@ Id create_table(const Id& file, const TableSchema& schema) {
   return table;
 }
 
-Id open_table(const Id& file, const TableSchema& schema, std::size_t& chunk_rows) {
-  const Lock lock;
-  const std::string what = std::string("/") + schema.name;
-  if (H5Lexists(file.get(), schema.name, H5P_DEFAULT) <= 0) throw Error(what + " is missing");
-  Id table = take(H5Dopen2(file.get(), schema.name, H5P_DEFAULT), what);
-  const Id type = take(H5Dget_type(table.get()), what);
-  const Id expected = row_type(schema);
-  if (H5Tequal(type.get(), expected.get()) <= 0) throw Error(what + " has other columns");
+namespace {
+
+/// @throws Error unless it is stored as tables are; @returns rows of a chunk
+std::size_t chunk_of(const Id& table, const std::string& what) {
   const Id list = take(H5Dget_create_plist(table.get()), what);
   std::array<H5Z_filter_t, 2> filters{};
   const int count = H5Pget_nfilters(list.get());
@@ -136,8 +132,45 @@ Id open_table(const Id& file, const TableSchema& schema, std::size_t& chunk_rows
       H5Pget_chunk(list.get(), 1, &chunk) != 1) {
     throw Error(what + " is not stored in chunks with the filters shuffle and deflate");
   }
-  chunk_rows = chunk;
+  return chunk;
+}
+
+}  // namespace
+
+Id open_table(const Id& file, const TableSchema& schema, std::size_t& chunk_rows) {
+  const Lock lock;
+  const std::string what = std::string("/") + schema.name;
+  if (H5Lexists(file.get(), schema.name, H5P_DEFAULT) <= 0) throw Error(what + " is missing");
+  Id table = take(H5Dopen2(file.get(), schema.name, H5P_DEFAULT), what);
+  const Id type = take(H5Dget_type(table.get()), what);
+  const Id expected = row_type(schema);
+  if (H5Tequal(type.get(), expected.get()) <= 0) throw Error(what + " has other columns");
+  chunk_rows = chunk_of(table, what);
   return table;
+}
+
+Id open_table(const Id& file, const std::string& name, std::size_t& row_bytes,
+              std::size_t& chunk_rows) {
+  const Lock lock;
+  Id table = take(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), "/" + name);
+  const Id type = take(H5Dget_type(table.get()), "/" + name);
+  row_bytes = H5Tget_size(type.get());
+  chunk_rows = chunk_of(table, "/" + name);
+  return table;
+}
+
+std::vector<std::string> table_names(const Id& file) {
+  const Lock lock;
+  std::vector<std::string> names;
+  const herr_t status = H5Literate(
+      file.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr,
+      [](hid_t, const char* name, const H5L_info_t*, void* out) -> herr_t {
+        static_cast<std::vector<std::string>*>(out)->emplace_back(name);
+        return 0;
+      },
+      &names);
+  check(status, "the list of tables");
+  return names;
 }
 
 bool has_table(const Id& file, const char* name) {

@@ -81,7 +81,12 @@ Id create_table(const Id& file, const TableSchema& schema);
 /// @param chunk_rows  receives the chunk length of the file.
 Id open_table(const Id& file, const TableSchema& schema, std::size_t& chunk_rows);
 
+/// The same of a table whatever its columns are. @param row_bytes  receives the length of a row
+Id open_table(const Id& file, const std::string& name, std::size_t& row_bytes,
+              std::size_t& chunk_rows);
+
 bool has_table(const Id& file, const char* name);
+std::vector<std::string> table_names(const Id& file);
 std::uint64_t row_count(const Id& table);
 void set_row_count(const Id& table, std::uint64_t rows);
 /// A chunk that went through the filters already. @param row  its first row.

@@ -126,27 +126,40 @@ void check_counts(const SessionReader& reader, Integrity& result) {
   }
 }
 
-/// A drilling has a row of /tool for each of /samples, and only voxels that ticks emptied.
-void check_drilling(const SessionReader& reader, Integrity& result) {
-  const std::uint64_t tool = reader.count<ToolRow>();
-  if (tool != result.rows) {
-    result.problems.push_back("/tool has " + number(tool) + " rows, and /samples " +
-                              number(result.rows));
+/// One row for each of /samples, in the same order.
+void check_each_tick(const SessionReader& reader, const TableDescription& table, Fault& order,
+                     Integrity& result) {
+  const std::uint64_t count = reader.count(table);
+  if (count != result.rows) {
+    result.problems.push_back("/" + table.name() + " has " + number(count) +
+                              " rows, and /samples " + number(result.rows));
   }
-  Fault order;
   std::uint64_t next = result.first_sequence;
-  for (std::uint64_t first = 0; first < tool; first += kPiece) {
-    for (const ToolRow& row : reader.rows<ToolRow>(first, std::min(kPiece, tool - first))) {
-      if (row.sequence < next) {
-        order.note("sequence number " + number(row.sequence) + " of /tool follows " +
+  for (std::uint64_t first = 0; first < count; first += kPiece) {
+    for (const std::int64_t value :
+         reader.integers(table, "sequence", first, std::min(kPiece, count - first))) {
+      const auto sequence = static_cast<std::uint64_t>(value);
+      if (sequence < next) {
+        order.note("sequence number " + number(sequence) + " of /" + table.name() + " follows " +
                    number(next - 1));
       }
-      next = row.sequence + 1;
+      next = sequence + 1;
     }
   }
-  for (const RemovalRow& row : reader.rows<RemovalRow>()) {
-    if (row.sequence < result.first_sequence || row.sequence > result.last_sequence) {
-      order.note("a voxel was emptied on tick " + number(row.sequence) + ", which is missing");
+}
+
+/// Rows belong to ticks and passes that are there.
+void check_own(const SessionReader& reader, const TableDescription& table, Integrity& result) {
+  Fault order;
+  if (table.of() == RowsOf::kEachTick) {
+    check_each_tick(reader, table, order, result);
+  } else if (table.of() == RowsOf::kTick) {
+    for (const std::int64_t value : reader.integers(table, "sequence", 0, reader.count(table))) {
+      const auto sequence = static_cast<std::uint64_t>(value);
+      if (sequence < result.first_sequence || sequence > result.last_sequence) {
+        order.note("/" + table.name() + " has a row for tick " + number(sequence) +
+                   ", which is missing");
+      }
     }
   }
   order.report(result.problems);
@@ -154,7 +167,7 @@ void check_drilling(const SessionReader& reader, Integrity& result) {
 
 }  // namespace
 
-Integrity check_session(const SessionReader& reader) {
+Integrity check_session(const SessionReader& reader, const TableList& tables) {
   Integrity result;
   const std::vector<PassRow> passes = reader.passes();
   result.rows = reader.sample_count();
@@ -178,7 +191,11 @@ Integrity check_session(const SessionReader& reader) {
   check.gaps.report(result.problems);
   check.clock.report(result.problems);
   check_counts(reader, result);
-  if (reader.drills()) check_drilling(reader, result);
+  for (const TableDescription* table : tables) {
+    if (reader.has(*table)) {
+      check_own(reader, *table, result);
+    }
+  }
   check_ranges(passes, result);
   check.labels.report(result.problems);
   result.ok = result.problems.empty();

@@ -25,7 +25,8 @@ struct Integrity {
 };
 
 /// Reads the whole file, a piece at a time.
+/// @param tables  of protocols, some of which the file may have
 /// @throws InputError when it is damaged below the level that this can describe.
-Integrity check_session(const SessionReader& reader);
+Integrity check_session(const SessionReader& reader, const TableList& tables = known_tables());
 
 }  // namespace haptrial::record

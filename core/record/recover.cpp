@@ -76,7 +76,7 @@ void write(const fs::path& file, const fs::path& out, const RecoveredRows& rows,
       [&](std::span<const Sample> samples) { count.add(samples); });
   count.finish();
   for (const PassRow& pass : rows.passes) writer.add_pass(pass);
-  for (const ProcedureRow& row : rows.procedures) writer.add(std::span(&row, 1));
+  write_rows_of_passes(writer, rows, rows.passes.size());
   const std::int64_t last = rows.events.empty() ? 0 : rows.events.back().time_ns;
   writer.add_event({last, "recovered", sentence(file, found)});
   if (rows.summary) {
@@ -89,14 +89,14 @@ void write(const fs::path& file, const fs::path& out, const RecoveredRows& rows,
 
 }  // namespace
 
-Recovery recover_session(const fs::path& file, const fs::path& out) {
+Recovery recover_session(const fs::path& file, const fs::path& out, const TableList& tables) {
   const std::vector<std::uint8_t> bytes = contents_of(file);
   if (FileLock::taken(file)) {
     throw InputError(file.string() +
                      ": another haptrial records into it; wait until its session ends");
   }
   check_target(out);
-  const RecoveredRows rows(bytes);
+  const RecoveredRows rows = rows_in(file, bytes, tables);
   const std::optional<SessionInfo> info = find_info(file, rows);
   Recovery found;
   found.file_bytes = bytes.size();

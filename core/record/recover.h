@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "core/record/drilling_tables.h"
+
 namespace haptrial::record {
 
 /// What recover_session() found.
@@ -31,8 +33,10 @@ struct Recovery {
 /// found by itself (core/record/chunk_scan.h), and the older copies of a chunk that was written
 /// again stand in for a damaged one. Where samples are missing the sequence numbers have a gap; an
 /// event "recovered" says how the file came to be.
+/// @param tables  of protocols, some of which the file may have
 /// @throws InputError when `file` is absent, not a regular file, or being written by another
 /// process, or `out` exists; RunError when `out` cannot be written.
-Recovery recover_session(const std::filesystem::path& file, const std::filesystem::path& out);
+Recovery recover_session(const std::filesystem::path& file, const std::filesystem::path& out,
+                         const TableList& tables = known_tables());
 
 }  // namespace haptrial::record

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -10,7 +11,6 @@
 #include "core/record/byte_planes.h"
 #include "core/record/chunk_scan.h"
 #include "core/record/deflate.h"
-#include "core/record/drilling_codec.h"
 #include "core/record/row_codec.h"
 #include "core/record/run_codec.h"
 #include "core/record/schema.h"
@@ -20,6 +20,19 @@ namespace {
 
 std::size_t chunk_bytes(const TableSchema& schema) {
   return schema.row_bytes() * schema.chunk_rows;
+}
+
+std::size_t longest_chunk(const TableList& tables) {
+  std::size_t bytes = 0;
+  for (const TableSchema* each :
+       {&samples_schema(), &trials_schema(), &events_schema(), &stimuli_schema(), &timing_schema(),
+        &frames_schema(), &attributes_schema(), &runs_schema(), &begun_schema()}) {
+    bytes = std::max(bytes, chunk_bytes(*each));
+  }
+  for (const TableDescription* each : tables) {
+    bytes = std::max(bytes, chunk_bytes(each->schema()));
+  }
+  return bytes;
 }
 
 /// The chunk's rows without the zeros behind them.
@@ -69,27 +82,6 @@ class Chunks {
 
  private:
   std::map<std::string, std::vector<Row>> by_key_;
-};
-
-/// The chunks of one table of drillings.
-template <class Row>
-class DrillingChunks {
- public:
-  /// @returns whether the chunk is of this table.
-  bool take_if_ours(std::span<const std::uint8_t> raw) {
-    const TableSchema& table = schema(table_of<Row>());
-    if (raw.size() != chunk_bytes(table)) return false;
-    chunks_.add(Chunk(raw, table.row_bytes()), get_row<Row>);
-    return true;
-  }
-  template <typename Order>
-  std::vector<Row> take(Order order, std::map<std::string, std::uint64_t>& counts) {
-    counts[schema(table_of<Row>()).name] = chunks_.count();
-    return chunks_.take(order);
-  }
-
- private:
-  Chunks<Row> chunks_;
 };
 
 /// Events in the order of their chunks: several may have one time, so chunks are sorted, not rows.
@@ -148,7 +140,11 @@ std::optional<TimingSummary> summary_of(const std::vector<EventRow>& attributes)
 
 }  // namespace
 
-RecoveredRows::RecoveredRows(std::span<const std::uint8_t> file) : file_(file) {
+RecoveredRows::RecoveredRows(std::span<const std::uint8_t> file, const TableList& tables)
+    : file_(file) {
+  for (const TableDescription* table : tables) {
+    own.emplace_back(*table, file);
+  }
   Chunks<PassRow> pass_chunks;
   Chunks<StimulusRow> stimulus_chunks;
   Chunks<TimingRow> timing_chunks;
@@ -158,17 +154,6 @@ RecoveredRows::RecoveredRows(std::span<const std::uint8_t> file) : file_(file) {
   Chunks<BegunRow> begun_chunks;
   EventChunks event_chunks;
   std::map<std::uint64_t, Piece> sample_chunks;  // by first sequence number
-  std::map<std::uint64_t, Piece> tool_chunks;
-  DrillingChunks<RemovalRow> removal_chunks;
-  DrillingChunks<CameraRow> camera_chunks;
-  DrillingChunks<SplitRow> split_chunks;
-  DrillingChunks<BoneRow> bone_chunks;
-  DrillingChunks<StructureRow> structure_chunks;
-  DrillingChunks<BoneRunRow> run_chunks;
-  DrillingChunks<BoneDensityRow> density_chunks;
-  DrillingChunks<ProcedureRow> procedure_chunks;
-  const std::size_t tool_bytes = schema(DrillingTable::kTool).row_bytes();
-
   const auto add_samples = [&](std::uint64_t offset, std::span<const std::uint8_t> raw) {
     const Chunk chunk(raw, samples_schema().row_bytes());
     if (chunk.rows == 0) return;
@@ -177,65 +162,50 @@ RecoveredRows::RecoveredRows(std::span<const std::uint8_t> file) : file_(file) {
     Piece& piece = sample_chunks[first.sequence];
     if (chunk.rows >= piece.rows) piece = {offset, chunk.rows, first.sequence};
   };
-  const auto add_tool = [&](std::uint64_t offset, std::span<const std::uint8_t> raw) {
-    const Chunk chunk(raw, tool_bytes);
-    if (chunk.rows == 0) return;
-    const auto sequence = get_row<ToolRow>(chunk.planes, 0).sequence;
-    Piece& piece = tool_chunks[sequence];
-    if (chunk.rows >= piece.rows) piece = {offset, chunk.rows, sequence};
+  const auto add_own = [&](std::uint64_t offset, std::span<const std::uint8_t> raw) {
+    return std::any_of(own.begin(), own.end(),
+                       [&](RecoveredTable& table) { return table.take_if_ours(offset, raw); });
   };
-  scan_chunks(file, [&](std::uint64_t offset, std::span<const std::uint8_t> raw) {
-    const auto is = [&](const TableSchema& schema) { return raw.size() == chunk_bytes(schema); };
-    const auto chunk = [&](const TableSchema& schema) { return Chunk(raw, schema.row_bytes()); };
-    if (is(trials_schema())) {
-      pass_chunks.add(chunk(trials_schema()), get_pass);
-    } else if (is(trials_schema_1()) && is_pass_chunk_1(chunk(trials_schema_1()))) {
-      pass_chunks.add(chunk(trials_schema_1()), get_pass_1);
-    } else if (is(events_schema())) {
-      event_chunks.add(chunk(events_schema()));
-    } else if (is(stimuli_schema())) {
-      stimulus_chunks.add(chunk(stimuli_schema()), get_stimulus);
-    } else if (is(timing_schema())) {
-      timing_chunks.add(chunk(timing_schema()), get_timing);
-    } else if (is(frames_schema())) {
-      frame_chunks.add(chunk(frames_schema()), get_frame);
-    } else if (is(attributes_schema())) {
-      attribute_chunks.add(chunk(attributes_schema()), get_attribute);
-    } else if (is(runs_schema())) {
-      run_rows.add(chunk(runs_schema()), get_run);
-    } else if (is(begun_schema())) {
-      begun_chunks.add(chunk(begun_schema()), get_begun);
-    } else if (removal_chunks.take_if_ours(raw) || camera_chunks.take_if_ours(raw) ||
-               split_chunks.take_if_ours(raw) || bone_chunks.take_if_ours(raw) ||
-               structure_chunks.take_if_ours(raw) || run_chunks.take_if_ours(raw) ||
-               density_chunks.take_if_ours(raw) || procedure_chunks.take_if_ours(raw)) {
-      return;
-    } else if (raw.size() % (kLiveChunkStep * tool_bytes) == 0) {
-      add_tool(offset, raw);
-    } else if (raw.size() % (kLiveChunkStep * samples_schema().row_bytes()) == 0) {
-      add_samples(offset, raw);
-    }
-  });
+  scan_chunks(file, longest_chunk(tables),
+              [&](std::uint64_t offset, std::span<const std::uint8_t> raw) {
+                const auto is = [&](const TableSchema& schema) {
+                  return raw.size() == chunk_bytes(schema);
+                };
+                const auto chunk = [&](const TableSchema& schema) {
+                  return Chunk(raw, schema.row_bytes());
+                };
+                if (is(trials_schema())) {
+                  pass_chunks.add(chunk(trials_schema()), get_pass);
+                } else if (is(trials_schema_1()) && is_pass_chunk_1(chunk(trials_schema_1()))) {
+                  pass_chunks.add(chunk(trials_schema_1()), get_pass_1);
+                } else if (is(events_schema())) {
+                  event_chunks.add(chunk(events_schema()));
+                } else if (is(stimuli_schema())) {
+                  stimulus_chunks.add(chunk(stimuli_schema()), get_stimulus);
+                } else if (is(timing_schema())) {
+                  timing_chunks.add(chunk(timing_schema()), get_timing);
+                } else if (is(frames_schema())) {
+                  frame_chunks.add(chunk(frames_schema()), get_frame);
+                } else if (is(attributes_schema())) {
+                  attribute_chunks.add(chunk(attributes_schema()), get_attribute);
+                } else if (is(runs_schema())) {
+                  run_rows.add(chunk(runs_schema()), get_run);
+                } else if (is(begun_schema())) {
+                  begun_chunks.add(chunk(begun_schema()), get_begun);
+                } else if (add_own(offset, raw)) {
+                  return;
+                } else if (raw.size() % (kLiveChunkStep * samples_schema().row_bytes()) == 0) {
+                  add_samples(offset, raw);
+                }
+              });
 
   for (const auto& [sequence, piece] : sample_chunks) pieces_.push_back(piece);
-  for (const auto& [sequence, piece] : tool_chunks) tool_pieces_.push_back(piece);
-  const auto when = [](const auto& row) { return row.sequence; };
-  removals = removal_chunks.take(when, counts);
-  camera = camera_chunks.take(when, counts);
-  splits = split_chunks.take(when, counts);
-  bones = bone_chunks.take([](const BoneRow& row) { return row.bone; }, counts);
-  structures = structure_chunks.take(
-      [](const StructureRow& row) { return std::pair(row.bone, row.label); }, counts);
-  bone_runs =
-      run_chunks.take([](const BoneRunRow& row) { return std::pair(row.bone, row.first); }, counts);
-  bone_densities = density_chunks.take(
-      [](const BoneDensityRow& row) { return std::pair(row.bone, row.voxel); }, counts);
-  procedures = procedure_chunks.take([](const ProcedureRow& row) { return row.pass; }, counts);
+  for (RecoveredTable& table : own) {
+    table.finish();
+    counts[table.table().name()] = table.count();
+  }
   counts[samples_schema().name] = 0;
   for (const Piece& piece : pieces_) counts[samples_schema().name] += piece.rows;
-  for (const Piece& piece : tool_pieces_) {
-    counts[schema(DrillingTable::kTool).name] += piece.rows;
-  }
   counts[trials_schema().name] = pass_chunks.count();
   counts[events_schema().name] = event_chunks.count();
   counts[stimuli_schema().name] = stimulus_chunks.count();
@@ -261,36 +231,45 @@ RecoveredRows::RecoveredRows(std::span<const std::uint8_t> file) : file_(file) {
 std::vector<Sample> RecoveredRows::samples(std::size_t piece) const {
   std::vector<Sample> rows(pieces_.at(piece).rows);
   get_samples(Chunk(inflated(pieces_[piece]), samples_schema().row_bytes()).planes, 0, rows);
-  keep_in_order(rows, pieces_, piece);
+  keep_in_order(rows, piece);
   return rows;
 }
 
-std::vector<ToolRow> RecoveredRows::tool(std::size_t piece) const {
-  const Chunk chunk(inflated(tool_pieces_.at(piece)), schema(DrillingTable::kTool).row_bytes());
-  std::vector<ToolRow> rows;
-  for (std::size_t i = 0; i < tool_pieces_[piece].rows; ++i) {
-    rows.push_back(get_row<ToolRow>(chunk.planes, i));
+TableList RecoveredRows::tables() const {
+  std::set<std::string> groups;
+  for (const RecoveredTable& table : own) {
+    if (table.count() > 0) {
+      groups.insert(table.table().group());
+    }
   }
-  keep_in_order(rows, tool_pieces_, piece);
-  return rows;
+  TableList found;
+  for (const RecoveredTable& table : own) {
+    if (table.count() > 0 || groups.contains(table.table().group())) {
+      found.push_back(&table.table());
+    }
+  }
+  return found;
+}
+
+bool RecoveredRows::needs_each_tick() const {
+  const TableList found = tables();
+  return std::any_of(found.begin(), found.end(), [](const TableDescription* table) {
+    return table->of() == RowsOf::kEachTick;
+  });
 }
 
 std::vector<std::uint8_t> RecoveredRows::inflated(const Piece& piece) const {
-  const std::size_t most =
-      std::max(chunk_bytes(samples_schema()), chunk_bytes(schema(DrillingTable::kTool)));
-  std::vector<std::uint8_t> raw(most);
+  std::vector<std::uint8_t> raw(chunk_bytes(samples_schema()));
   Inflater inflater;
   raw.resize(inflater.decompress_prefix(file_.subspan(piece.offset), raw).raw);
   return raw;
 }
 
 /// A piece never reaches into the next, and zeros before the last row would be rows of no tick.
-template <class Row>
-void RecoveredRows::keep_in_order(std::vector<Row>& rows, const std::vector<Piece>& pieces,
-                                  std::size_t piece) {
-  const std::uint64_t end = piece + 1 < pieces.size() ? pieces[piece + 1].first_sequence : ~0ull;
-  std::uint64_t last = pieces[piece].first_sequence;
-  std::erase_if(rows, [&](const Row& row) {
+void RecoveredRows::keep_in_order(std::vector<Sample>& rows, std::size_t piece) const {
+  const std::uint64_t end = piece + 1 < pieces_.size() ? pieces_[piece + 1].first_sequence : ~0ull;
+  std::uint64_t last = pieces_[piece].first_sequence;
+  std::erase_if(rows, [&](const Sample& row) {
     const bool wrong = row.sequence < last || row.sequence >= end;
     if (!wrong) last = row.sequence;
     return wrong;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/record/drilling_types.h"
+#include "core/record/recovered_table.h"
 #include "core/record/run_types.h"
 #include "core/record/session_types.h"
 
@@ -17,16 +17,13 @@ namespace haptrial::record {
 /// are asked for: an hour of them takes half a gigabyte.
 class RecoveredRows {
  public:
-  /// @param file  outlives this
-  explicit RecoveredRows(std::span<const std::uint8_t> file);
+  /// @param file    outlives this
+  /// @param tables  of protocols, some of which the file may have
+  RecoveredRows(std::span<const std::uint8_t> file, const TableList& tables);
 
   std::size_t sample_pieces() const { return pieces_.size(); }
   /// In ascending order of sequence numbers, from piece to piece as well.
   std::vector<Sample> samples(std::size_t piece) const;
-
-  /// Likewise of /tool.
-  std::size_t tool_pieces() const { return tool_pieces_.size(); }
-  std::vector<ToolRow> tool(std::size_t piece) const;
 
   std::vector<PassRow> passes;
   std::vector<EventRow> events;
@@ -38,16 +35,12 @@ class RecoveredRows {
   std::vector<RunRow> runs;
   std::vector<BegunRow> begun;
   std::map<std::string, std::uint64_t> counts;  // rows of each table as stored, by its name
-  // Of drillings.
-  std::vector<RemovalRow> removals;
-  std::vector<CameraRow> camera;
-  std::vector<SplitRow> splits;
-  std::vector<BoneRow> bones;
-  std::vector<StructureRow> structures;
-  std::vector<BoneRunRow> bone_runs;
-  std::vector<BoneDensityRow> bone_densities;
-  std::vector<ProcedureRow> procedures;
-  bool drills() const { return !tool_pieces_.empty() || !bones.empty() || !removals.empty(); }
+  std::vector<RecoveredTable> own;              // tables of protocols, all that were given
+
+  /// The tables of `own` that the file had: those with rows, and the others of their groups.
+  TableList tables() const;
+  /// Whether some table has a row for each tick: nothing can go on behind a tick that is missing.
+  bool needs_each_tick() const;
 
  private:
   struct Piece {
@@ -56,13 +49,10 @@ class RecoveredRows {
     std::uint64_t first_sequence{0};
   };
   std::vector<std::uint8_t> inflated(const Piece& piece) const;
-  template <class Row>
-  static void keep_in_order(std::vector<Row>& rows, const std::vector<Piece>& pieces,
-                            std::size_t piece);
+  void keep_in_order(std::vector<Sample>& rows, std::size_t piece) const;
 
   std::span<const std::uint8_t> file_;
   std::vector<Piece> pieces_;
-  std::vector<Piece> tool_pieces_;
 };
 
 }  // namespace haptrial::record

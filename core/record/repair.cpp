@@ -29,28 +29,41 @@ struct SeenPass {
 /// The ticks that are kept, and the passes that they make.
 class Plan {
  public:
-  explicit Plan(const RecoveredRows& rows) : rows_(rows) {
+  explicit Plan(const RecoveredRows& rows) : rows_(rows), each_tick_(rows.needs_each_tick()) {
     find_ticks();
     find_passes();
   }
 
   bool keeps(std::uint64_t sequence) const {
-    return sequence <= last_ && (!rows_.drills() || ticks_.holds(sequence, sequence));
+    return sequence <= last_ && (!each_tick_ || ticks_.holds(sequence, sequence));
   }
   const std::vector<PassRow>& passes() const { return passes_; }
   std::uint64_t dropped_passes() const { return dropped_passes_; }
 
  private:
+  static TickRanges ticks_of(const RecoveredTable& table) {
+    TickRanges ticks;
+    const std::size_t bytes = table.table().schema().row_bytes();
+    for (std::size_t i = 0; i < table.pieces(); ++i) {
+      const std::vector<std::uint8_t> rows = table.piece(i);
+      for (std::size_t at = 0; at < rows.size(); at += bytes) {
+        const std::int64_t sequence = table.table().integer(rows.data() + at, "sequence");
+        ticks.add(static_cast<std::uint64_t>(sequence));
+      }
+    }
+    return ticks;
+  }
+
   void find_ticks() {
-    TickRanges samples, tool;
     for (std::size_t i = 0; i < rows_.sample_pieces(); ++i) {
-      for (const Sample& sample : rows_.samples(i)) samples.add(sample.sequence);
+      for (const Sample& sample : rows_.samples(i)) ticks_.add(sample.sequence);
     }
-    for (std::size_t i = 0; rows_.drills() && i < rows_.tool_pieces(); ++i) {
-      for (const ToolRow& row : rows_.tool(i)) tool.add(row.sequence);
+    for (const RecoveredTable& table : rows_.own) {
+      if (each_tick_ && table.table().of() == RowsOf::kEachTick) {
+        ticks_ = ticks_.shared_with(ticks_of(table));
+      }
     }
-    ticks_ = rows_.drills() ? samples.shared_with(tool) : samples;
-    if (!rows_.drills() || ticks_.ranges().empty()) return;
+    if (!each_tick_ || ticks_.ranges().empty()) return;
     std::uint64_t whole = ticks_.ranges().front().first;
     for (const PassRow& pass : rows_.passes) {
       if (ticks_.holds(pass.first_sample, pass.last_sample)) {
@@ -112,6 +125,7 @@ class Plan {
   }
 
   const RecoveredRows& rows_;
+  bool each_tick_;
   TickRanges ticks_;
   std::uint64_t last_{~std::uint64_t{0}};
   std::vector<PassRow> passes_;
@@ -167,11 +181,7 @@ void write(const fs::path& out, const SessionInfo& info, const RecoveredRows& ro
       writer, rows, [&](std::uint64_t sequence) { return plan.keeps(sequence); },
       [&](std::span<const Sample> samples) { written.add(samples); });
   for (const PassRow& pass : plan.passes()) writer.add_pass(pass);
-  for (const ProcedureRow& row : rows.procedures) {
-    if (row.pass < static_cast<std::int32_t>(plan.passes().size())) {
-      writer.add(std::span(&row, 1));
-    }
-  }
+  write_rows_of_passes(writer, rows, plan.passes().size());
   const bool told_ended = !rows.runs.empty() && rows.runs.back().state == RunState::kEnded;
   if (rows.summary && !told_ended) {  // of a schema version without /runs
     const RunRow ended{1, 0, *rows.summary, -1, RunState::kEnded};
@@ -183,33 +193,32 @@ void write(const fs::path& out, const SessionInfo& info, const RecoveredRows& ro
   writer.close();
 }
 
-/// Rows that no tick of /samples goes with.
-template <class Row>
-bool any_from(const SessionReader& reader, std::uint64_t end) {
-  const std::uint64_t count = reader.count<Row>();
-  return count > 0 && reader.rows<Row>(count - 1, 1).front().sequence >= end;
-}
-
-std::optional<std::string> wrong_in_drillings(const SessionReader& reader, std::uint64_t end,
-                                              std::size_t passes) {
-  if (reader.count<ToolRow>() != reader.sample_count()) {
-    return fmt::format("/tool has {} rows, and /samples {}", reader.count<ToolRow>(),
+/// Rows of a table of a protocol that nothing in /samples or /trials goes with.
+std::optional<std::string> wrong_in(const TableDescription& table, const SessionReader& reader,
+                                    std::uint64_t end, std::size_t passes) {
+  const std::uint64_t count = reader.count(table);
+  if (table.of() == RowsOf::kEachTick && count != reader.sample_count()) {
+    return fmt::format("/{} has {} rows, and /samples {}", table.name(), count,
                        reader.sample_count());
   }
-  if (any_from<RemovalRow>(reader, end) || any_from<CameraRow>(reader, end) ||
-      any_from<SplitRow>(reader, end)) {
-    return "it refers to ticks that are missing";
+  if (table.of() == RowsOf::kTick && count > 0 &&
+      static_cast<std::uint64_t>(reader.integers(table, "sequence", count - 1, 1).front()) >= end) {
+    return fmt::format("/{} refers to ticks that are missing", table.name());
   }
-  for (const ProcedureRow& row : reader.rows<ProcedureRow>()) {
-    if (row.pass >= static_cast<std::int32_t>(passes)) {
-      return fmt::format("pass {} of /procedures is not in /trials", row.pass);
+  if (table.of() != RowsOf::kEndedPass) {
+    return std::nullopt;
+  }
+  for (const std::int64_t pass : reader.integers(table, "pass", 0, count)) {
+    if (pass >= static_cast<std::int64_t>(passes)) {
+      return fmt::format("pass {} of /{} is not in /trials", pass, table.name());
     }
   }
   return std::nullopt;
 }
 
 /// What does not fit between the rows of a file that has all its chunks; nothing if all does.
-std::optional<std::string> wrong_between_rows(const SessionReader& reader) {
+std::optional<std::string> wrong_between_rows(const SessionReader& reader,
+                                              const TableList& tables) {
   std::uint64_t next = 0;
   for (std::uint64_t first = 0; first < reader.sample_count(); first += kPiece) {
     for (const Sample& sample :
@@ -226,19 +235,27 @@ std::optional<std::string> wrong_between_rows(const SessionReader& reader) {
       return fmt::format("samples of pass {} are missing", i);
     }
   }
-  return reader.drills() ? wrong_in_drillings(reader, next, passes.size()) : std::nullopt;
+  for (const TableDescription* table : tables) {
+    if (!reader.has(*table)) {
+      continue;
+    }
+    if (auto wrong = wrong_in(*table, reader, next, passes.size())) {
+      return wrong;
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
-std::optional<std::string> what_is_wrong(const fs::path& partial) {
+std::optional<std::string> what_is_wrong(const fs::path& partial, const TableList& tables) {
   const std::vector<std::uint8_t> bytes = contents_of(partial);
   try {
     const SessionReader reader(partial);
     if (reader.version() != kSchemaVersion) {
       return fmt::format("it is of schema version {}", reader.version());
     }
-    const RecoveredRows rows(bytes);
+    const RecoveredRows rows = rows_in(partial, bytes, tables);
     for (const TableState& table : reader.tables()) {
       if (!table.fault.empty()) return fmt::format("/{}: {}", table.name, table.fault);
       const std::uint64_t held = rows.counts.contains(table.name) ? rows.counts.at(table.name) : 0;
@@ -247,15 +264,15 @@ std::optional<std::string> what_is_wrong(const fs::path& partial) {
                            table.name, table.rows);
       }
     }
-    return wrong_between_rows(reader);
+    return wrong_between_rows(reader, tables);
   } catch (const InputError&) {
     return "its structure cannot be read";
   }
 }
 
-Repair repair_session(const fs::path& partial, const std::string& wrong) {
+Repair repair_session(const fs::path& partial, const std::string& wrong, const TableList& tables) {
   const std::vector<std::uint8_t> bytes = contents_of(partial);
-  const RecoveredRows rows(bytes);
+  const RecoveredRows rows = rows_in(partial, bytes, tables);
   const std::optional<SessionInfo> info = find_info(partial, rows);
   if (!info) {
     throw InputError(partial.string() + ": " + wrong +

@@ -5,12 +5,15 @@
 #include <optional>
 #include <string>
 
+#include "core/record/table_description.h"
+
 namespace haptrial::record {
 
 /// Why a session file cannot be gone on with as it stands, in words; nothing where it can. A file
 /// is whole when its structure leads to every row that it holds, and the rows agree: after a power
 /// cut, HDF5's structure may be older than the rows, or lead to older ones.
-std::optional<std::string> what_is_wrong(const std::filesystem::path& partial);
+std::optional<std::string> what_is_wrong(const std::filesystem::path& partial,
+                                         const TableList& tables);
 
 /// What a repair kept.
 struct Repair {
@@ -21,11 +24,12 @@ struct Repair {
 
 /// Writes every row that the file still holds to a new file, and gives that one the name of the
 /// old, which is kept as FILE.partial.damaged. Killed at any instant it leaves the old or the new
-/// file under the name. A pass in between that lacks samples becomes an aborted one. If a drilling
-/// was under way, nothing is kept after its first missing tick, because the bone is made again from
-/// ticks without a gap.
+/// file under the name. A pass in between that lacks samples becomes an aborted one. In a
+/// session with a table that has a row for each tick, nothing is kept after the first missing tick
+/// of the pass that was under way, because its state is made again from ticks without a gap.
 /// @param partial  locked by the caller
 /// @throws InputError when it does not say what the session was; it is left as it was.
-Repair repair_session(const std::filesystem::path& partial, const std::string& wrong);
+Repair repair_session(const std::filesystem::path& partial, const std::string& wrong,
+                      const TableList& tables);
 
 }  // namespace haptrial::record

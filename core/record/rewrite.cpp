@@ -13,28 +13,31 @@ namespace {
 namespace fs = std::filesystem;
 using Keeps = std::function<bool(std::uint64_t)>;
 
-template <class Row>
-void add(SessionWriter& writer, const std::vector<Row>& rows) {
-  writer.add(std::span(rows));
-}
-
-template <class Row>
-void add_ticks(SessionWriter& writer, std::vector<Row> rows, const Keeps& keeps) {
-  std::erase_if(rows, [&](const Row& row) { return !keeps(row.sequence); });
-  add(writer, rows);
-}
-
-void write_drillings(SessionWriter& writer, const RecoveredRows& rows, const Keeps& keeps) {
-  add(writer, rows.bones);
-  add(writer, rows.structures);
-  add(writer, rows.bone_runs);
-  add(writer, rows.bone_densities);
-  for (std::size_t piece = 0; piece < rows.tool_pieces(); ++piece) {
-    add_ticks(writer, rows.tool(piece), keeps);
+/// Packed rows for which `keeps` is true.
+template <class Keeps>
+void add(SessionWriter& writer, const RecoveredTable& table, const char* column, Keeps keeps) {
+  const std::size_t bytes = table.table().schema().row_bytes();
+  for (std::size_t piece = 0; piece < table.pieces(); ++piece) {
+    const std::vector<std::uint8_t> rows = table.piece(piece);
+    for (std::size_t at = 0; at < rows.size(); at += bytes) {
+      if (column == nullptr || keeps(table.table().integer(rows.data() + at, column))) {
+        writer.add_packed(table.table(), std::span(rows).subspan(at, bytes));
+      }
+    }
   }
-  add_ticks(writer, rows.removals, keeps);
-  add_ticks(writer, rows.camera, keeps);
-  add_ticks(writer, rows.splits, keeps);
+}
+
+bool is_of_ticks(const TableDescription& table) {
+  return table.of() == RowsOf::kTick || table.of() == RowsOf::kEachTick;
+}
+
+void write_own(SessionWriter& writer, const RecoveredRows& rows, const Keeps& keeps) {
+  for (const RecoveredTable& table : rows.own) {
+    if (table.table().of() != RowsOf::kEndedPass && table.count() > 0) {
+      add(writer, table, is_of_ticks(table.table()) ? "sequence" : nullptr,
+          [&](std::int64_t sequence) { return keeps(static_cast<std::uint64_t>(sequence)); });
+    }
+  }
 }
 
 }  // namespace
@@ -51,19 +54,27 @@ std::vector<std::uint8_t> contents_of(const fs::path& file) {
   return bytes;
 }
 
+RecoveredRows rows_in(const fs::path& file, std::span<const std::uint8_t> contents,
+                      const TableList& tables) {
+  try {
+    return RecoveredRows(contents, tables);
+  } catch (const UnknownWord& error) {
+    throw InputError(file.string() + ": " + error.what());
+  }
+}
+
 std::optional<SessionInfo> find_info(const fs::path& file, const RecoveredRows& rows) {
   if (!rows.attributes.empty()) return info_of(rows.attributes);
   return isolated_info(file);
 }
 
 SessionWriter open_for(const fs::path& out, const SessionInfo& info, const RecoveredRows& rows) {
-  return rows.drills() ? SessionWriter(out, info, std::span<const BoneRecord>{})
-                       : SessionWriter(out, info);
+  return {out, info, rows.tables()};
 }
 
 void write_rows(SessionWriter& writer, const RecoveredRows& rows, const Keeps& keeps,
                 const std::function<void(std::span<const Sample>)>& told) {
-  if (rows.drills()) write_drillings(writer, rows, keeps);
+  write_own(writer, rows, keeps);
   for (std::size_t piece = 0; piece < rows.sample_pieces(); ++piece) {
     std::vector<Sample> samples = rows.samples(piece);
     std::erase_if(samples, [&](const Sample& sample) { return !keeps(sample.sequence); });
@@ -75,6 +86,15 @@ void write_rows(SessionWriter& writer, const RecoveredRows& rows, const Keeps& k
   writer.add_stimulus(rows.stimuli);
   writer.add_frames(rows.frames);
   writer.keep_runs(rows.runs);
+}
+
+void write_rows_of_passes(SessionWriter& writer, const RecoveredRows& rows, std::size_t passes) {
+  for (const RecoveredTable& table : rows.own) {
+    if (table.table().of() == RowsOf::kEndedPass && table.count() > 0) {
+      add(writer, table, "pass",
+          [&](std::int64_t pass) { return pass < static_cast<std::int64_t>(passes); });
+    }
+  }
 }
 
 }  // namespace haptrial::record

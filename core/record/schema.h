@@ -9,7 +9,8 @@ namespace haptrial::record {
 
 /// Version of the layout below. Versions 1 to 3 are still read: 1 has no practice and attempt in
 /// /trials, no /frames and no /attributes; 2 has no tables of drillings, and later ones have them
-/// only in sessions that drill; 3 has no /runs and no /begun.
+/// only in sessions that drill; 3 has no /runs and no
+/// /begun.
 inline constexpr std::int64_t kSchemaVersion = 4;
 
 enum class ColumnType : std::uint8_t { kU8, kI32, kI64, kU64, kF32, kF64, kText };
@@ -49,24 +50,9 @@ const TableSchema& attributes_schema();
 const TableSchema& runs_schema();
 const TableSchema& begun_schema();
 
-/// The tables of a drilling session, in the order in which they are created.
-enum class DrillingTable : std::uint8_t {
-  kTool,
-  kRemovals,
-  kCamera,
-  kSplits,
-  kBones,
-  kStructures,
-  kBoneRuns,
-  kBoneDensities,
-  kProcedures
-};
-inline constexpr std::size_t kDrillingTables = 9;
-const TableSchema& schema(DrillingTable table);
-
-/// Chunk length of /samples and /tool on a real clock: at most 0.8 s, so that a chunk is in the
-/// file before a second has passed; a multiple of kLiveChunkStep, no longer than samples_schema()
-/// has it.
+/// Chunk length of /samples, and of tables with a row for each tick, on a real clock: at most 0.8
+/// s, so that a chunk is in the file before a second has passed; a multiple of kLiveChunkStep, no
+/// longer than samples_schema() has it.
 inline constexpr std::size_t kLiveChunkStep = 64;
 std::size_t live_chunk_rows(double rate);
 

@@ -1,8 +1,10 @@
 #include "core/record/session_reader.h"
 
 #include <algorithm>
-#include <array>
+#include <map>
+#include <mutex>
 #include <regex>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -11,7 +13,6 @@
 #include "core/base/error.h"
 #include "core/record/byte_planes.h"
 #include "core/record/deflate.h"
-#include "core/record/drilling_codec.h"
 #include "core/record/hdf5_layer.h"
 #include "core/record/row_codec.h"
 #include "core/record/run_codec.h"
@@ -50,16 +51,18 @@ void check_regular(const fs::path& path) {
 }
 
 /// One open dataset.
-struct Table {
-  const TableSchema* schema{nullptr};
+struct OpenTable {
+  std::string name;  // empty: the file does not have it
+  std::size_t row_bytes{0};
   std::size_t chunk_rows{0};
   h5::Id dataset;
   std::uint64_t rows{0};
 };
 
-Table open_table(const h5::Id& file, const TableSchema& schema) {
-  Table table;
-  table.schema = &schema;
+OpenTable open_table(const h5::Id& file, const TableSchema& schema) {
+  OpenTable table;
+  table.name = schema.name;
+  table.row_bytes = schema.row_bytes();
   table.dataset = h5::open_table(file, schema, table.chunk_rows);
   table.rows = h5::row_count(table.dataset);
   return table;
@@ -86,29 +89,25 @@ struct SessionReader::Impl {
       if (attributes.rows == 0) throw h5::Error("/attributes is empty");
       info = info_of(joined_events(all(attributes, get_attribute)));
     }
-    drills = version > 2 && h5::has_table(file, schema(DrillingTable::kTool).name);
-    for (std::size_t i = 0; drills && i < kDrillingTables; ++i) {
-      drilling[i] = open_table(file, schema(static_cast<DrillingTable>(i)));
-    }
   }
 
-  [[noreturn]] void damaged(const Table& table, std::uint64_t row, const std::string& why) const {
-    throw InputError(path.string() + ": rows of /" + table.schema->name + " from " +
-                     std::to_string(row) + " on cannot be read (" + why + ")" +
-                     std::string(kRecover));
+  [[noreturn]] void damaged(const OpenTable& table, std::uint64_t row,
+                            const std::string& why) const {
+    throw InputError(path.string() + ": rows of /" + table.name + " from " + std::to_string(row) +
+                     " on cannot be read (" + why + ")" + std::string(kRecover));
   }
 
   /// Calls use(planes, row in planes, row in the result, rows) for each chunk that holds rows
   /// [first, first + count). Only fetching takes the lock of HDF5; inflating runs beside others.
   template <typename Use>
-  void each_chunk(const Table& table, std::uint64_t first, std::uint64_t count, Use use) const {
+  void each_chunk(const OpenTable& table, std::uint64_t first, std::uint64_t count, Use use) const {
     if (first > table.rows || count > table.rows - first) {
       throw std::invalid_argument(path.string() + ": rows [" + std::to_string(first) + ", " +
                                   std::to_string(first + count) + ") of " +
                                   std::to_string(table.rows));
     }
     if (count == 0) return;  // a table that the file's version does not have
-    BytePlanes planes(table.schema->row_bytes(), table.chunk_rows);
+    BytePlanes planes(table.row_bytes, table.chunk_rows);
     Inflater inflater;
     for (std::uint64_t done = 0; done < count;) {
       const std::uint64_t row = first + done;
@@ -128,7 +127,7 @@ struct SessionReader::Impl {
   }
 
   template <typename Row>
-  std::vector<Row> all(const Table& table, Row (*get)(const BytePlanes&, std::size_t)) const {
+  std::vector<Row> all(const OpenTable& table, Row (*get)(const BytePlanes&, std::size_t)) const {
     std::vector<Row> result;
     each_chunk(table, 0, table.rows,
                [&](const BytePlanes& planes, std::size_t at, std::size_t, std::size_t rows) {
@@ -139,9 +138,9 @@ struct SessionReader::Impl {
 
   /// Whether each chunk has the rows that the table says: no row is all zeros, so that an older
   /// copy of a chunk, which has fewer, shows.
-  TableState state_of(const Table& table) const {
-    TableState state{table.schema->name, table.rows, ""};
-    BytePlanes planes(table.schema->row_bytes(), table.chunk_rows);
+  TableState state_of(const OpenTable& table) const {
+    TableState state{table.name, table.rows, ""};
+    BytePlanes planes(table.row_bytes, table.chunk_rows);
     Inflater inflater;
     for (std::uint64_t row = 0; row < table.rows && state.fault.empty(); row += table.chunk_rows) {
       const std::uint64_t rows = std::min<std::uint64_t>(table.chunk_rows, table.rows - row);
@@ -164,14 +163,29 @@ struct SessionReader::Impl {
   h5::Id file;
   std::int64_t version{0};
   SessionInfo info;
-  Table samples, trials, events, stimuli, timing, frames, attributes, runs, begun;
-  bool drills{false};
-  std::array<Table, kDrillingTables> drilling;
+  OpenTable samples, trials, events, stimuli, timing, frames, attributes, runs, begun;
 
-  template <class Row>
-  const Table& table() const {
-    return drilling[static_cast<std::size_t>(table_of<Row>())];
+  /// A table of a protocol, opened when it is first asked for.
+  const OpenTable& own(const TableDescription& table) const {
+    const std::lock_guard hold(own_mutex);
+    const auto at = own_tables.find(table.name());
+    if (at != own_tables.end()) {
+      return at->second;
+    }
+    OpenTable& opened = own_tables[table.name()];
+    if (h5::has_table(file, table.name().c_str())) {
+      try {
+        opened = open_table(file, table.schema(version));
+      } catch (const h5::Error& error) {
+        own_tables.erase(table.name());
+        throw InputError(path.string() + ": cannot be read (" + error.what() + ")" + kRecover);
+      }
+    }
+    return opened;
   }
+
+  mutable std::mutex own_mutex;
+  mutable std::map<std::string, OpenTable> own_tables;  // by name; nodes stay in their place
 };
 
 SessionReader::SessionReader(const fs::path& path) {
@@ -245,62 +259,40 @@ std::vector<StimulusRow> SessionReader::stimuli() const {
   return impl_->all(impl_->stimuli, get_stimulus);
 }
 
-bool SessionReader::drills() const { return impl_->drills; }
-
-template <class Row>
-std::uint64_t SessionReader::count() const {
-  return impl_->table<Row>().rows;
+bool SessionReader::has(const TableDescription& table) const {
+  return !impl_->own(table).name.empty();
 }
 
-template <class Row>
-std::vector<Row> SessionReader::rows(std::uint64_t first, std::uint64_t count) const {
-  std::vector<Row> result;
-  result.reserve(std::min(count, impl_->table<Row>().rows));
-  impl_->each_chunk(impl_->table<Row>(), first, count,
+std::uint64_t SessionReader::count(const TableDescription& table) const {
+  return impl_->own(table).rows;
+}
+
+void SessionReader::read(const TableDescription& table, std::uint64_t first, std::uint64_t count,
+                         void* rows) const {
+  auto* to = static_cast<std::uint8_t*>(rows);
+  impl_->each_chunk(
+      impl_->own(table), first, count,
+      [&](const BytePlanes& planes, std::size_t at, std::size_t done, std::size_t chunk) {
+        try {
+          table.get(planes, at, to + done * table.row_size(), chunk, impl_->version);
+        } catch (const UnknownWord& error) {
+          throw InputError(path().string() + ": " + error.what());
+        }
+      });
+}
+
+std::vector<std::int64_t> SessionReader::integers(const TableDescription& table, const char* column,
+                                                  std::uint64_t first, std::uint64_t count) const {
+  std::vector<std::int64_t> values;
+  impl_->each_chunk(impl_->own(table), first, count,
                     [&](const BytePlanes& planes, std::size_t at, std::size_t, std::size_t rows) {
+                      std::vector<std::uint8_t> row(planes.row_bytes());
                       for (std::size_t i = 0; i < rows; ++i) {
-                        result.push_back(get_row<Row>(planes, at + i));
+                        planes.get_row(at + i, row);
+                        values.push_back(table.integer(row.data(), column, impl_->version));
                       }
                     });
-  return result;
-}
-
-template <class Row>
-std::vector<Row> SessionReader::rows() const {
-  return rows<Row>(0, count<Row>());
-}
-
-#define HAPTRIAL_DRILLING_ROWS(Row)                           \
-  template std::uint64_t SessionReader::count<Row>() const;   \
-  template std::vector<Row> SessionReader::rows<Row>() const; \
-  template std::vector<Row> SessionReader::rows<Row>(std::uint64_t, std::uint64_t) const;
-HAPTRIAL_DRILLING_ROWS(ToolRow)
-HAPTRIAL_DRILLING_ROWS(RemovalRow)
-HAPTRIAL_DRILLING_ROWS(CameraRow)
-HAPTRIAL_DRILLING_ROWS(SplitRow)
-HAPTRIAL_DRILLING_ROWS(BoneRow)
-HAPTRIAL_DRILLING_ROWS(StructureRow)
-HAPTRIAL_DRILLING_ROWS(BoneRunRow)
-HAPTRIAL_DRILLING_ROWS(BoneDensityRow)
-HAPTRIAL_DRILLING_ROWS(ProcedureRow)
-#undef HAPTRIAL_DRILLING_ROWS
-
-std::vector<BoneRecord> SessionReader::bones() const {
-  std::vector<BoneRecord> bones;
-  for (const BoneRow& bone : rows<BoneRow>()) {
-    bones.push_back({bone, {}, {}, {}});
-  }
-  const auto share_out = [&]<class Row>(std::vector<Row> BoneRecord::*to) {
-    for (Row& row : rows<Row>()) {
-      if (row.bone >= 0 && static_cast<std::size_t>(row.bone) < bones.size()) {
-        (bones[static_cast<std::size_t>(row.bone)].*to).push_back(std::move(row));
-      }
-    }
-  };
-  share_out(&BoneRecord::structures);
-  share_out(&BoneRecord::runs);
-  share_out(&BoneRecord::densities);
-  return bones;
+  return values;
 }
 
 std::vector<TimingRow> SessionReader::timing() const {
@@ -328,13 +320,28 @@ std::vector<BegunRow> SessionReader::begun() const { return impl_->all(impl_->be
 
 std::vector<TableState> SessionReader::tables() const {
   std::vector<TableState> states;
-  for (const Table* table :
+  std::set<std::string> told;
+  for (const OpenTable* table :
        {&impl_->samples, &impl_->trials, &impl_->events, &impl_->stimuli, &impl_->timing,
         &impl_->frames, &impl_->attributes, &impl_->runs, &impl_->begun}) {
-    if (table->schema != nullptr) states.push_back(impl_->state_of(*table));
+    if (!table->name.empty()) {
+      states.push_back(impl_->state_of(*table));
+      told.insert(table->name);
+    }
   }
-  for (const Table& table : impl_->drilling) {
-    if (table.schema != nullptr) states.push_back(impl_->state_of(table));
+  try {
+    for (const std::string& name : h5::table_names(impl_->file)) {
+      if (told.contains(name)) {
+        continue;
+      }
+      OpenTable table;
+      table.name = name;
+      table.dataset = h5::open_table(impl_->file, name, table.row_bytes, table.chunk_rows);
+      table.rows = h5::row_count(table.dataset);
+      states.push_back(impl_->state_of(table));
+    }
+  } catch (const h5::Error& error) {
+    throw InputError(path().string() + ": cannot be read (" + error.what() + ")" + kRecover);
   }
   return states;
 }

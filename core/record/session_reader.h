@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -8,9 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "core/record/drilling_types.h"
+#include "core/record/drilling_tables.h"
+#include "core/record/response.h"
 #include "core/record/run_types.h"
 #include "core/record/session_types.h"
+#include "core/record/table.h"
 
 namespace haptrial::record {
 
@@ -58,16 +61,40 @@ class SessionReader {
   std::vector<EventRow> events() const;
   std::vector<FrameRow> frames() const;  // none in a file of schema version 1
   std::vector<StimulusRow> stimuli() const;
+  /// Whether the file has a table; of one that a protocol recorded it has all.
+  bool has(const TableDescription& table) const;
+  /// Rows of a table of a protocol, all or [first, first + count); none in a file without it.
+  /// @throws std::invalid_argument when they are not all there.
+  std::uint64_t count(const TableDescription& table) const;
+  template <class Row>
+  std::vector<Row> rows(const Table<Row>& table, std::uint64_t first, std::uint64_t count) const {
+    std::vector<Row> result(static_cast<std::size_t>(std::min(count, this->count(table))));
+    read(table, first, count, result.data());
+    return result;
+  }
+  template <class Row>
+  std::vector<Row> rows(const Table<Row>& table) const {
+    return rows(table, 0, count(table));
+  }
+  template <class Row>
+  std::uint64_t count() const {
+    return count(table_of<Row>());
+  }
+  template <class Row>
+  std::vector<Row> rows() const {
+    return rows(table_of<Row>());
+  }
+  template <class Row>
+  std::vector<Row> rows(std::uint64_t first, std::uint64_t count) const {
+    return rows(table_of<Row>(), first, count);
+  }
+  /// One column of integers of a table that the file has.
+  std::vector<std::int64_t> integers(const TableDescription& table, const char* column,
+                                     std::uint64_t first, std::uint64_t count) const;
+  std::vector<ResponseRow> responses() const { return rows<ResponseRow>(); }
+
   /// Whether the file has the tables of drillings.
   bool drills() const;
-  /// Rows of a table of drillings, all or [first, first + count); none in a file without them.
-  /// @tparam Row  a type of drilling_types.h
-  template <class Row>
-  std::uint64_t count() const;
-  template <class Row>
-  std::vector<Row> rows() const;
-  template <class Row>
-  std::vector<Row> rows(std::uint64_t first, std::uint64_t count) const;
   /// The bones of the session, in their order.
   std::vector<BoneRecord> bones() const;
 
@@ -82,6 +109,8 @@ class SessionReader {
   std::optional<TimingSummary> timing_summary() const;
 
  private:
+  void read(const TableDescription& table, std::uint64_t first, std::uint64_t count,
+            void* rows) const;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -1,6 +1,7 @@
 #include "core/record/session_resume.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "core/base/error.h"
 #include "core/record/repair.h"
@@ -55,9 +56,7 @@ void sum_up_runs(const SessionReader& reader, Resumed& found) {
 }
 
 /// Where an undamaged file goes on.
-Resumed examine(const fs::path& partial, bool& drills) {
-  const SessionReader reader(partial);
-  drills = reader.drills();
+Resumed examine(const SessionReader& reader) {
   Resumed found;
   found.info = reader.info();
   found.rows = reader.sample_count();
@@ -83,7 +82,8 @@ bool SessionWriter::can_resume(const fs::path& final_path) {
   return fs::exists(partial_path(final_path), ignored);
 }
 
-SessionWriter SessionWriter::resume(const fs::path& final_path, Resumed& found) {
+SessionWriter SessionWriter::resume(const fs::path& final_path, Resumed& found,
+                                    const TableList& tables) {
   const fs::path partial = partial_path(final_path);
   if (!can_resume(final_path)) {
     throw InputError(
@@ -92,17 +92,22 @@ SessionWriter SessionWriter::resume(const fs::path& final_path, Resumed& found) 
   }
   FileLock lock = FileLock::take(partial, false);
   Repair repair;
-  if (const auto wrong = what_is_wrong(partial)) {
-    repair = repair_session(partial, *wrong);
+  if (const auto wrong = what_is_wrong(partial, tables)) {
+    repair = repair_session(partial, *wrong, tables);
     lock = FileLock::take(partial, false);
   }
-  bool drills = false;
-  found = examine(partial, drills);
+  TableList own;
+  {
+    const SessionReader reader(partial);
+    found = examine(reader);
+    std::copy_if(tables.begin(), tables.end(), std::back_inserter(own),
+                 [&](const TableDescription* table) { return reader.has(*table); });
+  }
   found.repaired = repair.told;
   found.dropped_rows = repair.dropped_rows;
   found.dropped_passes = repair.dropped_passes;
   try {
-    auto impl = std::make_unique<Impl>(final_path, found.info, std::move(lock), drills);
+    auto impl = std::make_unique<Impl>(final_path, found.info, std::move(lock), own);
     impl->take_up(found);
     return SessionWriter(std::move(impl));
   } catch (const h5::Error& error) {

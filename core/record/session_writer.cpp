@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/record/drilling_codec.h"
 #include "core/record/row_codec.h"
 #include "core/record/run_codec.h"
 #include "core/record/schema.h"
@@ -24,12 +23,6 @@ constexpr int kLiveLevel = 3;
 
 bool is_live(const SessionInfo& info) { return info.clock == "real"; }
 
-TableSchema sized(const TableSchema& each, const SessionInfo& info) {
-  const bool ticks = &each == &samples_schema() || &each == &schema(DrillingTable::kTool);
-  const bool short_chunks = is_live(info) && ticks;
-  return short_chunks ? each.with_chunks(live_chunk_rows(info.rate)) : each;
-}
-
 void put_attributes(TableWriter& table, const std::vector<EventRow>& rows) {
   for (const EventRow& row : rows) {
     for (const EventPart& part : event_parts(row)) {
@@ -42,30 +35,32 @@ void put_attributes(TableWriter& table, const std::vector<EventRow>& rows) {
 }  // namespace
 
 SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info,
-                          std::optional<std::span<const BoneRecord>> bones)
+                          const TableList& own_tables, std::span<const Rows> first_rows)
     : final_path(file_path),
       partial(partial_path(file_path)),
       live(is_live(info)),
-      lock(FileLock::take(new_path(file_path), true)),
-      drills(bones.has_value()) {
+      lock(FileLock::take(new_path(file_path), true)) {
+  for (const TableDescription* table : own_tables) {
+    own.push_back({table, std::nullopt});
+  }
   const fs::path created = new_path(file_path);
   try {
     file = h5::create_file(created, true);
     space.ensure(h5::descriptor(file), 0);
     put_info(file, info);
-    for (auto [table, each] : tables()) {
-      table->emplace(file, sized(*each, info), live ? kLiveLevel : kFastLevel, ensure_space());
+    for (const Part& part : tables()) {
+      const TableSchema& schema = *part.schema;
+      part.writer->emplace(
+          file, live && part.each_tick ? schema.with_chunks(live_chunk_rows(info.rate)) : schema,
+          live ? kLiveLevel : kFastLevel, ensure_space());
     }
     for (const char* count : {"ticks", "overruns", "dropped"}) {
       h5::put(timing->dataset(), count, std::int64_t{-1});
     }
     put_attributes(*attributes, info_rows(info));
     h5::start_swmr(file);
-    for (const BoneRecord& bone : bones.value_or(std::span<const BoneRecord>{})) {
-      put(std::span(&bone.bone, 1));
-      put(std::span(bone.structures));
-      put(std::span(bone.runs));
-      put(std::span(bone.densities));
+    for (const Rows& rows : first_rows) {
+      put(rows);
     }
     write(true);
     if (live) sync_data(h5::descriptor(file));  // what the session is survives whatever follows
@@ -81,13 +76,15 @@ SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info,
 }
 
 SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info, FileLock held,
-                          bool drilled)
+                          const TableList& own_tables)
     : final_path(file_path),
       partial(partial_path(file_path)),
       live(is_live(info)),
       lock(std::move(held)),
-      drills(drilled),
       resumed(true) {
+  for (const TableDescription* table : own_tables) {
+    own.push_back({table, std::nullopt});
+  }
   try {
     go_on();
   } catch (...) {
@@ -101,8 +98,9 @@ void SessionWriter::Impl::go_on() {
   file = h5::open_to_go_on(partial);
   space = {};
   space.ensure(h5::descriptor(file), 0);
-  for (auto [table, each] : tables()) {
-    table->emplace(TableWriter::go_on(file, *each, live ? kLiveLevel : kFastLevel, ensure_space()));
+  for (const Part& part : tables()) {
+    part.writer->emplace(
+        TableWriter::go_on(file, *part.schema, live ? kLiveLevel : kFastLevel, ensure_space()));
   }
   h5::flush(file);
   start_syncing();
@@ -113,36 +111,39 @@ void SessionWriter::Impl::start_syncing() {
   if (live) syncing = std::make_unique<DiskSync>(lock.descriptor(), partial, kEvery);
 }
 
-SessionWriter::Impl::Tables SessionWriter::Impl::tables() {
-  Tables all{{&samples, &samples_schema()},
-             {&frames, &frames_schema()},
-             {&trials, &trials_schema()},
-             {&events, &events_schema()},
-             {&stimuli, &stimuli_schema()},
-             {&timing, &timing_schema()},
-             {&attributes, &attributes_schema()},
-             {&runs, &runs_schema()},
-             {&begun, &begun_schema()}};
-  for (std::size_t i = 0; drills && i < kDrillingTables; ++i) {
-    all.emplace_back(&drilling[i], &schema(static_cast<DrillingTable>(i)));
+std::vector<SessionWriter::Impl::Part> SessionWriter::Impl::tables() {
+  std::vector<Part> all{{&samples, &samples_schema(), true},
+                        {&frames, &frames_schema(), false},
+                        {&trials, &trials_schema(), false},
+                        {&events, &events_schema(), false},
+                        {&stimuli, &stimuli_schema(), false},
+                        {&timing, &timing_schema(), false},
+                        {&attributes, &attributes_schema(), false},
+                        {&runs, &runs_schema(), false},
+                        {&begun, &begun_schema(), false}};
+  for (Own& each : own) {
+    all.push_back({&each.writer, &each.table->schema(), each.table->of() == RowsOf::kEachTick});
   }
   return all;
 }
 
-TableWriter& SessionWriter::Impl::table(DrillingTable which) {
-  std::optional<TableWriter>& found = drilling[static_cast<std::size_t>(which)];
-  if (!found) {
-    throw std::invalid_argument(final_path.string() + ": is not a drilling session");
+TableWriter& SessionWriter::Impl::own_table(const TableDescription& table) {
+  for (Own& each : own) {
+    if (each.table->name() == table.name()) {
+      return *each.writer;
+    }
   }
-  return *found;
+  throw std::invalid_argument(final_path.string() + ": the session has no table /" + table.name());
 }
 
-template <class Row>
-void SessionWriter::Impl::put(std::span<const Row> rows) {
-  TableWriter& to = table(table_of<Row>());
-  for (const Row& row : rows) {
-    put_row(to.planes(), to.used(), row);
-    to.added(1);
+void SessionWriter::Impl::put(const Rows& rows) {
+  TableWriter& to = own_table(*rows.table);
+  const auto* from = static_cast<const std::uint8_t*>(rows.data);
+  for (std::size_t done = 0; done < rows.count;) {
+    const std::size_t count = std::min(to.room(), rows.count - done);
+    rows.table->put(to.planes(), to.used(), from + done * rows.table->row_size(), count);
+    to.added(count);
+    done += count;
   }
 }
 
@@ -164,13 +165,19 @@ void SessionWriter::Impl::give_up(const std::string& why) {
 /// Before a row of /trials that refers to them, whenever the process is killed.
 void SessionWriter::Impl::write_samples() {
   samples->write_unfinished();
-  if (drills) table(DrillingTable::kTool).write_unfinished();
+  for (Own& each : own) {
+    if (each.table->of() == RowsOf::kEachTick) {
+      each.writer->write_unfinished();
+    }
+  }
   h5::flush(file);
 }
 
-void SessionWriter::Impl::write_drilling() {
-  for (std::size_t i = 1; drills && i < kDrillingTables; ++i) {  // but /tool
-    drilling[i]->write_unfinished();
+void SessionWriter::Impl::write_own() {
+  for (Own& each : own) {
+    if (each.table->of() != RowsOf::kEachTick) {
+      each.writer->write_unfinished();
+    }
   }
 }
 
@@ -180,7 +187,7 @@ void SessionWriter::Impl::write(bool all) {
   for (auto* table : {&begun, &trials, &events, &stimuli, &timing, &runs, &attributes}) {
     (*table)->write_unfinished();
   }
-  write_drilling();
+  write_own();
   h5::flush(file);
 }
 
@@ -210,26 +217,24 @@ bool SessionWriter::Impl::closable() noexcept {
 }
 
 void SessionWriter::Impl::close_tables() noexcept {
-  for (auto [table, each] : tables()) {
-    if (*table) (*table)->close();
+  for (const Part& part : tables()) {
+    if (*part.writer) {
+      (*part.writer)->close();
+    }
   }
 }
 
 SessionWriter::SessionWriter(const fs::path& final_path, const SessionInfo& info)
-    : SessionWriter(std::nullopt, final_path, info) {}
+    : SessionWriter(final_path, info, TableList{}) {}
 
 SessionWriter::SessionWriter(const fs::path& final_path, const SessionInfo& info,
-                             std::span<const BoneRecord> bones)
-    : SessionWriter(std::optional(bones), final_path, info) {}
-
-SessionWriter::SessionWriter(std::optional<std::span<const BoneRecord>> bones,
-                             const fs::path& final_path, const SessionInfo& info) {
+                             const TableList& tables, std::span<const Rows> first_rows) {
   check_target(final_path);
   if (const auto name = text_with_nul(info)) {
     throw InputError(final_path.string() + ": " + *name + " holds a NUL byte; remove it");
   }
   try {
-    impl_ = std::make_unique<Impl>(final_path, info, bones);
+    impl_ = std::make_unique<Impl>(final_path, info, tables, first_rows);
   } catch (const h5::Error& error) {
     throw RunError(final_path.string() + ": the session file cannot be created (" + error.what() +
                    ")");
@@ -262,7 +267,9 @@ void SessionWriter::append(std::span<const Sample> rows) {
     TableWriter& table = *impl_->samples;
     bool finished_chunk = false;
     // What the ticks did is there before they are, whenever the process is killed.
-    if (impl_->drills && impl_->live && rows.size() >= table.room()) impl_->write_drilling();
+    if (impl_->live && rows.size() >= table.room()) {
+      impl_->write_own();
+    }
     while (!rows.empty()) {
       const std::size_t count = std::min(table.room(), rows.size());
       put_samples(table.planes(), table.used(), rows.first(count));
@@ -321,20 +328,33 @@ void SessionWriter::add_frames(std::span<const FrameRow> rows) {
   });
 }
 
-template <class Row>
-void SessionWriter::add(std::span<const Row> rows) {
+void SessionWriter::add(const Rows& rows) {
   impl_->guarded([&] { impl_->put(rows); });
 }
 
-template void SessionWriter::add(std::span<const ToolRow>);
-template void SessionWriter::add(std::span<const RemovalRow>);
-template void SessionWriter::add(std::span<const CameraRow>);
-template void SessionWriter::add(std::span<const SplitRow>);
-template void SessionWriter::add(std::span<const ProcedureRow>);
-template void SessionWriter::add(std::span<const BoneRow>);
-template void SessionWriter::add(std::span<const StructureRow>);
-template void SessionWriter::add(std::span<const BoneRunRow>);
-template void SessionWriter::add(std::span<const BoneDensityRow>);
+void SessionWriter::add_at_once(const Rows& rows) {
+  impl_->guarded([&] {
+    impl_->put(rows);
+    if (!impl_->live) {
+      impl_->own_table(*rows.table).write_unfinished();
+      h5::flush(impl_->file);
+      return;
+    }
+    impl_->write(false);
+    impl_->syncing->soon();
+  });
+}
+
+void SessionWriter::add_packed(const TableDescription& table, std::span<const std::uint8_t> rows) {
+  impl_->guarded([&] {
+    TableWriter& to = impl_->own_table(table);
+    const std::size_t bytes = table.schema().row_bytes();
+    for (std::size_t at = 0; at < rows.size(); at += bytes) {
+      to.planes().put_row(to.used(), rows.subspan(at, bytes));
+      to.added(1);
+    }
+  });
+}
 
 void SessionWriter::set_planned(std::int32_t trials) { impl_->run.planned = trials; }
 

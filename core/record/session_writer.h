@@ -2,18 +2,32 @@
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "core/record/drilling_types.h"
+#include "core/record/drilling_tables.h"
+#include "core/record/response.h"
 #include "core/record/run_types.h"
 #include "core/record/session_types.h"
+#include "core/record/table.h"
 
 namespace haptrial::record {
 
 struct Resumed;
+
+/// Rows of one table, contiguous.
+struct Rows {
+  template <class Row>
+  explicit Rows(std::span<const Row> rows)
+      : table(&table_of<Row>()), data(rows.data()), count(rows.size()) {}
+  Rows(const TableDescription& of, const void* first, std::size_t rows)
+      : table(&of), data(first), count(rows) {}
+
+  const TableDescription* table;
+  const void* data;
+  std::size_t count;
+};
 
 /// Writes one session file (docs/session-file.md). It is called FILE.partial until close() gives it
 /// its name, and is readable as it stands whatever kills the process; other processes may follow
@@ -36,6 +50,10 @@ class SessionWriter {
   /// @throws InputError when FILE or FILE.partial exists, or their folder is missing or may not be
   /// written, or another process creates the same file, or a text of `info` holds a NUL byte.
   SessionWriter(const std::filesystem::path& final_path, const SessionInfo& info);
+  /// The same with tables of the protocol. @param first_rows  are in the file as soon as it has the
+  /// name FILE.partial
+  SessionWriter(const std::filesystem::path& final_path, const SessionInfo& info,
+                const TableList& tables, std::span<const Rows> first_rows = {});
   /// The same with the tables of drillings, in which the bones are from the beginning.
   SessionWriter(const std::filesystem::path& final_path, const SessionInfo& info,
                 std::span<const BoneRecord> bones);
@@ -50,7 +68,9 @@ class SessionWriter {
   /// (core/record/repair.h).
   /// @throws InputError when another process writes it, or when it does not say what the session
   /// was; the file is left as it was.
-  static SessionWriter resume(const std::filesystem::path& final_path, Resumed& found);
+  /// @param tables  of protocols, some of which the file may have
+  static SessionWriter resume(const std::filesystem::path& final_path, Resumed& found,
+                              const TableList& tables = known_tables());
 
   /// Without close(): FILE.partial stays, closed and readable, with everything that came.
   ~SessionWriter();
@@ -70,13 +90,22 @@ class SessionWriter {
   void begin_pass(const BegunRow& pass);
   void add_stimulus(std::span<const StimulusRow> rows);
   void add_frames(std::span<const FrameRow> rows);
-  /// Rows of the tables of drillings, in ascending order of their sequence numbers. Rows of /tool
-  /// go with those of /samples: as many, with the same numbers, before append() is given the next
-  /// ones. Reals are rounded to the grids of the schema.
-  /// @tparam Row  a type of drilling_types.h
-  /// @throws std::invalid_argument in a session without drillings.
+  /// Rows of a table of the protocol; of RowsOf::kTick in ascending order of their ticks. A table
+  /// of RowsOf::kEachTick goes with /samples: as many rows, with the same sequence numbers, before
+  /// append() is given the next ones. Reals are rounded to the grids of the table.
+  /// @throws std::invalid_argument in a session without the table, and as TableDescription::put()
+  void add(const Rows& rows);
   template <class Row>
-  void add(std::span<const Row> rows);
+  void add(std::span<const Row> rows) {
+    add(Rows(rows));
+  }
+  /// The same, and the rows are in the file when this returns, on any clock: they survive kill -9,
+  /// and on the real clock reach the disk soon after.
+  void add_at_once(const Rows& rows);
+  /// Rows that are packed in the present layout of the table, one after the other.
+  void add_packed(const TableDescription& table, std::span<const std::uint8_t> rows);
+  /// An answer, at once. The tables of the session include responses_table().
+  void add_response(const ResponseRow& row) { add_at_once(Rows(std::span(&row, 1))); }
   /// Trials of the study that this run has planned, earlier runs' included.
   void set_planned(std::int32_t trials);
   /// What the loop counted so far in this run: a row of /runs where something new is to be told.
@@ -117,8 +146,6 @@ class SessionWriter {
  private:
   struct Impl;
   explicit SessionWriter(std::unique_ptr<Impl> impl);
-  SessionWriter(std::optional<std::span<const BoneRecord>> bones,
-                const std::filesystem::path& final_path, const SessionInfo& info);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -23,17 +22,22 @@ namespace haptrial::record {
 
 struct SessionWriter::Impl {
   /// Creates the file. @throws h5::Error, InputError, RunError; then nothing is left of it.
-  Impl(const std::filesystem::path& file_path, const SessionInfo& info,
-       std::optional<std::span<const BoneRecord>> bones);
-  /// Goes on with the file, which is locked. @param drilled  it has the tables of drillings
+  Impl(const std::filesystem::path& file_path, const SessionInfo& info, const TableList& own_tables,
+       std::span<const Rows> first_rows);
+  /// Goes on with the file, which is locked. @param own_tables  that it has
   Impl(const std::filesystem::path& file_path, const SessionInfo& info, FileLock held,
-       bool drilled);
+       const TableList& own_tables);
 
-  using Tables = std::vector<std::pair<std::optional<TableWriter>*, const TableSchema*>>;
-  Tables tables();
-  TableWriter& table(DrillingTable which);
-  template <class Row>
-  void put(std::span<const Row> rows);
+  /// A table and its writer while the file is open.
+  struct Part {
+    std::optional<TableWriter>* writer;
+    const TableSchema* schema;
+    bool each_tick;  // it has a row for each tick
+  };
+  std::vector<Part> tables();
+  /// @throws std::invalid_argument if the session does not have the table
+  TableWriter& own_table(const TableDescription& table);
+  void put(const Rows& rows);
 
   /// Runs one step of writing; its first failure ends all writing.
   template <typename Step>
@@ -54,7 +58,7 @@ struct SessionWriter::Impl {
   /// Chunks of samples that are not full stay out, unless `all` or a pass refers to them.
   void write(bool all);
   void write_samples();
-  void write_drilling();
+  void write_own();  // but what has a row for each tick
   TableWriter::EnsureSpace ensure_space();
   void divert_file() noexcept;
   bool closable() noexcept;
@@ -80,8 +84,11 @@ struct SessionWriter::Impl {
   DiskSpace space;
   std::optional<TableWriter> samples, frames, trials, events, stimuli, timing, attributes;
   std::optional<TableWriter> runs, begun;
-  bool drills{false};
-  std::array<std::optional<TableWriter>, kDrillingTables> drilling;
+  struct Own {
+    const TableDescription* table;
+    std::optional<TableWriter> writer;
+  };
+  std::vector<Own> own;           // tables of the protocol
   TimingSummary earlier;          // what the runs before a resume counted
   RunRow run;                     // this one
   std::optional<RunRow> run_row;  // the last in the file or on its way there

@@ -178,14 +178,15 @@ TEST(DrillingRecordTest, NoTwoTablesHaveChunksOfOneSize) {
         &attributes_schema(), &runs_schema(), &begun_schema()}) {
     add_size(each->row_bytes() * each->chunk_rows);
   }
-  for (std::size_t i = 1; i < kDrillingTables; ++i) {
-    const TableSchema& each = schema(static_cast<DrillingTable>(i));
-    add_size(each.row_bytes() * each.chunk_rows);
+  for (const TableDescription* table : known_tables()) {
+    if (table->of() != RowsOf::kEachTick) {
+      add_size(table->schema().row_bytes() * table->schema().chunk_rows);
+    }
   }
   for (std::size_t rows = kLiveChunkStep; rows <= samples_schema().chunk_rows;
        rows += kLiveChunkStep) {
     add_size(rows * samples_schema().row_bytes());
-    add_size(rows * schema(DrillingTable::kTool).row_bytes());
+    add_size(rows * table_of<ToolRow>().schema().row_bytes());
   }
 }
 

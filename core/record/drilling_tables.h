@@ -1,0 +1,33 @@
+#pragma once
+
+#include "core/record/drilling_types.h"
+#include "core/record/table.h"
+
+namespace haptrial::record {
+
+/// The tables of drillings, in the order in which they are created.
+const TableList& drilling_tables();
+
+/// Every table that a protocol of this program records.
+const TableList& known_tables();
+
+template <>
+const Table<ToolRow>& table_of<ToolRow>();
+template <>
+const Table<RemovalRow>& table_of<RemovalRow>();
+template <>
+const Table<CameraRow>& table_of<CameraRow>();
+template <>
+const Table<SplitRow>& table_of<SplitRow>();
+template <>
+const Table<BoneRow>& table_of<BoneRow>();
+template <>
+const Table<StructureRow>& table_of<StructureRow>();
+template <>
+const Table<BoneRunRow>& table_of<BoneRunRow>();
+template <>
+const Table<BoneDensityRow>& table_of<BoneDensityRow>();
+template <>
+const Table<ProcedureRow>& table_of<ProcedureRow>();
+
+}  // namespace haptrial::record
