@@ -21,5 +21,6 @@ function(haptrial_install)
   install(FILES ${CMAKE_SOURCE_DIR}/cmake/haptrial-config.cmake
                 ${CMAKE_BINARY_DIR}/haptrial-config-version.cmake
           DESTINATION ${package})
+  install(CODE "set(CMAKE_INSTALL_DO_STRIP TRUE)")  # the command without its symbols
   install(TARGETS haptrial RUNTIME)
 endfunction()

@@ -38,6 +38,23 @@ run_quietly() {
   rm -f "$log"
 }
 
+# show_progress WHAT: reads ninja's lines, shows the share done: on a terminal in one line, else in
+# steps of 10 %.
+show_progress() {
+  local line done total share shown=-1 text='' step=10 end='\n'
+  [ -t 1 ] && step=1 end='\r'
+  while IFS= read -r line; do
+    [[ $line =~ ^\[([0-9]+)/([0-9]+)\]\ (.*) ]] || continue
+    [[ ${BASH_REMATCH[3]} == Re-* ]] && continue  # cmake looks for new files
+    done=${BASH_REMATCH[1]} total=${BASH_REMATCH[2]}
+    share=$((100 * done / total / step * step))
+    [ "$share" -gt "$shown" ] || continue
+    shown=$share text="$1: $((100 * done / total)) % ($done of $total)"
+    printf "%s$end" "$text"
+  done
+  if [ -t 1 ] && [ -n "$text" ]; then printf '\n'; fi
+}
+
 # build FOLDER [CMAKE OPTION...] [-- TARGET...]: configures and builds; quiet when all is up to date.
 build() {
   local folder=$1 options=()
@@ -49,7 +66,20 @@ build() {
   [ "${1:-}" = -- ] && shift
   run_quietly cmake -S "$root" -B "$root/$folder" -G Ninja "${options[@]}"
   if ! ninja -C "$root/$folder" -n "$@" | grep -q 'no work to do'; then
-    say "building in $folder"
-    run_quietly ninja -C "$root/$folder" "$@"
+    run_ninja "$folder" "$@"
   fi
+}
+
+# run_ninja FOLDER [TARGET...]: one line of progress; the compiler's words only when it fails.
+run_ninja() {
+  local folder=$1 log
+  log=$(mktemp)
+  shift
+  if ! NINJA_STATUS='[%f/%t] ' ninja -C "$root/$folder" "$@" 2>&1 | tee "$log" |
+    show_progress "building in $folder"; then
+    tail -n 40 "$log" >&2
+    rm -f "$log"
+    die "failed: ninja -C $root/$folder $*"
+  fi
+  rm -f "$log"
 }

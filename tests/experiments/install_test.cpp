@@ -53,6 +53,14 @@ TEST(InstallTest, AnotherProjectFindsLinksAndRunsTheLibraries) {
   const test::CommandResult command = test::run_command(line);
   EXPECT_EQ(command.status, 0) << command.errors;
   EXPECT_TRUE(std::filesystem::exists(folder / "installed/include/haptrial/core/geometry/bvh.h"));
+
+  line = "LC_ALL=C readelf --sections --wide '";
+  line += root;
+  line += "/installed/bin/haptrial'";
+  const test::CommandResult sections = test::run_command(line);
+  EXPECT_NE(sections.output.find(" .dynsym "), std::string::npos) << sections.errors;
+  EXPECT_EQ(sections.output.find(" .symtab "), std::string::npos) << "the command is not stripped";
+  EXPECT_EQ(sections.output.find(" .debug_"), std::string::npos) << "the command is not stripped";
 }
 
 }  // namespace
