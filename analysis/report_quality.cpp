@@ -2,6 +2,7 @@
 
 #include "analysis/report_parts.h"
 #include "analysis/wording.h"
+#include "core/record/overruns.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -117,7 +118,7 @@ void add_timing(Document& document, const StudyResult& study) {
   Rows rows;
   for (const auto& session : study.sessions) {
     rows.push_back(timing_row(session, real));
-    const auto late = too_many_overruns(session.timing.ticks, session.timing.overruns);
+    const auto late = record::too_many_overruns(session.timing.ticks, session.timing.overruns);
     if (session.timing.applies && late) {
       document.alarm(fmt::format("The servo loop of {} did not keep its rate: {}.",
                                  session.info.subject, *late));

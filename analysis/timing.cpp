@@ -41,15 +41,6 @@ Defined<TimingPercentiles> percentiles(std::span<const record::TimingRow> rows,
   return TimingPercentiles{at(0.5), at(0.99), at(0.999), edge_of(rows, count, total)};
 }
 
-std::optional<std::string> too_many_overruns(std::uint64_t ticks, std::uint64_t overruns) {
-  constexpr double kMost = 0.01;
-  if (static_cast<double>(overruns) <= kMost * static_cast<double>(ticks)) {
-    return std::nullopt;
-  }
-  return fmt::format("{} of {} ticks ({:.1f} %) overran their period", overruns, ticks,
-                     100.0 * static_cast<double>(overruns) / static_cast<double>(ticks));
-}
-
 LoopTiming loop_timing(const record::SessionReader& reader) {
   LoopTiming timing;
   timing.applies = reader.info().clock != "simulated";

@@ -41,11 +41,6 @@ struct LoopTiming {
 Defined<TimingPercentiles> percentiles(std::span<const record::TimingRow> rows,
                                        std::uint64_t record::TimingRow::*count);
 
-/// "812 of 950 ticks (85.5 %) overran their period" where more than one tick in a hundred did. Each
-/// gives its force late; beyond that share the readings from which velocity is estimated are no
-/// longer even, and damping is not what the definition says.
-std::optional<std::string> too_many_overruns(std::uint64_t ticks, std::uint64_t overruns);
-
 /// @throws InputError when the file is damaged.
 LoopTiming loop_timing(const record::SessionReader& reader);
 

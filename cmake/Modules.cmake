@@ -2,7 +2,6 @@
 function(haptrial_module name folder)
   cmake_parse_arguments(ARG "" "" "LINKS;USES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${folder}/*.cpp)
-  list(REMOVE_ITEM sources ${CMAKE_SOURCE_DIR}/experiments/main.cpp)
   if(NOT sources)
     message(FATAL_ERROR "module ${name}: no sources in ${folder}")
   endif()
@@ -34,9 +33,9 @@ function(haptrial_command)
                  ${CMAKE_SOURCE_DIR}/.git/logs/HEAD)
   endif()
   configure_file(${CMAKE_SOURCE_DIR}/cmake/version.cpp.in ${CMAKE_BINARY_DIR}/version.cpp @ONLY)
-  target_sources(haptrial_experiments PRIVATE ${CMAKE_BINARY_DIR}/version.cpp)
+  target_sources(haptrial_runner PRIVATE ${CMAKE_BINARY_DIR}/version.cpp)
   add_executable(haptrial ${CMAKE_SOURCE_DIR}/experiments/main.cpp)
-  target_link_libraries(haptrial PRIVATE haptrial_experiments)
+  target_link_libraries(haptrial PRIVATE haptrial_command_line)
   set_target_properties(haptrial PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
 endfunction()
 
@@ -61,10 +60,29 @@ function(haptrial_console_page)
   file(READ ${html} HAPTRIAL_CONSOLE_HTML)
   configure_file(${CMAKE_SOURCE_DIR}/cmake/console_page.cpp.in ${CMAKE_BINARY_DIR}/console_page.cpp
                  @ONLY)
-  target_sources(haptrial_experiments PRIVATE ${CMAKE_BINARY_DIR}/console_page.cpp)
+  target_sources(haptrial_console PRIVATE ${CMAKE_BINARY_DIR}/console_page.cpp)
 endfunction()
 
-# tests/FOLDER/*.cpp becomes test_NAME for every module.
+# haptrial_test(NAME LINK SOURCE...): test_NAME, which the test runner finds.
+function(haptrial_test name link)
+  add_executable(test_${name} ${ARGN})
+  target_link_libraries(test_${name} PRIVATE haptrial_${link} haptrial_test_support GTest::gmock
+                                             GTest::gtest GTest::gtest_main)
+  # The allocation guard sees malloc of our objects too (Eigen calls it directly); it is linked
+  # also where no test names it.
+  target_link_options(test_${name} PRIVATE LINKER:--undefined=__wrap_malloc
+    LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc,--wrap=posix_memalign)
+  target_compile_definitions(test_${name} PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}"
+                                                  HAPTRIAL_BINARY_DIR="${CMAKE_BINARY_DIR}")
+  set(alone "")
+  if(name STREQUAL realtime)
+    set(alone RUN_SERIAL TRUE)  # these measure time
+  endif()
+  gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 ${alone})
+endfunction()
+
+# tests/FOLDER/*.cpp becomes test_NAME for every module; a whole layer of protocols or experiments
+# is one program.
 function(haptrial_tests)
   include(GoogleTest)
   find_package(GTest REQUIRED)
@@ -77,23 +95,20 @@ function(haptrial_tests)
   foreach(name ${modules})
     get_property(folder GLOBAL PROPERTY HAPTRIAL_FOLDER_${name})
     file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/${folder}/*.cpp)
-    if(sources)
-      add_executable(test_${name} ${sources})
-      target_link_libraries(test_${name} PRIVATE haptrial_${name} haptrial_test_support GTest::gmock
-                                                 GTest::gtest GTest::gtest_main)
-      # The allocation guard sees malloc of our objects too (Eigen calls it directly); it is linked
-      # also where no test names it.
-      target_link_options(test_${name} PRIVATE LINKER:--undefined=__wrap_malloc
-        LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc,--wrap=posix_memalign)
-      target_compile_definitions(test_${name} PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}"
-                                                      HAPTRIAL_BINARY_DIR="${CMAKE_BINARY_DIR}")
-      set(alone "")
-      if(name STREQUAL realtime)
-        set(alone RUN_SERIAL TRUE)  # these measure time
-      endif()
-      gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 ${alone})
+    if(sources AND NOT folder MATCHES "^(protocols|experiments)/")
+      haptrial_test(${name} ${name} ${sources})
     endif()
   endforeach()
+  # Those of protocols run whole sessions, too, with the helpers of the tests of experiments.
+  file(GLOB helpers CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/experiments/*.cpp)
+  list(FILTER helpers EXCLUDE REGEX "_test[.]cpp$")
+  foreach(layer protocols experiments)
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/${layer}/*.cpp)
+    list(APPEND sources ${helpers})
+    list(REMOVE_DUPLICATES sources)
+    haptrial_test(${layer} command_line ${sources})
+  endforeach()
+  add_dependencies(test_protocols haptrial)
   target_link_libraries(test_experiments PRIVATE nlohmann_json::nlohmann_json)
   target_link_libraries(test_drilling PRIVATE haptrial_bone_data)
   find_package(assimp REQUIRED)  # a peer of the mesh readers

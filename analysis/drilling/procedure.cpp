@@ -9,6 +9,7 @@
 
 #include "analysis/drilling/study_bones.h"
 #include "core/base/error.h"
+#include "core/bone/data/recorded_bone.h"
 #include "core/record/rounding.h"
 #include "core/record/schema.h"
 #include "core/record/session_reader.h"
@@ -17,8 +18,6 @@ namespace haptrial::analysis::drilling {
 namespace {
 
 constexpr std::uint64_t kAtOnce = 65536;  // rows of samples in memory
-constexpr std::int32_t kLongest = 8192;   // voxels along an axis of a bone
-constexpr std::size_t kMostVoxels = std::size_t{1} << 31;
 
 struct Pass {
   std::size_t row;
@@ -31,7 +30,7 @@ std::map<std::int32_t, std::vector<Pass>> passes_by_trial(const record::SessionR
   const std::vector<record::PassRow> passes = file.passes();
   for (std::size_t row = 0; row < passes.size(); ++row) {
     const record::PassRow& pass = passes[row];
-    if (pass.practice || pass.phase != record::Phase::kDrilling) {
+    if (pass.practice || pass.phase != record::kDrillingPhase) {
       continue;
     }
     std::vector<Pass>& own = trials[pass.trial];
@@ -111,7 +110,7 @@ class Loader {
  private:
   std::shared_ptr<const bone::BoneModel> keep(const record::BoneRecord& record) const {
     try {
-      bone::BoneModel model = bone_of(record);
+      bone::BoneModel model = bone::bone_of(record);
       return bones_ != nullptr ? bones_->keep(std::move(model))
                                : std::make_shared<const bone::BoneModel>(std::move(model));
     } catch (const std::invalid_argument& error) {
@@ -210,55 +209,6 @@ std::vector<Procedure> load_procedures(const record::SessionReader& file,
     procedures.push_back(loader.load(trial, passes));
   }
   return procedures;
-}
-
-bone::BoneModel bone_of(const record::BoneRecord& record) {
-  bone::BoneModel model;
-  model.name = record.bone.name;
-  model.source = record.bone.source;
-  model.grid = {record.bone.size, record.bone.origin, record.bone.spacing};
-  for (const std::int32_t size : record.bone.size) {
-    if (size < 1 || size > kLongest) {
-      throw std::invalid_argument(fmt::format("its grid has {} voxels along an axis", size));
-    }
-  }
-  if (model.grid.count() > kMostVoxels) {
-    throw std::invalid_argument(fmt::format("its grid has {} voxels", model.grid.count()));
-  }
-  const std::size_t count = model.grid.count();
-  model.labels.assign(count, 0);
-  model.structures.emplace_back();
-  for (const record::StructureRow& row : record.structures) {
-    if (row.label < 1 || row.label > 255) {
-      throw std::invalid_argument(fmt::format("a structure has label {}", row.label));
-    }
-    const auto label = static_cast<std::size_t>(row.label);
-    if (label >= model.structures.size()) {
-      model.structures.resize(label + 1);
-    }
-    model.structures[label] = {row.name, row.colour, row.hardness, row.vital};
-  }
-  for (const record::BoneRunRow& run : record.runs) {
-    if (run.count < 0 || run.first > count ||
-        static_cast<std::uint64_t>(run.count) > count - run.first) {
-      throw std::invalid_argument("voxels lie outside of its grid");
-    }
-    std::fill_n(model.labels.begin() + static_cast<std::ptrdiff_t>(run.first), run.count,
-                run.label);
-  }
-  if (!record.densities.empty()) {
-    model.density.resize(count);
-    std::transform(model.labels.begin(), model.labels.end(), model.density.begin(),
-                   [](std::uint8_t label) { return label != 0 ? 1.0F : 0.0F; });
-    for (const record::BoneDensityRow& row : record.densities) {
-      if (row.voxel >= count) {
-        throw std::invalid_argument("a density lies outside of its grid");
-      }
-      model.density[static_cast<std::size_t>(row.voxel)] = row.density;
-    }
-  }
-  bone::check(model);
-  return model;
 }
 
 ToolTick tick_of(const record::Sample& sample, const record::ToolRow& tool, double scale) {

@@ -110,9 +110,6 @@ class StudyBones;
 std::vector<Procedure> load_procedures(const record::SessionReader& file,
                                        const ProcedureSetup& setup, StudyBones* bones = nullptr);
 
-/// The bone of a record. @throws std::invalid_argument where its rows do not fit together.
-bone::BoneModel bone_of(const record::BoneRecord& record);
-
 // Rows of a session file as metrics use them; of rows that are not in a file yet, what the file
 // will give.
 ToolTick tick_of(const record::Sample& sample, const record::ToolRow& tool, double scale);

@@ -285,6 +285,8 @@ Table Table::table(std::string_view key) {
   return Table(document_, child);
 }
 
+void Table::leave(std::string_view key) { node_->read.emplace(key); }
+
 void Table::reject(std::string_view key, std::string_view rest) {
   document_->note(document_->together, line(key), fmt::format("{} {}", node_->full(key), rest));
 }
@@ -323,9 +325,8 @@ void Table::note_unknown_keys() const {
         continue;
       }
       std::vector<std::string> absent;  // a typo leaves out the key that was meant
-      std::copy_if(all.begin(), all.end(), std::back_inserter(absent), [&node](const auto& name) {
-        return !node->table->contains(name);
-      });
+      std::copy_if(all.begin(), all.end(), std::back_inserter(absent),
+                   [&node](const auto& name) { return !node->table->contains(name); });
       const std::string hint = did_you_mean(key.str(), absent);
       document_->note(
           document_->problems, line_of(&value),

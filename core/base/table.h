@@ -50,6 +50,8 @@ class Table {
   /// problems.
   Table table(std::string_view key);
   bool has(std::string_view key) const;
+  /// A table of this one that another reader knows: its keys are not looked at here.
+  void leave(std::string_view key);
   /// The keys of this table in the order of their names.
   std::vector<std::string> keys() const;
 

@@ -41,6 +41,8 @@ const char* describe(Fault fault) noexcept {
       return "the force stayed at the limit for longer than the envelope allows";
     case Fault::kEnergy:
       return "the force gave the hand more energy than the protocol intended";
+    case Fault::kOtherDevice:
+      return "another device of the session has a fault";
   }
   return "unknown fault";
 }

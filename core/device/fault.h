@@ -24,8 +24,9 @@ enum class Fault : std::uint8_t {
   kOscillation,
   kSaturation,
   kEnergy,
+  kOtherDevice,
 };
-constexpr int kFaults = static_cast<int>(Fault::kEnergy) + 1;
+constexpr int kFaults = static_cast<int>(Fault::kOtherDevice) + 1;
 
 /// One sentence, such as "the tool left the workspace".
 const char* describe(Fault fault) noexcept;

@@ -253,9 +253,6 @@ const TableList& known_tables() {
   return tables;
 }
 
-namespace {
-
-/// What is known of the bones before anything touches them, bone by bone.
 std::vector<Rows> rows_of(std::span<const BoneRecord> bones) {
   std::vector<Rows> rows;
   for (const BoneRecord& bone : bones) {
@@ -266,8 +263,6 @@ std::vector<Rows> rows_of(std::span<const BoneRecord> bones) {
   }
   return rows;
 }
-
-}  // namespace
 
 SessionWriter::SessionWriter(const std::filesystem::path& final_path, const SessionInfo& info,
                              std::span<const BoneRecord> bones)

@@ -1,12 +1,19 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "core/record/drilling_types.h"
+#include "core/record/rows.h"
 #include "core/record/table.h"
 
 namespace haptrial::record {
 
 /// The tables of drillings, in the order in which they are created.
 const TableList& drilling_tables();
+
+/// The rows that bones have from the beginning; they point into `bones`.
+std::vector<Rows> rows_of(std::span<const BoneRecord> bones);
 
 /// Every table that a protocol of this program records.
 const TableList& known_tables();

@@ -6,7 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "core/record/session_types.h"
+
 namespace haptrial::record {
+
+inline constexpr Phase kDrillingPhase{"drilling"};
 
 /// What a drilling session records beside the tables of every session (docs/session-file.md). Each
 /// type is a row of one table.

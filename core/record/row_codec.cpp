@@ -22,11 +22,7 @@ void check_text(std::string_view text, std::size_t bytes, const char* what) {
   }
 }
 
-Phase phase_of(std::string_view name) {
-  return name == name_of(Phase::kTraining) ? Phase::kTraining
-         : name == name_of(Phase::kTest)   ? Phase::kTest
-                                           : Phase::kDrilling;
-}
+Phase phase_of(std::string_view name) { return Phase(name.substr(0, Phase::kBytes - 1)); }
 
 namespace {
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/record/response.h"
 #include "core/record/run_types.h"
 #include "core/record/session_types.h"
 
@@ -23,11 +24,12 @@ struct Resumed {
   std::vector<EventRow> events;
   std::vector<PassRow> passes;        // with all of their samples
   std::vector<OpenPass> open_passes;  // in order; their rows follow those of `passes`
-  std::vector<std::int32_t> blocks;   // whose stimuli are there
-  std::uint64_t rows{0};              // of /samples
-  std::uint64_t next_sequence{0};     // of the first sample to append
-  std::int64_t last_time_ns{-1};      // of the last sample; -1 where there is none
-  std::vector<BegunRow> begun;        // what was known of each pass when it began
+  std::vector<ResponseRow> responses;
+  std::vector<std::int32_t> blocks;  // whose stimuli are there
+  std::uint64_t rows{0};             // of /samples
+  std::uint64_t next_sequence{0};    // of the first sample to append
+  std::int64_t last_time_ns{-1};     // of the last sample; -1 where there is none
+  std::vector<BegunRow> begun;       // what was known of each pass when it began
   std::vector<RunRow> runs;
   TimingSummary earlier;            // of all runs; a run that was killed counts what it told
   std::string repaired;             // what was wrong and what was kept; empty: it was whole

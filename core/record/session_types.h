@@ -1,8 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <compare>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace haptrial::record {
@@ -24,28 +29,40 @@ struct Sample {
   bool saturated{false};  // the force limit was reached
 };
 
-enum class Phase : std::uint8_t { kTraining, kTest, kDrilling };
+/// What a pass is for within its trial: a word of the protocol, as /trials has it.
+class Phase {
+ public:
+  static constexpr std::size_t kBytes = 16;
+  static const Phase kTraining;
+  static const Phase kTest;
 
-/// As /trials has it.
-constexpr const char* name_of(Phase phase) noexcept {
-  switch (phase) {
-    case Phase::kTraining:
-      return "training";
-    case Phase::kTest:
-      return "test";
-    case Phase::kDrilling:
-      break;
+  constexpr Phase() noexcept = default;
+  /// @throws std::invalid_argument for more than 15 bytes
+  explicit constexpr Phase(std::string_view name) {
+    if (name.size() >= kBytes) {
+      throw std::invalid_argument("the name of a phase has more than 15 bytes");
+    }
+    std::copy(name.begin(), name.end(), name_.begin());
   }
-  return "drilling";
-}
+  constexpr const char* name() const noexcept { return name_.data(); }
+  bool operator==(const Phase&) const = default;
+  auto operator<=>(const Phase&) const = default;
+
+ private:
+  std::array<char, kBytes> name_{};
+};
+inline constexpr Phase Phase::kTraining{"training"};
+inline constexpr Phase Phase::kTest{"test"};
+
+constexpr const char* name_of(const Phase& phase) noexcept { return phase.name(); }
 
 enum class PassStatus : std::uint8_t { kCompleted, kAborted };
 
-/// One pass, a row of /trials. A trial is a training pass and a test pass, or a drilling, which has
-/// more passes where it was broken off and went on.
+/// One pass, a row of /trials. A trial has a pass of each phase of its protocol, and more if it was
+/// broken off and went on.
 struct PassRow {
   std::int32_t trial{0};  // from 1
-  std::string condition;  // training condition of the block: "haptic", "visual", "visuohaptic"
+  std::string condition;  // of the block: a word of the protocol
   Phase phase{Phase::kTraining};
   std::int32_t block{0};       // from 1; of practice -1, -2, ..., one for each stimulus
   std::int32_t repetition{0};  // from 1 within the block; of a drilling the number of its bone

@@ -8,6 +8,7 @@
 
 #include "core/record/drilling_tables.h"
 #include "core/record/response.h"
+#include "core/record/rows.h"
 #include "core/record/run_types.h"
 #include "core/record/session_types.h"
 #include "core/record/table.h"
@@ -15,19 +16,6 @@
 namespace haptrial::record {
 
 struct Resumed;
-
-/// Rows of one table, contiguous.
-struct Rows {
-  template <class Row>
-  explicit Rows(std::span<const Row> rows)
-      : table(&table_of<Row>()), data(rows.data()), count(rows.size()) {}
-  Rows(const TableDescription& of, const void* first, std::size_t rows)
-      : table(&of), data(first), count(rows) {}
-
-  const TableDescription* table;
-  const void* data;
-  std::size_t count;
-};
 
 /// Writes one session file (docs/session-file.md). It is called FILE.partial until close() gives it
 /// its name, and is readable as it stands whatever kills the process; other processes may follow

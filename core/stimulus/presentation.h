@@ -1,7 +1,9 @@
 #pragma once
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <cstdint>
+
+#include "core/stimulus/shown.h"
 
 namespace haptrial::stimulus {
 
@@ -12,29 +14,11 @@ enum class Instruction : std::uint8_t {
   kWatch,      // watch the target bar (visual training)
   kMatch,      // make the applied bar as high as the target bar (visuohaptic training)
   kRecall,     // apply the learnt pattern (test)
-  kDrill,      // work on the bone
 };
 
-/// What there is to see of a drilling beside the bone itself, which the screen follows by itself.
-struct DrillingView {
-  bool shown{false};
-  Eigen::Vector3d tip{Eigen::Vector3d::Zero()};  // of the tool, in the scene's W [m]
-  Eigen::Quaterniond orientation{
-      Eigen::Quaterniond::Identity()};            // of the tool in W, z to the hand
-  std::int32_t tool{0};                           // in hand
-  bool power{false};                              // it turns, or sucks
-  bool contact{false};                            // it touches bone
-  double sound_force{0.0};                        // what can be heard of it [N]
-  Eigen::Vector3d eye{Eigen::Vector3d::UnitZ()};  // in W [m]
-  Eigen::Vector3d target{Eigen::Vector3d::Zero()};
-  Eigen::Vector3d up{Eigen::Vector3d::UnitY()};
-  double field_of_view{0.35};    // [rad]
-  std::int32_t stills_asked{0};  // how often the next still was asked for
-};
-
-/// What the participant is to see at one instant. Written whole by the servo thread each tick; read
-/// by the renderer and by a virtual subject, so both see the same thing.
-/// Source: Morris 2006, §4.2.4, Figure 24.
+/// What a participant who follows a path is to see at one instant: a view (shown.h). Written whole
+/// by the servo thread each tick; read by the renderer and by a virtual subject, so both see the
+/// same. Source: Morris 2006, §4.2.4, Figure 24.
 struct Presentation {
   Eigen::Vector3d tool{Eigen::Vector3d::Zero()};  // device position in W [m]
   bool show_trajectory{false};   // the spatial trajectory of the block and the tool on it
@@ -49,7 +33,18 @@ struct Presentation {
   Eigen::Vector3d direction{Eigen::Vector3d::Zero()};  // on along the path, while self-paced
   std::int32_t block{0};                               // changes with the stimulus
   Instruction instruction{Instruction::kRest};
-  DrillingView drilling;
+
+  bool engaged() const noexcept { return instruction != Instruction::kRest; }
 };
+
+/// What is shown of a path; nothing of it but the tool if nothing or something else is shown.
+inline Presentation presentation_of(const Shown& shown) noexcept {
+  if (const auto* seen = shown.as<Presentation>()) {
+    return *seen;
+  }
+  Presentation nothing;
+  nothing.tool = shown.tool;
+  return nothing;
+}
 
 }  // namespace haptrial::stimulus

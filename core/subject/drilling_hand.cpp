@@ -125,16 +125,17 @@ void DrillingHand::next_line() noexcept {
   }
 }
 
-void DrillingHand::observe(const stimulus::Presentation& seen, const Eigen::Vector3d&,
+void DrillingHand::observe(const stimulus::Shown& shown, const stimulus::Forces&,
                            double dt) noexcept {
-  const stimulus::DrillingView& view = seen.drilling;
-  if (seen.instruction != stimulus::Instruction::kDrill || !view.shown) {
+  const auto* seen = shown.as<bone::DrillingView>();
+  if (seen == nullptr || !seen->shown) {
     hand_.command({0.0, false, noise_.tremor()});
     device_.hold(0, 0.0, Eigen::Quaterniond::Identity());
     begin(Doing::kReach);
     tip_known_ = false;
     return;
   }
+  const bone::DrillingView& view = *seen;
   const Eigen::Vector3d tip = scale_ * view.tip;
   decide(view, tip);
   HandCommand command;
@@ -146,7 +147,7 @@ void DrillingHand::observe(const stimulus::Presentation& seen, const Eigen::Vect
   time_ += dt;
 }
 
-void DrillingHand::decide(const stimulus::DrillingView& seen, const Eigen::Vector3d& tip) noexcept {
+void DrillingHand::decide(const bone::DrillingView& seen, const Eigen::Vector3d& tip) noexcept {
   const DrillingHandParameters& p = parameters_;
   const Eigen::Vector3d off = tip - line_start();
   const double sideways = (off - off.dot(p.inward) * p.inward).norm();
@@ -201,7 +202,7 @@ void DrillingHand::decide(const stimulus::DrillingView& seen, const Eigen::Vecto
 }
 
 /// The arm's force: across the press it follows its target, along it presses or keeps a height.
-Eigen::Vector3d DrillingHand::push(const stimulus::DrillingView& seen, const Eigen::Vector3d& tip,
+Eigen::Vector3d DrillingHand::push(const bone::DrillingView& seen, const Eigen::Vector3d& tip,
                                    double dt) noexcept {
   const DrillingHandParameters& p = parameters_;
   const Eigen::Vector3d velocity =
@@ -246,7 +247,7 @@ Eigen::Vector3d DrillingHand::push(const stimulus::DrillingView& seen, const Eig
   return across + std::clamp(inward, -kStrongest, 2.0 * kStrongest) * p.inward;
 }
 
-std::uint32_t DrillingHand::fingers(const stimulus::DrillingView& seen) const noexcept {
+std::uint32_t DrillingHand::fingers(const bone::DrillingView& seen) const noexcept {
   const DrillingHandParameters& p = parameters_;
   const bool down = std::fmod(time_, 2.0 * kPressing) < kPressing;
   switch (doing_) {

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 
+#include "core/bone/drilling_view.h"
 #include "core/device/virtual_device.h"
 #include "core/stimulus/observer.h"
 #include "core/subject/hand_model.h"
@@ -56,7 +57,7 @@ class DrillingHand final : public stimulus::Observer {
   DrillingHand(const DrillingHandParameters& parameters, HandModel& hand,
                device::VirtualDevice& device, double scale, std::uint64_t seed, double step);
 
-  void observe(const stimulus::Presentation& seen, const Eigen::Vector3d& device_force,
+  void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
                double dt) noexcept override;
 
   int strokes() const noexcept { return strokes_; }
@@ -66,10 +67,10 @@ class DrillingHand final : public stimulus::Observer {
   void begin(Doing doing) noexcept;
   void next_line() noexcept;
   Eigen::Vector3d line_start() const noexcept;
-  void decide(const stimulus::DrillingView& seen, const Eigen::Vector3d& tip) noexcept;
-  Eigen::Vector3d push(const stimulus::DrillingView& seen, const Eigen::Vector3d& tip,
+  void decide(const bone::DrillingView& seen, const Eigen::Vector3d& tip) noexcept;
+  Eigen::Vector3d push(const bone::DrillingView& seen, const Eigen::Vector3d& tip,
                        double dt) noexcept;
-  std::uint32_t fingers(const stimulus::DrillingView& seen) const noexcept;
+  std::uint32_t fingers(const bone::DrillingView& seen) const noexcept;
 
   DrillingHandParameters parameters_;
   HandModel& hand_;

@@ -123,20 +123,21 @@ void DrillingSurgeon::begin_procedure() noexcept {
   now().memory.begin_burr(now().rough, parameters_.rough.radius);
 }
 
-void DrillingSurgeon::observe(const stimulus::Presentation& seen, const Eigen::Vector3d&,
+void DrillingSurgeon::observe(const stimulus::Shown& shown, const stimulus::Forces&,
                               double dt) noexcept {
-  const stimulus::DrillingView& view = seen.drilling;
-  if (seen.instruction != stimulus::Instruction::kDrill || !view.shown) {
+  const auto* seen = shown.as<bone::DrillingView>();
+  if (seen == nullptr || !seen->shown) {
     hand_.command({0.0, false, now().noise.tremor()});
     device_.hold(0, 0.0, Eigen::Quaterniond::Identity());
     works_ = false;
     place_known_ = false;
     return;
   }
+  const bone::DrillingView& view = *seen;
   const Eigen::Vector3d place = now().chart->place(view.tip);
   if (!works_) {
     // One that was broken off goes on: time has passed already when it begins.
-    if (begun_ == 0 || seen.progress * seen.pass_duration < 0.05) {
+    if (begun_ == 0 || view.progress * view.time_limit < 0.05) {
       begin_procedure();
     }
     works_ = true;
@@ -161,7 +162,7 @@ void DrillingSurgeon::observe(const stimulus::Presentation& seen, const Eigen::V
   time_ += dt;
 }
 
-bool DrillingSurgeon::wants_to_look(const stimulus::DrillingView& seen) noexcept {
+bool DrillingSurgeon::wants_to_look(const bone::DrillingView& seen) noexcept {
   Procedure& p = now();
   if (parameters_.look_button < 0) {
     return false;
@@ -185,7 +186,7 @@ bool DrillingSurgeon::wants_to_look(const stimulus::DrillingView& seen) noexcept
   return true;
 }
 
-void DrillingSurgeon::next_bout(const stimulus::DrillingView& seen) noexcept {
+void DrillingSurgeon::next_bout(const bone::DrillingView& seen) noexcept {
   Procedure& p = now();
   // What the rough burr leaves is for the fine one.
   const double share = p.careful && !fine_ ? kRoughShare : 1.0;
@@ -210,7 +211,7 @@ void DrillingSurgeon::next_bout(const stimulus::DrillingView& seen) noexcept {
   begin(Doing::kLift);
 }
 
-void DrillingSurgeon::decide(const stimulus::DrillingView& seen,
+void DrillingSurgeon::decide(const bone::DrillingView& seen,
                              const Eigen::Vector3d& place) noexcept {
   Procedure& p = now();
   switch (doing_) {
@@ -261,7 +262,7 @@ void DrillingSurgeon::decide(const stimulus::DrillingView& seen,
   }
 }
 
-void DrillingSurgeon::decide_bout(const stimulus::DrillingView& seen,
+void DrillingSurgeon::decide_bout(const bone::DrillingView& seen,
                                   const Eigen::Vector3d& place) noexcept {
   const int sweeps = bout_.under ? kSweepsUnder : kSweeps;
   const bool at_bottom = place.z() > depth_limit(place) - 0.2e-3;
@@ -299,7 +300,7 @@ void DrillingSurgeon::follow_bout() noexcept {
   goal_velocity_.z() = 0.0;
 }
 
-void DrillingSurgeon::move_goal(const stimulus::DrillingView& seen, double dt) noexcept {
+void DrillingSurgeon::move_goal(const bone::DrillingView& seen, double dt) noexcept {
   const auto at = [](const Eigen::Vector2d& uv, double w) {
     return Eigen::Vector3d(uv.x(), uv.y(), w);
   };
@@ -368,7 +369,7 @@ double DrillingSurgeon::depth_limit(const Eigen::Vector3d& place) const noexcept
   return std::min(limit, begun + p.skill.bite);
 }
 
-Eigen::Vector3d DrillingSurgeon::push(const stimulus::DrillingView& seen,
+Eigen::Vector3d DrillingSurgeon::push(const bone::DrillingView& seen,
                                       const Eigen::Vector3d& place) noexcept {
   const Eigen::Vector3d follow = kStiffness * scale_ * (goal_ - place) +
                                  kDamping * scale_ * (goal_velocity_ - velocity_) +
@@ -396,7 +397,7 @@ Eigen::Vector3d DrillingSurgeon::push(const stimulus::DrillingView& seen,
   return force;
 }
 
-std::uint32_t DrillingSurgeon::fingers(const stimulus::DrillingView& seen) const noexcept {
+std::uint32_t DrillingSurgeon::fingers(const bone::DrillingView& seen) const noexcept {
   const bool down = std::fmod(time_, 2.0 * kPressing) < kPressing;
   const SurgeonParameters& p = parameters_;
   switch (doing_) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/bone/drilling_view.h"
 #include "core/device/virtual_device.h"
 #include "core/stimulus/observer.h"
 #include "core/subject/drilling_chart.h"
@@ -51,7 +52,7 @@ class DrillingSurgeon final : public stimulus::Observer {
                   std::vector<std::shared_ptr<const DrillingChart>> charts, HandModel& hand,
                   device::VirtualDevice& device, double scale, std::uint64_t seed, double step);
 
-  void observe(const stimulus::Presentation& seen, const Eigen::Vector3d& device_force,
+  void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
                double dt) noexcept override;
 
   double skill(std::size_t procedure) const { return procedures_[procedure].skill_number; }
@@ -77,17 +78,17 @@ class DrillingSurgeon final : public stimulus::Observer {
                         std::uint64_t seed, int number, double step);
   void begin(Doing doing) noexcept;
   void begin_procedure() noexcept;
-  void next_bout(const stimulus::DrillingView& seen) noexcept;
-  bool wants_to_look(const stimulus::DrillingView& seen) noexcept;
-  void decide(const stimulus::DrillingView& seen, const Eigen::Vector3d& place) noexcept;
-  void decide_bout(const stimulus::DrillingView& seen, const Eigen::Vector3d& place) noexcept;
-  void move_goal(const stimulus::DrillingView& seen, double dt) noexcept;
+  void next_bout(const bone::DrillingView& seen) noexcept;
+  bool wants_to_look(const bone::DrillingView& seen) noexcept;
+  void decide(const bone::DrillingView& seen, const Eigen::Vector3d& place) noexcept;
+  void decide_bout(const bone::DrillingView& seen, const Eigen::Vector3d& place) noexcept;
+  void move_goal(const bone::DrillingView& seen, double dt) noexcept;
   void follow_bout() noexcept;
   void go_to(const Eigen::Vector3d& place, double speed, double dt) noexcept;
-  Eigen::Vector3d push(const stimulus::DrillingView& seen, const Eigen::Vector3d& place) noexcept;
+  Eigen::Vector3d push(const bone::DrillingView& seen, const Eigen::Vector3d& place) noexcept;
   double press(const Eigen::Vector3d& place) noexcept;
   double depth_limit(const Eigen::Vector3d& place) const noexcept;
-  std::uint32_t fingers(const stimulus::DrillingView& seen) const noexcept;
+  std::uint32_t fingers(const bone::DrillingView& seen) const noexcept;
   const SurgeonBurr& burr() const noexcept { return fine_ ? parameters_.fine : parameters_.rough; }
   Procedure& now() noexcept { return procedures_[at_]; }
   const Procedure& now() const noexcept { return procedures_[at_]; }

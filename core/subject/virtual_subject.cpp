@@ -31,12 +31,13 @@ VirtualSubject::VirtualSubject(const SubjectParameters& person,
   }
 }
 
-void VirtualSubject::observe(const Presentation& seen, const Eigen::Vector3d& device_force,
+void VirtualSubject::observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
                              double dt) noexcept {
+  const Presentation seen = stimulus::presentation_of(shown);
   Sensed now;
   now.height = seen.show_target_bar ? seen.target_force : 0.0;
   now.mismatch = seen.show_applied_bar ? seen.target_force - seen.applied_force : 0.0;
-  now.felt = device_force.y();
+  now.felt = forces[0].y();
   now.hand = seen.tool;
   now.progress = seen.progress;
   now.saturated = seen.show_saturation;
@@ -119,7 +120,6 @@ double VirtualSubject::intended_press(const Presentation& seen, double dt) noexc
       return recall(seen);
     case Instruction::kRest:
     case Instruction::kWatch:
-    case Instruction::kDrill:
       break;
   }
   return 0.0;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/stimulus/observer.h"
+#include "core/stimulus/presentation.h"
 #include "core/subject/force_memory.h"
 #include "core/subject/hand_model.h"
 #include "core/subject/hand_parameters.h"
@@ -26,7 +27,7 @@ class VirtualSubject final : public stimulus::Observer {
                  HandModel& hand, std::uint64_t seed, double step,
                  const std::optional<PaceParameters>& pace = std::nullopt);
 
-  void observe(const stimulus::Presentation& seen, const Eigen::Vector3d& device_force,
+  void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
                double dt) noexcept override;
 
  private:

@@ -12,7 +12,7 @@
 #include "core/geometry/mesh_check.h"
 #include "core/render/bone_scene.h"
 #include "core/render/offscreen.h"
-#include "experiments/bone_carving.h"
+#include "experiments/command/tools/bone_carving.h"
 #include "tests/core/bone/neighbour_surface.h"
 #include "tests/core/bone/surface_checks.h"
 

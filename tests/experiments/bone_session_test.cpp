@@ -8,12 +8,13 @@
 #include <tuple>
 
 #include "core/base/error.h"
+#include "core/bone/data/recorded_bone.h"
 #include "core/record/integrity.h"
 #include "core/record/session_reader.h"
 #include "core/record/session_writer.h"
-#include "experiments/bone_record.h"
-#include "experiments/bone_replay.h"
-#include "experiments/session.h"
+#include "experiments/runner/session.h"
+#include "protocols/bone_drilling/bone_protocol.h"
+#include "protocols/bone_drilling/bone_replay.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/temporary_folder.h"
@@ -30,8 +31,8 @@ class BoneSessionTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = std::make_unique<test::TemporaryFolder>();
-    definition_ = std::make_unique<BoneDefinition>(
-        load_bone_definition(test::write_small_drilling(folder_->path(), kSeconds)));
+    definition_ = std::make_unique<protocols::BoneDefinition>(
+        protocols::load_bone_definition(test::write_small_drilling(folder_->path(), kSeconds)));
     run("S01.h5");
   }
   static void TearDownTestSuite() {
@@ -40,7 +41,8 @@ class BoneSessionTest : public testing::Test {
   }
   static SessionSummary run(const char* file) {
     SessionRequest request;
-    request.bone = definition_.get();
+    request.protocol = &protocols::bone_drilling();
+    request.definition = definition_.get();
     request.subject = "S01";
     request.seed = 3;
     request.file = *folder_ / file;
@@ -49,10 +51,10 @@ class BoneSessionTest : public testing::Test {
   static record::SessionReader session() { return record::SessionReader(*folder_ / "S01.h5"); }
 
   static std::unique_ptr<test::TemporaryFolder> folder_;
-  static std::unique_ptr<BoneDefinition> definition_;
+  static std::unique_ptr<protocols::BoneDefinition> definition_;
 };
 std::unique_ptr<test::TemporaryFolder> BoneSessionTest::folder_;
-std::unique_ptr<BoneDefinition> BoneSessionTest::definition_;
+std::unique_ptr<protocols::BoneDefinition> BoneSessionTest::definition_;
 
 TEST_F(BoneSessionTest, EveryTickIsRecordedWithItsTool) {
   const record::SessionReader reader = session();
@@ -75,14 +77,14 @@ TEST_F(BoneSessionTest, EveryTickIsRecordedWithItsTool) {
   EXPECT_THAT(tools, testing::Contains(2)) << "the hand takes the suction at times";
   const auto passes = reader.passes();
   ASSERT_EQ(passes.size(), 1u);
-  EXPECT_EQ(passes[0].phase, record::Phase::kDrilling);
+  EXPECT_EQ(passes[0].phase, record::kDrillingPhase);
   EXPECT_EQ(passes[0].status, record::PassStatus::kCompleted);
 }
 
 /// Voxels that a file says were emptied, against the ones that are missing in the end.
 TEST_F(BoneSessionTest, RemovalsAndCrumbsAreTheDifferenceOfStartAndEnd) {
   const record::SessionReader reader = session();
-  const bone::BoneModel model = model_of(reader.bones().front());
+  const bone::BoneModel model = bone::model_of(reader.bones().front());
   std::set<std::tuple<int, int, int>> gone;
   for (const record::RemovalRow& row : reader.rows<record::RemovalRow>()) {
     const auto& v = row.voxel;
@@ -90,10 +92,10 @@ TEST_F(BoneSessionTest, RemovalsAndCrumbsAreTheDifferenceOfStartAndEnd) {
     EXPECT_EQ(row.label, model.labels[model.grid.index(v[0], v[1], v[2])]);
   }
   ASSERT_GT(gone.size(), 30u);
-  std::shared_ptr<const BoneStage> stage;
-  const BoneReplay replay(*folder_ / "S01.h5");
-  replay.run(1, [&](std::uint64_t, const stimulus::DrillingView&,
-                    const std::shared_ptr<const BoneStage>& now) { stage = now; });
+  std::shared_ptr<const protocols::BoneStage> stage;
+  const protocols::BoneReplay replay(*folder_ / "S01.h5");
+  replay.run(1, [&](std::uint64_t, const bone::DrillingView&,
+                    const std::shared_ptr<const protocols::BoneStage>& now) { stage = now; });
   std::size_t crumbs = 0;
   std::size_t missing = 0;
   const bone::BoneWorld& world = std::as_const(*stage->simulator).world();
@@ -165,7 +167,7 @@ TEST_F(BoneSessionTest, ARepetitionGivesTheSameRows) {
 }
 
 TEST_F(BoneSessionTest, AReplayGivesTheSameBone) {
-  const ReplayVerdict verdict = BoneReplay(*folder_ / "S01.h5").run(1);
+  const protocols::ReplayVerdict verdict = protocols::BoneReplay(*folder_ / "S01.h5").run(1);
   EXPECT_EQ(verdict.difference, "");
   EXPECT_TRUE(verdict.whole);
   EXPECT_EQ(verdict.ticks, static_cast<std::uint64_t>(kSeconds * 1000.0));
@@ -195,7 +197,7 @@ TEST_F(BoneSessionTest, AReplaySaysWhereItFirstDiffers) {
     writer.add_pass(reader.passes().front());
     writer.close();
   }
-  const ReplayVerdict verdict = BoneReplay(*folder_ / "moved.h5").run(1);
+  const protocols::ReplayVerdict verdict = protocols::BoneReplay(*folder_ / "moved.h5").run(1);
   EXPECT_THAT(verdict.difference, HasSubstr("on tick "));
   const std::uint64_t told = std::stoull(verdict.difference.substr(8));
   EXPECT_GE(told, when);
@@ -208,7 +210,7 @@ TEST_F(BoneSessionTest, AReplaySaysWhereItFirstDiffers) {
 }
 
 TEST_F(BoneSessionTest, ATrialThatIsNotThereIsNamed) {
-  EXPECT_THROW(BoneReplay(*folder_ / "S01.h5").run(7), InputError);
+  EXPECT_THROW(protocols::BoneReplay(*folder_ / "S01.h5").run(7), InputError);
   const test::CommandResult command =
       test::run_command("haptrial replay '" + (*folder_ / "S01.h5").string() + "' --trial 7");
   EXPECT_EQ(command.status, 2);

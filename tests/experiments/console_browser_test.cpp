@@ -12,8 +12,9 @@
 #include <filesystem>
 #include <thread>
 
-#include "experiments/console.h"
-#include "experiments/console_messages.h"
+#include "experiments/console/console.h"
+#include "experiments/console/console_messages.h"
+#include "experiments/studies/drilled_procedure.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments {
@@ -158,7 +159,7 @@ TEST(ConsoleBrowserTest, ASessionIsClickedThrough) {
   }
 }
 
-DrilledProcedure drilled() {
+record::LiveState drilled() {
   DrilledProcedure procedure;
   procedure.trial = 2;
   analysis::drilling::LiveFigures& f = procedure.figures;
@@ -171,7 +172,7 @@ DrilledProcedure drilled() {
   f.injuries = {{"facial nerve", 2, 12, 0, 30.0, 31.0},
                 {"internal carotid artery", 3, 0, 0, {}, {}},
                 {"sigmoid sinus and dura <b>", 4, 1000, 4, 50.0, 51.0}};
-  return procedure;
+  return state_of(procedure);
 }
 
 TEST(ConsoleBrowserTest, ADrillingHasAPanelOfItsFigures) {
@@ -198,7 +199,8 @@ TEST(ConsoleBrowserTest, ADrillingHasAPanelOfItsFigures) {
           status.stage = "run";
           status.screen.clear();
           status.rate_measured = 998.3;
-          status.drilling = drilled();
+          status.figures = drilled();
+          status.has_target = false;
         }
       }
       status.ticks += 20;

@@ -12,30 +12,38 @@ import sys
 from browser import Driver, state, wait
 
 EXPECTED = {
-    "procedure": "Procedure 2",
-    "drilling_simulated": "SIMULATED",
-    "drilling_time": "2:05 (0:48)",
-    "removed": "1234.5 mm\u00b3",
-    "voxels": "51\u202f973 (88 %)",
-    "mean_force": "2.35 N",
-    "injured": "2 injured",
-    "injuries": "Facial nerve: 12 voxels\nSigmoid sinus and dura <b>: 1\u202f004 voxels",
+    "figures_title": "Procedure 2",
+    "figures_simulated": "SIMULATED",
     "rate": "998 of 1\u202f000 Hz",
 }
+ROWS = [
+    ["Time (drilling)", "2:05 (0:48)"],
+    ["Bone removed", "1234.5 mm\u00b3"],
+    ["Voxels removed (visible)", "51973 (88 %)"],
+    ["Mean force while drilling", "2.35 N"],
+    ["Vital structures", "2 injured"],
+    ["Facial nerve", "12 voxels"],
+    ["Sigmoid sinus and dura <b>", "1004 voxels"],
+]
 
 
 def look(page, url, folder):
     page.call("POST", "/url", {"url": url})
     state(page, "Instructions")
-    assert page.hidden("drilling"), "no panel where nothing is drilled"
+    assert page.hidden("figures"), "no panel where nothing is drilled"
     assert not page.hidden("target_row"), "a force to follow"
     page.key(" ")
     state(page, "Running")
-    wait("the panel", lambda: not page.hidden("drilling"))
+    wait("the panel", lambda: not page.hidden("figures"))
     assert page.hidden("target_row"), "no force to follow in a drilling"
     for name, wanted in EXPECTED.items():
         shown = page.text(name).strip().removeprefix("\u26a0\ufe0e").strip()
         assert shown == wanted, f"{name} is {shown!r}, not {wanted!r}"
+    rows = page.run(
+        "return [...document.getElementById('figures_rows').rows]"
+        ".map((row) => [...row.cells].map((cell) => cell.textContent))"
+    )
+    assert rows == ROWS, rows
     page.picture(folder / "console-drilling.png", height=1060)
     page.picture(folder / "console-drilling-narrow.png", 620, 1500)
     wide = page.run("return document.documentElement.scrollWidth > window.innerWidth")

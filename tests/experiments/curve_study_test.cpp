@@ -13,9 +13,12 @@
 #include "core/control/sampled_curve.h"
 #include "core/record/integrity.h"
 #include "core/record/session_reader.h"
-#include "experiments/recorded_path.h"
-#include "experiments/replay.h"
-#include "experiments/session.h"
+#include "experiments/runner/session.h"
+#include "experiments/studies/curve_analysis.h"
+#include "protocols/force_training/force_definition.h"
+#include "protocols/force_training/force_protocol.h"
+#include "protocols/force_training/force_replay.h"
+#include "protocols/force_training/recorded_path.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 
@@ -49,9 +52,11 @@ std::string without_noise(std::string text) {
   return std::regex_replace(text, median, "$010.0");
 }
 
-record::SessionReader record_session(const Definition& definition, const fs::path& file, int trials,
+record::SessionReader record_session(const protocols::ForceDefinition& definition,
+                                     const fs::path& file, int trials,
                                      const std::string& subject = "S01") {
   SessionRequest request;
+  request.protocol = &protocols::force_training();
   request.definition = &definition;
   request.subject = subject;
   request.seed = 1;
@@ -96,7 +101,8 @@ TEST_F(CurveStudyTest, ShippedDefinitionDiffersInTheGuidanceAlone) {
 }
 
 TEST_F(CurveStudyTest, EverybodyComesToTheEndAtAPaceOfTheirOwn) {
-  const Definition definition = load_definition(curve_definition());
+  const protocols::ForceDefinition definition =
+      protocols::load_force_definition(curve_definition());
   std::vector<double> paces;
   for (const std::string subject : {"S01", "S02", "S03"}) {
     const auto reader = record_session(definition, folder_ / (subject + ".h5"), 3, subject);
@@ -122,7 +128,8 @@ TEST_F(CurveStudyTest, EverybodyComesToTheEndAtAPaceOfTheirOwn) {
 }
 
 TEST_F(CurveStudyTest, TheTargetForceIsThatOfThePlace) {
-  const Definition definition = load_definition(curve_definition());
+  const protocols::ForceDefinition definition =
+      protocols::load_force_definition(curve_definition());
   const auto reader = record_session(definition, folder_ / "S01.h5", 1);
   const record::PassRow row = reader.passes().back();
   const auto stimulus =
@@ -140,10 +147,11 @@ TEST_F(CurveStudyTest, TheTargetForceIsThatOfThePlace) {
 }
 
 TEST_F(CurveStudyTest, WithoutNoiseRecallIsNearPerfectInEveryCondition) {
-  const Definition definition =
-      parse_definition(without_noise(test::read_text(curve_definition())), "quiet.toml");
+  const protocols::ForceDefinition definition = protocols::parse_force_definition(
+      without_noise(test::read_text(curve_definition())), "quiet.toml");
   record_session(definition, folder_ / "S01.h5", 9);
-  const auto study = analysis::analyze_study({folder_ / "S01.h5"}, definition.scoring, 1);
+  const auto study = analysis::analyze_study(
+      {folder_ / "S01.h5"}, parse_curve_analysis(definition.text, definition.file_name).scoring, 1);
   ASSERT_EQ(study.scores.size(), 9u);
   for (const auto& score : study.scores) {
     EXPECT_LT(score.rms_unaligned, 0.5) << score.condition << ", of a pattern up to 12 N";
@@ -155,9 +163,10 @@ TEST_F(CurveStudyTest, WithoutNoiseRecallIsNearPerfectInEveryCondition) {
 }
 
 TEST_F(CurveStudyTest, AReplayShowsTheProgressThatWasMade) {
-  const Definition definition = load_definition(curve_definition());
+  const protocols::ForceDefinition definition =
+      protocols::load_force_definition(curve_definition());
   record_session(definition, folder_ / "S01.h5", 1);
-  Replay replay(folder_ / "S01.h5", 1, Phase::kTest);
+  protocols::ForceReplay replay(folder_ / "S01.h5", 1, Phase::kTest);
   const auto& seen = replay.seen(0);
   double furthest = 0.0;
   int paced = 0;
@@ -171,7 +180,8 @@ TEST_F(CurveStudyTest, AReplayShowsTheProgressThatWasMade) {
 
 TEST_F(CurveStudyTest, APathThatWasRecordedGuidesOthersAlongIt) {
   // Somebody is led along a random path; another then moves along what that hand did.
-  const Definition teacher = load_definition(test::shipped_definition());
+  const protocols::ForceDefinition teacher =
+      protocols::load_force_definition(test::shipped_definition());
   const auto lesson = record_session(teacher, folder_ / "teacher.h5", 1);
   for (const bool own_pace : {true, false}) {
     std::string text = own_pace ? test::read_text(curve_definition())
@@ -180,7 +190,8 @@ TEST_F(CurveStudyTest, APathThatWasRecordedGuidesOthersAlongIt) {
     const auto to = text.find("speed = 0.016");
     text.replace(from, to - from, "from = \"teacher.h5:1\"\n");
     test::write_text(folder_ / "follow.toml", text);
-    const Definition definition = load_definition(folder_ / "follow.toml");
+    const protocols::ForceDefinition definition =
+        protocols::load_force_definition(folder_ / "follow.toml");
     const std::string name = own_pace ? "own.h5" : "led.h5";
     const auto reader = record_session(definition, folder_ / name, 1);
 
@@ -205,20 +216,25 @@ TEST_F(CurveStudyTest, APathThatWasRecordedGuidesOthersAlongIt) {
     }
     // The file alone is enough to see it again and to score it, without the teacher's.
     fs::rename(folder_ / "teacher.h5", folder_ / "away.h5");
-    Replay replay(folder_ / name, 1, std::nullopt);
+    protocols::ForceReplay replay(folder_ / name, 1, std::nullopt);
     EXPECT_EQ(replay.notice(), "");
-    const Definition kept = parse_definition(reader.info().definition, "kept.toml");
-    EXPECT_EQ(analysis::analyze_study({folder_ / name}, kept.scoring, 1).scores.size(), 1u);
+    const protocols::ForceDefinition kept =
+        protocols::parse_force_definition(reader.info().definition, "kept.toml");
+    EXPECT_EQ(analysis::analyze_study({folder_ / name},
+                                      parse_curve_analysis(kept.text, kept.file_name).scoring, 1)
+                  .scores.size(),
+              1u);
     fs::rename(folder_ / "away.h5", folder_ / "teacher.h5");
   }
 }
 
 TEST_F(CurveStudyTest, RecordedPathsThatAreNoneGetASentence) {
-  const Definition teacher = load_definition(test::shipped_definition());
+  const protocols::ForceDefinition teacher =
+      protocols::load_force_definition(test::shipped_definition());
   record_session(teacher, folder_ / "teacher.h5", 1);
   const auto problem = [&](const std::string& from) -> std::string {
     try {
-      recorded_path(from, folder_.path());
+      protocols::recorded_path(from, folder_.path());
     } catch (const InputError& error) {
       return error.what();
     }
@@ -240,7 +256,7 @@ TEST_F(CurveStudyTest, RecordedPathsThatAreNoneGetASentence) {
                    replaced(text, "workspace_radius = 0.075  # [m]\nmax_speed",
                             "workspace_radius = 0.02\nmax_speed"));
   try {
-    load_definition(folder_ / "small.toml");
+    protocols::load_force_definition(folder_ / "small.toml");
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("trajectory.from names a path that reaches 0.0"));
@@ -251,7 +267,7 @@ TEST_F(CurveStudyTest, RecordedPathsThatAreNoneGetASentence) {
 TEST_F(CurveStudyTest, DefinitionsThatMixTheKindsAreRefused) {
   const auto problem = [](const std::string& text) -> std::string {
     try {
-      parse_definition(text, "study.toml");
+      protocols::parse_force_definition(text, "study.toml");
     } catch (const InputError& error) {
       return error.what();
     }

@@ -130,8 +130,8 @@ TEST_F(ExchangeTest, DrillingsAreExportedButHaveNoCurves) {
   const CommandResult curves =
       run_command("haptrial export --curves " + path("curves") + " " + path("study"));
   EXPECT_EQ(curves.status, 2);
-  EXPECT_THAT(curves.errors, HasSubstr("S01.h5: is a drilling session, which has no target force; "
-                                       "--curves exports sessions of force training"));
+  EXPECT_THAT(curves.errors, HasSubstr("S01.h5: is a session of bone_drilling, which has no target "
+                                       "force; --curves exports sessions whose passes have one"));
   EXPECT_EQ(std::count(curves.errors.begin(), curves.errors.end(), '\n'), 1) << curves.errors;
   EXPECT_FALSE(fs::exists(folder_ / "curves"));
   const CommandResult others =

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 
+#include "core/control/loop_margin.h"
 #include "core/record/session_reader.h"
-#include "experiments/loop_margin.h"
-#include "experiments/session.h"
+#include "experiments/runner/session.h"
+#include "protocols/force_training/force_definition.h"
+#include "protocols/force_training/force_protocol.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 
@@ -21,12 +23,14 @@ struct Outcome {
 
 Outcome session_with(double hand_mass, int trials) {
   const test::TemporaryFolder folder;
-  Definition definition = load_definition(test::shipped_definition());
+  protocols::ForceDefinition definition =
+      protocols::load_force_definition(test::shipped_definition());
   const double share = hand_mass / definition.hand.hand_mass;
   definition.hand.hand_mass = hand_mass;
   definition.hand.damping *= share;
   definition.hand.stiffness *= share;
   SessionRequest request;
+  request.protocol = &protocols::force_training();
   request.definition = &definition;
   request.subject = "S01";
   request.seed = 1;
@@ -61,15 +65,17 @@ TEST(LightHandTest, AHandThatCarriesItIsGuidedAsTheDefinitionSays) {
 }
 
 TEST(LightHandTest, TheMarginOfTheShippedStudySaysWhichHandsCarryIt) {
-  const Definition d = load_definition(test::shipped_definition());
-  const LoopMargin plane = loop_margin("plane", d.guidance.plane, d.guidance.loop);
+  const protocols::ForceDefinition d = protocols::load_force_definition(test::shipped_definition());
+  const control::LoopMargin plane =
+      control::loop_margin("plane", d.guidance.plane, d.guidance.loop);
   EXPECT_LT(plane.lightest, d.hand.hand_mass) << "the hand of the study carries its gains";
   EXPECT_GT(plane.lightest, 0.5);
   EXPECT_GT(plane.lightest_late, plane.lightest);
-  EXPECT_FALSE(is_dangerous(plane));
+  EXPECT_FALSE(control::is_dangerous(plane));
   EXPECT_NE(describe(plane).find("no less than 15.7 N·s/m for the bare handle"), std::string::npos)
       << describe(plane);
-  EXPECT_TRUE(is_dangerous(loop_margin("stiff", {20000.0, 300.0}, d.guidance.loop)));
+  EXPECT_TRUE(
+      control::is_dangerous(control::loop_margin("stiff", {20000.0, 300.0}, d.guidance.loop)));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 
 #include "core/record/integrity.h"
 #include "core/record/session_reader.h"
-#include "experiments/bone_replay.h"
+#include "protocols/bone_drilling/bone_replay.h"
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/temporary_folder.h"
@@ -29,8 +29,8 @@ std::string run_arguments(const test::TemporaryFolder& folder, const std::string
 }
 
 void expect_the_same_bones(const fs::path& file, int passes) {
-  const experiments::BoneReplay replay(file);
-  const experiments::ReplayVerdict verdict = replay.run(1);
+  const protocols::BoneReplay replay(file);
+  const protocols::ReplayVerdict verdict = replay.run(1);
   EXPECT_EQ(verdict.difference, "");
   EXPECT_EQ(verdict.passes, passes);
   EXPECT_GT(verdict.emptied, 10u);

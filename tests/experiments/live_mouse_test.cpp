@@ -11,7 +11,7 @@
 #include "core/record/integrity.h"
 #include "core/record/session_reader.h"
 #include "core/render/frames.h"
-#include "experiments/definition.h"
+#include "protocols/force_training/force_definition.h"
 #include "tests/core/render/pixels.h"
 #include "tests/experiments/console_person.h"
 #include "tests/experiments/live_command.h"
@@ -41,7 +41,7 @@ class LiveMouseTest : public testing::Test {
                      test::brisk_text({{"conditions", "conditions = [\"visual\"]"},
                                        {"speed", "speed = 0.03"},
                                        {"wait_timeout", "wait_timeout = 30.0"}}));
-    definition_ = experiments::load_definition(folder_ / "study.toml");
+    definition_ = protocols::load_force_definition(folder_ / "study.toml");
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
@@ -96,7 +96,7 @@ class LiveMouseTest : public testing::Test {
 
   test::TemporaryFolder folder_;
   std::optional<test::VirtualDisplay> display_;
-  std::optional<experiments::Definition> definition_;
+  std::optional<protocols::ForceDefinition> definition_;
 };
 
 TEST_F(LiveMouseTest, ThePointerLeadsTheToolAndAPressIsAForce) {

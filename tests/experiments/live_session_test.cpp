@@ -14,7 +14,9 @@
 #include "core/record/integrity.h"
 #include "core/record/session_reader.h"
 #include "core/record/trial_progress.h"
-#include "experiments/session.h"
+#include "experiments/runner/session.h"
+#include "protocols/force_training/force_definition.h"
+#include "protocols/force_training/force_protocol.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/sanitizer.h"
 #include "tests/support/temporary_folder.h"
@@ -29,6 +31,7 @@ using record::Phase;
 class LiveSessionTest : public testing::Test {
  protected:
   LiveSessionTest() {
+    request_.protocol = &protocols::force_training();
     request_.definition = &definition_;
     request_.subject = "P01";
     request_.clock = realtime::ClockKind::kReal;
@@ -50,8 +53,8 @@ class LiveSessionTest : public testing::Test {
 
   test::TemporaryFolder folder_;
   // Brisk passes, so that a test takes seconds.
-  Definition definition_ =
-      parse_definition(test::shipped_with("speed", "speed = 0.05"), "brisk.toml");
+  protocols::ForceDefinition definition_ =
+      protocols::parse_force_definition(test::shipped_with("speed", "speed = 0.05"), "brisk.toml");
   SessionControl control_;
   SessionRequest request_;
 };

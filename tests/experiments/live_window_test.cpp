@@ -11,7 +11,7 @@
 #include "core/record/integrity.h"
 #include "core/record/session_reader.h"
 #include "core/render/frames.h"
-#include "experiments/definition.h"
+#include "protocols/force_training/force_definition.h"
 #include "tests/core/render/pixels.h"
 #include "tests/experiments/console_person.h"
 #include "tests/experiments/live_command.h"
@@ -64,7 +64,7 @@ class LiveWindowTest : public testing::TestWithParam<bool> {
                           {"width", "width = 800"},
                           {"height", "height = 600"},
                           {"photodiode", "photodiode = \"run\""}}));
-    definition_ = experiments::load_definition(folder_ / "study.toml");
+    definition_ = protocols::load_force_definition(folder_ / "study.toml");
     style_ = definition_->display;
     if (full()) {
       style_.width = kDisplayWidth;
@@ -117,7 +117,7 @@ class LiveWindowTest : public testing::TestWithParam<bool> {
 
   test::TemporaryFolder folder_;
   std::optional<test::VirtualDisplay> display_;
-  std::optional<experiments::Definition> definition_;
+  std::optional<protocols::ForceDefinition> definition_;
   render::TrialDisplayStyle style_;
 };
 

@@ -16,7 +16,9 @@
 #include "core/base/error.h"
 #include "core/device/dynamic_library.h"
 #include "core/record/session_reader.h"
-#include "experiments/session.h"
+#include "experiments/runner/session.h"
+#include "protocols/force_training/force_definition.h"
+#include "protocols/force_training/force_protocol.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/sanitizer.h"
 #include "tests/support/stand_in.h"
@@ -81,8 +83,10 @@ TEST(LostDiskTest, TheForceFadesAndWhatWasRecordedIsKept) {
     GTEST_SKIP() << "a thread sanitizer does not follow a fork of threads";
   }
   const test::TemporaryFolder folder;
-  Definition definition = parse_definition(test::shipped_text(), "shipped.toml");
+  protocols::ForceDefinition definition =
+      protocols::parse_force_definition(test::shipped_text(), "shipped.toml");
   SessionRequest request;
+  request.protocol = &protocols::force_training();
   request.definition = &definition;
   request.subject = "P01";
   request.clock = realtime::ClockKind::kReal;

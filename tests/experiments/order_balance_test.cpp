@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "protocols/schedule.h"
+#include "protocols/interface/schedule.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -6,7 +6,9 @@
 #include "core/base/error.h"
 #include "core/device/dynamic_library.h"
 #include "core/record/session_reader.h"
-#include "experiments/session.h"
+#include "experiments/runner/session.h"
+#include "protocols/force_training/force_definition.h"
+#include "protocols/force_training/force_protocol.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/stand_in.h"
 #include "tests/support/temporary_folder.h"
@@ -27,8 +29,10 @@ TEST(OverloadTest, APassIsAbortedWithASentenceAndAnEvent) {
   reset();
   fail(static_cast<int>(test::Failure::kSlowCall), 0);
   const test::TemporaryFolder folder;
-  const Definition definition = parse_definition(test::shipped_text(), "shipped.toml");
+  const protocols::ForceDefinition definition =
+      protocols::parse_force_definition(test::shipped_text(), "shipped.toml");
   SessionRequest request;
+  request.protocol = &protocols::force_training();
   request.definition = &definition;
   request.subject = "P01";
   request.clock = realtime::ClockKind::kReal;

@@ -13,11 +13,12 @@
 
 #include "core/base/error.h"
 #include "core/base/file_text.h"
-#include "experiments/bone_definition.h"
-#include "experiments/commands.h"
-#include "experiments/drilling_study.h"
-#include "experiments/rating_pictures.h"
-#include "experiments/study_run.h"
+#include "experiments/command/commands.h"
+#include "experiments/studies/drilling_study.h"
+#include "experiments/studies/rating_pictures.h"
+#include "experiments/study/study_run.h"
+#include "protocols/bone_drilling/bone_protocol.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
 #include "tests/experiments/command.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
@@ -54,11 +55,12 @@ class RateTest : public testing::Test {
     replace("participants = 1", "participants = 2");
     replace("time_limit = 60.0", "time_limit = 4.0");
     std::ofstream(*folder_ / "short.toml") << text;
-    const BoneDefinition definition = load_bone_definition(*folder_ / "short.toml");
+    const protocols::BoneDefinition definition =
+        protocols::load_bone_definition(*folder_ / "short.toml");
     DryRun dry_run;
     dry_run.participants = 2;
     dry_run.folder = *folder_ / "study";
-    run_dry(definition, dry_run);
+    run_dry(protocols::bone_drilling(), definition, dry_run);
   }
   static void TearDownTestSuite() { folder_.reset(); }
 
@@ -249,8 +251,8 @@ TEST(ContactSheet, PutsEveryPictureInItsPlace) {
 
 TEST(StudyGroups, AreThoseOfTheDefinitionInItsOrder) {
   const auto groups =
-      study_groups("[groups]\nsurgeons = 4\nresidents = 4\nnovices = 7\n", "d.toml");
-  const std::vector<StudyGroup> expected{
+      protocols::study_groups("[groups]\nsurgeons = 4\nresidents = 4\nnovices = 7\n", "d.toml");
+  const std::vector<protocols::StudyGroup> expected{
       {"surgeons", 4, true}, {"residents", 4, true}, {"novices", 7, false}};
   EXPECT_EQ(groups, expected);
   EXPECT_EQ(group_of(groups, "S04"), "surgeons");
@@ -260,8 +262,8 @@ TEST(StudyGroups, AreThoseOfTheDefinitionInItsOrder) {
   for (const char* subject : {"S16", "S00", "Ann", "S99999999"}) {
     EXPECT_THAT(message_of([&] { group_of(groups, subject); }), HasSubstr("belongs to no group"));
   }
-  EXPECT_EQ(group_of(study_groups("x = 1", "d.toml"), "Ann"), "participants");
-  EXPECT_THAT(message_of([] { study_groups("[groups]\na = 0\n", "d.toml"); }),
+  EXPECT_EQ(group_of(protocols::study_groups("x = 1", "d.toml"), "Ann"), "participants");
+  EXPECT_THAT(message_of([] { protocols::study_groups("[groups]\na = 0\n", "d.toml"); }),
               HasSubstr("groups.a is not a number of participants"));
 }
 

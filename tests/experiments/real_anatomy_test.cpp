@@ -7,10 +7,11 @@
 #include <cmath>
 
 #include "core/record/session_reader.h"
-#include "experiments/bone_definition.h"
-#include "experiments/drilling_study.h"
-#include "experiments/simulated_rater.h"
-#include "experiments/study_run.h"
+#include "experiments/studies/drilling_study.h"
+#include "experiments/studies/simulated_rater.h"
+#include "experiments/study/study_run.h"
+#include "protocols/bone_drilling/bone_protocol.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/sanitizer.h"
 #include "tests/support/shared_data.h"
@@ -38,13 +39,13 @@ class RealAnatomyTest : public testing::TestWithParam<const char*> {
     ASSERT_NE(at, std::string::npos);
     text.replace(at, line.size(), "bones = [\"" + file->string() + "\"]");
     test::write_text(folder_ / "study.toml", text);
-    d_ = load_bone_definition(folder_ / "study.toml");
+    d_ = protocols::load_bone_definition(folder_ / "study.toml");
   }
   const bone::BoneModel& model() const { return *d_.bones.front(); }
   Eigen::Isometry3d pose() const { return pose_of(d_.placement, model().grid); }
   std::vector<float> planned() const {
     const subject::DrillingChart& chart = *d_.charts.front();
-    return cavity_depths(model(), pose(), chart, subject::cavity_floor(chart));
+    return protocols::cavity_depths(model(), pose(), chart, subject::cavity_floor(chart));
   }
   Eigen::Vector3d middle_of(const std::string& name) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -72,7 +73,7 @@ class RealAnatomyTest : public testing::TestWithParam<const char*> {
   }
 
   test::TemporaryFolder folder_;
-  BoneDefinition d_;
+  protocols::BoneDefinition d_;
 };
 
 TEST_P(RealAnatomyTest, TheCavityLiesWhereSurgeonsOpenTheMastoidInSightAndReach) {
@@ -123,7 +124,7 @@ TEST_P(RealAnatomyTest, AVirtualSurgeonDrillsItAndItIsRatedAndReported) {
   dry.participants = 1;
   dry.max_trials = 1;
   dry.folder = folder_ / "sessions";
-  const DryRunSummary summary = run_dry(d_, dry);
+  const DryRunSummary summary = run_dry(protocols::bone_drilling(), d_, dry);
   EXPECT_EQ(summary.aborted_passes, 0);
   const std::vector<fs::path> files = session_files(dry.folder);
   ASSERT_EQ(files.size(), 1U);

@@ -7,7 +7,10 @@
 #include "core/record/integrity.h"
 #include "core/record/schema.h"
 #include "core/record/session_reader.h"
-#include "experiments/session.h"
+#include "experiments/runner/session.h"
+#include "experiments/studies/curve_analysis.h"
+#include "protocols/force_training/force_definition.h"
+#include "protocols/force_training/force_protocol.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 
@@ -22,6 +25,7 @@ class RoundTripTest : public testing::Test {
                realtime::ClockKind clock = realtime::ClockKind::kReal) {
     fs::create_directories(folder_ / folder);
     SessionRequest request;
+    request.protocol = &protocols::force_training();
     request.definition = &definition_;
     request.subject = "P01";
     request.clock = clock;
@@ -33,8 +37,8 @@ class RoundTripTest : public testing::Test {
   }
 
   test::TemporaryFolder folder_;
-  Definition definition_ =
-      parse_definition(test::shipped_with("speed", "speed = 0.05"), "brisk.toml");
+  protocols::ForceDefinition definition_ =
+      protocols::parse_force_definition(test::shipped_with("speed", "speed = 0.05"), "brisk.toml");
 };
 
 TEST_F(RoundTripTest, ARecordedSessionDrivenAgainGivesTheSameForcesAndScores) {
@@ -68,7 +72,9 @@ TEST_F(RoundTripTest, ARecordedSessionDrivenAgainGivesTheSameForcesAndScores) {
   }
 
   const auto score = [this](const fs::path& file) {
-    return analysis::analyze_study({file}, definition_.scoring, 1).scores;
+    return analysis::analyze_study(
+               {file}, parse_curve_analysis(definition_.text, definition_.file_name).scoring, 1)
+        .scores;
   };
   const auto scores = score(live);
   const auto scores_again = score(again);
@@ -83,7 +89,8 @@ TEST_F(RoundTripTest, ARecordedSessionDrivenAgainGivesTheSameForcesAndScores) {
 
 TEST_F(RoundTripTest, ARecordingOfAnotherRateIsRefused) {
   const fs::path live = run("live", {"virtual"}, realtime::ClockKind::kSimulated);
-  definition_ = parse_definition(test::shipped_with("rate", "rate = 2000.0"), "fast.toml");
+  definition_ =
+      protocols::parse_force_definition(test::shipped_with("rate", "rate = 2000.0"), "fast.toml");
   try {
     run("again", {"replay:" + live.string()});
     FAIL() << "nothing was thrown";

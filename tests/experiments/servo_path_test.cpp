@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "experiments/frame_capture.h"
-#include "experiments/virtual_rig.h"
-#include "protocols/recall_test.h"
-#include "protocols/session_task.h"
-#include "protocols/training_pass.h"
+#include "protocols/force_training/frame_capture.h"
+#include "protocols/force_training/passes/recall_test.h"
+#include "protocols/force_training/passes/training_pass.h"
+#include "protocols/force_training/virtual_rig.h"
+#include "protocols/interface/session_task.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/allocation_guard.h"
 
@@ -16,9 +16,9 @@ namespace {
 class ServoPathTest : public testing::TestWithParam<const char*> {};
 
 TEST_P(ServoPathTest, DoesNotAllocate) {
-  const auto definition = experiments::load_definition(test::shipped_definition());
-  experiments::VirtualRig rig(definition, 1);
-  experiments::FrameCapture capture(10);
+  const auto definition = protocols::load_force_definition(test::shipped_definition());
+  protocols::VirtualRig rig(definition, 1);
+  protocols::FrameCapture capture(10);
   protocols::SessionTask::Log log;
   protocols::SessionTask task(rig.device(), definition.envelope, log, {rig.subject(), &capture},
                               protocols::SessionTask::Leave::kNever);

@@ -10,7 +10,7 @@
 #include "core/control/pd_controller.h"
 #include "core/device/virtual_device.h"
 #include "core/subject/hand.h"
-#include "experiments/definition.h"
+#include "protocols/force_training/force_definition.h"
 #include "tests/experiments/shipped.h"
 
 namespace haptrial {
@@ -93,7 +93,8 @@ class StabilityTest : public testing::Test {
     return low;
   }
 
-  experiments::Definition definition_ = experiments::load_definition(test::shipped_definition());
+  protocols::ForceDefinition definition_ =
+      protocols::load_force_definition(test::shipped_definition());
 };
 
 TEST_F(StabilityTest, PublishedGainsAreStable) {

@@ -4,9 +4,9 @@
 #include <thread>
 
 #include "core/record/session_writer.h"
-#include "experiments/virtual_rig.h"
-#include "protocols/recall_test.h"
-#include "protocols/session_task.h"
+#include "protocols/force_training/passes/recall_test.h"
+#include "protocols/force_training/virtual_rig.h"
+#include "protocols/interface/session_task.h"
 #include "tests/experiments/shipped.h"
 
 namespace haptrial::test {
@@ -29,8 +29,8 @@ class Counted final : public realtime::ServoTask {
 
 TimedSession run_timed_session(std::uint64_t ticks, const std::filesystem::path& file) {
   using Clock = std::chrono::steady_clock;
-  const auto definition = experiments::load_definition(shipped_definition());
-  experiments::VirtualRig rig(definition, 1);
+  const auto definition = protocols::load_force_definition(shipped_definition());
+  protocols::VirtualRig rig(definition, 1);
   protocols::SessionTask::Log log;
   protocols::SessionTask task(rig.device(), definition.envelope, log, {rig.subject()},
                               protocols::SessionTask::Leave::kNever);

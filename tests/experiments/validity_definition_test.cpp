@@ -7,8 +7,8 @@
 
 #include "core/base/error.h"
 #include "core/base/table.h"
-#include "experiments/bone_definition.h"
-#include "experiments/stage_stills.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
+#include "protocols/bone_drilling/display/stage_stills.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 
@@ -29,7 +29,7 @@ std::string with(std::string text, const std::string& what, const std::string& b
 
 std::string refusal(const std::string& text) {
   try {
-    parse_bone_definition(text, "study.toml");
+    protocols::parse_bone_definition(text, "study.toml");
   } catch (const InputError& error) {
     return error.what();
   }
@@ -37,7 +37,7 @@ std::string refusal(const std::string& text) {
 }
 
 TEST(ValidityDefinitionTest, TheShippedStudyIsThatOfTheSource) {
-  const BoneDefinition d = load_bone_definition(shipped());
+  const protocols::BoneDefinition d = protocols::load_bone_definition(shipped());
   ASSERT_EQ(d.groups.size(), 3U);
   EXPECT_EQ(d.groups[0].name, "surgeons");
   EXPECT_EQ(d.groups[2].name, "novices");
@@ -57,11 +57,12 @@ TEST(ValidityDefinitionTest, TheShippedStudyIsThatOfTheSource) {
 }
 
 TEST(ValidityDefinitionTest, TheCavityIsBoneWithItsMarginsAndLeadsInward) {
-  const BoneDefinition d = load_bone_definition(shipped());
+  const protocols::BoneDefinition d = protocols::load_bone_definition(shipped());
   const bone::BoneModel& model = *d.bones.front();
   const Eigen::Isometry3d pose = pose_of(d.placement, model.grid);
   const subject::DrillingChart& chart = *d.charts.front();
-  const std::vector<float> depths = cavity_depths(model, pose, chart, subject::cavity_floor(chart));
+  const std::vector<float> depths =
+      protocols::cavity_depths(model, pose, chart, subject::cavity_floor(chart));
   std::size_t planned = 0;
   for (std::size_t at = 0; at < depths.size(); ++at) {
     if (depths[at] >= 0.0F) {
@@ -105,11 +106,11 @@ TEST(ValidityDefinitionTest, ABoneWithoutTheStructureIsRefused) {
   const test::TemporaryFolder folder;
   test::write_text(folder / "study.toml",
                    with(test::read_text(shipped()), "beside = \"incus\"", "beside = \"tooth\""));
-  EXPECT_THROW(load_bone_definition(folder / "study.toml"), InputError);
+  EXPECT_THROW(protocols::load_bone_definition(folder / "study.toml"), InputError);
   test::write_text(folder / "study.toml",
                    with(test::read_text(shipped()), "\"facial nerve\"", "\"facial nerv\""));
   try {
-    load_bone_definition(folder / "study.toml");
+    protocols::load_bone_definition(folder / "study.toml");
     ADD_FAILURE() << "a margin to nothing was taken";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("cavity.structures names \"facial nerv\""));
@@ -117,10 +118,10 @@ TEST(ValidityDefinitionTest, ABoneWithoutTheStructureIsRefused) {
 }
 
 TEST(StageStillsTest, BoneDisappearsFromStageToStage) {
-  BoneDefinition d = load_bone_definition(shipped());
+  protocols::BoneDefinition d = protocols::load_bone_definition(shipped());
   d.display.width = 320;
   d.display.height = 240;
-  const std::vector<StageStill> stills = stage_stills(d, 3);
+  const std::vector<protocols::StageStill> stills = protocols::stage_stills(d, 3);
   ASSERT_EQ(stills.size(), 3U);
   EXPECT_EQ(stills[0].image.width, 320);
   const auto differs = [&](std::size_t a, std::size_t b) {

@@ -9,8 +9,9 @@
 #include <set>
 #include <sstream>
 
-#include "experiments/simulated_rater.h"
-#include "experiments/study_run.h"
+#include "experiments/studies/simulated_rater.h"
+#include "experiments/study/study_run.h"
+#include "protocols/bone_drilling/bone_protocol.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/null_study.h"
@@ -39,13 +40,13 @@ TEST(ValidityResultsTest, TheFirstProcedureComesOutAgainAndIsRatedTheSame) {
   EXPECT_THAT(test::read_text(folder / "report.html"), testing::HasSubstr("SIMULATED"));
 
   const test::TemporaryFolder out;
-  const experiments::BoneDefinition d = experiments::load_bone_definition(shipped());
+  const protocols::BoneDefinition d = protocols::load_bone_definition(shipped());
   experiments::DryRun dry;
   dry.participants = 1;
   dry.max_trials = 1;
   dry.seed = manifest["seed"].get<std::uint64_t>();
   dry.folder = out / "study";
-  experiments::run_dry(d, dry);
+  experiments::run_dry(protocols::bone_drilling(), d, dry);
   // What raters say about the bone holds its completeness, what was injured and its roughness.
   const std::string lines =
       analysis::drilling::ratings_csv(experiments::simulate_ratings(dry.folder, 1));

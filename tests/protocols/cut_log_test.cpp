@@ -9,8 +9,8 @@
 #include "core/realtime/servo_loop.h"
 #include "core/record/session_reader.h"
 #include "core/record/session_writer.h"
-#include "protocols/drilling_pass.h"
-#include "protocols/session_task.h"
+#include "protocols/bone_drilling/drilling_pass.h"
+#include "protocols/interface/session_task.h"
 #include "tests/protocols/drilling_fixture.h"
 #include "tests/support/scripted_device.h"
 #include "tests/support/temporary_folder.h"
@@ -57,11 +57,10 @@ TEST_P(CutLogTest, EveryVoxelOfAFullCutIsInTheFile) {
   };
   device::EnvelopeLimits limits;
   SessionTask::Log log;
-  SessionTask::ToolLog tool_log;
   const bool real = GetParam() == ClockKind::kReal;
   SessionTask task(device, limits, log, {},
-                   real ? SessionTask::Leave::kNever : SessionTask::Leave::kAfterPassOrSlice, {},
-                   &tool_log);
+                   real ? SessionTask::Leave::kNever : SessionTask::Leave::kAfterPassOrSlice,
+                   &logs);
   realtime::ServoLoop loop(GetParam(), 1000.0);
 
   record::SessionInfo info;
@@ -69,7 +68,7 @@ TEST_P(CutLogTest, EveryVoxelOfAFullCutIsInTheFile) {
   info.rate = 1000.0;
   record::SessionWriter writer(folder / "cut.h5", info, std::span<const record::BoneRecord>{});
   const auto collect = [&] {
-    tool_log.flush([&](auto rows) { writer.add(rows); });
+    logs.tool.flush([&](auto rows) { writer.add(rows); });
     logs.removals.flush([&](auto rows) { writer.add(rows); });
     log.flush([&](auto rows) { writer.append(rows); });
   };
@@ -89,7 +88,7 @@ TEST_P(CutLogTest, EveryVoxelOfAFullCutIsInTheFile) {
   collect();
   writer.close();
 
-  EXPECT_EQ(logs.dropped() + log.dropped() + tool_log.dropped(), 0u);
+  EXPECT_EQ(logs.dropped() + log.dropped() + logs.tool.dropped(), 0u);
   const record::SessionReader reader(folder / "cut.h5");
   std::set<std::array<std::int32_t, 3>> gone;
   for (const record::RemovalRow& row : reader.rows<record::RemovalRow>()) {

@@ -5,7 +5,7 @@
 
 #include "core/bone/companions.h"
 #include "core/bone/simulator.h"
-#include "protocols/drilling_pass.h"
+#include "protocols/bone_drilling/drilling_pass.h"
 
 namespace haptrial::test {
 
@@ -30,6 +30,11 @@ struct Workshop {
   std::unique_ptr<protocols::DrillingPass> pass;
 
   void new_pass(std::uint64_t sequence = 0);
+  /// One tick of a millisecond. @returns what it says of the tool
+  record::ToolRow tool(const device::DeviceReading& reading) {
+    pass->tick(reading, 1e-3);
+    return logs.tool_now();
+  }
 };
 
 /// A tool at p with buttons held, upright.

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "protocols/recall_test.h"
-#include "protocols/training_pass.h"
+#include "protocols/force_training/passes/recall_test.h"
+#include "protocols/force_training/passes/training_pass.h"
 #include "tests/support/pass_run.h"
 
 namespace haptrial::protocols {

@@ -7,9 +7,9 @@
 #include "core/base/random.h"
 #include "core/device/coupled_mass.h"
 #include "core/device/virtual_device.h"
-#include "protocols/recall_test.h"
-#include "protocols/session_task.h"
-#include "protocols/training_pass.h"
+#include "protocols/force_training/passes/recall_test.h"
+#include "protocols/force_training/passes/training_pass.h"
+#include "protocols/interface/session_task.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -81,9 +81,9 @@ TEST(StartAwayTest, NeverJerksWhereverTheHandIs) {
 /// Pulls at once with all that it has, as a protocol should not.
 class Tug final : public Pass {
  public:
-  PassOutput tick(const device::DeviceReading& reading, double) noexcept override {
+  PassOutput tick(const Readings& readings, double) noexcept override {
     PassOutput out;
-    out.force = -12.0 * reading.tool.position.normalized();
+    out.force = -12.0 * readings[0].tool.position.normalized();
     return out;
   }
   PassState state() const noexcept override { return PassState::kRunning; }

@@ -14,9 +14,10 @@
 #include "analysis/drilling/validity_table.h"
 #include "core/base/file_text.h"
 #include "core/base/random.h"
-#include "experiments/bone_definition.h"
-#include "experiments/simulated_rater.h"
-#include "experiments/study_run.h"
+#include "experiments/studies/simulated_rater.h"
+#include "experiments/study/study_run.h"
+#include "protocols/bone_drilling/bone_protocol.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
 
 namespace haptrial::test {
 
@@ -69,17 +70,17 @@ inline std::string null_definition(const std::filesystem::path& shipped, const N
 }
 
 /// @param folder  where the definition is written to
-inline experiments::BoneDefinition null_experiment(const std::filesystem::path& shipped,
-                                                   const std::filesystem::path& folder,
-                                                   const NullStudy& study) {
+inline protocols::BoneDefinition null_experiment(const std::filesystem::path& shipped,
+                                                 const std::filesystem::path& folder,
+                                                 const NullStudy& study) {
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "null.toml") << null_definition(shipped, study);
-  return experiments::load_bone_definition(folder / "null.toml");
+  return protocols::load_bone_definition(folder / "null.toml");
 }
 
 /// (people x procedures) The people's sessions, simulated and rated like those of the whole study.
 /// @param folder  new, for session files
-inline std::vector<std::vector<double>> null_ratings(const experiments::BoneDefinition& d,
+inline std::vector<std::vector<double>> null_ratings(const protocols::BoneDefinition& d,
                                                      const std::filesystem::path& folder,
                                                      const NullStudy& study) {
   experiments::DryRun dry;
@@ -87,7 +88,7 @@ inline std::vector<std::vector<double>> null_ratings(const experiments::BoneDefi
   dry.seed = study.seed;
   dry.jobs = study.jobs;
   dry.folder = folder;
-  experiments::run_dry(d, dry);
+  experiments::run_dry(protocols::bone_drilling(), d, dry);
   std::map<std::string, std::map<int, double>> sums;  // over the two raters
   for (const auto& rating : experiments::simulate_ratings(dry.folder, study.jobs)) {
     sums[rating.session][rating.procedure] += 0.5 * rating.score;
@@ -134,7 +135,7 @@ inline void shuffle_first(std::vector<std::size_t>& order, RandomStream& random)
 /// Simulates the people once, then draws studies from them: the same virtual people, raters and
 /// tests as in the whole study.
 /// @param d  of null_experiment()
-inline NullFigures null_study(const experiments::BoneDefinition& d,
+inline NullFigures null_study(const protocols::BoneDefinition& d,
                               const std::filesystem::path& folder, const NullStudy& study) {
   NullFigures figures;
   figures.ratings = null_ratings(d, folder, study);

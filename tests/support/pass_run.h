@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/device/virtual_device.h"
-#include "protocols/session_task.h"
-#include "protocols/trajectory_pass.h"
+#include "protocols/force_training/passes/trajectory_pass.h"
+#include "protocols/interface/session_task.h"
 
 namespace haptrial::test {
 

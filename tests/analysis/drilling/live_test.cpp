@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/drilling/metrics.h"
+#include "core/bone/data/recorded_bone.h"
 #include "core/record/session_reader.h"
 #include "tests/analysis/drilling/hand_made.h"
 #include "tests/analysis/drilling/session_of_drillings.h"
@@ -37,7 +38,7 @@ TEST(LiveMetricsTest, EqualsTheAnalysisOfTheFile) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "live.h5";
   const std::vector<record::BoneRecord> bones{test::block_record(0)};
-  const auto bone = std::make_shared<const bone::BoneModel>(bone_of(bones[0]));
+  const auto bone = std::make_shared<const bone::BoneModel>(bone::bone_of(bones[0]));
   ProcedureSetup setup;
   setup.scale = 2.0;
   setup.tools = kTools;
@@ -87,7 +88,7 @@ TEST(LiveMetricsTest, EqualsTheAnalysisOfTheFile) {
 }
 
 TEST(LiveMetricsTest, TheSingleMetricsAgreeWithTheWhole) {
-  const auto bone = std::make_shared<const bone::BoneModel>(bone_of(test::block_record(0)));
+  const auto bone = std::make_shared<const bone::BoneModel>(bone::bone_of(test::block_record(0)));
   RandomStream random(6, "single");
   std::vector<bool> gone;
   const auto rows = test::wander(0, 2000, 0, random, gone);
@@ -112,7 +113,7 @@ TEST(LiveMetricsTest, TheSingleMetricsAgreeWithTheWhole) {
 }
 
 TEST(LiveMetricsTest, WaitsForWhatIsNotCompleteAndRefusesOtherTicks) {
-  const auto bone = std::make_shared<const bone::BoneModel>(bone_of(test::block_record(0)));
+  const auto bone = std::make_shared<const bone::BoneModel>(bone::bone_of(test::block_record(0)));
   LiveMetrics live(bone, Eigen::Isometry3d::Identity(), kTools, 2.0, 1000.0);
   RandomStream random(3, "waits");
   std::vector<bool> gone;

@@ -7,6 +7,7 @@
 
 #include "analysis/drilling/study_bones.h"
 #include "core/base/error.h"
+#include "core/bone/data/recorded_bone.h"
 #include "core/record/session_reader.h"
 #include "tests/analysis/drilling/session_of_drillings.h"
 
@@ -116,7 +117,7 @@ TEST_F(ProcedureTest, TheBoneIsTheOneOfItsRecordAndKeptOnce) {
   EXPECT_TRUE(bone.structures[2].vital);
   record::BoneRecord other = test::block_record(0);
   other.runs.pop_back();
-  EXPECT_NE(study_.keep(bone_of(other)), found[0].bone);
+  EXPECT_NE(study_.keep(bone::bone_of(other)), found[0].bone);
 }
 
 TEST_F(ProcedureTest, ABoneThatIsNotThereIsRefused) {
@@ -147,7 +148,7 @@ TEST(BoneOfTest, DamagedRowsAreRefused) {
   const auto refused = [](auto&& damage) {
     record::BoneRecord record = test::block_record(0);
     damage(record);
-    EXPECT_THROW(bone_of(record), std::invalid_argument);
+    EXPECT_THROW(bone::bone_of(record), std::invalid_argument);
   };
   refused([](record::BoneRecord& r) { r.bone.size[1] = -3; });
   refused([](record::BoneRecord& r) { r.bone.size = {8000, 8000, 8000}; });

@@ -100,7 +100,7 @@ inline DrillingRows wander(std::uint64_t first, std::uint64_t ticks, std::int32_
 /// Writes a pass with `between` ticks after it on which nothing goes on.
 inline void write_pass(record::SessionWriter& writer, const DrillingRows& rows,
                        record::PassRow pass, std::uint64_t between = 20) {
-  pass.phase = record::Phase::kDrilling;
+  pass.phase = record::kDrillingPhase;
   pass.first_sample = rows.samples.front().sequence;
   pass.last_sample = rows.samples.back().sequence;
   std::vector<record::Sample> samples = rows.samples;

@@ -211,7 +211,7 @@ TEST(DrillingRecordTest, AfterAKillEveryTableEndsWithTheSameTickAndGoesOn) {
     SessionWriter writer = SessionWriter::resume(killed, found);
     EXPECT_LE(ticks - found.next_sequence, 768u);
     drill(writer, found.next_sequence, 9000);
-    writer.add_pass({1, "drilling", Phase::kDrilling, 1, 1, 7, 0, 8999, PassStatus::kCompleted});
+    writer.add_pass({1, "drilling", kDrillingPhase, 1, 1, 7, 0, 8999, PassStatus::kCompleted});
     writer.set_timing({}, {9000 - found.next_sequence, 0, 0});
     writer.close();
     const SessionReader reader(killed);
@@ -233,7 +233,7 @@ TEST(DrillingRecordTest, AfterAKillEveryTableEndsWithTheSameTickAndGoesOn) {
     EXPECT_EQ(removals.size(),
               (found.next_sequence + 9) / 10 + (9000 - found.next_sequence + 9) / 10);
     EXPECT_EQ(reader.bones().size(), 1u);
-    EXPECT_EQ(reader.passes().front().phase, Phase::kDrilling);
+    EXPECT_EQ(reader.passes().front().phase, kDrillingPhase);
   }
 }
 
@@ -245,7 +245,7 @@ TEST(DrillingRecordTest, AFileThatLostItsHeaderGivesItsDrillingBack) {
     add<CameraRow>(writer, {{7, 3, {1, 2, 3}, {4, 5, 6}, {0, 1, 0}, 0.1}});
     add<SplitRow>(writer, {{9, 1, 2, {3, 4, 5}}});
     add<ProcedureRow>(writer, {{0, 0, 1, 3, 4, 5, 6, 7, 8, 9, 10}});
-    writer.add_pass({1, "drilling", Phase::kDrilling, 1, 1, 7, 0, 8999, PassStatus::kCompleted});
+    writer.add_pass({1, "drilling", kDrillingPhase, 1, 1, 7, 0, 8999, PassStatus::kCompleted});
     writer.set_timing({}, {9000, 0, 0});
     writer.close();
   }

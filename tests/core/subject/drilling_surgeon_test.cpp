@@ -66,17 +66,16 @@ class Scene {
     const double depth = meet(place, radius, power);
     const Eigen::Vector3d force = chart_->axes.col(2) * (-4000.0 * depth);
     device_.write(force);
-    stimulus::Presentation seen;
-    seen.instruction = drills ? stimulus::Instruction::kDrill : stimulus::Instruction::kRest;
+    bone::DrillingView seen;
     seen.progress = 1e-5 * ++ticks_;
-    seen.pass_duration = 100.0;
-    seen.drilling.shown = true;
-    seen.drilling.tip = reading.tool.position;
-    seen.drilling.tool = tool_;
-    seen.drilling.power = power;
-    seen.drilling.contact = depth > 0.0;
-    seen.drilling.eye = {0.0, 0.2, 0.0};
-    seen.drilling.up = {0.0, 0.0, -1.0};
+    seen.time_limit = 100.0;
+    seen.shown = drills;
+    seen.tip = reading.tool.position;
+    seen.tool = tool_;
+    seen.power = power;
+    seen.contact = depth > 0.0;
+    seen.eye = {0.0, 0.2, 0.0};
+    seen.up = {0.0, 0.0, -1.0};
     surgeon_.observe(seen, force, kStep);
   }
 

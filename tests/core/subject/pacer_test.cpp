@@ -147,7 +147,7 @@ class SelfPacedSubjectTest : public testing::Test {
       seen.pass_duration = 8.0;
       seen.progress = std::min(1.0, std::max(0.0, now.position.x() - from) / 0.12);
       if (seen.progress >= 1.0) {
-        subject.observe(seen, Vector3d::Zero(), kStep);
+        subject.observe(seen, Vector3d(Vector3d::Zero()), kStep);
         return moments;
       }
       seen.self_paced = true;

@@ -51,7 +51,7 @@ class VirtualSubjectTest : public testing::Test {
       seen.show_applied_bar = instruction == Instruction::kMatch;
       const bool felt =
           instruction == Instruction::kHoldPlane || instruction == Instruction::kMatch;
-      s.observe(seen, {0.0, felt ? pattern(t) : 0.0, 0.0}, kStep);
+      s.observe(seen, Eigen::Vector3d(0.0, felt ? pattern(t) : 0.0, 0.0), kStep);
       press.push_back(hand_.last.press);
     }
     return press;
@@ -138,7 +138,7 @@ TEST_F(VirtualSubjectTest, EasesOffWhereTheDeviceSaturates) {
   for (int i = 1; i < 4000; ++i) {
     seen.progress = i * kStep / kDuration;
     seen.show_saturation = i > 2000 && i < 2500;
-    s.observe(seen, {0.0, 10.0, 0.0}, kStep);
+    s.observe(seen, Eigen::Vector3d(0.0, 10.0, 0.0), kStep);
     before = i == 2000 ? hand_.last.press : before;
     if (i == 2400) {
       EXPECT_LT(hand_.last.press, 0.2 * before);
@@ -151,7 +151,7 @@ TEST_F(VirtualSubjectTest, RestsInTheMiddleWhenNobodyGuides) {
   VirtualSubject s = subject(noiseless_subject());
   Presentation seen;
   seen.tool = {0.02, -0.01, 0.03};
-  s.observe(seen, Eigen::Vector3d::Zero(), kStep);
+  s.observe(seen, Eigen::Vector3d(Eigen::Vector3d::Zero()), kStep);
   EXPECT_LT(hand_.last.force.dot(seen.tool), 0.0);
 }
 
@@ -178,7 +178,7 @@ TEST_F(VirtualSubjectTest, ObserveDoesNotAllocate) {
     ++seen.block;
     for (int i = 0; i <= 1000; ++i) {
       seen.progress = i * 1e-3;
-      s.observe(seen, {0.0, 3.0, 0.0}, kStep);
+      s.observe(seen, Eigen::Vector3d(0.0, 3.0, 0.0), kStep);
     }
   }
   EXPECT_EQ(guard.count(), 0u);

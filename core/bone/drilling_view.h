@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+
+namespace haptrial::bone {
+
+/// What there is to see of a drilling beside the bone itself, which the screen follows by itself:
+/// a view (core/stimulus/shown.h).
+struct DrillingView {
+  bool shown{false};
+  Eigen::Vector3d tip{Eigen::Vector3d::Zero()};  // of the tool, in the scene's W [m]
+  Eigen::Quaterniond orientation{
+      Eigen::Quaterniond::Identity()};            // of the tool in W, z to the hand
+  std::int32_t tool{0};                           // in hand
+  bool power{false};                              // it turns, or sucks
+  bool contact{false};                            // it touches bone
+  double sound_force{0.0};                        // what can be heard of it [N]
+  Eigen::Vector3d eye{Eigen::Vector3d::UnitZ()};  // in W [m]
+  Eigen::Vector3d target{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d up{Eigen::Vector3d::UnitY()};
+  double field_of_view{0.35};    // [rad]
+  std::int32_t stills_asked{0};  // how often the next still was asked for
+  double progress{0.0};          // of the time limit, as a fraction
+  double time_limit{0.0};        // [s]
+
+  bool engaged() const noexcept { return shown; }
+};
+
+}  // namespace haptrial::bone

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/control/handle_loop.h"
+
+namespace haptrial::control {
+
+/// What a spring and damper ask of the hand, from the bare handle to a heavy one, with forces that
+/// come one to three ticks late.
+struct LoopMargin {
+  std::string name;  // of the table in the definition
+  control::PdGains gains;
+  double lightest{0.0};        // hand that carries all the damping, force_delay as given [kg]
+  double lightest_late{0.0};   // three ticks late [kg]
+  double bare_damping{0.0};    // what the bare handle gets [N·s/m]
+  double bare_stiffness{0.0};  // that it carries with that damping, three ticks late [N/m]
+};
+
+/// Heaviest hand that is looked at [kg].
+constexpr double kHeaviestHand = 2.0;
+
+LoopMargin loop_margin(const std::string& name, const control::PdGains& gains,
+                       const control::HandleLoop& loop);
+
+/// A sentence, such as "plane: 2000 N/m and 300 N·s/m need a hand of 0.73 kg (1.21 kg where forces
+/// come three ticks late); a lighter one gets less damping, the bare handle 15.7 N·s/m".
+std::string describe(const LoopMargin& margin);
+
+/// Whether the bare handle oscillates whatever the damping: the envelope then ends passes.
+bool is_dangerous(const LoopMargin& margin);
+
+}  // namespace haptrial::control

@@ -1,0 +1,69 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "analysis/design_json.h"
+#include "analysis/design_lines.h"
+#include "core/base/error.h"
+#include "experiments/command/arguments.h"
+#include "experiments/command/commands.h"
+#include "experiments/studies/curve_analysis.h"
+
+namespace haptrial::experiments {
+namespace {
+
+void write(const std::string& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text << "\n";
+  out.close();
+  if (!out) {
+    throw RunError(fmt::format("{}: could not be written", file));
+  }
+}
+
+/// Every column has one part. @throws InputError
+void check_columns(const StatisticsOptions& options, const std::vector<std::string>& factors) {
+  std::vector<std::string> columns{options.subject, options.value};
+  columns.insert(columns.end(), factors.begin(), factors.end());
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (std::find(columns.begin(), columns.begin() + static_cast<std::ptrdiff_t>(i), columns[i]) !=
+        columns.begin() + static_cast<std::ptrdiff_t>(i)) {
+      throw InputError(fmt::format(
+          "--subject, --value and --factor name the column '{}' twice; name each column once",
+          columns[i]));
+    }
+  }
+}
+
+}  // namespace
+
+int statistics(const StatisticsOptions& options) {
+  analysis::Resampling resampling;
+  resampling.seed = static_cast<std::uint64_t>(options.seed);
+  resampling.count =
+      static_cast<std::size_t>(checked_number("--resamples", options.resamples, 0, 10'000'000));
+  resampling.threads = checked_jobs(options.jobs);
+  const analysis::AnalysisPlan plan = plan_of(options.planned, options.reference);
+  const std::vector<std::string> factors =
+      options.factors.empty() ? std::vector<std::string>{"condition"} : options.factors;
+  check_columns(options, factors);
+  if (!options.json.empty() && std::filesystem::exists(options.json)) {
+    throw InputError(fmt::format("{}: exists already; choose another --json", options.json));
+  }
+  const analysis::DesignTable table = analysis::design_table(
+      analysis::read_observations(options.table, options.subject, factors, options.value), factors,
+      plan.reference.empty() ? std::vector<std::string>{} : std::vector{plan.reference});
+  analysis::check_plan(table, plan);
+  const analysis::DesignTests tests = analysis::design_tests(table, plan, resampling);
+  for (const std::string& line : analysis::design_lines(table, tests)) {
+    fmt::print("{}\n", line);
+  }
+  if (!options.json.empty()) {
+    write(options.json, analysis::design_json(tests));
+  }
+  return 0;
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,46 @@
+#include "experiments/command/arguments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <thread>
+
+#include "core/base/error.h"
+
+namespace haptrial::experiments {
+
+int checked_number(const char* what, int value, int low, int high) {
+  if (value < low || value > high) {
+    throw InputError(
+        fmt::format("{} is {}; allowed: a whole number from {} to {}", what, value, low, high));
+  }
+  return value;
+}
+
+double checked_real(const char* what, double value, double low, double high) {
+  if (!(value >= low && value <= high)) {
+    throw InputError(
+        fmt::format("{} is {}; allowed: a number from {} to {}", what, value, low, high));
+  }
+  return value;
+}
+
+std::uint64_t checked_seed(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error != std::errc() || end != text.data() + text.size()) {
+    throw InputError(fmt::format("--seed is '{}'; allowed: a whole number from 0 to {}", text,
+                                 std::numeric_limits<std::uint64_t>::max()));
+  }
+  return seed;
+}
+
+int checked_jobs(std::optional<int> jobs) {
+  constexpr int kMostJobs = 256;
+  const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return jobs ? checked_number("--jobs", *jobs, 1, kMostJobs) : std::min(processors, kMostJobs);
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,142 @@
+#include "experiments/command/run_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "core/base/definition_changes.h"
+#include "core/base/error.h"
+#include "core/record/file_lock.h"
+#include "core/record/session_reader.h"
+#include "core/record/session_target.h"
+#include "core/record/session_writer.h"
+#include "experiments/command/arguments.h"
+#include "experiments/runner/devices.h"
+#include "experiments/study/study_files.h"
+#include "protocols/interface/definition.h"
+
+namespace haptrial::experiments {
+namespace fs = std::filesystem;
+namespace {
+
+/// An identifier becomes a file name: no path may hide in it.
+void check_subject(const std::string& subject) {
+  constexpr std::size_t kLongest = 64;
+  const bool plain = std::all_of(subject.begin(), subject.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_';
+  });
+  if (subject.empty() || subject.size() > kLongest || !plain) {
+    throw InputError(fmt::format("--subject is '{}'; allowed: 1 to {} letters, digits, '-' and '_'",
+                                 subject, kLongest));
+  }
+}
+
+void check_device(const RunOptions& options) {
+  check_device_name(options.device);
+  if (options.device == "mouse" && !options.window) {
+    throw InputError(
+        "--device mouse takes its pointer from the participant's screen; add --window");
+  }
+  check_library(options.device, options.library);
+  if (options.resume && replayed_file(options.device)) {
+    throw InputError(
+        "--resume is given with --device replay:FILE, which begins at the recording's first pass; "
+        "leave out --resume and choose another --out");
+  }
+}
+
+void check_console(const RunOptions& options) {
+  const auto need = [&options](const char* name, bool given) {
+    if (given && !options.console) {
+      throw InputError(
+          fmt::format("{} is given without --console; leave it out or add --console", name));
+    }
+  };
+  need("--port", options.port.has_value());
+  need("--address", options.address.has_value());
+  need("--remote", options.remote);
+}
+
+std::string unfinished_in(const fs::path& folder) {
+  constexpr std::size_t kMost = 8;
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored)) {
+    return "there is no such folder";
+  }
+  const std::vector<std::string> files = unfinished_sessions(folder);
+  if (files.empty()) {
+    return "no session in this folder is unfinished";
+  }
+  const auto shown = static_cast<long>(std::min(kMost, files.size()));
+  return fmt::format("unfinished in this folder: {}{}",
+                     fmt::join(files.begin(), files.begin() + shown, ", "),
+                     files.size() > kMost ? ", ..." : "");
+}
+
+/// Otherwise a mistyped --subject or --out would start a session anew.
+void check_resumed(const fs::path& file) {
+  if (!record::SessionWriter::can_resume(file)) {
+    throw InputError(fmt::format(
+        "{}: nothing to resume: {} is not there; {}; choose another --subject or --out, or leave "
+        "out --resume",
+        file.parent_path().string(), record::partial_path(file).filename().string(),
+        unfinished_in(file.parent_path())));
+  }
+}
+
+}  // namespace
+
+void check_run_options(const RunOptions& options) {
+  check_subject(options.subject);
+  check_device(options);
+  check_console(options);
+  if (options.stream && options.stream_optional) {
+    throw InputError(
+        "--lsl and --lsl-optional are both given; leave out the one that is not meant");
+  }
+}
+
+void check_session_file(const RunOptions& options, const fs::path& file) {
+  if (options.resume) {
+    check_resumed(file);
+    return;
+  }
+  std::error_code ignored;
+  if (fs::exists(file, ignored)) {
+    throw InputError(
+        fmt::format("{}: {} already has a session here; choose another --subject or --out",
+                    file.string(), options.subject));
+  }
+  const fs::path partial = record::partial_path(file);
+  if (fs::exists(partial, ignored) && !record::FileLock::taken(partial)) {
+    throw InputError(fmt::format(
+        "{}: {} has an unfinished session here; add --resume, or choose another --subject or --out",
+        partial.string(), options.subject));
+  }
+}
+
+void check_recording(const RunOptions& options, const protocols::Definition& setup) {
+  const auto file = replayed_file(options.device);
+  if (!file) {
+    return;
+  }
+  const record::SessionInfo info = record::SessionReader(*file).info();
+  if (info.subject != options.subject) {
+    throw InputError(fmt::format("{}: was recorded with subject {}; replay it with --subject {}",
+                                 *file, info.subject, info.subject));
+  }
+  if (info.seed != checked_seed(options.seed)) {
+    throw InputError(fmt::format("{}: was recorded with seed {}; replay it with --seed {}", *file,
+                                 info.seed, info.seed));
+  }
+  // The recording stands in for the virtual hand, whose tables are not used.
+  const DefinitionChanges changes = definition_changes(info.definition, setup.text, Hand::kPerson);
+  if (!changes.same_study()) {
+    throw InputError(
+        fmt::format("{}: was recorded with another definition: {}; replay it with the same one",
+                    *file, sentence_of(changes.binding)));
+  }
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+
+#include "experiments/command/commands.h"
+
+namespace haptrial::protocols {
+struct Definition;
+}
+
+namespace haptrial::experiments {
+
+/// What `run` refuses before a device is opened or anything moves, in the words of its options.
+
+/// @throws InputError for options that contradict each other or would have no effect.
+void check_run_options(const RunOptions& options);
+
+/// @throws InputError unless a session can begin in this file, or with --resume go on in it.
+void check_session_file(const RunOptions& options, const std::filesystem::path& file);
+
+/// @throws InputError where a recording drives the session (--device replay:FILE) and is of another
+/// subject, seed or definition.
+void check_recording(const RunOptions& options, const protocols::Definition& setup);
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,67 @@
+#include "core/base/counted.h"
+#include "experiments/command/commands.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "core/base/error.h"
+#include "experiments/command/arguments.h"
+#include "experiments/control/interrupt.h"
+#include "experiments/studies/experiment.h"
+#include "experiments/study/study_run.h"
+
+namespace haptrial::experiments {
+namespace fs = std::filesystem;
+namespace {
+
+/// out/NAME-001, or the next number that is free.
+fs::path fresh_folder(const std::string& name) {
+  for (int n = 1;; ++n) {
+    const fs::path folder = fs::path("out") / fmt::format("{}-{:03}", name, n);
+    if (!fs::exists(folder)) {
+      return folder;
+    }
+  }
+}
+
+}  // namespace
+
+int dry_run(const DryRunOptions& options) {
+  watch_for_interrupt();
+  const Experiment experiment = load_experiment(options.definition);
+  const protocols::Definition& setup = *experiment.definition;
+  DryRun dry;
+  dry.participants =
+      checked_number("--subjects", options.subjects.value_or(setup.design.participants), 1, 10000);
+  dry.seed = checked_seed(options.seed);
+  dry.jobs = checked_jobs(options.jobs);
+  dry.frames_per_pass = checked_number("--frames", options.frames, 0, 1000);
+  dry.max_trials =
+      options.trials ? checked_number("--trials", *options.trials, 1, setup.design.trials) : 0;
+  if (interrupted()) {  // while the definition was read, which makes its bones
+    throw RunError("interrupted");
+  }
+  dry.folder = options.out.empty() ? fresh_folder(setup.name) : fs::path(options.out);
+  print_warnings(experiment);
+  for (const std::string& line : setup.left_out_of_dry_runs()) {
+    fmt::print("{}\n", line);
+  }
+  const DryRunSummary done = run_dry(experiment.study->protocol(), setup, dry);
+  fmt::print("{}, {:.0f} s of simulated time in {:.1f} s ({:.0f} times real time)\n",
+             counted(dry.participants, "session", "sessions"), done.recorded_seconds,
+             done.elapsed_seconds, done.recorded_seconds / done.elapsed_seconds);
+  if (done.aborted_passes == done.passes) {
+    throw RunError(fmt::format("every pass was aborted; haptrial info {} says why",
+                               (dry.folder / "S01.h5").string()));
+  }
+  if (done.aborted_passes > 0) {
+    fmt::print("{}; haptrial info FILE says which and why\n",
+               counted(done.aborted_passes, "pass was aborted", "passes were aborted"));
+  }
+  fmt::print("sessions: {}\n", dry.folder.string());
+  fmt::print("next: {}\n", experiment.study->next_step(dry.folder));
+  return 0;
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,134 @@
+#include "core/base/counted.h"
+#include "experiments/command/commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "analysis/timing.h"
+#include "core/record/overruns.h"
+#include "core/record/file_lock.h"
+#include "core/record/integrity.h"
+#include "core/record/readable.h"
+#include "core/record/session_reader.h"
+#include "core/record/trial_progress.h"
+
+namespace haptrial::experiments {
+namespace {
+
+void print_participant(const record::Participant& participant) {
+  const std::array<std::pair<const char*, const std::string*>, 5> fields{
+      {{"handedness", &participant.handedness},
+       {"age", &participant.age_band},
+       {"sex", &participant.sex},
+       {"consent", &participant.consent_confirmed},
+       {"notes", &participant.notes}}};
+  for (const auto& [name, value] : fields) {
+    if (!value->empty()) {
+      fmt::print("{:<11} {}\n", name, *value);
+    }
+  }
+}
+
+void print_loop(const record::SessionReader& reader) {
+  const analysis::LoopTiming loop = analysis::loop_timing(reader);
+  if (!loop.complete) {
+    fmt::print("loop        unknown: the session is unfinished\n");
+    return;
+  }
+  fmt::print("loop        {}, {}\n", counted(loop.overruns, "overrun", "overruns"),
+             counted(loop.dropped, "lost record", "lost records"));
+  if (const auto late = record::too_many_overruns(loop.ticks, loop.overruns)) {
+    fmt::print("loop        NOT kept: {}\n", *late);
+  }
+  if (loop.applies && loop.lateness) {
+    const analysis::TimingPercentiles& late = *loop.lateness;
+    const auto us = [](std::int64_t ns) { return 1e-3 * static_cast<double>(ns); };
+    fmt::print("lateness    median {:.2f}, 99 % {:.2f}, 99.9 % {:.2f}, worst {:.2f} µs\n",
+               us(late.median_ns), us(late.p99_ns), us(late.p999_ns), us(late.highest_ns));
+  }
+}
+
+void print_frames(const std::vector<record::FrameRow>& frames) {
+  if (frames.empty()) {
+    return;
+  }
+  std::int64_t longest = 0;
+  std::int64_t dropped = 0;
+  for (const record::FrameRow& frame : frames) {
+    longest = std::max(longest, frame.frame_time_ns);
+    dropped += frame.dropped;
+  }
+  fmt::print("frames      {} drawn, {} refreshes missed, longest {:.1f} ms\n", frames.size(),
+             dropped, 1e-6 * static_cast<double>(longest));
+}
+
+void print_progress(const record::SessionReader& reader, const record::Integrity& integrity) {
+  const record::TrialProgress trials = record::trial_progress(reader);
+  const std::string planned =
+      trials.planned ? fmt::format("of {}", *trials.planned) : "of an unknown number";
+  fmt::print("trials      {} {} done, {} skipped, {} aborted{}\n", trials.done, planned,
+             trials.skipped, trials.aborted,
+             integrity.state == record::RunState::kEnded     ? "; the session has ended"
+             : integrity.state == record::RunState::kStopped ? "; stopped, resume it with --resume"
+                                                             : "; the session is unfinished");
+}
+
+/// What a person did or has to know; the rest is in /events.
+bool is_told(const std::string& kind) {
+  constexpr std::array<std::string_view, 14> kTold{
+      "repaired",       "session_stopped", "ended_for_good", "aborted",
+      "interrupted",    "notice",          "note",           "recovered",
+      "emergency_stop", "bone_restored",   "bone_lost",      "definition_changed",
+      "overruns",       "skipped"};
+  return std::find(kTold.begin(), kTold.end(), kind) != kTold.end();
+}
+
+}  // namespace
+
+int info(const std::string& file) {
+  const std::optional<std::string> unreadable = record::what_cannot_be_read(file);
+  const record::SessionReader reader(file);
+  const record::SessionInfo& i = reader.info();
+  record::Integrity integrity = record::check_session(reader);
+  if (unreadable) {
+    integrity.problems.push_back(*unreadable);
+    integrity.ok = false;
+  }
+  fmt::print("subject     {}{}{}\n", i.subject, i.simulated ? " (simulated)" : "",
+             i.pilot ? " (pilot, not part of the study)" : "");
+  print_participant(i.participant);
+  fmt::print("definition  {}, seed {}\n", i.definition_name, i.seed);
+  fmt::print("recorded    {}, haptrial {} ({})\n", i.start_utc, i.program_version,
+             i.program_commit);
+  fmt::print("device      {}, {} N, workspace radius {} m\n", i.device, i.device_max_force,
+             i.device_workspace_radius);
+  fmt::print("clock       {}, {} Hz\n", i.clock, i.rate);
+  fmt::print("rows        {}, sequence {} to {}, {} gaps\n", integrity.rows,
+             integrity.first_sequence, integrity.last_sequence, integrity.gaps);
+  fmt::print("passes      {}, {} aborted, {} for practice\n", integrity.passes, integrity.aborted,
+             integrity.practice);
+  print_loop(reader);
+  print_frames(reader.frames());
+  for (const record::EventRow& event : reader.events()) {
+    if (is_told(event.kind)) {
+      fmt::print("{:<11} at {:.3f} s: {}\n", event.kind, 1e-9 * static_cast<double>(event.time_ns),
+                 event.text);
+    }
+  }
+  for (const std::string& problem : integrity.problems) {
+    fmt::print("problem     {}\n", problem);
+  }
+  if (record::FileLock::taken(file)) {
+    fmt::print("another haptrial is recording into this file\n");
+  }
+  print_progress(reader, integrity);
+  fmt::print("recording   {}\n", integrity.ok ? "intact: every tick is recorded" : "NOT intact");
+  return integrity.ok && integrity.state == record::RunState::kEnded ? 0 : 1;
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,40 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "core/record/recover.h"
+#include "experiments/command/commands.h"
+
+namespace haptrial::experiments {
+namespace {
+
+/// S01.h5 and S01.h5.partial become S01.recovered.h5, beside them.
+std::filesystem::path default_output(std::filesystem::path file) {
+  if (file.extension() == ".partial") file.replace_extension();
+  return file.replace_extension(".recovered.h5");
+}
+
+}  // namespace
+
+int recover(const std::string& file, const std::string& out) {
+  const std::filesystem::path to = out.empty() ? default_output(file) : std::filesystem::path(out);
+  const record::Recovery found = record::recover_session(file, to);
+  if (!found.anything()) {
+    fmt::print("{}: nothing of a session is left in its {} bytes; nothing was written\n", file,
+               found.file_bytes);
+    return 1;
+  }
+  fmt::print("subject     {}\n",
+             found.info ? found.subject
+                        : "unknown: the definition and the description of the session are lost");
+  fmt::print("rows        {}, sequence {} to {}, {} missing between them\n", found.samples,
+             found.first_sequence, found.last_sequence, found.missing);
+  fmt::print("passes      {}, {} incomplete\n", found.passes, found.passes_cut);
+  fmt::print("also        {} events, stimuli of {} blocks, {} frames\n", found.events,
+             found.stimulus_blocks, found.frames);
+  fmt::print("loop        {}\n", found.ended ? "complete" : "its counts are lost");
+  fmt::print("written to  {}; {} is unchanged\n", to.string(), file);
+  return 0;
+}
+
+}  // namespace haptrial::experiments

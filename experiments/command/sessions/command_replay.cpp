@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/record/session_reader.h"
+#include "experiments/command/arguments.h"
+#include "experiments/command/commands.h"
+#include "experiments/control/interrupt.h"
+#include "experiments/control/progress.h"
+#include "experiments/screen/video.h"
+#include "experiments/studies/registry.h"
+
+namespace haptrial::experiments {
+namespace fs = std::filesystem;
+namespace {
+
+/// A new folder of pictures; without keep() they go again.
+class PictureFolder {
+ public:
+  explicit PictureFolder(fs::path folder) : folder_(std::move(folder)) {
+    std::error_code error;
+    if (fs::exists(folder_, error) &&
+        !(fs::is_directory(folder_, error) && fs::is_empty(folder_, error))) {
+      throw InputError(fmt::format(
+          "{}: exists already and is not an empty folder; choose a new folder", folder_.string()));
+    }
+    made_ = fs::create_directories(folder_, error);
+    if (error) {
+      throw InputError(
+          fmt::format("{}: the folder cannot be created ({})", folder_.string(), error.message()));
+    }
+  }
+  ~PictureFolder() {
+    std::error_code ignored;
+    for (int i = 1; !kept_ && i <= count_; ++i) {
+      fs::remove(name(i), ignored);
+    }
+    if (!kept_ && made_) {
+      fs::remove(folder_, ignored);
+    }
+  }
+  PictureFolder(const PictureFolder&) = delete;
+  PictureFolder& operator=(const PictureFolder&) = delete;
+
+  void add(const render::Image& image) { render::write_png(name(++count_), image); }
+  void keep() { kept_ = true; }
+
+ private:
+  fs::path name(int number) const { return folder_ / fmt::format("frame-{:05}.png", number); }
+
+  fs::path folder_;
+  bool made_{false};
+  bool kept_{false};
+  int count_{0};
+};
+
+}  // namespace
+
+int replay(const ReplayOptions& options) {
+  constexpr int kMostFps = 240;
+  const int fps = checked_number("--fps", options.fps, 1, kMostFps);
+  const protocols::Protocol& protocol =
+      study_of(record::SessionReader(options.file).info()).protocol();
+  std::optional<VideoWriter> video;
+  std::optional<PictureFolder> pictures;
+  if (!options.video.empty()) {
+    video.emplace(options.video, fps);
+  }
+  if (!options.frames.empty()) {
+    pictures.emplace(options.frames);
+  }
+  std::unique_ptr<Progress> progress;
+  protocols::ReplayRequest request;
+  request.file = options.file;
+  request.trial = options.trial;
+  request.phase = options.phase;
+  request.fps = fps;
+  request.pictures = !options.video.empty() || !options.frames.empty();
+  request.sound = options.sound;
+  request.picture = [&](const render::Image& image) {
+    if (video) {
+      video->add(image);
+    }
+    if (pictures) {
+      pictures->add(image);
+    }
+  };
+  request.progress = [&](double done, double all, const std::string& what, double rate) {
+    if (interrupted()) {
+      throw RunError("interrupted");
+    }
+    if (!progress) {
+      progress = std::make_unique<Progress>("replay", all);
+    }
+    progress->update(done, what, rate);
+  };
+  std::vector<std::string> lines;
+  request.tell = [&](const std::string& line) {
+    progress.reset();
+    lines.push_back(line);
+  };
+  protocol.replay(request);
+  progress.reset();
+  if (video) {
+    video->finish();
+    lines.push_back("video: " + options.video);
+  }
+  if (pictures) {
+    pictures->keep();
+    lines.push_back("pictures: " + options.frames);
+  }
+  for (const std::string& line : lines) {
+    fmt::print("{}\n", line);
+  }
+  return 0;
+}
+
+}  // namespace haptrial::experiments

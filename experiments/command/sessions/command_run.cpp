@@ -1,0 +1,147 @@
+#include "core/base/counted.h"
+#include "experiments/command/commands.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "core/record/overruns.h"
+#include "core/base/error.h"
+#include "core/stream/lsl_outlet.h"
+#include "experiments/command/arguments.h"
+#include "experiments/command/run_checks.h"
+#include "experiments/console/console.h"
+#include "experiments/control/interrupt.h"
+#include "experiments/control/keyboard.h"
+#include "experiments/control/last_stop.h"
+#include "experiments/runner/session.h"
+#include "experiments/studies/experiment.h"
+
+namespace haptrial::experiments {
+namespace fs = std::filesystem;
+namespace {
+
+int participant_of(const RunOptions& options) {
+  constexpr int kMost = 10000;
+  if (options.participant) {
+    return checked_number("--participant", *options.participant, 1, kMost) - 1;
+  }
+  const auto letter = options.subject.find_last_not_of("0123456789");
+  const std::string digits = options.subject.substr(letter == std::string::npos ? 0 : letter + 1);
+  if (digits.empty() || digits.size() > 5 || std::stoi(digits) < 1 || std::stoi(digits) > kMost) {
+    throw InputError(
+        fmt::format("--subject '{}' does not end in a number from 1 to {}, so the order of "
+                    "conditions is not known; add --participant NUMBER",
+                    options.subject, kMost));
+  }
+  return std::stoi(digits) - 1;
+}
+
+/// Before anything moves or is recorded.
+void require_streams() {
+  try {
+    stream::LslOutlet::check_library();
+  } catch (const InputError& error) {
+    throw InputError(
+        fmt::format("{}; --lsl-optional runs the session without streams", error.what()));
+  }
+}
+
+/// With an experimenter at the console's page or at the keyboard, where that was asked for.
+SessionSummary attended_session(SessionRequest& request, const RunOptions& options) {
+  if (!options.console && !options.keyboard) {
+    return run_session(request);
+  }
+  SessionControl control;  // outlives what speaks to it
+  request.control = &control;
+  std::unique_ptr<Console> console;
+  if (options.console) {
+    ConsoleOptions console_options;
+    console_options.address = options.address.value_or(console_options.address);
+    console_options.port = checked_number("--port", options.port.value_or(0), 0, 65535);
+    console_options.allow_remote = options.remote;
+    console_options.on_refusal = [&control](const std::string& sentence) {
+      control.note("console: " + sentence);
+    };
+    console = std::make_unique<Console>(control, console_options);
+    fmt::print("console: {}\n", console->url());
+    std::fflush(stdout);
+  }
+  const Keyboard keyboard(control);
+  if (!console && !keyboard.active()) {
+    throw InputError(
+        "--keyboard needs a terminal with this program in its foreground, or nobody could clear a "
+        "stop; add --console, or run it in a terminal");
+  }
+  if (keyboard.active()) {
+    fmt::print("{}\n", Keyboard::help());
+    std::fflush(stdout);
+  }
+  return run_session(request);
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+  watch_for_interrupt();
+  watch_fatal_signals();
+  check_run_options(options);
+  const Experiment experiment = load_experiment(options.definition);
+  const protocols::Definition& setup = *experiment.definition;
+  check_recording(options, setup);
+  if (options.stream && !options.stream_optional) {
+    require_streams();
+  }
+  SessionRequest request;
+  request.protocol = &experiment.study->protocol();
+  request.definition = experiment.definition.get();
+  request.live = [&experiment](const fs::path& resumed) {
+    return experiment.study->live_figures(*experiment.definition, resumed);
+  };
+  request.subject = options.subject;
+  request.participant = participant_of(options);
+  request.seed = checked_seed(options.seed);
+  request.clock = realtime::ClockKind::kReal;
+  request.max_trials =
+      options.trials ? checked_number("--trials", *options.trials, 1, setup.design.trials) : 0;
+  request.file = fs::path(options.out) / (options.subject + ".h5");
+  check_session_file(options, request.file);
+  std::error_code error;
+  fs::create_directories(options.out, error);
+  if (error) {
+    throw InputError(
+        fmt::format("{}: the folder cannot be created ({})", options.out, error.message()));
+  }
+  request.device = {options.device, options.library};
+  request.window = options.window;
+  request.stream = options.stream || options.stream_optional;
+  request.stream_optional = options.stream_optional;
+  request.tell = [](const std::string& line) {
+    fmt::print("{}\n", line);
+    std::fflush(stdout);  // it may be a file that somebody follows
+  };
+  request.resume = options.resume;
+  request.pilot = options.pilot;
+  request.person = options.person;
+  request.person.identifier = options.subject;
+  const SessionSummary done = attended_session(request, options);
+  for (const record::LiveState& trial : done.figures) {
+    fmt::print("{}{}\n", done.simulated ? "SIMULATED " : "", trial.line);
+  }
+  fmt::print("session: {}{}\n", request.file.string(), done.stopped ? ".partial" : "");
+  if (done.stopped) {
+    fmt::print("stopped with trials left; the same command with --resume continues with them\n");
+  }
+  fmt::print("{} ticks at {} Hz, {}, {}, {} aborted\n", done.ticks, setup.rate,
+             counted(done.overruns, "overrun", "overruns"),
+             counted(done.dropped, "lost record", "lost records"),
+             counted(done.aborted_passes, "pass", "passes"));
+  if (const auto late = record::too_many_overruns(done.ticks, done.overruns)) {
+    fmt::print("WARNING: the servo loop did not keep its rate: {}\n", *late);
+  }
+  return 0;
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "core/base/error.h"
+#include "core/bone/data/load_bone.h"
+#include "core/bone/surface_depths.h"
+#include "core/render/bone_scene.h"
+#include "core/render/offscreen.h"
+#include "experiments/command/commands.h"
+#include "experiments/command/mesh_command.h"
+#include "experiments/command/tools/bone_carving.h"
+
+namespace haptrial::experiments {
+namespace {
+
+constexpr double kMillimetre = 1e-3;
+constexpr int kFiner = 2;  // drawn pixels to one of the picture, each way
+
+void check(const BonePictureOptions& options) {
+  if (std::filesystem::path(options.out).extension() != ".png") {
+    throw InputError(fmt::format("{}: is not a picture by its name; allowed: .png", options.out));
+  }
+  if (!options.overwrite && std::filesystem::exists(options.out)) {
+    throw InputError(
+        fmt::format("{}: exists already; choose another name or add --overwrite", options.out));
+  }
+  constexpr int kLargest = 4096;
+  for (const auto& [name, pixels] :
+       {std::pair{"--width", options.width}, std::pair{"--height", options.height}}) {
+    if (pixels < 16 || pixels > kLargest) {
+      throw InputError(fmt::format("{} is {}; allowed: 16 to {} [px]", name, pixels, kLargest));
+    }
+  }
+  if (!(options.zoom >= 0.01 && options.zoom <= 1000.0)) {
+    throw InputError(fmt::format("--zoom is {}; allowed: 0.01 to 1000", options.zoom));
+  }
+  if (options.stereo && !(*options.stereo >= 0.0 && *options.stereo <= 1000.0)) {
+    throw InputError(fmt::format("--stereo is {}; allowed: 0 to 1000 [mm]", *options.stereo));
+  }
+}
+
+/// Three finite numbers. @throws InputError
+Eigen::Vector3d vector_of(const char* name, const std::vector<double>& numbers) {
+  const Eigen::Map<const Eigen::VectorXd> all(numbers.data(),
+                                              static_cast<Eigen::Index>(numbers.size()));
+  if (numbers.size() != 3 || !all.allFinite()) {
+    throw InputError(fmt::format("{} is not a place; allowed: three numbers X,Y,Z", name));
+  }
+  return all.head<3>();
+}
+
+Eigen::AlignedBox3d box_of(const bone::BoneModel& model) {
+  Eigen::AlignedBox3d box;
+  std::size_t at = 0;
+  for (int k = 0; k < model.grid.size[2]; ++k) {
+    for (int j = 0; j < model.grid.size[1]; ++j) {
+      for (int i = 0; i < model.grid.size[0]; ++i, ++at) {
+        if (model.labels[at] != 0) {
+          box.extend(model.grid.centre(i, j, k));
+        }
+      }
+    }
+  }
+  if (box.isEmpty()) {
+    throw InputError("the bone is empty; choose one with at least one voxel");
+  }
+  return box;
+}
+
+render::BoneCamera camera_of(const BonePictureOptions& options, const Eigen::AlignedBox3d& box) {
+  const Eigen::Vector3d from = vector_of("--from", options.from);
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  if (from.cross(up).norm() < 1e-3 * from.norm() || from.norm() == 0.0) {
+    throw InputError("--from is along z, the up direction; choose another direction");
+  }
+  const double aspect =
+      static_cast<double>(options.width) / (options.stereo ? 2 : 1) / options.height;
+  render::BoneCamera camera = render::looking_at(box, from, up, aspect);
+  if (!options.at.empty()) {
+    const Eigen::Vector3d target = kMillimetre * vector_of("--at", options.at);
+    camera.eye += target - camera.target;
+    camera.target = target;
+  }
+  return render::zoomed(camera, options.zoom);
+}
+
+void add_burr(const BonePictureOptions& options, render::BoneFrame& frame) {
+  if (options.burr.empty()) {
+    return;
+  }
+  const Stroke burr = parse_stroke("--burr", options.burr);
+  if (burr.from == burr.to) {
+    throw InputError(
+        "--burr has one place for its centre and its handle; write two: X,Y,Z,X2,Y2,Z2,DIAMETER");
+  }
+  render::SceneMesh mesh;
+  const double diameter = 2.0 * burr.radius;
+  mesh.mesh = std::make_shared<geometry::Mesh>(
+      render::burr_mesh(diameter, std::max(0.4 * diameter, 0.0012), 0.09));
+  mesh.pose.translation() = burr.from;
+  mesh.pose.linear() =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), burr.to - burr.from)
+          .toRotationMatrix();
+  frame.meshes.push_back(std::move(mesh));
+}
+
+}  // namespace
+
+int bone_picture(const BonePictureOptions& options) {
+  check(options);
+  const MemoryBudget budget(options.max_memory);
+  bone::LoadOptions load;
+  load.without = options.without;
+  load.room = [&budget](const std::string& what, double bytes) { budget.check(what, bytes); };
+  const bone::BoneModel model = [&] {
+    ShownWork work("reading");
+    return bone::load_bone(options.in, load, work.report());
+  }();
+  bone::BoneVolume volume(model);
+  const std::vector<bool> shows = bone::all_but_bone(model.structures);
+  std::vector<bool> spared;
+  if (options.spare) {
+    spared = shows;
+  }
+  for (const std::string& stroke : options.drill) {
+    carve(volume, parse_stroke("--drill", stroke), spared);
+  }
+  for (const std::string& cut : options.cut) {
+    carve(volume, parse_plane_cut("--cut", cut), spared);
+  }
+  render::BoneFrame frame;
+  frame.camera = camera_of(options, box_of(model));
+  if (options.stereo) {
+    frame.stereo = render::StereoPair{*options.stereo * kMillimetre, {}};
+  }
+  frame.bones = {{0, &volume, Eigen::Isometry3d::Identity()}};
+  add_burr(options, frame);
+
+  render::BoneStyle style;
+  style.visible_array = false;  // one picture
+  const int width = kFiner * options.width;
+  const int height = kFiner * options.height;
+  render::OffscreenContext context(width, height);
+  render::BoneScene scene(context.gl(), style, model.structures,
+                          std::make_shared<bone::StructureDepths>(model, shows));
+  scene.draw(frame, width, height);
+  render::write_png(options.out, render::coarser(context.read(), kFiner));
+  fmt::print("wrote       {}: {} triangles\n", options.out, scene.figures().triangles);
+  return 0;
+}
+
+}  // namespace haptrial::experiments

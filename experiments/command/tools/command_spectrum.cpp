@@ -1,0 +1,215 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "analysis/figure_gnuplot.h"
+#include "core/base/error.h"
+#include "core/base/nearest.h"
+#include "core/geometry/output_file.h"
+#include "core/sound/power_spectrum.h"
+#include "core/sound/wav.h"
+#include "experiments/command/commands.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kSynthesized = 4.0;  // [s]
+
+sound::Burr burr_of(const std::string& name) {
+  for (const sound::Burr burr : sound::kBurrs) {
+    if (name == sound::name_of(burr)) {
+      return burr;
+    }
+  }
+  throw InputError(not_allowed("--burr", fmt::format("'{}'", name), {"diamond", "cutting"}));
+}
+
+void check(const SpectrumOptions& options) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; };
+  if (options.level.empty() || !std::all_of(options.level.begin(), options.level.end(), plain)) {
+    throw InputError(fmt::format(
+        "--level is '{}'; allowed: letters, digits, '-', '_'; 'free' is a drill in the air",
+        options.level));
+  }
+  if (!(options.force >= 0.0 && options.force <= 1000.0)) {
+    throw InputError(fmt::format("--force is {}; allowed: 0 to 1000 [N]", options.force));
+  }
+  if (options.peaks < 1 || options.peaks > sound::Spectrum::kMaxPeaks) {
+    throw InputError(
+        fmt::format("--peaks is {}; allowed: 1 to {}", options.peaks, sound::Spectrum::kMaxPeaks));
+  }
+  if (!options.picture.empty()) {
+    const std::string ending = fs::path(options.picture).extension().string();
+    if (ending != ".png" && ending != ".svg") {
+      throw InputError(
+          fmt::format("{}: ends in '{}'; allowed: .png, .svg", options.picture, ending));
+    }
+    if (!options.overwrite && fs::exists(options.picture)) {
+      throw InputError(fmt::format("{}: exists already; choose another name or add --overwrite",
+                                   options.picture));
+    }
+  }
+}
+
+sound::PowerSpectrum spectrum_of(const sound::Recording& recording, int segment,
+                                 const std::string& file) {
+  constexpr std::size_t kFewest = 4096;
+  if (recording.samples.size() < kFewest) {
+    throw InputError(fmt::format("{}: has {} samples; allowed: at least {}", file,
+                                 recording.samples.size(), kFewest));
+  }
+  try {
+    return sound::power_spectrum(recording.samples, recording.rate, segment);
+  } catch (const std::invalid_argument&) {
+    throw InputError(fmt::format(
+        "--segment is {}; allowed: a power of two from 16 to the recording's {} samples", segment,
+        recording.samples.size()));
+  }
+}
+
+void print(const sound::Recording& recording, const sound::PowerSpectrum& power,
+           const sound::Spectrum& found) {
+  fmt::print("recording   {:.3f} s at {:.0f} Hz\n",
+             static_cast<double>(recording.samples.size()) / recording.rate, recording.rate);
+  fmt::print("spectrum    {} segments, a bin every {:.4g} Hz\n", power.segments, power.bin);
+  fmt::print("dominant    {:.1f} Hz; fundamental {:.1f} Hz\n", sound::dominant(found),
+             sound::fundamental(found));
+  fmt::print("peaks       {:>10} {:>10} {:>10}\n", "Hz", "amplitude", "width, Hz");
+  for (int i = 0; i < found.count; ++i) {
+    const sound::Peak& peak = found.peaks[static_cast<std::size_t>(i)];
+    fmt::print("            {:>10.1f} {:>10.5f} {:>10.1f}\n", peak.frequency, peak.amplitude,
+               peak.bandwidth);
+  }
+  fmt::print("noise       {:.5f}\n", found.noise);
+}
+
+/// The table with the level in its place, by rising force.
+sound::SpectrumTable table_with(const SpectrumOptions& options, const sound::Spectrum& found) {
+  sound::SpectrumTable table;
+  table.unit = "full scale";
+  table.source = fmt::format("haptrial spectrum {}", fs::path(options.file).filename().string());
+  if (options.add && fs::exists(options.out)) {
+    const std::string more = table.source;
+    table = sound::read_spectrum_table(options.out);
+    table.source = fmt::format("{}; {}", table.source, more);
+  }
+  auto& kind = table.of(burr_of(options.burr));
+  const auto same = [&](const sound::Level& level) { return level.name == options.level; };
+  std::erase_if(kind.free, same);
+  std::erase_if(kind.contact, same);
+  if (options.level == "free") {
+    kind.free = {{options.level, 0.0, true, found}};
+    return table;
+  }
+  for (const sound::Level& level : kind.contact) {
+    if (level.force == options.force) {
+      throw InputError(fmt::format("{}: the level '{}' is at {} N already; choose another --force",
+                                   options.out, level.name, options.force));
+    }
+  }
+  const auto above = std::find_if(kind.contact.begin(), kind.contact.end(),
+                                  [&](const auto& level) { return level.force > options.force; });
+  kind.contact.insert(above, {options.level, options.force, true, found});
+  return table;
+}
+
+std::vector<float> synthesized(const sound::Spectrum& found, double rate) {
+  sound::Harmonics harmonics(rate, RandomStream(1, "spectrum"), 0.0);
+  harmonics.aim(found, 1.0, 1.0);
+  std::vector<float> samples(static_cast<std::size_t>(kSynthesized * rate));
+  for (float& sample : samples) {
+    sample = static_cast<float>(std::clamp(harmonics.next(), -1.0, 1.0));
+  }
+  return samples;
+}
+
+analysis::Series curve(const sound::PowerSpectrum& power, const char* label,
+                       const analysis::Look& look, double highest) {
+  constexpr double kLeast = 1e-14;
+  analysis::Series series{label, analysis::Mark::kLine, look};
+  for (std::size_t i = 1; i < power.power.size(); ++i) {
+    const double frequency = static_cast<double>(i) * power.bin;
+    if (frequency <= highest) {
+      series.x.push_back(1e-3 * frequency);
+      series.y.push_back(10.0 * std::log10(std::max(kLeast, power.power[i] / power.bin)));
+    }
+  }
+  return series;
+}
+
+/// The recording's spectrum beside that of the sound that is made from its peaks.
+void draw(const SpectrumOptions& options, const sound::PowerSpectrum& recorded,
+          const sound::PowerSpectrum& made) {
+  constexpr double kHighest = 16'000.0;  // [Hz]
+  analysis::Figure figure;
+  figure.name = "spectrum";
+  figure.title = fmt::format("{}", fs::path(options.file).filename().string());
+  figure.x_label = "frequency [kHz]";
+  figure.y_label = "power density [dB re full scale²/Hz]";
+  figure.series.push_back(
+      curve(recorded, "recorded", {.color = "#1f6f8b", .width = 2.0}, kHighest));
+  figure.series.push_back(
+      curve(made, "from its peaks", {.color = "#c8553d", .dash = "(6,3)", .width = 1.5}, kHighest));
+  figure.height = 0.45;
+  std::string folder = (fs::temp_directory_path() / "haptrial-spectrum-XXXXXX").string();
+  if (mkdtemp(folder.data()) == nullptr) {
+    throw RunError(fmt::format("{}: cannot be made", folder));
+  }
+  std::error_code ignored;
+  try {
+    analysis::draw_figures({figure}, folder);
+    const fs::path drawn =
+        fs::path(folder) / ("spectrum" + fs::path(options.picture).extension().string());
+    fs::copy_file(drawn, options.picture, fs::copy_options::overwrite_existing);
+  } catch (const fs::filesystem_error& error) {
+    fs::remove_all(folder, ignored);
+    throw InputError(
+        fmt::format("{}: cannot be written ({}); choose a folder with write permission",
+                    options.picture, error.code().message()));
+  } catch (...) {
+    fs::remove_all(folder, ignored);
+    throw;
+  }
+  fs::remove_all(folder, ignored);
+}
+
+}  // namespace
+
+int spectrum(const SpectrumOptions& options) {
+  check(options);
+  burr_of(options.burr);
+  const sound::Recording recording = sound::read_recording(options.file);
+  const sound::PowerSpectrum power = spectrum_of(recording, options.segment, options.file);
+  const sound::Spectrum found = sound::find_peaks(power, {.most = options.peaks});
+  print(recording, power, found);
+  if (!options.out.empty()) {
+    const sound::SpectrumTable table = table_with(options, found);
+    geometry::OutputFile out(options.out, options.overwrite || options.add);
+    out.write(sound::to_toml(table));
+    out.finish();
+    fmt::print("wrote       {}\n", options.out);
+  }
+  if (options.wav.empty() && options.picture.empty()) {
+    return 0;
+  }
+  const std::vector<float> made = synthesized(found, recording.rate);
+  if (!options.wav.empty()) {
+    sound::WavWriter wav(options.wav, static_cast<int>(recording.rate), options.overwrite);
+    wav.write(made);
+    wav.finish();
+    fmt::print("wrote       {}\n", options.wav);
+  }
+  if (!options.picture.empty()) {
+    draw(options, power, sound::power_spectrum(made, recording.rate, options.segment));
+    fmt::print("wrote       {}\n", options.picture);
+  }
+  return 0;
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "experiments/control/session_control.h"
+
+namespace haptrial::experiments {
+
+struct ConsoleOptions {
+  std::string address{"127.0.0.1"};  // numeric, of one network interface
+  int port{0};                       // 0: any that is free
+  bool allow_remote{false};          // other addresses than loopback
+  double events_per_second{15.0};    // to each page, 1 to 60
+  double request_time{2.0};          // a request that takes longer is refused > 0 [s]
+  int workers{8};        // requests at a time of those who have not shown the token, >= 1
+  int event_streams{4};  // pages at a time, >= 1
+  int waiting{32};       // connections that may wait for a worker
+  /// Gets a sentence for each of the first refusals (RefusalLog); on a thread of the console.
+  std::function<void(const std::string&)> on_refusal;
+};
+
+/// The experimenter's console: one page, served on threads of its own, that shows
+/// SessionControl::status() and turns clicks into SessionControl::ask() and note(). It knows
+/// nothing else of the session, so nothing that a browser does reaches the servo thread but as
+/// a message. Who shows the token is served by threads that nobody else can occupy, so that no
+/// flood keeps an emergency stop waiting. The HTTP library makes the process ignore SIGPIPE.
+///
+///     GET /?token=T        the page
+///     GET /events?token=T  server-sent events, each a status as JSON
+///     POST /ask            {"request": "pause"}, with the header X-Haptrial-Token
+///     POST /note           {"text": "..."}, likewise
+class Console {
+ public:
+  /// Serves when it returns. @param control  outlives the console.
+  /// @throws InputError for an address or option that is not allowed; RunError where the port is
+  /// taken.
+  explicit Console(SessionControl& control, ConsoleOptions options = {});
+  /// Hangs up on every client and returns within a fraction of a second.
+  ~Console();
+  Console(const Console&) = delete;
+  Console& operator=(const Console&) = delete;
+
+  /// What the experimenter opens; holds the token.
+  std::string url() const;
+  int port() const;
+  const std::string& token() const;
+
+  /// Requests that were refused, and the first ones in a sentence each. Any thread.
+  std::uint64_t refused() const;
+  std::vector<std::string> refusals() const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,188 @@
+#include "experiments/console/console_door.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <map>
+#include <utility>
+
+#include "experiments/console/console_guard.h"
+
+namespace haptrial::experiments {
+
+using Clock = std::chrono::steady_clock;
+
+Workers::Workers(int threads, int waiting) : waiting_(static_cast<std::size_t>(waiting)) {
+  for (int i = 0; i < threads; ++i) {
+    threads_.emplace_back([this] { work(); });
+  }
+}
+
+Workers::~Workers() {
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  come_.notify_all();
+  for (std::thread& thread : threads_) {
+    thread.join();
+  }
+}
+
+bool Workers::enqueue(std::function<void()> task) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (tasks_.size() >= waiting_) {
+      return false;
+    }
+    tasks_.push_back(std::move(task));
+    crowded_ = true;
+  }
+  come_.notify_one();
+  return true;
+}
+
+void Workers::work() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    come_.wait(lock, [this] { return ended_ || !tasks_.empty(); });
+    if (tasks_.empty()) {
+      return;
+    }
+    const auto task = std::move(tasks_.front());
+    tasks_.pop_front();
+    crowded_ = !tasks_.empty();
+    lock.unlock();
+    task();
+    lock.lock();
+  }
+}
+
+bool shows_token(const std::string& text, const std::string& token) {
+  constexpr std::string_view kWord = "oken";  // of X-Haptrial-Token: and of ?token=
+  for (auto at = text.find(kWord); at != std::string::npos; at = text.find(kWord, at + 1)) {
+    const auto from = text.find_first_not_of(":= ", at + kWord.size());
+    if (from != std::string::npos && is_same_secret(text.substr(from, token.size()), token)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+FrontDoor::FrontDoor(int listening, const StopEvent& stop, Rules rules, Ways ways)
+    : listening_(listening),
+      stop_(stop.descriptor()),
+      rules_(std::move(rules)),
+      ways_(std::move(ways)) {
+  ::fcntl(listening_, F_SETFL, ::fcntl(listening_, F_GETFL) | O_NONBLOCK);
+  thread_ = std::thread([this] { run(); });
+}
+
+FrontDoor::~FrontDoor() {
+  thread_.join();
+  for (const Guest& guest : guests_) {
+    ::close(guest.socket);
+  }
+}
+
+void FrontDoor::run() {
+  constexpr int kSlice = 25;  // between two looks at the time [ms]
+  std::vector<pollfd> watched;
+  std::vector<bool> spoke;
+  for (;;) {
+    watched = {{stop_, POLLIN, 0}, {listening_, POLLIN, 0}};
+    for (const Guest& guest : guests_) {
+      watched.push_back({guest.socket, POLLIN, 0});
+    }
+    ::poll(watched.data(), watched.size(), guests_.empty() ? -1 : kSlice);
+    if (watched[0].revents != 0) {
+      return;
+    }
+    spoke.assign(guests_.size(), false);
+    for (std::size_t i = 0; i < guests_.size(); ++i) {
+      spoke[i] = watched[i + 2].revents != 0;
+    }
+    sort_out(spoke);
+    if (watched[1].revents != 0) {
+      take_in();
+    }
+  }
+}
+
+void FrontDoor::sort_out(const std::vector<bool>& spoke) {
+  const auto patience = std::chrono::duration_cast<Clock::duration>(rules_.patience);
+  const auto now = Clock::now();
+  std::vector<Guest> stay;
+  for (std::size_t i = 0; i < guests_.size(); ++i) {
+    const Guest& guest = guests_[i];
+    if (spoke[i] && see_to(guest)) {
+      continue;
+    }
+    if (now - guest.came > patience) {  // browsers open some ahead of need: no refusal
+      ::close(guest.socket);
+      continue;
+    }
+    stay.push_back(guest);
+  }
+  guests_ = std::move(stay);
+}
+
+bool FrontDoor::see_to(const Guest& guest) {
+  std::array<char, 2048> first;
+  const ssize_t count = ::recv(guest.socket, first.data(), first.size(), MSG_PEEK | MSG_DONTWAIT);
+  if (count < 0 && (errno == EAGAIN || errno == EINTR)) {
+    return false;
+  }
+  if (count <= 0) {
+    ::close(guest.socket);
+    return true;
+  }
+  const std::string text(first.data(), static_cast<std::size_t>(count));
+  ways_.admit(guest.socket, shows_token(text, rules_.token));
+  return true;
+}
+
+void FrontDoor::take_in() {
+  constexpr int kAtOnce = 64;  // before it looks again who has spoken
+  for (int i = 0; i < kAtOnce; ++i) {
+    const int socket = ::accept4(listening_, nullptr, nullptr, SOCK_CLOEXEC);
+    if (socket < 0) {
+      if ((errno == EMFILE || errno == ENFILE) && !guests_.empty()) {
+        make_room();
+        continue;
+      }
+      return;
+    }
+    Guest guest{socket, address_of(socket), Clock::now()};
+    if (see_to(guest)) {
+      continue;
+    }
+    if (guests_.size() >= rules_.silent) {
+      make_room();
+    }
+    guests_.push_back(std::move(guest));
+  }
+}
+
+void FrontDoor::make_room() {
+  std::map<std::string, int> of_address;
+  for (const Guest& guest : guests_) {
+    ++of_address[guest.address];
+  }
+  const auto most =
+      std::max_element(of_address.begin(), of_address.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto oldest = std::find_if(guests_.begin(), guests_.end(), [&](const Guest& guest) {
+    return guest.address == most->first;
+  });
+  ways_.refuse(oldest->socket);
+  ::close(oldest->socket);
+  guests_.erase(oldest);
+}
+
+}  // namespace haptrial::experiments

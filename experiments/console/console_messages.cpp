@@ -1,0 +1,128 @@
+#include "experiments/console/console_messages.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/base/error.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array<std::pair<Request, const char*>, 8> kNames{{
+    {Request::kStart, "start"},
+    {Request::kPause, "pause"},
+    {Request::kRepeatTrial, "repeat"},
+    {Request::kSkipTrial, "skip"},
+    {Request::kAbort, "abort"},
+    {Request::kEnd, "end"},
+    {Request::kEmergencyStop, "emergency_stop"},
+    {Request::kClear, "clear"},
+}};
+
+/// The one string that an object holds.
+std::string only_string(const std::string& text, const char* key) {
+  const json body = json::parse(text, nullptr, false);
+  if (body.is_discarded()) {
+    throw InputError("the body is not JSON");
+  }
+  if (!body.is_object() || body.size() != 1 || !body.contains(key) || !body[key].is_string()) {
+    throw InputError(fmt::format("the body must be an object with the string \"{}\" alone", key));
+  }
+  return body[key].get<std::string>();
+}
+
+/// Null in a session without live figures.
+json figures_json(const std::optional<record::LiveState>& state) {
+  if (!state) {
+    return nullptr;
+  }
+  json figures = json::array();
+  for (const record::LiveState::Figure& figure : state->figures) {
+    figures.push_back({{"name", figure.name}, {"value", figure.value}, {"alarm", figure.alarm}});
+  }
+  return {{"trial", state->trial},
+          {"practice", state->practice},
+          {"title", state->title},
+          {"figures", figures}};
+}
+
+}  // namespace
+
+const char* name_of(Request request) noexcept {
+  for (const auto& [each, name] : kNames) {
+    if (each == request) {
+      return name;
+    }
+  }
+  return "";
+}
+
+Request parse_request(const std::string& text) {
+  const std::string wanted = only_string(text, "request");
+  std::string allowed;
+  for (const auto& [request, name] : kNames) {
+    if (wanted == name) {
+      return request;
+    }
+    allowed += allowed.empty() ? name : fmt::format(", {}", name);
+  }
+  throw InputError(
+      fmt::format("the request '{}' is not known; allowed: {}", wanted.substr(0, 40), allowed));
+}
+
+std::string parse_note(const std::string& text) {
+  constexpr std::size_t kLongest = 2000;
+  std::string note = only_string(text, "text");
+  if (note.find_first_not_of(" \t\r\n") == std::string::npos || note.size() > kLongest) {
+    throw InputError(fmt::format("the note has {} bytes; allowed: 1 to {}, not all of them blank",
+                                 note.size(), kLongest));
+  }
+  if (note.find('\0') != std::string::npos) {
+    throw InputError("the note holds a zero byte");
+  }
+  return note;
+}
+
+std::string status_json(const SessionStatus& s, std::uint64_t refused) {
+  const json out{
+      {"subject", s.subject},
+      {"state", s.state},
+      {"screen", s.screen},
+      {"trial", s.trial},
+      {"trials", s.trials},
+      {"trials_defined", s.trials_defined},
+      {"block", s.block},
+      {"blocks", s.blocks},
+      {"condition", s.condition},
+      {"phase", s.phase},
+      {"stage", s.stage},
+      {"break_left", s.break_left},
+      {"target_force", s.target_force},
+      {"applied_force", s.applied_force},
+      {"position", {s.position.x(), s.position.y(), s.position.z()}},
+      {"device", s.device},
+      {"fault", s.fault},
+      {"simulated", s.simulated},
+      {"rate", s.rate},
+      {"rate_measured", s.rate_measured},
+      {"ticks", s.ticks},
+      {"overruns", s.overruns},
+      {"dropped", s.dropped},
+      {"lateness_median_us", s.lateness_median_us},
+      {"lateness_99_us", s.lateness_99_us},
+      {"lateness_worst_us", s.lateness_worst_us},
+      {"aborted_passes", s.aborted_passes},
+      {"refused", refused},
+      {"notices", s.notices},
+      {"figures", figures_json(s.figures)},
+      {"has_target", s.has_target},
+  };
+  return out.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace haptrial::experiments

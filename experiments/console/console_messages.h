@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "experiments/control/session_control.h"
+
+namespace haptrial::experiments {
+
+/// The status as one line of JSON; a number that is not finite becomes null, text that is not UTF-8
+/// is mended. @param refused  requests that the console has turned away.
+std::string status_json(const SessionStatus& status, std::uint64_t refused);
+
+/// {"request": "pause"}; the names are start, pause, repeat, skip, abort, end, emergency_stop,
+/// clear.
+/// @throws InputError
+Request parse_request(const std::string& json);
+
+/// {"text": "..."}, 1 to 2000 bytes.
+/// @throws InputError
+std::string parse_note(const std::string& json);
+
+/// "pause"
+const char* name_of(Request request) noexcept;
+
+}  // namespace haptrial::experiments

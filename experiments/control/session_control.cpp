@@ -1,0 +1,59 @@
+#include "experiments/control/session_control.h"
+
+#include <utility>
+
+namespace haptrial::experiments {
+
+void SessionControl::on_emergency(std::function<void()> stop) {
+  const std::lock_guard lock(stop_mutex_);
+  stop_ = std::move(stop);
+}
+
+const char* name_of(Asker by) noexcept {
+  switch (by) {
+    case Asker::kConsole:
+      return "console";
+    case Asker::kTerminal:
+      return "terminal";
+    case Asker::kWindow:
+      return "window";
+  }
+  return "";
+}
+
+void SessionControl::ask(Request request, Asker by) {
+  if (request == Request::kEmergencyStop) {
+    const std::lock_guard lock(stop_mutex_);
+    if (stop_) {
+      stop_();
+    }
+  }
+  const std::lock_guard lock(mutex_);
+  messages_.push_back({false, request, "", by});
+}
+
+void SessionControl::note(std::string text) {
+  constexpr std::size_t kLongest = 2000;
+  if (text.size() > kLongest) {
+    text.resize(kLongest);
+  }
+  const std::lock_guard lock(mutex_);
+  messages_.push_back({true, Request::kStart, std::move(text), Asker::kConsole});
+}
+
+std::vector<SessionControl::Message> SessionControl::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(messages_, {});
+}
+
+void SessionControl::publish(SessionStatus status) {
+  const std::lock_guard lock(mutex_);
+  status_ = std::move(status);
+}
+
+SessionStatus SessionControl::status() const {
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+
+}  // namespace haptrial::experiments

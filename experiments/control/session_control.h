@@ -1,0 +1,97 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/record/live_figures.h"
+
+namespace haptrial::experiments {
+
+/// Who asks for something: what stands in the events of the session file.
+enum class Asker : std::uint8_t { kConsole, kTerminal, kWindow };
+const char* name_of(Asker by) noexcept;  // "console", "terminal", "window"
+
+/// What an experimenter asks of a running session, from the console or the keyboard.
+enum class Request : std::uint8_t {
+  kStart,          // leave a text screen or a pause
+  kPause,          // after the present pass
+  kRepeatTrial,    // the present trial again, now
+  kSkipTrial,      // on to the next trial
+  kAbort,          // stop the session here; --resume goes on with it
+  kEnd,            // the same for good: nobody goes on with it
+  kEmergencyStop,  // force to zero within a tick; stays until kClear
+  kClear,          // the experimenter has seen to the cause
+};
+
+/// What a session shows of itself, about 20 times a second.
+struct SessionStatus {
+  std::string subject;
+  std::string
+      state;  // "instructions", "practice", "running", "paused", "break", "stopped", "ended"
+  std::string screen;     // text that the participant reads; empty during a pass
+  int trial{0};           // from 1
+  int trials{0};          // planned in this session
+  int trials_defined{0};  // of the definition
+  int block{0};           // from 1
+  int blocks{0};
+  std::string condition;                              // training condition of the block
+  std::string phase;                                  // "training" or "test"
+  std::string stage;                                  // "approach", "wait", "run", "return", "idle"
+  double break_left{0.0};                             // [s]
+  double target_force{0.0};                           // [N]
+  double applied_force{0.0};                          // [N]
+  Eigen::Vector3d position{Eigen::Vector3d::Zero()};  // [m]
+  std::string device;
+  std::string fault;  // one sentence; empty where there is none
+  bool simulated{false};
+  double rate{0.0};           // nominal [Hz]
+  double rate_measured{0.0};  // over the last second; 0: not known yet [Hz]
+  std::uint64_t ticks{0};
+  std::uint64_t overruns{0};
+  std::uint64_t dropped{0};
+  double lateness_median_us{0.0};
+  double lateness_99_us{0.0};
+  double lateness_worst_us{0.0};
+  int aborted_passes{0};
+  std::vector<std::string> notices;          // sentences that an experimenter has to know
+  bool has_target{true};  // there is a force to follow
+  std::optional<record::LiveState> figures;  // of the present trial, if the study has some
+};
+
+/// The only way from a person at a console to a session: messages in, a picture of the state out.
+/// Every member may be called from any thread but the servo thread.
+class SessionControl {
+ public:
+  /// What an emergency stop does at once, before the session's thread takes the message.
+  void on_emergency(std::function<void()> stop);
+
+  void ask(Request request, Asker by = Asker::kConsole);
+  /// @param text  kept as an event of kind "note", at most 2000 bytes; longer ones are cut.
+  void note(std::string text);
+
+  /// Session's thread: what came since the last call, in order.
+  struct Message {
+    bool is_note{false};
+    Request request{Request::kStart};
+    std::string text;
+    Asker by{Asker::kConsole};
+  };
+  std::vector<Message> take();
+
+  void publish(SessionStatus status);  // session's thread
+  SessionStatus status() const;
+
+ private:
+  std::mutex stop_mutex_;  // a stop waits for nobody who reads or publishes
+  std::function<void()> stop_;
+  mutable std::mutex mutex_;
+  std::vector<Message> messages_;
+  SessionStatus status_;
+};
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,84 @@
+#include "experiments/control/session_desk.h"
+
+#include <utility>
+
+namespace haptrial::experiments {
+
+SessionDesk::SessionDesk(SessionControl* control, Actions actions)
+    : control_(control), actions_(std::move(actions)) {}
+
+void SessionDesk::follow(std::span<const record::Sample> samples, double period_ns) {
+  if (attended()) {
+    live_.follow(samples, period_ns);
+  }
+}
+
+void SessionDesk::take_messages() {
+  if (!attended()) {
+    return;
+  }
+  for (const SessionControl::Message& message : control_->take()) {
+    if (message.is_note) {
+      actions_.event("note", message.text);
+    } else {
+      heed(message.request, message.by);
+    }
+  }
+}
+
+void SessionDesk::heed(Request request, Asker by) {
+  const std::string who = std::string("by the ") + name_of(by);
+  switch (request) {
+    case Request::kStart:
+      wishes_.start = true;
+      wishes_.pause = false;
+      actions_.event("start", who);
+      break;
+    case Request::kPause:
+      wishes_.pause = true;
+      break;
+    case Request::kRepeatTrial:
+      wishes_.repeat = true;
+      actions_.break_off();
+      break;
+    case Request::kSkipTrial:
+      wishes_.skip = true;
+      actions_.break_off();
+      break;
+    case Request::kEnd:
+      wishes_.for_good = true;
+      [[fallthrough]];
+    case Request::kAbort:
+      wishes_.abort = true;
+      actions_.break_off();
+      break;
+    case Request::kEmergencyStop:  // the force is zero already
+      if (!std::exchange(wishes_.stopped, true)) {
+        actions_.event("emergency_stop", who);
+      }
+      break;
+    case Request::kClear:
+      wishes_.stopped = false;
+      wishes_.pause = true;  // goes on when the experimenter says so
+      status_.fault.clear();
+      actions_.clear_fault();
+      actions_.event("clear", who);
+      break;
+  }
+}
+
+void SessionDesk::publish(const std::string& state) {
+  constexpr std::chrono::milliseconds kBetween{50};
+  const auto now = std::chrono::steady_clock::now();
+  if (!attended() || (now - published_ < kBetween && status_.state == state)) {
+    return;
+  }
+  published_ = now;
+  status_.state = state;
+  rate_.add(now, status_.ticks);
+  status_.rate_measured = rate_.rate();
+  live_.fill(status_);
+  control_->publish(status_);
+}
+
+}  // namespace haptrial::experiments

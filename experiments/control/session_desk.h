@@ -1,0 +1,61 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "core/record/session_types.h"
+#include "experiments/control/live_status.h"
+#include "experiments/control/session_control.h"
+#include "experiments/control/tick_rate.h"
+
+namespace haptrial::experiments {
+
+/// What the experimenter asked for and has not come about yet.
+struct Wishes {
+  bool start{false};  // go on before the time of a break has passed
+  bool pause{false};
+  bool repeat{false};    // the present trial
+  bool skip{false};      // the present trial
+  bool abort{false};     // the session
+  bool for_good{false};  // with abort: nobody goes on with it
+  bool stopped{false};   // by a fault or an emergency stop, until it is cleared
+};
+
+/// The session's side of its control: turns messages into wishes and events, and shows how the
+/// session stands. Without a control it does nothing. Session's thread.
+class SessionDesk {
+ public:
+  /// What a message does to the session at once.
+  struct Actions {
+    std::function<void()> break_off;  // the present pass
+    std::function<void()> clear_fault;
+    std::function<void(const std::string& kind, const std::string& text)> event;
+  };
+  SessionDesk(SessionControl* control, Actions actions);
+
+  bool attended() const { return control_ != nullptr; }
+  void follow(std::span<const record::Sample> samples, double period_ns);
+
+  void take_messages();
+  Wishes& wishes() { return wishes_; }
+
+  /// Fields that the session fills itself.
+  SessionStatus& status() { return status_; }
+  /// About 20 times a second, and at once where the state changes.
+  void publish(const std::string& state);
+
+ private:
+  void heed(Request request, Asker by);
+
+  SessionControl* control_;
+  Actions actions_;
+  LiveStatus live_;
+  TickRate rate_;
+  Wishes wishes_;
+  SessionStatus status_;
+  std::chrono::steady_clock::time_point published_{};
+};
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocols/interface/definition.h"
+#include "protocols/interface/rig.h"
+
+namespace haptrial::experiments {
+
+/// Which device, and where its vendor's library is.
+struct DeviceChoice {
+  std::string name{"virtual"};  // or mouse, force-dimension, open-haptics, replay:FILE
+  std::string library{};        // a path in place of the search
+};
+
+/// Opens the devices of a session, set up as the definition says; replay:FILE plays a recorded
+/// session's hand back.
+/// @param choices      of each device in their order; for those that it leaves out the last one
+/// @param virtual_rig  makes virtual devices with a virtual person
+/// @throws InputError for an unknown name, an absent library or an envelope that the device cannot
+///         fill; RunError where no device answers.
+std::unique_ptr<protocols::Rig> make_rig(
+    const std::vector<DeviceChoice>& choices, const protocols::Definition& definition,
+    const std::function<std::unique_ptr<protocols::Rig>()>& virtual_rig);
+
+/// @throws InputError unless make_rig knows the name.
+void check_device_name(const std::string& name);
+
+/// @throws InputError for a library that this device has no use for.
+void check_library(const std::string& device, const std::string& library);
+
+/// FILE of replay:FILE; nothing for any other device.
+std::optional<std::string> replayed_file(const std::string& device);
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,509 @@
+#include "experiments/runner/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/random.h"
+#include "core/record/damping_event.h"
+#include "experiments/control/interrupt.h"
+#include "experiments/control/last_stop.h"
+#include "experiments/control/progress.h"
+#include "experiments/control/session_desk.h"
+#include "experiments/runner/devices.h"
+#include "experiments/runner/servo_thread.h"
+#include "experiments/runner/session_notices.h"
+#include "experiments/runner/session_opening.h"
+#include "experiments/runner/session_pace.h"
+#include "experiments/runner/session_record.h"
+#include "protocols/interface/session_task.h"
+#include "protocols/interface/trials.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using protocols::Outcome;
+using protocols::PlannedTrial;
+using protocols::TrialEnd;
+using realtime::ClockKind;
+
+/// Where somebody looks at the figures: at a console, or at the end.
+std::unique_ptr<record::LiveFigures> open_live(const SessionRequest& request,
+                                               const std::filesystem::path& resumed) {
+  const bool seen = request.clock == ClockKind::kReal || request.control != nullptr;
+  return seen && request.live ? request.live(resumed) : nullptr;
+}
+
+std::filesystem::path resumed_file(const SessionRequest& request) {
+  return request.resume ? std::filesystem::path(request.file.string() + ".partial")
+                        : std::filesystem::path();
+}
+
+std::vector<DeviceChoice> choices_of(const SessionRequest& request) {
+  std::vector<DeviceChoice> choices{request.device};
+  choices.insert(choices.end(), request.more_devices.begin(), request.more_devices.end());
+  return choices;
+}
+
+std::vector<protocols::DeviceSet::Arm> arms_of(protocols::Rig& rig,
+                                               const device::EnvelopeLimits& envelope) {
+  std::vector<protocols::DeviceSet::Arm> arms{{&rig.device(), envelope}};
+  for (const protocols::DeviceSet::Arm& arm : rig.others()) {
+    arms.push_back(arm);
+  }
+  return arms;
+}
+
+/// Whether somebody feels the forces.
+bool is_felt(protocols::Rig& rig) {
+  return !rig.device().info().simulated && rig.mouse() == nullptr;
+}
+
+class Session {
+ public:
+  explicit Session(const SessionRequest& request);
+  ~Session();
+  SessionSummary run();
+  bool hangs() const { return servo_.hangs(); }
+
+ private:
+  std::vector<stimulus::Observer*> observers();
+  SessionDesk::Actions desk_actions();
+
+  void show_trial();
+  void run_trials();
+  std::optional<PlannedTrial> following(const Outcome* last);
+  bool has_break_after(const PlannedTrial& trial) const;
+  Outcome present(const PlannedTrial& trial);
+  bool run_trial(const PlannedTrial& trial, int attempt);
+  bool run_pass(const PlannedTrial& trial, const record::Phase& phase, int attempt);
+  void keep_responses();
+  protocols::SessionPlace place();
+  void note_damping(const protocols::PassResult& result);
+  void after_abort(const protocols::PassResult& result);
+  std::string why_broken_off();
+
+  void finish();
+  void give_up() noexcept;
+  void end_servo();
+  void note_troubles();
+
+  const SessionRequest& request_;
+  const protocols::Definition& d_;
+  const bool real_;
+  std::unique_ptr<Progress> progress_;  // of what takes seconds
+  SessionSummary summary_;
+  std::vector<record::ResponseRow> responses_;  // of the present attempt
+  bool left_{false};  // trials that an abort kept from being presented to their end
+  realtime::ServoLoop loop_;
+  // Before the task: the servo thread may be using its pass when an error
+  // leaves a function.
+  protocols::SessionPlace place_;
+  std::unique_ptr<protocols::Trials> trials_;
+  std::unique_ptr<protocols::Rig> rig_;
+  std::atomic<std::uint32_t> held_keys_{0};  // functions, from the screen's thread
+  std::atomic<bool> begin_pressed_{false};   // likewise, without an experimenter
+  std::unique_ptr<Screen> screen_;
+  std::unique_ptr<record::LiveFigures> live_;
+  SessionRecord record_;  // opened when everything else is there
+  SessionDesk desk_;
+  protocols::SessionTask task_;
+  SessionPace pace_;
+  SessionNotices notices_;
+  ServoThread servo_;  // on a real clock
+  SessionStop stop_;
+  std::optional<WatchedStop> watched_;  // on a real clock
+};
+
+protocols::SessionPlace Session::place() {
+  protocols::SessionPlace place;
+  place.subject = request_.subject;
+  place.participant = request_.participant;
+  place.seed = request_.seed;
+  place.session_seed = derived_seed(request_.seed, "participant " + request_.subject);
+  place.real = real_;
+  place.window = request_.window;
+  place.frames_per_pass = request_.frames_per_pass;
+  place.frames_folder = request_.frames_folder;
+  place.resumed = resumed_file(request_);
+  place.pulse = [this](const char* what, double share) {
+    if (!progress_) {
+      progress_ = std::make_unique<Progress>(what, 1.0);
+    }
+    pace_.meanwhile();
+    progress_->update(share, "", 0.0);
+  };
+  return place;
+}
+
+Session::Session(const SessionRequest& request)
+    : request_(request),
+      d_(*request.definition),
+      real_(request.clock == ClockKind::kReal),
+      loop_(request.clock, d_.rate),
+      place_(place()),
+      trials_(request.protocol->trials(d_, place_)),
+      rig_(make_rig(choices_of(request), d_, [this] { return trials_->virtual_rig(); })),
+      screen_(open_screen(request, rig_->mouse(), &held_keys_, &begin_pressed_)),
+      live_(open_live(request, place_.resumed)),
+      record_(request, rig_->device().info(), loop_, *trials_, live_.get()),
+      desk_(request.control, desk_actions()),
+      task_({.devices = arms_of(*rig_, d_.envelope),
+             .log = record_.log(),
+             .device_log = &record_.device_log(),
+             .tick_log = trials_->tick_log(),
+             .observers = observers(),
+             .keys = &held_keys_},
+            real_ ? protocols::SessionTask::Leave::kNever
+                  : protocols::SessionTask::Leave::kAfterPassOrSlice,
+            record_.origin()),
+      pace_({request, loop_, record_, desk_, task_, is_felt(*rig_), screen_.get(), &begin_pressed_,
+             live_.get()}),
+      notices_({request, loop_, record_, desk_, summary_}),
+      servo_(loop_, task_, longest_fade(d_.envelope)),
+      stop_(task_, servo_, rig_->device()) {
+  SessionStatus& status = desk_.status();
+  status.subject = request.subject;
+  status.device = request.device.name;
+  status.simulated = rig_->device().info().simulated;
+  status.rate = d_.rate;
+  status.has_target = d_.has_target();
+  if (real_) {
+    watched_.emplace(stop_);
+  }
+  if (request.control != nullptr) {
+    request.control->on_emergency([this] { task_.emergency_stop(); });
+  }
+}
+
+Session::~Session() {
+  watched_.reset();
+  if (request_.control != nullptr) {
+    request_.control->on_emergency(nullptr);
+  }
+}
+
+SessionDesk::Actions Session::desk_actions() {
+  return {[this] { task_.break_off(); }, [this] { task_.clear_fault(); },
+          [this](const std::string& kind, const std::string& text) { record_.event(kind, text); }};
+}
+
+std::vector<stimulus::Observer*> Session::observers() {
+  std::vector<stimulus::Observer*> all;
+  if (rig_->subject() != nullptr) {
+    all.push_back(rig_->subject());
+  }
+  for (stimulus::Observer* observer : trials_->observers()) {
+    all.push_back(observer);
+  }
+  if (screen_) {
+    all.push_back(screen_.get());
+  }
+  return all;
+}
+
+SessionSummary Session::run() {
+  const protocols::Extent extent = trials_->extent(request_.max_trials);
+  try {
+    record_.set_planned(extent.trials);
+    record_.open(planned_of(extent, d_.design.trials));
+    if (real_) {
+      servo_.start();
+    }
+    notices_.note(record_.notice());
+    for (const std::string& notice : trials_->notices()) {
+      notices_.note(notice);
+    }
+    notices_.note_real_time();
+    notices_.say_plan(extent, record_.finished(trials_->phases().back()));
+    run_trials();
+    finish();
+  } catch (...) {
+    give_up();
+    throw;
+  }
+  return summary_;
+}
+
+/// The next trial that this session is to present. What an earlier run recorded is not presented
+/// again: its outcome goes into the same procedure, which leads to the same trials.
+std::optional<PlannedTrial> Session::following(const Outcome* last) {
+  std::optional<PlannedTrial> trial = trials_->next(last);
+  while (trial) {
+    if (request_.max_trials > 0 && !trial->practice && trial->trial > request_.max_trials) {
+      return std::nullopt;
+    }
+    const auto before = record_.outcome(*trial, trials_->phases().back());
+    const bool again = before && before->end == TrialEnd::kAborted &&
+                       (trials_->presents_aborted_again() || record_.is_last(*trial));
+    if (!before || again) {
+      return trial;
+    }
+    trial = trials_->next(&*before);
+  }
+  return trial;
+}
+
+void Session::run_trials() {
+  pace_.wait_to_begin(d_.instructions());
+  bool practised = false;
+  std::optional<PlannedTrial> trial = following(nullptr);
+  while (trial) {
+    if (desk_.wishes().abort) {
+      left_ = true;
+      break;
+    }
+    if (trial->practice && !std::exchange(practised, true)) {
+      pace_.wait_to_begin(d_.texts.practice);
+    }
+    const Outcome outcome = present(*trial);
+    left_ = left_ || (outcome.end == TrialEnd::kAborted && desk_.wishes().abort);
+    const bool stopped = desk_.wishes().abort;
+    const bool rests = has_break_after(*trial) && !stopped;
+    if (stopped) {
+      left_ = left_ || following(&outcome).has_value();
+      break;
+    }
+    trial = following(&outcome);
+    if (rests && trial) {
+      pace_.take_break();
+    }
+  }
+  pace_.let_read(d_.texts.thanks, "thanks");
+}
+
+void Session::show_trial() {
+  pace_.clear_text();
+  if (screen_) {
+    screen_->show(trials_->drawing());
+  }
+}
+
+/// One trial until it is done: again when the experimenter repeats it, or when
+/// it was aborted while an experimenter is there to see to the cause.
+Outcome Session::present(const PlannedTrial& trial) {
+  trials_->prepare(trial, record_);
+  progress_.reset();
+  Wishes& wishes = desk_.wishes();
+  Outcome outcome{trial, TrialEnd::kAborted, {}};
+  for (int attempt = record_.attempts(trial) + 1; !wishes.abort; ++attempt) {
+    const bool anew = std::exchange(wishes.repeat, false);
+    wishes.skip = false;
+    responses_.clear();
+    trials_->begin_attempt(trial, anew);
+    show_trial();
+    record_.mark_trial("trial_begin", trial, attempt);
+    const bool done = run_trial(trial, attempt);
+    pace_.pause_where_asked();
+    const bool skipped = wishes.skip && !done;
+    const char* how = done ? "completed" : skipped ? "skipped" : "aborted";
+    record_.mark_trial("trial_end", trial, attempt, how);
+    notices_.say_trial(trial, how);
+    outcome.end = done ? TrialEnd::kCompleted : skipped ? TrialEnd::kSkipped : TrialEnd::kAborted;
+    outcome.responses = responses_;
+    if (skipped) {
+      record_.skip(trial);
+    }
+    if ((done && !wishes.repeat) || wishes.skip || !desk_.attended()) {
+      break;
+    }
+  }
+  return outcome;
+}
+
+/// After every `break_after` trials.
+bool Session::has_break_after(const PlannedTrial& trial) const {
+  const int after = d_.design.break_after;
+  return after > 0 && !trial.practice && trial.trial % after == 0;
+}
+
+/// @returns whether all passes were completed.
+bool Session::run_trial(const PlannedTrial& trial, int attempt) {
+  bool done = true;
+  const std::span<const record::Phase> phases = trials_->phases();
+  for (std::size_t i = 0; i < phases.size(); ++i) {
+    if (i > 0) {
+      pace_.pause_where_asked();
+      const Wishes& wishes = desk_.wishes();
+      if (wishes.repeat || wishes.skip || wishes.abort) {
+        return false;
+      }
+    }
+    const bool completed = run_pass(trial, phases[i], attempt);
+    if (!completed && desk_.attended()) {
+      return false;  // the trial is presented again, from its first pass on
+    }
+    done = done && completed;
+  }
+  return done;
+}
+
+bool Session::run_pass(const PlannedTrial& trial, const record::Phase& phase, int attempt) {
+  if (pace_.text_shown()) {
+    show_trial();
+  }
+  PlannedTrial row = trial;
+  protocols::Pass& pass = trials_->make_pass(row, phase);
+  const std::int32_t number = record_.begin_pass(row, phase, attempt);
+  task_.start(pass, number);
+  ++summary_.passes;
+  pace_.drive_until_idle();
+  notices_.note_overruns(pace_.watch());
+  const protocols::PassResult& result = task_.result();
+  const bool aborted = result.state == protocols::PassState::kAborted;
+  trials_->close_pass(record_, number);
+  keep_responses();
+  record_.end_pass(result);
+  note_damping(result);
+  if (aborted) {
+    after_abort(result);
+  }
+  trials_->draw_pictures(trial, phase);
+  return !aborted;
+}
+
+void Session::keep_responses() {
+  std::vector<record::ResponseRow> rows = trials_->responses();
+  if (!rows.empty()) {
+    responses_.insert(responses_.end(), rows.begin(), rows.end());
+    record_.keep_responses(std::move(rows));
+  }
+}
+
+/// A hand that did not carry all the damping was guided less firmly, which an analyst has to know.
+void Session::note_damping(const protocols::PassResult& result) {
+  if (result.reduced_ticks > 0) {
+    record_.event(
+        record::kDampingReduced,
+        to_text(record::DampingReduced{record_.pass().trial, result.least_damping,
+                                       static_cast<double>(result.reduced_ticks) / d_.rate}));
+  }
+}
+
+void Session::after_abort(const protocols::PassResult& result) {
+  desk_.status().aborted_passes = ++summary_.aborted_passes;
+  const bool fault = result.fault != device::Fault::kNone;
+  const std::string why = fault ? device::describe(result.fault) : why_broken_off();
+  const std::string trouble = fault ? rig_->device().trouble() : "";
+  const bool overloaded = !pace_.overload().empty();  // and no better the next time
+  record_.event("aborted", fmt::format("trial {}: {}{}{}", record_.pass().trial, why,
+                                       trouble.empty() ? "" : "; ", trouble));
+  if (result.fault == device::Fault::kStopButton) {
+    record_.event("emergency_stop", "by the handle");
+  }
+  if ((fault || overloaded) && desk_.attended()) {
+    desk_.status().fault = trouble.empty() ? why : why + "; " + trouble;
+    desk_.wishes().stopped = true;  // a person sees to the cause
+  } else if ((fault || overloaded) && real_) {
+    // Nobody is at a console or keyboard to see to the cause and say that it may go on.
+    pace_.let_read(d_.texts.stopped, "stopped");
+    pace_.end_early(trouble.empty() ? why : why + "; " + trouble);
+  } else {
+    pace_.recover();
+  }
+}
+
+std::string Session::why_broken_off() {
+  const Wishes& wishes = desk_.wishes();
+  if (!pace_.overload().empty()) {
+    return pace_.overload();
+  }
+  if (wishes.repeat) {
+    return "to be repeated";
+  }
+  if (wishes.skip) {
+    return "skipped";
+  }
+  if (wishes.abort) {
+    return wishes.for_good ? "the session was ended for good" : "the session was stopped";
+  }
+  return trials_->why_aborted();
+}
+
+void Session::finish() {
+  end_servo();
+  if (screen_) {
+    record_.keep_frames(screen_->take_frames());
+  }
+  note_troubles();
+  const Wishes& wishes = desk_.wishes();
+  summary_.stopped = left_ && wishes.abort && !wishes.for_good;
+  if (summary_.stopped) {
+    record_.stop("by the experimenter; --resume continues at the first unfinished trial");
+  } else {
+    if (left_ && wishes.for_good) {
+      record_.event("ended_for_good", "by the experimenter, with trials left");
+    }
+    record_.close(wishes.abort ? "ended by the experimenter" : "");
+  }
+  if (live_) {
+    live_->finish();
+    summary_.figures = live_->done();
+  }
+  summary_.simulated = rig_->device().info().simulated;
+  summary_.ticks = loop_.ticks();
+  summary_.overruns = loop_.overruns();
+  summary_.dropped = record_.dropped();
+  pace_.publish("ended");
+}
+
+void Session::give_up() noexcept {
+  try {
+    task_.break_off();
+    end_servo();
+  } catch (const std::exception&) {
+    // The thread is left behind; what it recorded is kept all the same.
+  }
+  try {
+    record_.give_up(task_);
+  } catch (const std::exception&) {
+    // What stopped the session is the error to report; the writer keeps what it
+    // could.
+  }
+}
+
+/// The force fades when nothing is wrong with the device; a fault has cut it already.
+void Session::end_servo() {
+  servo_.end();
+  for (const protocols::DeviceSet::Arm& arm : arms_of(*rig_, d_.envelope)) {
+    arm.device->write(Eigen::Vector3d::Zero());
+  }
+}
+
+void Session::note_troubles() {
+  notices_.note(live_ ? live_->trouble() : "");
+  notices_.note(loop_.real_time_status().notice);
+  if (loop_.resynchronised() > 0) {
+    notices_.note(fmt::format("the loop was suspended {} times and continued at the present time",
+                              loop_.resynchronised()));
+  }
+  if (screen_) {
+    notices_.note(screen_->summary().notice);
+    notices_.note(screen_->trouble());
+  }
+}
+
+}  // namespace
+
+SessionSummary run_session(const SessionRequest& request) {
+  if (request.resume && close_what_had_ended(request.file)) {
+    SessionSummary closed;
+    closed.notices.push_back("the session had ended before: its file only had to be closed");
+    return closed;
+  }
+  auto session = std::make_unique<Session>(request);
+  try {
+    return session->run();
+  } catch (...) {
+    if (session->hangs()) {
+      static_cast<void>(session.release());  // its servo thread may yet come back to it
+    }
+    throw;
+  }
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,85 @@
+#include "experiments/runner/session_notices.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+namespace haptrial::experiments {
+
+using protocols::PlannedTrial;
+using realtime::ClockKind;
+
+std::string planned_of(const protocols::Extent& extent, int defined) {
+  return fmt::format(
+      "{} of {} trials planned{}", extent.trials, defined,
+      extent.practice > 0 ? fmt::format(", and {} for practice", extent.practice) : "");
+}
+
+void SessionNotices::tell(const std::string& line) const {
+  if (p_.request.tell) {
+    p_.request.tell(line);
+  }
+}
+
+void SessionNotices::note(const std::string& notice) {
+  auto& noted = p_.summary.notices;
+  if (notice.empty() || std::find(noted.begin(), noted.end(), notice) != noted.end()) {
+    return;
+  }
+  noted.push_back(notice);
+  p_.desk.status().notices = noted;
+  p_.record.event("notice", notice);
+  tell("notice: " + notice);
+}
+
+void SessionNotices::note_real_time() {
+  if (p_.loop.clock() != ClockKind::kReal) {
+    return;
+  }
+  constexpr std::chrono::seconds kLongest{2};  // locking memory takes its time
+  const auto end = std::chrono::steady_clock::now() + kLongest;
+  while (!p_.loop.started() && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  if (p_.loop.started()) {
+    note(p_.loop.real_time_status().notice);
+  }
+}
+
+void SessionNotices::note_overruns(const LoopWatch& watch) {
+  if (p_.loop.clock() != ClockKind::kReal) {
+    return;
+  }
+  if (const auto late = watch.end_pass(p_.loop.ticks(), p_.loop.overruns())) {
+    const record::PassRow& pass = p_.record.pass();
+    const std::string what = fmt::format("{}trial {}, {}: {}", pass.practice ? "practice, " : "",
+                                         pass.trial, record::name_of(pass.phase), *late);
+    p_.record.event("overruns", what);
+    note(
+        "the servo loop does not keep its rate: every pass with more than 1 % of overruns is "
+        "marked by an event");
+    tell("WARNING: " + what);
+  }
+}
+
+void SessionNotices::say_plan(const protocols::Extent& extent, int over) {
+  SessionStatus& status = p_.desk.status();
+  status.trials = extent.trials;
+  status.blocks = extent.blocks;
+  status.trials_defined = p_.request.definition->design.trials;
+  tell(fmt::format("recording {}{}: {}{}", p_.request.file.string(),
+                   p_.request.pilot ? " as a pilot" : "", planned_of(extent, status.trials_defined),
+                   over > 0 ? fmt::format(", {} of them done already", over) : ""));
+}
+
+void SessionNotices::say_trial(const PlannedTrial& trial, const char* how) const {
+  const double minutes = 1e-9 / 60.0 * static_cast<double>(p_.loop.elapsed_ns());
+  const std::string which =
+      trial.practice ? fmt::format("practice {}", trial.trial)
+                     : fmt::format("trial {} of {}", trial.trial, p_.desk.status().trials);
+  tell(fmt::format("{}, {}: {}, {:.1f} min after the start", which, trial.condition, how, minutes));
+}
+
+}  // namespace haptrial::experiments

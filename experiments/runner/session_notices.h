@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/realtime/servo_loop.h"
+#include "experiments/control/session_desk.h"
+#include "experiments/runner/loop_watch.h"
+#include "experiments/runner/session.h"
+#include "experiments/runner/session_record.h"
+#include "protocols/interface/trials.h"
+
+namespace haptrial::experiments {
+
+/// "3 of 72 trials planned, and 1 for practice". @param defined  trials of the definition
+std::string planned_of(const protocols::Extent& extent, int defined);
+
+/// What a session says of itself while it runs: in the terminal, on the console, in the file.
+/// Session's thread.
+class SessionNotices {
+ public:
+  /// All of them outlive the notices.
+  struct Parts {
+    const SessionRequest& request;
+    const realtime::ServoLoop& loop;
+    SessionRecord& record;
+    SessionDesk& desk;
+    SessionSummary& summary;
+  };
+  explicit SessionNotices(const Parts& parts) : p_(parts) {}
+
+  /// A sentence that an experimenter has to know: once each, everywhere. Empty ones are none.
+  void note(const std::string& notice);
+  /// Whether the loop was refused real-time treatment, once it has begun.
+  void note_real_time();
+  /// The pass that has just ended. @param watch  of it
+  void note_overruns(const LoopWatch& watch);
+
+  /// What is recorded where, and how many trials.
+  /// @param over  of them, from earlier runs
+  void say_plan(const protocols::Extent& extent, int over);
+  /// @param how  "completed", "skipped", "aborted"
+  void say_trial(const protocols::PlannedTrial& trial, const char* how) const;
+
+ private:
+  void tell(const std::string& line) const;
+
+  Parts p_;
+};
+
+}  // namespace haptrial::experiments

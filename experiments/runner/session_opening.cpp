@@ -1,0 +1,176 @@
+#include "experiments/runner/session_opening.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/device/mouse.h"
+#include "core/record/device_row.h"
+#include "core/record/session_reader.h"
+#include "experiments/control/interrupt.h"
+#include "experiments/runner/version.h"
+
+namespace haptrial::experiments {
+
+DefinitionChanges changes_since(const SessionRequest& request, const record::SessionInfo& before) {
+  const bool virtual_hand = before.device == "virtual" || request.device.name == "virtual";
+  return definition_changes(before.definition, request.definition->text,
+                            virtual_hand ? Hand::kVirtual : Hand::kPerson);
+}
+
+namespace {
+
+/// What a resumed session must have in common with the one that is gone on with.
+void check_same_session(const SessionRequest& request, const record::SessionInfo& before) {
+  const std::string partial = request.file.string() + ".partial";
+  if (before.seed != request.seed) {
+    throw InputError(
+        fmt::format("{}: was recorded with seed {}; resume it with the same one, not with {}",
+                    partial, before.seed, request.seed));
+  }
+  const DefinitionChanges changes = changes_since(request, before);
+  if (!changes.same_study()) {
+    throw InputError(
+        fmt::format("{}: was recorded with another definition: {}; resume it with the same one",
+                    partial, sentence_of(changes.binding)));
+  }
+  if (before.pilot != request.pilot) {
+    throw InputError(fmt::format("{}: was recorded as {}; resume it {} --pilot", partial,
+                                 before.pilot ? "a pilot" : "part of the study",
+                                 before.pilot ? "with" : "without"));
+  }
+}
+
+}  // namespace
+
+record::SessionInfo session_info(const SessionRequest& request, const device::DeviceInfo& device) {
+  const protocols::Definition& d = *request.definition;
+  record::SessionInfo info;
+  info.program_version = program_version();
+  info.program_commit = program_commit();
+  info.definition = d.text;
+  info.definition_name = d.file_name;
+  info.subject = request.subject;
+  info.seed = request.seed;
+  info.device = request.device.name;
+  info.device_max_force = device.max_force;
+  info.device_workspace_radius = device.workspace_radius;
+  info.clock = request.clock == realtime::ClockKind::kReal ? "real" : "simulated";
+  info.rate = d.rate;
+  info.start_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  info.simulated = device.simulated;
+  info.pilot = request.pilot;
+  info.participant = request.person;
+  return info;
+}
+
+/// Those of the protocol, and that of further devices.
+static record::TableList tables_of(const SessionRequest& request, const protocols::Trials& trials) {
+  record::TableList tables = trials.tables();
+  if (request.definition->devices() > 1) {
+    tables.push_back(&record::table_of<record::DeviceRow>());
+  }
+  return tables;
+}
+
+record::SessionWriter open_writer(const SessionRequest& request, const device::DeviceInfo& device,
+                                  record::Resumed& before, const protocols::Trials& trials) {
+  if (!request.resume || !record::SessionWriter::can_resume(request.file)) {
+    const record::SessionInfo info = session_info(request, device);
+    return record::SessionWriter(request.file, info, tables_of(request, trials),
+                                 trials.first_rows());
+  }
+  record::SessionWriter writer =
+      record::SessionWriter::resume(request.file, before, tables_of(request, trials));
+  check_same_session(request, before.info);
+  const record::SessionReader file(request.file.string() + ".partial");
+  trials.check_resumed(file);
+  if (file.has(record::responses_table())) {
+    before.responses = file.responses();
+  }
+  return writer;
+}
+
+bool close_what_had_ended(const std::filesystem::path& file) {
+  if (!record::SessionWriter::can_resume(file)) {
+    return false;
+  }
+  try {
+    const auto runs = record::SessionReader(file.string() + ".partial").runs();
+    if (runs.empty() || runs.back().state != record::RunState::kEnded) {
+      return false;
+    }
+  } catch (const InputError&) {
+    // It is damaged: a resume repairs it, and says what it holds.
+  }
+  record::Resumed found;
+  record::SessionWriter writer = record::SessionWriter::resume(file, found);
+  if (found.ended) {
+    writer.close();
+  }
+  return found.ended;
+}
+
+std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::MouseDevice* mouse,
+                                    std::atomic<std::uint32_t>* held, std::atomic<bool>* begin) {
+  if (!request.window) {
+    return nullptr;
+  }
+  ScreenCallbacks callbacks;
+  SessionControl* control = request.control;
+  if (control != nullptr) {
+    const bool steers = request.definition->screen.participant_steers;
+    callbacks.key = [control, steers, &request](const render::KeyPress& press) {
+      const auto asked = request_of(press);
+      const bool of_trial = request.definition->functions_of({press.key}) != 0;
+      const bool may = asked == Request::kEmergencyStop || steers;
+      if (asked && may && !of_trial) {
+        control->ask(*asked, Asker::kWindow);
+      }
+    };
+    callbacks.closed = [control, steers] {
+      control->ask(steers ? Request::kAbort : Request::kEmergencyStop, Asker::kWindow);
+    };
+  } else {  // nobody is there who could clear a stop or say that it goes on
+    callbacks.key = [begin](const render::KeyPress& press) {
+      if (press.key == render::KeyPress::kEscape) {
+        interrupt();
+      } else if (press.key == render::KeyPress::kEnter || press.key == render::KeyPress::kSpace) {
+        begin->store(true);
+      }
+    };
+    callbacks.closed = [] { interrupt(); };
+  }
+  if (mouse != nullptr) {
+    callbacks.pointer = [mouse](const ScreenPointer& pointer) {
+      mouse->move(pointer.x, pointer.z);
+      mouse->set_buttons(pointer.buttons);
+      mouse->press(device::is_pressed(pointer.buttons, 0) ? mouse->press_at(pointer.wheel) : 0.0);
+    };
+  }
+  callbacks.held = [held, &request](const std::vector<int>& keys) {
+    held->store(request.definition->functions_of(keys), std::memory_order_relaxed);
+  };
+  const protocols::Definition& setup = *request.definition;
+  return std::make_unique<Screen>(setup.screen, setup.display, std::move(callbacks));
+}
+
+std::unique_ptr<stream::LslOutlet> open_outlet(const SessionRequest& request, bool simulated,
+                                               stream::SessionClock now, std::string& notice) {
+  if (!request.stream) {
+    return nullptr;
+  }
+  const stream::LslOptions options{.study = request.definition->name,
+                                   .subject = request.subject,
+                                   .device = request.device.name,
+                                   .rate = request.definition->rate,
+                                   .simulated = simulated};
+  return request.stream_optional ? stream::LslOutlet::open(options, std::move(now), notice)
+                                 : std::make_unique<stream::LslOutlet>(options, std::move(now));
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/definition_changes.h"
+#include "core/record/session_resume.h"
+#include "core/record/session_writer.h"
+#include "core/stream/lsl_outlet.h"
+#include "experiments/runner/session.h"
+#include "experiments/screen/screen.h"
+#include "protocols/interface/trials.h"
+
+namespace haptrial::device {
+class MouseDevice;
+}
+
+namespace haptrial::experiments {
+
+/// What a session opens before its first tick, each from the request alone.
+
+record::SessionInfo session_info(const SessionRequest& request, const device::DeviceInfo& device);
+
+/// What the definition of a resumed session differs in from the one that its file began with.
+DefinitionChanges changes_since(const SessionRequest& request, const record::SessionInfo& before);
+
+/// A new session file, or the one that is gone on with; `before` says what that one holds.
+/// @throws InputError as SessionWriter does, and where the file is of another study, seed or kind,
+/// or cannot be gone on with for a reason of the protocol.
+record::SessionWriter open_writer(const SessionRequest& request, const device::DeviceInfo& device,
+                                  record::Resumed& before, const protocols::Trials& trials);
+
+/// Gives FILE.partial its name where the session in it had come to its end: it was killed on the
+/// last steps. @returns whether it had; else nothing is changed
+/// @throws InputError, RunError as SessionWriter does
+bool close_what_had_ended(const std::filesystem::path& file);
+
+/// The participant's screen, where one was asked for; else null. Its Escape stops the session, its
+/// other keys steer it where the definition says so; its pointer moves the mouse device.
+/// @param mouse  null for any other device
+/// @param held   receives the functions that keys of the window hold; outlives the screen
+/// @param begin  set by Enter and space where nobody attends; outlives the screen
+std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::MouseDevice* mouse,
+                                    std::atomic<std::uint32_t>* held, std::atomic<bool>* begin);
+
+/// The streams, where they were asked for; null where they were not, and, with a sentence in
+/// `notice`, where they cannot be had and the session may do without them.
+/// @param now  of the session
+/// @throws InputError, RunError where it may not
+std::unique_ptr<stream::LslOutlet> open_outlet(const SessionRequest& request, bool simulated,
+                                               stream::SessionClock now, std::string& notice);
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,218 @@
+#include "experiments/runner/session_pace.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "core/base/error.h"
+#include "experiments/control/interrupt.h"
+#include "experiments/screen/screen.h"
+
+namespace haptrial::experiments {
+
+using Clock = std::chrono::steady_clock;
+
+SessionPace::SessionPace(const Parts& parts)
+    : p_(parts),
+      d_(*parts.request.definition),
+      real_(parts.request.clock == realtime::ClockKind::kReal),
+      stall_(parts.loop),
+      watch_(d_.rate) {}
+
+/// A hand is not guided by a loop that does not catch up. Where nobody feels the forces the pass
+/// goes on: what it is worth stands in the file.
+void SessionPace::watch_loop() {
+  const auto sentence = watch_.overloaded(Clock::now(), p_.loop.ticks(), p_.loop.overruns());
+  if (real_ && sentence && p_.felt && overload_.empty()) {
+    overload_ = *sentence;
+    p_.task.break_off();
+  }
+}
+
+void SessionPace::drive_until_idle() {
+  overload_.clear();
+  watch_.begin_pass(p_.loop.ticks(), p_.loop.overruns());
+  while (!p_.task.idle()) {
+    if (real_) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    } else {
+      p_.loop.run(p_.task);
+    }
+    collect();
+    watch_loop();
+    publish(p_.record.pass().practice ? "practice" : "running");
+    if (asked_to_stop()) {
+      p_.task.emergency_stop();
+      end_early("interrupted");
+    }
+  }
+  if (real_ && asked_to_stop()) {  // an interrupt ends the pass, too
+    end_early("interrupted");
+  }
+}
+
+/// What has come since the last call: records, pictures shown, messages.
+void SessionPace::collect() {
+  const std::size_t count = p_.record.collect(
+      [this](std::span<const record::Sample> samples) { p_.desk.follow(samples, 1e9 / d_.rate); });
+  if (p_.request.ticks != nullptr) {
+    p_.request.ticks->fetch_add(count, std::memory_order_relaxed);
+  }
+  if (p_.screen != nullptr) {
+    p_.record.keep_frames(p_.screen->take_frames());
+  }
+  p_.desk.take_messages();
+  if (real_ && stall_.stalled()) {
+    end_early(DeviceHangs().what());
+  }
+}
+
+void SessionPace::meanwhile() {
+  collect();
+  if (asked_to_stop()) {
+    end_early("interrupted");
+  }
+}
+
+void SessionPace::wait(double seconds, const char* state, bool until_asked) {
+  Wishes& wishes = p_.desk.wishes();
+  wishes.start = false;
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  while (Clock::now() < end && !asked_to_stop() && !wishes.abort &&
+         !(until_asked && (wishes.start || wishes.stopped))) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    p_.desk.status().break_left = std::chrono::duration<double>(end - Clock::now()).count();
+    collect();
+    publish(state);
+  }
+  p_.desk.status().break_left = 0.0;
+}
+
+void SessionPace::wait_to_begin(const std::string& text) {
+  if (p_.desk.attended()) {
+    wait_for_experimenter("instructions", text, d_.texts.begin);
+  } else if (p_.screen != nullptr) {
+    show_text(text, d_.texts.begin_alone);
+    wait_for_participant();
+  }
+}
+
+void SessionPace::wait_for_experimenter(const char* state, const std::string& text,
+                                        const std::string& hint) {
+  Wishes& wishes = p_.desk.wishes();
+  wishes.pause = true;
+  std::optional<bool> shown;  // as stopped
+  while ((wishes.pause || wishes.stopped) && !wishes.abort) {
+    if (shown != wishes.stopped) {
+      shown = wishes.stopped;
+      show_text(wishes.stopped ? d_.texts.stopped : text, wishes.stopped ? "" : hint);
+    }
+    wait(0.02, wishes.stopped ? "stopped" : state);
+    if (asked_to_stop()) {
+      end_early("interrupted");
+    }
+  }
+}
+
+void SessionPace::wait_for_participant() {
+  p_.begin_pressed->store(false);
+  while (!p_.begin_pressed->load()) {
+    wait(0.02, "instructions");
+    if (asked_to_stop()) {
+      end_early("interrupted");
+    }
+  }
+  p_.record.event("start", fmt::format("by the {}", name_of(Asker::kWindow)));
+}
+
+void SessionPace::pause_where_asked() {
+  const Wishes& wishes = p_.desk.wishes();
+  if (wishes.stopped || wishes.pause) {
+    wait_for_experimenter("paused", d_.texts.paused, "");
+  }
+}
+
+void SessionPace::recover() {
+  if (real_) {
+    show_text(d_.texts.recovering, "");
+    wait(d_.recovery, "recovering");
+  } else {
+    const std::uint64_t end = p_.loop.ticks() + static_cast<std::uint64_t>(d_.recovery * d_.rate);
+    p_.task.leave_before(end);
+    while (p_.loop.ticks() < end) {
+      p_.loop.run(p_.task);
+      collect();
+    }
+    p_.task.clear_fault();
+  }
+}
+
+void SessionPace::take_break() {
+  p_.record.event("break", fmt::format("{} s", d_.design.break_duration));
+  if (real_) {
+    show_text(d_.texts.rest, "", d_.design.break_duration);
+    wait(d_.design.break_duration, "break", true);
+    pause_where_asked();
+  }
+}
+
+void SessionPace::show_text(const std::string& text, const std::string& hint, double countdown) {
+  if (p_.screen != nullptr) {
+    render::TextPage page = protocols::page_of(text, hint);
+    if (countdown > 0.0) {
+      page.countdown = countdown;
+    }
+    p_.screen->show_text(std::move(page));
+  }
+  p_.desk.status().screen = text;
+  text_shown_ = true;
+}
+
+void SessionPace::let_read(const std::string& text, const char* state) {
+  constexpr double kTimeToRead = 5.0;  // [s]
+  show_text(text, "");
+  if (p_.screen != nullptr) {
+    wait(kTimeToRead, state, true);
+  }
+}
+
+void SessionPace::clear_text() {
+  p_.desk.status().screen.clear();
+  text_shown_ = false;
+}
+
+void SessionPace::publish(const char* state) {
+  if (!p_.desk.attended()) {
+    return;
+  }
+  SessionStatus& status = p_.desk.status();
+  const record::PassRow& pass = p_.record.pass();
+  status.trial = pass.trial;
+  status.block = pass.block;
+  status.condition = pass.condition;
+  status.phase = record::name_of(pass.phase);
+  status.ticks = p_.loop.ticks();
+  status.overruns = p_.loop.overruns();
+  status.dropped = p_.record.dropped();
+  if (p_.live != nullptr) {
+    status.figures = p_.live->now();
+  }
+  p_.desk.publish(state);
+}
+
+bool SessionPace::asked_to_stop() const {
+  return interrupted() ||
+         (p_.request.cancel != nullptr && p_.request.cancel->load(std::memory_order_relaxed));
+}
+
+void SessionPace::end_early(const std::string& why) const {
+  throw RunError(real_
+                     ? fmt::format("{}; what was recorded is in {}.partial; continue with --resume",
+                                   why, p_.request.file.string())
+                     : why);
+}
+
+}  // namespace haptrial::experiments

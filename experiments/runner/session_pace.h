@@ -1,0 +1,85 @@
+#pragma once
+
+#include <atomic>
+#include <string>
+
+#include "core/realtime/servo_loop.h"
+#include "experiments/control/session_desk.h"
+#include "experiments/runner/loop_watch.h"
+#include "experiments/runner/servo_thread.h"
+#include "experiments/runner/session.h"
+#include "experiments/runner/session_record.h"
+#include "protocols/interface/session_task.h"
+
+namespace haptrial::experiments {
+
+class Screen;
+
+/// How a session passes its time: while a pass runs, in breaks, and while the experimenter is to
+/// say something. Whatever it waits for, it empties the logs, hears messages and shows how things
+/// stand. Session's thread.
+class SessionPace {
+ public:
+  /// All of them outlive the pace. @param screen, live  null where there is none
+  struct Parts {
+    const SessionRequest& request;
+    realtime::ServoLoop& loop;
+    SessionRecord& record;
+    SessionDesk& desk;
+    protocols::SessionTask& task;
+    bool felt{false};  // somebody feels what the device does
+    Screen* screen{nullptr};
+    std::atomic<bool>* begin_pressed{nullptr};  // in the window of a session without experimenter
+    const record::LiveFigures* live{nullptr};
+  };
+  explicit SessionPace(const Parts& parts);
+
+  /// While something takes seconds on the session's thread. @throws RunError on an interrupt
+  void meanwhile();
+  /// Until the pass that was started has ended. @throws RunError on an interrupt
+  void drive_until_idle();
+  /// On the real clock, without force. @param until_asked  or until the experimenter starts or
+  /// stops
+  void wait(double seconds, const char* state, bool until_asked = false);
+  /// A text until the experimenter starts; without one, until a key in the participant's window.
+  void wait_to_begin(const std::string& text);
+  void pause_where_asked();
+  /// Without force after an abort, for the hand to come back into the workspace; ticks are recorded
+  /// all the same. On a simulated clock, which drives virtual hands only, a fault is cleared then:
+  /// nobody can be hurt, and a dry run is to go on. On the real clock a person clears it.
+  void recover();
+  void take_break();
+
+  /// Whether the loop kept its rate in the present pass, or the last one.
+  const LoopWatch& watch() const { return watch_; }
+  /// Why that pass was broken off, where the loop was overloaded; else empty.
+  const std::string& overload() const { return overload_; }
+
+  /// On the participant's screen and the experimenter's.
+  void show_text(const std::string& text, const std::string& hint, double countdown = 0.0);
+  void publish(const char* state);
+  /// A last page, for as long as it takes to read where there is a screen.
+  void let_read(const std::string& text, const char* state);
+  bool text_shown() const { return text_shown_; }
+  void clear_text();  // what shows instead is not the pace's
+
+  /// @throws RunError that says where what was recorded is
+  [[noreturn]] void end_early(const std::string& why) const;
+
+ private:
+  void collect();
+  void wait_for_experimenter(const char* state, const std::string& text, const std::string& hint);
+  void wait_for_participant();
+  bool asked_to_stop() const;
+  void watch_loop();
+
+  Parts p_;
+  const protocols::Definition& d_;
+  const bool real_;
+  StallWatch stall_;
+  bool text_shown_{false};
+  LoopWatch watch_;
+  std::string overload_;
+};
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,410 @@
+#include "experiments/runner/session_record.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "experiments/runner/definition_events.h"
+#include "experiments/runner/session_opening.h"
+
+namespace haptrial::experiments {
+
+using protocols::PlannedTrial;
+
+namespace {
+
+/// Of passes that go on with the bone of the pass before: after a crash the row of /trials that
+/// would say so is missing.
+constexpr const char* kGoesOn = "goes_on";
+
+/// Kind of the event for a trial that the experimenter skipped for good; its text says which.
+constexpr const char* kSkipped = "skipped";
+
+std::string name_of(const PlannedTrial& trial) {
+  return fmt::format("trial={} practice={} condition={}", trial.trial, trial.practice ? 1 : 0,
+                     trial.condition);
+}
+
+/// Whether a pass is one of a trial's.
+bool is_of(const record::PassRow& pass, const PlannedTrial& trial) {
+  return pass.trial == trial.trial && pass.practice == trial.practice &&
+         pass.condition == trial.condition;
+}
+
+record::PassRow row_of(const PlannedTrial& trial, const record::Phase& phase, int attempt) {
+  record::PassRow row;
+  row.trial = trial.trial;
+  row.condition = trial.condition;
+  row.phase = phase;
+  row.block = trial.block;
+  row.repetition = trial.repetition;
+  row.stimulus_seed = trial.stimulus_seed;
+  row.practice = trial.practice;
+  row.attempt = attempt;
+  return row;
+}
+
+std::string pass_name(std::int32_t row) { return fmt::format("pass {} ", row); }
+
+/// Of all that is recorded: the last events may be younger than the last ticks that reached the
+/// file.
+std::int64_t last_time(const record::Resumed& before) {
+  std::int64_t last = before.last_time_ns;
+  for (const record::EventRow& event : before.events) {
+    last = std::max(last, event.time_ns);
+  }
+  return last;
+}
+
+}  // namespace
+
+SessionRecord::SessionRecord(const SessionRequest& request, const device::DeviceInfo& device,
+                             const realtime::ServoLoop& loop, protocols::Trials& trials,
+                             record::LiveFigures* live)
+    : request_(request),
+      loop_(loop),
+      real_(request.clock == realtime::ClockKind::kReal),
+      outlet_(open_outlet(
+          request, device.simulated, [this] { return now_ns(); }, notice_)),
+      writer_(open_writer(request, device, before_, trials)),
+      file_(writer_),
+      stream_(outlet_.get()),
+      sinks_{&file_},
+      trials_(trials),
+      blocks_(before_.blocks),
+      passes_(static_cast<std::int32_t>(before_.passes.size() + before_.open_passes.size())) {
+  start_ns_ = last_time(before_) + 1;
+  if (live != nullptr) {
+    sinks_.push_back(live);
+  }
+  sinks_.push_back(&stream_);
+}
+
+protocols::Origin SessionRecord::origin() const { return {before_.next_sequence, start_ns_}; }
+
+bool SessionRecord::is_over(const PlannedTrial& trial) const {
+  const auto before = outcome(trial, trials_.phases().back());
+  return before && before->end != protocols::TrialEnd::kAborted;
+}
+
+/// Whether the events say that a pass went on with what the pass before it left.
+bool SessionRecord::went_on(std::int32_t row) const {
+  return std::any_of(before_.events.begin(), before_.events.end(), [&](const auto& event) {
+    return event.kind == kGoesOn && event.text.starts_with(pass_name(row));
+  });
+}
+
+void SessionRecord::open(const std::string& text) {
+  for (const record::OpenPass& open : before_.open_passes) {
+    row_ = {};
+    row_.condition = "unknown";
+    const auto begun = std::find_if(before_.begun.begin(), before_.begun.end(),
+                                    [&](const auto& each) { return each.row == open.row; });
+    if (begun != before_.begun.end()) {
+      row_ = begun->pass;
+    } else if (const auto trial = trials_.cut_short(
+                   *this, [this](const PlannedTrial& each) { return is_over(each); },
+                   went_on(open.row))) {
+      row_ = row_of(*trial, trials_.phases().back(), attempts(*trial) + 1);
+    }
+    add_pass(record::PassStatus::kAborted, open.first_sample, open.last_sample);
+    before_.passes.push_back(row_);
+  }
+  if (before_.rows > 0) {
+    tell_what_was_kept();
+  }
+  event(before_.rows > 0 ? "session_resumed" : "session_start", text);
+  writer_.note_counts({0, 0, 0});
+  keep_definition();
+  if (!before_.passes.empty()) {
+    last_ = before_.passes.back();
+  }
+  if (before_.rows > 0) {
+    writer_.sync();  // all of it can be read again from here on
+  }
+}
+
+/// To whoever started the session again, before anything else happens.
+void SessionRecord::tell_what_was_kept() {
+  if (!before_.repaired.empty()) {
+    fmt::print(stderr, "{}\n", before_.repaired);
+  }
+  fmt::print(stderr, "{}: resumed after {} ticks and {} passes\n", request_.file.string(),
+             before_.next_sequence, before_.passes.size());
+}
+
+/// Where a resumed session has another definition than it began with.
+void SessionRecord::keep_definition() {
+  if (before_.info.definition.empty()) {
+    return;  // the file is new
+  }
+  const DefinitionChanges changes = changes_since(request_, before_.info);
+  if (changes.same_text) {
+    return;
+  }
+  event(kDefinitionChanged,
+        changes.free.empty() ? "only comments or layout" : sentence_of(changes.free));
+  writer_.add_event({now_ns(), kNewDefinition, request_.definition->text});
+}
+
+bool SessionRecord::was_cut_short(const PlannedTrial& trial) const {
+  return !before_.open_passes.empty() && before_.passes.back().trial == trial.trial;
+}
+
+std::uint64_t SessionRecord::dropped() const {
+  return log_.dropped() + device_log_.dropped() + trials_.dropped();
+}
+
+std::optional<protocols::Outcome> SessionRecord::outcome(const PlannedTrial& trial,
+                                                         const record::Phase& last) const {
+  using protocols::TrialEnd;
+  std::optional<protocols::Outcome> found;
+  if (was_skipped(trial)) {
+    found = {trial, TrialEnd::kSkipped, {}};
+  }
+  for (std::size_t row = 0; row < before_.passes.size(); ++row) {
+    const record::PassRow& pass = before_.passes[row];
+    if (!is_of(pass, trial) || (found && found->end != TrialEnd::kAborted)) {
+      continue;
+    }
+    const bool done = pass.phase == last && pass.status == record::PassStatus::kCompleted;
+    found = {trial, done ? TrialEnd::kCompleted : TrialEnd::kAborted, {}};
+    for (const record::ResponseRow& response : before_.responses) {
+      if (is_of(before_.passes[static_cast<std::size_t>(response.pass)], trial) &&
+          before_.passes[static_cast<std::size_t>(response.pass)].attempt == pass.attempt) {
+        found->responses.push_back(response);
+      }
+    }
+  }
+  return found;
+}
+
+bool SessionRecord::is_last(const PlannedTrial& trial) const {
+  return !before_.passes.empty() && is_of(before_.passes.back(), trial);
+}
+
+int SessionRecord::finished(const record::Phase& last) const {
+  std::set<std::int32_t> trials;
+  for (const record::PassRow& pass : before_.passes) {
+    PlannedTrial trial;
+    trial.trial = pass.trial;
+    trial.condition = pass.condition;
+    const bool done = pass.phase == last && pass.status == record::PassStatus::kCompleted;
+    if (!pass.practice && (done || was_skipped(trial))) {
+      trials.insert(pass.trial);
+    }
+  }
+  return static_cast<int>(trials.size());
+}
+
+bool SessionRecord::was_skipped(const PlannedTrial& trial) const {
+  return std::any_of(before_.events.begin(), before_.events.end(), [&](const auto& event) {
+    return event.kind == kSkipped && event.text == name_of(trial);
+  });
+}
+
+void SessionRecord::skip(const PlannedTrial& trial) {
+  event(kSkipped, name_of(trial));
+  if (real_) {
+    writer_.flush();
+  }
+}
+
+int SessionRecord::attempts(const PlannedTrial& trial) const {
+  int most = 0;
+  for (const record::PassRow& pass : before_.passes) {
+    most = is_of(pass, trial) ? std::max(most, static_cast<int>(pass.attempt)) : most;
+  }
+  return most;
+}
+
+bool SessionRecord::holds_stimulus(std::int32_t block) const {
+  return std::find(blocks_.begin(), blocks_.end(), block) != blocks_.end();
+}
+
+void SessionRecord::keep_stimulus(std::int32_t block, std::span<const record::StimulusRow> rows) {
+  if (!holds_stimulus(block)) {
+    writer_.add_stimulus(rows);
+    blocks_.push_back(block);
+  }
+}
+
+void SessionRecord::keep_responses(std::vector<record::ResponseRow> rows) {
+  for (record::ResponseRow& row : rows) {
+    row.trial = row_.trial;
+    row.pass = passes_ - 1;
+    row.time_ns = time_of(row.sequence);
+  }
+  put(record::Rows(std::span<const record::ResponseRow>(rows)));
+}
+
+std::int32_t SessionRecord::begin_pass(const PlannedTrial& trial, const record::Phase& phase,
+                                       int attempt) {
+  row_ = row_of(trial, phase, attempt);
+  row_open_ = true;
+  times_.clear();
+  writer_.begin_pass({passes_, row_});
+  if (trials_.goes_on_with(last_, row_)) {
+    event(kGoesOn, fmt::format("{}with bone {} of trial {}", pass_name(passes_), row_.repetition,
+                               row_.trial));
+    if (real_) {
+      writer_.flush();  // it is in the file before any tick of the pass is
+    }
+  }
+  for (record::Sink* sink : sinks_) {
+    sink->begin_pass(row_, passes_);
+  }
+  return passes_++;
+}
+
+void SessionRecord::end_pass(const protocols::PassResult& result) {
+  append_rest();
+  const bool aborted = result.state == protocols::PassState::kAborted;
+  add_pass(aborted ? record::PassStatus::kAborted : record::PassStatus::kCompleted,
+           result.first_sample, result.last_sample);
+}
+
+void SessionRecord::add_pass(record::PassStatus status, std::uint64_t first_sample,
+                             std::uint64_t last_sample) {
+  row_.status = status;
+  row_.first_sample = first_sample;
+  row_.last_sample = last_sample;
+  for (record::Sink* sink : sinks_) {
+    sink->end_pass(row_);
+  }
+  last_ = row_;
+  row_open_ = false;
+  if (real_) {
+    writer_.sync_soon();
+  }
+}
+
+std::size_t SessionRecord::collect(const Follower& follow) {
+  const auto take = [&](std::span<const record::Sample> samples) {
+    append(samples);
+    follow(samples);
+  };
+  const std::size_t count = real_ ? log_.flush(take) : log_.drain(take);
+  constexpr std::chrono::milliseconds kFlushEvery{500};
+  const auto now = std::chrono::steady_clock::now();
+  if (real_ && now - flushed_ >= kFlushEvery) {
+    flushed_ = now;
+    writer_.note_counts(counts());
+    writer_.flush();
+    for (const std::string& notice : writer_.take_notices()) {
+      fmt::print(stderr, "{}\n", notice);
+      event("notice", notice);
+    }
+  }
+  return count;
+}
+
+void SessionRecord::append(std::span<const record::Sample> samples) {
+  // At least what these ticks did: a tick's own record is pushed after the protocol's.
+  trials_.empty_logs(*this);
+  device_log_.flush([this](std::span<const record::DeviceRow> rows) { put(record::Rows(rows)); });
+  for (const record::Sample& sample : samples) {
+    if (sample.pass >= 0) {
+      times_.push_back(sample.time_ns);
+      first_time_ = times_.size() == 1 ? sample.sequence : first_time_;
+    }
+  }
+  for (record::Sink* sink : sinks_) {
+    sink->samples(samples);
+  }
+}
+
+void SessionRecord::put(const record::Rows& batch) {
+  for (record::Sink* sink : sinks_) {
+    sink->rows(batch);
+  }
+}
+
+void SessionRecord::append_rest() {
+  log_.flush([this](std::span<const record::Sample> samples) { append(samples); });
+}
+
+void SessionRecord::event(const std::string& kind, const std::string& text) {
+  const record::EventRow row{now_ns(), kind, text};
+  for (record::Sink* sink : sinks_) {
+    sink->event(row);
+  }
+}
+
+void SessionRecord::mark(const std::string& text) {
+  if (outlet_) {
+    outlet_->mark(text, now_ns());
+  }
+}
+
+void SessionRecord::mark_trial(const std::string& kind, const PlannedTrial& trial, int attempt,
+                               const std::string& status) {
+  const std::string fields = marker_fields(row_of(trial, record::Phase::kTraining, attempt));
+  mark(fmt::format("{}: {}{}", kind, status.empty() ? "" : "status=" + status + " ", fields));
+}
+
+void SessionRecord::stop(const std::string& text) {
+  append_rest();
+  event("session_stopped", text);
+  write_timing(record::RunState::kStopped);
+  writer_.sync();
+}
+
+void SessionRecord::keep_frames(std::vector<record::FrameRow> frames) {
+  for (record::FrameRow& frame : frames) {
+    frame.time_ns += start_ns_;
+  }
+  writer_.add_frames(frames);
+}
+
+/// When a tick of the present pass was; now, if it has none.
+std::int64_t SessionRecord::time_of(std::uint64_t sequence) const {
+  const std::uint64_t at = sequence - first_time_;
+  return sequence >= first_time_ && at < times_.size() ? times_[at] : now_ns();
+}
+
+std::int64_t SessionRecord::now_ns() const { return start_ns_ + loop_.elapsed_ns(); }
+
+void SessionRecord::close(const std::string& text) {
+  append_rest();
+  event("session_end", text);
+  write_timing(record::RunState::kEnded);
+  writer_.close();
+}
+
+void SessionRecord::give_up(const protocols::SessionTask& task) {
+  if (!real_) {
+    writer_.discard();  // a dry run can be repeated; half of one is of no use
+    return;
+  }
+  append_rest();
+  const protocols::PassResult& result = task.result();
+  if (row_open_ && result.begun) {
+    add_pass(record::PassStatus::kAborted, result.first_sample,
+             task.idle() ? result.last_sample : origin().sequence + loop_.ticks() - 1);
+  }
+  event("interrupted", "the session was interrupted before its end");
+  write_timing(record::RunState::kStopped);
+  writer_.sync();
+}
+
+record::TimingSummary SessionRecord::counts() const {
+  return {loop_.ticks(), loop_.overruns(), dropped()};
+}
+
+void SessionRecord::write_timing(record::RunState state) {
+  const realtime::LoopTiming& timing = loop_.timing();
+  std::vector<record::TimingRow> rows;
+  for (std::size_t i = 0; i < realtime::DurationHistogram::kBins; ++i) {
+    const auto period = timing.period.bin(i);
+    const auto lateness = timing.lateness.bin(i);
+    const auto compute = timing.compute.bin(i);
+    if (period.count + lateness.count + compute.count > 0) {
+      rows.push_back({period.low, period.high, period.count, lateness.count, compute.count});
+    }
+  }
+  writer_.set_timing(rows, counts(), state);
+}
+
+}  // namespace haptrial::experiments

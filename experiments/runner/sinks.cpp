@@ -1,0 +1,27 @@
+#include "experiments/runner/sinks.h"
+
+namespace haptrial::experiments {
+
+/// An answer survives whatever comes after it.
+void FileSink::rows(const record::Rows& rows) {
+  if (rows.table == &record::responses_table()) {
+    writer_.add_at_once(rows);
+  } else if (rows.count > 0) {
+    writer_.add(rows);
+  }
+}
+
+void StreamSink::samples(std::span<const record::Sample> samples) {
+  if (outlet_ != nullptr) {
+    outlet_->push(samples);
+  }
+  markers_.follow(samples, pass_);
+}
+
+void StreamSink::event(const record::EventRow& event) {
+  if (outlet_ != nullptr) {
+    outlet_->mark(event.kind + (event.text.empty() ? "" : ": " + event.text), event.time_ns);
+  }
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "core/record/session_writer.h"
+#include "core/record/sink.h"
+#include "core/stream/lsl_outlet.h"
+#include "experiments/runner/stream_markers.h"
+
+namespace haptrial::experiments {
+
+/// Into the session file.
+class FileSink final : public record::Sink {
+ public:
+  /// @param writer  outlives the sink
+  explicit FileSink(record::SessionWriter& writer) : writer_(writer) {}
+  void rows(const record::Rows& rows) override;
+  void samples(std::span<const record::Sample> samples) override { writer_.append(samples); }
+  void end_pass(const record::PassRow& pass) override { writer_.add_pass(pass); }
+  void event(const record::EventRow& event) override { writer_.add_event(event); }
+
+ private:
+  record::SessionWriter& writer_;
+};
+
+/// To the Lab Streaming Layer, with markers; without an outlet nowhere.
+class StreamSink final : public record::Sink {
+ public:
+  /// @param outlet  may be null; outlives the sink
+  explicit StreamSink(stream::LslOutlet* outlet) : outlet_(outlet), markers_(outlet) {}
+  void begin_pass(const record::PassRow& pass, std::int32_t) override { pass_ = pass; }
+  void samples(std::span<const record::Sample> samples) override;
+  void end_pass(const record::PassRow& pass) override { markers_.end_pass(pass); }
+  void event(const record::EventRow& event) override;
+
+ private:
+  stream::LslOutlet* outlet_;
+  StreamMarkers markers_;
+  record::PassRow pass_;
+};
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/record/session_types.h"
+#include "core/render/text_screen.h"
+#include "core/render/trial_display_style.h"
+#include "core/render/window.h"
+#include "core/stimulus/observer.h"
+#include "experiments/control/session_control.h"
+#include "protocols/interface/drawing.h"
+#include "protocols/interface/screen_options.h"
+
+namespace haptrial::experiments {
+
+/// How a screen kept time.
+struct ScreenSummary {
+  std::uint64_t frames{0};
+  std::uint64_t dropped{0};
+  double rate{0.0};            // of the monitor's refresh, or of the timer [Hz]
+  bool refresh_locked{false};  // else a timer sets the pace
+  double draw_median_ms{0.0};  // to draw a picture, without the wait for the refresh
+  double draw_worst_ms{0.0};
+  std::string notice;  // one sentence; empty where the refresh sets the pace
+};
+
+/// The mouse over what a protocol shows.
+struct ScreenPointer {
+  double x{0.0};             // p_W in the xz plane [m]
+  double z{0.0};             // [m]
+  double wheel{0.0};         // steps since the screen opened, up > 0
+  std::uint32_t buttons{0};  // bit 0 left, 1 right, 2 middle
+};
+
+/// What happens at the screen; called on its thread. They must not call back into the screen.
+struct ScreenCallbacks {
+  std::function<void(const render::KeyPress&)> key;
+  std::function<void(const ScreenPointer&)> pointer;  // when it or the view under it changed
+  std::function<void()> closed;                       // the window's close button, once
+  /// Keys that are held, when they change; one that was tapped between two pictures is among them
+  /// once.
+  std::function<void(const std::vector<int>&)> held;
+};
+
+/// What a key in the participant's window asks for where it may, as on the console's keyboard:
+/// Escape is the emergency stop, space and Enter go on, P pauses, R repeats, S skips, C clears.
+std::optional<Request> request_of(const render::KeyPress& press);
+
+/// What the participant looks at: a window or a full screen, drawn on a thread of its own at every
+/// refresh of the monitor. Where the display does not wait for a refresh, a timer sets the pace at
+/// the monitor's rate, or at kTimerRate where the monitor does not say.
+///
+/// The servo thread calls observe(); any other thread calls the rest.
+class Screen final : public stimulus::Observer {
+ public:
+  static constexpr double kTimerRate = 60.0;  // [Hz]
+
+  /// Opens the window; comes back when it shows an empty picture.
+  /// @param style  of trials; its size is that of a window, while a full screen has its own.
+  /// @throws RunError, InputError as render::Window does; InputError where the screen is too small
+  /// for the style.
+  Screen(const protocols::ScreenOptions& options, const render::TrialDisplayStyle& style,
+         ScreenCallbacks callbacks = {});
+  ~Screen() override;
+  Screen(const Screen&) = delete;
+  Screen& operator=(const Screen&) = delete;
+
+  /// From the next picture on, a page; a countdown runs from this call.
+  void show_text(render::TextPage page);
+  /// From the next picture on, what observe() is given.
+  /// @param points  the path of the block, p_W (N x 3) [m]
+  void show_trial(std::vector<Eigen::Vector3d> points);
+
+  /// From the next picture on, whatever this makes.
+  void show(protocols::MakeDrawing make);
+
+  /// Servo thread: hands the newest presentation over; no allocation, lock, I/O or throw.
+  void observe(const stimulus::Shown& shown, const stimulus::Forces& forces, double dt) noexcept override;
+
+  /// The pictures since the last call, from the session's first tick on, in order.
+  std::vector<record::FrameRow> take_frames();
+  ScreenSummary summary() const;
+  /// Why the screen has stopped drawing, in a sentence; empty while it draws.
+  std::string trouble() const;
+  /// The next picture. @throws RunError when none comes within two seconds.
+  render::Image screenshot();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace haptrial::experiments

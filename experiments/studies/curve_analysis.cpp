@@ -1,0 +1,118 @@
+#include "experiments/studies/curve_analysis.h"
+
+#include <algorithm>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/base/table.h"
+#include "protocols/force_training/passes/training_pass.h"
+
+namespace haptrial::experiments {
+namespace {
+
+/// The conditions that planned tests may name. If the list of conditions is itself wrong, that
+/// alone is a problem, so that every known one may be named.
+std::vector<std::string> nameable(std::vector<std::string> conditions) {
+  const auto& known = protocols::training_conditions();
+  const bool good =
+      std::set<std::string>(conditions.begin(), conditions.end()).size() == conditions.size() &&
+      std::all_of(conditions.begin(), conditions.end(), [&known](const std::string& condition) {
+        return std::find(known.begin(), known.end(), condition) != known.end();
+      });
+  if (!good) {
+    conditions.insert(conditions.end(), known.begin(), known.end());
+  }
+  return conditions;
+}
+
+/// Neither force nor slope counts, and nothing but the alignment makes the score.
+void reject_empty_score(Table& analysis, const analysis::ScoreParameters& p) {
+  const auto& a = p.alignment;
+  if (p.force_share == 0.0 && p.slope_share == 0.0 && a.force_weight == 0.0 &&
+      a.slope_weight == 0.0) {
+    analysis.reject("force_weight", "0 as are slope_weight, force_share and slope_share",
+                    "one of these four above 0: else the score does not depend on the forces");
+  }
+}
+
+std::vector<std::string> conditions_of(Table& root) {
+  Table design = root.table("design");
+  return design.has("conditions") ? design.texts("conditions") : std::vector<std::string>{};
+}
+
+bool follows_curve(Table& root) {
+  Table guidance = root.table("guidance");
+  return guidance.has("kind") && guidance.choice("kind", {"trajectory", "curve"}) == "curve";
+}
+
+}  // namespace
+
+CurveAnalysis read_curve_analysis(Table& root, bool fresh) {
+  Table analysis = root.table("analysis");
+  CurveAnalysis found{analysis::read_score_parameters(analysis), {}};
+  found.plan = analysis::read_analysis_plan(analysis, nameable(conditions_of(root)));
+  found.scoring.over_path = follows_curve(root);
+  if (fresh) {
+    reject_empty_score(analysis, found.scoring);
+  }
+  return found;
+}
+
+CurveAnalysis parse_curve_analysis(std::string_view text, std::string_view file_name) {
+  Table root = Table::parse(text, file_name);
+  CurveAnalysis found = read_curve_analysis(root, false);
+  root.check();
+  return found;
+}
+
+CurveAnalysis load_curve_analysis(const std::filesystem::path& file) {
+  Table root = Table::load(file);
+  CurveAnalysis found = read_curve_analysis(root, true);
+  root.check();
+  return found;
+}
+
+analysis::AnalysisPlan plan_of(const std::vector<std::string>& planned,
+                               const std::string& reference) {
+  analysis::AnalysisPlan plan{{}, reference};
+  for (const std::string& text : planned) {
+    plan.tests.push_back(analysis::parse_planned_test(text, "--planned"));
+  }
+  if (const std::string problem = analysis::repeated_test(plan.tests); !problem.empty()) {
+    throw InputError("--planned " + problem);
+  }
+  return plan;
+}
+
+analysis::AnalysisPlan plan_for(const std::vector<std::string>& planned,
+                                const std::string& reference, analysis::AnalysisPlan plan,
+                                std::vector<std::string>& remarks) {
+  const analysis::AnalysisPlan given = plan_of(planned, reference);
+  if (!given.tests.empty()) {
+    plan.tests = given.tests;
+    remarks.emplace_back("The planned tests were given to analyze, not stated in the definition.");
+  }
+  if (!given.reference.empty()) {
+    plan.reference = given.reference;
+    remarks.emplace_back(
+        "The reference condition was given to analyze, not stated in the definition.");
+  }
+  return plan;
+}
+
+std::vector<std::string> warnings_of(const analysis::ScoreParameters& p) {
+  std::vector<std::string> warnings;
+  const auto& a = p.alignment;
+  if (a.force_weight == 0.0 && a.slope_weight == 0.0) {
+    warnings.emplace_back(
+        "analysis.force_weight and analysis.slope_weight are 0; curves are then aligned without "
+        "looking at them, and analysis.cost_share adds the same number to every score");
+  } else if (a.penalty == 0.0 && p.window != 0.0) {
+    warnings.emplace_back(
+        "analysis.penalty is 0; the alignment then stretches time without cost, so a recall that "
+        "comes late or too slowly is scored as a good one");
+  }
+  return warnings;
+}
+
+}  // namespace haptrial::experiments

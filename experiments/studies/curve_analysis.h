@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/analysis_plan.h"
+#include "analysis/score_parameters.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::experiments {
+
+/// What a definition says of the analysis of curves of force: its table [analysis].
+struct CurveAnalysis {
+  analysis::ScoreParameters scoring;
+  analysis::AnalysisPlan plan;
+};
+
+/// @param fresh  about to be used: a score that cannot depend on the forces is a problem
+CurveAnalysis read_curve_analysis(Table& root, bool fresh);
+/// @throws InputError for a text without it, or with problems in it
+CurveAnalysis parse_curve_analysis(std::string_view text, std::string_view file_name);
+/// The same of a file; nothing but [analysis] is looked at.
+CurveAnalysis load_curve_analysis(const std::filesystem::path& file);
+
+/// The definition's plan, unless an analysis was given another; then `remarks` say so.
+/// @throws InputError for a test that cannot be read
+analysis::AnalysisPlan plan_for(const std::vector<std::string>& planned,
+                                const std::string& reference, analysis::AnalysisPlan plan,
+                                std::vector<std::string>& remarks);
+analysis::AnalysisPlan plan_of(const std::vector<std::string>& planned,
+                               const std::string& reference);
+
+/// Sentences on scores that do not mean what they seem to.
+std::vector<std::string> warnings_of(const analysis::ScoreParameters& scoring);
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/drilling/validity_study.h"
+#include "experiments/study/study_files.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
+#include "protocols/interface/groups.h"
+
+namespace haptrial::experiments {
+
+/// What metrics need of a definition; the group is empty.
+analysis::drilling::ProcedureSetup procedure_setup(const protocols::BoneDefinition& definition);
+/// Of the definition in a session file.
+analysis::drilling::ProcedureSetup procedure_setup(
+    const record::SessionReader& session, const std::vector<protocols::StudyGroup>& groups);
+
+/// The name of the ratings within a study's folder.
+inline constexpr const char* kRatingsFile = "ratings.csv";
+
+/// Analyses drilling sessions.
+/// @param folder  of the study, where its ratings are
+/// @param out  folder for the report
+/// @returns lines for the terminal
+std::vector<std::string> analyze_drillings(const std::filesystem::path& folder,
+                                           const StudyFiles& files,
+                                           const std::filesystem::path& out, int threads);
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "experiments/studies/study.h"
+
+namespace haptrial::experiments {
+
+/// A definition and the study that its protocol belongs to.
+struct Experiment {
+  const Study* study{nullptr};
+  std::unique_ptr<protocols::Definition> definition;
+};
+
+/// @throws InputError with a sentence for every problem of the file.
+Experiment load_experiment(const std::filesystem::path& file);
+/// From the text that a session file keeps: what the protocol loads beside it is not.
+Experiment parse_experiment(std::string_view text, std::string_view file_name);
+
+/// Sentences on what a definition allows but what spoils its data without a word: what was found,
+/// and what will happen. None where all is well.
+std::vector<std::string> warnings_of(const Experiment& experiment);
+
+/// Prints each, after "warning: ".
+void print_warnings(const Experiment& experiment);
+
+}  // namespace haptrial::experiments

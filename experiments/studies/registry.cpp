@@ -1,0 +1,66 @@
+#include "experiments/studies/registry.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/base/table.h"
+#include "experiments/studies/bone_study.h"
+#include "experiments/studies/force_study.h"
+
+namespace haptrial::experiments {
+namespace {
+
+std::vector<const Study*>& all() {
+  static std::vector<const Study*> studies{
+      &force_study(),
+      &bone_study(),
+  };
+  return studies;
+}
+
+std::vector<std::string> names() {
+  std::vector<std::string> names;
+  for (const Study* study : all()) {
+    names.emplace_back(study->protocol().name());
+  }
+  return names;
+}
+
+const Study* named(std::string_view name) {
+  const auto found = std::find_if(all().begin(), all().end(), [&](const Study* study) {
+    return study->protocol().name() == name;
+  });
+  return found != all().end() ? *found : nullptr;
+}
+
+}  // namespace
+
+const std::vector<const Study*>& studies() { return all(); }
+
+void add_study(const Study& study) {
+  if (named(study.protocol().name()) != nullptr) {
+    throw std::invalid_argument(
+        fmt::format("add_study: there is a protocol '{}' already", study.protocol().name()));
+  }
+  all().push_back(&study);
+}
+
+const Study& study_of(Table& root) {
+  if (root.misspelled("experiment")) {
+    root.check();
+  }
+  Table experiment = root.table("experiment");
+  const bool said = !experiment.misspelled("protocol") && experiment.has("protocol");
+  const std::string name = said ? experiment.choice("protocol", names()) : names().front();
+  root.check();
+  return *named(name);
+}
+
+const Study& study_of(const record::SessionInfo& session) {
+  Table root = Table::parse(session.definition, session.definition_name);
+  return study_of(root);
+}
+
+}  // namespace haptrial::experiments

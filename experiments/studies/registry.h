@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/studies/study.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::experiments {
+
+/// Every study that this program knows, the default one first. Call before threads are started.
+const std::vector<const Study*>& studies();
+
+/// One more, from a program that has its own. It lives as long as the program.
+/// @throws std::invalid_argument for a name that is taken
+void add_study(const Study& study);
+
+/// The study whose protocol [experiment] names; the first one if it names none. A mistake in it is
+/// thrown alone, since it decides what the other keys mean.
+/// @throws InputError
+const Study& study_of(Table& root);
+/// The same from the definition that a session file keeps.
+const Study& study_of(const record::SessionInfo& session);
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/record/live_figures.h"
+#include "experiments/studies/curve_analysis.h"
+#include "experiments/study/study_files.h"
+#include "protocols/interface/protocol.h"
+
+namespace haptrial::experiments {
+
+/// What is asked of a folder of sessions of one study.
+struct AnalysisRequest {
+  std::filesystem::path folder;  // of the sessions
+  StudyFiles files;
+  std::filesystem::path out;  // for the report
+  Pilots pilots{Pilots::kLeftOut};
+  int threads{1};
+  std::vector<std::string> planned;  // tests, in place of the definition's
+  std::string reference;             // condition, likewise
+};
+
+/// A protocol together with what is computed from its sessions. It is one object without state.
+class Study {
+ public:
+  virtual ~Study() = default;
+  virtual const protocols::Protocol& protocol() const = 0;
+
+  /// Reads what only the analysis needs of a definition; its problems are noted.
+  /// @param fresh  about to be used; else recorded already, and a fact whatever it says
+  virtual void read_analysis(Table& root, bool fresh) const {
+    static_cast<void>(root);
+    static_cast<void>(fresh);
+  }
+  /// Sentences on what spoils the analysis without a word.
+  virtual std::vector<std::string> analysis_warnings(
+      const protocols::Definition& definition) const {
+    static_cast<void>(definition);
+    return {};
+  }
+  /// Figures while a session runs; null: none. @param resumed  file of the earlier run, or empty
+  virtual std::unique_ptr<record::LiveFigures> live_figures(
+      const protocols::Definition& definition, const std::filesystem::path& resumed) const {
+    static_cast<void>(definition);
+    static_cast<void>(resumed);
+    return nullptr;
+  }
+  /// Computes, and writes report, tables and figures. @returns lines for the terminal
+  virtual std::vector<std::string> analyze(const AnalysisRequest& request) const = 0;
+  /// What to do with the sessions of a dry run: "haptrial analyze DIR".
+  virtual std::string next_step(const std::filesystem::path& folder) const {
+    return "haptrial analyze " + folder.string();
+  }
+  /// How its curves of force are scored; nothing if its passes have none.
+  virtual std::optional<CurveAnalysis> curves(const record::SessionInfo& session) const {
+    static_cast<void>(session);
+    return std::nullopt;
+  }
+};
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/record/session_types.h"
+#include "experiments/runner/definition_events.h"
+
+namespace haptrial::record {
+class SessionReader;
+}
+
+namespace haptrial::experiments {
+
+/// Pilots are tried before a study and are no part of it: never analysed together with it.
+enum class Pilots { kLeftOut, kAlone };
+
+/// The session files of a folder that `pilots` asks for, sorted by name.
+/// @throws InputError when there are none.
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& folder, Pilots pilots);
+
+/// The names of the files of unfinished sessions in a folder, sorted; empty for no folder.
+std::vector<std::string> unfinished_sessions(const std::filesystem::path& folder);
+
+/// Whether a folder holds session files, finished or not.
+bool holds_sessions(const std::filesystem::path& folder);
+
+/// @throws InputError when two files differ in what was presented, recorded or scored; names the
+/// keys.
+void refuse_mixed(const std::vector<std::filesystem::path>& files);
+
+/// Sessions that belong to one study.
+struct StudyFiles {
+  std::vector<std::filesystem::path> files;
+  record::SessionInfo first;         // of the first file: its definition is the study's
+  std::vector<std::string> remarks;  // sentences for the report
+};
+
+/// @throws InputError as files_of() and refuse_mixed() do.
+StudyFiles study_files(const std::filesystem::path& folder, Pilots pilots);
+
+}  // namespace haptrial::experiments

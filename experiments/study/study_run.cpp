@@ -1,0 +1,189 @@
+#include "experiments/study/study_run.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "core/base/error.h"
+#include "experiments/control/progress.h"
+#include "experiments/runner/session.h"
+
+namespace haptrial::experiments {
+namespace fs = std::filesystem;
+namespace {
+
+/// A new folder, made by this run alone; taken back if the run fails.
+class OutputFolder {
+ public:
+  explicit OutputFolder(fs::path folder) : folder_(std::move(folder)) {
+    std::error_code error;
+    if (const fs::path parent = folder_.lexically_normal().parent_path(); !parent.empty()) {
+      fs::create_directories(parent, error);
+    }
+    // Making a folder is the one step that only one of two runs can do.
+    const bool made = !error && fs::create_directory(folder_, error);
+    if (error && !fs::exists(folder_)) {
+      throw InputError(
+          fmt::format("{}: the folder cannot be created ({})", folder_.string(), error.message()));
+    }
+    if (!made) {
+      throw InputError(
+          fmt::format("{}: exists already; choose a new folder with --out", folder_.string()));
+    }
+  }
+  ~OutputFolder() {
+    if (!keep_) {
+      std::error_code ignored;
+      fs::remove_all(folder_, ignored);
+    }
+  }
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+  void keep() { keep_ = true; }
+
+ private:
+  fs::path folder_;
+  bool keep_{false};
+};
+
+/// Shares the participants out over threads and gathers what came of them.
+class Crew {
+ public:
+  /// @param first  with the definition, to be completed for each participant
+  Crew(const SessionRequest& first, double ticks_each, const DryRun& dry_run)
+      : first_(first), setup_(*first.definition), ticks_each_(ticks_each), dry_run_(dry_run) {}
+
+  DryRunSummary run() {
+    const auto start = std::chrono::steady_clock::now();
+    std::vector<std::thread> threads;
+    for (int i = 0; i < std::min(dry_run_.jobs, dry_run_.participants); ++i) {
+      threads.emplace_back([this] { work(); });
+    }
+    show_progress();
+    for (std::thread& thread : threads) {
+      thread.join();
+    }
+    if (failure_) {
+      std::rethrow_exception(failure_);
+    }
+    summary_.elapsed_seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    summary_.recorded_seconds = static_cast<double>(summary_.ticks) / setup_.rate;
+    return summary_;
+  }
+
+ private:
+  void work() {
+    for (int p = next_++; p < dry_run_.participants && !cancel_; p = next_++) {
+      try {
+        const SessionSummary done = run_session(request(p));
+        const std::lock_guard lock(mutex_);
+        summary_.ticks += done.ticks;
+        summary_.passes += done.passes;
+        summary_.aborted_passes += done.aborted_passes;
+      } catch (...) {
+        const std::lock_guard lock(mutex_);
+        if (!failure_) {
+          failure_ = std::current_exception();
+        }
+        cancel_ = true;
+      }
+      ++finished_;
+    }
+  }
+
+  SessionRequest request(int participant) {
+    SessionRequest r = first_;
+    r.subject = participant_name(participant);
+    r.participant = participant;
+    r.seed = dry_run_.seed;
+    r.file = dry_run_.folder / (r.subject + ".h5");
+    r.frames_per_pass = dry_run_.frames_per_pass;
+    r.frames_folder = dry_run_.folder / "frames";
+    r.max_trials = dry_run_.max_trials;
+    r.ticks = &ticks_;
+    r.cancel = &cancel_;
+    return r;
+  }
+
+  void show_progress() {
+    Progress progress("dry run", ticks_each_ * dry_run_.participants);
+    while (finished_ < dry_run_.participants && !cancel_) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      const auto done = static_cast<double>(ticks_.load(std::memory_order_relaxed));
+      progress.update(done,
+                      fmt::format("{} of {} sessions", finished_.load(), dry_run_.participants),
+                      setup_.rate);
+    }
+  }
+
+  const SessionRequest& first_;
+  const protocols::Definition& setup_;
+  double ticks_each_;
+  const DryRun& dry_run_;
+  std::atomic<int> next_{0};
+  std::atomic<int> finished_{0};
+  std::atomic<std::uint64_t> ticks_{0};
+  std::atomic<bool> cancel_{false};
+  std::mutex mutex_;  // the two below
+  DryRunSummary summary_;
+  std::exception_ptr failure_;
+};
+
+}  // namespace
+
+DryRunSummary run_dry(const protocols::Protocol& protocol, const protocols::Definition& definition,
+                      const DryRun& dry_run) {
+  SessionRequest first;
+  first.protocol = &protocol;
+  first.definition = &definition;
+  const int trials = dry_run.max_trials > 0 ? dry_run.max_trials : definition.design.trials;
+  OutputFolder folder(dry_run.folder);
+  if (dry_run.frames_per_pass > 0) {
+    fs::create_directory(dry_run.folder / "frames");
+  }
+  const DryRunSummary summary =
+      Crew(first, definition.rate * definition.longest(trials), dry_run).run();
+  folder.keep();
+  return summary;
+}
+
+std::string participant_name(int participant) { return fmt::format("S{:02}", participant + 1); }
+
+std::vector<fs::path> session_files(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) {
+    throw InputError(fmt::format("{}: {}; give a folder of session files", folder.string(),
+                                 fs::exists(folder, error) ? "not a folder" : "no such folder"));
+  }
+  std::vector<fs::path> files;
+  std::vector<std::string> unfinished;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().extension() == ".h5") {
+      files.push_back(entry.path());
+    } else if (entry.path().extension() == ".partial") {
+      unfinished.push_back(entry.path().filename().string());
+    }
+  }
+  if (error) {
+    throw InputError(fmt::format("{}: cannot be read ({})", folder.string(), error.message()));
+  }
+  if (files.empty() && !unfinished.empty()) {
+    std::sort(unfinished.begin(), unfinished.end());
+    throw InputError(fmt::format("{}: holds only unfinished sessions: {}; resume them",
+                                 folder.string(), fmt::join(unfinished, ", ")));
+  }
+  if (files.empty()) {
+    throw InputError(fmt::format("{}: holds no session file (.h5); give a folder with at least one",
+                                 folder.string()));
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace haptrial::experiments

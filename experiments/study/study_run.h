@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "protocols/interface/protocol.h"
+
+namespace haptrial::experiments {
+
+/// A dry run: the whole study with virtual subjects on a simulated clock.
+struct DryRun {
+  int participants{0};
+  std::uint64_t seed{1};
+  int jobs{1};
+  int frames_per_pass{0};
+  int max_trials{0};             // of each participant; 0: all
+  std::filesystem::path folder;  // created; one session file per participant
+};
+
+struct DryRunSummary {
+  std::uint64_t ticks{0};
+  int passes{0};
+  int aborted_passes{0};
+  double recorded_seconds{0.0};  // simulated time
+  double elapsed_seconds{0.0};   // on the wall
+};
+
+/// Participants are shared out over threads; the files do not depend on how many.
+/// Where anything fails the other sessions are stopped and nothing is left.
+/// @throws InputError when the folder exists or cannot be made.
+DryRunSummary run_dry(const protocols::Protocol& protocol, const protocols::Definition& definition,
+                      const DryRun& dry_run);
+
+/// "S01" for participant 0.
+std::string participant_name(int participant);
+
+/// The session files of a folder, sorted by name.
+/// @throws InputError when the folder is absent or holds none.
+std::vector<std::filesystem::path> session_files(const std::filesystem::path& folder);
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,140 @@
+#include "protocols/bone_drilling/bone_protocol.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "core/base/counted.h"
+#include "core/base/error.h"
+#include "core/sound/wav.h"
+#include "protocols/bone_drilling/bone_replay.h"
+#include "protocols/bone_drilling/bone_trials.h"
+#include "protocols/bone_drilling/display/bone_display.h"
+#include "protocols/bone_drilling/display/bone_sound.h"
+
+namespace haptrial::protocols {
+namespace {
+
+/// What is made of a drilling that is simulated again.
+class DrillingOutputs {
+ public:
+  DrillingOutputs(const ReplayRequest& request, const BoneReplay& replay)
+      : request_(request), replay_(replay), every_(replay.rate() / request.fps) {
+    if (!request.sound.empty()) {
+      const BoneDefinition& d = replay.definition();
+      sound_.emplace(request.sound, replay.rate(), d.sound_table, d.thin_bone, 1);
+    }
+  }
+  bool any() const { return request_.pictures || sound_; }
+
+  void watch(std::uint64_t tick, const bone::DrillingView& seen,
+             const std::shared_ptr<const BoneStage>& stage) {
+    if (stage != stage_) {
+      stage_ = stage;
+      renderer_.reset();
+      probe_.emplace(stage);
+      if (request_.pictures) {
+        renderer_ = std::make_unique<BoneRenderer>(replay_.definition(), stage);
+      }
+    }
+    constexpr std::uint64_t kProbeEvery = 20;  // ticks
+    if (sound_) {
+      thickness_ = tick % kProbeEvery == 0 ? probe_->under(seen) : thickness_;
+      sound_->add(sound_of(seen, stage->simulator->tools(), thickness_));
+    }
+    if (renderer_ && static_cast<double>(tick) >= next_) {
+      next_ += every_;
+      request_.picture(renderer_->draw(seen));
+      ++count_;
+    }
+  }
+
+  void finish() {
+    renderer_.reset();
+    if (sound_) {
+      sound_->finish();
+      request_.tell("sound: " + request_.sound.string());
+    }
+    if (count_ > 0) {
+      request_.tell(fmt::format("{} pictures", count_));
+    }
+  }
+
+ private:
+  const ReplayRequest& request_;
+  const BoneReplay& replay_;
+  double every_;  // ticks from picture to picture
+  double next_{0.0};
+  int count_{0};
+  std::optional<sound::SoundTrack> sound_;
+  std::shared_ptr<const BoneStage> stage_;
+  std::unique_ptr<BoneRenderer> renderer_;
+  std::optional<ThicknessProbe> probe_;
+  double thickness_{1.0};  // [m]
+};
+
+void tell_verdict(const ReplayRequest& request, const ReplayVerdict& verdict) {
+  if (!verdict.difference.empty()) {
+    throw RunError(fmt::format("{}: trial {} differs from the recording when simulated again: {}",
+                               request.file.string(), verdict.trial, verdict.difference));
+  }
+  request.tell(fmt::format(
+      "trial {}: the same bone, {} ticks in {}, {} voxels emptied, checksum {:016x}{}",
+      verdict.trial, verdict.ticks, counted(verdict.passes, "pass", "passes"), verdict.emptied,
+      verdict.checksum, verdict.whole ? "" : "; an unfinished pass has no checksum"));
+}
+
+class BoneDrilling final : public Protocol {
+ public:
+  std::string_view name() const override { return kBoneDrilling; }
+  std::unique_ptr<Definition> read(Table& root, std::string_view file_name,
+                                   const std::filesystem::path* folder) const override {
+    return std::make_unique<BoneDefinition>(read_bone_definition(root, file_name, folder));
+  }
+  void load(Definition& definition, const std::filesystem::path& folder) const override {
+    dynamic_cast<BoneDefinition&>(definition).load_bones(folder);
+  }
+  std::unique_ptr<Trials> trials(const Definition& definition,
+                                 const SessionPlace& place) const override {
+    return std::make_unique<BoneTrials>(dynamic_cast<const BoneDefinition&>(definition), place);
+  }
+  void replay(const ReplayRequest& request) const override;
+};
+
+void BoneDrilling::replay(const ReplayRequest& request) const {
+  const BoneReplay replay(request.file);
+  DrillingOutputs outputs(request, replay);
+  const std::vector<int> all = replay.trials();
+  if (all.empty()) {
+    throw InputError(fmt::format("{}: holds no trials", request.file.string()));
+  }
+  const int first = request.trial != 0 ? request.trial : all.front();
+  const int last = request.trial != 0 || outputs.any() ? first : all.back();
+  for (int trial = first; trial <= last; ++trial) {
+    const auto ticks = static_cast<double>(replay.ticks(trial));
+    BoneReplay::Watch watch;
+    if (outputs.any()) {
+      watch = [&](std::uint64_t tick, const bone::DrillingView& seen,
+                  const std::shared_ptr<const BoneStage>& stage) {
+        outputs.watch(tick, seen, stage);
+        constexpr std::uint64_t kBetween = 100;  // ticks
+        if (tick % kBetween == 0) {
+          request.progress(static_cast<double>(tick), ticks, fmt::format("trial {}", trial),
+                           replay.rate());
+        }
+      };
+    }
+    tell_verdict(request, replay.run(trial, watch));
+  }
+  outputs.finish();
+}
+
+}  // namespace
+
+const Protocol& bone_drilling() {
+  static const BoneDrilling protocol;
+  return protocol;
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,261 @@
+#include "protocols/bone_drilling/bone_replay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/bone/data/recorded_bone.h"
+#include "protocols/bone_drilling/display/bone_display.h"
+#include "protocols/bone_drilling/drilling_pass.h"
+
+namespace haptrial::protocols {
+namespace {
+
+constexpr std::uint64_t kPiece = 65536;  // rows read at once
+
+BoneDefinition definition_of(const record::SessionReader& reader) {
+  if (!reader.drills()) {
+    throw InputError(
+        fmt::format("{}: is not a drilling session; choose one with protocol = \"bone_drilling\"",
+                    reader.path().string()));
+  }
+  try {
+    return parse_bone_definition(reader.info().definition, reader.info().definition_name);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: its definition is not one of this version of haptrial: {}",
+                                 reader.path().string(), error.what()));
+  }
+}
+
+/// What the device gave, as it is recorded.
+device::DeviceReading reading_of(const record::Sample& sample, const record::ToolRow& tool) {
+  device::DeviceReading reading;
+  reading.tool = {sample.position, sample.velocity};
+  reading.orientation = tool.orientation;
+  reading.buttons = tool.buttons;
+  reading.keys = tool.keys;
+  reading.pedal = tool.pedal;
+  return reading;
+}
+
+/// Rows of one table by tick, in order.
+template <class Row>
+class Cursor {
+ public:
+  Cursor(const std::vector<Row>& rows, std::uint64_t from)
+      : rows_(rows),
+        at_(static_cast<std::size_t>(
+            std::lower_bound(rows.begin(), rows.end(), from,
+                             [](const Row& row, std::uint64_t s) { return row.sequence < s; }) -
+            rows.begin())) {}
+  /// Those of a tick.
+  std::span<const Row> take(std::uint64_t sequence) {
+    const std::size_t first = at_;
+    while (at_ < rows_.size() && rows_[at_].sequence == sequence) {
+      ++at_;
+    }
+    return std::span(rows_).subspan(first, at_ - first);
+  }
+
+ private:
+  const std::vector<Row>& rows_;
+  std::size_t at_;
+};
+
+std::vector<bone::RecordedSplit> splits_of(std::span<const record::SplitRow> rows) {
+  std::vector<bone::RecordedSplit> splits;
+  for (const record::SplitRow& row : rows) {
+    const bool more = row.to >= 0 && !splits.empty() && splits.back().to == row.to;
+    if (!more) {
+      splits.push_back({row.from, row.to, {}});
+    }
+    splits.back().seeds.emplace_back(row.voxel[0], row.voxel[1], row.voxel[2]);
+  }
+  return splits;
+}
+
+std::string words(const record::RemovalRow& row) {
+  return fmt::format("({}, {}, {}) of piece {} with label {}{}", row.voxel[0], row.voxel[1],
+                     row.voxel[2], row.piece, row.label, row.force > 0.0 ? "" : ", cut");
+}
+
+std::string words(const bone::EmptiedIn& gone) {
+  return fmt::format("({}, {}, {}) of piece {} with label {}{}", gone.voxel.x(), gone.voxel.y(),
+                     gone.voxel.z(), gone.piece, gone.label, gone.by_cut ? ", cut" : "");
+}
+
+/// Empty where the voxels of a tick are those of the record.
+std::string difference(std::uint64_t sequence, std::span<const record::RemovalRow> recorded,
+                       std::span<const bone::EmptiedIn> emptied) {
+  for (std::size_t i = 0; i < std::max(recorded.size(), emptied.size()); ++i) {
+    const std::string file = i < recorded.size() ? words(recorded[i]) : "no further voxel";
+    const std::string here = i < emptied.size() ? words(emptied[i]) : "none";
+    if (file != here) {
+      return fmt::format("on tick {} the record has {} emptied, and the simulation {}", sequence,
+                         file, here);
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+BoneReplay::BoneReplay(const std::filesystem::path& session)
+    : reader_(session),
+      definition_(definition_of(reader_)),
+      passes_(reader_.passes()),
+      procedures_(reader_.rows<record::ProcedureRow>()),
+      removals_(reader_.rows<record::RemovalRow>()),
+      splits_(reader_.rows<record::SplitRow>()) {
+  for (const record::BoneRecord& bone : reader_.bones()) {
+    bones_.push_back(std::make_shared<const bone::BoneModel>(bone::model_of(bone)));
+  }
+  if (bones_.empty()) {
+    throw InputError(fmt::format("{}: holds no bone", session.string()));
+  }
+}
+
+std::vector<int> BoneReplay::trials() const {
+  std::set<int> trials;
+  for (const record::PassRow& pass : passes_) {
+    if (pass.trial > 0) {
+      trials.insert(pass.trial);
+    }
+  }
+  return {trials.begin(), trials.end()};
+}
+
+std::uint64_t BoneReplay::ticks(int trial) const {
+  std::uint64_t ticks = 0;
+  for (const record::PassRow& pass : passes_) {
+    ticks += pass.trial == trial ? pass.last_sample - pass.first_sample + 1 : 0;
+  }
+  return ticks;
+}
+
+std::shared_ptr<BoneStage> BoneReplay::make_stage(int trial, bool drawn) const {
+  auto stage = std::make_shared<BoneStage>();
+  stage->model = bones_[static_cast<std::size_t>(std::max(trial, 1) - 1) % bones_.size()];
+  const geometry::VoxelGrid& grid = stage->model->grid;
+  stage->start_view = definition_.simulator.camera.start;
+  stage->simulator =
+      std::make_unique<bone::Simulator>(*stage->model, simulator_for(definition_, grid));
+  if (drawn) {
+    stage->companions = std::make_unique<bone::SteppedCompanions>(
+        *stage->simulator, companions_for(definition_, grid), rate(), false);
+    stage->depths = depths_of(*stage->model);
+  }
+  return stage;
+}
+
+ReplayVerdict BoneReplay::run(int trial, const Watch& watch) const {
+  ReplayVerdict verdict;
+  verdict.trial = trial;
+  std::shared_ptr<BoneStage> stage;
+  std::int32_t bone = -1;
+  for (std::size_t row = 0; row < passes_.size(); ++row) {
+    const record::PassRow& pass = passes_[row];
+    if (pass.trial != trial) {
+      continue;
+    }
+    if (!stage || pass.repetition != bone) {
+      stage.reset();  // before there is another one
+      stage = make_stage(trial, static_cast<bool>(watch));
+      bone = pass.repetition;
+    }
+    ++verdict.passes;
+    run_pass(static_cast<std::int32_t>(row), pass, stage, {watch, {}}, verdict);
+    if (!verdict.difference.empty()) {
+      break;
+    }
+  }
+  if (verdict.passes == 0) {
+    const std::vector<int> known = trials();
+    throw InputError(known.empty()
+                         ? fmt::format("{}: holds no trials", reader_.path().string())
+                         : fmt::format("--trial is {}; allowed: {} to {}, the trials of {}", trial,
+                                       known.front(), known.back(), reader_.path().string()));
+  }
+  return verdict;
+}
+
+std::shared_ptr<BoneStage> BoneReplay::restore(int trial, std::int32_t bone, ReplayVerdict& verdict,
+                                               const Pulse& pulse) const {
+  verdict = {};
+  verdict.trial = trial;
+  std::shared_ptr<BoneStage> stage;
+  for (std::size_t row = 0; row < passes_.size() && verdict.difference.empty(); ++row) {
+    if (passes_[row].trial == trial && passes_[row].repetition == bone) {
+      stage = stage ? stage : make_stage(trial, false);
+      ++verdict.passes;
+      run_pass(static_cast<std::int32_t>(row), passes_[row], stage, {{}, pulse}, verdict);
+    }
+  }
+  return stage;
+}
+
+void BoneReplay::run_pass(std::int32_t row, const record::PassRow& pass,
+                          const std::shared_ptr<BoneStage>& stage, const Onlookers& onlookers,
+                          ReplayVerdict& verdict) const {
+  constexpr std::uint64_t kBetweenPulses = 500;  // ticks
+  const protocols::DrillingInput input(definition_.drilling);
+  const double dt = 1.0 / rate();
+  bone::Simulator& simulator = *stage->simulator;
+  Cursor<record::RemovalRow> removals(removals_, pass.first_sample);
+  Cursor<record::SplitRow> splits(splits_, pass.first_sample);
+  const std::uint64_t offset = reader_.samples(0, 1).front().sequence;
+  const std::uint64_t first = pass.first_sample - offset;
+  const std::uint64_t end = pass.last_sample - offset + 1;
+  bool begun = false;
+  for (std::uint64_t at = first; at < end; at += kPiece) {
+    const std::uint64_t count = std::min(kPiece, end - at);
+    const std::vector<record::Sample> samples = reader_.samples(at, count);
+    const std::vector<record::ToolRow> tool = reader_.rows<record::ToolRow>(at, count);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (!tool[i].active) {
+        continue;
+      }
+      const bone::SimulatorInput now = input.of(reading_of(samples[i], tool[i]), dt);
+      if (!std::exchange(begun, true)) {
+        simulator.begin(now.functions);
+      }
+      const std::uint64_t sequence = samples[i].sequence;
+      simulator.tick(now, splits_of(splits.take(sequence)));
+      verdict.difference = difference(sequence, removals.take(sequence), simulator.emptied());
+      verdict.emptied += simulator.emptied().size();
+      if (!verdict.difference.empty()) {
+        return;
+      }
+      if (onlookers.watch) {
+        stage->companions->after_tick(simulator, dt);
+        onlookers.watch(verdict.ticks, protocols::view_of(simulator, now), stage);
+      }
+      if (onlookers.pulse && verdict.ticks % kBetweenPulses == 0) {
+        onlookers.pulse(verdict.ticks);
+      }
+      ++verdict.ticks;
+    }
+  }
+  verdict.checksum = simulator.checksum();
+  check_end(row, verdict);
+}
+
+/// Whether the bone at the end of a pass is that of the record.
+void BoneReplay::check_end(std::int32_t row, ReplayVerdict& verdict) const {
+  const auto procedure =
+      std::find_if(procedures_.begin(), procedures_.end(),
+                   [row](const record::ProcedureRow& each) { return each.pass == row; });
+  if (procedure == procedures_.end()) {
+    verdict.whole = false;
+  } else if (procedure->checksum != verdict.checksum) {
+    verdict.difference = fmt::format(
+        "pass {} ends with another bone: its checksum is {:016x}, and the record has {:016x}, "
+        "though the same voxels were emptied",
+        row, verdict.checksum, procedure->checksum);
+  }
+}
+
+}  // namespace haptrial::protocols

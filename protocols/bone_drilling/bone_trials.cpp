@@ -1,0 +1,248 @@
+#include "protocols/bone_drilling/bone_trials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "core/base/error.h"
+#include "core/base/random.h"
+#include "core/bone/data/recorded_bone.h"
+#include "core/record/drilling_tables.h"
+#include "core/record/session_reader.h"
+#include "protocols/bone_drilling/bone_restore.h"
+#include "protocols/bone_drilling/display/bone_display.h"
+#include "protocols/bone_drilling/display/stage_stills.h"
+#include "protocols/bone_drilling/drilling_rig.h"
+#include "protocols/interface/session_file.h"
+
+namespace haptrial::protocols {
+namespace {
+
+/// People practise; whoever is virtual has nothing to learn from it.
+std::vector<PlannedTrial> plan_of(const BoneDefinition& d, const SessionPlace& place) {
+  std::vector<PlannedTrial> plan;
+  if (d.practice > 0.0 && place.real) {
+    plan.push_back({0, 0, 1, "practice", derived_seed(place.session_seed, "practice"), true});
+  }
+  for (int trial = 1; trial <= d.design.trials; ++trial) {
+    const std::uint64_t seed = derived_seed(place.session_seed, fmt::format("procedure {}", trial));
+    plan.push_back({trial, trial, 1, "drilling", seed, false});
+  }
+  return plan;
+}
+
+/// How many bones a trial has had in earlier runs.
+std::int32_t bones_used(const SessionFile& file, const PlannedTrial& trial) {
+  std::int32_t most = 0;
+  for (const record::PassRow& pass : file.earlier_passes()) {
+    most = pass.trial == trial.trial ? std::max(most, pass.repetition) : most;
+  }
+  return most;
+}
+
+}  // namespace
+
+BoneTrials::BoneTrials(const BoneDefinition& definition, const SessionPlace& place)
+    : d_(definition), place_(place), plan_(plan_of(definition, place)) {
+  if (d_.bones.empty()) {
+    throw InputError(fmt::format("{}: has no bones to drill", d_.file_name));
+  }
+  for (const auto& model : d_.bones) {
+    records_.push_back(bone::record_of(*model, static_cast<std::int32_t>(records_.size())));
+  }
+  if (d_.sound_card && place.real) {
+    try {
+      sound_ = std::make_unique<BoneSound>(d_, derived_seed(place.session_seed, "sound"));
+    } catch (const RunError& error) {
+      notice_ = error.what();
+    }
+  }
+  for (const auto& bone : d_.bones) {  // before there is a window: it takes seconds
+    stills_.push_back(place.window ? screen_stills(d_, *bone) : nullptr);
+  }
+  if (place.frames_per_pass > 0) {
+    pictures_ = std::make_unique<BonePictures>(d_, place.frames_per_pass);
+  }
+}
+
+std::vector<stimulus::Observer*> BoneTrials::observers() {
+  std::vector<stimulus::Observer*> all;
+  if (pictures_) {
+    all.push_back(pictures_.get());
+  }
+  if (sound_) {
+    all.push_back(sound_.get());
+  }
+  return all;
+}
+
+std::vector<std::string> BoneTrials::notices() const {
+  return notice_.empty() ? std::vector<std::string>{} : std::vector{notice_};
+}
+
+std::optional<PlannedTrial> BoneTrials::cut_short(
+    const SessionFile& file, const std::function<bool(const PlannedTrial&)>& is_over,
+    bool went_on) const {
+  const auto found = std::find_if_not(plan_.trials().begin(), plan_.trials().end(), is_over);
+  if (found == plan_.trials().end()) {
+    return std::nullopt;
+  }
+  PlannedTrial trial = *found;
+  trial.repetition = bones_used(file, trial) + (went_on ? 0 : 1);
+  return trial;
+}
+
+std::span<const record::Phase> BoneTrials::phases() const {
+  static constexpr std::array kPhases{record::kDrillingPhase};
+  return kPhases;
+}
+
+record::TableList BoneTrials::tables() const { return record::drilling_tables(); }
+
+std::vector<record::Rows> BoneTrials::first_rows() const { return record::rows_of(records_); }
+
+std::unique_ptr<Rig> BoneTrials::virtual_rig() const {
+  return std::make_unique<DrillingRig>(d_, place_.session_seed, place_.participant);
+}
+
+void BoneTrials::empty_logs(SessionFile& file) {
+  const auto empty = [&file](auto& log) { log.flush([&file](auto rows) { file.add(rows); }); };
+  empty(logs_.tool);
+  empty(logs_.removals);
+  empty(logs_.camera);
+  empty(logs_.splits);
+}
+
+/// A bone's file beside the definition may have changed since: what follows would be of another.
+void BoneTrials::check_resumed(const record::SessionReader& file) const {
+  const std::vector<record::BoneRecord> before = file.bones();
+  const std::vector<record::BoneRecord>& now = records_;
+  for (std::size_t i = 0; i < std::max(before.size(), now.size()); ++i) {
+    if (i >= before.size() || i >= now.size() || !bone::same_bone(before[i], now[i])) {
+      throw InputError(fmt::format(
+          "{}: was recorded with another bone {} ('{}'); resume it with "
+          "the same ones",
+          file.path().string(), i + 1, i < before.size() ? before[i].bone.name : "none"));
+    }
+  }
+}
+
+void BoneTrials::prepare(const PlannedTrial& trial, SessionFile& file) {
+  bone_ = static_cast<std::size_t>(std::max(trial.trial, 1) - 1) % d_.bones.size();
+  bones_used_ = bones_used(file, trial);
+  stage_.reset();
+  if (!place_.resumed.empty() && bones_used_ > 0) {
+    restore(trial, file);
+  }
+}
+
+/// The bone of an earlier run of the session, as it stood. The servo loop ticks meanwhile.
+void BoneTrials::restore(const PlannedTrial& trial, SessionFile& file) {
+  const RestoredBone bone =
+      restore_bone(place_.resumed, trial.trial, bones_used_, [&](std::uint64_t tick) {
+        place_.pulse("restoring the bone",
+                     static_cast<double>(tick) / (d_.rate * d_.drilling.time_limit));
+      });
+  const bool lost = bone.stage && file.was_cut_short(trial);
+  const std::string told =
+      bone.told +
+      (lost ? "; changes of the last 0.8 s before the interruption may be missing" : "");
+  file.event(bone.stage ? "bone_restored" : "bone_lost", told);
+  fmt::print(stderr, "{}\n", told);
+  if (bone.stage) {
+    spent_ = bone.ticks;
+    old_dust_ = bone.stage->simulator->removed_so_far();
+    set_up(bone.stage, trial);
+  }
+}
+
+void BoneTrials::begin_attempt(const PlannedTrial& trial, bool anew) {
+  if (stage_ && !anew) {
+    return;
+  }
+  pass_.reset();
+  auto stage = std::make_shared<BoneStage>();
+  stage->model = d_.bones[bone_];
+  const geometry::VoxelGrid& grid = stage->model->grid;
+  stage->start_view = d_.simulator.camera.start;
+  stage->simulator = std::make_unique<bone::Simulator>(*stage->model, simulator_for(d_, grid));
+  ++bones_used_;
+  spent_ = 0;
+  old_dust_ = 0.0;
+  set_up(std::move(stage), trial);
+}
+
+/// What goes beside a bone.
+void BoneTrials::set_up(std::shared_ptr<BoneStage> stage, const PlannedTrial& trial) {
+  const geometry::VoxelGrid& grid = stage->model->grid;
+  const bone::CompanionParameters companions = companions_for(d_, grid);
+  if (place_.real) {
+    stage->companions = std::make_unique<bone::ThreadedCompanions>(*stage->simulator, companions);
+  } else {
+    stage->companions =
+        std::make_unique<bone::SteppedCompanions>(*stage->simulator, companions, d_.rate);
+  }
+  if (place_.window || pictures_) {
+    stage->depths = depths_of(*stage->model);
+  }
+  stage->stills = stills_[bone_];
+  stage_ = std::move(stage);
+  vibration_.reset();
+  if (d_.vibration_gain > 0.0) {
+    vibration_.emplace(d_.vibration_table, d_.vibration_gain, d_.rate, trial.stimulus_seed);
+  }
+  if (sound_) {
+    sound_->listen_to(stage_);
+  }
+}
+
+MakeDrawing BoneTrials::drawing() { return bone_drawing(d_, stage_); }
+
+Pass& BoneTrials::make_pass(PlannedTrial& trial, const record::Phase&) {
+  trial.repetition = bones_used_;
+  DrillingParameters drilling = d_.drilling;
+  drilling.time_limit = trial.practice ? d_.practice : drilling.time_limit;
+  pass_ = std::make_unique<DrillingPass>(*stage_->simulator, *stage_->companions, drilling, logs_,
+                                         d_.rate, spent_, vibration_ ? &*vibration_ : nullptr);
+  if (pictures_) {
+    pictures_->watch(stage_);
+  }
+  return *pass_;
+}
+
+/// After a crash the row of /trials that would say so is missing.
+bool BoneTrials::goes_on_with(const record::PassRow& before, const record::PassRow& pass) const {
+  return before.trial == pass.trial && before.practice == pass.practice &&
+         before.repetition == pass.repetition;
+}
+
+void BoneTrials::close_pass(SessionFile& file, std::int32_t row) {
+  spent_ = pass_->ticks();
+  stage_->companions->settle();
+  const bone::Simulator& simulator = *stage_->simulator;
+  const bone::DustBalance dust = stage_->companions->dust();
+  record::ProcedureRow procedure;
+  procedure.pass = row;
+  procedure.bone = static_cast<std::int32_t>(bone_);
+  procedure.pieces = simulator.pieces();
+  procedure.emptied = simulator.emptied_so_far();
+  procedure.before = simulator.amount_at_start();
+  procedure.left = simulator.amount_left();
+  procedure.cut = simulator.cut_so_far();
+  procedure.dust = dust.lying + dust.held;
+  procedure.suctioned = dust.suctioned;
+  procedure.fallen = dust.fallen + old_dust_;
+  procedure.checksum = simulator.checksum();
+  file.add(std::span<const record::ProcedureRow>(&procedure, 1));
+}
+
+void BoneTrials::draw_pictures(const PlannedTrial& trial, const record::Phase&) {
+  if (pictures_) {
+    pictures_->write(place_.frames_folder,
+                     fmt::format("{}-trial{:02}-drilling", place_.subject, trial.trial));
+  }
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "protocols/bone_drilling/definition/bone_definition.h"
+#include "protocols/bone_drilling/display/bone_pictures.h"
+#include "protocols/bone_drilling/display/bone_sound.h"
+#include "protocols/bone_drilling/display/bone_stage.h"
+#include "protocols/bone_drilling/drilling_pass.h"
+#include "protocols/interface/trials.h"
+
+namespace haptrial::protocols {
+
+/// One procedure on a bone (Morris 2006, §3). Where it is broken off, the next attempt goes on with
+/// the bone as it is, unless it is to be done anew.
+class BoneTrials final : public Trials {
+ public:
+  /// Both outlive the trials.
+  BoneTrials(const BoneDefinition& definition, const SessionPlace& place);
+
+  Extent extent(int most) const override { return plan_.extent(most); }
+  std::optional<PlannedTrial> next(const Outcome*) override { return plan_.next(); }
+  bool presents_aborted_again() const override { return true; }
+  std::optional<PlannedTrial> cut_short(const SessionFile& file,
+                                        const std::function<bool(const PlannedTrial&)>& is_over,
+                                        bool went_on) const override;
+  std::span<const record::Phase> phases() const override;
+  std::unique_ptr<Rig> virtual_rig() const override;
+  std::vector<stimulus::Observer*> observers() override;
+  TickLog* tick_log() override { return &logs_; }
+  void empty_logs(SessionFile& file) override;
+  std::uint64_t dropped() const override { return logs_.dropped(); }
+  record::TableList tables() const override;
+  std::vector<record::Rows> first_rows() const override;
+  void check_resumed(const record::SessionReader& file) const override;
+  void prepare(const PlannedTrial& trial, SessionFile& file) override;
+  void begin_attempt(const PlannedTrial& trial, bool anew) override;
+  MakeDrawing drawing() override;
+  Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) override;
+  bool goes_on_with(const record::PassRow& before, const record::PassRow& pass) const override;
+  void close_pass(SessionFile& file, std::int32_t row) override;
+  void draw_pictures(const PlannedTrial& trial, const record::Phase& phase) override;
+  std::vector<std::string> notices() const override;
+  const char* why_aborted() const override { return "the procedure was broken off"; }
+
+ private:
+  void restore(const PlannedTrial& trial, SessionFile& file);
+  void set_up(std::shared_ptr<BoneStage> stage, const PlannedTrial& trial);
+
+  const BoneDefinition& d_;
+  const SessionPlace& place_;
+  FixedPlan plan_;
+  DrillingLogs logs_;
+  std::vector<record::BoneRecord> records_;  // of the bones
+  std::unique_ptr<BonePictures> pictures_;
+  std::shared_ptr<BoneStage> stage_;
+  std::size_t bone_{0};         // of the definition's
+  std::int32_t bones_used_{0};  // in this trial, earlier runs of the session included
+  std::vector<std::shared_ptr<const std::vector<render::Image>>> stills_;  // by bone
+  std::uint64_t spent_{0};  // ticks of the time limit
+  double old_dust_{0.0};    // made in earlier runs of the session, which nobody follows [voxels]
+  std::optional<sound::DrillVibration> vibration_;
+  std::unique_ptr<BoneSound> sound_;
+  std::string notice_;
+  std::unique_ptr<DrillingPass> pass_;
+};
+
+}  // namespace haptrial::protocols

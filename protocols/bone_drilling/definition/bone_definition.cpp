@@ -1,0 +1,355 @@
+#include "protocols/bone_drilling/definition/bone_definition.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/base/table.h"
+#include "core/bone/data/load_bone.h"
+#include "core/bone/data/mandible.h"
+#include "core/bone/data/temporal_bone.h"
+#include "protocols/interface/groups.h"
+
+namespace haptrial::protocols {
+namespace {
+
+namespace fs = std::filesystem;
+
+Eigen::Vector3d read_vector(Table& table, const char* key, const Bounds& bounds, const char* unit) {
+  const std::vector<double> n = table.numbers(key, bounds, unit);
+  if (n.size() != 3) {
+    table.reject(key, fmt::format("a list of {} numbers", n.size()), "three numbers: x, y, z");
+    return Eigen::Vector3d::Zero();
+  }
+  return {n[0], n[1], n[2]};
+}
+
+void optional(Table& table, const char* key, double& value, const Bounds& bounds,
+              const char* unit) {
+  value = table.has(key) ? table.number(key, bounds, unit) : value;
+}
+
+protocols::Design read_procedures(Table& table) {
+  protocols::Design design;
+  design.participants = static_cast<int>(table.integer("participants", 1, 10000));
+  design.trials = static_cast<int>(table.integer("procedures", 1, 1000));
+  design.repetitions = 1;
+  design.break_after =
+      table.has("break_after") ? static_cast<int>(table.integer("break_after", 0, 999)) : 0;
+  design.break_duration = 0.0;
+  optional(table, "break_duration", design.break_duration, {0.0, 86400.0}, "s");
+  design.conditions = {"drilling"};
+  if (design.break_after >= design.trials && design.break_after > 0) {
+    table.reject(
+        "break_after", fmt::format("{}", design.break_after),
+        fmt::format("a whole number below the {} procedures, or 0 for no break", design.trials));
+  }
+  return design;
+}
+
+BonePlacement read_placement(Table& table) {
+  BonePlacement placement;
+  placement.centre = read_vector(table, "centre", {-1.0, 1.0}, "m");
+  const Eigen::Vector3d x = read_vector(table, "x_to", {-1.0, 1.0}, "");
+  const Eigen::Vector3d y = read_vector(table, "y_to", {-1.0, 1.0}, "");
+  constexpr double kSquare = 1e-3;  // of the angle between them [rad]
+  if (!(x.norm() > 0.0)) {
+    table.reject("x_to", "is zero; write the direction in the world of the bone's x axis");
+  } else if (!(y.norm() > 0.0) || std::abs(x.normalized().dot(y.normalized())) > kSquare) {
+    table.reject("y_to",
+                 "is not square to x_to; write the direction in the world of the bone's y axis");
+  } else {
+    placement.turn.col(0) = x.normalized();
+    placement.turn.col(2) = x.cross(y).normalized();
+    placement.turn.col(1) = placement.turn.col(2).cross(placement.turn.col(0));
+  }
+  return placement;
+}
+
+protocols::DrillingParameters read_drilling(Table& root) {
+  Table table = root.table("drilling");
+  protocols::DrillingParameters p;
+  p.force_limit = table.number("force_limit", {0.0, 100.0, true}, "N");
+  p.time_limit = table.number("time_limit", {0.1, 36000.0}, "s");
+  p.handle = read_vector(table, "handle", {-1.0, 1.0}, "");
+  if (!(p.handle.norm() > 0.0)) {
+    table.reject("handle", "is zero; write the direction from the tip along the handle");
+    p.handle = Eigen::Vector3d::UnitY();
+  }
+  optional(table, "scale", p.scale, {0.1, 20.0}, "");
+  p.controls = protocols::read_controls(root);
+  return p;
+}
+
+void read_display(Table& table, BoneDefinition& d) {
+  d.display.width = static_cast<int>(table.integer("width", 160, 8192));
+  d.display.height = static_cast<int>(table.integer("height", 120, 8192));
+  d.stereo = table.has("stereo") && table.boolean("stereo");
+  optional(table, "eye_distance", d.eye_distance, {0.0, 0.1}, "m");
+  d.stills = table.has("stills") ? static_cast<int>(table.integer("stills", 2, 20)) : 0;
+  if (d.stills > 0 && !d.cavity) {
+    table.reject("stills", "needs a cavity, whose stages the stills show; add a table [cavity]");
+  }
+}
+
+void read_groups(Table& root, BoneDefinition& d) {
+  if (!root.has("groups")) {
+    return;
+  }
+  Table table = root.table("groups");
+  constexpr long kMost = 10000;
+  long all = 0;
+  bool good = true;
+  for (const std::string& name : table.keys()) {
+    const long participants = table.integer(name, 1, kMost);
+    good = good && participants > 0;
+    all += participants;
+  }
+  if (good && all != d.design.participants) {
+    root.reject("groups", fmt::format("has {} participants in all; make it {}, as in "
+                                      "design.participants",
+                                      all, d.design.participants));
+  }
+  if (good) {
+    for (const StudyGroup& group : study_groups(root.source(), d.file_name)) {
+      d.groups.push_back({group.name, group.participants, 0.5});
+    }
+  }
+}
+
+int tool_named(Table& table, const char* key, const BoneDefinition& d) {
+  const std::string name = table.text(key);
+  for (std::size_t tool = 0; tool < d.simulator.tools.size(); ++tool) {
+    const bone::ToolSpec& spec = d.simulator.tools[tool];
+    if (spec.name == name && spec.kind == bone::ToolKind::kBurr) {
+      return static_cast<int>(tool);
+    }
+  }
+  table.reject(key, fmt::format("\"{}\"", name), "a burr of tools.in_hand");
+  return 0;
+}
+
+void read_surgeons(Table& root, BoneDefinition& d) {
+  if (!root.has("virtual_surgeons")) {
+    return;
+  }
+  Table table = root.table("virtual_surgeons");
+  subject::SurgeonParameters p;
+  const auto burr = [&](const char* key) {
+    const int tool = tool_named(table, key, d);
+    const double diameter = d.simulator.tools.empty()
+                                ? 1e-3
+                                : d.simulator.tools[static_cast<std::size_t>(tool)].burr.diameter;
+    return subject::SurgeonBurr{tool, 0.5 * diameter};
+  };
+  p.rough = burr("rough");
+  p.fine = burr("fine");
+  optional(table, "between", p.spread.between, {0.0, 1.0}, "");
+  optional(table, "within", p.spread.within, {0.0, 1.0}, "");
+  optional(table, "learning", p.spread.learning, kFraction, "");
+  const auto button = [&](const char* key, int& value, long low) {
+    value = table.has(key) ? static_cast<int>(table.integer(key, low, 30)) : value;
+  };
+  button("power_button", p.power_button, 0);
+  button("next_button", p.next_button, 0);
+  button("previous_button", p.previous_button, 0);
+  button("look_button", p.look_button, -1);
+  button("finish_button", p.finish_button, -1);
+  if (d.groups.empty()) {
+    p.skill = table.number("skill", kFraction, "");
+  } else {
+    Table skill = table.table("skill");
+    for (ParticipantGroup& group : d.groups) {
+      group.skill = skill.number(group.name, kFraction, "");
+    }
+  }
+  if (!root.has("cavity")) {
+    root.reject("virtual_surgeons", "needs a cavity; add a table [cavity]");
+  }
+  d.surgeon = p;
+}
+
+/// @param folder  of the file; null: tables of spectra are not read
+void read_sound(Table& root, BoneDefinition& d, const fs::path* folder) {
+  d.sound_table = sound::default_sound();
+  d.vibration_table = sound::default_vibration();
+  if (!root.has("sound")) {
+    return;
+  }
+  Table table = root.table("sound");
+  d.sound_card = table.has("card") && table.boolean("card");
+  optional(table, "vibration_gain", d.vibration_gain, {0.0, 100.0}, "");
+  d.thin_bone = sound::read_thin_bone(table);
+  const auto spectra = [&](const char* key, sound::SpectrumTable& into) {
+    if (table.has(key)) {
+      const std::string name = table.text(key);
+      if (folder != nullptr) {
+        into = sound::read_spectrum_table(*folder / name);
+      }
+    }
+  };
+  spectra("spectra", d.sound_table);
+  spectra("vibration", d.vibration_table);
+}
+
+void check_together(Table& root, const BoneDefinition& d) {
+  Table drilling = root.table("drilling");
+  if (d.drilling.force_limit > d.envelope.max_force) {
+    drilling.reject("force_limit", fmt::format("{}", d.drilling.force_limit),
+                    fmt::format("at most envelope.max_force, {} [N]", d.envelope.max_force));
+  }
+  if (root.has("drilling_hand")) {
+    const double reach =
+        d.hand_plan.start.norm() + 0.5 * std::hypot(d.hand_plan.width, d.hand_plan.height);
+    if (reach > d.envelope.workspace_radius) {
+      Table hand = root.table("drilling_hand");
+      hand.reject("start", fmt::format("gives a region that reaches {:.3g} m from the middle; keep "
+                                       "it within envelope.workspace_radius, {} [m]",
+                                       reach, d.envelope.workspace_radius));
+    }
+  }
+}
+
+bone::BoneModel load_source(const std::string& source, const BoneDefinition& d,
+                            const fs::path& folder) {
+  if (source == "procedural temporal") {
+    bone::TemporalBoneOptions options;
+    options.seed = d.bone_seed;
+    options.spacing = d.spacing.value_or(options.spacing);
+    return bone::make_temporal_bone(options);
+  }
+  if (source == "procedural mandible") {
+    bone::MandibleOptions options;
+    options.seed = d.bone_seed;
+    options.spacing = d.spacing.value_or(options.spacing);
+    return bone::make_mandible(options);
+  }
+  bone::LoadOptions options;
+  options.spacing = d.spacing;
+  const fs::path file = fs::path(source).is_absolute() ? fs::path(source) : folder / source;
+  return bone::load_bone(file, options);
+}
+
+}  // namespace
+
+Eigen::Isometry3d pose_of(const BonePlacement& placement, const geometry::VoxelGrid& grid) {
+  const Eigen::Vector3d middle =
+      0.5 *
+      (grid.centre(0, 0, 0) + grid.centre(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1));
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = placement.turn;
+  pose.translation() = placement.centre - placement.turn * middle;
+  return pose;
+}
+
+BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
+                                    const fs::path* folder) {
+  BoneDefinition d;
+  d.protocol = kBoneDrilling;
+  read_common(root, file_name, d);
+  Table design = root.table("design");
+  Table bone = root.table("bone");
+  Table tools = root.table("tools");
+  Table camera = root.table("camera");
+  Table display = root.table("display");
+  d.design = read_procedures(design);
+  d.sources = bone.texts("bones");
+  if (d.sources.empty()) {
+    bone.reject("bones", "is empty; name \"procedural temporal\" or a file");
+  }
+  d.bone_seed = bone.has("seed")
+                    ? static_cast<std::uint64_t>(bone.integer("seed", 0, 1'000'000'000))
+                    : d.bone_seed;
+  if (bone.has("spacing")) {
+    d.spacing = bone.number("spacing", {5e-5, 5e-3}, "m");
+  }
+  d.placement = read_placement(bone);
+  d.simulator.tools = bone::read_tools(tools);
+  d.simulator.camera = bone::read_microscope_parameters(camera);
+  if (root.has("pieces")) {
+    Table pieces = root.table("pieces");
+    d.simulator.world = bone::read_world_parameters(pieces);
+  }
+  d.companions.dusty = root.has("dust");
+  if (d.companions.dusty) {
+    Table dust = root.table("dust");
+    d.companions.dust = bone::read_dust_parameters(dust);
+  }
+  d.drilling = read_drilling(root);
+  Table drilling = root.table("drilling");
+  optional(drilling, "recovery", d.recovery, {0.0, 600.0}, "s");
+  if (root.has("drilling_hand")) {
+    Table hand = root.table("drilling_hand");
+    d.hand_plan = subject::read_drilling_hand_parameters(hand);
+  }
+  if (root.has("practice")) {
+    Table practice = root.table("practice");
+    d.practice = practice.number("duration", {0.0, 36000.0}, "s");
+  }
+  if (root.has("cavity")) {
+    Table cavity = root.table("cavity");
+    d.cavity = read_cavity_parameters(cavity);
+  }
+  read_groups(root, d);
+  read_surgeons(root, d);
+  read_display(display, d);
+  read_sound(root, d, folder);
+  check_common(root, d);
+  check_together(root, d);
+  if (folder != nullptr && root.has("drilling_hand")) {
+    reject_speed(root, d, "drilling_hand", "speed", d.hand_plan.speed);
+  }
+  return d;
+}
+
+void BoneDefinition::load_bones(const fs::path& folder) {
+  for (const std::string& source : sources) {
+    bones.push_back(std::make_shared<const bone::BoneModel>(load_source(source, *this, folder)));
+    if (cavity) {
+      const bone::BoneModel& model = *bones.back();
+      charts.push_back(std::make_shared<const subject::DrillingChart>(
+          make_chart(model, pose_of(placement, model.grid), *cavity)));
+    }
+  }
+}
+
+const ParticipantGroup* group_of(const BoneDefinition& d, int participant) {
+  for (const ParticipantGroup& group : d.groups) {
+    if (participant < group.participants) {
+      return participant < 0 ? nullptr : &group;
+    }
+    participant -= group.participants;
+  }
+  return nullptr;
+}
+
+BoneDefinition load_bone_definition(const fs::path& file) {
+  const fs::path folder = file.parent_path();
+  Table root = Table::load(file);
+  BoneDefinition d = read_bone_definition(root, file.string(), &folder);
+  root.finish();
+  d.load_bones(folder);
+  return d;
+}
+
+BoneDefinition parse_bone_definition(std::string_view text, std::string_view file_name) {
+  Table root = Table::parse(text, file_name);
+  BoneDefinition d = read_bone_definition(root, file_name, nullptr);
+  root.finish();
+  return d;
+}
+
+bone::SimulatorParameters simulator_for(const BoneDefinition& d, const geometry::VoxelGrid& grid) {
+  bone::SimulatorParameters p = d.simulator;
+  p.pose_WB = pose_of(d.placement, grid);
+  return p;
+}
+
+bone::CompanionParameters companions_for(const BoneDefinition& d, const geometry::VoxelGrid& grid) {
+  bone::CompanionParameters p = d.companions;
+  p.dust.voxel = grid.spacing;
+  return p;
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/bone/bone_model.h"
+#include "core/bone/companions.h"
+#include "core/bone/simulator.h"
+#include "core/sound/drill_sound.h"
+#include "core/subject/drilling_chart.h"
+#include "core/subject/drilling_hand.h"
+#include "core/subject/drilling_surgeon.h"
+#include "protocols/bone_drilling/definition/cavity.h"
+#include "protocols/bone_drilling/definition/drilling_parameters.h"
+#include "protocols/interface/definition.h"
+
+namespace haptrial::protocols {
+
+inline constexpr const char* kBoneDrilling = "bone_drilling";  // its name in [experiment]
+
+/// How a bone lies in the scene.
+struct BonePlacement {
+  Eigen::Vector3d centre{Eigen::Vector3d::Zero()};    // of its grid, in W [m]
+  Eigen::Matrix3d turn{Eigen::Matrix3d::Identity()};  // from B to W: a rotation
+};
+Eigen::Isometry3d pose_of(const BonePlacement& placement, const geometry::VoxelGrid& grid);
+
+/// Participants of one kind. The first ones belong to the first group, and so on.
+struct ParticipantGroup {
+  std::string name;
+  int participants{0};
+  double skill{0.5};  // of virtual ones, 0 to 1
+};
+
+/// An experiment of drillings (`protocol = "bone_drilling"`), read from a definition file and valid
+/// as a whole. A trial is one procedure on one bone.
+struct BoneDefinition : Definition {
+  std::vector<std::string>
+      sources;                    // of bones: "procedural temporal", "procedural mandible", files
+  std::uint64_t bone_seed{1};     // of procedural ones
+  std::optional<double> spacing;  // of voxels [m]; default: as the source has it
+  BonePlacement placement;
+  bone::SimulatorParameters simulator;  // but for the pose
+  bone::CompanionParameters companions;
+  DrillingParameters drilling;
+  subject::DrillingHandParameters hand_plan;  // of the virtual hand
+  std::vector<ParticipantGroup> groups;       // none: everybody is alike
+  double practice{0.0};                       // before the first procedure, of people only [s]
+  std::optional<CavityParameters> cavity;     // that is asked for
+  /// Virtual participants are surgeons (drilling_surgeon.h) and not hands that drill; skill is that
+  /// of their group.
+  std::optional<subject::SurgeonParameters> surgeon;
+  bool sound_card{false};  // whether a live session is heard
+  sound::SpectrumTable sound_table;
+  sound::ThinBone thin_bone;
+  sound::SpectrumTable vibration_table;
+  double vibration_gain{0.0};  // >= 0
+  bool stereo{false};
+  double eye_distance{0.02};  // between the eyes, in the scene >= 0 [m]
+  int stills{0};              // of stages of the cavity, which can be called up; 0: none
+  /// By source; procedures take them in turn. None where only a text was parsed: a session file has
+  /// its bones in it.
+  std::vector<std::shared_ptr<const bone::BoneModel>> bones;
+  std::vector<std::shared_ptr<const subject::DrillingChart>> charts;  // (bones) with a cavity
+
+  /// Makes or reads the bones, which takes seconds. @param folder  of the file
+  /// @throws InputError as bone::load_bone does
+  void load_bones(const std::filesystem::path& folder);
+
+  std::vector<std::string> description() const override;
+  std::vector<std::string> warnings() const override;
+  std::vector<std::string> left_out_of_dry_runs() const override;
+  double longest(int trials) const override { return trials * drilling.time_limit; }
+  bool has_target() const override { return false; }
+  std::uint32_t functions_of(const std::vector<int>& held) const override {
+    return functions_of_keys(drilling.controls, held);
+  }
+};
+
+/// @param participant  from 0. @returns null where there are no groups, or none for the number
+const ParticipantGroup* group_of(const BoneDefinition& definition, int participant);
+
+/// @throws InputError with a sentence for every problem of the file; as bone::load_bone does.
+BoneDefinition load_bone_definition(const std::filesystem::path& file);
+/// From the text that a session file keeps, without bones.
+BoneDefinition parse_bone_definition(std::string_view text, std::string_view file_name);
+/// From a table that others read on, and whose problems are still to be thrown; without bones.
+/// @param folder  of the file, for tables that it names; null: they are not read
+BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
+                                    const std::filesystem::path* folder);
+
+/// The simulator of a procedure: the definition's, around a bone.
+bone::SimulatorParameters simulator_for(const BoneDefinition& definition,
+                                        const geometry::VoxelGrid& grid);
+bone::CompanionParameters companions_for(const BoneDefinition& definition,
+                                         const geometry::VoxelGrid& grid);
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,104 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/base/counted.h"
+#include "core/base/table.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
+#include "protocols/bone_drilling/definition/contact_margin.h"
+
+namespace haptrial::protocols {
+namespace {
+
+/// Friction of the device brings a burr to rest that would swing without it; no law tells how much
+/// friction is enough (docs/algorithms/bone-feel.md), so only its absence is warned about.
+void warn_of_contact(const BoneDefinition& d, std::vector<std::string>& warnings) {
+  const auto margin = contact_margin(d);
+  if (margin && margin->stiffness > margin->stable && d.hand.coulomb_friction == 0.0) {
+    warnings.push_back(fmt::format(
+        "hand.coulomb_friction is 0; flat bone under the burr {} is {:.1f} N/mm stiff "
+        "at {:g} N, the loop carries {:.1f} N/mm at {:g} Hz, and the burr will not come "
+        "to rest",
+        margin->tool, 1e-3 * margin->stiffness, margin->force, 1e-3 * margin->stable, d.rate));
+  }
+}
+
+/// Lines at half the rate and above are left out of the vibration.
+void warn_of_vibration(const BoneDefinition& d, std::vector<std::string>& warnings) {
+  double highest = 0.0;
+  for (const auto& kind : d.vibration_table.kinds) {
+    for (const auto* levels : {&kind.free, &kind.contact}) {
+      for (const sound::Level& level : *levels) {
+        for (int i = 0; i < level.spectrum.count; ++i) {
+          highest = std::max(highest, level.spectrum.peaks[static_cast<std::size_t>(i)].frequency);
+        }
+      }
+    }
+  }
+  if (d.vibration_gain > 0.0 && highest >= 0.5 * d.rate) {
+    warnings.push_back(
+        fmt::format("the vibration has lines of up to {:.0f} Hz; those at {:g} Hz and above, half "
+                    "of experiment.rate, are left out",
+                    highest, 0.5 * d.rate));
+  }
+}
+
+void warn_of_devices(const BoneDefinition& d, std::vector<std::string>& warnings) {
+  Table root = Table::parse(d.text, d.file_name);
+  const auto check = [&](const char* table, double max_force) {
+    if (root.has(table) && max_force < d.drilling.force_limit) {
+      warnings.push_back(
+          fmt::format("{0}.max_force is {1:g} N; drilling.force_limit is {2:g} N, and contact "
+                      "forces above {1:g} N will be cut off with that device",
+                      table, max_force, d.drilling.force_limit));
+    }
+  };
+  check("force_dimension", d.force_dimension.max_force);
+  check("open_haptics", d.open_haptics.max_force);
+}
+
+}  // namespace
+
+std::vector<std::string> BoneDefinition::warnings() const {
+  const BoneDefinition& d = *this;
+  std::vector<std::string> warnings;
+  warn_of_contact(d, warnings);
+  warn_of_vibration(d, warnings);
+  warn_of_devices(d, warnings);
+  return warnings;
+}
+
+std::vector<std::string> BoneDefinition::description() const {
+  std::vector<std::string> lines{fmt::format(
+      "{}: {}, {} of at most {:.0f} s{}, {} Hz", name,
+      counted(design.participants, "participant", "participants"),
+      counted(design.trials, "procedure", "procedures"), drilling.time_limit,
+      design.trials == 1 ? "" : " each", rate)};
+  for (const auto& bone : bones) {
+    const auto filled = std::count_if(bone->labels.begin(), bone->labels.end(),
+                                      [](std::uint8_t label) { return label != 0; });
+    lines.push_back(fmt::format("bone: {}, {} x {} x {} voxels of {:.3g} mm, {} of them filled",
+                                bone->name, bone->grid.size[0], bone->grid.size[1],
+                                bone->grid.size[2], 1e3 * bone->grid.spacing, filled));
+  }
+  std::vector<std::string> tools;
+  for (const bone::ToolSpec& tool : simulator.tools) {
+    tools.push_back(tool.name);
+  }
+  lines.push_back(fmt::format("tools: {}", fmt::join(tools, ", ")));
+  if (const auto margin = contact_margin(*this)) {
+    lines.push_back(describe(*margin));
+  }
+  return lines;
+}
+
+std::vector<std::string> BoneDefinition::left_out_of_dry_runs() const {
+  return practice > 0.0
+             ? std::vector{fmt::format(
+                   "{:.0f} minutes of practice left out: virtual subjects need none",
+                   practice / 60.0)}
+             : std::vector<std::string>{};
+}
+
+}  // namespace haptrial::protocols

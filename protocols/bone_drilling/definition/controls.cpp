@@ -1,0 +1,111 @@
+#include "protocols/bone_drilling/definition/controls.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+
+#include "core/base/table.h"
+
+namespace haptrial::protocols {
+namespace {
+
+constexpr int kMostButtons = 31;
+// As render::KeyPress has them.
+constexpr int kEnter = 257;
+constexpr int kSpace = ' ';
+
+std::optional<int> key_code(const std::string& name) {
+  if (name == "space") {
+    return kSpace;
+  }
+  if (name == "enter") {
+    return kEnter;
+  }
+  const bool plain = name.size() == 1 && (std::isdigit(static_cast<unsigned char>(name[0])) != 0 ||
+                                          (name[0] >= 'A' && name[0] <= 'Z'));
+  return plain ? std::optional<int>(name[0]) : std::nullopt;
+}
+
+void read_buttons(Table& table, const std::string& key, std::uint32_t& mask) {
+  for (const double number : table.numbers(key, {0.0, kMostButtons - 1.0}, "")) {
+    const int button = static_cast<int>(number);
+    if (button != number) {
+      table.reject(key, fmt::format("a list with {}", number), "numbers of buttons, from 0");
+    } else {
+      mask |= std::uint32_t{1} << static_cast<unsigned>(button);
+    }
+  }
+}
+
+void read_keys(Table& table, const std::string& key, std::vector<int>& codes) {
+  for (const std::string& name : table.texts(key)) {
+    if (const auto code = key_code(name)) {
+      codes.push_back(*code);
+    } else {
+      table.reject(key, fmt::format("a list with '{}'", name), "space, enter, A to Z, 0 to 9");
+    }
+  }
+}
+
+}  // namespace
+
+Controls read_controls(Table& root) {
+  Controls controls;
+  const auto each = [&](const char* name, auto read) {
+    if (!root.has(name)) {
+      return;
+    }
+    Table table = root.table(name);
+    for (std::size_t f = 0; f < bone::kFunctions; ++f) {
+      const std::string key(bone::name_of(static_cast<bone::Function>(f)));
+      if (table.has(key)) {
+        read(table, key, f);
+      }
+    }
+    if (table.has("analog_pedal")) {
+      controls.analog_power = table.boolean("analog_pedal");
+    }
+  };
+  each("buttons", [&](Table& table, const std::string& key, std::size_t f) {
+    read_buttons(table, key, controls.buttons[f]);
+  });
+  each("keys", [&](Table& table, const std::string& key, std::size_t f) {
+    read_keys(table, key, controls.keys[f]);
+  });
+  return controls;
+}
+
+std::uint32_t functions_of(const Controls& controls,
+                           const device::DeviceReading& reading) noexcept {
+  std::uint32_t functions = reading.keys;
+  for (std::size_t f = 0; f < bone::kFunctions; ++f) {
+    if ((controls.buttons[f] & reading.buttons) != 0) {
+      functions |= std::uint32_t{1} << f;
+    }
+  }
+  return functions;
+}
+
+double power_of(const Controls& controls, const device::DeviceReading& reading,
+                std::uint32_t functions) noexcept {
+  if (controls.analog_power && reading.pedal > 0.0) {
+    return std::min(1.0, reading.pedal);
+  }
+  return (functions & bone::bit(bone::Function::kPower)) != 0 ? 1.0 : 0.0;
+}
+
+std::uint32_t functions_of_keys(const Controls& controls, const std::vector<int>& held) {
+  std::uint32_t functions = 0;
+  for (std::size_t f = 0; f < bone::kFunctions; ++f) {
+    for (const int key : controls.keys[f]) {
+      if (std::find(held.begin(), held.end(), key) != held.end()) {
+        functions |= std::uint32_t{1} << f;
+      }
+    }
+  }
+  return functions;
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,150 @@
+#include "protocols/bone_drilling/display/bone_display.h"
+
+#include <utility>
+
+#include "protocols/bone_drilling/display/stage_stills.h"
+
+namespace haptrial::protocols {
+namespace {
+
+constexpr double kShaft = 1.2e-3;  // diameter of a burr's shaft, at most [m]
+const render::Colour kSteel{0.72, 0.74, 0.78};
+const render::Colour kPlate{0.60, 0.66, 0.72};
+const render::Colour kPlane{0.35, 0.65, 1.0, 0.4};
+
+class BoneDrawing final : public Drawing {
+ public:
+  BoneDrawing(const render::Gl& gl, const BoneDefinition& definition,
+              std::shared_ptr<const BoneStage> stage, int width, int height)
+      : display_(gl, definition, std::move(stage), width, height) {}
+  void draw(const stimulus::Shown& shown) override {
+    const auto* seen = shown.as<bone::DrillingView>();
+    display_.draw(seen != nullptr ? *seen : bone::DrillingView{});
+  }
+
+ private:
+  BoneDisplay display_;
+};
+
+}  // namespace
+
+std::shared_ptr<const bone::StructureDepths> depths_of(const bone::BoneModel& model) {
+  return std::make_shared<const bone::StructureDepths>(model, bone::all_but_bone(model.structures));
+}
+
+BoneDisplay::BoneDisplay(const render::Gl& gl, const BoneDefinition& definition,
+                         std::shared_ptr<const BoneStage> stage, int width, int height)
+    : gl_(gl),
+      stage_(std::move(stage)),
+      width_(width),
+      height_(height),
+      scene_(gl, render::BoneStyle{}, stage_->model->structures, stage_->depths) {
+  for (std::size_t tool = 0; tool < stage_->simulator->tools().size(); ++tool) {
+    meshes_.push_back(mesh_of(static_cast<int>(tool)));
+  }
+  set_stills(stage_->stills);
+  if (definition.stereo) {
+    frame_.stereo = render::StereoPair{definition.eye_distance, std::nullopt};
+  }
+}
+
+std::shared_ptr<const geometry::Mesh> BoneDisplay::mesh_of(int tool) const {
+  const bone::ToolSpec& spec = stage_->simulator->tools()[static_cast<std::size_t>(tool)];
+  const auto shared = [](geometry::Mesh mesh) {
+    return std::make_shared<const geometry::Mesh>(std::move(mesh));
+  };
+  switch (spec.kind) {
+    case bone::ToolKind::kBurr:
+      return shared(render::burr_mesh(spec.burr.diameter, std::min(kShaft, spec.burr.diameter),
+                                      spec.handle_length));
+    case bone::ToolKind::kSuction:
+      return shared(render::suction_mesh(1.4 * spec.suction_radius, 2.0 * spec.suction_radius,
+                                         spec.handle_length));
+    case bone::ToolKind::kCutPlane:
+      return shared(render::plane_mesh(spec.plane.width, spec.plane.height));
+    case bone::ToolKind::kPlate:
+      return shared(stage_->simulator->plate(tool)->mesh());
+    case bone::ToolKind::kGrip:
+      break;
+  }
+  return shared(render::burr_mesh(1e-3, 1e-3, spec.handle_length));
+}
+
+void BoneDisplay::draw(const bone::DrillingView& seen) {
+  const bone::BoneWorld& world = std::as_const(*stage_->simulator).world();
+  const int pieces = world.pieces();
+  frame_.bones.resize(static_cast<std::size_t>(pieces));
+  world.published_poses().read(pieces, [&](int piece, const Eigen::Isometry3d& pose) {
+    frame_.bones[static_cast<std::size_t>(piece)] = {static_cast<std::uint32_t>(piece),
+                                                     &world.volume(piece), pose};
+  });
+  frame_.meshes.clear();
+  const int plates = world.plates();
+  std::vector<Eigen::Isometry3d> poses(static_cast<std::size_t>(plates));
+  world.published_plates().read(plates, [&](int plate, const Eigen::Isometry3d& pose) {
+    poses[static_cast<std::size_t>(plate)] = pose;
+  });
+  for (int plate = 0; plate < plates; ++plate) {
+    if (world.plate_is_on(plate)) {
+      frame_.meshes.push_back({meshes_[static_cast<std::size_t>(world.plate_model(plate))],
+                               poses[static_cast<std::size_t>(plate)], kPlate});
+    }
+  }
+  if (seen.shown) {
+    const auto tool = static_cast<std::size_t>(seen.tool);
+    const bool plane = stage_->simulator->tools()[tool].kind == bone::ToolKind::kCutPlane;
+    const ToolState held{{seen.tip, Eigen::Vector3d::Zero()}, seen.orientation};
+    frame_.meshes.push_back({meshes_[tool], render::pose_of(held), plane ? kPlane : kSteel});
+    frame_.camera = {seen.eye, seen.target, seen.up, seen.field_of_view};
+  } else {
+    const bone::Microscope& start = stage_->start_view;
+    frame_.camera = {start.eye, start.target, start.up, start.field_of_view};
+  }
+  stage_->companions->quads(frame_.dust, dust_version_);
+  scene_.draw(frame_, width_, height_);
+  draw_still(seen.stills_asked);
+}
+
+void BoneDisplay::set_stills(std::shared_ptr<const std::vector<render::Image>> stills) {
+  const bool any = stills != nullptr && !stills->empty();
+  stills_ = any ? std::make_unique<render::BoneStills>(gl_, std::move(stills)) : nullptr;
+}
+
+/// None, the first, ..., the last, none.
+void BoneDisplay::draw_still(std::int32_t asked) {
+  const std::size_t number = stills_ ? static_cast<std::size_t>(asked) % (stills_->count() + 1) : 0;
+  if (number == 0) {
+    return;
+  }
+  const int eyes = frame_.stereo ? 2 : 1;
+  for (int eye = 0; eye < eyes; ++eye) {
+    stills_->draw(number - 1, eye * (width_ / eyes), width_ / eyes, height_);
+  }
+}
+
+MakeDrawing bone_drawing(const BoneDefinition& definition, std::shared_ptr<const BoneStage> stage) {
+  return [&definition, stage](const render::Gl& gl, int width, int height) {
+    return std::make_unique<BoneDrawing>(gl, definition, stage, width, height);
+  };
+}
+
+BoneRenderer::BoneRenderer(const BoneDefinition& definition, std::shared_ptr<const BoneStage> stage)
+    : definition_(definition),
+      stage_(std::move(stage)),
+      has_stills_(stage_->stills != nullptr),
+      context_(definition.display.width, definition.display.height),
+      display_(context_.gl(), definition, stage_, definition.display.width,
+               definition.display.height) {}
+
+render::Image BoneRenderer::draw(const bone::DrillingView& seen) {
+  if (seen.stills_asked > 0 && !std::exchange(has_stills_, true)) {
+    const auto stills = screen_stills(definition_, *stage_->model);  // in a context of its own
+    context_.make_current();
+    display_.set_stills(stills);
+  }
+  context_.make_current();
+  display_.draw(seen);
+  return context_.read();
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,52 @@
+#include "protocols/bone_drilling/drilling_rig.h"
+
+#include "core/base/random.h"
+#include "core/subject/drilling_hand.h"
+#include "core/subject/drilling_surgeon.h"
+
+namespace haptrial::protocols {
+namespace {
+
+constexpr double kAway = 0.015;  // from the bone, where a surgeon's hand begins [m]
+
+/// Where the hand is before anybody asks anything of it.
+Eigen::Vector3d start_of(const BoneDefinition& d) {
+  if (d.surgeon && !d.charts.empty()) {
+    const subject::DrillingChart& chart = *d.charts.front();
+    const auto u = static_cast<int>(chart.end.x() / chart.cell);
+    const auto v = static_cast<int>(chart.end.y() / chart.cell);
+    const float surface = chart.surface[chart.column(u, v)];
+    const double depth =
+        surface == subject::DrillingChart::kNone ? 0.0 : static_cast<double>(surface) - kAway;
+    return d.drilling.scale * chart.world({chart.end.x(), chart.end.y(), depth});
+  }
+  return d.hand_plan.start - 2.0 * d.hand_plan.hover * d.hand_plan.inward;
+}
+
+std::vector<std::shared_ptr<const subject::DrillingChart>> charts_of(const BoneDefinition& d) {
+  std::vector<std::shared_ptr<const subject::DrillingChart>> charts;
+  for (int procedure = 0; procedure < d.design.trials; ++procedure) {
+    charts.push_back(d.charts[static_cast<std::size_t>(procedure) % d.charts.size()]);
+  }
+  return charts;
+}
+
+}  // namespace
+
+DrillingRig::DrillingRig(const BoneDefinition& d, std::uint64_t session_seed, int participant)
+    : hand_(d.hand, 1.0 / d.rate, start_of(d)), device_(d.device, hand_, d.rate) {
+  const std::uint64_t seed = derived_seed(session_seed, "subject");
+  if (d.surgeon && !d.charts.empty()) {
+    subject::SurgeonParameters person = *d.surgeon;
+    if (const ParticipantGroup* group = group_of(d, participant)) {
+      person.skill = group->skill;
+    }
+    subject_ = std::make_unique<subject::DrillingSurgeon>(person, charts_of(d), hand_, device_,
+                                                          d.drilling.scale, seed, 1.0 / d.rate);
+  } else {
+    subject_ = std::make_unique<subject::DrillingHand>(d.hand_plan, hand_, device_,
+                                                       d.drilling.scale, seed, 1.0 / d.rate);
+  }
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,209 @@
+#include "protocols/force_training/force_definition.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/base/counted.h"
+#include "core/base/nearest.h"
+#include "core/base/table.h"
+#include "core/control/loop_margin.h"
+#include "protocols/force_training/passes/training_pass.h"
+#include "protocols/force_training/recorded_path.h"
+
+namespace haptrial::protocols {
+namespace {
+
+/// The loop of the device with the longest velocity window, so that the damping is safe with all.
+control::HandleLoop handle_loop(const Definition& d) {
+  control::HandleLoop loop;
+  loop.handle_mass = d.hand.handle_mass;
+  loop.rate = d.rate;
+  loop.force_delay = d.device.force_delay;
+  loop.velocity_window =
+      std::max({2, d.device.velocity_window,
+                static_cast<int>(std::lround(d.force_dimension.velocity_window * d.rate))});
+  return loop;
+}
+
+constexpr double kLongestPass = 300.0;  // along x; the curve itself is a few times longer [s]
+
+void check_path(Table& root, const ForceDefinition& d);
+
+/// The sampling theorem: at half the rate and above there is nothing left of a sinusoid.
+void reject_frequencies(Table& root, const ForceDefinition& d) {
+  const double nyquist = 0.5 * d.rate;
+  if (d.force_pattern.max_frequency >= nyquist) {
+    root.table("force_pattern")
+        .reject("max_frequency", fmt::format("{:g}", d.force_pattern.max_frequency),
+                fmt::format("below half of experiment.rate, {:g} [Hz]", nyquist));
+  }
+  const double along = d.trajectory.max_spatial_frequency * d.trajectory.speed;
+  if (d.trajectory.from.empty() && along >= nyquist) {
+    root.table("trajectory")
+        .reject("max_spatial_frequency",
+                fmt::format("{:g}, which is {:g} Hz at {:g} m/s",
+                            d.trajectory.max_spatial_frequency, along, d.trajectory.speed),
+                fmt::format("below half of experiment.rate, {:g} [Hz]", nyquist));
+  }
+  const double shortest = 2.0 / d.rate;
+  if (d.force_pattern.bumps_max > 0 && d.force_pattern.bump_width_min < shortest) {
+    root.table("force_pattern")
+        .reject("bump_width_min", fmt::format("{:g}", d.force_pattern.bump_width_min),
+                fmt::format("at least two ticks, {:g} [s]", shortest));
+  }
+}
+
+/// What no table can see alone.
+void check_together(Table& root, const ForceDefinition& d) {
+  const auto& known = protocols::training_conditions();
+  Table design = root.table("design");
+  for (const std::string& condition : d.design.conditions) {
+    if (std::find(known.begin(), known.end(), condition) == known.end()) {
+      const std::string hint = did_you_mean(condition, known);
+      design.reject("conditions", fmt::format("is an array with '{}'{} allowed: {}", condition,
+                                              hint.empty() ? ";" : hint, fmt::join(known, ", ")));
+    }
+  }
+  Table guidance = root.table("guidance");
+  if (d.guidance.force_limit > d.envelope.max_force) {
+    guidance.reject("force_limit", fmt::format("{}", d.guidance.force_limit),
+                    fmt::format("at most envelope.max_force, {} [N]", d.envelope.max_force));
+  }
+  check_path(root, d);
+}
+
+/// The path and how long it takes.
+void check_path(Table& root, const ForceDefinition& d) {
+  if (!d.trajectory.from.empty() && d.trajectory.points.empty()) {
+    return;  // a recorded path that is not read
+  }
+  Table trajectory = root.table("trajectory");
+  const bool recorded = !d.trajectory.from.empty();
+  double length = d.trajectory.length_x;  // at least
+  double reach = 0.5 * std::hypot(d.trajectory.length_x, d.trajectory.range_z);
+  if (recorded) {
+    length = reach = 0.0;
+    Eigen::Vector3d before = d.trajectory.points.front();
+    for (const Eigen::Vector3d& point : d.trajectory.points) {
+      length += (point - before).norm();
+      reach = std::max(reach, point.norm());
+      before = point;
+    }
+  }
+  if (length / d.trajectory.speed > kLongestPass) {
+    trajectory.reject(
+        "speed", fmt::format("{}", d.trajectory.speed),
+        fmt::format("at least {:.3g} [m/s], so that {} takes at most {} s", length / kLongestPass,
+                    recorded ? "the recorded path" : "length_x", kLongestPass));
+  }
+  if (reach > d.envelope.workspace_radius) {
+    const char* key = recorded ? "from" : "length_x";
+    trajectory.reject(
+        key, fmt::format("{} reaches {:.3g} m from the middle; keep it within "
+                         "envelope.workspace_radius, {} [m]",
+                         recorded ? "names a path that" : "gives, with range_z, a curve that",
+                         reach, d.envelope.workspace_radius));
+  }
+  const double shortest = length / d.trajectory.speed;
+  Table force_pattern = root.table("force_pattern");
+  if (2.0 * d.force_pattern.ramp > shortest) {
+    force_pattern.reject(
+        "ramp", fmt::format("{}", d.force_pattern.ramp),
+        fmt::format("at most half of the shortest pass, {:.3g} [s]", 0.5 * shortest));
+  }
+}
+
+}  // namespace
+
+ForceDefinition read_force_definition(Table& root, std::string_view file_name,
+                                      const std::filesystem::path* folder) {
+  Table design = root.table("design");
+  Table trajectory = root.table("trajectory");
+  Table force_pattern = root.table("force_pattern");
+  Table guidance = root.table("guidance");
+  Table subject = root.table("subject");
+  Table display = root.table("display");
+  Table recording = root.table("recording");
+  root.leave("analysis");
+  ForceDefinition d{subject::Population(subject)};
+  d.protocol = kForceTraining;
+  read_common(root, file_name, d);
+  d.trajectory = stimulus::read_trajectory_parameters(trajectory);
+  d.force_pattern = stimulus::read_force_pattern_parameters(force_pattern);
+  d.guidance = read_guidance_parameters(guidance);
+  d.stimulus_rate = recording.number("stimulus_rate", {10.0, 10000.0}, "Hz");
+  d.design = read_design(design);
+  d.recovery = d.guidance.recovery;
+  d.guidance.loop = handle_loop(d);
+  d.display = render::read_trial_display_style(display);
+  if (d.guidance.kind == Guidance::kCurve) {
+    Table pace = root.table("pace");
+    d.pace.emplace(pace);
+  }
+  if (folder != nullptr && !d.trajectory.from.empty()) {
+    d.trajectory.points = recorded_path(d.trajectory.from, *folder);
+  }
+  check_common(root, d);
+  check_together(root, d);
+  if (folder != nullptr) {
+    reject_frequencies(root, d);
+    reject_speed(root, d, "trajectory", "speed", d.trajectory.speed);
+    reject_speed(root, d, "guidance", "approach_speed", d.guidance.approach_speed);
+  }
+  return d;
+}
+
+ForceDefinition load_force_definition(const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.parent_path();
+  Table root = Table::load(file);
+  ForceDefinition d = read_force_definition(root, file.string(), &folder);
+  root.finish();
+  return d;
+}
+
+ForceDefinition parse_force_definition(std::string_view text, std::string_view file_name) {
+  Table root = Table::parse(text, file_name);
+  ForceDefinition d = read_force_definition(root, file_name, nullptr);
+  root.finish();
+  return d;
+}
+
+std::vector<std::string> ForceDefinition::description() const {
+  std::vector<std::string> lines{
+      fmt::format("{}: {}, {} in {} of {}, {} {}, {} Hz", name,
+                  counted(design.participants, "participant", "participants"),
+                  counted(design.trials, "trial", "trials"),
+                  counted(design.blocks(), "block", "blocks"), design.repetitions,
+                  design.conditions.size() == 1 ? "condition" : "conditions",
+                  fmt::join(design.conditions, ", "), rate),
+      fmt::format("about {:.0f} minutes per participant, breaks not counted",
+                  longest(design.trials) / 60.0)};
+  for (std::string& line : margins()) {
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+std::vector<std::string> ForceDefinition::margins() const { return margins_of(guidance); }
+
+std::vector<std::string> margins_of(const GuidanceParameters& guidance) {
+  std::vector<std::string> lines;
+  for (const auto& [which, gains] :
+       {std::pair{"trajectory", guidance.trajectory}, {"plane", guidance.plane}}) {
+    lines.push_back(describe(control::loop_margin(which, gains, guidance.loop)));
+  }
+  return lines;
+}
+
+double ForceDefinition::longest(int trials) const {
+  // A wandering curve is about twice as long as its extent; approach and return take seconds.
+  const double run = 2.0 * trajectory.length_x / trajectory.speed;
+  const double around = guidance.wait + 2.0 * 1.875 * trajectory.length_x / guidance.approach_speed;
+  return 2.0 * trials * (run + around);
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/stimulus/stimulus.h"
+#include "core/subject/pacer.h"
+#include "core/subject/subject_parameters.h"
+#include "protocols/force_training/passes/trajectory_pass.h"
+#include "protocols/interface/definition.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::protocols {
+
+inline constexpr const char* kForceTraining = "force_training";  // its name in [experiment]
+
+/// An experiment of forces along a path, read from a definition file and valid as a whole.
+struct ForceDefinition : Definition {
+  explicit ForceDefinition(subject::Population people) : population(std::move(people)) {}
+
+  stimulus::TrajectoryParameters trajectory;
+  stimulus::ForcePatternParameters force_pattern;
+  GuidanceParameters guidance;
+  subject::Population population;
+  std::optional<subject::PaceHabits> pace;  // where participants set their own
+  double stimulus_rate{1000.0};             // [Hz]
+
+  std::vector<std::string> description() const override;
+  std::vector<std::string> margins() const override;
+  std::vector<std::string> warnings() const override;
+  double longest(int trials) const override;
+  /// What a square in the corner means, too, for those who may see one.
+  std::string instructions() const override { return texts.instructions + "\n" + texts.limit; }
+};
+
+/// @throws InputError with a sentence for every problem of the file.
+ForceDefinition load_force_definition(const std::filesystem::path& file);
+
+/// A definition from its text, as a session file keeps it. A path that it takes from a recorded
+/// pass is not read: the session file holds the path itself.
+ForceDefinition parse_force_definition(std::string_view text, std::string_view file_name);
+
+/// The same from a table that others read on, and whose problems are still to be thrown.
+/// @param folder  of the file, where a recorded path is to be read; else null
+ForceDefinition read_force_definition(Table& root, std::string_view file_name,
+                                      const std::filesystem::path* folder);
+
+/// How firmly the loop lets the handle be held, a line for the path and one for the plane.
+std::vector<std::string> margins_of(const GuidanceParameters& guidance);
+
+}  // namespace haptrial::protocols

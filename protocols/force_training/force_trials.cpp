@@ -1,0 +1,71 @@
+#include "protocols/force_training/force_trials.h"
+
+#include <array>
+
+#include "protocols/force_training/passes/recorded_pass.h"
+#include "protocols/force_training/path_drawing.h"
+#include "protocols/force_training/virtual_rig.h"
+#include "protocols/interface/session_file.h"
+
+namespace haptrial::protocols {
+ForceTrials::ForceTrials(const ForceDefinition& definition, const SessionPlace& place)
+    : d_(definition),
+      place_(place),
+      plan_(plan_trials(d_.design, place.participant, place.seed, place.session_seed)),
+      pictures_(d_.display, place) {}
+
+std::span<const record::Phase> ForceTrials::phases() const {
+  static constexpr std::array kPhases{record::Phase::kTraining, record::Phase::kTest};
+  return kPhases;
+}
+
+std::unique_ptr<Rig> ForceTrials::virtual_rig() const {
+  return std::make_unique<VirtualRig>(d_, place_.session_seed);
+}
+
+std::vector<stimulus::Observer*> ForceTrials::observers() {
+  std::vector<stimulus::Observer*> all;
+  if (pictures_.observer() != nullptr) {
+    all.push_back(pictures_.observer());
+  }
+  return all;
+}
+
+void ForceTrials::prepare(const PlannedTrial& trial, SessionFile& file) {
+  if (!stimulus_ || stimulus_seed_ != trial.stimulus_seed) {
+    stimulus_ = stimulus::make_stimulus(d_.trajectory, d_.force_pattern, trial.stimulus_seed);
+    stimulus_seed_ = trial.stimulus_seed;
+    pictures_.set_trajectory(stimulus_->path.points());
+  }
+  if (!file.holds_stimulus(trial.block)) {
+    file.keep_stimulus(trial.block, stimulus_rows(*stimulus_, trial.block, d_.stimulus_rate));
+  }
+}
+
+MakeDrawing ForceTrials::drawing() { return path_drawing(d_.display, stimulus_->path.points()); }
+
+Pass& ForceTrials::make_pass(PlannedTrial& trial, const record::Phase& phase) {
+  pass_ = protocols::make_pass(trial.condition, phase, *stimulus_, d_.guidance, trial.block);
+  return *pass_;
+}
+
+std::vector<record::StimulusRow> stimulus_rows(const stimulus::Stimulus& s, std::int32_t block,
+                                               double rate) {
+  std::vector<record::StimulusRow> rows;
+  const double end = s.path.duration();
+  const auto add = [&](double t) {
+    rows.push_back({block, t, s.path.at(t).position, s.force.at(t)});
+  };
+  const auto steps = static_cast<std::size_t>(end * rate);
+  rows.reserve(steps + 2);
+  for (std::size_t i = 0; i <= steps; ++i) {
+    add(static_cast<double>(i) / rate);
+  }
+  constexpr double kRounding = 1e-9;  // [s]
+  if (end - rows.back().time > kRounding) {
+    add(end);
+  }
+  return rows;
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "core/render/frames.h"
+#include "core/record/session_types.h"
+#include "protocols/force_training/frame_capture.h"
+#include "protocols/interface/trials.h"
+
+namespace haptrial::protocols {
+
+/// Pictures of what was shown in each pass, into a folder; nothing where none were asked for.
+/// Session's thread; the servo thread speaks to observer().
+class PassPictures {
+ public:
+  /// @param place  outlives the pictures
+  PassPictures(const render::TrialDisplayStyle& style, const SessionPlace& place);
+
+  /// Sees the pass; null where no pictures are wanted.
+  stimulus::Observer* observer() { return renderer_ ? &capture_ : nullptr; }
+  /// @param points  the path of the block, p_W (N x 3) [m]
+  void set_trajectory(const std::vector<Eigen::Vector3d>& points);
+  /// After a pass: its pictures. @throws RunError where one cannot be written.
+  void draw(const PlannedTrial& trial, const record::Phase& phase);
+
+ private:
+  const SessionPlace& place_;
+  FrameCapture capture_;
+  std::unique_ptr<render::FrameRenderer> renderer_;
+};
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,32 @@
+#include "protocols/force_training/passes/training_pass.h"
+
+#include <stdexcept>
+
+#include "protocols/force_training/passes/haptic_training.h"
+#include "protocols/force_training/passes/visual_training.h"
+#include "protocols/force_training/passes/visuohaptic_training.h"
+
+namespace haptrial::protocols {
+
+const std::vector<std::string>& training_conditions() {
+  static const std::vector<std::string> conditions{"haptic", "visual", "visuohaptic"};
+  return conditions;
+}
+
+std::unique_ptr<TrajectoryPass> make_training_pass(const std::string& condition,
+                                                   const stimulus::Stimulus& stimulus,
+                                                   const GuidanceParameters& parameters,
+                                                   std::int32_t block) {
+  if (condition == "haptic") {
+    return std::make_unique<HapticTraining>(stimulus, parameters, block);
+  }
+  if (condition == "visual") {
+    return std::make_unique<VisualTraining>(stimulus, parameters, block);
+  }
+  if (condition == "visuohaptic") {
+    return std::make_unique<VisuohapticTraining>(stimulus, parameters, block);
+  }
+  throw std::invalid_argument("no training condition '" + condition + "'");
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,226 @@
+#include "protocols/force_training/passes/trajectory_pass.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/table.h"
+
+namespace haptrial::protocols {
+
+using record::Stage;
+
+namespace {
+
+/// The path begins and ends at its full speed. What the damper makes of that speed comes and goes
+/// over this time, so that the force does not jump; where the target is stays as the path says [s].
+constexpr double kBlend = 0.08;
+
+constexpr double kShortestMove = 0.2;  // a move of a millimetre would jerk at full speed [s]
+
+}  // namespace
+
+GuidanceParameters read_guidance_parameters(Table& table) {
+  GuidanceParameters p;
+  const bool curve = table.has("kind") && table.choice("kind", {"trajectory", "curve"}) == "curve";
+  Table trajectory = table.table("trajectory");
+  Table plane = table.table("plane");
+  p.trajectory = control::read_pd_gains(trajectory);
+  p.plane = control::read_pd_gains(plane);
+  p.force_limit = table.number("force_limit", {0.0, 100.0, true}, "N");
+  p.approach_speed = table.number("approach_speed", {0.001, 1.0}, "m/s");
+  p.settle_distance = table.number("settle_distance", {0.0, 0.1, true}, "m");
+  p.wait = table.number("wait", {0.0, 60.0}, "s");
+  p.wait_timeout = table.number("wait_timeout", {p.wait, 600.0, true}, "s");
+  p.recovery = table.number("recovery", {0.0, 600.0}, "s");
+  if (curve) {
+    p.kind = Guidance::kCurve;
+    p.run_timeout = table.number("run_timeout", {0.0, 3600.0, true}, "s");
+    Table following = table.table("curve");
+    p.curve = control::read_curve_following(following);
+  }
+  return p;
+}
+
+TrajectoryPass::TrajectoryPass(const stimulus::Stimulus& stimulus,
+                               const GuidanceParameters& parameters, std::int32_t block)
+    : stimulus_(stimulus),
+      parameters_(parameters),
+      trajectory_controller_(parameters.trajectory),
+      plane_controller_(parameters.plane),
+      trajectory_damping_(parameters.trajectory.damping, parameters.loop),
+      plane_damping_(parameters.plane.damping, parameters.loop),
+      block_(block),
+      guide_(curve_guide()) {}
+
+std::optional<CurveGuide> TrajectoryPass::curve_guide() const {
+  if (parameters_.kind != Guidance::kCurve) {
+    return std::nullopt;
+  }
+  return CurveGuide(stimulus_.path, parameters_.curve);
+}
+
+void TrajectoryPass::enter(Stage stage) noexcept {
+  stage_ = stage;
+  time_ = 0.0;
+  settled_ = 0.0;
+  const Eigen::Vector3d& start = stimulus_.path.points().front();
+  if (stage == Stage::kApproach || stage == Stage::kReturn) {
+    const double gentle = 15.0 / 8.0 * (start - target_).norm() / kShortestMove;
+    move_ = control::MinimumJerkMove(target_, start,
+                                     std::clamp(gentle, 1e-9, parameters_.approach_speed));
+  } else if (stage == Stage::kRun && guide_) {
+    guide_->start();
+  }
+}
+
+PointState TrajectoryPass::guide_target(const PointState& tool, double dt) noexcept {
+  time_ += dt;
+  switch (stage_) {
+    case Stage::kIdle:
+      target_ = tool.position;
+      enter(Stage::kApproach);
+      break;
+    case Stage::kApproach:
+      if (time_ >= move_.duration()) {
+        enter(Stage::kWait);
+      }
+      break;
+    case Stage::kWait:
+      settle(tool, dt);
+      break;
+    case Stage::kRun:
+      end_run_if_over();
+      break;
+    case Stage::kReturn:
+      if (time_ >= move_.duration()) {
+        state_ = PassState::kCompleted;
+      }
+      break;
+  }
+  switch (stage_) {
+    case Stage::kRun:
+      return run_target(tool);
+    case Stage::kWait:
+      return {stimulus_.path.points().front(), Eigen::Vector3d::Zero()};
+    default:
+      return move_.at(time_);
+  }
+}
+
+void TrajectoryPass::settle(const PointState& tool, double dt) noexcept {
+  const double distance = (tool.position - stimulus_.path.points().front()).norm();
+  settled_ = distance <= parameters_.settle_distance ? settled_ + dt : 0.0;
+  if (settled_ >= parameters_.wait && settled_ > 0.0) {
+    enter(Stage::kRun);
+  } else if (time_ >= parameters_.wait_timeout) {
+    state_ = PassState::kAborted;
+  }
+}
+
+void TrajectoryPass::end_run_if_over() noexcept {
+  const bool over = guide_ ? guide_->at_end() : time_ >= stimulus_.path.duration();
+  if (over) {
+    enter(Stage::kReturn);
+  } else if (guide_ && time_ >= parameters_.run_timeout) {
+    state_ = PassState::kAborted;
+  }
+}
+
+PointState TrajectoryPass::run_target(const PointState& tool) noexcept {
+  if (!guide_) {
+    along_ = time_;
+    PointState target = stimulus_.path.at(time_);
+    const double left = stimulus_.path.duration() - time_;
+    target.velocity *= std::clamp(std::min(time_, left) / kBlend, 0.0, 1.0);
+    return target;
+  }
+  const PointState target = guide_->follow(tool);
+  along_ = guide_->along();
+  return target;
+}
+
+PassOutput TrajectoryPass::tick(const Readings& readings, double dt) noexcept {
+  const PointState& tool = readings[0].tool;
+  const PointState target = guide_target(tool, dt);
+  const PassOutput out = output(tool, target);
+  target_ = target.position;
+  if (stage_ == Stage::kRun && !plane_holds()) {
+    target_.y() = tool.position.y();  // the return starts where the hand is
+  }
+  return out;
+}
+
+/// After a run in which the hand was free along y it may be moving there: the plane's damper then
+/// comes by degrees.
+double TrajectoryPass::takes_hold() const noexcept {
+  return stage_ == Stage::kReturn && !plane_holds() ? std::clamp(time_ / kBlend, 0.0, 1.0) : 1.0;
+}
+
+PassOutput TrajectoryPass::output(const PointState& tool, const PointState& target) noexcept {
+  const bool runs = stage_ == Stage::kRun;
+  const bool pushes = runs && !plane_holds();
+  const double along = trajectory_damping_.share({tool.velocity.x(), 0.0, tool.velocity.z()});
+  const double across = plane_damping_.share({0.0, tool.velocity.y(), 0.0});
+  PassOutput out;
+  out.stage = stage_;
+  out.target_force = runs ? stimulus_.force.at(along_) : 0.0;
+  Eigen::Vector3d wanted = trajectory_controller_.force(target, tool, along);
+  const double held = takes_hold() * across;
+  wanted.y() = pushes ? out.target_force : plane_controller_.force(target, tool, held).y();
+  out.damping_share = pushes ? along : std::min(along, across);
+  out.force = control::saturate(wanted, parameters_.force_limit);
+  out.intent = intent(target, tool, out.force, pushes);
+  out.saturated = wanted.norm() > parameters_.force_limit;
+  out.applied_force = out.force.y();
+
+  PassMoment moment{tool.position,     stage_,       along_, out.target_force,
+                    out.applied_force, out.saturated};
+  if (runs && guide_) {
+    moment.direction = guide_->direction();
+  }
+  out.shown = presentation(moment);
+  return out;
+}
+
+/// The springs follow their target; what pushes the hand up is meant to.
+device::ForceIntent TrajectoryPass::intent(const PointState& target, const PointState& tool,
+                                           const Eigen::Vector3d& force,
+                                           bool pushes) const noexcept {
+  const Eigen::Vector3d stretch = target.position - tool.position;
+  const double limit = parameters_.force_limit;
+  device::ForceIntent intent;
+  intent.drive = target.velocity;
+  intent.stored = trajectory_controller_.stored(std::hypot(stretch.x(), stretch.z()), limit);
+  if (pushes) {
+    intent.push.y() = force.y();
+  } else {
+    intent.stored += plane_controller_.stored(stretch.y(), limit);
+  }
+  return intent;
+}
+
+stimulus::Presentation TrajectoryPass::presentation(const PassMoment& moment) const noexcept {
+  stimulus::Presentation seen;
+  seen.tool = moment.tool;
+  if (moment.stage == Stage::kIdle) {
+    return seen;
+  }
+  seen.show_trajectory = true;
+  seen.show_saturation = moment.saturated;
+  seen.pass_duration = stimulus_.path.duration();
+  seen.block = block_;
+  if (moment.stage == Stage::kRun) {
+    seen.progress = std::clamp(moment.along / seen.pass_duration, 0.0, 1.0);
+    seen.self_paced = guide_.has_value();
+    seen.direction = moment.direction;
+    present(seen);
+    // What is not shown is not there: nobody who is presented with it can know more than a person.
+    seen.target_force = seen.show_target_bar ? moment.target_force : 0.0;
+    seen.applied_force = seen.show_applied_bar ? moment.applied_force : 0.0;
+  } else if (moment.stage == Stage::kReturn) {
+    seen.progress = 1.0;
+  }
+  return seen;
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <optional>
+
+#include "core/control/damping_governor.h"
+#include "core/control/minimum_jerk.h"
+#include "core/control/pd_controller.h"
+#include "core/stimulus/presentation.h"
+#include "core/stimulus/stimulus.h"
+#include "protocols/force_training/passes/curve_guide.h"
+#include "protocols/interface/pass.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::protocols {
+
+/// What leads the hand during the run.
+enum class Guidance {
+  kTrajectory,  // a target that moves along the path at its speed (§4.2.4)
+  kCurve,       // the path itself, at the participant's own pace (§6.2)
+};
+
+/// How a hand is guided along a trajectory. Source: Morris 2006, §4.2.4.
+struct GuidanceParameters {
+  Guidance kind{Guidance::kTrajectory};
+  control::PdGains trajectory{900.0, 100.0};  // in the xz plane
+  control::PdGains plane{2000.0, 300.0};      // along y
+  double force_limit{12.0};                   // the device saturates here > 0 [N]
+  double approach_speed{0.10};                // peak, to the start and back >= 0.001 [m/s]
+  double settle_distance{0.003};              // of the start, to be in before the run > 0 [m]
+  double wait{0.5};                           // at the start, without a break >= 0 [s]
+  double wait_timeout{10.0};                  // then the pass is aborted > 0 [s]
+  double recovery{3.0};                       // without force after an abort >= 0 [s]
+  double run_timeout{120.0};                  // at one's own pace; then it is aborted > 0 [s]
+  control::CurveFollowing curve{};            // at one's own pace
+  control::HandleLoop loop{};                 // what the damping has to be safe for
+};
+
+/// Reads a [guidance] table with its inner tables trajectory and plane, and curve where its `kind`
+/// is that; without a `kind` it is "trajectory".
+GuidanceParameters read_guidance_parameters(Table& table);
+
+/// An instant of a pass, as far as it can be seen; a recorded sample holds the same.
+struct PassMoment {
+  Eigen::Vector3d tool{Eigen::Vector3d::Zero()};  // p_W [m]
+  record::Stage stage{record::Stage::kIdle};
+  double along{0.0};          // the path, at its speed: time since the run began, or the place [s]
+  double target_force{0.0};   // [N]
+  double applied_force{0.0};  // [N]
+  bool saturated{false};
+  Eigen::Vector3d direction{Eigen::Vector3d::Zero()};  // on along the path, where self-paced
+};
+
+/// One pass along a trajectory:
+///
+///     approach the start -> wait there, settled -> run along it -> return to the start
+///
+/// The run is over when the path's time is, or, at the participant's own pace, when the hand has
+/// come to its end. The force pattern is a function of how far along the path it is, either way.
+/// The kinds of pass differ in what happens along y during the run and in what is shown; each is a
+/// file of its own. The guide never jumps: every stage begins where the last one left its target.
+class TrajectoryPass : public Pass {
+ public:
+  /// @param stimulus  outlives the pass.  @param block  names the stimulus in the presentation.
+  TrajectoryPass(const stimulus::Stimulus& stimulus, const GuidanceParameters& parameters,
+                 std::int32_t block);
+
+  PassOutput tick(const Readings& readings, double dt) noexcept final;
+  PassState state() const noexcept final { return state_; }
+  /// What the participant sees at an instant: tick() shows it, and a replay shows it again. Before
+  /// the pass and after a fault, when the stage is idle, that is nothing. Servo thread.
+  stimulus::Presentation presentation(const PassMoment& moment) const noexcept;
+  /// A guide along this pass's path, at its start; nothing where the path sets the pace.
+  std::optional<CurveGuide> curve_guide() const;
+
+ protected:
+  /// During the run, the plane constraint holds the hand along y; where it does not, the device
+  /// pushes the hand up with the target force. Outside the run the plane always holds.
+  virtual bool plane_holds() const noexcept { return true; }
+  /// Completes what is seen during the run; tool, trajectory and progress are already there.
+  virtual void present(stimulus::Presentation& presentation) const noexcept = 0;
+
+ private:
+  void enter(record::Stage stage) noexcept;
+  PointState guide_target(const PointState& tool, double dt) noexcept;
+  void settle(const PointState& tool, double dt) noexcept;
+  void end_run_if_over() noexcept;
+  PointState run_target(const PointState& tool) noexcept;
+  double takes_hold() const noexcept;
+  PassOutput output(const PointState& tool, const PointState& target) noexcept;
+  device::ForceIntent intent(const PointState& target, const PointState& tool,
+                             const Eigen::Vector3d& force, bool pushes) const noexcept;
+
+  const stimulus::Stimulus& stimulus_;
+  GuidanceParameters parameters_;
+  control::PdController trajectory_controller_;
+  control::PdController plane_controller_;
+  control::DampingGovernor trajectory_damping_;
+  control::DampingGovernor plane_damping_;
+  std::int32_t block_;
+  record::Stage stage_{record::Stage::kIdle};
+  PassState state_{PassState::kRunning};
+  double time_{0.0};                                 // in the stage [s]
+  double settled_{0.0};                              // at the start without a break [s]
+  double along_{0.0};                                // the path during the run, at its speed [s]
+  Eigen::Vector3d target_{Eigen::Vector3d::Zero()};  // where the guide was last [m]
+  control::MinimumJerkMove move_;
+  std::optional<CurveGuide> guide_;  // where the participant sets the pace
+};
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "core/device/virtual_device.h"
+#include "core/stimulus/observer.h"
+#include "core/subject/hand_model.h"
+#include "protocols/force_training/force_definition.h"
+#include "protocols/interface/rig.h"
+
+namespace haptrial::protocols {
+
+/// A virtual device with a virtual subject's hand on it: what stands in for hardware and a person.
+class VirtualRig final : public Rig {
+ public:
+  /// @param session_seed  the person, and every random number of theirs, follows from it
+  VirtualRig(const ForceDefinition& definition, std::uint64_t session_seed);
+
+  device::Device& device() override { return device_; }
+  stimulus::Observer* subject() override { return subject_.get(); }
+
+ private:
+  std::unique_ptr<subject::HandModel> hand_;
+  device::VirtualDevice device_;
+  std::unique_ptr<stimulus::Observer> subject_;
+};
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,142 @@
+#include "protocols/interface/device_set.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace haptrial::protocols {
+
+using device::Fault;
+
+DeviceSet::DeviceSet(const std::vector<Arm>& arms) {
+  if (arms.empty() || arms.size() > kMostDevices) {
+    throw std::invalid_argument(
+        fmt::format("DeviceSet: {} devices; allowed: 1 to {}", arms.size(), kMostDevices));
+  }
+  for (const Arm& arm : arms) {
+    devices_.push_back(arm.device);
+    envelopes_.emplace_back(arm.limits);
+  }
+  readings_.resize(arms.size());
+  forces_.resize(arms.size(), Eigen::Vector3d::Zero());
+}
+
+void DeviceSet::read(std::uint32_t keys) noexcept {
+  for (std::size_t arm = 0; arm < devices_.size(); ++arm) {
+    const bool read_ok = devices_[arm]->read(readings_[arm]);
+    readings_[arm].keys = keys;
+    envelopes_[arm].check(read_ok, readings_[arm]);
+  }
+  stop_together();
+}
+
+void DeviceSet::limit(const PassOutput& wanted, std::span<const Drive> others, double dt) noexcept {
+  forces_[0] = envelopes_[0].limit(wanted.force, dt, wanted.intent);
+  for (std::size_t arm = 1; arm < devices_.size(); ++arm) {
+    static const Drive kNothing;
+    const Drive& drive = arm <= others.size() ? others[arm - 1] : kNothing;
+    forces_[arm] = envelopes_[arm].limit(drive.force, dt, drive.intent);
+  }
+  stop_together();
+}
+
+/// A fault of one device is one of all: none of them goes on with its force.
+void DeviceSet::stop_together() noexcept {
+  if (devices_.size() == 1 || fault() == Fault::kNone) {
+    return;
+  }
+  for (device::Envelope& envelope : envelopes_) {
+    if (envelope.fault() == Fault::kNone) {
+      envelope.trip(Fault::kOtherDevice);
+    }
+  }
+  drop();
+}
+
+void DeviceSet::drop() noexcept {
+  std::fill(forces_.begin(), forces_.end(), Eigen::Vector3d::Zero());
+}
+
+bool DeviceSet::write() noexcept {
+  bool taken = true;
+  for (std::size_t arm = 0; arm < devices_.size(); ++arm) {
+    if (!devices_[arm]->write(forces_[arm])) {
+      envelopes_[arm].trip(Fault::kWriteFailed);
+      taken = false;
+    }
+  }
+  if (!taken && devices_.size() > 1) {
+    stop_together();
+    for (device::Device* device : devices_) {
+      device->write(Eigen::Vector3d::Zero());
+    }
+  }
+  return taken;
+}
+
+bool DeviceSet::without_force() const noexcept {
+  return std::all_of(forces_.begin(), forces_.end(),
+                     [](const Eigen::Vector3d& force) { return force.isZero(0.0); });
+}
+
+void DeviceSet::trip(Fault fault) noexcept {
+  for (device::Envelope& envelope : envelopes_) {
+    envelope.trip(fault);
+  }
+}
+
+void DeviceSet::reset() noexcept {
+  for (device::Envelope& envelope : envelopes_) {
+    envelope.reset();
+  }
+}
+
+void DeviceSet::release() noexcept {
+  for (device::Envelope& envelope : envelopes_) {
+    envelope.release();
+  }
+}
+
+void DeviceSet::engage() noexcept {
+  for (device::Envelope& envelope : envelopes_) {
+    envelope.engage();
+  }
+}
+
+/// Not before the force of the pass before has gone from every device; a fault lets it begin, to
+/// end it.
+bool DeviceSet::may_begin() noexcept {
+  if (fault() != Fault::kNone) {
+    return true;
+  }
+  bool may = true;
+  for (std::size_t arm = 0; arm < devices_.size(); ++arm) {
+    const device::Envelope& envelope = envelopes_[arm];
+    may = may && (!envelope.released() || envelope.at_rest()) && devices_[arm]->ready();
+  }
+  return may;
+}
+
+Fault DeviceSet::fault() const noexcept {
+  Fault found = Fault::kNone;
+  for (const device::Envelope& envelope : envelopes_) {
+    const Fault fault = envelope.fault();
+    if (fault != Fault::kNone && (found == Fault::kNone || found == Fault::kOtherDevice)) {
+      found = fault;
+    }
+  }
+  return found;
+}
+
+std::size_t DeviceSet::faulty() const noexcept {
+  for (std::size_t arm = 0; arm < envelopes_.size(); ++arm) {
+    const Fault fault = envelopes_[arm].fault();
+    if (fault != Fault::kNone && fault != Fault::kOtherDevice) {
+      return arm;
+    }
+  }
+  return 0;
+}
+
+}  // namespace haptrial::protocols

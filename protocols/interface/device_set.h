@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/device/device.h"
+#include "core/device/envelope.h"
+#include "core/stimulus/observer.h"
+#include "protocols/interface/pass.h"
+
+namespace haptrial::protocols {
+
+/// The devices of a session, each with its reading and its envelope. One for whom something is
+/// wrong stops all of them in the same tick. Servo thread, unless a function says otherwise.
+class DeviceSet {
+ public:
+  /// One device; it outlives the set.
+  struct Arm {
+    device::Device* device{nullptr};
+    device::EnvelopeLimits limits;
+  };
+  /// @param arms  1 to kMostDevices
+  /// @throws std::invalid_argument for another number, or as Envelope does
+  explicit DeviceSet(const std::vector<Arm>& arms);
+
+  std::size_t size() const noexcept { return devices_.size(); }
+  device::Device& device(std::size_t arm) noexcept { return *devices_[arm]; }
+
+  /// Reads every device and judges what it said. @param keys  of the window; all devices get them
+  void read(std::uint32_t keys) noexcept;
+  Readings readings() const noexcept { return Readings(readings_); }
+
+  /// The forces of this tick, from what a pass wants of each device.
+  /// @param others  of the devices after the first; of those that it leaves out none is wanted
+  void limit(const PassOutput& wanted, std::span<const Drive> others, double dt) noexcept;
+  /// Zero instead, in this tick.
+  void drop() noexcept;
+  /// Gives each device its force; if one refuses, all are given zero. @returns whether all took it
+  bool write() noexcept;
+  stimulus::Forces forces() const noexcept { return stimulus::Forces(forces_); }
+  bool without_force() const noexcept;
+
+  /// As Envelope has them, of all devices.
+  void trip(device::Fault fault) noexcept;
+  void reset() noexcept;
+  void release() noexcept;
+  void engage() noexcept;
+  bool may_begin() noexcept;
+  /// What is wrong, and with which device, from 0; kNone if nothing is.
+  device::Fault fault() const noexcept;
+  std::size_t faulty() const noexcept;
+
+ private:
+  void stop_together() noexcept;
+
+  std::vector<device::Device*> devices_;
+  std::vector<device::Envelope> envelopes_;
+  std::vector<device::DeviceReading> readings_;
+  std::vector<Eigen::Vector3d> forces_;
+};
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "core/stimulus/shown.h"
+
+namespace haptrial::render {
+class Gl;
+}
+
+namespace haptrial::protocols {
+
+/// Draws what a protocol shows. The screen's thread, its OpenGL context current.
+class Drawing {
+ public:
+  virtual ~Drawing() = default;
+  /// One whole picture. @param shown  of the protocol's own type, or nothing
+  virtual void draw(const stimulus::Shown& shown) = 0;
+  /// The point p_W that a pixel shows, for a pointer that is a device; nothing if pixels are none
+  /// [m].
+  virtual std::optional<Eigen::Vector3d> to_world(const Eigen::Vector2d& pixel) const {
+    static_cast<void>(pixel);
+    return std::nullopt;
+  }
+};
+
+/// Called on the screen's thread, with its OpenGL context current and its size [px].
+using MakeDrawing =
+    std::function<std::unique_ptr<Drawing>(const render::Gl& gl, int width, int height)>;
+
+}  // namespace haptrial::protocols

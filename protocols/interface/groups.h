@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace haptrial::protocols {
+
+/// A group of a study, in the order in which participants belong to them.
+struct StudyGroup {
+  std::string name;
+  int participants{0};
+  bool expert{false};  // every group but one that is called novices
+
+  bool operator==(const StudyGroup&) const = default;
+};
+
+/// The [groups] of a definition's text, in its order; one group of everybody where it has none.
+/// @throws InputError for a number of participants that is none.
+std::vector<StudyGroup> study_groups(std::string_view definition, std::string_view file_name);
+
+/// The group of a participant from the number at the end of the identifier: participants 1 to n
+/// belong to the first group of n, those that follow to the next.
+/// @throws InputError for a number beyond the last group, or none where there are several groups.
+std::string group_of(const std::vector<StudyGroup>& groups, const std::string& subject);
+
+}  // namespace haptrial::protocols

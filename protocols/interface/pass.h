@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/device/device.h"
+#include "core/device/energy_watch.h"
+#include "core/record/session_types.h"
+#include "core/stimulus/shown.h"
+
+namespace haptrial::protocols {
+
+inline constexpr std::size_t kMostDevices = 4;
+
+/// What the devices of a session said at one tick, in their order, in W.
+class Readings {
+ public:
+  Readings(const device::DeviceReading& only) noexcept : all_(&only, 1) {}  // implicit: one device
+  explicit Readings(std::span<const device::DeviceReading> all) noexcept : all_(all) {}
+  const device::DeviceReading& operator[](std::size_t device) const noexcept {
+    return all_[device];
+  }
+  std::size_t size() const noexcept { return all_.size(); }
+
+ private:
+  std::span<const device::DeviceReading> all_;
+};
+
+/// What one tick of a pass asks of one device.
+struct Drive {
+  Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // on the tool, in W [N]
+  device::ForceIntent intent;                      // of the force
+};
+
+/// What one tick of a pass asks for.
+struct PassOutput : Drive {  // of the first device
+  stimulus::Shown shown;
+  double target_force{0.0};   // [N]
+  double applied_force{0.0};  // by the participant, downward > 0 [N]
+  record::Stage stage{record::Stage::kIdle};
+  bool saturated{false};      // the device's force limit was reached
+  double damping_share{1.0};  // of the damping that the definition asks for
+};
+
+enum class PassState : std::uint8_t { kRunning, kCompleted, kAborted };
+
+/// Anything that drives the devices for a while: one presentation of a stimulus, one drilling.
+/// tick() belongs to the servo thread: no allocation, lock, I/O or throw.
+class Pass {
+ public:
+  virtual ~Pass() = default;
+  /// Before the first tick. @param sequence  of that tick in the session file
+  virtual void begin(std::uint64_t sequence) noexcept { static_cast<void>(sequence); }
+  /// @param dt  since the previous tick [s]
+  virtual PassOutput tick(const Readings& readings, double dt) noexcept = 0;
+  /// What the last tick() asks of the devices after the first, in their order.
+  virtual std::span<const Drive> others() const noexcept { return {}; }
+  virtual PassState state() const noexcept = 0;
+  /// On a simulated clock: whether the session's thread has to empty the protocol's own logs.
+  virtual bool wants_attention() noexcept { return false; }
+};
+
+/// What a protocol records of every tick beside the samples, also between passes.
+class TickLog {
+ public:
+  virtual ~TickLog() = default;
+  /// After the pass's tick, if one runs. @param sequence  of the tick in the session file
+  /// Servo thread: no allocation, lock, I/O or throw.
+  virtual void record(std::uint64_t sequence, const Readings& readings) noexcept = 0;
+};
+
+}  // namespace haptrial::protocols

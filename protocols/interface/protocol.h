@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "protocols/interface/definition.h"
+#include "protocols/interface/replay.h"
+#include "protocols/interface/trials.h"
+
+namespace haptrial::protocols {
+
+/// A kind of experiment: what [experiment] of a definition names. It is one object without state;
+/// the registry of studies holds it (experiments/studies/registry.h).
+class Protocol {
+ public:
+  virtual ~Protocol() = default;
+  virtual std::string_view name() const = 0;
+  /// A definition from a table that others read on: its problems are noted and still to be thrown.
+  /// @param folder  of the file, for what it names; null for a text that a session file keeps
+  virtual std::unique_ptr<Definition> read(Table& root, std::string_view file_name,
+                                           const std::filesystem::path* folder) const = 0;
+  /// Definition::margins() of the published parameters, if there are any.
+  virtual std::vector<std::string> margins() const { return {}; }
+  /// What takes seconds, once all of the definition is known to be good. @param folder  of the file
+  virtual void load(Definition& definition, const std::filesystem::path& folder) const {
+    static_cast<void>(definition);
+    static_cast<void>(folder);
+  }
+  /// The trials of one session. @param definition  of this protocol; it and the place outlive them
+  virtual std::unique_ptr<Trials> trials(const Definition& definition,
+                                         const SessionPlace& place) const = 0;
+  /// Goes through recorded trials again, and says what came of it.
+  /// @throws InputError for what the file does not hold; RunError if it differs from the recording
+  virtual void replay(const ReplayRequest& request) const = 0;
+};
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "core/stimulus/observer.h"
+#include "protocols/interface/device_set.h"
+
+namespace haptrial::device {
+class MouseDevice;
+}
+
+namespace haptrial::protocols {
+
+/// What a session drives: a device or more, and who holds them.
+class Rig {
+ public:
+  virtual ~Rig() = default;
+  virtual device::Device& device() = 0;  // the first
+  /// The devices after the first, each with its envelope.
+  virtual std::vector<DeviceSet::Arm> others() { return {}; }
+  /// The virtual subject; null where a person holds the devices.
+  virtual stimulus::Observer* subject() { return nullptr; }
+  /// Where the screen's pointer goes; null for any other device.
+  virtual device::MouseDevice* mouse() { return nullptr; }
+};
+
+}  // namespace haptrial::protocols

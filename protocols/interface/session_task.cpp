@@ -1,0 +1,171 @@
+#include "protocols/interface/session_task.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace haptrial::protocols {
+
+SessionTask::SessionTask(const Parts& parts, Leave leave, Origin origin)
+    : devices_(parts.devices),
+      log_(parts.log),
+      device_log_(parts.device_log),
+      tick_log_(parts.tick_log),
+      keys_(parts.keys),
+      observers_(parts.observers),
+      leave_(leave),
+      origin_(origin) {}
+
+void SessionTask::start(Pass& pass, std::int32_t row) noexcept {
+  result_ = {};  // while idle the servo thread leaves it alone
+  asked_row_.store(row, std::memory_order_relaxed);
+  busy_.store(true, std::memory_order_relaxed);
+  asked_.store(&pass, std::memory_order_release);
+}
+
+bool SessionTask::idle() const noexcept { return !busy_.load(std::memory_order_acquire); }
+
+void SessionTask::clear_fault() noexcept { clear_asked_.store(true, std::memory_order_release); }
+
+void SessionTask::emergency_stop() noexcept { stop_asked_.store(true, std::memory_order_release); }
+
+void SessionTask::break_off() noexcept { break_asked_.store(true, std::memory_order_release); }
+
+bool SessionTask::at_rest() const noexcept {
+  return idle() && force_gone_.load(std::memory_order_acquire);
+}
+
+bool SessionTask::stopped() const noexcept {
+  return !stop_asked_.load(std::memory_order_acquire) &&
+         force_gone_.load(std::memory_order_acquire);
+}
+
+bool SessionTask::tick(const realtime::Tick& tick) noexcept {
+  take_requests(tick.index);
+
+  devices_.read(keys_ != nullptr ? keys_->load(std::memory_order_relaxed) : 0);
+  const PassOutput out = ask_pass(tick.dt);
+  devices_.limit(out, pass_ != nullptr ? pass_->others() : std::span<const Drive>{}, tick.dt);
+  if (take_stop()) {  // it came during the tick, which a slow device may draw out
+    devices_.drop();
+  }
+  for (stimulus::Observer* observer : observers_) {
+    observer->observe(out.shown, devices_.forces(), tick.dt);
+  }
+  const bool taken = devices_.write();
+  force_gone_.store(taken && devices_.without_force(), std::memory_order_release);
+  record(tick, out);
+
+  const bool attention = pass_ != nullptr && pass_->wants_attention();
+  const bool ended = end_if_over(tick.index);
+  const std::uint64_t next = tick.index + 1;
+  return leave_ == Leave::kNever ||
+         !(ended || attention || next % kSlice == 0 || next == leave_before_);
+}
+
+void SessionTask::record(const realtime::Tick& tick, const PassOutput& out) noexcept {
+  const Readings readings = devices_.readings();
+  const stimulus::Forces forces = devices_.forces();
+  record::Sample sample;
+  sample.sequence = origin_.sequence + tick.index;
+  sample.time_ns = origin_.time_ns + tick.time_ns;
+  sample.position = readings[0].tool.position;
+  sample.velocity = readings[0].tool.velocity;
+  sample.force = forces[0];
+  sample.applied_force = out.applied_force;
+  sample.target_force = out.target_force;
+  sample.pass = pass_ != nullptr ? row_ : -1;
+  sample.stage = out.stage;
+  sample.saturated = out.saturated;
+  log_.push(sample);
+  for (std::size_t device = 1; device_log_ != nullptr && device < readings.size(); ++device) {
+    device_log_->push({sample.sequence, static_cast<std::int32_t>(device),
+                       readings[device].tool.position, readings[device].tool.velocity,
+                       forces[device],
+                       static_cast<std::int32_t>(readings[device].buttons)});
+  }
+  if (tick_log_ != nullptr) {
+    tick_log_->record(sample.sequence, readings);
+  }
+}
+
+void SessionTask::take_requests(std::uint64_t sequence) noexcept {
+  // Looked at in the reverse of the order in which the session's thread asks: who sees the pass
+  // sees the clearing that came before it. The stop is last, so that no clearing wipes it out.
+  Pass* const asked = asked_.load(std::memory_order_acquire);
+  if (clear_asked_.load(std::memory_order_acquire)) {
+    clear_asked_.store(false, std::memory_order_relaxed);
+    devices_.reset();
+  }
+  take_stop();
+  if (break_asked_.load(std::memory_order_acquire)) {
+    break_asked_.store(false, std::memory_order_relaxed);
+    if (waiting_ != nullptr) {
+      begin(sequence);
+    }
+    broken_off_ = pass_ != nullptr;
+    devices_.release();  // nothing is wrong: the force is let go, not cut
+  }
+  if (asked != nullptr) {
+    asked_.store(nullptr, std::memory_order_relaxed);
+    waiting_ = asked;
+  }
+  if (waiting_ != nullptr && devices_.may_begin()) {
+    begin(sequence);
+  }
+}
+
+/// @returns whether an emergency stop was asked for.
+bool SessionTask::take_stop() noexcept {
+  if (!stop_asked_.load(std::memory_order_acquire)) {
+    return false;
+  }
+  devices_.trip(device::Fault::kEmergencyStop);
+  stop_asked_.store(false, std::memory_order_release);
+  return true;
+}
+
+void SessionTask::begin(std::uint64_t sequence) noexcept {
+  pass_ = std::exchange(waiting_, nullptr);
+  row_ = asked_row_.load(std::memory_order_relaxed);
+  broken_off_ = false;
+  result_.begun = true;
+  result_.first_sample = origin_.sequence + sequence;
+  pass_->begin(result_.first_sample);
+  devices_.engage();
+}
+
+PassOutput SessionTask::ask_pass(double dt) noexcept {
+  if (pass_ != nullptr && !broken_off_ && devices_.fault() == device::Fault::kNone) {
+    const PassOutput out = pass_->tick(devices_.readings(), dt);
+    if (out.stage == record::Stage::kRun && out.damping_share < 1.0) {
+      result_.least_damping = std::min(result_.least_damping, out.damping_share);
+      ++result_.reduced_ticks;
+    }
+    return out;
+  }
+  PassOutput nothing;
+  nothing.shown.tool = devices_.readings()[0].tool.position;
+  return nothing;
+}
+
+bool SessionTask::end_if_over(std::uint64_t sequence) noexcept {
+  if (pass_ == nullptr) {
+    return false;
+  }
+  const device::Fault fault = devices_.fault();
+  const bool cut = fault != device::Fault::kNone || broken_off_;
+  const PassState state = cut ? PassState::kAborted : pass_->state();
+  if (state == PassState::kRunning) {
+    return false;
+  }
+  result_.state = state;
+  result_.fault = fault;
+  result_.device = devices_.faulty();
+  result_.last_sample = origin_.sequence + sequence;
+  pass_ = nullptr;
+  devices_.release();
+  busy_.store(false, std::memory_order_release);
+  return true;
+}
+
+}  // namespace haptrial::protocols

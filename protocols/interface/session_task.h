@@ -1,0 +1,127 @@
+#pragma once
+
+#include <atomic>
+#include <utility>
+#include <vector>
+
+#include "core/realtime/block_log.h"
+#include "core/realtime/servo_loop.h"
+#include "core/record/device_row.h"
+#include "core/record/session_types.h"
+#include "core/stimulus/observer.h"
+#include "protocols/interface/device_set.h"
+#include "protocols/interface/pass.h"
+
+namespace haptrial::protocols {
+
+/// How a pass ended.
+struct PassResult {
+  bool begun{false};  // the servo thread has taken it up
+  PassState state{PassState::kRunning};
+  device::Fault fault{device::Fault::kNone};
+  std::size_t device{0};           // whose fault it was, from 0
+  std::uint64_t first_sample{0};  // sequence numbers, both inclusive
+  std::uint64_t last_sample{0};
+  double least_damping{1.0};       // during the run, as a share of what the definition asks for
+  std::uint64_t reduced_ticks{0};  // of the run, with less than all of it
+};
+
+/// Where a resumed session goes on: what its first tick is to have.
+struct Origin {
+  std::uint64_t sequence{0};
+  std::int64_t time_ns{0};
+};
+
+/// What happens on every tick of a session:
+///
+///     devices -> envelopes -> pass -> envelopes -> devices, observers, logs
+///
+/// The same on a real and on a simulated clock. After a pass the force is let go over the
+/// envelope's ramp_out, and the next one begins when it has gone and the device is ready; between
+/// passes it is zero, and ticks are recorded all the same. The servo thread calls tick(); the
+/// session's thread calls the rest.
+class SessionTask final : public realtime::ServoTask {
+ public:
+  using Log = realtime::BlockLog<record::Sample>;
+  using DeviceLog = realtime::BlockLog<record::DeviceRow>;  // of the devices after the first
+
+  /// When tick() asks ServoLoop::run to return. On a simulated clock the session's thread runs the
+  /// loop itself and has to be let out, to empty the log, before the log is full.
+  enum class Leave : std::uint8_t { kNever, kAfterPassOrSlice };
+  static constexpr std::uint64_t kSlice = 512;  // [ticks]
+
+  /// What a task works with; all of it outlives the task.
+  struct Parts {
+    std::vector<DeviceSet::Arm> devices;  // 1 to kMostDevices
+    Log& log;
+    DeviceLog* device_log{nullptr};  // of the devices after the first
+    TickLog* tick_log{nullptr};      // the protocol's own
+    std::vector<stimulus::Observer*> observers{};
+    const std::atomic<std::uint32_t>* keys{nullptr};  // DeviceReading::keys, of the window
+  };
+  explicit SessionTask(const Parts& parts, Leave leave, Origin origin = Origin{});
+  /// Of one device.
+  SessionTask(device::Device& device, const device::EnvelopeLimits& limits, Log& log,
+              std::vector<stimulus::Observer*> observers, Leave leave, TickLog* tick_log = nullptr)
+      : SessionTask(Parts{.devices = {{&device, limits}},
+                          .log = log,
+                          .tick_log = tick_log,
+                          .observers = std::move(observers)},
+                    leave) {}
+
+  /// Hands a pass to the servo thread; it outlives the pass. Call only when idle().
+  /// @param row  of /trials, for the samples
+  void start(Pass& pass, std::int32_t row) noexcept;
+  bool idle() const noexcept;
+  /// Of the last pass; call only when idle().
+  const PassResult& result() const noexcept { return result_; }
+  /// Asks tick() to let ServoLoop::run return after the tick before `index`, once. Between runs.
+  void leave_before(std::uint64_t index) noexcept { leave_before_ = index; }
+  /// Clears a fault before the next pass; the force ramps in again.
+  void clear_fault() noexcept;
+  /// Ends the present pass as aborted without a fault: to repeat or to skip its trial.
+  void break_off() noexcept;
+  /// Force to zero from the next tick on, the present pass aborted. Also from a signal's handler.
+  void emergency_stop() noexcept;
+  /// Whether no pass runs and the device has taken a force of zero. Any thread.
+  bool at_rest() const noexcept;
+  /// After emergency_stop(): whether the device has taken the zero. Also from a signal's handler.
+  bool stopped() const noexcept;
+
+  bool tick(const realtime::Tick& tick) noexcept override;
+
+ private:
+  void take_requests(std::uint64_t sequence) noexcept;
+  bool take_stop() noexcept;
+  void begin(std::uint64_t sequence) noexcept;
+  bool end_if_over(std::uint64_t sequence) noexcept;
+  void record(const realtime::Tick& tick, const PassOutput& out) noexcept;
+  PassOutput ask_pass(double dt) noexcept;
+
+  DeviceSet devices_;
+  Log& log_;
+  DeviceLog* device_log_;
+  TickLog* tick_log_;
+  const std::atomic<std::uint32_t>* keys_;
+  std::vector<stimulus::Observer*> observers_;
+  Leave leave_;
+  Origin origin_;
+  std::uint64_t leave_before_{0};
+
+  std::atomic<Pass*> asked_{nullptr};  // session thread -> servo thread
+  std::atomic<std::int32_t> asked_row_{-1};
+  std::atomic<bool> busy_{false};
+  std::atomic<bool> force_gone_{true};  // the device took a force of zero last
+  std::atomic<bool> clear_asked_{false};
+  std::atomic<bool> stop_asked_{false};
+  std::atomic<bool> break_asked_{false};
+
+  // Servo thread.
+  Pass* waiting_{nullptr};  // until it may begin
+  Pass* pass_{nullptr};
+  std::int32_t row_{-1};
+  bool broken_off_{false};
+  PassResult result_;  // published by busy_
+};
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,165 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/record/response.h"
+#include "core/record/rows.h"
+#include "core/record/session_types.h"
+#include "core/stimulus/observer.h"
+#include "protocols/interface/drawing.h"
+#include "protocols/interface/pass.h"
+#include "protocols/interface/rig.h"
+#include "protocols/interface/schedule.h"
+
+namespace haptrial::record {
+class SessionReader;
+}  // namespace haptrial::record
+
+namespace haptrial::protocols {
+
+class SessionFile;
+
+/// Where the trials of one session take place: what the runner tells a protocol.
+struct SessionPlace {
+  std::string subject;            // identifier
+  int participant{0};             // from 0
+  std::uint64_t seed{0};          // of the study
+  std::uint64_t session_seed{0};  // of the participant
+  bool real{false};               // on a real clock: a person, or a rehearsal
+  bool window{false};             // the participant has a screen
+  int frames_per_pass{0};         // pictures of what was shown, into frames_folder
+  std::filesystem::path frames_folder;
+  std::filesystem::path resumed;  // the file of the earlier run; empty: none
+  /// To be called now and then while something takes seconds: what, and the share that is done.
+  /// @throws RunError on an interrupt
+  std::function<void(const char* what, double share)> pulse;
+};
+
+/// How a trial ended.
+enum class TrialEnd : std::uint8_t { kCompleted, kSkipped, kAborted };
+
+/// What came of a trial: what the next one follows from.
+struct Outcome {
+  PlannedTrial trial;
+  TrialEnd end{TrialEnd::kCompleted};
+  std::vector<record::ResponseRow> responses;  // of its last attempt, in order
+};
+
+/// How many trials there are to be; at most so many where outcomes decide.
+struct Extent {
+  int trials{0};  // of the study
+  int practice{0};
+  int blocks{0};
+};
+
+/// The trials of one session: which comes next, what each consists of, and what it shows. The
+/// runner does the rest. Session's thread. What a pass uses lives until the next make_pass().
+class Trials {
+ public:
+  virtual ~Trials() = default;
+
+  /// @param most  of the study that are to be presented; 0: all
+  virtual Extent extent(int most) const = 0;
+  /// The trial that follows. A resumed session asks again from the beginning, with the outcomes
+  /// that are recorded: the same outcomes lead to the same trials.
+  /// @param last  of the trial before; null before the first
+  /// @returns nothing when the session is over
+  virtual std::optional<PlannedTrial> next(const Outcome* last) = 0;
+  /// Whether a resumed session presents trials again that an earlier run had to abort. Not where
+  /// later trials followed from the abort.
+  virtual bool presents_aborted_again() const { return false; }
+  /// The trial in which an earlier run was killed, when the file does not say which; nothing if it
+  /// cannot be told.
+  /// @param is_over  whether the file holds the end of a trial
+  /// @param went_on  with what the pass before left
+  virtual std::optional<PlannedTrial> cut_short(
+      const SessionFile& file, const std::function<bool(const PlannedTrial&)>& is_over,
+      bool went_on) const {
+    static_cast<void>(file);
+    static_cast<void>(is_over);
+    static_cast<void>(went_on);
+    return std::nullopt;
+  }
+  /// Of every trial, in order. A trial is done when its last one was completed.
+  virtual std::span<const record::Phase> phases() const = 0;
+
+  /// Virtual devices and virtual participant.
+  virtual std::unique_ptr<Rig> virtual_rig() const = 0;
+  /// Who sees every tick beside the screen and the participant: for pictures, for sound.
+  virtual std::vector<stimulus::Observer*> observers() { return {}; }
+  /// What is recorded of every tick beside the samples; null: nothing.
+  virtual TickLog* tick_log() { return nullptr; }
+  /// Hands over what its own logs hold. Called often; before the samples of the same ticks are
+  /// handed over.
+  virtual void empty_logs(SessionFile& file) { static_cast<void>(file); }
+  /// Records that a log had no room for.
+  virtual std::uint64_t dropped() const { return 0; }
+
+  /// The tables of the protocol's own, in the order in which the file has them; with
+  /// record::responses_table() if anything is asked.
+  virtual record::TableList tables() const { return {}; }
+  /// Rows that the file has from the beginning; what they point to lives as long as the trials.
+  virtual std::vector<record::Rows> first_rows() const { return {}; }
+  /// @throws InputError if what an earlier run recorded cannot be gone on with
+  virtual void check_resumed(const record::SessionReader& file) const { static_cast<void>(file); }
+
+  /// Before the first attempt at a trial.
+  virtual void prepare(const PlannedTrial& trial, SessionFile& file) = 0;
+  /// Before each attempt. @param anew  from the beginning; else where it was broken off, if the
+  /// protocol can
+  virtual void begin_attempt(const PlannedTrial& trial, bool anew) {
+    static_cast<void>(trial);
+    static_cast<void>(anew);
+  }
+  /// What the participant's screen shows during the trial.
+  virtual MakeDrawing drawing() = 0;
+  /// @param trial  as planned; what its row is to say else may be changed
+  virtual Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) = 0;
+  /// Whether a pass goes on with what the pass before it left.
+  virtual bool goes_on_with(const record::PassRow& before, const record::PassRow& pass) const {
+    static_cast<void>(before);
+    static_cast<void>(pass);
+    return false;
+  }
+  /// The answers of the pass that ended last; their trial, pass and place in time are filled in.
+  virtual std::vector<record::ResponseRow> responses() { return {}; }
+  /// After a pass, before its row of /trials. @param row  its number
+  virtual void close_pass(SessionFile& file, std::int32_t row) {
+    static_cast<void>(file);
+    static_cast<void>(row);
+  }
+  /// Pictures of the last pass.
+  virtual void draw_pictures(const PlannedTrial& trial, const record::Phase& phase) {
+    static_cast<void>(trial);
+    static_cast<void>(phase);
+  }
+  /// Why a pass ended as aborted by itself.
+  virtual const char* why_aborted() const = 0;
+  /// Sentences for the end of the session.
+  virtual std::vector<std::string> notices() const { return {}; }
+};
+
+/// Trials whose order is known from the beginning, whatever comes of them.
+class FixedPlan {
+ public:
+  explicit FixedPlan(std::vector<PlannedTrial> plan);
+  Extent extent(int most) const;
+  const std::vector<PlannedTrial>& trials() const { return plan_; }
+  std::optional<PlannedTrial> next() {
+    return at_ < plan_.size() ? std::optional(plan_[at_++]) : std::nullopt;
+  }
+
+ private:
+  std::vector<PlannedTrial> plan_;
+  std::size_t at_{0};
+};
+
+}  // namespace haptrial::protocols

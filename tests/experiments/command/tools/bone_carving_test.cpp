@@ -1,0 +1,81 @@
+#include "experiments/command/tools/bone_carving.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "tests/core/bone/surface_checks.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using bone::Voxel;
+
+TEST(BoneCarvingTest, WhatLiesWithinIsGoneAndTheRestIsThere) {
+  const bone::BoneModel model =
+      bone::model_of(24, [](const Voxel& v) { return v.x() == 12 ? 2 : 1; });
+  const Eigen::Vector3d from = model.grid.centre(4, 5, 6);
+  const Eigen::Vector3d to = model.grid.centre(18, 14, 10);
+  for (const bool spare : {false, true}) {
+    bone::BoneVolume volume(model);
+    carve(volume, Stroke{from, to, 0.0031}, {false, false, spare});
+    int gone = 0;
+    for (int k = 0; k < 24; ++k) {
+      for (int j = 0; j < 24; ++j) {
+        for (int i = 0; i < 24; ++i) {
+          // The least of many points along the way.
+          double least = 1.0;
+          for (int s = 0; s <= 1000; ++s) {
+            const Eigen::Vector3d at = from + s / 1000.0 * (to - from);
+            least = std::min(least, (model.grid.centre(i, j, k) - at).norm());
+          }
+          if (std::abs(least - 0.0031) < 1e-6) {
+            continue;
+          }
+          const bool within = least < 0.0031 && !(spare && i == 12);
+          ASSERT_EQ(volume.density(Voxel(i, j, k)) == 0.0F, within);
+          gone += within;
+        }
+      }
+    }
+    EXPECT_GT(gone, 300);
+  }
+}
+
+TEST(BoneCarvingTest, APlaneTakesASlab) {
+  const bone::BoneModel model = bone::model_of(24, [](const Voxel&) { return 1; });
+  bone::BoneVolume volume(model);
+  carve(volume, PlaneCut{model.grid.centre(0, 10, 0), Eigen::Vector3d::UnitY(), 0.0016}, {});
+  for (int j = 0; j < 24; ++j) {
+    EXPECT_EQ(volume.density(Voxel(3, j, 20)) == 0.0F, j >= 9 && j <= 11) << j;
+  }
+}
+
+TEST(BoneCarvingTest, TextsAreReadInMillimetres) {
+  const Stroke ball = parse_stroke("--drill", "1,-2.5,3e1,4");
+  EXPECT_EQ(ball.from, ball.to);
+  EXPECT_TRUE(ball.from.isApprox(Eigen::Vector3d(0.001, -0.0025, 0.03)));
+  EXPECT_DOUBLE_EQ(ball.radius, 0.002);
+  EXPECT_TRUE(
+      parse_stroke("--drill", "0,0,0,1,2,3,4").to.isApprox(Eigen::Vector3d(0.001, 0.002, 0.003)));
+  const PlaneCut cut = parse_plane_cut("--cut", "1,2,3,0,0,-5,2");
+  EXPECT_TRUE(cut.normal.isApprox(-Eigen::Vector3d::UnitZ()));
+  EXPECT_DOUBLE_EQ(cut.half_width, 0.001);
+}
+
+TEST(BoneCarvingTest, OtherTextsGetASentence) {
+  for (const char* text : {"", "1,2,3", "1,2,3,0", "1,2,3,-4", "1,2,3,4,", "a,2,3,4", "1,2,3,nan",
+                           "1,2,3,4,5,6", "1, 2,3,4", "1,2,3,inf"}) {
+    try {
+      parse_stroke("--drill", text);
+      ADD_FAILURE() << "'" << text << "' was taken";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("allowed:"));
+    }
+  }
+  EXPECT_THROW(parse_plane_cut("--cut", "1,2,3,0,0,0,2"), InputError);
+  EXPECT_THROW(parse_plane_cut("--cut", "1,2,3,0,0,1,0"), InputError);
+}
+
+}  // namespace
+}  // namespace haptrial::experiments

@@ -1,0 +1,50 @@
+#include "experiments/control/last_stop.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+namespace haptrial::experiments {
+namespace {
+
+/// A servo thread that stops when it has been looked at so often, or never.
+struct FakeServo final : LastStop {
+  explicit FakeServo(int looks, bool itself = false) : looks_left(looks), is_servo(itself) {}
+  void ask() noexcept override { asked = true; }
+  bool done() const noexcept override { return asked && looks_left >= 0 && looks_left-- == 0; }
+  bool on_servo_thread() const noexcept override { return is_servo; }
+  void write_zero() noexcept override { ++written; }
+
+  mutable int looks_left;
+  bool is_servo;
+  bool asked{false};
+  int written{0};
+  const WatchedStop watched{*this};
+};
+
+TEST(LastStopTest, TheServoThreadWritesTheZeroWhereItStillRuns) {
+  FakeServo servo(3);
+  take_force_away();
+  EXPECT_TRUE(servo.asked);
+  EXPECT_EQ(servo.written, 0) << "the library is called from one thread only";
+}
+
+TEST(LastStopTest, AServoThreadThatHangsIsWaitedForABoundedTime) {
+  FakeServo servo(-1);
+  const auto start = std::chrono::steady_clock::now();
+  take_force_away();
+  EXPECT_EQ(servo.written, 1);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+}
+
+TEST(LastStopTest, AServoThreadThatDiesDoesNotWaitForItself) {
+  FakeServo servo(-1, true);
+  take_force_away();
+  EXPECT_EQ(servo.written, 1);
+  EXPECT_EQ(servo.looks_left, -1);
+}
+
+TEST(LastStopTest, WithoutASessionThereIsNothingToDo) { take_force_away(); }
+
+}  // namespace
+}  // namespace haptrial::experiments
