@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -238,7 +239,9 @@ class RandomRun {
     reading.stop_pressed = random_.below(5000) == 0;
     envelope_.check(random_.below(1000) != 0, reading);
     if (random_.below(2000) == 0) {
-      envelope_.trip(random_.below(2) ? Fault::kWriteFailed : Fault::kEmergencyStop);
+      constexpr std::array kFromOutside{Fault::kWriteFailed, Fault::kEmergencyStop,
+                                        Fault::kOtherDevice};
+      envelope_.trip(kFromOutside[random_.below(kFromOutside.size())]);
     }
     if (random_.below(500) == 0) {
       random_.below(2) ? envelope_.release() : envelope_.engage();
