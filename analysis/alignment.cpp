@@ -12,7 +12,7 @@
 #include "analysis/alignment_error.h"
 #include "analysis/alignment_kernel.h"
 #include "analysis/alignment_rows.h"
-#include "analysis/parallel.h"
+#include "core/base/parallel.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -13,6 +13,7 @@
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "core/base/nearest.h"
+#include "core/base/utf8.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -22,10 +23,7 @@ namespace fs = std::filesystem;
 /// What stands in the file, on one line and short enough for a sentence.
 std::string shown(std::string_view text) {
   constexpr std::size_t kLongest = 40;
-  std::string result(text.substr(0, kLongest));
-  while (text.size() > kLongest && !result.empty() && (text[result.size()] & 0xc0) == 0x80) {
-    result.pop_back();  // not within a character of several bytes
-  }
+  std::string result(cut_text(text, kLongest));
   for (char& c : result) {
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
   }

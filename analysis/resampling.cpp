@@ -1,6 +1,5 @@
 #include "analysis/resampling.h"
-
-#include "analysis/parallel.h"
+#include "core/base/parallel.h"
 
 namespace haptrial::analysis {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "analysis/parallel.h"
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
-#include <thread>
 
 #include "analysis/path_places.h"
 #include "analysis/quality_summary.h"
@@ -16,6 +13,7 @@
 #include "analysis/session_recalls.h"
 #include "analysis/study_parts.h"
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/record/session_reader.h"
 
 namespace haptrial::analysis {
@@ -31,31 +29,11 @@ struct Session {
 std::vector<Session> read_all(const std::vector<fs::path>& files, const ScoreParameters& parameters,
                               int jobs) {
   std::vector<Session> sessions(files.size());
-  std::vector<std::exception_ptr> failures(files.size());
   const int workers = std::min(jobs, static_cast<int>(files.size()));
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i; (i = next.fetch_add(1)) < files.size();) {
-      try {
-        const record::SessionReader reader(files[i]);
-        sessions[i] = {files[i], session_recalls(reader, parameters, jobs / workers)};
-      } catch (...) {
-        failures[i] = std::current_exception();
-      }
-    }
-  };
-  {
-    std::vector<std::jthread> threads;
-    for (int k = 1; k < workers; ++k) {
-      threads.emplace_back(work);
-    }
-    work();
-  }
-  for (const auto& failure : failures) {
-    if (failure) {
-      std::rethrow_exception(failure);
-    }
-  }
+  parallel_for(files.size(), workers, [&](std::size_t i) {
+    const record::SessionReader reader(files[i]);
+    sessions[i] = {files[i], session_recalls(reader, parameters, jobs / workers)};
+  });
   return sessions;
 }
 

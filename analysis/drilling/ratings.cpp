@@ -11,6 +11,7 @@
 #include "analysis/csv.h"
 #include "analysis/exchange/delimited.h"
 #include "core/base/error.h"
+#include "core/base/fnv.h"
 #include "core/base/random.h"
 
 namespace haptrial::analysis::drilling {
@@ -30,15 +31,6 @@ std::string code_of(RandomStream& random) {
     code += kSigns[random.below(kSigns.size())];
   }
   return code;
-}
-
-// FNV-1a, to see a change.
-std::uint64_t hash_of(const std::string& text) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const char c : text) {
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-  }
-  return hash;
 }
 
 // Twice gives the text back.
@@ -160,7 +152,7 @@ std::string sealed(const RatingKey& key) {
   }
   const std::string plain = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   std::string text(kSealed);
-  text += fmt::format("{:016x}\n", hash_of(plain));
+  text += fmt::format("{:016x}\n", fnv1a(plain));
   constexpr std::size_t kBytesALine = 40;
   const std::string hidden = masked(plain);
   for (std::size_t i = 0; i < hidden.size(); ++i) {
@@ -189,7 +181,7 @@ RatingKey opened(const std::string& text, const std::string& name) {
     hidden += static_cast<char>(std::stoi(digits.substr(i, 2), nullptr, kHexBase));
   }
   const std::string plain = masked(hidden);
-  if (hash_of(plain) != std::stoull(digits.substr(0, kHashDigits), nullptr, kHexBase)) {
+  if (fnv1a(plain) != std::stoull(digits.substr(0, kHashDigits), nullptr, kHexBase)) {
     throw damaged;
   }
   try {

@@ -10,10 +10,10 @@
 #include "analysis/drilling/validity_json.h"
 #include "analysis/drilling/validity_report.h"
 #include "analysis/figure_gnuplot.h"
-#include "analysis/parallel.h"
 #include "analysis/staging.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
+#include "core/base/parallel.h"
 #include "core/record/session_reader.h"
 
 namespace haptrial::analysis::drilling {

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <exception>
 #include <map>
-#include <thread>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/base/table.h"
 #include "core/record/session_reader.h"
 
@@ -28,59 +27,6 @@ void refuse_twins(const std::vector<ExportSession>& sessions) {
     }
   }
 }
-
-/// The threads and what came of their work.
-class Crew {
- public:
-  Crew(std::size_t count, const std::function<void(std::size_t, Counter&)>& work)
-      : work_(work), failures_(count) {}
-
-  void run(int jobs, const Watch& watch) {
-    {
-      std::vector<std::jthread> threads;
-      const std::size_t wanted = std::min(static_cast<std::size_t>(jobs), failures_.size());
-      for (std::size_t k = 0; k < wanted; ++k) {
-        threads.emplace_back([this] { take_turns(); });
-      }
-      try {
-        while (finished_.load() < failures_.size()) {
-          std::this_thread::sleep_for(std::chrono::milliseconds(10));
-          watch(counter_.samples());
-        }
-      } catch (...) {
-        counter_.stop();
-        threads.clear();
-        throw;
-      }
-    }
-    for (const auto& failure : failures_) {
-      if (failure) {
-        std::rethrow_exception(failure);
-      }
-    }
-  }
-
- private:
-  void take_turns() {
-    for (std::size_t i; (i = next_.fetch_add(1)) < failures_.size(); ++finished_) {
-      try {
-        if (!failed_.load()) {
-          work_(i, counter_);
-        }
-      } catch (...) {
-        failures_[i] = std::current_exception();
-        failed_.store(true);  // what has begun goes on: the failure named is that of the lowest i
-      }
-    }
-  }
-
-  const std::function<void(std::size_t, Counter&)>& work_;
-  std::vector<std::exception_ptr> failures_;
-  std::atomic<std::size_t> next_{0};
-  std::atomic<std::size_t> finished_{0};
-  std::atomic<bool> failed_{false};
-  Counter counter_;
-};
 
 }  // namespace
 
@@ -140,7 +86,18 @@ std::uint64_t total_samples(std::span<const ExportSession> sessions) {
 
 void share_out(std::size_t count, int jobs, const std::function<void(std::size_t, Counter&)>& work,
                const Watch& watch) {
-  Crew(count, work).run(jobs, watch);
+  Counter counter;
+  SharedWork shared(count, jobs, [&] { return [&](std::size_t i) { work(i, counter); }; });
+  try {
+    while (!shared.ended_within(std::chrono::milliseconds(10))) {
+      watch(counter.samples());
+    }
+    watch(counter.samples());
+  } catch (...) {
+    counter.stop();
+    throw;
+  }
+  shared.finish();
 }
 
 }  // namespace haptrial::exchange

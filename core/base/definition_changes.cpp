@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "core/base/toml_text_internal.h"
+#include "core/base/utf8.h"
 
 namespace haptrial {
 namespace {
@@ -86,22 +87,13 @@ Values values_of(std::string_view text) {
   return values;
 }
 
-bool within_character(const std::string& text, std::size_t at) {
-  return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xc0U) == 0x80U;
-}
-
 /// Short enough for a sentence, on one line. @param from  what comes before it is left out
 std::string shown(std::string text, std::size_t from) {
   constexpr std::size_t kLongest = 60;
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
-  while (from > 0 && within_character(text, from)) {
-    --from;
-  }
-  std::size_t end = std::min(text.size(), from + kLongest);
-  while (within_character(text, end)) {
-    --end;
-  }
+  from = whole_characters(text, from);
+  const std::size_t end = whole_characters(text, from + kLongest);
   return (from > 0 ? "..." : "") + text.substr(from, end - from) + (end < text.size() ? "..." : "");
 }
 

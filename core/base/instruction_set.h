@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace haptrial {
@@ -15,5 +16,27 @@ std::string_view name_of(InstructionSet set);
 
 /// @throws std::invalid_argument naming the set when this machine cannot run it.
 void require_instruction_set(InstructionSet set);
+
+/// A function that is compiled only for x86-64; elsewhere none.
+#ifdef __x86_64__
+#define HAPTRIAL_X86(function) (function)
+#else
+#define HAPTRIAL_X86(function) nullptr
+#endif
+
+/// The function that was compiled for `set`:
+///
+///     choose(set, sum_baseline, HAPTRIAL_X86(sum_avx2), HAPTRIAL_X86(sum_avx512))
+///
+/// @throws std::invalid_argument naming the set when this machine cannot run it.
+template <class Function>
+Function* choose(InstructionSet set, Function* baseline, std::type_identity_t<Function>* avx2,
+                 std::type_identity_t<Function>* avx512) {
+  require_instruction_set(set);
+  if (set == InstructionSet::kAvx512) {
+    return avx512;
+  }
+  return set == InstructionSet::kAvx2 ? avx2 : baseline;
+}
 
 }  // namespace haptrial

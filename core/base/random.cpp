@@ -6,6 +6,8 @@
 #include <bit>
 #include <limits>
 
+#include "core/base/fnv.h"
+
 namespace haptrial {
 namespace {
 
@@ -14,14 +16,6 @@ std::uint64_t split_mix(std::uint64_t& x) noexcept {
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
   return z ^ (z >> 31);
-}
-
-std::uint64_t fnv1a(std::string_view text) noexcept {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : text) {
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  }
-  return hash;
 }
 
 std::uint64_t next(std::array<std::uint64_t, 4>& s) noexcept {

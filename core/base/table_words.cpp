@@ -6,6 +6,7 @@
 
 #include "core/base/table_words_internal.h"
 #include "core/base/toml_words_internal.h"
+#include "core/base/utf8.h"
 
 namespace haptrial {
 
@@ -45,11 +46,8 @@ std::string shown(const toml::node& node) {
   });
   std::string text = out.str();
   if (text.size() > 60) {
-    std::size_t end = 57;
-    while ((text[end] & 0xc0) == 0x80) {  // not within a character of several bytes
-      --end;
-    }
-    text = text.substr(0, end) + "...";
+    text.resize(whole_characters(text, 57));
+    text += "...";
   }
   return text;
 }

@@ -6,6 +6,8 @@
 #include <array>
 #include <regex>
 
+#include "core/base/utf8.h"
+
 namespace haptrial {
 namespace {
 
@@ -36,23 +38,14 @@ std::string small_letters(std::string_view text) {
 }
 
 /// The bytes of the character at the front of `text`, or 0 if it is not UTF-8.
-std::size_t character_bytes(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char first = byte(0);
-  const std::size_t count = first < 0x80                    ? 1
-                            : first >= 0xc2 && first < 0xe0 ? 2
-                            : first >= 0xe0 && first < 0xf0 ? 3
-                            : first >= 0xf0 && first < 0xf5 ? 4
-                                                            : 0;
+std::size_t whole_character(std::string_view text) {
+  const std::size_t count = character_bytes(text.front());
   if (count == 0 || text.size() < count) {
     return 0;
   }
-  for (std::size_t i = 1; i < count; ++i) {
-    if ((byte(i) & 0xc0) != 0x80) {
-      return 0;
-    }
-  }
-  return count;
+  const bool whole = std::all_of(
+      text.begin() + 1, text.begin() + static_cast<std::ptrdiff_t>(count), continues_character);
+  return whole ? count : 0;
 }
 
 /// What is wrong with a word that begins like a number and is none.
@@ -89,11 +82,7 @@ std::string short_text(std::string_view text) {
   if (text.size() <= kLongest) {
     return std::string(text);
   }
-  std::size_t end = kLongest - 3;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) {
-    --end;  // not within a character of several bytes
-  }
-  return std::string(text.substr(0, end)) + "...";
+  return std::string(cut_text(text, kLongest - 3)) + "...";
 }
 
 std::optional<std::string> look_alike_mistake(std::string_view text) {
@@ -145,7 +134,7 @@ std::optional<TomlMistake> find_bad_bytes(std::string_view text) {
                                            "delete it",
                                            c)};
     }
-    const std::size_t bytes = character_bytes(text.substr(at));
+    const std::size_t bytes = whole_character(text.substr(at));
     if (bytes == 0) {
       return TomlMistake{line, "the line holds bytes that are not UTF-8; save the text as UTF-8"};
     }

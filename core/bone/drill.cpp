@@ -8,19 +8,6 @@
 namespace haptrial::bone {
 namespace {
 
-kernel::TouchBurr kernel_for(InstructionSet set) {
-  require_instruction_set(set);
-#ifdef __x86_64__
-  if (set == InstructionSet::kAvx512) {
-    return kernel::touch_burr_avx512;
-  }
-  if (set == InstructionSet::kAvx2) {
-    return kernel::touch_burr_avx2;
-  }
-#endif
-  return kernel::touch_burr_baseline;
-}
-
 constexpr double kWidest = 5000.0;  // radius of a burr in voxels
 
 /// @returns false where the burr cannot touch the grid, or its pose is none.
@@ -79,7 +66,8 @@ Contact together(const Contact& a, const Contact& b) noexcept {
 
 Drill::Drill(const BurrParameters& burr, std::span<const Structure> structures, InstructionSet set)
     : burr_(burr),
-      touch_(kernel_for(set)),
+      touch_(choose(set, kernel::touch_burr_baseline, HAPTRIAL_X86(kernel::touch_burr_avx2),
+                    HAPTRIAL_X86(kernel::touch_burr_avx512))),
       // One more: the kernel writes the next place before it knows whether it is kept.
       hits_(static_cast<std::size_t>(burr_.samples()) * kBonesAtOnce + 1),
       emptied_(static_cast<std::size_t>(burr_.samples()) * kBonesAtOnce) {

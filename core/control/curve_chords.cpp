@@ -16,17 +16,15 @@ inline unsigned bits_of(Flags flags) {
 
 namespace haptrial::control {
 
+namespace {
+
+ChordKernel chord_kernel_baseline() { return {measure, scan}; }
+
+}  // namespace
+
 ChordKernel chord_kernel(InstructionSet set) {
-  require_instruction_set(set);
-#ifdef __x86_64__
-  if (set == InstructionSet::kAvx2) {
-    return chord_kernel_avx2();
-  }
-  if (set == InstructionSet::kAvx512) {
-    return chord_kernel_avx512();
-  }
-#endif
-  return {measure, scan};
+  return choose(set, chord_kernel_baseline, HAPTRIAL_X86(chord_kernel_avx2),
+                HAPTRIAL_X86(chord_kernel_avx512))();
 }
 
 }  // namespace haptrial::control

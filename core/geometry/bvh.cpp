@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/parallel.h"
 #include "core/geometry/bvh_kernel.h"
-#include "core/geometry/parallel.h"
 #include "core/geometry/triangle_distance.h"
 #include "core/geometry/triangle_distance_lanes.h"
 
@@ -48,12 +48,7 @@ ClosestPoint closest_on_triangle(const Eigen::Vector3d& point, const Eigen::Vect
 namespace kernel {
 
 const Kernels& kernels_for(InstructionSet set) {
-  require_instruction_set(set);
-#ifdef __x86_64__
-  if (set == InstructionSet::kAvx512) return avx512_kernels();
-  if (set == InstructionSet::kAvx2) return avx2_kernels();
-#endif
-  return baseline_kernels();
+  return choose(set, baseline_kernels, HAPTRIAL_X86(avx2_kernels), HAPTRIAL_X86(avx512_kernels))();
 }
 
 ClosestPoint closest_in_double(const Bvh::Data& data, const Eigen::Vector3d& point,

@@ -9,10 +9,10 @@
 #include <span>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/geometry/bvh_kernel.h"
 #include "core/geometry/bvh_split.h"
 #include "core/geometry/flat_triangle.h"
-#include "core/geometry/parallel.h"
 #include "core/geometry/turned_box.h"
 
 namespace haptrial::geometry {

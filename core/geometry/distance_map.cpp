@@ -6,8 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/base/parallel.h"
 #include "core/geometry/bvh_kernel.h"
-#include "core/geometry/parallel.h"
 
 namespace haptrial::geometry {
 namespace {

@@ -8,12 +8,12 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/geometry/boundary_cone.h"
 #include "core/geometry/flood_fill_internal.h"
 #include "core/geometry/grid_crossings.h"
 #include "core/geometry/mesh_edges_internal.h"
 #include "core/geometry/mesh_repair.h"
-#include "core/geometry/parallel.h"
 
 namespace haptrial::geometry {
 namespace {

@@ -14,32 +14,19 @@ void sum_windings_baseline(const float* corners, std::size_t triangles, const Po
   sum_windings(corners, triangles, points, re, im, turns);
 }
 
-namespace {
-
-SumWindings kernel_for(InstructionSet set) {
-#ifdef __x86_64__
-  if (set == InstructionSet::kAvx512) {
-    return sum_windings_avx512;
-  }
-  if (set == InstructionSet::kAvx2) {
-    return sum_windings_avx2;
-  }
-#endif
-  return set == InstructionSet::kBaseline ? sum_windings_baseline : nullptr;
-}
-
-}  // namespace
 }  // namespace kernel
 
 void winding_sums(std::span<const Eigen::Vector3f> corners, const PointLanes& points,
                   std::array<float, kPointLanes>& sums, InstructionSet set) {
-  require_instruction_set(set);
+  const auto sum =
+      choose(set, kernel::sum_windings_baseline, HAPTRIAL_X86(kernel::sum_windings_avx2),
+             HAPTRIAL_X86(kernel::sum_windings_avx512));
   alignas(64) std::array<float, kPointLanes> re;
   alignas(64) std::array<float, kPointLanes> im{};
   alignas(64) std::array<float, kPointLanes> turns{};
   re.fill(1.0f);
-  kernel::kernel_for(set)(corners.empty() ? nullptr : corners[0].data(), corners.size() / 3, points,
-                          re.data(), im.data(), turns.data());
+  sum(corners.empty() ? nullptr : corners[0].data(), corners.size() / 3, points, re.data(),
+      im.data(), turns.data());
   for (std::size_t l = 0; l < sums.size(); ++l) {
     sums[l] = std::atan2(im[l], re[l]) / (2.0f * std::numbers::pi_v<float>)+turns[l];
   }

@@ -51,8 +51,6 @@ namespace {
 
 }  // namespace
 
-using SumWindings = void (*)(const float* corners, std::size_t triangles, const PointLanes& points,
-                             float* re, float* im, float* turns);
 void sum_windings_baseline(const float* corners, std::size_t triangles, const PointLanes& points,
                            float* re, float* im, float* turns);
 /// These exist where the compiler targets x86-64.

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/base/utf8.h"
 #include "core/record/packed_row.h"
 #include "core/record/schema.h"
 
@@ -138,13 +139,7 @@ std::vector<EventPart> event_parts(const EventRow& event) {
   check_text(event.kind, kKindBytes, "event kind");  // before the first part is put anywhere
   check_text(rest, rest.size(), "event text");
   do {
-    std::size_t size = std::min(rest.size(), kTextBytes);
-    // A cut never falls within a UTF-8 character (at most three continuation bytes back).
-    if (size < rest.size()) {
-      std::size_t cut = size;
-      while (cut + 4 > size && (static_cast<unsigned char>(rest[cut]) & 0xC0u) == 0x80u) --cut;
-      if ((static_cast<unsigned char>(rest[cut]) & 0xC0u) != 0x80u) size = cut;
-    }
+    const std::size_t size = whole_characters(rest, kTextBytes);
     parts.push_back({{event.time_ns, event.kind, std::string(rest.substr(0, size))},
                      static_cast<std::int32_t>(parts.size())});
     rest.remove_prefix(size);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "core/base/error.h"
+#include "core/base/utf8.h"
 
 namespace haptrial::render {
 namespace {
@@ -122,20 +123,6 @@ int Font::line_height(int size) const {
 
 namespace {
 
-/// How many bytes a character that starts with this byte has; 0 where none starts so.
-std::size_t length_of(unsigned char first) {
-  if (first < 0x80) {
-    return 1;
-  }
-  if (first >= 0xc2 && first < 0xe0) {
-    return 2;
-  }
-  if (first >= 0xe0 && first < 0xf0) {
-    return 3;
-  }
-  return first >= 0xf0 && first < 0xf5 ? 4 : 0;
-}
-
 /// The character of a whole, well-formed sequence; U+FFFD for anything else.
 char32_t character_of(std::string_view bytes) {
   constexpr char32_t kSmallest[] = {0, 0, 0x80, 0x800, 0x10000};
@@ -145,11 +132,10 @@ char32_t character_of(std::string_view bytes) {
   }
   value &= 0xffu >> (bytes.size() + 1);
   for (const char byte : bytes.substr(1)) {
-    const auto next = static_cast<unsigned char>(byte);
-    if ((next & 0xc0) != 0x80) {
+    if (!continues_character(byte)) {
       return kReplacement;
     }
-    value = (value << 6) | (next & 0x3fu);
+    value = (value << 6) | (static_cast<unsigned char>(byte) & 0x3fu);
   }
   const bool surrogate = value >= 0xd800 && value < 0xe000;
   return value < kSmallest[bytes.size()] || value > 0x10ffff || surrogate ? kReplacement : value;
@@ -160,7 +146,7 @@ char32_t character_of(std::string_view bytes) {
 std::u32string decode_utf8(std::string_view text) {
   std::u32string characters;
   for (std::size_t i = 0; i < text.size();) {
-    const std::size_t length = length_of(static_cast<unsigned char>(text[i]));
+    const std::size_t length = character_bytes(text[i]);
     const bool whole = length > 0 && i + length <= text.size();
     const char32_t character = whole ? character_of(text.substr(i, length)) : kReplacement;
     characters.push_back(character);

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <limits>
-#include <thread>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 
 namespace haptrial::experiments {
 
@@ -39,7 +39,7 @@ std::uint64_t checked_seed(const std::string& text) {
 
 int checked_jobs(std::optional<int> jobs) {
   constexpr int kMostJobs = 256;
-  const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int processors = threads_or_all(0);
   return jobs ? checked_number("--jobs", *jobs, 1, kMostJobs) : std::min(processors, kMostJobs);
 }
 

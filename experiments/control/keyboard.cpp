@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/utf8.h"
 #include "core/realtime/real_time.h"
 
 namespace haptrial::experiments {
@@ -300,10 +301,7 @@ class Keyboard::Implementation {
     if (note_.empty()) {
       return;
     }
-    while (note_.size() > 1 && (note_.back() & 0xC0) == 0x80) {  // the rest of a UTF-8 character
-      note_.pop_back();
-    }
-    note_.pop_back();
+    note_.resize(whole_characters(note_, note_.size() - 1));
     show("\b \b");
   }
 

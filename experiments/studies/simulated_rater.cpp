@@ -8,10 +8,10 @@
 #include <map>
 
 #include "analysis/drilling/procedure.h"
-#include "analysis/parallel.h"
-#include "core/bone/data/recorded_bone.h"
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/base/random.h"
+#include "core/bone/data/recorded_bone.h"
 #include "core/record/session_reader.h"
 #include "experiments/study/study_files.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
@@ -150,7 +150,8 @@ struct RatedBone {
 
 std::vector<RatedBone> bones_of(const record::SessionReader& session) {
   const record::SessionInfo& info = session.info();
-  const protocols::BoneDefinition d = protocols::parse_bone_definition(info.definition, info.definition_name);
+  const protocols::BoneDefinition d =
+      protocols::parse_bone_definition(info.definition, info.definition_name);
   if (!d.cavity) {
     throw InputError(
         fmt::format("{}: its definition has no table [cavity]; a simulated rater needs one",
@@ -163,8 +164,8 @@ std::vector<RatedBone> bones_of(const record::SessionReader& session) {
     bone.X_WB = pose_of(d.placement, bone.model.grid);
     bone.chart = protocols::make_chart(bone.model, bone.X_WB, *d.cavity);
     // Nobody can be blamed for corners that no burr gets into.
-    const subject::BurrReach reach =
-        subject::burr_reach(bone.chart, subject::cavity_floor(bone.chart), protocols::smallest_burr(d));
+    const subject::BurrReach reach = subject::burr_reach(
+        bone.chart, subject::cavity_floor(bone.chart), protocols::smallest_burr(d));
     bone.planned = protocols::cavity_depths(bone.model, bone.X_WB, bone.chart, reach.floor);
     bones.push_back(std::move(bone));
   }
@@ -267,7 +268,7 @@ std::vector<drilling::Rating> simulate_ratings(const fs::path& folder, int threa
   const std::vector<fs::path> files = files_of(folder, Pilots::kLeftOut);
   const std::vector<RatedBone> bones = bones_of(record::SessionReader(files.front()));
   std::vector<std::vector<drilling::Rating>> by_file(files.size());
-  analysis::in_groups(files.size(), 1, threads, [&] {
+  in_groups(files.size(), 1, threads, [&] {
     return
         [&](std::size_t first, std::size_t) { by_file[first] = rate_session(files[first], bones); };
   });

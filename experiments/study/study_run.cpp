@@ -7,9 +7,9 @@
 #include <chrono>
 #include <exception>
 #include <mutex>
-#include <thread>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "experiments/control/progress.h"
 #include "experiments/runner/session.h"
 
@@ -60,14 +60,10 @@ class Crew {
 
   DryRunSummary run() {
     const auto start = std::chrono::steady_clock::now();
-    std::vector<std::thread> threads;
-    for (int i = 0; i < std::min(dry_run_.jobs, dry_run_.participants); ++i) {
-      threads.emplace_back([this] { work(); });
-    }
-    show_progress();
-    for (std::thread& thread : threads) {
-      thread.join();
-    }
+    SharedWork sessions(static_cast<std::size_t>(dry_run_.participants), dry_run_.jobs,
+                        [this] { return [this](std::size_t p) { work(static_cast<int>(p)); }; });
+    show_progress(sessions);
+    sessions.finish();
     if (failure_) {
       std::rethrow_exception(failure_);
     }
@@ -78,23 +74,25 @@ class Crew {
   }
 
  private:
-  void work() {
-    for (int p = next_++; p < dry_run_.participants && !cancel_; p = next_++) {
-      try {
-        const SessionSummary done = run_session(request(p));
-        const std::lock_guard lock(mutex_);
-        summary_.ticks += done.ticks;
-        summary_.passes += done.passes;
-        summary_.aborted_passes += done.aborted_passes;
-      } catch (...) {
-        const std::lock_guard lock(mutex_);
-        if (!failure_) {
-          failure_ = std::current_exception();
-        }
-        cancel_ = true;
-      }
-      ++finished_;
+  /// The first failure stops the others, whose own failure then says nothing.
+  void work(int participant) {
+    if (cancel_) {
+      return;
     }
+    try {
+      const SessionSummary done = run_session(request(participant));
+      const std::lock_guard lock(mutex_);
+      summary_.ticks += done.ticks;
+      summary_.passes += done.passes;
+      summary_.aborted_passes += done.aborted_passes;
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!failure_) {
+        failure_ = std::current_exception();
+      }
+      cancel_ = true;
+    }
+    ++finished_;
   }
 
   SessionRequest request(int participant) {
@@ -111,10 +109,9 @@ class Crew {
     return r;
   }
 
-  void show_progress() {
+  void show_progress(SharedWork& sessions) {
     Progress progress("dry run", ticks_each_ * dry_run_.participants);
-    while (finished_ < dry_run_.participants && !cancel_) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    while (!sessions.ended_within(std::chrono::milliseconds(20)) && !cancel_) {
       const auto done = static_cast<double>(ticks_.load(std::memory_order_relaxed));
       progress.update(done,
                       fmt::format("{} of {} sessions", finished_.load(), dry_run_.participants),
@@ -126,7 +123,6 @@ class Crew {
   const protocols::Definition& setup_;
   double ticks_each_;
   const DryRun& dry_run_;
-  std::atomic<int> next_{0};
   std::atomic<int> finished_{0};
   std::atomic<std::uint64_t> ticks_{0};
   std::atomic<bool> cancel_{false};

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/parallel.h"
 #include "core/bone/data/anatomy.h"
-#include "core/geometry/parallel.h"
 
 namespace haptrial::bone {
 
@@ -26,9 +26,9 @@ BoneModel fill(const MadeGrid& made,
   }
   model.labels.assign(grid.count(), 0);
   model.density.assign(grid.count(), 0.0F);
-  const int threads = geometry::threads_or_all(made.threads);
+  const int threads = threads_or_all(made.threads);
   for (std::int32_t k = 0; k < grid.size[2]; ++k) {
-    geometry::parallel_for(static_cast<std::size_t>(grid.size[1]), threads, [&](std::size_t row) {
+    parallel_for(static_cast<std::size_t>(grid.size[1]), threads, [&](std::size_t row) {
       const auto j = static_cast<std::int32_t>(row);
       for (std::int32_t i = 0; i < grid.size[0]; ++i) {
         const Point p = grid.centre(i, j, k) * (1e3 / made.scale);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/utf8.h"
 #include "core/record/schema.h"
 
 namespace haptrial::bone {
@@ -15,16 +16,6 @@ namespace {
 
 constexpr std::int32_t kLongest = 8192;  // voxels along an axis
 constexpr std::size_t kMostVoxels = std::size_t{1} << 31;
-
-/// At most so many bytes, cut between characters.
-std::string cut(const std::string& text, std::size_t bytes) {
-  std::size_t size = std::min(text.size(), bytes);
-  while (size > 0 && size < text.size() &&
-         (static_cast<unsigned char>(text[size]) & 0xC0u) == 0x80u) {
-    --size;
-  }
-  return text.substr(0, size);
-}
 
 /// Whether two lists agree in what `key` gives of each row.
 template <class Row, class Key>
@@ -49,15 +40,16 @@ bool same_bone(const record::BoneRecord& a, const record::BoneRecord& b) {
 record::BoneRecord record_of(const BoneModel& model, std::int32_t number) {
   record::BoneRecord record;
   record.bone = {number,
-                 cut(model.name, record::kNameBytes),
-                 cut(model.source, record::kTextBytes),
+                 std::string(cut_text(model.name, record::kNameBytes)),
+                 std::string(cut_text(model.source, record::kTextBytes)),
                  model.grid.size,
                  model.grid.origin,
                  model.grid.spacing};
   for (std::size_t label = 1; label < model.structures.size(); ++label) {
     const Structure& s = model.structures[label];
     record.structures.push_back({number, static_cast<std::int32_t>(label),
-                                 cut(s.name, record::kNameBytes), s.colour, s.hardness, s.vital});
+                                 std::string(cut_text(s.name, record::kNameBytes)), s.colour,
+                                 s.hardness, s.vital});
   }
   for (std::size_t at = 0; at < model.labels.size();) {
     std::size_t end = at + 1;

@@ -1,4 +1,5 @@
 #include "core/bone/data/resample.h"
+#include "core/base/parallel.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -7,8 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-
-#include "core/geometry/parallel.h"
 
 namespace haptrial::bone {
 namespace {
@@ -59,7 +58,7 @@ BigArray<float> filter_axis(const BigArray<float>& from, std::array<std::int32_t
   for (std::size_t i = a + 1; i < 3; ++i) outer *= static_cast<std::size_t>(size[i]);
   const auto length = static_cast<std::size_t>(size[a]);
   BigArray<float> to(stride * taps.size() * outer);
-  geometry::parallel_for(outer, geometry::threads_or_all(0), [&](std::size_t o) {
+  parallel_for(outer, threads_or_all(0), [&](std::size_t o) {
     for (std::size_t t = 0; t < taps.size(); ++t) {
       float* row = to.data() + (o * taps.size() + t) * stride;
       std::fill(row, row + stride, 0.0F);
@@ -141,13 +140,12 @@ BigArray<float> resample_turned(const UprightVolume& volume, const geometry::Vox
   };
   BigArray<float> values(grid.count());
   for (std::int32_t k = 0; k < grid.size[2]; ++k) {
-    geometry::parallel_for(
-        static_cast<std::size_t>(grid.size[1]), geometry::threads_or_all(0), [&](std::size_t row) {
-          const auto j = static_cast<std::int32_t>(row);
-          for (std::int32_t i = 0; i < grid.size[0]; ++i) {
-            values[grid.index(i, j, k)] = value_at(map.turn * grid.centre(i, j, k) + map.offset);
-          }
-        });
+    parallel_for(static_cast<std::size_t>(grid.size[1]), threads_or_all(0), [&](std::size_t row) {
+      const auto j = static_cast<std::int32_t>(row);
+      for (std::int32_t i = 0; i < grid.size[0]; ++i) {
+        values[grid.index(i, j, k)] = value_at(map.turn * grid.centre(i, j, k) + map.offset);
+      }
+    });
     geometry::report_share(report, (k + 1.0) / grid.size[2]);
   }
   return values;
@@ -338,13 +336,12 @@ std::vector<std::uint8_t> resample_labels(std::span<const std::uint8_t> labels,
   };
   std::vector<std::uint8_t> result(grid.count());
   for (std::int32_t k = 0; k < grid.size[2]; ++k) {
-    geometry::parallel_for(static_cast<std::size_t>(grid.size[1]), geometry::threads_or_all(0),
-                           [&](std::size_t row) {
-                             const auto j = static_cast<std::int32_t>(row);
-                             for (std::int32_t i = 0; i < grid.size[0]; ++i) {
-                               result[grid.index(i, j, k)] = label_at(grid.centre(i, j, k));
-                             }
-                           });
+    parallel_for(static_cast<std::size_t>(grid.size[1]), threads_or_all(0), [&](std::size_t row) {
+      const auto j = static_cast<std::int32_t>(row);
+      for (std::int32_t i = 0; i < grid.size[0]; ++i) {
+        result[grid.index(i, j, k)] = label_at(grid.centre(i, j, k));
+      }
+    });
     geometry::report_share(report, (k + 1.0) / grid.size[2]);
   }
   return result;

@@ -13,11 +13,12 @@
 #include <set>
 
 #include "analysis/drilling/ratings.h"
-#include "analysis/parallel.h"
 #include "analysis/staging.h"
 #include "core/base/counted.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
+#include "core/base/fnv.h"
+#include "core/base/parallel.h"
 #include "core/record/session_reader.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/commands.h"
@@ -61,28 +62,23 @@ std::string instructions(bool sheets, bool halves) {
 
 /// What happened to the bone and when, without who did it.
 std::uint64_t fingerprint(const record::SessionReader& session, int trial) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  const auto mix = [&](std::uint64_t value) {
-    for (int byte = 0; byte < 8; ++byte) {
-      hash = (hash ^ (value >> (8 * byte) & 0xffU)) * 0x100000001b3U;
-    }
-  };
+  Fnv1a hash;
   const std::vector<record::RemovalRow> removals = session.rows<record::RemovalRow>();
   for (const record::PassRow& pass : session.passes()) {
     if (pass.trial != trial) {
       continue;
     }
-    mix(pass.last_sample - pass.first_sample);
+    hash.add(pass.last_sample - pass.first_sample);
     for (const record::RemovalRow& row : removals) {
       if (row.sequence >= pass.first_sample && row.sequence <= pass.last_sample) {
-        mix(row.sequence - pass.first_sample);
+        hash.add(row.sequence - pass.first_sample);
         for (const std::int32_t index : row.voxel) {
-          mix(static_cast<std::uint64_t>(index));
+          hash.add(static_cast<std::uint64_t>(index));
         }
       }
     }
   }
-  return hash;
+  return hash.value();
 }
 
 /// The same time for every file: when it was made would give the order of sessions away.
@@ -120,7 +116,7 @@ void make_pictures(const Procedures& procedures, const drilling::RatingKey& key,
                    const RatePrepareOptions& options, const fs::path& folder, int threads) {
   Progress progress("rate prepare", static_cast<double>(key.entries.size()));
   std::atomic<int> done{0};
-  analysis::in_groups(key.entries.size(), 1, threads, [&] {
+  in_groups(key.entries.size(), 1, threads, [&] {
     return [&](std::size_t first, std::size_t) {
       if (interrupted()) {
         throw RunError("interrupted; nothing was written");
