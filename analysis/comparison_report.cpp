@@ -13,6 +13,7 @@
 #include "analysis/wording.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
+#include "core/base/whole_file.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -196,15 +197,6 @@ std::string html_of(const StudyComparison& comparison, const std::string& svg,
   return html + between_table(comparison) + "</body>\n</html>\n";
 }
 
-void write(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) {
-    throw RunError(fmt::format("{}: could not be written", file.string()));
-  }
-}
-
 }  // namespace
 
 std::vector<std::string> comparison_alarms(const StudyComparison& comparison) {
@@ -260,8 +252,8 @@ void write_comparison(const StudyComparison& comparison, const std::filesystem::
   const Figure figure = figure_of(comparison);
   draw_figures({figure}, folder);
   const std::string svg = file_text(folder / (figure.name + ".svg"));
-  write(folder / "comparison.json", comparison_json(comparison));
-  write(folder / "comparison.html", html_of(comparison, svg, figure));
+  write_whole(folder / "comparison.json", comparison_json(comparison));
+  write_whole(folder / "comparison.html", html_of(comparison, svg, figure));
 }
 
 }  // namespace haptrial::analysis

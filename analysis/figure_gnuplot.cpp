@@ -2,16 +2,16 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
+#include <system_error>
 
+#include "core/base/child_process.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 
@@ -166,29 +166,23 @@ bool ends_with(const fs::path& file, const std::string& ending) {
 
 // Runs gnuplot on the script in `folder`, its words in the log. Returns its exit status.
 int run_gnuplot(const fs::path& folder) {
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, kLogName, O_WRONLY | O_CREAT | O_TRUNC,
-                                   0644);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  // -d: no settings of the user's own.
-  std::array<std::string, 3> words{"gnuplot", "-d", kScriptName};
-  std::array<char*, 4> arguments{words[0].data(), words[1].data(), words[2].data(), nullptr};
-  pid_t child = 0;
-  const int failure = posix_spawnp(&child, "gnuplot", &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failure != 0) {
+  const Descriptor log(
+      open((folder / kLogName).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+  if (log.get() < 0) {
+    throw RunError(fmt::format("{}: could not be written: {}", (folder / kLogName).string(),
+                               std::strerror(errno)));
+  }
+  try {
+    // -d: no settings of the user's own.
+    ChildProcess gnuplot(
+        {.words = {"gnuplot", "-d", kScriptName}, .folder = folder, .output = log.get()});
+    return gnuplot.wait();
+  } catch (const std::system_error& error) {
     throw RunError(fmt::format(
         "the figures need gnuplot, which could not be started ({}); install the package "
         "gnuplot-nox or put gnuplot on the PATH",
-        std::strerror(failure)));
+        error.code().message()));
   }
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 std::string first_words_of(const fs::path& log) {
@@ -225,15 +219,11 @@ void draw_figures(const std::vector<Figure>& figures, const fs::path& folder) {
   if (figures.empty()) {
     return;
   }
-  {
-    std::ofstream script(folder / kScriptName, std::ios::binary);
-    for (const auto& figure : figures) {
-      script << gnuplot_script(figure);
-    }
-    if (!script.flush()) {
-      throw RunError(fmt::format("{}: could not be written", (folder / kScriptName).string()));
-    }
+  std::string script;
+  for (const auto& figure : figures) {
+    script += gnuplot_script(figure);
   }
+  write_text(folder / kScriptName, script);
   const int status = run_gnuplot(folder);
   if (status != 0) {
     throw RunError(fmt::format("gnuplot failed with status {} while drawing the figures: {}",

@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <system_error>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 
 namespace haptrial::analysis {
 
@@ -38,14 +36,7 @@ Staging::~Staging() {
 }
 
 void Staging::write(const std::string& name, const std::string& text) const {
-  errno = 0;
-  std::ofstream file(path_ / name, std::ios::binary);
-  file.write(text.data(), static_cast<std::streamsize>(text.size()));
-  file.close();
-  if (!file) {
-    throw RunError(fmt::format("{}: could not be written: {}", (final_ / name).string(),
-                               std::strerror(errno)));
-  }
+  write_text(path_ / name, text, final_ / name);
 }
 
 void Staging::publish() const {

@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <system_error>
 
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 
 namespace haptrial::exchange {
 namespace {
@@ -62,14 +60,7 @@ fs::path NewFolder::place(const fs::path& name) const {
 }
 
 void NewFolder::write(const fs::path& name, std::string_view text) const {
-  errno = 0;
-  std::ofstream file(place(name), std::ios::binary);
-  file.write(text.data(), static_cast<std::streamsize>(text.size()));
-  file.close();
-  if (!file) {
-    throw RunError(fmt::format("{}: could not be written: {}", (final_ / name).string(),
-                               std::strerror(errno)));
-  }
+  write_text(place(name), text, final_ / name);
 }
 
 void NewFolder::publish() {

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 
 #include "core/base/error.h"
 
@@ -19,6 +21,19 @@ std::string file_text(const std::filesystem::path& file) {
         fmt::format("{}: cannot be read; choose a file with read permission", file.string()));
   }
   return std::move(text).str();
+}
+
+void write_text(const std::filesystem::path& file, std::string_view text,
+                const std::filesystem::path& told) {
+  errno = 0;
+  std::ofstream out(file, std::ios::binary);
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  out.close();
+  if (!out) {
+    throw RunError(fmt::format("{}: could not be written: {}",
+                               (told.empty() ? file : told).string(),
+                               std::system_category().message(errno)));
+  }
 }
 
 }  // namespace haptrial

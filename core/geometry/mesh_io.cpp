@@ -9,8 +9,8 @@
 #include <memory>
 #include <system_error>
 
+#include "core/base/whole_file.h"
 #include "core/geometry/mesh_text_internal.h"
-#include "core/geometry/output_file.h"
 
 namespace haptrial::geometry {
 namespace fs = std::filesystem;
@@ -95,7 +95,7 @@ Mesh read_mesh(const fs::path& file, const WorkReport& report) {
 
 void write_mesh(const fs::path& file, const Mesh& mesh, bool overwrite) {
   const MeshFormat format = mesh_format(file);
-  OutputFile out(file, overwrite);
+  WholeFile out(file, overwrite);
   out.write(encode_mesh(mesh, format));
   out.finish();
 }

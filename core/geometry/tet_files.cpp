@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/whole_file.h"
 #include "core/geometry/hdf5_output_internal.h"
-#include "core/geometry/output_file.h"
 
 namespace haptrial::geometry {
 namespace fs = std::filesystem;
@@ -34,10 +34,10 @@ void in_batches(std::size_t count, const WorkReport& report, double from, double
 }
 
 void write_tetgen(fs::path file, const TetMesh& mesh, bool overwrite, const WorkReport& report) {
-  OutputFile nodes(file.replace_extension(".node"), overwrite);
-  OutputFile elements(file.replace_extension(".ele"), overwrite);
+  WholeFile nodes(file.replace_extension(".node"), overwrite);
+  WholeFile elements(file.replace_extension(".ele"), overwrite);
   fmt::memory_buffer text;
-  const auto flush = [&](OutputFile& out) {
+  const auto flush = [&](WholeFile& out) {
     out.write({text.data(), text.size()});
     text.clear();
   };
@@ -81,7 +81,7 @@ class VtuArrays {
 };
 
 template <class T>
-void append(OutputFile& out, std::span<const T> values) {
+void append(WholeFile& out, std::span<const T> values) {
   const std::uint64_t bytes = values.size_bytes();
   out.write_all(std::span<const std::uint64_t>(&bytes, 1));
   out.write_all(values);
@@ -108,7 +108,7 @@ void write_vtu(const fs::path& file, const TetMesh& mesh, bool overwrite,
                const WorkReport& report) {
   constexpr std::uint8_t kTetrahedron = 10;  // VTK_TETRA
   const std::uint64_t cells = mesh.tetrahedra.size();
-  OutputFile out(file, overwrite);
+  WholeFile out(file, overwrite);
   out.write(vtu_head(mesh.vertices.size(), cells));
   append(out, std::span<const std::uint8_t>(mesh.on_surface));
   append(out, std::span<const Eigen::Vector3d>(mesh.vertices));
@@ -139,7 +139,7 @@ void write_gmsh(const fs::path& file, const TetMesh& mesh, bool overwrite,
         fmt::format("{}: {} tetrahedra are too many for the Gmsh format; choose .vtu or .h5",
                     file.string(), mesh.tetrahedra.size()));
   }
-  OutputFile out(file, overwrite);
+  WholeFile out(file, overwrite);
   const std::int32_t one = 1;  // shows the order of bytes
   out.write("$MeshFormat\n2.2 1 8\n");
   out.write_all(std::span(&one, 1));
@@ -177,8 +177,8 @@ void write_gmsh(const fs::path& file, const TetMesh& mesh, bool overwrite,
 
 void write_hdf5(const fs::path& file, const TetMesh& mesh, bool overwrite,
                 const WorkReport& report) {
-  OutputFile out(file, overwrite);
-  out.release();
+  WholeFile out(file, overwrite);
+  out.close();
   h5::File content(out.part());
   content.write("vertices", h5::Number::kF64, {mesh.vertices.size(), 3}, mesh.vertices.data());
   content.put("vertices", "unit", "m");

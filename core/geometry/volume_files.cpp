@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/whole_file.h"
 #include "core/geometry/hdf5_output_internal.h"
-#include "core/geometry/output_file.h"
 
 namespace haptrial::geometry {
 namespace fs = std::filesystem;
@@ -62,7 +62,7 @@ std::string nrrd_head(const Volume& volume, const char* type) {
 }
 
 void write_nrrd(const fs::path& file, const Volume& volume, bool overwrite) {
-  OutputFile out(file, overwrite);
+  WholeFile out(file, overwrite);
   std::visit(
       [&](const auto& values) {
         using T = std::remove_const_t<typename std::decay_t<decltype(values)>::element_type>;
@@ -74,8 +74,8 @@ void write_nrrd(const fs::path& file, const Volume& volume, bool overwrite) {
 }
 
 void write_hdf5(const fs::path& file, const Volume& volume, bool overwrite) {
-  OutputFile out(file, overwrite);
-  out.release();
+  WholeFile out(file, overwrite);
+  out.close();
   h5::File content(out.part());
   std::vector<std::uint64_t> shape;
   for (const int axis : {2, 1, 0}) {

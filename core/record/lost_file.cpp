@@ -85,7 +85,7 @@ void SessionWriter::Impl::copy_back() {
   const fs::path created = new_path(final_path);
   FileLock copied = FileLock::take(created, true);
   copy(lock.descriptor(), copied.descriptor());
-  rename_to_new(created, partial);
+  give_name(created, partial);
   lock = std::move(copied);
   sync_folder_of(partial);
   go_on();

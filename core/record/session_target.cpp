@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "core/base/error.h"
+#include "core/base/whole_file.h"
 #include "core/record/file_lock.h"
 #include "core/record/hdf5_layer.h"
 
@@ -73,15 +74,11 @@ void check_target(const fs::path& final_path) {
   }
 }
 
-void rename_to_new(const fs::path& from, const fs::path& to) {
-  if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return;
-  // A file system without the flag: look first, and take the small race.
-  if (errno == EINVAL || errno == ENOSYS) {
-    errno = is_there(to) ? EEXIST : 0;
-    if (errno == 0 && rename(from.c_str(), to.c_str()) == 0) return;
+void give_name(const fs::path& from, const fs::path& to) {
+  if (const int error = rename_to_new(from, to); error != 0) {
+    throw h5::Error("cannot rename to " + to.string() + ": " +
+                    std::generic_category().message(error));
   }
-  throw h5::Error("cannot rename to " + to.string() + ": " +
-                  std::generic_category().message(errno));
 }
 
 void sync_data(int descriptor) {

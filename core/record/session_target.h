@@ -17,7 +17,7 @@ std::filesystem::path new_path(const std::filesystem::path& final_path);
 void check_target(const std::filesystem::path& final_path);
 
 /// Renames without overwriting. @throws h5::Error in the words of the system.
-void rename_to_new(const std::filesystem::path& from, const std::filesystem::path& to);
+void give_name(const std::filesystem::path& from, const std::filesystem::path& to);
 
 /// Brings a file or the folder of a file to the disk. @throws h5::Error in the words of the system.
 void sync_data(int descriptor);

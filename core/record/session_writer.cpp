@@ -64,7 +64,7 @@ SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info,
     }
     write(true);
     if (live) sync_data(h5::descriptor(file));  // what the session is survives whatever follows
-    rename_to_new(created, partial);
+    give_name(created, partial);
     start_syncing();
   } catch (...) {
     divert_file();
@@ -450,7 +450,7 @@ void SessionWriter::close() {
     impl_->syncing.reset();
     trim(impl_->partial);
     sync_file(impl_->partial);
-    rename_to_new(impl_->partial, impl_->final_path);
+    give_name(impl_->partial, impl_->final_path);
     impl_->finished = true;
     impl_->lock = FileLock();
     sync_folder_of(impl_->final_path);

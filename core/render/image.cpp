@@ -2,18 +2,12 @@
 
 #include <fmt/format.h>
 #include <png.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <memory>
 #include <stdexcept>
-#include <string>
-#include <system_error>
-#include <utility>
 
 #include "core/base/error.h"
+#include "core/base/whole_file.h"
 
 namespace haptrial::render {
 namespace {
@@ -37,57 +31,6 @@ std::vector<std::uint8_t> encoded(const Image& image) {
   }
   bytes.resize(size);
   return bytes;
-}
-
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
-std::string reason(int error) { return std::system_category().message(error); }
-
-/// Removes the temporary file unless it took its final name.
-class Temporary {
- public:
-  explicit Temporary(std::filesystem::path path) : path_(std::move(path)) {}
-  Temporary(const Temporary&) = delete;
-  Temporary& operator=(const Temporary&) = delete;
-  ~Temporary() {
-    if (!renamed_) {
-      std::error_code ignored;
-      std::filesystem::remove(path_, ignored);
-    }
-  }
-  const std::filesystem::path& path() const { return path_; }
-  void rename(const std::filesystem::path& to) {
-    std::error_code error;
-    std::filesystem::rename(path_, to, error);
-    if (error) {
-      throw InputError(fmt::format(
-          "picture '{}' cannot be put in place ({}); choose a folder with write permission",
-          to.string(), error.message()));
-    }
-    renamed_ = true;
-  }
-
- private:
-  std::filesystem::path path_;
-  bool renamed_{false};
-};
-
-/// Unlike a stream, stdio keeps the error of a failed write until it is asked.
-void write_bytes(std::unique_ptr<std::FILE, CloseFile> file, const std::vector<std::uint8_t>& bytes,
-                 const std::filesystem::path& path) {
-  errno = 0;
-  bool good = std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
-  int error = errno;
-  if (std::fclose(file.release()) != 0 && good) {
-    good = false;
-    error = errno;
-  }
-  if (!good) {
-    throw RunError(
-        fmt::format("picture '{}' could not be written whole: {}", path.string(), reason(error)));
-  }
 }
 
 }  // namespace
@@ -124,17 +67,7 @@ void write_png(const std::filesystem::path& path, const Image& image) {
                     image.height, image.rgb.size(), expected));
   }
   const std::vector<std::uint8_t> bytes = encoded(image);
-  std::filesystem::path part = path;
-  part += fmt::format(".{}.part", getpid());
-  std::unique_ptr<std::FILE, CloseFile> file(std::fopen(part.c_str(), "wb"));
-  if (!file) {
-    throw InputError(
-        fmt::format("picture '{}' cannot be written ({}); choose a folder with write permission",
-                    path.string(), reason(errno)));
-  }
-  Temporary temporary(part);
-  write_bytes(std::move(file), bytes, path);
-  temporary.rename(path);
+  write_whole(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace haptrial::render

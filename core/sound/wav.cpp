@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/whole_file.h"
 
 namespace haptrial::sound {
 namespace {
@@ -57,40 +58,27 @@ Recording read_recording(const std::filesystem::path& file) {
 }
 
 struct WavWriter::Impl {
-  std::filesystem::path file;
-  std::filesystem::path part;
-  File sink;
+  WholeFile out;
+  File sink{};
   std::vector<short> values{};
 };
 
 WavWriter::WavWriter(std::filesystem::path file, int rate, bool overwrite)
-    : impl_(std::make_unique<Impl>()) {
-  impl_->file = std::move(file);
-  if (!overwrite && std::filesystem::exists(impl_->file)) {
-    throw InputError(fmt::format("{}: exists already; choose another name or add --overwrite",
-                                 impl_->file.string()));
-  }
-  impl_->part = impl_->file;
-  impl_->part += ".partial";
+    : impl_(new Impl{.out = WholeFile(std::move(file), overwrite)}) {
+  impl_->out.close();
   SF_INFO info{};
   info.samplerate = rate;
   info.channels = 1;
   info.format = SF_FORMAT_WAV | SF_FORMAT_PCM_16;
-  impl_->sink.reset(sf_open(impl_->part.c_str(), SFM_WRITE, &info));
+  impl_->sink.reset(sf_open(impl_->out.part().c_str(), SFM_WRITE, &info));
   if (!impl_->sink) {
     throw InputError(
         fmt::format("{}: cannot be created ({}); choose a folder with write permission",
-                    impl_->file.string(), sf_strerror(nullptr)));
+                    impl_->out.file().string(), sf_strerror(nullptr)));
   }
 }
 
-WavWriter::~WavWriter() {
-  if (impl_->sink) {
-    impl_->sink.reset();
-    std::error_code ignored;
-    std::filesystem::remove(impl_->part, ignored);
-  }
-}
+WavWriter::~WavWriter() = default;
 
 void WavWriter::write(std::span<const float> samples) {
   constexpr float kFull = 32'767.0F;
@@ -101,19 +89,16 @@ void WavWriter::write(std::span<const float> samples) {
   }
   const auto count = static_cast<sf_count_t>(samples.size());
   if (sf_write_short(impl_->sink.get(), impl_->values.data(), count) != count) {
-    throw RunError(fmt::format("{}: {}", impl_->file.string(), sf_strerror(impl_->sink.get())));
+    throw RunError(
+        fmt::format("{}: {}", impl_->out.file().string(), sf_strerror(impl_->sink.get())));
   }
 }
 
 void WavWriter::finish() {
   if (sf_close(impl_->sink.release()) != 0) {
-    throw RunError(fmt::format("{}: cannot be written completely", impl_->file.string()));
+    throw RunError(fmt::format("{}: cannot be written completely", impl_->out.file().string()));
   }
-  std::error_code error;
-  std::filesystem::rename(impl_->part, impl_->file, error);
-  if (error) {
-    throw RunError(fmt::format("{}: {}", impl_->file.string(), error.message()));
-  }
+  impl_->out.finish();
 }
 
 SoundTrack::SoundTrack(const std::filesystem::path& file, double rate, SpectrumTable table,

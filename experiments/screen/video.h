@@ -1,9 +1,10 @@
 #pragma once
 
-#include <sys/types.h>
-
 #include <filesystem>
+#include <optional>
 
+#include "core/base/child_process.h"
+#include "core/base/whole_file.h"
 #include "core/render/image.h"
 
 namespace haptrial::experiments {
@@ -16,10 +17,7 @@ class VideoWriter {
   /// @param fps   pictures a second > 0
   /// @throws InputError for another file name or where it cannot be written; RunError where ffmpeg
   /// is not installed.
-  VideoWriter(std::filesystem::path file, int fps);
-  ~VideoWriter();
-  VideoWriter(const VideoWriter&) = delete;
-  VideoWriter& operator=(const VideoWriter&) = delete;
+  VideoWriter(const std::filesystem::path& file, int fps);
 
   /// All of one size, both sides even. @throws RunError with ffmpeg's words when it gives up.
   void add(const render::Image& image);
@@ -30,12 +28,11 @@ class VideoWriter {
   void start(int width, int height);
   std::string ended();  // waits for ffmpeg; what it complained of, empty where all is well
 
-  std::filesystem::path file_;
-  std::filesystem::path part_;
+  WholeFile out_;
   int fps_;
-  pid_t child_{-1};
-  int feed_{-1};
-  int complaints_{-1};
+  Descriptor feed_;
+  Descriptor complaints_;
+  std::optional<ChildProcess> ffmpeg_;  // ends before its file goes
   int width_{0};
   int height_{0};
 };

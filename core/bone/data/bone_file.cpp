@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/whole_file.h"
 #include "core/bone/data/label_names.h"
-#include "core/geometry/output_file.h"
 
 namespace haptrial::bone {
 namespace {
@@ -77,7 +77,7 @@ void save_bone(const std::filesystem::path& file, const BoneModel& model, bool o
         fmt::format("{}: ends in '{}'; allowed: .nrrd", file.string(), file.extension().string()));
   }
   check(model);
-  geometry::OutputFile out(file, overwrite);
+  WholeFile out(file, overwrite);
   out.write(head_of(model));
   const std::vector<char> bytes = compressed(bytes_of(model));
   out.write({bytes.data(), bytes.size()});

@@ -1,9 +1,6 @@
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <Eigen/LU>
@@ -15,7 +12,9 @@
 #include <limits>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
+#include "core/base/child_process.h"
 #include "core/base/error.h"
 #include "core/bone/data/read_volume_internal.h"
 
@@ -26,34 +25,6 @@ namespace {
 using nlohmann::json;
 
 constexpr rlim_t kPatience = 300;  // of the reading process [s of its processor]
-
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() { close(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return number_; }
-  void close() {
-    if (number_ >= 0) ::close(number_);
-    number_ = -1;
-  }
-
- private:
-  int number_;
-};
-
-bool put(int to, const void* from, std::size_t bytes) {
-  const char* at = static_cast<const char*>(from);
-  while (bytes > 0) {
-    const ssize_t done = write(to, at, bytes);
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) return false;
-    at += done;
-    bytes -= static_cast<std::size_t>(done);
-  }
-  return true;
-}
 
 json told(const VolumeHead& head) {
   const auto* steps = head.steps.data();
@@ -87,7 +58,7 @@ VolumeHead heard(const json& words) {
 json read_and_share(const fs::path& file, const Room& room, int memory) {
   try {
     const SourceVolume volume = read_here(file, room);
-    if (!put(memory, volume.values.data(), volume.values.size() * sizeof(float))) {
+    if (!write_fully(memory, volume.values.data(), volume.values.size() * sizeof(float))) {
       return {{"run_error", fmt::format("{}: no memory to hand it over", file.string())}};
     }
     return {{"head", told(volume.head)}};
@@ -100,42 +71,41 @@ json read_and_share(const fs::path& file, const Room& room, int memory) {
   }
 }
 
-[[noreturn]] void be_the_reader(const fs::path& file, const Room& room, int pipe, int memory) {
-  const rlimit none{};
+/// The work of the other process.
+void be_the_reader(const fs::path& file, const Room& room, int pipe, int memory) {
   const rlimit patience{kPatience, kPatience};
-  setrlimit(RLIMIT_CORE, &none);
   setrlimit(RLIMIT_CPU, &patience);
-  for (const int crash : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGTERM, SIGINT}) {
-    std::signal(crash, SIG_DFL);
+  for (const int stop : {SIGTERM, SIGINT}) {
+    std::signal(stop, SIG_DFL);
   }
-  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);  // libraries chatter
-  dup2(nowhere, STDERR_FILENO);
-  dup2(nowhere, STDOUT_FILENO);
   const std::string words =
       read_and_share(file, room, memory).dump(-1, ' ', true, json::error_handler_t::replace);
-  put(pipe, words.data(), words.size());
-  _exit(0);
+  write_fully(pipe, words.data(), words.size());
 }
 
-/// All that the other process says; it is ended where the report asks to stop.
-std::string listen(int pipe, pid_t reader, const geometry::WorkReport& report) {
-  std::string words;
-  char piece[4096];
-  for (;;) {
-    pollfd wait{pipe, POLLIN, 0};
-    if (poll(&wait, 1, 100) == 0 || errno == EINTR) {
-      errno = 0;
-      if (report && !report(0.0)) {
-        kill(reader, SIGKILL);
-        waitpid(reader, nullptr, 0);
-        throw geometry::Cancelled();
-      }
-      continue;
-    }
-    const ssize_t size = read(pipe, piece, sizeof piece);
-    if (size < 0 && errno == EINTR) continue;
-    if (size <= 0) return words;
-    words.append(piece, static_cast<std::size_t>(size));
+/// All that the other process says. @throws Cancelled where the report asks to stop.
+std::string listen(int pipe, const geometry::WorkReport& report) {
+  bool cancelled = false;
+  std::string words = read_to_end(pipe, [&] {
+    cancelled = report && !report(0.0);
+    return !cancelled;
+  });
+  if (cancelled) {
+    throw geometry::Cancelled();
+  }
+  return words;
+}
+
+std::string words_of_reader(const fs::path& file, const Room& room, int memory,
+                            const geometry::WorkReport& report) {
+  try {
+    Pipe pipe;
+    const ChildProcess reader([&] { be_the_reader(file, room, pipe.to.get(), memory); });
+    pipe.to.close();
+    return listen(pipe.from.get(), report);
+  } catch (const std::system_error& error) {
+    throw RunError(fmt::format("{}: cannot start a process to read it: {}", file.string(),
+                               error.code().message()));
   }
 }
 
@@ -218,24 +188,11 @@ SourceVolume read_volume(const fs::path& file, const Room& room,
     throw InputError(fmt::format("{}: no such file or folder", file.string()));
   }
   const Descriptor memory(memfd_create("volume", MFD_CLOEXEC));
-  int ends[2];
-  if (memory.get() < 0 || pipe2(ends, O_CLOEXEC) != 0) {
+  if (memory.get() < 0) {
     throw RunError(
         fmt::format("{}: cannot get memory to read it: {}", file.string(), std::strerror(errno)));
   }
-  const Descriptor in(ends[0]);
-  Descriptor out(ends[1]);
-  const pid_t reader = fork();
-  if (reader < 0) {
-    throw RunError(fmt::format("{}: cannot start a process to read it: {}", file.string(),
-                               std::strerror(errno)));
-  }
-  if (reader == 0) be_the_reader(file, room, out.get(), memory.get());
-  out.close();
-  errno = 0;
-  const std::string words = listen(in.get(), reader, report);
-  while (waitpid(reader, nullptr, 0) < 0 && errno == EINTR) {
-  }
+  const std::string words = words_of_reader(file, room, memory.get(), report);
   const json answer = json::parse(words, nullptr, false);
   if (answer.is_discarded()) {
     throw InputError(fmt::format(

@@ -1,27 +1,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 
 #include "analysis/design_json.h"
 #include "analysis/design_lines.h"
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/commands.h"
 #include "experiments/studies/curve_analysis.h"
 
 namespace haptrial::experiments {
 namespace {
-
-void write(const std::string& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text << "\n";
-  out.close();
-  if (!out) {
-    throw RunError(fmt::format("{}: could not be written", file));
-  }
-}
 
 /// Every column has one part. @throws InputError
 void check_columns(const StatisticsOptions& options, const std::vector<std::string>& factors) {
@@ -61,7 +51,7 @@ int statistics(const StatisticsOptions& options) {
     fmt::print("{}\n", line);
   }
   if (!options.json.empty()) {
-    write(options.json, analysis::design_json(tests));
+    write_text(options.json, analysis::design_json(tests) + "\n");
   }
   return 0;
 }

@@ -9,7 +9,7 @@
 #include "analysis/figure_gnuplot.h"
 #include "core/base/error.h"
 #include "core/base/nearest.h"
-#include "core/geometry/output_file.h"
+#include "core/base/whole_file.h"
 #include "core/sound/power_spectrum.h"
 #include "core/sound/wav.h"
 #include "experiments/command/commands.h"
@@ -190,7 +190,7 @@ int spectrum(const SpectrumOptions& options) {
   print(recording, power, found);
   if (!options.out.empty()) {
     const sound::SpectrumTable table = table_with(options, found);
-    geometry::OutputFile out(options.out, options.overwrite || options.add);
+    WholeFile out(options.out, options.overwrite || options.add);
     out.write(sound::to_toml(table));
     out.finish();
     fmt::print("wrote       {}\n", options.out);

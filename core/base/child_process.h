@@ -1,0 +1,70 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace haptrial {
+
+/// A file descriptor that is closed at the end. Negative: none.
+class Descriptor {
+ public:
+  explicit Descriptor(int number = -1) noexcept : number_(number) {}
+  ~Descriptor() { close(); }
+  Descriptor(Descriptor&& other) noexcept;
+  Descriptor& operator=(Descriptor&& other) noexcept;
+  int get() const noexcept { return number_; }
+  void close() noexcept;
+
+ private:
+  int number_;
+};
+
+/// Both ends of a pipe. @throws std::system_error
+struct Pipe {
+  Pipe();
+  Descriptor from, to;
+};
+
+/// What a program is started with.
+struct Program {
+  std::vector<std::string> words;  // its name, found along PATH, and its arguments
+  std::filesystem::path folder{};  // in which it runs; empty: that of this process
+  int input{-1};                   // a descriptor; -1: nothing to read
+  int output{-1};                  // receives standard output and errors; -1: nobody does
+};
+
+/// A process beside this one. Waited for at the latest at the end, then killed. One thread.
+class ChildProcess {
+ public:
+  /// @throws std::system_error where the program cannot be started.
+  explicit ChildProcess(const Program& program);
+  /// A copy of this process, which does the work and ends with status 0, or 1 where the work
+  /// throws. What crashes in it leaves no core file and nothing on the screen.
+  /// @throws std::system_error where there is no process to be had.
+  explicit ChildProcess(const std::function<void()>& work);
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  void kill() noexcept;
+  /// Waits for the end. @returns the exit status; -1 after a crash or a kill. Again the same.
+  int wait() noexcept;
+
+ private:
+  pid_t process_{-1};
+  int status_{-1};
+};
+
+/// @returns whether all bytes went.
+bool write_fully(int to, const void* bytes, std::size_t count) noexcept;
+
+/// All that comes until the other end is closed.
+/// @param go_on  asked ten times a second while nothing comes; false ends the reading
+std::string read_to_end(int from, const std::function<bool()>& go_on = {});
+
+}  // namespace haptrial
