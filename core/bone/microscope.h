@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Geometry>
+#include "core/base/camera.h"
 
 namespace haptrial {
 class Table;
@@ -8,22 +8,10 @@ class Table;
 
 namespace haptrial::bone {
 
-/// How the scene is seen: an eye that looks at a point, zoomed by its field of view. In W.
-struct Microscope {
-  Eigen::Vector3d eye{0.0, 0.18, 0.09};             // [m]
-  Eigen::Vector3d target{Eigen::Vector3d::Zero()};  // [m]
-  Eigen::Vector3d up{Eigen::Vector3d::UnitY()};     // in the picture; any length but 0
-  double field_of_view{0.35};                       // from bottom to top [rad]
-
-  bool operator==(const Microscope&) const = default;
-  /// Right, up and towards the eye in the picture, as columns; orthonormal.
-  Eigen::Matrix3d axes() const noexcept;
-};
-
 /// How buttons and the hand steer it. Source: Morris 2006, §8.2.2: while one button is held the
 /// hand's motion moves the view, while another is held it turns it, and nothing else moves.
 struct MicroscopeParameters {
-  Microscope start;
+  Camera start{.eye = {0.0, 0.18, 0.09}};
   double move_gain{1.0};   // distance of the view for a distance of the hand >= 0
   double turn_gain{12.0};  // angle for a distance of the hand >= 0 [rad/m]
   double zoom_rate{1.0};   // how fast a held button zooms: e-folds a second >= 0 [1/s]
@@ -36,11 +24,11 @@ MicroscopeParameters read_microscope_parameters(Table& table);
 
 /// Eye and target go along with the hand, as if it held the microscope.
 /// @param motion  of the hand as the picture sees it: right, up, towards the eye [m]
-Microscope moved(const Microscope& from, const Eigen::Vector3d& motion) noexcept;
+Camera moved(const Camera& from, const Eigen::Vector3d& motion) noexcept;
 /// The eye goes around the target; near the poles it stops. @param right, above  [rad]
-Microscope turned(const Microscope& from, double right, double above) noexcept;
+Camera turned(const Camera& from, double right, double above) noexcept;
 /// Things become `factor` > 0 times as large, within the bounds.
-Microscope zoomed(const Microscope& from, double factor,
+Camera zoomed(const Camera& from, double factor,
                   const MicroscopeParameters& bounds) noexcept;
 
 }  // namespace haptrial::bone

@@ -152,7 +152,7 @@ HandMode Simulator::mode_of(const SimulatorInput& input) const noexcept {
 }
 
 void Simulator::steer(const SimulatorInput& input) noexcept {
-  const Microscope before = camera_;
+  const Camera before = camera_;
   const int zoom = (is_held(input.functions, Function::kZoomIn) ? 1 : 0) -
                    (is_held(input.functions, Function::kZoomOut) ? 1 : 0);
   if (zoom != 0) {

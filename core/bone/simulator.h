@@ -108,7 +108,7 @@ class Simulator {
   std::span<const DustDeposit> deposits() const noexcept { return deposits_; }
   const DustTools& dust_tools() const noexcept { return dust_tools_; }
 
-  const Microscope& camera() const noexcept { return camera_; }
+  const Camera& camera() const noexcept { return camera_; }
   /// How often kStill went down.
   std::int32_t stills_asked() const noexcept { return stills_asked_; }
   const ToolSpec& tool() const noexcept { return tools_[static_cast<std::size_t>(output_.tool)]; }
@@ -162,7 +162,7 @@ class Simulator {
   std::vector<std::unique_ptr<PlateModel>> plates_;  // likewise
   CutPlaneTool cutter_;
   double cut_of_present_{0.0};
-  Microscope camera_;
+  Camera camera_;
   SimulatorOutput output_;
   std::uint32_t functions_{0};  // held on the last tick
   std::int32_t stills_asked_{0};

@@ -26,7 +26,7 @@ Eigen::Matrix4d projection_of(double near, double far, double height, double asp
 
 /// @param aside  of the eye from the camera's, along x [m]
 /// @param convergence  distance at which what lies there does not move [m]
-EyeView view_from(const BoneCamera& camera, double aside, double convergence, double aspect) {
+EyeView view_from(const Camera& camera, double aside, double convergence, double aspect) {
   constexpr double kNear = 0.05;  // shares of the distance to the target
   constexpr double kFar = 20.0;
   const double near = kNear * camera.distance();
@@ -41,22 +41,13 @@ EyeView view_from(const BoneCamera& camera, double aside, double convergence, do
 
 }  // namespace
 
-Eigen::Isometry3d BoneCamera::pose() const {
-  const Eigen::Vector3d towards_eye = (eye - target).normalized();
-  const Eigen::Vector3d right = up.cross(towards_eye).normalized();
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() << right, towards_eye.cross(right), towards_eye;
-  pose.translation() = eye;
-  return pose;
-}
-
-BoneCamera looking_at(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& from,
+Camera looking_at(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& from,
                       const Eigen::Vector3d& up, double aspect, double field_of_view) {
   if (box.isEmpty() || !box.sizes().allFinite()) {
     throw std::invalid_argument("looking_at: a box of finite size is needed");
   }
   constexpr double kRoom = 1.05;
-  BoneCamera camera{box.center() + from.normalized(), box.center(), up, field_of_view};
+  Camera camera{box.center() + from.normalized(), box.center(), up, field_of_view};
   const Eigen::Matrix3d axes = camera.pose().linear();
   const double above = std::tan(0.5 * field_of_view) / kRoom;
   double distance = 1e-6;
@@ -70,7 +61,7 @@ BoneCamera looking_at(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& fro
   return camera;
 }
 
-BoneCamera orbited(const BoneCamera& camera, double right, double above) {
+Camera orbited(const Camera& camera, double right, double above) {
   const Eigen::Vector3d axis = camera.up.normalized();
   const Eigen::Vector3d from = camera.eye - camera.target;
   const Eigen::Vector3d turned = Eigen::AngleAxisd(right, axis) * from;
@@ -78,39 +69,39 @@ BoneCamera orbited(const BoneCamera& camera, double right, double above) {
   const double then =
       std::clamp(now - above, std::min(now, kPole), std::max(now, std::numbers::pi - kPole));
   const Eigen::Vector3d side = axis.cross(turned).normalized();
-  BoneCamera moved = camera;
+  Camera moved = camera;
   moved.eye = camera.target + Eigen::AngleAxisd(then - now, side) * turned;
   return moved;
 }
 
-BoneCamera translated(const BoneCamera& camera, double right, double above) {
+Camera translated(const Camera& camera, double right, double above) {
   const Eigen::Matrix3d axes = camera.pose().linear();
   const Eigen::Vector3d way = right * axes.col(0) + above * axes.col(1);
-  BoneCamera moved = camera;
+  Camera moved = camera;
   moved.eye += way;
   moved.target += way;
   return moved;
 }
 
-BoneCamera zoomed(const BoneCamera& camera, double factor) {
+Camera zoomed(const Camera& camera, double factor) {
   constexpr double kWidest = 2.8;  // [rad]
-  BoneCamera changed = camera;
+  Camera changed = camera;
   changed.field_of_view =
       std::min(2.0 * std::atan(std::tan(0.5 * camera.field_of_view) / factor), kWidest);
   return changed;
 }
 
-BoneCamera dollied(const BoneCamera& camera, double factor) {
-  BoneCamera moved = camera;
+Camera dollied(const Camera& camera, double factor) {
+  Camera moved = camera;
   moved.eye = camera.target + factor * (camera.eye - camera.target);
   return moved;
 }
 
-EyeView view_of(const BoneCamera& camera, double aspect) {
+EyeView view_of(const Camera& camera, double aspect) {
   return view_from(camera, 0.0, camera.distance(), aspect);
 }
 
-EyeView stereo_view_of(const BoneCamera& camera, const StereoPair& pair, int side, double aspect) {
+EyeView stereo_view_of(const Camera& camera, const StereoPair& pair, int side, double aspect) {
   return view_from(camera, 0.5 * side * pair.eye_distance,
                    pair.convergence.value_or(camera.distance()), aspect);
 }

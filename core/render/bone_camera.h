@@ -3,37 +3,26 @@
 #include <Eigen/Geometry>
 #include <optional>
 
+#include "core/base/camera.h"
+
 namespace haptrial::render {
-
-/// An operating microscope: an eye that looks at a point, zoomed by its field of view.
-struct BoneCamera {
-  Eigen::Vector3d eye{0.0, 0.0, 0.25};              // in W [m]
-  Eigen::Vector3d target{Eigen::Vector3d::Zero()};  // in W [m]
-  Eigen::Vector3d up{Eigen::Vector3d::UnitY()};     // any length, not along the view
-  double field_of_view{0.35};                       // from bottom to top, 0 to pi [rad]
-
-  bool operator==(const BoneCamera&) const = default;
-  double distance() const { return (target - eye).norm(); }  // [m]
-  /// From the camera's axes (x right, y up, z towards the eye, origin at the eye) to W.
-  Eigen::Isometry3d pose() const;
-};
 
 /// A camera that shows the whole of a box, with a little room around.
 /// @param from   from the box's middle to the eye, any length but 0
 /// @param aspect width through height of the picture
 /// @throws std::invalid_argument where the box is empty or not finite.
-BoneCamera looking_at(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& from,
+Camera looking_at(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& from,
                       const Eigen::Vector3d& up, double aspect, double field_of_view = 0.35);
 
 /// The eye goes round the target: to the right by `right`, up by `above` [rad]. Close to the poles
 /// it stops.
-BoneCamera orbited(const BoneCamera& camera, double right, double above);
+Camera orbited(const Camera& camera, double right, double above);
 /// Eye and target go along the picture's axes [m].
-BoneCamera translated(const BoneCamera& camera, double right, double above);
+Camera translated(const Camera& camera, double right, double above);
 /// Things become `factor` > 0 times as large in the picture, by a narrower field of view.
-BoneCamera zoomed(const BoneCamera& camera, double factor);
+Camera zoomed(const Camera& camera, double factor);
 /// The eye goes to `factor` > 0 times its distance from the target.
-BoneCamera dollied(const BoneCamera& camera, double factor);
+Camera dollied(const Camera& camera, double factor);
 
 /// A stereo pair, side by side: left eye left.
 struct StereoPair {
@@ -49,10 +38,10 @@ struct EyeView {
 };
 
 /// @param aspect  width through height of the picture
-EyeView view_of(const BoneCamera& camera, double aspect);
+EyeView view_of(const Camera& camera, double aspect);
 /// An eye beside the camera's with an off-axis frustum, so that what lies at the distance of
 /// convergence is at the same place in both pictures.
 /// @param side  -1 left eye, +1 right eye
-EyeView stereo_view_of(const BoneCamera& camera, const StereoPair& pair, int side, double aspect);
+EyeView stereo_view_of(const Camera& camera, const StereoPair& pair, int side, double aspect);
 
 }  // namespace haptrial::render

@@ -20,7 +20,7 @@ namespace haptrial::render {
 namespace {
 
 void check(const BoneFrame& frame, int width, int height) {
-  const BoneCamera& camera = frame.camera;
+  const Camera& camera = frame.camera;
   if (!camera.pose().matrix().allFinite() || !(camera.distance() > 0.0) ||
       !(camera.field_of_view > 0.0 && camera.field_of_view < 3.14) || width < 2 || height < 1) {
     throw std::invalid_argument("BoneScene: the camera or the picture's size is none");

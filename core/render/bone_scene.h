@@ -54,7 +54,7 @@ struct SceneMesh {
 
 /// All that a picture shows.
 struct BoneFrame {
-  BoneCamera camera;
+  Camera camera;
   std::optional<StereoPair> stereo;
   std::vector<SceneBone> bones;
   std::vector<SceneMesh> meshes;

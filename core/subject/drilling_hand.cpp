@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/table.h"
+#include "core/base/table_vector.h"
 #include "core/subject/subject_parameters.h"
 
 namespace haptrial::subject {
@@ -31,20 +31,6 @@ SubjectParameters person_of(const DrillingHandParameters& p) {
   return person;
 }
 
-Eigen::Vector3d read_vector(Table& table, const char* key, const char* unit, bool direction) {
-  const std::vector<double> n = table.numbers(key, {-1.0, 1.0}, unit);
-  if (n.size() != 3) {
-    table.reject(key, fmt::format("a list of {} numbers", n.size()), "three numbers: x, y, z");
-    return Eigen::Vector3d::UnitY();
-  }
-  const Eigen::Vector3d vector(n[0], n[1], n[2]);
-  if (direction && !(vector.norm() > 0.0)) {
-    table.reject(key, "is zero; write a direction");
-    return Eigen::Vector3d::UnitY();
-  }
-  return direction ? vector.normalized() : vector;
-}
-
 std::uint32_t held(int button) noexcept {
   return button < 0 ? 0u : std::uint32_t{1} << static_cast<unsigned>(button);
 }
@@ -53,9 +39,9 @@ std::uint32_t held(int button) noexcept {
 
 DrillingHandParameters read_drilling_hand_parameters(Table& table) {
   DrillingHandParameters p;
-  p.start = read_vector(table, "start", "m", false);
-  p.inward = read_vector(table, "inward", "", true);
-  p.along = read_vector(table, "along", "", true);
+  p.start = read_vector(table, "start", {-1.0, 1.0}, "m", Eigen::Vector3d::UnitY());
+  p.inward = read_direction(table, "inward");
+  p.along = read_direction(table, "along");
   if (!(p.along.cross(p.inward).norm() > 0.1)) {
     table.reject("along", "is nearly the direction of inward; write a direction across it");
   }

@@ -46,7 +46,7 @@ class PictureFolder {
 // As the surgeon looked at it first.
 drilling::SurgeonsView surgeons_view(const protocols::BoneDefinition& definition,
                                      const geometry::VoxelGrid& grid) {
-  const bone::Microscope& start = definition.simulator.camera.start;
+  const Camera& start = definition.simulator.camera.start;
   const Eigen::Matrix3d R_BW = pose_of(definition.placement, grid).linear().transpose();
   return {R_BW * (start.eye - start.target), R_BW * start.up};
 }

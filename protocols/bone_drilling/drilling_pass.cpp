@@ -60,7 +60,7 @@ bone::SimulatorInput DrillingInput::of(const device::DeviceReading& recorded,
 bone::DrillingView view_of(const bone::Simulator& simulator,
                                const bone::SimulatorInput& input) noexcept {
   const bone::SimulatorOutput& out = simulator.output();
-  const bone::Microscope& camera = simulator.camera();
+  const Camera& camera = simulator.camera();
   bone::DrillingView view;
   view.shown = true;
   view.tip = input.tool.tip.position;
@@ -197,7 +197,7 @@ void DrillingPass::log_camera(bool changed) noexcept {
   if (!camera_due_ || !(first_ || at_rest || sequence_ - camera_logged_ >= kBetweenCameraRows)) {
     return;
   }
-  const bone::Microscope& camera = simulator_.camera();
+  const Camera& camera = simulator_.camera();
   record::CameraRow row;
   row.sequence = sequence_;
   row.time_ns = std::llround(static_cast<double>(sequence_) * 1e9 / rate_);

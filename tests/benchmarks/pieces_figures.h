@@ -226,7 +226,7 @@ inline void draw_plates(PiecesFigures& figures, const bone::CutPlane& cut,
   std::vector<render::Image> images;
   const bone::PlateModel plate("plate", make_plate(bone::straight_miniplate(4)));
   const render::Colour metal{0.62, 0.66, 0.72};
-  const render::BoneCamera overview = figures.frame().camera;
+  const Camera overview = figures.frame().camera;
   figures.frame().meshes = {
       {std::make_shared<geometry::Mesh>(plate.mesh()), Isometry3d::Identity(), metal}};
   const auto ball = std::make_shared<geometry::Mesh>(geometry::make_sphere(0.18e-3, 4));

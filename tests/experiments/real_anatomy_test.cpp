@@ -78,7 +78,7 @@ class RealAnatomyTest : public testing::TestWithParam<const char*> {
 
 TEST_P(RealAnatomyTest, TheCavityLiesWhereSurgeonsOpenTheMastoidInSightAndReach) {
   const std::vector<float> depths = planned();
-  const bone::Microscope& view = d_.simulator.camera.start;
+  const Camera& view = d_.simulator.camera.start;
   const Eigen::Vector3d forward = (view.target - view.eye).normalized();
   const Eigen::Vector3d right = forward.cross(view.up).normalized();
   const double aspect = static_cast<double>(d_.display.width) / d_.display.height;

@@ -69,7 +69,7 @@ Eigen::AlignedBox3d box_of(const bone::BoneModel& model) {
   return box;
 }
 
-render::BoneCamera camera_of(const BonePictureOptions& options, const Eigen::AlignedBox3d& box) {
+Camera camera_of(const BonePictureOptions& options, const Eigen::AlignedBox3d& box) {
   const Eigen::Vector3d from = vector_of("--from", options.from);
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   if (from.cross(up).norm() < 1e-3 * from.norm() || from.norm() == 0.0) {
@@ -77,7 +77,7 @@ render::BoneCamera camera_of(const BonePictureOptions& options, const Eigen::Ali
   }
   const double aspect =
       static_cast<double>(options.width) / (options.stereo ? 2 : 1) / options.height;
-  render::BoneCamera camera = render::looking_at(box, from, up, aspect);
+  Camera camera = render::looking_at(box, from, up, aspect);
   if (!options.at.empty()) {
     const Eigen::Vector3d target = kMillimetre * vector_of("--at", options.at);
     camera.eye += target - camera.target;

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/base/table.h"
+#include "core/base/table_vector.h"
 #include "core/bone/data/load_bone.h"
 #include "core/bone/data/mandible.h"
 #include "core/bone/data/temporal_bone.h"
@@ -15,15 +15,6 @@ namespace haptrial::protocols {
 namespace {
 
 namespace fs = std::filesystem;
-
-Eigen::Vector3d read_vector(Table& table, const char* key, const Bounds& bounds, const char* unit) {
-  const std::vector<double> n = table.numbers(key, bounds, unit);
-  if (n.size() != 3) {
-    table.reject(key, fmt::format("a list of {} numbers", n.size()), "three numbers: x, y, z");
-    return Eigen::Vector3d::Zero();
-  }
-  return {n[0], n[1], n[2]};
-}
 
 void optional(Table& table, const char* key, double& value, const Bounds& bounds,
               const char* unit) {

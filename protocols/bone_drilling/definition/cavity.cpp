@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/nearest.h"
-#include "core/base/table.h"
+#include "core/base/table_vector.h"
 #include "core/bone/distance_field.h"
 #include "core/geometry/voxel_grid.h"
 
@@ -21,15 +21,6 @@ constexpr double kBelow = 2e-3;    // layers under the cavity's end [m]
 constexpr double kAbove = 45e-3;   // and above it: more than a temporal bone is thick [m]
 constexpr double kAround = 22e-3;  // columns on each side [m]
 constexpr const char* kPlainBone = "bone";
-
-Eigen::Vector3d read_vector(Table& table, const char* key, const char* unit) {
-  const std::vector<double> n = table.numbers(key, {-1.0, 1.0}, unit);
-  if (n.size() != 3) {
-    table.reject(key, fmt::format("a list of {} numbers", n.size()), "three numbers: x, y, z");
-    return Eigen::Vector3d::UnitY();
-  }
-  return {n[0], n[1], n[2]};
-}
 
 [[noreturn]] void refuse(const bone::BoneModel& model, const char* key, const std::string& name) {
   std::vector<bool> there(model.structures.size(), false);
@@ -181,15 +172,10 @@ CavityParameters read_cavity_parameters(Table& table) {
     value = table.has(key) ? table.number(key, bounds, unit) : value;
   };
   if (table.has("inward")) {
-    p.inward = read_vector(table, "inward", "");
-    if (!(p.inward.norm() > 0.0)) {
-      table.reject("inward", "is zero; write a direction");
-      p.inward = -Eigen::Vector3d::UnitY();
-    }
-    p.inward.normalize();
+    p.inward = read_direction(table, "inward");
   }
   p.beside = table.has("beside") ? table.text("beside") : p.beside;
-  p.offset_B = table.has("offset") ? read_vector(table, "offset", "m") : p.offset_B;
+  p.offset_B = table.has("offset") ? read_vector(table, "offset", {-1.0, 1.0}, "m", Eigen::Vector3d::UnitY()) : p.offset_B;
   number("radius", p.radius, {1e-4, 0.02}, "m");
   number("slope", p.slope, {0.0, 5.0}, "");
   number("margin", p.margin, {0.0, 0.01}, "m");

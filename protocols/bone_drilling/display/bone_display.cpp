@@ -97,8 +97,7 @@ void BoneDisplay::draw(const bone::DrillingView& seen) {
     frame_.meshes.push_back({meshes_[tool], render::pose_of(held), plane ? kPlane : kSteel});
     frame_.camera = {seen.eye, seen.target, seen.up, seen.field_of_view};
   } else {
-    const bone::Microscope& start = stage_->start_view;
-    frame_.camera = {start.eye, start.target, start.up, start.field_of_view};
+    frame_.camera = stage_->start_view;
   }
   stage_->companions->quads(frame_.dust, dust_version_);
   scene_.draw(frame_, width_, height_);

@@ -13,7 +13,7 @@ namespace haptrial::protocols {
 /// One bone and all that works on it or shows it. Shared by the session's thread and the screen's.
 struct BoneStage {
   std::shared_ptr<const bone::BoneModel> model;
-  bone::Microscope start_view;
+  Camera start_view;
   std::unique_ptr<bone::Simulator> simulator;
   std::unique_ptr<bone::Companions> companions;              // end before the simulator
   std::shared_ptr<const bone::StructureDepths> depths;       // null where nothing is drawn

@@ -40,9 +40,9 @@ std::vector<StageStill> make_stills(const BoneDefinition& d, const bone::BoneMod
   render::OffscreenContext context(kFiner * width, kFiner * height);
   render::BoneScene scene(context.gl(), style, model.structures, depths_of(model));
   bone::BoneVolume volume(model);
-  const bone::Microscope& view = d.simulator.camera.start;
+  const Camera& camera = d.simulator.camera.start;
   render::BoneFrame frame;
-  frame.camera = {view.eye, view.target, view.up, view.field_of_view};
+  frame.camera = camera;
   frame.bones = {{0, &volume, pose}};
   std::vector<StageStill> stills;
   for (int stage = 0; stage < stages; ++stage) {

@@ -16,7 +16,7 @@ Eigen::Vector3d clip(const EyeView& view, const Eigen::Vector3d& point) {
   return p.hnormalized();
 }
 
-const BoneCamera kCamera{{0.3, 0.1, 0.2}, {0.02, 0.01, -0.03}, {0.0, 0.0, 2.0}, 0.4};
+const Camera kCamera{{0.3, 0.1, 0.2}, {0.02, 0.01, -0.03}, {0.0, 0.0, 2.0}, 0.4};
 
 TEST(BoneCameraTest, TheTargetIsInTheMiddleAndTheFieldOfViewReachesTheEdge) {
   const EyeView view = view_of(kCamera, 1.5);
@@ -53,7 +53,7 @@ TEST(BoneCameraTest, TheWholeBoxFitsAndTouchesAnEdge) {
 }
 
 TEST(BoneCameraTest, OrbitsKeepTheDistanceAndStopAtThePoles) {
-  const BoneCamera right = orbited(kCamera, 0.3, 0.0);
+  const Camera right = orbited(kCamera, 0.3, 0.0);
   EXPECT_NEAR(right.distance(), kCamera.distance(), 1e-12);
   const Eigen::Vector3d before = kCamera.eye - kCamera.target;
   const Eigen::Vector3d after = right.eye - right.target;
@@ -61,7 +61,7 @@ TEST(BoneCameraTest, OrbitsKeepTheDistanceAndStopAtThePoles) {
   EXPECT_NEAR(std::atan2(after.y(), after.x()) - std::atan2(before.y(), before.x()), 0.3, 1e-12);
   EXPECT_GT((right.eye - kCamera.eye).dot(kCamera.pose().linear().col(0)), 0.0) << "to the right";
   EXPECT_GT(orbited(kCamera, 0.0, 0.2).eye.z(), kCamera.eye.z());
-  BoneCamera camera = kCamera;
+  Camera camera = kCamera;
   for (int step = 0; step < 100; ++step) {
     camera = orbited(camera, 0.1, 0.1);
     ASSERT_TRUE(camera.pose().matrix().allFinite());
@@ -75,7 +75,7 @@ TEST(BoneCameraTest, ZoomMakesThingsAsManyTimesAsLarge) {
   const double before = clip(view_of(kCamera, 1.0), point).y();
   EXPECT_NEAR(clip(view_of(zoomed(kCamera, 3.0), 1.0), point).y(), 3.0 * before, 1e-9);
   EXPECT_NEAR(dollied(kCamera, 0.5).distance(), 0.5 * kCamera.distance(), 1e-12);
-  const BoneCamera moved = translated(kCamera, 0.01, -0.02);
+  const Camera moved = translated(kCamera, 0.01, -0.02);
   EXPECT_NEAR((moved.target - kCamera.target).norm(), std::hypot(0.01, 0.02), 1e-12);
   EXPECT_NEAR(clip(view_of(moved, 1.0), kCamera.target).x(),
               -0.01 / (kCamera.distance() * std::tan(0.2)), 1e-9);

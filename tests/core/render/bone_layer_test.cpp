@@ -249,7 +249,7 @@ TEST(BoneLayerScenesTest, ABoxCoversThePixelsOfAllThatItHolds) {
     return Eigen::Vector3d(random.uniform(from, to), random.uniform(from, to),
                            random.uniform(from, to));
   };
-  BoneCamera camera;
+  Camera camera;
   camera.eye = {0.1, 0.05, 0.2};
   const EyeView view = view_of(camera, static_cast<double>(kWidth) / kHeight);
   const Eigen::Matrix4d to_clip = view.projection * view.view;

@@ -246,7 +246,7 @@ TEST(DrillingPassTest, TheCameraMovesWithTheHandWhileItsButtonIsHeldAndNothingIs
   Workshop shop;
   const Vector3d away(0.0, 0.02, 0.0);
   shop.pass->tick(at(away), kDt);
-  const bone::Microscope start = shop.simulator->camera();
+  const Camera start = shop.simulator->camera();
   shop.pass->tick(at(away, 4u), kDt);
   // Into the bone: while the camera is steered there is no force.
   const PassOutput out = shop.pass->tick(at({0.01, 0.0, 0.0}, 4u | 1u), kDt);
@@ -271,9 +271,9 @@ TEST(DrillingPassTest, TheCameraMovesWithTheHandWhileItsButtonIsHeldAndNothingIs
 TEST(DrillingPassTest, TurningKeepsTheDistanceAndTheTarget) {
   Workshop shop;
   shop.pass->tick(at({0.0, 0.02, 0.0}, 8u), kDt);
-  const bone::Microscope start = shop.simulator->camera();
+  const Camera start = shop.simulator->camera();
   shop.pass->tick(at({0.01, 0.02, 0.0}, 8u), kDt);
-  const bone::Microscope& now = shop.simulator->camera();
+  const Camera& now = shop.simulator->camera();
   EXPECT_EQ(now.target, start.target);
   EXPECT_NEAR((now.eye - now.target).norm(), (start.eye - start.target).norm(), 1e-12);
   // The default turns 12 rad for a metre, about the axis that is up.
