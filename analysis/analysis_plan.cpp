@@ -41,6 +41,20 @@ std::optional<PlannedTest> parsed(std::string_view text) {
   return found && !found->a.empty() && !found->b.empty() ? found : std::nullopt;
 }
 
+/// Sentence on two tests of the same two sides, which the adjustment would count twice; empty
+/// without.
+std::string repeated_test(const std::vector<PlannedTest>& tests) {
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    for (std::size_t k = i + 1; k < tests.size(); ++k) {
+      if (std::minmax(tests[i].a, tests[i].b) == std::minmax(tests[k].a, tests[k].b)) {
+        return fmt::format("compares {} and {} twice; state each pair once", tests[i].a,
+                           tests[i].b);
+      }
+    }
+  }
+  return "";
+}
+
 /// What is wrong with tests that can be read; empty where nothing is.
 std::string problem_with(const std::vector<PlannedTest>& tests) {
   for (const PlannedTest& test : tests) {
@@ -53,33 +67,26 @@ std::string problem_with(const std::vector<PlannedTest>& tests) {
 
 }  // namespace
 
-PlannedTest parse_planned_test(std::string_view text, std::string_view where) {
-  auto test = parsed(text);
-  if (test && test->a == test->b) {
-    throw InputError(fmt::format("{} {}", where, problem_with({*test})));
+AnalysisPlan parse_analysis_plan(const std::vector<std::string>& tests,
+                                 const std::string& reference, std::string_view where) {
+  AnalysisPlan plan{{}, reference};
+  for (const std::string& text : tests) {
+    const auto test = parsed(text);
+    if (!test) {
+      throw InputError(fmt::format("{} is \"{}\"; allowed: {}", where, text, kForm));
+    }
+    plan.tests.push_back(*test);
   }
-  if (!test) {
-    throw InputError(fmt::format("{} is \"{}\"; allowed: {}", where, text, kForm));
+  if (const std::string problem = problem_with(plan.tests); !problem.empty()) {
+    throw InputError(fmt::format("{} {}", where, problem));
   }
-  return std::move(*test);
+  return plan;
 }
 
 std::string text_of(const PlannedTest& test) {
   const auto sign = std::find_if(kSigns.begin(), kSigns.end(),
                                  [&](const auto& each) { return each.second == test.tail; });
   return fmt::format("{}{}{}", test.a, sign->first, test.b);
-}
-
-std::string repeated_test(const std::vector<PlannedTest>& tests) {
-  for (std::size_t i = 0; i < tests.size(); ++i) {
-    for (std::size_t k = i + 1; k < tests.size(); ++k) {
-      if (std::minmax(tests[i].a, tests[i].b) == std::minmax(tests[k].a, tests[k].b)) {
-        return fmt::format("compares {} and {} twice; state each pair once", tests[i].a,
-                           tests[i].b);
-      }
-    }
-  }
-  return "";
 }
 
 AnalysisPlan read_analysis_plan(Table& analysis, const std::vector<std::string>& conditions) {

@@ -25,16 +25,15 @@ struct AnalysisPlan {
   std::string reference;  // the condition that the others are compared with; empty: the first
 };
 
-/// "visual < haptic". A side is a condition, or in a study
-/// of several factors a level of one of them. @throws InputError, with `where` in front.
-PlannedTest parse_planned_test(std::string_view text, std::string_view where);
+/// A plan in words. Each test is as "visual < haptic"; a side is a condition, or in a study of
+/// several factors a level of one of them.
+/// @throws InputError, with `where` in front, for a test that cannot be read, compares something
+/// with itself, or stands twice in either direction.
+AnalysisPlan parse_analysis_plan(const std::vector<std::string>& tests,
+                                 const std::string& reference, std::string_view where);
 
 /// The same again.
 std::string text_of(const PlannedTest& test);
-
-/// Sentence on two tests of the same two sides, which the adjustment would count twice; empty
-/// without.
-std::string repeated_test(const std::vector<PlannedTest>& tests);
 
 /// The optional keys `planned` and `reference` of an [analysis] table. Names that are not of
 /// `conditions` are noted as problems of the table.

@@ -151,7 +151,7 @@ void add_participants(Document& document, const StudyStatistics& s) {
                        joined(s.tests.incomplete) + ".");
   }
   if (s.tests.planned.tests.empty()) {
-    document.paragraph("No test was planned: `planned` of [analysis] in the definition is empty.");
+    document.paragraph("No test was planned.");
   }
   for (const SideTest& test : s.tests.planned.tests) {
     document.paragraph(sentence(s, test));

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "analysis/wording.h"
+#include "core/base/alike_names.h"
 
 namespace haptrial::exchange {
 namespace {
@@ -222,35 +223,18 @@ void warn_of_rates(Warnings& warnings, std::span<const TrialLook> looks) {
       "");
 }
 
-/// The name without what is easily typed by mistake: blanks, hyphens, underscores, capitals.
-std::string plain(const std::string& name) {
-  std::string result;
-  for (std::size_t i = 0; i < name.size(); ++i) {
-    const auto c = static_cast<unsigned char>(name[i]);
-    if (name.compare(i, 2, "\u00a0") == 0) {
-      ++i;  // a blank that does not break, of two bytes
-    } else if (c > ' ' && c != '-' && c != '_') {
-      result += static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c);
-    }
-  }
-  return result;
-}
-
 /// @param what  "conditions", "participants"
 void warn_of_names(Warnings& warnings, const std::string& what,
                    const std::map<std::string, std::size_t>& trials) {
-  std::map<std::string, std::vector<std::string>> alike;
+  std::vector<std::string> names;
   for (const auto& [name, count] : trials) {
-    alike[plain(name)].push_back(
-        fmt::format("\"{}\" ({})", name, analysis::counted(count, "trial")));
+    names.push_back(name);
   }
-  for (const auto& [key, names] : alike) {
-    if (names.size() > 1) {
-      warnings.add(fmt::format(
-          "WARNING: the names of {} differ only in blanks, hyphens or capitals and are taken for "
-          "different {}: {}.",
-          what, what, fmt::join(names, ", ")));
+  for (std::vector<std::string>& group : alike_names(names)) {
+    for (std::string& name : group) {
+      name = fmt::format("\"{}\" ({})", name, analysis::counted(trials.at(name), "trial"));
     }
+    warnings.add(alike_names_warning(what, group));
   }
 }
 

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
-#include <regex>
-#include <tuple>
 
+#include "core/base/toml_scalars_internal.h"
 #include "core/base/toml_words_internal.h"
 
 namespace haptrial {
@@ -15,17 +13,11 @@ namespace {
 constexpr int kDeepest =
     100;  // arrays and tables in each other; deeper ones are left to the parser
 
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_bare(char c) {  // may stand in a key without quotes
-  return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '-';
-}
-
 /// Walks through a document statement by statement and stops at the first mistake. Every step
 /// returns whether to go on.
-class Walk {
+class Walk : private TomlScalars {
  public:
-  explicit Walk(std::string_view text) : text_(text) {
+  explicit Walk(std::string_view text) : TomlScalars(text) {
     if (text_.substr(0, 3) == "\ufeff") {
       at_ = 3;
     }
@@ -46,57 +38,6 @@ class Walk {
 
  private:
   using Path = std::string;  // "trajectory.speed"
-
-  bool ended() const { return at_ >= text_.size(); }
-  char peek(std::size_t ahead = 0) const {
-    return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0';
-  }
-  bool starts(std::string_view with) const { return text_.substr(at_, with.size()) == with; }
-  bool line_ended() const { return ended() || peek() == '\n' || starts("\r\n"); }
-  void next() { line_ += text_[at_++] == '\n' ? 1 : 0; }
-  void skip_blanks() {
-    while (!ended() && is_blank(peek())) ++at_;
-  }
-  void skip_comment() {
-    if (peek() == '#') {
-      while (!line_ended()) ++at_;
-    }
-  }
-  void skip_blank_lines() {
-    do {
-      skip_blanks();
-      skip_comment();
-      if (ended() || !line_ended()) {
-        return;
-      }
-      while (peek() == '\r') ++at_;
-      next();
-    } while (true);
-  }
-  std::string_view rest_of_line() const {
-    std::size_t end = std::min(text_.find('\n', at_), text_.size());
-    while (end > at_ && (is_blank(text_[end - 1]) || text_[end - 1] == '\r')) --end;
-    return text_.substr(at_, end - at_);
-  }
-
-  std::string_view rest_without_comment() const {
-    const std::string_view rest = rest_of_line();
-    return rest.substr(0, rest.find_last_not_of(" \t", rest.find(" #")) + 1);
-  }
-
-  bool fail(unsigned line, std::string sentence) {
-    found_ = TomlMistake{line, std::move(sentence)};
-    return false;
-  }
-  bool give_up() {
-    gave_up_ = true;
-    return false;
-  }
-  /// A character of a word processor at this place.
-  bool fail_look_alike() {
-    const auto mistake = look_alike_mistake(text_.substr(at_));
-    return mistake && !fail(line_, *mistake);
-  }
 
   bool remember(const Path& path, unsigned line, const std::string& shown) {
     const auto [first, fresh] = given_.emplace(path, line);
@@ -252,80 +193,6 @@ class Walk {
     }
   }
 
-  bool long_string() {
-    const unsigned line = line_;
-    const std::string quotes(text_.substr(at_, 3));
-    for (at_ += 3; !ended(); next()) {
-      if (peek() == '\\' && quotes[0] == '"') {
-        next();
-        if (ended()) {
-          break;
-        }
-      } else if (starts(quotes)) {
-        at_ += 3;
-        for (int more = 0; more < 2 && peek() == quotes[0]; ++more) ++at_;  // quotes at its end
-        return true;
-      }
-    }
-    return fail(line, fmt::format("the text that begins with {} here is never closed; write {} at "
-                                  "its end",
-                                  quotes, quotes));
-  }
-
-  bool short_string() {
-    const std::size_t begin = at_;
-    const char quote = peek();
-    for (++at_; !line_ended(); ++at_) {
-      if (peek() == quote) {
-        ++at_;
-        return true;
-      }
-      if (quote == '"' && peek() == '\\') {
-        ++at_;
-        if (std::string_view("btnfr\"\\uU").find(peek()) == std::string_view::npos) {
-          return fail(line_,
-                      "a backslash in a text in quotes begins an escape; write \\\\, or ' in "
-                      "place of the quotes \"");
-        }
-      }
-    }
-    if (goes_on(quote)) {
-      return fail(line_,
-                  fmt::format("a text of several lines needs {0}{0}{0} at both ends", quote));
-    }
-    std::string_view line = text_.substr(begin, at_ - begin);
-    return fail(line_, fmt::format("the text {} has no closing quote; write {} at its end",
-                                   short_text(line), quote));
-  }
-
-  /// Whether the text that this line leaves open is closed in a later one.
-  bool goes_on(char quote) {
-    const auto [at, line] = std::pair(at_, line_);
-    bool closed = false;
-    while (!closed && !ended()) {
-      while (!line_ended()) ++at_;
-      while (peek() == '\r') ++at_;
-      if (!ended()) next();
-      const std::string_view rest = rest_of_line();
-      if (ended() || statement_begins()) break;
-      const auto quotes = std::count(rest.begin(), rest.end(), quote);
-      closed = quotes % 2 == 1;
-      if (quotes > 0 && !closed) break;
-    }
-    std::tie(at_, line_) = std::pair(at, line);
-    return closed;
-  }
-
-  /// Whether a key or a table's header stands here, which no array holds.
-  bool statement_begins() const {
-    static const std::regex kStatement(
-        "[ \t]*([A-Za-z0-9_.-]+[ \t]*=|\\[\\[?[ \t]*(?!true|false|inf|nan)[A-Za-z_]"
-        "[A-Za-z0-9_.-]*[ \t]*\\])");
-    const std::string_view rest = rest_of_line().substr(0, 200);
-    return std::regex_search(rest.begin(), rest.end(), kStatement,
-                             std::regex_constants::match_continuous);
-  }
-
   bool array(const Path& path, int depth) {
     const unsigned line = line_;
     const auto unclosed = [&] {
@@ -403,73 +270,6 @@ class Walk {
     }
   }
 
-  /// A number, time, true or false.
-  bool word(char end) {
-    if (fail_look_alike()) {
-      return false;
-    }
-    const std::size_t begin = at_;
-    while (!line_ended() && !is_blank(peek()) &&
-           std::string_view(",]}#").find(peek()) == std::string_view::npos) {
-      ++at_;
-    }
-    const std::string token(text_.substr(begin, at_ - begin));
-    if (is_number_or_time(token)) {
-      return decimal_point(token, end) && time_after_date(token);
-    }
-    if (token == "true" || token == "false") {
-      return true;
-    }
-    if (const auto mistake = word_mistake(token)) {
-      return fail(line_, *mistake);
-    }
-    return fail_unquoted(begin, end, token);
-  }
-
-  bool fail_unquoted(std::size_t begin, char end, std::string text) {
-    if (end == '\n') {  // names may have spaces
-      at_ = begin;
-      text = std::string(rest_without_comment());
-    }
-    if (!text.empty() && (text.back() == '"' || text.back() == '\'')) {
-      return fail(line_, fmt::format("the text {} has no opening quote; write {} before it",
-                                     short_text(text), text.back()));
-    }
-    if (text.empty() || !is_bare(text[0])) {
-      return give_up();
-    }
-    return fail(line_, fmt::format("{} is a text without quotes; write \"{}\"", short_text(text),
-                                   short_text(text)));
-  }
-
-  /// "0,5": in an array that is two values.
-  bool decimal_point(const std::string& token, char end) {
-    if (end == ']' || peek() != ',' || !is_digit(peek(1))) {
-      return true;
-    }
-    std::size_t after = 1;
-    while (is_digit(peek(after))) ++after;
-    std::size_t sign = after;
-    while (is_blank(peek(sign))) ++sign;
-    if (end == '}' && (peek(sign) == '=' || is_bare(peek(after)) || peek(after) == '.')) {
-      return true;  // the next key of the table
-    }
-    const std::string decimals(text_.substr(at_ + 1, after - 1));
-    return fail(line_, fmt::format("{},{} has a decimal comma; write {}.{}", token, decimals, token,
-                                   decimals));
-  }
-
-  bool time_after_date(const std::string& token) {
-    if (token.size() == 10 && token[4] == '-' && peek() == ' ' && is_digit(peek(1)) &&
-        is_digit(peek(2)) && peek(3) == ':') {
-      for (++at_; !line_ended() && !is_blank(peek()) &&
-                  std::string_view(",]}#").find(peek()) == std::string_view::npos;) {
-        ++at_;
-      }
-    }
-    return true;
-  }
-
   bool end_of_statement() {
     skip_blanks();
     skip_comment();
@@ -483,14 +283,9 @@ class Walk {
                                   short_text(rest_without_comment())));
   }
 
-  std::string_view text_;
-  std::size_t at_{0};
-  unsigned line_{1};
   int tables_of_lists_{0};          // [[NAME]], and all that follow
   Path table_;                      // in which keys are defined now
   std::map<Path, unsigned> given_;  // keys and tables, and their lines
-  std::optional<TomlMistake> found_;
-  bool gave_up_{false};
 };
 
 }  // namespace

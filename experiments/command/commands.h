@@ -7,10 +7,6 @@
 #include "core/record/session_types.h"
 #include "experiments/command/mesh_command.h"
 
-namespace haptrial::analysis {
-struct AnalysisPlan;
-}
-
 namespace haptrial::experiments {
 
 /// The subcommands of haptrial: each prints to standard output and returns an exit status. Bad

@@ -74,14 +74,7 @@ CurveAnalysis load_curve_analysis(const std::filesystem::path& file) {
 
 analysis::AnalysisPlan plan_of(const std::vector<std::string>& planned,
                                const std::string& reference) {
-  analysis::AnalysisPlan plan{{}, reference};
-  for (const std::string& text : planned) {
-    plan.tests.push_back(analysis::parse_planned_test(text, "--planned"));
-  }
-  if (const std::string problem = analysis::repeated_test(plan.tests); !problem.empty()) {
-    throw InputError("--planned " + problem);
-  }
-  return plan;
+  return analysis::parse_analysis_plan(planned, reference, "--planned");
 }
 
 analysis::AnalysisPlan plan_for(const std::vector<std::string>& planned,

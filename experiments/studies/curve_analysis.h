@@ -32,6 +32,7 @@ CurveAnalysis load_curve_analysis(const std::filesystem::path& file);
 analysis::AnalysisPlan plan_for(const std::vector<std::string>& planned,
                                 const std::string& reference, analysis::AnalysisPlan plan,
                                 std::vector<std::string>& remarks);
+/// The plan that the options --planned and --reference state. @throws InputError as above
 analysis::AnalysisPlan plan_of(const std::vector<std::string>& planned,
                                const std::string& reference);
 

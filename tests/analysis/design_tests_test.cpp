@@ -12,6 +12,7 @@
 #include "analysis/welch_anova.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
+#include "tests/support/message_of.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -303,20 +304,27 @@ TEST(DesignTests, OfNothingOrOfOneConditionAreNotDefined) {
   EXPECT_TRUE(tests.families.empty());
 }
 
+PlannedTest test_of(const std::string& text) {
+  return parse_analysis_plan({text}, "", "--planned").tests.at(0);
+}
+
 TEST(AnalysisPlan, IsReadAndWrittenAlike) {
   for (const char* text : {"visual < haptic", "a b > c", "x, y != x, z"}) {
-    EXPECT_EQ(text_of(parse_planned_test(text, "planned")), text);
+    EXPECT_EQ(text_of(test_of(text)), text);
   }
-  EXPECT_EQ(text_of(parse_planned_test(" a<b ", "planned")), "a < b");
+  EXPECT_EQ(text_of(test_of(" a<b ")), "a < b");
   for (const char* text : {"", "a", "a < ", " < b", "a < a", "a < b < c", "a < b != c", "a = b"}) {
-    EXPECT_THROW(parse_planned_test(text, "--planned"), InputError) << text;
+    EXPECT_THROW(test_of(text), InputError) << text;
   }
+  EXPECT_EQ(parse_analysis_plan({}, "a", "--planned").reference, "a");
 }
 
 TEST(AnalysisPlan, APairStatedTwiceIsFoundWhateverItsDirection) {
-  EXPECT_EQ(repeated_test({{"a", "b", Tail::kLess}, {"b", "c", Tail::kLess}}), "");
-  EXPECT_EQ(repeated_test({{"a", "b", Tail::kLess}, {"b", "a", Tail::kGreater}}),
-            "compares a and b twice; state each pair once");
+  EXPECT_EQ(parse_analysis_plan({"a < b", "b < c"}, "", "--planned").tests.size(), 2U);
+  EXPECT_EQ(test::message_of([] {
+              parse_analysis_plan({"a < b", "b > a"}, "", "--planned");
+            }),
+            "--planned compares a and b twice; state each pair once");
 }
 
 TEST(AnalysisPlan, NamesWithoutTrialsAreRefusedWithTheKnownOnes) {

@@ -65,6 +65,19 @@ TEST_F(StatisticsCommandTest, FindsTheDesignOfSeveralFactors) {
   EXPECT_THAT(run.output, HasSubstr("Mann–Whitney"));
 }
 
+TEST_F(StatisticsCommandTest, WarnsOfLevelsThatDifferOnlyInCapitals) {
+  const std::string table = file("t.csv",
+                                 "subject,condition,score\nA,visual,1\nA,haptic,2\nB,Visual,3\n"
+                                 "B,haptic,4\nC,visual,2\nC,haptic,5\n");
+  const CommandResult run =
+      run_command("haptrial statistics " + table + " --seed 18446744073709551615");
+  EXPECT_THAT(run.errors, HasSubstr("WARNING: the names of levels of condition differ only in "
+                                    "blanks, hyphens or capitals and are taken for different "
+                                    "levels of condition: \"Visual\", \"visual\"."));
+  EXPECT_THAT(run_command("haptrial statistics " + table + " --seed -1").errors,
+              HasSubstr("--seed is '-1'; allowed: a whole number from 0 to 18446744073709551615"));
+}
+
 TEST_F(StatisticsCommandTest, NothingThatExistsIsWrittenOver) {
   const std::string table = groups();
   const CommandResult run =

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 
+#include "analysis/analysis_plan.h"
 #include "analysis/design_json.h"
 #include "analysis/design_lines.h"
+#include "core/base/alike_names.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/commands.h"
-#include "experiments/studies/curve_analysis.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -27,15 +28,28 @@ void check_columns(const StatisticsOptions& options, const std::vector<std::stri
   }
 }
 
+/// A typo in a name makes a level of its own.
+void warn_of_alike_levels(const analysis::DesignTable& table) {
+  for (const analysis::Factor& factor : table.factors) {
+    for (std::vector<std::string>& group : alike_names(factor.levels)) {
+      for (std::string& name : group) {
+        name = fmt::format("\"{}\"", name);
+      }
+      fmt::print(stderr, "{}\n", alike_names_warning("levels of " + factor.name, group));
+    }
+  }
+}
+
 }  // namespace
 
 int statistics(const StatisticsOptions& options) {
   analysis::Resampling resampling;
-  resampling.seed = static_cast<std::uint64_t>(options.seed);
+  resampling.seed = checked_seed(options.seed);
   resampling.count =
       static_cast<std::size_t>(checked_number("--resamples", options.resamples, 0, 10'000'000));
   resampling.threads = checked_jobs(options.jobs);
-  const analysis::AnalysisPlan plan = plan_of(options.planned, options.reference);
+  const analysis::AnalysisPlan plan =
+      analysis::parse_analysis_plan(options.planned, options.reference, "--planned");
   const std::vector<std::string> factors =
       options.factors.empty() ? std::vector<std::string>{"condition"} : options.factors;
   check_columns(options, factors);
@@ -46,6 +60,7 @@ int statistics(const StatisticsOptions& options) {
       analysis::read_observations(options.table, options.subject, factors, options.value), factors,
       plan.reference.empty() ? std::vector<std::string>{} : std::vector{plan.reference});
   analysis::check_plan(table, plan);
+  warn_of_alike_levels(table);
   const analysis::DesignTests tests = analysis::design_tests(table, plan, resampling);
   for (const std::string& line : analysis::design_lines(table, tests)) {
     fmt::print("{}\n", line);
