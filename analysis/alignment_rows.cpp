@@ -159,7 +159,7 @@ struct Search {
   std::size_t row_count() const { return target.force.size(); }
   std::size_t column_count() const { return applied.force.size(); }
 
-  /// Of a row, by column.
+  /// The ways of a row, by column.
   std::uint8_t* ways_of(std::size_t row) const { return ways + row * way_stride - band.first(row); }
 
   void fill_error_row(std::size_t row, std::size_t first, std::size_t last) const {

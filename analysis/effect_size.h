@@ -49,7 +49,7 @@ Defined<EffectSize> partial_eta_squared(double f, double df_effect, double df_er
 Defined<EffectSize> partial_omega_squared(double f, double df_effect, double df_error,
                                           double level = kProportionLevel);
 
-/// Of a one-way design the partial share is the share of all variance.
+/// In a one-way design the partial share is the share of all variance.
 Defined<EffectSize> eta_squared(const Anova& anova, double level = kProportionLevel);
 Defined<EffectSize> omega_squared(const Anova& anova, double level = kProportionLevel);
 

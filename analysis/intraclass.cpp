@@ -23,7 +23,7 @@ double f_quantile(double tail, double df_numerator, double df_denominator) {
   return std::exp(find_root(excess, low, high));
 }
 
-// Of a mean over k raters, from that of one (Spearman and Brown).
+// The reliability of a mean over k raters, from that of one (Spearman and Brown).
 double stepped_up(double r, double k) { return k * r / (1.0 + (k - 1.0) * r); }
 
 const Undefined kNoError{

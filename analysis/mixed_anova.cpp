@@ -22,7 +22,7 @@ std::string problem(const std::vector<Table>& groups, const Table& all) {
   return within::problem(all);
 }
 
-// Of the participants' means, with squares of all values.
+// The analysis of the participants' means, with squares of all values.
 Defined<Anova> between_groups(const std::vector<Table>& groups, double rounding) {
   const double origin = groups.front().front().front();
   const auto conditions = static_cast<double>(groups.front().front().size());

@@ -21,7 +21,7 @@ struct MixedAnova {
   std::size_t participants{0};
   std::size_t groups{0};
   std::size_t conditions{0};
-  /// Of the participants' means; squares are of all values, as aov prints them.
+  /// The analysis of the participants' means; squares are of all values, as aov prints them.
   Defined<Anova> group{Undefined{"nothing was measured"}};
   Defined<WithinEffect> condition{Undefined{"nothing was measured"}};
   Defined<WithinEffect> interaction{Undefined{"nothing was measured"}};

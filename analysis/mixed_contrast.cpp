@@ -34,7 +34,7 @@ double satterthwaite(const MixedModel& model, const VectorXd& rotated) {
   return 2.0 / slopes.dot(model.parameters * slopes);
 }
 
-/// Of a sum of squared t over their number: the df of the F with the same mean.
+/// The df of the F with the mean of a sum of squared t over their number.
 double combined(const std::vector<double>& df) {
   if (df.size() == 1) {
     return df.front();

@@ -14,7 +14,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Of the centred response on the centred columns.
+// The regression of the centred response on the centred columns.
 struct Fit {
   VectorXd slopes;
   MatrixXd inverse;  // of columns' columns

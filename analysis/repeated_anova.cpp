@@ -19,7 +19,7 @@ Defined<WithinEffect> effect(const Table& table, const Eigen::MatrixXd& contrast
                         within::rounding_squares(table));
 }
 
-// Of the participants' means, times the number of conditions.
+// The squares of the participants' means, times the number of conditions.
 double squares_of_participants(const Table& table) {
   std::vector<double> means;
   for (const auto& row : table) {

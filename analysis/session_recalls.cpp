@@ -55,7 +55,7 @@ std::vector<Eigen::Vector3d> positions_of(const std::vector<Sample>& run) {
   return positions;
 }
 
-/// Of a run whose pace the participant set.
+/// The tracking of a run whose pace the participant set.
 PassTracking tracking_at_own_pace(const std::vector<Sample>& run, const PathPlaces& path) {
   PassTracking result;
   result.lag = Undefined{"the participant set the pace"};
@@ -219,7 +219,7 @@ class Extraction {
     }
   }
 
-  /// Of the block's path, where the curves are over it; else null.
+  /// Places on the block's path if the curves are over it; else null.
   const PathPlaces* places(std::int32_t block) {
     auto& known = places_[block];
     if (!known) {

@@ -49,7 +49,7 @@ struct RecallCurves {
 Defined<RecallCurves> recall_curves(const std::vector<record::Sample>& run, double rate,
                                     const PathPlaces* places);
 
-/// Of the block's ideal path; nothing where the parameters ask for curves over time.
+/// Places on the block's ideal path; nothing if the parameters ask for curves over time.
 /// @throws InputError when the file lacks the path.
 std::unique_ptr<PathPlaces> path_places(const record::SessionReader& reader, std::int32_t block,
                                         const ScoreParameters& parameters);

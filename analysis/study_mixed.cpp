@@ -120,7 +120,7 @@ std::string nothing_to_fit(std::span<const TrialScore> scores,
   return terms.chosen.empty() ? "each participant has a single trial" : "";
 }
 
-/// Of the mean of condition a less that of b; 0 is the reference.
+/// The weights of the mean of condition a less that of b; 0 is the reference.
 VectorXd difference(std::size_t a, std::size_t b, std::size_t conditions) {
   VectorXd weights = VectorXd::Zero(static_cast<Index>(conditions));
   if (a > 0) {

@@ -77,7 +77,7 @@ Step step_of(const Slopes& s, bool fisher) {
     change = descent(s.hessian(free, free), slope);
   }
   if (!change) {
-    // Of its diagonal: so the step still descends when a rho is stopped at 0.
+    // Only its diagonal, so that the step still descends when a rho is stopped at 0.
     const VectorXd information = s.expected(free, free).diagonal();
     change = -slope.cwiseQuotient(information.cwiseMax(std::numeric_limits<double>::min()));
   }
@@ -102,7 +102,7 @@ std::optional<Slopes> lower(const RestrictedLikelihood& likelihood, const Slopes
   return std::nullopt;
 }
 
-/// Of the free rhos, each in units of its own.
+/// The slope along the free rhos, each in units of its own.
 double steepness(const Slopes& s) {
   double sum = 0.0;
   for (const Index k : free_of(s)) {

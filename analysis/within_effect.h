@@ -34,7 +34,7 @@ using Table = std::vector<std::vector<double>>;  // (participants x cells)
 Eigen::MatrixXd contrasts(std::size_t levels);
 /// (levels x 1), the normalized constant.
 Eigen::MatrixXd constant(std::size_t levels);
-/// Of cells (a, b), b running fastest: the Kronecker product.
+/// The contrasts of cells (a, b), b running fastest: the Kronecker product.
 Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 /// (participants x contrasts); each participant's first value is subtracted before.

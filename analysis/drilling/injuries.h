@@ -49,7 +49,8 @@ class InjuryMeter {
   std::vector<Injury> injuries_;
 };
 
-/// Of a whole procedure: one for each vital structure of its bone, in the order of labels.
+/// The injuries of a whole procedure: one for each vital structure of its bone, in the order of
+/// labels.
 std::vector<Injury> injuries(const Procedure& procedure, StudyBones& bones);
 
 }  // namespace haptrial::analysis::drilling

@@ -95,7 +95,7 @@ struct Procedure {
   std::vector<View> views;
   std::vector<Crumb> crumbs;
 
-  /// Of a tool's burr; 0 for a tool that is none, or out of range. [m]
+  /// The radius of a tool's burr; 0 for a tool that is none, or out of range [m].
   double burr_radius(std::int32_t tool) const noexcept;
 };
 

@@ -48,7 +48,7 @@ struct Contrast {
   /// the number is left out where all have the same.
   Defined<MixedModel> mixed{Undefined{""}};
   Defined<double> mixed_p{Undefined{""}};  // of expert, for the tail
-  /// Of experts being where they are expected; clusters are participants. Higher where nothing is
+  /// How well experts are where they are expected; clusters are participants. Higher if nothing is
   /// expected.
   Defined<Roc> roc{Undefined{""}};
 };

@@ -60,7 +60,8 @@ RowText& RowText::add(std::uint64_t number) {
   return *this;
 }
 
-RowText& RowText::add(double number) {
+template <class Real>
+RowText& RowText::add_real(Real number) {
   if (!std::isfinite(number)) {
     return add_missing();
   }
@@ -69,14 +70,9 @@ RowText& RowText::add(double number) {
   return *this;
 }
 
-RowText& RowText::add(float number) {
-  if (!std::isfinite(number)) {
-    return add_missing();
-  }
-  next();
-  append_number(text_, number, std::chars_format::fixed);
-  return *this;
-}
+RowText& RowText::add(double number) { return add_real(number); }
+
+RowText& RowText::add(float number) { return add_real(number); }
 
 RowText& RowText::add_seconds(std::int64_t nanoseconds) {
   constexpr std::int64_t kSecond = 1'000'000'000;

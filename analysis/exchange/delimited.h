@@ -31,6 +31,8 @@ class RowText {
 
  private:
   void next();
+  template <class Real>
+  RowText& add_real(Real number);
   std::string& text_;
   Delimited kind_;
   bool first_{true};

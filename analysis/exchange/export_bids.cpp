@@ -30,7 +30,8 @@ std::string label_of(const std::string& what, const std::string& text, const fs:
   return label;
 }
 
-/// Of the experiment's name, or of its file's when the name has no letter or digit of ASCII.
+/// The label of the experiment's name, or of its file's when the name has no letter or digit of
+/// ASCII.
 std::string task_of(const ExportSession& session) {
   const std::string label = bids_label(experiment_name(session.info));
   const fs::path file(session.info.definition_name);

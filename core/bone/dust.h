@@ -104,7 +104,7 @@ class Dust {
   std::size_t blocks() const noexcept;     // of 512 cells in memory
   std::uint64_t version() const noexcept;  // grows when any amount changes
 
-  /// Of a cell, in solid voxels; 0 outside the region. The cell is the one around a point of W.
+  /// The dust of the cell around a point of W, in solid voxels; 0 outside the region.
   double amount_at(const Eigen::Vector3d& p_W) const noexcept;
   /// What a full cell holds, in solid voxels.
   double capacity() const noexcept;

@@ -71,7 +71,7 @@ class DustGrid {
   /// Gives back the block if nothing needs it.
   void release_if_idle(std::int32_t block);
 
-  /// Of all blocks, also unused ones.
+  /// The number of all blocks, also unused ones.
   std::int32_t block_count() const { return static_cast<std::int32_t>(blocks_.size()); }
   std::size_t used() const { return places_.size(); }
   const Block& block(std::int32_t number) const {

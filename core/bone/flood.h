@@ -30,7 +30,7 @@ class Flood {
   /// Looks at what `occupancy` holds of the volume that it follows.
   void look(const BoneVolume& volume, const Occupancy& occupancy);
 
-  /// Of the last look(): how many parts there are, and how many voxels in the biggest.
+  /// How many parts the last look() found, and how many voxels the biggest has.
   std::size_t parts() const noexcept { return sizes_.size(); }
   std::size_t biggest() const noexcept { return sizes_.empty() ? 0 : sizes_[main_]; }
 

@@ -102,7 +102,7 @@ class Simulator {
                               std::span<const RecordedSplit> recorded = {});
   const SimulatorOutput& output() const noexcept { return output_; }
 
-  /// Of the last tick: first what the burr emptied, then the cut plane.
+  /// What the last tick emptied: first by the burr, then by the cut plane.
   std::span<const EmptiedIn> emptied() const noexcept { return emptied_; }
   std::span<const WorldEvent> separations() const noexcept { return world_.events(); }
   std::span<const DustDeposit> deposits() const noexcept { return deposits_; }
@@ -113,7 +113,7 @@ class Simulator {
   std::int32_t stills_asked() const noexcept { return stills_asked_; }
   const ToolSpec& tool() const noexcept { return tools_[static_cast<std::size_t>(output_.tool)]; }
   std::span<const ToolSpec> tools() const noexcept { return tools_; }
-  /// Of a tool that is a plate; else null.
+  /// The model of a tool that is a plate; else null.
   const PlateModel* plate(int tool) const noexcept {
     return plates_[static_cast<std::size_t>(tool)].get();
   }

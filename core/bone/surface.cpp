@@ -279,14 +279,20 @@ void Surface::remove_vertex(CellBrick& brick, std::size_t at) {
   free_vertices_.push_back(slot);
 }
 
-void Surface::place_quads(std::size_t place) {
+template <class Visit>
+void Surface::for_each_vertex(std::size_t place, const Visit& visit) {
   if (bricks_[place] == nullptr) {
     return;
   }
   for (const std::int32_t slot : bricks_[place]->vertices) {
-    if (slot == kNone) {
-      continue;
+    if (slot != kNone) {
+      visit(slot);
     }
+  }
+}
+
+void Surface::place_quads(std::size_t place) {
+  for_each_vertex(place, [&](std::int32_t slot) {
     const VertexLinks& links = links_[static_cast<std::size_t>(slot)];
     for (int axis = 0; axis < 3; ++axis) {
       const bool here = (links.corners & 1U) != 0;
@@ -297,7 +303,7 @@ void Surface::place_quads(std::size_t place) {
         set_quad(slot, axis, here);
       }
     }
-  }
+  });
 }
 
 void Surface::set_quad(std::int32_t vertex, int axis, bool outwards) {
@@ -357,30 +363,18 @@ void Surface::remove_quad(std::int32_t vertex, int axis) {
 }
 
 void Surface::refresh_densities(const BoneVolume& volume, std::size_t place) {
-  if (bricks_[place] == nullptr) {
-    return;
-  }
-  for (const std::int32_t slot : bricks_[place]->vertices) {
-    if (slot == kNone) {
-      continue;
-    }
+  for_each_vertex(place, [&](std::int32_t slot) {
     const auto index = static_cast<std::size_t>(slot);
     const std::uint8_t density = mean_density(volume, links_[index].cell, links_[index].corners);
     if (density != vertices_[index].density) {
       vertices_[index].density = density;
       touch_vertex(slot);
     }
-  }
+  });
 }
 
 void Surface::refresh_near(const BoneVolume& volume, std::size_t place) {
-  if (bricks_[place] == nullptr) {
-    return;
-  }
-  for (const std::int32_t slot : bricks_[place]->vertices) {
-    if (slot == kNone) {
-      continue;
-    }
+  for_each_vertex(place, [&](std::int32_t slot) {
     const auto index = static_cast<std::size_t>(slot);
     SurfaceVertex vertex = vertices_[index];
     set_near(volume, links_[index].cell + corner(links_[index].nearest), vertex);
@@ -388,7 +382,7 @@ void Surface::refresh_near(const BoneVolume& volume, std::size_t place) {
       vertices_[index] = vertex;
       touch_vertex(slot);
     }
-  }
+  });
 }
 
 void Surface::touch_vertex(std::int32_t vertex) {

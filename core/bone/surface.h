@@ -98,6 +98,8 @@ class Surface {
   void set_vertex(CellBrick& brick, std::size_t at, const VertexLinks& links,
                   const SurfaceVertex& vertex);
   void remove_vertex(CellBrick& brick, std::size_t at);
+  template <class Visit>
+  void for_each_vertex(std::size_t place, const Visit& visit);
   void place_quads(std::size_t place);
   void set_quad(std::int32_t vertex, int axis, bool outwards);
   void remove_quad(std::int32_t vertex, int axis);
@@ -121,7 +123,7 @@ class Surface {
   std::vector<std::int32_t> free_vertices_;
   std::vector<std::int32_t> free_quads_;
 
-  // Of the update at hand; kept for their room.
+  // What the update at hand uses; kept for the room.
   CellField field_;
   std::vector<Voxel> changed_voxels_;
   std::vector<std::int32_t> changed_bricks_;

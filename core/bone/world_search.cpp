@@ -91,7 +91,7 @@ std::vector<Part> BoneWorld::cut_loose(int number) {
   if (number != 0 || islands_.empty()) {
     return parts;
   }
-  // Of each island the biggest part still hangs where the island hung.
+  // The biggest part of each island still hangs where the island hung.
   std::map<int, std::size_t> stays;  // by island: number of the part
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const auto island = islands_.find(volume.address(parts[p].front()));

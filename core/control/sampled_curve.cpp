@@ -368,7 +368,7 @@ CurvePlace SampledCurve::at(double wanted) const noexcept {
   return place(low, span > 0.0 ? std::clamp((wanted - arc(low)) / span, 0.0, 1.0) : 0.0);
 }
 
-/// Of the first segment that ends beyond `position`; zero where none does.
+/// The direction of the first segment that ends beyond `position`; zero if none does.
 Vector3d SampledCurve::direction_after(double position) const noexcept {
   std::size_t low = 0;
   std::size_t high = size_ - 1;
@@ -382,7 +382,7 @@ Vector3d SampledCurve::direction_after(double position) const noexcept {
   return (point(high) - point(low)).stableNormalized();
 }
 
-/// Of the last segment that begins before `position`; zero where none does.
+/// The direction of the last segment that begins before `position`; zero if none does.
 Vector3d SampledCurve::direction_before(double position) const noexcept {
   std::size_t low = 0;
   std::size_t high = size_ - 1;

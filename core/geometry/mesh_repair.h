@@ -23,7 +23,7 @@ std::size_t weld(Mesh& mesh, double tolerance);
 /// @returns how many triangles went or turned; flat ones without such a neighbour stay.
 std::size_t remove_degenerate(Mesh& mesh);
 
-/// Of the triangles with the same three corners, in any order, keeps the first.
+/// Keeps the first of the triangles with the same three corners, in any order.
 std::size_t remove_duplicates(Mesh& mesh);
 
 std::size_t remove_unreferenced(Mesh& mesh);

@@ -45,7 +45,7 @@ class DrillingMemory {
   /// Over all that stands between two places. [m]
   double over(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const noexcept;
 
-  /// Of the bone that this burr is to take, how much is still there: 0 to 1.
+  /// The share of the bone that this burr is to take and that is still there: 0 to 1.
   double left() const noexcept;
   /// @returns false where nothing is left. @param now  where the hand is
   bool choose(const BoutChoice& choice, const Eigen::Vector2d& now, RandomStream& random,
