@@ -1,25 +1,15 @@
 #pragma once
 
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/base/bounds.h"
+
 namespace haptrial {
-
-/// Inclusive bounds of a number in a definition.
-struct Bounds {
-  double low{-std::numeric_limits<double>::infinity()};
-  double high{std::numeric_limits<double>::infinity()};
-  bool open_low{false};  // low itself is not allowed
-};
-
-inline constexpr Bounds kPositive{0.0, std::numeric_limits<double>::infinity(), true};
-inline constexpr Bounds kNonNegative{0.0, std::numeric_limits<double>::infinity(), false};
-inline constexpr Bounds kFraction{0.0, 1.0, false};
 
 /// A table of a definition file (TOML), read key by key. Each read checks presence, type and bounds
 /// and notes a problem instead of throwing, so that a definition is validated whole; finish() on

@@ -8,7 +8,7 @@
 
 #include <toml++/toml.h>
 
-#include "core/base/table.h"
+#include "core/base/bounds.h"
 
 namespace haptrial {
 

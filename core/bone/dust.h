@@ -1,64 +1,18 @@
 #pragma once
 
-#include <Eigen/Geometry>
-#include <array>
+#include <Eigen/Core>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "core/bone/bone_volume.h"
+#include "core/bone/dust_parameters.h"
 #include "core/bone/dust_quad.h"
-
-namespace haptrial {
-class Table;
-}
+#include "core/bone/dust_surroundings.h"
 
 namespace haptrial::bone {
 
-struct DustParameters {
-  double cell{0.5e-3};           // edge of a cell > 0 [m]
-  double voxel{0.5e-3};          // edge of the voxels in whose volumes dust is counted > 0 [m]
-  double bulking{1.6};           // loose dust takes this many times the room of solid bone >= 1
-  double fall_speed{0.15};       // > 0 [m/s]
-  double slope{0.65};            // of a pile at rest, rise over run, 0.05 to 0.7
-  double suction_rate{1.5e-6};   // solid volume a second > 0 [m3/s]
-  double suction_reach{2.5e-3};  // from the nozzle's mouth > 0 [m]
-  Eigen::Vector3d up{Eigen::Vector3d::UnitY()};  // against gravity in W, of any length but 0
-  /// Dust that leaves this box in W has fallen out.
-  Eigen::AlignedBox3d region{Eigen::Vector3d::Constant(-0.15), Eigen::Vector3d::Constant(0.15)};
-  int max_blocks{4096};  // of 512 cells: bounds the memory, 1 to 100,000
-};
-
-/// Reads the keys of a [dust] table: cell, bulking, fall_speed, slope, suction_rate,
-/// suction_reach.
-DustParameters read_dust_parameters(Table& table);
-
-/// Bone that dust cannot pass: a volume, kept alive by the caller, and the pose of its frame B.
-struct DustBone {
-  const BoneVolume* volume{nullptr};
-  Eigen::Isometry3d X_WB{Eigen::Isometry3d::Identity()};
-};
-
-/// Bone that a burr has turned into dust, at the place of the burr.
-struct DustDeposit {
-  Eigen::Vector3d centre{Eigen::Vector3d::Zero()};  // of the burr in W [m]
-  double radius{0.0};                               // of the burr: dust appears around it >= 0 [m]
-  double amount{0.0};                               // in solid voxels >= 0
-};
-
-/// A tool that dust gives way to: a sphere swept along a segment. Burr, handle, suction tube.
-struct DustTool {
-  Eigen::Vector3d tip{Eigen::Vector3d::Zero()};    // centre of the first sphere in W [m]
-  Eigen::Vector3d axis{Eigen::Vector3d::UnitY()};  // from the tip to the hand, unit length
-  double length{0.0};                              // of the segment >= 0 [m]
-  double radius{0.0};                              // 0: no tool [m]
-  bool sucks{false};                               // dust near the tip is taken away
-};
-struct DustTools {
-  static constexpr int kMost = 4;
-  std::array<DustTool, kMost> tools{};  // those of radius 0 are not there
-};
+struct DustState;
 
 /// Where all that was deposited is, in solid voxels. The parts add up to `deposited` exactly: each
 /// is a whole number of 2^-20 voxels.
@@ -114,8 +68,7 @@ class Dust {
   void quads(std::vector<DustQuad>& quads) const;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<DustState> state_;
 };
 
 }  // namespace haptrial::bone

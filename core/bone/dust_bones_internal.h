@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/bone/dust.h"
+#include "core/bone/dust_surroundings.h"
 #include "core/bone/occupancy.h"
 
 namespace haptrial::bone {

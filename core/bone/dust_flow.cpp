@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/bone/dust_internal.h"
+#include "core/bone/dust_state_internal.h"
 
 namespace haptrial::bone {
 namespace {
@@ -21,7 +21,7 @@ constexpr int direction_of(int step) {
 
 }  // namespace
 
-void Dust::Impl::change(Ref ref, std::int32_t by) {
+void DustState::change(Ref ref, std::int32_t by) {
   DustGrid::Cell& cell = grid.at(ref);
   const bool before = cell.amount > 0;
   cell.amount += by;
@@ -37,7 +37,7 @@ void Dust::Impl::change(Ref ref, std::int32_t by) {
   ++version;
 }
 
-void Dust::Impl::wake(Ref ref) {
+void DustState::wake(Ref ref) {
   if (ref == kNone) {
     return;
   }
@@ -52,14 +52,14 @@ void Dust::Impl::wake(Ref ref) {
 }
 
 /// A cell has more room than before: wakes what may move into it or past it, and itself.
-void Dust::Impl::wake_above_and_beside(Ref ref) {
+void DustState::wake_above_and_beside(Ref ref) {
   for (int direction = DustGrid::direction(-1, -1, 0); direction < 27; ++direction) {
     wake(grid.beside(ref, direction));
   }
 }
 
 /// Out of the region, and out of the memory that there may be, is out.
-void Dust::Impl::move(Ref from, const Look& to, std::int32_t amount) {
+void DustState::move(Ref from, const Look& to, std::int32_t amount) {
   const Ref ref = to.outside || to.ref != kNone ? to.ref : make(to.cell);
   if (to.outside || ref == kNone) {
     fallen += amount;
@@ -74,14 +74,14 @@ void Dust::Impl::move(Ref from, const Look& to, std::int32_t amount) {
   wake_above_and_beside(from);
 }
 
-void Dust::Impl::make_flows() {
+void DustState::make_flows() {
   for (const Flow& flow : flows) {
     move(flow.from, flow.to, flow.amount);
   }
   flows.clear();
 }
 
-void Dust::Impl::fall(Ref ref) {
+void DustState::fall(Ref ref) {
   if (!passage(ref, kDown)) {
     return;
   }
@@ -94,7 +94,7 @@ void Dust::Impl::fall(Ref ref) {
 }
 
 /// Finds where an amount that rests on something stands steeper than it may, and what flows.
-void Dust::Impl::seek(Ref ref) {
+void DustState::seek(Ref ref) {
   if (solid(ref)) {
     seek_way_out(ref);
     return;
@@ -136,7 +136,7 @@ void Dust::Impl::seek(Ref ref) {
 }
 
 /// Bone has moved onto dust: it goes to whatever cell around is free, also above.
-void Dust::Impl::seek_way_out(Ref ref) {
+void DustState::seek_way_out(Ref ref) {
   constexpr int kAround = 26;
   const Look here = look(grid.cell(ref), ref);
   std::int32_t left = here.amount;
@@ -155,7 +155,7 @@ void Dust::Impl::seek_way_out(Ref ref) {
 
 /// The order of the cells in a layer does not matter: each cell has one above that falls into it,
 /// and flows are found before any is made. Lower layers come first and make room for the upper.
-void Dust::Impl::substep() {
+void DustState::substep() {
   suck();
   expel();
   current.swap(next);
@@ -183,7 +183,7 @@ void Dust::Impl::substep() {
   tidy();
 }
 
-void Dust::Impl::tidy() {
+void DustState::tidy() {
   for (const std::int32_t block : maybe_idle) {
     grid.release_if_idle(block);
   }

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/bone/dust_internal.h"
+#include "core/bone/dust.h"
+#include "core/bone/dust_state_internal.h"
 
 namespace haptrial::bone {
 namespace {
@@ -26,7 +27,7 @@ Eigen::AlignedBox3d around(const DustTool& tool) {
 
 }  // namespace
 
-double Dust::Impl::outside_tools(const Eigen::Vector3d& p_W) const {
+double DustState::outside_tools(const Eigen::Vector3d& p_W) const {
   double least_distance = std::numeric_limits<double>::infinity();
   for (const DustTool& tool : tools.tools) {
     if (tool.radius > 0.0) {
@@ -37,7 +38,7 @@ double Dust::Impl::outside_tools(const Eigen::Vector3d& p_W) const {
 }
 
 /// Notes whether a cell lies in a tool.
-void Dust::Impl::flag_tools(Ref ref) {
+void DustState::flag_tools(Ref ref) {
   if (!(outside_tools(centre(grid.cell(ref))) < 0.0)) {
     return;
   }
@@ -52,41 +53,41 @@ void Dust::Impl::flag_tools(Ref ref) {
 }
 
 void Dust::place(const DustTools& tools) {
-  Impl& impl = *impl_;
-  impl.tools = tools;
+  DustState& state = *state_;
+  state.tools = tools;
   std::vector<Ref> before;
-  before.swap(impl.tool_cells);
+  before.swap(state.tool_cells);
   for (const Ref ref : before) {
-    impl.grid.at(ref).flags &= ~Impl::kStays;
+    state.grid.at(ref).flags &= ~DustState::kStays;
   }
   for (const DustTool& tool : tools.tools) {
     if (tool.radius > 0.0) {
       const Eigen::AlignedBox3d box = around(tool);
-      DustCell low = impl.cell_at(box.min());
+      DustCell low = state.cell_at(box.min());
       DustCell high = low;
       for (int corner = 0; corner < 8; ++corner) {
         const auto type = static_cast<Eigen::AlignedBox3d::CornerType>(corner);
-        const DustCell cell = impl.cell_at(box.corner(type));
+        const DustCell cell = state.cell_at(box.corner(type));
         low = low.cwiseMin(cell);
         high = high.cwiseMax(cell);
       }
-      impl.grid.for_each_in(low, high, [&](Ref ref) { impl.flag_tools(ref); });
+      state.grid.for_each_in(low, high, [&](Ref ref) { state.flag_tools(ref); });
     }
   }
   for (const Ref ref : before) {
-    if ((impl.grid.at(ref).flags & Impl::kStays) == 0) {
-      impl.grid.at(ref).flags &= ~Impl::kTool;
-      if (--impl.grid.block_of(ref).pins == 0) {
-        impl.maybe_idle.push_back(DustGrid::number(ref));
+    if ((state.grid.at(ref).flags & DustState::kStays) == 0) {
+      state.grid.at(ref).flags &= ~DustState::kTool;
+      if (--state.grid.block_of(ref).pins == 0) {
+        state.maybe_idle.push_back(DustGrid::number(ref));
       }
-      impl.wake_above_and_beside(ref);
+      state.wake_above_and_beside(ref);
     }
   }
-  impl.tidy();
+  state.tidy();
 }
 
 /// Dust within a tool goes to where the tool is less deep, and up.
-void Dust::Impl::expel() {
+void DustState::expel() {
   constexpr std::array<std::array<int, 3>, 6> kFaces{
       {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
   const double upwards = 0.1 * parameters.cell;
@@ -123,7 +124,7 @@ void Dust::Impl::expel() {
 }
 
 /// Takes dust near the mouth of each sucking tool, from every cell the same part of what is there.
-void Dust::Impl::suck() {
+void DustState::suck() {
   const double reach = parameters.suction_reach;
   const double voxel = parameters.voxel * parameters.voxel * parameters.voxel;
   for (const DustTool& tool : tools.tools) {
@@ -157,26 +158,26 @@ void Dust::Impl::suck() {
 }
 
 void Dust::deposit(const DustDeposit& deposit) {
-  Impl& impl = *impl_;
+  DustState& state = *state_;
   if (!(deposit.amount >= 0.0 && deposit.radius >= 0.0 && deposit.centre.allFinite() &&
         deposit.amount < 1e9)) {
     throw std::invalid_argument("Dust: a deposit must be finite and not negative");
   }
-  const double apart = (deposit.centre - impl.pending.centre).squaredNorm();
-  if (impl.held > 0 && apart > 4.0 * impl.parameters.cell * impl.parameters.cell) {
-    impl.place_held();
+  const double apart = (deposit.centre - state.pending.centre).squaredNorm();
+  if (state.held > 0 && apart > 4.0 * state.parameters.cell * state.parameters.cell) {
+    state.place_held();
   }
-  impl.pending = deposit;
-  impl.deposited_rest += deposit.amount / kDustUnit;
-  const double whole = std::floor(impl.deposited_rest);
-  impl.deposited_rest -= whole;
-  impl.held += static_cast<std::int64_t>(whole);
-  impl.deposited += static_cast<std::int64_t>(whole);
+  state.pending = deposit;
+  state.deposited_rest += deposit.amount / kDustUnit;
+  const double whole = std::floor(state.deposited_rest);
+  state.deposited_rest -= whole;
+  state.held += static_cast<std::int64_t>(whole);
+  state.deposited += static_cast<std::int64_t>(whole);
 }
 
 /// Puts what is held around the burr, as near as there is room. A rest that is too little for an
 /// even part to each cell waits: looking for room farther out is what costs time.
-void Dust::Impl::place_held() {
+void DustState::place_held() {
   constexpr int kShells = 8;
   for (int shell = 0; shell < kShells && held > 0; ++shell) {
     // A hair less, so that cells that are as far as each other are in the same shell.
@@ -191,7 +192,7 @@ void Dust::Impl::place_held() {
 }
 
 /// Puts even parts of `rest` at this distance from the burr's centre.
-Dust::Impl::Placed Dust::Impl::place_in_shell(double inner, double outer, std::int64_t rest) {
+DustState::Placed DustState::place_in_shell(double inner, double outer, std::int64_t rest) {
   std::vector<std::pair<DustCell, std::int32_t>> free;
   const DustCell middle = cell_at(pending.centre);
   const int extent = static_cast<int>(std::ceil(outer / parameters.cell)) + 1;

@@ -5,14 +5,12 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/geometry/bvh_data.h"
 #include "core/geometry/bvh_kernel.h"
 #include "core/geometry/triangle_distance.h"
-#include "core/geometry/triangle_distance_lanes.h"
 
 namespace haptrial::geometry {
 namespace {
-
-kernel::Lanes3<kernel::OneLane> lanes(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
 /// Single-precision boxes and what they are compared with may be wrong by this much in the frame.
 constexpr double kBoxError = 1e-6;
@@ -35,23 +33,13 @@ double box_distance(const Boxes& boxes, int child, const Eigen::Vector3d& p) {
 
 }  // namespace
 
-ClosestPoint closest_on_triangle(const Eigen::Vector3d& point, const Eigen::Vector3d& corner0,
-                                 const Eigen::Vector3d& corner1, const Eigen::Vector3d& corner2) {
-  const auto nearest = kernel::nearest_on_triangle<kernel::OneLane>(lanes(point), lanes(corner0),
-                                                                    lanes(corner1), lanes(corner2));
-  return {nearest.distance_squared,
-          {nearest.point.x, nearest.point.y, nearest.point.z},
-          -1,
-          static_cast<TrianglePart>(static_cast<int>(nearest.part))};
-}
-
 namespace kernel {
 
 const Kernels& kernels_for(InstructionSet set) {
   return choose(set, baseline_kernels, HAPTRIAL_X86(avx2_kernels), HAPTRIAL_X86(avx512_kernels))();
 }
 
-ClosestPoint closest_in_double(const Bvh::Data& data, const Eigen::Vector3d& point,
+ClosestPoint closest_in_double(const BvhData& data, const Eigen::Vector3d& point,
                                std::int32_t slot) {
   ClosestPoint best;
   const auto measure = [&](std::int32_t at) {
@@ -93,7 +81,7 @@ ClosestPoint closest_in_double(const Bvh::Data& data, const Eigen::Vector3d& poi
 }  // namespace kernel
 
 Bvh::Bvh(const Mesh& mesh, const BvhOptions& options) {
-  auto data = std::make_unique<Data>();
+  auto data = std::make_unique<BvhData>();
   data->kernels = &kernel::kernels_for(options.instruction_set);
   build_hierarchy(mesh, threads_or_all(options.threads), *data);
   data_ = std::move(data);

@@ -2,50 +2,19 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "core/base/instruction_set.h"
+#include "core/geometry/closest_point.h"
 #include "core/geometry/mesh.h"
+#include "core/geometry/ray.h"
 
 namespace haptrial::geometry {
 
-/// Which part of a triangle a point lies on: its face, or an edge or corner of it. Edge i runs from
-/// corner i to corner i + 1.
-enum class TrianglePart : std::uint8_t {
-  kFace,
-  kEdge0,
-  kEdge1,
-  kEdge2,
-  kCorner0,
-  kCorner1,
-  kCorner2
-};
-
-/// The nearest point of a mesh.
-struct ClosestPoint {
-  double distance_squared{std::numeric_limits<double>::infinity()};  // [m²]
-  Eigen::Vector3d point{Eigen::Vector3d::Zero()};                    // on the surface [m]
-  std::int32_t triangle{-1};  // the lowest of those equally near; -1: the mesh has none
-  TrianglePart part{TrianglePart::kFace};
-};
-
-/// The points origin + t direction with begin <= t <= end.
-struct Ray {
-  Eigen::Vector3d origin;     // [m]
-  Eigen::Vector3d direction;  // not zero; need not have unit length
-  double begin{0.0};
-  double end{std::numeric_limits<double>::infinity()};
-};
-
-struct RayHit {
-  double t;
-  std::int32_t triangle;
-  bool entering;  // against the triangle's normal: into a solid whose triangles face outwards
-};
+struct BvhData;
 
 struct BvhOptions {
   int threads{0};  // that build; 0: one per processor. The hierarchy is the same for any number
@@ -97,11 +66,10 @@ class Bvh {
   /// leaves no doubt, else every triangle.
   bool winds_around(const Eigen::Vector3d& point) const;
 
-  struct Data;
-  const Data& data() const noexcept { return *data_; }  // for the kernels
+  const BvhData& data() const noexcept { return *data_; }  // for the kernels
 
  private:
-  std::unique_ptr<const Data> data_;
+  std::unique_ptr<const BvhData> data_;
 };
 
 }  // namespace haptrial::geometry

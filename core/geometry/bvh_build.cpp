@@ -250,7 +250,7 @@ Material make_material(const Mesh& mesh, const Frame& frame) {
 }
 
 void write_leaf(const Material& material, std::size_t at,
-                std::pair<std::uint32_t, std::uint32_t> items, Bvh::Data& data) {
+                std::pair<std::uint32_t, std::uint32_t> items, BvhData& data) {
   Corners* const corners = data.corners.data() + kWidth * at;
   std::int32_t* const ids = data.ids.data() + kWidth * at;
   const int count = static_cast<int>(items.second - items.first);
@@ -273,7 +273,7 @@ void write_leaf(const Material& material, std::size_t at,
 
 }  // namespace
 
-void build_hierarchy(const Mesh& mesh, int threads, Bvh::Data& data) {
+void build_hierarchy(const Mesh& mesh, int threads, BvhData& data) {
   check(mesh);
   if (mesh.triangles.empty()) return;
   data.frame = frame_of(mesh);

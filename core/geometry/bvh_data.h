@@ -10,7 +10,7 @@
 #include <mutex>
 #include <vector>
 
-#include "core/geometry/bvh.h"
+#include "core/geometry/mesh.h"
 
 namespace haptrial::geometry {
 
@@ -92,7 +92,7 @@ namespace kernel {
 struct Kernels;
 }
 
-struct Bvh::Data {
+struct BvhData {
   const kernel::Kernels* kernels{nullptr};
   Frame frame;
   std::vector<Node> nodes;    // the root first; none: no triangles
@@ -110,6 +110,6 @@ struct Bvh::Data {
 };
 
 /// @param threads  >= 1
-void build_hierarchy(const Mesh& mesh, int threads, Bvh::Data& data);
+void build_hierarchy(const Mesh& mesh, int threads, BvhData& data);
 
 }  // namespace haptrial::geometry

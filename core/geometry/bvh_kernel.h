@@ -7,6 +7,7 @@
 
 #include "core/base/instruction_set.h"
 #include "core/geometry/bvh_data.h"
+#include "core/geometry/closest_point.h"
 
 namespace haptrial::geometry {
 
@@ -27,9 +28,9 @@ inline constexpr double kNear = 16.0;
 
 struct Kernels {
   /// The nearest point of the mesh. `slot` of a triangle that may be near, or -1.
-  ClosestPoint (*one)(const Bvh::Data& data, const Eigen::Vector3d& point, std::int32_t slot);
+  ClosestPoint (*one)(const BvhData& data, const Eigen::Vector3d& point, std::int32_t slot);
   /// The same for points in an order in which neighbours follow each other, several at a time.
-  void (*many)(const Bvh::Data& data, const Eigen::Vector3d* points, std::size_t count,
+  void (*many)(const BvhData& data, const Eigen::Vector3d* points, std::size_t count,
                ClosestPoint* answers);
   /// Sixteen triangles, given by their corners [m], into a leaf.
   void (*flatten)(const Corners* corners, const Frame& frame, Leaf& leaf);
@@ -44,7 +45,7 @@ const Kernels& avx512_kernels();
 const Kernels& kernels_for(InstructionSet set);
 
 /// The search in double precision, for any finite point.
-ClosestPoint closest_in_double(const Bvh::Data& data, const Eigen::Vector3d& point,
+ClosestPoint closest_in_double(const BvhData& data, const Eigen::Vector3d& point,
                                std::int32_t slot);
 
 /// Whether the search in single precision serves a point, given in the frame; not where a

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/geometry/bvh.h"
 #include "core/geometry/bvh_kernel.h"
 
 namespace haptrial::geometry {

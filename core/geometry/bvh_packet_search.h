@@ -16,7 +16,7 @@ class PacketSearch {
   using Number = typename Lanes::Number;
 
  public:
-  explicit PacketSearch(const Bvh::Data& data) : data_(data), exact_(data) {}
+  explicit PacketSearch(const BvhData& data) : data_(data), exact_(data) {}
 
   /// @param points, answers  `count` from 1 to kCount, each near (is_near)
   void find(const Eigen::Vector3d* const* points, ClosestPoint* const* answers, int count) {
@@ -174,7 +174,7 @@ class PacketSearch {
     return candidate.distance_squared <= limits_[candidate.lane];
   }
 
-  const Bvh::Data& data_;
+  const BvhData& data_;
   Exact<Doubles> exact_;
   const Eigen::Vector3d* const* points_{nullptr};
   ClosestPoint* const* answers_{nullptr};
@@ -193,7 +193,7 @@ class PacketSearch {
 };
 
 template <class Lanes, class Doubles>
-void search_many(const Bvh::Data& data, const Eigen::Vector3d* points, std::size_t count,
+void search_many(const BvhData& data, const Eigen::Vector3d* points, std::size_t count,
                  ClosestPoint* answers) {
   PacketSearch<Lanes, Doubles> search(data);
   const Eigen::Vector3d* packet[Lanes::kCount];

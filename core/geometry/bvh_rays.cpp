@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/geometry/bvh.h"
 #include "core/geometry/bvh_data.h"
 #include "core/geometry/ray_crossing.h"
 
@@ -40,7 +41,7 @@ struct Slabs {
 
 /// Calls visit(hit) for every crossing; it returns where the ray now ends.
 template <class Visit>
-void traverse(const Bvh::Data& data, const Ray& ray, Visit visit) {
+void traverse(const BvhData& data, const Ray& ray, Visit visit) {
   if (data.nodes.empty() || !ray.origin.allFinite() || !ray.direction.allFinite() ||
       ray.direction.isZero(0.0)) {
     return;

@@ -110,7 +110,7 @@ class Exact {
   static constexpr int kCount = Doubles::kCount;
 
  public:
-  explicit Exact(const Bvh::Data& data) : data_(data) {}
+  explicit Exact(const BvhData& data) : data_(data) {}
 
   /// The answer goes into *best when it is the nearer one, at the latest in finish().
   [[gnu::always_inline]] void add(const Eigen::Vector3d& point, std::int32_t slot,
@@ -152,7 +152,7 @@ class Exact {
     used_ = 0;
   }
 
-  const Bvh::Data& data_;
+  const BvhData& data_;
   alignas(64) double values_[12][kCount]{};  // point and corners
   std::int32_t slots_[kCount];
   ClosestPoint* best_[kCount];
@@ -163,7 +163,7 @@ class Exact {
 template <class Lanes, class Doubles>
 class PointSearch {
  public:
-  PointSearch(const Bvh::Data& data, const Eigen::Vector3d& point)
+  PointSearch(const BvhData& data, const Eigen::Vector3d& point)
       : data_(data), point_(point), exact_(data) {
     const Eigen::Vector3d in_frame = data.frame.to_frame(point);
     float reach = 0.0f;
@@ -242,7 +242,7 @@ class PointSearch {
     used_ = 0;
   }
 
-  const Bvh::Data& data_;
+  const BvhData& data_;
   Eigen::Vector3d point_;
   Exact<Doubles> exact_;
   ClosestPoint best_;
@@ -254,7 +254,7 @@ class PointSearch {
 };
 
 template <class Lanes, class Doubles>
-ClosestPoint search_one(const Bvh::Data& data, const Eigen::Vector3d& point, std::int32_t slot) {
+ClosestPoint search_one(const BvhData& data, const Eigen::Vector3d& point, std::int32_t slot) {
   return PointSearch<Lanes, Doubles>(data, point).find(slot);
 }
 

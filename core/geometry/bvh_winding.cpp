@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/geometry/bvh.h"
 #include "core/geometry/bvh_data.h"
 
 namespace haptrial::geometry {
@@ -39,7 +40,7 @@ struct Cluster {
 /// Fills the dipoles of one subtree, the deepest nodes first.
 class DipoleMaker {
  public:
-  DipoleMaker(const Bvh::Data& data, std::vector<Dipoles>& dipoles)
+  DipoleMaker(const BvhData& data, std::vector<Dipoles>& dipoles)
       : data_(data), dipoles_(dipoles) {}
 
   /// @param at  a node, or ~leaf
@@ -84,7 +85,7 @@ class DipoleMaker {
     dipoles.area[child] = static_cast<float>(part.area);
   }
 
-  const Bvh::Data& data_;
+  const BvhData& data_;
   std::vector<Dipoles>& dipoles_;
 };
 
@@ -96,7 +97,7 @@ struct Winding {
 /// A triangle of area A within r of a dipole's centre, R away from the point, adds A K(x) for a
 /// kernel whose slope is at most 2 / |x|³; moved to the centre it errs by less than 2 A r / (R -
 /// r)³.
-Winding winding(const Bvh::Data& data, const Eigen::Vector3d& point, double accuracy) {
+Winding winding(const BvhData& data, const Eigen::Vector3d& point, double accuracy) {
   const std::vector<Dipoles>& all_dipoles = data.dipoles();
   const Eigen::Vector3f p = data.frame.to_frame(point).cast<float>();
   double sum = 0.0, error = 0.0;
@@ -134,7 +135,7 @@ Winding winding(const Bvh::Data& data, const Eigen::Vector3d& point, double accu
 
 }  // namespace
 
-const std::vector<Dipoles>& Bvh::Data::dipoles() const {
+const std::vector<Dipoles>& BvhData::dipoles() const {
   std::call_once(dipoles_made_, [this] {
     dipoles_.resize(nodes.size());
     DipoleMaker(*this, dipoles_).make(0);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/geometry/bvh_data.h"
+#include "core/geometry/ray.h"
 
 namespace haptrial::geometry {
 

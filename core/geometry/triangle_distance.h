@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "core/geometry/bvh.h"
+#include "core/geometry/closest_point.h"
 
 namespace haptrial::geometry {
 

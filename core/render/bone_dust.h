@@ -4,7 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "core/render/bone_scene.h"
+#include "core/bone/dust_quad.h"
+#include "core/render/bone_camera.h"
+#include "core/render/colour.h"
 #include "core/render/gl.h"
 #include "core/render/gl_buffer.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/bone/surface_cells.h"
-#include "core/render/bone_scene.h"
+#include "core/render/bone_style.h"
 
 namespace haptrial::render {
 

@@ -7,35 +7,16 @@
 #include <span>
 #include <vector>
 
-#include "core/base/tool_state.h"
 #include "core/bone/bone_volume.h"
 #include "core/bone/dust_quad.h"
 #include "core/bone/surface_depths.h"
 #include "core/geometry/mesh.h"
 #include "core/render/bone_camera.h"
+#include "core/render/bone_style.h"
 #include "core/render/colour.h"
 #include "core/render/gl.h"
 
 namespace haptrial::render {
-
-/// How bone looks.
-struct BoneStyle {
-  Colour background{0.08, 0.09, 0.11};
-  Colour hard_bone{0.93, 0.88, 0.78};  // of density 1
-  Colour soft_bone{0.80, 0.58, 0.45};  // of density 0
-  Colour dust{0.95, 0.92, 0.84};
-  double ambient{0.22};           // light from everywhere
-  double diffuse{0.72};           // light at the eye, by the cosine
-  double specular{0.10};          // its reflection, ...
-  double shininess{24.0};         // ... by this power of the cosine
-  double through_length{0.0007};  // the share of a structure's colour in the bone over it is
-  double through_share{0.85};     // share exp(-depth / length) [m]
-  /// The visibility pass on a thread of its own, for a screen. When it ends is then a matter of
-  /// luck, and with it a pixel here and there: pictures that must be the same each time do without.
-  bool background_visibility{false};
-  bool visible_array{true};  // else the complete array always
-  bool kept_layer{true};     // what rests is drawn once; else all in every frame
-};
 
 /// A bone or a piece of one. A new id brings a new surface; an id that is left out of a frame lets
 /// its surface go; the volume of an id stays the same.
@@ -99,14 +80,5 @@ class BoneScene {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// Meshes of tools in the tool frame T, whose origin is the burr's centre or the tube's opening and
-/// whose z axis runs along the handle.
-geometry::Mesh burr_mesh(double diameter, double shaft_diameter, double length);
-geometry::Mesh suction_mesh(double inner_diameter, double outer_diameter, double length);
-/// A rectangle in the plane z = 0 around the origin, seen from both sides.
-geometry::Mesh plane_mesh(double width, double height);
-/// From T to W.
-Eigen::Isometry3d pose_of(const ToolState& tool);
 
 }  // namespace haptrial::render

@@ -1,9 +1,10 @@
+#include "core/render/bone_tools.h"
+
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
 #include "core/geometry/procedural.h"
-#include "core/render/bone_scene.h"
 
 namespace haptrial::render {
 namespace {

@@ -16,6 +16,7 @@
 #include "core/bone/data/load_bone.h"
 #include "core/bone/surface.h"
 #include "core/render/bone_scene.h"
+#include "core/render/bone_tools.h"
 #include "core/render/offscreen.h"
 
 namespace {

@@ -14,6 +14,7 @@
 #include "core/bone/world.h"
 #include "core/geometry/procedural.h"
 #include "core/render/bone_scene.h"
+#include "core/render/bone_tools.h"
 #include "core/render/image.h"
 #include "core/render/offscreen.h"
 

@@ -7,6 +7,7 @@
 #include "core/bone/data/load_bone.h"
 #include "core/bone/surface_depths.h"
 #include "core/render/bone_scene.h"
+#include "core/render/bone_tools.h"
 #include "core/render/offscreen.h"
 #include "experiments/command/commands.h"
 #include "experiments/command/mesh_command.h"

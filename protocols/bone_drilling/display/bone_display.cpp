@@ -1,4 +1,5 @@
 #include "protocols/bone_drilling/display/bone_display.h"
+#include "core/render/bone_tools.h"
 
 #include <utility>
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/bvh.h"
 #include "core/geometry/bvh_kernel.h"
 #include "core/geometry/triangle_distance.h"
 #include "tests/core/geometry/mesh_cases.h"
@@ -36,7 +37,7 @@ TEST(FlatTriangleTest, DistancesErrByLessThanTheSearchCountsOn) {
     SCOPED_TRACE(name);
     for (const InstructionSet set : available_instruction_sets()) {
       const Bvh bvh(mesh, {.instruction_set = set});
-      const Bvh::Data& data = bvh.data();
+      const BvhData& data = bvh.data();
       RandomStream random(51, "slots");
       for (const Eigen::Vector3d& point : hard_points(mesh, 1500, 52)) {
         const Eigen::Vector3d in_frame = data.frame.to_frame(point);

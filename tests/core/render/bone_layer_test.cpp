@@ -8,6 +8,7 @@
 #include "core/base/random.h"
 #include "core/bone/surface.h"
 #include "core/render/bone_scene.h"
+#include "core/render/bone_tools.h"
 #include "core/render/offscreen.h"
 #include "core/render/window.h"
 #include "tests/core/render/bone_changes.h"

@@ -10,6 +10,7 @@
 #include "core/render/bone_dust.h"
 #include "core/render/bone_mesh.h"
 #include "core/render/bone_palette.h"
+#include "core/render/bone_tools.h"
 #include "core/render/offscreen.h"
 #include "tests/core/bone/surface_checks.h"
 #include "tests/core/render/pixels.h"

@@ -4,9 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/bone/dust.h"
 #include "core/bone/dust_bones_internal.h"
 #include "core/bone/dust_grid_internal.h"
+#include "core/bone/dust_parameters.h"
+#include "core/bone/dust_surroundings.h"
 
 namespace haptrial::bone {
 
@@ -25,7 +26,8 @@ inline constexpr int kDown = 0;
 inline constexpr double kDustUnit = 1.0 / (1 << 20);    // of an amount [solid voxels]
 inline constexpr std::int64_t kWorthPlacing = 1 << 10;  // less that is held waits [units]
 
-struct Dust::Impl {
+/// All that a Dust holds.
+struct DustState {
   using Ref = DustGrid::Ref;
   static constexpr Ref kNone = DustGrid::kNone;
   // Of a cell. Passages are found when they are asked for, until the bone around changes.
@@ -53,7 +55,7 @@ struct Dust::Impl {
     std::int32_t amount;
   };
 
-  explicit Impl(const DustParameters& parameters);
+  explicit DustState(const DustParameters& parameters);
 
   // Places
   Eigen::Vector3d centre(const DustCell& cell) const;

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::bone {
+
+struct DustParameters {
+  double cell{0.5e-3};           // edge of a cell > 0 [m]
+  double voxel{0.5e-3};          // edge of the voxels in whose volumes dust is counted > 0 [m]
+  double bulking{1.6};           // loose dust takes this many times the room of solid bone >= 1
+  double fall_speed{0.15};       // > 0 [m/s]
+  double slope{0.65};            // of a pile at rest, rise over run, 0.05 to 0.7
+  double suction_rate{1.5e-6};   // solid volume a second > 0 [m3/s]
+  double suction_reach{2.5e-3};  // from the nozzle's mouth > 0 [m]
+  Eigen::Vector3d up{Eigen::Vector3d::UnitY()};  // against gravity in W, of any length but 0
+  /// Dust that leaves this box in W has fallen out.
+  Eigen::AlignedBox3d region{Eigen::Vector3d::Constant(-0.15), Eigen::Vector3d::Constant(0.15)};
+  int max_blocks{4096};  // of 512 cells: bounds the memory, 1 to 100,000
+};
+
+/// Reads the keys of a [dust] table: cell, bulking, fall_speed, slope, suction_rate,
+/// suction_reach.
+DustParameters read_dust_parameters(Table& table);
+
+}  // namespace haptrial::bone
