@@ -3,13 +3,13 @@
 // What a Bvh is made of; between bvh.cpp, its builder and the kernels.
 
 #include <Eigen/Core>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <vector>
 
+#include "core/geometry/closest_point.h"
 #include "core/geometry/mesh.h"
 
 namespace haptrial::geometry {
@@ -55,8 +55,6 @@ struct alignas(64) Leaf {
   float row[3][4][kWidth];
   float leg[2][kWidth], dx[2][kWidth], dy[2][kWidth], length[2][kWidth];
 };
-
-using Corners = std::array<Eigen::Vector3d, 3>;
 
 /// An array whose elements start unset: a builder writes each of them once.
 template <class T>

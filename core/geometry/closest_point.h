@@ -1,10 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <limits>
 
 namespace haptrial::geometry {
+
+using Corners = std::array<Eigen::Vector3d, 3>;  // of a triangle [m]
 
 /// Which part of a triangle a point lies on: its face, or an edge or corner of it. Edge i runs from
 /// corner i to corner i + 1.

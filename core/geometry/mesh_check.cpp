@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "core/geometry/mesh_bounds.h"
 #include "core/geometry/mesh_edges_internal.h"
-#include "core/geometry/voxel_grid.h"
 
 namespace haptrial::geometry {
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "core/geometry/bvh_data.h"
+#include "core/geometry/closest_point.h"
 #include "core/geometry/ray.h"
 
 namespace haptrial::geometry {

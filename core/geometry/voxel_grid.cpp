@@ -9,16 +9,6 @@
 
 namespace haptrial::geometry {
 
-Eigen::AlignedBox3d bounds(const Mesh& mesh) {
-  Eigen::AlignedBox3d box;
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::int32_t corner : triangle) {
-      box.extend(mesh.vertices[corner]);
-    }
-  }
-  return box;
-}
-
 VoxelGrid make_grid(const Eigen::AlignedBox3d& box, int resolution, int margin) {
   constexpr int kMaxResolution = 20000;
   constexpr double kLeastSpacing = 1e-12;  // of the farthest coordinate: doubles tell 1e-16 apart

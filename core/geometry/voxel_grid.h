@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/geometry/mesh.h"
+#include "core/geometry/mesh_bounds.h"
 
 namespace haptrial::geometry {
 
@@ -47,9 +47,6 @@ struct VoxelSolid {
   VoxelGrid grid;
   std::vector<VoxelLabel> labels;  // grid.count()
 };
-
-/// The box around the vertices that triangles use; empty where there are none.
-Eigen::AlignedBox3d bounds(const Mesh& mesh);
 
 /// The grid with `resolution` voxels along the longest side of `box`, which its outermost voxels
 /// touch there; the other sides are covered and centred. `margin` more voxels lie on every side.
