@@ -1,38 +1,16 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "analysis/alignment_cost.h"
+#include "analysis/alignment_curves.h"
 #include "analysis/alignment_isa.h"
 #include "analysis/alignment_options.h"
 
 namespace haptrial::analysis {
-
-/// A force curve and its slope on a common time base. Views only: the caller owns the samples.
-struct CurveView {
-  std::span<const double> force;  // (samples) [N]
-  std::span<const double> slope;  // (samples) [N/s]
-};
-
-struct AlignmentPair {
-  CurveView target;
-  CurveView applied;
-};
-
-struct PathPoint {
-  std::uint32_t target{0};   // i
-  std::uint32_t applied{0};  // j
-  bool operator==(const PathPoint&) const = default;
-};
-
-struct Alignment {
-  double cost{0.0};             // sum of weighted e along the path, and of the penalties [1]
-  double weight{0.0};           // sum of the weights of e; path.size() in the published form
-  std::vector<PathPoint> path;  // from (0,0) to (N-1,M-1) unless an end is open
-};
 
 /// Pairs two curves at minimum cost, every path searched that the options allow, and keeps its
 /// workspace: after the largest sizes have been seen once, nothing is allocated but a result that
@@ -68,8 +46,8 @@ class Aligner {
   /// Pairs that one sweep of align_batch() takes.
   std::size_t lanes() const;
 
-  static constexpr std::size_t kMaxSamples = 32768;
-  static constexpr double kMaxError = 1e12;  // keeps every sum far inside single precision
+  static constexpr std::size_t kMaxSamples = kMostAlignmentSamples;
+  static constexpr double kMaxError = kLargestAlignmentError;
 
  private:
   struct Workspace;
@@ -81,11 +59,5 @@ Alignment align(const CurveView& target, const CurveView& applied, const Alignme
 /// @param jobs  threads >= 1; the results do not depend on it.
 std::vector<Alignment> align_batch(std::span<const AlignmentPair> pairs,
                                    const AlignmentOptions& options, int jobs = 1);
-
-/// The cost of a given path in double precision and the weights in it, as Alignment has them.
-/// Preconditions: options without a problem; the path lies inside the curves.
-double path_cost(const CurveView& target, const CurveView& applied, const AlignmentOptions& options,
-                 std::span<const PathPoint> path);
-double path_weight(StepPattern pattern, std::span<const PathPoint> path);
 
 }  // namespace haptrial::analysis

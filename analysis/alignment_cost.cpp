@@ -1,6 +1,6 @@
 // What a path costs, summed in double precision.
 
-#include "analysis/alignment.h"
+#include "analysis/alignment_cost.h"
 #include "analysis/alignment_error.h"
 
 namespace haptrial::analysis {

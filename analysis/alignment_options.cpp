@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "analysis/alignment.h"
-
 namespace haptrial::analysis {
 namespace {
 
@@ -35,7 +33,7 @@ bool doubles_straight(StepPattern pattern) {
 }
 
 std::string problem_of(const AlignmentOptions& o) {
-  const auto is_bounded = [](double x) { return x >= 0.0 && x <= Aligner::kMaxError; };
+  const auto is_bounded = [](double x) { return x >= 0.0 && x <= kLargestAlignmentError; };
   const auto bad = [](const char* name, double found) {
     return fmt::format("{} is {}; allowed: a finite number of at least 0", name, found);
   };

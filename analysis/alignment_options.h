@@ -47,6 +47,10 @@ struct AlignmentOptions {
   bool open_end{false};    // likewise at the end
 };
 
+/// The largest weight and penalty, and the largest error of a pair: keeps every sum far inside
+/// single precision.
+inline constexpr double kLargestAlignmentError = 1e12;
+
 /// A sentence about options that are out of bounds or make no sense together; else empty.
 std::string problem_of(const AlignmentOptions& options);
 

@@ -257,7 +257,7 @@ Band::Band(std::size_t rows, std::size_t columns, std::optional<std::size_t> win
       b_(static_cast<std::int64_t>(columns) - 1),
       reach_(2 * a_ * b_) {
   if (!window) return;
-  const auto widest = static_cast<std::int64_t>(std::min(*window, Aligner::kMaxSamples));
+  const auto widest = static_cast<std::int64_t>(std::min(*window, kMostAlignmentSamples));
   reach_ = std::min(reach_, std::max(2 * widest * std::min(a_, b_), std::max(a_, b_)));
 }
 

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
-#include "analysis/alignment.h"
 #include "analysis/alignment_buffer.h"
+#include "analysis/alignment_curves.h"
 #include "analysis/alignment_kernel.h"
+#include "analysis/alignment_options.h"
 
 namespace haptrial::analysis {
 

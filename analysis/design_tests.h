@@ -1,48 +1,15 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/analysis_plan.h"
-#include "analysis/bootstrap.h"
+#include "analysis/compared_sides.h"
+#include "analysis/design_effects.h"
 #include "analysis/design_table.h"
-#include "analysis/effect_size.h"
-#include "analysis/permutation_test.h"
-#include "analysis/rank_anova.h"
-#include "analysis/wilcoxon.h"
 
 namespace haptrial::analysis {
-
-/// Whether a factor, or two together, make a difference: the F test that the design calls for.
-struct EffectTest {
-  std::string factor;  // "condition", "group × condition"
-  std::string test;    // its name
-  double f{0.0};
-  double df_effect{0.0};
-  double df_error{0.0};
-  double p{0.0};  // corrected after Greenhouse and Geisser where `epsilon` is given
-  std::optional<double> epsilon;
-  Defined<EffectSize> size{Undefined{"nothing was measured"}};  // partial eta squared
-};
-
-/// Two sides of a design compared: participants' means, paired where the same participants have
-/// both, and Welch's test where they are different people.
-struct SideTest {
-  PlannedTest sides;
-  bool paired{true};
-  std::size_t count_a{0};  // participants; pairs where paired
-  std::size_t count_b{0};
-  Defined<TTest> t{Undefined{"nothing was compared"}};
-  Defined<double> holm{Undefined{"nothing was compared"}};      // p of t over the family
-  Defined<EffectSize> size{Undefined{"nothing was compared"}};  // d_z where paired, else d
-  Defined<RankTest> ranks{Undefined{"nothing was compared"}};   // Wilcoxon, or Mann and Whitney
-  Defined<double> ranks_holm{Undefined{"nothing was compared"}};
-  Defined<PermutationTest> permutation{Undefined{"nothing was resampled"}};
-  Defined<double> permutation_holm{Undefined{"nothing was resampled"}};
-  Defined<BootstrapInterval> bootstrap{Undefined{"nothing was resampled"}};  // of the difference
-};
 
 /// With fewer participants bootstrap intervals are too narrow (docs/algorithms/statistics.md), and
 /// reports do not print them.
@@ -80,8 +47,5 @@ DesignTests design_tests(const DesignTable& table, const AnalysisPlan& plan,
 /// @throws InputError where a plan names what the table does not have, or compares trials with
 /// themselves.
 void check_plan(const DesignTable& table, const AnalysisPlan& plan);
-
-/// "paired t" or "Welch's t".
-std::string name_of_test(const SideTest& test);
 
 }  // namespace haptrial::analysis

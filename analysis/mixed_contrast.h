@@ -2,7 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "analysis/mixed_model.h"
+#include "analysis/defined.h"
+#include "analysis/fitted_mixed_model.h"
 
 namespace haptrial::analysis {
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "analysis/report_parts.h"
+#include "analysis/study_summary.h"
 #include "analysis/wording.h"
 
 namespace haptrial::analysis {

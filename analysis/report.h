@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "analysis/document.h"
-#include "analysis/study.h"
+#include "analysis/study_result.h"
 
 namespace haptrial::analysis {
 

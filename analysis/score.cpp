@@ -21,7 +21,7 @@ struct Prepared {
   AlignmentPair views() const { return {{target, target_slope}, {applied, applied_slope}}; }
 };
 
-/// The alignment takes no larger values (Aligner::kMaxError), and no device makes them.
+/// The alignment takes no larger values (kLargestAlignmentError), and no device makes them.
 void check_size(std::span<const double> values, double power, double weight, const char* name) {
   double largest = 0.0;
   for (const double value : values) largest = std::max(largest, std::abs(value));

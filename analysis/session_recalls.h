@@ -1,13 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "analysis/defined.h"
 #include "analysis/path_places.h"
 #include "analysis/score.h"
-#include "analysis/study.h"
+#include "analysis/session_summary.h"
 
 namespace haptrial::record {
 class SessionReader;

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "analysis/study.h"
+#include "analysis/study_result.h"
 
 namespace haptrial::analysis {
 

@@ -142,14 +142,6 @@ void add_blocks(StudyStatistics& study, std::span<const TrialScore> scores) {
 
 }  // namespace
 
-StudyQuestions questions_of(const std::vector<std::string>& factors, const AnalysisPlan& plan,
-                            int threads) {
-  StudyQuestions questions{plan, factors};
-  questions.resampling.count = 9999;
-  questions.resampling.threads = threads;
-  return questions;
-}
-
 StudyStatistics study_statistics(std::span<const TrialScore> scores,
                                  const StudyQuestions& questions) {
   StudyStatistics study;

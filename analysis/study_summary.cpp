@@ -1,9 +1,9 @@
+#include "analysis/study_summary.h"
+
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "analysis/design_lines.h"
-#include "analysis/study.h"
+#include "analysis/study_result.h"
 #include "analysis/wording.h"
 
 namespace haptrial::analysis {
@@ -17,11 +17,6 @@ std::string line_of(const ConditionSummary& s, const std::string& participants) 
 }
 
 }  // namespace
-
-bool StudyResult::simulated() const {
-  return std::any_of(sessions.begin(), sessions.end(),
-                     [](const auto& session) { return session.info.simulated; });
-}
 
 std::vector<std::string> summary_lines(const StudyResult& study) {
   const auto& statistics = study.statistics;

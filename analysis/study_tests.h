@@ -2,7 +2,9 @@
 
 #include <span>
 
-#include "analysis/study_statistics.h"
+#include "analysis/study_outcome.h"
+#include "analysis/study_questions.h"
+#include "analysis/trial_score.h"
 
 namespace haptrial::analysis {
 

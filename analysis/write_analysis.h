@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "analysis/study.h"
+#include "analysis/study_result.h"
 
 namespace haptrial::analysis {
 

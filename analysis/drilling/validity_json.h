@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "analysis/drilling/validity.h"
+#include "analysis/drilling/validity_findings.h"
 
 namespace haptrial::analysis::drilling {
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "analysis/drilling/validity_figures.h"
+#include "analysis/drilling/validity_summary.h"
 #include "analysis/drilling/validity_words.h"
 #include "analysis/wording.h"
 

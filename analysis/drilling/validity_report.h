@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "analysis/document.h"
-#include "analysis/drilling/validity_study.h"
+#include "analysis/drilling/validity_result.h"
 
 namespace haptrial::analysis::drilling {
 

@@ -5,22 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "analysis/drilling/validity.h"
+#include "analysis/drilling/metrics.h"
+#include "analysis/drilling/procedure.h"
+#include "analysis/drilling/validity_result.h"
 
 namespace haptrial::record {
 class SessionReader;
 }
 
 namespace haptrial::analysis::drilling {
-
-/// A picture for the report, as a PNG file.
-struct StudyPicture {
-  std::string name;  // letters, digits, '-' and '_'
-  std::string title;
-  std::string caption;
-  std::string alt;
-  std::filesystem::path png;
-};
 
 /// A study to be analysed.
 struct ValidityStudy {
@@ -39,22 +32,9 @@ struct ValidityStudy {
   int threads{1};
 };
 
-struct ValidityResult {
-  std::string title;
-  std::vector<ProcedureSummary> procedures;
-  NearBins bins;
-  std::string structure;  // whose force profile is drawn; empty: none
-  Validity validity;
-  std::vector<StudyPicture> pictures;
-  std::vector<std::string> remarks;  // sentences about the files, for the report
-};
-
 /// Reads every session, computes its metrics and the statistics.
 /// @throws InputError where a file or the ratings are damaged or do not fit the plan.
 ValidityResult analyze(const ValidityStudy& study);
-
-/// The results in a few lines, for the command and the head of the report.
-std::vector<std::string> summary_lines(const ValidityResult& result);
 
 /// report.html, report.md, statistics.json, metrics.csv and figures (SVG and PNG) into a folder,
 /// all or none. @throws InputError, RunError as Staging and draw_figures() do.

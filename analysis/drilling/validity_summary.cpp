@@ -1,7 +1,8 @@
+#include "analysis/drilling/validity_summary.h"
+
 #include <fmt/format.h>
 
 #include "analysis/drilling/validity_figures.h"
-#include "analysis/drilling/validity_study.h"
 #include "analysis/drilling/validity_words.h"
 #include "analysis/wording.h"
 

@@ -6,7 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/drilling/validity.h"
+#include "analysis/drilling/metrics.h"
+#include "analysis/drilling/validity_findings.h"
 
 namespace haptrial::analysis::drilling {
 
@@ -36,6 +37,9 @@ std::pair<std::vector<double>, std::vector<double>> paired(const ValueTable& a,
 
 /// (groups), then "all experts" and "all novices".
 std::vector<GroupValues> group_values(const ValueTable& table, const ValidityPlan& plan);
+
+/// Which end a quantity of experts is expected at: a one-tailed test looks there.
+Tail tail_of(Expected experts);
 
 Contrast contrast(const ValueTable& table, Expected experts);
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "analysis/drilling/validity.h"
+#include "analysis/drilling/validity_findings.h"
 
 namespace haptrial::analysis::drilling {
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "analysis/exchange/bids_label.h"
 #include "analysis/exchange/columns.h"
 #include "analysis/exchange/delimited.h"
 #include "core/record/schema.h"

@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/exchange/export_bids.h"
+#include "analysis/exchange/bids_options.h"
+#include "analysis/exchange/export_sessions.h"
 #include "analysis/exchange/sample_text.h"
 
 // The texts of a BIDS data set; for export_bids.cpp only.

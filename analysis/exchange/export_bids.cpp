@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "analysis/exchange/bids_label.h"
 #include "analysis/exchange/bids_text.h"
 #include "analysis/exchange/gzip_file.h"
 #include "analysis/exchange/new_folder.h"
@@ -135,16 +136,6 @@ void write_whole(const NewFolder& out, std::span<const Session> sessions,
 }
 
 }  // namespace
-
-std::string bids_label(std::string_view text) {
-  std::string label;
-  for (const char c : text) {
-    if ((c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z')) {
-      label += c;
-    }
-  }
-  return label;
-}
 
 BidsSummary export_bids(std::span<const fs::path> files, const fs::path& folder,
                         const BidsOptions& options, const Watch& watch) {

@@ -1,20 +1,14 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
-#include <string>
-#include <vector>
 
+#include "analysis/exchange/bids_options.h"
 #include "analysis/exchange/export_sessions.h"
 
 namespace haptrial::exchange {
-
-struct BidsOptions {
-  std::string name{};                  // of the data set; empty: the experiment's
-  std::vector<std::string> authors{};  // as the data set is to name them
-  std::string program_version{};       // of the exporting program
-  int jobs{1};
-};
 
 struct BidsSummary {
   std::size_t subjects{0};
@@ -34,8 +28,5 @@ struct BidsSummary {
 BidsSummary export_bids(std::span<const std::filesystem::path> files,
                         const std::filesystem::path& folder, const BidsOptions& options,
                         const Watch& watch);
-
-/// The letters and digits of a name, which is all that a label of the data set may have.
-std::string bids_label(std::string_view text);
 
 }  // namespace haptrial::exchange

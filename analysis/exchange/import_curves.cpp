@@ -4,8 +4,9 @@
 
 #include "analysis/exchange/import_checks.h"
 #include "analysis/exchange/import_trials.h"
+#include "analysis/recall_picture.h"
 #include "analysis/score.h"
-#include "analysis/study_parts.h"
+#include "analysis/study_statistics.h"
 #include "core/base/error.h"
 
 namespace haptrial::exchange {

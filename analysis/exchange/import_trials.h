@@ -1,10 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "analysis/curve_csv.h"
-#include "analysis/exchange/import_curves.h"
+#include "analysis/exchange/curve_study.h"
+#include "analysis/trial_score.h"
 
 namespace haptrial::exchange {
 

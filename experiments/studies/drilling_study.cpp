@@ -7,6 +7,7 @@
 #include <optional>
 #include <system_error>
 
+#include "analysis/drilling/validity_summary.h"
 #include "analysis/drilling/visibility_picture.h"
 #include "core/base/error.h"
 #include "core/record/session_reader.h"

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "analysis/study.h"
+#include "analysis/study_summary.h"
 #include "analysis/write_analysis.h"
 #include "core/base/error.h"
 #include "core/base/table.h"

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/identity_json_internal.h"
-#include "analysis/study.h"
+#include "analysis/study_result.h"
 
 namespace haptrial::analysis {
 namespace {

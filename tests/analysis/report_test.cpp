@@ -10,6 +10,7 @@
 #include "analysis/html.h"
 #include "analysis/study_figures.h"
 #include "analysis/study_json.h"
+#include "analysis/study_summary.h"
 #include "analysis/wording.h"
 #include "tests/analysis/example_study.h"
 

@@ -12,6 +12,7 @@
 #include "analysis/score.h"
 #include "analysis/scores_csv.h"
 #include "analysis/study_json.h"
+#include "analysis/study_summary.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "tests/analysis/synthetic_session.h"

@@ -8,6 +8,7 @@
 #include "analysis/exchange/import_curves.h"
 #include "analysis/score_parameters.h"
 #include "analysis/study.h"
+#include "analysis/study_summary.h"
 #include "analysis/write_analysis.h"
 #include "core/base/error.h"
 #include "experiments/command/arguments.h"

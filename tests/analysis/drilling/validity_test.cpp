@@ -12,6 +12,7 @@
 #include "analysis/drilling/validity_figures.h"
 #include "analysis/drilling/validity_json.h"
 #include "analysis/drilling/validity_report.h"
+#include "analysis/drilling/validity_summary.h"
 #include "analysis/drilling/validity_table.h"
 #include "analysis/wording.h"
 #include "core/base/error.h"

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "analysis/exchange/bids_label.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "tests/analysis/exchange/small_session.h"

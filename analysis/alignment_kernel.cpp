@@ -1,5 +1,3 @@
-#include "analysis/alignment_isa.h"
-
 #include "analysis/alignment_kernel.h"
 
 namespace haptrial::analysis::kernel {
