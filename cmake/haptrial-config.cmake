@@ -1,5 +1,5 @@
 # find_package(haptrial): targets haptrial::NAME, one for each module (docs/architecture.md), such
-# as haptrial::geometry.
+# as haptrial::geometry_bvh.
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 3.4 NO_MODULE)
 find_dependency(fmt)
@@ -10,7 +10,8 @@ find_dependency(meshoptimizer)
 find_dependency(SUNDIALS)
 find_dependency(PkgConfig)
 foreach(library hdf5:hdf5-serial gsl:gsl osmesa:osmesa freetype:freetype2 glfw:glfw3
-                libdeflate:libdeflate tomlplusplus:tomlplusplus)
+                libdeflate:libdeflate tomlplusplus:tomlplusplus httplib:cpp-httplib
+                sndfile:sndfile alsa:alsa)
   string(REPLACE ":" ";" library ${library})
   list(GET library 0 name)
   list(GET library 1 package)

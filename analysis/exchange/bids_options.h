@@ -1,16 +1,27 @@
 #pragma once
 
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "core/base/definition/definition_changes.h"
+#include "core/record/rows/session_types.h"
+
 namespace haptrial::exchange {
+
+/// What the definitions of two sessions differ in; binding changes make them two studies.
+using CompareDefinitions = std::function<DefinitionChanges(const record::SessionInfo& first,
+                                                           const record::SessionInfo& second)>;
 
 /// How a BIDS data set is to be written.
 struct BidsOptions {
   std::string name{};                  // of the data set; empty: the experiment's
   std::vector<std::string> authors{};  // as the data set is to name them
   std::string program_version{};       // of the exporting program
+  std::vector<std::pair<std::string, std::string>> phases{};  // of protocols, with meanings
   int jobs{1};
+  CompareDefinitions compare{};  // none: every difference is binding
 };
 
 }  // namespace haptrial::exchange

@@ -10,9 +10,10 @@
 
 #include "analysis/exchange/bids_label.h"
 #include "analysis/exchange/columns.h"
-#include "analysis/exchange/delimited.h"
-#include "core/record/schema.h"
-#include "core/record/session_reader.h"
+#include "analysis/files/delimited.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/rows/session_tables.h"
+#include "core/record/table/schema.h"
 
 namespace haptrial::exchange::bids {
 namespace {
@@ -49,9 +50,9 @@ bool any_simulated(std::span<const Session> sessions) {
                      [](const auto& s) { return s.source.info.simulated; });
 }
 
-bool any_drills(std::span<const Session> sessions) {
+bool any_stimuli(std::span<const Session> sessions) {
   return std::any_of(sessions.begin(), sessions.end(),
-                     [](const auto& s) { return s.source.drills; });
+                     [](const auto& s) { return s.source.stimuli; });
 }
 
 constexpr const char* kSimulated =
@@ -116,8 +117,8 @@ std::vector<ColumnDoc> participant_docs(std::span<const Session> sessions) {
 
 // ---- events
 
-std::vector<ColumnDoc> event_docs(bool drillings) {
-  const auto pass = [](const char* name) { return doc_of(record::trials_schema(), name); };
+std::vector<ColumnDoc> event_docs(const Levels& phases) {
+  const auto pass = [](const char* name) { return doc_of(record::trials_table().schema(), name); };
   std::vector<ColumnDoc> docs{
       {"onset", "s",
        "of the pass or event since the first tick of the session: tick number / rate"},
@@ -127,7 +128,7 @@ std::vector<ColumnDoc> event_docs(bool drillings) {
        "the ideal movement and force of the block, below stimuli/: block, time [s] since the run "
        "began, position_x, position_y, position_z [m], force [N]"},
       {"pass", "", "number of the pass from 0, as in the recording"},
-      phase_doc(drillings),
+      phase_doc(phases),
       pass("trial"),
       pass("block"),
       pass("repetition"),
@@ -135,7 +136,7 @@ std::vector<ColumnDoc> event_docs(bool drillings) {
       pass("practice"),
       pass("status"),
       pass("stimulus_seed"),
-      {"run_onset", "s", "when the run along the trajectory, or the drilling, began"},
+      {"run_onset", "s", "when the run began"},
       {"run_duration", "s", "how long it ran"},
       {"event", "", "what happened, in one word; n/a for a pass"},
       {"text", "", "details of the event"}};
@@ -222,14 +223,11 @@ std::string readme(std::span<const Session> sessions) {
   if (any_simulated(sessions)) {
     text = std::string(kSimulated) + "\n\n";
   }
-  const bool drillings = any_drills(sessions);
-  const char* passes = drillings ? "drillings (a trial has more passes if it was interrupted)"
-                                 : "passes along the trajectory (a trial is a training pass and a "
-                                   "test pass)";
+  const bool targets = any_stimuli(sessions);
+  const char* passes = "passes (a trial has one of each phase, more if it was interrupted)";
   const char* stimuli =
-      drillings ? "" : "stimuli/           the ideal movement and target force of each block\n";
-  const char* force =
-      drillings ? "" : " The learnt force points down\nand is given as a magnitude.";
+      targets ? "stimuli/           the ideal movement and target force of each block\n" : "";
+  const char* force = targets ? " The learnt force points down\nand is given as a magnitude." : "";
   text += fmt::format(
       "{}: a force-feedback experiment, exported from session files of haptrial.\n\n"
       "beh/*_events.tsv   {}\n"
@@ -302,15 +300,15 @@ std::string events_table(const Session& session, const record::SessionReader& re
   }
   std::stable_sort(lines.begin(), lines.end(),
                    [](const auto& a, const auto& b) { return a.onset < b.onset; });
-  std::string text = heading(event_docs(session.source.drills), Delimited::kTsv);
+  std::string text = heading(event_docs({}), Delimited::kTsv);
   for (const auto& line : lines) {
     text += line.text;
   }
   return text;
 }
 
-std::string events_sidecar(std::span<const Session> sessions) {
-  return sidecar_of(event_docs(any_drills(sessions)));
+std::string events_sidecar(const BidsOptions& options) {
+  return sidecar_of(event_docs(options.phases));
 }
 
 std::string recording_sidecar(const Session& session, const WrittenSamples& samples) {

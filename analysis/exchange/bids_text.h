@@ -35,7 +35,7 @@ std::string scans_table(const Session& session);
 /// One row for each pass and each event, by time.
 std::string events_table(const Session& session, const record::SessionReader& reader,
                          const WrittenSamples& samples);
-std::string events_sidecar(std::span<const Session> sessions);
+std::string events_sidecar(const BidsOptions& options);
 std::string recording_sidecar(const Session& session, const WrittenSamples& samples);
 
 }  // namespace haptrial::exchange::bids

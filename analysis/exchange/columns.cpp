@@ -2,7 +2,8 @@
 
 #include <stdexcept>
 
-#include "core/record/schema.h"
+#include "core/record/rows/session_tables.h"
+#include "core/record/table/schema.h"
 
 namespace haptrial::exchange {
 namespace {
@@ -16,7 +17,7 @@ std::vector<ColumnDoc> all_of(const record::TableSchema& schema) {
 }
 
 std::vector<ColumnDoc> samples() {
-  std::vector<ColumnDoc> docs = all_of(record::samples_schema());
+  std::vector<ColumnDoc> docs = all_of(record::samples_table().schema());
   for (auto& doc : docs) {
     if (doc.name == "time_ns") {
       doc = {"time", "s", "as the clock had it, since the first tick of the session"};
@@ -27,7 +28,7 @@ std::vector<ColumnDoc> samples() {
       doc.levels = {{"0", "idle"},
                     {"1", "approach to the start of the trajectory"},
                     {"2", "wait there"},
-                    {"3", "run along the trajectory, the part that is scored; or drilling"},
+                    {"3", "the run, the part that is scored"},
                     {"4", "return"}};
     } else if (doc.name == "saturated") {
       doc.levels = {{"0", "no"}, {"1", "the force limit was reached"}};
@@ -51,12 +52,9 @@ ColumnDoc doc_of(const record::TableSchema& schema, std::string_view column) {
   throw std::invalid_argument(std::string("no column ") + std::string(column));
 }
 
-ColumnDoc phase_doc(bool drillings) {
-  ColumnDoc doc = doc_of(record::trials_schema(), "phase");
-  doc.levels = {{"training", "the pattern is presented"}, {"test", "the pattern is recalled"}};
-  if (drillings) {
-    doc.levels.emplace_back("drilling", "bone is drilled");
-  }
+ColumnDoc phase_doc(const Levels& phases) {
+  ColumnDoc doc = doc_of(record::trials_table().schema(), "phase");
+  doc.levels = phases;
   return doc;
 }
 
@@ -76,7 +74,7 @@ const std::vector<ColumnDoc>& sample_docs() {
 }
 
 const std::vector<ColumnDoc>& stimulus_docs() {
-  static const std::vector<ColumnDoc> docs = all_of(record::stimuli_schema());
+  static const std::vector<ColumnDoc> docs = all_of(record::stimuli_table().schema());
   return docs;
 }
 

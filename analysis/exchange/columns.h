@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/exchange/delimited.h"
+#include "analysis/files/delimited.h"
 
 namespace haptrial::record {
 struct TableSchema;
@@ -13,20 +13,22 @@ struct TableSchema;
 
 namespace haptrial::exchange {
 
+using Levels = std::vector<std::pair<std::string, std::string>>;  // value, meaning
+
 /// What a column of an exported table means.
 struct ColumnDoc {
   std::string name;
   std::string unit;  // "" for a text or a pure number
   std::string description;
-  std::vector<std::pair<std::string, std::string>> levels{};  // value, meaning
+  Levels levels{};
 };
 
 /// The column of that name as the session file describes it.
 /// @throws std::invalid_argument when the schema has none.
 ColumnDoc doc_of(const record::TableSchema& schema, std::string_view column);
 
-/// The phase of a pass. @param drillings  whether there are any
-ColumnDoc phase_doc(bool drillings);
+/// The phase of a pass. @param phases  that protocols have, each with its meaning
+ColumnDoc phase_doc(const Levels& phases);
 
 /// The names as the heading of a table.
 std::string heading(const std::vector<ColumnDoc>& docs, Delimited kind);

@@ -8,11 +8,11 @@
 
 #include "analysis/exchange/bids_label.h"
 #include "analysis/exchange/bids_text.h"
-#include "analysis/exchange/gzip_file.h"
-#include "analysis/exchange/new_folder.h"
-#include "core/base/definition_changes.h"
+#include "analysis/files/gzip_file.h"
+#include "analysis/files/new_folder.h"
 #include "core/base/error.h"
-#include "core/record/session_reader.h"
+#include "core/record/read/definition_versions.h"
+#include "core/record/read/session_reader.h"
 
 namespace haptrial::exchange {
 namespace {
@@ -39,11 +39,11 @@ std::string task_of(const ExportSession& session) {
   return label.empty() ? label_of("experiment", file.stem().string(), session.file) : label;
 }
 
-void refuse_other_study(const ExportSession& session, const ExportSession& first) {
-  const bool virtual_hand = session.info.device == "virtual" || first.info.device == "virtual";
+void refuse_other_study(const ExportSession& session, const ExportSession& first,
+                        const CompareDefinitions& compare) {
   const DefinitionChanges changes =
-      definition_changes(first.info.definition, session.info.definition,
-                         virtual_hand ? Hand::kVirtual : Hand::kPerson);
+      compare ? compare(first.info, session.info)
+              : definition_changes(first.info.definition, session.info.definition, {});
   if (!changes.same_study()) {
     throw InputError(
         fmt::format("{}: was recorded with another definition than {}: {}; export each study into "
@@ -52,14 +52,15 @@ void refuse_other_study(const ExportSession& session, const ExportSession& first
   }
 }
 
-std::vector<Session> named_sessions(std::span<const fs::path> files) {
+std::vector<Session> named_sessions(std::span<const fs::path> files,
+                                    const CompareDefinitions& compare) {
   std::vector<Session> sessions;
   std::map<std::string, std::string> subjects;  // label to subject
   const std::vector<ExportSession> sources = sessions_to_export(files);
   const bool several =
       std::any_of(sources.begin(), sources.end(), [](const auto& s) { return s.of > 1; });
   for (const auto& source : sources) {
-    refuse_other_study(source, sources.front());
+    refuse_other_study(source, sources.front(), compare);
     const std::string label = label_of("subject", source.info.subject, source.file);
     const auto [twin, is_new] = subjects.emplace(label, source.info.subject);
     if (!is_new && twin->second != source.info.subject) {
@@ -107,9 +108,12 @@ void write_definitions(const NewFolder& out, std::span<const Session> sessions) 
   const std::string stem = "code/" + sessions.front().task;
   std::set<std::string> written;
   for (const Session& session : sessions) {
-    if (const auto& text = session.source.info.definition; written.insert(text).second) {
-      const std::string number = written.size() > 1 ? fmt::format("-{}", written.size()) : "";
-      out.write(stem + number + ".toml", text);
+    const record::SessionReader reader(session.source.file);
+    for (const auto& version : record::definition_versions(reader)) {
+      if (written.insert(version.text).second) {
+        const std::string number = written.size() > 1 ? fmt::format("-{}", written.size()) : "";
+        out.write(stem + number + ".toml", version.text);
+      }
     }
   }
 }
@@ -121,7 +125,7 @@ void write_whole(const NewFolder& out, std::span<const Session> sessions,
   out.write("README", bids::readme(sessions));
   out.write("participants.tsv", bids::participants_table(sessions));
   out.write("participants.json", bids::participants_sidecar(sessions));
-  out.write(fmt::format("task-{}_events.json", first.task), bids::events_sidecar(sessions));
+  out.write(fmt::format("task-{}_events.json", first.task), bids::events_sidecar(options));
   write_definitions(out, sessions);
   if (first.session.empty()) {
     return;
@@ -139,7 +143,7 @@ void write_whole(const NewFolder& out, std::span<const Session> sessions,
 
 BidsSummary export_bids(std::span<const fs::path> files, const fs::path& folder,
                         const BidsOptions& options, const Watch& watch) {
-  const std::vector<Session> sessions = named_sessions(files);
+  const std::vector<Session> sessions = named_sessions(files, options.compare);
   NewFolder out(folder);
   write_whole(out, sessions, options);
   std::vector<WrittenSamples> written(sessions.size());

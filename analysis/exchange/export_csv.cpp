@@ -6,13 +6,14 @@
 #include <set>
 
 #include "analysis/exchange/columns.h"
-#include "analysis/exchange/delimited.h"
-#include "analysis/exchange/gzip_file.h"
-#include "analysis/exchange/new_folder.h"
 #include "analysis/exchange/sample_text.h"
-#include "analysis/quality_columns.h"
-#include "core/record/schema.h"
-#include "core/record/session_reader.h"
+#include "analysis/files/delimited.h"
+#include "analysis/files/gzip_file.h"
+#include "analysis/files/new_folder.h"
+#include "analysis/quality/quality_columns.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/rows/session_tables.h"
+#include "core/record/table/schema.h"
 
 namespace haptrial::exchange {
 namespace {
@@ -28,7 +29,7 @@ const ColumnDoc kIsSimulated{
 const ColumnDoc kPilot{
     "pilot", "", "whether the session is no part of the study", {{"true", "a pilot"}}};
 
-ColumnDoc pass_doc(const char* name) { return doc_of(record::trials_schema(), name); }
+ColumnDoc pass_doc(const char* name) { return doc_of(record::trials_table().schema(), name); }
 
 /// With the meaning of both values.
 ColumnDoc practice_doc() {
@@ -57,13 +58,13 @@ Docs session_docs() {
           {"age_band", "", "range of ages in years, as the participant gave it"}};
 }
 
-Docs trial_docs(bool drillings) {
+Docs trial_docs(const Levels& phases) {
   return {kSubject,
           kSession,
           {"pass", "", "number of the pass from 0, as in the samples"},
           pass_doc("trial"),
           pass_doc("condition"),
-          phase_doc(drillings),
+          phase_doc(phases),
           pass_doc("block"),
           pass_doc("repetition"),
           pass_doc("attempt"),
@@ -133,7 +134,7 @@ class Tables {
  public:
   Tables()
       : sessions(heading(session_docs(), Delimited::kCsv)),
-        trials(heading(trial_docs(false), Delimited::kCsv)),
+        trials(heading(trial_docs({}), Delimited::kCsv)),
         events(heading(happening_docs(), Delimited::kCsv)) {}
 
   void add(const ExportSession& session) {
@@ -177,17 +178,17 @@ nlohmann::ordered_json described(const char* what, const Docs& docs) {
   return json;
 }
 
-std::string dictionary(bool samples, bool simulated, bool drillings) {
+std::string dictionary(const CsvOptions& options, bool simulated) {
   nlohmann::ordered_json json;
   json["simulated"] = simulated;
   json["missing"] = "an empty field";
   auto& files = json["files"];
   files["sessions.csv"] = described("a row for each session", session_docs());
   files["trials.csv"] =
-      described("a row for each pass; a trial is a training pass and a test pass, or a drilling",
-                trial_docs(drillings));
+      described("a row for each pass; a trial has one of each phase, more if it was interrupted",
+                trial_docs(options.phases));
   files["events.csv"] = described("what happened when", happening_docs());
-  if (samples) {
+  if (options.samples) {
     files["samples/*.csv.gz"] = described("a row for each tick of the servo loop", sample_docs());
     files["stimuli/*.csv.gz"] =
         described("the ideal movement and target force of each block", stimulus_docs());
@@ -240,17 +241,15 @@ CsvSummary export_csv(std::span<const fs::path> files, const fs::path& folder,
   NewFolder out(folder);
   Tables tables;
   bool simulated = false;
-  bool drillings = false;
   for (const auto& session : sessions) {
     tables.add(session);
     simulated = simulated || session.info.simulated;
-    drillings = drillings || session.drills;
     watch(0);
   }
   out.write("sessions.csv", tables.sessions);
   out.write("trials.csv", tables.trials);
   out.write("events.csv", tables.events);
-  out.write("dictionary.json", dictionary(options.samples, simulated, drillings));
+  out.write("dictionary.json", dictionary(options, simulated));
   if (options.samples) {
     const auto stems = file_stems(sessions);
     share_out(

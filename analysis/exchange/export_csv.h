@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "analysis/exchange/export_sessions.h"
 
@@ -10,6 +12,7 @@ namespace haptrial::exchange {
 
 struct CsvOptions {
   bool samples{false};  // also every tick and every stimulus, a .csv.gz for each session
+  std::vector<std::pair<std::string, std::string>> phases{};  // of protocols, with meanings
   int jobs{1};
 };
 

@@ -6,10 +6,10 @@
 #include <chrono>
 #include <map>
 
+#include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/base/table.h"
-#include "core/record/session_reader.h"
+#include "core/record/read/session_reader.h"
 
 namespace haptrial::exchange {
 namespace {
@@ -43,8 +43,8 @@ std::vector<ExportSession> sessions_to_export(std::span<const fs::path> files) {
   std::vector<ExportSession> sessions;
   for (const auto& file : files) {
     const record::SessionReader reader(file);
-    sessions.push_back(
-        {file, reader.info(), reader.sample_count(), reader.passes().size(), reader.drills()});
+    sessions.push_back({file, reader.info(), reader.sample_count(), reader.passes().size(),
+                        !reader.stimuli().empty()});
   }
   refuse_twins(sessions);
   std::sort(sessions.begin(), sessions.end(), [](const auto& a, const auto& b) {

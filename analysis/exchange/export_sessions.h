@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "core/record/session_types.h"
+#include "core/record/rows/session_types.h"
 
 namespace haptrial::exchange {
 
@@ -18,9 +18,9 @@ struct ExportSession {
   record::SessionInfo info;
   std::uint64_t samples{0};  // rows of /samples
   std::size_t passes{0};     // 0 of a session that was recovered without any
-  bool drills{false};
-  int number{1};  // among this subject's sessions in order of start, from 1
-  int of{1};      // how many this subject has
+  bool stimuli{false};       // it has rows of /stimuli
+  int number{1};             // among this subject's sessions in order of start, from 1
+  int of{1};                 // how many this subject has
 };
 
 /// @returns the sessions by subject, then start.

@@ -10,9 +10,9 @@
 
 #include "analysis/exchange/columns.h"
 #include "analysis/exchange/export_sessions.h"
-#include "analysis/exchange/gzip_file.h"
+#include "analysis/files/gzip_file.h"
 #include "core/base/error.h"
-#include "core/record/session_reader.h"
+#include "core/record/read/session_reader.h"
 
 namespace haptrial::exchange {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/exchange/delimited.h"
-#include "core/record/session_types.h"
+#include "analysis/files/delimited.h"
+#include "core/record/rows/session_types.h"
 
 namespace haptrial::record {
 class SessionReader;

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/base/table.h"
+#include "core/base/definition/table.h"
 
 namespace haptrial::device {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/base/table.h"
+#include "core/base/definition/table.h"
 
 namespace haptrial::sound {
 namespace {

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "core/base/definition/table.h"
 #include "core/base/random.h"
-#include "core/base/table.h"
 
 namespace haptrial::stimulus {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "core/record/session_types.h"
+#include "core/record/rows/session_types.h"
 
 namespace haptrial::stream {
 

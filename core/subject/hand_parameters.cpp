@@ -1,6 +1,6 @@
 #include "core/subject/hand_parameters.h"
 
-#include "core/base/table.h"
+#include "core/base/definition/table.h"
 
 namespace haptrial::subject {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/table.h"
+#include "core/base/definition/table.h"
 
 namespace haptrial::subject {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/base/definition/table.h"
 #include "core/base/random.h"
-#include "core/base/table.h"
 
 namespace haptrial::subject {
 namespace {

@@ -5,8 +5,9 @@
 # results/force_training. Other pictures:
 #   docs/algorithms/bone-look.sh, docs/drilling-session.sh   bones and drillings, from a labelled ear
 #   docs/algorithms/alignment-options.sh                     paths of the alignment
+#   docs/images/folders.py                                   folders.svg, from CMakeLists.txt
 #   tests/benchmarks/stops.py, every_hand.gp                 stops.svg, every-hand.svg
-#   HAPTRIAL_KEEP_PICTURES=FOLDER build/test_drilling        drilling-visibility.png
+#   HAPTRIAL_KEEP_PICTURES=FOLDER build/test_drilling_analysis  drilling-visibility.png
 # A page says under its picture which command draws it, if one does.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/record/session_types.h"
+#include "core/record/rows/session_types.h"
 #include "experiments/command/mesh_command.h"
 
 namespace haptrial::experiments {
@@ -26,7 +26,7 @@ int dry_run(const DryRunOptions& options);
 struct RunOptions {
   std::string definition;
   std::string subject;
-  std::string device{"virtual"};
+  std::vector<std::string> devices{"virtual"};  // in the order in which the protocol has them
   std::string library;  // of the device's vendor, in place of the search
   std::string seed{"1"};
   std::optional<int> participant;  // default: the number at the end of the subject's identifier
@@ -82,7 +82,7 @@ struct StatisticsOptions {
   std::vector<std::string> planned;
   std::string reference;
   int resamples{9999};
-  std::uint32_t seed{1};
+  std::string seed{"1"};
   std::string json;  // file for the numbers
   std::optional<int> jobs;
 };

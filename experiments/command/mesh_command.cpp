@@ -9,10 +9,11 @@
 #include <fstream>
 
 #include "core/base/error.h"
-#include "core/base/nearest.h"
-#include "core/geometry/mesh_io.h"
-#include "core/render/image.h"
+#include "core/base/text/nearest.h"
+#include "core/geometry/files/mesh_io.h"
+#include "core/render/gl/image.h"
 #include "experiments/control/interrupt.h"
+#include "experiments/control/signals.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;

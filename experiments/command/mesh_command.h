@@ -3,10 +3,10 @@
 #include <optional>
 #include <string>
 
-#include "core/geometry/mesh.h"
-#include "core/geometry/voxelize.h"
-#include "core/geometry/work.h"
-#include "core/render/scene.h"
+#include "core/geometry/mesh/mesh.h"
+#include "core/geometry/mesh/work.h"
+#include "core/geometry/volume/voxelize.h"
+#include "core/render/mesh/scene.h"
 #include "experiments/control/progress.h"
 
 namespace haptrial::experiments {

@@ -5,16 +5,17 @@
 #include <algorithm>
 #include <cctype>
 
-#include "core/base/definition_changes.h"
 #include "core/base/error.h"
-#include "core/record/file_lock.h"
-#include "core/record/session_reader.h"
-#include "core/record/session_target.h"
-#include "core/record/session_writer.h"
+#include "core/base/text/counted.h"
+#include "core/record/hdf5/file_lock.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/write/session_target.h"
+#include "core/record/write/session_writer.h"
 #include "experiments/command/arguments.h"
 #include "experiments/runner/devices.h"
 #include "experiments/study/study_files.h"
-#include "protocols/interface/definition.h"
+#include "protocols/definition/definition.h"
+#include "protocols/definition/study_rules.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
@@ -33,16 +34,20 @@ void check_subject(const std::string& subject) {
 }
 
 void check_device(const RunOptions& options) {
-  check_device_name(options.device);
-  if (options.device == "mouse" && !options.window) {
-    throw InputError(
-        "--device mouse takes its pointer from the participant's screen; add --window");
-  }
-  check_library(options.device, options.library);
-  if (options.resume && replayed_file(options.device)) {
-    throw InputError(
-        "--resume is given with --device replay:FILE, which begins at the recording's first pass; "
-        "leave out --resume and choose another --out");
+  for (const std::string& device : options.devices) {
+    check_device_name(device);
+    if (device == "mouse" && !options.window) {
+      throw InputError(
+          "--device mouse takes its pointer from the participant's screen; add --window");
+    }
+    if (options.devices.size() == 1 || takes_library(device)) {
+      check_library(device, options.library);
+    }
+    if (options.resume && replayed_file(device)) {
+      throw InputError(
+          "--resume is given with --device replay:FILE, which begins at the recording's first "
+          "pass; leave out --resume and choose another --out");
+    }
   }
 }
 
@@ -85,6 +90,35 @@ void check_resumed(const fs::path& file) {
   }
 }
 
+struct EarlierSession {
+  fs::path file;
+  record::SessionInfo info;
+};
+
+/// Of the folder that are of the same kind, finished or not, by name. What cannot be read says
+/// nothing about the study: `analyze` names it.
+std::vector<EarlierSession> earlier_sessions(const RunOptions& options) {
+  std::vector<EarlierSession> sessions;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(options.out, ignored)) {
+    const fs::path& file = entry.path();
+    if (file.stem().stem() == options.subject ||
+        (file.extension() != ".h5" && file.extension() != ".partial")) {
+      continue;  // the subject's own is looked at when it is resumed
+    }
+    try {
+      const record::SessionInfo info = record::SessionReader(file).info();
+      if (info.pilot == options.pilot) {
+        sessions.push_back({file, info});
+      }
+    } catch (const InputError&) {
+    }
+  }
+  std::sort(sessions.begin(), sessions.end(),
+            [](const auto& a, const auto& b) { return a.file < b.file; });
+  return sessions;
+}
+
 }  // namespace
 
 void check_run_options(const RunOptions& options) {
@@ -116,8 +150,32 @@ void check_session_file(const RunOptions& options, const fs::path& file) {
   }
 }
 
+std::string check_study(const RunOptions& options, const protocols::Definition& setup) {
+  std::string changed;
+  for (const auto& [file, info] : earlier_sessions(options)) {
+    const DefinitionChanges changes =
+        protocols::study_changes(info, setup.text, options.devices.front());
+    if (!changes.same_study()) {
+      throw InputError(fmt::format(
+          "{}: was recorded with another definition: {}; record each study into a folder of its "
+          "own, chosen with --out",
+          file.string(), sentence_of(changes.binding)));
+    }
+    if (changed.empty() && !changes.free.empty()) {
+      changed = fmt::format(
+          "the definition differs from that of {}: {}; such keys may change within a study",
+          file.filename().string(), sentence_of(changes.free));
+    }
+  }
+  return changed;
+}
+
 void check_recording(const RunOptions& options, const protocols::Definition& setup) {
-  const auto file = replayed_file(options.device);
+  if (options.devices.size() > static_cast<std::size_t>(setup.devices())) {
+    throw InputError(fmt::format("--device is given {} times; {} drives {}", options.devices.size(),
+                                 setup.file_name, counted(setup.devices(), "device", "devices")));
+  }
+  const auto file = replayed_file(options.devices.front());
   if (!file) {
     return;
   }
@@ -131,7 +189,8 @@ void check_recording(const RunOptions& options, const protocols::Definition& set
                                  info.seed, info.seed));
   }
   // The recording stands in for the virtual hand, whose tables are not used.
-  const DefinitionChanges changes = definition_changes(info.definition, setup.text, Hand::kPerson);
+  const DefinitionChanges changes = definition_changes(
+      info.definition, setup.text, protocols::study_rules(protocols::Hand::kPerson));
   if (!changes.same_study()) {
     throw InputError(
         fmt::format("{}: was recorded with another definition: {}; replay it with the same one",

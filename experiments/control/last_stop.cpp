@@ -6,7 +6,6 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
-#include <initializer_list>
 
 #include "experiments/control/interrupt.h"
 #include "experiments/control/keyboard.h"
@@ -40,24 +39,6 @@ bool stopped_by_servo(LastStop& stop) noexcept {
   return false;
 }
 
-extern "C" void stop_and_suspend(int) {
-  const int error = errno;
-  take_force_away();
-  ::raise(SIGSTOP);
-  errno = error;
-}
-
-void handle(int signal, void (*with)(int)) {
-  struct sigaction now {};
-  ::sigaction(signal, nullptr, &now);
-  if (now.sa_handler == SIG_DFL && (now.sa_flags & SA_SIGINFO) == 0) {
-    struct sigaction ours {};
-    ours.sa_handler = with;
-    ours.sa_flags = SA_RESTART;
-    ::sigaction(signal, &ours, nullptr);
-  }
-}
-
 }  // namespace
 
 extern "C" void stop_and_die(int signal) {
@@ -89,22 +70,6 @@ void take_force_away() noexcept {
   constexpr long kHandOver = 3'000'000;  // to a library that commands from a thread of its own [ns]
   pause_for(kHandOver);
   ::alarm(0);
-}
-
-void watch_fatal_signals() {
-  for (const int each :
-       {SIGQUIT, SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGTRAP, SIGXCPU, SIGUSR1,
-        SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGIO, SIGPWR, SIGSTKFLT}) {
-    handle(each, stop_and_die);
-  }
-  for (int each = SIGRTMIN; each <= SIGRTMAX; ++each) {
-    handle(each, stop_and_die);
-  }
-  for (const int each : {SIGTSTP, SIGTTIN, SIGTTOU}) {
-    handle(each, stop_and_suspend);
-  }
-  handle(SIGPIPE, SIG_IGN);  // a reader that leaves ends no session,
-  handle(SIGXFSZ, SIG_IGN);  // and a file that may not grow gets its sentence
 }
 
 }  // namespace haptrial::experiments

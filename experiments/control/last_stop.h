@@ -32,9 +32,4 @@ void take_force_away() noexcept;
 /// A signal's handler: takes the force away, puts the terminal back and dies of the signal.
 extern "C" void stop_and_die(int signal);
 
-/// Every signal that would kill the program takes the force away first, and so does one that
-/// would suspend it (Ctrl-Z); SIGPIPE and SIGXFSZ are ignored. What is handled already stays.
-/// SIGKILL and SIGSTOP cannot be caught: there the device's own watchdog takes the force away.
-void watch_fatal_signals();
-
 }  // namespace haptrial::experiments

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "core/realtime/histogram.h"
-#include "core/record/session_types.h"
+#include "core/record/rows/session_types.h"
 #include "experiments/control/session_control.h"
 
 namespace haptrial::experiments {

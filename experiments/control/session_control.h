@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/record/live_figures.h"
+#include "core/record/rows/live_figures.h"
 
 namespace haptrial::experiments {
 
@@ -59,7 +59,7 @@ struct SessionStatus {
   double lateness_worst_us{0.0};
   int aborted_passes{0};
   std::vector<std::string> notices;          // sentences that an experimenter has to know
-  bool has_target{true};  // there is a force to follow
+  bool has_target{true};                     // there is a force to follow
   std::optional<record::LiveState> figures;  // of the present trial, if the study has some
 };
 

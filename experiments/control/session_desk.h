@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "core/record/session_types.h"
+#include "core/record/rows/session_types.h"
 #include "experiments/control/live_status.h"
 #include "experiments/control/session_control.h"
 #include "experiments/control/tick_rate.h"

@@ -5,12 +5,12 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/base/nearest.h"
-#include "core/device/force_dimension.h"
+#include "core/base/text/nearest.h"
 #include "core/device/mouse.h"
-#include "core/device/open_haptics.h"
 #include "core/device/replay.h"
-#include "core/record/session_reader.h"
+#include "core/device/vendor/force_dimension.h"
+#include "core/device/vendor/open_haptics.h"
+#include "core/record/read/session_reader.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -93,8 +93,9 @@ std::unique_ptr<protocols::Rig> open_rig(
     return std::make_unique<MouseRig>(d);
   }
   if (choice.name == "force-dimension") {
-    return with(
-        std::make_unique<device::ForceDimensionDevice>(d.force_dimension, d.rate, choice.library));
+    device::ForceDimensionParameters parameters = d.force_dimension;
+    parameters.index += choice.number;
+    return with(std::make_unique<device::ForceDimensionDevice>(parameters, d.rate, choice.library));
   }
   if (choice.name == "open-haptics") {
     return with(
@@ -136,8 +137,12 @@ void check_device_name(const std::string& name) {
   }
 }
 
+bool takes_library(const std::string& device) {
+  return device == "force-dimension" || device == "open-haptics";
+}
+
 void check_library(const std::string& device, const std::string& library) {
-  if (!library.empty() && device != "force-dimension" && device != "open-haptics") {
+  if (!library.empty() && !takes_library(device)) {
     throw InputError(
         fmt::format("--library is given with device {}, which uses no vendor's library; leave it "
                     "out, or choose force-dimension or open-haptics",
@@ -154,10 +159,12 @@ std::unique_ptr<protocols::Rig> make_rig(
     const std::function<std::unique_ptr<protocols::Rig>()>& virtual_rig) {
   std::unique_ptr<protocols::Rig> rig = open_rig(choices.front(), d, virtual_rig);
   const auto wanted = static_cast<std::size_t>(d.devices());
-  if (wanted > 1 && rig->subject() == nullptr) {
+  if (1 + rig->others().size() < wanted) {  // a virtual rig has all of them
     auto together = std::make_unique<SeveralDevices>(std::move(rig), d.envelope);
     for (std::size_t i = 1; i < wanted; ++i) {
-      together->add(open_rig(choices[std::min(i, choices.size() - 1)], d, virtual_rig));
+      DeviceChoice choice = choices[std::min(i, choices.size() - 1)];
+      choice.number += i < choices.size() ? 0 : static_cast<int>(i - choices.size() + 1);
+      together->add(open_rig(choice, d, virtual_rig));
     }
     rig = std::move(together);
   }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "protocols/interface/definition.h"
+#include "protocols/definition/definition.h"
 #include "protocols/interface/rig.h"
 
 namespace haptrial::experiments {
@@ -15,6 +15,7 @@ namespace haptrial::experiments {
 struct DeviceChoice {
   std::string name{"virtual"};  // or mouse, force-dimension, open-haptics, replay:FILE
   std::string library{};        // a path in place of the search
+  int number{0};                // of several with this name, from 0: added to their index
 };
 
 /// Opens the devices of a session, set up as the definition says; replay:FILE plays a recorded
@@ -32,6 +33,9 @@ void check_device_name(const std::string& name);
 
 /// @throws InputError for a library that this device has no use for.
 void check_library(const std::string& device, const std::string& library);
+
+/// Whether it is driven through a vendor's library.
+bool takes_library(const std::string& device);
 
 /// FILE of replay:FILE; nothing for any other device.
 std::optional<std::string> replayed_file(const std::string& device);

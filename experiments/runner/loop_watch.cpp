@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/record/overruns.h"
+#include "core/record/rows/overruns.h"
 
 namespace haptrial::experiments {
 

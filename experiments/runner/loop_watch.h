@@ -10,10 +10,10 @@ namespace haptrial::experiments {
 
 /// Whether the servo loop keeps its rate. Session's thread.
 ///
-/// A pass with too many overruns is told (analysis/timing.h says how many). A loop that makes less
-/// than four fifths of its ticks over a second, more than a fifth of them overruns, does not catch
-/// up: it is overloaded, as with a device whose library takes longer than a period. One delay that
-/// is caught up with, and a suspension, are neither.
+/// A pass with too many overruns is told (analysis/quality/timing.h says how many).
+/// A loop that makes less than four fifths of its ticks over a second, more than a fifth of them
+/// overruns, does not catch up: it is overloaded, as with a device whose library takes longer than
+/// a period. One delay that is caught up with, and a suspension, are neither.
 class LoopWatch {
  public:
   using Time = std::chrono::steady_clock::time_point;

@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
-#include "core/record/damping_event.h"
+#include "core/record/rows/damping_event.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/last_stop.h"
 #include "experiments/control/progress.h"
@@ -387,7 +387,10 @@ void Session::note_damping(const protocols::PassResult& result) {
 void Session::after_abort(const protocols::PassResult& result) {
   desk_.status().aborted_passes = ++summary_.aborted_passes;
   const bool fault = result.fault != device::Fault::kNone;
-  const std::string why = fault ? device::describe(result.fault) : why_broken_off();
+  std::string why = fault ? device::describe(result.fault) : why_broken_off();
+  if (fault && d_.devices() > 1) {
+    why = fmt::format("device {}: {}", result.device + 1, why);
+  }
   const std::string trouble = fault ? rig_->device().trouble() : "";
   const bool overloaded = !pace_.overload().empty();  // and no better the next time
   record_.event("aborted", fmt::format("trial {}: {}{}{}", record_.pass().trial, why,
@@ -490,7 +493,7 @@ void Session::note_troubles() {
 }  // namespace
 
 SessionSummary run_session(const SessionRequest& request) {
-  if (request.resume && close_what_had_ended(request.file)) {
+  if (request.resume && close_what_had_ended(request)) {
     SessionSummary closed;
     closed.notices.push_back("the session had ended before: its file only had to be closed");
     return closed;

@@ -6,7 +6,7 @@
 #include "core/realtime/servo_loop.h"
 #include "experiments/control/session_desk.h"
 #include "experiments/runner/loop_watch.h"
-#include "experiments/runner/session.h"
+#include "experiments/runner/session_request.h"
 #include "experiments/runner/session_record.h"
 #include "protocols/interface/trials.h"
 

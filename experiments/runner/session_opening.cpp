@@ -9,17 +9,17 @@
 
 #include "core/base/error.h"
 #include "core/device/mouse.h"
-#include "core/record/device_row.h"
-#include "core/record/session_reader.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/rows/common_tables.h"
+#include "core/record/rows/device_row.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/runner/version.h"
+#include "protocols/definition/study_rules.h"
 
 namespace haptrial::experiments {
 
 DefinitionChanges changes_since(const SessionRequest& request, const record::SessionInfo& before) {
-  const bool virtual_hand = before.device == "virtual" || request.device.name == "virtual";
-  return definition_changes(before.definition, request.definition->text,
-                            virtual_hand ? Hand::kVirtual : Hand::kPerson);
+  return protocols::study_changes(before, request.definition->text, request.device.name);
 }
 
 namespace {
@@ -77,6 +77,14 @@ static record::TableList tables_of(const SessionRequest& request, const protocol
   return tables;
 }
 
+/// What its file may have already: the tables of the protocol, and those of any.
+static record::TableList possible_tables(const SessionRequest& request) {
+  record::TableList tables = request.protocol->tables();
+  const record::TableList& common = record::common_tables();
+  tables.insert(tables.end(), common.begin(), common.end());
+  return tables;
+}
+
 record::SessionWriter open_writer(const SessionRequest& request, const device::DeviceInfo& device,
                                   record::Resumed& before, const protocols::Trials& trials) {
   if (!request.resume || !record::SessionWriter::can_resume(request.file)) {
@@ -84,8 +92,8 @@ record::SessionWriter open_writer(const SessionRequest& request, const device::D
     return record::SessionWriter(request.file, info, tables_of(request, trials),
                                  trials.first_rows());
   }
-  record::SessionWriter writer =
-      record::SessionWriter::resume(request.file, before, tables_of(request, trials));
+  record::SessionWriter writer = record::SessionWriter::resume(
+      request.file, before, possible_tables(request), tables_of(request, trials));
   check_same_session(request, before.info);
   const record::SessionReader file(request.file.string() + ".partial");
   trials.check_resumed(file);
@@ -95,7 +103,8 @@ record::SessionWriter open_writer(const SessionRequest& request, const device::D
   return writer;
 }
 
-bool close_what_had_ended(const std::filesystem::path& file) {
+bool close_what_had_ended(const SessionRequest& request) {
+  const std::filesystem::path& file = request.file;
   if (!record::SessionWriter::can_resume(file)) {
     return false;
   }
@@ -108,7 +117,8 @@ bool close_what_had_ended(const std::filesystem::path& file) {
     // It is damaged: a resume repairs it, and says what it holds.
   }
   record::Resumed found;
-  record::SessionWriter writer = record::SessionWriter::resume(file, found);
+  record::SessionWriter writer =
+      record::SessionWriter::resume(file, found, possible_tables(request));
   if (found.ended) {
     writer.close();
   }

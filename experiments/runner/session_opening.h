@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "core/base/definition_changes.h"
-#include "core/record/session_resume.h"
-#include "core/record/session_writer.h"
+#include "core/base/definition/definition_changes.h"
+#include "core/record/recovery/session_resume.h"
+#include "core/record/write/session_writer.h"
 #include "core/stream/lsl_outlet.h"
-#include "experiments/runner/session.h"
+#include "experiments/runner/session_request.h"
 #include "experiments/screen/screen.h"
 #include "protocols/interface/trials.h"
 
@@ -24,7 +24,7 @@ namespace haptrial::experiments {
 
 record::SessionInfo session_info(const SessionRequest& request, const device::DeviceInfo& device);
 
-/// What the definition of a resumed session differs in from the one that its file began with.
+/// What the definition of a resumed session differs in from the one that `before` has.
 DefinitionChanges changes_since(const SessionRequest& request, const record::SessionInfo& before);
 
 /// A new session file, or the one that is gone on with; `before` says what that one holds.
@@ -36,7 +36,7 @@ record::SessionWriter open_writer(const SessionRequest& request, const device::D
 /// Gives FILE.partial its name where the session in it had come to its end: it was killed on the
 /// last steps. @returns whether it had; else nothing is changed
 /// @throws InputError, RunError as SessionWriter does
-bool close_what_had_ended(const std::filesystem::path& file);
+bool close_what_had_ended(const SessionRequest& request);
 
 /// The participant's screen, where one was asked for; else null. Its Escape stops the session, its
 /// other keys steer it where the definition says so; its pointer moves the mouse device.

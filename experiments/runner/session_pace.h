@@ -7,7 +7,7 @@
 #include "experiments/control/session_desk.h"
 #include "experiments/runner/loop_watch.h"
 #include "experiments/runner/servo_thread.h"
-#include "experiments/runner/session.h"
+#include "experiments/runner/session_request.h"
 #include "experiments/runner/session_record.h"
 #include "protocols/interface/session_task.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "experiments/runner/definition_events.h"
+#include "core/record/read/definition_versions.h"
 #include "experiments/runner/session_opening.h"
 
 namespace haptrial::experiments {
@@ -134,18 +134,20 @@ void SessionRecord::tell_what_was_kept() {
              before_.next_sequence, before_.passes.size());
 }
 
-/// Where a resumed session has another definition than it began with.
+/// If a resumed session has another definition than it was last recorded with.
 void SessionRecord::keep_definition() {
   if (before_.info.definition.empty()) {
     return;  // the file is new
   }
-  const DefinitionChanges changes = changes_since(request_, before_.info);
+  record::SessionInfo last = before_.info;
+  last.definition = record::newest_definition(before_.info, before_.events);
+  const DefinitionChanges changes = changes_since(request_, last);
   if (changes.same_text) {
     return;
   }
-  event(kDefinitionChanged,
+  event(record::kDefinitionChanged,
         changes.free.empty() ? "only comments or layout" : sentence_of(changes.free));
-  writer_.add_event({now_ns(), kNewDefinition, request_.definition->text});
+  writer_.add_event({now_ns(), record::kNewDefinition, request_.definition->text});
 }
 
 bool SessionRecord::was_cut_short(const PlannedTrial& trial) const {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/record/session_writer.h"
-#include "core/record/sink.h"
+#include "core/record/rows/sink.h"
+#include "core/record/write/session_writer.h"
 #include "core/stream/lsl_outlet.h"
 #include "experiments/runner/stream_markers.h"
 

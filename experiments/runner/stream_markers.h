@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "core/record/session_types.h"
+#include "core/record/rows/session_types.h"
 #include "core/stream/lsl_outlet.h"
 
 namespace haptrial::experiments {

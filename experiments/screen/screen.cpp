@@ -16,8 +16,8 @@
 #include "core/base/error.h"
 #include "core/realtime/histogram.h"
 #include "core/realtime/latest_value.h"
-#include "core/render/painter.h"
-#include "core/render/trial_display.h"
+#include "core/render/flat/painter.h"
+#include "core/render/trial/trial_display.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -90,7 +90,7 @@ struct Screen::Impl {
   std::atomic<bool> stop{false};
 
   realtime::LatestValue<stimulus::Shown> shown;  // servo thread -> screen's
-  std::atomic<std::int64_t> first_tick_ns{0};                  // 0: none yet
+  std::atomic<std::int64_t> first_tick_ns{0};    // 0: none yet
 
   mutable std::mutex mutex;  // all below
   Scene scene;
@@ -244,7 +244,8 @@ class Easel {
 };
 
 /// Who sets the pace: the display, if it keeps to the rate that its monitor states, or a timer.
-ScreenSummary agreed_pace(const protocols::ScreenOptions& options, double monitor_rate, double interval) {
+ScreenSummary agreed_pace(const protocols::ScreenOptions& options, double monitor_rate,
+                          double interval) {
   ScreenSummary summary;
   const bool steady = std::abs(interval * monitor_rate - 1.0) < kPaceTolerance;
   summary.refresh_locked = options.refresh_lock && monitor_rate > 0.0 && steady;

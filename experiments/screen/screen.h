@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "core/record/session_types.h"
-#include "core/render/text_screen.h"
-#include "core/render/trial_display_style.h"
-#include "core/render/window.h"
+#include "core/record/rows/session_types.h"
+#include "core/render/flat/text_screen.h"
+#include "core/render/gl/window.h"
+#include "core/render/trial/trial_display_style.h"
 #include "core/stimulus/observer.h"
 #include "experiments/control/session_control.h"
+#include "protocols/definition/screen_options.h"
 #include "protocols/interface/drawing.h"
-#include "protocols/interface/screen_options.h"
 
 namespace haptrial::experiments {
 
@@ -81,7 +81,8 @@ class Screen final : public stimulus::Observer {
   void show(protocols::MakeDrawing make);
 
   /// Servo thread: hands the newest presentation over; no allocation, lock, I/O or throw.
-  void observe(const stimulus::Shown& shown, const stimulus::Forces& forces, double dt) noexcept override;
+  void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
+               double dt) noexcept override;
 
   /// The pictures since the last call, from the session's first tick on, in order.
   std::vector<record::FrameRow> take_frames();

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/record/drilling_types.h"
-#include "core/record/session_reader.h"
+#include "core/bone/record/drilling_types.h"
+#include "core/record/read/session_reader.h"
 #include "experiments/studies/drilling_study.h"
 #include "experiments/studies/live_drilling.h"
 #include "protocols/bone_drilling/bone_protocol.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "core/base/table.h"
 #include "protocols/force_training/passes/training_pass.h"
 
 namespace haptrial::experiments {

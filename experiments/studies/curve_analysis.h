@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/analysis_plan.h"
-#include "analysis/score_parameters.h"
+#include "analysis/force_training/score/score_parameters.h"
+#include "analysis/statistics/design/analysis_plan.h"
 
 namespace haptrial {
 class Table;

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "analysis/drilling/live_figures.h"
-#include "core/record/live_figures.h"
+#include "analysis/bone_drilling/metrics/live_figures.h"
+#include "core/record/rows/live_figures.h"
 
 namespace haptrial::experiments {
 

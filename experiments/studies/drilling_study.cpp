@@ -7,11 +7,11 @@
 #include <optional>
 #include <system_error>
 
-#include "analysis/drilling/validity_summary.h"
-#include "analysis/drilling/visibility_picture.h"
+#include "analysis/bone_drilling/report/validity_summary.h"
+#include "analysis/bone_drilling/report/visibility_picture.h"
 #include "core/base/error.h"
-#include "core/record/session_reader.h"
-#include "core/render/scene.h"
+#include "core/record/read/session_reader.h"
+#include "core/render/mesh/scene.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 
 namespace haptrial::experiments {
@@ -53,8 +53,9 @@ drilling::SurgeonsView surgeons_view(const protocols::BoneDefinition& definition
 }
 
 drilling::StudyPicture visibility_picture(const drilling::ProcedureSummary& procedure,
-                                          const protocols::BoneDefinition& definition, const std::string& name,
-                                          const std::string& which, const fs::path& folder) {
+                                          const protocols::BoneDefinition& definition,
+                                          const std::string& name, const std::string& which,
+                                          const fs::path& folder) {
   const fs::path file = folder / (name + ".png");
   render::write_png(file, drilling::visibility_figure(
                               {procedure.bone.get(), procedure.removed, procedure.removed_seen},
@@ -70,8 +71,8 @@ drilling::StudyPicture visibility_picture(const drilling::ProcedureSummary& proc
 
 // Figure 18: the two ends of the study.
 std::vector<drilling::StudyPicture> visibility_pictures(
-    const std::vector<drilling::ProcedureSummary>& procedures, const protocols::BoneDefinition& definition,
-    const fs::path& folder) {
+    const std::vector<drilling::ProcedureSummary>& procedures,
+    const protocols::BoneDefinition& definition, const fs::path& folder) {
   const drilling::ProcedureSummary *least = nullptr, *most = nullptr;
   for (const auto& p : procedures) {
     if (const auto share = p.value("visible_share")) {
@@ -116,7 +117,8 @@ drilling::ProcedureSetup procedure_setup(const protocols::BoneDefinition& defini
 std::vector<std::string> analyze_drillings(const fs::path& folder, const StudyFiles& files,
                                            const fs::path& out, int threads) {
   const record::SessionInfo& first = files.first;
-  const std::vector<protocols::StudyGroup> groups = protocols::study_groups(first.definition, first.definition_name);
+  const std::vector<protocols::StudyGroup> groups =
+      protocols::study_groups(first.definition, first.definition_name);
   drilling::ValidityStudy study;
   study.title = "Construct validity of simulated bone surgery";
   study.files = files.files;

@@ -5,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/drilling/validity_study.h"
+#include "analysis/bone_drilling/report/validity_study.h"
 #include "experiments/study/study_files.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
-#include "protocols/interface/groups.h"
+#include "protocols/definition/groups.h"
 
 namespace haptrial::experiments {
 

@@ -7,9 +7,10 @@
 #include <string_view>
 #include <system_error>
 
+#include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "core/base/table.h"
 #include "experiments/studies/registry.h"
+#include "protocols/definition/lab_file.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 void refuse_session(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
-    return;  // a pipe would wait here; Table::load() refuses it
+    return;  // a pipe would wait here; load_with_lab() refuses it
   }
   std::array<char, 8> first{};
   std::ifstream(file, std::ios::binary).read(first.data(), first.size());
@@ -40,7 +41,7 @@ Experiment read(Table& root, std::string_view file_name, const std::filesystem::
 Experiment load_experiment(const std::filesystem::path& file) {
   const std::filesystem::path folder = file.parent_path();
   refuse_session(file);
-  Table root = Table::load(file);
+  Table root = protocols::load_with_lab(file);
   Experiment experiment = read(root, file.string(), &folder);
   experiment.study->protocol().load(*experiment.definition, folder);
   return experiment;

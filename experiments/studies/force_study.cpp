@@ -5,11 +5,11 @@
 
 #include <utility>
 
-#include "analysis/study.h"
-#include "analysis/study_summary.h"
-#include "analysis/write_analysis.h"
+#include "analysis/force_training/report/write_analysis.h"
+#include "analysis/force_training/study/study.h"
+#include "analysis/force_training/study/study_summary.h"
+#include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "core/base/table.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"
 

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "analysis/drilling/live.h"
+#include "analysis/bone_drilling/metrics/live.h"
 
 namespace haptrial::experiments {
 

@@ -10,9 +10,9 @@
 #include <thread>
 #include <vector>
 
-#include "analysis/drilling/procedure.h"
-#include "core/record/drilling_types.h"
-#include "core/record/session_types.h"
+#include "analysis/bone_drilling/procedure/procedure.h"
+#include "core/bone/record/drilling_types.h"
+#include "core/record/rows/session_types.h"
 #include "experiments/studies/drilled_procedure.h"
 
 namespace haptrial::experiments {

@@ -7,6 +7,7 @@
 
 #include "experiments/screen/video.h"
 #include "protocols/bone_drilling/display/bone_display.h"
+#include "protocols/bone_drilling/display/bone_renderer.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/render/image.h"
+#include "core/render/gl/image.h"
 #include "protocols/bone_drilling/bone_replay.h"
 
 namespace haptrial::experiments {
@@ -17,7 +17,8 @@ render::Image frame_sheet(const protocols::BoneReplay& replay, int trial, int fr
 
 /// The same as a film: every procedure `speed` times as fast as it went, and at the end the cavity
 /// for some seconds. @param file  new, .mp4
-void film(const protocols::BoneReplay& replay, int trial, const std::filesystem::path& file, double speed);
+void film(const protocols::BoneReplay& replay, int trial, const std::filesystem::path& file,
+          double speed);
 
 /// Pictures of one size side by side, `columns` in a row, and one as wide as a row below them.
 /// @throws std::invalid_argument where sizes differ or columns are fewer than one.

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "core/base/table.h"
+#include "core/base/definition/table.h"
+#include "core/record/rows/common_tables.h"
 #include "experiments/studies/bone_study.h"
 #include "experiments/studies/force_study.h"
 
@@ -45,6 +46,32 @@ void add_study(const Study& study) {
         fmt::format("add_study: there is a protocol '{}' already", study.protocol().name()));
   }
   all().push_back(&study);
+}
+
+record::TableList known_tables() {
+  record::TableList tables = record::common_tables();
+  for (const Study* study : all()) {
+    for (const record::TableDescription* table : study->protocol().tables()) {
+      if (std::find(tables.begin(), tables.end(), table) == tables.end()) {
+        tables.push_back(table);
+      }
+    }
+  }
+  return tables;
+}
+
+std::vector<std::pair<std::string, std::string>> known_phases() {
+  std::vector<std::pair<std::string, std::string>> known;
+  for (const Study* study : all()) {
+    for (const auto& [phase, meaning] : study->protocol().phases()) {
+      const std::string name = phase.name();
+      if (std::none_of(known.begin(), known.end(),
+                       [&](const auto& each) { return each.first == name; })) {
+        known.emplace_back(name, meaning);
+      }
+    }
+  }
+  return known;
 }
 
 const Study& study_of(Table& root) {

@@ -19,6 +19,11 @@ const std::vector<const Study*>& studies();
 /// @throws std::invalid_argument for a name that is taken
 void add_study(const Study& study);
 
+/// Every table that a session of one of them may have beside those of every session.
+record::TableList known_tables();
+/// The phases of all of them, each once, with its meaning.
+std::vector<std::pair<std::string, std::string>> known_phases();
+
 /// The study whose protocol [experiment] names; the first one if it names none. A mistake in it is
 /// thrown alone, since it decides what the other keys mean.
 /// @throws InputError

@@ -7,12 +7,13 @@
 #include <cmath>
 #include <map>
 
-#include "analysis/drilling/procedure.h"
+#include "analysis/bone_drilling/procedure/procedure.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
-#include "core/bone/data/recorded_bone.h"
-#include "core/record/session_reader.h"
+#include "core/bone/record/drilling_tables.h"
+#include "core/bone/record/recorded_bone.h"
+#include "core/record/read/session_reader.h"
 #include "experiments/study/study_files.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/definition/cavity.h"
@@ -158,7 +159,7 @@ std::vector<RatedBone> bones_of(const record::SessionReader& session) {
                     session.path().string()));
   }
   std::vector<RatedBone> bones;
-  for (const record::BoneRecord& record : session.bones()) {
+  for (const record::BoneRecord& record : record::recorded_bones(session)) {
     RatedBone bone;
     bone.model = bone::bone_of(record);
     bone.X_WB = pose_of(d.placement, bone.model.grid);

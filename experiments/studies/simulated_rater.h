@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/drilling/ratings.h"
-#include "core/bone/bone_model.h"
-#include "core/subject/drilling_chart.h"
+#include "analysis/bone_drilling/validity/ratings.h"
+#include "core/bone/model/bone_model.h"
+#include "core/subject/drilling/drilling_chart.h"
 
 namespace haptrial::experiments {
 

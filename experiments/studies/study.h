@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/record/live_figures.h"
+#include "core/record/rows/live_figures.h"
 #include "experiments/studies/curve_analysis.h"
 #include "experiments/study/study_files.h"
 #include "protocols/interface/protocol.h"

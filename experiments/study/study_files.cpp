@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "core/base/definition_changes.h"
 #include "core/base/error.h"
-#include "core/record/session_reader.h"
+#include "core/record/read/session_reader.h"
+#include "experiments/study/study_definitions.h"
 #include "experiments/study/study_run.h"
 
 namespace haptrial::experiments {
@@ -56,38 +56,6 @@ std::string remark_on_pilots(const Sorted& sorted, Pilots pilots) {
                                              names_of(sorted.pilots));
 }
 
-Hand hand_of(const record::SessionInfo& a, const record::SessionInfo& b) {
-  const bool used = a.device == "virtual" || b.device == "virtual";
-  return used ? Hand::kVirtual : Hand::kPerson;
-}
-
-constexpr const char* kMayChange = "That changes nothing that was presented, recorded or scored.";
-
-/// What its definition, or that of a resumed part of it, differs in from the study's.
-void compare(const record::SessionReader& reader, const fs::path& file, const fs::path& first_file,
-             StudyFiles& study) {
-  const record::SessionInfo info = reader.info();
-  const DefinitionChanges changes =
-      definition_changes(study.first.definition, info.definition, hand_of(study.first, info));
-  if (!changes.same_study()) {
-    throw InputError(
-        fmt::format("{}: was recorded with another definition than {}: {}; analyse each study in a "
-                    "folder of its own",
-                    file.string(), first_file.string(), sentence_of(changes.binding)));
-  }
-  const std::string name = file.filename().string();
-  if (!changes.free.empty()) {
-    study.remarks.push_back(fmt::format("{} was recorded with a changed definition: {}. {}", name,
-                                        sentence_of(changes.free), kMayChange));
-  }
-  for (const record::EventRow& event : reader.events()) {
-    if (event.kind == kDefinitionChanged) {
-      study.remarks.push_back(fmt::format("{} was resumed with a changed definition: {}. {}", name,
-                                          event.text, kMayChange));
-    }
-  }
-}
-
 }  // namespace
 
 std::vector<std::string> unfinished_sessions(const fs::path& folder) {
@@ -114,14 +82,6 @@ std::vector<fs::path> files_of(const fs::path& folder, Pilots pilots) {
   return taken(sorted_files(folder), folder, pilots);
 }
 
-void refuse_mixed(const std::vector<fs::path>& files) {
-  StudyFiles study;
-  study.first = record::SessionReader(files.front()).info();
-  for (const fs::path& file : files) {
-    compare(record::SessionReader(file), file, files.front(), study);
-  }
-}
-
 StudyFiles study_files(const fs::path& folder, Pilots pilots) {
   const Sorted sorted = sorted_files(folder);
   StudyFiles study;
@@ -130,9 +90,8 @@ StudyFiles study_files(const fs::path& folder, Pilots pilots) {
   if (const std::string remark = remark_on_pilots(sorted, pilots); !remark.empty()) {
     study.remarks.push_back(remark);
   }
-  for (const fs::path& file : study.files) {
-    compare(record::SessionReader(file), file, study.files.front(), study);
-  }
+  const std::vector<std::string> changed = definition_remarks(study.files);
+  study.remarks.insert(study.remarks.end(), changed.begin(), changed.end());
   return study;
 }
 

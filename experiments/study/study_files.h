@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/record/session_types.h"
+#include "core/record/rows/session_types.h"
 #include "experiments/runner/definition_events.h"
 
 namespace haptrial::record {
@@ -26,10 +26,6 @@ std::vector<std::string> unfinished_sessions(const std::filesystem::path& folder
 /// Whether a folder holds session files, finished or not.
 bool holds_sessions(const std::filesystem::path& folder);
 
-/// @throws InputError when two files differ in what was presented, recorded or scored; names the
-/// keys.
-void refuse_mixed(const std::vector<std::filesystem::path>& files);
-
 /// Sessions that belong to one study.
 struct StudyFiles {
   std::vector<std::filesystem::path> files;
@@ -37,7 +33,7 @@ struct StudyFiles {
   std::vector<std::string> remarks;  // sentences for the report
 };
 
-/// @throws InputError as files_of() and refuse_mixed() do.
+/// @throws InputError as files_of() and definition_remarks() do.
 StudyFiles study_files(const std::filesystem::path& folder, Pilots pilots);
 
 }  // namespace haptrial::experiments

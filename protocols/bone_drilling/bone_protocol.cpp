@@ -5,12 +5,14 @@
 #include <memory>
 #include <optional>
 
-#include "core/base/counted.h"
 #include "core/base/error.h"
+#include "core/base/text/counted.h"
+#include "core/bone/record/drilling_tables.h"
 #include "core/sound/wav.h"
 #include "protocols/bone_drilling/bone_replay.h"
 #include "protocols/bone_drilling/bone_trials.h"
 #include "protocols/bone_drilling/display/bone_display.h"
+#include "protocols/bone_drilling/display/bone_renderer.h"
 #include "protocols/bone_drilling/display/bone_sound.h"
 
 namespace haptrial::protocols {
@@ -95,6 +97,10 @@ class BoneDrilling final : public Protocol {
   void load(Definition& definition, const std::filesystem::path& folder) const override {
     dynamic_cast<BoneDefinition&>(definition).load_bones(folder);
   }
+  std::vector<std::pair<record::Phase, std::string>> phases() const override {
+    return {{record::kDrillingPhase, "bone is drilled"}};
+  }
+  record::TableList tables() const override { return record::drilling_tables(); }
   std::unique_ptr<Trials> trials(const Definition& definition,
                                  const SessionPlace& place) const override {
     return std::make_unique<BoneTrials>(dynamic_cast<const BoneDefinition&>(definition), place);

@@ -7,7 +7,8 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/bone/data/recorded_bone.h"
+#include "core/bone/record/drilling_tables.h"
+#include "core/bone/record/recorded_bone.h"
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/drilling_pass.h"
 
@@ -17,7 +18,7 @@ namespace {
 constexpr std::uint64_t kPiece = 65536;  // rows read at once
 
 BoneDefinition definition_of(const record::SessionReader& reader) {
-  if (!reader.drills()) {
+  if (!record::drills(reader)) {
     throw InputError(
         fmt::format("{}: is not a drilling session; choose one with protocol = \"bone_drilling\"",
                     reader.path().string()));
@@ -110,7 +111,7 @@ BoneReplay::BoneReplay(const std::filesystem::path& session)
       procedures_(reader_.rows<record::ProcedureRow>()),
       removals_(reader_.rows<record::RemovalRow>()),
       splits_(reader_.rows<record::SplitRow>()) {
-  for (const record::BoneRecord& bone : reader_.bones()) {
+  for (const record::BoneRecord& bone : record::recorded_bones(reader_)) {
     bones_.push_back(std::make_shared<const bone::BoneModel>(bone::model_of(bone)));
   }
   if (bones_.empty()) {

@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/record/session_reader.h"
+#include "core/bone/record/drilling_types.h"
+#include "core/record/read/session_reader.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_stage.h"
 

@@ -8,9 +8,9 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
-#include "core/bone/data/recorded_bone.h"
-#include "core/record/drilling_tables.h"
-#include "core/record/session_reader.h"
+#include "core/bone/record/drilling_tables.h"
+#include "core/bone/record/recorded_bone.h"
+#include "core/record/read/session_reader.h"
 #include "protocols/bone_drilling/bone_restore.h"
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/display/stage_stills.h"
@@ -117,7 +117,7 @@ void BoneTrials::empty_logs(SessionFile& file) {
 
 /// A bone's file beside the definition may have changed since: what follows would be of another.
 void BoneTrials::check_resumed(const record::SessionReader& file) const {
-  const std::vector<record::BoneRecord> before = file.bones();
+  const std::vector<record::BoneRecord> before = record::recorded_bones(file);
   const std::vector<record::BoneRecord>& now = records_;
   for (std::size_t i = 0; i < std::max(before.size(), now.size()); ++i) {
     if (i >= before.size() || i >= now.size() || !bone::same_bone(before[i], now[i])) {

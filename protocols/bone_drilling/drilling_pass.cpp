@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/control/pd_controller.h"
-#include "core/record/rounding.h"
-#include "core/record/schema.h"
+#include "core/record/table/rounding.h"
+#include "core/record/table/schema.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -58,7 +58,7 @@ bone::SimulatorInput DrillingInput::of(const device::DeviceReading& recorded,
 }
 
 bone::DrillingView view_of(const bone::Simulator& simulator,
-                               const bone::SimulatorInput& input) noexcept {
+                           const bone::SimulatorInput& input) noexcept {
   const bone::SimulatorOutput& out = simulator.output();
   const Camera& camera = simulator.camera();
   bone::DrillingView view;

@@ -4,11 +4,11 @@
 #include <array>
 #include <cstdint>
 
-#include "core/bone/companions.h"
-#include "core/bone/drilling_view.h"
-#include "core/bone/simulator.h"
+#include "core/bone/record/drilling_types.h"
+#include "core/bone/simulator/companions.h"
+#include "core/bone/simulator/drilling_view.h"
+#include "core/bone/simulator/simulator.h"
 #include "core/realtime/block_log.h"
-#include "core/record/drilling_types.h"
 #include "core/sound/drill_sound.h"
 #include "protocols/bone_drilling/definition/drilling_parameters.h"
 #include "protocols/interface/pass.h"
@@ -56,7 +56,7 @@ class DrillingInput {
 
 /// What a participant is to see of a simulator.
 bone::DrillingView view_of(const bone::Simulator& simulator,
-                               const bone::SimulatorInput& input) noexcept;
+                           const bone::SimulatorInput& input) noexcept;
 
 /// Work on a bone: drilling, suction, cutting, plating, looking around. Ends when the time is over
 /// or the participant says so. Source: Morris 2006, §3.2 and §8.2.2.

@@ -1,8 +1,8 @@
 #include "protocols/bone_drilling/drilling_rig.h"
 
 #include "core/base/random.h"
-#include "core/subject/drilling_hand.h"
-#include "core/subject/drilling_surgeon.h"
+#include "core/subject/drilling/drilling_hand.h"
+#include "core/subject/drilling/drilling_surgeon.h"
 
 namespace haptrial::protocols {
 namespace {

@@ -7,10 +7,11 @@
 #include <cmath>
 #include <set>
 
-#include "core/base/counted.h"
-#include "core/base/nearest.h"
-#include "core/base/table.h"
+#include "core/base/definition/table.h"
+#include "core/base/text/counted.h"
+#include "core/base/text/nearest.h"
 #include "core/control/loop_margin.h"
+#include "protocols/definition/lab_file.h"
 #include "protocols/force_training/passes/training_pass.h"
 #include "protocols/force_training/recorded_path.h"
 
@@ -159,7 +160,7 @@ ForceDefinition read_force_definition(Table& root, std::string_view file_name,
 
 ForceDefinition load_force_definition(const std::filesystem::path& file) {
   const std::filesystem::path folder = file.parent_path();
-  Table root = Table::load(file);
+  Table root = load_with_lab(file);
   ForceDefinition d = read_force_definition(root, file.string(), &folder);
   root.finish();
   return d;

@@ -8,8 +8,8 @@
 #include "core/stimulus/stimulus.h"
 #include "core/subject/pacer.h"
 #include "core/subject/subject_parameters.h"
+#include "protocols/definition/definition.h"
 #include "protocols/force_training/passes/trajectory_pass.h"
-#include "protocols/interface/definition.h"
 
 namespace haptrial {
 class Table;

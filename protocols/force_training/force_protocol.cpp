@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/base/error.h"
-#include "core/base/nearest.h"
+#include "core/base/text/nearest.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_replay.h"
 #include "protocols/force_training/force_trials.h"
@@ -32,6 +32,10 @@ class ForceTraining final : public Protocol {
     return std::make_unique<ForceDefinition>(read_force_definition(root, file_name, folder));
   }
   std::vector<std::string> margins() const override { return margins_of({}); }
+  std::vector<std::pair<record::Phase, std::string>> phases() const override {
+    return {{record::Phase::kTraining, "the pattern is presented"},
+            {record::Phase::kTest, "the pattern is recalled"}};
+  }
   std::unique_ptr<Trials> trials(const Definition& definition,
                                  const SessionPlace& place) const override {
     return std::make_unique<ForceTrials>(dynamic_cast<const ForceDefinition&>(definition), place);

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/record/even_rows.h"
+#include "core/record/rows/even_rows.h"
 #include "protocols/force_training/passes/recorded_pass.h"
 
 namespace haptrial::protocols {
@@ -86,7 +86,8 @@ render::Image below(const render::Image& upper, const render::Image& lower) {
 
 }  // namespace
 
-ForceReplay::ForceReplay(const std::filesystem::path& session, int trial, std::optional<record::Phase> phase)
+ForceReplay::ForceReplay(const std::filesystem::path& session, int trial,
+                         std::optional<record::Phase> phase)
     : definition_(definition_of(record::SessionReader(session))),
       renderer_(definition_.display),
       panel_context_(definition_.display.width, kPanelHeight),
@@ -99,7 +100,7 @@ ForceReplay::ForceReplay(const std::filesystem::path& session, int trial, std::o
 
 /// The stimulus of the row's seed, unless the file says that it was another.
 stimulus::Stimulus ForceReplay::stimulus_of(const record::SessionReader& reader,
-                                       const record::PassRow& row) {
+                                            const record::PassRow& row) {
   stimulus::Stimulus made =
       stimulus::make_stimulus(definition_.trajectory, definition_.force_pattern, row.stimulus_seed);
   const bool recorded = !definition_.trajectory.from.empty();  // and not made of a seed at all
@@ -140,7 +141,8 @@ stimulus::Stimulus ForceReplay::stimulus_of(const record::SessionReader& reader,
           stimulus::ForcePattern(std::move(forces), end)};
 }
 
-ForceReplay::Pass ForceReplay::read(const record::SessionReader& reader, const record::PassRow& row) {
+ForceReplay::Pass ForceReplay::read(const record::SessionReader& reader,
+                                    const record::PassRow& row) {
   Pass pass;
   pass.row = row;
   const std::vector<record::Sample> samples =

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "core/record/session_reader.h"
-#include "core/render/force_panel.h"
-#include "core/render/frames.h"
-#include "core/render/offscreen.h"
+#include "core/record/read/session_reader.h"
+#include "core/render/gl/offscreen.h"
+#include "core/render/trial/force_panel.h"
+#include "core/render/trial/frames.h"
 #include "core/stimulus/stimulus.h"
 #include "protocols/force_training/force_definition.h"
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/table.h"
-#include "core/stimulus/stimulus.h"
-#include "protocols/force_training/force_definition.h"
+#include "core/base/definition/table.h"
 #include "core/control/loop_margin.h"
-#include "protocols/interface/schedule.h"
+#include "core/stimulus/stimulus.h"
+#include "protocols/definition/schedule.h"
+#include "protocols/force_training/force_definition.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -28,8 +28,9 @@ void warn_of_loop(const ForceDefinition& d, Warnings& warnings) {
           "guidance.{0}.damping is {1} N·s/m, which only a hand of {2} carries at {3} Hz; "
           "hand.hand_mass is {4} kg, so damping will be reduced in most passes",
           name, gains.damping,
-          margin.lightest > control::kHeaviestHand ? fmt::format("more than {} kg", control::kHeaviestHand)
-                                          : fmt::format("{:.2f} kg or more", margin.lightest),
+          margin.lightest > control::kHeaviestHand
+              ? fmt::format("more than {} kg", control::kHeaviestHand)
+              : fmt::format("{:.2f} kg or more", margin.lightest),
           d.rate, d.hand.hand_mass));
     }
   }

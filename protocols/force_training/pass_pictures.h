@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/render/frames.h"
-#include "core/record/session_types.h"
+#include "core/record/rows/session_types.h"
+#include "core/render/trial/frames.h"
 #include "protocols/force_training/frame_capture.h"
 #include "protocols/interface/trials.h"
 

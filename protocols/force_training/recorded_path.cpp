@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/base/error.h"
-#include "core/record/session_reader.h"
+#include "core/record/read/session_reader.h"
 
 namespace haptrial::protocols {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/device/device.h"
 #include "core/device/energy_watch.h"
-#include "core/record/session_types.h"
+#include "core/record/rows/session_types.h"
 #include "core/stimulus/shown.h"
 
 namespace haptrial::protocols {

@@ -4,8 +4,10 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
-#include "protocols/interface/definition.h"
+#include "protocols/definition/definition.h"
 #include "protocols/interface/replay.h"
 #include "protocols/interface/trials.h"
 
@@ -28,6 +30,10 @@ class Protocol {
     static_cast<void>(definition);
     static_cast<void>(folder);
   }
+  /// What the passes of a trial can be for, each with its meaning: the words of /trials.
+  virtual std::vector<std::pair<record::Phase, std::string>> phases() const = 0;
+  /// Every table of its own that a session of it may record.
+  virtual record::TableList tables() const { return {}; }
   /// The trials of one session. @param definition  of this protocol; it and the place outlive them
   virtual std::unique_ptr<Trials> trials(const Definition& definition,
                                          const SessionPlace& place) const = 0;

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "core/render/image.h"
+#include "core/render/gl/image.h"
 
 namespace haptrial::protocols {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "core/record/rows.h"
-#include "core/record/session_types.h"
-#include "protocols/interface/schedule.h"
+#include "core/record/rows/rows.h"
+#include "core/record/rows/session_types.h"
+#include "protocols/definition/schedule.h"
 
 namespace haptrial::protocols {
 

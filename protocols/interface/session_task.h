@@ -6,8 +6,8 @@
 
 #include "core/realtime/block_log.h"
 #include "core/realtime/servo_loop.h"
-#include "core/record/device_row.h"
-#include "core/record/session_types.h"
+#include "core/record/rows/device_row.h"
+#include "core/record/rows/session_types.h"
 #include "core/stimulus/observer.h"
 #include "protocols/interface/device_set.h"
 #include "protocols/interface/pass.h"
@@ -19,7 +19,7 @@ struct PassResult {
   bool begun{false};  // the servo thread has taken it up
   PassState state{PassState::kRunning};
   device::Fault fault{device::Fault::kNone};
-  std::size_t device{0};           // whose fault it was, from 0
+  std::size_t device{0};          // whose fault it was, from 0
   std::uint64_t first_sample{0};  // sequence numbers, both inclusive
   std::uint64_t last_sample{0};
   double least_damping{1.0};       // during the run, as a share of what the definition asks for

@@ -10,14 +10,14 @@
 #include <string>
 #include <vector>
 
-#include "core/record/response.h"
-#include "core/record/rows.h"
-#include "core/record/session_types.h"
+#include "core/record/rows/response.h"
+#include "core/record/rows/rows.h"
+#include "core/record/rows/session_types.h"
 #include "core/stimulus/observer.h"
+#include "protocols/definition/schedule.h"
 #include "protocols/interface/drawing.h"
 #include "protocols/interface/pass.h"
 #include "protocols/interface/rig.h"
-#include "protocols/interface/schedule.h"
 
 namespace haptrial::record {
 class SessionReader;

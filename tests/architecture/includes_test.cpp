@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -9,6 +10,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 // The arrows between modules stand once, in the haptrial_module lines of CMakeLists.txt. These
@@ -39,7 +41,7 @@ using Modules = std::map<std::string, Module>;
 Modules parse_modules(const std::string& cmake) {
   Modules modules;
   const std::string text = std::regex_replace(cmake, std::regex("#[^\n]*"), "");
-  const std::regex line(R"(haptrial_module\(([^)]*)\))");
+  const std::regex line(R"(haptrial_(?:module|group)\(([^)]*)\))");  // a group has no source
   for (std::sregex_iterator it(text.begin(), text.end(), line), end; it != end; ++it) {
     std::istringstream words((*it)[1].str());
     std::string name;
@@ -136,6 +138,53 @@ std::vector<fs::path> sources(const fs::path& folder, bool below) {
   return files;
 }
 
+/// "core/geometry/bvh/bvh" of bvh.h and bvh.cpp in core/geometry/bvh.
+std::string pair_of(fs::path file) { return file.replace_extension().generic_string(); }
+
+/// "bvh" and "bvh_internal" are one idea.
+std::string idea_of(const std::string& pair) {
+  constexpr std::string_view kInternal = "_internal";
+  return pair.ends_with(kInternal) ? pair.substr(0, pair.size() - kInternal.size()) : pair;
+}
+
+/// Each file pair with those that it includes.
+using Pairs = std::map<std::string, std::set<std::string>>;
+
+Pairs pairs_below(const fs::path& root, const std::string& folder) {
+  Pairs pairs;
+  for (const fs::path& file : sources(root / folder, true)) {
+    const std::string pair = pair_of(fs::relative(file, root));
+    auto& reached = pairs[pair];
+    for (const std::string& include : includes(contents(file))) {
+      if (fs::exists(root / include) && pair_of(include) != pair) {
+        reached.insert(pair_of(include));
+      }
+    }
+  }
+  return pairs;
+}
+
+/// The pairs from which includes lead back to themselves.
+std::vector<std::string> in_circles(Pairs pairs) {
+  // A pair is in no circle if it includes none that is left, or none that is left includes it.
+  bool changed = true;
+  while (changed) {
+    std::set<std::string> included;
+    for (auto& [pair, includes] : pairs) {
+      std::erase_if(includes, [&](const std::string& other) { return !pairs.contains(other); });
+      included.insert(includes.begin(), includes.end());
+    }
+    changed = std::erase_if(pairs, [&](const auto& each) {
+                return each.second.empty() || !included.contains(each.first);
+              }) > 0;
+  }
+  std::vector<std::string> left;
+  for (const auto& [pair, includes] : pairs) {
+    left.push_back(pair);
+  }
+  return left;
+}
+
 const Modules& modules_of_project() {
   static const Modules modules = parse_modules(contents(kRoot / "CMakeLists.txt"));
   return modules;
@@ -164,7 +213,7 @@ TEST(IncludesTest, ABackwardIncludeIsFound) {
               ElementsAre("protocols/interface/pass.h"));
   EXPECT_THAT(bad("analysis", "#pragma once\n#include \"protocols/interface/pass.h\"\n"),
               SizeIs(1));
-  EXPECT_THAT(bad("protocols", "#include \"analysis/score.h\"\n"), SizeIs(1));
+  EXPECT_THAT(bad("protocols", "#include \"analysis/force_training/score/score.h\"\n"), SizeIs(1));
   EXPECT_THAT(bad("protocols", "#include \"experiments/runner/session.h\"\n"), SizeIs(1));
   EXPECT_THAT(bad("control", "#include \"core/device/device.h\"\n"), SizeIs(1)) << "not linked";
   EXPECT_THAT(bad("base", "  #  include <core/control/pd_controller.h>\n"), SizeIs(1));
@@ -176,7 +225,7 @@ TEST(IncludesTest, ABackwardIncludeIsFound) {
 TEST(IncludesTest, AnAllowedIncludeIsNot) {
   const std::string text =
       "#include \"core/control/pd_controller.h\"\n#include <vector>\n#include <Eigen/Core>\n"
-      "// #include \"analysis/score.h\"\n#include \"core/base/error.h\"\n";
+      "// #include \"analysis/force_training/score/score.h\"\n#include \"core/base/error.h\"\n";
   EXPECT_THAT(backward_includes(kExample, "protocols", text), IsEmpty());
   EXPECT_THAT(backward_includes(kExample, "experiments", text), IsEmpty());
 }
@@ -186,6 +235,13 @@ TEST(IncludesTest, AnArrowAgainstTheLayersIsNoExcuse) {
       "haptrial_module(base core/base LINKS protocols)\nhaptrial_module(protocols protocols)\n");
   EXPECT_THAT(backward_includes(wrong, "base", "#include \"protocols/interface/pass.h\"\n"),
               SizeIs(1));
+}
+
+TEST(IncludesTest, PairsInCirclesAreFound) {
+  EXPECT_THAT(in_circles({{"a", {"b"}}, {"b", {"c", "other"}}, {"c", {}}}), IsEmpty());
+  EXPECT_THAT(in_circles({{"a", {"b"}}, {"b", {"c"}}, {"c", {"b"}}, {"d", {"a"}}}),
+              ElementsAre("b", "c"));
+  EXPECT_THAT(in_circles({{"a", {"b"}}, {"b", {"c"}}, {"c", {"a"}}}), SizeIs(3));
 }
 
 TEST(ArchitectureTest, NoFileIncludesAgainstTheArrows) {
@@ -228,6 +284,34 @@ TEST(ArchitectureTest, EverySourceBelongsToAModule) {
     for (const fs::path& file : sources(kRoot / layer_name, true)) {
       const bool is_main = file == kRoot / "experiments/main.cpp";
       EXPECT_TRUE(is_main || folders.contains(file.parent_path())) << file << " is never compiled";
+    }
+  }
+}
+
+constexpr std::array kLayers{"core", "protocols", "analysis", "experiments"};
+
+TEST(ArchitectureTest, NoFilePairIncludesItselfByWayOfOthers) {
+  for (const char* layer : kLayers) {
+    const Pairs pairs = pairs_below(kRoot, layer);
+    EXPECT_GT(pairs.size(), 20u) << layer;
+    EXPECT_THAT(in_circles(pairs), IsEmpty());
+  }
+}
+
+TEST(ArchitectureTest, FoldersHoldOneIdea) {
+  constexpr std::size_t kMostPairs = 14;
+  for (const char* layer : kLayers) {
+    std::set<std::string> ideas;
+    for (const auto& [pair, includes] : pairs_below(kRoot, layer)) {
+      ideas.insert(idea_of(pair));
+    }
+    std::map<std::string, std::size_t> counts;
+    for (const std::string& idea : ideas) {
+      ++counts[fs::path(idea).parent_path().generic_string()];
+    }
+    EXPECT_GT(counts.size(), 3u);
+    for (const auto& [name, count] : counts) {
+      EXPECT_LE(count, kMostPairs) << name;
     }
   }
 }

@@ -16,8 +16,8 @@
 #include <thread>
 #include <vector>
 
-#include "analysis/alignment.h"
-#include "analysis/score.h"
+#include "analysis/alignment/alignment.h"
+#include "analysis/force_training/score/score.h"
 #include "core/base/random.h"
 
 namespace {

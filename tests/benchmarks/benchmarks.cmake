@@ -9,10 +9,10 @@ endforeach()
 target_sources(bench_servo PRIVATE ${CMAKE_SOURCE_DIR}/tests/experiments/timed_session.cpp
                                    ${CMAKE_SOURCE_DIR}/tests/experiments/shipped.cpp
                                    ${CMAKE_SOURCE_DIR}/tests/support/temporary_folder.cpp)
-target_sources(bench_null_reports PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/null_reports.cpp)
+target_sources(bench_null_reports PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/force_training/statistics/null_reports.cpp)
 target_sources(bench_null_relabelled
-               PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/null_comparisons.cpp
-                       ${CMAKE_SOURCE_DIR}/tests/analysis/drilling/null_validity.cpp)
+               PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/force_training/comparison/null_comparisons.cpp
+                       ${CMAKE_SOURCE_DIR}/tests/analysis/bone_drilling/validity/null_validity.cpp)
 target_compile_definitions(bench_servo PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 target_compile_definitions(bench_mesh PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 # bench_distance compares with those of its peers that are installed.
@@ -33,3 +33,8 @@ if(OPENVDB_HEADERS AND TBB_FOUND AND Imath_FOUND)
   target_link_libraries(bench_bone PRIVATE openvdb TBB::tbb Imath::Imath)
   target_compile_definitions(bench_bone PRIVATE HAPTRIAL_OPENVDB)
 endif()
+# What distance_study and others compare with.
+file(GLOB references CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/support/references/*.cpp)
+foreach(name distance_study bone feel_study)
+  target_sources(bench_${name} PRIVATE ${references})
+endforeach()

@@ -22,8 +22,8 @@
 
 #include "core/base/random.h"
 #include "core/bone/data/load_bone.h"
-#include "core/bone/feel.h"
-#include "core/bone/surface_samples.h"
+#include "core/bone/drill/feel.h"
+#include "tests/support/references/surface_samples.h"
 #include "tests/support/solid_bone.h"
 
 namespace {

@@ -14,10 +14,10 @@
 
 #include "core/base/random.h"
 #include "core/bone/data/load_bone.h"
-#include "core/bone/surface.h"
-#include "core/render/bone_scene.h"
-#include "core/render/bone_tools.h"
-#include "core/render/offscreen.h"
+#include "core/bone/surface/surface.h"
+#include "core/render/bone/bone_scene.h"
+#include "core/render/bone/bone_tools.h"
+#include "core/render/gl/offscreen.h"
 
 namespace {
 

@@ -8,13 +8,13 @@
 #include <filesystem>
 
 #include "core/bone/data/load_bone.h"
-#include "core/bone/surface.h"
-#include "core/geometry/mesh_check.h"
-#include "core/render/bone_scene.h"
-#include "core/render/offscreen.h"
+#include "core/bone/surface/surface.h"
+#include "core/geometry/repair/mesh_check.h"
+#include "core/render/bone/bone_scene.h"
+#include "core/render/gl/offscreen.h"
 #include "experiments/command/tools/bone_carving.h"
-#include "tests/core/bone/neighbour_surface.h"
-#include "tests/core/bone/surface_checks.h"
+#include "tests/core/bone/surface/surface_checks.h"
+#include "tests/support/references/neighbour_surface.h"
 
 namespace {
 

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/figure_gnuplot.h"
+#include "analysis/document/figure_gnuplot.h"
 #include "core/base/random.h"
 #include "core/control/curve_tracker.h"
 #include "core/stimulus/spatial_trajectory.h"

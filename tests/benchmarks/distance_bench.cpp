@@ -20,11 +20,11 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/geometry/bvh.h"
-#include "core/geometry/distance_map.h"
-#include "core/geometry/mesh_io.h"
-#include "core/geometry/procedural.h"
-#include "core/geometry/voxelize.h"
+#include "core/geometry/bvh/bvh.h"
+#include "core/geometry/files/mesh_io.h"
+#include "core/geometry/mesh/procedural.h"
+#include "core/geometry/volume/distance_map.h"
+#include "core/geometry/volume/voxelize.h"
 #include "tests/benchmarks/distance_peers.h"
 
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/geometry/mesh.h"
+#include "core/geometry/mesh/mesh.h"
 
 #ifdef HAPTRIAL_CGAL
 #include <CGAL/AABB_traits.h>

@@ -17,11 +17,11 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/distance_map.h"
-#include "core/geometry/mesh_io.h"
-#include "core/geometry/procedural.h"
-#include "core/geometry/source_distance.h"
-#include "core/geometry/voxelize.h"
+#include "core/geometry/files/mesh_io.h"
+#include "core/geometry/mesh/procedural.h"
+#include "core/geometry/volume/distance_map.h"
+#include "core/geometry/volume/voxelize.h"
+#include "tests/support/references/source_distance.h"
 
 namespace {
 

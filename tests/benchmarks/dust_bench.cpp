@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/bone/dust.h"
-#include "core/bone/thickness.h"
-#include "core/render/bone_scene.h"
-#include "core/render/image.h"
-#include "core/render/offscreen.h"
+#include "core/bone/dust/dust.h"
+#include "core/bone/model/thickness.h"
+#include "core/render/bone/bone_scene.h"
+#include "core/render/gl/image.h"
+#include "core/render/gl/offscreen.h"
 #include "core/sound/drill_sound.h"
 
 namespace {

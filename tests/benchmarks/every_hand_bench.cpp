@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/device/envelope.h"
-#include "protocols/force_training/passes/recall_test.h"
+#include "protocols/force_training/passes/recall.h"
 #include "tests/support/pass_run.h"
 
 namespace {

@@ -17,9 +17,9 @@
 #include <string>
 #include <vector>
 
-#include "core/bone/feel.h"
-#include "core/bone/surface_samples.h"
+#include "core/bone/drill/feel.h"
 #include "tests/support/bone_press.h"
+#include "tests/support/references/surface_samples.h"
 #include "tests/support/solid_bone.h"
 
 namespace {

@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/mesh_check.h"
-#include "core/geometry/mesh_io.h"
-#include "core/geometry/procedural.h"
-#include "core/geometry/tetrahedralize.h"
-#include "core/geometry/voxelize.h"
+#include "core/geometry/files/mesh_io.h"
+#include "core/geometry/mesh/procedural.h"
+#include "core/geometry/repair/mesh_check.h"
+#include "core/geometry/volume/tetrahedralize.h"
+#include "core/geometry/volume/voxelize.h"
 #include "tests/support/shared_data.h"
 
 #ifdef __SSE2__
@@ -62,8 +62,8 @@ std::vector<Case> cases() {
     if (const auto file = haptrial::test::shared_data(fmt::format("meshes/{}.obj", stem))) {
       all.push_back({name, geometry::read_mesh(*file)});
     } else {
-      fmt::print("{} takes no part: neither HAPTRIAL_DATA nor ../shared/data holds meshes/{}.obj\n", name,
-                 stem);
+      fmt::print("{} takes no part: neither HAPTRIAL_DATA nor ../shared/data holds meshes/{}.obj\n",
+                 name, stem);
     }
   }
   all.push_back({"gear", geometry::make_gear()});

@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "analysis/scores_csv.h"
-#include "core/base/file_text.h"
+#include "analysis/force_training/score/scores_csv.h"
+#include "core/base/files/file_text.h"
 #include "tests/support/condition_null.h"
 
 namespace {

@@ -6,10 +6,10 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "analysis/scores_csv.h"
-#include "core/base/file_text.h"
-#include "tests/analysis/drilling/null_validity.h"
-#include "tests/analysis/null_comparisons.h"
+#include "analysis/force_training/score/scores_csv.h"
+#include "core/base/files/file_text.h"
+#include "tests/analysis/bone_drilling/validity/null_validity.h"
+#include "tests/analysis/force_training/comparison/null_comparisons.h"
 
 namespace {
 

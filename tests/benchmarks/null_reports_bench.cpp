@@ -5,9 +5,9 @@
 
 #include <cstdlib>
 
-#include "analysis/scores_csv.h"
-#include "core/base/file_text.h"
-#include "tests/analysis/null_reports.h"
+#include "analysis/force_training/score/scores_csv.h"
+#include "core/base/files/file_text.h"
+#include "tests/analysis/force_training/statistics/null_reports.h"
 
 int main(int argc, char** argv) {
   using haptrial::test::NullDesign;

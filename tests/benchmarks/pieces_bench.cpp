@@ -15,13 +15,13 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/bone/cut_plane.h"
+#include "core/bone/anatomy/mandible.h"
 #include "core/bone/data/load_bone.h"
-#include "core/bone/data/mandible.h"
-#include "core/bone/flood.h"
-#include "core/bone/plate.h"
-#include "core/bone/plate_shapes.h"
-#include "core/bone/world.h"
+#include "core/bone/pieces/flood.h"
+#include "core/bone/pieces/world.h"
+#include "core/bone/tools/cut_plane.h"
+#include "core/bone/tools/plate.h"
+#include "core/bone/tools/plate_shapes.h"
 #include "tests/benchmarks/pieces_figures.h"
 
 namespace {

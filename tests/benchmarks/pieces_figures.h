@@ -7,16 +7,16 @@
 #include <optional>
 #include <vector>
 
-#include "core/bone/cut_plane.h"
-#include "core/bone/plate.h"
-#include "core/bone/plate_shapes.h"
-#include "core/bone/voxel_walk.h"
-#include "core/bone/world.h"
-#include "core/geometry/procedural.h"
-#include "core/render/bone_scene.h"
-#include "core/render/bone_tools.h"
-#include "core/render/image.h"
-#include "core/render/offscreen.h"
+#include "core/bone/model/voxel_walk.h"
+#include "core/bone/pieces/world.h"
+#include "core/bone/tools/cut_plane.h"
+#include "core/bone/tools/plate.h"
+#include "core/bone/tools/plate_shapes.h"
+#include "core/geometry/mesh/procedural.h"
+#include "core/render/bone/bone_scene.h"
+#include "core/render/bone/bone_tools.h"
+#include "core/render/gl/image.h"
+#include "core/render/gl/offscreen.h"
 
 namespace haptrial::bench {
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "analysis/csv.h"
-#include "analysis/score.h"
+#include "analysis/files/csv.h"
+#include "analysis/force_training/score/score.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"

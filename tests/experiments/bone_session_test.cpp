@@ -8,10 +8,11 @@
 #include <tuple>
 
 #include "core/base/error.h"
-#include "core/bone/data/recorded_bone.h"
-#include "core/record/integrity.h"
-#include "core/record/session_reader.h"
-#include "core/record/session_writer.h"
+#include "core/bone/record/drilling_tables.h"
+#include "core/bone/record/recorded_bone.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/write/session_writer.h"
 #include "experiments/runner/session.h"
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/bone_replay.h"
@@ -84,7 +85,7 @@ TEST_F(BoneSessionTest, EveryTickIsRecordedWithItsTool) {
 /// Voxels that a file says were emptied, against the ones that are missing in the end.
 TEST_F(BoneSessionTest, RemovalsAndCrumbsAreTheDifferenceOfStartAndEnd) {
   const record::SessionReader reader = session();
-  const bone::BoneModel model = bone::model_of(reader.bones().front());
+  const bone::BoneModel model = bone::model_of(record::recorded_bones(reader).front());
   std::set<std::tuple<int, int, int>> gone;
   for (const record::RemovalRow& row : reader.rows<record::RemovalRow>()) {
     const auto& v = row.voxel;
@@ -188,7 +189,8 @@ TEST_F(BoneSessionTest, AReplaySaysWhereItFirstDiffers) {
     samples[at].position.y() += 0.002;
   }
   {
-    record::SessionWriter writer(*folder_ / "moved.h5", reader.info(), reader.bones());
+    record::SessionWriter writer(*folder_ / "moved.h5", reader.info(), record::drilling_tables(),
+                                 record::rows_of(record::recorded_bones(reader)));
     writer.add(std::span<const record::ToolRow>(reader.rows<record::ToolRow>()));
     writer.add(std::span<const record::RemovalRow>(removals));
     writer.add(std::span<const record::SplitRow>(reader.rows<record::SplitRow>()));

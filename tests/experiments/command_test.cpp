@@ -330,6 +330,19 @@ TEST_F(CommandTest, TextsAndCommentsMayChangeWithinAStudyAndTheReportSaysSo) {
   EXPECT_EQ(test::read_text(folder_ / "bids/code/forcetraining-2.toml"), text + "\n# a comment\n");
 }
 
+TEST_F(CommandTest, SessionsOfAnotherGainAreRefusedAndNamed) {
+  ASSERT_EQ(brief_study("study", "--subjects 1").status, 0);
+  test::write_text(folder_ / "other.toml", test::shipped_with("base_max", "base_max = 9.0"));
+  ASSERT_EQ(run_command("haptrial dry-run " + path("other.toml") +
+                        " --subjects 2 --trials 3 --out " + path("other"))
+                .status,
+            0);
+  fs::rename(folder_ / "other" / "S02.h5", folder_ / "study" / "S02.h5");
+  const std::string sentence = "force_pattern.base_max was 10, is 9";
+  expect_bad_input("haptrial analyze " + path("study"), sentence);
+  expect_bad_input("haptrial export --bids " + path("bids") + " " + path("study"), sentence);
+}
+
 TEST_F(CommandTest, AFullDiskGetsASentenceAndLeavesNothing) {
   if (test::kThreadSanitizer) {
     GTEST_SKIP() << "the sanitizer keeps files of its own, which the limit breaks";

@@ -56,6 +56,10 @@ TEST_F(CompareCommandTest, OtherSeedsAreOtherPeople) {
   EXPECT_THAT(same.output, HasSubstr("Paired: 2 participants."));
   EXPECT_THAT(same.output, HasSubstr("force_training_curve compares forces over the place on the "
                                      "path, force_training over time."));
+  const std::string differ = "The definitions differ in what was presented, recorded or scored: ";
+  EXPECT_THAT(same.output, HasSubstr(differ));
+  EXPECT_THAT(same.output, HasSubstr("guidance.kind was absent, is \"curve\""));
+  EXPECT_THAT(other.output, testing::Not(HasSubstr("The definitions differ")));
 }
 
 TEST_F(CompareCommandTest, OtherScoringIsRefusedUnlessAskedFor) {

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <regex>
 
-#include "analysis/session_recalls.h"
-#include "analysis/study.h"
+#include "analysis/force_training/study/session_recalls.h"
+#include "analysis/force_training/study/study.h"
 #include "core/base/error.h"
 #include "core/control/sampled_curve.h"
-#include "core/record/integrity.h"
-#include "core/record/session_reader.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/curve_analysis.h"
 #include "protocols/force_training/force_definition.h"

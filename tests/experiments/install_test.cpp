@@ -13,25 +13,58 @@
 namespace haptrial {
 namespace {
 
-TEST(InstallTest, AnotherProjectFindsLinksAndRunsTheLibraries) {
-  if (test::kThreadSanitizer || test::kAddressSanitizer) {
-    GTEST_SKIP() << "the other project is built without the sanitizer of this one";
+/// The project installed into a folder of the test's own, once.
+class InstallTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (test::kThreadSanitizer || test::kAddressSanitizer) {
+      GTEST_SKIP() << "the other project is built without the sanitizer of this one";
+    }
   }
-  const test::TemporaryFolder folder;
-  const std::string root = folder.path().string();
-  std::string line = "set -e; cd '";
-  line += root;
-  line += "'\ncmake --install '" HAPTRIAL_BINARY_DIR
-          "' --prefix installed\n"
-          "cmake -S '" HAPTRIAL_SOURCE_DIR
-          "/docs/worked/geometry' -B build -G Ninja -DCMAKE_PREFIX_PATH=\"$PWD/installed\"\n"
-          "cmake --build build\n";
-  const test::CommandResult built = test::run_command(line);
+  /// Builds a project of docs/worked outside the source tree, into the folder build.
+  test::CommandResult build(const std::string& name) const {
+    std::string line = "set -e; cd '";
+    line += root_;
+    line += "'\ncmake --install '" HAPTRIAL_BINARY_DIR
+            "' --prefix installed\n"
+            "cmake -S '" HAPTRIAL_SOURCE_DIR "/docs/worked/";
+    line += name;
+    line += "' -B build -G Ninja -DCMAKE_PREFIX_PATH=\"$PWD/installed\"\ncmake --build build\n";
+    return test::run_command(line);
+  }
+  test::TemporaryFolder folder_;
+  std::string root_{folder_.path().string()};
+};
+
+/// A protocol of one's own: the whole runner as a library, with nothing of the source tree.
+TEST_F(InstallTest, AProgramWithAProtocolOfItsOwnRunsStudies) {
+  const test::CommandResult built = build("protocol");
+  ASSERT_EQ(built.status, 0) << built.output << built.errors;
+  const std::string program = root_ + "/build/springs ";
+  const std::string definition = " " HAPTRIAL_SOURCE_DIR "/docs/worked/protocol/springs.toml ";
+  const std::string sessions = root_ + "/sessions";
+  test::CommandResult ran = test::run_command(program + "dry-run" + definition +
+                                              "--subjects 2 --trials 8 --out " + sessions);
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  ran = test::run_command(program + "analyze " + sessions);
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_NE(ran.output.find("S01: threshold "), std::string::npos) << ran.output;
+  EXPECT_NE(ran.output.find("S02: threshold "), std::string::npos) << ran.output;
+  ran = test::run_command(program + "info " + sessions + "/S01.h5");
+  EXPECT_EQ(ran.status, 0) << ran.output << ran.errors;
+  ran = test::run_command(program + "validate " HAPTRIAL_SOURCE_DIR
+                                    "/experiments/force_training.toml");
+  EXPECT_EQ(ran.status, 0) << "it has the others' as well: " << ran.errors;
+}
+
+TEST_F(InstallTest, AnotherProjectFindsLinksAndRunsTheLibraries) {
+  const test::CommandResult built = build("geometry");
   ASSERT_EQ(built.status, 0) << built.output << built.errors;
   EXPECT_EQ(built.output.find(HAPTRIAL_SOURCE_DIR "/core"), std::string::npos)
       << "nothing is taken from the source tree";
 
-  line = root;
+  std::string line;
+  line = root_;
   line += "/build/near";
   const test::CommandResult ran = test::run_command(line);
   ASSERT_EQ(ran.status, 0) << ran.errors;
@@ -48,14 +81,15 @@ TEST(InstallTest, AnotherProjectFindsLinksAndRunsTheLibraries) {
   EXPECT_NEAR(length, around, 1e-6);
   EXPECT_NEAR(along, 0.75 * around, 1e-6);
 
-  line = root;
+  line = root_;
   line += "/installed/bin/haptrial --version";
   const test::CommandResult command = test::run_command(line);
   EXPECT_EQ(command.status, 0) << command.errors;
-  EXPECT_TRUE(std::filesystem::exists(folder / "installed/include/haptrial/core/geometry/bvh.h"));
+  EXPECT_TRUE(
+      std::filesystem::exists(folder_ / "installed/include/haptrial/core/geometry/bvh/bvh.h"));
 
   line = "LC_ALL=C readelf --sections --wide '";
-  line += root;
+  line += root_;
   line += "/installed/bin/haptrial'";
   const test::CommandResult sections = test::run_command(line);
   EXPECT_NE(sections.output.find(" .dynsym "), std::string::npos) << sections.errors;

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/control/loop_margin.h"
-#include "core/record/session_reader.h"
+#include "core/record/read/session_reader.h"
 #include "experiments/runner/session.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"

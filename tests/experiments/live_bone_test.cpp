@@ -10,8 +10,9 @@
 #include <filesystem>
 #include <thread>
 
-#include "core/record/integrity.h"
-#include "core/record/session_reader.h"
+#include "core/bone/record/drilling_tables.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
 #include "protocols/bone_drilling/bone_replay.h"
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/small_drilling.h"
@@ -75,7 +76,7 @@ TEST(LiveBoneTest, AfterAKillTheSessionGoesOnWithTheBoneAsItStood) {
     session.signal(SIGKILL);
     session.wait();
   }
-  EXPECT_TRUE(record::SessionReader(partial).drills());
+  EXPECT_TRUE(record::drills(record::SessionReader(partial)));
   test::LiveCommand session(run_arguments(folder, "--resume"));
   const test::CommandResult ended = session.wait(60.0);
   ASSERT_EQ(ended.status, 0) << ended.errors;

@@ -6,7 +6,7 @@
 #include <csignal>
 #include <filesystem>
 
-#include "core/record/session_reader.h"
+#include "core/record/read/session_reader.h"
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
@@ -68,7 +68,9 @@ TEST_F(LiveDefinitionTest, ATextMayChangeBeforeAResumeAndTheFileKeepsBoth) {
   EXPECT_THAT(info.output, HasSubstr("definition_changed"));
   const CommandResult study =
       test::run_command("haptrial analyze '" + (folder_ / "out").string() + "'");
-  EXPECT_THAT(study.output, HasSubstr("S01.h5 was resumed with a changed definition: texts.rest"));
+  EXPECT_THAT(study.output,
+              HasSubstr("S01.h5 was resumed with a changed definition from trial 1 on: "
+                        "texts.rest"));
 }
 
 TEST_F(LiveDefinitionTest, WhatWasPresentedMayNotChangeBeforeAResume) {
@@ -79,6 +81,37 @@ TEST_F(LiveDefinitionTest, WhatWasPresentedMayNotChangeBeforeAResume) {
   EXPECT_EQ(ended.status, 2);
   EXPECT_THAT(ended.errors, HasSubstr("force_pattern.base_max was 10, is 9"));
   EXPECT_TRUE(fs::exists(partial()));
+}
+
+TEST_F(LiveDefinitionTest, AFolderTakesOneStudy) {
+  const std::string first = test::brisk_text();
+  define(first);
+  ASSERT_EQ(LiveCommand(run("")).wait(60.0).status, 0);
+  const auto other = [this](const std::string& subject, const std::string& more = "") {
+    std::string line = run(more);
+    line.replace(line.find("S01"), 3, subject);
+    return LiveCommand(line).wait(60.0);
+  };
+  define("# for the other room\n" + test::brisk_text({{"refresh_lock", "refresh_lock = false"}}));
+  const CommandResult screen = other("S02");
+  EXPECT_EQ(screen.status, 0) << screen.errors;
+  EXPECT_THAT(screen.output, HasSubstr("the definition differs from that of S01.h5: "
+                                       "screen.refresh_lock was true, is false; such keys may "
+                                       "change within a study\n"));
+  define(test::brisk_text({{"trajectory", "trajectory = { stiffness = 800.0, damping = 100.0 }"}}));
+  const CommandResult gain = other("S03");
+  EXPECT_EQ(gain.status, 2);
+  EXPECT_THAT(gain.errors, HasSubstr("S01.h5: was recorded with another definition: "
+                                     "guidance.trajectory.stiffness was 900, is 800"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/S03.h5.partial"));
+  EXPECT_EQ(other("S04", "--pilot").status, 0) << "a pilot may try something else";
+
+  const CommandResult study =
+      test::run_command("haptrial analyze '" + (folder_ / "out").string() + "'");
+  EXPECT_EQ(study.status, 0) << study.errors;
+  EXPECT_THAT(study.output,
+              HasSubstr("S02.h5 was recorded with a changed definition: screen.refresh_lock was "
+                        "true, is false; such keys may change within a study."));
 }
 
 TEST_F(LiveDefinitionTest, APilotIsMarkedAndAnalysedOnlyWhereItIsAskedFor) {

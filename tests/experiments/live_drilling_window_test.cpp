@@ -11,10 +11,11 @@
 #include <set>
 #include <thread>
 
-#include "core/bone/simulator.h"
-#include "core/record/session_reader.h"
-#include "core/render/bone_stills.h"
-#include "tests/core/render/pixels.h"
+#include "core/bone/record/drilling_tables.h"
+#include "core/bone/simulator/simulator.h"
+#include "core/record/read/session_reader.h"
+#include "core/render/bone/bone_stills.h"
+#include "tests/core/render/flat/pixels.h"
 #include "tests/experiments/console_person.h"
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"

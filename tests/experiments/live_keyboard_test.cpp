@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/record/integrity.h"
-#include "core/record/session_reader.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
 #include "tests/experiments/console_person.h"
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"

@@ -11,9 +11,9 @@
 #include <functional>
 #include <thread>
 
-#include "core/record/integrity.h"
-#include "core/record/session_reader.h"
-#include "core/record/trial_progress.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/read/trial_progress.h"
 #include "experiments/runner/session.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"

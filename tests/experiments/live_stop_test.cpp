@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "core/record/session_reader.h"
+#include "core/record/read/session_reader.h"
 #include "tests/experiments/console_person.h"
 #include "tests/experiments/force_log.h"
 #include "tests/experiments/live_command.h"

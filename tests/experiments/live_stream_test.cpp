@@ -9,8 +9,8 @@
 #include <sstream>
 #include <thread>
 
-#include "core/record/integrity.h"
-#include "core/record/session_reader.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"

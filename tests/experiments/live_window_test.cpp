@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "core/record/integrity.h"
-#include "core/record/session_reader.h"
-#include "core/render/frames.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
+#include "core/render/trial/frames.h"
 #include "protocols/force_training/force_definition.h"
-#include "tests/core/render/pixels.h"
+#include "tests/core/render/flat/pixels.h"
 #include "tests/experiments/console_person.h"
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"

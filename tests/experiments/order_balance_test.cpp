@@ -1,4 +1,4 @@
-#include "analysis/order_balance.h"
+#include "analysis/force_training/statistics/order_balance.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "protocols/interface/schedule.h"
+#include "protocols/definition/schedule.h"
 
 namespace haptrial::analysis {
 namespace {

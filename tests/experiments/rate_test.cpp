@@ -11,8 +11,9 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "analysis/bone_drilling/validity/ratings.h"
 #include "core/base/error.h"
-#include "core/base/file_text.h"
+#include "core/base/files/file_text.h"
 #include "experiments/command/commands.h"
 #include "experiments/studies/drilling_study.h"
 #include "experiments/studies/rating_pictures.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/record/session_reader.h"
+#include "core/record/read/session_reader.h"
 #include "experiments/studies/drilling_study.h"
 #include "experiments/studies/simulated_rater.h"
 #include "experiments/study/study_run.h"

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "core/record/integrity.h"
-#include "core/record/session_reader.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
 #include "tests/experiments/timed_session.h"
 #include "tests/support/temporary_folder.h"
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/record/session_reader.h"
+#include "core/record/read/session_reader.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/study.h"
+#include "analysis/force_training/study/study.h"
 #include "core/base/error.h"
-#include "core/record/integrity.h"
-#include "core/record/schema.h"
-#include "core/record/session_reader.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/table/schema.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/curve_analysis.h"
 #include "protocols/force_training/force_definition.h"

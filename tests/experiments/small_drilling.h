@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/bone/bone_model.h"
+#include "core/bone/model/bone_model.h"
 
 namespace haptrial::test {
 

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "core/base/table.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/stage_stills.h"
 #include "tests/experiments/shipped.h"

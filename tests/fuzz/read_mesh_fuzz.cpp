@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/geometry/mesh_io.h"
+#include "core/geometry/files/mesh_io.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace haptrial::geometry;  // NOLINT: the fuzzer's one function

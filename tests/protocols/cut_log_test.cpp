@@ -6,9 +6,10 @@
 #include <set>
 #include <thread>
 
+#include "core/bone/record/drilling_tables.h"
 #include "core/realtime/servo_loop.h"
-#include "core/record/session_reader.h"
-#include "core/record/session_writer.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/write/session_writer.h"
 #include "protocols/bone_drilling/drilling_pass.h"
 #include "protocols/interface/session_task.h"
 #include "tests/protocols/drilling_fixture.h"
@@ -66,7 +67,7 @@ TEST_P(CutLogTest, EveryVoxelOfAFullCutIsInTheFile) {
   record::SessionInfo info;
   info.clock = real ? "real" : "simulated";
   info.rate = 1000.0;
-  record::SessionWriter writer(folder / "cut.h5", info, std::span<const record::BoneRecord>{});
+  record::SessionWriter writer(folder / "cut.h5", info, record::drilling_tables());
   const auto collect = [&] {
     logs.tool.flush([&](auto rows) { writer.add(rows); });
     logs.removals.flush([&](auto rows) { writer.add(rows); });

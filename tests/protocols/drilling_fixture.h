@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/bone/companions.h"
-#include "core/bone/simulator.h"
+#include "core/bone/simulator/companions.h"
+#include "core/bone/simulator/simulator.h"
 #include "protocols/bone_drilling/drilling_pass.h"
 
 namespace haptrial::test {

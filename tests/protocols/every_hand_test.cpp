@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "protocols/force_training/passes/recall_test.h"
+#include "protocols/force_training/passes/recall.h"
 #include "protocols/force_training/passes/training_pass.h"
 #include "tests/support/pass_run.h"
 

@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/anova.h"
-#include "analysis/repeated_anova.h"
-#include "analysis/study_mixed.h"
+#include "analysis/force_training/statistics/study_mixed.h"
+#include "analysis/statistics/variance/anova.h"
+#include "analysis/statistics/variance/repeated_anova.h"
 #include "core/base/random.h"
 
 namespace haptrial::test {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "core/bone/bone_model.h"
+#include "core/bone/model/bone_model.h"
 
 namespace haptrial::bone {
 

@@ -7,9 +7,9 @@
 #include <optional>
 #include <sstream>
 
+#include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "core/base/table.h"
-#include "core/bone/data/anatomy.h"
+#include "core/bone/anatomy/anatomy.h"
 
 namespace haptrial::bone {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/bone/bone_model.h"
-#include "core/geometry/work.h"
+#include "core/bone/model/bone_model.h"
+#include "core/geometry/mesh/work.h"
 
 namespace haptrial::bone {
 

@@ -14,8 +14,8 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "core/base/child_process.h"
 #include "core/base/error.h"
+#include "core/base/files/child_process.h"
 #include "core/bone/data/read_volume_internal.h"
 
 namespace haptrial::bone {

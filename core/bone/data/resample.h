@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/bone/data/volume_source.h"
-#include "core/geometry/voxel_grid.h"
+#include "core/geometry/volume/voxel_grid.h"
 
 namespace haptrial::bone {
 

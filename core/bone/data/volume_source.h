@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/base/big_array.h"
-#include "core/geometry/work.h"
+#include "core/geometry/mesh/work.h"
 
 namespace haptrial::bone {
 

@@ -2,8 +2,8 @@
 // the installed libraries.
 
 #include <core/control/sampled_curve.h>
-#include <core/geometry/bvh.h>
-#include <core/geometry/procedural.h>
+#include <core/geometry/bvh/bvh.h>
+#include <core/geometry/mesh/procedural.h>
 
 #include <cmath>
 #include <cstdio>

@@ -5,44 +5,15 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "analysis/exchange/import_curves.h"
-#include "analysis/score_parameters.h"
-#include "analysis/study.h"
-#include "analysis/study_summary.h"
-#include "analysis/write_analysis.h"
 #include "core/base/error.h"
 #include "experiments/command/arguments.h"
-#include "experiments/control/interrupt.h"
-#include "experiments/studies/experiment.h"
+#include "experiments/command/curves/curve_commands.h"
 #include "experiments/studies/registry.h"
 #include "experiments/study/study_files.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
 namespace {
-
-analysis::StudyResult analyzed_curves(const AnalyzeOptions& options, int threads) {
-  watch_for_interrupt();
-  CurveAnalysis curves;
-  if (!options.definition.empty()) {
-    load_experiment(options.definition);  // all of it is good, or nothing is taken of it
-    curves = load_curve_analysis(options.definition);
-  }
-  std::vector<std::string> remarks;
-  const analysis::AnalysisPlan plan =
-      plan_for(options.planned, options.reference, curves.plan, remarks);
-  analysis::StudyResult study = exchange::analyze_curves(
-      {options.curves, options.table.empty() ? options.conditions : options.table,
-       exchange::ImportColumns(options.columns), options.factors, plan},
-      curves.scoring, threads, [](std::uint64_t) {
-        if (interrupted()) {
-          throw RunError("interrupted; nothing was written");
-        }
-      });
-  analysis::check_plan(study.statistics.table, plan_of(options.planned, options.reference));
-  study.remarks.insert(study.remarks.end(), remarks.begin(), remarks.end());
-  return study;
-}
 
 /// Where the report of a folder of sessions goes: that of its pilots must not replace the study's.
 fs::path report_folder(const fs::path& folder, Pilots pilots) {
@@ -122,12 +93,7 @@ int analyze(const AnalyzeOptions& options) {
   if (!import) {
     return analyze_sessions(options, pilots, threads);
   }
-  const analysis::StudyResult study = analyzed_curves(options, threads);
-  analysis::write_analysis(study, options.out);
-  std::vector<std::string> lines = analysis::summary_lines(study);
-  lines.insert(lines.end(), study.remarks.begin(), study.remarks.end());
-  lines.insert(lines.end(), study.alarms.begin(), study.alarms.end());
-  print_report(lines, options.out);
+  print_report(analyze_curves(options, threads), options.out);
   return 0;
 }
 

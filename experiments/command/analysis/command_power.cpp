@@ -4,9 +4,9 @@
 #include <string>
 #include <tuple>
 
-#include "analysis/power.h"
+#include "analysis/statistics/tests/power.h"
 #include "core/base/error.h"
-#include "core/base/nearest.h"
+#include "core/base/text/nearest.h"
 #include "experiments/command/commands.h"
 
 namespace haptrial::experiments {

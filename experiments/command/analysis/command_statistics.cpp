@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-#include "analysis/analysis_plan.h"
-#include "analysis/design_json.h"
-#include "analysis/design_lines.h"
-#include "core/base/alike_names.h"
+#include "analysis/statistics/design/analysis_plan.h"
+#include "analysis/statistics/words/design_json.h"
+#include "analysis/statistics/words/design_lines.h"
 #include "core/base/error.h"
-#include "core/base/file_text.h"
+#include "core/base/files/file_text.h"
+#include "core/base/text/alike_names.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/commands.h"
 

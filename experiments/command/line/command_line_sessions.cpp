@@ -29,9 +29,10 @@ void add_run(CLI::App& app, int& status) {
   sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
   sub->add_option("--subject", o.subject, "Participant's identifier: letters, digits, '-', '_'")
       ->required();
-  sub->add_option("--device", o.device,
+  sub->add_option("--device", o.devices,
                   "Device: virtual, mouse, force-dimension, open-haptics or replay:FILE "
-                  "(default: virtual)");
+                  "(default: virtual); repeated for each device of an experiment with several")
+      ->allow_extra_args(false);
   sub->add_option("--library", o.library,
                   "Path of the vendor's library (default: found by the system)");
   sub->add_flag("--window", o.window, "Show the participant's screen");

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "core/device/catalog.h"
+#include "core/device/vendor/catalog.h"
 #include "experiments/command/commands.h"
 
 namespace haptrial::experiments {

@@ -1,4 +1,3 @@
-#include "core/base/counted.h"
 #include "experiments/command/commands.h"
 
 #include <fmt/format.h>
@@ -6,8 +5,10 @@
 #include <filesystem>
 
 #include "core/base/error.h"
+#include "core/base/text/counted.h"
 #include "experiments/command/arguments.h"
 #include "experiments/control/interrupt.h"
+#include "experiments/control/signals.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/study_run.h"
 

@@ -1,4 +1,3 @@
-#include "core/base/counted.h"
 #include "experiments/command/commands.h"
 
 #include <fmt/format.h>
@@ -9,13 +8,16 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/timing.h"
-#include "core/record/overruns.h"
-#include "core/record/file_lock.h"
-#include "core/record/integrity.h"
-#include "core/record/readable.h"
-#include "core/record/session_reader.h"
-#include "core/record/trial_progress.h"
+#include "analysis/quality/timing.h"
+#include "core/base/text/counted.h"
+#include "core/record/hdf5/file_lock.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/readable.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/read/trial_progress.h"
+#include "core/record/rows/overruns.h"
+#include "experiments/studies/registry.h"
+#include "protocols/definition/lab_file.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -94,7 +96,7 @@ int info(const std::string& file) {
   const std::optional<std::string> unreadable = record::what_cannot_be_read(file);
   const record::SessionReader reader(file);
   const record::SessionInfo& i = reader.info();
-  record::Integrity integrity = record::check_session(reader);
+  record::Integrity integrity = record::check_session(reader, known_tables());
   if (unreadable) {
     integrity.problems.push_back(*unreadable);
     integrity.ok = false;
@@ -102,7 +104,9 @@ int info(const std::string& file) {
   fmt::print("subject     {}{}{}\n", i.subject, i.simulated ? " (simulated)" : "",
              i.pilot ? " (pilot, not part of the study)" : "");
   print_participant(i.participant);
-  fmt::print("definition  {}, seed {}\n", i.definition_name, i.seed);
+  const std::string lab = protocols::lab_of(i.definition);
+  fmt::print("definition  {}{}{}, seed {}\n", i.definition_name, lab.empty() ? "" : " with ", lab,
+             i.seed);
   fmt::print("recorded    {}, haptrial {} ({})\n", i.start_utc, i.program_version,
              i.program_commit);
   fmt::print("device      {}, {} N, workspace radius {} m\n", i.device, i.device_max_force,

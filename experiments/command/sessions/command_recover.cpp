@@ -2,8 +2,9 @@
 
 #include <filesystem>
 
-#include "core/record/recover.h"
+#include "core/record/recovery/recover.h"
 #include "experiments/command/commands.h"
+#include "experiments/studies/registry.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -18,7 +19,7 @@ std::filesystem::path default_output(std::filesystem::path file) {
 
 int recover(const std::string& file, const std::string& out) {
   const std::filesystem::path to = out.empty() ? default_output(file) : std::filesystem::path(out);
-  const record::Recovery found = record::recover_session(file, to);
+  const record::Recovery found = record::recover_session(file, to, known_tables());
   if (!found.anything()) {
     fmt::print("{}: nothing of a session is left in its {} bytes; nothing was written\n", file,
                found.file_bytes);

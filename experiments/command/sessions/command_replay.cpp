@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/base/error.h"
-#include "core/record/session_reader.h"
+#include "core/record/read/session_reader.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/commands.h"
 #include "experiments/control/interrupt.h"

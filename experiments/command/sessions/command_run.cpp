@@ -1,27 +1,39 @@
-#include "core/base/counted.h"
 #include "experiments/command/commands.h"
 
 #include <fmt/format.h>
 
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 
-#include "core/record/overruns.h"
 #include "core/base/error.h"
+#include "core/base/text/counted.h"
+#include "core/record/rows/overruns.h"
 #include "core/stream/lsl_outlet.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/run_checks.h"
 #include "experiments/console/console.h"
-#include "experiments/control/interrupt.h"
 #include "experiments/control/keyboard.h"
 #include "experiments/control/last_stop.h"
+#include "experiments/control/signals.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
 namespace {
+
+/// Several devices of one vendor are told apart by their order.
+void choose_devices(const RunOptions& options, SessionRequest& request) {
+  std::map<std::string, int> seen;
+  std::vector<DeviceChoice> choices;
+  for (const std::string& device : options.devices) {
+    choices.push_back({device, takes_library(device) ? options.library : "", seen[device]++});
+  }
+  request.device = choices.front();
+  request.more_devices.assign(choices.begin() + 1, choices.end());
+}
 
 int participant_of(const RunOptions& options) {
   constexpr int kMost = 10000;
@@ -108,13 +120,18 @@ int run(const RunOptions& options) {
       options.trials ? checked_number("--trials", *options.trials, 1, setup.design.trials) : 0;
   request.file = fs::path(options.out) / (options.subject + ".h5");
   check_session_file(options, request.file);
+  if (!options.resume) {
+    if (const std::string changed = check_study(options, setup); !changed.empty()) {
+      fmt::print("{}\n", changed);
+    }
+  }
   std::error_code error;
   fs::create_directories(options.out, error);
   if (error) {
     throw InputError(
         fmt::format("{}: the folder cannot be created ({})", options.out, error.message()));
   }
-  request.device = {options.device, options.library};
+  choose_devices(options, request);
   request.window = options.window;
   request.stream = options.stream || options.stream_optional;
   request.stream_optional = options.stream_optional;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/bone/bone_volume.h"
+#include "core/bone/model/bone_volume.h"
 
 namespace haptrial::experiments {
 

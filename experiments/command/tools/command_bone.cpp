@@ -5,12 +5,12 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/base/nearest.h"
+#include "core/base/text/nearest.h"
+#include "core/bone/anatomy/mandible.h"
+#include "core/bone/anatomy/temporal_bone.h"
 #include "core/bone/data/bone_file.h"
 #include "core/bone/data/bone_summary.h"
 #include "core/bone/data/load_bone.h"
-#include "core/bone/data/mandible.h"
-#include "core/bone/data/temporal_bone.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/commands.h"
 #include "experiments/command/mesh_command.h"

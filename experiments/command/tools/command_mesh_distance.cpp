@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/geometry/bvh.h"
-#include "core/geometry/distance_map.h"
-#include "core/geometry/volume_files.h"
-#include "core/render/distance_slice.h"
+#include "core/geometry/bvh/bvh.h"
+#include "core/geometry/volume/distance_map.h"
+#include "core/geometry/volume_files/volume_files.h"
+#include "core/render/mesh/distance_slice.h"
 #include "experiments/command/commands.h"
 #include "experiments/command/mesh_command.h"
 

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 
+#include "core/base/definition/table_vector.h"
 #include "core/base/error.h"
-#include "core/base/table_vector.h"
+#include "core/bone/anatomy/mandible.h"
+#include "core/bone/anatomy/temporal_bone.h"
 #include "core/bone/data/load_bone.h"
-#include "core/bone/data/mandible.h"
-#include "core/bone/data/temporal_bone.h"
-#include "protocols/interface/groups.h"
+#include "protocols/definition/groups.h"
+#include "protocols/definition/lab_file.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -317,7 +318,7 @@ const ParticipantGroup* group_of(const BoneDefinition& d, int participant) {
 
 BoneDefinition load_bone_definition(const fs::path& file) {
   const fs::path folder = file.parent_path();
-  Table root = Table::load(file);
+  Table root = load_with_lab(file);
   BoneDefinition d = read_bone_definition(root, file.string(), &folder);
   root.finish();
   d.load_bones(folder);

@@ -9,16 +9,16 @@
 #include <string_view>
 #include <vector>
 
-#include "core/bone/bone_model.h"
-#include "core/bone/companions.h"
-#include "core/bone/simulator.h"
+#include "core/bone/model/bone_model.h"
+#include "core/bone/simulator/companions.h"
+#include "core/bone/simulator/simulator.h"
 #include "core/sound/drill_sound.h"
-#include "core/subject/drilling_chart.h"
-#include "core/subject/drilling_hand.h"
-#include "core/subject/drilling_surgeon.h"
+#include "core/subject/drilling/drilling_chart.h"
+#include "core/subject/drilling/drilling_hand.h"
+#include "core/subject/drilling/drilling_surgeon.h"
 #include "protocols/bone_drilling/definition/cavity.h"
 #include "protocols/bone_drilling/definition/drilling_parameters.h"
-#include "protocols/interface/definition.h"
+#include "protocols/definition/definition.h"
 
 namespace haptrial::protocols {
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "core/base/counted.h"
-#include "core/base/table.h"
+#include "core/base/definition/table.h"
+#include "core/base/text/counted.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/definition/contact_margin.h"
 
@@ -70,11 +70,11 @@ std::vector<std::string> BoneDefinition::warnings() const {
 }
 
 std::vector<std::string> BoneDefinition::description() const {
-  std::vector<std::string> lines{fmt::format(
-      "{}: {}, {} of at most {:.0f} s{}, {} Hz", name,
-      counted(design.participants, "participant", "participants"),
-      counted(design.trials, "procedure", "procedures"), drilling.time_limit,
-      design.trials == 1 ? "" : " each", rate)};
+  std::vector<std::string> lines{
+      fmt::format("{}: {}, {} of at most {:.0f} s{}, {} Hz", name,
+                  counted(design.participants, "participant", "participants"),
+                  counted(design.trials, "procedure", "procedures"), drilling.time_limit,
+                  design.trials == 1 ? "" : " each", rate)};
   for (const auto& bone : bones) {
     const auto filled = std::count_if(bone->labels.begin(), bone->labels.end(),
                                       [](std::uint8_t label) { return label != 0; });
@@ -94,11 +94,10 @@ std::vector<std::string> BoneDefinition::description() const {
 }
 
 std::vector<std::string> BoneDefinition::left_out_of_dry_runs() const {
-  return practice > 0.0
-             ? std::vector{fmt::format(
-                   "{:.0f} minutes of practice left out: virtual subjects need none",
-                   practice / 60.0)}
-             : std::vector<std::string>{};
+  return practice > 0.0 ? std::vector{fmt::format(
+                              "{:.0f} minutes of practice left out: virtual subjects need none",
+                              practice / 60.0)}
+                        : std::vector<std::string>{};
 }
 
 }  // namespace haptrial::protocols

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <optional>
 
+#include "core/base/definition/table_vector.h"
 #include "core/base/error.h"
-#include "core/base/nearest.h"
-#include "core/base/table_vector.h"
-#include "core/bone/distance_field.h"
-#include "core/geometry/voxel_grid.h"
+#include "core/base/text/nearest.h"
+#include "core/bone/model/distance_field.h"
+#include "core/geometry/volume/voxel_grid.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -175,7 +175,9 @@ CavityParameters read_cavity_parameters(Table& table) {
     p.inward = read_direction(table, "inward");
   }
   p.beside = table.has("beside") ? table.text("beside") : p.beside;
-  p.offset_B = table.has("offset") ? read_vector(table, "offset", {-1.0, 1.0}, "m", Eigen::Vector3d::UnitY()) : p.offset_B;
+  p.offset_B = table.has("offset")
+                   ? read_vector(table, "offset", {-1.0, 1.0}, "m", Eigen::Vector3d::UnitY())
+                   : p.offset_B;
   number("radius", p.radius, {1e-4, 0.02}, "m");
   number("slope", p.slope, {0.0, 5.0}, "");
   number("margin", p.margin, {0.0, 0.01}, "m");

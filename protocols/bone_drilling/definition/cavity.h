@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/bone/bone_model.h"
-#include "core/subject/drilling_chart.h"
+#include "core/bone/model/bone_model.h"
+#include "core/subject/drilling/drilling_chart.h"
 
 namespace haptrial {
 class Table;

@@ -6,7 +6,7 @@
 #include <cctype>
 #include <optional>
 
-#include "core/base/table.h"
+#include "core/base/definition/table.h"
 
 namespace haptrial::protocols {
 namespace {

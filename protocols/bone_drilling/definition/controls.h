@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/bone/simulator.h"
+#include "core/bone/simulator/simulator.h"
 #include "core/device/device.h"
 
 namespace haptrial {

@@ -5,11 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "core/bone/drilling_view.h"
-#include "core/render/bone_scene.h"
-#include "core/render/bone_stills.h"
-#include "core/render/image.h"
-#include "core/render/offscreen.h"
+#include "core/bone/simulator/drilling_view.h"
+#include "core/render/bone/bone_scene.h"
+#include "core/render/bone/bone_stills.h"
+#include "core/render/gl/image.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_stage.h"
 #include "protocols/interface/drawing.h"
@@ -49,19 +48,5 @@ class BoneDisplay {
 
 /// The same for a screen. The definition outlives the screen.
 MakeDrawing bone_drawing(const BoneDefinition& definition, std::shared_ptr<const BoneStage> stage);
-
-/// The same off screen; stills are made when the first is called up. The definition outlives it.
-class BoneRenderer {
- public:
-  BoneRenderer(const BoneDefinition& definition, std::shared_ptr<const BoneStage> stage);
-  render::Image draw(const bone::DrillingView& seen);
-
- private:
-  const BoneDefinition& definition_;
-  std::shared_ptr<const BoneStage> stage_;
-  bool has_stills_{false};
-  render::OffscreenContext context_;
-  BoneDisplay display_;
-};
 
 }  // namespace haptrial::protocols

@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "core/render/image.h"
+#include "core/render/gl/image.h"
 #include "core/stimulus/observer.h"
 #include "protocols/bone_drilling/display/bone_display.h"
+#include "protocols/bone_drilling/display/bone_renderer.h"
 
 namespace haptrial::protocols {
 
@@ -21,7 +22,8 @@ class BonePictures final : public stimulus::Observer {
 
   /// Before a pass.
   void watch(std::shared_ptr<const BoneStage> stage);
-  void observe(const stimulus::Shown& shown, const stimulus::Forces& forces, double dt) noexcept override;
+  void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
+               double dt) noexcept override;
   /// After a pass: FOLDER/NAME-01.png and so on. @throws RunError where one cannot be drawn or
   /// written.
   void write(const std::filesystem::path& folder, const std::string& name);

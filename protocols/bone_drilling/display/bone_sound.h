@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/bone/thickness.h"
+#include "core/bone/model/thickness.h"
 #include "core/realtime/latest_value.h"
 #include "core/sound/sound_output.h"
 #include "core/stimulus/observer.h"
@@ -30,8 +30,8 @@ class ThicknessProbe {
 };
 
 /// What a drill sounds like at this instant.
-sound::DrillState sound_of(const bone::DrillingView& seen,
-                           std::span<const bone::ToolSpec> tools, double thickness) noexcept;
+sound::DrillState sound_of(const bone::DrillingView& seen, std::span<const bone::ToolSpec> tools,
+                           double thickness) noexcept;
 
 /// The sound of a drilling on the sound card. The servo thread calls observe(), the session's
 /// thread the rest; a thread of its own finds the thickness.
@@ -43,7 +43,8 @@ class BoneSound final : public stimulus::Observer {
 
   /// Which bone is drilled from now on.
   void listen_to(std::shared_ptr<const BoneStage> stage);
-  void observe(const stimulus::Shown& shown, const stimulus::Forces& forces, double dt) noexcept override;
+  void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
+               double dt) noexcept override;
 
  private:
   void run();

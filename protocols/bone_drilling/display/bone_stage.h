@@ -3,10 +3,10 @@
 #include <memory>
 #include <vector>
 
-#include "core/bone/companions.h"
-#include "core/bone/simulator.h"
-#include "core/bone/surface_depths.h"
-#include "core/render/image.h"
+#include "core/bone/simulator/companions.h"
+#include "core/bone/simulator/simulator.h"
+#include "core/bone/surface/surface_depths.h"
+#include "core/render/gl/image.h"
 
 namespace haptrial::protocols {
 

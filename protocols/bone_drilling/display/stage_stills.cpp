@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/bone/bone_volume.h"
-#include "core/render/bone_scene.h"
-#include "core/render/offscreen.h"
+#include "core/bone/model/bone_volume.h"
+#include "core/render/bone/bone_scene.h"
+#include "core/render/gl/offscreen.h"
 #include "protocols/bone_drilling/display/bone_display.h"
 
 namespace haptrial::protocols {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/render/image.h"
+#include "core/render/gl/image.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 
 namespace haptrial::protocols {

@@ -1,6 +1,6 @@
 #include "protocols/force_training/passes/recorded_pass.h"
 
-#include "protocols/force_training/passes/recall_test.h"
+#include "protocols/force_training/passes/recall.h"
 #include "protocols/force_training/passes/training_pass.h"
 
 namespace haptrial::protocols {

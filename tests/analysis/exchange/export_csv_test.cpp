@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "analysis/scores_csv.h"
-#include "core/base/file_text.h"
+#include "analysis/force_training/score/scores_csv.h"
+#include "core/base/files/file_text.h"
 #include "tests/analysis/exchange/small_session.h"
 #include "tests/support/temporary_folder.h"
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/record/session_types.h"
+#include "core/record/rows/session_types.h"
 
 namespace haptrial::exchange {
 

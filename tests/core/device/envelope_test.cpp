@@ -12,9 +12,9 @@
 #include <string>
 #include <utility>
 
+#include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
-#include "core/base/table.h"
 #include "tests/support/allocation_guard.h"
 
 namespace haptrial::device {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <thread>
 
-#include "core/base/table.h"
+#include "core/base/definition/table.h"
 #include "core/device/coupled_mass.h"
 #include "core/device/mouse.h"
 #include "core/device/replay.h"

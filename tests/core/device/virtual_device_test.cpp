@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
+#include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
-#include "core/base/table.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/free_mass.h"
 

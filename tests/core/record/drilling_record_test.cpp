@@ -10,13 +10,15 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/base/file_text.h"
-#include "core/record/integrity.h"
-#include "core/record/recover.h"
-#include "core/record/schema.h"
-#include "core/record/session_reader.h"
-#include "core/record/session_resume.h"
-#include "core/record/session_writer.h"
+#include "core/base/files/file_text.h"
+#include "core/bone/record/drilling_tables.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/recovery/recover.h"
+#include "core/record/recovery/session_resume.h"
+#include "core/record/rows/session_tables.h"
+#include "core/record/table/schema.h"
+#include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
 namespace haptrial::record {
@@ -86,7 +88,7 @@ TEST(DrillingRecordTest, EveryFieldComesBackOnItsGrid) {
   const std::vector<BoneRecord> bones{test::small_bone()};
   const std::vector<ToolRow> tool = test::tool_motion(5000, 1);
   {
-    SessionWriter writer(folder / "a.h5", test::example_info(), bones);
+    SessionWriter writer(folder / "a.h5", test::example_info(), drilling_tables(), rows_of(bones));
     add(writer, tool);
     add<RemovalRow>(writer, {removal(3), removal(1000)});
     add<CameraRow>(writer, {{7, -3, {1, 2, 3}, {4, 5, 6}, {0, 0.6, 0.8}, 0.1}});
@@ -95,7 +97,7 @@ TEST(DrillingRecordTest, EveryFieldComesBackOnItsGrid) {
     writer.close();
   }
   const SessionReader reader(folder / "a.h5");
-  ASSERT_TRUE(reader.drills());
+  ASSERT_TRUE(drills(reader));
   const std::vector<ToolRow> found = reader.rows<ToolRow>();
   ASSERT_EQ(found.size(), tool.size());
   for (std::size_t i = 0; i < tool.size(); ++i) {
@@ -135,9 +137,9 @@ TEST(DrillingRecordTest, TheBoneIsThereFromTheBeginning) {
   for (auto& row : second.structures) row.bone = 1;
   for (auto& row : second.runs) row.bone = 1;
   for (auto& row : second.densities) row.bone = 1;
-  const SessionWriter writer(folder / "a.h5", test::example_info(),
-                             std::vector<BoneRecord>{test::small_bone(), second});
-  const auto bones = SessionReader(folder / "a.h5.partial").bones();
+  const SessionWriter writer(folder / "a.h5", test::example_info(), drilling_tables(),
+                             rows_of(std::vector<BoneRecord>{test::small_bone(), second}));
+  const auto bones = recorded_bones(SessionReader(folder / "a.h5.partial"));
   ASSERT_EQ(bones.size(), 2u);
   const BoneRecord given = test::small_bone();
   EXPECT_EQ(bones[0].bone.name, given.bone.name);
@@ -162,9 +164,9 @@ TEST(DrillingRecordTest, OtherSessionsHaveNoneOfIt) {
   EXPECT_THROW(add<ToolRow>(writer, test::tool_motion(1, 1)), std::invalid_argument);
   writer.close();
   const SessionReader reader(folder / "a.h5");
-  EXPECT_FALSE(reader.drills());
+  EXPECT_FALSE(drills(reader));
   EXPECT_TRUE(reader.rows<ToolRow>().empty());
-  EXPECT_TRUE(reader.bones().empty());
+  EXPECT_TRUE(recorded_bones(reader).empty());
 }
 
 /// Recovery knows a chunk by its inflated size.
@@ -174,18 +176,19 @@ TEST(DrillingRecordTest, NoTwoTablesHaveChunksOfOneSize) {
     EXPECT_TRUE(sizes.insert(bytes).second) << bytes;
   };
   for (const TableSchema* each :
-       {&trials_schema(), &events_schema(), &stimuli_schema(), &timing_schema(), &frames_schema(),
-        &attributes_schema(), &runs_schema(), &begun_schema()}) {
+       {&trials_table().schema(), &events_table().schema(), &stimuli_table().schema(),
+        &timing_table().schema(), &frames_table().schema(), &attributes_table().schema(),
+        &runs_table().schema(), &begun_table().schema()}) {
     add_size(each->row_bytes() * each->chunk_rows);
   }
-  for (const TableDescription* table : known_tables()) {
+  for (const TableDescription* table : drilling_tables()) {
     if (table->of() != RowsOf::kEachTick) {
       add_size(table->schema().row_bytes() * table->schema().chunk_rows);
     }
   }
-  for (std::size_t rows = kLiveChunkStep; rows <= samples_schema().chunk_rows;
+  for (std::size_t rows = kLiveChunkStep; rows <= samples_table().schema().chunk_rows;
        rows += kLiveChunkStep) {
-    add_size(rows * samples_schema().row_bytes());
+    add_size(rows * samples_table().schema().row_bytes());
     add_size(rows * table_of<ToolRow>().schema().row_bytes());
   }
 }
@@ -202,20 +205,21 @@ TEST(DrillingRecordTest, AfterAKillEveryTableEndsWithTheSameTickAndGoesOn) {
     const TemporaryFolder folder;
     fs::path killed;
     {
-      SessionWriter writer(folder / "a.h5", live_info(), std::vector{test::small_bone()});
+      SessionWriter writer(folder / "a.h5", live_info(), drilling_tables(),
+                           rows_of(std::vector{test::small_bone()}));
       drill(writer, 0, ticks);
       writer.flush();
       killed = copy_of_partial(folder);
     }
     Resumed found;
-    SessionWriter writer = SessionWriter::resume(killed, found);
+    SessionWriter writer = SessionWriter::resume(killed, found, test::drilling_and_common());
     EXPECT_LE(ticks - found.next_sequence, 768u);
     drill(writer, found.next_sequence, 9000);
     writer.add_pass({1, "drilling", kDrillingPhase, 1, 1, 7, 0, 8999, PassStatus::kCompleted});
     writer.set_timing({}, {9000 - found.next_sequence, 0, 0});
     writer.close();
     const SessionReader reader(killed);
-    const Integrity integrity = check_session(reader);
+    const Integrity integrity = check_session(reader, test::drilling_and_common());
     EXPECT_TRUE(integrity.ok) << integrity.problems.front();
     const std::vector<ToolRow> given = test::tool_motion(9000, 4);
     const std::vector<ToolRow> tool = reader.rows<ToolRow>();
@@ -232,7 +236,7 @@ TEST(DrillingRecordTest, AfterAKillEveryTableEndsWithTheSameTickAndGoesOn) {
     // On every tenth tick from where each run began.
     EXPECT_EQ(removals.size(),
               (found.next_sequence + 9) / 10 + (9000 - found.next_sequence + 9) / 10);
-    EXPECT_EQ(reader.bones().size(), 1u);
+    EXPECT_EQ(recorded_bones(reader).size(), 1u);
     EXPECT_EQ(reader.passes().front().phase, kDrillingPhase);
   }
 }
@@ -240,7 +244,8 @@ TEST(DrillingRecordTest, AfterAKillEveryTableEndsWithTheSameTickAndGoesOn) {
 TEST(DrillingRecordTest, AFileThatLostItsHeaderGivesItsDrillingBack) {
   const TemporaryFolder folder;
   {
-    SessionWriter writer(folder / "a.h5", test::example_info(), std::vector{test::small_bone()});
+    SessionWriter writer(folder / "a.h5", test::example_info(), drilling_tables(),
+                         rows_of(std::vector{test::small_bone()}));
     drill(writer, 0, 9000);
     add<CameraRow>(writer, {{7, 3, {1, 2, 3}, {4, 5, 6}, {0, 1, 0}, 0.1}});
     add<SplitRow>(writer, {{9, 1, 2, {3, 4, 5}}});
@@ -253,10 +258,10 @@ TEST(DrillingRecordTest, AFileThatLostItsHeaderGivesItsDrillingBack) {
   std::fill_n(bytes.begin(), 2048, '\0');
   std::ofstream(folder / "torn.h5", std::ios::binary) << bytes;
   EXPECT_THROW(SessionReader(folder / "torn.h5"), InputError);
-  recover_session(folder / "torn.h5", folder / "saved.h5");
+  recover_session(folder / "torn.h5", folder / "saved.h5", test::drilling_and_common());
   const SessionReader whole(folder / "a.h5");
   const SessionReader saved(folder / "saved.h5");
-  ASSERT_TRUE(saved.drills());
+  ASSERT_TRUE(drills(saved));
   EXPECT_EQ(saved.sample_count(), 9000u);
   const auto tool = whole.rows<ToolRow>();
   const auto found = saved.rows<ToolRow>();
@@ -268,8 +273,8 @@ TEST(DrillingRecordTest, AFileThatLostItsHeaderGivesItsDrillingBack) {
   EXPECT_EQ(saved.count<CameraRow>(), 1u);
   EXPECT_EQ(saved.count<SplitRow>(), 1u);
   EXPECT_EQ(saved.rows<ProcedureRow>().front().checksum, 10u);
-  ASSERT_EQ(saved.bones().size(), 1u);
-  EXPECT_EQ(saved.bones().front().runs.size(), 2u);
+  ASSERT_EQ(recorded_bones(saved).size(), 1u);
+  EXPECT_EQ(recorded_bones(saved).front().runs.size(), 2u);
 }
 
 }  // namespace

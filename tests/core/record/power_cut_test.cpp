@@ -10,13 +10,14 @@
 #include <map>
 
 #include "core/base/error.h"
-#include "core/base/file_text.h"
+#include "core/base/files/file_text.h"
 #include "core/base/random.h"
-#include "core/record/integrity.h"
-#include "core/record/recover.h"
-#include "core/record/session_reader.h"
-#include "core/record/session_resume.h"
-#include "core/record/session_writer.h"
+#include "core/bone/record/drilling_tables.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/recovery/recover.h"
+#include "core/record/recovery/session_resume.h"
+#include "core/record/write/session_writer.h"
 #include "tests/core/record/disk_tap.h"
 #include "tests/core/record/session_fixture.h"
 
@@ -75,7 +76,8 @@ struct Recording {
     info.clock = "real";
     const std::vector<BoneRecord> bones{test::small_bone()};
     SessionWriter writer =
-        drills ? SessionWriter(folder / "a.h5", info, bones) : SessionWriter(folder / "a.h5", info);
+        drills ? SessionWriter(folder / "a.h5", info, drilling_tables(), rows_of(bones))
+               : SessionWriter(folder / "a.h5", info);
     const std::string created = file_text(folder / "a.h5.partial");
     DiskTap::start((folder / "a.h5.partial").string());
     write(writer);
@@ -237,8 +239,8 @@ void check_rows(const SessionReader& reader, const Recording& recording, const S
   if (recording.drills) {
     ASSERT_GE(reader.count<ToolRow>(), synced.rows);
     ASSERT_GE(reader.count<RemovalRow>(), synced.rows / 20);
-    ASSERT_EQ(reader.bones().size(), 1u);
-    ASSERT_EQ(reader.bones()[0].runs.size(), 2u);
+    ASSERT_EQ(recorded_bones(reader).size(), 1u);
+    ASSERT_EQ(recorded_bones(reader)[0].runs.size(), 2u);
   }
 }
 
@@ -273,7 +275,8 @@ void try_file(const Recording& recording, const std::string& bytes, const Synced
   tally.synced += synced.rows;
   tally.passes_synced += synced.passes;
 
-  const Recovery recovery = recover_session(partial, folder / "out.h5");
+  const Recovery recovery =
+      recover_session(partial, folder / "out.h5", test::drilling_and_common());
   ASSERT_GE(recovery.samples, synced.rows);
   ASSERT_GE(recovery.passes, synced.passes);
   tally.by_recover += recovery.samples;
@@ -282,7 +285,7 @@ void try_file(const Recording& recording, const std::string& bytes, const Synced
 
   Resumed found;
   try {
-    SessionWriter writer = SessionWriter::resume(file, found);
+    SessionWriter writer = SessionWriter::resume(file, found, test::drilling_and_common());
     ++(found.repaired.empty() ? tally.as_it_was : tally.repaired);
     tally.by_resume += found.rows;
     tally.passes_by_resume += found.passes.size();
@@ -293,7 +296,7 @@ void try_file(const Recording& recording, const std::string& bytes, const Synced
     go_on(writer, found, recording.drills);
     const SessionReader reader(file);
     ASSERT_EQ(reader.sample_count(), found.rows + 500);
-    for (const std::string& problem : check_session(reader).problems) {
+    for (const std::string& problem : check_session(reader, test::drilling_and_common()).problems) {
       // Ticks that never came to the disk are missing, and nothing else is wrong.
       EXPECT_TRUE(problem.find("follows") != std::string::npos ||
                   problem.find("first sequence number") != std::string::npos ||

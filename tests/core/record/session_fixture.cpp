@@ -4,6 +4,8 @@
 #include <cstring>
 
 #include "core/base/random.h"
+#include "core/bone/record/drilling_tables.h"
+#include "core/record/rows/common_tables.h"
 
 namespace haptrial::test {
 
@@ -91,6 +93,13 @@ bool same(const Sample& a, const Sample& b) {
          a.velocity == b.velocity && a.force == b.force && a.applied_force == b.applied_force &&
          a.target_force == b.target_force && a.pass == b.pass && a.stage == b.stage &&
          a.saturated == b.saturated;
+}
+
+record::TableList drilling_and_common() {
+  record::TableList tables = record::drilling_tables();
+  const record::TableList& common = record::common_tables();
+  tables.insert(tables.end(), common.begin(), common.end());
+  return tables;
 }
 
 record::BoneRecord small_bone() {

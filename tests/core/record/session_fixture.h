@@ -2,8 +2,9 @@
 
 #include <vector>
 
-#include "core/record/drilling_types.h"
-#include "core/record/session_types.h"
+#include "core/bone/record/drilling_types.h"
+#include "core/record/rows/session_types.h"
+#include "core/record/table/table_description.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::test {
@@ -20,6 +21,8 @@ record::Sample on_file(const record::Sample& sample);
 
 /// 3 x 4 x 2 voxels, of which (1, 0, 0), (2, 0, 0) and (2, 3, 1) hold something.
 record::BoneRecord small_bone();
+/// Every table that a file of these tests may have beside those of every session.
+record::TableList drilling_and_common();
 
 /// What a tool does on as many ticks, with another value in every field of every row.
 std::vector<record::ToolRow> tool_motion(std::size_t count, std::uint64_t seed);

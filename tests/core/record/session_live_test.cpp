@@ -11,11 +11,12 @@
 #include <fstream>
 
 #include "core/base/error.h"
-#include "core/record/integrity.h"
-#include "core/record/schema.h"
-#include "core/record/session_reader.h"
-#include "core/record/session_resume.h"
-#include "core/record/session_writer.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/recovery/session_resume.h"
+#include "core/record/rows/session_tables.h"
+#include "core/record/table/schema.h"
+#include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 #include "tests/support/message_of.h"
 
@@ -98,7 +99,7 @@ TEST(SessionLiveTest, ChunksLastAtMostEightTenthsOfASecond) {
     EXPECT_GE(rows, 0.64 * rate - 64.0) << rate;
   }
   EXPECT_EQ(live_chunk_rows(1.0), kLiveChunkStep);
-  EXPECT_EQ(live_chunk_rows(1e6), samples_schema().chunk_rows);
+  EXPECT_EQ(live_chunk_rows(1e6), samples_table().schema().chunk_rows);
 }
 
 TEST(SessionLiveTest, WithoutAnyFlushALiveFileLacksLessThanASecond) {

@@ -4,7 +4,8 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "core/record/session_writer.h"
+#include "core/bone/record/drilling_tables.h"
+#include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
 namespace haptrial::record {
@@ -29,7 +30,7 @@ void write_csv(const std::filesystem::path& path, const std::vector<Sample>& sam
 
 // Written by hand from the rows below: the file is compared with the source, not with a reader.
 constexpr const char* kExpected = R"({
-"attributes": {"schema_version": 4, "program_version": "0.1.0", "program_commit": "0123abc",
+"attributes": {"schema_version": 5, "program_version": "0.1.0", "program_commit": "0123abc",
   "definition": "[trajectory]\nspeed = 0.016  # größer als 0\n", "definition_name": "recall.toml",
   "subject": "P07", "seed": 18364758544493064720, "device": "virtual", "device_max_force": 8.5,
   "device_workspace_radius": 0.16, "clock": "simulated", "rate": 1000.0,
@@ -52,7 +53,8 @@ void expect_that_python_reads(bool drills) {
   const test::TemporaryFolder folder;
   const std::vector<Sample> samples = test::hand_motion(9001, 3);
   const std::vector<BoneRecord> bones{test::small_bone()};
-  SessionWriter writer = drills ? SessionWriter(folder / "session.h5", test::example_info(), bones)
+  SessionWriter writer = drills ? SessionWriter(folder / "session.h5", test::example_info(),
+                                                drilling_tables(), rows_of(bones))
                                 : SessionWriter(folder / "session.h5", test::example_info());
   writer.set_planned(36);
   writer.note_counts({0, 0, 0});

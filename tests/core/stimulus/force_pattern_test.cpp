@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
-#include "core/base/table.h"
 #include "core/stimulus/stimulus.h"
 #include "tests/support/allocation_guard.h"
 

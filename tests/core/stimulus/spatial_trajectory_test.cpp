@@ -8,9 +8,9 @@
 #include <limits>
 #include <numbers>
 
+#include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
-#include "core/base/table.h"
 #include "tests/support/allocation_guard.h"
 
 namespace haptrial::stimulus {

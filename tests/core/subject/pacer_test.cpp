@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "core/base/table.h"
 #include "core/subject/hand.h"
 #include "core/subject/virtual_subject.h"
 #include "tests/support/allocation_guard.h"

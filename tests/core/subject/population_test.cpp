@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "core/base/table.h"
 #include "core/subject/subject_parameters.h"
 
 namespace haptrial::subject {

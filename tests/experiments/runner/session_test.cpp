@@ -6,15 +6,15 @@
 #include <cmath>
 #include <map>
 
-#include "analysis/score.h"
+#include "analysis/force_training/score/score.h"
 #include "core/base/error.h"
-#include "core/record/integrity.h"
-#include "core/record/session_reader.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
 #include "core/stimulus/stimulus.h"
-#include "tests/experiments/shipped.h"
-#include "tests/support/temporary_folder.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -51,7 +51,8 @@ bool same_samples(const record::SessionReader& a, const record::SessionReader& b
 class SessionTest : public testing::Test {
  protected:
   test::TemporaryFolder folder_;
-  protocols::ForceDefinition definition_ = protocols::load_force_definition(test::shipped_definition());
+  protocols::ForceDefinition definition_ =
+      protocols::load_force_definition(test::shipped_definition());
 };
 
 TEST_F(SessionTest, RecordsEveryTickAndEveryPass) {
@@ -163,8 +164,8 @@ TEST_F(SessionTest, HandStaysInTheWorkspaceAndForcesInTheEnvelope) {
 TEST_F(SessionTest, IntegratorsAgree) {
   // CVODE with smooth friction against the exact step: two friction laws, one session.
   const auto exact = record_session(definition_, folder_ / "exact.h5", 1);
-  protocols::ForceDefinition other =
-      protocols::parse_force_definition(test::shipped_with("integrator", "integrator = \"cvode\""), "cvode.toml");
+  protocols::ForceDefinition other = protocols::parse_force_definition(
+      test::shipped_with("integrator", "integrator = \"cvode\""), "cvode.toml");
   const auto cvode = record_session(other, folder_ / "cvode.h5", 1);
   const auto pass = exact.passes().at(1);
   const auto pass_cvode = cvode.passes().at(1);
@@ -185,7 +186,8 @@ class WithoutNoiseTest : public SessionTest, public testing::WithParamInterface<
 INSTANTIATE_TEST_SUITE_P(IdealDevice, WithoutNoiseTest, testing::Bool());
 
 TEST_P(WithoutNoiseTest, RecallIsNearPerfectInEveryCondition) {
-  protocols::ForceDefinition quiet = protocols::parse_force_definition(test::shipped_without_noise(), "quiet.toml");
+  protocols::ForceDefinition quiet =
+      protocols::parse_force_definition(test::shipped_without_noise(), "quiet.toml");
   if (GetParam()) {
     quiet.device.position_quantum = 0.0;
     quiet.hand.coulomb_friction = 0.0;
@@ -206,7 +208,8 @@ TEST_P(WithoutNoiseTest, RecallIsNearPerfectInEveryCondition) {
         applied.force.push_back(s.applied_force);
       }
     }
-    const auto score = analysis::score_recall(target, applied, parse_curve_analysis(quiet.text, quiet.file_name).scoring);
+    const auto score = analysis::score_recall(
+        target, applied, parse_curve_analysis(quiet.text, quiet.file_name).scoring);
     // 3 % of the pattern's range; what is left is the lag of muscle and posture.
     EXPECT_LT(score.rms_unaligned, 0.3) << pass.condition << " trial " << pass.trial;
     ++tested[pass.condition];

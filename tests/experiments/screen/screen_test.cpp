@@ -9,12 +9,12 @@
 #include <thread>
 
 #include "core/base/error.h"
-#include "core/render/frames.h"
+#include "core/render/trial/frames.h"
 #include "core/stimulus/stimulus.h"
-#include "tests/core/render/pixels.h"
+#include "protocols/force_training/path_drawing.h"
+#include "tests/core/render/flat/pixels.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/virtual_display.h"
-#include "protocols/force_training/path_drawing.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -287,7 +287,8 @@ TEST_F(ScreenTest, AServoThreadAndASessionThreadUseItAtOnce) {
   });
   std::size_t frames = 0;
   for (int i = 0; i < 20; ++i) {
-    i % 2 == 0 ? screen.show_text({"Page", "", "", 5.0}) : screen.show(protocols::path_drawing(style(), path()));
+    i % 2 == 0 ? screen.show_text({"Page", "", "", 5.0})
+               : screen.show(protocols::path_drawing(style(), path()));
     std::this_thread::sleep_for(30ms);
     frames += screen.take_frames().size();
     EXPECT_EQ(screen.screenshot().width, kWidth);

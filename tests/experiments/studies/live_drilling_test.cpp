@@ -10,19 +10,20 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "analysis/drilling/metrics.h"
-#include "core/bone/data/recorded_bone.h"
-#include "core/record/session_reader.h"
+#include "analysis/bone_drilling/metrics/metrics.h"
+#include "core/bone/record/drilling_tables.h"
+#include "core/bone/record/recorded_bone.h"
+#include "core/record/read/session_reader.h"
 #include "experiments/console/console_messages.h"
 #include "experiments/control/tick_rate.h"
 #include "experiments/runner/session.h"
+#include "experiments/studies/bone_study.h"
 #include "experiments/studies/drilling_study.h"
+#include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
-#include "tests/analysis/drilling/session_of_drillings.h"
+#include "tests/analysis/bone_drilling/session_of_drillings.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/temporary_folder.h"
-#include "experiments/studies/bone_study.h"
-#include "protocols/bone_drilling/bone_protocol.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -102,8 +103,8 @@ drilling::Procedure procedure_of(const std::vector<const test::DrillingRows*>& p
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "rows.h5";
   {
-    record::SessionWriter writer(file, test::drilling_info(),
-                                 std::vector<record::BoneRecord>{test::block_record(0)});
+    record::SessionWriter writer(file, test::drilling_info(), record::drilling_tables(),
+                                 record::rows_of(std::vector{test::block_record(0)}));
     record::PassRow pass = pass_of(1, 1);
     pass.condition = "drilling";
     for (const test::DrillingRows* rows : passes) {
@@ -119,8 +120,7 @@ drilling::Procedure procedure_of(const std::vector<const test::DrillingRows*>& p
 }
 
 TEST(LiveDrillingTest, PiecesOfRowsInAnyCutGiveTheFiguresOfTheWhole) {
-  const auto bone =
-      std::make_shared<const bone::BoneModel>(bone::bone_of(test::block_record(0)));
+  const auto bone = std::make_shared<const bone::BoneModel>(bone::bone_of(test::block_record(0)));
   RandomStream random(4, "pieces");
   std::vector<bool> gone;
   const auto practice = test::wander(0, 300, 0, random, gone);
@@ -149,8 +149,7 @@ TEST(LiveDrillingTest, PiecesOfRowsInAnyCutGiveTheFiguresOfTheWhole) {
 }
 
 TEST(LiveDrillingTest, WhatAnEarlierRunDidToTheBoneCounts) {
-  const auto bone =
-      std::make_shared<const bone::BoneModel>(bone::bone_of(test::block_record(0)));
+  const auto bone = std::make_shared<const bone::BoneModel>(bone::bone_of(test::block_record(0)));
   RandomStream random(7, "earlier");
   std::vector<bool> gone;
   const auto first = test::wander(0, 700, 0, random, gone);
@@ -165,8 +164,7 @@ TEST(LiveDrillingTest, WhatAnEarlierRunDidToTheBoneCounts) {
 }
 
 TEST(LiveDrillingTest, OfATrialThatWasBegunAnewTheLastBoneCounts) {
-  const auto bone =
-      std::make_shared<const bone::BoneModel>(bone::bone_of(test::block_record(0)));
+  const auto bone = std::make_shared<const bone::BoneModel>(bone::bone_of(test::block_record(0)));
   RandomStream random(5, "anew");
   std::vector<bool> gone;
   const auto first = test::wander(0, 500, 0, random, gone);
@@ -191,8 +189,7 @@ TEST(LiveDrillingTest, OfATrialThatWasBegunAnewTheLastBoneCounts) {
 }
 
 TEST(LiveDrillingTest, TicksWhoseRowsWereLostArePassedOver) {
-  const auto bone =
-      std::make_shared<const bone::BoneModel>(bone::bone_of(test::block_record(0)));
+  const auto bone = std::make_shared<const bone::BoneModel>(bone::bone_of(test::block_record(0)));
   RandomStream random(6, "lost");
   std::vector<bool> gone;
   test::DrillingRows rows = test::wander(0, 1000, 0, random, gone);
@@ -218,7 +215,9 @@ TEST(LiveDrillingTest, ASessionEndsWithTheFiguresOfItsFile) {
   request.clock = realtime::ClockKind::kReal;
   request.file = folder.path() / "S01.h5";
   request.control = &control;
-  request.live = [&](const auto& resumed) { return bone_study().live_figures(definition, resumed); };
+  request.live = [&](const auto& resumed) {
+    return bone_study().live_figures(definition, resumed);
+  };
   std::vector<SessionStatus> seen;
   std::thread experimenter([&] {
     for (int i = 0; i < 2000; ++i) {

@@ -9,12 +9,13 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/record/integrity.h"
-#include "core/record/session_reader.h"
-#include "core/record/session_writer.h"
+#include "core/bone/record/drilling_tables.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/write/session_writer.h"
 #include "experiments/runner/session.h"
-#include "protocols/bone_drilling/bone_replay.h"
 #include "protocols/bone_drilling/bone_protocol.h"
+#include "protocols/bone_drilling/bone_replay.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
@@ -65,7 +66,8 @@ class BoneRestoreTest : public testing::Test {
   /// @param spoil  changes the voxels that were emptied
   void crash(const std::function<void(std::vector<record::RemovalRow>&)>& spoil = {}) const {
     const record::SessionReader reader = whole();
-    record::SessionWriter writer(file_, reader.info(), reader.bones());
+    record::SessionWriter writer(file_, reader.info(), record::drilling_tables(),
+                                 record::rows_of(record::recorded_bones(reader)));
     auto removals = rows_before<record::RemovalRow>(reader, kCrash);
     if (spoil) {
       spoil(removals);
@@ -122,13 +124,14 @@ TEST_F(BoneRestoreTest, AfterACrashTheBoneIsThatOfAnUninterruptedSimulationOnTha
       });
   std::uint64_t resumed = 0;
   std::uint64_t emptied = 0;
-  protocols::BoneReplay(file_).run(1, [&](std::uint64_t tick, const bone::DrillingView&,
-                               const std::shared_ptr<const protocols::BoneStage>& stage) {
-    if (tick + 1 == kCrash) {
-      resumed = stage->simulator->checksum();
-      emptied = stage->simulator->emptied_so_far();
-    }
-  });
+  protocols::BoneReplay(file_).run(1,
+                                   [&](std::uint64_t tick, const bone::DrillingView&,
+                                       const std::shared_ptr<const protocols::BoneStage>& stage) {
+                                     if (tick + 1 == kCrash) {
+                                       resumed = stage->simulator->checksum();
+                                       emptied = stage->simulator->emptied_so_far();
+                                     }
+                                   });
   EXPECT_EQ(resumed, uninterrupted);
   EXPECT_EQ(emptied, rows_before<record::RemovalRow>(whole(), kCrash).size());
   EXPECT_GT(emptied, 10u);
@@ -195,7 +198,8 @@ TEST_F(BoneRestoreTest, ASecondCrashIsOnTheSameBone) {
   constexpr std::uint64_t kSecond = kCrash + 2000;
   {
     const record::SessionReader reader(file_);
-    record::SessionWriter writer(again, reader.info(), reader.bones());
+    record::SessionWriter writer(again, reader.info(), record::drilling_tables(),
+                                 record::rows_of(record::recorded_bones(reader)));
     writer.add(std::span<const record::ToolRow>(rows_before<record::ToolRow>(reader, kSecond)));
     writer.add(
         std::span<const record::RemovalRow>(rows_before<record::RemovalRow>(reader, kSecond)));

@@ -10,8 +10,8 @@
 #include <tuple>
 
 #include "core/base/random.h"
-#include "core/record/rounding.h"
-#include "core/record/schema.h"
+#include "core/record/table/rounding.h"
+#include "core/record/table/schema.h"
 #include "protocols/interface/session_task.h"
 #include "tests/protocols/drilling_fixture.h"
 #include "tests/support/allocation_guard.h"

@@ -10,12 +10,12 @@
 #include <regex>
 
 #include "core/base/error.h"
-#include "core/record/session_writer.h"
+#include "core/record/write/session_writer.h"
 #include "experiments/runner/session.h"
+#include "protocols/force_training/force_protocol.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
-#include "protocols/force_training/force_protocol.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -52,8 +52,8 @@ class ReplayTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new test::TemporaryFolder;
-    const protocols::ForceDefinition definition =
-        protocols::parse_force_definition(test::shipped_with("speed", "speed = 0.05"), "brief.toml");
+    const protocols::ForceDefinition definition = protocols::parse_force_definition(
+        test::shipped_with("speed", "speed = 0.05"), "brief.toml");
     SessionRequest request;
     request.protocol = &protocols::force_training();
     request.definition = &definition;

@@ -9,8 +9,8 @@
 #include <set>
 #include <thread>
 
-#include "protocols/force_training/passes/recall_test.h"
 #include "core/stimulus/presentation.h"
+#include "protocols/force_training/passes/recall.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/scripted_device.h"
 

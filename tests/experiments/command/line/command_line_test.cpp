@@ -156,8 +156,7 @@ TEST(CommandLineTest, AMissingOrUnreadableValueIsSaidWithTheHelpToRead) {
   expect_refused("haptrial power t --delta big",
                  "--delta is 'big'; allowed: a number; see haptrial power --help\n");
   expect_refused("haptrial statistics x.csv --seed -1",
-                 "--seed is '-1'; allowed: a whole number from 0 to 4294967295; see haptrial "
-                 "statistics --help\n");
+                 "--seed is '-1'; allowed: a whole number from 0 to 18446744073709551615\n");
   expect_refused("haptrial dry-run x.toml --subjects 2 --subjects 3",
                  "--subjects is given 2 times; give it once; see haptrial dry-run --help\n");
   expect_refused("haptrial run x.toml --subject",

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "tests/core/bone/surface_checks.h"
+#include "tests/core/bone/surface/surface_checks.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/bone/record/recorded_bone.h"
 #include "experiments/studies/experiment.h"
-#include "core/bone/data/recorded_bone.h"
 #include "tests/experiments/shipped.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/temporary_folder.h"
@@ -29,7 +29,8 @@ std::string refusal(const std::vector<std::pair<std::string, std::string>>& line
 
 TEST(BoneDefinitionTest, TheShippedOneIsValid) {
   EXPECT_EQ(refusal({}), "");
-  const protocols::BoneDefinition d = protocols::parse_bone_definition(test::drilling_with({}), "bone_drilling.toml");
+  const protocols::BoneDefinition d =
+      protocols::parse_bone_definition(test::drilling_with({}), "bone_drilling.toml");
   EXPECT_EQ(d.name, "bone_drilling");
   EXPECT_EQ(d.simulator.tools.size(), 3u);
   EXPECT_EQ(d.simulator.tools[0].burr.diameter, 0.006);

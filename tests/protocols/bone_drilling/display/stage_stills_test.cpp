@@ -6,8 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "core/render/bone_stills.h"
+#include "core/render/bone/bone_stills.h"
 #include "protocols/bone_drilling/display/bone_display.h"
+#include "protocols/bone_drilling/display/bone_renderer.h"
 #include "protocols/bone_drilling/drilling_pass.h"
 #include "tests/experiments/shipped.h"
 #include "tests/experiments/small_drilling.h"
@@ -33,15 +34,16 @@ std::shared_ptr<protocols::BoneStage> stage_of(const protocols::BoneDefinition& 
   auto stage = std::make_shared<protocols::BoneStage>();
   stage->model = std::make_shared<const bone::BoneModel>(test::two_slabs());
   stage->start_view = d.simulator.camera.start;
-  stage->simulator =
-      std::make_unique<bone::Simulator>(*stage->model, protocols::simulator_for(d, stage->model->grid));
+  stage->simulator = std::make_unique<bone::Simulator>(
+      *stage->model, protocols::simulator_for(d, stage->model->grid));
   stage->companions = std::make_unique<bone::SteppedCompanions>(
       *stage->simulator, protocols::companions_for(d, stage->model->grid), d.rate);
   return stage;
 }
 
 TEST(ScreenStillsTest, EachPressBringsTheNextAndAfterTheLastNone) {
-  protocols::BoneDefinition d = protocols::parse_bone_definition(with_stills("stills = 2"), "study.toml");
+  protocols::BoneDefinition d =
+      protocols::parse_bone_definition(with_stills("stills = 2"), "study.toml");
   d.display.width = 320;
   d.display.height = 200;
   const auto stage = stage_of(d);
@@ -76,7 +78,8 @@ TEST(ScreenStillsTest, EachPressBringsTheNextAndAfterTheLastNone) {
 }
 
 TEST(ScreenStillsTest, TheBoneIsTheSameWhetherTheyAreAskedForOrNot) {
-  const protocols::BoneDefinition d = protocols::parse_bone_definition(with_stills("stills = 2"), "study.toml");
+  const protocols::BoneDefinition d =
+      protocols::parse_bone_definition(with_stills("stills = 2"), "study.toml");
   const auto drilled = [&](bool asks) {
     const auto stage = stage_of(d);
     bone::SimulatorInput input;
@@ -106,7 +109,8 @@ TEST(ScreenStillsTest, WithoutACavityTheyAreRefusedAndWithoutTheKeyThereAreNone)
         HasSubstr(
             "display.stills needs a cavity, whose stages the stills show; add a table [cavity]"));
   }
-  const protocols::BoneDefinition d = protocols::parse_bone_definition(with_stills("", true), "study.toml");
+  const protocols::BoneDefinition d =
+      protocols::parse_bone_definition(with_stills("", true), "study.toml");
   EXPECT_EQ(protocols::screen_stills(d, test::two_slabs()), nullptr);
 }
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "core/base/table.h"
 #include "protocols/force_training/passes/recorded_pass.h"
 #include "tests/support/allocation_guard.h"
 
@@ -94,7 +94,8 @@ TEST(CurveGuideTest, TheForceBelongsToThePlaceAtAnyPace) {
       ASSERT_NEAR(arc_of(moments[i]), arc, 1e-5) << speed;
       const double wanted = stimulus_of_study().force.at(arc / stimulus_of_study().path.speed());
       ASSERT_NEAR(moments[i].out.target_force, wanted, 0.02) << speed;
-      ASSERT_EQ(stimulus::presentation_of(moments[i].out.shown).target_force, moments[i].out.target_force);
+      ASSERT_EQ(stimulus::presentation_of(moments[i].out.shown).target_force,
+                moments[i].out.target_force);
     }
   }
 }
@@ -128,8 +129,9 @@ TEST(CurveGuideTest, ItHoldsAcrossThePathAndIsFreeAlongIt) {
   int seen = 0;
   for (const Moment& m : of_run(run(
            *other, [](double t) { return 0.016 * t; }, Vector3d(0.0, 0.0, 3e-4)))) {
-    const Vector3d across = Vector3d(0.0, 0.0, 3e-4) -
-                            stimulus::presentation_of(m.out.shown).direction.z() * 3e-4 * stimulus::presentation_of(m.out.shown).direction;
+    const Vector3d across =
+        Vector3d(0.0, 0.0, 3e-4) - stimulus::presentation_of(m.out.shown).direction.z() * 3e-4 *
+                                       stimulus::presentation_of(m.out.shown).direction;
     // Where the path is straight for the while, the spring sees the offset across it.
     if (std::abs(across.norm() - m.out.force.norm() / 900.0) < 2e-5) {
       ++seen;

@@ -7,9 +7,9 @@
 #include <map>
 #include <memory>
 
+#include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "core/base/table.h"
-#include "protocols/force_training/passes/recall_test.h"
+#include "protocols/force_training/passes/recall.h"
 #include "protocols/force_training/passes/training_pass.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/free_mass.h"

@@ -1,0 +1,56 @@
+#include "analysis/bone_drilling/metrics/drilling_meter.h"
+
+#include <utility>
+
+namespace haptrial::analysis::drilling {
+
+DrillingMeter::DrillingMeter(std::shared_ptr<const bone::BoneModel> bone,
+                             const Eigen::Isometry3d& pose_WB,
+                             const std::vector<ProcedureTool>& tools, double rate,
+                             StudyBones& bones)
+    : usage_(bone, tools, rate),
+      visibility_(bone, pose_WB),
+      injuries_(bone, pose_WB, tools, bones) {
+  for (const ProcedureTool& tool : tools) {
+    radii_.push_back(tool.burr_radius);
+  }
+}
+
+double DrillingMeter::radius() const noexcept {
+  return last_.tool >= 0 && std::cmp_less(last_.tool, radii_.size())
+             ? radii_[static_cast<std::size_t>(last_.tool)]
+             : 0.0;
+}
+
+void DrillingMeter::view(const View& view) {
+  usage_.view(view);
+  visibility_.look_from(view.eye);
+}
+
+void DrillingMeter::crumb(const Crumb& crumb) {
+  taken_.clear();
+  visibility_.crumble(crumb.voxel, &taken_);
+  injuries_.crumble(taken_);
+}
+
+void DrillingMeter::tick(const ToolTick& tick) {
+  last_ = tick;
+  any_ = true;
+  usage_.tick(tick);
+  injuries_.tick(tick, radius(), time());
+}
+
+void DrillingMeter::removal(const Removal& removal) {
+  const bool now = any_ && last_.sequence == removal.sequence;
+  visibility_.remove(removal.voxel, last_.position, now ? radius() : 0.0);
+  usage_.remove(removal);
+  injuries_.remove(removal, time());
+}
+
+void DrillingMeter::cut(const Removal& cut) {
+  visibility_.cut(cut.voxel);
+  usage_.remove(cut);
+  injuries_.remove(cut, time());
+}
+
+}  // namespace haptrial::analysis::drilling

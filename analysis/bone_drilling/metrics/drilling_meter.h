@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "analysis/bone_drilling/metrics/injuries.h"
+#include "analysis/bone_drilling/metrics/usage.h"
+#include "analysis/bone_drilling/metrics/visibility.h"
+#include "analysis/bone_drilling/procedure/procedure.h"
+
+namespace haptrial::analysis::drilling {
+
+/// All that is measured while one goes along with a drilling: the same object in the analysis of a
+/// file and in a session. A visitor of visit_in_order(). One thread, not the servo thread.
+class DrillingMeter {
+ public:
+  DrillingMeter(std::shared_ptr<const bone::BoneModel> bone, const Eigen::Isometry3d& pose_WB,
+                const std::vector<ProcedureTool>& tools, double rate, StudyBones& bones);
+
+  void view(const View& view);
+  void crumb(const Crumb& crumb);
+  void tick(const ToolTick& tick);
+  void removal(const Removal& removal);
+  void cut(const Removal& cut);
+
+  double time() const noexcept { return usage_.time(); }  // [s]
+  Usage usage() const { return usage_.usage(); }
+  const Visibility& visibility() const noexcept { return visibility_.visibility(); }
+  const InjuryMeter& injuries() const noexcept { return injuries_; }
+
+ private:
+  double radius() const noexcept;  // of the burr on the last tick
+
+  std::vector<double> radii_;  // (tools)
+  UsageMeter usage_;
+  VisibilityMeter visibility_;
+  InjuryMeter injuries_;
+  ToolTick last_;
+  bool any_{false};
+  std::vector<bone::Voxel> taken_;
+};
+
+}  // namespace haptrial::analysis::drilling

@@ -1,0 +1,149 @@
+#include "analysis/bone_drilling/metrics/injuries.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "analysis/bone_drilling/metrics/visibility.h"
+#include "analysis/bone_drilling/procedure/in_order.h"
+#include "analysis/bone_drilling/procedure/standing_bone.h"
+#include "analysis/bone_drilling/procedure/study_bones.h"
+
+namespace haptrial::analysis::drilling {
+namespace {
+
+bone::Voxel nearest_voxel(const geometry::VoxelGrid& grid, const Eigen::Vector3d& point) {
+  bone::Voxel voxel;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double last = grid.size[static_cast<std::size_t>(axis)] - 1;
+    const double place = std::round((point[axis] - grid.origin[axis]) / grid.spacing);
+    voxel[axis] = static_cast<int>(std::clamp(place, 0.0, last));
+  }
+  return voxel;
+}
+
+double largest_radius(const std::vector<ProcedureTool>& tools) {
+  double radius = 0.0;
+  for (const ProcedureTool& tool : tools) {
+    radius = std::max(radius, tool.burr_radius);
+  }
+  return radius;
+}
+
+}  // namespace
+
+InjuryMeter::InjuryMeter(std::shared_ptr<const bone::BoneModel> bone,
+                         const Eigen::Isometry3d& pose_WB, const std::vector<ProcedureTool>& tools,
+                         StudyBones& bones)
+    : bone_(std::move(bone)), pose_BW_(pose_WB.inverse()) {
+  // From the tip to its voxel's centre, and from a touched voxel's surface to its centre, it is
+  // half a diagonal each.
+  const double spacing = bone_->grid.spacing;
+  const double reach =
+      std::min(largest_radius(tools) + std::numbers::sqrt3 * spacing, 250.0 * spacing);
+  for (std::size_t label = 1; label < bone_->structures.size(); ++label) {
+    if (bone_->structures[label].vital) {
+      Injury injury;
+      injury.structure = bone_->structures[label].name;
+      injury.label = static_cast<std::uint8_t>(label);
+      injuries_.push_back(injury);
+      fields_.push_back(bones.field(bone_, static_cast<std::uint8_t>(label), reach));
+    }
+  }
+}
+
+void InjuryMeter::tick(const ToolTick& tick, double radius, double time) {
+  if (!(radius > 0.0) || !tick.power || !tick.drives_tool || !tick.position.allFinite()) {
+    return;
+  }
+  const Eigen::Vector3d centre = pose_BW_ * tick.position;
+  for (std::size_t i = 0; i < injuries_.size(); ++i) {
+    if (!injuries_[i].first_contact && touches(i, centre, radius)) {
+      injuries_[i].first_contact = time;
+    }
+  }
+}
+
+/// The tip clamped into the grid is nowhere farther from a voxel than the tip itself.
+bool InjuryMeter::touches(std::size_t injury, const Eigen::Vector3d& centre, double radius) const {
+  const geometry::VoxelGrid& grid = bone_->grid;
+  const bone::Voxel middle = nearest_voxel(grid, centre);
+  const std::optional<double> distance = fields_[injury]->at(middle);
+  if (!distance || *distance > radius + std::numbers::sqrt3 * grid.spacing) {
+    return false;
+  }
+  const BurrSphere burr{centre, radius};
+  const Eigen::Vector3d half = Eigen::Vector3d::Constant(radius + grid.spacing);
+  const bone::Voxel low = nearest_voxel(grid, centre - half);
+  const bone::Voxel high = nearest_voxel(grid, centre + half);
+  for (int k = low.z(); k <= high.z(); ++k) {
+    for (int j = low.y(); j <= high.y(); ++j) {
+      for (int i = low.x(); i <= high.x(); ++i) {
+        if (bone_->labels[grid.index(i, j, k)] == injuries_[injury].label &&
+            burr.touches(grid, {i, j, k})) {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+void InjuryMeter::remove(const Removal& removal, double time) {
+  for (Injury& injury : injuries_) {
+    if (injury.label == removal.label) {
+      ++injury.voxels;
+      injury.first_removal = injury.first_removal.value_or(time);
+    }
+  }
+}
+
+void InjuryMeter::crumble(const std::vector<bone::Voxel>& voxels) {
+  for (const bone::Voxel& voxel : voxels) {
+    const std::uint8_t label = bone_->labels[bone_->grid.index(voxel.x(), voxel.y(), voxel.z())];
+    for (Injury& injury : injuries_) {
+      injury.crumbled += injury.label == label ? 1 : 0;
+    }
+  }
+}
+
+std::uint64_t InjuryMeter::voxels() const noexcept {
+  std::uint64_t sum = 0;
+  for (const Injury& injury : injuries_) {
+    sum += injury.voxels;
+  }
+  return sum;
+}
+
+std::vector<Injury> injuries(const Procedure& procedure, StudyBones& bones) {
+  struct Visitor {
+    const Procedure& procedure;
+    InjuryMeter meter;
+    StandingBone bone;
+    std::uint64_t ticks{0};
+    std::vector<bone::Voxel> taken{};
+    double time() const { return static_cast<double>(ticks) / procedure.rate; }
+    void view(const View&) {}
+    void crumb(const Crumb& crumb) {
+      taken.clear();
+      bone.take_part(crumb.voxel, &taken);
+      meter.crumble(taken);
+    }
+    void tick(const ToolTick& tick) {
+      ++ticks;
+      meter.tick(tick, procedure.burr_radius(tick.tool), time());
+    }
+    void removal(const Removal& removal) {
+      bone.take(removal.voxel);
+      meter.remove(removal, time());
+    }
+    void cut(const Removal& cut) { removal(cut); }
+  };
+  Visitor visitor{procedure, InjuryMeter(procedure.bone, procedure.pose_WB, procedure.tools, bones),
+                  StandingBone(procedure.bone)};
+  visit_in_order(procedure, visitor);
+  return visitor.meter.injuries();
+}
+
+}  // namespace haptrial::analysis::drilling

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/bone_drilling/procedure/procedure.h"
+#include "core/bone/model/distance_field.h"
+
+namespace haptrial::analysis::drilling {
+
+class StudyBones;
+
+/// What happened to a vital structure.
+struct Injury {
+  std::string structure;
+  std::uint8_t label{0};
+  std::uint64_t voxels{0};              // of it that a burr or the cut plane emptied
+  std::uint64_t crumbled{0};            // that went with parts that turned to dust
+  std::optional<double> first_contact;  // a burr that turns reached it [s of the procedure]
+  std::optional<double> first_removal;  // [s of the procedure]
+
+  bool operator==(const Injury&) const = default;
+};
+
+/// Goes along with a drilling. Contact is exact: the burr's sphere reaches into the cube of a voxel
+/// of the structure as it was at first. One thread, not the servo thread.
+class InjuryMeter {
+ public:
+  InjuryMeter(std::shared_ptr<const bone::BoneModel> bone, const Eigen::Isometry3d& pose_WB,
+              const std::vector<ProcedureTool>& tools, StudyBones& bones);
+
+  /// @param time  of the procedure [s]; radius of the burr [m], 0 for none
+  void tick(const ToolTick& tick, double radius, double time);
+  void remove(const Removal& removal, double time);
+  void crumble(const std::vector<bone::Voxel>& voxels);
+
+  const std::vector<Injury>& injuries() const noexcept { return injuries_; }
+  std::uint64_t voxels() const noexcept;  // of all, emptied by a burr or the cut plane
+
+ private:
+  bool touches(std::size_t injury, const Eigen::Vector3d& centre, double radius) const;
+
+  std::shared_ptr<const bone::BoneModel> bone_;
+  Eigen::Isometry3d pose_BW_;
+  std::vector<std::shared_ptr<const bone::DistanceField>> fields_;  // (injuries)
+  std::vector<Injury> injuries_;
+};
+
+/// The injuries of a whole procedure: one for each vital structure of its bone, in the order of
+/// labels.
+std::vector<Injury> injuries(const Procedure& procedure, StudyBones& bones);
+
+}  // namespace haptrial::analysis::drilling

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "analysis/bone_drilling/metrics/drilling_meter.h"
+#include "analysis/bone_drilling/metrics/live_figures.h"
+#include "analysis/bone_drilling/procedure/study_bones.h"
+
+namespace haptrial::analysis::drilling {
+
+/// The metrics of a drilling while it runs, from the rows that go into the session file: after the
+/// last one they are what an analysis of the file gives, bit for bit
+/// (LiveMetricsTest.EqualsTheAnalysisOfTheFile). One thread, the session's, not the servo thread.
+///
+/// The rows of each table come in their order, those of different tables in any: give all that the
+/// logs hold, then say up to which tick that is everything.
+class LiveMetrics {
+ public:
+  /// One for each bone; a drilling that was broken off and goes on stays with its object.
+  /// @param scale  as ProcedureSetup has it
+  LiveMetrics(const std::shared_ptr<const bone::BoneModel>& bone, const Eigen::Isometry3d& pose_WB,
+              const std::vector<ProcedureTool>& tools, double scale, double rate);
+
+  /// Rows of the same ticks; those on which no bone was simulated are passed over.
+  /// @throws std::invalid_argument where they are not of the same ticks.
+  void add(std::span<const record::Sample> samples, std::span<const record::ToolRow> tool);
+  void add(std::span<const record::RemovalRow> rows);
+  void add(std::span<const record::CameraRow> rows);
+  void add(std::span<const record::SplitRow> rows);
+
+  /// What was done to the bone before the first of these rows, in an earlier run of the session.
+  void add(const Procedure& earlier);
+
+  /// All rows up to this tick have been given: measures them.
+  void advance(std::uint64_t through);
+
+  LiveFigures figures() const;
+
+ private:
+  StudyBones bones_;
+  DrillingMeter meter_;
+  double scale_;
+  struct {
+    std::vector<ToolTick> ticks;
+    std::vector<Removal> removals;
+    std::vector<Removal> cuts;
+    std::vector<View> views;
+    std::vector<Crumb> crumbs;
+  } waiting_;
+};
+
+}  // namespace haptrial::analysis::drilling

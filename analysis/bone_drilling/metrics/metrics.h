@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/bone_drilling/metrics/injuries.h"
+#include "analysis/bone_drilling/metrics/near_structure.h"
+#include "analysis/bone_drilling/metrics/region_likelihood.h"
+#include "analysis/bone_drilling/metrics/strokes.h"
+#include "analysis/bone_drilling/metrics/usage.h"
+#include "analysis/bone_drilling/metrics/visibility.h"
+#include "analysis/bone_drilling/procedure/procedure.h"
+#include "analysis/bone_drilling/procedure/study_bones.h"
+
+namespace haptrial::analysis::drilling {
+
+/// Which way the values of experts are expected to lie; kEither where nothing published says so.
+enum class Expected : std::uint8_t { kHigher, kLower, kEither };
+
+/// What a scalar metric is.
+struct MetricKind {
+  std::string name;   // a column's: "visible_share"
+  std::string unit;   // "1", "N", "mm3", ...
+  std::string title;  // for axes and tables: "bone removed in sight"
+  Expected experts{Expected::kEither};
+};
+
+/// The name of the removed region's score, the one metric that needs the other procedures.
+inline constexpr const char* kRegionMetric = "region_log_ratio";
+
+/// All scalar metrics of a procedure, in the order of summaries, CSV and reports.
+std::vector<MetricKind> metric_kinds();
+
+struct MetricOptions {
+  std::vector<std::string> structures;  // to look at forces near them; empty: all that are vital
+  double near{5e-3};                    // how far from them is near > 0 [m]
+  NearBins bins;                        // at most 250 voxels far
+  StrokeParameters strokes;
+};
+
+/// Everything that a study keeps of a procedure: a few megabytes where the procedure has hundreds.
+struct ProcedureSummary {
+  std::string session;
+  std::string participant;
+  std::string group;
+  int number{1};
+  bool simulated{true};
+  bool completed{true};
+  std::shared_ptr<const bone::BoneModel> bone;
+  std::vector<std::uint32_t> removed;  // voxels that a burr emptied, ascending index in the grid
+  std::vector<std::uint8_t> removed_seen;  // (removed) 1: visible when it was removed
+  Visibility visibility;
+  std::vector<Injury> injuries;
+  StrokeFigures strokes;
+  Usage usage;
+  /// By structure of MetricOptions; of one that this bone does not have there are no removals.
+  std::vector<NearRemovals> near;
+  /// (metric_kinds()); nothing where it is not defined, as the share of no voxels. That of the
+  /// region is filled by add_region_scores().
+  std::vector<std::optional<double>> values;
+
+  /// @throws std::invalid_argument for a name that metric_kinds() does not have.
+
+  std::optional<double> value(std::string_view metric) const;
+};
+
+/// All metrics of one procedure but those that need the others.
+/// @param bones  for distance fields that several procedures on one bone share. Any thread.
+ProcedureSummary summarize(const Procedure& procedure, const MetricOptions& options,
+                           StudyBones& bones);
+
+/// Fills "region_log_ratio" of every procedure, each scored without anything of its participant.
+/// Not defined where a group has fewer than two participants or the bones differ.
+/// @param expert_groups  names of the groups that are experts; all others are novices
+/// @returns the scores by the other ways of training and counting, for the report
+std::vector<RegionScores> add_region_scores(std::span<ProcedureSummary> procedures,
+                                            std::span<const std::string> expert_groups,
+                                            const RegionParameters& parameters = {});
+
+/// Whether experts' "region_log_ratio" is higher than novices', with the labels of participants
+/// permuted (region_likelihood.h): values that share their training need a test of their own.
+/// Nothing where the score is not defined.
+std::optional<RegionLabelTest> region_label_test(std::span<const ProcedureSummary> procedures,
+                                                 std::span<const std::string> expert_groups,
+                                                 const RegionParameters& parameters = {});
+
+/// A tidy table (RFC 4180 with LF): session, participant, group, procedure, simulated, completed,
+/// then a column for each metric, named NAME_UNIT; empty where it is not defined.
+std::string metrics_csv(std::span<const ProcedureSummary> procedures);
+
+}  // namespace haptrial::analysis::drilling

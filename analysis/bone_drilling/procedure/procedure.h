@@ -1,0 +1,121 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/bone/model/bone_model.h"
+#include "core/bone/model/bone_volume.h"
+#include "core/bone/record/drilling_types.h"
+#include "core/record/rows/session_types.h"
+
+namespace haptrial::record {
+class SessionReader;
+}
+
+namespace haptrial::analysis::drilling {
+
+/// A tool as far as metrics need it.
+struct ProcedureTool {
+  std::string name;
+  double burr_radius{0.0};  // [m]; 0: no burr
+};
+
+/// What the definition of a session says and its tables do not.
+struct ProcedureSetup {
+  std::string group;  // of the participant
+  /// X_WB, how a bone lies in the scene; null: B is W.
+  std::function<Eigen::Isometry3d(const geometry::VoxelGrid&)> pose_WB;
+  double scale{1.0};                 // the device's motions are this many times the scene's > 0
+  std::vector<ProcedureTool> tools;  // in the definition's order
+};
+
+/// One tick of a drilling; the tip in the scene's frame W.
+struct ToolTick {
+  std::uint64_t sequence{0};
+  Eigen::Vector3d position{Eigen::Vector3d::Zero()};  // [m]
+  Eigen::Vector3d velocity{Eigen::Vector3d::Zero()};  // [m/s]
+  double force{0.0};                                  // magnitude of the contact force [N]
+  double removed{0.0};                                // density on this tick [voxels]
+  std::int32_t tool{0};                               // in hand, of Procedure::tools
+  bool drives_tool{true};  // the hand does not steer the camera or a piece
+  bool power{false};       // the burr turns
+  bool in_bone{false};     // at least one sample of the burr
+
+  /// The hand drives a burr that turns and is in bone, where the tool is a burr.
+  bool drills() const noexcept { return drives_tool && power && in_bone; }
+};
+
+/// A voxel that a tool emptied.
+struct Removal {
+  std::uint64_t sequence{0};
+  bone::Voxel voxel{bone::Voxel::Zero()};
+  std::uint8_t label{0};
+  double force{0.0};  // [N]
+  double speed{0.0};  // of the tip [m/s]
+};
+
+/// How the scene was seen from a tick on.
+struct View {
+  std::uint64_t sequence{0};
+  Eigen::Vector3d eye{Eigen::Vector3d::Zero()};     // in W [m]
+  Eigen::Vector3d target{Eigen::Vector3d::Zero()};  // in W [m]
+};
+
+/// A voxel of a part that turned to dust, with all that hung together with it.
+struct Crumb {
+  std::uint64_t sequence{0};
+  bone::Voxel voxel{bone::Voxel::Zero()};
+};
+
+/// One drilling of one participant: everything that metrics are made from. Rows of every list are
+/// in ascending order of their sequence numbers, and of one tick a crumb went before the removals
+/// and these before the cuts.
+///
+/// What a session file does not say is not here: pieces that were carried stay where they were.
+struct Procedure {
+  std::string session;  // name of the file
+  std::string participant;
+  std::string group;
+  int number{1};         // of this participant's procedures: the trial, from 1
+  bool simulated{true};  // the participant is a virtual subject
+  bool completed{true};  // its last pass came to its end
+  double rate{1000.0};   // of ticks [Hz]
+  std::shared_ptr<const bone::BoneModel> bone;
+  Eigen::Isometry3d pose_WB{Eigen::Isometry3d::Identity()};
+  std::vector<ProcedureTool> tools;
+  std::vector<ToolTick> ticks;
+  std::vector<Removal> removals;  // by burrs
+  std::vector<Removal> cuts;      // by the cut plane, which has no force
+  std::vector<View> views;
+  std::vector<Crumb> crumbs;
+
+  /// The radius of a tool's burr; 0 for a tool that is none, or out of range [m].
+  double burr_radius(std::int32_t tool) const noexcept;
+};
+
+class StudyBones;
+
+/// The drillings of a session file in the order of their trials, those of practice left out. A
+/// drilling that was broken off and went on is one procedure with the ticks of all its passes; of
+/// one that was begun anew on a fresh bone only the last bone counts.
+/// @param bones  where equal bones of several files become one; may be null
+/// @throws InputError where the file is damaged, has no drillings, or a table names what is not
+/// there; std::invalid_argument for a scale that is not above 0.
+std::vector<Procedure> load_procedures(const record::SessionReader& file,
+                                       const ProcedureSetup& setup, StudyBones* bones = nullptr);
+
+// Rows of a session file as metrics use them; of rows that are not in a file yet, what the file
+// will give.
+ToolTick tick_of(const record::Sample& sample, const record::ToolRow& tool, double scale);
+Removal removal_of(const record::RemovalRow& row);
+/// A burr empties voxels with a force, which is never 0.
+inline bool is_cut(const record::RemovalRow& row) noexcept { return row.force == 0.0; }
+View view_of(const record::CameraRow& row);
+
+}  // namespace haptrial::analysis::drilling

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "analysis/bone_drilling/report/validity_result.h"
+#include "analysis/document/document.h"
+
+namespace haptrial::analysis::drilling {
+
+/// What a report of a study with simulated participants or raters says wherever it says a result.
+extern const char* const kRehearsal;
+
+/// The whole report. @param drawings  outlive the document
+Document validity_report(const ValidityResult& result, const std::vector<Drawing>& drawings);
+
+}  // namespace haptrial::analysis::drilling

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "analysis/bone_drilling/metrics/metrics.h"
+#include "analysis/bone_drilling/validity/validity_findings.h"
+
+namespace haptrial::analysis::drilling {
+
+/// A picture for the report, as a PNG file.
+struct StudyPicture {
+  std::string name;  // letters, digits, '-' and '_'
+  std::string title;
+  std::string caption;
+  std::string alt;
+  std::filesystem::path png;
+};
+
+/// What the sessions of a study gave.
+struct ValidityResult {
+  std::string title;
+  std::vector<ProcedureSummary> procedures;
+  NearBins bins;
+  std::string structure;  // whose force profile is drawn; empty: none
+  Validity validity;
+  std::vector<StudyPicture> pictures;
+  std::vector<std::string> remarks;  // sentences about the files, for the report
+};
+
+}  // namespace haptrial::analysis::drilling

@@ -1,0 +1,111 @@
+#include "analysis/bone_drilling/report/validity_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+
+#include "analysis/bone_drilling/report/validity_figures.h"
+#include "analysis/bone_drilling/report/validity_json.h"
+#include "analysis/bone_drilling/report/validity_report.h"
+#include "analysis/bone_drilling/validity/ratings.h"
+#include "analysis/bone_drilling/validity/validity.h"
+#include "analysis/document/figure_gnuplot.h"
+#include "analysis/files/staging.h"
+#include "core/base/error.h"
+#include "core/base/files/file_text.h"
+#include "core/base/parallel.h"
+#include "core/record/read/session_reader.h"
+
+namespace haptrial::analysis::drilling {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<ProcedureSummary> summaries_of(const ValidityStudy& study) {
+  StudyBones bones;
+  std::vector<std::vector<ProcedureSummary>> by_file(study.files.size());
+  in_groups(study.files.size(), 1, study.threads, [&] {
+    return [&](std::size_t first, std::size_t) {
+      const record::SessionReader reader(study.files[first]);
+      for (const Procedure& p : load_procedures(reader, study.setup(reader), &bones)) {
+        by_file[first].push_back(summarize(p, study.metrics, bones));
+      }
+    };
+  });
+  std::vector<ProcedureSummary> all;
+  for (auto& file : by_file) {
+    std::move(file.begin(), file.end(), std::back_inserter(all));
+  }
+  return all;
+}
+
+std::string structure_of(const ValidityStudy& study,
+                         const std::vector<ProcedureSummary>& procedures) {
+  if (!study.structure.empty()) {
+    return study.structure;
+  }
+  std::map<std::string, std::size_t> removals;
+  for (const ProcedureSummary& p : procedures) {
+    for (const NearRemovals& near : p.near) {
+      removals[near.structure] += near.removals.size();
+    }
+  }
+  const std::string published = "chorda tympani";
+  if (const auto at = removals.find(published); at != removals.end() && at->second > 0) {
+    return published;
+  }
+  std::string most;
+  for (const auto& [name, count] : removals) {
+    if (count > 0 && (most.empty() || count > removals[most])) {
+      most = name;
+    }
+  }
+  return most;
+}
+
+}  // namespace
+
+ValidityResult analyze(const ValidityStudy& study) {
+  ValidityResult result;
+  result.title = study.title;
+  result.bins = study.metrics.bins;
+  result.pictures = study.pictures;
+  result.procedures = summaries_of(study);
+  if (result.procedures.empty()) {
+    throw InputError("no session holds a drilling, so there is nothing to analyse");
+  }
+  const auto regions = add_region_scores(result.procedures, study.plan.expert_groups, study.region);
+  std::vector<Rating> ratings;
+  if (!study.ratings.empty() && fs::exists(study.ratings)) {
+    ratings = load_ratings(study.ratings);
+  }
+  const auto region_test =
+      region_label_test(result.procedures, study.plan.expert_groups, study.region);
+  result.validity = validity(result.procedures, regions, ratings, study.plan, region_test);
+  result.structure = structure_of(study, result.procedures);
+  return result;
+}
+
+void write_validity(const ValidityResult& result, const fs::path& folder) {
+  const Staging staging(folder);
+  staging.write("metrics.csv", metrics_csv(result.procedures));
+  staging.write("statistics.json", validity_json(result.validity, result.procedures));
+  const std::vector<Figure> figures = validity_figures(result);
+  draw_figures(figures, staging.path());
+  std::vector<Drawing> drawings;
+  for (const StudyPicture& picture : result.pictures) {
+    drawings.push_back(drawing_of(picture, result.validity.simulated));
+    staging.write(picture.name + ".svg", drawings.back().svg);
+  }
+  for (const Figure& figure : figures) {
+    drawings.push_back({figure, file_text(staging.path() / (figure.name + ".svg"))});
+  }
+  const Document report = validity_report(result, drawings);
+  staging.write("report.html", to_html(report));
+  staging.write("report.md", to_markdown(report));
+  staging.publish();
+}
+
+}  // namespace haptrial::analysis::drilling

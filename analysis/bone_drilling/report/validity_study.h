@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "analysis/bone_drilling/metrics/metrics.h"
+#include "analysis/bone_drilling/procedure/procedure.h"
+#include "analysis/bone_drilling/report/validity_result.h"
+
+namespace haptrial::record {
+class SessionReader;
+}
+
+namespace haptrial::analysis::drilling {
+
+/// A study to be analysed.
+struct ValidityStudy {
+  std::string title{"Construct validity"};
+  std::vector<std::filesystem::path> files;  // sessions, in the order of reports
+  /// What the definition of a session says; called from several threads at once.
+  std::function<ProcedureSetup(const record::SessionReader&)> setup;
+  ValidityPlan plan;
+  MetricOptions metrics;
+  RegionParameters region;
+  /// Whose force profile is drawn (Figure 20); empty: the chorda tympani where there are removals
+  /// near it, else the structure with most of them.
+  std::string structure;
+  std::filesystem::path ratings;       // of load_ratings(); a file that is absent: not rated yet
+  std::vector<StudyPicture> pictures;  // Figure 18 and others
+  int threads{1};
+};
+
+/// Reads every session, computes its metrics and the statistics.
+/// @throws InputError where a file or the ratings are damaged or do not fit the plan.
+ValidityResult analyze(const ValidityStudy& study);
+
+/// report.html, report.md, statistics.json, metrics.csv and figures (SVG and PNG) into a folder,
+/// all or none. @throws InputError, RunError as Staging and draw_figures() do.
+void write_validity(const ValidityResult& result, const std::filesystem::path& folder);
+
+}  // namespace haptrial::analysis::drilling

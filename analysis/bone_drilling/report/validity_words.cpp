@@ -1,0 +1,86 @@
+#include "analysis/bone_drilling/report/validity_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/statistics/words/wording.h"
+
+namespace haptrial::analysis::drilling {
+namespace {
+
+std::string difference_word(double difference, double low, double high, double df, double t,
+                            double p) {
+  return fmt::format("difference {}, 95 % CI {} to {}, t({:.1f}) = {:.2f}, {}", number(difference),
+                     number(low), number(high), df, t, p_value(p));
+}
+
+}  // namespace
+
+std::string undefined(const std::string& because) { return "not defined, because " + because; }
+
+std::string word(const Defined<double>& p) { return p ? p_value(*p) : "–"; }
+
+std::string correlation_word(const Defined<Correlation>& c) {
+  return c ? fmt::format("{:.2f}, {}", c->r, p_value(c->p)) : "–";
+}
+
+std::string relation_word(const Validity& v, const MetricValidity& metric) {
+  const auto& means = metric.relation.means;
+  return means && metric.relation_holm
+             ? fmt::format("{:.2f} ({} after Holm's adjustment over {})", means->r,
+                           p_value(*metric.relation_holm), counted(relations_of(v), "metric"))
+             : "–";
+}
+
+std::string interval_word(const Defined<MeanInterval>& m) {
+  return m ? fmt::format("{} [{}, {}]", number(m->mean), number(m->low), number(m->high)) : "–";
+}
+
+std::string area_word(const Defined<Roc>& roc) {
+  if (!roc) {
+    return "–";
+  }
+  return roc->interval ? fmt::format("{:.2f} [{:.2f}, {:.2f}]", roc->area, roc->interval->low,
+                                     roc->interval->high)
+                       : fmt::format("{:.2f}", roc->area);
+}
+
+std::string welch_word(const Contrast& c) {
+  return c.means ? difference_word(c.means->difference, c.means->low, c.means->high, c.means->df,
+                                   c.means->t, c.means->p)
+                 : undefined(c.means.because());
+}
+
+std::string mixed_word(const Contrast& c) {
+  if (!c.mixed) {
+    return undefined(c.mixed.because());
+  }
+  const Coefficient& b = c.mixed->coefficients[1];
+  return difference_word(b.estimate, b.low, b.high, b.df, b.t, *c.mixed_p) +
+         (c.mixed->at_boundary ? " (no variance between participants)" : "");
+}
+
+std::string error_word(const CrossValidated& fit) {
+  return fmt::format("{:.0f} % {} than that of the other participants' mean rating",
+                     100.0 * std::abs(fit.gain), fit.gain < 0.0 ? "higher" : "lower");
+}
+
+std::string name_of(const MetricKind& kind) {
+  return kind.unit == "1" ? kind.title : fmt::format("{} ({})", kind.title, kind.unit);
+}
+
+std::size_t contrasts_of(const Validity& v) {
+  return static_cast<std::size_t>(
+      std::count_if(v.metrics.begin(), v.metrics.end(),
+                    [](const auto& m) { return static_cast<bool>(m.contrast_holm); }));
+}
+
+std::size_t relations_of(const Validity& v) {
+  return static_cast<std::size_t>(
+      std::count_if(v.metrics.begin(), v.metrics.end(),
+                    [](const auto& m) { return static_cast<bool>(m.relation_holm); }));
+}
+
+}  // namespace haptrial::analysis::drilling

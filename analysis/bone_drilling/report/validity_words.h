@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+
+#include "analysis/bone_drilling/validity/validity_findings.h"
+
+namespace haptrial::analysis::drilling {
+
+/// Results in words, the same in the command's lines, in captions and in the report (wording.h has
+/// those of all studies).
+
+std::string undefined(const std::string& because);
+/// "p = 0.0123" or "–".
+std::string word(const Defined<double>& p);
+/// "0.63, p = 0.011" or "–".
+std::string correlation_word(const Defined<Correlation>& c);
+/// "0.63 (p = 0.18 after Holm's adjustment over 21 metrics)" or "–": R over participants' means.
+std::string relation_word(const Validity& v, const MetricValidity& metric);
+/// "3.438 [3.182, 3.693]" or "–".
+std::string interval_word(const Defined<MeanInterval>& m);
+/// "0.88 [0.73, 1.00]" or "–".
+std::string area_word(const Defined<Roc>& roc);
+/// "difference 1.080, 95 % CI 0.5949 to 1.566, t(13.0) = 4.81, p < 0.001".
+std::string welch_word(const Contrast& c);
+std::string mixed_word(const Contrast& c);
+/// "59 % lower than that of the other participants' mean rating".
+std::string error_word(const CrossValidated& fit);
+/// "force near vital structures (N)".
+std::string name_of(const MetricKind& kind);
+
+/// Among how many metrics Holm's method adjusts.
+std::size_t contrasts_of(const Validity& v);
+std::size_t relations_of(const Validity& v);
+
+}  // namespace haptrial::analysis::drilling

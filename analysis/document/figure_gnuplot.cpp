@@ -1,0 +1,245 @@
+#include "analysis/document/figure_gnuplot.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+#include <system_error>
+
+#include "core/base/error.h"
+#include "core/base/files/child_process.h"
+#include "core/base/files/file_text.h"
+
+namespace haptrial::analysis {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kScriptName = "figures.gp";
+constexpr const char* kLogName = "gnuplot.log";
+constexpr int kWidth = 900;  // of the SVG [px]; the PNG has twice as many
+
+// A gnuplot string in which nothing is special: what could end it or run a command is an octal
+// escape.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) < 0x20) {
+      result += ' ';
+    } else if (std::strchr("\"'`\\$@", c) != nullptr) {
+      result += fmt::format("\\{:03o}", static_cast<unsigned char>(c));
+    } else {
+      result += c;
+    }
+  }
+  return result + "\"";
+}
+
+std::vector<const std::vector<double>*> columns(const Series& s) {
+  switch (s.mark) {
+    case Mark::kBars:
+    case Mark::kLinkedBars:
+      return {&s.x, &s.y, &s.low, &s.high};
+    case Mark::kSegments:
+      return {&s.x, &s.y, &s.x2, &s.y2};
+    case Mark::kLine:
+    case Mark::kPoints:
+      break;
+  }
+  return {&s.x, &s.y};
+}
+
+void check(const Figure& figure) {
+  const auto allowed = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; };
+  if (figure.name.empty() || !std::all_of(figure.name.begin(), figure.name.end(), allowed)) {
+    throw std::invalid_argument("gnuplot_script: a figure's name is not a plain file name");
+  }
+  for (const auto& s : figure.series) {
+    for (const auto* column : columns(s)) {
+      if (column->size() != s.x.size()) {
+        throw std::invalid_argument("gnuplot_script: columns of a series differ in length");
+      }
+    }
+  }
+}
+
+std::string data_block(const Series& series, std::size_t index) {
+  const auto used = columns(series);
+  std::string text = fmt::format("$s{} << EOD\n", index);
+  for (std::size_t row = 0; row < series.x.size(); ++row) {
+    for (const auto* column : used) {
+      text += fmt::format("{:.6g} ", (*column)[row]);
+    }
+    text += '\n';
+  }
+  return text + "EOD\n";
+}
+
+std::string plot_element(const Series& series, std::size_t index) {
+  const Look& look = series.look;
+  const auto line = fmt::format("lc rgb '{}' lw {:.3g} dt {}", look.color, look.width, look.dash);
+  const auto point = fmt::format("pt {} ps {:.3g}", look.point, look.point_size);
+  const auto title =
+      series.label.empty() ? std::string("notitle") : "title " + quoted(series.label);
+  switch (series.mark) {
+    case Mark::kLine:
+      return fmt::format("$s{} using 1:2 with lines {} {}", index, line, title);
+    case Mark::kPoints:
+      return fmt::format("$s{} using 1:2 with points {} {} {}", index, line, point, title);
+    case Mark::kSegments:
+      return fmt::format("$s{} using 1:2:($3-$1):($4-$2) with vectors nohead {} {}", index, line,
+                         title);
+    case Mark::kBars:
+      return fmt::format("$s{} using 1:2:3:4 with yerrorbars {} {} {}", index, line, point, title);
+    case Mark::kLinkedBars:
+      break;
+  }
+  // A dashed bar could be taken for a short one.
+  return fmt::format(
+      "$s{} using 1:2:3:4 with yerrorbars lc rgb '{}' lw {:.3g} dt solid {} notitle, "
+      "$s{} using 1:2 with linespoints {} {} {}",
+      index, look.color, look.width, point, index, line, point, title);
+}
+
+std::string range(const char* axis, const std::optional<Range>& limits) {
+  return limits ? fmt::format("set {}range [{:.6g}:{:.6g}]\n", axis, limits->first, limits->second)
+                : fmt::format("set {}range [*:*]\n", axis);
+}
+
+std::string axes(const Figure& figure) {
+  std::string text = fmt::format("set xlabel {} offset 0,0.2\nset ylabel {}\n",
+                                 quoted(figure.x_label), quoted(figure.y_label));
+  text += range("x", figure.x_range) + range("y", figure.y_range);
+  if (!figure.x_names.empty()) {
+    std::string names;
+    for (const auto& [at, name] : figure.x_names) {
+      names += fmt::format("{}{} {:.6g}", names.empty() ? "" : ", ", quoted(name), at);
+    }
+    text += "set xtics (" + names + ")\n";
+  }
+  return text;
+}
+
+// Room for the key, where there is one.
+std::string layout(const Figure& figure) {
+  const bool key = std::any_of(figure.series.begin(), figure.series.end(),
+                               [](const Series& s) { return !s.label.empty(); });
+  return fmt::format("{}set bmargin {}\n{}", key ? "" : "unset key\n", key ? 6 : 4,
+                     figure.equal_scale ? "set size ratio -1\n" : "");
+}
+
+std::string headings(const Figure& figure) {
+  auto text =
+      fmt::format("set label 1 {} at graph 0, graph 1 offset 0,1.2 left font ',16' noenhanced\n",
+                  quoted(figure.title));
+  if (figure.simulated) {
+    text +=
+        "set label 2 'SIMULATED PARTICIPANTS' at graph 1, graph 1 offset 0,1.2 right "
+        "font ',12' textcolor rgb '#b00020' noenhanced\n";
+  }
+  return text;
+}
+
+constexpr const char* kStyle = R"(reset
+set encoding utf8
+set decimalsign '.'
+set border 3 lc rgb '#444444' lw 1
+set tics nomirror out scale 0.6
+set grid ytics lc rgb '#e3e5e8' lw 1 dt solid
+set key outside bottom center horizontal Left reverse samplen 4 width 2 noenhanced
+set bars 1.2
+set tmargin 3
+set rmargin 4
+)";
+
+// What a complete file of the kind ends with.
+bool ends_with(const fs::path& file, const std::string& ending) {
+  const std::string text = file_text(file);
+  const auto tail = text.substr(text.size() - std::min<std::size_t>(text.size(), 16));
+  return tail.find(ending) != std::string::npos;
+}
+
+// Runs gnuplot on the script in `folder`, its words in the log. Returns its exit status.
+int run_gnuplot(const fs::path& folder) {
+  const Descriptor log(
+      open((folder / kLogName).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+  if (log.get() < 0) {
+    throw RunError(fmt::format("{}: could not be written: {}", (folder / kLogName).string(),
+                               std::strerror(errno)));
+  }
+  try {
+    // -d: no settings of the user's own.
+    ChildProcess gnuplot(
+        {.words = {"gnuplot", "-d", kScriptName}, .folder = folder, .output = log.get()});
+    return gnuplot.wait();
+  } catch (const std::system_error& error) {
+    throw RunError(fmt::format(
+        "the figures need gnuplot, which could not be started ({}); install the package "
+        "gnuplot-nox or put gnuplot on the PATH",
+        error.code().message()));
+  }
+}
+
+std::string first_words_of(const fs::path& log) {
+  std::ifstream stream(log);
+  std::string line;
+  while (std::getline(stream, line) && line.find_first_not_of(" \t^") == std::string::npos) {
+  }
+  return line.empty() ? "it said nothing" : line;
+}
+
+}  // namespace
+
+std::string gnuplot_script(const Figure& figure) {
+  check(figure);
+  std::string text = kStyle + layout(figure) + headings(figure) + axes(figure);
+  std::string plot = "plot ";
+  for (std::size_t i = 0; i < figure.series.size(); ++i) {
+    text += data_block(figure.series[i], i);
+    plot += (i == 0 ? "" : ", \\\n  ") + plot_element(figure.series[i], i);
+  }
+  const int height = static_cast<int>(figure.height * kWidth);
+  text += fmt::format(
+      "set terminal svg size {},{} dynamic noenhanced font 'Helvetica,Arial,sans-serif,14' "
+      "background rgb 'white'\nset output '{}.svg'\n{}\n",
+      kWidth, height, figure.name, plot);
+  text += fmt::format(
+      "set terminal pngcairo size {},{} noenhanced font 'sans,14' fontscale 1.8 linewidth 2 "
+      "pointscale 2 background rgb 'white'\nset output '{}.png'\n{}\nset output\n",
+      2 * kWidth, 2 * height, figure.name, plot);
+  return text;
+}
+
+void draw_figures(const std::vector<Figure>& figures, const fs::path& folder) {
+  if (figures.empty()) {
+    return;
+  }
+  std::string script;
+  for (const auto& figure : figures) {
+    script += gnuplot_script(figure);
+  }
+  write_text(folder / kScriptName, script);
+  const int status = run_gnuplot(folder);
+  if (status != 0) {
+    throw RunError(fmt::format("gnuplot failed with status {} while drawing the figures: {}",
+                               status, first_words_of(folder / kLogName)));
+  }
+  for (const auto& figure : figures) {
+    for (const auto& [extension, ending] : {std::pair{".svg", "</svg>"}, {".png", "IEND"}}) {
+      const fs::path file = folder / (figure.name + extension);
+      if (!ends_with(file, ending)) {
+        throw RunError(fmt::format("{}: gnuplot did not finish this picture; is the disk full?",
+                                   file.string()));
+      }
+    }
+  }
+  fs::remove(folder / kScriptName);
+  fs::remove(folder / kLogName);
+}
+
+}  // namespace haptrial::analysis

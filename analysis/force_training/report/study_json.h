@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "analysis/force_training/study/study_result.h"
+
+namespace haptrial::analysis {
+
+/// Everything that the report prints, as numbers: means with intervals, the analyses of variance,
+/// t-tests, Table 1, learning, tracking, timing, exclusions, parameters, and `simulated`. What is
+/// not defined is {"not_defined": "because ..."}, never null or NaN. Equal input gives equal bytes.
+std::string statistics_json(const StudyResult& study);
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/alignment/options.h"
+#include "core/base/definition/table.h"
+
+namespace haptrial::analysis {
+
+/// How a recall is scored. The source says that its weights were set by eye and does not print
+/// them; docs/algorithms/alignment.md gives the reason for each default. Source: Morris 2006, §4.3.
+struct ScoreParameters {
+  /// Curves over the place on the path (analysis/force_training/score/path_places.h) in place of
+  /// time: for participants who set their own pace. Not a key: it follows from the guidance of the
+  /// definition.
+  bool over_path{false};
+  int samples{1000};         // of the common time base, 2 to 10,000
+  double filter_width{0.1};  // box filter on the applied force, 0 to 10 [s]
+  AlignmentOptions alignment;
+  std::optional<double> window;  // of the alignment, >= 0, in place of alignment.window [s]
+
+  // score = (c C + f R + s S) / (c + f + s), C the alignment cost per pair of the path, R and S the
+  // RMS differences of force [N] and slope [N/s] after warping. Not all three may be 0.
+  double cost_share{1.0};   // c >= 0
+  double force_share{1.0};  // f >= 0 [1/N]
+  double slope_share{0.5};  // s >= 0 [s/N]
+};
+
+/// Reads the [analysis] table of a definition: samples, filter_width, force_weight, slope_weight,
+/// power, penalty, cost_share, force_share, slope_share, all required; and step_pattern, window,
+/// open_begin, open_end, where they are not as published. Problems are noted in the table; its
+/// finish() throws them.
+ScoreParameters read_score_parameters(Table& analysis);
+
+/// What the parameters are, in words and with units, for reports: name, value. Options of the
+/// alignment that are as published stay out.
+std::vector<std::pair<std::string, std::string>> described(const ScoreParameters& parameters);
+
+/// @throws std::invalid_argument naming the parameter that breaks its bound.
+void check(const ScoreParameters& parameters);
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/statistics/base/resampling.h"
+#include "analysis/statistics/design/analysis_plan.h"
+
+namespace haptrial::analysis {
+
+/// What a study asks, besides its scores.
+struct StudyQuestions {
+  AnalysisPlan plan{};
+  std::vector<std::string> factors{"condition"};  // names, one for each of TrialScore::levels
+  Resampling resampling{1, "", 0, 1};             // of permutation tests and bootstrap; 0: none
+};
+
+/// Those of a report: with permutation tests and bootstrap intervals.
+StudyQuestions questions_of(const std::vector<std::string>& factors, const AnalysisPlan& plan,
+                            int threads);
+
+}  // namespace haptrial::analysis

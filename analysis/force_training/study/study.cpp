@@ -1,0 +1,124 @@
+#include "analysis/force_training/study/study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+
+#include "analysis/force_training/score/path_places.h"
+#include "analysis/force_training/score/score.h"
+#include "analysis/force_training/study/quality_summary.h"
+#include "analysis/force_training/study/recall_picture.h"
+#include "analysis/force_training/study/session_recalls.h"
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/record/read/session_reader.h"
+
+namespace haptrial::analysis {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Session {
+  fs::path file;
+  SessionRecalls recalls;
+};
+
+std::vector<Session> read_all(const std::vector<fs::path>& files, const ScoreParameters& parameters,
+                              int jobs) {
+  std::vector<Session> sessions(files.size());
+  const int workers = std::min(jobs, static_cast<int>(files.size()));
+  parallel_for(files.size(), workers, [&](std::size_t i) {
+    const record::SessionReader reader(files[i]);
+    sessions[i] = {files[i], session_recalls(reader, parameters, jobs / workers)};
+  });
+  return sessions;
+}
+
+void sort_by_subject(std::vector<Session>& sessions) {
+  const auto subject = [](const Session& s) -> const std::string& {
+    return s.recalls.summary.info.subject;
+  };
+  std::sort(sessions.begin(), sessions.end(), [&](const auto& a, const auto& b) {
+    return subject(a) != subject(b) ? subject(a) < subject(b) : a.file < b.file;
+  });
+  const auto twin =
+      std::adjacent_find(sessions.begin(), sessions.end(),
+                         [&](const auto& a, const auto& b) { return subject(a) == subject(b); });
+  if (twin != sessions.end()) {
+    throw InputError(
+        fmt::format("{} and {} are both of subject {}; keep one session file for each subject",
+                    twin->file.string(), (twin + 1)->file.string(), subject(*twin)));
+  }
+}
+
+// Where a score came from.
+struct Origin {
+  const Session* session{nullptr};
+  const ScoredPass* pass{nullptr};
+};
+
+RecallPicture picture_of(const Origin& origin, const std::string& which,
+                         const ScoreParameters& parameters) {
+  const record::SessionReader reader(origin.session->file);
+  const record::PassRow row = reader.passes().at(origin.pass->pass);
+  const auto run = run_samples(reader, row);
+  const auto places = path_places(reader, row.block, parameters);
+  const auto curves = recall_curves(*run, reader.info().rate, places.get());
+  return recall_picture(which, origin.pass->score,
+                        score_recall_in_detail(curves->target, curves->applied, parameters));
+}
+
+std::vector<RecallPicture> pictures(const std::vector<Session>& sessions,
+                                    const std::vector<TrialScore>& scores,
+                                    const ScoreParameters& parameters) {
+  std::vector<Origin> origins;  // one for each of scores
+  for (const auto& session : sessions) {
+    for (const auto& pass : session.recalls.scored) {
+      origins.push_back({&session, &pass});
+    }
+  }
+  std::vector<RecallPicture> result;
+  for (const auto& [which, at] : notable(scores)) {
+    result.push_back(picture_of(origins[at], which, parameters));
+  }
+  return result;
+}
+
+}  // namespace
+
+StudyResult analyze_study(const std::vector<fs::path>& session_files,
+                          const ScoreParameters& parameters, int jobs, const AnalysisPlan& plan) {
+  if (session_files.empty()) {
+    throw InputError("there is no session file to analyse");
+  }
+  if (jobs < 1) {
+    throw std::invalid_argument("analyze_study: jobs is below 1");
+  }
+  check(parameters);
+  auto sessions = read_all(session_files, parameters, jobs);
+  sort_by_subject(sessions);
+
+  StudyResult study;
+  std::vector<PassTracking> tracking;
+  for (const auto& [file, recalls] : sessions) {
+    study.sessions.push_back(recalls.summary);
+    for (const auto& pass : recalls.scored) {
+      study.scores.push_back(pass.score);
+    }
+    study.exclusions.insert(study.exclusions.end(), recalls.exclusions.begin(),
+                            recalls.exclusions.end());
+    tracking.insert(tracking.end(), recalls.tracking.begin(), recalls.tracking.end());
+  }
+  study.statistics = study_statistics(study.scores, questions_of(study.factors, plan, jobs));
+  study.tracking = summarize_tracking("all participants", tracking);
+  study.recalls = pictures(sessions, study.scores, parameters);
+  study.stimulus = sessions.front().recalls.stimulus;
+  study.parameters = described(parameters);
+  study.over_path = parameters.over_path;
+  study.alarms = quality_alarms(study.scores);
+  return study;
+}
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/force_training/score/trial_score.h"
+#include "analysis/force_training/statistics/study_statistics.h"
+#include "analysis/force_training/study/recall_picture.h"
+#include "analysis/force_training/study/session_summary.h"
+
+namespace haptrial::analysis {
+
+/// Everything that analysing the session files of a study gave.
+struct StudyResult {
+  std::vector<SessionSummary> sessions;           // by subject
+  std::vector<TrialScore> scores;                 // by subject, then trial
+  std::vector<std::string> factors{"condition"};  // names; each score has a level of each
+  std::vector<Exclusion> exclusions;              // by subject, then trial
+  StudyStatistics statistics;
+  TrackingSummary tracking;                                     // over all participants
+  std::vector<RecallPicture> recalls;                           // best, median, worst
+  std::vector<record::StimulusRow> stimulus;                    // first block of the first session
+  std::vector<std::pair<std::string, std::string>> parameters;  // of the scores: name, value
+  std::vector<std::string> remarks;  // sentences for the report: what is missing from the study
+  std::vector<std::string> alarms;   // likewise, which nobody may overlook: flagged trials
+  bool over_path{false};  // curves are over the place on the path, at the participants' own pace
+
+  /// The table of a study of curves that something else recorded, of which nothing but the forces
+  /// is known: no tracking, timing, device or stimulus. Empty for session files.
+  std::string curves_from{};
+
+  /// True when any participant is a virtual subject: then every output says so.
+  bool simulated() const;
+};
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,34 @@
+#include "analysis/force_training/study/study_summary.h"
+
+#include <fmt/format.h>
+
+#include "analysis/force_training/study/study_result.h"
+#include "analysis/statistics/words/design_lines.h"
+#include "analysis/statistics/words/wording.h"
+
+namespace haptrial::analysis {
+namespace {
+
+std::string line_of(const ConditionSummary& s, const std::string& participants) {
+  const bool only_a_mean = !s.participants && s.mean;
+  return fmt::format("{}: mean recall error {} ({}, {})", capitalized(s.condition),
+                     only_a_mean ? number(*s.mean) : mean_with_interval(s.participants),
+                     counted(s.people, participants), counted(s.count, "trial"));
+}
+
+}  // namespace
+
+std::vector<std::string> summary_lines(const StudyResult& study) {
+  const auto& statistics = study.statistics;
+  const char* participants = study.simulated() ? "simulated participant" : "participant";
+  std::vector<std::string> lines;
+  for (const auto& s : statistics.summaries) {
+    lines.push_back(line_of(s, participants));
+  }
+  for (const auto& more : {effect_lines(statistics.tests), planned_lines(statistics.tests)}) {
+    lines.insert(lines.end(), more.begin(), more.end());
+  }
+  return lines;
+}
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,90 @@
+#include "analysis/statistics/base/descriptive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "analysis/statistics/base/distributions.h"
+
+namespace haptrial::analysis {
+namespace {
+
+// A sum that keeps what rounding drops (Neumaier 1974).
+class Sum {
+ public:
+  void add(double x) {
+    const double next = sum_ + x;
+    dropped_ += std::abs(sum_) >= std::abs(x) ? (sum_ - next) + x : (x - next) + sum_;
+    sum_ = next;
+  }
+  double value() const { return sum_ + dropped_; }
+
+ private:
+  double sum_{0.0};
+  double dropped_{0.0};
+};
+
+}  // namespace
+
+double mean_difference(const Moments& a, const Moments& b) {
+  return (a.origin - b.origin) + (a.offset - b.offset);
+}
+
+Defined<Moments> moments(std::span<const double> values) {
+  if (values.empty()) {
+    return Undefined{"there are no values"};
+  }
+  if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
+    return Undefined{"a value is not a finite number"};
+  }
+  const auto n = static_cast<double>(values.size());
+  Moments result{values.size(), values.front()};
+  Sum sum;
+  for (const double v : values) {
+    sum.add(v - result.origin);
+  }
+  result.offset = sum.value() / n;
+
+  Sum residual;  // what the rounded mean leaves of the deviations; corrects both sums
+  Sum squares;
+  for (const double v : values) {
+    const double deviation = (v - result.origin) - result.offset;
+    residual.add(deviation);
+    squares.add(deviation * deviation);
+  }
+  const double rest = residual.value();
+  result.squares = std::max(0.0, squares.value() - rest * rest / n);
+  result.offset += rest / n;
+  if (!std::isfinite(result.squares) || !std::isfinite(result.mean())) {
+    return Undefined{kBeyondDouble};
+  }
+  return result;
+}
+
+Defined<MeanInterval> mean_interval(std::span<const double> values, double level) {
+  const auto m = moments(values);
+  if (!m) {
+    return Undefined{m.because()};
+  }
+  if (m->count < 2) {
+    return Undefined{"an interval needs at least two values"};
+  }
+  const double deviation = std::sqrt(m->variance());
+  const auto n = static_cast<double>(m->count);
+  const double half = t_quantile(0.5 * (1.0 + level), n - 1.0) * deviation / std::sqrt(n);
+  return MeanInterval{m->count, m->mean(), deviation, m->mean() - half, m->mean() + half};
+}
+
+Defined<double> quantile(std::span<const double> values, double fraction) {
+  if (const auto m = moments(values); !m) {
+    return Undefined{m.because()};
+  }
+  std::vector<double> sorted(values.begin(), values.end());
+  std::sort(sorted.begin(), sorted.end());
+  const double place = fraction * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(std::floor(place));
+  const auto above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
+}  // namespace haptrial::analysis

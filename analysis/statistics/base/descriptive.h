@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "analysis/statistics/base/defined.h"
+
+namespace haptrial::analysis {
+
+/// Mean and squared deviations of a sample, kept relative to its first value: data with many
+/// constant leading digits lose none of the others, and equal values have exactly no deviation.
+struct Moments {
+  std::size_t count{0};
+  double origin{0.0};   // the first value
+  double offset{0.0};   // mean - origin
+  double squares{0.0};  // sum of squared deviations from the mean
+
+  double mean() const { return origin + offset; }
+  /// count > 1.
+  double variance() const { return squares / static_cast<double>(count - 1); }
+};
+
+/// mean(a) - mean(b), with the origins subtracted first.
+double mean_difference(const Moments& a, const Moments& b);
+
+/// Two passes. Undefined without values or with one that is not finite.
+Defined<Moments> moments(std::span<const double> values);
+
+/// A mean with its two-sided interval from Student's t.
+struct MeanInterval {
+  std::size_t count{0};
+  double mean{0.0};
+  double deviation{0.0};  // standard deviation, n - 1
+  double low{0.0};
+  double high{0.0};
+};
+
+/// @param level  coverage of the interval, inside (0, 1).
+/// Undefined with fewer than two values or with one that is not finite.
+Defined<MeanInterval> mean_interval(std::span<const double> values, double level = 0.95);
+
+/// The value below which a fraction of the values lies, linear between order statistics.
+/// Undefined without values or with one that is not finite.
+Defined<double> quantile(std::span<const double> values, double fraction);
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,124 @@
+#include "analysis/statistics/design/analysis_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "core/base/definition/table.h"
+#include "core/base/error.h"
+#include "core/base/text/nearest.h"
+
+namespace haptrial::analysis {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, Tail>, 3> kSigns{
+    {{" < ", Tail::kLess}, {" > ", Tail::kGreater}, {" != ", Tail::kTwoSided}}};
+constexpr const char* kForm = "two conditions with <, > or != between them, as \"visual < haptic\"";
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(' ');
+  return first == std::string_view::npos
+             ? std::string_view()
+             : text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+/// Blanks around the sign are no matter.
+std::optional<PlannedTest> parsed(std::string_view text) {
+  std::optional<PlannedTest> found;
+  for (const auto& [spaced, tail] : kSigns) {
+    const std::string_view sign = trimmed(spaced);
+    for (auto at = text.find(sign); at != std::string_view::npos; at = text.find(sign, at + 1)) {
+      if (found) {
+        return std::nullopt;  // a second sign
+      }
+      found = PlannedTest{std::string(trimmed(text.substr(0, at))),
+                          std::string(trimmed(text.substr(at + sign.size()))), tail};
+    }
+  }
+  return found && !found->a.empty() && !found->b.empty() ? found : std::nullopt;
+}
+
+/// Sentence on two tests of the same two sides, which the adjustment would count twice; empty
+/// without.
+std::string repeated_test(const std::vector<PlannedTest>& tests) {
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    for (std::size_t k = i + 1; k < tests.size(); ++k) {
+      if (std::minmax(tests[i].a, tests[i].b) == std::minmax(tests[k].a, tests[k].b)) {
+        return fmt::format("compares {} and {} twice; state each pair once", tests[i].a,
+                           tests[i].b);
+      }
+    }
+  }
+  return "";
+}
+
+/// What is wrong with tests that can be read; empty where nothing is.
+std::string problem_with(const std::vector<PlannedTest>& tests) {
+  for (const PlannedTest& test : tests) {
+    if (test.a == test.b) {
+      return fmt::format("compares {} with itself; name two conditions", test.a);
+    }
+  }
+  return repeated_test(tests);
+}
+
+}  // namespace
+
+AnalysisPlan parse_analysis_plan(const std::vector<std::string>& tests,
+                                 const std::string& reference, std::string_view where) {
+  AnalysisPlan plan{{}, reference};
+  for (const std::string& text : tests) {
+    const auto test = parsed(text);
+    if (!test) {
+      throw InputError(fmt::format("{} is \"{}\"; allowed: {}", where, text, kForm));
+    }
+    plan.tests.push_back(*test);
+  }
+  if (const std::string problem = problem_with(plan.tests); !problem.empty()) {
+    throw InputError(fmt::format("{} {}", where, problem));
+  }
+  return plan;
+}
+
+std::string text_of(const PlannedTest& test) {
+  const auto sign = std::find_if(kSigns.begin(), kSigns.end(),
+                                 [&](const auto& each) { return each.second == test.tail; });
+  return fmt::format("{}{}{}", test.a, sign->first, test.b);
+}
+
+AnalysisPlan read_analysis_plan(Table& analysis, const std::vector<std::string>& conditions) {
+  AnalysisPlan plan;
+  const auto check = [&](const char* key, const std::string& name) {
+    if (std::find(conditions.begin(), conditions.end(), name) == conditions.end()) {
+      const std::string hint = did_you_mean(name, conditions);
+      analysis.reject(key,
+                      fmt::format("names '{}', which design.conditions lacks{} allowed: {}", name,
+                                  hint.empty() ? ";" : hint, fmt::join(conditions, ", ")));
+    }
+  };
+  if (analysis.has("planned")) {
+    for (const std::string& text : analysis.texts("planned")) {
+      const auto test = parsed(text);
+      if (!test) {
+        analysis.reject("planned", fmt::format("an array with \"{}\"", text), kForm);
+        continue;
+      }
+      check("planned", test->a);
+      check("planned", test->b);
+      plan.tests.push_back(*test);
+    }
+  }
+  if (const std::string problem = problem_with(plan.tests); !problem.empty()) {
+    analysis.reject("planned", problem);
+  }
+  if (analysis.has("reference")) {
+    plan.reference = analysis.text("reference");
+    check("reference", plan.reference);
+  }
+  return plan;
+}
+
+}  // namespace haptrial::analysis

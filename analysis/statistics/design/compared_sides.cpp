@@ -1,0 +1,115 @@
+#include "analysis/statistics/design/compared_sides.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace haptrial::analysis {
+namespace {
+
+bool equally_large(const Sides& sides) {
+  const auto& [a, b] = sides.strata.begin()->second;
+  return std::all_of(sides.strata.begin(), sides.strata.end(), [&](const auto& stratum) {
+    return stratum.second.first.size() == a.size() && stratum.second.second.size() == b.size();
+  });
+}
+
+Defined<TTest> stratified(const Sides& sides, Tail tail) {
+  std::vector<std::vector<double>> a;
+  std::vector<std::vector<double>> b;
+  for (const auto& [key, values] : sides.strata) {
+    const auto& [first, second] = values;
+    if (!sides.paired) {
+      a.push_back(first);
+      b.push_back(second);
+      continue;
+    }
+    auto& differences = a.emplace_back();
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      differences.push_back(first[i] - second[i]);
+    }
+  }
+  return stratified_t_test(a, b, tail);
+}
+
+void resample(SideTest& test, const Sides& values, Resampling resampling) {
+  const Tail tail = test.sides.tail;
+  resampling.stream = "permutation of " + text_of(test.sides);
+  test.permutation = test.paired ? sign_flip_test(values.a, values.b, tail, resampling)
+                                 : permutation_test(values.a, values.b, tail, resampling);
+  resampling.stream = "bootstrap of " + text_of(test.sides);
+  if (!test.paired) {
+    test.bootstrap = bootstrap_difference(values.a, values.b, resampling);
+    return;
+  }
+  std::vector<double> differences(values.a.size());
+  std::transform(values.a.begin(), values.a.end(), values.b.begin(), differences.begin(),
+                 [](double a, double b) { return a - b; });
+  test.bootstrap = bootstrap(
+      differences,
+      [](std::span<const double> drawn) {
+        double sum = 0.0;
+        for (const double value : drawn) {
+          sum += value;
+        }
+        return sum / static_cast<double>(drawn.size());
+      },
+      resampling);
+}
+
+}  // namespace
+
+std::string name_of_test(const SideTest& test) { return test.paired ? "paired t" : "Welch's t"; }
+
+SideTest compared(const DesignTable& table, PlannedTest sides, const Cells& a, const Cells& b,
+                  const Resampling& resampling) {
+  const Sides values = values_of(table, a, b);
+  SideTest test;
+  test.sides = std::move(sides);
+  test.paired = values.paired;
+  test.count_a = values.a.size();
+  test.count_b = values.b.size();
+  const Tail tail = test.sides.tail;
+  if (values.strata.size() > 1 && !equally_large(values)) {
+    const Undefined why{"groups of different size are weighed alike, which only the t-test does"};
+    test.t = stratified(values, tail);
+    test.size = why;
+    test.ranks = why;
+    test.permutation = why;
+    test.bootstrap = why;
+    return test;
+  }
+  if (values.paired) {
+    test.t = paired_t_test(values.a, values.b, tail);
+    test.size = cohens_dz(values.a, values.b);
+    test.ranks = wilcoxon_signed_rank(values.a, values.b, tail);
+  } else {
+    test.t = welch_t_test(values.a, values.b, tail);
+    test.size = cohens_d(values.a, values.b);
+    test.ranks = mann_whitney(values.a, values.b, tail);
+  }
+  if (values.strata.size() > 1) {
+    test.t = stratified(values, tail);
+  }
+  if (resampling.count > 0) {
+    resample(test, values, resampling);
+  }
+  return test;
+}
+
+SideTest without_trials(const PlannedTest& sides, const std::string& missing) {
+  const Undefined why{fmt::format("there are no trials of '{}'", missing)};
+  SideTest test;
+  test.sides = sides;
+  test.t = why;
+  test.size = why;
+  test.ranks = why;
+  test.permutation = why;
+  test.bootstrap = why;
+  return test;
+}
+
+}  // namespace haptrial::analysis

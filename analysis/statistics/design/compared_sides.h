@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "analysis/statistics/design/analysis_plan.h"
+#include "analysis/statistics/design/design_sides.h"
+#include "analysis/statistics/tests/bootstrap.h"
+#include "analysis/statistics/tests/permutation.h"
+#include "analysis/statistics/tests/wilcoxon.h"
+#include "analysis/statistics/variance/effect_size.h"
+
+namespace haptrial::analysis {
+
+/// Two sides of a design compared: participants' means, paired where the same participants have
+/// both, and Welch's test where they are different people.
+struct SideTest {
+  PlannedTest sides;
+  bool paired{true};
+  std::size_t count_a{0};  // participants; pairs where paired
+  std::size_t count_b{0};
+  Defined<TTest> t{Undefined{"nothing was compared"}};
+  Defined<double> holm{Undefined{"nothing was compared"}};      // p of t over the family
+  Defined<EffectSize> size{Undefined{"nothing was compared"}};  // d_z where paired, else d
+  Defined<RankTest> ranks{Undefined{"nothing was compared"}};   // Wilcoxon, or Mann and Whitney
+  Defined<double> ranks_holm{Undefined{"nothing was compared"}};
+  Defined<PermutationTest> permutation{Undefined{"nothing was resampled"}};
+  Defined<double> permutation_holm{Undefined{"nothing was resampled"}};
+  Defined<BootstrapInterval> bootstrap{Undefined{"nothing was resampled"}};  // of the difference
+};
+
+/// "paired t" or "Welch's t".
+std::string name_of_test(const SideTest& test);
+
+/// The test of two sides, each with cells.
+/// @param resampling  of the permutation test and the bootstrap interval; none with a count of 0.
+SideTest compared(const DesignTable& table, PlannedTest sides, const Cells& a, const Cells& b,
+                  const Resampling& resampling);
+
+/// A test that is not defined. @param missing  the side without trials.
+SideTest without_trials(const PlannedTest& sides, const std::string& missing);
+
+}  // namespace haptrial::analysis

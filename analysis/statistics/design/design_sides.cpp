@@ -1,0 +1,139 @@
+#include "analysis/statistics/design/design_sides.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <set>
+
+#include "core/base/error.h"
+
+namespace haptrial::analysis {
+namespace {
+
+/// The mean of a participant's cells of a side; nothing without any.
+std::optional<double> side_of(const DesignTable& table, std::size_t subject, const Cells& cells) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const std::size_t cell : cells) {
+    if (const auto& mean = table.means[subject][cell]) {
+      sum += *mean;
+      ++count;
+    }
+  }
+  return count > 0 ? std::optional(sum / static_cast<double>(count)) : std::nullopt;
+}
+
+void add(Sides& sides, const std::vector<std::size_t>& stratum, std::optional<double> first,
+         std::optional<double> second) {
+  auto& [in_a, in_b] = sides.strata[stratum];
+  if (first) {
+    sides.a.push_back(*first);
+    in_a.push_back(*first);
+  }
+  if (second) {
+    sides.b.push_back(*second);
+    in_b.push_back(*second);
+  }
+}
+
+std::set<std::size_t> levels_in(const DesignTable& table, const Cells& cells, std::size_t factor) {
+  std::set<std::size_t> levels;
+  for (const std::size_t cell : cells) {
+    levels.insert(table.cells[cell][factor]);
+  }
+  return levels;
+}
+
+/// Factors between participants of which both sides have the same levels, several.
+std::vector<std::size_t> factors_across(const DesignTable& table, const Cells& a, const Cells& b) {
+  std::vector<std::size_t> across;
+  for (std::size_t f = 0; f < table.factors.size(); ++f) {
+    const auto levels = levels_in(table, a, f);
+    if (!table.factors[f].within && levels.size() > 1 && levels == levels_in(table, b, f)) {
+      across.push_back(f);
+    }
+  }
+  return across;
+}
+
+std::vector<std::size_t> stratum_of(const DesignTable& table, std::size_t subject,
+                                    const std::vector<std::size_t>& factors) {
+  const auto& means = table.means[subject];
+  const auto own = std::find_if(means.begin(), means.end(), [](const auto& m) { return !!m; });
+  std::vector<std::size_t> stratum;
+  for (const std::size_t f : factors) {
+    stratum.push_back(table.cells[static_cast<std::size_t>(own - means.begin())][f]);
+  }
+  return stratum;
+}
+
+}  // namespace
+
+Cells cells_at(const DesignTable& table, std::size_t factor, std::size_t level) {
+  Cells cells;
+  for (std::size_t cell = 0; cell < table.cells.size(); ++cell) {
+    if (table.cells[cell][factor] == level) {
+      cells.push_back(cell);
+    }
+  }
+  return cells;
+}
+
+Cells cells_of(const DesignTable& table, const std::string& side) {
+  const auto cell = std::find(table.names.begin(), table.names.end(), side);
+  if (cell != table.names.end()) {
+    return {static_cast<std::size_t>(cell - table.names.begin())};
+  }
+  Cells found;
+  for (std::size_t f = 0; f < table.factors.size(); ++f) {
+    const auto& levels = table.factors[f].levels;
+    const auto level = std::find(levels.begin(), levels.end(), side);
+    if (level == levels.end()) {
+      continue;
+    }
+    if (!found.empty()) {
+      throw InputError(fmt::format(
+          "the planned test of '{}' could mean a level of several factors; name levels differently",
+          side));
+    }
+    found = cells_at(table, f, static_cast<std::size_t>(level - levels.begin()));
+  }
+  return found;
+}
+
+std::vector<std::string> known_sides(const DesignTable& table) {
+  std::vector<std::string> known = table.names;
+  if (table.factors.size() > 1) {
+    for (const Factor& factor : table.factors) {
+      known.insert(known.end(), factor.levels.begin(), factor.levels.end());
+    }
+  }
+  return known;
+}
+
+Sides values_of(const DesignTable& table, const Cells& a, const Cells& b) {
+  const bool single = a.size() == 1 && b.size() == 1;
+  std::vector<std::size_t> subjects = table.complete();
+  if (single) {
+    subjects.resize(table.subjects.size());
+    std::iota(subjects.begin(), subjects.end(), std::size_t{0});
+  }
+  const auto across = factors_across(table, a, b);
+  Sides paired;
+  paired.paired = true;
+  Sides apart;
+  for (const std::size_t subject : subjects) {
+    const auto first = side_of(table, subject, a);
+    const auto second = side_of(table, subject, b);
+    const auto stratum = stratum_of(table, subject, across);
+    if (first && second) {
+      add(paired, stratum, first, second);
+    }
+    add(apart, stratum, first, second);
+  }
+  return paired.a.empty() ? apart : paired;
+}
+
+}  // namespace haptrial::analysis

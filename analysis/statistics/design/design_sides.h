@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/statistics/design/design_table.h"
+
+namespace haptrial::analysis {
+
+/// Places in DesignTable::cells.
+using Cells = std::vector<std::size_t>;
+
+/// The cells of a level of a factor.
+Cells cells_at(const DesignTable& table, std::size_t factor, std::size_t level);
+
+/// The cells of a condition, or of a level of one factor; none of a name that has no trials.
+/// @throws InputError where several factors have a level of that name.
+Cells cells_of(const DesignTable& table, const std::string& side);
+
+/// What cells_of() knows: conditions, and the levels where there are several factors.
+std::vector<std::string> known_sides(const DesignTable& table);
+
+/// The values of two sides: pairs of the same participants, or different people.
+struct Sides {
+  std::vector<double> a, b;
+  /// The same, where other factors between participants lie across both sides.
+  std::map<std::vector<std::size_t>, std::pair<std::vector<double>, std::vector<double>>> strata;
+  bool paired{false};
+};
+
+/// The means of participants' cells of each side. A side of one cell takes everybody who has it;
+/// one of several takes who has all of their own.
+Sides values_of(const DesignTable& table, const Cells& a, const Cells& b);
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,154 @@
+#include "analysis/statistics/design/design_tests.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "analysis/statistics/base/p_adjust.h"
+#include "analysis/statistics/design/design_sides.h"
+#include "core/base/error.h"
+
+namespace haptrial::analysis {
+namespace {
+
+template <class Member, class Adjusted>
+void adjust(std::vector<SideTest>& tests, Member member, Adjusted adjusted) {
+  std::vector<std::decay_t<decltype(tests.front().*member)>> all;
+  for (const SideTest& test : tests) {
+    all.push_back(test.*member);
+  }
+  const auto p_values = holm_over(all);
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    tests[i].*adjusted = p_values[i];
+  }
+}
+
+void adjust(TestFamily& family) {
+  adjust(family.tests, &SideTest::t, &SideTest::holm);
+  adjust(family.tests, &SideTest::ranks, &SideTest::ranks_holm);
+  adjust(family.tests, &SideTest::permutation, &SideTest::permutation_holm);
+}
+
+TestFamily planned_tests(const DesignTable& table, const AnalysisPlan& plan,
+                         const Resampling& resampling) {
+  TestFamily family{"planned", {}};
+  for (const PlannedTest& test : plan.tests) {
+    const Cells a = cells_of(table, test.a);
+    const Cells b = cells_of(table, test.b);
+    if (a.empty() || b.empty()) {
+      family.tests.push_back(without_trials(test, a.empty() ? test.a : test.b));
+    } else {
+      family.tests.push_back(compared(table, test, a, b, resampling));
+    }
+  }
+  adjust(family);
+  return family;
+}
+
+TestFamily levels_of(const DesignTable& table, std::size_t factor, const Resampling& resampling) {
+  const Factor& f = table.factors[factor];
+  TestFamily family{"every two levels of " + f.name, {}};
+  for (std::size_t i = 0; i < f.levels.size(); ++i) {
+    for (std::size_t k = i + 1; k < f.levels.size(); ++k) {
+      family.tests.push_back(compared(table, {f.levels[i], f.levels[k], Tail::kTwoSided},
+                                      cells_at(table, factor, i), cells_at(table, factor, k),
+                                      resampling));
+    }
+  }
+  adjust(family);
+  return family;
+}
+
+/// Two cells that differ in one factor.
+TestFamily neighbouring_cells(const DesignTable& table, const Resampling& resampling) {
+  TestFamily family{"every two cells that differ in one factor", {}};
+  for (std::size_t i = 0; i < table.cells.size(); ++i) {
+    for (std::size_t k = i + 1; k < table.cells.size(); ++k) {
+      std::size_t different = 0;
+      for (std::size_t f = 0; f < table.factors.size(); ++f) {
+        different += table.cells[i][f] != table.cells[k][f] ? 1 : 0;
+      }
+      if (different == 1) {
+        family.tests.push_back(compared(table, {table.names[i], table.names[k], Tail::kTwoSided},
+                                        {i}, {k}, resampling));
+      }
+    }
+  }
+  adjust(family);
+  return family;
+}
+
+std::string design_in_words(const DesignTable& table) {
+  std::string text;
+  for (const bool within : {true, false}) {
+    std::vector<std::string> names;
+    for (const Factor& factor : table.factors) {
+      if (factor.within == within && factor.levels.size() > 1) {
+        names.push_back(fmt::format("{} ({})", factor.name, fmt::join(factor.levels, ", ")));
+      }
+    }
+    if (!names.empty()) {
+      text += fmt::format("{}{} participants: {}", text.empty() ? "" : "; ",
+                          within ? "within" : "between", fmt::join(names, " and "));
+    }
+  }
+  return text.empty()
+             ? fmt::format("nothing: there is one condition, {}", fmt::join(table.names, ", "))
+             : text;
+}
+
+}  // namespace
+
+void check_plan(const DesignTable& table, const AnalysisPlan& plan) {
+  const auto known = known_sides(table);
+  const auto require = [&](const std::string& side, const char* what) {
+    if (cells_of(table, side).empty()) {
+      throw InputError(fmt::format("the {} names '{}', which the data do not have; allowed: '{}'",
+                                   what, side, fmt::join(known, "', '")));
+    }
+  };
+  for (const PlannedTest& test : plan.tests) {
+    require(test.a, "planned test");
+    require(test.b, "planned test");
+    const Cells a = cells_of(table, test.a);
+    const Cells b = cells_of(table, test.b);
+    if (std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end()) {
+      throw InputError(
+          fmt::format("the planned test \"{}\" compares trials with themselves", text_of(test)));
+    }
+  }
+  if (!plan.reference.empty()) {
+    require(plan.reference, "reference condition");
+  }
+}
+
+DesignTests design_tests(const DesignTable& table, const AnalysisPlan& plan,
+                         const Resampling& resampling) {
+  DesignTests tests;
+  tests.design = design_in_words(table);
+  const auto complete = table.complete();
+  for (std::size_t s = 0; s < table.subjects.size(); ++s) {
+    if (std::find(complete.begin(), complete.end(), s) == complete.end()) {
+      tests.incomplete.push_back(table.subjects[s]);
+    }
+  }
+  tests.effects = design_effects(table);
+  tests.ranks = design_ranks(table);
+  tests.planned = planned_tests(table, plan, resampling);
+  for (std::size_t f = 0; f < table.factors.size(); ++f) {
+    if (table.factors[f].levels.size() > 1 && (table.crossed || table.factors.size() == 1)) {
+      tests.families.push_back(levels_of(table, f, resampling));
+    }
+  }
+  const auto varied = std::count_if(table.factors.begin(), table.factors.end(),
+                                    [](const Factor& f) { return f.levels.size() > 1; });
+  if (varied > 1) {
+    tests.families.push_back(neighbouring_cells(table, resampling));
+  }
+  return tests;
+}
+
+}  // namespace haptrial::analysis

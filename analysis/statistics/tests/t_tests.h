@@ -1,0 +1,57 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "analysis/statistics/base/defined.h"
+
+namespace haptrial::analysis {
+
+/// The alternative to equal means.
+enum class Tail {
+  kTwoSided,
+  kLess,     // mean(a) < mean(b)
+  kGreater,  // mean(a) > mean(b)
+};
+
+struct TTest {
+  double t{0.0};           // the sign of mean(a) - mean(b)
+  double df{0.0};          // not an integer for Welch's test
+  double p{0.0};           // for the tail asked for
+  double difference{0.0};  // mean(a) - mean(b)
+  double low{0.0};         // two-sided interval of the difference, whatever the tail
+  double high{0.0};
+  double error{0.0};  // standard error of the difference
+};
+
+/// @param level  coverage of the interval of the difference, inside (0, 1); the same for each test.
+
+/// Student's test with pooled variance.
+/// Undefined with an empty sample, fewer than three values, no variance, or a value not finite.
+Defined<TTest> student_t_test(std::span<const double> a, std::span<const double> b, Tail tail,
+                              double level = 0.95);
+
+/// Welch's test; variances may differ. Undefined with fewer than two values in either sample, no
+/// variance in both, or a value that is not finite.
+Defined<TTest> welch_t_test(std::span<const double> a, std::span<const double> b, Tail tail,
+                            double level = 0.95);
+
+/// Student's test of the differences a[i] - b[i]. Undefined with fewer than two pairs, equal
+/// differences, or a value that is not finite.
+/// @throws std::invalid_argument when the lengths differ.
+Defined<TTest> paired_t_test(std::span<const double> a, std::span<const double> b, Tail tail,
+                             double level = 0.95);
+
+/// Strata of participants weighed alike, however many each has:
+///
+///     mean over s of mean(a[s]) - mean over s of mean(b[s])
+///
+/// with the variance of each stratum its own and Welch and Satterthwaite's degrees of freedom.
+/// @param b  as many strata as `a`; none: `a` holds differences of pairs.
+/// Undefined with a stratum of fewer than two values, no variance in any, or a value that is not
+/// finite.
+Defined<TTest> stratified_t_test(const std::vector<std::vector<double>>& a,
+                                 const std::vector<std::vector<double>>& b, Tail tail,
+                                 double level = 0.95);
+
+}  // namespace haptrial::analysis

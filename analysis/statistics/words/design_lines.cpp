@@ -1,0 +1,141 @@
+#include "analysis/statistics/words/design_lines.h"
+
+#include <fmt/format.h>
+
+#include "analysis/files/csv.h"
+#include "analysis/statistics/base/descriptive.h"
+#include "analysis/statistics/words/wording.h"
+#include "core/base/error.h"
+
+namespace haptrial::analysis {
+namespace {
+
+constexpr double kAlpha = 0.05;
+
+std::string line_of(const Defined<EffectTest>& effect) {
+  if (!effect) {
+    return "Whether conditions differ is not defined, because " + effect.because() + ".";
+  }
+  return fmt::format("{}: {}; {}", capitalized(effect->factor),
+                     effect->p < kAlpha ? "significant" : "not significant",
+                     effect_result(*effect));
+}
+
+std::string line_of(const SideTest& test) {
+  const std::string name = "Planned, " + text_of(test.sides);
+  if (!test.t || !test.holm) {
+    return fmt::format("{}: not defined, because {}", name, test.t.because());
+  }
+  return fmt::format("{}: {}; {}", name, *test.holm < kAlpha ? "significant" : "not significant",
+                     side_result(test));
+}
+
+std::string line_of_cell(const DesignTable& table, std::size_t cell) {
+  std::vector<double> means;
+  for (const auto& row : table.means) {
+    if (row[cell]) {
+      means.push_back(*row[cell]);
+    }
+  }
+  const auto interval = mean_interval(means);
+  return fmt::format("{}: mean {} ({}, {})", table.names[cell],
+                     interval ? mean_with_interval(interval) : number(moments(means)->mean()),
+                     counted(means.size(), "participant"), counted(table.counts[cell], "value"));
+}
+
+/// "visual < haptic", "haptic and visual".
+std::string sides_of(const SideTest& test) {
+  return test.sides.tail == Tail::kTwoSided ? test.sides.a + " and " + test.sides.b
+                                            : text_of(test.sides);
+}
+
+std::vector<std::string> lines_of(const TestFamily& family) {
+  std::vector<std::string> lines{capitalized(family.name) + ":"};
+  for (const SideTest& test : family.tests) {
+    lines.push_back(fmt::format("  {}: {}; {}{}", sides_of(test), side_result(test),
+                                test.paired ? "d_z" : "d",
+                                (test.size ? " = " : " ") + effect(test.size)));
+    lines.push_back(fmt::format("    {} {}; permutation {}; bootstrap 95 % CI {}",
+                                test.paired ? "Wilcoxon" : "Mann–Whitney",
+                                p_result(test.ranks_holm), p_result(test.permutation_holm),
+                                bootstrap_result(test)));
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::vector<std::string> effect_lines(const DesignTests& tests) {
+  std::vector<std::string> lines;
+  for (const auto& effect : tests.effects) {
+    lines.push_back(line_of(effect));
+  }
+  return lines;
+}
+
+std::vector<std::string> planned_lines(const DesignTests& tests) {
+  std::vector<std::string> lines;
+  for (const SideTest& test : tests.planned.tests) {
+    lines.push_back(line_of(test));
+  }
+  return lines;
+}
+
+std::vector<std::string> design_lines(const DesignTable& table, const DesignTests& tests) {
+  std::vector<std::string> lines;
+  const auto append = [&](const std::vector<std::string>& more) {
+    lines.insert(lines.end(), more.begin(), more.end());
+  };
+  lines.push_back("Varied " + tests.design);
+  if (!tests.incomplete.empty()) {
+    lines.push_back(fmt::format("Left out for lack of a value in some condition: {}",
+                                fmt::join(tests.incomplete, ", ")));
+  }
+  for (std::size_t cell = 0; cell < table.cells.size(); ++cell) {
+    lines.push_back(line_of_cell(table, cell));
+  }
+  append(effect_lines(tests));
+  if (table.factors.size() == 1 && table.cells.size() > 1) {
+    lines.push_back(fmt::format("On ranks ({}): {}",
+                                table.factors[0].within ? "Friedman" : "Kruskal–Wallis",
+                                rank_result(tests.ranks)));
+  }
+  if (!tests.planned.tests.empty()) {
+    append(lines_of(tests.planned));
+  }
+  for (const TestFamily& family : tests.families) {
+    append(lines_of(family));
+  }
+  lines.push_back("p values of a family are adjusted together by Holm's method.");
+  return lines;
+}
+
+std::vector<Observation> read_observations(const std::string& file, const std::string& subject,
+                                           const std::vector<std::string>& factors,
+                                           const std::string& value) {
+  const CsvTable table = CsvTable::load(file);
+  const std::size_t who = table.column(subject);
+  std::vector<std::size_t> columns;
+  for (const std::string& factor : factors) {
+    columns.push_back(table.column(factor));
+  }
+  const std::vector<double> values = table.numbers(table.column(value));
+  const auto name = [&](std::size_t row, std::size_t column) {
+    const auto text = table.text(row, column);
+    if (text.empty()) {
+      table.refuse(row, column, "a name");
+    }
+    return std::string(text);
+  };
+  std::vector<Observation> result;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    Observation o{name(row, who), {}, values[row]};
+    for (const std::size_t column : columns) {
+      o.levels.push_back(name(row, column));
+    }
+    result.push_back(std::move(o));
+  }
+  return result;
+}
+
+}  // namespace haptrial::analysis

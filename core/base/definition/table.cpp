@@ -1,0 +1,373 @@
+#include "core/base/definition/table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "core/base/definition/table_words_internal.h"
+#include "core/base/definition/toml_text_internal.h"
+#include "core/base/error.h"
+#include "core/base/files/file_text.h"
+#include "core/base/text/nearest.h"
+
+namespace haptrial {
+
+struct Table::Document {
+  struct Part {
+    unsigned lines_before;
+    std::string file_name;
+  };
+  std::vector<Part> parts;  // in order; at least one
+  std::string source;
+  toml::table root;
+  std::multimap<unsigned, std::string> problems;  // of one value each, by line
+  std::multimap<unsigned, std::string> together;  // of values taken together, by line
+
+  /// Notes a problem once, on one line of text whatever the definition holds.
+  void note(std::multimap<unsigned, std::string>& in, unsigned line, std::string_view problem) {
+    const auto part = std::find_if(parts.rbegin(), parts.rend() - 1,
+                                   [line](const Part& each) { return each.lines_before < line; });
+    std::string sentence =
+        line == 0 ? fmt::format("{}: {}", parts.front().file_name, problem)
+                  : fmt::format("{}:{}: {}", part->file_name, line - part->lines_before, problem);
+    for (char& c : sentence) {
+      const bool control = (c >= 0 && c < ' ') || c == '\x7f';
+      c = control ? ' ' : c;
+    }
+    const auto [begin, end] = in.equal_range(line);
+    if (std::none_of(begin, end, [&](const auto& noted) { return noted.second == sentence; })) {
+      in.emplace(line, std::move(sentence));
+    }
+  }
+
+  std::vector<std::shared_ptr<Node>> nodes;  // tables that somebody asked for
+};
+
+struct Table::Node {
+  const toml::table* table;  // null where the definition lacks it
+  std::string path;          // "trajectory", "gains.plane"; empty for the root
+  std::set<std::string, std::less<>> read;
+  std::set<std::string, std::less<>> asked;  // by has(): known, but not known to be read
+
+  std::string full(std::string_view key) const {
+    return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
+  }
+};
+
+namespace {
+
+unsigned line_of(const toml::node* node) {
+  return node == nullptr ? 0u : static_cast<unsigned>(node->source().begin.line);
+}
+
+bool within(double x, const Bounds& b) {
+  return std::isfinite(x) && (b.open_low ? x > b.low : x >= b.low) && x <= b.high;
+}
+
+double fallback(const Bounds& b) {
+  if (std::isfinite(b.low)) {
+    return b.open_low ? std::nextafter(b.low, b.high) : b.low;
+  }
+  return std::isfinite(b.high) ? b.high : 0.0;
+}
+
+}  // namespace
+
+Table::Table(std::shared_ptr<Document> document, std::shared_ptr<Node> node)
+    : document_(std::move(document)), node_(std::move(node)) {}
+
+Table Table::parse(std::string_view text, std::string_view file_name) {
+  return parse(std::vector<NamedText>{{std::string(text), std::string(file_name)}});
+}
+
+Table Table::parse(const std::vector<NamedText>& parts) {
+  auto document = std::make_shared<Document>();
+  for (const NamedText& part : parts) {
+    const auto lines = std::count(document->source.begin(), document->source.end(), '\n');
+    document->parts.push_back({static_cast<unsigned>(lines), part.file_name});
+    document->source += part.text;
+  }
+  const std::string& file_name = parts.front().file_name;
+  document->root = parse_toml(document->source, file_name);
+  if (document->root.empty()) {
+    throw InputError(
+        fmt::format("{}: the definition is empty; write at least one KEY = VALUE", file_name));
+  }
+  auto root = std::make_shared<Node>(Node{&document->root, "", {}, {}});
+  document->nodes.push_back(root);
+  return Table(document, root);
+}
+
+Table Table::load(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) {
+    throw InputError(
+        fmt::format("{}: no such file; give the name of a definition (.toml)", file.string()));
+  }
+  if (!std::filesystem::is_regular_file(status)) {
+    throw InputError(
+        fmt::format("{}: is {}; give the name of a definition (.toml)", file.string(),
+                    std::filesystem::is_directory(status) ? "a directory" : "not a regular file"));
+  }
+  constexpr std::uintmax_t kLargest = 1 << 20;
+  if (const auto size = std::filesystem::file_size(file, error); size > kLargest) {
+    throw InputError(
+        fmt::format("{}: has {} bytes; allowed: at most {}", file.string(), size, kLargest));
+  }
+  return parse(file_text(file), file.string());
+}
+
+const std::string& Table::source() const { return document_->source; }
+
+bool Table::has(std::string_view key) const {
+  node_->asked.emplace(key);
+  return node_->table != nullptr && node_->table->contains(key);
+}
+
+std::vector<std::string> Table::keys() const {
+  std::vector<std::string> names;
+  if (node_->table != nullptr) {
+    for (const auto& [key, value] : *node_->table) {
+      names.emplace_back(key.str());
+    }
+  }
+  return names;
+}
+
+void Table::note(unsigned line, std::string_view problem) {
+  document_->note(document_->problems, line, problem);
+}
+
+unsigned Table::line(std::string_view key) const {
+  const toml::node* node = node_->table == nullptr ? nullptr : node_->table->get(key);
+  return node == nullptr ? line_of(node_->table) : line_of(node);
+}
+
+void Table::refuse(std::string_view key, std::string_view found, std::string_view allowed) {
+  note(line(key), fmt::format("{} is {}; allowed: {}", node_->full(key), found, allowed));
+}
+
+void Table::reject(std::string_view key, std::string_view found, std::string_view allowed) {
+  document_->note(document_->together, line(key),
+                  fmt::format("{} is {}; allowed: {}", node_->full(key), found, allowed));
+}
+
+/// The value under `key`, or nothing with the problem noted. @param any  other values of the type
+/// may do as well, so that the sentence can say how to write the value
+template <class T>
+std::optional<T> Table::get(std::string_view key, std::string_view allowed, bool any) {
+  if (node_->table == nullptr) {
+    return std::nullopt;
+  }
+  node_->read.emplace(key);
+  const toml::node* node = node_->table->get(key);
+  if (node == nullptr) {
+    note(line_of(node_->table),
+         fmt::format("{} is missing; allowed: {}", node_->full(key), allowed));
+    return std::nullopt;
+  }
+  std::optional<T> value;
+  if constexpr (std::is_same_v<T, double>) {
+    value = node->value<double>();
+    value = node->is_number() ? value : std::nullopt;
+  } else {
+    value = node->value_exact<T>();
+  }
+  if (!value) {
+    const std::string hint = any ? rewritten(*node, key, wanted<T>()) : "";
+    if (hint.empty()) {
+      refuse(key, shown(*node), allowed);
+    } else {
+      note(line_of(node),
+           fmt::format("{} is {}; {}", node_->full(key), shown_with_kind(*node), hint));
+    }
+  }
+  return value;
+}
+
+double Table::number(std::string_view key, const Bounds& bounds, std::string_view unit) {
+  const std::string allowed = words(bounds, unit);
+  const auto value = get<double>(key, allowed);
+  if (value && !within(*value, bounds)) {
+    refuse(key, fmt::format("{}", *value), allowed);
+    return fallback(bounds);
+  }
+  return value.value_or(fallback(bounds));
+}
+
+long Table::integer(std::string_view key, long low, long high) {
+  const std::string allowed = fmt::format("a whole number from {} to {}", low, high);
+  const auto value = get<std::int64_t>(key, allowed);
+  if (value && (*value < low || *value > high)) {
+    refuse(key, fmt::format("{}", *value), allowed);
+    return low;
+  }
+  return value.value_or(low);
+}
+
+bool Table::boolean(std::string_view key) {
+  return get<bool>(key, "true or false").value_or(false);
+}
+
+std::string Table::text(std::string_view key) {
+  auto value = get<std::string>(key, "a text in quotes that is not empty");
+  if (value && value->empty()) {
+    refuse(key, "an empty text", "a text in quotes that is not empty");
+  }
+  return value.value_or("");
+}
+
+std::string Table::choice(std::string_view key, const std::vector<std::string>& allowed) {
+  const auto value = get<std::string>(key, joined(allowed), false);
+  if (value && std::find(allowed.begin(), allowed.end(), *value) == allowed.end()) {
+    note(line(key), not_allowed(node_->full(key), shown(*node_->table->get(key)), allowed));
+    return allowed.front();
+  }
+  return value.value_or(allowed.front());
+}
+
+/// Every element of the array under `key` as T; elements of another type are noted.
+template <class T>
+std::vector<T> Table::array(std::string_view key, const std::string& allowed) {
+  std::vector<T> values;
+  if (node_->table == nullptr) {
+    return values;
+  }
+  node_->read.emplace(key);
+  const toml::node* node = node_->table->get(key);
+  if (node == nullptr) {
+    note(line_of(node_->table),
+         fmt::format("{} is missing; allowed: {}", node_->full(key), allowed));
+    return values;
+  }
+  const toml::array* array = node->as_array();
+  if (const bool good = node->is_string() || node->is_number();
+      good && array == nullptr && node->value_exact<T>()) {
+    note(line_of(node), fmt::format("{} is {}; write it in brackets: {} = [{}]", node_->full(key),
+                                    shown_with_kind(*node), key, shown(*node)));
+    return values;
+  }
+  if (array == nullptr || array->empty()) {
+    refuse(key, array == nullptr ? shown(*node) : "an empty array", allowed);
+    return values;
+  }
+  for (const toml::node& element : *array) {
+    if (const auto value = element.value<T>()) {
+      values.push_back(*value);
+    } else {
+      note(line_of(&element), fmt::format("{} is an array with {}; allowed: {}", node_->full(key),
+                                          shown_with_kind(element), allowed));
+    }
+  }
+  return values;
+}
+
+std::vector<double> Table::numbers(std::string_view key, const Bounds& bounds,
+                                   std::string_view unit) {
+  const std::string allowed = fmt::format("an array, each {}", words(bounds, unit));
+  auto values = array<double>(key, allowed);
+  for (const double value : values) {
+    if (!within(value, bounds)) {
+      refuse(key, fmt::format("an array with {}", value), allowed);
+    }
+  }
+  return values;
+}
+
+std::vector<std::string> Table::texts(std::string_view key) {
+  return array<std::string>(key, "an array of texts in quotes");
+}
+
+Table Table::table(std::string_view key) {
+  const toml::table* inner = nullptr;
+  if (node_->table != nullptr) {
+    node_->read.emplace(key);
+    const toml::node* node = node_->table->get(key);
+    inner = node == nullptr ? nullptr : node->as_table();
+    if (node == nullptr) {
+      note(line_of(node_->table), fmt::format("the table [{}] is missing", node_->full(key)));
+    } else if (inner == nullptr) {
+      refuse(key, shown(*node), "a table");
+    }
+  }
+  auto child = std::make_shared<Node>(Node{inner, node_->full(key), {}, {}});
+  document_->nodes.push_back(child);
+  return Table(document_, child);
+}
+
+void Table::leave(std::string_view key) { node_->read.emplace(key); }
+
+void Table::reject(std::string_view key, std::string_view rest) {
+  document_->note(document_->together, line(key), fmt::format("{} {}", node_->full(key), rest));
+}
+
+bool Table::misspelled(std::string_view key) {
+  if (has(key)) {
+    return false;
+  }
+  for (const std::string& there : keys()) {
+    if (nearest(there, {std::string(key)})) {
+      note(line(there), fmt::format("{} is not a known key; did you mean {}?", node_->full(there),
+                                    node_->full(key)));
+      return true;
+    }
+  }
+  return false;
+}
+
+void Table::note_unknown_keys() const {
+  // The same table may have been asked for twice: a key is unknown if no reader knew it.
+  std::map<const toml::table*, std::set<std::string, std::less<>>> read;
+  std::map<const toml::table*, std::set<std::string, std::less<>>> known;
+  for (const auto& node : document_->nodes) {
+    read[node->table].insert(node->read.begin(), node->read.end());
+    known[node->table].insert(node->read.begin(), node->read.end());
+    known[node->table].insert(node->asked.begin(), node->asked.end());
+  }
+  std::set<const toml::table*> done;
+  for (const auto& node : document_->nodes) {
+    if (node->table == nullptr || !done.insert(node->table).second) {
+      continue;
+    }
+    const std::vector<std::string> all(known[node->table].begin(), known[node->table].end());
+    for (const auto& [key, value] : *node->table) {
+      if (read[node->table].contains(key.str())) {
+        continue;
+      }
+      std::vector<std::string> absent;  // a typo leaves out the key that was meant
+      std::copy_if(all.begin(), all.end(), std::back_inserter(absent),
+                   [&node](const auto& name) { return !node->table->contains(name); });
+      const std::string hint = did_you_mean(key.str(), absent);
+      document_->note(
+          document_->problems, line_of(&value),
+          fmt::format(
+              "{} is not a known {}{}{} known here: {}",
+              value.is_table() ? fmt::format("[{}]", node->full(key.str())) : node->full(key.str()),
+              value.is_table() ? "table" : "key", hint, hint.empty() ? ";" : "", joined(all)));
+    }
+  }
+}
+
+void Table::check() const {
+  const auto& problems = document_->problems.empty() ? document_->together : document_->problems;
+  if (problems.empty()) {
+    return;
+  }
+  std::string sentences;
+  for (const auto& [line, sentence] : problems) {
+    sentences += (sentences.empty() ? "" : "\n") + sentence;
+  }
+  throw InputError(sentences);
+}
+
+void Table::finish() const {
+  note_unknown_keys();
+  check();
+}
+
+}  // namespace haptrial

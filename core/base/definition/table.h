@@ -1,0 +1,98 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/definition/bounds.h"
+
+namespace haptrial {
+
+/// A file's text and its name as sentences say it.
+struct NamedText {
+  std::string text;
+  std::string file_name;
+};
+
+/// A table of a definition file (TOML), read key by key. Each read checks presence, type and bounds
+/// and notes a problem instead of throwing, so that a definition is validated whole; finish() on
+/// the document then throws one InputError with a sentence for every problem:
+///
+///     training.toml:12: trajectory.speed is -1.6; allowed: a number above 0 [m/s]
+///
+/// Keys that nobody read or asked for are problems too; their sentence names the nearest known key.
+/// Not thread-safe; never on the servo thread.
+class Table {
+ public:
+  /// @throws InputError when the text is not TOML, with the line.
+  static Table parse(std::string_view text, std::string_view file_name);
+  /// Texts of several files, as if one held them one after the other; sentences name each with its
+  /// own lines. A text must end in a newline, and one that is not the first must begin with a
+  /// table's header. @throws InputError as above
+  static Table parse(const std::vector<NamedText>& parts);
+  /// @throws InputError when the file is absent, a directory, unreadable, empty or not TOML.
+  static Table load(const std::filesystem::path& file);
+
+  /// Required values. Where a problem is noted the smallest allowed finite value comes back.
+  /// @param unit  as written in the message, "m/s"; empty for a pure number.
+  double number(std::string_view key, const Bounds& bounds, std::string_view unit);
+  long integer(std::string_view key, long low, long high);
+  bool boolean(std::string_view key);
+  std::string text(std::string_view key);
+  std::string choice(std::string_view key, const std::vector<std::string>& allowed);
+  std::vector<double> numbers(std::string_view key, const Bounds& bounds, std::string_view unit);
+  std::vector<std::string> texts(std::string_view key);
+
+  /// A required table within this one; an absent one is noted and reads as empty without further
+  /// problems.
+  Table table(std::string_view key);
+  bool has(std::string_view key) const;
+  /// A table of this one that another reader knows: its keys are not looked at here.
+  void leave(std::string_view key);
+  /// The keys of this table in the order of their names.
+  std::vector<std::string> keys() const;
+
+  /// Notes a problem of values taken together, at the line of `key`. finish() reports these only
+  /// if every value is good by itself: a missing value would make them up.
+  /// @param found, allowed  complete the sentence "KEY is FOUND; allowed: ALLOWED", in which
+  /// ALLOWED
+  ///                        is a value, range, list or form
+  void reject(std::string_view key, std::string_view found, std::string_view allowed);
+  /// The same where no value can be named. @param rest  completes the sentence "KEY REST" and says
+  ///                                                    what to do
+  void reject(std::string_view key, std::string_view rest);
+
+  /// Whether a key of this table is probably a misspelling of `key`; notes that if so.
+  bool misspelled(std::string_view key);
+
+  /// @throws InputError with the problems noted so far, before unknown keys are looked for: for a
+  ///         value on which it depends what the other keys mean.
+  void check() const;
+
+  /// @throws InputError with every problem of the whole document, one sentence a line, in the order
+  ///         of their lines.
+  void finish() const;
+
+  /// The text that was parsed, unchanged.
+  const std::string& source() const;
+
+ private:
+  struct Document;
+  struct Node;
+  Table(std::shared_ptr<Document> document, std::shared_ptr<Node> node);
+  void note(unsigned line, std::string_view problem);
+  void refuse(std::string_view key, std::string_view found, std::string_view allowed);
+  void note_unknown_keys() const;
+  unsigned line(std::string_view key) const;
+  template <class T>
+  std::optional<T> get(std::string_view key, std::string_view allowed, bool any = true);
+  template <class T>
+  std::vector<T> array(std::string_view key, const std::string& allowed);
+  std::shared_ptr<Document> document_;
+  std::shared_ptr<Node> node_;
+};
+
+}  // namespace haptrial

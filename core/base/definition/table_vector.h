@@ -1,0 +1,20 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string_view>
+
+#include "core/base/definition/table.h"
+
+namespace haptrial {
+
+/// A required array of three numbers, x, y and z, each within the bounds.
+/// @returns `otherwise` after a problem, which is noted
+Eigen::Vector3d read_vector(Table& table, std::string_view key, const Bounds& bounds,
+                            std::string_view unit,
+                            const Eigen::Vector3d& otherwise = Eigen::Vector3d::Zero());
+
+/// The same for a direction: numbers from -1 to 1, not all zero. @returns it with length 1; y after
+/// a problem
+Eigen::Vector3d read_direction(Table& table, std::string_view key);
+
+}  // namespace haptrial

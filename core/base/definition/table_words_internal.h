@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include <toml++/toml.h>
+
+#include "core/base/definition/bounds.h"
+
+namespace haptrial {
+
+// The parts of a table's error sentences.
+
+/// "a number above 0 [m/s]"
+std::string words(const Bounds& bounds, std::string_view unit);
+
+/// What stands in the file, short enough for a sentence.
+std::string shown(const toml::node& node);
+
+/// The same, with "the text" before a text.
+std::string shown_with_kind(const toml::node& node);
+
+enum class Wanted { kNumber, kWhole, kTruth, kText };
+template <class T>
+constexpr Wanted wanted() {
+  return std::is_same_v<T, std::string>    ? Wanted::kText
+         : std::is_same_v<T, bool>         ? Wanted::kTruth
+         : std::is_same_v<T, std::int64_t> ? Wanted::kWhole
+                                           : Wanted::kNumber;
+}
+
+/// "write it without quotes: rate = 1000", for a value that is good but for its quotes or its
+/// decimal point; empty for others. @param key  "rate"
+std::string rewritten(const toml::node& node, std::string_view key, Wanted wanted);
+
+/// The items with commas between them.
+std::string joined(const std::vector<std::string>& items);
+
+}  // namespace haptrial

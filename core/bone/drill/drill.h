@@ -1,0 +1,106 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/instruction_set.h"
+#include "core/bone/drill/burr.h"
+#include "core/bone/drill/drill_kernel.h"
+#include "core/bone/model/bone_volume.h"
+
+namespace haptrial::bone {
+
+/// Where a burr is immersed in a bone, summed over its samples. Vectors are in the frame in which
+/// the burr's pose was given; those of several bones add up in one frame.
+struct Contact {
+  std::int32_t samples{0};                            // that lie in bone
+  double volume{0.0};                                 // theirs [m^3]
+  Eigen::Vector3d push{Eigen::Vector3d::Zero()};      // sum of directions to the centre [m^3]
+  Eigen::Vector3d turn{Eigen::Vector3d::Zero()};      // sum of (p - sc) x d [m^4]
+  Eigen::Vector3d centroid{Eigen::Vector3d::Zero()};  // of the immersed samples [m]; 0 without
+  std::int32_t first{0};                              // of its samples in the drill's list
+  std::int32_t kept{0};                               // of them in that list
+
+  explicit operator bool() const noexcept { return samples > 0; }
+};
+
+/// The same contact seen from W. Its place in the drill's list stays.
+/// @param X_WB  pose of the bone B in W
+Contact in_world(const Contact& contact_B, const Eigen::Isometry3d& X_WB) noexcept;
+/// Both together: sums of sums, centroid by volume; for feeling only (nothing in the list).
+Contact together(const Contact& a, const Contact& b) noexcept;
+
+/// A voxel that has just lost its last bone.
+struct EmptiedVoxel {
+  std::int32_t address;  // in its volume
+  std::uint8_t label;
+};
+
+/// What one tick took out of one bone.
+struct Removal {
+  double amount{0.0};  // sum of the densities taken; times the volume of a voxel is volume
+  double volume{0.0};  // [m^3]
+  std::span<const EmptiedVoxel> emptied;  // until the next remove()
+};
+
+/// A burr at work in bones. One tick is
+///
+///     drill.begin_tick();
+///     contact = drill.touch(volume, tip, orientation);       // for each bone near the burr
+///     force = bone_force(contact, ...);                      // core/bone/drill/feel.h
+///     removal = drill.remove(volume, contact, force.norm(), power, dt);
+///
+/// Servo thread: nothing here allocates, locks, waits or throws after construction
+/// (DrillTest.TickDoesNotAllocate). The same bits on every instruction set.
+class Drill {
+ public:
+  /// Samples that lie in bone are remembered for remove() until the list is full: so many times
+  /// the burr's samples, which only bones that overlap one another can reach. What does not fit is
+  /// felt but not drilled.
+  static constexpr std::int32_t kBonesAtOnce = 4;
+
+  /// @param structures  by label: how hard they are; labels beyond are as hard as bone
+  /// @throws std::invalid_argument when a hardness is not above 0 or the machine lacks `set`.
+  Drill(const BurrParameters& burr, std::span<const Structure> structures,
+        InstructionSet set = best_instruction_set());
+
+  const Burr& burr() const noexcept { return burr_; }
+
+  /// Forgets the contacts of the last tick.
+  void begin_tick() noexcept { kept_ = 0; }
+
+  /// The burr's samples that lie in bone.
+  /// @param tip_B           the burr's centre in the bone's frame [m]
+  /// @param orientation_B   from the tool frame to the bone's
+  /// @returns nothing in contact where a number is not finite, the orientation has no length, or
+  /// the burr is wider than 10,000 voxels.
+  Contact touch(const BoneVolume& volume, const Eigen::Vector3d& tip_B,
+                const Eigen::Quaterniond& orientation_B) noexcept;
+
+  /// Takes bone away at the contact's samples, each
+  ///
+  ///     force · sample power · power · dt · (sample volume / voxel volume) / hardness
+  ///
+  /// of its voxel's density, in multiples of 2^-23: sums are exact where densities are multiples
+  /// of that too. Source: Morris 2006, §3.2.3.6.
+  /// @param contact  of this volume, from this tick
+  /// @param force    that the user applies [N]; nothing is removed unless it, dt and power are
+  ///                 finite and above 0
+  /// @param power    how fast the burr turns, from 0 to 1
+  /// @param dt       since the last tick [s]
+  Removal remove(BoneVolume& volume, const Contact& contact, double force, double power,
+                 double dt) noexcept;
+
+ private:
+  Burr burr_;
+  kernel::TouchBurr touch_;
+  std::array<float, 256> softness_;  // 1 / hardness, by label
+  std::int32_t kept_{0};
+  std::vector<kernel::Hit> hits_;  // kept_ of them in use
+  std::vector<EmptiedVoxel> emptied_;
+};
+
+}  // namespace haptrial::bone

@@ -1,0 +1,23 @@
+// The kernel of this file is compiled for AVX-512; it runs where the processor has it.
+#ifdef __x86_64__
+
+// Before the instructions are switched on, so that nothing shared is compiled with them.
+#include <cstdint>
+
+#pragma GCC push_options
+#pragma GCC target("avx512f,avx512bw,avx512dq,avx512vl,avx2,prefer-vector-width=512")
+
+#include "core/bone/drill/drill_kernel_internal.h"
+
+namespace haptrial::bone::kernel {
+
+std::int32_t touch_burr_avx512(const Cloud& cloud, const Placement& at, const Bricks& bricks,
+                               Hit* hits, std::int32_t room, Sums& sums) {
+  return touch_burr(cloud, at, bricks, hits, room, sums);
+}
+
+}  // namespace haptrial::bone::kernel
+
+#pragma GCC pop_options
+
+#endif

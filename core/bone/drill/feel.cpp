@@ -1,0 +1,92 @@
+#include "core/bone/drill/feel.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "core/base/definition/table.h"
+
+namespace haptrial::bone {
+namespace {
+
+/// Shortened to `longest`, with its direction kept.
+Eigen::Vector3d shortened(const Eigen::Vector3d& force, double longest) {
+  const double length = force.norm();
+  return length > longest ? Eigen::Vector3d(force * (longest / length)) : force;
+}
+
+}  // namespace
+
+FeelParameters default_feel(double burr_radius) {
+  FeelParameters p;
+  const double burr_volume = 4.0 / 3.0 * std::numbers::pi * std::pow(burr_radius, 3);
+  p.second_gain = std::max(4e6 / burr_radius, 1.25 * p.force_limit / burr_volume);
+  p.first_gain = p.second_gain / 3.0;
+  p.threshold = std::min(1e-7 * burr_radius, 0.05 * burr_volume);
+  return p;
+}
+
+FeelParameters read_feel_parameters(Table& table, double burr_radius) {
+  FeelParameters p = default_feel(burr_radius);
+  const auto optional = [&](const char* key, const Bounds& bounds, const char* unit,
+                            double& value) {
+    if (table.has(key)) {
+      value = table.number(key, bounds, unit);
+    }
+  };
+  optional("first_gain", kPositive, "N/m^3", p.first_gain);
+  optional("second_gain", kPositive, "N/m^3", p.second_gain);
+  optional("threshold", kPositive, "m^3", p.threshold);
+  optional("force_limit", {0.0, 100.0, true}, "N", p.force_limit);
+  optional("least_agreement", {0.0, 1.0, true}, "", p.least_agreement);
+  if (p.second_gain < p.first_gain) {
+    table.reject("second_gain", fmt::format("{}", p.second_gain), "first_gain or more");
+  }
+  return p;
+}
+
+void check(const FeelParameters& p) {
+  const auto need = [](bool good, const char* name, double value, const char* allowed) {
+    if (!good) {
+      throw std::invalid_argument(fmt::format("feel: {} is {}; allowed: {}", name, value, allowed));
+    }
+  };
+  need(p.first_gain > 0.0 && std::isfinite(p.first_gain), "first_gain", p.first_gain, "above 0");
+  need(p.second_gain >= p.first_gain && std::isfinite(p.second_gain), "second_gain", p.second_gain,
+       "first_gain or more");
+  need(p.threshold > 0.0 && std::isfinite(p.threshold), "threshold", p.threshold, "above 0");
+  need(p.force_limit > 0.0 && std::isfinite(p.force_limit), "force_limit", p.force_limit,
+       "above 0");
+  need(p.least_agreement > 0.0 && p.least_agreement <= 1.0, "least_agreement", p.least_agreement,
+       "above 0, at most 1");
+}
+
+double magnitude(double volume, const FeelParameters& p) noexcept {
+  const double below = std::min(volume, p.threshold);
+  const double above = std::max(volume - p.threshold, 0.0);
+  return std::min(p.first_gain * below + p.second_gain * above, p.force_limit);
+}
+
+Eigen::Vector3d push_force(const Contact& contact, const FeelParameters& p) noexcept {
+  if (contact.samples == 0) {
+    return Eigen::Vector3d::Zero();
+  }
+  const double agreed = std::max(contact.push.norm(), p.least_agreement * contact.volume);
+  return contact.push * (magnitude(contact.volume, p) / agreed);
+}
+
+Eigen::Vector3d drag_force(const Contact& contact, const BurrParameters& burr,
+                           double power) noexcept {
+  const double sign = burr.right_handed ? 1.0 : -1.0;
+  return contact.turn * (sign * burr.tangential_gain * power);
+}
+
+Eigen::Vector3d bone_force(const Contact& contact, const FeelParameters& p,
+                           const BurrParameters& burr, double power) noexcept {
+  return shortened(push_force(contact, p) + drag_force(contact, burr, power), p.force_limit);
+}
+
+}  // namespace haptrial::bone

@@ -1,0 +1,230 @@
+// What tools do to dust: they make it, push it and suck it in.
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/bone/dust/dust.h"
+#include "core/bone/dust/dust_state.h"
+
+namespace haptrial::bone {
+namespace {
+
+using Ref = DustGrid::Ref;
+
+/// How far outside a tool a point is [m]; negative inside.
+double outside(const DustTool& tool, const Eigen::Vector3d& p_W) {
+  const Eigen::Vector3d from_tip = p_W - tool.tip;
+  const double along = std::clamp(from_tip.dot(tool.axis), 0.0, tool.length);
+  return (from_tip - along * tool.axis).norm() - tool.radius;
+}
+
+/// The box around everything within `reach` of a tool, in cells.
+Eigen::AlignedBox3d around(const DustTool& tool) {
+  Eigen::AlignedBox3d box(tool.tip);
+  box.extend(tool.tip + tool.length * tool.axis);
+  return {box.min().array() - tool.radius, box.max().array() + tool.radius};
+}
+
+}  // namespace
+
+double DustState::outside_tools(const Eigen::Vector3d& p_W) const {
+  double least_distance = std::numeric_limits<double>::infinity();
+  for (const DustTool& tool : tools.tools) {
+    if (tool.radius > 0.0) {
+      least_distance = std::min(least_distance, outside(tool, p_W));
+    }
+  }
+  return least_distance;
+}
+
+/// Notes whether a cell lies in a tool.
+void DustState::flag_tools(Ref ref) {
+  if (!(outside_tools(centre(grid.cell(ref))) < 0.0)) {
+    return;
+  }
+  std::uint32_t& flags = grid.at(ref).flags;
+  if ((flags & kTool) == 0) {
+    ++grid.block_of(ref).pins;
+  }
+  if ((flags & kStays) == 0) {
+    tool_cells.push_back(ref);
+  }
+  flags |= kTool | kStays;
+}
+
+void Dust::place(const DustTools& tools) {
+  DustState& state = *state_;
+  state.tools = tools;
+  std::vector<Ref> before;
+  before.swap(state.tool_cells);
+  for (const Ref ref : before) {
+    state.grid.at(ref).flags &= ~DustState::kStays;
+  }
+  for (const DustTool& tool : tools.tools) {
+    if (tool.radius > 0.0) {
+      const Eigen::AlignedBox3d box = around(tool);
+      DustCell low = state.cell_at(box.min());
+      DustCell high = low;
+      for (int corner = 0; corner < 8; ++corner) {
+        const auto type = static_cast<Eigen::AlignedBox3d::CornerType>(corner);
+        const DustCell cell = state.cell_at(box.corner(type));
+        low = low.cwiseMin(cell);
+        high = high.cwiseMax(cell);
+      }
+      state.grid.for_each_in(low, high, [&](Ref ref) { state.flag_tools(ref); });
+    }
+  }
+  for (const Ref ref : before) {
+    if ((state.grid.at(ref).flags & DustState::kStays) == 0) {
+      state.grid.at(ref).flags &= ~DustState::kTool;
+      if (--state.grid.block_of(ref).pins == 0) {
+        state.maybe_idle.push_back(DustGrid::number(ref));
+      }
+      state.wake_above_and_beside(ref);
+    }
+  }
+  state.tidy();
+}
+
+/// Dust within a tool goes to where the tool is less deep, and up.
+void DustState::expel() {
+  constexpr std::array<std::array<int, 3>, 6> kFaces{
+      {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
+  const double upwards = 0.1 * parameters.cell;
+  for (const Ref ref : tool_cells) {
+    if (grid.at(ref).amount == 0) {
+      continue;
+    }
+    const Look here = look(grid.cell(ref), ref);
+    const double depth = outside_tools(centre(here.cell));
+    std::array<Flow, 6> out;
+    std::array<double, 6> weights{};
+    std::size_t count = 0;
+    double sum = 0.0;
+    for (const auto& face : kFaces) {
+      const Look to = look_beside(here, DustGrid::direction(face[0], face[1], face[2]));
+      const double out_by = outside_tools(centre(to.cell)) - depth;
+      const double gain = face[2] > 0 ? std::max(0.0, out_by) + upwards : out_by;
+      const std::int32_t room = (capacity - to.amount) / static_cast<int>(kFaces.size());
+      if (gain > 0.0 && room > least && passage(here, to)) {
+        out[count] = {ref, to, room};
+        weights[count++] = gain;
+        sum += gain;
+      }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const double part = here.amount * (weights[i] / sum);
+      out[i].amount = std::min(out[i].amount, static_cast<std::int32_t>(part));
+      if (out[i].amount > 0) {
+        flows.push_back(out[i]);
+      }
+    }
+  }
+  make_flows();
+}
+
+/// Takes dust near the mouth of each sucking tool, from every cell the same part of what is there.
+void DustState::suck() {
+  const double reach = parameters.suction_reach;
+  const double voxel = parameters.voxel * parameters.voxel * parameters.voxel;
+  for (const DustTool& tool : tools.tools) {
+    if (!tool.sucks || !(tool.radius > 0.0) || cells == 0) {
+      continue;
+    }
+    std::vector<Ref> reached;
+    std::int64_t there = 0;
+    const int around_tip = static_cast<int>(std::ceil(reach / parameters.cell)) + 1;
+    const DustCell tip = cell_at(tool.tip);
+    const DustCell extent = DustCell::Constant(around_tip);
+    grid.for_each_in(tip - extent, tip + extent, [&](Ref ref) {
+      const Eigen::Vector3d at = centre(grid.cell(ref));
+      if (grid.at(ref).amount > 0 && (at - tool.tip).squaredNorm() <= reach * reach &&
+          !bones.cross(at, tool.tip)) {
+        reached.push_back(ref);
+        there += grid.at(ref).amount;
+      }
+    });
+    const double step = parameters.cell / parameters.fall_speed;
+    const double may = parameters.suction_rate * step / voxel / kDustUnit;
+    const double part = std::min(1.0, may / static_cast<double>(std::max<std::int64_t>(1, there)));
+    for (const Ref ref : reached) {
+      const auto amount = static_cast<std::int32_t>(std::ceil(part * grid.at(ref).amount));
+      suctioned += amount;
+      lying -= amount;
+      change(ref, -amount);
+      wake_above_and_beside(ref);
+    }
+  }
+}
+
+void Dust::deposit(const DustDeposit& deposit) {
+  DustState& state = *state_;
+  if (!(deposit.amount >= 0.0 && deposit.radius >= 0.0 && deposit.centre.allFinite() &&
+        deposit.amount < 1e9)) {
+    throw std::invalid_argument("Dust: a deposit must be finite and not negative");
+  }
+  const double apart = (deposit.centre - state.pending.centre).squaredNorm();
+  if (state.held > 0 && apart > 4.0 * state.parameters.cell * state.parameters.cell) {
+    state.place_held();
+  }
+  state.pending = deposit;
+  state.deposited_rest += deposit.amount / kDustUnit;
+  const double whole = std::floor(state.deposited_rest);
+  state.deposited_rest -= whole;
+  state.held += static_cast<std::int64_t>(whole);
+  state.deposited += static_cast<std::int64_t>(whole);
+}
+
+/// Puts what is held around the burr, as near as there is room. A rest that is too little for an
+/// even part to each cell waits: looking for room farther out is what costs time.
+void DustState::place_held() {
+  constexpr int kShells = 8;
+  for (int shell = 0; shell < kShells && held > 0; ++shell) {
+    // A hair less, so that cells that are as far as each other are in the same shell.
+    const double inner = std::max(0.0, pending.radius + (shell - 1e-6) * parameters.cell);
+    const auto [placed, cells_with_room] = place_in_shell(inner, inner + parameters.cell, held);
+    held -= placed;
+    lying += placed;
+    if (held < cells_with_room) {
+      return;
+    }
+  }
+}
+
+/// Puts even parts of `rest` at this distance from the burr's centre.
+DustState::Placed DustState::place_in_shell(double inner, double outer, std::int64_t rest) {
+  std::vector<std::pair<DustCell, std::int32_t>> free;
+  const DustCell middle = cell_at(pending.centre);
+  const int extent = static_cast<int>(std::ceil(outer / parameters.cell)) + 1;
+  for (int k = -extent; k <= extent; ++k) {
+    for (int j = -extent; j <= extent; ++j) {
+      for (int i = -extent; i <= extent; ++i) {
+        const DustCell cell = middle + DustCell(i, j, k);
+        const Eigen::Vector3d at = centre(cell);
+        const double distance = (at - pending.centre).squaredNorm();
+        if (distance < inner * inner || distance >= outer * outer || !in_region(cell)) {
+          continue;
+        }
+        const Look there = look(cell, grid.find(cell));
+        if (there.room > 0 && outside_tools(at) >= 0.0 && bones.open(pending.centre, at)) {
+          free.emplace_back(cell, there.room);
+        }
+      }
+    }
+  }
+  std::int64_t placed = 0;
+  const std::int64_t share = rest / std::max<std::int64_t>(1, std::ssize(free));
+  for (const auto& [cell, room] : free) {
+    const auto amount = static_cast<std::int32_t>(std::min<std::int64_t>(share, room));
+    if (amount > 0) {
+      if (const Ref ref = make(cell); ref != kNone) {
+        change(ref, amount);
+        wake(ref);
+        placed += amount;
+      }
+    }
+  }
+  return {placed, std::ssize(free)};
+}
+
+}  // namespace haptrial::bone

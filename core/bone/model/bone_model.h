@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/geometry/volume/voxel_grid.h"
+
+namespace haptrial::bone {
+
+/// What a label stands for.
+struct Structure {
+  std::string name;                               // "bone", "facial nerve", ...; "" for none
+  std::array<double, 3> colour{0.9, 0.87, 0.78};  // red, green, blue, 0 to 1
+  double hardness{1.0};  // removal is this many times slower than in bone > 0
+  bool vital{false};     // not to be touched: removing it is an injury
+};
+
+/// A bone as it is imported or made, before anything touches it: a dense volume in the bone frame
+/// B, whose origin and axes are the grid's. Source: Morris 2006, §3.2.1.
+struct BoneModel {
+  std::string name;    // what it is called
+  std::string source;  // where it comes from, in a sentence
+  geometry::VoxelGrid grid;
+  std::vector<std::uint8_t> labels;   // grid.count(); 0: nothing there, else of `structures`
+  std::vector<float> density;         // grid.count(), from 0 to 1; empty: 1 wherever a label is
+  std::vector<Structure> structures;  // by label; the first stands for nothing
+};
+
+/// @throws std::invalid_argument naming what does not fit together: sizes, labels without a
+/// structure, densities that are not from 0 to 1, density without a label or a label without.
+void check(const BoneModel& model);
+
+}  // namespace haptrial::bone

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/bone/model/bone_model.h"
+
+namespace haptrial::bone {
+
+/// (i, j, k) of a voxel in its grid.
+using Voxel = Eigen::Vector3i;
+
+/// Bone that can be removed: bricks of 8 x 8 x 8 voxels where there is any, found through a table
+/// of the whole grid, so that a look-up is a few integer operations.
+///
+/// A voxel has an address: 512 times its brick's number plus its place in the brick. Brick 0 is
+/// empty and stands for every place without one, also outside the grid: address 0 holds nothing
+/// and is never written.
+///
+/// One thread, the servo thread, writes (take, put) and never allocates. Any thread may read
+/// density() and version() meanwhile. Labels never change.
+/// Source: Morris 2006, §3.2.2 (a hash table of voxels); why bricks: docs/decisions/0009.
+class BoneVolume {
+ public:
+  static constexpr int kEdge = 8;
+  static constexpr int kBrickVoxels = kEdge * kEdge * kEdge;
+
+  /// All of a model. @throws std::invalid_argument as check() does.
+  explicit BoneVolume(const BoneModel& model);
+  /// Room in another one's grid for some of its voxels, with their labels and nothing in them yet:
+  /// a voxel keeps its (i, j, k) in whatever volume it lives.
+  BoneVolume(const BoneVolume& other, std::span<const Voxel> voxels);
+  BoneVolume(BoneVolume&&) noexcept = default;
+
+  const geometry::VoxelGrid& grid() const noexcept { return grid_; }
+  std::int32_t bricks() const noexcept { return static_cast<std::int32_t>(origins_.size()); }
+  /// The voxel with the lowest coordinates in a brick above 0.
+  const Voxel& brick_origin(std::int32_t brick) const noexcept {
+    return origins_[static_cast<std::size_t>(brick)];
+  }
+
+  /// Where a voxel is kept; 0 where there is no brick, or outside the grid. Any thread.
+  std::int32_t address(const Voxel& voxel) const noexcept;
+  /// The voxel at an address in a brick above 0. Any thread.
+  Voxel voxel_at(std::int32_t address) const noexcept;
+
+  /// From 0 to 1. Any thread.
+  float density(std::int32_t address) const noexcept {
+    return std::atomic_ref<float>(densities_[address]).load(std::memory_order_relaxed);
+  }
+  float density(const Voxel& voxel) const noexcept { return density(address(voxel)); }
+  std::uint8_t label(std::int32_t address) const noexcept {
+    return labels_[static_cast<std::size_t>(address)];
+  }
+  std::uint8_t label(const Voxel& voxel) const noexcept { return label(address(voxel)); }
+
+  /// Takes at most `amount` >= 0 of the density away. Servo thread.
+  /// @returns what was taken; the voxel is empty when that was all it had.
+  float take(std::int32_t address, float amount) noexcept {
+    const float before = densities_[address];
+    const float after = amount < before ? before - amount : 0.0F;
+    store(address, after);
+    return before - after;
+  }
+  /// Gives a voxel of a brick above 0 a density from 0 to 1. Servo thread.
+  void put(std::int32_t address, float density) noexcept { store(address, density); }
+
+  /// Grows with every change in a brick; what is read after it is at least as new. Any thread.
+  std::uint32_t version(std::int32_t brick) const noexcept {
+    return versions_[static_cast<std::size_t>(brick)].load(std::memory_order_acquire);
+  }
+
+  /// The sum of all densities, added in order of address. Any thread.
+  double amount() const noexcept;
+
+  /// For kernels on the servo thread: bricks by their place, x fastest, and densities by address.
+  struct View {
+    std::array<std::int32_t, 3> size;        // of the grid, in voxels
+    std::array<std::int32_t, 3> table_size;  // of the table, in bricks
+    const std::int32_t* table;               // brick numbers
+    const float* densities;
+  };
+  View view() const noexcept;
+
+ private:
+  void store(std::int32_t address, float density) noexcept {
+    std::atomic_ref<float>(densities_[address]).store(density, std::memory_order_relaxed);
+    auto& version = versions_[static_cast<std::size_t>(address / kBrickVoxels)];
+    version.store(version.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+  }
+  std::size_t table_index(const Voxel& voxel) const noexcept;
+  void make_room();
+
+  geometry::VoxelGrid grid_;
+  std::array<std::int32_t, 3> table_size_{};
+  std::vector<std::int32_t> table_;                         // number of a brick; 0: none
+  std::vector<Voxel> origins_;                              // by brick
+  std::unique_ptr<float[]> densities_;                      // by address
+  std::vector<std::uint8_t> labels_;                        // by address
+  std::unique_ptr<std::atomic<std::uint32_t>[]> versions_;  // by brick
+};
+
+}  // namespace haptrial::bone

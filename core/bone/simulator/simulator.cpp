@@ -1,0 +1,382 @@
+#include "core/bone/simulator/simulator.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace haptrial::bone {
+namespace {
+
+constexpr std::array<std::string_view, kFunctions> kNames{
+    "power",    "next_tool", "previous_tool", "camera_move", "camera_turn", "zoom_in",
+    "zoom_out", "carry",     "apply",         "detach",      "finish",      "still"};
+
+// Removal depends on the force: rounded to this, a sum of two contacts gives the same bits as the
+// one contact that it was before a part was separated.
+constexpr double kForceStep = 0x1p-13;  // [N]
+
+bool is_held(std::uint32_t functions, Function function) noexcept {
+  return (functions & bit(function)) != 0;
+}
+
+std::vector<ToolSpec> checked(std::vector<ToolSpec> tools) {
+  if (tools.empty()) {
+    throw std::invalid_argument("Simulator: there must be a tool");
+  }
+  return tools;
+}
+
+/// Finalizer of SplitMix64: every bit of the input moves every bit of the output.
+std::uint64_t mixed(std::uint64_t x) noexcept {
+  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
+  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
+  return x ^ (x >> 31);
+}
+
+}  // namespace
+
+std::string_view name_of(Function function) noexcept {
+  return kNames[static_cast<std::size_t>(function)];
+}
+
+Eigen::Isometry3d pose_of(const ToolState& tool) noexcept {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = tool.orientation.toRotationMatrix();
+  pose.translation() = tool.tip.position;
+  return pose;
+}
+
+Simulator::Simulator(const BoneModel& model, const SimulatorParameters& parameters)
+    : tools_(checked(parameters.tools)),
+      camera_parameters_(parameters.camera),
+      structures_(model.structures),
+      world_(model, parameters.pose_WB, parameters.world),
+      camera_(parameters.camera.start),
+      start_(world_.volume(0).amount()) {
+  std::size_t most = 1;
+  for (const ToolSpec& tool : tools_) {
+    const bool burr = tool.kind == ToolKind::kBurr;
+    const bool plate = tool.kind == ToolKind::kPlate;
+    if (burr) {
+      check(tool.feel);
+    }
+    drills_.push_back(burr ? std::make_unique<Drill>(tool.burr, structures_) : nullptr);
+    plates_.push_back(plate ? std::make_unique<PlateModel>(make_plate_model(tool)) : nullptr);
+    if (burr) {
+      most = std::max(most, static_cast<std::size_t>(drills_.back()->burr().samples()));
+    }
+  }
+  emptied_.reserve(most * Drill::kBonesAtOnce + CutPlaneTool::kMostEmptied);
+  deposits_.reserve(128);
+}
+
+void Simulator::begin(std::uint32_t functions_held) noexcept {
+  functions_ = functions_held;
+  hand_known_ = false;
+  waits_until_free_ = true;
+}
+
+const SimulatorOutput& Simulator::tick(const SimulatorInput& input,
+                                       std::span<const RecordedSplit> recorded) {
+  emptied_.clear();
+  deposits_.clear();
+  const int tool = output_.tool;
+  output_ = {};
+  output_.tool = tool;
+  take_separations(recorded);
+  const std::uint32_t pressed = input.functions & ~functions_;
+  functions_ = input.functions;
+  output_.finished = is_held(pressed, Function::kFinish);
+  stills_asked_ += is_held(pressed, Function::kStill) ? 1 : 0;
+  change_tool((is_held(pressed, Function::kNextTool) ? 1 : 0) -
+              (is_held(pressed, Function::kPreviousTool) ? 1 : 0));
+  output_.mode = mode_of(input);
+  steer(input);
+  carry(input);
+  if (output_.mode == HandMode::kTool) {
+    work(input, pressed);
+  } else {
+    waits_until_free_ = true;
+  }
+  if (cutter_.busy()) {
+    go_on_cutting();
+  }
+  place_for_dust(input);
+  hand_ = input.tool.tip.position;
+  hand_known_ = true;
+  removed_ += output_.removed;
+  cut_ += output_.cut;
+  emptied_count_ += emptied_.size();
+  return output_;
+}
+
+void Simulator::take_separations(std::span<const RecordedSplit> recorded) {
+  world_.step();
+  for (const RecordedSplit& split : recorded) {
+    if (split.to >= 0) {
+      world_.split_at(split.from, split.seeds);
+    } else if (!split.seeds.empty()) {
+      world_.crumble_at(split.from, split.seeds.front());
+    }
+  }
+  for (const WorldEvent& event : world_.events()) {
+    if (event.kind == WorldEvent::Kind::kCrumb) {
+      const geometry::VoxelGrid& grid = world_.volume(0).grid();
+      const Eigen::Vector3d p_B = grid.centre(event.seed.x(), event.seed.y(), event.seed.z());
+      deposits_.push_back({world_.pose(event.piece) * p_B, 0.0, event.amount});
+      removed_ += event.amount;
+    }
+  }
+}
+
+void Simulator::change_tool(int by) noexcept {
+  const auto count = static_cast<int>(tools_.size());
+  if (by != 0 && count > 1) {
+    output_.tool = (output_.tool + by + count) % count;
+    waits_until_free_ = true;
+  }
+}
+
+HandMode Simulator::mode_of(const SimulatorInput& input) const noexcept {
+  if (is_held(input.functions, Function::kCameraMove)) {
+    return HandMode::kCameraMove;
+  }
+  if (is_held(input.functions, Function::kCameraTurn)) {
+    return HandMode::kCameraTurn;
+  }
+  const bool grip = tools_[in_hand()].kind == ToolKind::kGrip && input.power > 0.0;
+  return grip || is_held(input.functions, Function::kCarry) ? HandMode::kCarry : HandMode::kTool;
+}
+
+void Simulator::steer(const SimulatorInput& input) noexcept {
+  const Camera before = camera_;
+  const int zoom = (is_held(input.functions, Function::kZoomIn) ? 1 : 0) -
+                   (is_held(input.functions, Function::kZoomOut) ? 1 : 0);
+  if (zoom != 0) {
+    const double factor = std::exp(zoom * camera_parameters_.zoom_rate * input.dt);
+    camera_ = zoomed(camera_, factor, camera_parameters_);
+  }
+  if (hand_known_ && output_.mode == HandMode::kCameraMove) {
+    const Eigen::Vector3d motion = input.tool.tip.position - hand_;
+    camera_ = moved(camera_, camera_parameters_.move_gain * motion);
+  }
+  if (hand_known_ && output_.mode == HandMode::kCameraTurn) {
+    const Eigen::Vector3d angles = camera_parameters_.turn_gain * (input.tool.tip.position - hand_);
+    camera_ = turned(camera_, angles.x(), angles.y());
+  }
+  output_.camera_changed = !(camera_ == before);
+}
+
+void Simulator::carry(const SimulatorInput& input) noexcept {
+  if (output_.mode != HandMode::kCarry) {
+    if (world_.held() >= 0) {
+      world_.release();
+    }
+    return;
+  }
+  const Eigen::Isometry3d pose = pose_of(input.tool);
+  if (world_.held() < 0) {
+    const ToolSpec& tool = tools_[in_hand()];
+    const double reach = tool.kind == ToolKind::kBurr ? tool.burr.diameter : tool.reach;
+    if (const auto touched = world_.touch(input.tool.tip.position, reach)) {
+      world_.grab(*touched, pose);
+    }
+  } else {
+    world_.drag(pose);
+  }
+}
+
+void Simulator::work(const SimulatorInput& input, std::uint32_t pressed) noexcept {
+  const bool apply = is_held(pressed, Function::kApply);
+  switch (tools_[in_hand()].kind) {
+    case ToolKind::kBurr:
+      drill(input);
+      break;
+    case ToolKind::kSuction:
+      output_.power = input.power;
+      break;
+    case ToolKind::kCutPlane:
+      if (apply) {
+        begin_cut(input);
+      }
+      break;
+    case ToolKind::kPlate:
+      hold_plate(input, apply);
+      break;
+    case ToolKind::kGrip:
+      break;
+  }
+  if (is_held(pressed, Function::kDetach)) {
+    for (int plate = world_.plates() - 1; plate >= 0; --plate) {
+      if (world_.plate_is_on(plate)) {
+        world_.detach_plate(plate);
+        break;
+      }
+    }
+  }
+}
+
+bool Simulator::Reach::is_near(const Eigen::Vector3d& p_B, double radius) const noexcept {
+  return ((p_B - low).array() > -radius).all() && ((high - p_B).array() > -radius).all();
+}
+
+/// Bricks of a piece are there from its beginning.
+const Simulator::Reach& Simulator::reach_of(int piece) noexcept {
+  for (; reaches_known_ <= piece; ++reaches_known_) {
+    const BoneVolume& volume = std::as_const(world_).volume(reaches_known_);
+    Reach& reach = reaches_[static_cast<std::size_t>(reaches_known_)];
+    reach.low.setConstant(std::numeric_limits<double>::infinity());
+    reach.high = -reach.low;
+    const double half = 0.5 * volume.grid().spacing;
+    for (std::int32_t brick = 1; brick < volume.bricks(); ++brick) {
+      const Voxel& first = volume.brick_origin(brick);
+      const Eigen::Vector3d centre = volume.grid().centre(first.x(), first.y(), first.z());
+      const double width = volume.grid().spacing * BoneVolume::kEdge;
+      reach.low = reach.low.cwiseMin(centre - Eigen::Vector3d::Constant(half));
+      reach.high = reach.high.cwiseMax(centre + Eigen::Vector3d::Constant(width - half));
+    }
+  }
+  return reaches_[static_cast<std::size_t>(piece)];
+}
+
+void Simulator::drill(const SimulatorInput& input) noexcept {
+  const ToolSpec& tool = tools_[in_hand()];
+  Drill& drill = *drills_[in_hand()];
+  drill.begin_tick();
+  Contact all;
+  const int pieces = world_.pieces();
+  for (int piece = 0; piece < pieces; ++piece) {
+    const Eigen::Isometry3d& pose = world_.pose(piece);
+    const Eigen::Vector3d tip_B = pose.inverse(Eigen::Isometry) * input.tool.tip.position;
+    Contact& contact = contacts_[static_cast<std::size_t>(piece)];
+    contact = {};
+    if (!reach_of(piece).is_near(tip_B, drill.burr().radius())) {
+      continue;
+    }
+    const Eigen::Quaterniond turn(pose.linear());
+    contact = drill.touch(world_.volume(piece), tip_B, turn.conjugate() * input.tool.orientation);
+    if (contact) {
+      all = all ? together(all, in_world(contact, pose)) : in_world(contact, pose);
+    }
+  }
+  output_.power = input.power;
+  output_.contact = static_cast<bool>(all);
+  output_.immersed = all.samples;
+  if (!all) {
+    waits_until_free_ = false;
+    return;
+  }
+  if (waits_until_free_) {
+    return;
+  }
+  output_.force = bone_force(all, tool.feel, tool.burr, input.power);
+  output_.drag = drag_force(all, tool.burr, input.power);
+  const double force = kForceStep * std::round(output_.force.norm() / kForceStep);
+  for (int piece = 0; piece < pieces; ++piece) {
+    const Contact& contact = contacts_[static_cast<std::size_t>(piece)];
+    if (!contact) {
+      continue;
+    }
+    BoneVolume& volume = world_.volume(piece);
+    const Removal removal = drill.remove(volume, contact, force, input.power, input.dt);
+    output_.removed += removal.amount;
+    for (const EmptiedVoxel& voxel : removal.emptied) {  // no more than there is room for
+      emptied_.push_back(
+          {world_.known_as(piece), volume.voxel_at(voxel.address), voxel.label, false});
+    }
+  }
+  if (output_.removed > 0.0) {
+    deposits_.push_back({input.tool.tip.position, drill.burr().radius(), output_.removed});
+  }
+}
+
+/// The tick goes on with it.
+void Simulator::begin_cut(const SimulatorInput& input) noexcept {
+  CutPlane plane = tools_[in_hand()].plane;
+  plane.pose_WC = pose_of(input.tool);
+  cutter_.begin(world_, plane);
+  cut_of_present_ = 0.0;
+}
+
+/// Whatever is in hand by now.
+void Simulator::go_on_cutting() noexcept {
+  cutter_.step(world_);
+  output_.cut = cutter_.removed().amount - cut_of_present_;
+  cut_of_present_ = cutter_.removed().amount;
+  emptied_.insert(emptied_.end(), cutter_.emptied().begin(), cutter_.emptied().end());
+}
+
+void Simulator::hold_plate(const SimulatorInput& input, bool fixes) noexcept {
+  const PlateModel& plate = *plates_[in_hand()];
+  const Eigen::Isometry3d pose = pose_of(input.tool);
+  const PlateContact contact = press(plate, pose, world_);
+  output_.contact = contact.touching > 0;
+  output_.immersed = contact.touching;
+  if (!output_.contact) {
+    waits_until_free_ = false;
+  }
+  if (!waits_until_free_) {
+    output_.force = contact.force;
+  }
+  if (fixes) {
+    attach(plate, output_.tool, pose, world_);
+  }
+}
+
+void Simulator::place_for_dust(const SimulatorInput& input) noexcept {
+  const ToolSpec& tool = tools_[in_hand()];
+  dust_tools_ = {};
+  if (output_.mode != HandMode::kTool) {
+    return;
+  }
+  const Eigen::Vector3d axis = input.tool.axis();
+  const auto& tip = input.tool.tip.position;
+  if (tool.kind == ToolKind::kBurr) {
+    const double radius = 0.5 * tool.burr.diameter;
+    dust_tools_.tools[0] = {tip, axis, 0.0, radius, false};
+    const double thin = std::min(radius, tool.handle_radius);
+    dust_tools_.tools[1] = {tip + radius * axis, axis, tool.handle_length, thin, false};
+  } else if (tool.kind == ToolKind::kSuction) {
+    dust_tools_.tools[0] = {tip, axis, tool.handle_length, tool.suction_radius,
+                            output_.power > 0.0};
+  }
+}
+
+int Simulator::pieces() const noexcept {
+  int born = 1;
+  for (int piece = 1; piece < world_.pieces(); ++piece) {
+    born += world_.is_born(piece) ? 1 : 0;
+  }
+  return born;
+}
+
+double Simulator::amount_left() const noexcept {
+  double amount = 0.0;
+  for (int piece = 0; piece < world_.pieces(); ++piece) {
+    amount += world_.volume(piece).amount();
+  }
+  return amount;
+}
+
+std::uint64_t Simulator::checksum() const noexcept {
+  std::uint64_t sum = 0;
+  for (int piece = 0; piece < world_.pieces(); ++piece) {
+    const BoneVolume& volume = world_.volume(piece);
+    const auto known = static_cast<std::uint64_t>(world_.known_as(piece));
+    for (std::int32_t address = BoneVolume::kBrickVoxels;
+         address < volume.bricks() * BoneVolume::kBrickVoxels; ++address) {
+      const float density = volume.density(address);
+      if (density > 0.0F) {
+        const Voxel voxel = volume.voxel_at(address);
+        const std::uint64_t index = volume.grid().index(voxel.x(), voxel.y(), voxel.z());
+        sum += mixed(mixed(index * kMaxPieces + known) ^ std::bit_cast<std::uint32_t>(density));
+      }
+    }
+  }
+  return sum;
+}
+
+}  // namespace haptrial::bone

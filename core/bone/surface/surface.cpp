@@ -1,0 +1,428 @@
+#include "core/bone/surface/surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptrial::bone {
+namespace {
+
+constexpr int kEdge = BoneVolume::kEdge;
+constexpr int kNone = -1;
+constexpr int kVoxelReach = CellField::kReach + 1;  // how far, in cells, a quad follows a voxel
+
+constexpr std::uint8_t kTessellate = 1;
+constexpr std::uint8_t kDensity = 2;
+constexpr std::uint8_t kNear = 4;
+
+/// The brick that a cell lies in; cells -8 .. -1 are in brick -1.
+Voxel brick_of(const Voxel& cell) { return {cell.x() >> 3, cell.y() >> 3, cell.z() >> 3}; }
+
+std::size_t place_in_brick(const Voxel& cell) {
+  return static_cast<std::size_t>((cell.x() & 7) +
+                                  kEdge * ((cell.y() & 7) + kEdge * (cell.z() & 7)));
+}
+
+Voxel corner(int b) { return {b & 1, b >> 1 & 1, b >> 2}; }
+
+/// The filled corner that is nearest to a vertex.
+std::uint8_t nearest_corner(unsigned corners, const Eigen::Vector3f& offset) {
+  int nearest = 0;
+  float least = 100.0F;
+  for (int b = 0; b < 8; ++b) {
+    const float squared =
+        (corner(b).cast<float>() - Eigen::Vector3f::Constant(0.5F) - offset).squaredNorm();
+    if ((corners >> b & 1U) != 0 && squared < least) {
+      least = squared;
+      nearest = b;
+    }
+  }
+  return static_cast<std::uint8_t>(nearest);
+}
+
+}  // namespace
+
+Surface::Surface(std::shared_ptr<const StructureDepths> depths) : near_(std::move(depths)) {}
+
+bool Surface::update(const BoneVolume& volume) {
+  const bool first = bricks_.empty();
+  if (first) {
+    begin(volume);
+  }
+  changed_voxels_.clear();
+  changed_bricks_.clear();
+  forget_changes();
+  occupancy_.follow(volume, changed_voxels_, &changed_bricks_);
+  for (const Voxel& voxel : changed_voxels_) {
+    mark(voxel);
+  }
+  for (const std::size_t place : marked_) {
+    place_vertices(volume, place);
+  }
+  for (const std::size_t place : marked_) {
+    place_quads(place);
+  }
+  for (const std::int32_t brick : changed_bricks_) {
+    mark_density(volume.brick_origin(brick));
+  }
+  for (const std::size_t place : density_marked_) {
+    refresh_densities(volume, place);
+  }
+  for (const Voxel& voxel : changed_voxels_) {
+    mark_near(volume, voxel);
+  }
+  for (const std::size_t place : near_marked_) {
+    refresh_near(volume, place);
+  }
+  for (const std::size_t place : marked_) {
+    marks_[place] = 0;
+    if (bricks_[place] != nullptr && bricks_[place]->living == 0) {
+      bricks_[place].reset();
+    }
+  }
+  for (const auto* list : {&density_marked_, &near_marked_}) {
+    for (const std::size_t place : *list) {
+      marks_[place] = 0;
+    }
+  }
+  constexpr std::size_t kFew = 4096;  // slots that are not worth packing
+  if (first || free_vertices_.size() > std::max(vertices_.size() / 2, kFew)) {
+    order_for_the_vertex_cache();
+  }
+  return rebuilt_ || !changed_vertices_.empty() || !changed_quads_.empty();
+}
+
+void Surface::begin(const BoneVolume& volume) {
+  grid_ = volume.grid();
+  std::size_t places = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    table_size_[axis] = (grid_.size[axis] + kEdge - 1) / kEdge + 1;  // and brick -1
+    places *= static_cast<std::size_t>(table_size_[axis]);
+  }
+  bricks_.resize(places);
+  marks_.assign(places, 0);
+  near_.begin(volume);
+}
+
+void Surface::forget_changes() {
+  for (const std::int32_t vertex : changed_vertices_) {
+    vertex_touched_[static_cast<std::size_t>(vertex)] = 0;
+  }
+  for (const std::int32_t quad : changed_quads_) {
+    quad_touched_[static_cast<std::size_t>(quad)] = 0;
+  }
+  changed_vertices_.clear();
+  changed_quads_.clear();
+  marked_.clear();
+  density_marked_.clear();
+  near_marked_.clear();
+  rebuilt_ = false;
+}
+
+std::size_t Surface::place_of(const Voxel& brick) const noexcept {
+  const Voxel at = brick + Voxel::Ones();
+  return static_cast<std::size_t>(at.x()) +
+         static_cast<std::size_t>(table_size_[0]) *
+             (static_cast<std::size_t>(at.y()) +
+              static_cast<std::size_t>(table_size_[1]) * static_cast<std::size_t>(at.z()));
+}
+
+Voxel Surface::brick_at(std::size_t place) const noexcept {
+  const auto x = static_cast<std::size_t>(table_size_[0]);
+  const auto y = static_cast<std::size_t>(table_size_[1]);
+  return Voxel(static_cast<int>(place % x), static_cast<int>(place / x % y),
+               static_cast<int>(place / (x * y))) -
+         Voxel::Ones();
+}
+
+void Surface::mark_box(const Voxel& low, const Voxel& high, std::uint8_t flag,
+                       std::vector<std::size_t>& list) {
+  const Voxel last(table_size_[0] - 2, table_size_[1] - 2, table_size_[2] - 2);
+  const Voxel from = brick_of(low).cwiseMax(-1);
+  const Voxel to = brick_of(high).cwiseMin(last);
+  for (int k = from.z(); k <= to.z(); ++k) {
+    for (int j = from.y(); j <= to.y(); ++j) {
+      for (int i = from.x(); i <= to.x(); ++i) {
+        const std::size_t place = place_of({i, j, k});
+        if ((marks_[place] & (kTessellate | flag)) == 0) {  // a new vertex has it all already
+          marks_[place] |= flag;
+          list.push_back(place);
+        }
+      }
+    }
+  }
+}
+
+void Surface::mark(const Voxel& voxel) {
+  const Voxel reach = Voxel::Constant(kVoxelReach);
+  mark_box(voxel - reach, voxel + reach, kTessellate, marked_);
+}
+
+void Surface::mark_density(const Voxel& brick_origin) {
+  mark_box(brick_origin - Voxel::Ones(), brick_origin, kDensity, density_marked_);
+}
+
+void Surface::mark_near(const BoneVolume& volume, const Voxel& voxel) {
+  if (near_.shows(volume, voxel)) {
+    const Voxel reach = Voxel::Constant(near_.reach());
+    mark_box(voxel - reach - Voxel::Ones(), voxel + reach, kNear, near_marked_);
+  }
+}
+
+void Surface::place_vertices(const BoneVolume& volume, std::size_t place) {
+  const Voxel origin = kEdge * brick_at(place);
+  std::unique_ptr<CellBrick>& brick = bricks_[place];
+  const bool any = field_.read(volume, occupancy_, origin);
+  if (!any && brick == nullptr) {
+    return;
+  }
+  if (brick == nullptr) {
+    brick = std::make_unique<CellBrick>();
+    brick->vertices.fill(kNone);
+  }
+  if (any) {
+    field_.smooth();
+  }
+  std::size_t at = 0;
+  for (int k = 0; k < kEdge; ++k) {
+    for (int j = 0; j < kEdge; ++j) {
+      for (int i = 0; i < kEdge; ++i, ++at) {
+        const unsigned corners = any ? field_.corners(i, j, k) : 0;
+        if (corners == 0 || corners == 255) {
+          remove_vertex(*brick, at);
+        } else {
+          const Voxel cell = origin + Voxel(i, j, k);
+          Eigen::Vector3f normal;
+          const Eigen::Vector3f offset = field_.place(i, j, k, corners, normal);
+          const std::uint8_t nearest = nearest_corner(corners, offset);
+          const VertexLinks links{
+              cell, {kNone, kNone, kNone}, static_cast<std::uint8_t>(corners), nearest};
+          set_vertex(*brick, at, links,
+                     make_vertex(volume, cell, corners, offset, normal, nearest));
+        }
+      }
+    }
+  }
+}
+
+SurfaceVertex Surface::make_vertex(const BoneVolume& volume, const Voxel& cell, unsigned corners,
+                                   const Eigen::Vector3f& offset, const Eigen::Vector3f& normal,
+                                   std::uint8_t nearest) const {
+  SurfaceVertex vertex;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto at = static_cast<std::size_t>(axis);
+    const double middle = grid_.coordinate(axis, cell[axis]) + 0.5 * grid_.spacing;
+    vertex.place[at] = static_cast<float>(middle + grid_.spacing * offset[axis]);
+    vertex.normal[at] = static_cast<std::int16_t>(std::lround(32767.0F * normal[axis]));
+  }
+  const Voxel voxel = cell + corner(nearest);
+  vertex.label = volume.label(voxel);
+  vertex.density = mean_density(volume, cell, corners);
+  set_near(volume, voxel, vertex);
+  return vertex;
+}
+
+void Surface::set_near(const BoneVolume& volume, const Voxel& voxel, SurfaceVertex& vertex) const {
+  const NearStructure near = near_.at(volume, occupancy_, voxel);
+  vertex.near_label = near.label;
+  vertex.near_depth = static_cast<std::uint8_t>(
+      std::lround(std::min(near.distance / SurfaceVertex::kDepthUnit, 255.0)));
+}
+
+std::uint8_t Surface::mean_density(const BoneVolume& volume, const Voxel& cell, unsigned corners) {
+  float sum = 0.0F;
+  int count = 0;
+  for (int b = 0; b < 8; ++b) {
+    if ((corners >> b & 1U) != 0) {
+      sum += volume.density(Voxel(cell + corner(b)));
+      ++count;
+    }
+  }
+  return static_cast<std::uint8_t>(std::lround(255.0F * sum / static_cast<float>(count)));
+}
+
+void Surface::set_vertex(CellBrick& brick, std::size_t at, const VertexLinks& links,
+                         const SurfaceVertex& vertex) {
+  std::int32_t& slot = brick.vertices[at];
+  const bool fresh = slot == kNone;
+  if (fresh) {
+    ++brick.living;
+    if (free_vertices_.empty()) {
+      slot = static_cast<std::int32_t>(vertices_.size());
+      vertices_.emplace_back();
+      links_.emplace_back();
+      vertex_touched_.push_back(0);
+    } else {
+      slot = free_vertices_.back();
+      free_vertices_.pop_back();
+    }
+    links_[static_cast<std::size_t>(slot)] = links;
+  }
+  const auto index = static_cast<std::size_t>(slot);
+  links_[index].corners = links.corners;
+  links_[index].nearest = links.nearest;
+  if (fresh || vertices_[index] != vertex) {
+    vertices_[index] = vertex;
+    touch_vertex(slot);
+  }
+}
+
+void Surface::remove_vertex(CellBrick& brick, std::size_t at) {
+  const std::int32_t slot = brick.vertices[at];
+  if (slot == kNone) {
+    return;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    remove_quad(slot, axis);
+  }
+  brick.vertices[at] = kNone;
+  --brick.living;
+  free_vertices_.push_back(slot);
+}
+
+template <class Visit>
+void Surface::for_each_vertex(std::size_t place, const Visit& visit) {
+  if (bricks_[place] == nullptr) {
+    return;
+  }
+  for (const std::int32_t slot : bricks_[place]->vertices) {
+    if (slot != kNone) {
+      visit(slot);
+    }
+  }
+}
+
+void Surface::place_quads(std::size_t place) {
+  for_each_vertex(place, [&](std::int32_t slot) {
+    const VertexLinks& links = links_[static_cast<std::size_t>(slot)];
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool here = (links.corners & 1U) != 0;
+      const bool next = (links.corners >> (1 << axis) & 1U) != 0;
+      if (here == next) {
+        remove_quad(slot, axis);
+      } else {
+        set_quad(slot, axis, here);
+      }
+    }
+  });
+}
+
+void Surface::set_quad(std::int32_t vertex, int axis, bool outwards) {
+  const Voxel cell = links_[static_cast<std::size_t>(vertex)].cell;
+  const Voxel b = Voxel::Unit((axis + 1) % 3);
+  const Voxel c = Voxel::Unit((axis + 2) % 3);
+  // Anticlockwise seen from the far end of the axis.
+  std::array<std::uint32_t, 4> ring{static_cast<std::uint32_t>(vertex),
+                                    static_cast<std::uint32_t>(vertex_of(cell - b)),
+                                    static_cast<std::uint32_t>(vertex_of(cell - b - c)),
+                                    static_cast<std::uint32_t>(vertex_of(cell - c))};
+  if (!outwards) {
+    std::swap(ring[1], ring[3]);
+  }
+  const auto place = [&](std::size_t i) {
+    return Eigen::Map<const Eigen::Vector3f>(vertices_[ring[i]].place.data());
+  };
+  const bool other_way = (place(1) - place(3)).squaredNorm() < (place(0) - place(2)).squaredNorm();
+  const std::size_t first = other_way ? 1 : 0;
+  const SurfaceTriangle one{ring[first], ring[first + 1], ring[first + 2]};
+  const SurfaceTriangle two{ring[first], ring[first + 2], ring[(first + 3) % 4]};
+  std::int32_t& slot =
+      links_[static_cast<std::size_t>(vertex)].quads[static_cast<std::size_t>(axis)];
+  bool changed = slot == kNone;
+  if (changed) {
+    if (free_quads_.empty()) {
+      slot = static_cast<std::int32_t>(quad_touched_.size());
+      triangles_.resize(triangles_.size() + 2);
+      quad_touched_.push_back(0);
+    } else {
+      slot = free_quads_.back();
+      free_quads_.pop_back();
+    }
+  }
+  const auto at = 2 * static_cast<std::size_t>(slot);
+  changed = changed || triangles_[at] != one || triangles_[at + 1] != two ||
+            std::any_of(ring.begin(), ring.end(),
+                        [&](std::uint32_t v) { return vertex_touched_[v] != 0; });
+  if (changed) {
+    triangles_[at] = one;
+    triangles_[at + 1] = two;
+    touch_quad(slot);
+  }
+}
+
+void Surface::remove_quad(std::int32_t vertex, int axis) {
+  std::int32_t& slot =
+      links_[static_cast<std::size_t>(vertex)].quads[static_cast<std::size_t>(axis)];
+  if (slot == kNone) {
+    return;
+  }
+  triangles_[2 * static_cast<std::size_t>(slot)] = {0, 0, 0};
+  triangles_[2 * static_cast<std::size_t>(slot) + 1] = {0, 0, 0};
+  touch_quad(slot);
+  free_quads_.push_back(slot);
+  slot = kNone;
+}
+
+void Surface::refresh_densities(const BoneVolume& volume, std::size_t place) {
+  for_each_vertex(place, [&](std::int32_t slot) {
+    const auto index = static_cast<std::size_t>(slot);
+    const std::uint8_t density = mean_density(volume, links_[index].cell, links_[index].corners);
+    if (density != vertices_[index].density) {
+      vertices_[index].density = density;
+      touch_vertex(slot);
+    }
+  });
+}
+
+void Surface::refresh_near(const BoneVolume& volume, std::size_t place) {
+  for_each_vertex(place, [&](std::int32_t slot) {
+    const auto index = static_cast<std::size_t>(slot);
+    SurfaceVertex vertex = vertices_[index];
+    set_near(volume, links_[index].cell + corner(links_[index].nearest), vertex);
+    if (vertex != vertices_[index]) {
+      vertices_[index] = vertex;
+      touch_vertex(slot);
+    }
+  });
+}
+
+void Surface::touch_vertex(std::int32_t vertex) {
+  std::uint8_t& touched = vertex_touched_[static_cast<std::size_t>(vertex)];
+  if (touched == 0) {
+    touched = 1;
+    changed_vertices_.push_back(vertex);
+  }
+}
+
+void Surface::touch_quad(std::int32_t quad) {
+  std::uint8_t& touched = quad_touched_[static_cast<std::size_t>(quad)];
+  if (touched == 0) {
+    touched = 1;
+    changed_quads_.push_back(quad);
+  }
+}
+
+std::int32_t Surface::vertex_of(const Voxel& cell) const noexcept {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (cell[axis] < -1 || cell[axis] >= grid_.size[static_cast<std::size_t>(axis)]) {
+      return kNone;
+    }
+  }
+  if (bricks_.empty()) {
+    return kNone;
+  }
+  const std::unique_ptr<CellBrick>& brick = bricks_[place_of(brick_of(cell))];
+  return brick == nullptr ? kNone : brick->vertices[place_in_brick(cell)];
+}
+
+const Voxel& Surface::cell_of(std::int32_t vertex) const noexcept {
+  return links_[static_cast<std::size_t>(vertex)].cell;
+}
+
+std::int32_t Surface::quad_of(const Voxel& voxel, int axis) const noexcept {
+  const std::int32_t vertex = vertex_of(voxel);
+  return vertex == kNone
+             ? kNone
+             : links_[static_cast<std::size_t>(vertex)].quads[static_cast<std::size_t>(axis)];
+}
+
+}  // namespace haptrial::bone

@@ -1,0 +1,141 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/bone/model/bone_volume.h"
+#include "core/bone/model/occupancy.h"
+#include "core/bone/surface/near_structures.h"
+#include "core/bone/surface/surface_cells.h"
+#include "core/bone/surface/surface_depths.h"
+
+namespace haptrial::bone {
+
+/// The surface of a bone as triangles that follow what is removed and put back.
+///
+/// A cell is the cube between the centres of eight voxels; cell (i, j, k) lies between voxel
+/// (i, j, k) and (i + 1, j + 1, k + 1), so that cells run from -1 to the grid's size less one. Each
+/// cell with both filled and empty corners has one vertex; each pair of neighbouring voxels of
+/// which one is filled has one quad, of the vertices of the four cells around the pair, as two
+/// triangles that run anticlockwise seen from outside. Every edge is therefore closed: it is
+/// shared by as many triangles one way as the other. All of a vertex and a quad follows from the
+/// voxels at most 4 from the cells, but for the structure that shows through, which follows from
+/// those in its reach: a local update gives what a full one gives, to the bit.
+///
+/// Vertices and quads keep their slots while they live; slots of dead ones are used again.
+/// One thread, any; it may run while the servo thread changes the volume.
+/// Source: Morris 2006, §3.2.2 and §3.2.4 (one vertex to a surface voxel, triangles found from the
+/// voxel and back); the dual method in its place:
+/// docs/decisions/0010-one-vertex-per-surface-cell.md.
+class Surface {
+ public:
+  /// @param depths  for what shows through; may be null.
+  explicit Surface(std::shared_ptr<const StructureDepths> depths = nullptr);
+
+  /// Follows the volume, always the same one: retessellates around voxels that were filled or
+  /// emptied and refreshes densities where any changed. The first call builds the whole and orders
+  /// it for the vertex cache; so does one that leaves most slots dead, which gives them back.
+  /// @returns whether anything changed.
+  bool update(const BoneVolume& volume);
+
+  /// By slot. A dead vertex keeps its last values.
+  std::span<const SurfaceVertex> vertices() const noexcept { return vertices_; }
+  /// Triangles 2q and 2q + 1 are quad q; those of a dead quad have three equal corners.
+  std::span<const SurfaceTriangle> triangles() const noexcept { return triangles_; }
+  std::size_t vertex_count() const noexcept { return vertices_.size() - free_vertices_.size(); }
+  std::size_t triangle_count() const noexcept { return triangles_.size() - 2 * free_quads_.size(); }
+
+  /// The slot of a cell's vertex; -1 where it has none.
+  std::int32_t vertex_of(const Voxel& cell) const noexcept;
+  /// The cell of a living vertex.
+  const Voxel& cell_of(std::int32_t vertex) const noexcept;
+  /// The quad between a voxel and the next along an axis (0, 1, 2); -1 where there is none. A
+  /// triangle t belongs to quad t / 2.
+  std::int32_t quad_of(const Voxel& voxel, int axis) const noexcept;
+
+  /// Slots that the last update() changed, each once, in no order; all where it
+  /// gave out the slots anew. A quad also counts where a vertex of it moved or turned.
+  std::span<const std::int32_t> changed_vertices() const noexcept { return changed_vertices_; }
+  std::span<const std::int32_t> changed_quads() const noexcept { return changed_quads_; }
+  /// Whether the last update() gave out all slots anew.
+  bool rebuilt() const noexcept { return rebuilt_; }
+
+ private:
+  struct VertexLinks {
+    Voxel cell;
+    std::array<std::int32_t, 3> quads;  // of the pairs from the cell's first voxel along each axis
+    std::uint8_t corners;               // bit b: CellField::corners
+    std::uint8_t nearest;               // corner: the filled one that is nearest to the vertex
+  };
+  struct CellBrick {
+    std::array<std::int32_t, BoneVolume::kBrickVoxels> vertices;  // -1: none
+    std::int32_t living{0};
+  };
+  struct QuadOwner {
+    std::int32_t vertex;
+    int axis;
+  };
+
+  void begin(const BoneVolume& volume);
+  void forget_changes();
+  std::size_t place_of(const Voxel& brick) const noexcept;
+  Voxel brick_at(std::size_t place) const noexcept;
+  void mark_box(const Voxel& low, const Voxel& high, std::uint8_t flag,
+                std::vector<std::size_t>& list);
+  void mark(const Voxel& voxel);
+  void mark_density(const Voxel& brick_origin);
+  void mark_near(const BoneVolume& volume, const Voxel& voxel);
+
+  void place_vertices(const BoneVolume& volume, std::size_t place);
+  SurfaceVertex make_vertex(const BoneVolume& volume, const Voxel& cell, unsigned corners,
+                            const Eigen::Vector3f& offset, const Eigen::Vector3f& normal,
+                            std::uint8_t nearest) const;
+  void set_near(const BoneVolume& volume, const Voxel& voxel, SurfaceVertex& vertex) const;
+  static std::uint8_t mean_density(const BoneVolume& volume, const Voxel& cell, unsigned corners);
+  void set_vertex(CellBrick& brick, std::size_t at, const VertexLinks& links,
+                  const SurfaceVertex& vertex);
+  void remove_vertex(CellBrick& brick, std::size_t at);
+  template <class Visit>
+  void for_each_vertex(std::size_t place, const Visit& visit);
+  void place_quads(std::size_t place);
+  void set_quad(std::int32_t vertex, int axis, bool outwards);
+  void remove_quad(std::int32_t vertex, int axis);
+  void refresh_densities(const BoneVolume& volume, std::size_t place);
+  void refresh_near(const BoneVolume& volume, std::size_t place);
+  void touch_vertex(std::int32_t vertex);
+  void touch_quad(std::int32_t quad);
+
+  QuadOwner owner_of(const SurfaceTriangle& triangle) const noexcept;
+  void order_for_the_vertex_cache();
+  void take_all_as_changed();
+
+  NearStructures near_;
+  Occupancy occupancy_;
+  geometry::VoxelGrid grid_;
+  std::array<std::int32_t, 3> table_size_{0, 0, 0};  // in bricks of cells
+  std::vector<std::unique_ptr<CellBrick>> bricks_;   // by place; null: no vertex there
+  std::vector<SurfaceVertex> vertices_;
+  std::vector<VertexLinks> links_;  // by vertex
+  std::vector<SurfaceTriangle> triangles_;
+  std::vector<std::int32_t> free_vertices_;
+  std::vector<std::int32_t> free_quads_;
+
+  // What the update at hand uses; kept for the room.
+  CellField field_;
+  std::vector<Voxel> changed_voxels_;
+  std::vector<std::int32_t> changed_bricks_;
+  std::vector<std::uint8_t> marks_;          // by place
+  std::vector<std::size_t> marked_;          // places to be tessellated again
+  std::vector<std::size_t> density_marked_;  // places whose densities are to be read again
+  std::vector<std::size_t> near_marked_;     // places where something else may show through
+  std::vector<std::uint8_t> vertex_touched_;
+  std::vector<std::uint8_t> quad_touched_;
+  std::vector<std::int32_t> changed_vertices_;
+  std::vector<std::int32_t> changed_quads_;
+  bool rebuilt_{false};
+};
+
+}  // namespace haptrial::bone

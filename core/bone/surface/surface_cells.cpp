@@ -1,0 +1,174 @@
+#include "core/bone/surface/surface_cells.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptrial::bone {
+namespace {
+
+/// Five neighbours `step` apart, weighted 1, 4, 6, 4, 1.
+template <class Number>
+Number weighted(const Number* p, int step) {
+  return static_cast<Number>(p[0] + p[4 * step] + 4 * (p[step] + p[3 * step]) + 6 * p[2 * step]);
+}
+
+/// Smooths a cube of kFrom³ numbers to one of (kFrom - 4)³.
+template <int kFrom, class Number>
+void smooth_cube(const Number* from, Number* to) {
+  constexpr int kTo = kFrom - 4;
+  std::array<Number, kFrom * kFrom * kTo> along_x;
+  std::array<Number, kFrom * kTo * kTo> along_y;
+  for (int row = 0; row < kFrom * kFrom; ++row) {
+    for (int i = 0; i < kTo; ++i) {
+      along_x[static_cast<std::size_t>(kTo * row + i)] = weighted(from + kFrom * row + i, 1);
+    }
+  }
+  for (int k = 0; k < kFrom; ++k) {
+    const Number* plane = along_x.data() + kTo * kFrom * k;
+    for (int at = 0; at < kTo * kTo; ++at) {
+      along_y[static_cast<std::size_t>(kTo * kTo * k + at)] = weighted(plane + at, kTo);
+    }
+  }
+  for (int at = 0; at < kTo * kTo * kTo; ++at) {
+    to[at] = weighted(along_y.data() + at, kTo * kTo);
+  }
+}
+
+/// Four times the slope in a cell of a cube of kSide³ numbers, from its eight corners.
+template <int kSide, class Number>
+Eigen::Vector3f slope_of(const Number* first) {
+  Eigen::Vector3i slope = Eigen::Vector3i::Zero();
+  for (int b = 0; b < 8; ++b) {
+    const Voxel side(b & 1, b >> 1 & 1, b >> 2);
+    const auto number = static_cast<int>(first[side.x() + kSide * (side.y() + kSide * side.z())]);
+    slope += number * (2 * side - Voxel::Ones());
+  }
+  return slope.cast<float>();
+}
+
+/// The mean of the middles of the edges that are crossed, from the cell's middle, by its corners.
+std::array<Eigen::Vector3f, 256> make_middles() {
+  std::array<Eigen::Vector3f, 256> middles;
+  for (unsigned corners = 0; corners < 256; ++corners) {
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    int crossed = 0;
+    for (unsigned b = 0; b < 8; ++b) {
+      for (unsigned axis = 1; axis < 8; axis *= 2) {
+        if ((b & axis) == 0 && (corners >> b & 1U) != (corners >> (b | axis) & 1U)) {
+          const auto along = [&](unsigned a) {
+            return a == axis ? 0.0F : (b & a) != 0 ? 0.5F : -0.5F;
+          };
+          sum += Eigen::Vector3f(along(1), along(2), along(4));
+          ++crossed;
+        }
+      }
+    }
+    middles[corners] = crossed == 0 ? sum : Eigen::Vector3f(sum / static_cast<float>(crossed));
+  }
+  return middles;
+}
+const std::array<Eigen::Vector3f, 256> kMiddles = make_middles();
+constexpr float kThinShare = 0.5F;  // of the way there, or what is thin gets too thin
+constexpr float kNear = 1.1F;       // a way that a bump or the surface itself may have [voxels]
+constexpr float kFar = 1.4F;        // less than the 1.5 of a sheet of one voxel
+
+/// What is added to the wide slope where other things close by outweigh the surface in it: the
+/// less it agrees with the cell's own corners, the more of what lies nearer.
+Eigen::Vector3f nearer_slopes(const Eigen::Vector3f& wide, const Eigen::Vector3f& slope,
+                              const Eigen::Vector3f& step) {
+  constexpr float kAgrees = 0.5F;  // cosine from which on the wide slope is enough
+  constexpr float kStep = 200.0F;  // as long as a slope of the sums
+  const float lengths = wide.norm() * step.norm();
+  const float cosine = lengths > 0.0F ? wide.dot(step) / lengths : 0.0F;
+  const float doubt = 1.0F - std::clamp(cosine / kAgrees, 0.0F, 1.0F);
+  return doubt * (slope + kStep * step);
+}
+
+}  // namespace
+
+bool CellField::read(const BoneVolume& volume, const Occupancy& occupancy,
+                     const Voxel& origin) noexcept {
+  std::array<std::int32_t, 27> bricks{};
+  for (int b = 0; b < 27; ++b) {
+    const Voxel brick = origin + kEdge * (Voxel(b % 3, b / 3 % 3, b / 9) - Voxel::Ones());
+    bricks[static_cast<std::size_t>(b)] = volume.address(brick) / BoneVolume::kBrickVoxels;
+  }
+  constexpr std::uint32_t kCorners = (1U << kCorner) - 1;
+  std::uint32_t any = 0;
+  std::uint32_t all = kCorners;
+  std::size_t row = 0;
+  for (int k = kEdge - kReach; k < kEdge - kReach + kWide; ++k) {
+    for (int j = kEdge - kReach; j < kEdge - kReach + kWide; ++j, ++row) {
+      const auto first = static_cast<std::size_t>(3 * (j / kEdge) + 9 * (k / kEdge));
+      std::uint32_t bits = 0;
+      for (std::size_t b = 0; b < 3; ++b) {
+        const std::uint64_t layer = occupancy.layer(bricks[first + b], k % kEdge);
+        bits |= static_cast<std::uint32_t>(layer >> (kEdge * (j % kEdge)) & 0xFF) << (kEdge * b);
+      }
+      rows_[row] = bits >> (kEdge - kReach);
+      const bool corners = j >= kEdge && j <= 2 * kEdge && k >= kEdge && k <= 2 * kEdge;
+      if (corners) {
+        any |= rows_[row] >> kReach & kCorners;
+        all &= rows_[row] >> kReach;
+      }
+    }
+  }
+  return any != 0 && all != kCorners;
+}
+
+unsigned CellField::corners(int i, int j, int k) const noexcept {
+  const std::uint32_t* row = rows_.data() + (j + kReach) + kWide * (k + kReach);
+  const auto two = [&](int step) { return row[step] >> (i + kReach) & 3U; };
+  return two(0) | two(1) << 2 | two(kWide) << 4 | two(kWide + 1) << 6;
+}
+
+void CellField::smooth() noexcept {
+  std::array<std::uint16_t, kWide * kWide * kWide> filled;
+  for (std::size_t row = 0; row < rows_.size(); ++row) {
+    for (std::size_t i = 0; i < kWide; ++i) {
+      filled[kWide * row + i] = static_cast<std::uint16_t>(rows_[row] >> i & 1U);
+    }
+  }
+  std::array<std::uint16_t, kSums * kSums * kSums> sums;
+  smooth_cube<kWide>(filled.data(), sums.data());
+  std::copy(sums.begin(), sums.end(), sums_.begin());
+  smooth_cube<kSums>(sums_.data(), wide_sums_.data());
+}
+
+Eigen::Vector3f CellField::place(int i, int j, int k, unsigned corners,
+                                 Eigen::Vector3f& normal) const noexcept {
+  constexpr int kInner = kReach - 2;  // of sums_ before the first corner
+  const std::uint32_t* sums =
+      sums_.data() + (i + kInner) + kSums * ((j + kInner) + kSums * (k + kInner));
+  int total = 0;
+  Eigen::Vector3f step = Eigen::Vector3f::Zero();  // of filled and empty alone
+  for (int b = 0; b < 8; ++b) {
+    const Voxel side(b & 1, b >> 1 & 1, b >> 2);
+    const auto sum = static_cast<int>(sums[side.x() + kSums * (side.y() + kSums * side.z())]);
+    total += sum;
+    if ((corners >> b & 1U) != 0) {
+      step += (2 * side - Voxel::Ones()).cast<float>();
+    }
+  }
+  const Eigen::Vector3f slope = slope_of<kSums>(sums) / 4.0F;
+  const Eigen::Vector3f wide =
+      slope_of<kCorner>(wide_sums_.data() + i + kCorner * (j + kCorner * k)) / (4.0F * kFull);
+  const Eigen::Vector3f inwards = wide + nearer_slopes(wide, slope, step);
+  const float length = inwards.norm();
+  normal = length > 0.0F ? Eigen::Vector3f(inwards / -length) : Eigen::Vector3f::UnitZ();
+
+  // Along the slope to where the field is half full, which is no way off. In what is thin it never
+  // is, or far away: there to the middle of the cell's crossed edges.
+  const float missing = 0.5F * kFull - static_cast<float>(total) / 8.0F;
+  const float steepness = slope.norm();
+  const Eigen::Vector3f thin = kThinShare * kMiddles[corners];
+  if (slope.dot(step) <= 0.0F || std::abs(missing) >= kFar * steepness) {
+    return thin;
+  }
+  const float share =
+      std::clamp((kFar - std::abs(missing) / steepness) / (kFar - kNear), 0.0F, 1.0F);
+  const Eigen::Vector3f way = missing / (steepness * steepness) * slope;
+  return (share * way + (1.0F - share) * thin).cwiseMax(-0.5F).cwiseMin(0.5F);
+}
+
+}  // namespace haptrial::bone

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/bone/model/bone_volume.h"
+#include "core/bone/model/occupancy.h"
+#include "core/bone/surface/surface_depths.h"
+
+namespace haptrial::bone {
+
+/// A corner of surface triangles.
+struct SurfaceVertex {
+  std::array<float, 3> place{};          // in B [m]
+  std::array<std::int16_t, 3> normal{};  // outwards; 32767 is 1
+  std::uint8_t label{0};                 // of the nearest filled voxel
+  std::uint8_t density{0};               // mean of the filled voxels around; 255 is 1
+  std::uint8_t near_label{0};            // of the nearest structure; 0: none within reach
+  std::uint8_t near_depth{0};  // to it from the nearest filled voxel, in units of kDepthUnit
+
+  static constexpr double kDepthUnit = 25e-6;  // [m]; depths end at 255 units
+  bool operator==(const SurfaceVertex&) const = default;
+};
+
+/// Numbers of three vertices.
+using SurfaceTriangle = std::array<std::uint32_t, 3>;
+
+/// Which voxels are filled in and around a brick of 8 x 8 x 8 cells, and how many are around each:
+/// the sum over the 5 x 5 x 5 voxels around, weighted 1, 4, 6, 4, 1 along each axis, for places,
+/// and the same of these sums for normals, which want to be smoother. Whole numbers, so that a sum
+/// is the same in any order.
+class CellField {
+ public:
+  static constexpr int kEdge = BoneVolume::kEdge;
+  static constexpr int kReach = 4;            // voxels around a cell that count
+  static constexpr int kFull = 16 * 16 * 16;  // the sum deep inside
+
+  /// Reads the voxels around the cells from `origin`, a multiple of 8 along each axis.
+  /// @returns whether the cells have both filled and empty corners; else there are no vertices.
+  bool read(const BoneVolume& volume, const Occupancy& occupancy, const Voxel& origin) noexcept;
+
+  /// Bit b is the cell's corner (b & 1, b >> 1 & 1, b >> 2): whether it is filled.
+  unsigned corners(int i, int j, int k) const noexcept;
+  /// Works out the sums; needed before place().
+  void smooth() noexcept;
+  /// Where the smoothed field of a cell is half full, and its direction there.
+  /// @param normal  outwards, of unit length
+  /// @returns the place from the cell's middle, each coordinate from -0.5 to 0.5 [voxels]
+  Eigen::Vector3f place(int i, int j, int k, unsigned corners,
+                        Eigen::Vector3f& normal) const noexcept;
+
+ private:
+  static constexpr int kCorner = kEdge + 1;           // voxels 0 .. 8
+  static constexpr int kSums = kCorner + 4;           // voxels -2 .. 10
+  static constexpr int kWide = kCorner + 2 * kReach;  // voxels -4 .. 12
+  std::array<std::uint32_t, kWide * kWide> rows_;     // bit i + 4 of row (j, k): filled
+  std::array<std::uint32_t, kSums * kSums * kSums> sums_;
+  std::array<std::uint32_t, kCorner * kCorner * kCorner> wide_sums_;
+};
+
+}  // namespace haptrial::bone

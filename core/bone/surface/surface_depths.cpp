@@ -1,0 +1,217 @@
+#include "core/bone/surface/surface_depths.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace haptrial::bone {
+namespace {
+
+constexpr int kEdge = BoneVolume::kEdge;
+constexpr int kLargestReach = 250;  // voxels; its square fits 16 bits
+
+/// Squared distance times 256 plus label: the least of two is the nearer one, of two as near the
+/// one with the lower label.
+using Key = std::uint32_t;
+constexpr Key kNothing = 0xFFFFFFFF;
+constexpr Key kLabels = 256;
+
+Key moved(Key key, int by) {
+  return key == kNothing ? kNothing : key + kLabels * static_cast<Key>(by * by);
+}
+
+/// The box around the voxels that show, and as far around it as the reach goes.
+Eigen::AlignedBox3i box_of(const BoneModel& model, const std::vector<bool>& shows, int reach) {
+  Eigen::AlignedBox3i box;
+  std::size_t at = 0;
+  for (int k = 0; k < model.grid.size[2]; ++k) {
+    for (int j = 0; j < model.grid.size[1]; ++j) {
+      for (int i = 0; i < model.grid.size[0]; ++i, ++at) {
+        if (model.labels[at] < shows.size() && shows[model.labels[at]]) {
+          box.extend(Voxel(i, j, k));
+        }
+      }
+    }
+  }
+  if (!box.isEmpty()) {
+    const Voxel last(model.grid.size[0] - 1, model.grid.size[1] - 1, model.grid.size[2] - 1);
+    box.min() = (box.min() - Voxel::Constant(reach)).cwiseMax(0);
+    box.max() = (box.max() + Voxel::Constant(reach)).cwiseMin(last);
+  }
+  return box;
+}
+
+/// Nearest structures in a box, by one pass along each axis.
+class NearestPasses {
+ public:
+  NearestPasses(const Eigen::AlignedBox3i& box, int reach)
+      : size_(box.sizes() + Voxel::Ones()),
+        reach_(reach),
+        keys_(static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y()) *
+                  static_cast<std::size_t>(size_.z()),
+              kNothing) {}
+
+  Key& at(const Voxel& voxel) { return keys_[index(voxel)]; }
+
+  void run() {
+    for (int k = 0; k < size_.z(); ++k) {
+      for (int j = 0; j < size_.y(); ++j) {
+        along_row(&at({0, j, k}));
+      }
+    }
+    for (int k = 0; k < size_.z(); ++k) {
+      across_rows(&at({0, 0, k}), size_.y(), static_cast<std::size_t>(size_.x()));
+    }
+    for (int j = 0; j < size_.y(); ++j) {
+      across_rows(&at({0, j, 0}), size_.z(),
+                  static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y()));
+    }
+  }
+
+ private:
+  std::size_t index(const Voxel& v) const {
+    return static_cast<std::size_t>(v.x()) +
+           static_cast<std::size_t>(size_.x()) *
+               (static_cast<std::size_t>(v.y()) +
+                static_cast<std::size_t>(size_.y()) * static_cast<std::size_t>(v.z()));
+  }
+
+  /// The nearest on either side lies at the last one that was passed.
+  void along_row(Key* row) {
+    const auto width = static_cast<std::size_t>(size_.x());
+    line_.assign(row, row + width);
+    for (const int way : {1, -1}) {
+      Key last = kNothing;
+      int ago = 0;
+      for (int n = 0; n < size_.x(); ++n, ++ago) {
+        const auto i = static_cast<std::size_t>(way > 0 ? n : size_.x() - 1 - n);
+        if (line_[i] != kNothing) {
+          last = line_[i];
+          ago = 0;
+        }
+        if (ago <= reach_) {
+          row[i] = std::min(row[i], moved(last, ago));
+        }
+      }
+    }
+  }
+
+  /// Rows of a plane, `stride` apart, each with the nearest of those within reach.
+  void across_rows(Key* plane, int rows, std::size_t stride) {
+    const auto width = static_cast<std::size_t>(size_.x());
+    line_.resize(width * static_cast<std::size_t>(rows));
+    for (int row = 0; row < rows; ++row) {
+      std::copy_n(plane + stride * static_cast<std::size_t>(row), width,
+                  line_.data() + width * static_cast<std::size_t>(row));
+    }
+    for (int row = 0; row < rows; ++row) {
+      Key* to = plane + stride * static_cast<std::size_t>(row);
+      for (int other = std::max(row - reach_, 0); other <= std::min(row + reach_, rows - 1);
+           ++other) {
+        const Key* from = line_.data() + width * static_cast<std::size_t>(other);
+        for (std::size_t i = 0; i < width; ++i) {
+          to[i] = std::min(to[i], moved(from[i], other - row));
+        }
+      }
+    }
+  }
+
+  Voxel size_;
+  int reach_;
+  std::vector<Key> keys_;
+  std::vector<Key> line_;
+};
+
+}  // namespace
+
+StructureDepths::StructureDepths(const BoneModel& model, const std::vector<bool>& shows,
+                                 double reach)
+    : grid_(model.grid), shows_(shows), reach_(reach / model.grid.spacing) {
+  check(model);
+  const double voxels = reach_;
+  if (!(voxels >= 0.0) || voxels > kLargestReach) {
+    throw std::invalid_argument("StructureDepths: the reach is from 0 to 250 voxels");
+  }
+  const int whole = static_cast<int>(std::ceil(voxels));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    table_size_[axis] = (grid_.size[axis] + kEdge - 1) / kEdge;
+  }
+  table_.assign(static_cast<std::size_t>(table_size_[0]) *
+                    static_cast<std::size_t>(table_size_[1]) *
+                    static_cast<std::size_t>(table_size_[2]),
+                0);
+  entries_.resize(BoneVolume::kBrickVoxels);
+  const Eigen::AlignedBox3i box = box_of(model, shows, whole);
+  if (box.isEmpty()) {
+    return;
+  }
+  NearestPasses passes(box, whole);
+  const auto for_each = [&](auto&& visit) {
+    for (int k = box.min().z(); k <= box.max().z(); ++k) {
+      for (int j = box.min().y(); j <= box.max().y(); ++j) {
+        for (int i = box.min().x(); i <= box.max().x(); ++i) {
+          const Voxel voxel(i, j, k);
+          visit(voxel, passes.at(voxel - box.min()));
+        }
+      }
+    }
+  };
+  for_each([&](const Voxel& voxel, Key& key) {
+    const std::uint8_t label = model.labels[grid_.index(voxel.x(), voxel.y(), voxel.z())];
+    if (label < shows.size() && shows[label]) {
+      key = label;
+    }
+  });
+  passes.run();
+  const double farthest = voxels * voxels;
+  for_each([&](const Voxel& voxel, Key key) {
+    if (key != kNothing && key / kLabels <= farthest) {
+      keep(voxel,
+           {static_cast<std::uint8_t>(key % kLabels), static_cast<std::uint16_t>(key / kLabels)});
+    }
+  });
+}
+
+void StructureDepths::keep(const Voxel& voxel, const Entry& entry) {
+  std::int32_t& brick = table_[table_index(voxel)];
+  if (brick == 0) {
+    brick = static_cast<std::int32_t>(entries_.size() / BoneVolume::kBrickVoxels);
+    entries_.resize(entries_.size() + BoneVolume::kBrickVoxels);
+  }
+  entries_[entry_index(brick, voxel)] = entry;
+}
+
+std::size_t StructureDepths::entry_index(std::int32_t brick, const Voxel& voxel) noexcept {
+  const int place = voxel.x() % kEdge + kEdge * (voxel.y() % kEdge + kEdge * (voxel.z() % kEdge));
+  return static_cast<std::size_t>(brick) * BoneVolume::kBrickVoxels +
+         static_cast<std::size_t>(place);
+}
+
+std::size_t StructureDepths::table_index(const Voxel& voxel) const noexcept {
+  const auto at = [](int i) { return static_cast<std::size_t>(i / kEdge); };
+  return at(voxel.x()) +
+         static_cast<std::size_t>(table_size_[0]) *
+             (at(voxel.y()) + static_cast<std::size_t>(table_size_[1]) * at(voxel.z()));
+}
+
+NearStructure StructureDepths::at(const Voxel& voxel) const noexcept {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (voxel[axis] < 0 || voxel[axis] >= grid_.size[static_cast<std::size_t>(axis)]) {
+      return {};
+    }
+  }
+  const Entry& entry = entries_[entry_index(table_[table_index(voxel)], voxel)];
+  return {entry.label, grid_.spacing * std::sqrt(static_cast<double>(entry.squared))};
+}
+
+std::vector<bool> all_but_bone(std::span<const Structure> structures) {
+  std::vector<bool> shows(structures.size(), false);
+  for (std::size_t label = 1; label < structures.size(); ++label) {
+    const std::string& name = structures[label].name;
+    shows[label] = name != "bone" && !name.ends_with(" bone");
+  }
+  return shows;
+}
+
+}  // namespace haptrial::bone

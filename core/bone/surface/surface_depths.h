@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/bone/model/bone_model.h"
+#include "core/bone/model/bone_volume.h"
+
+namespace haptrial::bone {
+
+/// Which structure lies nearest to a voxel, and how far away.
+struct NearStructure {
+  std::uint8_t label{0};  // 0: none within reach
+  double distance{0.0};   // between the voxels' centres [m]
+};
+
+/// For every voxel the nearest one of the structures that show through bone where it is thin. Made
+/// once from the bone as it was before anything was removed, and never changed: any thread. What
+/// is left of them while bone is removed: NearStructures.
+/// Source: Morris 2006, §3.1 (structures become visible as the bone over them thins).
+class StructureDepths {
+ public:
+  /// @param shows  by label: whether it shows through; shorter than the labels: the rest does not
+  /// @param reach  how far to look, up to 250 voxels [m]
+  /// @throws std::invalid_argument where the model does not fit together or reach < 0.
+  StructureDepths(const BoneModel& model, const std::vector<bool>& shows, double reach = 0.003);
+
+  /// None outside the grid.
+  NearStructure at(const Voxel& voxel) const noexcept;
+  bool shows(std::uint8_t label) const noexcept { return label < shows_.size() && shows_[label]; }
+  double reach_in_voxels() const noexcept { return reach_; }
+
+ private:
+  struct Entry {
+    std::uint8_t label{0};
+    std::uint16_t squared{0};  // distance in voxels
+  };
+  void keep(const Voxel& voxel, const Entry& entry);
+  std::size_t table_index(const Voxel& voxel) const noexcept;
+  static std::size_t entry_index(std::int32_t brick, const Voxel& voxel) noexcept;
+
+  geometry::VoxelGrid grid_;
+  std::vector<bool> shows_;                   // by label
+  double reach_{0.0};                         // [voxels]
+  std::array<std::int32_t, 3> table_size_{};  // in bricks of 8 x 8 x 8 voxels
+  std::vector<std::int32_t> table_;           // number of a brick; 0: nothing within reach there
+  std::vector<Entry> entries_;                // 512 to a brick
+};
+
+/// Every label but 0 and those of bone itself: structures whose name is "bone" or ends in " bone".
+std::vector<bool> all_but_bone(std::span<const Structure> structures);
+
+}  // namespace haptrial::bone

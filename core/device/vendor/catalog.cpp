@@ -1,0 +1,48 @@
+#include "core/device/vendor/catalog.h"
+
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+#include "core/device/vendor/force_dimension.h"
+#include "core/device/vendor/open_haptics.h"
+
+namespace haptrial::device {
+namespace {
+
+DeviceListing force_dimension(const std::string& library) {
+  const char* const name = "force-dimension";
+  try {
+    const int count = count_force_dimension_devices(library);
+    if (count <= 0) {
+      return {name, false,
+              "the library is installed, but no device answers; check cable and power"};
+    }
+    return {name, true, fmt::format("{} connected (omega, delta, sigma, Falcon)", count)};
+  } catch (const InputError& error) {
+    return {name, false, error.what()};
+  }
+}
+
+DeviceListing open_haptics(const std::string& library) {
+  const char* const name = "open-haptics";
+  try {
+    check_open_haptics_library(library);
+    return {name, true,
+            "the library is installed (Phantom, Touch); whether a device answers shows when it is "
+            "opened"};
+  } catch (const InputError& error) {
+    return {name, false, error.what()};
+  }
+}
+
+}  // namespace
+
+std::vector<DeviceListing> list_devices(const VendorLibraries& libraries) {
+  return {{"virtual", true, "simulated 3-DOF impedance device with a virtual subject's hand"},
+          {"replay", true, "the hand of a recorded session, played back"},
+          {"mouse", true, "the pointer stands for the hand; forces are seen, not felt"},
+          force_dimension(libraries.force_dimension),
+          open_haptics(libraries.open_haptics)};
+}
+
+}  // namespace haptrial::device

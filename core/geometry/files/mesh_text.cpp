@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "core/geometry/files/mesh_io.h"
+#include "core/geometry/files/mesh_text_internal.h"
+
+namespace haptrial::geometry::reading {
+namespace {
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+
+std::string_view without_plus(std::string_view word) {
+  return word.size() > 1 && word[0] == '+' && word[1] != '-' ? word.substr(1) : word;
+}
+
+}  // namespace
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t kLongest = 32;
+  std::string out = "'";
+  for (const char c : text.substr(0, kLongest)) {
+    out += c >= ' ' && c <= '~' ? c : '?';
+  }
+  return out + (text.size() > kLongest ? "...'" : "'");
+}
+
+std::string coordinate_problem(double value) {
+  if (!std::isfinite(value)) {
+    return fmt::format("a coordinate is {}; allowed: finite numbers", value);
+  }
+  if (std::abs(value) > kMaxCoordinate) {
+    return fmt::format("a coordinate is {:g}; allowed: {:g} to {:g}", value, -kMaxCoordinate,
+                       kMaxCoordinate);
+  }
+  return {};
+}
+
+Text::Text(std::string_view text, std::string_view name, const WorkReport& report)
+    : text_(text), name_(name), report_(report) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";  // of UTF-8
+  if (text_.starts_with(kMark)) {
+    position_ = kMark.size();
+  }
+}
+
+std::string_view Text::raw_line() {
+  constexpr std::size_t kLinesBetweenReports = 1 << 16;
+  std::size_t end = text_.find('\n', position_);
+  end = end == std::string_view::npos ? text_.size() : end;
+  std::string_view line = text_.substr(position_, end - position_);
+  position_ = std::min(end + 1, text_.size());
+  if (++line_ % kLinesBetweenReports == 0) {
+    report_share(report_, static_cast<double>(position_) / static_cast<double>(text_.size()));
+  }
+  if (comment_ != 0) {
+    line = line.substr(0, line.find(comment_));
+  }
+  while (!line.empty() && is_blank(line.back())) {
+    line.remove_suffix(1);
+  }
+  return line;
+}
+
+bool Text::next_line() {
+  while (position_ < text_.size()) {
+    rest_ = raw_line();
+    if (continuation_ && rest_.ends_with('\\')) {
+      joined_.clear();
+      while (rest_.ends_with('\\') && position_ < text_.size()) {
+        joined_.append(rest_.substr(0, rest_.size() - 1)).append(" ");
+        rest_ = raw_line();
+      }
+      joined_.append(rest_);
+      rest_ = joined_;
+    }
+    if (!std::all_of(rest_.begin(), rest_.end(), is_blank)) {
+      return true;
+    }
+  }
+  rest_ = {};
+  return false;
+}
+
+std::string_view Text::word() {
+  std::size_t start = 0;
+  while (start < rest_.size() && is_blank(rest_[start])) {
+    ++start;
+  }
+  std::size_t end = start;
+  while (end < rest_.size() && !is_blank(rest_[end])) {
+    ++end;
+  }
+  const std::string_view found = rest_.substr(start, end - start);
+  rest_.remove_prefix(end);
+  return found;
+}
+
+std::string_view Text::word_below(std::string_view what) {
+  std::string_view found = word();
+  while (found.empty()) {
+    if (!next_line()) {
+      fail(fmt::format("the file ends where {} should stand", what));
+    }
+    found = word();
+  }
+  return found;
+}
+
+double Text::coordinate(std::string_view word, std::string_view what) const {
+  const std::string_view digits = without_plus(word);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc::result_out_of_range && end == digits.data() + digits.size()) {
+    // Too small for a double is 0 to us; too large is not.
+    value =
+        digits.find("e-") == std::string_view::npos && digits.find("E-") == std::string_view::npos
+            ? std::numeric_limits<double>::infinity()
+            : 0.0;
+  } else if (error != std::errc{} || end != digits.data() + digits.size()) {
+    fail(word.empty() ? fmt::format("the line ends where {} should stand", what)
+                      : fmt::format("{} is {}; allowed: a number", what, in_quotes(word)));
+  }
+  if (const std::string problem = coordinate_problem(value); !problem.empty()) {
+    fail(problem);
+  }
+  return value;
+}
+
+std::int64_t Text::whole(std::string_view word, std::string_view what) const {
+  const std::string_view digits = without_plus(word);
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc{} || end != digits.data() + digits.size()) {
+    fail(word.empty() ? fmt::format("the line ends where {} should stand", what)
+                      : fmt::format("{} is {}; allowed: a whole number that 64 bits hold", what,
+                                    in_quotes(word)));
+  }
+  return value;
+}
+
+void Text::fail(const std::string& sentence) const { fail_at(line_, sentence); }
+
+void Text::fail_at(std::size_t line, const std::string& sentence) const {
+  throw InputError(fmt::format("{}:{}: {}", name_, std::max<std::size_t>(line, 1), sentence));
+}
+
+void Gathering::reserve(std::uint64_t vertices, std::uint64_t triangles) {
+  mesh_.vertices.reserve(vertices);
+  mesh_.triangles.reserve(triangles);
+}
+
+void Gathering::add_face(std::span<const std::int32_t> corners) {
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    mesh_.triangles.push_back({corners[0], corners[i - 1], corners[i]});
+  }
+}
+
+bool Gathering::full() const {
+  return mesh_.vertices.size() >=
+         static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
+}
+
+}  // namespace haptrial::geometry::reading

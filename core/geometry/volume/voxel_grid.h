@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry/mesh/mesh_bounds.h"
+
+namespace haptrial::geometry {
+
+/// Cubic voxels along the axes. Voxel (i, j, k) has its centre at origin + spacing (i, j, k); in
+/// arrays i runs fastest: index = i + size[0] (j + size[1] k).
+struct VoxelGrid {
+  std::array<std::int32_t, 3> size{0, 0, 0};        // voxels along x, y, z
+  Eigen::Vector3d origin{Eigen::Vector3d::Zero()};  // centre of voxel (0, 0, 0) [m]
+  double spacing{1.0};                              // edge of a voxel > 0 [m]
+
+  std::size_t count() const {
+    return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *
+           static_cast<std::size_t>(size[2]);
+  }
+  std::size_t index(std::int32_t i, std::int32_t j, std::int32_t k) const {
+    const auto row = static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(k) +
+                     static_cast<std::size_t>(j);
+    return static_cast<std::size_t>(size[0]) * row + static_cast<std::size_t>(i);
+  }
+  /// A centre's coordinate along an axis [m]. Everything that asks where a voxel is asks here: its
+  /// rounding decides exact tests.
+  double coordinate(int axis, std::int32_t i) const { return origin[axis] + spacing * i; }
+  Eigen::Vector3d centre(std::int32_t i, std::int32_t j, std::int32_t k) const {
+    return {coordinate(0, i), coordinate(1, j), coordinate(2, k)};
+  }
+};
+
+/// What a voxel is to a solid, by its centre.
+enum class VoxelLabel : std::uint8_t {
+  kOutside = 0,
+  kInside = 1,
+  kBorder = 2,  // outside, with an inside voxel across one of its faces
+};
+
+/// A labelled grid.
+struct VoxelSolid {
+  VoxelGrid grid;
+  std::vector<VoxelLabel> labels;  // grid.count()
+};
+
+/// The grid with `resolution` voxels along the longest side of `box`, which its outermost voxels
+/// touch there; the other sides are covered and centred. `margin` more voxels lie on every side.
+/// Source: Morris 2006, §5.2.2 (isotropic voxels, set by the long axis).
+/// @throws InputError when the box has no volume to speak of (a side that is not finite, or all
+/// zero), voxels would be too small for doubles that far from the origin, or resolution is not from
+/// 1 to 20,000.
+VoxelGrid make_grid(const Eigen::AlignedBox3d& box, int resolution, int margin = 0);
+
+}  // namespace haptrial::geometry

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "core/record/table/table_description.h"
+
+namespace haptrial::record {
+
+/// What a session of any protocol may have beside the tables of every session: answers, further
+/// devices.
+const TableList& common_tables();
+
+}  // namespace haptrial::record

@@ -1,0 +1,56 @@
+#include "core/record/table/field.h"
+
+#include <utility>
+
+namespace haptrial::record {
+
+Field number_field(const char* name, std::size_t offset, MemberType type, const char* unit,
+                   const char* description) {
+  const auto field = [&](ColumnType column, std::size_t bytes) -> Field {
+    return {{name, column, bytes, unit, description}, offset, type};
+  };
+  switch (type) {
+    case MemberType::kI32:
+    case MemberType::kU32:
+      return field(ColumnType::kI32, 4);
+    case MemberType::kI64:
+      return field(ColumnType::kI64, 8);
+    case MemberType::kU64:
+      return field(ColumnType::kU64, 8);
+    case MemberType::kF32:
+      return field(ColumnType::kF32, 4);
+    case MemberType::kF64:
+      return field(ColumnType::kF64, 8);
+    case MemberType::kBool:
+    case MemberType::kU8:
+    case MemberType::kText:
+    case MemberType::kName:
+      break;
+  }
+  return field(ColumnType::kU8, 1);
+}
+
+Field real32_field(const char* name, std::size_t offset, const char* unit, const char* description,
+                   double resolution) {
+  return {{name, ColumnType::kF32, 4, unit, description, resolution}, offset, MemberType::kF64};
+}
+
+Field text_field(const char* name, std::size_t offset, std::size_t bytes, const char* description) {
+  return {{name, ColumnType::kText, bytes, "", description}, offset, MemberType::kText};
+}
+
+Field name_field(const char* name, std::size_t offset, std::size_t bytes, const char* description) {
+  return {{name, ColumnType::kText, bytes, "", description}, offset, MemberType::kName};
+}
+
+Field word_field(const char* name, std::size_t offset, std::size_t bytes, Words words,
+                 const char* description) {
+  return {
+      {name, ColumnType::kText, bytes, "", description}, offset, MemberType::kU8, std::move(words)};
+}
+
+Field code_field(const char* name, std::size_t offset, Words words, const char* description) {
+  return {{name, ColumnType::kU8, 1, "1", description}, offset, MemberType::kU8, std::move(words)};
+}
+
+}  // namespace haptrial::record

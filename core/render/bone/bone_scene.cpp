@@ -1,0 +1,331 @@
+#include "core/render/bone/bone_scene.h"
+
+#include <GL/glcorearb.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "core/render/bone/bone_dust.h"
+#include "core/render/bone/bone_layer.h"
+#include "core/render/bone/bone_mesh.h"
+#include "core/render/bone/bone_object.h"
+#include "core/render/bone/bone_palette.h"
+#include "core/render/bone/bone_shaders.h"
+#include "core/render/gl/gl_program.h"
+
+namespace haptrial::render {
+namespace {
+
+void check(const BoneFrame& frame, int width, int height) {
+  const Camera& camera = frame.camera;
+  if (!camera.pose().matrix().allFinite() || !(camera.distance() > 0.0) ||
+      !(camera.field_of_view > 0.0 && camera.field_of_view < 3.14) || width < 2 || height < 1) {
+    throw std::invalid_argument("BoneScene: the camera or the picture's size is none");
+  }
+  std::set<std::uint32_t> ids;
+  for (const SceneBone& bone : frame.bones) {
+    if (bone.volume == nullptr || !bone.pose.matrix().allFinite() || !ids.insert(bone.id).second) {
+      throw std::invalid_argument("BoneScene: a bone without volume or pose, or an id twice");
+    }
+  }
+  for (const SceneMesh& mesh : frame.meshes) {
+    if (mesh.mesh == nullptr || !mesh.pose.matrix().allFinite()) {
+      throw std::invalid_argument("BoneScene: a tool without mesh or pose");
+    }
+  }
+}
+
+/// Upside down, as the layer is.
+EyeView turned(EyeView view) {
+  view.projection.row(1) *= -1.0;
+  return view;
+}
+
+bool is_same(const EyeView& a, const EyeView& b) {
+  return a.view == b.view && a.projection == b.projection;
+}
+
+/// A bone as it is in the kept picture.
+struct DrawnBone {
+  Eigen::Matrix4d pose;
+  std::uint64_t array;           // BoneObject::array()
+  std::vector<PixelBox> covers;  // by eye
+};
+
+}  // namespace
+
+struct BoneScene::Impl {
+  Impl(const Gl& table, const BoneStyle& look, std::span<const bone::Structure> structures,
+       std::shared_ptr<const bone::StructureDepths> near)
+      : gl(table),
+        style(look),
+        palette(look, structures),
+        depths(std::move(near)),
+        program(build_program(gl, "the bone", kLitVertexShader, kLitFragmentShader)),
+        to_eye(gl.get_uniform_location(program, "to_eye")),
+        to_clip(gl.get_uniform_location(program, "to_clip")),
+        light(gl.get_uniform_location(program, "light")),
+        dust(gl),
+        layer(gl) {
+    if (style.visible_array && style.background_visibility) {
+      worker = std::make_unique<VisibilityWorker>();
+    }
+  }
+  ~Impl() { gl.delete_program(program); }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  void follow(const BoneFrame& frame, const std::vector<EyeView>& views);
+  void begin(const BoneFrame& frame, const std::vector<EyeView>& views);
+  std::vector<PixelBox> changed_parts(const BoneFrame& frame, const std::vector<EyeView>& views,
+                                      int width, int height);
+  void keep(const BoneFrame& frame, const std::vector<EyeView>& views, bool there, int across,
+            int height);
+  void draw_bones(const BoneFrame& frame, const EyeView& view, const PixelBox& part, int width,
+                  int height);
+  void draw_over(const BoneFrame& frame, const EyeView& view);
+  void use(const EyeView& view) const;
+  void draw_meshes(const BoneFrame& frame, const EyeView& view, bool translucent);
+  void use(const EyeView& view, const Eigen::Isometry3d& pose) const;
+  void end() const;
+
+  Gl gl;
+  BoneStyle style;
+  BonePalette palette;
+  std::shared_ptr<const bone::StructureDepths> depths;
+  Gl::Name program;
+  int to_eye;
+  int to_clip;
+  int light;
+  DustDrawing dust;
+  BoneLayer layer;
+  std::vector<EyeView> seen_from;            // as the kept picture is
+  std::map<std::uint32_t, DrawnBone> shown;  // in the kept picture
+  std::map<std::uint32_t, std::unique_ptr<BoneObject>> bones;
+  std::map<const geometry::Mesh*, std::unique_ptr<BoneMesh>> meshes;
+  std::unique_ptr<VisibilityWorker> worker;
+  BoneFrameFigures figures;
+};
+
+/// Bones and meshes as the frame has them: new ones made, others let go.
+void BoneScene::Impl::begin(const BoneFrame& frame, const std::vector<EyeView>& views) {
+  std::erase_if(bones, [&](const auto& known) {
+    return std::none_of(frame.bones.begin(), frame.bones.end(),
+                        [&](const SceneBone& bone) { return bone.id == known.first; });
+  });
+  std::erase_if(meshes, [&](const auto& known) {
+    return std::none_of(frame.meshes.begin(), frame.meshes.end(),
+                        [&](const SceneMesh& mesh) { return mesh.mesh.get() == known.first; });
+  });
+  for (const SceneMesh& mesh : frame.meshes) {
+    std::unique_ptr<BoneMesh>& known = meshes[mesh.mesh.get()];
+    if (known == nullptr) {
+      known = std::make_unique<BoneMesh>(gl, mesh.mesh);
+    }
+  }
+  if (worker != nullptr) {
+    for (const VisibilityResult& result : worker->take()) {
+      if (const auto found = bones.find(result.id); found != bones.end()) {
+        found->second->take(result);
+      }
+    }
+  }
+  follow(frame, views);
+}
+
+void BoneScene::Impl::follow(const BoneFrame& frame, const std::vector<EyeView>& views) {
+  figures = {};
+  figures.visible_only = style.visible_array;
+  for (const SceneBone& bone : frame.bones) {
+    std::unique_ptr<BoneObject>& object = bones[bone.id];
+    if (object == nullptr) {
+      object = std::make_unique<BoneObject>(gl, bone.id, depths);
+    }
+    std::vector<Eigen::Vector3d> eyes;
+    for (const EyeView& view : views) {
+      eyes.emplace_back(bone.pose.inverse() * view.eye);
+    }
+    figures.uploaded += object->follow(*bone.volume, palette, eyes, worker.get());
+    figures.triangles += object->triangle_count();
+    figures.visible_only = figures.visible_only && object->has_visible_array();
+  }
+}
+
+void BoneScene::Impl::use(const EyeView& view, const Eigen::Isometry3d& pose) const {
+  const Eigen::Matrix4f eye = (view.view * pose.matrix()).cast<float>();
+  gl.uniform_matrix4fv(to_eye, 1, GL_FALSE, eye.data());
+}
+
+void BoneScene::Impl::draw_meshes(const BoneFrame& frame, const EyeView& view, bool translucent) {
+  for (const SceneMesh& mesh : frame.meshes) {
+    if ((mesh.colour.alpha < 1.0) == translucent) {
+      use(view, mesh.pose);
+      gl.vertex_attrib4f(
+          2, static_cast<float>(mesh.colour.red), static_cast<float>(mesh.colour.green),
+          static_cast<float>(mesh.colour.blue), static_cast<float>(mesh.colour.alpha));
+      meshes.at(mesh.mesh.get())->draw();
+    }
+  }
+}
+
+/// What of each eye's picture is not as the kept one has it.
+std::vector<PixelBox> BoneScene::Impl::changed_parts(const BoneFrame& frame,
+                                                     const std::vector<EyeView>& views, int width,
+                                                     int height) {
+  std::vector<PixelBox> parts(views.size());
+  std::map<std::uint32_t, DrawnBone> before = std::exchange(shown, {});
+  for (const SceneBone& bone : frame.bones) {
+    const BoneObject& object = *bones.at(bone.id);
+    DrawnBone now{bone.pose.matrix(), style.visible_array ? object.array() : 0, {}};
+    const auto known = before.find(bone.id);
+    const bool same =
+        known != before.end() && known->second.pose == now.pose && known->second.array == now.array;
+    const Eigen::AlignedBox3d bounds = object.blocks().bounds();
+    for (std::size_t eye = 0; eye < views.size(); ++eye) {
+      const Eigen::Matrix4d clip = views[eye].projection * views[eye].view * now.pose;
+      now.covers.push_back(pixels_of(bounds, clip, width, height));
+      parts[eye].extend(same ? pixels_of(object.blocks().changed(), clip, width, height)
+                             : now.covers[eye]);
+    }
+    if (same) {
+      before.erase(known);
+    }
+    shown.emplace(bone.id, std::move(now));
+  }
+  for (const auto& [id, gone] : before) {  // from here, or away
+    for (std::size_t eye = 0; eye < std::min(views.size(), gone.covers.size()); ++eye) {
+      parts[eye].extend(gone.covers[eye]);
+    }
+  }
+  return parts;
+}
+
+void BoneScene::Impl::use(const EyeView& view) const {
+  const Eigen::Matrix4f clip = view.projection.cast<float>();
+  gl.use_program(program);
+  gl.uniform_matrix4fv(to_clip, 1, GL_FALSE, clip.data());
+  gl.uniform4f(light, static_cast<float>(style.ambient), static_cast<float>(style.diffuse),
+               static_cast<float>(style.specular), static_cast<float>(style.shininess));
+}
+
+void BoneScene::Impl::draw_bones(const BoneFrame& frame, const EyeView& view, const PixelBox& part,
+                                 int width, int height) {
+  use(view);
+  const auto count = [](const Eigen::Vector2i& size) {
+    return static_cast<std::size_t>(size.x() + 1) * static_cast<std::size_t>(size.y() + 1);
+  };
+  const std::size_t pixels = count(part.sizes());
+  figures.pixels += pixels;
+  // With much to draw, finding out what would take longer than it saves.
+  const bool all = 2 * pixels > count(all_pixels(width, height).sizes());
+  for (const SceneBone& bone : frame.bones) {
+    use(view, bone.pose);
+    BoneObject& object = *bones.at(bone.id);
+    const Eigen::Matrix4d clip = view.projection * view.view * bone.pose.matrix();
+    figures.drawn += all ? object.draw(style.visible_array)
+                         : object.draw(style.visible_array, part, clip, width, height);
+  }
+}
+
+void BoneScene::Impl::draw_over(const BoneFrame& frame, const EyeView& view) {
+  use(view);
+  gl.disable(GL_BLEND);
+  gl.depth_mask(GL_TRUE);
+  draw_meshes(frame, view, false);
+  gl.enable(GL_BLEND);
+  gl.blend_equation(GL_FUNC_ADD);
+  gl.blend_func_separate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  gl.depth_mask(GL_FALSE);
+  draw_meshes(frame, view, true);
+  dust.draw(frame.dust, view, style.dust);
+  gl.depth_mask(GL_TRUE);
+}
+
+/// Draws of the bones what is not as the kept picture has it.
+void BoneScene::Impl::keep(const BoneFrame& frame, const std::vector<EyeView>& views, bool there,
+                           int across, int height) {
+  std::vector<PixelBox> parts = changed_parts(frame, views, across, height);
+  there = there && style.kept_layer &&
+          std::equal(views.begin(), views.end(), seen_from.begin(), seen_from.end(), is_same);
+  seen_from = views;
+  gl.disable(GL_BLEND);
+  gl.disable(GL_SCISSOR_TEST);
+  if (!there) {
+    gl.clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  }
+  for (std::size_t eye = 0; eye < views.size(); ++eye) {
+    const int left = static_cast<int>(eye) * across;
+    PixelBox& part = parts[eye];
+    if (!there) {
+      part = all_pixels(across, height);
+    }
+    if (part.isEmpty()) {
+      continue;
+    }
+    gl.viewport(left, 0, across, height);
+    if (there) {
+      gl.enable(GL_SCISSOR_TEST);
+      gl.scissor(left + part.min().x(), part.min().y(), part.sizes().x() + 1, part.sizes().y() + 1);
+      gl.clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    }
+    draw_bones(frame, views[eye], part, across, height);
+  }
+}
+
+/// As other drawing expects it.
+void BoneScene::Impl::end() const {
+  gl.disable(GL_DEPTH_TEST);
+  gl.disable(GL_CULL_FACE);
+  gl.cull_face(GL_BACK);
+  gl.disable(GL_BLEND);
+  gl.use_program(0);
+  layer.show();
+}
+
+BoneScene::BoneScene(const Gl& gl, const BoneStyle& style,
+                     std::span<const bone::Structure> structures,
+                     std::shared_ptr<const bone::StructureDepths> depths)
+    : impl_(std::make_unique<Impl>(gl, style, structures, std::move(depths))) {}
+
+BoneScene::~BoneScene() = default;
+
+void BoneScene::draw(const BoneFrame& frame, int width, int height) {
+  check(frame, width, height);
+  Impl& scene = *impl_;
+  const Gl& gl = scene.gl;
+  const int across = frame.stereo ? width / 2 : width;
+  const double aspect = static_cast<double>(across) / height;
+  std::vector<EyeView> views;
+  if (frame.stereo) {
+    views = {stereo_view_of(frame.camera, *frame.stereo, -1, aspect),
+             stereo_view_of(frame.camera, *frame.stereo, 1, aspect)};
+  } else {
+    views = {view_of(frame.camera, aspect)};
+  }
+  scene.begin(frame, views);
+  std::transform(views.begin(), views.end(), views.begin(), turned);
+  const bool there = scene.layer.begin(width, height);
+  const Colour& ground = scene.style.background;
+  gl.enable(GL_DEPTH_TEST);
+  gl.depth_func(GL_LESS);
+  gl.depth_mask(GL_TRUE);
+  gl.enable(GL_CULL_FACE);
+  gl.cull_face(GL_FRONT);  // of a picture upside down
+  gl.clear_color(static_cast<float>(ground.red), static_cast<float>(ground.green),
+                 static_cast<float>(ground.blue), 1.0F);
+  scene.keep(frame, views, there, across, height);
+  scene.layer.copy();
+  for (std::size_t eye = 0; eye < views.size(); ++eye) {
+    gl.viewport(static_cast<int>(eye) * across, 0, across, height);
+    scene.draw_over(frame, views[eye]);
+  }
+  scene.end();
+  gl.viewport(0, 0, width, height);
+}
+
+const BoneFrameFigures& BoneScene::figures() const noexcept { return impl_->figures; }
+
+}  // namespace haptrial::render

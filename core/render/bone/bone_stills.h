@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "core/render/flat/flat_quads.h"
+#include "core/render/gl/gl.h"
+#include "core/render/gl/image.h"
+
+namespace haptrial::render {
+
+/// Stills beside a picture that moves: one at a time in its upper right corner, with a frame.
+/// One thread, with the context current, also for the destructor. Source: Morris 2006, §3.3.
+class BoneStills {
+ public:
+  static constexpr double kShare = 0.36;  // of the picture's width
+
+  /// @throws RunError when the shaders cannot be made.
+  BoneStills(const Gl& gl, std::shared_ptr<const std::vector<Image>> stills);
+  ~BoneStills();
+  BoneStills(const BoneStills&) = delete;
+  BoneStills& operator=(const BoneStills&) = delete;
+
+  std::size_t count() const noexcept { return stills_->size(); }
+  /// Where a still lies in a picture: left, top, width, height [px].
+  static Eigen::Vector4d place_of(const Image& still, int width, int height);
+  /// Draws one over what is there. @param number  from 0, below count()
+  /// @param left  of the part of the framebuffer that holds the picture [px]
+  /// @param width, height  of that part
+  void draw(std::size_t number, int left, int width, int height);
+
+ private:
+  void upload(std::size_t number);
+
+  Gl gl_;
+  std::shared_ptr<const std::vector<Image>> stills_;
+  FlatQuads quads_;
+  Gl::Name program_{0};
+  Gl::Name texture_{0};
+  std::size_t uploaded_{static_cast<std::size_t>(-1)};
+};
+
+}  // namespace haptrial::render

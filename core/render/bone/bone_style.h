@@ -1,0 +1,26 @@
+#pragma once
+
+#include "core/render/gl/colour.h"
+
+namespace haptrial::render {
+
+/// How bone looks.
+struct BoneStyle {
+  Colour background{0.08, 0.09, 0.11};
+  Colour hard_bone{0.93, 0.88, 0.78};  // of density 1
+  Colour soft_bone{0.80, 0.58, 0.45};  // of density 0
+  Colour dust{0.95, 0.92, 0.84};
+  double ambient{0.22};           // light from everywhere
+  double diffuse{0.72};           // light at the eye, by the cosine
+  double specular{0.10};          // its reflection, ...
+  double shininess{24.0};         // ... by this power of the cosine
+  double through_length{0.0007};  // the share of a structure's colour in the bone over it is
+  double through_share{0.85};     // share exp(-depth / length) [m]
+  /// The visibility pass on a thread of its own, for a screen. When it ends is then a matter of
+  /// luck, and with it a pixel here and there: pictures that must be the same each time do without.
+  bool background_visibility{false};
+  bool visible_array{true};  // else the complete array always
+  bool kept_layer{true};     // what rests is drawn once; else all in every frame
+};
+
+}  // namespace haptrial::render

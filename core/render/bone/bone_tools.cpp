@@ -1,0 +1,104 @@
+#include "core/render/bone/bone_tools.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "core/geometry/mesh/procedural.h"
+
+namespace haptrial::render {
+namespace {
+
+constexpr int kAround = 32;  // sides of a round thing
+
+void require(bool good, const char* what) {
+  if (!good) {
+    throw std::invalid_argument(what);
+  }
+}
+
+/// A ring of vertices around z. @returns the first one's number
+std::int32_t add_ring(geometry::Mesh& mesh, double radius, double z) {
+  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+  for (int i = 0; i < kAround; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kAround;
+    mesh.vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+  }
+  return first;
+}
+
+/// The band between two rings, seen from the right of the way from `from` to `to` around z.
+void add_band(geometry::Mesh& mesh, std::int32_t from, std::int32_t to) {
+  for (std::int32_t i = 0; i < kAround; ++i) {
+    const std::int32_t next = (i + 1) % kAround;
+    mesh.triangles.push_back({from + i, from + next, to + next});
+    mesh.triangles.push_back({from + i, to + next, to + i});
+  }
+}
+
+/// A closed body of revolution through (radius, z), from its lower end to its upper one, both on
+/// the axis.
+struct Station {
+  double radius;
+  double z;
+};
+void add_turned(geometry::Mesh& mesh, const std::vector<Station>& stations) {
+  std::int32_t last = add_ring(mesh, stations.front().radius, stations.front().z);
+  for (std::size_t s = 1; s < stations.size(); ++s) {
+    const std::int32_t next = add_ring(mesh, stations[s].radius, stations[s].z);
+    add_band(mesh, last, next);
+    last = next;
+  }
+}
+
+}  // namespace
+
+geometry::Mesh burr_mesh(double diameter, double shaft_diameter, double length) {
+  require(diameter > 0.0 && shaft_diameter > 0.0 && length > diameter,
+          "burr_mesh: diameters above 0 and a length above the burr's are needed");
+  constexpr int kFrequency = 12;
+  geometry::Mesh mesh = geometry::make_sphere(0.5 * diameter, kFrequency);
+  const double shaft = 0.5 * shaft_diameter;
+  const double handle = 2.5 * shaft;
+  const double begins = 0.55 * length;  // of the handle
+  add_turned(mesh, {{0.0, 0.0},
+                    {shaft, 0.0},
+                    {shaft, begins},
+                    {handle, begins + 2.0 * handle},
+                    {handle, length},
+                    {0.0, length}});
+  return mesh;
+}
+
+geometry::Mesh suction_mesh(double inner_diameter, double outer_diameter, double length) {
+  require(inner_diameter > 0.0 && outer_diameter > inner_diameter && length > 0.0,
+          "suction_mesh: an inner diameter above 0, an outer one above it and a length are needed");
+  geometry::Mesh mesh;
+  const double inner = 0.5 * inner_diameter;
+  const double outer = 0.5 * outer_diameter;
+  add_turned(mesh, {{inner, length}, {inner, 0.0}, {outer, 0.0}, {outer, length}, {inner, length}});
+  return mesh;
+}
+
+geometry::Mesh plane_mesh(double width, double height) {
+  require(width > 0.0 && height > 0.0, "plane_mesh: sides above 0 are needed");
+  geometry::Mesh mesh;
+  for (int side = 0; side < 2; ++side) {  // vertices of their own, for normals of their own
+    for (const int corner : {0, 1, 2, 3}) {
+      const double x = corner == 0 || corner == 3 ? -0.5 : 0.5;
+      const double y = corner < 2 ? -0.5 : 0.5;
+      mesh.vertices.emplace_back(x * width, y * height, 0.0);
+    }
+  }
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 6, 5}, {4, 7, 6}};
+  return mesh;
+}
+
+Eigen::Isometry3d pose_of(const ToolState& tool) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() = tool.orientation.normalized().toRotationMatrix();
+  pose.translation() = tool.tip.position;
+  return pose;
+}
+
+}  // namespace haptrial::render

@@ -1,0 +1,56 @@
+#include "core/render/gl/gl_buffer.h"
+
+#include <GL/glcorearb.h>
+
+#include <algorithm>
+
+namespace haptrial::render {
+
+std::vector<ItemRange> ranges_of(std::vector<std::uint32_t>& numbers, std::size_t gap) {
+  std::sort(numbers.begin(), numbers.end());
+  std::vector<ItemRange> ranges;
+  for (const std::uint32_t number : numbers) {
+    if (!ranges.empty() && number <= ranges.back().first + ranges.back().count + gap) {
+      ranges.back().count = std::max(ranges.back().count, number + 1 - ranges.back().first);
+    } else {
+      ranges.push_back({number, 1});
+    }
+  }
+  return ranges;
+}
+
+GlBuffer::GlBuffer(const Gl& gl, std::size_t item_size) : gl_(gl), item_size_(item_size) {
+  gl_.gen_buffers(1, &name_);
+}
+
+GlBuffer::~GlBuffer() { gl_.delete_buffers(1, &name_); }
+
+void GlBuffer::bind(Gl::Enum target) const { gl_.bind_buffer(target, name_); }
+
+std::size_t GlBuffer::update(std::size_t count, std::vector<std::uint32_t> changed,
+                             const std::function<void(ItemRange, std::byte*)>& write) {
+  constexpr std::size_t kGap = 32;  // sending a few more is cheaper than another call
+  bind(GL_ARRAY_BUFFER);
+  std::vector<ItemRange> ranges;
+  if (count > room_) {
+    room_ = count + count / 2;
+    gl_.buffer_data(GL_ARRAY_BUFFER, static_cast<std::ptrdiff_t>(room_ * item_size_), nullptr,
+                    GL_DYNAMIC_DRAW);
+    ranges = {{0, count}};
+  } else {
+    std::erase_if(changed, [&](std::uint32_t number) { return number >= count; });
+    ranges = ranges_of(changed, kGap);
+  }
+  std::size_t sent = 0;
+  for (ItemRange range : ranges) {
+    range.count = std::min(range.count, count - range.first);
+    staged_.resize(range.count * item_size_);
+    write(range, staged_.data());
+    gl_.buffer_sub_data(GL_ARRAY_BUFFER, static_cast<std::ptrdiff_t>(range.first * item_size_),
+                        static_cast<std::ptrdiff_t>(staged_.size()), staged_.data());
+    sent += staged_.size();
+  }
+  return sent;
+}
+
+}  // namespace haptrial::render

@@ -1,0 +1,196 @@
+#include "core/render/gl/window.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <utility>
+
+#include "core/base/error.h"
+
+namespace haptrial::render {
+namespace {
+
+std::atomic<bool> open_window{false};
+
+void* address_of(const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); }
+
+std::string last_error() {
+  const char* text = nullptr;
+  return glfwGetError(&text) != GLFW_NO_ERROR && text != nullptr ? text : "no reason given";
+}
+
+/// GLFW is started for one window and ended with it.
+class Library {
+ public:
+  Library() {
+    if (open_window.exchange(true)) {
+      throw RunError("a window is open already; close it first");
+    }
+    if (glfwInit() != GLFW_TRUE) {
+      const std::string reason = last_error();
+      open_window = false;
+      throw RunError(fmt::format(
+          "no window can be opened ({}); set DISPLAY to the name of a display", reason));
+    }
+  }
+  ~Library() {
+    glfwTerminate();
+    open_window = false;
+  }
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
+};
+
+GLFWmonitor* chosen_monitor(int number) {
+  int count = 0;
+  GLFWmonitor** monitors = glfwGetMonitors(&count);
+  if (count < 1) {
+    throw RunError("the display has no monitor, so no window can be opened");
+  }
+  if (number < 0 || number >= count) {
+    throw InputError(
+        fmt::format("screen.monitor is {}; allowed: 0 to {} on this display", number, count - 1));
+  }
+  return monitors[number];
+}
+
+struct DestroyWindow {
+  void operator()(GLFWwindow* window) const { glfwDestroyWindow(window); }
+};
+
+int key_of(int glfw_key) {
+  switch (glfw_key) {
+    case GLFW_KEY_ESCAPE:
+      return KeyPress::kEscape;
+    case GLFW_KEY_ENTER:
+    case GLFW_KEY_KP_ENTER:
+      return KeyPress::kEnter;
+    default:
+      return glfw_key >= GLFW_KEY_SPACE && glfw_key <= GLFW_KEY_GRAVE_ACCENT ? glfw_key
+                                                                             : KeyPress::kOther;
+  }
+}
+
+}  // namespace
+
+struct Window::Impl {
+  Library library;
+  std::unique_ptr<GLFWwindow, DestroyWindow> window;
+  Gl gl{};
+  int width{0};
+  int height{0};
+  double refresh_rate{0.0};
+  std::vector<KeyPress> keys;
+  std::vector<int> held;
+  Pointer pointer;
+
+  void open(const WindowOptions& options);
+  void listen();
+  void point_at(double x, double y);
+  static Impl& of(GLFWwindow* window) {
+    return *static_cast<Impl*>(glfwGetWindowUserPointer(window));
+  }
+};
+
+void Window::Impl::open(const WindowOptions& options) {
+  GLFWmonitor* monitor = chosen_monitor(options.monitor);
+  const GLFWvidmode* mode = glfwGetVideoMode(monitor);
+  refresh_rate = std::max(0, mode->refreshRate);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  glfwWindowHint(GLFW_RESIZABLE, GLFW_FALSE);
+  glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);  // the experimenter may use another monitor
+  glfwWindowHint(GLFW_DEPTH_BITS, 24);
+  glfwWindowHint(GLFW_STENCIL_BITS, 0);
+  glfwWindowHint(GLFW_RED_BITS, mode->redBits);  // as the monitor has them: no mode is changed
+  glfwWindowHint(GLFW_GREEN_BITS, mode->greenBits);
+  glfwWindowHint(GLFW_BLUE_BITS, mode->blueBits);
+  glfwWindowHint(GLFW_REFRESH_RATE, mode->refreshRate);
+  glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+  const bool full = options.full_screen;
+  window.reset(glfwCreateWindow(full ? mode->width : options.width,
+                                full ? mode->height : options.height, options.title.c_str(),
+                                full ? monitor : nullptr, nullptr));
+  if (!window) {
+    throw RunError(fmt::format("no window with OpenGL 3.3 can be opened: {}", last_error()));
+  }
+  if (!full) {
+    int x = 0;
+    int y = 0;
+    glfwGetMonitorPos(monitor, &x, &y);
+    glfwSetWindowPos(window.get(), x + std::max(0, (mode->width - options.width) / 2),
+                     y + std::max(0, (mode->height - options.height) / 2));
+  }
+  listen();
+  glfwShowWindow(window.get());
+  glfwSetInputMode(window.get(), GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
+  glfwMakeContextCurrent(window.get());
+  gl = load_gl(&address_of);
+  glfwSwapInterval(options.refresh_lock ? 1 : 0);
+  glfwGetFramebufferSize(window.get(), &width, &height);
+  double x = 0.0;
+  double y = 0.0;
+  glfwGetCursorPos(window.get(), &x, &y);
+  point_at(x, y);
+  glfwGetError(nullptr);  // an answer that is not needed (swap interval) is no failure
+}
+
+void Window::Impl::listen() {
+  glfwSetWindowUserPointer(window.get(), this);
+  glfwSetKeyCallback(window.get(), [](GLFWwindow* w, int key, int, int action, int) {
+    if (action == GLFW_PRESS) {
+      of(w).keys.push_back({key_of(key)});
+      of(w).held.push_back(key_of(key));
+    } else if (action == GLFW_RELEASE) {  // also when another window takes the keyboard
+      std::erase(of(w).held, key_of(key));
+    }
+  });
+  glfwSetCursorPosCallback(window.get(),
+                           [](GLFWwindow* w, double x, double y) { of(w).point_at(x, y); });
+  glfwSetScrollCallback(window.get(),
+                        [](GLFWwindow* w, double, double y) { of(w).pointer.wheel += y; });
+  glfwSetMouseButtonCallback(window.get(), [](GLFWwindow* w, int button, int action, int) {
+    const std::uint32_t bit = button < 32 ? 1u << button : 0u;
+    std::uint32_t& buttons = of(w).pointer.buttons;
+    buttons = action == GLFW_PRESS ? buttons | bit : buttons & ~bit;
+  });
+}
+
+/// GLFW counts in the window's own units; some displays give these several pixels.
+void Window::Impl::point_at(double x, double y) {
+  int units = 0;
+  glfwGetWindowSize(window.get(), &units, nullptr);
+  const double scale = units > 0 ? static_cast<double>(width) / units : 1.0;
+  pointer.position = {scale * x, scale * y};
+}
+
+Window::Window(const WindowOptions& options) : impl_(std::make_unique<Impl>()) {
+  impl_->open(options);
+}
+
+Window::~Window() = default;
+
+const Gl& Window::gl() const noexcept { return impl_->gl; }
+int Window::width() const noexcept { return impl_->width; }
+int Window::height() const noexcept { return impl_->height; }
+double Window::refresh_rate() const noexcept { return impl_->refresh_rate; }
+
+void Window::poll() { glfwPollEvents(); }
+void Window::swap() {
+  glfwSwapBuffers(impl_->window.get());
+  impl_->gl.finish();  // else the driver may queue pictures, and the time would not be that of one
+}
+
+Image Window::read() { return read_frame(impl_->gl, impl_->width, impl_->height); }
+
+bool Window::close_asked() const { return glfwWindowShouldClose(impl_->window.get()) != 0; }
+std::vector<KeyPress> Window::take_keys() { return std::exchange(impl_->keys, {}); }
+std::vector<int> Window::held_keys() const { return impl_->held; }
+Pointer Window::pointer() const { return impl_->pointer; }
+
+}  // namespace haptrial::render

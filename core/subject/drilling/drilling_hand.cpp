@@ -1,0 +1,256 @@
+#include "core/subject/drilling/drilling_hand.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/definition/table_vector.h"
+#include "core/subject/subject_parameters.h"
+
+namespace haptrial::subject {
+namespace {
+
+constexpr double kStiffness = 300.0;  // of the arm about where it wants to be [N/m]
+constexpr double kDamping = 25.0;     // [N·s/m]
+constexpr double kStrongest = 5.0;    // of the arm across the press [N]
+constexpr double kHighest = 0.02;     // over where bone was met first [m]
+constexpr double kTravel = 0.06;      // speed between strokes [m/s]
+constexpr double kDescent = 0.03;     // towards the bone [m/s]
+constexpr double kNear = 0.002;       // is there [m]
+constexpr double kPatience = 4.0;     // without bone below, then on to the next line [s]
+constexpr double kPressing = 0.05;    // of a button, and its rest [s]
+constexpr double kLookTime = 0.4;     // [s]
+
+SubjectParameters person_of(const DrillingHandParameters& p) {
+  SubjectParameters person;
+  person.force_noise = p.force_noise;
+  person.force_noise_time = p.force_noise_time;
+  person.tremor = p.tremor;
+  person.tremor_frequency = p.tremor_frequency;
+  return person;
+}
+
+std::uint32_t held(int button) noexcept {
+  return button < 0 ? 0u : std::uint32_t{1} << static_cast<unsigned>(button);
+}
+
+}  // namespace
+
+DrillingHandParameters read_drilling_hand_parameters(Table& table) {
+  DrillingHandParameters p;
+  p.start = read_vector(table, "start", {-1.0, 1.0}, "m", Eigen::Vector3d::UnitY());
+  p.inward = read_direction(table, "inward");
+  p.along = read_direction(table, "along");
+  if (!(p.along.cross(p.inward).norm() > 0.1)) {
+    table.reject("along", "is nearly the direction of inward; write a direction across it");
+  }
+  p.along = (p.along - p.along.dot(p.inward) * p.inward).normalized();
+  const auto number = [&](const char* key, double& value, const Bounds& bounds, const char* unit) {
+    value = table.has(key) ? table.number(key, bounds, unit) : value;
+  };
+  number("width", p.width, {1e-4, 0.1}, "m");
+  number("height", p.height, {0.0, 0.1}, "m");
+  number("depth", p.depth, {0.0, 0.1}, "m");
+  number("line", p.line, {1e-4, 0.1}, "m");
+  number("press", p.press, {0.0, 20.0}, "N");
+  number("speed", p.speed, {1e-3, 0.2}, "m/s");
+  number("hover", p.hover, {0.0, 0.05}, "m");
+  number("force_noise", p.force_noise, {0.0, 1.0}, "");
+  number("force_noise_time", p.force_noise_time, {0.001, 10.0}, "s");
+  number("tremor", p.tremor, {0.0, 1.0}, "N");
+  number("tremor_frequency", p.tremor_frequency, {1.0, 50.0}, "Hz");
+  number("suction_time", p.suction_time, {0.0, 600.0}, "s");
+  const auto whole = [&](const char* key, int& value, long low, long high) {
+    value = table.has(key) ? static_cast<int>(table.integer(key, low, high)) : value;
+  };
+  whole("power_button", p.power_button, 0, 30);
+  whole("next_button", p.next_button, -1, 30);
+  whole("previous_button", p.previous_button, -1, 30);
+  whole("look_button", p.look_button, -1, 30);
+  whole("suction_tool", p.suction_tool, 1, 31);
+  whole("strokes_to_suction", p.strokes_to_suction, 1, 1'000'000);
+  return p;
+}
+
+DrillingHand::DrillingHand(const DrillingHandParameters& parameters, HandModel& hand,
+                           device::VirtualDevice& device, double scale, std::uint64_t seed,
+                           double step)
+    : parameters_(parameters),
+      hand_(hand),
+      device_(device),
+      scale_(scale),
+      noise_(person_of(parameters), step, RandomStream(seed, "drilling hand")),
+      across_(parameters.inward.cross(parameters.along)),
+      lines_(1 + static_cast<int>(parameters.height / parameters.line)) {}
+
+void DrillingHand::begin(Doing doing) noexcept {
+  doing_ = doing;
+  time_ = 0.0;
+}
+
+Eigen::Vector3d DrillingHand::line_start() const noexcept {
+  const DrillingHandParameters& p = parameters_;
+  const double sideways = (line_ - 0.5 * (lines_ - 1)) * p.line;
+  const double end = back_ ? 0.5 * p.width : -0.5 * p.width;
+  return p.start + end * p.along + sideways * across_;
+}
+
+void DrillingHand::next_line() noexcept {
+  ++strokes_;
+  back_ = !back_;
+  line_ = (line_ + 1) % lines_;
+  const bool sucks = parameters_.next_button >= 0 && parameters_.previous_button >= 0;
+  if (sucks && strokes_ % parameters_.strokes_to_suction == 0) {
+    wanted_tool_ = parameters_.suction_tool;
+    begin(Doing::kChange);
+  } else if (line_ == 0 && parameters_.look_button >= 0) {
+    begin(Doing::kLook);
+  } else {
+    begin(Doing::kReach);
+  }
+}
+
+void DrillingHand::observe(const stimulus::Shown& shown, const stimulus::Forces&,
+                           double dt) noexcept {
+  const auto* seen = shown.as<bone::DrillingView>();
+  if (seen == nullptr || !seen->shown) {
+    hand_.command({0.0, false, noise_.tremor()});
+    device_.hold(0, 0.0, Eigen::Quaterniond::Identity());
+    begin(Doing::kReach);
+    tip_known_ = false;
+    return;
+  }
+  const bone::DrillingView& view = *seen;
+  const Eigen::Vector3d tip = scale_ * view.tip;
+  decide(view, tip);
+  HandCommand command;
+  command.force = push(view, tip, dt) + noise_.tremor();
+  hand_.command(command);
+  device_.hold(fingers(view), 0.0, Eigen::Quaterniond::Identity());
+  last_tip_ = tip;
+  tip_known_ = true;
+  time_ += dt;
+}
+
+void DrillingHand::decide(const bone::DrillingView& seen, const Eigen::Vector3d& tip) noexcept {
+  const DrillingHandParameters& p = parameters_;
+  const Eigen::Vector3d off = tip - line_start();
+  const double sideways = (off - off.dot(p.inward) * p.inward).norm();
+  switch (doing_) {
+    case Doing::kReach:
+      if (sideways < kNear && time_ > kPressing) {
+        begin(Doing::kDescend);
+      } else if (time_ > kPatience) {  // bone is in the way: over it to the next
+        higher_ = std::min(higher_ + p.hover, kHighest);
+        next_line();
+      }
+      break;
+    case Doing::kDescend:
+      if (seen.contact) {
+        if (!surface_known_) {
+          surface_known_ = true;
+          surface_ = tip.dot(p.inward);
+        }
+        target_ = line_start();
+        begin(Doing::kStroke);
+      } else if (time_ > kPatience || (surface_known_ && tip.dot(p.inward) > surface_ + p.depth)) {
+        begin(Doing::kLift);
+      }
+      break;
+    case Doing::kStroke:
+      if (time_ > p.width / p.speed) {
+        begin(Doing::kLift);
+      }
+      break;
+    case Doing::kLift:
+      if (time_ > p.hover / kTravel + kPressing) {
+        next_line();
+      }
+      break;
+    case Doing::kChange:
+      if (seen.tool == wanted_tool_) {
+        begin(wanted_tool_ == p.suction_tool ? Doing::kSuck : Doing::kReach);
+      }
+      break;
+    case Doing::kSuck:
+      if (time_ > p.suction_time) {
+        wanted_tool_ = 0;
+        begin(Doing::kChange);
+      }
+      break;
+    case Doing::kLook:
+      if (time_ > kLookTime) {
+        begin(Doing::kReach);
+      }
+      break;
+  }
+}
+
+/// The arm's force: across the press it follows its target, along it presses or keeps a height.
+Eigen::Vector3d DrillingHand::push(const bone::DrillingView& seen, const Eigen::Vector3d& tip,
+                                   double dt) noexcept {
+  const DrillingHandParameters& p = parameters_;
+  const Eigen::Vector3d velocity =
+      tip_known_ ? Eigen::Vector3d((tip - last_tip_) / dt) : Eigen::Vector3d::Zero();
+  const double height = tip.dot(p.inward);
+  const double floor = surface_known_ ? surface_ + p.depth : 1.0;
+  const double above =
+      (surface_known_ ? surface_ : p.start.dot(p.inward) + p.hover) - p.hover - higher_;
+  Eigen::Vector3d goal = line_start();
+  double inward = 0.0;  // [N]
+  const double fall = velocity.dot(p.inward);
+  const auto keep = [&](double wanted) { return kStiffness * (wanted - height) - kDamping * fall; };
+  switch (doing_) {
+    case Doing::kStroke: {
+      const double gone = std::min(p.width, p.speed * time_);
+      goal += (back_ ? -gone : gone) * p.along;
+      const double room = std::clamp((floor - height) / 0.0005, 0.0, 1.0);
+      inward = noise_.press(p.press) * room - kDamping * fall;
+      break;
+    }
+    case Doing::kDescend:
+      inward = noise_.press(0.0) + kDamping * (kDescent - fall) * (seen.contact ? 0.0 : 3.0);
+      break;
+    case Doing::kSuck:
+      goal = p.start;
+      inward = keep(surface_known_ ? surface_ + 0.5 * p.depth : above);
+      break;
+    case Doing::kLook:
+      goal += 0.004 * std::sin(8.0 * time_) * across_;
+      inward = keep(above);
+      break;
+    default:
+      inward = keep(above);
+  }
+  const Eigen::Vector3d error = goal - tip;
+  Eigen::Vector3d across = kStiffness * (error - error.dot(p.inward) * p.inward) -
+                           kDamping * (velocity - fall * p.inward);
+  const double strength = across.norm();
+  if (strength > kStrongest) {
+    across *= kStrongest / strength;
+  }
+  return across + std::clamp(inward, -kStrongest, 2.0 * kStrongest) * p.inward;
+}
+
+std::uint32_t DrillingHand::fingers(const bone::DrillingView& seen) const noexcept {
+  const DrillingHandParameters& p = parameters_;
+  const bool down = std::fmod(time_, 2.0 * kPressing) < kPressing;
+  switch (doing_) {
+    case Doing::kDescend:
+    case Doing::kStroke:
+    case Doing::kSuck:
+      return held(p.power_button);
+    case Doing::kChange:
+      if (seen.tool == wanted_tool_ || !down) {
+        return 0;
+      }
+      return held(seen.tool < wanted_tool_ ? p.next_button : p.previous_button);
+    case Doing::kLook:
+      return held(p.look_button);
+    default:
+      return 0;
+  }
+}
+
+}  // namespace haptrial::subject

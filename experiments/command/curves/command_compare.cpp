@@ -1,0 +1,70 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "analysis/force_training/comparison/comparison.h"
+#include "core/base/error.h"
+#include "core/record/read/session_reader.h"
+#include "experiments/command/commands.h"
+#include "experiments/study/study_files.h"
+#include "protocols/definition/study_rules.h"
+
+namespace haptrial::experiments {
+namespace fs = std::filesystem;
+namespace {
+
+/// A session of the study in a folder; nothing without one that can be read.
+std::optional<record::SessionInfo> session_in(const fs::path& folder) {
+  try {
+    return record::SessionReader(files_of(folder, Pilots::kLeftOut).front()).info();
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+/// Keys in which the studies' definitions differ; empty if none does, or if a folder does not hold
+/// its study's sessions.
+std::vector<std::string> remarks_on_definitions(const fs::path& first, const fs::path& second) {
+  const auto one = session_in(first);
+  const auto other = session_in(second);
+  const DefinitionChanges changes =
+      one && other ? protocols::study_changes(*one, *other) : DefinitionChanges{};
+  if (!changes.same_study()) {
+    return {fmt::format("The definitions differ in what was presented, recorded or scored: {}.",
+                        sentence_of(changes.binding))};
+  }
+  if (changes.free.empty()) {
+    return {};
+  }
+  return {fmt::format("The definitions differ only in keys that may change within a study: {}.",
+                      sentence_of(changes.free))};
+}
+
+}  // namespace
+
+int compare(const CompareOptions& options) {
+  analysis::StudyComparison comparison = analysis::compare_studies(
+      analysis::read_scored_study(options.first), analysis::read_scored_study(options.second),
+      options.different_scoring ? analysis::Scoring::kMayDiffer : analysis::Scoring::kSame);
+  comparison.remarks = remarks_on_definitions(options.first, options.second);
+  const std::string& out = options.out;
+  for (const std::string& alarm : analysis::comparison_alarms(comparison)) {
+    fmt::print("{}\n", alarm);
+  }
+  for (const std::string& line : analysis::comparison_lines(comparison)) {
+    fmt::print("{}\n", line);
+  }
+  if (!out.empty()) {
+    std::error_code error;
+    fs::create_directories(out, error);
+    if (!fs::is_directory(out)) {
+      throw InputError(fmt::format("{}: is not a folder and cannot become one", out));
+    }
+    analysis::write_comparison(comparison, out);
+    fmt::print("comparison: {}\n", (fs::path(out) / "comparison.html").string());
+  }
+  return 0;
+}
+
+}  // namespace haptrial::experiments

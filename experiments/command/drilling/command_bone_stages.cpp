@@ -1,0 +1,29 @@
+#include <fmt/format.h>
+
+#include "analysis/files/staging.h"
+#include "core/base/error.h"
+#include "core/render/gl/image.h"
+#include "experiments/command/arguments.h"
+#include "experiments/command/commands.h"
+#include "protocols/bone_drilling/display/stage_stills.h"
+
+namespace haptrial::experiments {
+
+int bone_stages(const BoneStagesOptions& options) {
+  namespace fs = std::filesystem;
+  const int count = checked_number("--count", options.count, 2, 20);
+  if (fs::exists(options.out)) {
+    throw InputError(fmt::format("{}: exists already; choose a new folder", options.out));
+  }
+  const protocols::BoneDefinition definition = protocols::load_bone_definition(options.definition);
+  const std::vector<protocols::StageStill> stills = protocols::stage_stills(definition, count);
+  const analysis::Staging staging(options.out);
+  for (std::size_t stage = 0; stage < stills.size(); ++stage) {
+    render::write_png(staging.path() / fmt::format("stage-{}.png", stage + 1), stills[stage].image);
+  }
+  staging.publish();
+  fmt::print("{} stills: {}\n", stills.size(), options.out);
+  return 0;
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,66 @@
+#include "experiments/control/signals.h"
+
+#include <cerrno>
+#include <csignal>
+#include <initializer_list>
+
+#include "experiments/control/interrupt.h"
+#include "experiments/control/keyboard.h"
+#include "experiments/control/last_stop.h"
+
+namespace haptrial::experiments {
+namespace {
+
+extern "C" void on_signal(int signal) {
+  interrupt();
+  restore_terminal();
+  if (signal != SIGHUP) {  // a shell and the system may both tell of a closed terminal
+    std::signal(signal, stop_and_die);
+  }
+}
+
+extern "C" void stop_and_suspend(int) {
+  const int error = errno;
+  take_force_away();
+  ::raise(SIGSTOP);
+  errno = error;
+}
+
+void handle(int signal, void (*with)(int)) {
+  struct sigaction now {};
+  ::sigaction(signal, nullptr, &now);
+  if (now.sa_handler == SIG_DFL && (now.sa_flags & SA_SIGINFO) == 0) {
+    struct sigaction ours {};
+    ours.sa_handler = with;
+    ours.sa_flags = SA_RESTART;
+    ::sigaction(signal, &ours, nullptr);
+  }
+}
+
+}  // namespace
+
+void watch_for_interrupt() {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  if (std::signal(SIGHUP, on_signal) == SIG_IGN) {
+    std::signal(SIGHUP, SIG_IGN);  // nohup: the session is to outlive its terminal
+  }
+}
+
+void watch_fatal_signals() {
+  for (const int each :
+       {SIGQUIT, SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGTRAP, SIGXCPU, SIGUSR1,
+        SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGIO, SIGPWR, SIGSTKFLT}) {
+    handle(each, stop_and_die);
+  }
+  for (int each = SIGRTMIN; each <= SIGRTMAX; ++each) {
+    handle(each, stop_and_die);
+  }
+  for (const int each : {SIGTSTP, SIGTTIN, SIGTTOU}) {
+    handle(each, stop_and_suspend);
+  }
+  handle(SIGPIPE, SIG_IGN);  // a reader that leaves ends no session,
+  handle(SIGXFSZ, SIG_IGN);  // and a file that may not grow gets its sentence
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,14 @@
+#pragma once
+
+namespace haptrial::experiments {
+
+/// From now on SIGINT, SIGTERM and a closed terminal (SIGHUP, unless it was ignored) ask the
+/// program to stop; a second SIGINT or SIGTERM ends it at once, once the force is zero.
+void watch_for_interrupt();
+
+/// Every signal that would kill the program takes the force away first, and so does one that
+/// would suspend it (Ctrl-Z); SIGPIPE and SIGXFSZ are ignored. What is handled already stays.
+/// SIGKILL and SIGSTOP cannot be caught: there the device's own watchdog takes the force away.
+void watch_fatal_signals();
+
+}  // namespace haptrial::experiments

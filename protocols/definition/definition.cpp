@@ -1,0 +1,92 @@
+#include "protocols/definition/definition.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "core/base/definition/table.h"
+
+namespace haptrial::protocols {
+namespace {
+
+void read_devices(Table& root, Definition& setup) {
+  const auto read = [&root](const char* key, auto& into, auto reader) {
+    if (root.has(key)) {
+      Table table = root.table(key);
+      into = reader(table);
+    }
+  };
+  read("force_dimension", setup.force_dimension, device::read_force_dimension_parameters);
+  read("open_haptics", setup.open_haptics, device::read_open_haptics_parameters);
+  read("mouse", setup.mouse, device::read_mouse_parameters);
+}
+
+}  // namespace
+
+void read_common(Table& root, std::string_view file_name, Definition& definition) {
+  Table experiment = root.table("experiment");
+  Table envelope = root.table("envelope");
+  Table device = root.table("device");
+  Table hand = root.table("hand");
+  Table screen = root.table("screen");
+  Table texts = root.table("texts");
+  if (root.has("lab")) {
+    definition.lab = root.table("lab").text("use");
+  }
+  definition.text = root.source();
+  definition.file_name = std::filesystem::path(file_name).filename().string();
+  definition.name = experiment.text("name");
+  if (experiment.has("protocol")) {
+    definition.protocol = experiment.text("protocol");
+  }
+  definition.rate = experiment.number("rate", {100.0, 20000.0}, "Hz");
+  definition.envelope = device::read_envelope_limits(envelope);
+  definition.device = device::read_virtual_device_parameters(device);
+  const bool cvode = hand.choice("integrator", {"exact", "cvode"}) == "cvode";
+  definition.integrator = cvode ? Integrator::kCvode : Integrator::kExact;
+  definition.hand = subject::read_hand_parameters(hand);
+  if (!envelope.has("holding_force")) {  // friction holds on both sides of a standstill
+    definition.envelope.holding_force =
+        std::max(definition.envelope.holding_force, 5.0 * definition.hand.coulomb_friction);
+  }
+  definition.screen = read_screen_options(screen);
+  definition.texts = read_session_texts(texts);
+  read_devices(root, definition);
+}
+
+void check_common(Table& root, const Definition& definition) {
+  Table envelope = root.table("envelope");
+  if (definition.envelope.max_force > definition.device.max_force) {
+    envelope.reject("max_force", fmt::format("{}", definition.envelope.max_force),
+                    fmt::format("at most device.max_force, {} [N]", definition.device.max_force));
+  }
+  if (definition.envelope.workspace_radius > definition.device.workspace_radius) {
+    envelope.reject(
+        "workspace_radius", fmt::format("{}", definition.envelope.workspace_radius),
+        fmt::format("at most device.workspace_radius, {} [m]", definition.device.workspace_radius));
+  }
+  const bool plain =
+      std::all_of(definition.name.begin(), definition.name.end(),
+                  [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; });
+  if (!plain) {
+    root.table("experiment")
+        .reject("name", fmt::format("'{}'", definition.name), "letters, digits, '-' and '_'");
+  }
+}
+
+void reject_speed(Table& root, const Definition& d, const char* table, const char* key,
+                  double speed) {
+  if (speed > d.envelope.max_speed) {
+    root.table(table).reject(
+        key, fmt::format("{:g}", speed),
+        fmt::format("at most envelope.max_speed, {:g} [m/s]", d.envelope.max_speed));
+  } else if (speed / d.rate > d.envelope.max_jump) {
+    root.table(table).reject(
+        key, fmt::format("{:g}, which is {:g} m in a tick", speed, speed / d.rate),
+        fmt::format("at most envelope.max_jump in a tick, {:g} [m]", d.envelope.max_jump));
+  }
+}
+
+}  // namespace haptrial::protocols

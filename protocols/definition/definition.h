@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/device/envelope.h"
+#include "core/device/mouse.h"
+#include "core/device/vendor/force_dimension.h"
+#include "core/device/vendor/open_haptics.h"
+#include "core/device/virtual_device.h"
+#include "core/render/trial/trial_display_style.h"
+#include "core/subject/hand_parameters.h"
+#include "protocols/definition/schedule.h"
+#include "protocols/definition/screen_options.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::protocols {
+
+enum class Integrator { kExact, kCvode };
+
+/// What a definition file states, read and valid as a whole: here what every protocol's does, loop,
+/// plan, devices, hand, screen. A protocol derives its own, and answers what is asked of it.
+struct Definition {
+  virtual ~Definition() = default;
+
+  std::string protocol;   // its name, as in [experiment]
+  std::string text;       // the file, unchanged, with its lab file's behind it (lab_file.h)
+  std::string file_name;  // without folders
+  std::string lab;        // as [lab] names it; empty: none
+  std::string name;
+  double rate{1000.0};  // of the servo loop [Hz]
+  Design design;
+  double recovery{3.0};  // without force after an abort [s]
+  device::EnvelopeLimits envelope;
+  device::VirtualDeviceParameters device;
+  subject::HandParameters hand;
+  Integrator integrator{Integrator::kExact};
+  render::TrialDisplayStyle display;
+  ScreenOptions screen;
+  SessionTexts texts;
+  // Of the devices that may take the virtual one's place; a table that is left out has its
+  // defaults.
+  device::ForceDimensionParameters force_dimension{};
+  device::OpenHapticsParameters open_haptics{};
+  device::MouseParameters mouse{};
+
+  /// How many devices a session drives, 1 to kMostDevices.
+  virtual int devices() const { return 1; }
+  /// Lines that say what the definition asks for.
+  virtual std::vector<std::string> description() const = 0;
+  /// Lines on how firmly the loop lets the devices be held, for a check of a device.
+  virtual std::vector<std::string> margins() const { return {}; }
+  /// Sentences on what is allowed but spoils the data without a word. None where all is well.
+  virtual std::vector<std::string> warnings() const { return {}; }
+  /// What a session leaves out when its participant is virtual, in sentences.
+  virtual std::vector<std::string> left_out_of_dry_runs() const { return {}; }
+  /// Time of a participant's session at most, roughly, without breaks [s]. @param trials  of it
+  virtual double longest(int trials) const = 0;
+
+  /// Whether there is a force that the participant is to follow or to recall.
+  virtual bool has_target() const { return true; }
+  /// What the participant reads before the first trial.
+  virtual std::string instructions() const { return texts.instructions; }
+  /// The functions that the held keys of the participant's window stand for, a bit each: what
+  /// DeviceReading::keys has. @param held  codes of the window
+  virtual std::uint32_t functions_of(const std::vector<int>& held) const {
+    static_cast<void>(held);
+    return 0;
+  }
+};
+
+/// Reads what every protocol has, but design, recovery and display, which protocols say in their
+/// own ways.
+void read_common(Table& root, std::string_view file_name, Definition& definition);
+
+/// Notes what no table can see alone.
+void check_common(Table& root, const Definition& definition);
+
+/// Notes a speed that the envelope ends, either as such or as a jump within a tick.
+void reject_speed(Table& root, const Definition& definition, const char* table, const char* key,
+                  double speed);
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,79 @@
+#include "protocols/definition/groups.h"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "core/base/error.h"
+
+namespace haptrial::protocols {
+namespace {
+
+constexpr const char* kNovices = "novices";
+constexpr const char* kEverybody = "participants";
+
+std::optional<int> number_at_end(const std::string& subject) {
+  const auto letter = subject.find_last_not_of("0123456789");
+  const std::string digits = subject.substr(letter == std::string::npos ? 0 : letter + 1);
+  constexpr std::size_t kLongest = 5;
+  return digits.empty() || digits.size() > kLongest ? std::nullopt
+                                                    : std::optional<int>(std::stoi(digits));
+}
+
+}  // namespace
+
+std::vector<StudyGroup> study_groups(std::string_view definition, std::string_view file_name) {
+  toml::table root;
+  try {
+    root = toml::parse(definition);
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}: is not TOML: {}", file_name, error.description()));
+  }
+  std::vector<std::pair<toml::source_position, StudyGroup>> found;
+  if (const toml::table* groups = root["groups"].as_table()) {
+    for (const auto& [key, value] : *groups) {
+      const auto count = value.value<std::int64_t>();
+      constexpr std::int64_t kMost = 10000;
+      if (!value.is_integer() || *count < 1 || *count > kMost) {
+        throw InputError(
+            fmt::format("{}: groups.{} is not a number of participants; allowed: 1 to {}",
+                        file_name, key.str(), kMost));
+      }
+      found.push_back({key.source().begin,
+                       {std::string(key.str()), static_cast<int>(*count), key.str() != kNovices}});
+    }
+  }
+  std::sort(found.begin(), found.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<StudyGroup> result;
+  for (auto& [position, group] : found) {
+    result.push_back(std::move(group));
+  }
+  if (result.empty()) {
+    result.push_back({kEverybody, 0, false});
+  }
+  return result;
+}
+
+std::string group_of(const std::vector<StudyGroup>& groups, const std::string& subject) {
+  if (groups.size() == 1) {
+    return groups.front().name;
+  }
+  const std::optional<int> number = number_at_end(subject);
+  int last = 0;
+  for (const StudyGroup& group : groups) {
+    last += group.participants;
+    if (number && *number >= 1 && *number <= last) {
+      return group.name;
+    }
+  }
+  throw InputError(
+      fmt::format("participant {} belongs to no group; allowed: an identifier that ends in a "
+                  "number from 1 to {}",
+                  subject, last));
+}
+
+}  // namespace haptrial::protocols

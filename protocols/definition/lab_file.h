@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "core/base/definition/table.h"
+
+namespace haptrial::protocols {
+
+/// Loads a definition, and the lab file that it may name, which holds the tables of a laboratory's
+/// machines (machine_tables()) and nothing of the study:
+///
+///     [lab]
+///     use = "lab.toml"   # a path from the definition
+///
+/// The lab file's text follows the definition's, so that source() is a definition that needs no
+/// other file: session files keep it so.
+/// @throws InputError as Table::load() does for either file, and when the lab file holds another
+/// table, one that the definition has as well, or a key outside a table.
+Table load_with_lab(const std::filesystem::path& definition);
+
+/// The lab file that a definition's text names; empty if none, or if the text is not TOML.
+std::string lab_of(std::string_view definition);
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,107 @@
+#include "protocols/definition/schedule.h"
+
+#include <fmt/format.h>
+
+#include <numeric>
+#include <set>
+
+#include "core/base/definition/table.h"
+#include "core/base/random.h"
+
+namespace haptrial::protocols {
+
+Design read_design(Table& table) {
+  Design d;
+  d.participants = static_cast<int>(table.integer("participants", 1, 10000));
+  d.trials = static_cast<int>(table.integer("trials", 1, 100000));
+  d.repetitions = static_cast<int>(table.integer("repetitions", 1, 1000));
+  d.break_after = static_cast<int>(table.integer("break_after", 0, 100000));
+  d.break_duration = table.number("break_duration", {0.0, 86400.0}, "s");
+  d.practice = table.has("practice") ? static_cast<int>(table.integer("practice", 0, 100)) : 0;
+  d.conditions = table.texts("conditions");
+
+  const int group = d.repetitions * static_cast<int>(d.conditions.size());
+  if (group > 0 && d.trials % group != 0) {
+    table.reject("trials", fmt::format("{}", d.trials),
+                 fmt::format("a multiple of {} ({} repetitions of {} conditions)", group,
+                             d.repetitions, d.conditions.size()));
+  }
+  if (d.break_after >= d.trials) {
+    table.reject("break_after", fmt::format("{}", d.break_after),
+                 fmt::format("a whole number below the {} trials, or 0 for no break", d.trials));
+  } else if (d.break_after % d.repetitions != 0) {
+    table.reject("break_after", fmt::format("{}", d.break_after),
+                 fmt::format("a multiple of the {} repetitions of a block", d.repetitions));
+  }
+  if (std::set<std::string>(d.conditions.begin(), d.conditions.end()).size() !=
+      d.conditions.size()) {
+    table.reject("conditions", "names a condition twice; name each condition once");
+  }
+  return d;
+}
+
+std::vector<std::vector<int>> williams_rows(int n) {
+  // First row 0, n-1, 1, n-2, ...; the others add a constant modulo n.
+  std::vector<int> first(n);
+  for (int place = 0; place < n; ++place) {
+    first[place] = place % 2 == 0 ? place / 2 : n - 1 - place / 2;
+  }
+  std::vector<std::vector<int>> rows;
+  for (int shift = 0; shift < n; ++shift) {
+    std::vector<int> row(n);
+    for (int place = 0; place < n; ++place) {
+      row[place] = (first[place] + shift) % n;
+    }
+    rows.push_back(row);
+  }
+  if (n % 2 == 1 && n > 1) {  // an odd number needs the mirror images as well
+    for (int shift = 0; shift < n; ++shift) {
+      rows.emplace_back(rows[shift].rbegin(), rows[shift].rend());
+    }
+  }
+  return rows;
+}
+
+namespace {
+
+std::vector<int> shuffled_rows(std::size_t count, std::uint64_t seed, int group) {
+  std::vector<int> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  RandomStream stream(seed, fmt::format("order of group {}", group));
+  for (std::size_t i = count - 1; i > 0; --i) {
+    std::swap(order[i], order[stream.below(i + 1)]);
+  }
+  return order;
+}
+
+}  // namespace
+
+std::vector<PlannedTrial> plan_trials(const Design& design, int participant,
+                                      std::uint64_t study_seed, std::uint64_t session_seed) {
+  const int n = static_cast<int>(design.conditions.size());
+  const auto rows = williams_rows(n);
+  std::vector<PlannedTrial> plan;
+  for (const std::string& condition : design.conditions) {
+    for (int trial = 1; trial <= design.practice; ++trial) {
+      const std::uint64_t seed =
+          derived_seed(session_seed, fmt::format("practice {} {}", condition, trial));
+      const auto block = -static_cast<std::int32_t>(plan.size()) - 1;
+      plan.push_back({trial, block, 1, condition, seed, true});
+    }
+  }
+  const auto practice = static_cast<std::int32_t>(plan.size());
+  for (int block = 0; block < design.blocks(); ++block) {
+    const int group = block / n;
+    const auto order = shuffled_rows(rows.size(), study_seed, group);
+    const auto& row = rows[order[participant % static_cast<int>(rows.size())]];
+    const std::string& condition = design.conditions[row[block % n]];
+    const std::uint64_t seed = derived_seed(session_seed, fmt::format("block {}", block + 1));
+    for (int repetition = 1; repetition <= design.repetitions; ++repetition) {
+      plan.push_back({static_cast<std::int32_t>(plan.size()) - practice + 1, block + 1, repetition,
+                      condition, seed, false});
+    }
+  }
+  return plan;
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/render/flat/text_screen.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::protocols {
+
+/// When the square for a photodiode is white; otherwise it is black.
+enum class Photodiode : std::uint8_t {
+  kOff,         // no square
+  kEveryFrame,  // every other frame
+  kRun,         // while the participant runs along the path
+};
+
+/// The participant's screen.
+struct ScreenOptions {
+  std::string title{"haptrial"};
+  bool full_screen{true};  // else a window of the size in [display]
+  int monitor{0};          // from 0, the primary one
+  bool refresh_lock{true};
+  Photodiode photodiode{Photodiode::kOff};
+  bool participant_steers{false};  // by its keys: start, pause, repeat, skip, clear, abort
+};
+
+/// What the participant reads. The first line of a text is its title.
+struct SessionTexts {
+  std::string instructions;  // before the first trial
+  std::string practice;      // before the practice trials
+  std::string rest;          // during a break, above the countdown
+  std::string thanks;        // at the end
+  std::string stopped{"Stopped\nThe forces are off. Please wait for the experimenter."};
+  std::string paused{"A short pause\nThe session continues in a moment."};
+  std::string recovering{// after a pass that was aborted without a fault
+                         "One moment\nThe forces are off for a few seconds. Hold the handle "
+                         "loosely: it will guide your hand to the start."};
+  std::string limit{
+      // below the instructions
+      "A square in the upper right corner shows that the device is at its force limit."};
+  std::string begin{"The experimenter will start"};  // the small line below a text that waits
+  std::string begin_alone{"Press Enter or the space bar to begin"};  // without an experimenter
+};
+
+/// Reads a [screen] table; every key is optional.
+///
+///     title         of the window
+///     full_screen   true or false
+///     monitor       from 0
+///     refresh_lock  true or false: whether drawing waits for the monitor
+///     participant_steers  true or false: whether keys of the participant's window do more than
+///     stop photodiode    "off", "frames" (white every other frame) or "run" (white during the run)
+ScreenOptions read_screen_options(Table& table);
+
+/// Reads a [texts] table. Required: instructions, practice, rest, thanks; the others have defaults.
+SessionTexts read_session_texts(Table& table);
+
+/// A page of a text. @param hint  how to go on; empty where nobody is asked to
+render::TextPage page_of(const std::string& text, const std::string& hint = "");
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,69 @@
+#include "protocols/definition/study_rules.h"
+
+namespace haptrial::protocols {
+namespace {
+
+constexpr std::string_view kVirtualDevice = "virtual";
+
+/// What participants read, on what, and how many are to come; what is asked of the data.
+DefinitionRules of_every_study() {
+  DefinitionRules rules;
+  rules.free = {"texts",
+                "lab",
+                "screen",
+                "force_dimension",
+                "open_haptics",
+                "mouse",
+                "design.participants",
+                "analysis.planned",
+                "analysis.reference"};
+  rules.ordered = {"groups"};  // the first participants belong to the first group
+  return rules;
+}
+
+/// What a person's session leaves unused: the virtual device, its hand and virtual participants.
+DefinitionRules of_people() {
+  return {.free = {"device", "hand", "subject", "pace", "drilling_hand", "virtual_surgeons"}};
+}
+
+/// What every device's guidance reckons with: the damping that is felt (handle_loop() of
+/// protocols/force_training/force_definition.cpp) and the envelope's holding force (read_common())
+/// follow from it.
+std::vector<BoundKey> felt_with_every_device() {
+  return {{"device.velocity_window"},
+          {"device.force_delay", "1"},
+          {"force_dimension.velocity_window", "0.008"},
+          {"hand.handle_mass"},
+          {"hand.coulomb_friction"}};
+}
+
+}  // namespace
+
+const std::vector<std::string>& machine_tables() {
+  static const std::vector<std::string> kTables{"device", "force_dimension", "mouse",
+                                                "open_haptics", "screen"};
+  return kTables;
+}
+
+DefinitionRules study_rules(Hand hand) {
+  DefinitionRules rules = of_every_study();
+  if (hand == Hand::kPerson) {
+    rules.add(of_people());
+  }
+  rules.bound = felt_with_every_device();
+  return rules;
+}
+
+DefinitionChanges study_changes(const record::SessionInfo& before, std::string_view definition,
+                                std::string_view device) {
+  const bool virtual_hand = before.device == kVirtualDevice || device == kVirtualDevice;
+  return definition_changes(before.definition, definition,
+                            study_rules(virtual_hand ? Hand::kVirtual : Hand::kPerson));
+}
+
+DefinitionChanges study_changes(const record::SessionInfo& before,
+                                const record::SessionInfo& after) {
+  return study_changes(before, after.definition, after.device);
+}
+
+}  // namespace haptrial::protocols

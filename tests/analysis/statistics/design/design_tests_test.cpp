@@ -1,0 +1,357 @@
+// The tests that a design calls for, against the procedures called by hand.
+#include "analysis/statistics/design/design_tests.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "analysis/statistics/base/p_adjust.h"
+#include "analysis/statistics/variance/factorial_anova.h"
+#include "analysis/statistics/variance/mixed_anova.h"
+#include "analysis/statistics/variance/repeated_anova.h"
+#include "analysis/statistics/variance/welch_anova.h"
+#include "core/base/error.h"
+#include "core/base/random.h"
+#include "tests/support/message_of.h"
+
+namespace haptrial::analysis {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr Resampling kNone{1, "", 0, 1};
+
+/// Values of participants in cells, one or two for each cell, from a named stream.
+class Made {
+ public:
+  explicit Made(const char* stream) : random_(5, stream) {}
+
+  /// @returns the mean of the cell
+  double add(const std::string& subject, const std::vector<std::string>& levels, double mean) {
+    const double a = mean + random_.normal();
+    const double b = mean + random_.normal();
+    observations.push_back({subject, levels, a});
+    observations.push_back({subject, levels, b});
+    return a + 0.5 * (b - a);
+  }
+
+  std::vector<Observation> observations;
+
+ private:
+  RandomStream random_;
+};
+
+std::string person(const char* group, int i) { return group + std::to_string(10 + i); }
+
+void expect_effect(const Defined<EffectTest>& found, const std::string& factor, double f,
+                   double p) {
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->factor, factor);
+  EXPECT_NEAR(found->f, f, 1e-10 * f);
+  EXPECT_NEAR(found->p, p, 1e-10);
+}
+
+TEST(DesignTable, FindsWhatVariesWithinAndBetween) {
+  Made made("table");
+  for (int i = 0; i < 3; ++i) {
+    for (const char* level : {"slow", "fast"}) {
+      made.add(person("N", i), {"novice", level}, 1.0);
+      made.add(person("E", i), {"expert", level}, 2.0);
+    }
+  }
+  const DesignTable table = design_table(made.observations, {"group", "speed"}, {"slow"});
+  EXPECT_FALSE(table.factors[0].within);
+  EXPECT_TRUE(table.factors[1].within);
+  EXPECT_THAT(table.names,
+              ElementsAre("expert, slow", "expert, fast", "novice, slow", "novice, fast"));
+  EXPECT_EQ(table.participants(0), 3u);
+  EXPECT_EQ(table.counts[0], 6u);
+  EXPECT_EQ(table.complete().size(), 6u);
+  EXPECT_TRUE(table.crossed);
+}
+
+TEST(DesignTable, WhoLacksACellOfTheirOwnLevelsIsIncomplete) {
+  Made made("incomplete");
+  for (int i = 0; i < 3; ++i) {
+    made.add(person("N", i), {"novice", "slow"}, 1.0);
+    made.add(person("E", i), {"expert", "slow"}, 1.0);
+    made.add(person("E", i), {"expert", "fast"}, 1.0);
+    if (i > 0) {
+      made.add(person("N", i), {"novice", "fast"}, 1.0);
+    }
+  }
+  const DesignTable table = design_table(made.observations, {"group", "speed"});
+  const DesignTests tests = design_tests(table, {}, kNone);
+  EXPECT_THAT(tests.incomplete, ElementsAre("N10"));
+}
+
+TEST(DesignTests, BetweenParticipantsTakesWelchAndComparesDifferentPeople) {
+  Made made("between");
+  std::vector<std::vector<double>> groups(3);
+  const char* names[] = {"a", "b", "c"};
+  for (int g = 0; g < 3; ++g) {
+    for (int i = 0; i < 5 + g; ++i) {
+      groups[static_cast<std::size_t>(g)].push_back(
+          made.add(person(names[g], i), {names[g]}, 0.5 * g));
+    }
+  }
+  const DesignTable table = design_table(made.observations, {"condition"});
+  AnalysisPlan plan;
+  plan.tests = {{"a", "c", Tail::kLess}};
+  const DesignTests tests = design_tests(table, plan, {1, "", 999, 1});
+  EXPECT_EQ(tests.design, "between participants: condition (a, b, c)");
+  const auto welch = welch_anova(groups);
+  ASSERT_EQ(tests.effects.size(), 1u);
+  expect_effect(tests.effects[0], "condition", welch->f, welch->p);
+  const SideTest& planned = tests.planned.tests[0];
+  EXPECT_FALSE(planned.paired);
+  EXPECT_EQ(planned.count_a, 5u);
+  EXPECT_EQ(planned.count_b, 7u);
+  EXPECT_NEAR(planned.t->p, welch_t_test(groups[0], groups[2], Tail::kLess)->p, 1e-12);
+  EXPECT_NEAR(planned.ranks->p, mann_whitney(groups[0], groups[2], Tail::kLess)->p, 1e-12);
+  EXPECT_TRUE(planned.permutation->exact);  // 792 arrangements
+  EXPECT_EQ(planned.permutation->arrangements, 792u);
+  EXPECT_LT(planned.bootstrap->low, planned.t->difference);
+  EXPECT_GT(planned.bootstrap->high, planned.t->difference);
+  ASSERT_EQ(tests.families.size(), 1u);
+  EXPECT_EQ(tests.families[0].tests.size(), 3u);
+}
+
+TEST(DesignTests, GroupsOfPeopleAndConditionsWithinTakeTheMixedAnalysis) {
+  Made made("mixed");
+  std::vector<std::vector<std::vector<double>>> groups(2);
+  for (int g = 0; g < 2; ++g) {
+    for (int i = 0; i < 4 + 2 * g; ++i) {
+      auto& row = groups[static_cast<std::size_t>(g)].emplace_back();
+      for (const char* level : {"x", "y", "z"}) {
+        row.push_back(made.add(person(g == 0 ? "E" : "N", i), {level, g == 0 ? "expert" : "novice"},
+                               g + (level[0] == 'z' ? 1.0 : 0.0)));
+      }
+    }
+  }
+  // The factor within comes first here: which is which is found, not given.
+  const DesignTable table = design_table(made.observations, {"condition", "group"});
+  const DesignTests tests = design_tests(table, {}, kNone);
+  const auto mixed = mixed_anova(groups, Squares::kMarginal);
+  ASSERT_EQ(tests.effects.size(), 3u);
+  expect_effect(tests.effects[0], "group", mixed->group->f, mixed->group->p);
+  expect_effect(tests.effects[1], "condition", mixed->condition->f,
+                mixed->condition->p_greenhouse_geisser);
+  expect_effect(tests.effects[2], "group × condition", mixed->interaction->f,
+                mixed->interaction->p_greenhouse_geisser);
+  // x-y, x-z, y-z; expert-novice; and cells: 3 pairs in each of 2 groups, 3 between groups.
+  ASSERT_EQ(tests.families.size(), 3u);
+  EXPECT_EQ(tests.families[0].tests.size(), 3u);
+  EXPECT_EQ(tests.families[1].tests.size(), 1u);
+  EXPECT_EQ(tests.families[2].tests.size(), 9u);
+  EXPECT_TRUE(tests.families[0].tests[0].paired);
+  EXPECT_FALSE(tests.families[1].tests[0].paired);
+}
+
+TEST(DesignTests, TwoFactorsWithinTakeTheTwoWayAnalysis) {
+  Made made("two within");
+  std::vector<std::vector<double>> rows;
+  for (int i = 0; i < 7; ++i) {
+    auto& row = rows.emplace_back();
+    for (const char* a : {"now", "soon"}) {
+      for (const char* b : {"x", "y", "z"}) {
+        row.push_back(made.add(person("P", i), {a, b}, b[0] == 'z' ? 1.0 : 0.0));
+      }
+    }
+  }
+  const DesignTable table = design_table(made.observations, {"delay", "shape"});
+  AnalysisPlan plan;
+  plan.tests = {{"x", "z", Tail::kLess}, {"now, x", "soon, x", Tail::kTwoSided}};
+  const DesignTests tests = design_tests(table, plan, kNone);
+  const auto both = two_way_repeated_measures_anova(rows, 2);
+  ASSERT_EQ(tests.effects.size(), 3u);
+  expect_effect(tests.effects[0], "delay", both->a->f, both->a->p_greenhouse_geisser);
+  expect_effect(tests.effects[1], "shape", both->b->f, both->b->p_greenhouse_geisser);
+  expect_effect(tests.effects[2], "delay × shape", both->interaction->f,
+                both->interaction->p_greenhouse_geisser);
+  std::vector<double> x, z;  // a level is the mean of its cells
+  for (const auto& row : rows) {
+    x.push_back(0.5 * (row[0] + row[3]));
+    z.push_back(0.5 * (row[2] + row[5]));
+  }
+  EXPECT_NEAR(tests.planned.tests[0].t->t, paired_t_test(x, z, Tail::kLess)->t, 1e-9);
+  EXPECT_EQ(tests.planned.tests[1].t->df, 6.0);
+  const std::vector<double> p{tests.planned.tests[0].t->p, tests.planned.tests[1].t->p};
+  EXPECT_EQ(*tests.planned.tests[0].holm, holm_adjusted(p)[0]);
+}
+
+TEST(DesignTests, TwoFactorsBetweenTakeTheTwoWayAnalysis) {
+  Made made("two between");
+  std::vector<std::vector<double>> cells;
+  int count = 3;
+  for (const char* a : {"now", "soon"}) {
+    for (const char* b : {"x", "y"}) {
+      auto& cell = cells.emplace_back();
+      for (int i = 0; i < count; ++i) {
+        cell.push_back(made.add(std::string(a) + b + std::to_string(i), {a, b}, 0.0));
+      }
+      ++count;
+    }
+  }
+  const DesignTests tests =
+      design_tests(design_table(made.observations, {"delay", "shape"}), {}, kNone);
+  const auto both = two_way_anova(cells, 2);
+  ASSERT_EQ(tests.effects.size(), 3u);
+  expect_effect(tests.effects[1], "shape", both->b->f, both->b->p);
+}
+
+TEST(DesignTests, LevelsAcrossUnequalGroupsAreWeighedAlike) {
+  // x is 1 above y in each group, but the groups differ by 10 and have x and y in unequal numbers:
+  // pooled people would have x below y.
+  Made made("confounded");
+  const auto add = [&](const char* level, const char* group, int count, double mean) {
+    for (int i = 0; i < count; ++i) {
+      made.add(fmt::format("{}{}{}", level, group, i), {level, group}, mean);
+    }
+  };
+  add("x", "low", 9, 1.0);
+  add("y", "low", 3, 0.0);
+  add("x", "high", 3, 11.0);
+  add("y", "high", 9, 10.0);
+  AnalysisPlan plan;
+  plan.tests = {{"x", "y", Tail::kGreater}};
+  const DesignTests tests =
+      design_tests(design_table(made.observations, {"level", "group"}), plan, kNone);
+  const SideTest& test = tests.planned.tests[0];
+  EXPECT_NEAR(test.t->difference, 1.0, 1.2);
+  EXPECT_GT(test.t->difference, 0.0);
+  EXPECT_LT(test.t->error, 1.0);
+  EXPECT_THAT(test.ranks.because(), HasSubstr("different size"));
+}
+
+TEST(DesignTests, StrataOfOneAreTheSimpleTests) {
+  const std::vector<double> a{1.0, 4.0, 2.5, 3.0};
+  const std::vector<double> b{2.0, 6.0, 5.5};
+  const auto welch = welch_t_test(a, b, Tail::kLess);
+  const auto one = stratified_t_test({a}, {b}, Tail::kLess);
+  EXPECT_NEAR(one->t, welch->t, 1e-12);
+  EXPECT_NEAR(one->df, welch->df, 1e-12);
+  EXPECT_NEAR(one->p, welch->p, 1e-12);
+}
+
+TEST(DesignTests, WhoHasBothSidesIsCompared) {
+  // Nobody has all three conditions; each pair has its own people.
+  Made made("partly");
+  for (int i = 0; i < 4; ++i) {
+    made.add(person("A", i), {"c1"}, 0.0);
+    made.add(person("A", i), {"c2"}, 0.0);
+    made.add(person("B", i), {"c1"}, 0.0);
+    made.add(person("B", i), {"c3"}, 0.0);
+  }
+  const DesignTests tests = design_tests(design_table(made.observations, {"c"}), {}, kNone);
+  EXPECT_FALSE(tests.effects[0]);
+  ASSERT_EQ(tests.families[0].tests.size(), 3u);
+  EXPECT_TRUE(tests.families[0].tests[0].paired);
+  EXPECT_EQ(tests.families[0].tests[0].count_a, 4u);
+  EXPECT_FALSE(tests.families[0].tests[2].paired);  // c2 and c3: different people
+}
+
+TEST(DesignTests, AFactorOfOneLevelVariesNothing) {
+  Made made("one level");
+  for (int i = 0; i < 4; ++i) {
+    made.add(person("A", i), {"expert", "all"}, 0.0);
+    made.add(person("B", i), {"novice", "all"}, 1.0);
+  }
+  const DesignTests tests =
+      design_tests(design_table(made.observations, {"group", "condition"}), {}, kNone);
+  EXPECT_EQ(tests.design, "between participants: group (expert, novice)");
+  ASSERT_TRUE(tests.effects[0]);
+  EXPECT_EQ(tests.effects[0]->factor, "group");
+  EXPECT_EQ(tests.families.size(), 1u);
+}
+
+TEST(DesignTests, AnExactPIsNeverAboveOne) {
+  Made made("separated");
+  for (int i = 0; i < 2; ++i) {
+    made.observations.push_back({person("A", i), {"a"}, 11.0 + i});
+    made.observations.push_back({person("B", i), {"b"}, 1.0 + i});
+  }
+  AnalysisPlan plan;
+  plan.tests = {{"a", "b", Tail::kLess}};
+  const DesignTests tests = design_tests(design_table(made.observations, {"c"}), plan, kNone);
+  EXPECT_EQ(*tests.planned.tests[0].ranks_holm, 1.0);
+}
+
+TEST(DesignTests, CombinationsThatNobodyHadAreComparedTwoByTwo) {
+  Made made("hole");
+  for (int i = 0; i < 4; ++i) {
+    made.add(person("P", i), {"now", "x"}, 0.0);
+    made.add(person("P", i), {"now", "y"}, 0.0);
+    made.add(person("P", i), {"soon", "x"}, 0.0);
+  }
+  const DesignTests tests =
+      design_tests(design_table(made.observations, {"delay", "shape"}), {}, kNone);
+  ASSERT_EQ(tests.effects.size(), 1u);
+  EXPECT_THAT(tests.effects[0].because(), HasSubstr("combinations"));
+  ASSERT_EQ(tests.families.size(), 1u);
+  EXPECT_EQ(tests.families[0].tests.size(), 2u);
+  EXPECT_TRUE(tests.incomplete.empty());
+}
+
+TEST(DesignTests, OfNothingOrOfOneConditionAreNotDefined) {
+  EXPECT_FALSE(design_tests(design_table({}, {"condition"}), {}, kNone).effects[0]);
+  Made made("one");
+  made.add("P1", {"a"}, 0.0);
+  made.add("P2", {"a"}, 0.0);
+  const DesignTests tests = design_tests(design_table(made.observations, {"condition"}), {}, kNone);
+  EXPECT_THAT(tests.effects[0].because(), HasSubstr("fewer than two conditions"));
+  EXPECT_TRUE(tests.families.empty());
+}
+
+PlannedTest test_of(const std::string& text) {
+  return parse_analysis_plan({text}, "", "--planned").tests.at(0);
+}
+
+TEST(AnalysisPlan, IsReadAndWrittenAlike) {
+  for (const char* text : {"visual < haptic", "a b > c", "x, y != x, z"}) {
+    EXPECT_EQ(text_of(test_of(text)), text);
+  }
+  EXPECT_EQ(text_of(test_of(" a<b ")), "a < b");
+  for (const char* text : {"", "a", "a < ", " < b", "a < a", "a < b < c", "a < b != c", "a = b"}) {
+    EXPECT_THROW(test_of(text), InputError) << text;
+  }
+  EXPECT_EQ(parse_analysis_plan({}, "a", "--planned").reference, "a");
+}
+
+TEST(AnalysisPlan, APairStatedTwiceIsFoundWhateverItsDirection) {
+  EXPECT_EQ(parse_analysis_plan({"a < b", "b < c"}, "", "--planned").tests.size(), 2U);
+  EXPECT_EQ(test::message_of([] {
+              parse_analysis_plan({"a < b", "b > a"}, "", "--planned");
+            }),
+            "--planned compares a and b twice; state each pair once");
+}
+
+TEST(AnalysisPlan, NamesWithoutTrialsAreRefusedWithTheKnownOnes) {
+  Made made("plan");
+  for (int i = 0; i < 3; ++i) {
+    made.add(person("P", i), {"now", "x"}, 0.0);
+    made.add(person("P", i), {"soon", "x"}, 0.0);
+    made.add(person("P", i), {"now", "now"}, 0.0);
+    made.add(person("P", i), {"soon", "now"}, 0.0);
+  }
+  const DesignTable table = design_table(made.observations, {"delay", "shape"});
+  const auto problem = [&](const AnalysisPlan& plan) {
+    try {
+      check_plan(table, plan);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(problem({{{"soon", "x", Tail::kLess}}, ""}),
+            "the planned test \"soon < x\" compares trials with themselves");
+  EXPECT_THAT(problem({{{"sone", "x", Tail::kLess}}, ""}),
+              HasSubstr("names 'sone', which the data do not have; allowed: 'now, now'"));
+  EXPECT_THAT(problem({{{"now", "soon", Tail::kLess}}, ""}), HasSubstr("several factors"));
+  EXPECT_THAT(problem({{}, "late"}), HasSubstr("the reference condition names 'late'"));
+  EXPECT_EQ(problem({{{"now, x", "soon, x", Tail::kLess}}, ""}), "");
+}
+
+}  // namespace
+}  // namespace haptrial::analysis

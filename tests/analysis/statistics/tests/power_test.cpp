@@ -1,0 +1,114 @@
+#include "analysis/statistics/tests/power.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "analysis/statistics/tests/t_tests.h"
+#include "analysis/statistics/variance/anova.h"
+#include "core/base/random.h"
+#include "tests/analysis/statistics/normal_values.h"
+
+namespace haptrial::analysis {
+namespace {
+
+using test::normal_values;
+using testing::HasSubstr;
+using Values = std::vector<double>;
+
+TEST(Power, WithoutAnEffectIsAlpha) {
+  for (const auto design : {TDesign::kOneSample, TDesign::kTwoSample, TDesign::kPaired}) {
+    for (const bool one_tailed : {false, true}) {
+      EXPECT_NEAR(*t_power({design, 0.01, one_tailed}, 9.0, 0.0), 0.01, 1e-14);
+    }
+  }
+  EXPECT_NEAR(*anova_power({4, 0.05}, 9.0, 0.0), 0.05, 1e-14);
+}
+
+TEST(Power, IsTheShareOfTestsThatReject) {
+  RandomStream random(2006, "power");
+  constexpr int kStudies = 3000;
+  int t_tests = 0, pairs = 0, anovas = 0;
+  for (int i = 0; i < kStudies; ++i) {
+    const Values a = normal_values(random, 10, 1.0), b = normal_values(random, 10, 0.0);
+    t_tests += student_t_test(a, b, Tail::kTwoSided)->p < 0.05 ? 1 : 0;
+    // Differences of two values have the variance 2.
+    pairs += paired_t_test(a, b, Tail::kGreater)->p < 0.05 ? 1 : 0;
+    // Means 1, 0, 0: standard deviation sqrt(2) / 3.
+    anovas += one_way_anova({a, b, normal_values(random, 10, 0.0)})->p < 0.05 ? 1 : 0;
+  }
+  const auto near = [&](int count, double power) {
+    EXPECT_NEAR(static_cast<double>(count) / kStudies, power, 4.0 * std::sqrt(0.25 / kStudies));
+  };
+  near(t_tests, *t_power({TDesign::kTwoSample, 0.05, false}, 10.0, 1.0));
+  near(pairs, *t_power({TDesign::kPaired, 0.05, true}, 10.0, std::sqrt(0.5)));
+  near(anovas, *anova_power({3, 0.05}, 10.0, std::sqrt(2.0) / 3.0));
+}
+
+TEST(Power, OfTwoGroupsIsThatOfTheTwoSidedT) {
+  for (const double d : {0.1, 0.8, 2.0}) {
+    EXPECT_NEAR(*anova_power({2, 0.05}, 12.0, 0.5 * d),
+                *t_power({TDesign::kTwoSample, 0.05, false}, 12.0, d), 1e-13);
+  }
+}
+
+TEST(SampleSize, IsTheFirstThatSuffices) {
+  const TPlan plan{TDesign::kTwoSample, 0.05, false};
+  const auto size = t_sample_size(plan, 0.5, 0.8);
+  ASSERT_TRUE(size);
+  EXPECT_EQ(size->n, 64);  // Cohen 1988, table 2.4.1
+  EXPECT_GE(size->power, 0.8);
+  EXPECT_LT(*t_power(plan, 63.0, 0.5), 0.8);
+  EXPECT_NEAR(*t_power(plan, size->exact, 0.5), 0.8, 1e-13);
+  const auto groups = anova_sample_size({3, 0.05}, 0.25, 0.8);
+  EXPECT_EQ(groups->n, 53);
+  EXPECT_LT(*anova_power({3, 0.05}, 52.0, 0.25), 0.8);
+  EXPECT_EQ(t_sample_size(plan, -0.5, 0.8)->n, 64) << "a two-sided test looks both ways";
+  EXPECT_EQ(t_sample_size(plan, 60.0, 0.8)->n, 2);
+}
+
+TEST(Detectable, GivesBackTheEffect) {
+  const TPlan plan{TDesign::kPaired, 0.05, true};
+  EXPECT_NEAR(*t_detectable(plan, 12.0, *t_power(plan, 12.0, 0.77)), 0.77, 1e-12);
+  EXPECT_NEAR(*anova_detectable({4, 0.01}, 20.0, *anova_power({4, 0.01}, 20.0, 0.31)), 0.31, 1e-12);
+}
+
+TEST(Power, RisesWithSizeAndEffectUpToItsEnds) {
+  const TPlan plan;
+  double previous = 0.0;
+  for (const double n : {2.0, 3.0, 10.0, 100.0, 1e4, 1e7}) {
+    const double power = *t_power(plan, n, 0.3);
+    EXPECT_GE(power, previous);
+    EXPECT_LE(power, 1.0);
+    previous = power;
+  }
+  EXPECT_NEAR(*t_power(plan, 1e7, 100.0), 1.0, 1e-11);
+  EXPECT_NEAR(*anova_power({3, 0.05}, 1e7, 100.0), 1.0, 1e-11);
+}
+
+TEST(Power, SaysWhyItIsNotDefined) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const TPlan plan;
+  EXPECT_THAT(t_power(plan, 1.0, 0.5).because(), HasSubstr("participants"));
+  EXPECT_THAT(t_power(plan, nan, 0.5).because(), HasSubstr("participants"));
+  EXPECT_THAT(t_power(plan, 9.0, nan).because(), HasSubstr("effect"));
+  EXPECT_THAT(t_power({TDesign::kPaired, 0.0, false}, 9.0, 0.5).because(), HasSubstr("alpha"));
+  EXPECT_THAT(t_sample_size(plan, 0.0, 0.8).because(), HasSubstr("no effect"));
+  EXPECT_THAT(t_sample_size({TDesign::kPaired, 0.05, true}, -0.5, 0.8).because(),
+              HasSubstr("no effect"));
+  EXPECT_THAT(t_sample_size(plan, 0.5, 0.04).because(), HasSubstr("between alpha and 1"));
+  EXPECT_THAT(t_sample_size(plan, 0.5, 1.0).because(), HasSubstr("between alpha and 1"));
+  EXPECT_THAT(t_sample_size(plan, 1e-5, 0.8).because(), HasSubstr("ten million"));
+  EXPECT_THAT(anova_sample_size({3, 0.05}, 1e-5, 0.8).because(), HasSubstr("ten million"));
+  EXPECT_THAT(anova_power({1, 0.05}, 9.0, 0.5).because(), HasSubstr("two groups"));
+  EXPECT_THAT(anova_power({3, 0.05}, 9.0, -0.5).because(), HasSubstr("below 0"));
+  EXPECT_THAT(anova_sample_size({3, 0.05}, 0.0, 0.8).because(), HasSubstr("no effect"));
+  EXPECT_THAT(t_detectable(plan, 9.0, 0.01).because(), HasSubstr("between alpha and 1"));
+  EXPECT_THAT(anova_detectable({3, 0.05}, 1.0, 0.8).because(), HasSubstr("participants"));
+}
+
+}  // namespace
+}  // namespace haptrial::analysis

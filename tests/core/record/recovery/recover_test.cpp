@@ -1,0 +1,227 @@
+#include "core/record/recovery/recover.h"
+#include "core/base/files/file_text.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+
+#include "core/base/error.h"
+#include "core/base/random.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/table/schema.h"
+#include "core/record/write/session_writer.h"
+#include "tests/core/record/session_fixture.h"
+
+namespace haptrial::record {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+
+constexpr std::uint64_t kRows = 60000;
+
+/// A live session of a minute, and how long its file was when so many rows were in it.
+struct Original {
+  TemporaryFolder folder;
+  std::vector<Sample> samples = test::hand_motion(kRows, 5);
+  std::vector<std::pair<std::size_t, std::uint64_t>> lengths;  // [bytes] -> rows
+  std::string bytes;
+
+  Original() {
+    SessionInfo info = test::example_info();
+    info.clock = "real";
+    for (int i = 0; i < 300; ++i) info.definition += "# line " + std::to_string(i) + "\n";
+    SessionWriter writer(folder / "a.h5", info);
+    writer.add_stimulus(std::vector<StimulusRow>{{1, 0.0, {0.1, 0, 0}, 1.0}});
+    for (std::uint64_t at = 0; at < kRows; at += 1000) {
+      writer.append(std::span(samples).subspan(at, 1000));
+      if (at % 5000 == 4000) {
+        writer.add_pass({1, "haptic", Phase::kTest, 1, 1, 7, at - 4000, at + 999, {}});
+        writer.add_event({static_cast<std::int64_t>(at), "note", std::string(300, 'n')});
+        writer.add_frames(std::vector<FrameRow>{{static_cast<std::int64_t>(at) + 1, 2, 0}});
+        writer.sync();
+        lengths.emplace_back(fs::file_size(folder / "a.h5.partial"), at + 1000);
+      } else {
+        writer.flush();
+      }
+    }
+    writer.set_timing(std::vector<TimingRow>{{0, 1, 2, 3, 4}}, {kRows, 1, 0});
+    writer.close();
+    bytes = file_text(folder / "a.h5");
+  }
+
+  /// Rows that were in the file when it was no longer than this.
+  std::uint64_t rows_within(std::size_t length) const {
+    std::uint64_t rows = 0;
+    for (const auto& [bytes_then, rows_then] : lengths) {
+      if (bytes_then <= length) rows = rows_then;
+    }
+    return rows;
+  }
+
+  /// Recovers the bytes and checks that every row that came back is one that was recorded.
+  Recovery recover(const std::string& damaged) const {
+    fs::remove(folder / "out.h5");
+    std::ofstream(folder / "damaged.h5", std::ios::binary) << damaged;
+    const Recovery found = recover_session(folder / "damaged.h5", folder / "out.h5");
+    EXPECT_EQ(fs::exists(folder / "out.h5"), found.anything());
+    if (!found.anything()) return found;
+    const SessionReader reader(folder / "out.h5");
+    EXPECT_EQ(reader.sample_count(), found.samples);
+    EXPECT_EQ(reader.passes().size(), found.passes);
+    for (const Sample& sample : reader.samples(0, found.samples)) {
+      const bool good =
+          sample.sequence < kRows && test::same(sample, test::on_file(samples[sample.sequence]));
+      EXPECT_TRUE(good) << "row " << sample.sequence;
+      if (!good) break;
+    }
+    check_session(reader);
+    return found;
+  }
+};
+
+const Original& original() {
+  static const Original once;
+  return once;
+}
+
+TEST(RecoverTest, AWholeFileComesBackWhole) {
+  const Recovery found = original().recover(original().bytes);
+  EXPECT_EQ(found.samples, kRows);
+  EXPECT_EQ(found.missing, 0u);
+  EXPECT_EQ(found.passes, kRows / 5000);
+  EXPECT_EQ(found.passes_cut, 0u);
+  EXPECT_EQ(found.stimulus_blocks, 1u);
+  EXPECT_EQ(found.frames, kRows / 5000);
+  EXPECT_TRUE(found.info);
+  EXPECT_TRUE(found.ended);
+  const SessionReader before(original().folder / "a.h5");
+  const SessionReader after(original().folder / "out.h5");
+  EXPECT_EQ(after.info().definition, before.info().definition);
+  EXPECT_EQ(after.info().seed, before.info().seed);
+  EXPECT_EQ(after.info().device_max_force, 8.5);
+  EXPECT_EQ(after.info().participant.notes, "trägt Brille");
+  EXPECT_EQ(after.timing_summary()->overruns, 1u);
+  ASSERT_EQ(after.events().size(), before.events().size() + 1);
+  EXPECT_EQ(after.events().back().kind, "recovered");
+  EXPECT_EQ(after.events()[3].text, before.events()[3].text);
+}
+
+TEST(RecoverTest, CutAtFiftyLengthsEverythingBeforeTheCutComesBack) {
+  const Original& from = original();
+  RandomStream random(1, "cuts");
+  double sum = 0.0;
+  for (int i = 0; i < 50; ++i) {
+    const std::size_t length = random.below(from.bytes.size());
+    const Recovery found = from.recover(from.bytes.substr(0, length));
+    const std::uint64_t before = from.rows_within(length);
+    ASSERT_GE(found.samples, before) << length << " bytes";
+    if (before > 0) {
+      const Sample last = SessionReader(from.folder / "out.h5").samples(before - 1, 1).front();
+      EXPECT_EQ(last.sequence, before - 1) << length << " bytes: a gap before the cut";
+    }
+    const double whole = static_cast<double>(kRows) * static_cast<double>(length) /
+                         static_cast<double>(from.bytes.size());
+    const double fraction = static_cast<double>(found.samples) / whole;
+    sum += fraction;
+  }
+  std::printf("50 cuts: rows back / (rows x length / whole length): mean %.3f\n", sum / 50);
+}
+
+TEST(RecoverTest, ZeroedPagesCostOnlyTheChunksThatTheyTouch) {
+  const Original& from = original();
+  RandomStream random(2, "pages");
+  const std::uint64_t chunk = live_chunk_rows(1000.0);
+  double least = 1.0, sum = 0.0;
+  int with_info = 0;
+  for (int i = 0; i < 50; ++i) {
+    std::string bytes = from.bytes;
+    const std::uint64_t pages = 1 + random.below(8);
+    for (std::uint64_t k = 0; k < pages; ++k) {
+      const std::size_t at = 4096 * random.below(bytes.size() / 4096);
+      bytes.replace(at, 4096, 4096, '\0');
+    }
+    const Recovery found = from.recover(bytes);
+    EXPECT_GE(found.samples + 2 * chunk * pages, kRows) << pages << " pages";
+    const double fraction = static_cast<double>(found.samples) / kRows;
+    least = std::min(least, fraction);
+    sum += fraction;
+    with_info += found.info ? 1 : 0;
+  }
+  std::printf(
+      "50 times 1 to 8 zeroed pages of %zu: mean %.3f of the rows back, least %.3f; the "
+      "definition %d times\n",
+      from.bytes.size() / 4096, sum / 50, least, with_info);
+  EXPECT_GT(with_info, 40);
+}
+
+TEST(RecoverTest, WithoutItsHeaderAFileStillGivesItsRows) {
+  const Original& from = original();
+  for (const std::size_t lost : {1u, 48u, 512u, 2048u}) {
+    const Recovery found = from.recover(std::string(lost, '\0') + from.bytes.substr(lost));
+    EXPECT_EQ(found.samples, kRows) << lost;
+    EXPECT_TRUE(found.info);
+  }
+}
+
+TEST(RecoverTest, RandomDamageNeverCrashesAndNeverMakesRowsUp) {
+  const Original& from = original();
+  RandomStream random(3, "noise");
+  for (int i = 0; i < 40; ++i) {
+    std::string bytes = from.bytes;
+    const std::size_t at = random.below(i % 2 == 0 ? 20000 : bytes.size());
+    const std::size_t size = std::min<std::size_t>(1 + random.below(8192), bytes.size() - at);
+    for (std::size_t k = 0; k < size; ++k) bytes[at + k] = static_cast<char>(random.below(256));
+    from.recover(bytes);
+  }
+}
+
+TEST(RecoverTest, AFileOfVersionOneGivesItsRowsAndItsAttributes) {
+  const TemporaryFolder folder;
+  const std::string old = file_text(HAPTRIAL_SOURCE_DIR "/tests/core/record/data/version1.hdf5");
+  const auto recover = [&](const std::string& bytes) {
+    fs::remove(folder / "out.h5");
+    std::ofstream(folder / "old.h5", std::ios::binary) << bytes;
+    return recover_session(folder / "old.h5", folder / "out.h5");
+  };
+  Recovery found = recover(old);
+  EXPECT_EQ(found.samples, 500u);
+  EXPECT_EQ(found.passes, 2u);
+  EXPECT_TRUE(found.info);
+  EXPECT_EQ(found.subject, "P07");
+  EXPECT_EQ(SessionReader(folder / "out.h5").passes()[1].last_sample, 449u);
+  EXPECT_EQ(SessionReader(folder / "out.h5").passes()[1].attempt, 1);
+  found = recover(std::string(48, '\0') + old.substr(48));
+  EXPECT_EQ(found.samples, 500u);
+  EXPECT_FALSE(found.info);
+}
+
+TEST(RecoverTest, NothingIsWrittenWhereNothingIsLeftAndNothingIsOverwritten) {
+  EXPECT_FALSE(original().recover("").anything());
+  EXPECT_FALSE(original().recover(std::string(100000, '\0')).anything());
+  EXPECT_FALSE(original().recover("no session at all").anything());
+  const TemporaryFolder folder;
+  std::ofstream(folder / "there.h5") << "x";
+  const auto refusal = [&](const fs::path& from) {
+    try {
+      recover_session(from, folder / "there.h5");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(refusal(original().folder / "a.h5"), HasSubstr("there.h5: exists already"));
+  EXPECT_THAT(refusal(folder / "none.h5"), HasSubstr("none.h5"));
+  EXPECT_THAT(refusal(folder.path()), HasSubstr("is not a file"));
+  SessionWriter writer(folder / "live.h5", test::example_info());
+  EXPECT_THAT(refusal(folder / "live.h5.partial"), HasSubstr("records into it"));
+}
+
+}  // namespace
+}  // namespace haptrial::record

@@ -1,0 +1,51 @@
+// The tables of docs/session-file.md are those of the descriptions.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "core/base/files/file_text.h"
+#include "core/bone/record/drilling_tables.h"
+#include "core/record/rows/common_tables.h"
+#include "core/record/rows/session_tables.h"
+#include "core/record/table/table_page.h"
+
+namespace haptrial::record {
+namespace {
+
+const std::string kPage = HAPTRIAL_SOURCE_DIR "/docs/session-file.md";
+const std::string kEnd = "<!-- end of the tables -->\n";
+
+/// The text between the marks. @param from  receives where it begins
+std::string block(const std::string& page, const std::string& name, std::size_t& from) {
+  const std::string begin = "<!-- tables: " + name + " -->\n";
+  from = page.find(begin);
+  if (from == std::string::npos) {
+    return "";
+  }
+  from += begin.size();
+  return page.substr(from, page.find(kEnd, from) - from);
+}
+
+/// With HAPTRIAL_WRITE_PAGES=1 in the environment the page is written anew.
+void expect_described(const std::string& name, const TableList& tables) {
+  std::string page = file_text(kPage);
+  std::size_t from = 0;
+  const std::string found = block(page, name, from);
+  const std::string expected = page_of(tables);
+  if (std::getenv("HAPTRIAL_WRITE_PAGES") != nullptr && from != std::string::npos) {
+    page.replace(from, found.size(), expected);
+    std::ofstream(kPage, std::ios::binary) << page;
+    return;
+  }
+  EXPECT_EQ(found, expected) << "write docs/session-file.md anew: HAPTRIAL_WRITE_PAGES=1 "
+                                "build/test_record --gtest_filter='SessionPageTest.*'";
+}
+
+TEST(SessionPageTest, TablesOfEverySession) { expect_described("session", session_tables()); }
+TEST(SessionPageTest, TablesOfAnyProtocol) { expect_described("responses", common_tables()); }
+TEST(SessionPageTest, TablesOfDrillings) { expect_described("drilling", drilling_tables()); }
+
+}  // namespace
+}  // namespace haptrial::record
