@@ -23,18 +23,18 @@ run_tests() {
 case "${1:-release}" in
   release)
     install_packages build test
-    build build -DHAPTRIAL_TESTS=ON
+    build build -DHAPTRIAL_TESTS=ON -DHAPTRIAL_UNITY=ON
     run_tests build
     ;;
   asan | tsan)
     install_packages build test
     [ "$1" = asan ] && sanitizer=address || sanitizer=thread
-    build "build-$1" -DHAPTRIAL_SANITIZER=$sanitizer -DHAPTRIAL_TESTS=ON
+    build "build-$1" -DHAPTRIAL_SANITIZER=$sanitizer -DHAPTRIAL_TESTS=ON -DHAPTRIAL_UNITY=ON
     run_tests "build-$1"
     ;;
   bench)
     install_packages build bench
-    build build-bench -DHAPTRIAL_BENCHMARKS=ON -DHAPTRIAL_TESTS=OFF
+    build build-bench -DHAPTRIAL_BENCHMARKS=ON -DHAPTRIAL_TESTS=OFF -DHAPTRIAL_UNITY=ON
     for benchmark in "$root"/build-bench/bench_*; do
       say "== $(basename "$benchmark")"
       "$benchmark"

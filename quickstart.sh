@@ -5,7 +5,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 . "$root/cmake/setup.sh"
 
 install_packages build
-build build -DHAPTRIAL_TESTS=OFF -- haptrial
+build build -DHAPTRIAL_TESTS=OFF -DHAPTRIAL_UNITY=ON -- haptrial
 cd "$root"
 study=$(build/haptrial dry-run experiments/force_training.toml) || exit $?
 say "$study"

@@ -11,8 +11,4 @@ function(haptrial_optimise target folder)
          (folder MATCHES "^analysis" AND NOT folder MATCHES "^analysis/alignment"))
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O2> -Wno-restrict -Wno-array-bounds -Wno-stringop-overread)
   endif()
-  # A singular value decomposition: quick to run, long to compile.
-  get_target_property(sources ${target} SOURCES)
-  list(FILTER sources INCLUDE REGEX "/analysis/.*cross_validated[.]cpp$")
-  set_source_files_properties(${sources} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
 endfunction()

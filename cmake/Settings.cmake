@@ -32,6 +32,10 @@ if(HAPTRIAL_SANITIZER)
   set(CMAKE_CXX_FLAGS_RELEASE "-O1 -g1")
 endif()
 
+option(HAPTRIAL_UNITY "Compile each folder as one file: quicker from nothing, slower after a change" OFF)
+if(HAPTRIAL_UNITY)
+  add_compile_options(-Wno-subobject-linkage)  # the members of an implementation are the file's own
+endif()
 option(HAPTRIAL_TESTS "Build the tests (needs GoogleTest)" ON)
 option(HAPTRIAL_FUZZ "Build the libFuzzer targets (needs clang)" OFF)
 option(HAPTRIAL_BENCHMARKS "Build the benchmarks (needs Google Benchmark and the peers)" OFF)

@@ -19,14 +19,14 @@ constexpr std::chrono::milliseconds kHad{5};  // that they last
 
 void say_nothing(const char*, int, const char*, int, const char*, ...) {}
 
-struct Close {
+struct ClosePcm {
   void operator()(snd_pcm_t* pcm) const { snd_pcm_close(pcm); }
 };
 
 }  // namespace
 
 struct SoundOutput::Card {
-  std::unique_ptr<snd_pcm_t, Close> pcm;
+  std::unique_ptr<snd_pcm_t, ClosePcm> pcm;
 
   explicit Card(const std::string& device) {
     snd_lib_error_set_handler(say_nothing);  // what is wrong is said below, in a sentence

@@ -14,10 +14,10 @@
 namespace haptrial::sound {
 namespace {
 
-struct Close {
+struct CloseFile {
   void operator()(SNDFILE* file) const { sf_close(file); }
 };
-using File = std::unique_ptr<SNDFILE, Close>;
+using File = std::unique_ptr<SNDFILE, CloseFile>;
 
 }  // namespace
 

@@ -146,4 +146,11 @@ render::SceneView view_with_up(const std::string& up) {
   return view;
 }
 
+void check_new(const std::string& file, bool overwrite) {
+  if (!file.empty() && !overwrite && std::filesystem::exists(file)) {
+    throw InputError(
+        fmt::format("{}: exists already; choose another name or add --overwrite", file));
+  }
+}
+
 }  // namespace haptrial::experiments

@@ -227,11 +227,11 @@ Figure force_figure(const char* name, const RecallPicture& picture, const char* 
 }
 
 Figure alignment(const RecallPicture& picture, bool over_path) {
-  constexpr std::size_t kPairs = 60;  // drawn of the path
+  constexpr std::size_t kFewPairs = 60;  // drawn of the path
   Figure figure = force_figure("figure-26-alignment", picture, "Alignment", over_path);
   const auto times = time_base(picture);
   Series pairs{"aligned points", Mark::kSegments, {kGrey, kSolid, 0, 0.8}};
-  const std::size_t stride = std::max<std::size_t>(1, picture.pairs.size() / kPairs);
+  const std::size_t stride = std::max<std::size_t>(1, picture.pairs.size() / kFewPairs);
   for (std::size_t k = 0; k < picture.pairs.size(); k += stride) {
     const auto [target, applied] = picture.pairs[k];
     pairs.x.push_back(times[target]);

@@ -1,13 +1,12 @@
 #include "analysis/statistics/mixed/mixed_contrast.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <vector>
 
+#include "analysis/statistics/base/decomposition.h"
 #include "analysis/statistics/base/distributions.h"
 
 namespace haptrial::analysis {
@@ -80,8 +79,8 @@ Defined<JointTest> joint_test(const MixedModel& model, const MatrixXd& contrasts
   // Independent contrasts: the eigenvectors of the covariance, as left singular vectors of its
   // root.
   const MatrixXd rotated = contrasts * model.root;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(rotated * rotated.transpose());
-  const VectorXd& variances = eigen.eigenvalues();  // rising
+  const SymmetricEigen eigen = symmetric_eigen(rotated * rotated.transpose());
+  const VectorXd& variances = eigen.values;  // rising
   const double largest = variances.size() > 0 ? variances[variances.size() - 1] : 0.0;
   const double smallest = std::sqrt(std::numeric_limits<double>::epsilon()) * largest;
   const VectorXd estimates = contrasts * estimates_of(model);
@@ -89,7 +88,7 @@ Defined<JointTest> joint_test(const MixedModel& model, const MatrixXd& contrasts
   std::vector<double> df;
   for (Index i = 0; i < variances.size(); ++i) {
     if (variances[i] > smallest) {
-      const VectorXd direction = eigen.eigenvectors().col(i);
+      const VectorXd direction = eigen.vectors.col(i);
       test.f += std::pow(direction.dot(estimates), 2) / variances[i];
       df.push_back(satterthwaite(model, rotated.transpose() * direction));
     }
@@ -110,8 +109,7 @@ Defined<JointTest> joint_test(const MixedModel& model, const MatrixXd& contrasts
 MatrixXd sequential_contrasts(const MatrixXd& predictors) {
   const Index p = predictors.cols();
   const MatrixXd centered = predictors.rowwise() - predictors.colwise().mean();
-  const Eigen::LLT<MatrixXd> factor(centered.transpose() * centered);
-  const MatrixXd upper = factor.matrixU();
+  const MatrixXd upper = cholesky(centered.transpose() * centered).value().transpose();
   MatrixXd contrasts = MatrixXd::Zero(p, 1 + p);
   contrasts.rightCols(p) = upper.diagonal().cwiseInverse().asDiagonal() * upper;
   return contrasts;

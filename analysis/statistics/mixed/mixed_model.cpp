@@ -1,11 +1,11 @@
 #include "analysis/statistics/mixed/mixed_model.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
+#include "analysis/statistics/base/decomposition.h"
 #include "analysis/statistics/base/descriptive.h"
 #include "analysis/statistics/mixed/mixed_contrast.h"
 #include "analysis/statistics/mixed/variance_search.h"
@@ -45,8 +45,8 @@ std::optional<std::string> confounded(const RestrictedLikelihood& likelihood,
     }
   }
   const VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LDLT<MatrixXd> factor(scale.asDiagonal() * information * scale.asDiagonal());
-  if (terms.size() > 1 && !(factor.vectorD().minCoeff() > kRounding)) {
+  const MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  if (terms.size() > 1 && !(solve_pivoted(scaled, scale).smallest > kRounding)) {
     return "two random terms group the observations alike";
   }
   return std::nullopt;
@@ -69,11 +69,11 @@ std::optional<MatrixXd> parameter_covariance(const Slopes& s, const std::vector<
       hessian(i, j) = hessian(j, i) = s.rho[k] * s.rho[m] * (s.hessian(k, m) + profiled);
     }
   }
-  const Eigen::LLT<MatrixXd> factor(hessian);
-  if (factor.info() != Eigen::Success) {
-    return std::nullopt;
+  std::optional<MatrixXd> inverse = solve_positive(hessian, MatrixXd::Identity(count, count));
+  if (inverse) {
+    *inverse *= 2.0;
   }
-  return MatrixXd(2.0 * factor.solve(MatrixXd::Identity(count, count)));
+  return inverse;
 }
 
 /// Nothing if a coefficient has no degrees of freedom: the variance between groups cannot be

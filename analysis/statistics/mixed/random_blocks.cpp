@@ -1,11 +1,12 @@
 #include "analysis/statistics/mixed/random_blocks.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <utility>
+
+#include "analysis/statistics/base/decomposition.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -143,12 +144,6 @@ Grouping grouping_of(std::span<const std::size_t> groups) {
   }
   result.count = numbers.size();
   return result;
-}
-
-MatrixXd triangle(const MatrixXd& matrix) {
-  const Eigen::HouseholderQR<MatrixXd> qr(matrix);
-  const Index rows = std::min(matrix.rows(), matrix.cols());
-  return qr.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
 }
 
 RandomBlocks random_blocks(const MatrixXd& values, const std::vector<Grouping>& terms) {

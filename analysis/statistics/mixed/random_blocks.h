@@ -37,7 +37,4 @@ struct RandomBlocks {
 /// @param terms   may be none.
 RandomBlocks random_blocks(const Eigen::MatrixXd& values, const std::vector<Grouping>& terms);
 
-/// R of the QR decomposition, as many rows as there can be.
-Eigen::MatrixXd triangle(const Eigen::MatrixXd& matrix);
-
 }  // namespace haptrial::analysis

@@ -1,9 +1,9 @@
 #include "analysis/statistics/mixed/restricted_likelihood.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <cmath>
 #include <numbers>
+
+#include "analysis/statistics/base/decomposition.h"
 
 namespace haptrial::analysis {
 
@@ -38,13 +38,13 @@ struct RestrictedLikelihood::Whitened {
     const MatrixXd z = scaled(from, rho);
     MatrixXd v = MatrixXd::Identity(z.rows(), z.rows());
     v.selfadjointView<Eigen::Lower>().rankUpdate(z);
-    factor.compute(v);
-    values = factor.matrixL().solve(from.values);
-    log_v = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+    lower = *cholesky(v);  // no eigenvalue is below 1
+    values = solve_lower(lower, from.values);
+    log_v = 2.0 * lower.diagonal().array().log().sum();
   }
 
   const RandomBlock& block;
-  Eigen::LLT<MatrixXd> factor;
+  MatrixXd lower;   // V = lower lower'
   MatrixXd values;  // (rows x p + 2)
   double log_v{0.0};
 };
@@ -146,10 +146,7 @@ RestrictedLikelihood::Slopes RestrictedLikelihood::at(const VectorXd& rho) const
   const Index q = s.coefficients.size();
   Sums sums(terms_, q);
   for (const Whitened& white : blocks) {
-    MatrixXd z = white.block.z;
-    if (z.cols() > 0) {  // Eigen takes the address of the first element
-      white.factor.matrixL().solveInPlace(z);
-    }
+    const MatrixXd z = solve_lower(white.lower, white.block.z);
     sums.add(white.block, z, white.values.leftCols(q) * s.root,
              white.values.col(q) - white.values.leftCols(q) * s.coefficients);
   }
@@ -190,11 +187,9 @@ double RestrictedLikelihood::within_squares() const {
       row += block.values.rows();
       continue;
     }
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr(block.z);
-    const MatrixXd turned = qr.householderQ().adjoint() * block.values;
-    const Index free = turned.rows() - qr.rank();
-    rest.middleRows(row, free) = turned.bottomRows(free);
-    row += free;
+    const MatrixXd free = beyond_span(block.z, block.values);
+    rest.middleRows(row, free.rows()) = free;
+    row += free.rows();
   }
   std::vector<Index> varying;  // columns of X that the groups do not explain
   for (Index j = 0; j < q; ++j) {
@@ -206,9 +201,7 @@ double RestrictedLikelihood::within_squares() const {
   if (varying.empty()) {
     return rest.col(q).squaredNorm();
   }
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(rest(Eigen::all, varying));
-  const VectorXd turned = qr.householderQ().adjoint() * rest.col(q);
-  return turned.tail(turned.size() - qr.rank()).squaredNorm();
+  return beyond_span(rest(Eigen::all, varying), rest.col(q)).squaredNorm();
 }
 
 }  // namespace haptrial::analysis

@@ -1,10 +1,11 @@
 #include "analysis/statistics/mixed/variance_search.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include "analysis/statistics/base/decomposition.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -52,11 +53,12 @@ std::optional<VectorXd> descent(const MatrixXd& matrix, const VectorXd& slope) {
     return std::nullopt;
   }
   const VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<MatrixXd> factor(scale.asDiagonal() * matrix * scale.asDiagonal());
-  if (factor.info() != Eigen::Success) {
+  const std::optional<MatrixXd> solved = solve_positive(
+      scale.asDiagonal() * matrix * scale.asDiagonal(), scale.cwiseProduct(slope));
+  if (!solved) {
     return std::nullopt;
   }
-  return VectorXd(-scale.cwiseProduct(factor.solve(scale.cwiseProduct(slope))));
+  return VectorXd(-scale.cwiseProduct(solved->col(0)));
 }
 
 struct Step {

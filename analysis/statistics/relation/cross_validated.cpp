@@ -1,11 +1,11 @@
 #include "analysis/statistics/relation/cross_validated.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <stdexcept>
 
+#include "analysis/statistics/base/decomposition.h"
 #include "analysis/statistics/relation/correlation.h"
 
 namespace haptrial::analysis {
@@ -32,10 +32,10 @@ class RidgePath {
       base_.scale[j] = varies ? deviation : 0.0;
       z.col(j) *= varies ? 1.0 / deviation : 0.0;
     }
-    const Eigen::BDCSVD<MatrixXd> svd(z, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    singular_ = svd.singularValues();
-    v_ = svd.matrixV();
-    along_ = svd.matrixU().transpose() * (response.array() - base_.intercept).matrix();
+    const ThinSvd svd = thin_svd(z);
+    singular_ = svd.singular;
+    v_ = svd.v;
+    along_ = svd.u.transpose() * (response.array() - base_.intercept).matrix();
   }
 
   RidgeFit at(double lambda) const {

@@ -1,9 +1,9 @@
 #include "analysis/statistics/relation/regression.h"
 
-#include <Eigen/QR>
 #include <cmath>
 #include <stdexcept>
 
+#include "analysis/statistics/base/decomposition.h"
 #include "analysis/statistics/base/descriptive.h"
 #include "analysis/statistics/base/distributions.h"
 #include "analysis/statistics/relation/centered_design.h"
@@ -15,20 +15,12 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // The regression of the centred response on the centred columns.
-struct Fit {
-  VectorXd slopes;
-  MatrixXd inverse;  // of columns' columns
+struct Fit : LeastSquares {
   double squares{0.0};
 };
 
 Fit fitted(const MatrixXd& columns, const VectorXd& response) {
-  const Eigen::HouseholderQR<MatrixXd> qr(columns);
-  const Eigen::Index p = columns.cols();
-  Fit fit;
-  fit.slopes = qr.solve(response);
-  const MatrixXd root =
-      qr.matrixQR().topRows(p).triangularView<Eigen::Upper>().solve(MatrixXd::Identity(p, p));
-  fit.inverse = root * root.transpose();
+  Fit fit{least_squares(columns, response)};
   fit.squares = (response - columns * fit.slopes).squaredNorm();
   return fit;
 }

@@ -1,9 +1,9 @@
 #include "analysis/statistics/variance/factorial_anova.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <stdexcept>
 
+#include "analysis/statistics/base/decomposition.h"
 #include "analysis/statistics/base/descriptive.h"
 #include "analysis/statistics/base/distributions.h"
 #include "analysis/statistics/variance/within_effect.h"
@@ -18,7 +18,7 @@ Defined<Anova> tested(const Eigen::MatrixXd& contrasts, const Eigen::VectorXd& m
   const Eigen::MatrixXd spread =
       contrasts.transpose() * counts.cwiseInverse().asDiagonal() * contrasts;
   Anova result;
-  result.squares_between = found.dot(spread.ldlt().solve(found));
+  result.squares_between = found.dot(solve_pivoted(spread, found).solved);
   result.squares_within = squares_within;
   result.df_between = static_cast<double>(contrasts.cols());
   result.df_within = df_within;

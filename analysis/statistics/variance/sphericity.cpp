@@ -1,10 +1,10 @@
 #include "analysis/statistics/variance/sphericity.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "analysis/statistics/base/decomposition.h"
 #include "analysis/statistics/base/distributions.h"
 
 namespace haptrial::analysis {
@@ -29,9 +29,7 @@ Defined<Mauchly> mauchly(const Eigen::MatrixXd& products, double df) {
   if (df < c) {
     return Undefined{"too few participants for this number of conditions"};
   }
-  const Eigen::VectorXd variances =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(products, Eigen::EigenvaluesOnly)
-          .eigenvalues();
+  const Eigen::VectorXd variances = symmetric_eigen(products).values;
   const double rounding = c * std::numeric_limits<double>::epsilon() * variances.maxCoeff();
   if (variances.minCoeff() <= rounding) {
     return Undefined{"a difference between conditions does not vary or follows from the others"};

@@ -18,11 +18,6 @@ namespace {
 
 constexpr int kLevel = 6;
 
-std::string one_line(std::string text) {
-  for (char& c : text) c = c == '\n' || c == '\r' || c == '\\' ? ' ' : c;
-  return text;
-}
-
 std::string head_of(const BoneModel& model) {
   const geometry::VoxelGrid& grid = model.grid;
   const bool two = !model.density.empty();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -35,13 +36,6 @@ void take_properties(const std::string& words, Structure& structure) {
       read.hardness > 0.0 && std::isfinite(read.hardness)) {
     structure = read;
   }
-}
-
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    c = c == '\n' || c == '\r' || c == '\\' ? ' ' : c;
-  }
-  return text;
 }
 
 Structure read_structure(Table& table, std::size_t label) {
@@ -106,6 +100,12 @@ std::vector<Structure> read_label_table(const std::filesystem::path& file) {
   }
   table.finish();
   return structures;
+}
+
+std::string one_line(std::string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return c == '\n' || c == '\r' || c == '\\'; }, ' ');
+  return text;
 }
 
 std::map<std::string, std::string> keys_of(const std::vector<Structure>& structures) {

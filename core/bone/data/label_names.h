@@ -24,6 +24,9 @@ std::vector<Structure> structures_in(const std::map<std::string, std::string>& k
 /// @throws InputError
 std::vector<Structure> read_label_table(const std::filesystem::path& file);
 
+/// A text as it can stand in a NRRD header's line: neither line ends nor backslashes.
+std::string one_line(std::string text);
+
 /// The key/values that structures_in() reads back, and 3D Slicer as segments.
 std::map<std::string, std::string> keys_of(const std::vector<Structure>& structures);
 

@@ -8,10 +8,8 @@
 namespace haptrial::bone {
 namespace {
 
-constexpr int kEdge = BoneVolume::kEdge;
-
 /// How far a number is outside of 0 .. 7.
-int outside(int x) noexcept { return std::max({-x, x - (kEdge - 1), 0}); }
+int outside(int x) noexcept { return std::max({-x, x - (BoneVolume::kEdge - 1), 0}); }
 
 }  // namespace
 
@@ -20,9 +18,9 @@ NearStructures::NearStructures(std::shared_ptr<const StructureDepths> depths)
   if (depths_ == nullptr) {
     return;
   }
-  const int far = (reach() + kEdge - 1) / kEdge;
+  const int far = (reach() + BoneVolume::kEdge - 1) / BoneVolume::kEdge;
   const auto gap = [](int bricks) {
-    const int voxels = std::max(0, kEdge * (std::abs(bricks) - 1) + 1);
+    const int voxels = std::max(0, BoneVolume::kEdge * (std::abs(bricks) - 1) + 1);
     return bricks == 0 ? 0 : voxels * voxels;
   };
   for (int k = -far; k <= far; ++k) {
@@ -48,7 +46,7 @@ void NearStructures::begin(const BoneVolume& volume) {
   if (depths_ == nullptr) {
     return;
   }
-  structures_.assign(static_cast<std::size_t>(volume.bricks()) * kEdge, 0);
+  structures_.assign(static_cast<std::size_t>(volume.bricks()) * BoneVolume::kEdge, 0);
   for (std::int32_t at = BoneVolume::kBrickVoxels; at < volume.bricks() * BoneVolume::kBrickVoxels;
        ++at) {
     const auto bit = static_cast<std::uint64_t>(depths_->shows(volume.label(at)));
@@ -67,12 +65,13 @@ NearStructure NearStructures::at(const BoneVolume& volume, const Occupancy& occu
   const Found bound{static_cast<int>(std::lround(voxels * voxels)), before.label};
   const double farthest = depths_->reach_in_voxels() * depths_->reach_in_voxels();
   Found found{static_cast<int>(farthest) + 1, 0};
-  const Voxel home(voxel.x() / kEdge, voxel.y() / kEdge, voxel.z() / kEdge);
+  const Voxel home(voxel.x() / BoneVolume::kEdge, voxel.y() / BoneVolume::kEdge,
+                   voxel.z() / BoneVolume::kEdge);
   for (const Around& around : around_) {
     if (around.least > found.squared) {
       break;
     }
-    const std::int32_t address = volume.address(Voxel(kEdge * (home + around.offset)));
+    const std::int32_t address = volume.address(Voxel(BoneVolume::kEdge * (home + around.offset)));
     if (address != 0) {
       look_in(volume, occupancy, address / BoneVolume::kBrickVoxels, voxel, found);
       if (found.squared == bound.squared && found.label == bound.label) {
@@ -91,24 +90,26 @@ void NearStructures::look_in(const BoneVolume& volume, const Occupancy& occupanc
   const Voxel from = voxel - volume.brick_origin(brick);
   const int aside = outside(from.x());
   const int nearest = aside * aside + outside(from.y()) * outside(from.y());
-  for (int z = 0; z < kEdge; ++z) {
+  for (int z = 0; z < BoneVolume::kEdge; ++z) {
     const int dz = (from.z() - z) * (from.z() - z);
     const std::uint64_t layer =
-        occupancy.layer(brick, z) & structures_[static_cast<std::size_t>(brick * kEdge + z)];
+        occupancy.layer(brick, z) &
+        structures_[static_cast<std::size_t>(brick * BoneVolume::kEdge + z)];
     if (layer == 0 || dz + nearest > found.squared) {
       continue;
     }
-    for (int y = 0; y < kEdge; ++y) {
-      const auto row = static_cast<unsigned>(layer >> (kEdge * y)) & 0xFFU;
+    for (int y = 0; y < BoneVolume::kEdge; ++y) {
+      const auto row = static_cast<unsigned>(layer >> (BoneVolume::kEdge * y)) & 0xFFU;
       const int dyz = dz + (from.y() - y) * (from.y() - y);
       if (row == 0 || dyz + aside * aside > found.squared) {
         continue;
       }
-      const unsigned upto = from.x() < 0 ? 0U : 0xFFU >> std::max(0, kEdge - 1 - from.x());
+      const unsigned upto =
+          from.x() < 0 ? 0U : 0xFFU >> std::max(0, BoneVolume::kEdge - 1 - from.x());
       const auto consider = [&](int x) {
-        const Found here{
-            dyz + (from.x() - x) * (from.x() - x),
-            volume.label(brick * BoneVolume::kBrickVoxels + x + kEdge * (y + kEdge * z))};
+        const Found here{dyz + (from.x() - x) * (from.x() - x),
+                         volume.label(brick * BoneVolume::kBrickVoxels + x +
+                                      BoneVolume::kEdge * (y + BoneVolume::kEdge * z))};
         const bool nearer = here.squared < found.squared;
         if (nearer || (here.squared == found.squared && here.label < found.label)) {
           found = here;

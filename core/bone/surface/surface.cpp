@@ -6,7 +6,6 @@
 namespace haptrial::bone {
 namespace {
 
-constexpr int kEdge = BoneVolume::kEdge;
 constexpr int kNone = -1;
 constexpr int kVoxelReach = CellField::kReach + 1;  // how far, in cells, a quad follows a voxel
 
@@ -18,8 +17,8 @@ constexpr std::uint8_t kNear = 4;
 Voxel brick_of(const Voxel& cell) { return {cell.x() >> 3, cell.y() >> 3, cell.z() >> 3}; }
 
 std::size_t place_in_brick(const Voxel& cell) {
-  return static_cast<std::size_t>((cell.x() & 7) +
-                                  kEdge * ((cell.y() & 7) + kEdge * (cell.z() & 7)));
+  return static_cast<std::size_t>(
+      (cell.x() & 7) + BoneVolume::kEdge * ((cell.y() & 7) + BoneVolume::kEdge * (cell.z() & 7)));
 }
 
 Voxel corner(int b) { return {b & 1, b >> 1 & 1, b >> 2}; }
@@ -95,7 +94,8 @@ void Surface::begin(const BoneVolume& volume) {
   grid_ = volume.grid();
   std::size_t places = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    table_size_[axis] = (grid_.size[axis] + kEdge - 1) / kEdge + 1;  // and brick -1
+    table_size_[axis] =
+        (grid_.size[axis] + BoneVolume::kEdge - 1) / BoneVolume::kEdge + 1;  // and brick -1
     places *= static_cast<std::size_t>(table_size_[axis]);
   }
   bricks_.resize(places);
@@ -169,7 +169,7 @@ void Surface::mark_near(const BoneVolume& volume, const Voxel& voxel) {
 }
 
 void Surface::place_vertices(const BoneVolume& volume, std::size_t place) {
-  const Voxel origin = kEdge * brick_at(place);
+  const Voxel origin = BoneVolume::kEdge * brick_at(place);
   std::unique_ptr<CellBrick>& brick = bricks_[place];
   const bool any = field_.read(volume, occupancy_, origin);
   if (!any && brick == nullptr) {
@@ -183,9 +183,9 @@ void Surface::place_vertices(const BoneVolume& volume, std::size_t place) {
     field_.smooth();
   }
   std::size_t at = 0;
-  for (int k = 0; k < kEdge; ++k) {
-    for (int j = 0; j < kEdge; ++j) {
-      for (int i = 0; i < kEdge; ++i, ++at) {
+  for (int k = 0; k < BoneVolume::kEdge; ++k) {
+    for (int j = 0; j < BoneVolume::kEdge; ++j) {
+      for (int i = 0; i < BoneVolume::kEdge; ++i, ++at) {
         const unsigned corners = any ? field_.corners(i, j, k) : 0;
         if (corners == 0 || corners == 255) {
           remove_vertex(*brick, at);

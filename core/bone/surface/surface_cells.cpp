@@ -69,7 +69,7 @@ std::array<Eigen::Vector3f, 256> make_middles() {
 }
 const std::array<Eigen::Vector3f, 256> kMiddles = make_middles();
 constexpr float kThinShare = 0.5F;  // of the way there, or what is thin gets too thin
-constexpr float kNear = 1.1F;       // a way that a bump or the surface itself may have [voxels]
+constexpr float kNearWay = 1.1F;    // a way that a bump or the surface itself may have [voxels]
 constexpr float kFar = 1.4F;        // less than the 1.5 of a sheet of one voxel
 
 /// What is added to the wide slope where other things close by outweigh the surface in it: the
@@ -166,7 +166,7 @@ Eigen::Vector3f CellField::place(int i, int j, int k, unsigned corners,
     return thin;
   }
   const float share =
-      std::clamp((kFar - std::abs(missing) / steepness) / (kFar - kNear), 0.0F, 1.0F);
+      std::clamp((kFar - std::abs(missing) / steepness) / (kFar - kNearWay), 0.0F, 1.0F);
   const Eigen::Vector3f way = missing / (steepness * steepness) * slope;
   return (share * way + (1.0F - share) * thin).cwiseMax(-0.5F).cwiseMin(0.5F);
 }

@@ -8,7 +8,6 @@
 namespace haptrial::bone {
 namespace {
 
-constexpr int kEdge = BoneVolume::kEdge;
 constexpr int kLargestReach = 250;  // voxels; its square fits 16 bits
 
 /// Squared distance times 256 plus label: the least of two is the nearer one, of two as near the
@@ -135,7 +134,7 @@ StructureDepths::StructureDepths(const BoneModel& model, const std::vector<bool>
   }
   const int whole = static_cast<int>(std::ceil(voxels));
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    table_size_[axis] = (grid_.size[axis] + kEdge - 1) / kEdge;
+    table_size_[axis] = (grid_.size[axis] + BoneVolume::kEdge - 1) / BoneVolume::kEdge;
   }
   table_.assign(static_cast<std::size_t>(table_size_[0]) *
                     static_cast<std::size_t>(table_size_[1]) *
@@ -183,13 +182,15 @@ void StructureDepths::keep(const Voxel& voxel, const Entry& entry) {
 }
 
 std::size_t StructureDepths::entry_index(std::int32_t brick, const Voxel& voxel) noexcept {
-  const int place = voxel.x() % kEdge + kEdge * (voxel.y() % kEdge + kEdge * (voxel.z() % kEdge));
+  const int place = voxel.x() % BoneVolume::kEdge +
+                    BoneVolume::kEdge * (voxel.y() % BoneVolume::kEdge +
+                                         BoneVolume::kEdge * (voxel.z() % BoneVolume::kEdge));
   return static_cast<std::size_t>(brick) * BoneVolume::kBrickVoxels +
          static_cast<std::size_t>(place);
 }
 
 std::size_t StructureDepths::table_index(const Voxel& voxel) const noexcept {
-  const auto at = [](int i) { return static_cast<std::size_t>(i / kEdge); };
+  const auto at = [](int i) { return static_cast<std::size_t>(i / BoneVolume::kEdge); };
   return at(voxel.x()) +
          static_cast<std::size_t>(table_size_[0]) *
              (at(voxel.y()) + static_cast<std::size_t>(table_size_[1]) * at(voxel.z()));

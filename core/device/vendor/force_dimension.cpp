@@ -25,7 +25,7 @@ constexpr int kStatusForce = 5;
 constexpr int kStatusForceOffCause = 14;
 constexpr int kStatusWords = 32;  // 17 today; room for a later library
 
-constexpr const char* kWhere =
+constexpr const char* kForceDimensionFrom =
     "the Force Dimension SDK, from https://www.forcedimension.com/software/sdk";
 
 constexpr std::array<const char*, 7> kForceOffCauses{
@@ -90,14 +90,14 @@ const char* sentence(const std::array<const char*, n>& sentences, int number) no
 
 DynamicLibrary open_library(const std::string& library) {
   if (!library.empty()) {
-    return {library, kWhere};
+    return {library, kForceDimensionFrom};
   }
   // libdrd brings the DHD functions with it. Two libraries side by side might not share their
   // devices, so that all functions come from one.
   try {
-    return {"libdrd.so.3", kWhere};
+    return {"libdrd.so.3", kForceDimensionFrom};
   } catch (const InputError&) {
-    return {"libdhd.so.3", kWhere};
+    return {"libdhd.so.3", kForceDimensionFrom};
   }
 }
 

@@ -28,7 +28,8 @@ constexpr unsigned kGoOn = 1;
 constexpr unsigned short kPriority = 0xFFFF;  // before any other callback
 constexpr double kMillimetre = 1e-3;
 
-constexpr const char* kWhere = "OpenHaptics for Linux, from https://support.3dsystems.com";
+constexpr const char* kOpenHapticsFrom =
+    "OpenHaptics for Linux, from https://support.3dsystems.com";
 
 struct ErrorInfo {  // as the vendor lays it out
   unsigned code;
@@ -72,7 +73,8 @@ void check(const OpenHapticsParameters& p, double rate) {
 
 /// The functions of the vendor's library that are used here.
 struct OpenHapticsDevice::Api {
-  explicit Api(const std::string& path) : library(path.empty() ? "libHD.so" : path, kWhere) {
+  explicit Api(const std::string& path)
+      : library(path.empty() ? "libHD.so" : path, kOpenHapticsFrom) {
     library.get(init_device, "hdInitDevice");
     library.get(disable_device, "hdDisableDevice");
     library.get(make_current, "hdMakeCurrentDevice");
@@ -265,7 +267,7 @@ bool OpenHapticsDevice::write(const Eigen::Vector3d& force) noexcept {
 }
 
 void check_open_haptics_library(const std::string& library) {
-  const DynamicLibrary loaded(library.empty() ? "libHD.so" : library, kWhere);
+  const DynamicLibrary loaded(library.empty() ? "libHD.so" : library, kOpenHapticsFrom);
   void (*begin_frame)(unsigned) = nullptr;
   loaded.get(begin_frame, "hdBeginFrame");
 }

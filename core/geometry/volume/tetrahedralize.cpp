@@ -39,9 +39,9 @@ Word inside_bits(const VoxelLabel* labels) {
 
 /// The corner points of the voxels, row by row along x: which of them a voxel uses, and their
 /// numbers.
-class Corners {
+class CornerNumbers {
  public:
-  explicit Corners(const VoxelSolid& solid)
+  explicit CornerNumbers(const VoxelSolid& solid)
       : size_(solid.grid.size),
         words_((static_cast<std::size_t>(size_[0]) + 1 + kWordBits - 1) / kWordBits),
         voxels_(words_ * static_cast<std::size_t>(size_[1]) * static_cast<std::size_t>(size_[2])),
@@ -153,7 +153,7 @@ void each_run(std::span<const Word> bits, const Take& take) {
   }
 }
 
-void write_vertices(const VoxelGrid& grid, const Corners& corners, TetMesh& mesh) {
+void write_vertices(const VoxelGrid& grid, const CornerNumbers& corners, TetMesh& mesh) {
   Eigen::Vector3d* vertex = mesh.vertices.data();
   std::uint8_t* on_surface = mesh.on_surface.data();
   for (std::int32_t k = 0; k <= grid.size[2]; ++k) {
@@ -240,7 +240,7 @@ Tetrahedron* write_run(Tetrahedron* place, const std::array<std::int32_t, 4>& ro
   return place;
 }
 
-void write_tetrahedra(const VoxelGrid& grid, const Corners& corners, TetMesh& mesh) {
+void write_tetrahedra(const VoxelGrid& grid, const CornerNumbers& corners, TetMesh& mesh) {
   Tetrahedron* place = mesh.tetrahedra.data();
   for (std::int32_t k = 0; k < grid.size[2]; ++k) {
     for (std::int32_t j = 0; j < grid.size[1]; ++j) {
@@ -259,7 +259,7 @@ void write_tetrahedra(const VoxelGrid& grid, const Corners& corners, TetMesh& me
 }  // namespace
 
 void tetrahedralize(const VoxelSolid& solid, TetMesh& mesh) {
-  const Corners corners(solid);
+  const CornerNumbers corners(solid);
   if (corners.inside() == 0) {
     throw InputError("the solid has no voxel inside; choose a finer resolution");
   }

@@ -1,4 +1,5 @@
 #include "core/record/read/integrity.h"
+#include "core/record/read/each_sample.h"
 
 #include <algorithm>
 #include <optional>
@@ -177,12 +178,13 @@ Integrity check_session(const SessionReader& reader, const TableList& tables) {
   const bool under_way = std::any_of(begun.begin(), begun.end(),
                                      [next](const BegunRow& row) { return row.row == next; });
   SampleCheck check(passes, under_way);
-  for (std::uint64_t first = 0; first < result.rows; first += kPiece) {
-    const std::vector<Sample> piece = reader.samples(first, std::min(kPiece, result.rows - first));
-    if (first == 0) result.first_sequence = piece.front().sequence;
-    result.last_sequence = piece.back().sequence;
-    for (const Sample& sample : piece) check.add(sample);
-  }
+  bool first = true;
+  each_sample(reader, [&](const Sample& sample) {
+    result.first_sequence = first ? sample.sequence : result.first_sequence;
+    result.last_sequence = sample.sequence;
+    first = false;
+    check.add(sample);
+  });
   result.gaps = check.gaps.count();
   if (result.first_sequence != 0) {
     result.problems.push_back("the first sequence number is " + number(result.first_sequence) +

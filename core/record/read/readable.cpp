@@ -63,10 +63,10 @@ void read_rows(const h5::Id& table, const std::string& name) {
     const h5::Id space = h5::take(H5Dget_space(table.get()), name);
     hsize_t rows = 0;
     h5::check(H5Sget_simple_extent_dims(space.get(), &rows, nullptr), name);
-    constexpr hsize_t kPiece = 16384;
-    std::vector<std::uint8_t> bytes(kPiece * H5Tget_size(type.get()));
-    for (hsize_t first = 0; first < rows; first += kPiece) {
-      const hsize_t count = std::min(kPiece, rows - first);
+    constexpr hsize_t kRows = 16384;
+    std::vector<std::uint8_t> bytes(kRows * H5Tget_size(type.get()));
+    for (hsize_t first = 0; first < rows; first += kRows) {
+      const hsize_t count = std::min(kRows, rows - first);
       const h5::Id memory = h5::take(H5Screate_simple(1, &count, nullptr), name);
       h5::check(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, &first, nullptr, &count, nullptr),
                 name);

@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/record/hdf5/hdf5_layer.h"
+#include "core/record/read/each_sample.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/recovery/rewrite.h"
 #include "core/record/recovery/tick_ranges.h"
@@ -22,7 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kPiece = 65536;  // rows read at once
 
 /// The samples that were found of a pass.
 struct SeenPass {
@@ -231,14 +231,15 @@ std::optional<std::string> wrong_in(const TableDescription& table, const Session
 std::optional<std::string> wrong_between_rows(const SessionReader& reader,
                                               const TableList& tables) {
   std::uint64_t next = 0;
-  for (std::uint64_t first = 0; first < reader.sample_count(); first += kPiece) {
-    for (const Sample& sample :
-         reader.samples(first, std::min(kPiece, reader.sample_count() - first))) {
-      if (sample.sequence < next) {
-        return fmt::format("sequence number {} of /samples follows {}", sample.sequence, next - 1);
-      }
-      next = sample.sequence + 1;
+  std::optional<std::string> wrong;
+  each_sample(reader, [&](const Sample& sample) {
+    if (sample.sequence < next && !wrong) {
+      wrong = fmt::format("sequence number {} of /samples follows {}", sample.sequence, next - 1);
     }
+    next = sample.sequence + 1;
+  });
+  if (wrong) {
+    return wrong;
   }
   const std::vector<PassRow> passes = reader.passes();
   for (std::size_t i = 0; i < passes.size(); ++i) {
@@ -250,7 +251,8 @@ std::optional<std::string> wrong_between_rows(const SessionReader& reader,
     if (!reader.has(*table)) {
       continue;
     }
-    if (auto wrong = wrong_in(*table, reader, next, passes.size())) {
+    wrong = wrong_in(*table, reader, next, passes.size());
+    if (wrong) {
       return wrong;
     }
   }

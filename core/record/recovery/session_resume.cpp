@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "core/base/error.h"
+#include "core/record/read/each_sample.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/recovery/repair.h"
 #include "core/record/table/schema.h"
@@ -15,7 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kPiece = 65536;  // rows read at once
 
 [[noreturn]] void refuse(const fs::path& partial, const std::string& found) {
   throw InputError(partial.string() + ": " + found +
@@ -26,17 +26,17 @@ constexpr std::uint64_t kPiece = 65536;  // rows read at once
 /// The passes that the samples name and /trials does not, each from its first to its last sample.
 void walk_samples(const SessionReader& reader, Resumed& found) {
   const auto in_trials = static_cast<std::int32_t>(found.passes.size());
-  for (std::uint64_t first = 0; first < found.rows; first += kPiece) {
-    for (const Sample& sample : reader.samples(first, std::min(kPiece, found.rows - first))) {
-      found.next_sequence = sample.sequence + 1;
-      found.last_time_ns = sample.time_ns;
-      if (sample.pass < in_trials) continue;
-      if (found.open_passes.empty() || found.open_passes.back().row != sample.pass) {
-        found.open_passes.push_back({sample.pass, sample.sequence, sample.sequence});
-      }
-      found.open_passes.back().last_sample = sample.sequence;
+  each_sample(reader, [&](const Sample& sample) {
+    found.next_sequence = sample.sequence + 1;
+    found.last_time_ns = sample.time_ns;
+    if (sample.pass < in_trials) {
+      return;
     }
-  }
+    if (found.open_passes.empty() || found.open_passes.back().row != sample.pass) {
+      found.open_passes.push_back({sample.pass, sample.sequence, sample.sequence});
+    }
+    found.open_passes.back().last_sample = sample.sequence;
+  });
 }
 
 void sum_up_runs(const SessionReader& reader, Resumed& found) {

@@ -13,8 +13,8 @@
 namespace haptrial::render {
 namespace {
 
-constexpr unsigned kAttributes = 3;  // place, form, colour
-constexpr double kEdge = 1.0;        // pixels beyond a shape that it covers in part
+constexpr unsigned kShapeAttributes = 3;  // place, form, colour
+constexpr double kEdge = 1.0;             // pixels beyond a shape that it covers in part
 constexpr Colour kWhite{1.0, 1.0, 1.0};
 
 std::array<float, 4> floats(double a, double b, double c, double d) {
@@ -29,8 +29,8 @@ std::array<float, 4> floats(const Colour& colour) {
 }  // namespace
 
 Painter::Painter(const Gl& gl, int width, int height)
-    : gl_(gl), width_(width), height_(height), quads_(gl, kAttributes) {
-  static_assert(sizeof(Shape) == kAttributes * 4 * sizeof(float));
+    : gl_(gl), width_(width), height_(height), quads_(gl, kShapeAttributes) {
+  static_assert(sizeof(Shape) == kShapeAttributes * 4 * sizeof(float));
   build_program();
   build_mask();
 }

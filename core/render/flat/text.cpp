@@ -11,9 +11,9 @@
 namespace haptrial::render {
 namespace {
 
-constexpr int kAtlasWidth = 1024;    // [px]
-constexpr int kAtlasRows = 256;      // added when it is full [px]
-constexpr unsigned kAttributes = 3;  // place, source, colour
+constexpr int kAtlasWidth = 1024;          // [px]
+constexpr int kAtlasRows = 256;            // added when it is full [px]
+constexpr unsigned kLetterAttributes = 3;  // place, source, colour
 
 float f(double value) { return static_cast<float>(value); }
 
@@ -38,8 +38,8 @@ TextPainter::TextPainter(const Gl& gl, int width, int height)
       height_(height),
       regular_(Font::sans()),
       bold_(Font::sans_bold()),
-      quads_(gl, kAttributes) {
-  static_assert(sizeof(Letter) == kAttributes * 4 * sizeof(float));
+      quads_(gl, kLetterAttributes) {
+  static_assert(sizeof(Letter) == kLetterAttributes * 4 * sizeof(float));
   build_program();
   gl_.gen_textures(1, &atlas_texture_);
 }

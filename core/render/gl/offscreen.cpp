@@ -11,9 +11,11 @@
 namespace haptrial::render {
 namespace {
 
-constexpr int kChannels = 4;
+constexpr int kBufferChannels = 4;
 
-void* address_of(const char* name) { return reinterpret_cast<void*>(OSMesaGetProcAddress(name)); }
+void* osmesa_address(const char* name) {
+  return reinterpret_cast<void*>(OSMesaGetProcAddress(name));
+}
 
 struct DestroyContext {
   void operator()(osmesa_context* context) const { OSMesaDestroyContext(context); }
@@ -55,9 +57,9 @@ OffscreenContext::OffscreenContext(int width, int height)
                     width, height, largest));
   }
   impl_->pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
-                       kChannels);
+                       kBufferChannels);
   make_current();
-  impl_->gl = load_gl(&address_of);
+  impl_->gl = load_gl(&osmesa_address);
 }
 
 OffscreenContext::~OffscreenContext() = default;

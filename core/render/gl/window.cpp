@@ -15,7 +15,7 @@ namespace {
 
 std::atomic<bool> open_window{false};
 
-void* address_of(const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); }
+void* glfw_address(const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); }
 
 std::string last_error() {
   const char* text = nullptr;
@@ -130,7 +130,7 @@ void Window::Impl::open(const WindowOptions& options) {
   glfwShowWindow(window.get());
   glfwSetInputMode(window.get(), GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
   glfwMakeContextCurrent(window.get());
-  gl = load_gl(&address_of);
+  gl = load_gl(&glfw_address);
   glfwSwapInterval(options.refresh_lock ? 1 : 0);
   glfwGetFramebufferSize(window.get(), &width, &height);
   double x = 0.0;

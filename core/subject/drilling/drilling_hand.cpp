@@ -6,21 +6,19 @@
 #include <cmath>
 
 #include "core/base/definition/table_vector.h"
+#include "core/subject/drilling/drilling_arm.h"
 #include "core/subject/subject_parameters.h"
 
 namespace haptrial::subject {
 namespace {
 
-constexpr double kStiffness = 300.0;  // of the arm about where it wants to be [N/m]
-constexpr double kDamping = 25.0;     // [N·s/m]
-constexpr double kStrongest = 5.0;    // of the arm across the press [N]
-constexpr double kHighest = 0.02;     // over where bone was met first [m]
-constexpr double kTravel = 0.06;      // speed between strokes [m/s]
-constexpr double kDescent = 0.03;     // towards the bone [m/s]
-constexpr double kNear = 0.002;       // is there [m]
-constexpr double kPatience = 4.0;     // without bone below, then on to the next line [s]
-constexpr double kPressing = 0.05;    // of a button, and its rest [s]
-constexpr double kLookTime = 0.4;     // [s]
+constexpr double kStrongestAcross = 5.0;  // of the arm across the press [N]
+constexpr double kHighest = 0.02;         // over where bone was met first [m]
+constexpr double kBetweenStrokes = 0.06;  // speed between strokes [m/s]
+constexpr double kDescent = 0.03;         // towards the bone [m/s]
+constexpr double kNear = 0.002;           // is there [m]
+constexpr double kWaitForBone = 4.0;      // without bone below, then on to the next line [s]
+constexpr double kLookTime = 0.4;         // [s]
 
 SubjectParameters person_of(const DrillingHandParameters& p) {
   SubjectParameters person;
@@ -29,10 +27,6 @@ SubjectParameters person_of(const DrillingHandParameters& p) {
   person.tremor = p.tremor;
   person.tremor_frequency = p.tremor_frequency;
   return person;
-}
-
-std::uint32_t held(int button) noexcept {
-  return button < 0 ? 0u : std::uint32_t{1} << static_cast<unsigned>(button);
 }
 
 }  // namespace
@@ -141,7 +135,7 @@ void DrillingHand::decide(const bone::DrillingView& seen, const Eigen::Vector3d&
     case Doing::kReach:
       if (sideways < kNear && time_ > kPressing) {
         begin(Doing::kDescend);
-      } else if (time_ > kPatience) {  // bone is in the way: over it to the next
+      } else if (time_ > kWaitForBone) {  // bone is in the way: over it to the next
         higher_ = std::min(higher_ + p.hover, kHighest);
         next_line();
       }
@@ -154,7 +148,8 @@ void DrillingHand::decide(const bone::DrillingView& seen, const Eigen::Vector3d&
         }
         target_ = line_start();
         begin(Doing::kStroke);
-      } else if (time_ > kPatience || (surface_known_ && tip.dot(p.inward) > surface_ + p.depth)) {
+      } else if (time_ > kWaitForBone ||
+                 (surface_known_ && tip.dot(p.inward) > surface_ + p.depth)) {
         begin(Doing::kLift);
       }
       break;
@@ -164,7 +159,7 @@ void DrillingHand::decide(const bone::DrillingView& seen, const Eigen::Vector3d&
       }
       break;
     case Doing::kLift:
-      if (time_ > p.hover / kTravel + kPressing) {
+      if (time_ > p.hover / kBetweenStrokes + kPressing) {
         next_line();
       }
       break;
@@ -227,10 +222,10 @@ Eigen::Vector3d DrillingHand::push(const bone::DrillingView& seen, const Eigen::
   Eigen::Vector3d across = kStiffness * (error - error.dot(p.inward) * p.inward) -
                            kDamping * (velocity - fall * p.inward);
   const double strength = across.norm();
-  if (strength > kStrongest) {
-    across *= kStrongest / strength;
+  if (strength > kStrongestAcross) {
+    across *= kStrongestAcross / strength;
   }
-  return across + std::clamp(inward, -kStrongest, 2.0 * kStrongest) * p.inward;
+  return across + std::clamp(inward, -kStrongestAcross, 2.0 * kStrongestAcross) * p.inward;
 }
 
 std::uint32_t DrillingHand::fingers(const bone::DrillingView& seen) const noexcept {

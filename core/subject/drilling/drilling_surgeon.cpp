@@ -8,15 +8,14 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/subject/drilling/drilling_arm.h"
 #include "core/subject/subject_parameters.h"
 
 namespace haptrial::subject {
 namespace {
 
-constexpr double kStiffness = 300.0;     // of the arm about where it wants to be [N/m]
 constexpr double kAhead = 0.06;          // that it looks ahead [s]
 constexpr double kBackOut = 1500.0;      // where it went too deep [N/m]
-constexpr double kDamping = 25.0;        // [N·s/m]
 constexpr double kDrag = 40.0;           // of the hand itself, that it knows to push against
 constexpr double kFriction = 0.1;        // of the handle, that it has learnt to overcome [N]
 constexpr double kStrongest = 6.0;       // of the arm [N]
@@ -28,7 +27,6 @@ constexpr double kOnto = 0.012;          // close to the bone [m/s]
 constexpr double kHover = 1e-3;          // over what it passes [m]
 constexpr double kThere = 1.5e-3;        // [m]
 constexpr double kShell = 1.0e-3;        // that is left to the fine burr beyond the margin [m]
-constexpr double kPressing = 0.05;       // of a button, and its rest [s]
 constexpr double kLookLonger = 3.0;      // than this nobody tries [s]
 constexpr double kLookRate = 0.15;       // of the hand for an error of the view [m/(s·rad)]
 constexpr double kRoomToLook = 0.03;     // over the bone for a hand that turns the view [m]
@@ -45,10 +43,6 @@ MotorNoise noise_of(const DrillingSkill& skill, double step, std::uint64_t seed)
   person.force_noise = skill.force_noise;
   person.tremor = skill.tremor;
   return {person, step, RandomStream(seed, "drilling hand")};
-}
-
-std::uint32_t held(int button) noexcept {
-  return button < 0 ? 0U : std::uint32_t{1} << static_cast<unsigned>(button);
 }
 
 Eigen::Vector3d saturated(const Eigen::Vector3d& force, double most) noexcept {

@@ -28,7 +28,7 @@ void take_output(CLI::App& sub, BoneOptions& o) {
   sub.add_flag("--overwrite", o.overwrite, "Overwrite an existing file");
 }
 
-void add_import(CLI::App& bone, int& status) {
+void add_bone_import(CLI::App& bone, int& status) {
   CLI::App* sub =
       subcommand(bone, "import", "Make a bone from CT or from labels",
                  "haptrial bone import head.nii.gz head.nrrd --threshold 300 --spacing 0.5",
@@ -44,7 +44,7 @@ void add_bone_info(CLI::App& bone, int& status) {
   take_input(*sub, options_of<BoneOptions>(*sub, status, bone_info));
 }
 
-void add_make(CLI::App& bone, int& status) {
+void add_bone_make(CLI::App& bone, int& status) {
   CLI::App* sub = subcommand(bone, "make", "Make a bone from shapes and a seed",
                              "haptrial bone make mandible jaw.nrrd --seed 2 --spacing 0.5");
   auto& o = options_of<BoneOptions>(*sub, status, bone_make);
@@ -104,9 +104,9 @@ void add_bone(CLI::App& app, int& status) {
       subcommand(app, "bone", "Import, make, draw and describe bones",
                  "haptrial bone make temporal ear.nrrd --seed 3", {"", "guide-bone.md"});
   bone->require_subcommand(1);
-  add_import(*bone, status);
+  add_bone_import(*bone, status);
   add_bone_info(*bone, status);
-  add_make(*bone, status);
+  add_bone_make(*bone, status);
   add_picture(*bone, status);
   add_stages(*bone, status);
 }

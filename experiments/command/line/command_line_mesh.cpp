@@ -45,7 +45,7 @@ MeshCommand begin(CLI::App* sub, int& status, int (*command)(const MeshOptions&)
   return {*sub, o};
 }
 
-void add_make(CLI::App& mesh, int& status) {
+void add_mesh_make(CLI::App& mesh, int& status) {
   const MeshCommand make =
       begin(subcommand(mesh, "make", "Make an example mesh", "haptrial mesh make gear gear.ply"),
             status, mesh_make);
@@ -119,7 +119,7 @@ void add_mesh(CLI::App& app, int& status) {
       subcommand(app, "mesh", "Check, repair, voxelize, measure and split surface meshes",
                  "haptrial mesh tetrahedralize bunny.ply bunny.vtu", {"", "algorithms/meshes.md"});
   mesh->require_subcommand(1);
-  add_make(*mesh, status);
+  add_mesh_make(*mesh, status);
   add_mesh_info(*mesh, status);
   add_repair(*mesh, status);
   add_voxelize(*mesh, status);

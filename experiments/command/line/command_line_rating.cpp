@@ -19,7 +19,7 @@ void add_prepare(CLI::App& rate, int& status) {
   sub->add_option("--jobs", o.jobs, "Number of threads (default: one per processor)");
 }
 
-void add_import(CLI::App& rate, int& status) {
+void add_rating_import(CLI::App& rate, int& status) {
   CLI::App* sub = subcommand(rate, "import", "Read completed rating sheets into a study",
                              "haptrial rate import smith.csv li.csv --study out/validity-001");
   auto& o = options_of<RateImportOptions>(*sub, status, rate_import);
@@ -46,7 +46,7 @@ void add_rate(CLI::App& app, int& status) {
                               "haptrial rate prepare out/validity-001 --sheets");
   rate->require_subcommand(1);
   add_prepare(*rate, status);
-  add_import(*rate, status);
+  add_rating_import(*rate, status);
   add_simulate(*rate, status);
 }
 

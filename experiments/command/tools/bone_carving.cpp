@@ -12,7 +12,6 @@
 namespace haptrial::experiments {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
 
 /// Finite numbers between commas; none where one is not.
 std::vector<double> numbers_of(std::string_view text) {

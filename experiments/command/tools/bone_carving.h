@@ -8,6 +8,8 @@
 
 namespace haptrial::experiments {
 
+inline constexpr double kMillimetre = 1e-3;  // the unit of the options [m]
+
 /// All that lies within a distance of a line; a ball where both ends are the same.
 struct Stroke {
   Eigen::Vector3d from;  // in B [m]

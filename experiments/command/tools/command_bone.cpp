@@ -18,7 +18,6 @@
 namespace haptrial::experiments {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
 
 void check_out(const BoneOptions& options) {
   const std::filesystem::path out = options.out;

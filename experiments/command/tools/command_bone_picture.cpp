@@ -16,7 +16,6 @@
 namespace haptrial::experiments {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
 constexpr int kFiner = 2;  // drawn pixels to one of the picture, each way
 
 void check(const BonePictureOptions& options) {

@@ -24,13 +24,6 @@ namespace {
 
 constexpr render::Colour kBone{0.86, 0.80, 0.70};
 
-void check_new(const std::string& file, bool overwrite) {
-  if (!overwrite && std::filesystem::exists(file)) {
-    throw InputError(
-        fmt::format("{}: exists already; choose another name or add --overwrite", file));
-  }
-}
-
 void print_voxels(const VoxelizedMesh& made) {
   const geometry::VoxelGrid& grid = made.solid.grid;
   const std::size_t inside = geometry::count_inside(made.solid);

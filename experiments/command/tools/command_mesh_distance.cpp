@@ -25,13 +25,6 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-void check_new(const std::string& file, bool overwrite) {
-  if (!file.empty() && !overwrite && std::filesystem::exists(file)) {
-    throw InputError(
-        fmt::format("{}: exists already; choose another name or add --overwrite", file));
-  }
-}
-
 /// The slice across the axis after `up`, through the middle.
 void draw_slice(const geometry::DistanceMap& map, int up, const std::string& file) {
   const geometry::VoxelGrid& grid = map.grid;
