@@ -20,7 +20,9 @@ namespace {
 using kernel::Directions;
 
 void require_parameter(bool holds, std::string_view sentence) {
-  if (!holds) throw std::invalid_argument("alignment: " + std::string(sentence));
+  if (!holds) {
+    throw std::invalid_argument("alignment: " + std::string(sentence));
+  }
 }
 
 void check(const AlignmentOptions& options) {
@@ -65,7 +67,9 @@ void write_scaled(std::span<const double> from, double scale, double limit, Plac
 void check_values(std::span<const double> values, double weight, double power) {
   const double limit = std::pow(Aligner::kMaxError / weight, 1.0 / power);
   bool good = true;
-  for (const double value : values) good &= std::abs(value) <= limit && std::isfinite(value);
+  for (const double value : values) {
+    good &= std::abs(value) <= limit && std::isfinite(value);
+  }
   require_parameter(good, kBadValue);
 }
 
@@ -241,7 +245,9 @@ void Aligner::Workspace::align(std::span<const AlignmentPair> pairs, bool side_b
   const auto& sweeps = side_by_side ? kernels.sweep_batch : kernels.sweep_single;
   sweeps[twice][square](task);
   walk(layout, pairs, results);
-  for (std::size_t k = 0; k < pairs.size(); ++k) finish(pairs[k], options, results[k]);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    finish(pairs[k], options, results[k]);
+  }
 }
 
 void Aligner::Workspace::align_by_rows(const AlignmentPair& pair, const AlignmentOptions& options,
@@ -260,7 +266,9 @@ void Aligner::Workspace::walk(const Layout& layout, std::span<const AlignmentPai
                               std::span<Alignment> results) {
   constexpr std::size_t kMostLanes = 16;
   Walker walkers[kMostLanes];
-  for (std::size_t k = 0; k < pairs.size(); ++k) walkers[k] = start_of_walk(pairs[k], results[k]);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    walkers[k] = start_of_walk(pairs[k], results[k]);
+  }
   const Directions* bits = directions.at_least(0);
   const std::size_t steps = layout.steps(), vectors = layout.vectors();
   const int strip_shift = std::countr_zero(layout.strip);
@@ -268,7 +276,9 @@ void Aligner::Workspace::walk(const Layout& layout, std::span<const AlignmentPai
     walking = false;
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       Walker& walker = walkers[k];
-      if (walker.at_start()) continue;
+      if (walker.at_start()) {
+        continue;
+      }
       const std::size_t row = walker.row & (layout.strip - 1);
       const std::size_t step = (walker.row >> strip_shift) * steps + row + walker.column;
       walker.step(bits[step * vectors + (row >> layout.vector_shift)], layout.lane(row, k));

@@ -38,7 +38,9 @@ double path_cost(const CurveView& target, const CurveView& applied, const Alignm
 double path_weight(StepPattern pattern, std::span<const PathPoint> path) {
   std::size_t weight = path.size();
   if (doubles_straight(pattern)) {
-    for (std::size_t k = 1; k < path.size(); ++k) weight += is_straight(path[k - 1], path[k]);
+    for (std::size_t k = 1; k < path.size(); ++k) {
+      weight += is_straight(path[k - 1], path[k]);
+    }
   }
   return static_cast<double>(weight);
 }

@@ -24,7 +24,9 @@ std::string_view name_of(StepPattern pattern) {
 std::optional<StepPattern> pattern_of(std::string_view name) {
   const auto& names = pattern_names();
   const auto at = std::find(names.begin(), names.end(), name);
-  if (at == names.end()) return std::nullopt;
+  if (at == names.end()) {
+    return std::nullopt;
+  }
   return static_cast<StepPattern>(at - names.begin());
 }
 
@@ -37,9 +39,15 @@ std::string problem_of(const AlignmentOptions& o) {
   const auto bad = [](const char* name, double found) {
     return fmt::format("{} is {}; allowed: a finite number of at least 0", name, found);
   };
-  if (!is_bounded(o.force_weight)) return bad("force_weight", o.force_weight);
-  if (!is_bounded(o.slope_weight)) return bad("slope_weight", o.slope_weight);
-  if (!is_bounded(o.penalty)) return bad("penalty", o.penalty);
+  if (!is_bounded(o.force_weight)) {
+    return bad("force_weight", o.force_weight);
+  }
+  if (!is_bounded(o.slope_weight)) {
+    return bad("slope_weight", o.slope_weight);
+  }
+  if (!is_bounded(o.penalty)) {
+    return bad("penalty", o.penalty);
+  }
   if (!(o.power >= 1.0 && o.power <= kLargestPower)) {
     return fmt::format("power is {}; allowed: a number from 1 to {}", o.power, kLargestPower);
   }

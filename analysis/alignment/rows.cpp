@@ -176,7 +176,9 @@ struct Search {
     const auto differences = [&](std::span<const double> CurveView::*values, double* to) {
       const double value = (target.*values)[row];
       const double* others = (applied.*values).data();
-      for (std::size_t j = first; j <= last; ++j) to[j] = value - others[j];
+      for (std::size_t j = first; j <= last; ++j) {
+        to[j] = value - others[j];
+      }
       raise(to + first, last - first + 1, options.power);
     };
     differences(&CurveView::force, rows.error);
@@ -212,7 +214,9 @@ struct Search {
   /// The column where the path ends, of equal ones the last; the last row is rows.above.
   std::size_t end_column() const {
     const std::size_t last = column_count() - 1;
-    if (!options.open_end) return last;
+    if (!options.open_end) {
+      return last;
+    }
     const std::size_t first = band.first(row_count() - 1);
     const bool normalized = doubles_straight(options.pattern);
     const auto measure = [&](std::size_t j) {
@@ -221,7 +225,9 @@ struct Search {
     };
     std::size_t best = last;
     for (std::size_t j = last; j-- > first;) {
-      if (measure(j) < measure(best)) best = j;
+      if (measure(j) < measure(best)) {
+        best = j;
+      }
     }
     return best;
   }
@@ -229,7 +235,9 @@ struct Search {
   template <class Steps>
   bool walk(std::vector<PathPoint>& path) const {
     std::size_t row = row_count() - 1, column = end_column();
-    if (!(rows.above[column] < kInfinity)) return false;
+    if (!(rows.above[column] < kInfinity)) {
+      return false;
+    }
     path.resize(row_count() + column_count() - 1);
     std::size_t free = path.size();
     const auto note = [&] {
@@ -256,7 +264,9 @@ Band::Band(std::size_t rows, std::size_t columns, std::optional<std::size_t> win
     : a_(static_cast<std::int64_t>(rows) - 1),
       b_(static_cast<std::int64_t>(columns) - 1),
       reach_(2 * a_ * b_) {
-  if (!window) return;
+  if (!window) {
+    return;
+  }
   const auto widest = static_cast<std::int64_t>(std::min(*window, kMostAlignmentSamples));
   reach_ = std::min(reach_, std::max(2 * widest * std::min(a_, b_), std::max(a_, b_)));
 }
@@ -267,7 +277,9 @@ std::size_t Band::first(std::size_t row) const {
 }
 
 std::size_t Band::last(std::size_t row) const {
-  if (a_ == 0) return static_cast<std::size_t>(b_);
+  if (a_ == 0) {
+    return static_cast<std::size_t>(b_);
+  }
   const std::int64_t high = 2 * static_cast<std::int64_t>(row) * b_ + reach_;
   return static_cast<std::size_t>(std::min(b_, high / (2 * a_)));
 }

@@ -25,7 +25,9 @@ std::string shown(std::string_view text) {
   constexpr std::size_t kLongest = 40;
   std::string result(cut_text(text, kLongest));
   for (char& c : result) {
-    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') {
+      c = ' ';
+    }
   }
   return result.size() < text.size() ? result + "..." : result;
 }
@@ -36,13 +38,19 @@ std::optional<double> number(std::string_view text) {
   }
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if (error != std::errc() || end != text.data() + text.size()) {
+    return std::nullopt;
+  }
   return value;
 }
 
 std::optional<double> number(std::string_view text, char decimal_mark) {
-  if (decimal_mark == '.') return number(text);
-  if (text.find('.') != text.npos) return std::nullopt;
+  if (decimal_mark == '.') {
+    return number(text);
+  }
+  if (text.find('.') != text.npos) {
+    return std::nullopt;
+  }
   std::string copy(text);
   std::replace(copy.begin(), copy.end(), decimal_mark, '.');
   return number(copy);
@@ -50,7 +58,9 @@ std::optional<double> number(std::string_view text, char decimal_mark) {
 
 /// A number, or what stands for one that is missing: such a row names no columns.
 bool is_like_a_number(std::string_view text, char separator) {
-  if (text.empty() || text == "NA" || text == "n/a" || number(text)) return true;
+  if (text.empty() || text == "NA" || text == "n/a" || number(text)) {
+    return true;
+  }
   return separator != ',' && number(text, ',');
 }
 
@@ -79,7 +89,9 @@ class CsvTable::Parser {
       if (width == 0) {
         width = row.size();
         first_line_ = line;
-        if (take_names(row)) continue;
+        if (take_names(row)) {
+          continue;
+        }
       }
       if (row.size() != width) {
         fail(line, fmt::format("the row has {} fields; allowed: {}, as in line {}", row.size(),
@@ -100,16 +112,22 @@ class CsvTable::Parser {
   }
 
   void pass_line_end() {
-    if (at_ == text_.size()) return;
+    if (at_ == text_.size()) {
+      return;
+    }
     const bool pair = text_[at_] == '\r' && at_ + 1 < text_.size() && text_[at_ + 1] == '\n';
     at_ += pair ? 2 : 1;
     ++line_;
   }
 
   void skip_preamble() {
-    if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;
+    if (text_.starts_with("\xef\xbb\xbf")) {
+      at_ = 3;
+    }
     while (at_ < text_.size() && (text_[at_] == '#' || at_line_end())) {
-      while (!at_line_end()) ++at_;
+      while (!at_line_end()) {
+        ++at_;
+      }
       pass_line_end();
     }
   }
@@ -118,10 +136,18 @@ class CsvTable::Parser {
     bool inside = false, semicolon = false;
     for (std::size_t k = at_; k < text_.size(); ++k) {
       const char c = text_[k];
-      if (c == '"') inside = !inside;
-      if (inside) continue;
-      if (c == '\n' || c == '\r') break;
-      if (c == '\t') return '\t';
+      if (c == '"') {
+        inside = !inside;
+      }
+      if (inside) {
+        continue;
+      }
+      if (c == '\n' || c == '\r') {
+        break;
+      }
+      if (c == '\t') {
+        return '\t';
+      }
       semicolon = semicolon || c == ';';
     }
     return semicolon ? ';' : ',';
@@ -132,7 +158,9 @@ class CsvTable::Parser {
     quoted_ = false;
     for (;;) {
       row.push_back(read_field());
-      if (at_line_end()) break;
+      if (at_line_end()) {
+        break;
+      }
       ++at_;  // the separator
     }
     pass_line_end();
@@ -140,12 +168,20 @@ class CsvTable::Parser {
 
   Field read_field() {
     const char separator = table_.separator_;
-    while (!at_line_end() && text_[at_] != separator && is_blank(text_[at_])) ++at_;
-    if (at_ < text_.size() && text_[at_] == '"') return read_quoted();
+    while (!at_line_end() && text_[at_] != separator && is_blank(text_[at_])) {
+      ++at_;
+    }
+    if (at_ < text_.size() && text_[at_] == '"') {
+      return read_quoted();
+    }
     const std::size_t begin = at_;
-    while (!at_line_end() && text_[at_] != separator) ++at_;
+    while (!at_line_end() && text_[at_] != separator) {
+      ++at_;
+    }
     std::size_t end = at_;
-    while (end > begin && is_blank(text_[end - 1])) --end;
+    while (end > begin && is_blank(text_[end - 1])) {
+      --end;
+    }
     return field(begin, end);
   }
 
@@ -155,9 +191,13 @@ class CsvTable::Parser {
     std::size_t out = begin;
     quoted_ = true;
     for (;; ++at_) {
-      if (at_ == text_.size()) fail(line, "a quote is opened and never closed; close it");
+      if (at_ == text_.size()) {
+        fail(line, "a quote is opened and never closed; close it");
+      }
       if (text_[at_] == '"') {
-        if (at_ + 1 == text_.size() || text_[at_ + 1] != '"') break;
+        if (at_ + 1 == text_.size() || text_[at_ + 1] != '"') {
+          break;
+        }
         ++at_;
       }
       line_ += text_[at_] == '\n' ? 1 : 0;

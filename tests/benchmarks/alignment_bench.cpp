@@ -55,8 +55,12 @@ class Textbook {
       for (std::size_t j = 0; j < columns; ++j) {
         double best = above_[j];
         char way = 'd';
-        if (above_[j + 1] + p.penalty < best) best = above_[j + 1] + p.penalty, way = 'u';
-        if (row_[j] + p.penalty < best) best = row_[j] + p.penalty, way = 'l';
+        if (above_[j + 1] + p.penalty < best) {
+          best = above_[j + 1] + p.penalty, way = 'u';
+        }
+        if (row_[j] + p.penalty < best) {
+          best = row_[j] + p.penalty, way = 'l';
+        }
         row_[j + 1] = best + p.force_weight * std::abs(a.force[i] - b.force[j]) +
                       p.slope_weight * std::abs(a.slope[i] - b.slope[j]);
         ways_[i * columns + j] = way;
@@ -67,10 +71,16 @@ class Textbook {
     result.path.clear();
     for (std::size_t i = rows - 1, j = columns - 1;;) {
       result.path.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j)});
-      if (i == 0 && j == 0) break;
+      if (i == 0 && j == 0) {
+        break;
+      }
       const char way = ways_[i * columns + j];
-      if (way != 'l') --i;
-      if (way != 'u') --j;
+      if (way != 'l') {
+        --i;
+      }
+      if (way != 'u') {
+        --j;
+      }
     }
     std::reverse(result.path.begin(), result.path.end());
   }
@@ -101,7 +111,9 @@ double seconds_of(int runs, Work work, double (*clock)() = thread_seconds) {
     seconds.push_back(clock() - start);
   }
   // Elapsed time counts what other programs take meanwhile: the best run has the least of it.
-  if (clock == wall_seconds) return *std::min_element(seconds.begin(), seconds.end());
+  if (clock == wall_seconds) {
+    return *std::min_element(seconds.begin(), seconds.end());
+  }
   std::nth_element(seconds.begin(), seconds.begin() + runs / 2, seconds.end());
   return seconds[static_cast<std::size_t>(runs) / 2];
 }
@@ -179,8 +191,9 @@ void measure_study(int cores) {
     curve = {1000.0, smooth_curve(random, kSamples).force};
   }
   std::vector<RecallPair> recalls;
-  for (std::size_t k = 0; k < kRecalls; ++k)
+  for (std::size_t k = 0; k < kRecalls; ++k) {
     recalls.push_back({&curves[2 * k], &curves[2 * k + 1]});
+  }
   for (int jobs = 1; jobs <= cores; jobs *= 2) {
     const double seconds = seconds_of(
         3, [&] { score_recalls(recalls, ScoreParameters{}, jobs); }, wall_seconds);
@@ -201,7 +214,9 @@ int main(int argc, char** argv) {
   const auto samples = static_cast<std::size_t>(samples_asked);
   haptrial::RandomStream random(1, "benchmark");
   std::vector<Curve> curves;
-  for (std::size_t k = 0; k < 2 * kPairs; ++k) curves.push_back(smooth_curve(random, samples));
+  for (std::size_t k = 0; k < 2 * kPairs; ++k) {
+    curves.push_back(smooth_curve(random, samples));
+  }
   std::vector<AlignmentPair> pairs;
   for (std::size_t k = 0; k < kPairs; ++k) {
     const Curve &target = curves[2 * k], &applied = curves[2 * k + 1];

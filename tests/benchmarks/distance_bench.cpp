@@ -56,8 +56,9 @@ Way ours_many(const Bvh& bvh) {
   return {"ours, many at once", [&](const Points& points, std::vector<double>& squared) {
             std::vector<ClosestPoint> answers(points.size());
             bvh.closest(points, answers);
-            for (std::size_t i = 0; i < points.size(); ++i)
+            for (std::size_t i = 0; i < points.size(); ++i) {
               squared[i] = answers[i].distance_squared;
+            }
           }};
 }
 Way ours_one(const Bvh& bvh) {
@@ -83,7 +84,9 @@ Way ours_map(const Bvh& bvh, const VoxelSolid& solid) {
             const DistanceMap map = make_distance_map(bvh, solid, {.threads = 1});
             std::size_t i = 0;
             for (const double distance : map.distance) {
-              if (!std::isnan(distance)) squared[i++] = distance * distance;
+              if (!std::isnan(distance)) {
+                squared[i++] = distance * distance;
+              }
             }
           }};
 }
@@ -192,7 +195,9 @@ int main(int argc, char** argv) {
 #endif
   compare(fmt::format("{} points, raster order", points.size()), points, raster, rounds);
   RandomStream random(1, "shuffle");
-  for (std::size_t i = points.size(); i > 1; --i) std::swap(points[i - 1], points[random.below(i)]);
+  for (std::size_t i = points.size(); i > 1; --i) {
+    std::swap(points[i - 1], points[random.below(i)]);
+  }
   constexpr std::size_t kShuffled = 100000;  // a misleading start costs some peers seconds
   points.resize(std::min(points.size(), kShuffled));
   compare(fmt::format("{} points, shuffled", points.size()), points, shuffled, rounds);

@@ -76,10 +76,14 @@ class EmbreeTree {
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                 3 * sizeof(unsigned), mesh.triangles.size()));
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-      for (int k = 0; k < 3; ++k) vertices_[3 * i + k] = static_cast<float>(mesh.vertices[i][k]);
+      for (int k = 0; k < 3; ++k) {
+        vertices_[3 * i + k] = static_cast<float>(mesh.vertices[i][k]);
+      }
     }
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-      for (int k = 0; k < 3; ++k) indices_[3 * i + k] = static_cast<unsigned>(mesh.triangles[i][k]);
+      for (int k = 0; k < 3; ++k) {
+        indices_[3 * i + k] = static_cast<unsigned>(mesh.triangles[i][k]);
+      }
     }
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene_, geometry);
@@ -101,7 +105,9 @@ class EmbreeTree {
       RTCPointQuery at{query.point.x(), query.point.y(), query.point.z(), 0.0f,
                        std::numeric_limits<float>::infinity()};
       // A little more than the distance to the answer before, which is still on the surface.
-      if (warm && i > 0) at.radius = 1.00001f * (query.point - query.nearest).norm() + 1e-12f;
+      if (warm && i > 0) {
+        at.radius = 1.00001f * (query.point - query.nearest).norm() + 1e-12f;
+      }
       RTCPointQueryContext context;
       rtcInitPointQueryContext(&context);
       rtcPointQuery(scene_, &at, &context, visit, &query);
@@ -123,7 +129,9 @@ class EmbreeTree {
     };
     const Eigen::Vector3f near = nearest(query.point, corner(0), corner(1), corner(2));
     const float distance = (near - query.point).norm();
-    if (!(distance < arguments->query->radius)) return false;
+    if (!(distance < arguments->query->radius)) {
+      return false;
+    }
     arguments->query->radius = distance;
     query.nearest = near;
     return true;
@@ -134,18 +142,30 @@ class EmbreeTree {
                                  const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
     const Eigen::Vector3f ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
     const float ab_ap = ab.dot(ap), ac_ap = ac.dot(ap);
-    if (ab_ap <= 0.0f && ac_ap <= 0.0f) return a;
+    if (ab_ap <= 0.0f && ac_ap <= 0.0f) {
+      return a;
+    }
     const float ab_bp = ab.dot(bp), ac_bp = ac.dot(bp);
-    if (ab_bp >= 0.0f && ac_bp <= ab_bp) return b;
+    if (ab_bp >= 0.0f && ac_bp <= ab_bp) {
+      return b;
+    }
     const float ab_cp = ab.dot(cp), ac_cp = ac.dot(cp);
-    if (ac_cp >= 0.0f && ab_cp <= ac_cp) return c;
+    if (ac_cp >= 0.0f && ab_cp <= ac_cp) {
+      return c;
+    }
     const float of_c = ab_ap * ac_bp - ab_bp * ac_ap;
-    if (of_c <= 0.0f && ab_ap >= 0.0f && ab_bp <= 0.0f) return a + ab_ap / (ab_ap - ab_bp) * ab;
+    if (of_c <= 0.0f && ab_ap >= 0.0f && ab_bp <= 0.0f) {
+      return a + ab_ap / (ab_ap - ab_bp) * ab;
+    }
     const float of_b = ab_cp * ac_ap - ab_ap * ac_cp;
-    if (of_b <= 0.0f && ac_ap >= 0.0f && ac_cp <= 0.0f) return a + ac_ap / (ac_ap - ac_cp) * ac;
+    if (of_b <= 0.0f && ac_ap >= 0.0f && ac_cp <= 0.0f) {
+      return a + ac_ap / (ac_ap - ac_cp) * ac;
+    }
     const float of_a = ab_bp * ac_cp - ab_cp * ac_bp;
     const float along = ac_bp - ab_bp, back = ab_cp - ac_cp;
-    if (of_a <= 0.0f && along >= 0.0f && back >= 0.0f) return b + along / (along + back) * (c - b);
+    if (of_a <= 0.0f && along >= 0.0f && back >= 0.0f) {
+      return b + along / (along + back) * (c - b);
+    }
     const float scale = 1.0f / (of_a + of_b + of_c);
     return a + of_b * scale * ab + of_c * scale * ac;
   }

@@ -64,7 +64,9 @@ Cost cost_of(SourceDistance& source, const Options& options,
              const std::vector<Eigen::Vector3d>& points) {
   source.start(options);
   const double start = processor_seconds();
-  for (const Eigen::Vector3d& point : points) source.closest(point);
+  for (const Eigen::Vector3d& point : points) {
+    source.closest(point);
+  }
   const double seconds = processor_seconds() - start;
   const double tests = static_cast<double>(source.counts().boxes + source.counts().triangles);
   return {seconds, tests / static_cast<double>(points.size())};
@@ -74,11 +76,15 @@ Cost cost_of(SourceDistance& source, const Options& options,
 class Series {
  public:
   Series(const std::string& folder, const std::string& name) {
-    if (!folder.empty()) file_.emplace(fmt::output_file(folder + "/" + name + ".dat"));
+    if (!folder.empty()) {
+      file_.emplace(fmt::output_file(folder + "/" + name + ".dat"));
+    }
   }
   template <class... Values>
   void row(const Values&... values) {
-    if (file_) (file_->print("{} ", values), ...), file_->print("\n");
+    if (file_) {
+      (file_->print("{} ", values), ...), file_->print("\n");
+    }
   }
 
  private:
@@ -115,7 +121,9 @@ void resolutions(const std::vector<Subject>& subjects, const std::string& folder
 void seeds_and_orders(const Subject& subject, const std::string& folder) {
   fmt::print("\nboxes and triangles tested per voxel, {}\n{:>6}{:>14}", subject.name, "axis",
              "order");
-  for (int ascend = -1; ascend <= 4; ++ascend) fmt::print("{:>10}", fmt::format("N = {}", ascend));
+  for (int ascend = -1; ascend <= 4; ++ascend) {
+    fmt::print("{:>10}", fmt::format("N = {}", ascend));
+  }
   fmt::print("\n");
   Series series(folder, "seeds-" + subject.name);
   SourceDistance source(subject.mesh);
@@ -146,5 +154,7 @@ int main(int argc, char** argv) {
     subjects.push_back({std::filesystem::path(argv[i]).stem().string(), read_mesh(argv[i])});
   }
   resolutions(subjects, folder);
-  for (const Subject& subject : subjects) seeds_and_orders(subject, folder);
+  for (const Subject& subject : subjects) {
+    seeds_and_orders(subject, folder);
+  }
 }

@@ -81,9 +81,10 @@ TEST_F(BoneCommandTest, WhatIsWrongIsRefusedInASentence) {
 
 TEST_F(BoneCommandTest, ACtBecomesABone) {
   const auto file = test::shared_data("ct/headsq_quarter_64x64x93.nrrd");
-  if (!file)
+  if (!file) {
     GTEST_SKIP()
         << "neither HAPTRIAL_DATA nor ../shared/data holds ct/headsq_quarter_64x64x93.nrrd";
+  }
   expect_refusal("haptrial bone import " + file->string() + " head.nrrd", "not Hounsfield units");
   const auto result =
       run("haptrial bone import " + file->string() + " head.nrrd --threshold 1324 --spacing 2");

@@ -38,11 +38,21 @@ inline bool has_short_power(double p) {
 /// take, by pow() for the rest.
 template <class Use>
 auto with_power(double p, Use use) {
-  if (p == 1.0) return use([](double x) { return powered<1, DoubleOps>(x); });
-  if (p == 2.0) return use([](double x) { return powered<2, DoubleOps>(x); });
-  if (p == 1.5) return use([](double x) { return std::abs(x) * std::sqrt(std::abs(x)); });
-  if (p == 3.0) return use([](double x) { return std::abs(x) * (x * x); });
-  if (p == 4.0) return use([](double x) { return (x * x) * (x * x); });
+  if (p == 1.0) {
+    return use([](double x) { return powered<1, DoubleOps>(x); });
+  }
+  if (p == 2.0) {
+    return use([](double x) { return powered<2, DoubleOps>(x); });
+  }
+  if (p == 1.5) {
+    return use([](double x) { return std::abs(x) * std::sqrt(std::abs(x)); });
+  }
+  if (p == 3.0) {
+    return use([](double x) { return std::abs(x) * (x * x); });
+  }
+  if (p == 4.0) {
+    return use([](double x) { return (x * x) * (x * x); });
+  }
   return use([p](double x) { return std::pow(std::abs(x), p); });
 }
 

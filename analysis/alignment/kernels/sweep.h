@@ -22,7 +22,9 @@ template <class Lanes, int straight, int power>
     typename Lanes::Number penalty, Directions& directions) {
   const auto error =
       powered<power, Lanes>(force_difference) + powered<power, Lanes>(slope_difference);
-  if constexpr (straight == 2) diagonal = diagonal + error;
+  if constexpr (straight == 2) {
+    diagonal = diagonal + error;
+  }
   const auto aside = Lanes::smaller(left, up) + penalty;
   directions.aside = Lanes::less(aside, diagonal);
   directions.left = Lanes::less(left, up);

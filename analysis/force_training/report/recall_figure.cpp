@@ -16,7 +16,9 @@ constexpr Look kPairing{palette::kPale, palette::kSolid, 0, 0.8};
 
 std::vector<double> instants(const TimeBase& base) {
   std::vector<double> times(base.samples);
-  for (std::size_t k = 0; k < base.samples; ++k) times[k] = base.step() * static_cast<double>(k);
+  for (std::size_t k = 0; k < base.samples; ++k) {
+    times[k] = base.step() * static_cast<double>(k);
+  }
   return times;
 }
 

@@ -10,10 +10,16 @@ namespace haptrial::analysis {
 namespace {
 
 std::size_t time_column(const CsvTable& table, const std::string& name) {
-  if (!name.empty()) return table.column(name);
-  if (table.has("time")) return table.column("time");
+  if (!name.empty()) {
+    return table.column(name);
+  }
+  if (table.has("time")) {
+    return table.column("time");
+  }
   const bool unnamed_pair = table.columns() == std::vector<std::string>{"1", "2"};
-  if (unnamed_pair) return 0;
+  if (unnamed_pair) {
+    return 0;
+  }
   throw InputError(
       fmt::format("{}: no column is named 'time'; name the column of times ({}) or give a rate",
                   table.name(), fmt::join(table.columns(), ", ")));
@@ -21,8 +27,12 @@ std::size_t time_column(const CsvTable& table, const std::string& name) {
 
 std::size_t value_column(const CsvTable& table, const std::string& name,
                          std::optional<std::size_t> time) {
-  if (!name.empty()) return table.column(name);
-  if (!time && table.has("time")) time = table.column("time");  // passed over for the rate
+  if (!name.empty()) {
+    return table.column(name);
+  }
+  if (!time && table.has("time")) {
+    time = table.column("time");
+  }  // passed over for the rate
   const std::size_t others = table.columns().size() - (time ? 1 : 0);
   if (others == 0) {
     throw InputError(fmt::format("{}: no column is left for the values; add one", table.name()));
@@ -58,7 +68,9 @@ TableCurve read_curve(const CsvTable& table, const CurveColumns& columns) {
         fmt::format("{}:{}: is the only row; allowed: at least two", table.name(), table.line(0)));
   }
   curve.values = table.numbers(value);
-  if (time) curve.times = table.numbers(*time);
+  if (time) {
+    curve.times = table.numbers(*time);
+  }
   for (std::size_t row = 1; row < curve.times.size(); ++row) {
     if (!(curve.times[row] > curve.times[row - 1])) {
       table.refuse(row, *time,

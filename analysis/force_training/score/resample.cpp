@@ -63,7 +63,9 @@ std::vector<double> resample_at_times(const SampledCurve& curve, const TimeBase&
       result[k] = curve.values.back();
       continue;
     }
-    while (curve.times[after] - start <= at) ++after;
+    while (curve.times[after] - start <= at) {
+      ++after;
+    }
     const double from = curve.times[after - 1] - start, to = curve.times[after] - start;
     const double part = (at - from) / (to - from);
     result[k] = (1.0 - part) * curve.values[after - 1] + part * curve.values[after];
@@ -80,7 +82,9 @@ double duration_of(const SampledCurve& curve, const char* name) {
     throw InputError(std::string(name) + " " + found + "; allowed: " + allowed);
   };
   const std::size_t samples = curve.values.size();
-  if (samples < 2) fail("has " + std::to_string(samples) + " samples", "at least two");
+  if (samples < 2) {
+    fail("has " + std::to_string(samples) + " samples", "at least two");
+  }
   const bool timed = !curve.times.empty();
   if (!timed && !(curve.rate > 0.0 && std::isfinite(curve.rate))) {
     fail("has a rate of " + std::to_string(curve.rate) + " Hz", "a finite number above 0");
@@ -92,7 +96,9 @@ double duration_of(const SampledCurve& curve, const char* name) {
         "is " + std::to_string(*bad) + " N at sample " + std::to_string(bad - curve.values.begin()),
         "finite forces");
   }
-  if (!timed) return static_cast<double>(samples - 1) / curve.rate;
+  if (!timed) {
+    return static_cast<double>(samples - 1) / curve.rate;
+  }
   if (curve.times.size() != samples) {
     fail("has " + std::to_string(curve.times.size()) + " times for " + std::to_string(samples) +
              " samples",
@@ -105,7 +111,9 @@ double duration_of(const SampledCurve& curve, const char* name) {
     }
   }
   const double duration = curve.times.back() - curve.times.front();
-  if (!std::isfinite(duration)) fail("lasts too long to count in seconds", "finite times");
+  if (!std::isfinite(duration)) {
+    fail("lasts too long to count in seconds", "finite times");
+  }
   return duration;
 }
 
@@ -134,7 +142,9 @@ std::vector<double> box_filter(std::span<const double> force, const TimeBase& ba
   const double half_width = 0.5 * width / base.step();  // in steps
   const double last = static_cast<double>(force.size() - 1);
   std::vector<double> result(force.begin(), force.end());
-  if (half_width == 0.0) return result;
+  if (half_width == 0.0) {
+    return result;
+  }
   for (std::size_t k = 1; k + 1 < force.size(); ++k) {
     const double at = static_cast<double>(k);
     const double half = std::min({half_width, at, last - at});

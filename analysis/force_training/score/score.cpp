@@ -24,7 +24,9 @@ struct Prepared {
 /// The alignment takes no larger values (kLargestAlignmentError), and no device makes them.
 void check_size(std::span<const double> values, double power, double weight, const char* name) {
   double largest = 0.0;
-  for (const double value : values) largest = std::max(largest, std::abs(value));
+  for (const double value : values) {
+    largest = std::max(largest, std::abs(value));
+  }
   if (!(weight * std::pow(largest, power) <= Aligner::kMaxError)) {
     throw InputError(std::string(name) + " reaches " + std::to_string(largest) +
                      "; allowed: at most 1e12 after weighting");
@@ -63,7 +65,9 @@ AlignmentOptions options_on(const TimeBase& time, const ScoreParameters& p) {
 
 double rms_difference(std::span<const double> a, std::span<const double> b) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    sum += (a[i] - b[i]) * (a[i] - b[i]);
+  }
   return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
@@ -109,7 +113,9 @@ class GroupScorer {
   /// Windows differ with the durations, so each pair then goes alone.
   void align() {
     views_.clear();
-    for (const Prepared& ready : ready_) views_.push_back(ready.views());
+    for (const Prepared& ready : ready_) {
+      views_.push_back(ready.views());
+    }
     alignments_.resize(ready_.size());
     if (!parameters_.window) {
       aligner_.align_batch(views_, parameters_.alignment, alignments_);

@@ -29,9 +29,15 @@ void read_form(Table& analysis, ScoreParameters& p) {
     const std::string name = analysis.choice("step_pattern", pattern_names());
     p.alignment.pattern = pattern_of(name).value_or(StepPattern::kPublished);
   }
-  if (analysis.has("window")) p.window = analysis.number("window", kNonNegative, "s");
-  if (analysis.has("open_begin")) p.alignment.open_begin = analysis.boolean("open_begin");
-  if (analysis.has("open_end")) p.alignment.open_end = analysis.boolean("open_end");
+  if (analysis.has("window")) {
+    p.window = analysis.number("window", kNonNegative, "s");
+  }
+  if (analysis.has("open_begin")) {
+    p.alignment.open_begin = analysis.boolean("open_begin");
+  }
+  if (analysis.has("open_end")) {
+    p.alignment.open_end = analysis.boolean("open_end");
+  }
   if (p.alignment.open_begin && doubles_straight(p.alignment.pattern)) {
     analysis.reject(
         "open_begin",
@@ -83,8 +89,12 @@ std::vector<std::pair<std::string, std::string>> described(const ScoreParameters
   if (a.pattern != StepPattern::kPublished) {
     rows.emplace_back("step pattern", std::string(name_of(a.pattern)));
   }
-  if (p.window) rows.emplace_back("window", fmt::format("{} s", *p.window));
-  if (a.window) rows.emplace_back("window", fmt::format("{} samples", *a.window));
+  if (p.window) {
+    rows.emplace_back("window", fmt::format("{} s", *p.window));
+  }
+  if (a.window) {
+    rows.emplace_back("window", fmt::format("{} samples", *a.window));
+  }
   if (a.open_begin || a.open_end) {
     rows.emplace_back("open ends", a.open_begin && a.open_end ? "begin and end"
                                    : a.open_begin             ? "begin"
@@ -98,7 +108,9 @@ std::vector<std::pair<std::string, std::string>> described(const ScoreParameters
 
 void check(const ScoreParameters& p) {
   const auto require = [](bool holds, const std::string& sentence) {
-    if (!holds) throw std::invalid_argument("score: " + sentence);
+    if (!holds) {
+      throw std::invalid_argument("score: " + sentence);
+    }
   };
   require(p.samples >= 2 && p.samples <= kMostSamples, "samples must be 2 to 10,000");
   require(is_within(p.filter_width, {0.0, kWidestFilter}), "filter_width must be 0 to 10 s");

@@ -6,12 +6,16 @@
 namespace haptrial {
 
 void TomlCursor::skip_blanks() {
-  while (!ended() && is_blank(peek())) ++at_;
+  while (!ended() && is_blank(peek())) {
+    ++at_;
+  }
 }
 
 void TomlCursor::skip_comment() {
   if (peek() == '#') {
-    while (!line_ended()) ++at_;
+    while (!line_ended()) {
+      ++at_;
+    }
   }
 }
 
@@ -22,14 +26,18 @@ void TomlCursor::skip_blank_lines() {
     if (ended() || !line_ended()) {
       return;
     }
-    while (peek() == '\r') ++at_;
+    while (peek() == '\r') {
+      ++at_;
+    }
     next();
   } while (true);
 }
 
 std::string_view TomlCursor::rest_of_line() const {
   std::size_t end = std::min(text_.find('\n', at_), text_.size());
-  while (end > at_ && (is_blank(text_[end - 1]) || text_[end - 1] == '\r')) --end;
+  while (end > at_ && (is_blank(text_[end - 1]) || text_[end - 1] == '\r')) {
+    --end;
+  }
   return text_.substr(at_, end - at_);
 }
 

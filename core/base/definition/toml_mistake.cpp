@@ -107,7 +107,9 @@ class Walk : private TomlScalars {
         path += text_.substr(begin, at_ - begin);
       } else {
         const std::size_t begin = at_;
-        while (is_bare(peek())) ++at_;
+        while (is_bare(peek())) {
+          ++at_;
+        }
         if (at_ == begin) {
           return fail_key(begin);
         }

@@ -36,7 +36,9 @@ bool TomlScalars::long_string() {
       }
     } else if (starts(quotes)) {
       at_ += 3;
-      for (int more = 0; more < 2 && peek() == quotes[0]; ++more) ++at_;  // quotes at its end
+      for (int more = 0; more < 2 && peek() == quotes[0]; ++more) {
+        ++at_;
+      }  // quotes at its end
       return true;
     }
   }
@@ -49,14 +51,24 @@ bool TomlScalars::goes_on(char quote) {
   const auto [at, line] = std::pair(at_, line_);
   bool closed = false;
   while (!closed && !ended()) {
-    while (!line_ended()) ++at_;
-    while (peek() == '\r') ++at_;
-    if (!ended()) next();
+    while (!line_ended()) {
+      ++at_;
+    }
+    while (peek() == '\r') {
+      ++at_;
+    }
+    if (!ended()) {
+      next();
+    }
     const std::string_view rest = rest_of_line();
-    if (ended() || statement_begins()) break;
+    if (ended() || statement_begins()) {
+      break;
+    }
     const auto quotes = std::count(rest.begin(), rest.end(), quote);
     closed = quotes % 2 == 1;
-    if (quotes > 0 && !closed) break;
+    if (quotes > 0 && !closed) {
+      break;
+    }
   }
   std::tie(at_, line_) = std::pair(at, line);
   return closed;
@@ -108,9 +120,13 @@ bool TomlScalars::decimal_point(const std::string& token, char end) {
     return true;
   }
   std::size_t after = 1;
-  while (is_digit(peek(after))) ++after;
+  while (is_digit(peek(after))) {
+    ++after;
+  }
   std::size_t sign = after;
-  while (is_blank(peek(sign))) ++sign;
+  while (is_blank(peek(sign))) {
+    ++sign;
+  }
   if (end == '}' && (peek(sign) == '=' || is_bare(peek(after)) || peek(after) == '.')) {
     return true;  // the next key of the table
   }

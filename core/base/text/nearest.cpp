@@ -59,8 +59,12 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 std::string not_allowed(std::string_view what, std::string_view found,
                         const std::vector<std::string>& allowed) {
   std::string_view word = found;
-  while (!word.empty() && (word.front() == '\'' || word.front() == '"')) word.remove_prefix(1);
-  while (!word.empty() && (word.back() == '\'' || word.back() == '"')) word.remove_suffix(1);
+  while (!word.empty() && (word.front() == '\'' || word.front() == '"')) {
+    word.remove_prefix(1);
+  }
+  while (!word.empty() && (word.back() == '\'' || word.back() == '"')) {
+    word.remove_suffix(1);
+  }
   const std::string hint = did_you_mean(word, allowed);
   return fmt::format("{} is {}{} allowed: {}", what, found, hint.empty() ? ";" : hint,
                      fmt::join(allowed, ", "));

@@ -21,7 +21,9 @@ using Beads = std::vector<Worm::Bead>;
 
 Beads joined(std::initializer_list<Beads> parts) {
   Beads all;
-  for (const Beads& part : parts) all.insert(all.end(), part.begin(), part.end());
+  for (const Beads& part : parts) {
+    all.insert(all.end(), part.begin(), part.end());
+  }
   return all;
 }
 
@@ -285,7 +287,9 @@ double EarAnatomy::middle_ear(const Point& p) const {
 EarAnatomy::Material EarAnatomy::jaw(const Point& p) const {
   const double condyle = std::min(ellipsoid(p, {16.5, 10.0, 14.0}, {9.0, 4.2, 4.4}),
                                   round_cone(p, {15.8, 10.6, 11.5}, {14.5, 15.0, -4.0}, 3.0, 4.6));
-  if (condyle >= 0.0) return {};
+  if (condyle >= 0.0) {
+    return {};
+  }
   return {Anatomy::kJaw, condyle > -1.2 ? 0.9 : 0.45};
 }
 
@@ -297,7 +301,9 @@ bool EarAnatomy::air_cell(const Point& p, double depth, double middle) const {
     return false;
   }
   for (const Part& part : parts_) {
-    if (part.worm.distance(p) < part.wall) return false;
+    if (part.worm.distance(p) < part.wall) {
+      return false;
+    }
   }
   // Cells grow out of the antrum; few of them reach the petrous apex.
   const double reach = (p - kAntrum).norm() + 0.8 * std::max(0.0, p.x() - 27.0);
@@ -311,16 +317,22 @@ EarAnatomy::Material EarAnatomy::at(const Point& p) const {
   const double inside = cranium(p);
   if (depth > 6.0 && inside > 6.0 && sinus(p) > 0.0) {
     const Material condyle = jaw(p);
-    if (condyle.label != Anatomy::kNothing) return condyle;
+    if (condyle.label != Anatomy::kNothing) {
+      return condyle;
+    }
   }
   for (const Part& part : parts_) {
     if (part.worm.distance(p, 1.0) < 0.0) {
       // In the open a nerve or vessel ends soon: this is a bone.
-      if (depth > 2.0 && inside > 0.0) return {};
+      if (depth > 2.0 && inside > 0.0) {
+        return {};
+      }
       return {part.label, 1.0};
     }
   }
-  if (sinus(p) < 0.0 && (depth < 3.0 || inside < 0.0)) return {Anatomy::kSinusAndDura, 1.0};
+  if (sinus(p) < 0.0 && (depth < 3.0 || inside < 0.0)) {
+    return {Anatomy::kSinusAndDura, 1.0};
+  }
   if (internal_canal_.distance(p) < 0.0 && depth < 0.0 && inside > -1.0) {
     return {Anatomy::kInternalCanal, 1.0};
   }
@@ -332,7 +344,9 @@ EarAnatomy::Material EarAnatomy::at(const Point& p) const {
     return p.x() < kBony ? Material{} : Material{Anatomy::kEarCanal, 1.0};
   }
   const Material condyle = jaw(p);
-  if (condyle.label != Anatomy::kNothing) return condyle;
+  if (condyle.label != Anatomy::kNothing) {
+    return condyle;
+  }
   constexpr double kPlate = 1.0;  // over dura and sinus, also where the shapes leave a gap
   const bool plate = inside < kPlate || sinus(p) < kPlate;
   if (depth >= 0.0) {
@@ -340,16 +354,22 @@ EarAnatomy::Material EarAnatomy::at(const Point& p) const {
   }
   const double middle = middle_ear(p);
   if (middle < 0.0) {
-    if (plate) return {Anatomy::kBone, 1.0};
+    if (plate) {
+      return {Anatomy::kBone, 1.0};
+    }
     // The canal of the facial nerve and the capsule of the labyrinth bulge into the cavity.
     for (const Part& part : parts_) {
       const bool walled = part.label == Anatomy::kFacialNerve ||
                           part.label == Anatomy::kLabyrinth || part.label == Anatomy::kCarotid;
-      if (walled && part.worm.distance(p) < 0.55) return {Anatomy::kBone, 1.0};
+      if (walled && part.worm.distance(p) < 0.55) {
+        return {Anatomy::kBone, 1.0};
+      }
     }
     return {};
   }
-  if (air_cell(p, depth, middle)) return {};
+  if (air_cell(p, depth, middle)) {
+    return {};
+  }
   const double cortex = std::min({-depth, inside, middle + 0.5});
   const double capsule = (p - kVestibule).norm();
   return {Anatomy::kBone, cortex < 1.8 || capsule < 9.0 ? 1.0 : 0.75};

@@ -141,7 +141,9 @@ double JawAnatomy::tooth(const Point& p) const {
   double best = 1e9;
   for (const Tooth& tooth : teeth_) {
     best = std::min(best, tooth.crown.distance(p, 2.0));
-    for (const Worm& root : tooth.roots) best = std::min(best, root.distance(p, 2.0));
+    for (const Worm& root : tooth.roots) {
+      best = std::min(best, root.distance(p, 2.0));
+    }
   }
   return best;
 }
@@ -149,7 +151,9 @@ double JawAnatomy::tooth(const Point& p) const {
 /// A plate along the arch, rounded at its borders.
 double JawAnatomy::body(const Point& p) const {
   constexpr double kFar = 8.0;  // from there on it changes nothing
-  if (p.z() > kCrest + v_.height + kFar) return kFar;
+  if (p.z() > kCrest + v_.height + kFar) {
+    return kFar;
+  }
   double best = 1e18;
   double place = 0.0;  // along the arch, 0 to 1
   for (std::size_t i = 1; i < arch_.size(); ++i) {
@@ -181,7 +185,9 @@ double JawAnatomy::body(const Point& p) const {
 
 double JawAnatomy::ramus(const Point& p) const {
   constexpr double kFar = 8.0;
-  if (p.x() < 29.0 + v_.spread || p.y() < 40.0) return kFar;
+  if (p.x() < 29.0 + v_.spread || p.y() < 40.0) {
+    return kFar;
+  }
   const double rise = std::clamp(p.z() / 62.0, 0.0, 1.1);
   const double middle = 44.5 + v_.spread + 5.5 * rise + 0.06 * (p.y() - 68.0);
   const double half = 3.6 - 1.0 * rise + (p.z() < 24.0 ? 0.05 * (24.0 - p.z()) : 0.0);
@@ -202,13 +208,21 @@ EarAnatomy::Material JawAnatomy::at(Point p) const {
   p.x() = std::abs(p.x());
   const double nerve = nerve_.distance(p, 3.0);
   const double bone = smooth_union(body(p), ramus(p), 5.0) + 0.3 * noise(v_.noise, p / 6.0);
-  if (nerve < 0.0 && bone < 1.0) return {Anatomy::kAlveolarNerve, 1.0};
+  if (nerve < 0.0 && bone < 1.0) {
+    return {Anatomy::kAlveolarNerve, 1.0};
+  }
   const double teeth = tooth(p);
-  if (teeth < 0.0) return {Anatomy::kTooth, 1.0};
-  if (bone >= 0.0) return {};
+  if (teeth < 0.0) {
+    return {Anatomy::kTooth, 1.0};
+  }
+  if (bone >= 0.0) {
+    return {};
+  }
   // Thicker along the lower border; a thin sheet around roots and canal.
   const double cortex = v_.cortex * (p.z() < 8.0 ? 1.3 : 1.0);
-  if (-bone < cortex || nerve < 0.7 || teeth < 0.7) return {Anatomy::kBone, 1.0};
+  if (-bone < cortex || nerve < 0.7 || teeth < 0.7) {
+    return {Anatomy::kBone, 1.0};
+  }
   return {Anatomy::kBone, 0.4 + 0.12 * noise(v_.noise + 3, p / 1.6)};
 }
 

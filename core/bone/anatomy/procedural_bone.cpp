@@ -33,7 +33,9 @@ BoneModel fill(const MadeGrid& made,
       for (std::int32_t i = 0; i < grid.size[0]; ++i) {
         const Point p = grid.centre(i, j, k) * (1e3 / made.scale);
         const EarAnatomy::Material found = material(p);
-        if (found.label == Anatomy::kNothing) continue;
+        if (found.label == Anatomy::kNothing) {
+          continue;
+        }
         const std::size_t index = grid.index(i, j, k);
         model.labels[index] = static_cast<std::uint8_t>(found.label);
         const double level = std::clamp(std::floor(255.0 * found.density + 0.5), 1.0, 255.0);

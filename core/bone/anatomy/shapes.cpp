@@ -78,7 +78,9 @@ Worm::Worm(std::vector<Bead> beads, double least) : beads_(std::move(beads)) {
 double Worm::distance(const Point& p, double care) const {
   const Point beyond = (low_ - p).cwiseMax(p - high_).cwiseMax(0.0);
   const double outside = beyond.norm();
-  if (outside > care) return outside;
+  if (outside > care) {
+    return outside;
+  }
   double best = 1e9;
   for (std::size_t i = 1; i < beads_.size(); ++i) {
     best = std::min(best, round_cone(p, beads_[i - 1].at, beads_[i].at, beads_[i - 1].radius,
@@ -89,7 +91,9 @@ double Worm::distance(const Point& p, double care) const {
 
 double Worm::length() const {
   double sum = 0.0;
-  for (std::size_t i = 1; i < beads_.size(); ++i) sum += (beads_[i].at - beads_[i - 1].at).norm();
+  for (std::size_t i = 1; i < beads_.size(); ++i) {
+    sum += (beads_[i].at - beads_[i - 1].at).norm();
+  }
   return sum;
 }
 
@@ -127,7 +131,9 @@ std::vector<Worm::Bead> arc(const Point& centre, const Point& u, const Point& v,
 }
 
 bool Cells::holds(const Point& p, double fill) const {
-  if (fill <= 0.0) return false;
+  if (fill <= 0.0) {
+    return false;
+  }
   const Point scaled = p / pitch_;
   std::array<std::int64_t, 3> base{};
   for (int axis = 0; axis < 3; ++axis) {

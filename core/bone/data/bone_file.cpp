@@ -43,7 +43,9 @@ std::string head_of(const BoneModel& model) {
 }
 
 std::vector<std::uint8_t> bytes_of(const BoneModel& model) {
-  if (model.density.empty()) return model.labels;
+  if (model.density.empty()) {
+    return model.labels;
+  }
   std::vector<std::uint8_t> bytes(2 * model.labels.size());
   for (std::size_t i = 0; i < model.labels.size(); ++i) {
     bytes[2 * i] = model.labels[i];
@@ -57,7 +59,9 @@ std::vector<std::uint8_t> bytes_of(const BoneModel& model) {
 std::vector<char> compressed(const std::vector<std::uint8_t>& bytes) {
   const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
       libdeflate_alloc_compressor(kLevel), &libdeflate_free_compressor);
-  if (!compressor) throw std::bad_alloc();
+  if (!compressor) {
+    throw std::bad_alloc();
+  }
   std::vector<char> result(libdeflate_gzip_compress_bound(compressor.get(), bytes.size()));
   result.resize(libdeflate_gzip_compress(compressor.get(), bytes.data(), bytes.size(),
                                          result.data(), result.size()));

@@ -36,7 +36,9 @@ std::array<std::size_t, 256> count_pieces(const BoneModel& model) {
   std::vector<std::size_t> open;
   for (std::size_t start = 0; start < model.labels.size(); ++start) {
     const std::uint8_t label = model.labels[start];
-    if (label == 0 || seen[start]) continue;
+    if (label == 0 || seen[start]) {
+      continue;
+    }
     ++pieces[label];
     seen[start] = true;
     open.push_back(start);
@@ -65,7 +67,9 @@ std::size_t count_faces(const BoneModel& model) {
   for (std::int32_t k = 0; k < grid.size[2]; ++k) {
     for (std::int32_t j = 0; j < grid.size[1]; ++j) {
       for (std::int32_t i = 0; i < grid.size[0]; ++i) {
-        if (!full(i, j, k)) continue;
+        if (!full(i, j, k)) {
+          continue;
+        }
         faces += !full(i - 1, j, k);
         faces += !full(i + 1, j, k);
         faces += !full(i, j - 1, k);
@@ -84,9 +88,13 @@ BoneSummary summary_of(const BoneModel& model) {
   check(model);
   const double h = model.grid.spacing;
   std::array<StructureSummary, 256> all{};
-  for (StructureSummary& one : all) one.box.setEmpty();
+  for (StructureSummary& one : all) {
+    one.box.setEmpty();
+  }
   for (std::size_t i = 0; i < model.labels.size(); ++i) {
-    if (model.labels[i] == 0) continue;
+    if (model.labels[i] == 0) {
+      continue;
+    }
     StructureSummary& one = all[model.labels[i]];
     const auto [x, y, z] = place_of(model.grid, i);
     ++one.voxels;
@@ -97,7 +105,9 @@ BoneSummary summary_of(const BoneModel& model) {
   BoneSummary summary;
   for (std::size_t label = 1; label < all.size(); ++label) {
     StructureSummary& one = all[label];
-    if (one.voxels == 0) continue;
+    if (one.voxels == 0) {
+      continue;
+    }
     one.label = static_cast<std::uint8_t>(label);
     one.volume = static_cast<double>(one.voxels) * h * h * h;
     one.mean_density /= static_cast<double>(one.voxels);

@@ -29,7 +29,9 @@ struct Histogram {
 }  // namespace
 
 float density_of(double value, const GreyLevels& levels) {
-  if (value < levels.threshold) return 0.0F;
+  if (value < levels.threshold) {
+    return 0.0F;
+  }
   const double share = (value - levels.threshold) / (levels.dense - levels.threshold);
   const double density = 0.2 + 0.8 * std::clamp(share, 0.0, 1.0);
   return static_cast<float>(std::round(255.0 * density) / 255.0);
@@ -65,9 +67,13 @@ double find_threshold(std::span<const float> values) {
 double quantile_from(std::span<const float> values, double low, double share) {
   std::vector<float> chosen;
   for (const float value : values) {
-    if (value >= low) chosen.push_back(value);
+    if (value >= low) {
+      chosen.push_back(value);
+    }
   }
-  if (chosen.empty()) return low;
+  if (chosen.empty()) {
+    return low;
+  }
   const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(chosen.size() - 1));
   std::ranges::nth_element(chosen, chosen.begin() + place);
   return chosen[static_cast<std::size_t>(place)];

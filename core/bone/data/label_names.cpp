@@ -24,7 +24,9 @@ std::optional<std::size_t> label_in(std::string_view digits) {
 }
 
 void put(std::vector<Structure>& structures, std::size_t label, Structure structure) {
-  if (structures.size() <= label) structures.resize(label + 1);
+  if (structures.size() <= label) {
+    structures.resize(label + 1);
+  }
   structures[label] = std::move(structure);
 }
 
@@ -49,8 +51,12 @@ Structure read_structure(Table& table, std::size_t label) {
                    fmt::format("has {} numbers; write three: red, green, blue", colour.size()));
     }
   }
-  if (table.has("hardness")) structure.hardness = table.number("hardness", {0.01, 100.0}, "");
-  if (table.has("vital")) structure.vital = table.boolean("vital");
+  if (table.has("hardness")) {
+    structure.hardness = table.number("hardness", {0.01, 100.0}, "");
+  }
+  if (table.has("vital")) {
+    structure.vital = table.boolean("vital");
+  }
   return structure;
 }
 
@@ -113,7 +119,9 @@ std::map<std::string, std::string> keys_of(const std::vector<Structure>& structu
   int segment = 0;
   for (std::size_t label = 1; label < structures.size(); ++label) {
     const Structure& structure = structures[label];
-    if (structure.name.empty()) continue;
+    if (structure.name.empty()) {
+      continue;
+    }
     const std::string key = fmt::format("label_{:02}", label);
     const std::string colour =
         fmt::format("{} {} {}", structure.colour[0], structure.colour[1], structure.colour[2]);

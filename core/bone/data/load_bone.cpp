@@ -52,11 +52,19 @@ bool whole_from_0_to_255(std::span<const float> values) {
 
 VolumeKind kind_of(const VolumeHead& head, std::span<const float> values,
                    const LoadOptions& options) {
-  if (options.kind != VolumeKind::kAuto) return options.kind;
-  if (head.labels) return VolumeKind::kLabels;
-  if (head.hounsfield || !whole_from_0_to_255(values)) return VolumeKind::kGrey;
+  if (options.kind != VolumeKind::kAuto) {
+    return options.kind;
+  }
+  if (head.labels) {
+    return VolumeKind::kLabels;
+  }
+  if (head.hounsfield || !whole_from_0_to_255(values)) {
+    return VolumeKind::kGrey;
+  }
   std::array<bool, 256> seen{};
-  for (const float value : values) seen[static_cast<std::size_t>(value)] = true;
+  for (const float value : values) {
+    seen[static_cast<std::size_t>(value)] = true;
+  }
   constexpr auto kManyLabels = 64;
   return std::ranges::count(seen, true) <= kManyLabels ? VolumeKind::kLabels : VolumeKind::kGrey;
 }
@@ -129,14 +137,22 @@ void name_labels(const Import& job, std::vector<Structure> structures, BoneModel
     std::vector<Structure> named = read_label_table(job.options.label_file);
     structures.resize(std::max(structures.size(), named.size()));
     for (std::size_t label = 1; label < named.size(); ++label) {
-      if (!named[label].name.empty()) structures[label] = std::move(named[label]);
+      if (!named[label].name.empty()) {
+        structures[label] = std::move(named[label]);
+      }
     }
   }
   std::array<bool, 256> used{};
-  for (const std::uint8_t label : model.labels) used[label] = true;
+  for (const std::uint8_t label : model.labels) {
+    used[label] = true;
+  }
   for (std::size_t label = 1; label < used.size(); ++label) {
-    if (!used[label]) continue;
-    if (structures.size() <= label) structures.resize(label + 1);
+    if (!used[label]) {
+      continue;
+    }
+    if (structures.size() <= label) {
+      structures.resize(label + 1);
+    }
     if (structures[label].name.empty()) {
       const bool alone = std::ranges::count(used.begin() + 1, used.end(), true) == 1;
       structures[label] = structure_named(alone ? "bone" : fmt::format("label {}", label),
@@ -148,15 +164,21 @@ void name_labels(const Import& job, std::vector<Structure> structures, BoneModel
 
 void leave_out(const Import& job, BoneModel& model) {
   std::array<bool, 256> used{};
-  for (const std::uint8_t label : model.labels) used[label] = true;
+  for (const std::uint8_t label : model.labels) {
+    used[label] = true;
+  }
   for (const std::string& name : job.options.without) {
     const Structure wanted = structure_named(name, 0);
     std::vector<std::string> known;
     std::size_t label = 0;
     for (std::size_t i = 1; i < model.structures.size(); ++i) {
-      if (model.structures[i].name.empty() || !used[i]) continue;
+      if (model.structures[i].name.empty() || !used[i]) {
+        continue;
+      }
       known.push_back(model.structures[i].name);
-      if (model.structures[i].name == wanted.name) label = i;
+      if (model.structures[i].name == wanted.name) {
+        label = i;
+      }
     }
     if (label == 0) {
       const std::string hint = did_you_mean(name, known);
@@ -164,9 +186,13 @@ void leave_out(const Import& job, BoneModel& model) {
                                    hint.empty() ? ";" : hint, fmt::join(known, ", ")));
     }
     for (std::size_t i = 0; i < model.labels.size(); ++i) {
-      if (model.labels[i] != label) continue;
+      if (model.labels[i] != label) {
+        continue;
+      }
       model.labels[i] = 0;
-      if (!model.density.empty()) model.density[i] = 0.0F;
+      if (!model.density.empty()) {
+        model.density[i] = 0.0F;
+      }
     }
   }
 }
@@ -179,7 +205,9 @@ void crop(BoneModel& model) {
   for (std::int32_t k = 0; k < old.size[2]; ++k) {
     for (std::int32_t j = 0; j < old.size[1]; ++j) {
       for (std::int32_t i = 0; i < old.size[0]; ++i) {
-        if (model.labels[old.index(i, j, k)] == 0) continue;
+        if (model.labels[old.index(i, j, k)] == 0) {
+          continue;
+        }
         const std::array<std::int32_t, 3> voxel{i, j, k};
         for (std::size_t axis = 0; axis < 3; ++axis) {
           low[axis] = std::min(low[axis], voxel[axis]);
@@ -244,7 +272,9 @@ GreyLevels levels_of(const Import& job, const VolumeHead& head, std::span<const 
   const bool usual = hounsfield && levels.threshold < kDense;
   levels.dense =
       options.dense.value_or(usual ? kDense : quantile_from(values, levels.threshold, kMostBone));
-  if (!options.dense && !(levels.dense > levels.threshold)) levels.dense = levels.threshold + 1.0;
+  if (!options.dense && !(levels.dense > levels.threshold)) {
+    levels.dense = levels.threshold + 1.0;
+  }
   if (!(levels.dense > levels.threshold)) {
     throw InputError(fmt::format("dense bone is {:.6g}; allowed: above the threshold, {:.6g}",
                                  levels.dense, levels.threshold));
@@ -285,7 +315,9 @@ BoneModel grey_bone(const Import& job, const VolumeHead& head, const UprightVolu
 /// The grid to the last bit, where the key says the same as the head.
 void take_exact_grid(const VolumeHead& head, geometry::VoxelGrid& grid) {
   const auto key = head.keys.find("haptrial_grid");
-  if (key == head.keys.end()) return;
+  if (key == head.keys.end()) {
+    return;
+  }
   std::istringstream in(key->second);
   geometry::VoxelGrid exact = grid;
   if (in >> exact.spacing >> exact.origin.x() >> exact.origin.y() >> exact.origin.z() &&
@@ -298,10 +330,16 @@ void take_exact_grid(const VolumeHead& head, geometry::VoxelGrid& grid) {
 BoneModel saved_bone(const Import& job, const VolumeHead& head, const UprightVolume& volume) {
   BoneModel model = labelled_bone(job, head, volume);
   const bool same = model.grid.size == volume.size;
-  if (same) take_exact_grid(head, model.grid);
+  if (same) {
+    take_exact_grid(head, model.grid);
+  }
   const auto source = head.keys.find("haptrial_source");
-  if (same && source != head.keys.end()) model.source = source->second;
-  if (volume.components.size() < 2) return model;
+  if (same && source != head.keys.end()) {
+    model.source = source->second;
+  }
+  if (volume.components.size() < 2) {
+    return model;
+  }
   model.density.assign(model.labels.size(), 0.0F);
   UprightVolume second = volume;
   second.components = {volume.components[1]};
@@ -310,7 +348,9 @@ BoneModel saved_bone(const Import& job, const VolumeHead& head, const UprightVol
                                      ? second.components[0]
                                      : resample_grey(second, plan.grid, plan.own_axes, job.report);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (model.labels[i] == 0) continue;
+    if (model.labels[i] == 0) {
+      continue;
+    }
     model.density[i] = static_cast<float>(std::clamp(std::round(values[i]), 1.0F, 255.0F) / 255.0F);
   }
   return model;
@@ -342,7 +382,9 @@ BoneModel load_bone(const fs::path& file, const LoadOptions& options,
     throw InputError(fmt::format(
         "{}: holds no bone; choose a volume with at least one voxel of bone", job.name));
   }
-  if (kind == VolumeKind::kGrey) crop(model);
+  if (kind == VolumeKind::kGrey) {
+    crop(model);
+  }
   try {
     check(model);
   } catch (const std::invalid_argument& error) {

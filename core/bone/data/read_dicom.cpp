@@ -44,7 +44,9 @@ bool is_whole(const gdcm::Reader& reader, const Slice& slice, int bits) {
   const double pixels = static_cast<double>(slice.rows) * slice.columns * slice.frames;
   const double head = static_cast<double>(fs::file_size(slice.file)) - pixels * bits / 8.0 - 8.0;
   constexpr double kLargest = 1e8;
-  if (!(head >= 0.0 && head <= kLargest)) return head > 0.0;
+  if (!(head >= 0.0 && head <= kLargest)) {
+    return head > 0.0;
+  }
   std::string bytes(static_cast<std::size_t>(head) + 4, '\0');
   std::ifstream(slice.file, std::ios::binary)
       .read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
@@ -56,16 +58,22 @@ bool is_whole(const gdcm::Reader& reader, const Slice& slice, int bits) {
 template <class Attribute>
 std::optional<Attribute> find(const gdcm::DataSet& data) {
   Attribute attribute;
-  if (!data.FindDataElement(attribute.GetTag())) return std::nullopt;
+  if (!data.FindDataElement(attribute.GetTag())) {
+    return std::nullopt;
+  }
   const gdcm::DataElement& element = data.GetDataElement(attribute.GetTag());
-  if (element.IsEmpty()) return std::nullopt;
+  if (element.IsEmpty()) {
+    return std::nullopt;
+  }
   attribute.SetFromDataElement(element);
   return attribute;
 }
 
 std::string text(const char* value) {
   std::string words = value == nullptr ? "" : value;
-  while (!words.empty() && (words.back() == ' ' || words.back() == '\0')) words.pop_back();
+  while (!words.empty() && (words.back() == ' ' || words.back() == '\0')) {
+    words.pop_back();
+  }
   return words;
 }
 
@@ -73,13 +81,17 @@ std::string text(const char* value) {
 std::optional<Slice> read_slice(const fs::path& file) {
   gdcm::Reader reader;
   reader.SetFileName(file.c_str());
-  if (!reader.CanRead() || !reader.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0010))) return std::nullopt;
+  if (!reader.CanRead() || !reader.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0010))) {
+    return std::nullopt;
+  }
   const gdcm::DataSet& data = reader.GetFile().GetDataSet();
   Slice slice;
   slice.file = file;
   const auto rows = find<gdcm::Attribute<0x0028, 0x0010>>(data);
   const auto columns = find<gdcm::Attribute<0x0028, 0x0011>>(data);
-  if (!rows || !columns) return std::nullopt;
+  if (!rows || !columns) {
+    return std::nullopt;
+  }
   slice.rows = rows->GetValue();
   slice.columns = columns->GetValue();
   if (const auto series = find<gdcm::Attribute<0x0020, 0x000e>>(data)) {
@@ -111,12 +123,16 @@ std::optional<Slice> read_slice(const fs::path& file) {
 std::vector<Slice> slices_in(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.is_regular_file()) files.push_back(entry.path());
+    if (entry.is_regular_file()) {
+      files.push_back(entry.path());
+    }
   }
   std::ranges::sort(files);
   std::vector<Slice> slices;
   for (const fs::path& file : files) {
-    if (auto slice = read_slice(file)) slices.push_back(std::move(*slice));
+    if (auto slice = read_slice(file)) {
+      slices.push_back(std::move(*slice));
+    }
   }
   if (slices.empty()) {
     throw InputError(fmt::format(
@@ -129,7 +145,9 @@ std::vector<Slice> slices_in(const fs::path& folder) {
 /// @throws InputError unless all slices are of one series and alike.
 void check_alike(const std::string& name, const std::vector<Slice>& slices) {
   std::set<std::string> series;
-  for (const Slice& slice : slices) series.insert(slice.series);
+  for (const Slice& slice : slices) {
+    series.insert(slice.series);
+  }
   if (series.size() > 1) {
     throw InputError(
         fmt::format("{}: holds {} series ({} and {}); give each series a folder of its own", name,
@@ -301,7 +319,9 @@ SourceVolume read_dicom(const fs::path& path, const Room& room) {
   gdcm::Trace::ErrorOff();
   if (fs::is_directory(path)) {
     std::vector<Slice> slices = slices_in(path);
-    if (slices.size() == 1 && slices[0].frames > 1) return read_frames(slices[0], room);
+    if (slices.size() == 1 && slices[0].frames > 1) {
+      return read_frames(slices[0], room);
+    }
     return read_series(path.string(), std::move(slices), room);
   }
   const auto slice = read_slice(path);

@@ -30,9 +30,15 @@ void check_magic(const std::string& name) {
 
 double metres(const char* unit) {
   const std::string name = unit == nullptr ? "" : unit;
-  if (name == "m") return 1.0;
-  if (name == "cm") return 1e-2;
-  if (name == "um" || name == "microns") return 1e-6;
+  if (name == "m") {
+    return 1.0;
+  }
+  if (name == "cm") {
+    return 1e-2;
+  }
+  if (name == "um" || name == "microns") {
+    return 1e-6;
+  }
   return 1e-3;  // as good as every program takes it
 }
 

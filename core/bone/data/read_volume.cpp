@@ -116,7 +116,9 @@ BigArray<float> fetch(const std::string& name, int memory, std::size_t count) {
   while (done < count * sizeof(float)) {
     const ssize_t size =
         pread(memory, bytes + done, count * sizeof(float) - done, static_cast<off_t>(done));
-    if (size <= 0) throw RunError(fmt::format("{}: cannot be handed over", name));
+    if (size <= 0) {
+      throw RunError(fmt::format("{}: cannot be handed over", name));
+    }
     done += static_cast<std::size_t>(size);
   }
   return values;
@@ -171,11 +173,19 @@ void check_head(const std::string& name, const VolumeHead& head, const Room& roo
 
 SourceVolume read_here(const fs::path& path, const Room& room) {
   const std::string name = path.filename().string();
-  if (fs::is_directory(path)) return read_dicom(path, room);
+  if (fs::is_directory(path)) {
+    return read_dicom(path, room);
+  }
   const auto ends = [&](const char* ending) { return name.ends_with(ending); };
-  if (ends(".nrrd") || ends(".nhdr")) return read_nrrd(path, room);
-  if (ends(".nii") || ends(".nii.gz")) return read_nifti(path, room);
-  if (ends(".dcm")) return read_dicom(path, room);
+  if (ends(".nrrd") || ends(".nhdr")) {
+    return read_nrrd(path, room);
+  }
+  if (ends(".nii") || ends(".nii.gz")) {
+    return read_nifti(path, room);
+  }
+  if (ends(".dcm")) {
+    return read_dicom(path, room);
+  }
   throw InputError(
       fmt::format("{}: is not a volume by its name; allowed: .nrrd, .nhdr, .nii, .nii.gz, .dcm, or "
                   "a folder with a DICOM series",
@@ -198,8 +208,12 @@ SourceVolume read_volume(const fs::path& file, const Room& room,
     throw InputError(fmt::format(
         "{}: is damaged, so that its reader crashed; copy or export it again", file.string()));
   }
-  if (answer.contains("input_error")) throw InputError(answer["input_error"].get<std::string>());
-  if (answer.contains("run_error")) throw RunError(answer["run_error"].get<std::string>());
+  if (answer.contains("input_error")) {
+    throw InputError(answer["input_error"].get<std::string>());
+  }
+  if (answer.contains("run_error")) {
+    throw RunError(answer["run_error"].get<std::string>());
+  }
   SourceVolume volume{heard(answer.at("head")), {}};
   const auto components = static_cast<std::size_t>(volume.head.components);
   volume.values = fetch(file.string(), memory.get(), components * volume.head.count());

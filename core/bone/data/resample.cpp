@@ -16,8 +16,12 @@ constexpr double kLobes = 3.0;
 
 /// Windowed sinc, 0 from three lobes on.
 double lanczos(double x) {
-  if (std::abs(x) < 1e-9) return 1.0;
-  if (std::abs(x) >= kLobes) return 0.0;
+  if (std::abs(x) < 1e-9) {
+    return 1.0;
+  }
+  if (std::abs(x) >= kLobes) {
+    return 0.0;
+  }
   const double a = std::numbers::pi * x;
   return kLobes * std::sin(a) * std::sin(a / kLobes) / (a * a);
 }
@@ -44,7 +48,9 @@ Taps taps_at(double at, double width, std::int32_t size) {
     weights[static_cast<std::size_t>(std::clamp(i, taps.first, last) - taps.first)] += weight;
     sum += weight;
   }
-  for (const double weight : weights) taps.weights.push_back(static_cast<float>(weight / sum));
+  for (const double weight : weights) {
+    taps.weights.push_back(static_cast<float>(weight / sum));
+  }
   return taps;
 }
 
@@ -53,9 +59,13 @@ BigArray<float> filter_axis(const BigArray<float>& from, std::array<std::int32_t
                             const std::vector<Taps>& taps) {
   const auto a = static_cast<std::size_t>(axis);
   std::size_t stride = 1;
-  for (std::size_t i = 0; i < a; ++i) stride *= static_cast<std::size_t>(size[i]);
+  for (std::size_t i = 0; i < a; ++i) {
+    stride *= static_cast<std::size_t>(size[i]);
+  }
   std::size_t outer = 1;
-  for (std::size_t i = a + 1; i < 3; ++i) outer *= static_cast<std::size_t>(size[i]);
+  for (std::size_t i = a + 1; i < 3; ++i) {
+    outer *= static_cast<std::size_t>(size[i]);
+  }
   const auto length = static_cast<std::size_t>(size[a]);
   BigArray<float> to(stride * taps.size() * outer);
   parallel_for(outer, threads_or_all(0), [&](std::size_t o) {
@@ -67,7 +77,9 @@ BigArray<float> filter_axis(const BigArray<float>& from, std::array<std::int32_t
         const std::size_t index = static_cast<std::size_t>(tap.first) + w;
         const float* source = from.data() + (o * length + index) * stride;
         const float weight = tap.weights[w];
-        for (std::size_t s = 0; s < stride; ++s) row[s] += weight * source[s];
+        for (std::size_t s = 0; s < stride; ++s) {
+          row[s] += weight * source[s];
+        }
       }
     }
   });
@@ -101,10 +113,14 @@ BigArray<float> smoothed(const UprightVolume& volume, double spacing) {
   BigArray<float> values = volume.components[0];
   for (int axis = 0; axis < 3; ++axis) {
     const double width = spacing / volume.steps.col(axis).norm();
-    if (width <= 1.0) continue;
+    if (width <= 1.0) {
+      continue;
+    }
     std::vector<Taps> taps;
     const std::int32_t size = volume.size[static_cast<std::size_t>(axis)];
-    for (std::int32_t i = 0; i < size; ++i) taps.push_back(taps_at(i, width, size));
+    for (std::int32_t i = 0; i < size; ++i) {
+      taps.push_back(taps_at(i, width, size));
+    }
     values = filter_axis(values, volume.size, axis, taps);
   }
   return values;
@@ -121,7 +137,9 @@ BigArray<float> resample_turned(const UprightVolume& volume, const geometry::Vox
     std::array<Taps, 3> taps;
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
-      if (!within(at[axis], volume.size[a])) return beyond;
+      if (!within(at[axis], volume.size[a])) {
+        return beyond;
+      }
       taps[a] = taps_at(at[axis], 1.0, volume.size[a]);
     }
     float sum = 0.0F;
@@ -279,7 +297,9 @@ BigArray<float> resample_grey(const UprightVolume& volume, const geometry::Voxel
   const VoxelMap map = map_to(volume, grid, own_axes);
   BigArray<float> values = own_axes ? resample_straight(volume, grid, map, report)
                                     : resample_turned(volume, grid, map, low, report);
-  for (float& value : values) value = std::clamp(value, low, high);
+  for (float& value : values) {
+    value = std::clamp(value, low, high);
+  }
   return values;
 }
 
@@ -292,7 +312,9 @@ std::vector<std::uint8_t> resample_labels(std::span<const std::uint8_t> labels,
   const auto ny = static_cast<std::size_t>(volume.size[1]);
   const auto nearest = [&](const Eigen::Vector3d& at) -> std::uint8_t {
     for (int axis = 0; axis < 3; ++axis) {
-      if (!within(at[axis], volume.size[static_cast<std::size_t>(axis)])) return 0;
+      if (!within(at[axis], volume.size[static_cast<std::size_t>(axis)])) {
+        return 0;
+      }
     }
     std::array<std::size_t, 3> voxel{};
     for (int axis = 0; axis < 3; ++axis) {
@@ -311,7 +333,9 @@ std::vector<std::uint8_t> resample_labels(std::span<const std::uint8_t> labels,
     all *= samples[static_cast<std::size_t>(axis)];
   }
   const auto label_at = [&](const Eigen::Vector3d& centre) -> std::uint8_t {
-    if (all == 1) return nearest(map.turn * centre + map.offset);
+    if (all == 1) {
+      return nearest(map.turn * centre + map.offset);
+    }
     std::array<int, 256> votes{};
     int held = 0;
     for (int sample = 0; sample < all; ++sample) {
@@ -326,7 +350,9 @@ std::vector<std::uint8_t> resample_labels(std::span<const std::uint8_t> labels,
       held += label != 0 ? 1 : 0;
       ++votes[label];
     }
-    if (2 * held < all) return 0;
+    if (2 * held < all) {
+      return 0;
+    }
     int best = 1;
     for (int label = 2; label < 256; ++label) {
       best = votes[static_cast<std::size_t>(label)] >= votes[static_cast<std::size_t>(best)] ? label

@@ -23,7 +23,9 @@ ClosestPoint Bvh::closest(const Eigen::Vector3d& point) const noexcept {
 }
 
 ClosestPoint Bvh::closest(const Eigen::Vector3d& point, std::int32_t hint) const noexcept {
-  if (data_->nodes.empty() || !point.allFinite()) return {};
+  if (data_->nodes.empty() || !point.allFinite()) {
+    return {};
+  }
   const bool hinted = static_cast<std::size_t>(hint) < data_->slots.size();  // -1 is too large
   const std::int32_t slot = hinted ? data_->slots[hint] : -1;
   if (!kernel::is_near(data_->frame.to_frame(point))) {

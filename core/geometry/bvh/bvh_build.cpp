@@ -65,14 +65,18 @@ class Builder {
   /// height: the largest is split again and again. Parts that fit a leaf are left whole.
   int divide(const Range& range, int depth, std::array<Range, kWidth>& parts) {
     std::uint32_t enough = kWidth;
-    while (enough * kFill < range.count()) enough *= kFill;
+    while (enough * kFill < range.count()) {
+      enough *= kFill;
+    }
     parts[0] = range;
     int count = 1;
     while (count < kWidth) {
       const auto largest =
           std::max_element(parts.begin(), parts.begin() + count,
                            [](const Range& a, const Range& b) { return a.count() < b.count(); });
-      if (largest->count() <= enough) break;
+      if (largest->count() <= enough) {
+        break;
+      }
       const auto [left, right] =
           depth < kDeep ? split(items_, material_.scratch, *largest) : halve(items_, *largest);
       *largest = left;
@@ -124,7 +128,9 @@ class Builder {
   std::span<const Four> corners_of(const Range& range) {
     for (std::uint32_t i = 0; i < range.count(); ++i) {
       const Triangle& t = material_.mesh.triangles[items_[range.begin + i].triangle()];
-      for (int k = 0; k < 3; ++k) corners_[3 * i + k] = material_.vertices[t[k]];
+      for (int k = 0; k < 3; ++k) {
+        corners_[3 * i + k] = material_.vertices[t[k]];
+      }
     }
     return std::span<const Four>(corners_).first(3 * std::size_t{range.count()});
   }
@@ -144,7 +150,9 @@ class Forest {
     Builder builder(material_);
     tree_.nodes.emplace_back();
     open_.push_back({builder.whole(), 0, 0, 0});
-    for (std::size_t i = 0; i < open_.size(); ++i) grow_top(builder, open_[i]);
+    for (std::size_t i = 0; i < open_.size(); ++i) {
+      grow_top(builder, open_[i]);
+    }
     std::vector<Tree> trees(ripe_.size());
     parallel_for(trees.size(), threads_, [&](std::size_t i) {
       trees[i].nodes.reserve(ripe_[i].range.count() / 64 + 1);
@@ -190,7 +198,9 @@ class Forest {
       tree_.nodes.insert(tree_.nodes.end(), trees[i].nodes.begin(), trees[i].nodes.end());
       for (std::size_t n = first_node; n < tree_.nodes.size(); ++n) {
         for (std::int32_t& child : tree_.nodes[n].child) {
-          if (child != 0) child += child > 0 ? first_node : -first_leaf;
+          if (child != 0) {
+            child += child > 0 ? first_node : -first_leaf;
+          }
         }
       }
     }
@@ -226,11 +236,15 @@ void check(const Mesh& mesh) {
 
 Frame frame_of(const Mesh& mesh) {
   Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
+  for (const Eigen::Vector3d& vertex : mesh.vertices) {
+    box.extend(vertex);
+  }
   Frame frame;
   frame.centre = 0.5 * box.min() + 0.5 * box.max();
   const double reach = (0.5 * box.max() - 0.5 * box.min()).maxCoeff();
-  if (reach > 0.0) frame.scale = std::ldexp(1.0, std::min(-std::ilogb(reach) - 1, 1000));
+  if (reach > 0.0) {
+    frame.scale = std::ldexp(1.0, std::min(-std::ilogb(reach) - 1, 1000));
+  }
   return frame;
 }
 
@@ -243,7 +257,9 @@ Material make_material(const Mesh& mesh, const Frame& frame) {
     material.vertices[i] = Four{p.x(), p.y(), p.z(), 0.0f};
   }
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    for (const std::int32_t k : mesh.triangles[i]) material.items[i].box.add(material.vertices[k]);
+    for (const std::int32_t k : mesh.triangles[i]) {
+      material.items[i].box.add(material.vertices[k]);
+    }
     material.items[i].set_triangle(static_cast<std::int32_t>(i));
   }
   return material;
@@ -258,7 +274,9 @@ void write_leaf(const Material& material, std::size_t at,
     const Item& item = material.items[items.first + place];
     ids[place] = item.triangle();
     const Triangle& triangle = material.mesh.triangles[ids[place]];
-    for (int k = 0; k < 3; ++k) corners[place][k] = material.mesh.vertices[triangle[k]];
+    for (int k = 0; k < 3; ++k) {
+      corners[place][k] = material.mesh.vertices[triangle[k]];
+    }
     write_box(item.box, data.leaf_boxes[at], place);
     data.slots[ids[place]] = static_cast<std::int32_t>(kWidth * at) + place;
   }
@@ -268,14 +286,18 @@ void write_leaf(const Material& material, std::size_t at,
     leave_empty(data.leaf_boxes[at], place);
   }
   data.kernels->flatten(corners, data.frame, data.leaves[at]);
-  for (int place = count; place < kWidth; ++place) leave_empty(data.leaves[at], place);
+  for (int place = count; place < kWidth; ++place) {
+    leave_empty(data.leaves[at], place);
+  }
 }
 
 }  // namespace
 
 void build_hierarchy(const Mesh& mesh, int threads, BvhData& data) {
   check(mesh);
-  if (mesh.triangles.empty()) return;
+  if (mesh.triangles.empty()) {
+    return;
+  }
   data.frame = frame_of(mesh);
   Material material = make_material(mesh, data.frame);
   Tree tree = Forest(material, threads).grow();

@@ -29,7 +29,9 @@ std::uint32_t spread(std::uint32_t bits) {
 std::vector<Place> places_of(std::span<const Eigen::Vector3d> points) {
   Eigen::Array3d low = Eigen::Array3d::Constant(1e100), high = -low;
   for (const Eigen::Vector3d& point : points) {
-    if (!point.allFinite() || point.cwiseAbs().maxCoeff() > 1e100) continue;
+    if (!point.allFinite() || point.cwiseAbs().maxCoeff() > 1e100) {
+      continue;
+    }
     low = low.min(point.array());
     high = high.max(point.array());
   }
@@ -54,9 +56,15 @@ void sort(std::vector<Place>& places) {
   for (int shift = 0; shift < 3 * kBits; shift += kBits) {
     std::array<std::uint32_t, (1 << kBits) + 1> start{};
     const auto digit = [&](const Place& p) { return (p.code >> shift) & ((1u << kBits) - 1); };
-    for (const Place& place : places) ++start[digit(place) + 1];
-    for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
-    for (const Place& place : places) sorted[start[digit(place)]++] = place;
+    for (const Place& place : places) {
+      ++start[digit(place) + 1];
+    }
+    for (std::size_t i = 1; i < start.size(); ++i) {
+      start[i] += start[i - 1];
+    }
+    for (const Place& place : places) {
+      sorted[start[digit(place)]++] = place;
+    }
     places.swap(sorted);
   }
 }
@@ -67,7 +75,9 @@ void Bvh::closest(std::span<const Eigen::Vector3d> points, std::span<ClosestPoin
   if (points.size() != answers.size()) {
     throw std::invalid_argument("Bvh::closest: as many answers as points are needed");
   }
-  if (points.size() > 0xffffffff) throw std::invalid_argument("Bvh::closest: over 2^32 points");
+  if (points.size() > 0xffffffff) {
+    throw std::invalid_argument("Bvh::closest: over 2^32 points");
+  }
   if (data_->nodes.empty()) {
     std::fill(answers.begin(), answers.end(), ClosestPoint());
     return;
@@ -79,9 +89,13 @@ void Bvh::closest(std::span<const Eigen::Vector3d> points, std::span<ClosestPoin
   std::array<ClosestPoint, kBlock> block_answers;
   for (std::size_t first = 0; first < places.size(); first += kBlock) {
     const std::size_t count = std::min(kBlock, places.size() - first);
-    for (std::size_t i = 0; i < count; ++i) block_points[i] = points[places[first + i].index];
+    for (std::size_t i = 0; i < count; ++i) {
+      block_points[i] = points[places[first + i].index];
+    }
     data_->kernels->many(*data_, block_points.data(), count, block_answers.data());
-    for (std::size_t i = 0; i < count; ++i) answers[places[first + i].index] = block_answers[i];
+    for (std::size_t i = 0; i < count; ++i) {
+      answers[places[first + i].index] = block_answers[i];
+    }
   }
 }
 

@@ -59,7 +59,9 @@ void traverse(const BvhData& data, const Ray& ray, Visit visit) {
     const Boxes& boxes = at < 0 ? data.leaf_boxes[~at] : data.nodes[at].boxes;
     for (int i = 0; i < kWidth && !std::isinf(boxes.low[0][i]); ++i) {
       const auto [first, last] = slabs.cross(boxes, i, early, end + 1e-9 * std::abs(end));
-      if (first > last) continue;
+      if (first > last) {
+        continue;
+      }
       if (at >= 0) {
         stack[top++] = data.nodes[at].child[i];
         continue;
@@ -78,7 +80,9 @@ void traverse(const BvhData& data, const Ray& ray, Visit visit) {
 std::optional<RayHit> Bvh::nearest_hit(const Ray& ray) const {
   std::optional<RayHit> nearest;
   traverse(*data_, ray, [&](const RayHit& hit) {
-    if (!nearest || hit.t < nearest->t || hit.triangle < nearest->triangle) nearest = hit;
+    if (!nearest || hit.t < nearest->t || hit.triangle < nearest->triangle) {
+      nearest = hit;
+    }
     return nearest->t;
   });
   return nearest;

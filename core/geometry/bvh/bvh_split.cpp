@@ -113,7 +113,9 @@ std::size_t sort_apart(std::span<Item> items, Item* scratch, const Binning& binn
 
 FourBox middles_of(std::span<const Item> items) {
   FourBox middles;
-  for (const Item& item : items) middles.add(item.middle());
+  for (const Item& item : items) {
+    middles.add(item.middle());
+  }
   return middles;
 }
 
@@ -141,7 +143,9 @@ std::pair<Range, Range> split(std::span<Item> items, std::span<Item> scratch, co
     binning = Binning(middles_of(own));
     cut = find_cut(own, binning);
   }
-  if (cut.axis < 0) return halve(items, range);
+  if (cut.axis < 0) {
+    return halve(items, range);
+  }
   const auto left =
       static_cast<std::uint32_t>(sort_apart(own, scratch.data() + range.begin, binning, cut));
   return {{range.begin, range.begin + left, cut.left}, {range.begin + left, range.end, cut.right}};

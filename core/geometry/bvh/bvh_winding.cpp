@@ -20,7 +20,9 @@ double solid_angle(const Corners& corners, const Eigen::Vector3d& point) {
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
   const double volume = a.dot(b.cross(c));
   const double level = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-  if (volume == 0.0) return 0.0;  // in the triangle's plane, or without area
+  if (volume == 0.0) {
+    return 0.0;
+  }  // in the triangle's plane, or without area
   return 2.0 * std::atan2(volume, level);
 }
 
@@ -48,7 +50,9 @@ class DipoleMaker {
     Cluster whole;
     for (int i = 0; i < kWidth; ++i) {
       if (at < 0) {
-        if (data_.ids[~at * kWidth + i] >= 0) whole += of_triangle(~at * kWidth + i);
+        if (data_.ids[~at * kWidth + i] >= 0) {
+          whole += of_triangle(~at * kWidth + i);
+        }
       } else if (!std::isinf(data_.nodes[at].boxes.low[0][i])) {
         const Cluster part = make(data_.nodes[at].child[i]);
         write(data_.nodes[at].boxes, i, part, dipoles_[at]);
@@ -144,18 +148,28 @@ const std::vector<Dipoles>& BvhData::dipoles() const {
 }
 
 double Bvh::winding_number(const Eigen::Vector3d& point, double accuracy) const {
-  if (data_->nodes.empty() || !point.allFinite()) return 0.0;
-  if (std::isfinite(accuracy)) return winding(*data_, point, std::max(accuracy, 1.1)).number;
+  if (data_->nodes.empty() || !point.allFinite()) {
+    return 0.0;
+  }
+  if (std::isfinite(accuracy)) {
+    return winding(*data_, point, std::max(accuracy, 1.1)).number;
+  }
   double sum = 0.0;
-  for (const std::int32_t slot : data_->slots) sum += solid_angle(data_->corners[slot], point);
+  for (const std::int32_t slot : data_->slots) {
+    sum += solid_angle(data_->corners[slot], point);
+  }
   return sum / kFourPi;
 }
 
 bool Bvh::winds_around(const Eigen::Vector3d& point) const {
-  if (data_->nodes.empty() || !point.allFinite()) return false;
+  if (data_->nodes.empty() || !point.allFinite()) {
+    return false;
+  }
   for (const double accuracy : {4.0, 16.0}) {
     const Winding w = winding(*data_, point, accuracy);
-    if (std::abs(w.number - 0.5) > w.error) return w.number > 0.5;
+    if (std::abs(w.number - 0.5) > w.error) {
+      return w.number > 0.5;
+    }
   }
   return winding_number(point, std::numeric_limits<double>::infinity()) > 0.5;
 }

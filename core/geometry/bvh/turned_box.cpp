@@ -22,7 +22,9 @@ struct Axes {
   Four column[3];
 
   Axes(Four a, Four b, Four c) : axis{a, b, c} {
-    for (int i = 0; i < 3; ++i) column[i] = Four{a[i], b[i], c[i], 0.0f};
+    for (int i = 0; i < 3; ++i) {
+      column[i] = Four{a[i], b[i], c[i], 0.0f};
+    }
   }
   Four along(Four p) const {
     return all_four(p[0]) * column[0] + all_four(p[1]) * column[1] + all_four(p[2]) * column[2];
@@ -36,7 +38,9 @@ bool patch_normal(std::span<const Four> corners, Four& normal) {
     sum += cross(corners[i + 1] - corners[i], corners[i + 2] - corners[i]);
   }
   const float length = std::sqrt(dot(sum, sum));
-  if (!(length > 1e-20f)) return false;
+  if (!(length > 1e-20f)) {
+    return false;
+  }
   normal = sum / all_four(length);
   return true;
 }
@@ -44,7 +48,9 @@ bool patch_normal(std::span<const Four> corners, Four& normal) {
 /// Turned about the third axis so that the first is where the points spread most.
 Axes turn_to_spread(std::span<const Four> points, const Axes& axes) {
   Four mean{};
-  for (const Four& p : points) mean += p;
+  for (const Four& p : points) {
+    mean += p;
+  }
   mean /= all_four(static_cast<float>(points.size()));
   Four squares{};  // xx, yy, xy of coordinates along the axes
   for (const Four& p : points) {
@@ -60,7 +66,9 @@ Axes turn_to_spread(std::span<const Four> points, const Axes& axes) {
 void write(const Axes& axes, Four low, Four high, TurnedBoxes& boxes, int place) {
   const Four middle = (low + high) * all_four(0.5f), half = (high - low) * all_four(0.5f);
   for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) boxes.row[i][k][place] = axes.axis[i][k];
+    for (int k = 0; k < 3; ++k) {
+      boxes.row[i][k][place] = axes.axis[i][k];
+    }
     boxes.row[i][3][place] = -middle[i];
     boxes.half[i][place] = half[i];
   }
@@ -80,16 +88,22 @@ void write_upright(const FourBox& box, TurnedBoxes& boxes, int place) {
 void write_turned(std::span<const Four> corners, const FourBox& box, TurnedBoxes& boxes,
                   int place) {
   Four normal;
-  if (!patch_normal(corners, normal)) return write_upright(box, boxes, place);
+  if (!patch_normal(corners, normal)) {
+    return write_upright(box, boxes, place);
+  }
   int least = 0;
   for (int i = 1; i < 3; ++i) {
-    if (std::abs(normal[i]) < std::abs(normal[least])) least = i;
+    if (std::abs(normal[i]) < std::abs(normal[least])) {
+      least = i;
+    }
   }
   Four beside = cross(normal, upright().axis[least]);
   beside /= all_four(std::sqrt(dot(beside, beside)));
   const Axes axes = turn_to_spread(corners, {beside, cross(normal, beside), normal});
   FourBox turned;
-  for (const Four& p : corners) turned.add(axes.along(p));
+  for (const Four& p : corners) {
+    turned.add(axes.along(p));
+  }
   if (turned.half_area() < box.half_area()) {
     write(axes, turned.low, turned.high, boxes, place);
   } else {
@@ -99,7 +113,9 @@ void write_turned(std::span<const Four> corners, const FourBox& box, TurnedBoxes
 
 void leave_empty(TurnedBoxes& boxes, int place) {
   for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 4; ++k) boxes.row[i][k][place] = 0.0f;
+    for (int k = 0; k < 4; ++k) {
+      boxes.row[i][k][place] = 0.0f;
+    }
     boxes.half[i][place] = -std::numeric_limits<float>::infinity();
   }
 }

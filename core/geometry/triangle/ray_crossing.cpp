@@ -15,7 +15,9 @@ struct Flat {
 double determinant(const Flat& a, const Flat& b) {
   const double first = a.x * b.y, second = a.y * b.x;
   const double difference = first - second;
-  if (std::abs(difference) > 1e-15 * (std::abs(first) + std::abs(second))) return difference;
+  if (std::abs(difference) > 1e-15 * (std::abs(first) + std::abs(second))) {
+    return difference;
+  }
   const double lost = std::fma(-a.y, b.x, second);
   return std::fma(a.x, b.y, -second) + lost;
 }
@@ -23,9 +25,15 @@ double determinant(const Flat& a, const Flat& b) {
 /// On which side of the edge from a to b the origin lies: 1 left, -1 right, 0 where a and b
 /// coincide.
 int side_of(double determinant, const Flat& a, const Flat& b) {
-  if (determinant != 0.0) return determinant > 0.0 ? 1 : -1;
-  if (a.y != b.y) return a.y > b.y ? 1 : -1;
-  if (a.x != b.x) return b.x > a.x ? 1 : -1;
+  if (determinant != 0.0) {
+    return determinant > 0.0 ? 1 : -1;
+  }
+  if (a.y != b.y) {
+    return a.y > b.y ? 1 : -1;
+  }
+  if (a.x != b.x) {
+    return b.x > a.x ? 1 : -1;
+  }
   return 0;
 }
 
@@ -35,7 +43,9 @@ RayCrossing::RayCrossing(const Ray& ray) : origin_(ray.origin) {
   ray.direction.cwiseAbs().maxCoeff(&z_);
   x_ = (z_ + 1) % 3;
   y_ = (z_ + 2) % 3;
-  if (ray.direction[z_] < 0.0) std::swap(x_, y_);  // keeps left and right
+  if (ray.direction[z_] < 0.0) {
+    std::swap(x_, y_);
+  }  // keeps left and right
   shear_x_ = ray.direction[x_] / ray.direction[z_];
   shear_y_ = ray.direction[y_] / ray.direction[z_];
   scale_z_ = 1.0 / ray.direction[z_];
@@ -57,7 +67,9 @@ std::optional<RayCrossing::Crossing> RayCrossing::operator()(const Corners& corn
     return std::nullopt;
   }
   const double sum = w0 + w1 + w2;
-  if (sum == 0.0) return std::nullopt;
+  if (sum == 0.0) {
+    return std::nullopt;
+  }
   return Crossing{(w0 * depth[0] + w1 * depth[1] + w2 * depth[2]) / sum, side < 0};
 }
 

@@ -25,12 +25,15 @@ const std::array<std::array<std::uint8_t, 3>, kBrick>& brick_order() {
       std::array<int, 3> place{at & 3, (at >> 2) & 1, (at >> 3) & 1};
       std::array<int, 3> bit{2, 1, 1};
       for (int rest = at >> 4, axis = 2; rest != 0; axis = (axis + 2) % 3) {
-        if (bit[axis] == 4) continue;
+        if (bit[axis] == 4) {
+          continue;
+        }
         place[axis] |= (rest & 1) << bit[axis]++;
         rest >>= 1;
       }
-      for (int axis = 0; axis < 3; ++axis)
+      for (int axis = 0; axis < 3; ++axis) {
         places[at][axis] = static_cast<std::uint8_t>(place[axis]);
+      }
     }
     return places;
   }();
@@ -42,7 +45,9 @@ class Filler {
  public:
   Filler(const Bvh& bvh, const VoxelSolid& solid, bool everywhere, DistanceMap& map)
       : bvh_(bvh), solid_(solid), everywhere_(everywhere), map_(map) {
-    for (int axis = 0; axis < 3; ++axis) bricks_[axis] = (map.grid.size[axis] + kSide - 1) / kSide;
+    for (int axis = 0; axis < 3; ++axis) {
+      bricks_[axis] = (map.grid.size[axis] + kSide - 1) / kSide;
+    }
   }
 
   std::size_t bricks() const {
@@ -62,15 +67,21 @@ class Filler {
     for (const auto& place : brick_order()) {
       const std::int32_t i = first[0] + place[0], j = first[1] + place[1], k = first[2] + place[2];
       const auto& size = map_.grid.size;
-      if (i >= size[0] || j >= size[1] || k >= size[2]) continue;
+      if (i >= size[0] || j >= size[1] || k >= size[2]) {
+        continue;
+      }
       const std::size_t voxel = map_.grid.index(i, j, k);
-      if (!everywhere_ && solid_.labels[voxel] != VoxelLabel::kInside) continue;
+      if (!everywhere_ && solid_.labels[voxel] != VoxelLabel::kInside) {
+        continue;
+      }
       points.push_back(map_.grid.centre(i, j, k));
       voxels.push_back(voxel);
     }
     std::vector<ClosestPoint> answers(points.size());
     bvh_.data().kernels->many(bvh_.data(), points.data(), points.size(), answers.data());
-    for (std::size_t i = 0; i < voxels.size(); ++i) write(voxels[i], answers[i]);
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+      write(voxels[i], answers[i]);
+    }
   }
 
  private:
@@ -78,7 +89,9 @@ class Filler {
     const double distance = std::sqrt(nearest.distance_squared);
     const bool inside = solid_.labels[voxel] == VoxelLabel::kInside;
     map_.distance[voxel] = inside ? -distance : distance;
-    if (map_.point.empty()) return;
+    if (map_.point.empty()) {
+      return;
+    }
     map_.point[voxel] = nearest.point;
     map_.triangle[voxel] = nearest.triangle;
   }
@@ -104,7 +117,9 @@ DistanceMap make_distance_map(const Bvh& bvh, const VoxelSolid& solid,
     map.point.assign(count, Eigen::Vector3d::Constant(kUnasked));
     map.triangle.assign(count, -1);
   }
-  if (bvh.triangles() == 0) return map;
+  if (bvh.triangles() == 0) {
+    return map;
+  }
   Filler filler(bvh, solid, options.everywhere, map);
   const std::size_t bricks = filler.bricks();
   const int threads = threads_or_all(options.threads);

@@ -8,7 +8,9 @@ namespace haptrial::record {
 
 struct Deflater::Impl {
   explicit Impl(int level) : compressor(libdeflate_alloc_compressor(level)) {
-    if (compressor == nullptr) throw std::bad_alloc();
+    if (compressor == nullptr) {
+      throw std::bad_alloc();
+    }
   }
   ~Impl() { libdeflate_free_compressor(compressor); }
   Impl(const Impl&) = delete;
@@ -39,7 +41,9 @@ std::span<const std::uint8_t> Deflater::padded() const {
 
 struct Inflater::Impl {
   Impl() : decompressor(libdeflate_alloc_decompressor()) {
-    if (decompressor == nullptr) throw std::bad_alloc();
+    if (decompressor == nullptr) {
+      throw std::bad_alloc();
+    }
   }
   ~Impl() { libdeflate_free_decompressor(decompressor); }
   Impl(const Impl&) = delete;

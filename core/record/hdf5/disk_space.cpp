@@ -25,9 +25,13 @@ int reserve(int descriptor, std::uint64_t from, std::uint64_t to) {
                 static_cast<off_t>(to - from)) == 0) {
     return 0;
   }
-  if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG) return errno;
+  if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG) {
+    return errno;
+  }
   struct statvfs left {};
-  if (fstatvfs(descriptor, &left) != 0) return 0;
+  if (fstatvfs(descriptor, &left) != 0) {
+    return 0;
+  }
   return left.f_bavail * left.f_frsize < to - from ? ENOSPC : 0;
 }
 
@@ -35,20 +39,26 @@ int reserve(int descriptor, std::uint64_t from, std::uint64_t to) {
 
 void DiskSpace::ensure(int descriptor, std::uint64_t bytes) {
   struct stat file {};
-  if (fstat(descriptor, &file) != 0) fail(errno);
+  if (fstat(descriptor, &file) != 0) {
+    fail(errno);
+  }
   const std::uint64_t end = static_cast<std::uint64_t>(file.st_size) + bytes + kReserve;
   struct rlimit limit {};
   if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
       end > limit.rlim_cur) {
     fail(EFBIG);
   }
-  if (end <= reserved_end_) return;
+  if (end <= reserved_end_) {
+    return;
+  }
   if (reserve(descriptor, reserved_end_, end + kStep) == 0) {
     reserved_end_ = end + kStep;
     return;
   }
   const int error = reserve(descriptor, reserved_end_, end);
-  if (error != 0) fail(error);
+  if (error != 0) {
+    fail(error);
+  }
   reserved_end_ = end;
 }
 
@@ -62,7 +72,9 @@ void probe(int descriptor) {
 
 void divert(int descriptor) noexcept {
   const int sink = memfd_create("haptrial", MFD_CLOEXEC);
-  if (sink < 0) return;
+  if (sink < 0) {
+    return;
+  }
   dup2(sink, descriptor);
   close(sink);
 }

@@ -13,7 +13,9 @@ namespace haptrial::record {
 DiskSync::Place place_of(int descriptor, const std::filesystem::path& path) noexcept {
   struct stat opened {
   }, named{};
-  if (fstat(descriptor, &opened) != 0) return DiskSync::Place::kThere;  // nothing can be said
+  if (fstat(descriptor, &opened) != 0) {
+    return DiskSync::Place::kThere;
+  }  // nothing can be said
   if (stat(path.c_str(), &named) != 0) {
     return errno == ENOENT || errno == ENOTDIR ? DiskSync::Place::kMissing
                                                : DiskSync::Place::kThere;
@@ -58,14 +60,18 @@ void DiskSync::run() {
     {
       std::unique_lock lock(mutex_);
       wake_.wait_for(lock, period_, [this] { return asked_ || stop_; });
-      if (stop_) return;
+      if (stop_) {
+        return;
+      }
       asked_ = false;
     }
     place_.store(place_of(descriptor_, path_), std::memory_order_relaxed);
     if (fdatasync(descriptor_) != 0) {
       const int code = errno;
       const std::lock_guard lock(mutex_);
-      if (failure_.empty()) failure_ = std::generic_category().message(code);
+      if (failure_.empty()) {
+        failure_ = std::generic_category().message(code);
+      }
     }
   }
 }

@@ -33,12 +33,16 @@ bool still_there(int descriptor, const std::filesystem::path& file) {
 }  // namespace
 
 FileLock::~FileLock() {
-  if (descriptor_ >= 0) close(descriptor_);
+  if (descriptor_ >= 0) {
+    close(descriptor_);
+  }
 }
 
 FileLock& FileLock::operator=(FileLock&& other) noexcept {
   if (this != &other) {
-    if (descriptor_ >= 0) close(descriptor_);
+    if (descriptor_ >= 0) {
+      close(descriptor_);
+    }
     descriptor_ = std::exchange(other.descriptor_, -1);
   }
   return *this;

@@ -16,7 +16,9 @@ void put_raw(const Id& object, const char* name, hid_t type, const void* data, s
              bool scalar) {
   const std::string what = std::string("attribute ") + name;
   const htri_t exists = H5Aexists(object.get(), name);
-  if (exists < 0) fail(what);
+  if (exists < 0) {
+    fail(what);
+  }
   Id attribute;
   if (exists > 0) {
     attribute = take(H5Aopen(object.get(), name, H5P_DEFAULT), what);
@@ -58,7 +60,9 @@ void put(const Id& object, const char* attribute, const std::vector<std::string>
   const Lock lock;
   const Id type = long_text_type();
   std::vector<const char*> texts;
-  for (const std::string& value : values) texts.push_back(value.c_str());
+  for (const std::string& value : values) {
+    texts.push_back(value.c_str());
+  }
   put_raw(object, attribute, type.get(), texts.data(), texts.size(), false);
 }
 

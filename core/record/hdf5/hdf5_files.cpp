@@ -56,7 +56,9 @@ Id open_file(const std::filesystem::path& path) {
   const Lock lock;
   const Id access = access_list();
   Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()));
-  if (file) return file;
+  if (file) {
+    return file;
+  }
   const std::string first = reason();
   // A file whose writer was killed or is still at work opens only as a SWMR reader, which reads
   // what looks torn again after 1, 2, 4, ... ns: 24 times make 17 ms, HDF5's own 100 for ever.
@@ -64,7 +66,9 @@ Id open_file(const std::filesystem::path& path) {
   if (marked_as_written(path)) {
     file = Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access.get()));
   }
-  if (!file) throw Error(first);
+  if (!file) {
+    throw Error(first);
+  }
   return file;
 }
 
@@ -80,7 +84,9 @@ void flush(const Id& file) {
 
 void close(Id& file) {
   const Lock lock;
-  if (!file.reset()) fail("cannot close");
+  if (!file.reset()) {
+    fail("cannot close");
+  }
 }
 
 int descriptor(const Id& file) {

@@ -30,11 +30,17 @@ Id& Id::operator=(Id&& other) noexcept {
 
 bool Id::reset() noexcept {
   const std::int64_t id = std::exchange(id_, -1);
-  if (id < 0) return true;
+  if (id < 0) {
+    return true;
+  }
   const Lock lock;
   const H5I_type_t type = H5Iget_type(id);
-  if (type == H5I_FILE) return H5Fclose(id) >= 0;
-  if (type == H5I_DATASET) return H5Dclose(id) >= 0;
+  if (type == H5I_FILE) {
+    return H5Fclose(id) >= 0;
+  }
+  if (type == H5I_DATASET) {
+    return H5Dclose(id) >= 0;
+  }
   return H5Idec_ref(id) >= 0;
 }
 

@@ -27,12 +27,16 @@ std::string reason() {
 void fail(const std::string& what) { throw Error(what + ": " + reason()); }
 
 Id take(hid_t id, const std::string& what) {
-  if (id < 0) fail(what);
+  if (id < 0) {
+    fail(what);
+  }
   return Id(id);
 }
 
 void check(herr_t status, const std::string& what) {
-  if (status < 0) fail(what);
+  if (status < 0) {
+    fail(what);
+  }
 }
 
 }  // namespace haptrial::record::h5

@@ -111,11 +111,15 @@ std::size_t chunk_of(const Id& table, const std::string& what) {
 Id open_table(const Id& file, const TableSchema& schema, std::size_t& chunk_rows) {
   const Lock lock;
   const std::string what = std::string("/") + schema.name;
-  if (H5Lexists(file.get(), schema.name, H5P_DEFAULT) <= 0) throw Error(what + " is missing");
+  if (H5Lexists(file.get(), schema.name, H5P_DEFAULT) <= 0) {
+    throw Error(what + " is missing");
+  }
   Id table = take(H5Dopen2(file.get(), schema.name, H5P_DEFAULT), what);
   const Id type = take(H5Dget_type(table.get()), what);
   const Id expected = row_type(schema);
-  if (H5Tequal(type.get(), expected.get()) <= 0) throw Error(what + " has other columns");
+  if (H5Tequal(type.get(), expected.get()) <= 0) {
+    throw Error(what + " has other columns");
+  }
   chunk_rows = chunk_of(table, what);
   return table;
 }
@@ -153,7 +157,9 @@ std::uint64_t row_count(const Id& table) {
   const Lock lock;
   const Id space = take(H5Dget_space(table.get()), "row count");
   const hssize_t rows = H5Sget_simple_extent_npoints(space.get());
-  if (rows < 0) fail("row count");
+  if (rows < 0) {
+    fail("row count");
+  }
   return static_cast<std::uint64_t>(rows);
 }
 
@@ -175,11 +181,15 @@ std::vector<std::uint8_t> read_chunk(const Id& table, std::uint64_t row) {
   const hsize_t offset = row;
   hsize_t size = 0;
   check(H5Dget_chunk_storage_size(table.get(), &offset, &size), "cannot read");
-  if (size == 0) throw Error("a chunk is missing");
+  if (size == 0) {
+    throw Error("a chunk is missing");
+  }
   std::vector<std::uint8_t> bytes(size);
   std::uint32_t skipped = 0;
   check(H5Dread_chunk(table.get(), H5P_DEFAULT, &offset, &skipped, bytes.data()), "cannot read");
-  if (skipped != 0) throw Error("a chunk lacks a filter");
+  if (skipped != 0) {
+    throw Error("a chunk lacks a filter");
+  }
   return bytes;
 }
 

@@ -53,7 +53,9 @@ struct Get {
   std::int64_t version;
   template <typename T>
   void operator()(const char* name, T& value) const {
-    if (version < 2 && is_new(name)) return;
+    if (version < 2 && is_new(name)) {
+      return;
+    }
     if constexpr (std::is_same_v<T, std::string>) {
       value = h5::get_text(file, name);
     } else if constexpr (std::is_same_v<T, double>) {
@@ -90,7 +92,9 @@ std::optional<std::string> text_with_nul(const SessionInfo& info) {
   std::optional<std::string> found;
   each_field(info, [&]<typename T>(const char* name, const T& value) {
     if constexpr (std::is_same_v<T, std::string>) {
-      if (!found && value.find('\0') != std::string::npos) found = name;
+      if (!found && value.find('\0') != std::string::npos) {
+        found = name;
+      }
     }
   });
   return found;
@@ -127,7 +131,9 @@ SessionInfo info_of(const std::vector<EventRow>& rows) {
   SessionInfo info;
   each_field(info, [&](const char* name, auto& value) {
     for (const EventRow& row : rows) {
-      if (row.kind == name) parse(row.text, value);
+      if (row.kind == name) {
+        parse(row.text, value);
+      }
     }
   });
   return info;

@@ -39,7 +39,9 @@ TableWriter TableWriter::go_on(const h5::Id& file, const TableSchema& schema, in
 
 void TableWriter::added(std::size_t rows) {
   used_ += rows;
-  if (room() > 0) return;
+  if (room() > 0) {
+    return;
+  }
   write();
   first_row_ += used_;
   used_ = 0;
@@ -58,7 +60,9 @@ void TableWriter::add(const TableDescription& table, const void* rows, std::size
 }
 
 void TableWriter::write_unfinished() {
-  if (used_ == written_) return;
+  if (used_ == written_) {
+    return;
+  }
   planes_.clear_from(used_);
   write();
 }
@@ -67,7 +71,9 @@ void TableWriter::write() {
   std::span<const std::uint8_t> bytes = deflater_.compress(planes_.bytes());
   // HDF5 writes a chunk that kept its size over itself, and a kill in between would tear rows that
   // were safe before; another size gets another place. Inflating stops before the extra byte.
-  if (bytes.size() == written_bytes_) bytes = deflater_.padded();
+  if (bytes.size() == written_bytes_) {
+    bytes = deflater_.padded();
+  }
   ensure_space_(bytes.size());
   const h5::Lock lock;
   h5::set_row_count(dataset_, first_row_ + used_);

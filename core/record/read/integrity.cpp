@@ -16,11 +16,15 @@ std::string number(std::int32_t value) { return std::to_string(value); }
 class Fault {
  public:
   void note(const std::string& sentence) {
-    if (count_++ == 0) first_ = sentence;
+    if (count_++ == 0) {
+      first_ = sentence;
+    }
   }
   std::uint64_t count() const { return count_; }
   void report(std::vector<std::string>& problems) const {
-    if (count_ == 0) return;
+    if (count_ == 0) {
+      return;
+    }
     problems.push_back(count_ == 1 ? first_
                                    : first_ + " (and " + number(count_ - 1) + " more like it)");
   }
@@ -47,7 +51,9 @@ class SampleCheck {
         clock.note("the time does not advance at sequence number " + number(sample.sequence));
       }
     }
-    while (at_ < passes_.size() && passes_[at_].last_sample < sample.sequence) ++at_;
+    while (at_ < passes_.size() && passes_[at_].last_sample < sample.sequence) {
+      ++at_;
+    }
     const bool inside = at_ < passes_.size() && passes_[at_].first_sample <= sample.sequence;
     const std::int32_t expected = inside ? static_cast<std::int32_t>(at_) : -1;
     const bool unfinished = under_way_ && at_ == passes_.size() &&
@@ -73,8 +79,12 @@ void check_ranges(const std::vector<PassRow>& passes, Integrity& result) {
     const PassRow& pass = passes[i];
     const std::string range = "pass " + number(std::uint64_t{i}) + " has samples " +
                               number(pass.first_sample) + " to " + number(pass.last_sample);
-    if (pass.status == PassStatus::kAborted) ++result.aborted;
-    if (pass.practice) ++result.practice;
+    if (pass.status == PassStatus::kAborted) {
+      ++result.aborted;
+    }
+    if (pass.practice) {
+      ++result.practice;
+    }
     if (pass.attempt < 1) {
       result.problems.push_back("pass " + number(std::uint64_t{i}) + " is attempt " +
                                 number(pass.attempt) + ", and attempts count from 1");
@@ -95,14 +105,20 @@ void check_ranges(const std::vector<PassRow>& passes, Integrity& result) {
 /// The counts of the whole session, or so far if it was stopped to be resumed.
 std::optional<TimingSummary> counts_of(const SessionReader& reader, Integrity& result) {
   std::optional<TimingSummary> summary = reader.timing_summary();
-  if (summary) result.state = RunState::kEnded;
+  if (summary) {
+    result.state = RunState::kEnded;
+  }
   const std::vector<RunRow> runs = reader.runs();
-  if (summary || runs.empty() || runs.back().state != RunState::kStopped) return summary;
+  if (summary || runs.empty() || runs.back().state != RunState::kStopped) {
+    return summary;
+  }
   result.state = RunState::kStopped;
   summary.emplace();
   summary->ticks = runs.back().first_sample + runs.back().counts.ticks;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (i + 1 < runs.size() && runs[i + 1].run == runs[i].run) continue;
+    if (i + 1 < runs.size() && runs[i + 1].run == runs[i].run) {
+      continue;
+    }
     summary->overruns += runs[i].counts.overruns;
     summary->dropped += runs[i].counts.dropped;
   }

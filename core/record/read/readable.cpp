@@ -34,7 +34,9 @@ void read_attribute(const h5::Id& object, const std::string& name, const std::st
     const h5::Id type = h5::take(H5Aget_type(attribute.get()), what);
     const h5::Id space = h5::take(H5Aget_space(attribute.get()), what);
     const hssize_t count = H5Sget_simple_extent_npoints(space.get());
-    if (count < 0) h5::fail(what);
+    if (count < 0) {
+      h5::fail(what);
+    }
     std::vector<std::uint8_t> bytes(static_cast<std::size_t>(count) * H5Tget_size(type.get()) + 1);
     h5::check(H5Aread(attribute.get(), type.get(), bytes.data()), what);
     H5Dvlen_reclaim(type.get(), space.get(), H5P_DEFAULT, bytes.data());
@@ -52,8 +54,12 @@ void read_attributes(const h5::Id& object, const std::string& of) {
         return 0;
       },
       &names);
-  if (status < 0) throw Complaint("the attributes of " + of + " cannot be read");
-  for (const std::string& name : names) read_attribute(object, name, of);
+  if (status < 0) {
+    throw Complaint("the attributes of " + of + " cannot be read");
+  }
+  for (const std::string& name : names) {
+    read_attribute(object, name, of);
+  }
 }
 
 /// Every row, through HDF5's filters.
@@ -90,13 +96,17 @@ std::vector<std::string> tables_of(const h5::Id& file) {
         return 0;
       },
       &names);
-  if (status < 0) throw Complaint("the list of its datasets cannot be read");
+  if (status < 0) {
+    throw Complaint("the list of its datasets cannot be read");
+  }
   return names;
 }
 
 /// The root attributes and their copy in /attributes.
 void compare_copies(const fs::path& path, const h5::Id& file) {
-  if (get_version(file) < 2) return;  // without a copy
+  if (get_version(file) < 2) {
+    return;
+  }  // without a copy
   const std::vector<EventRow> attributes = info_rows(get_info(file));
   const std::vector<EventRow> copies = info_rows(SessionReader(path).info());
   for (std::size_t i = 0; i < attributes.size(); ++i) {
@@ -115,7 +125,9 @@ std::string complaint_about(const fs::path& path) {
     read_attributes(root, "/");
     for (const std::string& name : tables_of(file)) {
       const h5::Id table(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT));
-      if (!table) throw Complaint("/" + name + " cannot be opened");
+      if (!table) {
+        throw Complaint("/" + name + " cannot be opened");
+      }
       read_attributes(table, "/" + name);
       read_rows(table, "/" + name);
     }
@@ -135,7 +147,9 @@ std::optional<std::string> what_cannot_be_read(const fs::path& file) {
   const std::uintmax_t size = fs::file_size(file, ignored);
   const auto said =
       in_a_process_of_its_own(ignored ? 0 : size, [&] { return complaint_about(file); });
-  if (!said) return "programs that read HDF5 crash on it, or do not come back";
+  if (!said) {
+    return "programs that read HDF5 crash on it, or do not come back";
+  }
   return said->empty() ? std::nullopt : said;
 }
 

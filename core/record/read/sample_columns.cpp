@@ -18,7 +18,9 @@ void get_column_i64(const BytePlanes& planes, std::size_t offset, std::size_t at
   for (std::size_t i = 0; i < values.size(); i += kBatch) {
     const std::size_t count = std::min(kBatch, values.size() - i);
     planes.get_column<std::uint64_t>(offset, at + i, std::span(bits.data(), count));
-    for (std::size_t k = 0; k < count; ++k) values[i + k] = static_cast<std::int64_t>(bits[k]);
+    for (std::size_t k = 0; k < count; ++k) {
+      values[i + k] = static_cast<std::int64_t>(bits[k]);
+    }
   }
 }
 

@@ -82,7 +82,9 @@ OpenTable open_table(const h5::Id& file, const TableSchema& schema) {
 struct SessionReader::Impl {
   explicit Impl(const fs::path& file_path) : path(file_path), file(h5::open_file(file_path)) {
     version = get_version(file);
-    if (version == 1) info = get_info(file);
+    if (version == 1) {
+      info = get_info(file);
+    }
     samples = open_table(file, samples_table().schema());
     trials = open_table(file, trials_table().schema(version));
     events = open_table(file, events_table().schema());
@@ -95,7 +97,9 @@ struct SessionReader::Impl {
     if (version > 1) {
       frames = open_table(file, frames_table().schema());
       attributes = open_table(file, attributes_table().schema());
-      if (attributes.rows == 0) throw h5::Error("/attributes is empty");
+      if (attributes.rows == 0) {
+        throw h5::Error("/attributes is empty");
+      }
       info = info_of(joined_events(all(attributes, attributes_table())));
     }
   }
@@ -115,7 +119,9 @@ struct SessionReader::Impl {
                                   std::to_string(first + count) + ") of " +
                                   std::to_string(table.rows));
     }
-    if (count == 0) return;  // a table that the file's version does not have
+    if (count == 0) {
+      return;
+    }  // a table that the file's version does not have
     BytePlanes planes(table.row_bytes, table.chunk_rows);
     Inflater inflater;
     for (std::uint64_t done = 0; done < count;) {
@@ -361,7 +367,9 @@ std::optional<TimingSummary> SessionReader::timing_summary() const {
   try {
     const h5::Id& dataset = impl_->timing.dataset;
     const std::int64_t ticks = h5::get_i64(dataset, "ticks");
-    if (ticks < 0) return std::nullopt;
+    if (ticks < 0) {
+      return std::nullopt;
+    }
     return TimingSummary{static_cast<std::uint64_t>(ticks),
                          static_cast<std::uint64_t>(h5::get_i64(dataset, "overruns")),
                          static_cast<std::uint64_t>(h5::get_i64(dataset, "dropped"))};

@@ -10,11 +10,15 @@ namespace haptrial::record {
 TrialProgress trial_progress(const SessionReader& reader) {
   TrialProgress progress;
   for (const RunRow& run : reader.runs()) {
-    if (run.planned >= 0) progress.planned = run.planned;
+    if (run.planned >= 0) {
+      progress.planned = run.planned;
+    }
   }
   std::set<int> begun, done;
   for (const PassRow& pass : reader.passes()) {
-    if (pass.practice || pass.trial < 1) continue;
+    if (pass.practice || pass.trial < 1) {
+      continue;
+    }
     begun.insert(pass.trial);
     // A training pass is followed by the test pass of its trial.
     if (pass.phase != Phase::kTraining && pass.status == PassStatus::kCompleted) {

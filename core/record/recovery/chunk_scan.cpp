@@ -26,11 +26,17 @@ void scan_chunks(
   std::size_t at = 0;
   while (at + 2 <= file.size()) {
     const void* next = std::memchr(file.data() + at, kFirstByte, file.size() - at - 1);
-    if (next == nullptr) return;
+    if (next == nullptr) {
+      return;
+    }
     at = static_cast<std::size_t>(static_cast<const std::uint8_t*>(next) - file.data());
     Inflater::Lengths lengths;
-    if (is_header(file.data() + at)) lengths = inflater.decompress_prefix(file.subspan(at), raw);
-    if (lengths.raw > 0) found(at, {raw.data(), lengths.raw});
+    if (is_header(file.data() + at)) {
+      lengths = inflater.decompress_prefix(file.subspan(at), raw);
+    }
+    if (lengths.raw > 0) {
+      found(at, {raw.data(), lengths.raw});
+    }
     at += std::max<std::size_t>(lengths.compressed, 1);
   }
 }

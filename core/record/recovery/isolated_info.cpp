@@ -17,13 +17,17 @@ std::optional<SessionInfo> isolated_info(const std::filesystem::path& file) {
     }
     return all;
   });
-  if (!text) return std::nullopt;
+  if (!text) {
+    return std::nullopt;
+  }
   std::vector<std::string> words;
   for (std::size_t at = 0; at < text->size(); at = text->find('\0', at) + 1) {
     words.emplace_back(text->c_str() + at);
   }
   std::vector<EventRow> rows;
-  for (std::size_t i = 0; i + 1 < words.size(); i += 2) rows.push_back({0, words[i], words[i + 1]});
+  for (std::size_t i = 0; i + 1 < words.size(); i += 2) {
+    rows.push_back({0, words[i], words[i + 1]});
+  }
   return info_of(rows);
 }
 

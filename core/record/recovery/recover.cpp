@@ -23,7 +23,9 @@ namespace fs = std::filesystem;
 
 std::uint64_t blocks_of(const std::vector<StimulusRow>& rows) {
   std::set<std::int32_t> blocks;
-  for (const StimulusRow& row : rows) blocks.insert(row.block);
+  for (const StimulusRow& row : rows) {
+    blocks.insert(row.block);
+  }
   return blocks.size();
 }
 
@@ -39,12 +41,20 @@ class Count {
   }
   void add(std::span<const Sample> rows) {
     for (const Sample& row : rows) {
-      if (found_.samples == 0) found_.first_sequence = row.sequence;
-      if (found_.samples > 0) found_.missing += row.sequence - found_.last_sequence - 1;
+      if (found_.samples == 0) {
+        found_.first_sequence = row.sequence;
+      }
+      if (found_.samples > 0) {
+        found_.missing += row.sequence - found_.last_sequence - 1;
+      }
       found_.last_sequence = row.sequence;
       ++found_.samples;
-      while (at_ < wanted_.size() && wanted_[at_].last < row.sequence) ++at_;
-      if (at_ < wanted_.size() && wanted_[at_].first <= row.sequence) ++wanted_[at_].there;
+      while (at_ < wanted_.size() && wanted_[at_].last < row.sequence) {
+        ++at_;
+      }
+      if (at_ < wanted_.size() && wanted_[at_].first <= row.sequence) {
+        ++wanted_[at_].there;
+      }
     }
   }
   void finish() {
@@ -78,7 +88,9 @@ void write(const fs::path& file, const fs::path& out, const RecoveredRows& rows,
       writer, rows, [](std::uint64_t) { return true; },
       [&](std::span<const Sample> samples) { count.add(samples); });
   count.finish();
-  for (const PassRow& pass : rows.passes) writer.add_pass(pass);
+  for (const PassRow& pass : rows.passes) {
+    writer.add_pass(pass);
+  }
   write_rows_of_passes(writer, rows, rows.passes.size(), kAll);
   const std::int64_t last = rows.events.empty() ? 0 : rows.events.back().time_ns;
   writer.add_event({last, "recovered", sentence(file, found)});
@@ -111,7 +123,9 @@ Recovery recover_session(const fs::path& file, const fs::path& out, const TableL
   found.ended = rows.summary.has_value();
   found.subject = info ? info->subject : "";
   found.samples = rows.sample_pieces();  // until they are counted
-  if (!found.anything()) return found;
+  if (!found.anything()) {
+    return found;
+  }
   found.samples = 0;
   write(file, out, rows, info.value_or(SessionInfo{}), found);
   return found;

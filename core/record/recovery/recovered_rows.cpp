@@ -44,7 +44,9 @@ std::optional<TimingSummary> summary_of(const std::vector<EventRow>& attributes)
     for (const auto& [name, count] :
          {std::pair("ticks", &summary.ticks), std::pair("overruns", &summary.overruns),
           std::pair("dropped", &summary.dropped)}) {
-      if (row.kind != name) continue;
+      if (row.kind != name) {
+        continue;
+      }
       *count = std::strtoull(row.text.c_str(), nullptr, 10);
       ++found;
     }

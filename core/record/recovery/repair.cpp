@@ -23,7 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-
 /// The samples that were found of a pass.
 struct SeenPass {
   std::uint64_t first{0}, last{0}, count{0};
@@ -59,14 +58,18 @@ class Plan {
 
   void find_ticks() {
     for (std::size_t i = 0; i < rows_.sample_pieces(); ++i) {
-      for (const Sample& sample : rows_.samples(i)) ticks_.add(sample.sequence);
+      for (const Sample& sample : rows_.samples(i)) {
+        ticks_.add(sample.sequence);
+      }
     }
     for (const RecoveredTable& table : rows_.own) {
       if (each_tick_ && table.table().of() == RowsOf::kEachTick) {
         ticks_ = ticks_.shared_with(ticks_of(table));
       }
     }
-    if (!each_tick_ || ticks_.ranges().empty()) return;
+    if (!each_tick_ || ticks_.ranges().empty()) {
+      return;
+    }
     std::uint64_t whole = ticks_.ranges().front().first;
     for (const PassRow& pass : rows_.passes) {
       if (ticks_.holds(pass.first_sample, pass.last_sample)) {
@@ -80,9 +83,13 @@ class Plan {
     std::map<std::int32_t, SeenPass> seen;
     for (std::size_t i = 0; i < rows_.sample_pieces(); ++i) {
       for (const Sample& sample : rows_.samples(i)) {
-        if (sample.pass < 0 || !keeps(sample.sequence)) continue;
+        if (sample.pass < 0 || !keeps(sample.sequence)) {
+          continue;
+        }
         SeenPass& pass = seen[sample.pass];
-        if (pass.count++ == 0) pass.first = sample.sequence;
+        if (pass.count++ == 0) {
+          pass.first = sample.sequence;
+        }
         pass.last = sample.sequence;
       }
     }
@@ -93,7 +100,9 @@ class Plan {
   static std::int32_t number_of(const PassRow& row, std::size_t place,
                                 const std::map<std::int32_t, SeenPass>& seen) {
     for (const auto& [number, pass] : seen) {
-      if (row.first_sample <= pass.first && pass.last <= row.last_sample) return number;
+      if (row.first_sample <= pass.first && pass.last <= row.last_sample) {
+        return number;
+      }
     }
     return static_cast<std::int32_t>(place);
   }
@@ -101,7 +110,9 @@ class Plan {
   void find_passes() {
     const std::map<std::int32_t, SeenPass> seen = seen_passes();
     std::map<std::int32_t, PassRow> known;
-    for (const BegunRow& begun : rows_.begun) known[begun.row] = begun.pass;
+    for (const BegunRow& begun : rows_.begun) {
+      known[begun.row] = begun.pass;
+    }
     std::int32_t end = 0;  // behind the last whole pass: what follows is open
     std::map<std::int32_t, bool> whole;
     for (std::size_t i = 0; i < rows_.passes.size(); ++i) {
@@ -112,7 +123,9 @@ class Plan {
       whole[number] = row.first_sample <= row.last_sample && at != seen.end() &&
                       at->second.count == row.last_sample - row.first_sample + 1;
       dropped_passes_ += whole[number] ? 0 : 1;
-      if (whole[number]) end = std::max(end, number + 1);
+      if (whole[number]) {
+        end = std::max(end, number + 1);
+      }
     }
     for (std::int32_t number = 0; number < end; ++number) {
       PassRow row = known[number];
@@ -162,17 +175,25 @@ fs::path name_for_damaged(const fs::path& partial) {
     const fs::path name =
         with(partial, number == 1 ? ".damaged" : fmt::format(".damaged-{}", number));
     std::error_code error;
-    if (!fs::exists(name, error) || fs::equivalent(name, partial, error)) return name;
+    if (!fs::exists(name, error) || fs::equivalent(name, partial, error)) {
+      return name;
+    }
   }
 }
 
 void keep_damaged(const fs::path& partial, const fs::path& damaged) {
   std::error_code error;
-  if (fs::exists(damaged, error)) return;
+  if (fs::exists(damaged, error)) {
+    return;
+  }
   fs::create_hard_link(partial, damaged, error);
-  if (!error) return;
+  if (!error) {
+    return;
+  }
   fs::copy_file(partial, damaged, error);
-  if (error) throw RunError(damaged.string() + ": cannot be written (" + error.message() + ")");
+  if (error) {
+    throw RunError(damaged.string() + ": cannot be written (" + error.message() + ")");
+  }
   sync_file(damaged);
 }
 
@@ -191,7 +212,9 @@ void write(SessionWriter writer, const RecoveredRows& rows, const Plan& plan,
   write_rows(
       writer, rows, [&](std::uint64_t sequence) { return plan.keeps(sequence); },
       [&](std::span<const Sample> samples) { written.add(samples); });
-  for (const PassRow& pass : plan.passes()) writer.add_pass(pass);
+  for (const PassRow& pass : plan.passes()) {
+    writer.add_pass(pass);
+  }
   write_rows_of_passes(writer, rows, plan.passes().size(), plan.passes().size());
   const bool told_ended = !rows.runs.empty() && rows.runs.back().state == RunState::kEnded;
   if (rows.summary && !told_ended) {  // of a schema version without /runs
@@ -270,7 +293,9 @@ std::optional<std::string> what_is_wrong(const fs::path& partial, const TableLis
     }
     const RecoveredRows rows = rows_in(partial, bytes, tables);
     for (const TableState& table : reader.tables()) {
-      if (!table.fault.empty()) return fmt::format("/{}: {}", table.name, table.fault);
+      if (!table.fault.empty()) {
+        return fmt::format("/{}: {}", table.name, table.fault);
+      }
       const std::uint64_t held = rows.counts.contains(table.name) ? rows.counts.at(table.name) : 0;
       if (held > table.rows) {
         return fmt::format("it holds {} rows of /{}, but its structure points to {}", held,

@@ -54,7 +54,9 @@ std::vector<std::uint8_t> contents_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::vector<std::uint8_t> bytes(fs::file_size(file, error));
   in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (!in) throw InputError(file.string() + ": cannot be read; choose a session file");
+  if (!in) {
+    throw InputError(file.string() + ": cannot be read; choose a session file");
+  }
   return bytes;
 }
 
@@ -68,7 +70,9 @@ RecoveredRows rows_in(const fs::path& file, std::span<const std::uint8_t> conten
 }
 
 std::optional<SessionInfo> find_info(const fs::path& file, const RecoveredRows& rows) {
-  if (!rows.attributes.empty()) return info_of(rows.attributes);
+  if (!rows.attributes.empty()) {
+    return info_of(rows.attributes);
+  }
   return isolated_info(file);
 }
 
@@ -81,8 +85,12 @@ void write_rows(SessionWriter& writer, const RecoveredRows& rows, const Keeps& k
     told(samples);
     writer.append(samples);
   }
-  for (const EventRow& event : rows.events) writer.add_event(event);
-  for (const BegunRow& pass : rows.begun) writer.begin_pass(pass);
+  for (const EventRow& event : rows.events) {
+    writer.add_event(event);
+  }
+  for (const BegunRow& pass : rows.begun) {
+    writer.begin_pass(pass);
+  }
   writer.add_stimulus(rows.stimuli);
   writer.add_frames(rows.frames);
   writer.keep_runs(rows.runs);

@@ -16,7 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-
 [[noreturn]] void refuse(const fs::path& partial, const std::string& found) {
   throw InputError(partial.string() + ": " + found +
                    "; choose an unfinished session, or save what a damaged file still holds with "
@@ -43,7 +42,9 @@ void sum_up_runs(const SessionReader& reader, Resumed& found) {
   found.runs = reader.runs();
   for (std::size_t i = 0; i < found.runs.size(); ++i) {
     const bool last = i + 1 == found.runs.size() || found.runs[i + 1].run != found.runs[i].run;
-    if (!last) continue;
+    if (!last) {
+      continue;
+    }
     found.earlier.overruns += found.runs[i].counts.overruns;
     found.earlier.dropped += found.runs[i].counts.dropped;
   }
@@ -65,7 +66,9 @@ Resumed examine(const SessionReader& reader) {
   walk_samples(reader, found);
   found.events = reader.events();
   for (const StimulusRow& row : reader.stimuli()) {
-    if (found.blocks.empty() || found.blocks.back() != row.block) found.blocks.push_back(row.block);
+    if (found.blocks.empty() || found.blocks.back() != row.block) {
+      found.blocks.push_back(row.block);
+    }
   }
   sum_up_runs(reader, found);
   return found;
@@ -118,11 +121,15 @@ SessionWriter SessionWriter::resume(const fs::path& final_path, Resumed& found,
 /// The counts of a session that had ended may not have reached the file.
 void SessionWriter::Impl::take_up(const Resumed& found) {
   earlier = found.earlier;
-  if (!found.runs.empty()) run_row = found.runs.back();
+  if (!found.runs.empty()) {
+    run_row = found.runs.back();
+  }
   run.run = found.runs.empty() ? 1 : run_row->run + 1;
   run.first_sample = found.next_sequence;
   has_timing = found.ended;
-  if (found.ended && h5::get_i64(timing->dataset(), "ticks") < 0) put_counts();
+  if (found.ended && h5::get_i64(timing->dataset(), "ticks") < 0) {
+    put_counts();
+  }
 }
 
 }  // namespace haptrial::record

@@ -25,7 +25,9 @@ TickRanges TickRanges::shared_with(const TickRanges& other) const {
   TickRanges shared;
   std::size_t at = 0;
   for (const TickRange& range : ranges_) {
-    while (at < other.ranges_.size() && other.ranges_[at].last < range.first) ++at;
+    while (at < other.ranges_.size() && other.ranges_[at].last < range.first) {
+      ++at;
+    }
     for (std::size_t i = at; i < other.ranges_.size() && other.ranges_[i].first <= range.last;
          ++i) {
       shared.ranges_.push_back({std::max(range.first, other.ranges_[i].first),

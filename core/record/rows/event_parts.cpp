@@ -20,8 +20,12 @@ std::vector<EventPart> event_parts(const EventRow& event) {
     // A cut never falls within a UTF-8 character (at most three continuation bytes back).
     if (size < rest.size()) {
       std::size_t cut = size;
-      while (cut + 4 > size && (static_cast<unsigned char>(rest[cut]) & 0xC0u) == 0x80u) --cut;
-      if ((static_cast<unsigned char>(rest[cut]) & 0xC0u) != 0x80u) size = cut;
+      while (cut + 4 > size && (static_cast<unsigned char>(rest[cut]) & 0xC0u) == 0x80u) {
+        --cut;
+      }
+      if ((static_cast<unsigned char>(rest[cut]) & 0xC0u) != 0x80u) {
+        size = cut;
+      }
     }
     parts.push_back({{event.time_ns, event.kind, std::string(rest.substr(0, size))},
                      static_cast<std::int32_t>(parts.size())});

@@ -11,11 +11,15 @@ BytePlanes::BytePlanes(std::size_t row_bytes, std::size_t capacity)
     : row_bytes_(row_bytes), capacity_(capacity), bytes_(row_bytes * capacity) {}
 
 void BytePlanes::put_row(std::size_t row, std::span<const std::uint8_t> packed) {
-  for (std::size_t b = 0; b < row_bytes_; ++b) bytes_[b * capacity_ + row] = packed[b];
+  for (std::size_t b = 0; b < row_bytes_; ++b) {
+    bytes_[b * capacity_ + row] = packed[b];
+  }
 }
 
 void BytePlanes::get_row(std::size_t row, std::span<std::uint8_t> packed) const {
-  for (std::size_t b = 0; b < row_bytes_; ++b) packed[b] = bytes_[b * capacity_ + row];
+  for (std::size_t b = 0; b < row_bytes_; ++b) {
+    packed[b] = bytes_[b * capacity_ + row];
+  }
 }
 
 template <typename T>
@@ -44,12 +48,16 @@ void BytePlanes::get_column(std::size_t offset, std::size_t row, std::span<T> va
 std::size_t BytePlanes::rows_in_use() const {
   const auto is_zero = [&](std::size_t row) {
     for (std::size_t b = 0; b < row_bytes_; ++b) {
-      if (bytes_[b * capacity_ + row] != 0) return false;
+      if (bytes_[b * capacity_ + row] != 0) {
+        return false;
+      }
     }
     return true;
   };
   std::size_t rows = capacity_;
-  while (rows > 0 && is_zero(rows - 1)) --rows;
+  while (rows > 0 && is_zero(rows - 1)) {
+    --rows;
+  }
   return rows;
 }
 

@@ -7,14 +7,18 @@
 namespace haptrial::record {
 std::size_t TableSchema::row_bytes() const {
   std::size_t bytes = 0;
-  for (const Column& column : columns) bytes += column.bytes;
+  for (const Column& column : columns) {
+    bytes += column.bytes;
+  }
   return bytes;
 }
 
 std::size_t TableSchema::offset(std::string_view column) const {
   std::size_t bytes = 0;
   for (const Column& each : columns) {
-    if (column == each.name) return bytes;
+    if (column == each.name) {
+      return bytes;
+    }
     bytes += each.bytes;
   }
   throw std::invalid_argument("no column " + std::string(column) + " in /" + name);

@@ -30,27 +30,43 @@ bool link_back(int descriptor, const fs::path& path) {
 
 void copy(int from, int to) {
   struct stat file {};
-  if (fstat(from, &file) != 0 || ftruncate(to, 0) != 0) fail("cannot copy the file");
+  if (fstat(from, &file) != 0 || ftruncate(to, 0) != 0) {
+    fail("cannot copy the file");
+  }
   off_t at = 0;
   while (at < file.st_size) {
     const ssize_t done = sendfile(to, from, &at, static_cast<std::size_t>(file.st_size - at));
-    if (done < 0 && errno != EINTR) fail("cannot copy the file");
-    if (done == 0) break;
+    if (done < 0 && errno != EINTR) {
+      fail("cannot copy the file");
+    }
+    if (done == 0) {
+      break;
+    }
   }
-  if (fsync(to) != 0) fail("cannot copy the file");
+  if (fsync(to) != 0) {
+    fail("cannot copy the file");
+  }
 }
 
 }  // namespace
 
 void SessionWriter::Impl::heed_disk() {
-  if (!syncing) return;
-  if (const std::string failed = syncing->failure(); !failed.empty()) throw h5::Error(failed);
-  if (syncing->place() != DiskSync::Place::kThere) put_back();
+  if (!syncing) {
+    return;
+  }
+  if (const std::string failed = syncing->failure(); !failed.empty()) {
+    throw h5::Error(failed);
+  }
+  if (syncing->place() != DiskSync::Place::kThere) {
+    put_back();
+  }
 }
 
 void SessionWriter::Impl::put_back() {
   const DiskSync::Place place = place_of(lock.descriptor(), partial);
-  if (place == DiskSync::Place::kThere) return;
+  if (place == DiskSync::Place::kThere) {
+    return;
+  }
   const std::string name = partial.filename().string();
   if (place == DiskSync::Place::kForeign) {
     write(true);

@@ -33,7 +33,9 @@ SessionWriter::SessionWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)
 SessionWriter::SessionWriter(SessionWriter&&) noexcept = default;
 
 SessionWriter::~SessionWriter() {
-  if (!impl_ || !impl_->file) return;
+  if (!impl_ || !impl_->file) {
+    return;
+  }
   try {
     if (impl_->failure.empty()) {
       impl_->guarded([&] {
@@ -44,7 +46,9 @@ SessionWriter::~SessionWriter() {
   } catch (const std::exception&) {
     // The destructor has no one to tell; close() is for those who want to know.
   }
-  if (!impl_->closable()) impl_->divert_file();
+  if (!impl_->closable()) {
+    impl_->divert_file();
+  }
   impl_->close_tables();
   impl_->file.reset();
   trim(impl_->partial);
@@ -88,14 +92,18 @@ void SessionWriter::add_event(const EventRow& event) {
 void SessionWriter::begin_pass(const BegunRow& pass) {
   impl_->guarded([&] {
     impl_->begun->add(begun_table(), std::span(&pass, 1));
-    if (impl_->live) impl_->write(false);
+    if (impl_->live) {
+      impl_->write(false);
+    }
   });
 }
 
 void SessionWriter::add_stimulus(std::span<const StimulusRow> rows) {
   impl_->guarded([&] {
     impl_->stimuli->add(stimuli_table(), rows);
-    if (impl_->live) impl_->write(false);  // a block is there whole or not at all
+    if (impl_->live) {
+      impl_->write(false);
+    }  // a block is there whole or not at all
   });
 }
 
@@ -157,13 +165,17 @@ void SessionWriter::keep_timing(std::span<const TimingRow> rows) {
 
 void SessionWriter::set_timing(std::span<const TimingRow> histogram, const TimingSummary& summary,
                                RunState state) {
-  if (impl_->has_timing) throw std::invalid_argument("the timing of a run is set once");
+  if (impl_->has_timing) {
+    throw std::invalid_argument("the timing of a run is set once");
+  }
   keep_timing(histogram);
   impl_->guarded([&] {
     impl_->run.counts = summary;
     impl_->add_run(state);
     impl_->write(true);  // the counts of the session say that it ended: last of all
-    if (state == RunState::kEnded) impl_->put_counts();
+    if (state == RunState::kEnded) {
+      impl_->put_counts();
+    }
     impl_->has_timing = true;
   });
 }
@@ -179,7 +191,9 @@ void SessionWriter::sync_soon() {
   impl_->guarded([&] {
     impl_->heed_disk();
     impl_->write(true);
-    if (impl_->syncing) impl_->syncing->soon();
+    if (impl_->syncing) {
+      impl_->syncing->soon();
+    }
   });
 }
 
@@ -190,7 +204,9 @@ void SessionWriter::sync() {
     impl_->heed_disk();
     impl_->write(true);
     sync_data(h5::descriptor(impl_->file));
-    if (!impl_->folder_synced) sync_folder_of(impl_->partial);
+    if (!impl_->folder_synced) {
+      sync_folder_of(impl_->partial);
+    }
     impl_->folder_synced = true;
   });
 }
@@ -219,11 +235,15 @@ void SessionWriter::discard() {
     throw std::invalid_argument(impl_->final_path.string() + ": the session was closed before");
   }
   // What HDF5 still holds of a new session need not reach the disk.
-  if (!impl_->resumed) impl_->divert_file();
+  if (!impl_->resumed) {
+    impl_->divert_file();
+  }
   impl_->close_tables();
   impl_->file.reset();
   impl_->syncing.reset();
-  if (!impl_->resumed) std::remove(impl_->partial.c_str());
+  if (!impl_->resumed) {
+    std::remove(impl_->partial.c_str());
+  }
   impl_->lock = FileLock();
 }
 

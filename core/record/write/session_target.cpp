@@ -36,11 +36,15 @@ fs::path folder_of(const fs::path& file) {
 
 void sync(const fs::path& path, int flags) {
   const int descriptor = open(path.c_str(), flags | O_CLOEXEC);
-  if (descriptor < 0) throw h5::Error(std::generic_category().message(errno));
+  if (descriptor < 0) {
+    throw h5::Error(std::generic_category().message(errno));
+  }
   const int status = fsync(descriptor);
   const int code = errno;
   close(descriptor);
-  if (status != 0) throw h5::Error(std::generic_category().message(code));
+  if (status != 0) {
+    throw h5::Error(std::generic_category().message(code));
+  }
 }
 
 }  // namespace
@@ -60,7 +64,9 @@ void check_target(const fs::path& final_path) {
     throw InputError(name + ": the folder " + folder.string() +
                      " does not exist; create it or choose another folder");
   }
-  if (is_there(final_path)) throw InputError(name + ": exists already; choose another file");
+  if (is_there(final_path)) {
+    throw InputError(name + ": exists already; choose another file");
+  }
   if (is_there(partial)) {
     throw InputError(
         partial.string() + ": exists already, " +
@@ -82,7 +88,9 @@ void give_name(const fs::path& from, const fs::path& to) {
 }
 
 void sync_data(int descriptor) {
-  if (fdatasync(descriptor) != 0) throw h5::Error(std::generic_category().message(errno));
+  if (fdatasync(descriptor) != 0) {
+    throw h5::Error(std::generic_category().message(errno));
+  }
 }
 
 void sync_file(const fs::path& file) { sync(file, O_RDWR); }
@@ -90,7 +98,9 @@ void sync_folder_of(const fs::path& file) { sync(folder_of(file), O_RDONLY | O_D
 
 void trim(const fs::path& path) noexcept {
   struct stat file {};
-  if (stat(path.c_str(), &file) == 0 && truncate(path.c_str(), file.st_size) != 0) errno = 0;
+  if (stat(path.c_str(), &file) == 0 && truncate(path.c_str(), file.st_size) != 0) {
+    errno = 0;
+  }
 }
 
 }  // namespace haptrial::record

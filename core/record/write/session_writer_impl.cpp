@@ -59,7 +59,9 @@ SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info,
       put(rows);
     }
     write(true);
-    if (live) sync_data(h5::descriptor(file));  // what the session is survives whatever follows
+    if (live) {
+      sync_data(h5::descriptor(file));
+    }  // what the session is survives whatever follows
     give_name(created, partial);
     start_syncing();
   } catch (...) {
@@ -104,7 +106,9 @@ void SessionWriter::Impl::go_on() {
 
 void SessionWriter::Impl::start_syncing() {
   constexpr std::chrono::milliseconds kEvery{500};
-  if (live) syncing = std::make_unique<DiskSync>(lock.descriptor(), partial, kEvery);
+  if (live) {
+    syncing = std::make_unique<DiskSync>(lock.descriptor(), partial, kEvery);
+  }
 }
 
 std::vector<SessionWriter::Impl::Part> SessionWriter::Impl::tables() {
@@ -141,8 +145,12 @@ TableWriter::EnsureSpace SessionWriter::Impl::ensure_space() {
 }
 
 void SessionWriter::Impl::check_open() const {
-  if (!failure.empty()) throw RunError(failure);
-  if (!file) throw std::invalid_argument(final_path.string() + ": the session was closed before");
+  if (!failure.empty()) {
+    throw RunError(failure);
+  }
+  if (!file) {
+    throw std::invalid_argument(final_path.string() + ": the session was closed before");
+  }
 }
 
 void SessionWriter::Impl::give_up(const std::string& why) {
@@ -171,8 +179,12 @@ void SessionWriter::Impl::write_own() {
 }
 
 void SessionWriter::Impl::write(bool all) {
-  if (all || trials->has_unwritten()) write_samples();
-  if (all) frames->write_unfinished();
+  if (all || trials->has_unwritten()) {
+    write_samples();
+  }
+  if (all) {
+    frames->write_unfinished();
+  }
   for (auto* table : {&begun, &trials, &events, &stimuli, &timing, &runs, &attributes}) {
     (*table)->write_unfinished();
   }
@@ -181,7 +193,9 @@ void SessionWriter::Impl::write(bool all) {
 }
 
 void SessionWriter::Impl::add_run(RunState state) {
-  if (run_row && run_row->state == RunState::kEnded) return;  // of a file that is written anew
+  if (run_row && run_row->state == RunState::kEnded) {
+    return;
+  }  // of a file that is written anew
   run.state = state;
   runs->add(runs_table(), std::span(&run, 1));
   run_row = run;
@@ -189,7 +203,9 @@ void SessionWriter::Impl::add_run(RunState state) {
 
 void SessionWriter::Impl::divert_file() noexcept {
   try {
-    if (file) divert(h5::descriptor(file));
+    if (file) {
+      divert(h5::descriptor(file));
+    }
   } catch (const h5::Error&) {
     // Without a descriptor there is nothing to divert.
   }

@@ -23,15 +23,21 @@ class Painter {
  public:
   Painter(const DistanceSlice& slice, double pixel) : slice_(slice), pixel_(pixel) {
     for (const double value : slice.values) {
-      if (!std::isnan(value)) largest_ = std::max(largest_, std::abs(value));
+      if (!std::isnan(value)) {
+        largest_ = std::max(largest_, std::abs(value));
+      }
     }
   }
 
   /// @param x, y  in samples
   Colour at(double x, double y) const {
     const double value = sample(x, y);
-    if (std::isnan(value)) return kNothing;
-    if (largest_ == 0.0) return kLine;
+    if (std::isnan(value)) {
+      return kNothing;
+    }
+    if (largest_ == 0.0) {
+      return kLine;
+    }
     const double step = largest_ / kContours;
     const double band = std::min(std::floor(std::abs(value) / step), kContours - 1.0) + 0.5;
     const Colour field =

@@ -45,7 +45,9 @@ ScoreParameters parameters_of(const AlignOptions& o) {
   // The patterns of the literature have none.
   const double usual = a.pattern == StepPattern::kPublished ? a.penalty : 0.0;
   a.penalty = checked_real("--penalty", o.penalty.value_or(usual), 0.0, kMostWeight);
-  if (o.window) p.window = checked_real("--window", *o.window, 0.0, 1e9);
+  if (o.window) {
+    p.window = checked_real("--window", *o.window, 0.0, 1e9);
+  }
   a.open_begin = o.open_begin;
   a.open_end = o.open_end;
   if (o.open_begin && analysis::doubles_straight(a.pattern)) {
@@ -119,7 +121,9 @@ int align(const AlignOptions& options) {
       curve_of(options.applied,
                options.applied_value.empty() ? options.value : options.applied_value, options);
   const RecallDetail recall = analysis::align_curves(target.view(), applied.view(), parameters);
-  if (!options.out.empty()) write(recall, options.out);
+  if (!options.out.empty()) {
+    write(recall, options.out);
+  }
   print(recall, parameters);
   // Not on standard output, which programs read.
   if (const std::string warning = exchange::time_warning(target, applied); !warning.empty()) {

@@ -11,7 +11,9 @@ namespace {
 
 /// S01.h5 and S01.h5.partial become S01.recovered.h5, beside them.
 std::filesystem::path default_output(std::filesystem::path file) {
-  if (file.extension() == ".partial") file.replace_extension();
+  if (file.extension() == ".partial") {
+    file.replace_extension();
+  }
   return file.replace_extension(".recovered.h5");
 }
 

@@ -18,7 +18,6 @@
 namespace haptrial::experiments {
 namespace {
 
-
 void check_out(const BoneOptions& options) {
   const std::filesystem::path out = options.out;
   if (out.extension() != ".nrrd") {
@@ -32,16 +31,24 @@ void check_out(const BoneOptions& options) {
 }
 
 bone::VolumeKind kind_of(const std::string& name) {
-  if (name == "auto") return bone::VolumeKind::kAuto;
-  if (name == "labels") return bone::VolumeKind::kLabels;
-  if (name == "grey") return bone::VolumeKind::kGrey;
+  if (name == "auto") {
+    return bone::VolumeKind::kAuto;
+  }
+  if (name == "labels") {
+    return bone::VolumeKind::kLabels;
+  }
+  if (name == "grey") {
+    return bone::VolumeKind::kGrey;
+  }
   throw InputError(not_allowed("--as", fmt::format("'{}'", name), {"auto", "labels", "grey"}));
 }
 
 bone::LoadOptions load_options(const BoneOptions& options, const MemoryBudget& budget) {
   bone::LoadOptions load;
   load.kind = kind_of(options.as);
-  if (options.spacing) load.spacing = *options.spacing * kMillimetre;
+  if (options.spacing) {
+    load.spacing = *options.spacing * kMillimetre;
+  }
   load.find_threshold = options.threshold == "auto";
   if (!options.threshold.empty() && !load.find_threshold) {
     std::size_t used = 0;

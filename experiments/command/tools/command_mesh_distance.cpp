@@ -47,7 +47,9 @@ void print_map(const geometry::DistanceMap& map) {
   double deepest = 0.0, farthest = 0.0;
   std::size_t count = 0;
   for (const double distance : map.distance) {
-    if (std::isnan(distance)) continue;
+    if (std::isnan(distance)) {
+      continue;
+    }
     ++count;
     deepest = std::min(deepest, distance);
     farthest = std::max(farthest, distance);
@@ -61,7 +63,9 @@ void print_map(const geometry::DistanceMap& map) {
 int mesh_distance(const MeshOptions& options) {
   const MemoryBudget budget(options.input.max_memory);
   geometry::check_volume_ending(options.out);
-  if (!options.points.empty()) geometry::check_volume_ending(options.points);
+  if (!options.points.empty()) {
+    geometry::check_volume_ending(options.points);
+  }
   for (const std::string& file : {options.out, options.points, options.picture}) {
     check_new(file, options.overwrite);
   }
@@ -96,7 +100,9 @@ int mesh_distance(const MeshOptions& options) {
                            options.overwrite);
     fmt::print("wrote       {}\n", options.points);
   }
-  if (!options.picture.empty()) draw_slice(map, options.up[0] - 'x', options.picture);
+  if (!options.picture.empty()) {
+    draw_slice(map, options.up[0] - 'x', options.picture);
+  }
   return 0;
 }
 

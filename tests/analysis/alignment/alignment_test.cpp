@@ -33,9 +33,15 @@ double exhaustive(const Curve& a, const Curve& b, const AlignmentOptions& p, std
                   std::size_t j = 0) {
   const bool last_row = i + 1 == a.force.size(), last_column = j + 1 == b.force.size();
   double rest = last_row && last_column ? 0.0 : std::numeric_limits<double>::infinity();
-  if (!last_row && !last_column) rest = std::min(rest, exhaustive(a, b, p, i + 1, j + 1));
-  if (!last_row) rest = std::min(rest, p.penalty + exhaustive(a, b, p, i + 1, j));
-  if (!last_column) rest = std::min(rest, p.penalty + exhaustive(a, b, p, i, j + 1));
+  if (!last_row && !last_column) {
+    rest = std::min(rest, exhaustive(a, b, p, i + 1, j + 1));
+  }
+  if (!last_row) {
+    rest = std::min(rest, p.penalty + exhaustive(a, b, p, i + 1, j));
+  }
+  if (!last_column) {
+    rest = std::min(rest, p.penalty + exhaustive(a, b, p, i, j + 1));
+  }
   return point_error(a, b, p, i, j) + rest;
 }
 
@@ -136,7 +142,9 @@ TEST(AlignmentTest, ACurveAgainstItselfCostsNothing) {
     const Alignment found = align(a, a, AlignmentOptions{});
     EXPECT_EQ(found.cost, 0.0);
     ASSERT_EQ(found.path.size(), samples);
-    for (std::uint32_t i = 0; i < samples; ++i) EXPECT_EQ(found.path[i], (PathPoint{i, i}));
+    for (std::uint32_t i = 0; i < samples; ++i) {
+      EXPECT_EQ(found.path[i], (PathPoint{i, i}));
+    }
   }
 }
 
@@ -228,7 +236,9 @@ TEST(AlignmentTest, NothingOutsideTheMatrixIsCheapForLargeValues) {
     }
   }
   std::vector<AlignmentPair> pairs;
-  for (std::size_t k = 0; k < 16; ++k) pairs.push_back({curves[k].view(), curves[k + 16].view()});
+  for (std::size_t k = 0; k < 16; ++k) {
+    pairs.push_back({curves[k].view(), curves[k + 16].view()});
+  }
   const auto batch = align_batch(pairs, parameters);
   for (std::size_t k = 0; k < 16; ++k) {
     const auto expected = textbook_path<double>(curves[k], curves[k + 16], parameters);

@@ -129,7 +129,9 @@ TEST_P(AlignmentSetTest, AWorkspaceForgetsItsLastPair) {
   used.align_batch(large.pairs, parameters, first);
   used.align_batch(small.pairs, parameters, again);
   Aligner(GetParam()).align_batch(small.pairs, parameters, fresh);
-  for (std::size_t k = 0; k < 16; ++k) expect_same(again[k], fresh[k], std::to_string(k));
+  for (std::size_t k = 0; k < 16; ++k) {
+    expect_same(again[k], fresh[k], std::to_string(k));
+  }
 }
 
 TEST(AlignmentBatchTest, BadBatchesAreRefused) {

@@ -68,12 +68,18 @@ std::vector<PathPoint> textbook_path(const Curve& a, const Curve& b, const Align
   std::vector<PathPoint> path;
   for (std::size_t i = rows, j = columns;;) {
     path.push_back({static_cast<std::uint32_t>(i - 1), static_cast<std::uint32_t>(j - 1)});
-    if (i == 1 && j == 1) break;
+    if (i == 1 && j == 1) {
+      break;
+    }
     const Real up = at(i - 1, j), left = at(i, j - 1);
     const bool aside = std::min(up, left) + penalty < at(i - 1, j - 1);
     const bool leftwards = aside && left < up;
-    if (!leftwards) --i;
-    if (!aside || leftwards) --j;
+    if (!leftwards) {
+      --i;
+    }
+    if (!aside || leftwards) {
+      --j;
+    }
   }
   std::reverse(path.begin(), path.end());
   return path;

@@ -35,7 +35,9 @@ std::vector<AlignmentOptions> forms(StepPattern pattern, std::vector<std::size_t
     AlignmentOptions form{.slope_weight = 0.25, .penalty = 0.5, .pattern = pattern};
     form.open_begin = open & 1;
     form.open_end = open & 2;
-    if (!problem_of(form).empty()) continue;
+    if (!problem_of(form).empty()) {
+      continue;
+    }
     all.push_back(form);
     for (std::size_t window : windows) {
       form.window = window;
@@ -127,9 +129,13 @@ TEST(AlignmentOptionsTest, ACurveAgainstItselfCostsNothing) {
 TEST(AlignmentOptionsTest, SwappingTheCurvesKeepsTheCostOfSymmetricForms) {
   RandomStream random(4, "swap");
   for (StepPattern pattern : kPatterns) {
-    if (pattern == StepPattern::kAsymmetric) continue;
+    if (pattern == StepPattern::kAsymmetric) {
+      continue;
+    }
     for (const AlignmentOptions& options : forms(pattern, {0, 2, 9})) {
-      if (options.open_begin || options.open_end) continue;
+      if (options.open_begin || options.open_end) {
+        continue;
+      }
       for (int n = 0; n < 10; ++n) {
         const Curve a = exact_curve(random, 30 + random.below(20));
         const Curve b = exact_curve(random, 30 + random.below(20));
@@ -261,7 +267,9 @@ TEST(AlignmentOptionsTest, WeightsAddUpAsTheLiteratureNormalizes) {
 TEST(AlignmentOptionsTest, ABatchOfAnyFormEqualsSinglePairsWhateverTheJobs) {
   RandomStream random(11, "batch");
   std::vector<Curve> curves;
-  for (int k = 0; k < 40; ++k) curves.push_back(smooth_curve(random, 50 + random.below(30)));
+  for (int k = 0; k < 40; ++k) {
+    curves.push_back(smooth_curve(random, 50 + random.below(30)));
+  }
   std::vector<AlignmentPair> pairs;
   for (std::size_t k = 0; k < 40; k += 2) {
     pairs.push_back({curves[k].view(), curves[k + 1].view()});
@@ -308,7 +316,9 @@ TEST(AlignmentOptionsTest, ProblemsAreSentences) {
     const Curve curve{{1.0, 2.0}, {0.0, 1.0}};
     EXPECT_THROW(align(curve, curve, options), std::invalid_argument);
   }
-  for (StepPattern pattern : kPatterns) EXPECT_EQ(pattern_of(name_of(pattern)), pattern);
+  for (StepPattern pattern : kPatterns) {
+    EXPECT_EQ(pattern_of(name_of(pattern)), pattern);
+  }
   EXPECT_EQ(pattern_of("symmetric3"), std::nullopt);
 }
 

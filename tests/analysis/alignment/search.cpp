@@ -64,7 +64,9 @@ ExhaustiveSearch::ExhaustiveSearch(const Curve& target, const Curve& applied,
     }
   }
   for (int start = 0; start < (options.open_begin ? columns_ : 1); ++start) {
-    if (is_inside(0, start)) visit(0, start, errors_[0][static_cast<std::size_t>(start)]);
+    if (is_inside(0, start)) {
+      visit(0, start, errors_[0][static_cast<std::size_t>(start)]);
+    }
   }
   const bool twice =
       options.pattern == StepPattern::kSymmetric2 || options.pattern == StepPattern::kSymmetricP1;
@@ -72,13 +74,19 @@ ExhaustiveSearch::ExhaustiveSearch(const Curve& target, const Curve& applied,
   for (int end = 0; end < columns_; ++end) {
     const double cost = cost_by_end_[static_cast<std::size_t>(end)];
     const double measure = twice ? cost / (rows_ + end + 1) : cost;
-    if (measure <= least) least = measure, cost_ = cost;
+    if (measure <= least) {
+      least = measure, cost_ = cost;
+    }
   }
 }
 
 bool ExhaustiveSearch::is_inside(int row, int column) const {
-  if (row < 0 || column < 0 || row >= rows_ || column >= columns_) return false;
-  if (!options_.window || rows_ == 1 || columns_ == 1) return true;
+  if (row < 0 || column < 0 || row >= rows_ || column >= columns_) {
+    return false;
+  }
+  if (!options_.window || rows_ == 1 || columns_ == 1) {
+    return true;
+  }
   const double longer = std::max(rows_, columns_) - 1, shorter = std::min(rows_, columns_) - 1;
   const double apart = std::abs(static_cast<double>(row) / (rows_ - 1) -
                                 static_cast<double>(column) / (columns_ - 1));
@@ -97,11 +105,15 @@ void ExhaustiveSearch::visit(int row, int column, double cost) {
     bool is_legal = true;
     for (const Visit& v : step.visits) {
       is_legal = is_legal && is_inside(row + v.down, column + v.across);
-      if (!is_legal) break;
+      if (!is_legal) {
+        break;
+      }
       next += v.weight * errors_[static_cast<std::size_t>(row + v.down)]
                                 [static_cast<std::size_t>(column + v.across)];
     }
-    if (is_legal) visit(row + step.visits.back().down, column + step.visits.back().across, next);
+    if (is_legal) {
+      visit(row + step.visits.back().down, column + step.visits.back().across, next);
+    }
   }
 }
 
@@ -118,16 +130,22 @@ double cost_of_legal_path(const Curve& target, const Curve& applied,
   for (std::size_t k = 0; k + 1 < path.size();) {
     const auto fits = [&](const Step& step) {
       for (std::size_t v = 0; v < step.visits.size(); ++v) {
-        if (k + v + 1 >= path.size()) return false;
+        if (k + v + 1 >= path.size()) {
+          return false;
+        }
         const int down = static_cast<int>(path[k + v + 1].target - path[k].target);
         const int across = static_cast<int>(path[k + v + 1].applied - path[k].applied);
-        if (down != step.visits[v].down || across != step.visits[v].across) return false;
+        if (down != step.visits[v].down || across != step.visits[v].across) {
+          return false;
+        }
       }
       return true;
     };
     const auto& steps = steps_of(options.pattern);  // longer ones first
     const auto step = std::find_if(steps.begin(), steps.end(), fits);
-    if (step == steps.end()) return illegal;
+    if (step == steps.end()) {
+      return illegal;
+    }
     for (const Visit& v : step->visits) {
       ++k;
       cost += v.weight * error(target, applied, options, path[k].target, path[k].applied);

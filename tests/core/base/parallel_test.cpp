@@ -17,7 +17,9 @@ TEST(ParallelForTest, DoesEachItemOnce) {
   for (const int threads : {-1, 1, 2, 7}) {
     std::vector<std::atomic<int>> done(1000);
     parallel_for(done.size(), threads, [&](std::size_t i) { ++done[i]; });
-    for (const auto& times : done) EXPECT_EQ(times, 1);
+    for (const auto& times : done) {
+      EXPECT_EQ(times, 1);
+    }
   }
   parallel_for(0, 4, [](std::size_t) { FAIL() << "there is nothing to do"; });
 }
@@ -26,7 +28,9 @@ TEST(ParallelForTest, ThrowsWhatAnItemThrows) {
   std::atomic<int> done{0};
   const auto run = [&] {
     parallel_for(100000, 3, [&](std::size_t i) {
-      if (i == 5) throw std::runtime_error("five");
+      if (i == 5) {
+        throw std::runtime_error("five");
+      }
       ++done;
     });
   };
@@ -62,10 +66,14 @@ TEST(InGroupsTest, CoversEachItemOnceWithAWorkForEachThread) {
       return [&, own = std::make_unique<int>(0)](std::size_t first, std::size_t count) {
         EXPECT_EQ(first % 4, 0U);
         EXPECT_EQ(count, first == 8 ? 2U : 4U);
-        for (std::size_t i = first; i < first + count; ++i) ++done[i];
+        for (std::size_t i = first; i < first + count; ++i) {
+          ++done[i];
+        }
       };
     });
-    for (const auto& times : done) EXPECT_EQ(times, 1);
+    for (const auto& times : done) {
+      EXPECT_EQ(times, 1);
+    }
     EXPECT_LE(made, jobs);
   }
   EXPECT_THROW(in_groups(1, 1, 0, [] { return [](std::size_t, std::size_t) {}; }),
@@ -80,7 +88,9 @@ TEST(SharedWorkTest, CanBeWatchedAndLeft) {
     SharedWork shared(1000, 2, [&] {
       return [&](std::size_t) {
         ++begun;
-        while (!go) std::this_thread::yield();
+        while (!go) {
+          std::this_thread::yield();
+        }
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       };
     });

@@ -32,7 +32,9 @@ bool close_and_kill(const fs::path& file, const std::vector<Sample>& samples, in
     int left = step;
     const pid_t own = gettid();  // not the thread that syncs on its own
     DiskTap::before_each([&] {
-      if (gettid() == own && left-- == 0) kill(getpid(), SIGKILL);
+      if (gettid() == own && left-- == 0) {
+        kill(getpid(), SIGKILL);
+      }
     });
     writer.add_event({1, "session_end", ""});
     writer.set_timing(std::vector<TimingRow>{{0, 1, 2, 3, 4}}, {samples.size(), 3, 0});
@@ -47,7 +49,9 @@ bool close_and_kill(const fs::path& file, const std::vector<Sample>& samples, in
 TEST(ClosingKillTest, AtEachStepTheSessionCanBeBroughtToItsEnd) {
   const TemporaryFolder folder;
   std::vector<Sample> samples = test::hand_motion(3000, 4);
-  for (Sample& sample : samples) sample.pass = -1;
+  for (Sample& sample : samples) {
+    sample.pass = -1;
+  }
   int step = 0, ended = 0, under_way = 0;
   for (bool killed = true; killed; ++step) {
     const fs::path file = folder / (std::to_string(step) + ".h5");
@@ -57,7 +61,9 @@ TEST(ClosingKillTest, AtEachStepTheSessionCanBeBroughtToItsEnd) {
       SessionWriter writer = SessionWriter::resume(file, found);
       EXPECT_EQ(found.rows, samples.size());
       ++(found.ended ? ended : under_way);
-      if (!found.ended) writer.set_timing({}, {0, 0, 0});
+      if (!found.ended) {
+        writer.set_timing({}, {0, 0, 0});
+      }
       writer.close();
     }
     const SessionReader reader(file);

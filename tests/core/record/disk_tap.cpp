@@ -32,13 +32,17 @@ bool is_ours(int descriptor) {
 }
 
 void note(int descriptor, DiskStep step) {
-  if (!is_ours(descriptor)) return;
+  if (!is_ours(descriptor)) {
+    return;
+  }
   const std::lock_guard lock(tap().mutex);
   tap().steps.push_back(std::move(step));
 }
 
 void before() {
-  if (tap().stepping && tap().step) tap().step();
+  if (tap().stepping && tap().step) {
+    tap().step();
+  }
 }
 
 int synced(int descriptor, long call) {

@@ -134,9 +134,15 @@ TEST(DrillingRecordTest, TheBoneIsThereFromTheBeginning) {
   BoneRecord second = test::small_bone();
   second.bone.bone = 1;
   second.bone.name = "other";
-  for (auto& row : second.structures) row.bone = 1;
-  for (auto& row : second.runs) row.bone = 1;
-  for (auto& row : second.densities) row.bone = 1;
+  for (auto& row : second.structures) {
+    row.bone = 1;
+  }
+  for (auto& row : second.runs) {
+    row.bone = 1;
+  }
+  for (auto& row : second.densities) {
+    row.bone = 1;
+  }
   const SessionWriter writer(folder / "a.h5", test::example_info(), drilling_tables(),
                              rows_of(std::vector<BoneRecord>{test::small_bone(), second}));
   const auto bones = recorded_bones(SessionReader(folder / "a.h5.partial"));

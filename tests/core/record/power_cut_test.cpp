@@ -101,7 +101,9 @@ struct Recording {
         writer.begin_pass({static_cast<std::int32_t>(at / kCycle), pass_row(at / kCycle)});
         ++so_far.begun;
       }
-      if (drills) writer.add(std::span(tool).subspan(at, 20));
+      if (drills) {
+        writer.add(std::span(tool).subspan(at, 20));
+      }
       if (drills) {
         const RemovalRow removal{at, 0, {1, 2, static_cast<std::int32_t>(at)}, 1, 0.5, 0.1};
         writer.add(std::span(&removal, 1));
@@ -130,8 +132,12 @@ struct Recording {
 struct Image {
   std::string bytes;
   void apply(const DiskStep& step) {
-    if (step.kind == DiskStep::kTruncate) bytes.resize(step.offset);
-    if (step.kind != DiskStep::kWrite) return;
+    if (step.kind == DiskStep::kTruncate) {
+      bytes.resize(step.offset);
+    }
+    if (step.kind != DiskStep::kWrite) {
+      return;
+    }
     bytes.resize(std::max<std::size_t>(bytes.size(), step.offset + step.bytes.size()));
     bytes.replace(step.offset, step.bytes.size(), step.bytes);
   }
@@ -150,7 +156,9 @@ Synced synced_before(const Recording& recording, std::size_t end) {
 /// The file when everything had come to the disk in order up to the step `end`.
 std::string in_order(const Recording& recording, std::size_t end) {
   Image image;
-  for (std::size_t i = 0; i < end; ++i) image.apply(recording.steps[i]);
+  for (std::size_t i = 0; i < end; ++i) {
+    image.apply(recording.steps[i]);
+  }
   return image.bytes;
 }
 
@@ -160,17 +168,25 @@ std::string in_order(const Recording& recording, std::size_t end) {
 std::string reordered(const Recording& recording, std::size_t end, RandomStream& random) {
   std::size_t begun = 0, safe = 0;
   for (std::size_t i = 0; i < end; ++i) {
-    if (recording.steps[i].kind == DiskStep::kSyncBegins) begun = i;
-    if (recording.steps[i].kind == DiskStep::kSyncEnds) safe = begun;
+    if (recording.steps[i].kind == DiskStep::kSyncBegins) {
+      begun = i;
+    }
+    if (recording.steps[i].kind == DiskStep::kSyncEnds) {
+      safe = begun;
+    }
   }
   Image image;
-  for (std::size_t i = 0; i < safe; ++i) image.apply(recording.steps[i]);
+  for (std::size_t i = 0; i < safe; ++i) {
+    image.apply(recording.steps[i]);
+  }
   std::map<std::size_t, std::vector<std::string>> versions;  // of each page
   std::vector<std::size_t> lengths{image.bytes.size()};
   Image later = image;
   for (std::size_t i = safe; i < end; ++i) {
     const DiskStep& step = recording.steps[i];
-    if (step.kind != DiskStep::kWrite || step.bytes.empty()) continue;
+    if (step.kind != DiskStep::kWrite || step.bytes.empty()) {
+      continue;
+    }
     const std::size_t first = step.offset / kPage;
     const std::size_t last = (step.offset + step.bytes.size() - 1) / kPage;
     for (std::size_t page = first; page <= last; ++page) {
@@ -191,7 +207,9 @@ std::string reordered(const Recording& recording, std::size_t end, RandomStream&
   for (auto& [page, kept] : versions) {
     std::string bytes = kept[random.below(kept.size())];
     bytes.resize(kPage);
-    if (page * kPage >= image.bytes.size()) continue;
+    if (page * kPage >= image.bytes.size()) {
+      continue;
+    }
     const std::size_t fits = std::min(kPage, image.bytes.size() - page * kPage);
     image.bytes.replace(page * kPage, fits, bytes.substr(0, fits));
   }
@@ -257,7 +275,9 @@ void go_on(SessionWriter& writer, const Resumed& found, bool drills) {
   }
   if (drills) {
     std::vector<ToolRow> tool = test::tool_motion(more.size(), 5);
-    for (std::size_t i = 0; i < tool.size(); ++i) tool[i].sequence = more[i].sequence;
+    for (std::size_t i = 0; i < tool.size(); ++i) {
+      tool[i].sequence = more[i].sequence;
+    }
     writer.add(std::span<const ToolRow>(tool));
   }
   writer.append(more);
@@ -281,7 +301,9 @@ void try_file(const Recording& recording, const std::string& bytes, const Synced
   ASSERT_GE(recovery.passes, synced.passes);
   tally.by_recover += recovery.samples;
   tally.passes_by_recover += recovery.passes;
-  if (recovery.anything()) check_rows(SessionReader(folder / "out.h5"), recording, synced);
+  if (recovery.anything()) {
+    check_rows(SessionReader(folder / "out.h5"), recording, synced);
+  }
 
   Resumed found;
   try {

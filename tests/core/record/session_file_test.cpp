@@ -69,7 +69,9 @@ TEST(SessionFileTest, ExtremeValuesComeBack) {
 TEST(SessionFileTest, InfoComesBackWithALongDefinition) {
   const TemporaryFolder folder;
   SessionInfo info = example_info();
-  for (int i = 0; i < 20000; ++i) info.definition += "# Zeile ü " + std::to_string(i) + "\n";
+  for (int i = 0; i < 20000; ++i) {
+    info.definition += "# Zeile ü " + std::to_string(i) + "\n";
+  }
   ASSERT_GT(info.definition.size(), 200000u);
   info.subject = "";
   info.simulated = false;
@@ -157,14 +159,18 @@ TEST(SessionFileTest, EventTextsOfAnyLengthComeBack) {
   for (const char* letter : {"x", "ü", "€", "🖐"}) {
     for (const std::size_t count : {0, 1, 63, 64, 65, 127, 128, 129, 255, 256, 257, 513}) {
       EventRow event{static_cast<std::int64_t>(count), "kind", "a"};
-      for (std::size_t i = 0; i < count; ++i) event.text += letter;
+      for (std::size_t i = 0; i < count; ++i) {
+        event.text += letter;
+      }
       events.push_back(event);
     }
   }
   events.push_back({1, std::string(32, 'k'), ""});
   events.push_back({2, "not_utf8", std::string(1000, '\x80')});
   SessionWriter writer(folder / "a.h5", example_info());
-  for (const EventRow& event : events) writer.add_event(event);
+  for (const EventRow& event : events) {
+    writer.add_event(event);
+  }
   writer.close();
   const std::vector<EventRow> back = SessionReader(folder / "a.h5").events();
   ASSERT_EQ(back.size(), events.size());
@@ -202,7 +208,9 @@ TEST(SessionFileTest, BatchesAndFlushesDoNotChangeTheRows) {
   for (std::size_t at = 0; at < samples.size();) {
     const std::size_t count = std::min<std::size_t>(random.below(2000), samples.size() - at);
     writer.append(std::span(samples).subspan(at, count));
-    if (random.below(3) == 0) writer.flush();
+    if (random.below(3) == 0) {
+      writer.flush();
+    }
     at += count;
   }
   writer.close();
@@ -243,7 +251,9 @@ TEST(SessionFileTest, WritersAndReadersWorkInThreadsAtOnce) {
   const TemporaryFolder folder;
   constexpr std::size_t kThreads = 4;
   std::vector<std::vector<Sample>> samples;
-  for (std::size_t i = 0; i < kThreads; ++i) samples.push_back(hand_motion(50000, 100 + i));
+  for (std::size_t i = 0; i < kThreads; ++i) {
+    samples.push_back(hand_motion(50000, 100 + i));
+  }
   const auto file = [&](std::size_t i) { return folder / (std::to_string(i) + ".h5"); };
   std::vector<std::size_t> wrong(kThreads, 1);
   {
@@ -253,16 +263,22 @@ TEST(SessionFileTest, WritersAndReadersWorkInThreadsAtOnce) {
         SessionWriter writer(file(i), example_info());
         for (std::size_t at = 0; at < 50000; at += 500) {
           writer.append(std::span(samples[i]).subspan(at, 500));
-          if (at % 5000 == 0) writer.flush();
+          if (at % 5000 == 0) {
+            writer.flush();
+          }
         }
         writer.close();
         const std::vector<Sample> back = SessionReader(file(i)).samples(0, 50000);
         wrong[i] = 0;
-        for (std::size_t k = 0; k < 50000; ++k) wrong[i] += !same(back[k], on_file(samples[i][k]));
+        for (std::size_t k = 0; k < 50000; ++k) {
+          wrong[i] += !same(back[k], on_file(samples[i][k]));
+        }
       });
     }
   }
-  for (std::size_t i = 0; i < kThreads; ++i) EXPECT_EQ(wrong[i], 0u) << "thread " << i;
+  for (std::size_t i = 0; i < kThreads; ++i) {
+    EXPECT_EQ(wrong[i], 0u) << "thread " << i;
+  }
   // One reader, several threads.
   const SessionReader reader(file(0));
   std::vector<std::jthread> threads;
@@ -275,7 +291,9 @@ TEST(SessionFileTest, WritersAndReadersWorkInThreadsAtOnce) {
     });
   }
   threads.clear();
-  for (std::size_t i = 0; i < kThreads; ++i) EXPECT_EQ(wrong[i], 0u) << "thread " << i;
+  for (std::size_t i = 0; i < kThreads; ++i) {
+    EXPECT_EQ(wrong[i], 0u) << "thread " << i;
+  }
 }
 
 }  // namespace

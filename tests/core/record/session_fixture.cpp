@@ -49,14 +49,18 @@ std::vector<Sample> hand_motion(std::size_t count, std::uint64_t seed) {
     Sample& sample = samples[i];
     const double t = kPeriod * static_cast<double>(i);
     const double run = kPeriod * static_cast<double>(i % kPassTicks);
-    for (Eigen::Index a = 0; a < 3; ++a) tremor[a] += -0.02 * tremor[a] + 1e-5 * random.normal();
+    for (Eigen::Index a = 0; a < 3; ++a) {
+      tremor[a] += -0.02 * tremor[a] + 1e-5 * random.normal();
+    }
     const Eigen::Vector3d ideal(-0.05 + 0.0056 * run, 0.02 * std::sin(0.9 * run + 0.1 * t),
                                 0.01 * std::sin(1.7 * run));
     const Eigen::Vector3d hand = ideal + tremor;
     for (Eigen::Index a = 0; a < 3; ++a) {
       sample.position[a] = kQuantum * std::nearbyint(hand[a] / kQuantum);
     }
-    if (i > 0) velocity += 0.1 * ((sample.position - last) / kPeriod - velocity);
+    if (i > 0) {
+      velocity += 0.1 * ((sample.position - last) / kPeriod - velocity);
+    }
     last = sample.position;
     sample.velocity = velocity;
     sample.target_force = 1.5 + 0.6 * std::sin(1.1 * run) + 0.3 * std::sin(0.7 * run + 1.0);

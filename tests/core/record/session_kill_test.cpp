@@ -68,7 +68,9 @@ std::vector<Sample> session_samples() {
     }
     usleep(400);
   }
-  for (;;) pause();
+  for (;;) {
+    pause();
+  }
 }
 
 struct Killed {
@@ -96,7 +98,9 @@ Killed start_and_kill(const fs::path& file, const std::vector<Sample>& samples,
       shared->given = found.next_sequence;
       for (const OpenPass& open : found.open_passes) {
         // Here the pass goes on; a session would mark it aborted.
-        if (open.last_sample % kCycle != kPass - 1) continue;
+        if (open.last_sample % kCycle != kPass - 1) {
+          continue;
+        }
         writer.add_pass(
             {1, "haptic", Phase::kTest, 1, 1, 7, open.first_sample, open.last_sample, {}});
       }
@@ -125,7 +129,9 @@ void check_rows(const fs::path& partial, const std::vector<Sample>& samples, con
   for (std::size_t i = 0; i < back.size(); ++i) {
     ASSERT_TRUE(test::same(back[i], test::on_file(samples[i]))) << "row " << i;
   }
-  for (const PassRow& pass : reader.passes()) EXPECT_LT(pass.last_sample, rows);
+  for (const PassRow& pass : reader.passes()) {
+    EXPECT_LT(pass.last_sample, rows);
+  }
 }
 
 TEST(SessionKillTest, HundredKillsLoseAtMostASecondAndTheSessionGoesOn) {
@@ -151,9 +157,13 @@ TEST(SessionKillTest, HundredKillsLoseAtMostASecondAndTheSessionGoesOn) {
       }
       check_rows(partial, samples, killed);
       const std::uint64_t rows = SessionReader(partial).sample_count();
-      if (killed.given > rows) most_lost = std::max(most_lost, killed.given - rows);
+      if (killed.given > rows) {
+        most_lost = std::max(most_lost, killed.given - rows);
+      }
     }
-    if (fs::exists(partial)) list << partial.string() << '\n';
+    if (fs::exists(partial)) {
+      list << partial.string() << '\n';
+    }
   }
   list.close();
   std::printf(
@@ -182,7 +192,9 @@ TEST(SessionKillTest, HundredKillsLoseAtMostASecondAndTheSessionGoesOn) {
   // Every one goes on to its end, without a gap.
   for (int run = 0; run < kKills; ++run) {
     const fs::path file = folder / fmt::format("{:03}.h5", run);
-    if (!SessionWriter::can_resume(file)) continue;
+    if (!SessionWriter::can_resume(file)) {
+      continue;
+    }
     Resumed found;
     SessionWriter writer = SessionWriter::resume(file, found);
     std::uint64_t end = found.next_sequence;
@@ -192,7 +204,9 @@ TEST(SessionKillTest, HundredKillsLoseAtMostASecondAndTheSessionGoesOn) {
     }
     std::vector<Sample> rest(samples.begin() + static_cast<std::ptrdiff_t>(end),
                              samples.begin() + static_cast<std::ptrdiff_t>(end + 2500));
-    for (Sample& sample : rest) sample.pass = -1;
+    for (Sample& sample : rest) {
+      sample.pass = -1;
+    }
     writer.append(rest);
     writer.set_timing({}, {2500, 0, 0});
     writer.close();

@@ -108,7 +108,9 @@ TEST(SessionLiveTest, WithoutAnyFlushALiveFileLacksLessThanASecond) {
   SessionWriter writer(folder / "a.h5", live_info());
   for (std::size_t at = 0; at < samples.size(); at += 20) {
     writer.append(std::span(samples).subspan(at, 20));
-    if (at % 1900 != 0) continue;
+    if (at % 1900 != 0) {
+      continue;
+    }
     // As another process would open it, from a copy: HDF5 shares files within one.
     fs::copy_file(folder / "a.h5.partial", folder / "copy.h5",
                   fs::copy_options::overwrite_existing);
@@ -142,11 +144,15 @@ TEST(SessionLiveTest, FlushKeepsSamplesAheadOfTheirPass) {
   for (std::uint64_t pass = 0; pass < 70; ++pass) {
     writer.append(std::span(samples).subspan(pass * 130, 130));
     writer.add_pass({1, "haptic", Phase::kTest, 1, 1, 7, pass * 130, pass * 130 + 129, {}});
-    if (pass % 3 == 0) writer.flush();
+    if (pass % 3 == 0) {
+      writer.flush();
+    }
     fs::copy_file(folder / "a.h5.partial", folder / "copy.h5",
                   fs::copy_options::overwrite_existing);
     const SessionReader reader(folder / "copy.h5");
-    for (const PassRow& row : reader.passes()) EXPECT_LT(row.last_sample, reader.sample_count());
+    for (const PassRow& row : reader.passes()) {
+      EXPECT_LT(row.last_sample, reader.sample_count());
+    }
     if (pass % 3 == 0) {
       EXPECT_EQ(reader.passes().size(), pass + 1);
     }
@@ -154,7 +160,9 @@ TEST(SessionLiveTest, FlushKeepsSamplesAheadOfTheirPass) {
 }
 
 TEST(SessionLiveTest, AnotherProcessFollowsWithH5pyAndTheReader) {
-  if (std::system("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0) GTEST_SKIP() << "no h5py";
+  if (std::system("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0) {
+    GTEST_SKIP() << "no h5py";
+  }
   const TemporaryFolder folder;
   const fs::path partial = folder / "a.h5.partial";
   const std::vector<Sample> samples = hand_motion(40000, 3);
@@ -168,7 +176,9 @@ TEST(SessionLiveTest, AnotherProcessFollowsWithH5pyAndTheReader) {
       writer.append(std::span(samples).subspan(at, 10000));
       writer.flush();
       char byte = 'f';
-      if (write(told[1], &byte, 1) != 1 || read(go[0], &byte, 1) != 1) _exit(1);
+      if (write(told[1], &byte, 1) != 1 || read(go[0], &byte, 1) != 1) {
+        _exit(1);
+      }
     }
     writer.close();
     _exit(0);
@@ -193,7 +203,9 @@ TEST(SessionLiveTest, AnotherProcessFollowsWithH5pyAndTheReader) {
     }
     std::fputs("look\n", python);
     std::fflush(python);
-    for (int i = 0; i < 1000 && !fs::exists(folder / "done"); ++i) usleep(10000);
+    for (int i = 0; i < 1000 && !fs::exists(folder / "done"); ++i) {
+      usleep(10000);
+    }
     ASSERT_TRUE(fs::exists(folder / "done"));
     fs::remove(folder / "done");
     std::size_t seen = 0;
@@ -218,8 +230,12 @@ TEST(SessionLiveTest, AFileInUseIsRefusedUntilItsProcessDies) {
     SessionWriter writer(folder / "a.h5", live_info());
     writer.append(hand_motion(5000, 1));
     char byte = 'r';
-    if (write(told[1], &byte, 1) != 1) _exit(1);
-    for (;;) pause();
+    if (write(told[1], &byte, 1) != 1) {
+      _exit(1);
+    }
+    for (;;) {
+      pause();
+    }
   }
   char byte = 0;
   ASSERT_EQ(read(told[0], &byte, 1), 1);

@@ -85,12 +85,16 @@ void expect_that_python_reads(bool drills) {
 }
 
 TEST(SessionPythonTest, ReadsWithH5pyAndPandasAsTheDocumentSays) {
-  if (!python_has_libraries()) GTEST_SKIP() << "/usr/bin/python3 has no h5py or no pandas";
+  if (!python_has_libraries()) {
+    GTEST_SKIP() << "/usr/bin/python3 has no h5py or no pandas";
+  }
   expect_that_python_reads(false);
 }
 
 TEST(SessionPythonTest, ReadsDrillingsAsTheDocumentSays) {
-  if (!python_has_libraries()) GTEST_SKIP() << "/usr/bin/python3 has no h5py or no pandas";
+  if (!python_has_libraries()) {
+    GTEST_SKIP() << "/usr/bin/python3 has no h5py or no pandas";
+  }
   expect_that_python_reads(true);
 }
 

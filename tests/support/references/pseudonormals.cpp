@@ -26,7 +26,9 @@ void check(const Mesh& mesh) {
   const auto count = static_cast<std::int32_t>(mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     for (const std::int32_t corner : mesh.triangles[i]) {
-      if (corner >= 0 && corner < count) continue;
+      if (corner >= 0 && corner < count) {
+        continue;
+      }
       throw InputError(
           fmt::format("triangle {} names vertex {}; allowed: 0 to {}", i, corner, count - 1));
     }
@@ -52,22 +54,32 @@ Pseudonormals::Pseudonormals(const Mesh& mesh) : corners_(mesh.triangles) {
   const EdgeTable edges(mesh);
   for (std::size_t edge = 0; edge < edges.size(); ++edge) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const Side side : edges.sides(edge)) sum += of_face_[triangle_of(side)];
-    for (const Side side : edges.sides(edge)) of_edge_[triangle_of(side)][side % 3] = sum;
+    for (const Side side : edges.sides(edge)) {
+      sum += of_face_[triangle_of(side)];
+    }
+    for (const Side side : edges.sides(edge)) {
+      of_edge_[triangle_of(side)][side % 3] = sum;
+    }
   }
 }
 
 const Eigen::Vector3d& Pseudonormals::at(const ClosestPoint& nearest) const {
   const int part = static_cast<int>(nearest.part);
-  if (part == 0) return of_face_[nearest.triangle];
-  if (part <= 3) return of_edge_[nearest.triangle][part - 1];
+  if (part == 0) {
+    return of_face_[nearest.triangle];
+  }
+  if (part <= 3) {
+    return of_edge_[nearest.triangle][part - 1];
+  }
   return of_corner_[corners_[nearest.triangle][part - 4]];
 }
 
 double Pseudonormals::signed_distance(const Eigen::Vector3d& point,
                                       const ClosestPoint& nearest) const {
   const double distance = std::sqrt(nearest.distance_squared);
-  if (nearest.triangle < 0) return distance;
+  if (nearest.triangle < 0) {
+    return distance;
+  }
   return (point - nearest.point).dot(at(nearest)) < 0.0 ? -distance : distance;
 }
 

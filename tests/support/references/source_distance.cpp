@@ -15,7 +15,9 @@ SourceDistance::SourceDistance(const Mesh& mesh) {
   std::vector<std::int32_t> order(corners_.size());
   std::iota(order.begin(), order.end(), 0);
   nodes_.reserve(2 * corners_.size());
-  if (!order.empty()) build(order, 0, order.size(), -1);
+  if (!order.empty()) {
+    build(order, 0, order.size(), -1);
+  }
 }
 
 /// Halves by the middles along the box's longest side.
@@ -36,7 +38,9 @@ std::int32_t SourceDistance::build(std::vector<std::int32_t>& order, std::size_t
   }
   const auto at = static_cast<std::int32_t>(nodes_.size());
   nodes_.push_back(node);
-  if (last - first == 1) return at;
+  if (last - first == 1) {
+    return at;
+  }
   int axis = 0;
   (node.high - node.low).maxCoeff(&axis);
   const auto middle = [&](std::int32_t triangle) {
@@ -66,11 +70,14 @@ void SourceDistance::start(const Options& options) {
 ClosestPoint SourceDistance::closest(const Eigen::Vector3d& point) {
   best_ = {};
   lowest_upper_ = std::numeric_limits<double>::infinity();
-  if (nodes_.empty()) return best_;
+  if (nodes_.empty()) {
+    return best_;
+  }
   if (winner_ >= 0 && options_.ascend >= 0) {
     std::int32_t seed = winner_;
-    for (int i = 0; i < options_.ascend && nodes_[seed].parent >= 0; ++i)
+    for (int i = 0; i < options_.ascend && nodes_[seed].parent >= 0; ++i) {
       seed = nodes_[seed].parent;
+    }
     to_descend_.push_back(seed);
   }
   to_descend_.push_back(0);
@@ -101,7 +108,9 @@ void SourceDistance::process(std::int32_t at, const Eigen::Vector3d& point) {
   const double lower = below.cwiseMax(above).cwiseMax(0.0).squaredNorm();
   const double upper = (-below).cwiseAbs().cwiseMax(above.cwiseAbs()).squaredNorm();
   // A box's bound and a triangle's distance are rounded apart from each other.
-  if (lower > lowest_upper_ * (1.0 + 1e-12)) return;
+  if (lower > lowest_upper_ * (1.0 + 1e-12)) {
+    return;
+  }
   lowest_upper_ = std::min(lowest_upper_, upper);
   if (options_.depth_first) {
     to_descend_.push_front(node.left);

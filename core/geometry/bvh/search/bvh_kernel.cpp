@@ -45,7 +45,9 @@ ClosestPoint closest_in_double(const BvhData& data, const Eigen::Vector3d& point
     here.triangle = data.ids[at];
     take_if_nearer(here, best);
   };
-  if (slot >= 0) measure(slot);
+  if (slot >= 0) {
+    measure(slot);
+  }
   const Eigen::Vector3d p = data.frame.to_frame(point);
   const double slack = kBoxError + 1e-12 * p.norm();
   const auto reach = [&] {
@@ -56,13 +58,17 @@ ClosestPoint closest_in_double(const BvhData& data, const Eigen::Vector3d& point
   stack[top++] = {0, 0.0};
   while (top > 0) {
     const Pending next = stack[--top];
-    if (next.bound > reach()) continue;
+    if (next.bound > reach()) {
+      continue;
+    }
     const bool leaf = next.node < 0;
     const Boxes& boxes = leaf ? data.leaf_boxes[~next.node] : data.nodes[next.node].boxes;
     const int first = top;
     for (int i = 0; i < kWidth && !std::isinf(boxes.low[0][i]); ++i) {
       const double bound = box_distance(boxes, i, p);
-      if (!(bound <= reach())) continue;
+      if (!(bound <= reach())) {
+        continue;
+      }
       if (leaf) {
         measure(~next.node * kWidth + i);
       } else {

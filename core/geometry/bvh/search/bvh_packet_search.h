@@ -72,10 +72,14 @@ class PacketSearch {
     open(0);
     while (!stack_.empty()) {
       const Stack::Entry next = stack_.pop();
-      if (next.bound > limit_) continue;
+      if (next.bound > limit_) {
+        continue;
+      }
       const Node& parent = data_.nodes[next.parent];
       const unsigned wanting = active_ & wanted_by(parent.turned, next.place);
-      if (wanting == 0) continue;
+      if (wanting == 0) {
+        continue;
+      }
       const std::int32_t child = parent.child[next.place];
       if (child >= 0) {
         open(child);
@@ -123,26 +127,38 @@ class PacketSearch {
       for (unsigned found = within[lane]; found != 0; found &= found - 1) {
         const int i = std::countr_zero(found);
         const float distance_squared = distances[lane][i];
-        if (distance_squared > limits_[lane]) continue;
-        if (used_ == kCandidates) make_room();
+        if (distance_squared > limits_[lane]) {
+          continue;
+        }
+        if (used_ == kCandidates) {
+          make_room();
+        }
         candidates_[used_++] = {distance_squared, leaf * kWidth + i, lane};
-        if (distance_squared >= least_[lane]) continue;
+        if (distance_squared >= least_[lane]) {
+          continue;
+        }
         least_[lane] = distance_squared;
         limits_[lane] = widened(distance_squared, error_);
         nearer = true;
       }
     }
-    if (nearer) limit_ = Lanes::largest(Lanes::load(limits_));
+    if (nearer) {
+      limit_ = Lanes::largest(Lanes::load(limits_));
+    }
   }
 
   /// Forgets candidates that have been outdone; measures the rest where they are still many.
   void make_room() {
     int kept = 0;
     for (int i = 0; i < used_; ++i) {
-      if (still_near(candidates_[i])) candidates_[kept++] = candidates_[i];
+      if (still_near(candidates_[i])) {
+        candidates_[kept++] = candidates_[i];
+      }
     }
     used_ = kept;
-    if (used_ > kCandidates / 2) settle();
+    if (used_ > kCandidates / 2) {
+      settle();
+    }
   }
 
   void settle() {
@@ -159,7 +175,9 @@ class PacketSearch {
   void remember(int count) {
     for (int i = 0; i < count; ++i) {
       const Eigen::Vector3d in_frame = data_.frame.to_frame(answers_[i]->point);
-      for (int axis = 0; axis < 3; ++axis) seen_[axis][i] = static_cast<float>(in_frame[axis]);
+      for (int axis = 0; axis < 3; ++axis) {
+        seen_[axis][i] = static_cast<float>(in_frame[axis]);
+      }
     }
     remembered_ = count;
   }

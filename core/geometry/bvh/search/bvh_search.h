@@ -50,7 +50,9 @@ template <class Lanes, bool kSpread>
       for (int k = 0; k < 3; ++k) {
         const Number row = Lanes::load(boxes.row[axis][k] + first);
         at = Lanes::fma(row, Lanes::all(from.middle[k]), at);
-        if (kSpread) half = Lanes::fma(Lanes::absolute(row), Lanes::all(from.half[k]), half);
+        if (kSpread) {
+          half = Lanes::fma(Lanes::absolute(row), Lanes::all(from.half[k]), half);
+        }
       }
       const Number outside = Lanes::larger(Lanes::absolute(at) - half, zero);
       sum = Lanes::fma(outside, outside, sum);
@@ -92,12 +94,16 @@ struct Stack {
   /// Children of a node within the limit, the nearest on top, the others as they come.
   [[gnu::always_inline]] void push(std::int32_t node, unsigned within,
                                    const float distances[kWidth]) {
-    if (within == 0) return;
+    if (within == 0) {
+      return;
+    }
     int nearest = size;
     for (; within != 0; within &= within - 1) {
       const int i = std::countr_zero(within);
       entries[size] = {distances[i], node, i};
-      if (distances[i] < entries[nearest].bound) nearest = size;
+      if (distances[i] < entries[nearest].bound) {
+        nearest = size;
+      }
       ++size;
     }
     std::swap(entries[nearest], entries[size - 1]);
@@ -118,14 +124,20 @@ class Exact {
     const Corners& corners = data_.corners[slot];
     for (int axis = 0; axis < 3; ++axis) {
       values_[axis][used_] = point[axis];
-      for (int k = 0; k < 3; ++k) values_[3 + 3 * k + axis][used_] = corners[k][axis];
+      for (int k = 0; k < 3; ++k) {
+        values_[3 + 3 * k + axis][used_] = corners[k][axis];
+      }
     }
     slots_[used_] = slot;
     best_[used_] = best;
-    if (++used_ == kCount) measure();
+    if (++used_ == kCount) {
+      measure();
+    }
   }
   void finish() {
-    if (used_ > 0) measure();
+    if (used_ > 0) {
+      measure();
+    }
   }
 
  private:
@@ -142,7 +154,9 @@ class Exact {
     Doubles::store(z, nearest.point.z);
     Doubles::store(part, nearest.part);
     for (int i = 0; i < used_; ++i) {
-      if (distance[i] > best_[i]->distance_squared) continue;
+      if (distance[i] > best_[i]->distance_squared) {
+        continue;
+      }
       take_if_nearer({distance[i],
                       {x[i], y[i], z[i]},
                       data_.ids[slots_[i]],
@@ -176,13 +190,19 @@ class PointSearch {
   }
 
   ClosestPoint find(std::int32_t hint) {
-    if (hint >= 0) __builtin_prefetch(&data_.corners[hint]);
+    if (hint >= 0) {
+      __builtin_prefetch(&data_.corners[hint]);
+    }
     Stack stack;
     open(0, stack);
-    if (hint >= 0) bound_by(data_.corners[hint]);
+    if (hint >= 0) {
+      bound_by(data_.corners[hint]);
+    }
     while (!stack.empty()) {
       const Stack::Entry next = stack.pop();
-      if (next.bound > limit_) continue;
+      if (next.bound > limit_) {
+        continue;
+      }
       const std::int32_t child = data_.nodes[next.parent].child[next.place];
       if (child >= 0) {
         open(child, stack);
@@ -223,8 +243,12 @@ class PointSearch {
     unsigned within = triangles_within<Lanes>(data_.leaves[leaf], at_.middle, limit_, distances);
     for (; within != 0; within &= within - 1) {
       const int i = std::countr_zero(within);
-      if (distances[i] > limit_) continue;
-      if (used_ == kCandidates) settle();
+      if (distances[i] > limit_) {
+        continue;
+      }
+      if (used_ == kCandidates) {
+        settle();
+      }
       slots_[used_] = leaf * kWidth + i;
       distances_[used_++] = distances[i];
       if (distances[i] < least_) {
@@ -236,7 +260,9 @@ class PointSearch {
 
   void settle() {
     for (int i = 0; i < used_; ++i) {
-      if (distances_[i] <= limit_) exact_.add(point_, slots_[i], &best_);
+      if (distances_[i] <= limit_) {
+        exact_.add(point_, slots_[i], &best_);
+      }
     }
     exact_.finish();
     used_ = 0;

@@ -4,7 +4,9 @@ namespace haptrial::geometry {
 
 void leave_empty(Leaf& leaf, int place) {
   for (auto& row : leaf.row) {
-    for (auto& values : row) values[place] = 0.0f;
+    for (auto& values : row) {
+      values[place] = 0.0f;
+    }
   }
   leaf.row[2][3][place] = 1e30f;  // its square is infinite
   for (int side = 0; side < 2; ++side) {

@@ -87,7 +87,9 @@ void flatten(const Corners* corners, const Frame& frame, Leaf& leaf) {
   for (int first = 0; first < kWidth; first += Lanes::kCount) {
     alignas(64) double values[9][Lanes::kCount];
     for (int i = 0; i < Lanes::kCount; ++i) {
-      for (int k = 0; k < 9; ++k) values[k][i] = corners[first + i][k / 3][k % 3];
+      for (int k = 0; k < 9; ++k) {
+        values[k][i] = corners[first + i][k / 3][k % 3];
+      }
     }
     const auto corner = [&](int k) {
       return Lanes3<Lanes>{Lanes::load(values[3 * k]), Lanes::load(values[3 * k + 1]),

@@ -30,7 +30,9 @@ TEST(AlignmentRaiseTest, IsAsCloseToThePowerAsItSays) {
     const auto results = raised(InstructionSet::kBaseline, values, power);
     for (std::size_t k = 0; k < values.size(); ++k) {
       const double exact = std::pow(std::abs(values[k]), power);
-      if (exact > 0x1p200) continue;  // beyond what the alignment takes
+      if (exact > 0x1p200) {
+        continue;
+      }  // beyond what the alignment takes
       ASSERT_NEAR(results[k], exact, 3e-13 * exact + 0x1p-1000) << values[k] << '^' << power;
     }
   }

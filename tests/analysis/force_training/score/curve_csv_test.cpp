@@ -76,7 +76,9 @@ TEST(AlignCurvesTest, TimesOfTheirOwnGiveTheScoreOfTheWholeCurve) {
   ForceCurve target{100.0, {}}, applied{100.0, {}};
   for (ForceCurve* curve : {&target, &applied}) {
     std::vector<double> corners;
-    for (int k = 0; k <= 40; ++k) corners.push_back(random.uniform(0.0, 8.0));
+    for (int k = 0; k <= 40; ++k) {
+      corners.push_back(random.uniform(0.0, 8.0));
+    }
     for (int k = 0; k <= 400; ++k) {
       const auto corner = static_cast<std::size_t>(k / 10);
       const double part = (k % 10) / 10.0;
@@ -87,7 +89,9 @@ TEST(AlignCurvesTest, TimesOfTheirOwnGiveTheScoreOfTheWholeCurve) {
   }
   TableCurve sparse;
   for (std::size_t k = 0; k <= 400; ++k) {
-    if (k % 10 != 0 && random.below(2) == 0) continue;
+    if (k % 10 != 0 && random.below(2) == 0) {
+      continue;
+    }
     sparse.times.push_back(7.0 + static_cast<double>(k) / 100.0);  // from its first sample on
     sparse.values.push_back(applied.force[k]);
   }
@@ -132,7 +136,9 @@ TEST(AlignCurvesTest, AWindowInSecondsKeepsPairsThatClose) {
     for (std::size_t i = 0; i < 250 + 30 * k; ++i) {
       curves[k].force.push_back(std::exp(-std::pow(static_cast<double>(i) / 50.0 - peak, 2)));
     }
-    if (k % 2 == 1) pairs.push_back({&curves[k - 1], &curves[k]});
+    if (k % 2 == 1) {
+      pairs.push_back({&curves[k - 1], &curves[k]});
+    }
   }
   ScoreParameters parameters;
   parameters.samples = 301;

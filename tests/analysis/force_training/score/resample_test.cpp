@@ -15,7 +15,9 @@ namespace {
 ForceCurve random_curve(std::size_t samples, double rate) {
   RandomStream random(3, "curve");
   ForceCurve curve{rate, {}};
-  for (std::size_t i = 0; i < samples; ++i) curve.force.push_back(random.uniform(-3.0, 9.0));
+  for (std::size_t i = 0; i < samples; ++i) {
+    curve.force.push_back(random.uniform(-3.0, 9.0));
+  }
   return curve;
 }
 
@@ -44,14 +46,18 @@ TEST(ResampleTest, EndPointsAreExact) {
 TEST(ResampleTest, ItsOwnInstantsComeBack) {
   const ForceCurve curve = random_curve(501, 250.0);
   const auto result = resample(curve, {duration_of(curve, "c"), 501});
-  for (std::size_t i = 0; i < 501; ++i) EXPECT_NEAR(result[i], curve.force[i], 1e-11);
+  for (std::size_t i = 0; i < 501; ++i) {
+    EXPECT_NEAR(result[i], curve.force[i], 1e-11);
+  }
 }
 
 TEST(ResampleTest, LinesBetweenSamplesStayLines) {
   const ForceCurve curve{2.0, {0.0, 4.0, 1.0}};  // over 1 s
   const auto result = resample(curve, {1.0, 9});
   const std::vector<double> expected{0.0, 1.0, 2.0, 3.0, 4.0, 3.25, 2.5, 1.75, 1.0};
-  for (std::size_t k = 0; k < 9; ++k) EXPECT_DOUBLE_EQ(result[k], expected[k]);
+  for (std::size_t k = 0; k < 9; ++k) {
+    EXPECT_DOUBLE_EQ(result[k], expected[k]);
+  }
 }
 
 TEST(ResampleTest, BeyondItsEndACurveHolds) {
@@ -88,7 +94,9 @@ TEST(BoxFilterTest, AStraightLinePassesUnchanged) {
   const auto line = sampled(base, [](double t) { return 2.0 - 0.7 * t; });
   for (double width : {0.0, 0.001, 0.1, 3.0, 100.0}) {
     const auto filtered = box_filter(line, base, width);
-    for (std::size_t k = 0; k < line.size(); ++k) EXPECT_NEAR(filtered[k], line[k], 1e-9);
+    for (std::size_t k = 0; k < line.size(); ++k) {
+      EXPECT_NEAR(filtered[k], line[k], 1e-9);
+    }
   }
 }
 

@@ -103,7 +103,9 @@ TEST(ScoreTest, DetailHoldsTogether) {
   EXPECT_DOUBLE_EQ(detail.time.duration, 12.0);
   EXPECT_EQ(detail.warped, warp(detail.applied, detail.path));
   double sum = 0.0;
-  for (std::size_t i = 0; i < 1000; ++i) sum += std::pow(detail.target[i] - detail.warped[i], 2);
+  for (std::size_t i = 0; i < 1000; ++i) {
+    sum += std::pow(detail.target[i] - detail.warped[i], 2);
+  }
   EXPECT_NEAR(detail.score.rms_force, std::sqrt(sum / 1000.0), 1e-12);
   EXPECT_LT(detail.score.rms_force, 0.2 * detail.score.rms_unaligned);
 }
@@ -136,15 +138,18 @@ std::vector<ForceCurve> random_curves(std::size_t count) {
 TEST(ScoreTest, ManyScoresEqualSingleOnesOnAnyNumberOfThreads) {
   const auto curves = random_curves(80);
   std::vector<RecallPair> pairs;
-  for (std::size_t k = 0; k + 1 < curves.size(); k += 2)
+  for (std::size_t k = 0; k + 1 < curves.size(); k += 2) {
     pairs.push_back({&curves[k], &curves[k + 1]});
+  }
   ScoreParameters parameters;
   parameters.samples = 301;
   std::vector<RecallScore> single;
   for (const RecallPair& pair : pairs) {
     single.push_back(score_recall(*pair.target, *pair.applied, parameters));
   }
-  for (int jobs : {1, 2, 3, 16}) EXPECT_EQ(score_recalls(pairs, parameters, jobs), single) << jobs;
+  for (int jobs : {1, 2, 3, 16}) {
+    EXPECT_EQ(score_recalls(pairs, parameters, jobs), single) << jobs;
+  }
   EXPECT_TRUE(score_recalls({}, parameters, 4).empty());
 }
 

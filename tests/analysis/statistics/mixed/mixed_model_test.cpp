@@ -191,9 +191,13 @@ TEST(MixedModel, DoesNotMindOffsetNamesOrOrder) {
   RandomStream random(3, "offset");
   Data data = unbalanced(random, 2.0);
   const auto plain = fit(data);
-  for (auto& value : data.response) value += 1e12;
+  for (auto& value : data.response) {
+    value += 1e12;
+  }
   data.predictors.col(1).array() += 1e12;
-  for (auto& group : data.groups) group = 1000 - 7 * group;
+  for (auto& group : data.groups) {
+    group = 1000 - 7 * group;
+  }
   std::reverse(data.response.begin(), data.response.end());
   std::reverse(data.groups.begin(), data.groups.end());
   data.predictors = data.predictors.colwise().reverse().eval();
@@ -239,7 +243,9 @@ TEST(MixedModel, SaysWhyItIsNotDefined) {
   bad = good;
   bad.groups.assign(bad.groups.size(), 4);
   EXPECT_THAT(fit(bad).because(), HasSubstr("only one group"));
-  for (std::size_t i = 0; i < bad.groups.size(); ++i) bad.groups[i] = i;
+  for (std::size_t i = 0; i < bad.groups.size(); ++i) {
+    bad.groups[i] = i;
+  }
   EXPECT_THAT(fit(bad).because(), HasSubstr("single value"));
   bad = good;
   for (std::size_t i = 0; i < bad.response.size(); ++i) {

@@ -156,11 +156,17 @@ TEST(MixedTerms, SaysWhichTermsCannotBeToldApart) {
   const Crossed made = crossed(random, {1.0, 0.5, 0.7});
   auto terms = made.terms;
   const auto reason = [&] { return mixed_model(made.response, made.predictors, terms).because(); };
-  for (auto& group : terms[1]) group = 0;
+  for (auto& group : terms[1]) {
+    group = 0;
+  }
   EXPECT_EQ(reason(), "random term 2: there is only one group");
-  for (std::size_t i = 0; i < terms[1].size(); ++i) terms[1][i] = i;
+  for (std::size_t i = 0; i < terms[1].size(); ++i) {
+    terms[1][i] = i;
+  }
   EXPECT_EQ(reason(), "random term 2: every group has a single value");
-  for (std::size_t i = 0; i < terms[1].size(); ++i) terms[1][i] = 99 - terms[0][i];
+  for (std::size_t i = 0; i < terms[1].size(); ++i) {
+    terms[1][i] = 99 - terms[0][i];
+  }
   EXPECT_EQ(reason(), "two random terms group the observations alike");
   // Two groups that are the two levels of the first predictor.
   for (std::size_t i = 0; i < terms[1].size(); ++i) {

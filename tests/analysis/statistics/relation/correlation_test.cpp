@@ -45,11 +45,17 @@ TEST(Pearson, DoesNotMindOffsetAndScale) {
   RandomStream random(2, "offset");
   Values a = normal_values(random, 15), b = normal_values(random, 15);
   for (auto* values : {&a, &b}) {
-    for (auto& v : *values) v = std::round(64.0 * v) / 64.0;
+    for (auto& v : *values) {
+      v = std::round(64.0 * v) / 64.0;
+    }
   }
   const auto plain = pearson_correlation(a, b);
-  for (auto& v : a) v = -4.0 * v + 1e12;
-  for (auto& v : b) v += 1e12;
+  for (auto& v : a) {
+    v = -4.0 * v + 1e12;
+  }
+  for (auto& v : b) {
+    v += 1e12;
+  }
   const auto moved = pearson_correlation(a, b);
   EXPECT_NEAR(moved->r, -plain->r, 1e-14);
   EXPECT_NEAR(moved->interval->low, -plain->interval->high, 1e-14);
@@ -74,7 +80,9 @@ TEST(Spearman, SeesOnlyOrder) {
   RandomStream random(3, "order");
   const Values a = normal_values(random, 25), b = normal_values(random, 25);
   Values curved = b;
-  for (auto& v : curved) v = std::exp(v) + 1e6;
+  for (auto& v : curved) {
+    v = std::exp(v) + 1e6;
+  }
   EXPECT_EQ(spearman_correlation(a, b)->r, spearman_correlation(a, curved)->r);
   EXPECT_EQ(spearman_correlation(a, b)->p, spearman_correlation(a, curved)->p);
 }

@@ -76,7 +76,9 @@ TEST(Regression, DoesNotMindAnOffset) {
   }
   const auto plain = linear_regression(x, y);
   x.array() += 1e12;
-  for (auto& value : y) value += 1e12;
+  for (auto& value : y) {
+    value += 1e12;
+  }
   const auto moved = linear_regression(x, y);
   ASSERT_TRUE(moved) << moved.because();
   for (const std::size_t k : {1u, 2u}) {
@@ -92,7 +94,9 @@ TEST(Regression, ResidualsAreOrthogonalToThePredictors) {
   MatrixXd x(30, 3);
   Values y;
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
-    for (Eigen::Index j = 0; j < x.cols(); ++j) x(i, j) = random.normal() + 10.0;
+    for (Eigen::Index j = 0; j < x.cols(); ++j) {
+      x(i, j) = random.normal() + 10.0;
+    }
     y.push_back(random.normal());
   }
   const auto fit = linear_regression(x, y);

@@ -54,7 +54,9 @@ TEST(Bootstrap, DrawsEveryRowEquallyOften) {
   constexpr std::size_t kRows = 10, kDraws = 20000;
   std::vector<std::size_t> counts(kRows, 0);
   const auto count = [&](const DrawnRows& rows) {
-    for (const auto row : rows.front()) ++counts[row];
+    for (const auto row : rows.front()) {
+      ++counts[row];
+    }
     return static_cast<double>(rows.front().front());
   };
   (void)bootstrap({kRows}, count, draws(kDraws));
@@ -86,9 +88,13 @@ TEST(Bootstrap, CoversTheMeanOfSkewedValues) {
 TEST(Bootstrap, MovesWithTheValues) {
   RandomStream random(3, "values");
   Values values = skewed(random, 20);
-  for (auto& v : values) v = std::round(v * 256.0) / 256.0;
+  for (auto& v : values) {
+    v = std::round(v * 256.0) / 256.0;
+  }
   const auto plain = bootstrap(values, mean, draws(999));
-  for (auto& v : values) v = 4.0 * v + 1024.0;
+  for (auto& v : values) {
+    v = 4.0 * v + 1024.0;
+  }
   const auto moved = bootstrap(values, mean, draws(999));
   EXPECT_NEAR(moved->low, 4.0 * plain->low + 1024.0, 1e-11);
   EXPECT_NEAR(moved->high, 4.0 * plain->high + 1024.0, 1e-11);
@@ -119,7 +125,9 @@ TEST(Bca, TakesForATieWhatOnlyRoundingParts) {
   Values replicates(998);
   std::iota(replicates.begin(), replicates.end(), 1.0);
   const double tie = 0.1 + 0.2 + 499.2;  // 499.5 but for the last digits
-  for (int i = 0; i < 400; ++i) replicates.push_back(499.5);
+  for (int i = 0; i < 400; ++i) {
+    replicates.push_back(499.5);
+  }
   EXPECT_NEAR(bca_interval(tie, replicates, {{1, 2, 3}}, 0.9)->bias, 0.0, 1e-15);
 }
 

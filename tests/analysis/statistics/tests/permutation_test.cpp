@@ -69,7 +69,9 @@ TEST(PermutationTest, IsExactlyUniformOverItsArrangements) {
     for (std::size_t j = i + 1; j < values.size(); ++j) {
       Values b;
       for (std::size_t k = 0; k < values.size(); ++k) {
-        if (k != i && k != j) b.push_back(values[k]);
+        if (k != i && k != j) {
+          b.push_back(values[k]);
+        }
       }
       p.push_back(permutation_test(Values{values[i], values[j]}, b, Tail::kLess, {})->p);
     }

@@ -62,8 +62,12 @@ TEST(PairedT, MatchesACaseWorkedByHand) {
 TEST(TTest, TailsFitTogether) {
   RandomStream random(21, "tails");
   Values a(10), b(8);
-  for (auto& v : a) v = random.normal();
-  for (auto& v : b) v = random.normal() + 0.4;
+  for (auto& v : a) {
+    v = random.normal();
+  }
+  for (auto& v : b) {
+    v = random.normal() + 0.4;
+  }
   for (const auto test : {student_t_test, welch_t_test}) {
     const auto less = test(a, b, Tail::kLess, 0.95);
     const auto greater = test(a, b, Tail::kGreater, 0.95);
@@ -79,14 +83,20 @@ TEST(TTest, TailsFitTogether) {
 TEST(TTest, IntervalHoldsExactlyTheDifferencesThatItsLevelDoesNotReject) {
   RandomStream random(23, "interval");
   Values a(7), b(11);
-  for (auto& v : a) v = random.normal();
-  for (auto& v : b) v = 2.0 * random.normal();
+  for (auto& v : a) {
+    v = random.normal();
+  }
+  for (auto& v : b) {
+    v = 2.0 * random.normal();
+  }
   for (const auto test : {student_t_test, welch_t_test}) {
     for (const double level : {0.5, 0.9, 0.99}) {
       const auto t = test(a, b, Tail::kGreater, level);
       for (const double edge : {t->low, t->high}) {
         Values moved = a;
-        for (auto& v : moved) v -= edge;
+        for (auto& v : moved) {
+          v -= edge;
+        }
         EXPECT_NEAR(test(moved, b, Tail::kTwoSided, level)->p, 1.0 - level, 1e-12);
       }
       EXPECT_DOUBLE_EQ(t->t * t->error, t->difference);
@@ -122,7 +132,9 @@ TEST(MeanInterval, CoversTheMeanAsOftenAsItSays) {
   constexpr int kRepeats = 4000;
   for (int i = 0; i < kRepeats; ++i) {
     Values sample(5);
-    for (auto& v : sample) v = 3.0 + random.normal();
+    for (auto& v : sample) {
+      v = 3.0 + random.normal();
+    }
     const auto interval = mean_interval(sample);
     covered += interval->low < 3.0 && 3.0 < interval->high ? 1 : 0;
   }

@@ -141,11 +141,15 @@ TEST(GeneralizedEta, HasAnIntervalOverParticipants) {
   EXPECT_GT(interval->low, 0.1);
   // An offset common to all leaves it where it is.
   for (auto& row : table) {
-    for (auto& value : row) value = std::round(value * 64.0) / 64.0;
+    for (auto& value : row) {
+      value = std::round(value * 64.0) / 64.0;
+    }
   }
   const auto near = generalized_eta_squared_interval(table, {1, "ges", 1999, 1});
   for (auto& row : table) {
-    for (auto& value : row) value += 1e12;
+    for (auto& value : row) {
+      value += 1e12;
+    }
   }
   const auto far = generalized_eta_squared_interval(table, {1, "ges", 1999, 1});
   EXPECT_EQ(near->low, far->low);

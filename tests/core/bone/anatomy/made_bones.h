@@ -32,14 +32,18 @@ inline double gap_between(const std::vector<Eigen::Vector3d>& a,
                           const std::vector<Eigen::Vector3d>& b) {
   double best = 1e18;
   for (const Eigen::Vector3d& p : a) {
-    for (const Eigen::Vector3d& q : b) best = std::min(best, (p - q).squaredNorm());
+    for (const Eigen::Vector3d& q : b) {
+      best = std::min(best, (p - q).squaredNorm());
+    }
   }
   return std::sqrt(best);
 }
 
 inline Eigen::Vector3d middle_of(const std::vector<Eigen::Vector3d>& places) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& p : places) sum += p;
+  for (const Eigen::Vector3d& p : places) {
+    sum += p;
+  }
   return sum / static_cast<double>(places.size());
 }
 

@@ -20,7 +20,9 @@ constexpr double kSpacing = 0.8e-3;
 const BoneModel& made(std::uint64_t seed) {
   static std::map<std::uint64_t, BoneModel> models;
   const auto found = models.find(seed);
-  if (found != models.end()) return found->second;
+  if (found != models.end()) {
+    return found->second;
+  }
   return models.emplace(seed, make_mandible({.seed = seed, .spacing = kSpacing})).first->second;
 }
 
@@ -43,8 +45,12 @@ TEST(MandibleTest, ItIsAsLargeAsMandiblesAre) {
     double angles = 0.0;
     double top = 0.0;
     for (const Eigen::Vector3d& p : places_of(made(seed), Anatomy::kBone)) {
-      if (p.z() > 60.0) condyles = std::max(condyles, p.x());
-      if (p.z() < 22.0 && p.y() > 60.0) angles = std::max(angles, p.x());
+      if (p.z() > 60.0) {
+        condyles = std::max(condyles, p.x());
+      }
+      if (p.z() < 22.0 && p.y() > 60.0) {
+        angles = std::max(angles, p.x());
+      }
       top = std::max(top, p.z());
     }
     EXPECT_NEAR(2.0 * condyles, 118.0, 14.0) << seed;
@@ -64,7 +70,9 @@ TEST(MandibleTest, TheNerveIsCoveredByBoneInTheBodyAndLiesBelowTheRoots) {
     EXPECT_GT(test::gap_between(nerve, teeth), 0.9) << seed;
     const geometry::VoxelGrid& grid = model.grid;
     for (const Eigen::Vector3d& p : nerve) {
-      if (p.y() < 34.0 || p.y() > 55.0) continue;  // between the foramina
+      if (p.y() < 34.0 || p.y() > 55.0) {
+        continue;
+      }  // between the foramina
       // Down, in, out and up from it there is bone within 12 mm, before any opening.
       for (const Eigen::Vector3d& way :
            {Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(-1, 0, 0)}) {
@@ -89,7 +97,9 @@ TEST(MandibleTest, CortexIsDenseAndMarrowIsNot) {
   std::size_t dense = 0;
   std::size_t light = 0;
   for (std::size_t i = 0; i < model.labels.size(); ++i) {
-    if (model.labels[i] != static_cast<int>(Anatomy::kBone)) continue;
+    if (model.labels[i] != static_cast<int>(Anatomy::kBone)) {
+      continue;
+    }
     dense += model.density[i] == 1.0F;
     light += model.density[i] < 0.6F;
   }

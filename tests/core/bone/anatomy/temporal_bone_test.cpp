@@ -25,7 +25,9 @@ constexpr std::array<std::uint64_t, 4> kSeeds{1, 2, 3, 77};
 const BoneModel& made(std::uint64_t seed) {
   static std::map<std::uint64_t, BoneModel> models;
   const auto found = models.find(seed);
-  if (found != models.end()) return found->second;
+  if (found != models.end()) {
+    return found->second;
+  }
   return models.emplace(seed, make_temporal_bone({.seed = seed})).first->second;
 }
 
@@ -38,7 +40,9 @@ TEST(TemporalBoneTest, EveryStructureIsThereAndNervesAreInOnePiece) {
   for (const std::uint64_t seed : kSeeds) {
     const BoneSummary summary = summary_of(made(seed));
     std::map<int, std::size_t> pieces;
-    for (const StructureSummary& one : summary.structures) pieces[one.label] = one.pieces;
+    for (const StructureSummary& one : summary.structures) {
+      pieces[one.label] = one.pieces;
+    }
     for (int label = 1; label <= static_cast<int>(Anatomy::kEarCanal); ++label) {
       EXPECT_TRUE(pieces.contains(label)) << "seed " << seed << ", label " << label;
     }
@@ -152,7 +156,9 @@ TEST(TemporalBoneTest, AirInTheBoneDoesNotTouchDuraOrVesselsOrLabyrinth) {
         return;
       }
       const std::size_t index = grid.index(i, j, k);
-      if (model.labels[index] != 0 || outside[index]) return;
+      if (model.labels[index] != 0 || outside[index]) {
+        return;
+      }
       outside[index] = true;
       open.push_back({i, j, k});
     };
@@ -174,7 +180,9 @@ TEST(TemporalBoneTest, AirInTheBoneDoesNotTouchDuraOrVesselsOrLabyrinth) {
       for (int j = 1; j + 1 < grid.size[1]; ++j) {
         for (int i = 1; i + 1 < grid.size[0]; ++i) {
           const std::size_t index = grid.index(i, j, k);
-          if (model.labels[index] != 0 || outside[index]) continue;
+          if (model.labels[index] != 0 || outside[index]) {
+            continue;
+          }
           ++air;
           for (const std::size_t next :
                {grid.index(i - 1, j, k), grid.index(i + 1, j, k), grid.index(i, j - 1, k),
@@ -198,7 +206,9 @@ TEST(TemporalBoneTest, SeedsVaryAndThreadsDoNot) {
   EXPECT_EQ(one.density, two.density);
   EXPECT_NE(one.labels, make_temporal_bone({.seed = 6, .spacing = 1e-3}).labels);
   std::set<std::size_t> counts;
-  for (const std::uint64_t seed : kSeeds) counts.insert(summary_of(made(seed)).voxels);
+  for (const std::uint64_t seed : kSeeds) {
+    counts.insert(summary_of(made(seed)).voxels);
+  }
   EXPECT_EQ(counts.size(), kSeeds.size());
   EXPECT_THROW(make_temporal_bone({.spacing = 5e-3}), InputError);
 }

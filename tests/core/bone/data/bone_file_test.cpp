@@ -30,7 +30,9 @@ BoneModel speckled(bool with_density) {
     const auto label = static_cast<std::uint8_t>(random.below(19));
     model.labels.push_back(label);
     const auto level = static_cast<float>(1 + random.below(255));
-    if (with_density) model.density.push_back(label == 0 ? 0.0F : level / 255.0F);
+    if (with_density) {
+      model.density.push_back(label == 0 ? 0.0F : level / 255.0F);
+    }
   }
   return model;
 }
@@ -39,7 +41,9 @@ std::string output_of(const std::string& command) {
   const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
   std::string text;
   std::array<char, 256> piece{};
-  while (std::fgets(piece.data(), piece.size(), pipe.get()) != nullptr) text += piece.data();
+  while (std::fgets(piece.data(), piece.size(), pipe.get()) != nullptr) {
+    text += piece.data();
+  }
   return text;
 }
 
@@ -87,7 +91,9 @@ TEST(BoneFileTest, DensitiesOfAnyKindAreKeptToAPart) {
   const test::TemporaryFolder folder;
   BoneModel model = speckled(true);
   for (std::size_t i = 0; i < model.density.size(); ++i) {
-    if (model.labels[i] != 0) model.density[i] = 1e-7F + 0.99F * static_cast<float>(i) / 140.0F;
+    if (model.labels[i] != 0) {
+      model.density[i] = 1e-7F + 0.99F * static_cast<float>(i) / 140.0F;
+    }
   }
   save_bone(folder / "b.nrrd", model);
   const BoneModel loaded = load_bone(folder / "b.nrrd");
@@ -111,7 +117,9 @@ TEST(BoneFileTest, ASavedBoneCanBeResampled) {
   const BoneModel coarse = load_bone(folder / "b.nrrd", options);
   EXPECT_EQ(coarse.grid.spacing, 1e-3);
   EXPECT_EQ(coarse.grid.size, (std::array<std::int32_t, 3>{6, 6, 6}));
-  for (const float density : coarse.density) EXPECT_FLOAT_EQ(density, 102.0F / 255.0F);
+  for (const float density : coarse.density) {
+    EXPECT_FLOAT_EQ(density, 102.0F / 255.0F);
+  }
 }
 
 TEST(BoneFileTest, NothingIsReplacedAndNoOtherEndingTaken) {

@@ -49,7 +49,9 @@ class DicomTest : public ::testing::Test {
     std::vector<std::uint16_t> pixels(kSize * kSize, 24);
     for (int j = 6; j < 18; ++j) {
       for (int i = 4; i < 20; ++i) {
-        if (slice >= 5 && slice < 15) pixels[static_cast<std::size_t>(i + kSize * j)] = 2224;
+        if (slice >= 5 && slice < 15) {
+          pixels[static_cast<std::size_t>(i + kSize * j)] = 2224;
+        }
       }
     }
     gdcm::DataElement data(gdcm::Tag(0x7fe0, 0x0010));

@@ -49,7 +49,9 @@ Eigen::Vector3d place_of(const BoneModel& model, std::uint8_t label) {
   for (int k = 0; k < model.grid.size[2]; ++k) {
     for (int j = 0; j < model.grid.size[1]; ++j) {
       for (int i = 0; i < model.grid.size[0]; ++i) {
-        if (model.labels[model.grid.index(i, j, k)] != label) continue;
+        if (model.labels[model.grid.index(i, j, k)] != label) {
+          continue;
+        }
         place = 1e3 * model.grid.centre(i, j, k);
         ++count;
       }
@@ -149,7 +151,9 @@ TEST_F(ImportTest, ASmallTurnIsKeptAndALargeOneResampled) {
 TEST_F(ImportTest, LabelsOfFlatVoxelsKeepTheirVolumeAndMixNothing) {
   const Eigen::Matrix3d steps = Eigen::Vector3d(0.4, 0.5, 1.3).asDiagonal();
   PlainVolume volume = ball(steps, {60, 50, 20}, 8.0);
-  for (std::int16_t& value : volume.values) value = static_cast<std::int16_t>(9 * value);
+  for (std::int16_t& value : volume.values) {
+    value = static_cast<std::int16_t>(9 * value);
+  }
   const BoneModel model = load("v.nrrd", nrrd_of(volume));
   EXPECT_DOUBLE_EQ(model.grid.spacing, 0.4e-3);
   const BoneSummary summary = summary_of(model);
@@ -204,7 +208,9 @@ TEST_F(ImportTest, FewWholeNumbersAreLabelsAndManyAreGrey) {
   EXPECT_EQ(load("l.nrrd", nrrd_of(labels)).labels.back(), 3);
   PlainVolume grey({8, 8, 8});
   int next = 0;
-  for (std::int16_t& value : grey.values) value = static_cast<std::int16_t>(next++ % 256);
+  for (std::int16_t& value : grey.values) {
+    value = static_cast<std::int16_t>(next++ % 256);
+  }
   EXPECT_THAT(refusal("g.nrrd", nrrd_of(grey)), HasSubstr("not Hounsfield units"));
 }
 
@@ -224,7 +230,9 @@ TEST_F(ImportTest, WhatCannotBeABoneIsRefusedInASentence) {
   EXPECT_THAT(refusal("v.nrrd", ""), HasSubstr("does not begin with 'NRRD000'"));
   EXPECT_THAT(refusal("v.mha", good), HasSubstr("not a volume by its name"));
   std::string zipped = nrrd_of(volume, false, true);
-  for (std::size_t i = zipped.size() - 20; i < zipped.size() - 8; ++i) zipped[i] ^= 0x55;
+  for (std::size_t i = zipped.size() - 20; i < zipped.size() - 8; ++i) {
+    zipped[i] ^= 0x55;
+  }
   EXPECT_THAT(refusal("v.nrrd", zipped), HasSubstr("v.nrrd"));
   EXPECT_THAT(refusal("v.nii", nifti_of(volume).substr(0, 300)), HasSubstr("NIfTI"));
   EXPECT_THAT(refusal("v.nii", nifti_of(volume).substr(0, 400)), HasSubstr("v.nii"));
@@ -278,8 +286,9 @@ TEST_F(ImportTest, ATableNamesLabelsAndStructuresCanBeLeftOut) {
 
 TEST_F(ImportTest, TheRealTemporalBoneComesAsItIs) {
   const auto file = test::shared_data("bone/ear3_171_labels.nrrd");
-  if (!file)
+  if (!file) {
     GTEST_SKIP() << "neither HAPTRIAL_DATA nor ../shared/data holds bone/ear3_171_labels.nrrd";
+  }
   const BoneModel model = load_bone(*file);
   EXPECT_EQ(model.grid.size, (std::array<std::int32_t, 3>{171, 171, 169}));
   EXPECT_EQ(std::ranges::count(model.labels, 1), 825395);  // as its publishers count

@@ -97,7 +97,9 @@ inline std::string nifti_of(const PlainVolume& volume, bool sform = true, int in
     put(42 + 2 * axis, static_cast<std::int16_t>(volume.size[axis]));
     put(80 + 4 * axis, static_cast<float>(volume.steps.col(static_cast<long>(axis)).norm()));
   }
-  for (std::size_t axis = 4; axis < 8; ++axis) put(40 + 2 * axis, std::int16_t{1});
+  for (std::size_t axis = 4; axis < 8; ++axis) {
+    put(40 + 2 * axis, std::int16_t{1});
+  }
   put(68, static_cast<std::int16_t>(intent));
   put(70, std::int16_t{4});  // int16
   put(72, std::int16_t{16});

@@ -96,7 +96,9 @@ TEST(BvhTest, OneNearestPointDoesNotAllocate) {
   std::size_t allocations = 0;
   {
     const test::AllocationGuard guard;
-    for (const Eigen::Vector3d& point : points) sum += bvh.closest(point).distance_squared;
+    for (const Eigen::Vector3d& point : points) {
+      sum += bvh.closest(point).distance_squared;
+    }
     allocations = guard.count();
   }
   EXPECT_EQ(allocations, 0u);

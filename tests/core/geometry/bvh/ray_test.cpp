@@ -76,7 +76,9 @@ TEST(RayTest, GivesWhatEveryTriangleGives) {
     std::vector<RayHit> hits, of_one;
     for (std::size_t i = 0; i < from.size(); ++i) {
       const Eigen::Vector3d direction = to[(i + 5) % to.size()] - from[i];
-      if (direction.isZero(0.0)) continue;
+      if (direction.isZero(0.0)) {
+        continue;
+      }
       const Ray ray{from[i], direction};
       bvh.all_hits(ray, hits);
       for (std::size_t k = 0; k < alone.size(); ++k) {

@@ -31,7 +31,9 @@ TEST(SourceDistanceTest, FindsTheSameDistancesInEveryWay) {
 std::uint64_t triangles_tested(const SourceDistance::Options& way) {
   SourceDistance source(make_sphere(1.0, 20));
   source.start(way);
-  for (int i = 0; i < 400; ++i) source.closest({-0.9 + 0.0045 * i, 0.3, 0.2});
+  for (int i = 0; i < 400; ++i) {
+    source.closest({-0.9 + 0.0045 * i, 0.3, 0.2});
+  }
   return source.counts().triangles;
 }
 

@@ -15,7 +15,9 @@ constexpr double kExact = std::numeric_limits<double>::infinity();
 Mesh with_holes(Mesh mesh, std::size_t step) {
   std::vector<Triangle> kept;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (i % step != 0) kept.push_back(mesh.triangles[i]);
+    if (i % step != 0) {
+      kept.push_back(mesh.triangles[i]);
+    }
   }
   mesh.triangles = kept;
   return mesh;
@@ -26,7 +28,9 @@ TEST(WindingTest, IsOneInsideAClosedMeshAndZeroOutside) {
   RandomStream random(1, "points");
   for (int i = 0; i < 500; ++i) {
     const Eigen::Vector3d p = random_point(random, 1.4);
-    if (std::abs(p.norm() - 1.0) < 0.01) continue;
+    if (std::abs(p.norm() - 1.0) < 0.01) {
+      continue;
+    }
     EXPECT_NEAR(sphere.winding_number(p, kExact), p.norm() < 1.0 ? 1.0 : 0.0, 1e-12);
     EXPECT_EQ(sphere.winds_around(p), p.norm() < 1.0);
   }
@@ -39,7 +43,9 @@ TEST(WindingTest, IsTheSolidAngleOfAnOpenCone) {
   for (const Triangle& t : mesh.triangles) {
     const Eigen::Vector3d middle =
         (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3.0;
-    if (middle.normalized().z() > 0.6) cap.push_back(t);
+    if (middle.normalized().z() > 0.6) {
+      cap.push_back(t);
+    }
   }
   mesh.triangles = cap;
   EXPECT_NEAR(Bvh(mesh).winding_number({0, 0, 0}, kExact), 0.5 * (1.0 - 0.6), 0.004);
@@ -69,7 +75,9 @@ TEST(WindingTest, TheDecisionIsThatOfTheExactNumber) {
     const Bvh bvh(mesh);
     for (const Eigen::Vector3d& p : points) {
       const double exact = bvh.winding_number(p, kExact);
-      if (std::abs(exact - 0.5) < 1e-9) continue;
+      if (std::abs(exact - 0.5) < 1e-9) {
+        continue;
+      }
       EXPECT_EQ(bvh.winds_around(p), exact > 0.5) << p.transpose();
       around += exact > 0.5 ? 1 : 0;
     }

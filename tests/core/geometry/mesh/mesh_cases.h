@@ -27,14 +27,18 @@ inline Mesh random_triangles(int count, double reach, double size, std::uint64_t
   Mesh mesh;
   for (int i = 0; i < count; ++i) {
     const Eigen::Vector3d middle = random_point(random, reach);
-    for (int k = 0; k < 3; ++k) mesh.vertices.push_back(middle + random_point(random, size));
+    for (int k = 0; k < 3; ++k) {
+      mesh.vertices.push_back(middle + random_point(random, size));
+    }
     mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
   return mesh;
 }
 
 inline Mesh moved(Mesh mesh, double scale, const Eigen::Vector3d& by) {
-  for (Eigen::Vector3d& vertex : mesh.vertices) vertex = scale * vertex + by;
+  for (Eigen::Vector3d& vertex : mesh.vertices) {
+    vertex = scale * vertex + by;
+  }
   return mesh;
 }
 
@@ -106,7 +110,9 @@ inline std::vector<MeshCase> mesh_cases() {
   const Mesh dense = random_triangles(300, 1e-3, 1e-4, 7);
   for (const Triangle& t : dense.triangles) {
     const auto first = static_cast<std::int32_t>(wide.vertices.size());
-    for (const std::int32_t corner : t) wide.vertices.push_back(dense.vertices[corner]);
+    for (const std::int32_t corner : t) {
+      wide.vertices.push_back(dense.vertices[corner]);
+    }
     wide.triangles.push_back({first, first + 1, first + 2});
   }
   cases.push_back({"a dense heap in a wide one", std::move(wide)});
@@ -117,7 +123,9 @@ inline std::vector<MeshCase> mesh_cases() {
 inline std::vector<Eigen::Vector3d> hard_points(const Mesh& mesh, int count, std::uint64_t seed) {
   RandomStream random(seed, "points");
   Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
+  for (const Eigen::Vector3d& vertex : mesh.vertices) {
+    box.extend(vertex);
+  }
   const double size = std::max(box.sizes().maxCoeff(), 1e-300);
   std::vector<Eigen::Vector3d> points;
   for (int i = 0; i < count; ++i) {

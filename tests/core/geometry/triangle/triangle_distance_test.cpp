@@ -32,7 +32,9 @@ long double slow_distance(const Vector& p, const Vector& a, const Vector& b, con
     const bool inside = (b - a).cross(foot - a).dot(unit) >= 0 &&
                         (c - b).cross(foot - b).dot(unit) >= 0 &&
                         (a - c).cross(foot - c).dot(unit) >= 0;
-    if (inside) least = std::min(least, std::abs(unit.dot(p - a)));
+    if (inside) {
+      least = std::min(least, std::abs(unit.dot(p - a)));
+    }
   }
   return least;
 }

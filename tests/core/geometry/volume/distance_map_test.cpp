@@ -23,7 +23,9 @@ ClosestPoint brute_force(const Mesh& mesh, const Eigen::Vector3d& point) {
     const Triangle& t = mesh.triangles[i];
     ClosestPoint here =
         closest_on_triangle(point, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
-    if (!(here.distance_squared < best.distance_squared)) continue;
+    if (!(here.distance_squared < best.distance_squared)) {
+      continue;
+    }
     best = here;
     best.triangle = static_cast<std::int32_t>(i);
   }
@@ -135,7 +137,9 @@ TEST(DistanceMapTest, ReportsAndStops) {
 TEST(DistanceMapTest, OfNoTrianglesHasNoNumbers) {
   const VoxelSolid solid = solid_of(make_sphere(1.0, 2), 5);
   const DistanceMap map = make_distance_map(Bvh(Mesh{}), solid, {.everywhere = true});
-  for (const double distance : map.distance) EXPECT_TRUE(std::isnan(distance));
+  for (const double distance : map.distance) {
+    EXPECT_TRUE(std::isnan(distance));
+  }
 }
 
 TEST(PseudonormalTest, SignsAgreeWithParity) {
@@ -149,7 +153,9 @@ TEST(PseudonormalTest, SignsAgreeWithParity) {
       const Eigen::Vector3d p =
           bounds(mesh).center() + random_point(random, 0.6 * bounds(mesh).sizes().maxCoeff());
       const ClosestPoint nearest = bvh.closest(p);
-      if (nearest.distance_squared < 1e-20) continue;
+      if (nearest.distance_squared < 1e-20) {
+        continue;
+      }
       const double distance = normals.signed_distance(p, nearest);
       EXPECT_EQ(distance < 0.0, bvh.contains(p)) << p.transpose();
       EXPECT_DOUBLE_EQ(distance * distance, nearest.distance_squared);

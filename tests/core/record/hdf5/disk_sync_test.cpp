@@ -47,7 +47,9 @@ SessionInfo live_info() {
 /// Waits as long as it takes on a busy machine; false after a minute.
 bool comes_about(const std::function<bool()>& condition) {
   for (int i = 0; i < 12000; ++i) {
-    if (condition()) return true;
+    if (condition()) {
+      return true;
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   return false;
@@ -164,7 +166,9 @@ TEST(DiskSyncTest, APassThatDoesNotEndIsOnTheDiskAllTheWhile) {
   while (given < samples.size()) {
     writer.append(std::span(samples).subspan(given, 20));
     given += 20;
-    if (given % 500 == 0) writer.flush();
+    if (given % 500 == 0) {
+      writer.flush();
+    }
     worst = std::max(worst, given - safe);
     std::this_thread::sleep_until(start + std::chrono::milliseconds(given.load()));
   }
@@ -197,7 +201,9 @@ TEST(DiskSyncTest, ADiskThatRefusesEndsTheSessionInASentence) {
 TEST(LostFileTest, ADeletedFileIsThereAgainWithEverything) {
   const TemporaryFolder folder;
   std::vector<Sample> samples = hand_motion(5000, 2);
-  for (Sample& sample : samples) sample.pass = -1;
+  for (Sample& sample : samples) {
+    sample.pass = -1;
+  }
   SessionWriter writer(folder / "a.h5", live_info());
   writer.append(std::span(samples).first(2000));
   writer.add_event({1, "note", "before"});

@@ -38,8 +38,12 @@ struct Session {
     const TemporaryFolder folder;
     SessionWriter writer(folder / "a.h5", test::example_info());
     writer.append(samples);
-    for (const PassRow& pass : passes) writer.add_pass(pass);
-    for (const TimingSummary& counts : summary) writer.set_timing({}, counts);
+    for (const PassRow& pass : passes) {
+      writer.add_pass(pass);
+    }
+    for (const TimingSummary& counts : summary) {
+      writer.set_timing({}, counts);
+    }
     writer.close();
     return check_session(SessionReader(folder / "a.h5"));
   }

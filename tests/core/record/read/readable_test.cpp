@@ -26,7 +26,9 @@ using testing::HasSubstr;
 std::string session_bytes(const TemporaryFolder& folder) {
   SessionWriter writer(folder / "whole.h5", test::example_info());
   std::vector<Sample> samples = test::hand_motion(6000, 3);
-  for (Sample& sample : samples) sample.pass = -1;
+  for (Sample& sample : samples) {
+    sample.pass = -1;
+  }
   writer.append(samples);
   writer.add_event({5, "note", "text"});
   writer.add_stimulus(std::vector<StimulusRow>{{1, 0.0, {0.1, 0, 0}, 1.0}});
@@ -75,7 +77,9 @@ TEST(ReadableTest, NothingIsLeftOfWhatIsNoFile) {
 
 /// Bits flipped all over the file: what h5py cannot read is never called intact.
 TEST(ReadableTest, WhatH5pyCannotReadIsFound) {
-  if (std::system("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0) GTEST_SKIP() << "no h5py";
+  if (std::system("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0) {
+    GTEST_SKIP() << "no h5py";
+  }
   const TemporaryFolder folder;
   const std::string whole = session_bytes(folder);
   RandomStream random(9, "bits");

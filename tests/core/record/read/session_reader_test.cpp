@@ -106,8 +106,12 @@ void create_with(const fs::path& path, const std::vector<TableSchema>& schemas) 
   for (const char* name : {"device_max_force", "device_workspace_radius", "rate"}) {
     h5::put(file, name, 1.0);
   }
-  for (const char* name : {"seed", "simulated"}) h5::put(file, name, std::uint64_t{1});
-  for (const TableSchema& schema : schemas) h5::create_table(file, schema);
+  for (const char* name : {"seed", "simulated"}) {
+    h5::put(file, name, std::uint64_t{1});
+  }
+  for (const TableSchema& schema : schemas) {
+    h5::create_table(file, schema);
+  }
 }
 
 TEST(SessionReaderTest, RefusesMissingAndForeignDatasets) {
@@ -195,7 +199,9 @@ TEST(SessionReaderTest, ChangedSamplesAreNotReadAsOthers) {
     const SessionReader again(damaged);
     ASSERT_EQ(again.sample_count(), samples.size());
     const std::vector<Sample> back = again.samples(0, samples.size());
-    for (std::size_t i = 0; i < samples.size(); ++i) ASSERT_TRUE(test::same(back[i], samples[i]));
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      ASSERT_TRUE(test::same(back[i], samples[i]));
+    }
   }
   EXPECT_GT(refused, 70);  // most of the file is compressed samples
 }

@@ -36,7 +36,9 @@ struct Original {
   Original() {
     SessionInfo info = test::example_info();
     info.clock = "real";
-    for (int i = 0; i < 300; ++i) info.definition += "# line " + std::to_string(i) + "\n";
+    for (int i = 0; i < 300; ++i) {
+      info.definition += "# line " + std::to_string(i) + "\n";
+    }
     SessionWriter writer(folder / "a.h5", info);
     writer.add_stimulus(std::vector<StimulusRow>{{1, 0.0, {0.1, 0, 0}, 1.0}});
     for (std::uint64_t at = 0; at < kRows; at += 1000) {
@@ -60,7 +62,9 @@ struct Original {
   std::uint64_t rows_within(std::size_t length) const {
     std::uint64_t rows = 0;
     for (const auto& [bytes_then, rows_then] : lengths) {
-      if (bytes_then <= length) rows = rows_then;
+      if (bytes_then <= length) {
+        rows = rows_then;
+      }
     }
     return rows;
   }
@@ -71,7 +75,9 @@ struct Original {
     std::ofstream(folder / "damaged.h5", std::ios::binary) << damaged;
     const Recovery found = recover_session(folder / "damaged.h5", folder / "out.h5");
     EXPECT_EQ(fs::exists(folder / "out.h5"), found.anything());
-    if (!found.anything()) return found;
+    if (!found.anything()) {
+      return found;
+    }
     const SessionReader reader(folder / "out.h5");
     EXPECT_EQ(reader.sample_count(), found.samples);
     EXPECT_EQ(reader.passes().size(), found.passes);
@@ -79,7 +85,9 @@ struct Original {
       const bool good =
           sample.sequence < kRows && test::same(sample, test::on_file(samples[sample.sequence]));
       EXPECT_TRUE(good) << "row " << sample.sequence;
-      if (!good) break;
+      if (!good) {
+        break;
+      }
     }
     check_session(reader);
     return found;
@@ -177,7 +185,9 @@ TEST(RecoverTest, RandomDamageNeverCrashesAndNeverMakesRowsUp) {
     std::string bytes = from.bytes;
     const std::size_t at = random.below(i % 2 == 0 ? 20000 : bytes.size());
     const std::size_t size = std::min<std::size_t>(1 + random.below(8192), bytes.size() - at);
-    for (std::size_t k = 0; k < size; ++k) bytes[at + k] = static_cast<char>(random.below(256));
+    for (std::size_t k = 0; k < size; ++k) {
+      bytes[at + k] = static_cast<char>(random.below(256));
+    }
     from.recover(bytes);
   }
 }

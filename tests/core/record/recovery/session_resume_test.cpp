@@ -101,7 +101,9 @@ TEST(SessionResumeTest, GoesOnWhereTheSessionWasCut) {
     writer.add_pass(open);
     std::vector<Sample> rest = ticks(6000, 9500);
     for (Sample& sample : rest) {
-      if (sample.sequence < 7500) sample.pass = -1;
+      if (sample.sequence < 7500) {
+        sample.pass = -1;
+      }
     }
     writer.append(rest);
     PassRow again = pass_row(3);

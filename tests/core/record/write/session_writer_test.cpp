@@ -138,9 +138,13 @@ TEST(SessionWriterTest, TimingIsSetOnce) {
     writer.add_pass({1, "haptic", Phase::kTest, 1, 1, 0, at, at + 699, {}});
     writer.flush();
     const std::uint64_t flushed = at + 700;
-    if (write(report, &flushed, sizeof flushed) != sizeof flushed) _exit(1);
+    if (write(report, &flushed, sizeof flushed) != sizeof flushed) {
+      _exit(1);
+    }
   }
-  for (;;) pause();
+  for (;;) {
+    pause();
+  }
 }
 
 TEST(SessionWriterTest, KilledAtAnyInstantItKeepsWhatWasFlushed) {
@@ -151,7 +155,9 @@ TEST(SessionWriterTest, KilledAtAnyInstantItKeepsWhatWasFlushed) {
     ASSERT_EQ(pipe(ends), 0);
     const pid_t pid = fork();
     ASSERT_GE(pid, 0);
-    if (pid == 0) write_for_ever(folder / "a.h5", samples, ends[1]);
+    if (pid == 0) {
+      write_for_ever(folder / "a.h5", samples, ends[1]);
+    }
     close(ends[1]);
     // Let some flushes pass, then strike anywhere within the next ones.
     std::uint64_t flushed = 0;
@@ -284,7 +290,9 @@ TEST(SessionWriterTest, AWriteThatFailsWithinHdf5IsASentenceAndTheFileStaysReada
       ASSERT_GE(dup2(full, under), 0);
       close(full);
       const std::string message = message_of<RunError>([&] {
-        if (!at_close) writer.append(std::span(samples).subspan(6000));
+        if (!at_close) {
+          writer.append(std::span(samples).subspan(6000));
+        }
         writer.close();
       });
       EXPECT_FALSE(writer.can_go_on());

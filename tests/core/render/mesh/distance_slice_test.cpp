@@ -39,7 +39,9 @@ TEST(DistanceSliceTest, ColoursInsideOutsideAndTheLineBetween) {
   EXPECT_GT(inside.blue, inside.red);
   EXPECT_GT(outside.red, outside.blue);
   int dark = 0;  // pixels of the line from the middle to the right
-  for (int x = 205; x < 410; ++x) dark += pixel(image, x, 155).red < 40 ? 1 : 0;
+  for (int x = 205; x < 410; ++x) {
+    dark += pixel(image, x, 155).red < 40 ? 1 : 0;
+  }
   EXPECT_GE(dark, 1);
   EXPECT_LE(dark, 5);
   const Pixel on_line = pixel(image, 205 + 120, 155);
@@ -56,7 +58,9 @@ TEST(DistanceSliceTest, PutsTheFirstRowAtTheBottom) {
 TEST(DistanceSliceTest, LeavesWhiteWhatHasNoNumber) {
   std::vector<double> values = circle();
   for (double& value : values) {
-    if (value > 0.0) value = std::numeric_limits<double>::quiet_NaN();
+    if (value > 0.0) {
+      value = std::numeric_limits<double>::quiet_NaN();
+    }
   }
   const Image image = draw_distances({values, 41, 31, 1.0}, 41);
   const Pixel corner = pixel(image, 0, 0), middle = pixel(image, 20, 15);

@@ -41,7 +41,9 @@ TEST(FlatTriangleTest, DistancesErrByLessThanTheSearchCountsOn) {
       RandomStream random(51, "slots");
       for (const Eigen::Vector3d& point : hard_points(mesh, 1500, 52)) {
         const Eigen::Vector3d in_frame = data.frame.to_frame(point);
-        if (!kernel::is_near(in_frame)) continue;
+        if (!kernel::is_near(in_frame)) {
+          continue;
+        }
         const std::int32_t slot = data.slots[random.below(mesh.triangles.size())];
         const Corners& c = data.corners[slot];
         const double exact =
