@@ -5,20 +5,16 @@
 
 #include "analysis/quality/run_quality.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/read/trial_facts_of.h"
 
 namespace haptrial::analysis {
 
 SessionQuality::SessionQuality(const record::SessionReader& reader)
-    : rate_(reader.info().rate), frames_(reader.frames()) {
+    : rate_(reader.info().rate),
+      frames_(reader.frames()),
+      damping_(record::reduced_damping(reader)) {
   std::stable_sort(frames_.begin(), frames_.end(),
                    [](const auto& a, const auto& b) { return a.time_ns < b.time_ns; });
-  for (const record::EventRow& event : reader.events()) {
-    if (event.kind == record::kDampingReduced) {
-      if (const auto damping = record::damping_reduced_of(event.text)) {
-        damping_.emplace_back(event.time_ns, *damping);
-      }
-    }
-  }
 }
 
 void SessionQuality::add(const record::PassRow& pass, const std::vector<record::Sample>& run) {
@@ -32,15 +28,15 @@ void SessionQuality::add(const record::PassRow& pass, const std::vector<record::
   last_ = &kept;
 }
 
-/// The event of a pass comes after its run and before the next pass.
+/// The row of a pass comes after its run and before the next pass.
 RunQuality SessionQuality::with_damping(int trial, const Run& run) const {
   RunQuality quality = run.quality;
   if (!quality.duration) {
     return quality;
   }
   quality.reduced_damping = 0.0;
-  for (const auto& [time, damping] : damping_) {
-    if (damping.trial == trial && time >= run.begin && time < run.next) {
+  for (const record::DampingRow& damping : damping_) {
+    if (damping.trial == trial && damping.time_ns >= run.begin && damping.time_ns < run.next) {
       quality.reduced_damping = std::min(1.0, damping.seconds / *quality.duration);
     }
   }

@@ -6,8 +6,8 @@
 
 #include "analysis/quality/trial_quality.h"
 #include "analysis/statistics/base/defined.h"
-#include "core/record/rows/damping_event.h"
 #include "core/record/rows/session_types.h"
+#include "core/record/rows/trial_facts.h"
 
 namespace haptrial::record {
 class SessionReader;
@@ -38,8 +38,8 @@ class SessionQuality {
 
   double rate_;
   std::vector<record::FrameRow> frames_;
-  std::vector<std::pair<std::int64_t, record::DampingReduced>> damping_;  // time [ns]
-  std::map<std::pair<std::int32_t, record::Phase>, Run> runs_;            // by trial
+  std::vector<record::DampingRow> damping_;
+  std::map<std::pair<std::int32_t, record::Phase>, Run> runs_;  // by trial
   Run* last_{nullptr};
 };
 

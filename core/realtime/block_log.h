@@ -50,19 +50,17 @@ class BlockLog {
   /// @returns false when no free block remains; the record is then dropped and counted.
   bool push(const Record& record) noexcept {
     std::uint64_t pushed = producer_.pushed.load(std::memory_order_relaxed);
-    if (pushed == producer_.tail_end && !open_block()) {
-      [[unlikely]] {
-        dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
-        return false;
-      }
-      Record* const slot = memory_.get() + (pushed - producer_.round_start);
+    if (pushed == producer_.tail_end && !open_block()) [[unlikely]] {
+      dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+      return false;
     }
+    Record* const slot = memory_.get() + (pushed - producer_.round_start);
     std::construct_at(slot, record);
     producer_.pushed.store(++pushed, std::memory_order_release);
-    if (pushed == producer_.tail_end) {
-      [[unlikely]] { filled_.store(pushed, std::memory_order_release); }
-      return true;
+    if (pushed == producer_.tail_end) [[unlikely]] {
+      filled_.store(pushed, std::memory_order_release);
     }
+    return true;
   }
 
   /// Gives every full block to f(std::span<const Record>), oldest first, and recycles it. Consumer.

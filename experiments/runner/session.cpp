@@ -9,7 +9,6 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
-#include "core/record/rows/damping_event.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/last_stop.h"
 #include "experiments/control/progress.h"
@@ -377,10 +376,7 @@ void Session::keep_responses() {
 /// A hand that did not carry all the damping was guided less firmly, which an analyst has to know.
 void Session::note_damping(const protocols::PassResult& result) {
   if (result.reduced_ticks > 0) {
-    record_.event(
-        record::kDampingReduced,
-        to_text(record::DampingReduced{record_.pass().trial, result.least_damping,
-                                       static_cast<double>(result.reduced_ticks) / d_.rate}));
+    record_.note_damping(result.least_damping, static_cast<double>(result.reduced_ticks) / d_.rate);
   }
 }
 

@@ -12,6 +12,7 @@
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/common_tables.h"
 #include "core/record/rows/device_row.h"
+#include "core/record/rows/trial_facts.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/runner/version.h"
 #include "protocols/definition/study_rules.h"
@@ -68,9 +69,11 @@ record::SessionInfo session_info(const SessionRequest& request, const device::De
   return info;
 }
 
-/// Those of the protocol, and that of further devices.
+/// Those of the protocol, what may become of trials, and that of further devices.
 static record::TableList tables_of(const SessionRequest& request, const protocols::Trials& trials) {
   record::TableList tables = trials.tables();
+  tables.push_back(&record::table_of<record::SkippedRow>());
+  tables.push_back(&record::table_of<record::DampingRow>());
   if (request.definition->devices() > 1) {
     tables.push_back(&record::table_of<record::DeviceRow>());
   }
@@ -97,9 +100,6 @@ record::SessionWriter open_writer(const SessionRequest& request, const device::D
   check_same_session(request, before.info);
   const record::SessionReader file(request.file.string() + ".partial");
   trials.check_resumed(file);
-  if (file.has(record::responses_table())) {
-    before.responses = file.responses();
-  }
   return writer;
 }
 

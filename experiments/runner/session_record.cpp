@@ -14,13 +14,6 @@ using protocols::PlannedTrial;
 
 namespace {
 
-/// Of passes that go on with the bone of the pass before: after a crash the row of /trials that
-/// would say so is missing.
-constexpr const char* kGoesOn = "goes_on";
-
-/// Kind of the event for a trial that the experimenter skipped for good; its text says which.
-constexpr const char* kSkipped = "skipped";
-
 std::string name_of(const PlannedTrial& trial) {
   return fmt::format("trial={} practice={} condition={}", trial.trial, trial.practice ? 1 : 0,
                      trial.condition);
@@ -44,8 +37,6 @@ record::PassRow row_of(const PlannedTrial& trial, const record::Phase& phase, in
   row.attempt = attempt;
   return row;
 }
-
-std::string pass_name(std::int32_t row) { return fmt::format("pass {} ", row); }
 
 /// Of all that is recorded: the last events may be younger than the last ticks that reached the
 /// file.
@@ -88,13 +79,6 @@ bool SessionRecord::is_over(const PlannedTrial& trial) const {
   return before && before->end != protocols::TrialEnd::kAborted;
 }
 
-/// Whether the events say that a pass went on with what the pass before it left.
-bool SessionRecord::went_on(std::int32_t row) const {
-  return std::any_of(before_.events.begin(), before_.events.end(), [&](const auto& event) {
-    return event.kind == kGoesOn && event.text.starts_with(pass_name(row));
-  });
-}
-
 void SessionRecord::open(const std::string& text) {
   for (const record::OpenPass& open : before_.open_passes) {
     row_ = {};
@@ -103,10 +87,6 @@ void SessionRecord::open(const std::string& text) {
                                     [&](const auto& each) { return each.row == open.row; });
     if (begun != before_.begun.end()) {
       row_ = begun->pass;
-    } else if (const auto trial = trials_.cut_short(
-                   *this, [this](const PlannedTrial& each) { return is_over(each); },
-                   went_on(open.row))) {
-      row_ = row_of(*trial, trials_.phases().back(), attempts(*trial) + 1);
     }
     add_pass(record::PassStatus::kAborted, open.first_sample, open.last_sample);
     before_.passes.push_back(row_);
@@ -201,13 +181,24 @@ int SessionRecord::finished(const record::Phase& last) const {
 }
 
 bool SessionRecord::was_skipped(const PlannedTrial& trial) const {
-  return std::any_of(before_.events.begin(), before_.events.end(), [&](const auto& event) {
-    return event.kind == kSkipped && event.text == name_of(trial);
+  return std::ranges::any_of(before_.skipped, [&](const record::SkippedRow& row) {
+    return row.trial == trial.trial && row.practice == trial.practice;
   });
 }
 
+void SessionRecord::note_damping(double least, double seconds) {
+  const record::DampingRow row{now_ns(), row_.trial, least, seconds};
+  put(record::Rows(std::span(&row, 1)));
+  event("damping_reduced",
+        fmt::format("trial {}: damping fell to {:.3f} of the definition's, and was reduced for "
+                    "{:.3f} s of the run",
+                    row_.trial, least, seconds));
+}
+
 void SessionRecord::skip(const PlannedTrial& trial) {
-  event(kSkipped, name_of(trial));
+  const record::SkippedRow row{now_ns(), trial.trial, trial.practice};
+  put(record::Rows(std::span(&row, 1)));
+  event("skipped", name_of(trial));
   if (real_) {
     writer_.flush();
   }
@@ -247,12 +238,8 @@ std::int32_t SessionRecord::begin_pass(const PlannedTrial& trial, const record::
   row_open_ = true;
   times_.clear();
   writer_.begin_pass({passes_, row_});
-  if (trials_.goes_on_with(last_, row_)) {
-    event(kGoesOn, fmt::format("{}with bone {} of trial {}", pass_name(passes_), row_.repetition,
-                               row_.trial));
-    if (real_) {
-      writer_.flush();  // it is in the file before any tick of the pass is
-    }
+  if (real_) {
+    writer_.flush();  // what the pass is, is in the file before any tick of it
   }
   for (record::Sink* sink : sinks_) {
     sink->begin_pass(row_, passes_);

@@ -55,6 +55,9 @@ class SessionRecord final : public protocols::SessionFile {
   bool is_last(const protocols::PlannedTrial& trial) const;
   /// Trials of the study that earlier runs have come to the end of.
   int finished(const record::Phase& last) const;
+  /// The hand did not carry all the damping in the pass that ended.
+  /// @param least  smallest share of it  @param seconds  for which it was reduced
+  void note_damping(double least, double seconds);
   /// The trial was skipped for good: it does not come again, not after a resume either.
   void skip(const protocols::PlannedTrial& trial);
   /// Of a trial in a resumed file; 0 where it has none.
@@ -103,7 +106,6 @@ class SessionRecord final : public protocols::SessionFile {
   void mark(const std::string& text);
   void keep_definition();
   bool is_over(const protocols::PlannedTrial& trial) const;
-  bool went_on(std::int32_t row) const;
   bool was_skipped(const protocols::PlannedTrial& trial) const;
   void append(std::span<const record::Sample> samples);
   void append_rest();

@@ -108,8 +108,8 @@ drilling::ProcedureSetup procedure_setup(const protocols::BoneDefinition& defini
     return pose_of(placement, grid);
   };
   for (const bone::ToolSpec& tool : definition.simulator.tools) {
-    const bool burr = tool.kind == bone::ToolKind::kBurr;
-    setup.tools.push_back({tool.name, burr ? 0.5 * tool.burr.diameter : 0.0});
+    const auto* burr = tool.as<bone::BurrTool>();
+    setup.tools.push_back({tool.name, burr != nullptr ? burr->radius() : 0.0});
   }
   return setup;
 }

@@ -80,7 +80,7 @@ std::vector<bone::RecordedSplit> splits_of(std::span<const record::SplitRow> row
 
 std::string words(const record::RemovalRow& row) {
   return fmt::format("({}, {}, {}) of piece {} with label {}{}", row.voxel[0], row.voxel[1],
-                     row.voxel[2], row.piece, row.label, row.force > 0.0 ? "" : ", cut");
+                     row.voxel[2], row.piece, row.label, row.cut ? ", cut" : "");
 }
 
 std::string words(const bone::EmptiedIn& gone) {

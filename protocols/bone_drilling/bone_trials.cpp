@@ -82,18 +82,6 @@ std::vector<std::string> BoneTrials::notices() const {
   return notice_.empty() ? std::vector<std::string>{} : std::vector{notice_};
 }
 
-std::optional<PlannedTrial> BoneTrials::cut_short(
-    const SessionFile& file, const std::function<bool(const PlannedTrial&)>& is_over,
-    bool went_on) const {
-  const auto found = std::find_if_not(plan_.trials().begin(), plan_.trials().end(), is_over);
-  if (found == plan_.trials().end()) {
-    return std::nullopt;
-  }
-  PlannedTrial trial = *found;
-  trial.repetition = bones_used(file, trial) + (went_on ? 0 : 1);
-  return trial;
-}
-
 std::span<const record::Phase> BoneTrials::phases() const {
   static constexpr std::array kPhases{record::kDrillingPhase};
   return kPhases;
@@ -210,12 +198,6 @@ Pass& BoneTrials::make_pass(PlannedTrial& trial, const record::Phase&) {
     pictures_->watch(stage_);
   }
   return *pass_;
-}
-
-/// After a crash the row of /trials that would say so is missing.
-bool BoneTrials::goes_on_with(const record::PassRow& before, const record::PassRow& pass) const {
-  return before.trial == pass.trial && before.practice == pass.practice &&
-         before.repetition == pass.repetition;
 }
 
 void BoneTrials::close_pass(SessionFile& file, std::int32_t row) {

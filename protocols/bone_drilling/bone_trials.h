@@ -22,9 +22,6 @@ class BoneTrials final : public Trials {
   Extent extent(int most) const override { return plan_.extent(most); }
   std::optional<PlannedTrial> next(const Outcome*) override { return plan_.next(); }
   bool presents_aborted_again() const override { return true; }
-  std::optional<PlannedTrial> cut_short(const SessionFile& file,
-                                        const std::function<bool(const PlannedTrial&)>& is_over,
-                                        bool went_on) const override;
   std::span<const record::Phase> phases() const override;
   std::unique_ptr<Rig> virtual_rig() const override;
   std::vector<stimulus::Observer*> observers() override;
@@ -38,7 +35,6 @@ class BoneTrials final : public Trials {
   void begin_attempt(const PlannedTrial& trial, bool anew) override;
   MakeDrawing drawing() override;
   Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) override;
-  bool goes_on_with(const record::PassRow& before, const record::PassRow& pass) const override;
   void close_pass(SessionFile& file, std::int32_t row) override;
   void draw_pictures(const PlannedTrial& trial, const record::Phase& phase) override;
   std::vector<std::string> notices() const override;

@@ -153,13 +153,14 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
 /// Felt, but neither drilled with nor recorded as contact.
 Eigen::Vector3d DrillingPass::shaking(const bone::SimulatorInput& input) noexcept {
   const bone::ToolSpec& tool = simulator_.tool();
-  if (vibration_ == nullptr || tool.kind != bone::ToolKind::kBurr) {
+  const auto* burr = tool.as<bone::BurrTool>();
+  if (vibration_ == nullptr || burr == nullptr) {
     return Eigen::Vector3d::Zero();
   }
   const bone::SimulatorOutput& out = simulator_.output();
   sound::DrillState state;
   state.burr =
-      tool.burr.kind == bone::BurrKind::kDiamond ? sound::Burr::kDiamond : sound::Burr::kCutting;
+      burr->burr.kind == bone::BurrKind::kDiamond ? sound::Burr::kDiamond : sound::Burr::kCutting;
   state.speed = out.power;
   state.contact = out.contact;
   state.force = out.force.norm();
@@ -174,6 +175,7 @@ void DrillingPass::log(const bone::SimulatorOutput& out, double speed) noexcept 
     row.piece = gone.piece;
     row.voxel = indices(gone.voxel);
     row.label = gone.label;
+    row.cut = gone.by_cut;
     row.force = gone.by_cut ? 0.0 : force;
     row.speed = speed;
     logs_.removals.push(row);

@@ -76,18 +76,6 @@ class Trials {
   /// Whether a resumed session presents trials again that an earlier run had to abort. Not where
   /// later trials followed from the abort.
   virtual bool presents_aborted_again() const { return false; }
-  /// The trial in which an earlier run was killed, when the file does not say which; nothing if it
-  /// cannot be told.
-  /// @param is_over  whether the file holds the end of a trial
-  /// @param went_on  with what the pass before left
-  virtual std::optional<PlannedTrial> cut_short(
-      const SessionFile& file, const std::function<bool(const PlannedTrial&)>& is_over,
-      bool went_on) const {
-    static_cast<void>(file);
-    static_cast<void>(is_over);
-    static_cast<void>(went_on);
-    return std::nullopt;
-  }
   /// Of every trial, in order. A trial is done when its last one was completed.
   virtual std::span<const record::Phase> phases() const = 0;
 
@@ -123,12 +111,6 @@ class Trials {
   virtual MakeDrawing drawing() = 0;
   /// @param trial  as planned; what its row is to say else may be changed
   virtual Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) = 0;
-  /// Whether a pass goes on with what the pass before it left.
-  virtual bool goes_on_with(const record::PassRow& before, const record::PassRow& pass) const {
-    static_cast<void>(before);
-    static_cast<void>(pass);
-    return false;
-  }
   /// The answers of the pass that ended last; their trial, pass and place in time are filled in.
   virtual std::vector<record::ResponseRow> responses() { return {}; }
   /// After a pass, before its row of /trials. @param row  its number

@@ -6,6 +6,7 @@
 
 #include "core/control/loop_margin.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/read/trial_facts_of.h"
 #include "experiments/runner/session.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"
@@ -45,9 +46,7 @@ Outcome session_with(double hand_mass, int trials) {
   const auto passes = reader.passes();
   outcome.completed = static_cast<int>(std::ranges::count_if(
       passes, [](const auto& pass) { return pass.status == record::PassStatus::kCompleted; }));
-  const auto events = reader.events();
-  outcome.reduced = static_cast<int>(std::ranges::count_if(
-      events, [](const auto& event) { return event.kind == "damping_reduced"; }));
+  outcome.reduced = static_cast<int>(record::reduced_damping(reader).size());
   return outcome;
 }
 

@@ -40,8 +40,9 @@ TEST_P(CutLogTest, EveryVoxelOfAFullCutIsInTheFile) {
   const bone::BoneModel model = large_block();
   bone::SimulatorParameters parameters = test::workshop(model);
   parameters.tools = {parameters.tools[2]};
-  parameters.tools[0].plane.width = parameters.tools[0].plane.height = 0.085;
-  parameters.tools[0].plane.depth = 1e-3;
+  auto& plane = std::get<bone::CutPlane>(parameters.tools[0].kind);
+  plane.width = plane.height = 0.085;
+  plane.depth = 1e-3;
   bone::Simulator simulator(model, parameters);
   bone::CompanionParameters beside;
   beside.dusty = false;

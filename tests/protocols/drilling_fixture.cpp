@@ -28,15 +28,15 @@ bone::SimulatorParameters workshop(const bone::BoneModel& model) {
   bone::SimulatorParameters p;
   bone::ToolSpec burr;
   burr.name = "burr";
-  burr.burr = bone::default_burr(bone::BurrKind::kCutting, 3e-3);
-  burr.feel = bone::default_feel(1.5e-3);
+  burr.kind = bone::BurrTool{bone::default_burr(bone::BurrKind::kCutting, 3e-3),
+                             bone::default_feel(1.5e-3)};
   bone::ToolSpec suction;
   suction.name = "suction";
-  suction.kind = bone::ToolKind::kSuction;
+  suction.kind = bone::SuctionTool{};
   bone::ToolSpec plane;
   plane.name = "plane";
-  plane.kind = bone::ToolKind::kCutPlane;
-  plane.plane.width = plane.plane.height = 0.02;
+  auto& cut = plane.kind.emplace<bone::CutPlane>();
+  cut.width = cut.height = 0.02;
   p.tools = {burr, suction, plane};
   const geometry::VoxelGrid& grid = model.grid;
   p.pose_WB.translation() =

@@ -36,7 +36,7 @@ void LiveMetrics::add(std::span<const record::Sample> samples,
 
 void LiveMetrics::add(std::span<const record::RemovalRow> rows) {
   for (const record::RemovalRow& row : rows) {
-    (is_cut(row) ? waiting_.cuts : waiting_.removals).push_back(removal_of(row));
+    (row.cut ? waiting_.cuts : waiting_.removals).push_back(removal_of(row));
   }
 }
 

@@ -158,7 +158,7 @@ class Loader {
       }
     }
     for (const record::RemovalRow& row : removals_.of(pass)) {
-      (is_cut(row) ? procedure.cuts : procedure.removals).push_back(removal_of(row));
+      (row.cut ? procedure.cuts : procedure.removals).push_back(removal_of(row));
     }
     for (const record::CameraRow& row : views_.of(pass)) {
       procedure.views.push_back(view_of(row));

@@ -114,8 +114,6 @@ std::vector<Procedure> load_procedures(const record::SessionReader& file,
 // will give.
 ToolTick tick_of(const record::Sample& sample, const record::ToolRow& tool, double scale);
 Removal removal_of(const record::RemovalRow& row);
-/// A burr empties voxels with a force, which is never 0.
-inline bool is_cut(const record::RemovalRow& row) noexcept { return row.force == 0.0; }
 View view_of(const record::CameraRow& row);
 
 }  // namespace haptrial::analysis::drilling

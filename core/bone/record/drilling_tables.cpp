@@ -78,8 +78,12 @@ const Table<RemovalRow>& table_of<RemovalRow>() {
        T::elements(kVoxel, &R::voxel, "1",
                    Names3{"voxel along x", "voxel along y", "voxel along z"}),
        T::column("label", &R::label, "1", "of /structures"),
-       T::rounded("force", &R::force, "N", "magnitude of the contact force"),
-       T::rounded("speed", &R::speed, "m/s", "of the tool tip")});
+       T::rounded("force", &R::force, "N", "magnitude of the contact force; 0 of a cut"),
+       T::rounded("speed", &R::speed, "m/s", "of the tool tip"),
+       T::since(5, T::column("cut", &R::cut, "1", "1: by the cut plane, 0: by a burr"))},
+      [](R& row, std::int64_t version) {
+        row.cut = version < 5 ? row.force == 0.0 : row.cut;  // a burr has a force
+      });
   return table;
 }
 

@@ -39,7 +39,8 @@ struct RemovalRow {
   std::int32_t piece{0};                // that held it
   std::array<std::int32_t, 3> voxel{};  // i, j, k
   std::uint8_t label{0};
-  double force{0.0};  // magnitude of the contact force; 0: by the cut plane, which has none [N]
+  bool cut{false};    // by the cut plane, which has no force; else by a burr
+  double force{0.0};  // magnitude of the contact force [N]
   double speed{0.0};  // of the tool tip [m/s]
 };
 

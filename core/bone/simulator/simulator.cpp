@@ -58,14 +58,13 @@ Simulator::Simulator(const BoneModel& model, const SimulatorParameters& paramete
       start_(world_.volume(0).amount()) {
   std::size_t most = 1;
   for (const ToolSpec& tool : tools_) {
-    const bool burr = tool.kind == ToolKind::kBurr;
-    const bool plate = tool.kind == ToolKind::kPlate;
-    if (burr) {
-      check(tool.feel);
-    }
-    drills_.push_back(burr ? std::make_unique<Drill>(tool.burr, structures_) : nullptr);
-    plates_.push_back(plate ? std::make_unique<PlateModel>(make_plate_model(tool)) : nullptr);
-    if (burr) {
+    const BurrTool* burr = tool.as<BurrTool>();
+    const PlateTool* plate = tool.as<PlateTool>();
+    drills_.push_back(burr ? std::make_unique<Drill>(burr->burr, structures_) : nullptr);
+    plates_.push_back(plate ? std::make_unique<PlateModel>(make_plate_model(tool.name, *plate))
+                            : nullptr);
+    if (burr != nullptr) {
+      check(burr->feel);
       most = std::max(most, static_cast<std::size_t>(drills_.back()->burr().samples()));
     }
   }
@@ -147,7 +146,7 @@ HandMode Simulator::mode_of(const SimulatorInput& input) const noexcept {
   if (is_held(input.functions, Function::kCameraTurn)) {
     return HandMode::kCameraTurn;
   }
-  const bool grip = tools_[in_hand()].kind == ToolKind::kGrip && input.power > 0.0;
+  const bool grip = tools_[in_hand()].as<GripTool>() != nullptr && input.power > 0.0;
   return grip || is_held(input.functions, Function::kCarry) ? HandMode::kCarry : HandMode::kTool;
 }
 
@@ -180,7 +179,10 @@ void Simulator::carry(const SimulatorInput& input) noexcept {
   const Eigen::Isometry3d pose = pose_of(input.tool);
   if (world_.held() < 0) {
     const ToolSpec& tool = tools_[in_hand()];
-    const double reach = tool.kind == ToolKind::kBurr ? tool.burr.diameter : tool.reach;
+    const auto* burr = tool.as<BurrTool>();
+    const auto* grip = tool.as<GripTool>();
+    const double other = grip != nullptr ? grip->reach : GripTool{}.reach;
+    const double reach = burr != nullptr ? burr->burr.diameter : other;
     if (const auto touched = world_.touch(input.tool.tip.position, reach)) {
       world_.grab(*touched, pose);
     }
@@ -191,23 +193,15 @@ void Simulator::carry(const SimulatorInput& input) noexcept {
 
 void Simulator::work(const SimulatorInput& input, std::uint32_t pressed) noexcept {
   const bool apply = is_held(pressed, Function::kApply);
-  switch (tools_[in_hand()].kind) {
-    case ToolKind::kBurr:
-      drill(input);
-      break;
-    case ToolKind::kSuction:
-      output_.power = input.power;
-      break;
-    case ToolKind::kCutPlane:
-      if (apply) {
-        begin_cut(input);
-      }
-      break;
-    case ToolKind::kPlate:
-      hold_plate(input, apply);
-      break;
-    case ToolKind::kGrip:
-      break;
+  const ToolSpec& tool = tools_[in_hand()];
+  if (const auto* burr = tool.as<BurrTool>()) {
+    drill(*burr, input);
+  } else if (tool.as<SuctionTool>() != nullptr) {
+    output_.power = input.power;
+  } else if (tool.as<PlateTool>() != nullptr) {
+    hold_plate(input, apply);
+  } else if (const auto* plane = tool.as<CutPlane>(); plane != nullptr && apply) {
+    begin_cut(*plane, input);
   }
   if (is_held(pressed, Function::kDetach)) {
     for (int plate = world_.plates() - 1; plate >= 0; --plate) {
@@ -242,8 +236,7 @@ const Simulator::Reach& Simulator::reach_of(int piece) noexcept {
   return reaches_[static_cast<std::size_t>(piece)];
 }
 
-void Simulator::drill(const SimulatorInput& input) noexcept {
-  const ToolSpec& tool = tools_[in_hand()];
+void Simulator::drill(const BurrTool& tool, const SimulatorInput& input) noexcept {
   Drill& drill = *drills_[in_hand()];
   drill.begin_tick();
   Contact all;
@@ -294,8 +287,7 @@ void Simulator::drill(const SimulatorInput& input) noexcept {
 }
 
 /// The tick goes on with it.
-void Simulator::begin_cut(const SimulatorInput& input) noexcept {
-  CutPlane plane = tools_[in_hand()].plane;
+void Simulator::begin_cut(CutPlane plane, const SimulatorInput& input) noexcept {
   plane.pose_WC = pose_of(input.tool);
   cutter_.begin(world_, plane);
   cut_of_present_ = 0.0;
@@ -334,14 +326,13 @@ void Simulator::place_for_dust(const SimulatorInput& input) noexcept {
   }
   const Eigen::Vector3d axis = input.tool.axis();
   const auto& tip = input.tool.tip.position;
-  if (tool.kind == ToolKind::kBurr) {
-    const double radius = 0.5 * tool.burr.diameter;
+  if (const auto* burr = tool.as<BurrTool>()) {
+    const double radius = burr->radius();
     dust_tools_.tools[0] = {tip, axis, 0.0, radius, false};
     const double thin = std::min(radius, tool.handle_radius);
     dust_tools_.tools[1] = {tip + radius * axis, axis, tool.handle_length, thin, false};
-  } else if (tool.kind == ToolKind::kSuction) {
-    dust_tools_.tools[0] = {tip, axis, tool.handle_length, tool.suction_radius,
-                            output_.power > 0.0};
+  } else if (const auto* suction = tool.as<SuctionTool>()) {
+    dust_tools_.tools[0] = {tip, axis, tool.handle_length, suction->radius, output_.power > 0.0};
   }
 }
 

@@ -147,8 +147,8 @@ class Simulator {
   void steer(const SimulatorInput& input) noexcept;
   void carry(const SimulatorInput& input) noexcept;
   void work(const SimulatorInput& input, std::uint32_t pressed) noexcept;
-  void drill(const SimulatorInput& input) noexcept;
-  void begin_cut(const SimulatorInput& input) noexcept;
+  void drill(const BurrTool& tool, const SimulatorInput& input) noexcept;
+  void begin_cut(CutPlane plane, const SimulatorInput& input) noexcept;
   void go_on_cutting() noexcept;
   void hold_plate(const SimulatorInput& input, bool fixes) noexcept;
   void place_for_dust(const SimulatorInput& input) noexcept;

@@ -17,6 +17,28 @@ void optional(Table& table, const char* key, double& value, const Bounds& bounds
   value = table.has(key) ? table.number(key, bounds, unit) : value;
 }
 
+BurrTool read_burr(Table& table) {
+  BurrTool tool;
+  tool.burr = read_burr_parameters(table);
+  tool.feel = default_feel(tool.radius());
+  if (table.has("feel")) {
+    Table feel = table.table("feel");
+    tool.feel = read_feel_parameters(feel, tool.radius());
+  }
+  return tool;
+}
+
+PlateTool read_plate(Table& table) {
+  PlateTool tool;
+  tool.shape = table.choice("shape", {"straight", "l", "distractor"});
+  tool.holes = table.has("holes") ? static_cast<int>(table.integer("holes", 2, 20)) : tool.holes;
+  if (table.has("contact")) {
+    Table contact = table.table("contact");
+    tool.contact = read_plate_parameters(contact);
+  }
+  return tool;
+}
+
 ToolSpec read_tool(Table& table, const std::string& name) {
   ToolSpec tool;
   tool.name = name;
@@ -24,30 +46,15 @@ ToolSpec read_tool(Table& table, const std::string& name) {
   optional(table, "handle_radius", tool.handle_radius, {1e-4, 0.05}, "m");
   optional(table, "handle_length", tool.handle_length, {1e-3, 0.5}, "m");
   if (type == "burr") {
-    tool.burr = read_burr_parameters(table);
-    const double radius = 0.5 * tool.burr.diameter;
-    tool.feel = default_feel(radius);
-    if (table.has("feel")) {
-      Table feel = table.table("feel");
-      tool.feel = read_feel_parameters(feel, radius);
-    }
+    tool.kind = read_burr(table);
   } else if (type == "suction") {
-    tool.kind = ToolKind::kSuction;
-    optional(table, "radius", tool.suction_radius, {1e-4, 0.01}, "m");
+    optional(table, "radius", tool.kind.emplace<SuctionTool>().radius, {1e-4, 0.01}, "m");
   } else if (type == "cut_plane") {
-    tool.kind = ToolKind::kCutPlane;
-    tool.plane = read_cut_plane(table);
+    tool.kind = read_cut_plane(table);
   } else if (type == "plate") {
-    tool.kind = ToolKind::kPlate;
-    tool.shape = table.choice("shape", {"straight", "l", "distractor"});
-    tool.holes = table.has("holes") ? static_cast<int>(table.integer("holes", 2, 20)) : tool.holes;
-    if (table.has("contact")) {
-      Table contact = table.table("contact");
-      tool.plate = read_plate_parameters(contact);
-    }
+    tool.kind = read_plate(table);
   } else if (type == "grip") {
-    tool.kind = ToolKind::kGrip;
-    optional(table, "reach", tool.reach, {1e-4, 0.02}, "m");
+    optional(table, "reach", tool.kind.emplace<GripTool>().reach, {1e-4, 0.02}, "m");
   }
   return tool;
 }
@@ -73,15 +80,15 @@ std::vector<ToolSpec> read_tools(Table& table) {
   return tools;
 }
 
-PlateModel make_plate_model(const ToolSpec& tool) {
+PlateModel make_plate_model(const std::string& name, const PlateTool& tool) {
   if (tool.shape == "straight") {
-    return {tool.name, make_plate(straight_miniplate(tool.holes)), tool.plate};
+    return {name, make_plate(straight_miniplate(tool.holes)), tool.contact};
   }
   if (tool.shape == "l") {
-    return {tool.name, make_plate(l_plate()), tool.plate};
+    return {name, make_plate(l_plate()), tool.contact};
   }
   if (tool.shape == "distractor") {
-    return {tool.name, make_distractor(), tool.plate};
+    return {name, make_distractor(), tool.contact};
   }
   throw std::invalid_argument("no plate has the shape '" + tool.shape + "'");
 }

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
-#include <string>
+
+#include "core/record/read/trial_facts_of.h"
 
 namespace haptrial::record {
 
@@ -25,17 +26,12 @@ TrialProgress trial_progress(const SessionReader& reader) {
       done.insert(pass.trial);
     }
   }
-  std::set<std::string> skipped;
-  for (const EventRow& event : reader.events()) {
-    if (event.kind == "skipped" && event.text.find("practice=1") == std::string::npos) {
-      skipped.insert(event.text);
-    }
-  }
+  const std::vector<SkippedRow> skipped = skipped_trials(reader);
   const auto is_done = [&](int trial) { return done.contains(trial); };
   const auto left = static_cast<int>(begun.size()) -
                     static_cast<int>(std::count_if(begun.begin(), begun.end(), is_done));
   progress.done = static_cast<int>(done.size());
-  progress.skipped = static_cast<int>(skipped.size());
+  progress.skipped = static_cast<int>(std::ranges::count(skipped, false, &SkippedRow::practice));
   progress.aborted = std::max(left - progress.skipped, 0);
   return progress;
 }

@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/record/read/each_sample.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/read/trial_facts_of.h"
 #include "core/record/recovery/repair.h"
 #include "core/record/table/schema.h"
 #include "core/record/write/session_target.h"
@@ -65,6 +66,10 @@ Resumed examine(const SessionReader& reader) {
   found.begun = reader.begun();
   walk_samples(reader, found);
   found.events = reader.events();
+  found.skipped = skipped_trials(reader);
+  if (reader.has(responses_table())) {
+    found.responses = reader.responses();
+  }
   for (const StimulusRow& row : reader.stimuli()) {
     if (found.blocks.empty() || found.blocks.back() != row.block) {
       found.blocks.push_back(row.block);

@@ -7,6 +7,7 @@
 #include "core/record/rows/response.h"
 #include "core/record/rows/run_types.h"
 #include "core/record/rows/session_types.h"
+#include "core/record/rows/trial_facts.h"
 
 namespace haptrial::record {
 
@@ -25,6 +26,7 @@ struct Resumed {
   std::vector<PassRow> passes;        // with all of their samples
   std::vector<OpenPass> open_passes;  // in order; their rows follow those of `passes`
   std::vector<ResponseRow> responses;
+  std::vector<SkippedRow> skipped;
   std::vector<std::int32_t> blocks;  // whose stimuli are there
   std::uint64_t rows{0};             // of /samples
   std::uint64_t next_sequence{0};    // of the first sample to append

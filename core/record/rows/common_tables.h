@@ -5,7 +5,7 @@
 namespace haptrial::record {
 
 /// What a session of any protocol may have beside the tables of every session: answers, further
-/// devices.
+/// devices, what became of trials.
 const TableList& common_tables();
 
 }  // namespace haptrial::record

@@ -110,16 +110,17 @@ void read_groups(Table& root, BoneDefinition& d) {
   }
 }
 
-int tool_named(Table& table, const char* key, const BoneDefinition& d) {
+subject::SurgeonBurr burr_named(Table& table, const char* key, const BoneDefinition& d) {
   const std::string name = table.text(key);
   for (std::size_t tool = 0; tool < d.simulator.tools.size(); ++tool) {
     const bone::ToolSpec& spec = d.simulator.tools[tool];
-    if (spec.name == name && spec.kind == bone::ToolKind::kBurr) {
-      return static_cast<int>(tool);
+    const auto* burr = spec.as<bone::BurrTool>();
+    if (spec.name == name && burr != nullptr) {
+      return {static_cast<int>(tool), burr->radius()};
     }
   }
   table.reject(key, fmt::format("\"{}\"", name), "a burr of tools.in_hand");
-  return 0;
+  return {0, 0.5e-3};
 }
 
 void read_surgeons(Table& root, BoneDefinition& d) {
@@ -128,15 +129,8 @@ void read_surgeons(Table& root, BoneDefinition& d) {
   }
   Table table = root.table("virtual_surgeons");
   subject::SurgeonParameters p;
-  const auto burr = [&](const char* key) {
-    const int tool = tool_named(table, key, d);
-    const double diameter = d.simulator.tools.empty()
-                                ? 1e-3
-                                : d.simulator.tools[static_cast<std::size_t>(tool)].burr.diameter;
-    return subject::SurgeonBurr{tool, 0.5 * diameter};
-  };
-  p.rough = burr("rough");
-  p.fine = burr("fine");
+  p.rough = burr_named(table, "rough", d);
+  p.fine = burr_named(table, "fine", d);
   optional(table, "between", p.spread.between, {0.0, 1.0}, "");
   optional(table, "within", p.spread.within, {0.0, 1.0}, "");
   optional(table, "learning", p.spread.learning, kFraction, "");

@@ -23,8 +23,8 @@ double inverse(const Function& function, double high, double wanted) {
 
 }  // namespace
 
-double flat_bone_stiffness(const bone::ToolSpec& tool, double force) {
-  const double r = 0.5 * tool.burr.diameter;
+double flat_bone_stiffness(const bone::BurrTool& tool, double force) {
+  const double r = tool.radius();
   const auto volume = [r](double depth) {
     return std::numbers::pi * depth * depth * (r - depth / 3.0);
   };
@@ -54,10 +54,11 @@ double stable_stiffness(const control::HandleLoop& loop, const control::HeldBy& 
 std::optional<ContactMargin> contact_margin(const BoneDefinition& d) {
   std::optional<ContactMargin> worst;
   for (const bone::ToolSpec& tool : d.simulator.tools) {
-    if (tool.kind != bone::ToolKind::kBurr) {
+    const auto* burr = tool.as<bone::BurrTool>();
+    if (burr == nullptr) {
       continue;
     }
-    const double stiffness = flat_bone_stiffness(tool, d.drilling.force_limit);
+    const double stiffness = flat_bone_stiffness(*burr, d.drilling.force_limit);
     if (!worst || stiffness > worst->stiffness) {
       worst = {tool.name, d.drilling.force_limit, stiffness, 0.0};
     }

@@ -21,7 +21,7 @@ struct ContactMargin {
 /// Stiffness of flat bone under a force, d m(V) / dh, with V = pi h^2 (r - h / 3) of a sphere of
 /// radius r that is immersed by h; at most that of a burr immersed by its radius [N/m].
 /// @param force  > 0 [N]
-double flat_bone_stiffness(const bone::ToolSpec& burr, double force);
+double flat_bone_stiffness(const bone::BurrTool& burr, double force);
 
 /// Up to which an undamped spring is stable in the sampled loop, with a hand on it [N/m]. The law
 /// is that of guidance (control/handle_loop.h) without damping in software, since bone has none.

@@ -3,7 +3,6 @@
 
 #include <utility>
 
-
 namespace haptrial::protocols {
 namespace {
 
@@ -53,19 +52,19 @@ std::shared_ptr<const geometry::Mesh> BoneDisplay::mesh_of(int tool) const {
   const auto shared = [](geometry::Mesh mesh) {
     return std::make_shared<const geometry::Mesh>(std::move(mesh));
   };
-  switch (spec.kind) {
-    case bone::ToolKind::kBurr:
-      return shared(render::burr_mesh(spec.burr.diameter, std::min(kShaft, spec.burr.diameter),
-                                      spec.handle_length));
-    case bone::ToolKind::kSuction:
-      return shared(render::suction_mesh(1.4 * spec.suction_radius, 2.0 * spec.suction_radius,
-                                         spec.handle_length));
-    case bone::ToolKind::kCutPlane:
-      return shared(render::plane_mesh(spec.plane.width, spec.plane.height));
-    case bone::ToolKind::kPlate:
-      return shared(stage_->simulator->plate(tool)->mesh());
-    case bone::ToolKind::kGrip:
-      break;
+  if (const auto* burr = spec.as<bone::BurrTool>()) {
+    const double diameter = burr->burr.diameter;
+    return shared(render::burr_mesh(diameter, std::min(kShaft, diameter), spec.handle_length));
+  }
+  if (const auto* suction = spec.as<bone::SuctionTool>()) {
+    return shared(
+        render::suction_mesh(1.4 * suction->radius, 2.0 * suction->radius, spec.handle_length));
+  }
+  if (const auto* plane = spec.as<bone::CutPlane>()) {
+    return shared(render::plane_mesh(plane->width, plane->height));
+  }
+  if (spec.as<bone::PlateTool>() != nullptr) {
+    return shared(stage_->simulator->plate(tool)->mesh());
   }
   return shared(render::burr_mesh(1e-3, 1e-3, spec.handle_length));
 }
@@ -92,7 +91,7 @@ void BoneDisplay::draw(const bone::DrillingView& seen) {
   }
   if (seen.shown) {
     const auto tool = static_cast<std::size_t>(seen.tool);
-    const bool plane = stage_->simulator->tools()[tool].kind == bone::ToolKind::kCutPlane;
+    const bool plane = stage_->simulator->tools()[tool].as<bone::CutPlane>() != nullptr;
     const ToolState held{{seen.tip, Eigen::Vector3d::Zero()}, seen.orientation};
     frame_.meshes.push_back({meshes_[tool], render::pose_of(held), plane ? kPlane : kSteel});
     frame_.camera = {seen.eye, seen.target, seen.up, seen.field_of_view};

@@ -14,13 +14,14 @@ constexpr double kThick = 1.0;  // where there is no thin bone to be heard [m]
 double ThicknessProbe::under(const bone::DrillingView& seen) {
   const bone::BoneWorld& world = std::as_const(*stage_->simulator).world();
   const bone::ToolSpec& tool = stage_->simulator->tools()[static_cast<std::size_t>(seen.tool)];
-  if (tool.kind != bone::ToolKind::kBurr || !seen.contact) {
+  const auto* burr = tool.as<bone::BurrTool>();
+  if (burr == nullptr || !seen.contact) {
     return kThick;
   }
   double thinnest = kThick;
   world.published_poses().read(world.pieces(), [&](int piece, const Eigen::Isometry3d& pose) {
     const bone::BoneVolume& volume = world.volume(piece);
-    const double reach = 0.5 * tool.burr.diameter + 2.0 * volume.grid().spacing;
+    const double reach = burr->radius() + 2.0 * volume.grid().spacing;
     bone::surface_voxels_within(volume, pose.inverse(Eigen::Isometry) * seen.tip, reach, voxels_);
     if (const auto mean = bone::mean_thickness(volume, voxels_)) {
       thinnest = std::min(thinnest, *mean);
@@ -29,15 +30,16 @@ double ThicknessProbe::under(const bone::DrillingView& seen) {
   return thinnest;
 }
 
-sound::DrillState sound_of(const bone::DrillingView& seen,
-                           std::span<const bone::ToolSpec> tools, double thickness) noexcept {
+sound::DrillState sound_of(const bone::DrillingView& seen, std::span<const bone::ToolSpec> tools,
+                           double thickness) noexcept {
   sound::DrillState state;
   const bone::ToolSpec& tool = tools[static_cast<std::size_t>(seen.tool)];
-  if (!seen.shown || tool.kind != bone::ToolKind::kBurr) {
+  const auto* burr = tool.as<bone::BurrTool>();
+  if (!seen.shown || burr == nullptr) {
     return state;
   }
   state.burr =
-      tool.burr.kind == bone::BurrKind::kDiamond ? sound::Burr::kDiamond : sound::Burr::kCutting;
+      burr->burr.kind == bone::BurrKind::kDiamond ? sound::Burr::kDiamond : sound::Burr::kCutting;
   state.speed = seen.power ? 1.0 : 0.0;
   state.contact = seen.contact;
   state.force = seen.sound_force;

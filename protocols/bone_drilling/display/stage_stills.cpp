@@ -16,8 +16,8 @@ namespace haptrial::protocols {
 double smallest_burr(const BoneDefinition& d) {
   double radius = 1.0;
   for (const bone::ToolSpec& tool : d.simulator.tools) {
-    const bool burr = tool.kind == bone::ToolKind::kBurr;
-    radius = burr ? std::min(radius, 0.5 * tool.burr.diameter) : radius;
+    const auto* burr = tool.as<bone::BurrTool>();
+    radius = burr != nullptr ? std::min(radius, burr->radius()) : radius;
   }
   return radius;
 }

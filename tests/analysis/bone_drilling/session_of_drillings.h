@@ -81,6 +81,7 @@ inline DrillingRows wander(std::uint64_t first, std::uint64_t ticks, std::int32_
                                0,
                                {v.x(), v.y(), v.z()},
                                static_cast<std::uint8_t>(nerve ? 2 : 1),
+                               false,
                                tool.contact.norm(),
                                sample.velocity.norm()});
     }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/record/rows/damping_event.h"
+#include "core/record/rows/trial_facts.h"
 #include "core/record/write/session_writer.h"
 
 namespace haptrial::analysis {
@@ -20,7 +20,8 @@ Eigen::Vector3d path(double t) { return {0.016 * t - 0.05, 0.0, synthetic_path_z
 class Writer {
  public:
   Writer(const std::filesystem::path& file, const SyntheticSession& session)
-      : session_(session), writer_(file, info(session)) {}
+      : session_(session),
+        writer_(file, info(session), {&record::table_of<record::DampingRow>()}) {}
 
   void write() {
     for (int block = 1; block <= session_.blocks; ++block) {
@@ -122,8 +123,8 @@ class Writer {
 
   void add_training_events(int trial, std::int64_t begin, std::int64_t end) {
     if (trial == session_.reduced_trial) {
-      writer_.add_event(
-          {end, record::kDampingReduced, to_text(record::DampingReduced{trial, 0.25, 1.0})});
+      const record::DampingRow row{end, trial, 0.25, 1.0};
+      writer_.add(record::Rows(std::span(&row, 1)));
     }
     if (session_.frozen_trial != 0) {
       std::vector<record::FrameRow> frames;

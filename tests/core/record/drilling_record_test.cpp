@@ -51,7 +51,8 @@ void expect_same(const ToolRow& given, const ToolRow& found) {
 
 RemovalRow removal(std::uint64_t sequence) {
   const auto n = static_cast<std::int32_t>(sequence);
-  return {sequence, n % 3, {n, 2 * n, 3 * n}, static_cast<std::uint8_t>(1 + n % 9), 0.5 + n, 0.25};
+  return {sequence, n % 3, {n, 2 * n, 3 * n}, static_cast<std::uint8_t>(1 + n % 9), n % 2 == 0,
+          0.5 + n,  0.25};
 }
 
 template <class Row>

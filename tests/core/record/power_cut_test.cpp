@@ -105,7 +105,7 @@ struct Recording {
         writer.add(std::span(tool).subspan(at, 20));
       }
       if (drills) {
-        const RemovalRow removal{at, 0, {1, 2, static_cast<std::int32_t>(at)}, 1, 0.5, 0.1};
+        const RemovalRow removal{at, 0, {1, 2, static_cast<std::int32_t>(at)}, 1, false, 0.5, 0.1};
         writer.add(std::span(&removal, 1));
       }
       writer.append(std::span(samples).subspan(at, 20));

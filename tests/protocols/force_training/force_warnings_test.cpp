@@ -193,7 +193,7 @@ TEST(ContactMarginTest, BoneIsAsStiffAsItWasMeasuredInTheLoop) {
   // docs/algorithms/bone-feel.md, "Stability", by simulation on voxels of 0.5 mm.
   const double at_1_newton[][2] = {{1e-3, 13.9e3}, {2e-3, 6.9e3}, {4e-3, 7.7e3}, {7e-3, 8.2e3}};
   for (const auto& [diameter, measured] : at_1_newton) {
-    bone::ToolSpec tool;
+    bone::BurrTool tool;
     tool.burr.diameter = diameter;
     tool.feel = bone::default_feel(0.5 * diameter);
     EXPECT_NEAR(protocols::flat_bone_stiffness(tool, 1.0), measured, 0.1 * measured) << diameter;
@@ -216,7 +216,7 @@ TEST(BoneWarningsTest, ContactVibrationAndDeviceEachGetASentence) {
   EXPECT_THAT(d.warnings(), IsEmpty());
   d.hand.coulomb_friction = 0.0;
   EXPECT_THAT(d.warnings(), ElementsAre(AllOf(HasSubstr("hand.coulomb_friction is 0"),
-                                                HasSubstr("10.0 N/mm at 1000 Hz"))));
+                                              HasSubstr("10.0 N/mm at 1000 Hz"))));
   d = dynamic_cast<const protocols::BoneDefinition&>(*shipped.definition);
   d.rate = 500.0;
   EXPECT_THAT(d.warnings(), ElementsAre(HasSubstr("lines of up to 341 Hz; those at 250 Hz")));

@@ -14,7 +14,6 @@
 #include "analysis/force_training/score/scores_csv.h"
 #include "analysis/force_training/study/quality_summary.h"
 #include "analysis/force_training/study/study.h"
-#include "core/record/rows/damping_event.h"
 #include "tests/analysis/force_training/synthetic_session.h"
 #include "tests/support/temporary_folder.h"
 
@@ -104,20 +103,6 @@ TEST(TrialQualityTest, SeveralFlagsAreJoined) {
   q.test.oscillation = 0.99;
   q.training.saturation = 0.97;
   EXPECT_EQ(flag_names(q), "oscillating;saturated;training_saturated");
-}
-
-TEST(DampingEventTest, TextsOfThisAndOfOlderVersionsAreRead) {
-  const auto read = record::damping_reduced_of(to_text(record::DampingReduced{31, 0.052, 1.25}));
-  ASSERT_TRUE(read);
-  EXPECT_EQ(read->trial, 31);
-  EXPECT_EQ(read->least, 0.052);
-  EXPECT_EQ(read->seconds, 1.25);
-  const auto old =
-      record::damping_reduced_of("trial 7: least 0.500 of it, reduced for 0.123 s of the run");
-  ASSERT_TRUE(old);
-  EXPECT_EQ(old->trial, 7);
-  EXPECT_EQ(old->seconds, 0.123);
-  EXPECT_FALSE(record::damping_reduced_of("trial 7"));
 }
 
 SyntheticSession session_of(const std::string& subject) {

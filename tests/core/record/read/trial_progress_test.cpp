@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
+#include "core/record/read/trial_facts_of.h"
 #include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
@@ -17,7 +20,7 @@ PassRow pass(int trial, Phase phase, PassStatus status, bool practice = false) {
 
 TEST(TrialProgressTest, CountsWhatIsDoneSkippedAndAborted) {
   const test::TemporaryFolder folder;
-  SessionWriter writer(folder / "a.h5", test::example_info());
+  SessionWriter writer(folder / "a.h5", test::example_info(), {&table_of<SkippedRow>()});
   writer.set_planned(72);
   writer.note_counts({0, 0, 0});
   for (const PassRow& row : {pass(1, Phase::kTraining, PassStatus::kCompleted, true),
@@ -31,13 +34,25 @@ TEST(TrialProgressTest, CountsWhatIsDoneSkippedAndAborted) {
                              pass(3, Phase::kTest, PassStatus::kAborted)}) {
     writer.add_pass(row);
   }
-  writer.add_event({1, "skipped", "trial 2"});
+  const std::array skipped{SkippedRow{1, 2, false}, SkippedRow{2, 2, false},
+                           SkippedRow{3, 1, true}};
+  writer.add(Rows(std::span<const SkippedRow>(skipped)));
   writer.close();
   const TrialProgress progress = trial_progress(SessionReader(folder / "a.h5"));
   EXPECT_EQ(progress.planned, 72);
   EXPECT_EQ(progress.done, 1);
   EXPECT_EQ(progress.skipped, 1);
   EXPECT_EQ(progress.aborted, 1);
+}
+
+TEST(TrialFactsTest, OldFilesSayThemInTheirEvents) {
+  const SessionReader reader(HAPTRIAL_SOURCE_DIR "/tests/core/record/data/version4.hdf5");
+  ASSERT_FALSE(reader.has(table_of<DampingRow>()));
+  const std::vector<DampingRow> damping = reduced_damping(reader);
+  ASSERT_EQ(damping.size(), 1U);
+  EXPECT_EQ(damping[0].trial, 1);
+  EXPECT_EQ(damping[0].least, 0.052);
+  EXPECT_EQ(damping[0].seconds, 1.25);
 }
 
 TEST(TrialProgressTest, AnOldFileDoesNotSayWhatWasPlanned) {

@@ -33,8 +33,8 @@ TEST(BoneDefinitionTest, TheShippedOneIsValid) {
       protocols::parse_bone_definition(test::drilling_with({}), "bone_drilling.toml");
   EXPECT_EQ(d.name, "bone_drilling");
   EXPECT_EQ(d.simulator.tools.size(), 3u);
-  EXPECT_EQ(d.simulator.tools[0].burr.diameter, 0.006);
-  EXPECT_EQ(d.simulator.tools[2].kind, bone::ToolKind::kSuction);
+  EXPECT_EQ(std::get<bone::BurrTool>(d.simulator.tools[0].kind).burr.diameter, 0.006);
+  EXPECT_NE(d.simulator.tools[2].as<bone::SuctionTool>(), nullptr);
   EXPECT_EQ(d.drilling.controls.buttons[static_cast<std::size_t>(bone::Function::kNextTool)], 2u);
   EXPECT_EQ(d.drilling.controls.keys[static_cast<std::size_t>(bone::Function::kPower)],
             (std::vector<int>{' '}));
