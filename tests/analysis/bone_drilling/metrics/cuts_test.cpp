@@ -97,16 +97,16 @@ TEST(CutsTest, HaveNoForceThatCouldCountNearAStructure) {
   EXPECT_EQ(summary.removed.size(), 1u);
 }
 
-TEST(CutsTest, OfASessionThatRunsAreKnownByTheirForce) {
+TEST(CutsTest, OfASessionThatRunsAreCounted) {
   Procedure p = beam();
   LiveMetrics live(p.bone, p.pose_WB, p.tools, 1.0, p.rate);
   std::vector<record::Sample> samples(2);
   std::vector<record::ToolRow> tool(2);
   samples[1].sequence = tool[1].sequence = 1;
   tool[0].active = tool[1].active = true;
-  const std::vector<record::RemovalRow> rows{{0, 0, {4, 0, 3}, 1, 0.0, 0.1},
-                                             {0, 0, {4, 0, 2}, 1, 0.0, 0.1},
-                                             {1, 0, {4, 0, 0}, 2, 0x1p-13, 0.1}};
+  const std::vector<record::RemovalRow> rows{{0, 0, {4, 0, 3}, 1, true, 0.0, 0.1},
+                                             {0, 0, {4, 0, 2}, 1, true, 0.0, 0.1},
+                                             {1, 0, {4, 0, 0}, 2, false, 0x1p-13, 0.1}};
   live.add(std::span<const record::RemovalRow>(rows));
   live.add(samples, tool);
   std::vector<record::CameraRow> camera(1);
