@@ -60,7 +60,7 @@ constexpr const char* kSimulated =
     "and "
     "its analysis work, not how people behave.";
 
-constexpr const char* kPilot = "PILOT SESSION: no part of the study.";
+constexpr const char* kPilotNotice = "PILOT SESSION: no part of the study.";
 
 std::string participant_pilots(std::span<const Session> sessions, const Session& participant) {
   std::size_t all = 0;
@@ -318,7 +318,7 @@ std::string recording_sidecar(const Session& session, const WrittenSamples& samp
   json["TaskName"] = bids_label(name) == session.task ? name : session.task;
   const std::string marks =
       fmt::format("{}{}{}", info.simulated ? kSimulated : "",
-                  info.simulated && info.pilot ? " " : "", info.pilot ? kPilot : "");
+                  info.simulated && info.pilot ? " " : "", info.pilot ? kPilotNotice : "");
   if (!marks.empty()) {
     json["TaskDescription"] = marks;
   }

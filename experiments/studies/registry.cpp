@@ -45,6 +45,7 @@ void add_study(const Study& study) {
     throw std::invalid_argument(
         fmt::format("add_study: there is a protocol '{}' already", study.protocol().name()));
   }
+  record::check_chunk_sizes(study.protocol().tables());
   all().push_back(&study);
 }
 

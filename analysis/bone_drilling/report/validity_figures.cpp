@@ -19,8 +19,8 @@ constexpr Look kExperts{palette::kBlue, palette::kSolid, 7, 2.0, 1.0};
 constexpr Look kNovices{palette::kOrange, palette::kLong, 5, 2.0, 1.0};
 constexpr Look kThird{palette::kGreen, palette::kShort, 9, 2.0, 1.2};
 constexpr Look kFourth{palette::kPurple, palette::kMixed, 13, 2.0, 1.2};
-constexpr Look kBlack{palette::kBlack, palette::kSolid, 7, 2.5, 1.2};
-constexpr Look kGrey{palette::kGrey, palette::kShort, 7, 1.5, 1.0};
+constexpr Look kMeans{palette::kBlack, palette::kSolid, 7, 2.5, 1.2};
+constexpr Look kChance{palette::kGrey, palette::kShort, 7, 1.5, 1.0};
 
 Look look_of(std::size_t group) {
   const std::array<Look, 4> looks{kExperts, kThird, kNovices, kFourth};
@@ -60,7 +60,7 @@ Figure ratings_figure(const ValidityResult& result) {
       order.push_back(&group);
     }
   }
-  Series pooled{"mean, procedures", Mark::kBars, kBlack};
+  Series pooled{"mean, procedures", Mark::kBars, kMeans};
   Series means{"mean, participants", Mark::kBars, kExperts};
   Series dots{"procedure", Mark::kPoints, {palette::kGrey, palette::kSolid, 6, 1.5, 0.8}};
   constexpr double kAside = 0.12;
@@ -135,7 +135,7 @@ Figure relation_figure(const ValidityResult& result, const MetricValidity& metri
     const double a = relation.line->coefficients[0].estimate;
     const double b = relation.line->coefficients[1].estimate;
     figure.series.push_back(
-        Series{"linear fit", Mark::kLine, kGrey, {least, most}, {a + b * least, a + b * most}});
+        Series{"linear fit", Mark::kLine, kChance, {least, most}, {a + b * least, a + b * most}});
     fit = fmt::format(
         "Over participants' means R = {}. Over procedures, as published, R = {}: this takes "
         "procedures of one participant as independent.",
@@ -216,7 +216,7 @@ Figure roc_figure(const ValidityResult& result) {
   Figure figure = new_figure(result, "roc-experts-novices", "Telling experts from novices",
                              "Share of novices called experts", "Share of experts called experts");
   std::vector<std::string> curves;
-  add_curve(figure, v.combined.roc, "all metrics", kBlack, curves,
+  add_curve(figure, v.combined.roc, "all metrics", kMeans, curves,
             "all metrics together (each procedure scored by a regression that saw nothing of its "
             "participant)");
   add_curve(figure, v.rating_contrast.roc, "rating", kThird, curves, "the rating");
@@ -236,7 +236,7 @@ Figure roc_figure(const ValidityResult& result) {
     }
   }
   if (!figure.series.empty()) {
-    figure.series.push_back(Series{"", Mark::kLine, kGrey, {0.0, 1.0}, {0.0, 1.0}});
+    figure.series.push_back(Series{"", Mark::kLine, kChance, {0.0, 1.0}, {0.0, 1.0}});
   }
   figure.x_range = Range{0.0, 1.0};
   figure.y_range = Range{0.0, 1.02};

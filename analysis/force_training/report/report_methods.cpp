@@ -11,7 +11,7 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-constexpr const char* kMixed =
+constexpr const char* kMixedModel =
     "A linear mixed model took every trial (restricted maximum likelihood, Satterthwaite's degrees "
     "of freedom).";
 
@@ -43,7 +43,7 @@ std::string methods(const StudyResult& study) {
       "bias-corrected and accelerated bootstrap intervals (9,999 random arrangements or resamples, "
       "or all arrangements if there are at most 1,000,000). {} Intervals have a coverage of 95 %; "
       "those of shares of variance have 90 % and invert the noncentral F distribution.{}",
-      joined(parameters), tests_of(study.statistics.tests), kMixed,
+      joined(parameters), tests_of(study.statistics.tests), kMixedModel,
       study.simulated() ? " All participants were simulated." : "");
 }
 

@@ -22,7 +22,7 @@ std::string tested(const Defined<JointTest>& test) {
                      test->f, p_value(test->p));
 }
 
-std::vector<std::string> row_of(const std::string& effect, const Coefficient& c) {
+std::vector<std::string> model_row(const std::string& effect, const Coefficient& c) {
   return {effect, number(c.estimate), fmt::format("{} to {}", number(c.low), number(c.high)),
           tested(c)};
 }
@@ -47,11 +47,11 @@ void add_terms(Document& document, const StudyMixed& study) {
   }
 }
 
-void add_effects(Document& document, const StudyMixed& study) {
-  Rows rows{row_of(study.conditions[0] + " (mean)", study.model->coefficients[0])};
+void add_model_effects(Document& document, const StudyMixed& study) {
+  Rows rows{model_row(study.conditions[0] + " (mean)", study.model->coefficients[0])};
   for (const MixedPair& pair : study.pairs) {
     if (pair.difference) {
-      auto row = row_of(pair.a + " − " + pair.b, *pair.difference);
+      auto row = model_row(pair.a + " − " + pair.b, *pair.difference);
       row.push_back(pair.holm ? p_value(*pair.holm) : "");
       rows.push_back(std::move(row));
     }
@@ -81,7 +81,7 @@ void add_mixed(Document& document, const StudyStatistics& statistics) {
         "The model takes the differences between any two conditions to vary alike (sphericity). If "
         "Mauchly's test above speaks against that, trust the tests above.");
   }
-  add_effects(document, study);
+  add_model_effects(document, study);
   add_terms(document, study);
 }
 

@@ -33,7 +33,8 @@ std::string worst_lag(const std::optional<Spread>& s) {
   return s ? shown(1e3 * (-s->low > s->high ? s->low : s->high), "ms") : "-";
 }
 
-void add_participants(Document& document, const std::vector<ParticipantQuality>& participants) {
+void add_participant_quality(Document& document,
+                             const std::vector<ParticipantQuality>& participants) {
   Rows rows;
   for (const ParticipantQuality& p : participants) {
     rows.push_back({p.subject, std::to_string(p.trials), std::to_string(p.flagged),
@@ -83,7 +84,7 @@ void add_trial_quality(Document& document, const StudyResult& study) {
       "a "
       "number is far from what the shipped studies give; a flag excludes nothing by itself. "
       "scores.csv has these numbers, and more, for each trial.");
-  add_participants(document, participant_quality(study.scores));
+  add_participant_quality(document, participant_quality(study.scores));
   add_flagged(document, study);
 }
 

@@ -189,7 +189,7 @@ Json table_1(const StudyStatistics& s) {
   return rows;
 }
 
-Json learning(const StudyStatistics& s) {
+Json learning_json(const StudyStatistics& s) {
   Json rows = Json::array();
   for (const auto& point : s.learning) {
     rows.push_back({{"condition", point.condition},
@@ -284,7 +284,7 @@ Json quality(const StudyResult& study) {
   return all;
 }
 
-void add_sessions(Json& root, const StudyResult& study) {
+void add_session_json(Json& root, const StudyResult& study) {
   root["quality"] = quality(study);
   root["tracking"] = {{"overall", tracking(study.tracking, study.over_path)},
                       {"participants", Json::array()}};
@@ -311,11 +311,11 @@ std::string statistics_json(const StudyResult& study) {
   root["mixed_model"] = mixed_model(s.mixed);
   root["published"] = published(s);
   root["table_1"] = table_1(s);
-  root["learning"] = learning(s);
+  root["learning"] = learning_json(s);
   root["blocks"] = blocks(s);
   root["change_per_block"] = to_json(s.slope);
   if (study.curves_from.empty()) {
-    add_sessions(root, study);
+    add_session_json(root, study);
   } else {
     root["curves_from"] = study.curves_from;
   }

@@ -13,7 +13,7 @@
 namespace haptrial::analysis {
 namespace {
 
-double p_value(double t, double df, Tail tail) {
+double p_of_t(double t, double df, Tail tail) {
   switch (tail) {
     case Tail::kLess:
       return t_upper_tail(-t, df);
@@ -32,7 +32,7 @@ Defined<TTest> from_error(double difference, double standard_error, double df, T
     return Undefined{kBeyondDouble};
   }
   const double half = t_quantile(0.5 + 0.5 * level, df) * standard_error;
-  TTest result{t, df, p_value(t, df, tail), difference};
+  TTest result{t, df, p_of_t(t, df, tail), difference};
   result.low = difference - half;
   result.high = difference + half;
   result.error = standard_error;

@@ -27,7 +27,8 @@ double two_sample_scale(std::size_t a, std::size_t b) {
   return std::sqrt(1.0 / static_cast<double>(a) + 1.0 / static_cast<double>(b));
 }
 
-Defined<EffectSize> share(double value, double f, double df_effect, double df_error, double level) {
+Defined<EffectSize> eta_share(double value, double f, double df_effect, double df_error,
+                              double level) {
   const auto limits = noncentral_f_limits(f, df_effect, df_error, level);
   if (!limits) {
     return Undefined{limits.because()};
@@ -79,7 +80,7 @@ Defined<EffectSize> partial_eta_squared(double f, double df_effect, double df_er
   if (!usable(f, df_effect, df_error)) {
     return Undefined{kNoF};
   }
-  return share(f * df_effect / (f * df_effect + df_error), f, df_effect, df_error, level);
+  return eta_share(f * df_effect / (f * df_effect + df_error), f, df_effect, df_error, level);
 }
 
 Defined<EffectSize> partial_omega_squared(double f, double df_effect, double df_error,
@@ -88,7 +89,7 @@ Defined<EffectSize> partial_omega_squared(double f, double df_effect, double df_
     return Undefined{kNoF};
   }
   const double value = (f - 1.0) * df_effect / (f * df_effect + df_error + 1.0);
-  return share(std::max(0.0, value), f, df_effect, df_error, level);
+  return eta_share(std::max(0.0, value), f, df_effect, df_error, level);
 }
 
 Defined<EffectSize> eta_squared(const Anova& anova, double level) {

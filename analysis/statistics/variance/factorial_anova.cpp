@@ -12,8 +12,9 @@ namespace haptrial::analysis {
 namespace {
 
 /// The hypothesis that contrasts of the cells' means are 0: m' C (C' N^-1 C)^-1 C' m.
-Defined<Anova> tested(const Eigen::MatrixXd& contrasts, const Eigen::VectorXd& means,
-                      const Eigen::VectorXd& counts, double squares_within, double df_within) {
+Defined<Anova> tested_contrasts(const Eigen::MatrixXd& contrasts, const Eigen::VectorXd& means,
+                                const Eigen::VectorXd& counts, double squares_within,
+                                double df_within) {
   const Eigen::VectorXd found = contrasts.transpose() * means;
   const Eigen::MatrixXd spread =
       contrasts.transpose() * counts.cwiseInverse().asDiagonal() * contrasts;
@@ -69,9 +70,11 @@ Defined<TwoWayAnova> two_way_anova(const std::vector<std::vector<double>>& cells
   const auto a = within::contrasts(levels_a);
   const auto b = within::contrasts(levels_b);
   TwoWayAnova result;
-  result.a = tested(within::product(a, within::constant(levels_b)), means, counts, squares, df);
-  result.b = tested(within::product(within::constant(levels_a), b), means, counts, squares, df);
-  result.interaction = tested(within::product(a, b), means, counts, squares, df);
+  result.a =
+      tested_contrasts(within::product(a, within::constant(levels_b)), means, counts, squares, df);
+  result.b =
+      tested_contrasts(within::product(within::constant(levels_a), b), means, counts, squares, df);
+  result.interaction = tested_contrasts(within::product(a, b), means, counts, squares, df);
   return result;
 }
 

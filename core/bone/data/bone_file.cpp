@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kLevel = 6;
 
-std::string head_of(const BoneModel& model) {
+std::string bone_head(const BoneModel& model) {
   const geometry::VoxelGrid& grid = model.grid;
   const bool two = !model.density.empty();
   const double h = 1e3 * grid.spacing;
@@ -77,7 +77,7 @@ void save_bone(const std::filesystem::path& file, const BoneModel& model, bool o
   }
   check(model);
   WholeFile out(file, overwrite);
-  out.write(head_of(model));
+  out.write(bone_head(model));
   const std::vector<char> bytes = compressed(bytes_of(model));
   out.write({bytes.data(), bytes.size()});
   out.finish();

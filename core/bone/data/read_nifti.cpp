@@ -12,11 +12,11 @@
 namespace haptrial::bone {
 namespace {
 
-struct Forget {
+struct ForgetNifti {
   void operator()(nifti_image* image) const { nifti_image_free(image); }
 };
 
-double metres(int unit) {
+double nifti_metres(int unit) {
   switch (unit) {
     case NIFTI_UNITS_METER:
       return 1.0;
@@ -28,7 +28,7 @@ double metres(int unit) {
 }
 
 /// The columns of a matrix of the file, which is RAS.
-void take_places(const nifti_dmat44& matrix, double unit, VolumeHead& head) {
+void take_nifti_places(const nifti_dmat44& matrix, double unit, VolumeHead& head) {
   const Eigen::Vector3d to_lps(-unit, -unit, unit);
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
@@ -38,7 +38,7 @@ void take_places(const nifti_dmat44& matrix, double unit, VolumeHead& head) {
   }
 }
 
-VolumeHead head_of(const std::string& name, const nifti_image& image) {
+VolumeHead nifti_head(const std::string& name, const nifti_image& image) {
   VolumeHead head;
   head.format = "NIfTI";
   const std::int64_t more[] = {image.nt, image.nu, image.nv, image.nw};
@@ -50,11 +50,11 @@ VolumeHead head_of(const std::string& name, const nifti_image& image) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     head.size[axis] = static_cast<std::int32_t>(std::clamp<std::int64_t>(sizes[axis], 0, 1 << 30));
   }
-  const double unit = metres(image.xyz_units);
+  const double unit = nifti_metres(image.xyz_units);
   if (image.sform_code > 0) {
-    take_places(image.sto_xyz, unit, head);
+    take_nifti_places(image.sto_xyz, unit, head);
   } else if (image.qform_code > 0) {
-    take_places(image.qto_xyz, unit, head);
+    take_nifti_places(image.qto_xyz, unit, head);
   } else {
     head.steps = (unit * Eigen::Vector3d(-image.dx, -image.dy, image.dz)).asDiagonal();
   }
@@ -63,7 +63,7 @@ VolumeHead head_of(const std::string& name, const nifti_image& image) {
 }
 
 template <class T>
-void convert(const void* data, double slope, double offset, BigArray<float>& values) {
+void convert_nifti(const void* data, double slope, double offset, BigArray<float>& values) {
   const auto* bytes = static_cast<const char*>(data);
   for (std::size_t i = 0; i < values.size(); ++i) {
     T value;
@@ -73,11 +73,11 @@ void convert(const void* data, double slope, double offset, BigArray<float>& val
 }
 
 /// @returns false for a type that is no number.
-bool convert(const nifti_image& image, BigArray<float>& values) {
+bool convert_nifti(const nifti_image& image, BigArray<float>& values) {
   const bool scaled = std::isfinite(image.scl_slope) && image.scl_slope != 0.0;
   const double slope = scaled ? image.scl_slope : 1.0;
   const double offset = scaled && std::isfinite(image.scl_inter) ? image.scl_inter : 0.0;
-  const auto take = [&]<class T>(T) { convert<T>(image.data, slope, offset, values); };
+  const auto take = [&]<class T>(T) { convert_nifti<T>(image.data, slope, offset, values); };
   switch (image.datatype) {
     case DT_UINT8:
       return take(std::uint8_t{}), true;
@@ -109,18 +109,18 @@ bool convert(const nifti_image& image, BigArray<float>& values) {
 SourceVolume read_nifti(const std::filesystem::path& file, const Room& room) {
   const std::string name = file.string();
   nifti_set_debug_level(0);
-  const std::unique_ptr<nifti_image, Forget> image(nifti_image_read(name.c_str(), 0));
+  const std::unique_ptr<nifti_image, ForgetNifti> image(nifti_image_read(name.c_str(), 0));
   if (!image) {
     throw InputError(fmt::format("{}: cannot be read as NIfTI: its header is damaged", name));
   }
-  SourceVolume volume{head_of(name, *image), {}};
+  SourceVolume volume{nifti_head(name, *image), {}};
   check_head(name, volume.head, room);
   if (static_cast<std::size_t>(image->nvox) != volume.head.count() ||
       nifti_image_load(image.get()) != 0 || image->data == nullptr) {
     throw InputError(fmt::format("{}: is shorter than its header states, or damaged", name));
   }
   volume.values.resize(volume.head.count());
-  if (!convert(*image, volume.values)) {
+  if (!convert_nifti(*image, volume.values)) {
     throw InputError(fmt::format("{}: its values are of type {}; allowed: integers or real numbers",
                                  name, nifti_datatype_string(image->datatype)));
   }

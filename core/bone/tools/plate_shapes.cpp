@@ -25,7 +25,7 @@ struct OutlinePoint {
   bool bar_end{false};  // the side to the next point is the middle of a bar
 };
 
-void check(const PlateShape& shape) {
+void check_shape(const PlateShape& shape) {
   const bool sizes = shape.hole_radius > 0.0 && shape.pad_radius > shape.hole_radius &&
                      shape.bar_width > 0.0 && shape.bar_width < 2.0 * shape.pad_radius &&
                      shape.thickness > 0.0 && shape.pad_radius < 1.0 && shape.thickness < 1.0;
@@ -51,7 +51,7 @@ struct Bar {
 class PlateMaker {
  public:
   explicit PlateMaker(const PlateShape& shape) : shape_(shape) {
-    check(shape);
+    check_shape(shape);
     for (std::size_t i = 0; i + 1 < shape.holes.size(); ++i) {
       const Vector2d along = (shape.holes[i + 1] - shape.holes[i]).normalized();
       const Vector2d side(-along.y(), along.x());

@@ -37,7 +37,7 @@ struct ErrorInfo {  // as the vendor lays it out
   unsigned device;
 };
 
-const char* sentence(unsigned error) noexcept {
+const char* hd_sentence(unsigned error) noexcept {
   switch (error) {
     case 0x200:
       return "the device's motors are too warm";
@@ -63,7 +63,7 @@ const char* sentence(unsigned error) noexcept {
 /// These leave the device answering, but without the force that was asked for.
 bool only_force_is_off(unsigned error) noexcept { return error >= 0x200 && error <= 0x204; }
 
-void check(const OpenHapticsParameters& p, double rate) {
+void check_hd(const OpenHapticsParameters& p, double rate) {
   if (!(p.max_force > 0.0 && p.workspace_radius > 0.0 && p.patience > 0.0 && rate > 0.0)) {
     throw std::invalid_argument("OpenHapticsDevice: a parameter is out of its bounds");
   }
@@ -124,7 +124,7 @@ OpenHapticsParameters read_open_haptics_parameters(Table& table) {
 
 OpenHapticsDevice::OpenHapticsDevice(const OpenHapticsParameters& parameters, double rate,
                                      const std::string& library)
-    : parameters_((check(parameters, rate), parameters)),
+    : parameters_((check_hd(parameters, rate), parameters)),
       api_(std::make_unique<const Api>(library)),
       device_(api_->init_device(parameters.name.empty() ? nullptr : parameters.name.c_str())),
       patience_ticks_(std::max(1, static_cast<int>(std::lround(parameters.patience * rate)))) {
@@ -146,7 +146,7 @@ void OpenHapticsDevice::require(const char* what) const {
   const ErrorInfo error = api_->get_error();
   if (error.code != 0) {
     throw RunError(fmt::format("the OpenHaptics device could not {}: {} (0x{:x})", what,
-                               sentence(error.code), error.code));
+                               hd_sentence(error.code), error.code));
   }
 }
 
@@ -253,7 +253,7 @@ bool OpenHapticsDevice::read(DeviceReading& reading) noexcept {
     trouble_ = "the device's scheduler gives no positions";
     return false;
   }
-  trouble_ = latest_.error == 0 ? "" : sentence(latest_.error);
+  trouble_ = latest_.error == 0 ? "" : hd_sentence(latest_.error);
   if (latest_.error != 0 && !only_force_is_off(latest_.error)) {
     return false;
   }

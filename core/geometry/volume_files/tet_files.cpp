@@ -175,8 +175,8 @@ void write_gmsh(const fs::path& file, const TetMesh& mesh, bool overwrite,
   out.finish();
 }
 
-void write_hdf5(const fs::path& file, const TetMesh& mesh, bool overwrite,
-                const WorkReport& report) {
+void write_tet_hdf5(const fs::path& file, const TetMesh& mesh, bool overwrite,
+                    const WorkReport& report) {
   WholeFile out(file, overwrite);
   out.close();
   h5::File content(out.part());
@@ -213,7 +213,7 @@ void write_tet_mesh(const fs::path& file, const TetMesh& mesh, bool overwrite,
   } else if (ending == ".msh") {
     write_gmsh(file, mesh, overwrite, report);
   } else if (ending == ".h5") {
-    write_hdf5(file, mesh, overwrite, report);
+    write_tet_hdf5(file, mesh, overwrite, report);
   } else {
     write_tetgen(file, mesh, overwrite, report);
   }

@@ -206,8 +206,8 @@ TableList tables_of(const RecoveredRows& rows, const TableList& needed) {
   return tables;
 }
 
-void write(SessionWriter writer, const RecoveredRows& rows, const Plan& plan,
-           const std::function<std::string(const Written&)>& sentence) {
+void write_repaired(SessionWriter writer, const RecoveredRows& rows, const Plan& plan,
+                    const std::function<std::string(const Written&)>& sentence) {
   Written written;
   write_rows(
       writer, rows, [&](std::uint64_t sequence) { return plan.keeps(sequence); },
@@ -327,7 +327,7 @@ Repair repair_session(const fs::path& partial, const std::string& wrong, const T
   Repair repair;
   repair.dropped_passes = plan.dropped_passes();
   SessionWriter writer(out, *info, tables_of(rows, needed));
-  write(std::move(writer), rows, plan, [&](const Written& written) {
+  write_repaired(std::move(writer), rows, plan, [&](const Written& written) {
     repair.dropped_rows = rows.counts.at(samples_table().schema().name) - written.samples;
     repair.told = fmt::format(
         "{} was damaged ({}); kept: {} samples ({} missing between them), {} passes ({} "

@@ -1,7 +1,13 @@
 #include "core/record/rows/common_tables.h"
 
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <string>
+
 #include "core/record/rows/device_row.h"
 #include "core/record/rows/response.h"
+#include "core/record/rows/session_tables.h"
 #include "core/record/rows/trial_facts.h"
 
 namespace haptrial::record {
@@ -10,6 +16,25 @@ const TableList& common_tables() {
   static const TableList tables{&responses_table(), &table_of<DeviceRow>(), &table_of<SkippedRow>(),
                                 &table_of<DampingRow>()};
   return tables;
+}
+
+void check_chunk_sizes(const TableList& own) {
+  std::set<const TableDescription*> tables(own.begin(), own.end());
+  tables.insert(session_tables().begin(), session_tables().end());
+  tables.insert(common_tables().begin(), common_tables().end());
+  std::map<std::size_t, std::string> by_size;
+  for (const TableDescription* table : tables) {
+    const TableSchema& schema = table->schema();
+    const bool each_tick = table->of() == RowsOf::kEachTick;
+    const std::size_t step = each_tick ? kLiveChunkStep : schema.chunk_rows;
+    for (std::size_t rows = step; rows <= schema.chunk_rows; rows += step) {
+      const auto [at, is_new] = by_size.emplace(rows * schema.row_bytes(), table->name());
+      if (!is_new) {
+        throw std::invalid_argument("the chunks of /" + at->second + " and /" + table->name() +
+                                    " may be of one size; choose another length for one of them");
+      }
+    }
+  }
 }
 
 }  // namespace haptrial::record

@@ -8,4 +8,10 @@ namespace haptrial::record {
 /// devices, what became of trials.
 const TableList& common_tables();
 
+/// Recovery knows whose a chunk is by its inflated size.
+/// @param own  tables of protocols
+/// @throws std::invalid_argument naming two tables, of these and those of every session, whose
+/// chunks may be of one size; another number of rows in a chunk mends it
+void check_chunk_sizes(const TableList& own);
+
 }  // namespace haptrial::record

@@ -27,7 +27,7 @@ const Table<DampingRow>& table_of<DampingRow>() {
   static const T table(
       {"damping",
        "one row for each pass during whose run the hand did not carry all the damping",
-       64,
+       56,
        RowsOf::kSession,
        {"time_ns"},
        "damping",

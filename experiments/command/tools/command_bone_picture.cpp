@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kFiner = 2;  // drawn pixels to one of the picture, each way
 
-void check(const BonePictureOptions& options) {
+void check_options(const BonePictureOptions& options) {
   if (std::filesystem::path(options.out).extension() != ".png") {
     throw InputError(fmt::format("{}: is not a picture by its name; allowed: .png", options.out));
   }
@@ -109,7 +109,7 @@ void add_burr(const BonePictureOptions& options, render::BoneFrame& frame) {
 }  // namespace
 
 int bone_picture(const BonePictureOptions& options) {
-  check(options);
+  check_options(options);
   const MemoryBudget budget(options.max_memory);
   bone::LoadOptions load;
   load.without = options.without;

@@ -176,27 +176,18 @@ TEST(DrillingRecordTest, OtherSessionsHaveNoneOfIt) {
   EXPECT_TRUE(recorded_bones(reader).empty());
 }
 
-/// Recovery knows a chunk by its inflated size.
 TEST(DrillingRecordTest, NoTwoTablesHaveChunksOfOneSize) {
-  std::set<std::size_t> sizes;
-  const auto add_size = [&](std::size_t bytes) {
-    EXPECT_TRUE(sizes.insert(bytes).second) << bytes;
-  };
-  for (const TableSchema* each :
-       {&trials_table().schema(), &events_table().schema(), &stimuli_table().schema(),
-        &timing_table().schema(), &frames_table().schema(), &attributes_table().schema(),
-        &runs_table().schema(), &begun_table().schema()}) {
-    add_size(each->row_bytes() * each->chunk_rows);
-  }
-  for (const TableDescription* table : drilling_tables()) {
-    if (table->of() != RowsOf::kEachTick) {
-      add_size(table->schema().row_bytes() * table->schema().chunk_rows);
-    }
-  }
-  for (std::size_t rows = kLiveChunkStep; rows <= samples_table().schema().chunk_rows;
-       rows += kLiveChunkStep) {
-    add_size(rows * samples_table().schema().row_bytes());
-    add_size(rows * table_of<ToolRow>().schema().row_bytes());
+  EXPECT_NO_THROW(check_chunk_sizes(drilling_tables()));
+  const Table<RemovalRow> twin(
+      {"twin", "as long as a row of /runs",
+       runs_table().schema().chunk_rows * runs_table().schema().row_bytes() / 8},
+      {Table<RemovalRow>::column("sequence", &RemovalRow::sequence, "1", "of the tick")});
+  try {
+    check_chunk_sizes({&twin});
+    FAIL() << "two tables with chunks of one size were taken";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("/twin"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("/runs"), std::string::npos) << error.what();
   }
 }
 
