@@ -238,9 +238,6 @@ std::int32_t SessionRecord::begin_pass(const PlannedTrial& trial, const record::
   row_open_ = true;
   times_.clear();
   writer_.begin_pass({passes_, row_});
-  if (real_) {
-    writer_.flush();  // what the pass is, is in the file before any tick of it
-  }
   for (record::Sink* sink : sinks_) {
     sink->begin_pass(row_, passes_);
   }

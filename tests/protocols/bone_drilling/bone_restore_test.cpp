@@ -68,6 +68,7 @@ class BoneRestoreTest : public testing::Test {
     const record::SessionReader reader = whole();
     record::SessionWriter writer(file_, reader.info(), record::drilling_tables(),
                                  record::rows_of(record::recorded_bones(reader)));
+    writer.begin_pass(reader.begun().at(0));
     auto removals = rows_before<record::RemovalRow>(reader, kCrash);
     if (spoil) {
       spoil(removals);
@@ -190,7 +191,7 @@ TEST_F(BoneRestoreTest, TimeGoesOnAfterEverythingThatIsInTheFile) {
   EXPECT_TRUE(resumed);
 }
 
-/// The second pass on a bone ends in a crash too: nothing in /trials says on which bone it was.
+/// The second pass on a bone ends in a crash too: /begun says on which bone it was.
 TEST_F(BoneRestoreTest, ASecondCrashIsOnTheSameBone) {
   crash();
   run(file_, true);
@@ -200,6 +201,9 @@ TEST_F(BoneRestoreTest, ASecondCrashIsOnTheSameBone) {
     const record::SessionReader reader(file_);
     record::SessionWriter writer(again, reader.info(), record::drilling_tables(),
                                  record::rows_of(record::recorded_bones(reader)));
+    for (const record::BegunRow& begun : reader.begun()) {
+      writer.begin_pass(begun);
+    }
     writer.add(std::span<const record::ToolRow>(rows_before<record::ToolRow>(reader, kSecond)));
     writer.add(
         std::span<const record::RemovalRow>(rows_before<record::RemovalRow>(reader, kSecond)));
