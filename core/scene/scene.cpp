@@ -242,6 +242,9 @@ Vector3d Scene::force(const PointState& hand) noexcept {
     part.state.work += part.state.force.dot(hand.position - before_);
     part.state.weight = part.fade.weight();
     part.state.force.setZero();
+    if (!part.acts()) {
+      part.state.contact = part.state.limited = part.state.sliding = false;
+    }
     if (part.begins) {
       part.begin(hand);
     }

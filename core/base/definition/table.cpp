@@ -304,6 +304,9 @@ std::vector<std::vector<NumberOrText>> Table::rows(std::string_view key, std::st
   const bool nested = outer->get(0)->is_array();
   for (std::size_t i = 0; i < (nested ? outer->size() : 1); ++i) {
     const toml::array* inner = nested ? outer->get(i)->as_array() : outer;
+    if (inner == nullptr) {
+      refuse(key, fmt::format("an array with {}", shown(*outer->get(i))), allowed);
+    }
     rows.emplace_back();
     for (std::size_t j = 0; inner != nullptr && j < inner->size(); ++j) {
       const toml::node& entry = *inner->get(j);

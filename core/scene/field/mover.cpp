@@ -32,6 +32,6 @@ Eigen::Vector3d Mover::force(const Felt& felt, FieldState& state) noexcept {
   return controller_.force(move_.at(felt.time), felt.hand);
 }
 
-void Mover::adopt(const Mover& before) noexcept { start({before.from_, {}}); }
+void Mover::adopt(const Mover& before) noexcept { start({before.from_, Eigen::Vector3d::Zero()}); }
 
 }  // namespace haptrial::scene

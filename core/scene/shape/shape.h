@@ -55,10 +55,6 @@ class PlacedShape {
   /// Servo thread.
   bool contains(const Eigen::Vector3d& p) const noexcept { return distance(p).distance <= 0.0; }
 
-  /// Whether the inside is convex and its surface round or flat on all sides but for edges: all
-  /// shapes but the half-space have a surface that curves or bends.
-  bool is_flat() const noexcept { return kind_ == Kind::kHalfSpace; }
-
  private:
   enum class Kind { kHalfSpace, kSphere, kBox, kCylinder };
 
