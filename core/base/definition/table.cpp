@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
 #include <sstream>
@@ -281,6 +282,64 @@ std::vector<double> Table::numbers(std::string_view key, const Bounds& bounds,
 
 std::vector<std::string> Table::texts(std::string_view key) {
   return array<std::string>(key, "an array of texts in quotes");
+}
+
+std::vector<std::vector<NumberOrText>> Table::rows(std::string_view key, std::string_view allowed) {
+  std::vector<std::vector<NumberOrText>> rows;
+  if (node_->table == nullptr) {
+    return rows;
+  }
+  node_->read.emplace(key);
+  const toml::node* node = node_->table->get(key);
+  if (node == nullptr) {
+    note(line_of(node_->table),
+         fmt::format("{} is missing; allowed: {}", node_->full(key), allowed));
+    return rows;
+  }
+  const toml::array* outer = node->as_array();
+  if (outer == nullptr || outer->empty()) {
+    refuse(key, outer == nullptr ? shown(*node) : "an empty array", allowed);
+    return rows;
+  }
+  const bool nested = outer->get(0)->is_array();
+  for (std::size_t i = 0; i < (nested ? outer->size() : 1); ++i) {
+    const toml::array* inner = nested ? outer->get(i)->as_array() : outer;
+    if (inner == nullptr) {
+      refuse(key, fmt::format("an array with {}", shown(*outer->get(i))), allowed);
+    }
+    rows.emplace_back();
+    for (std::size_t j = 0; inner != nullptr && j < inner->size(); ++j) {
+      const toml::node& entry = *inner->get(j);
+      const bool good = entry.is_number() || entry.is_string();
+      if (!good) {
+        refuse(key, fmt::format("an array with {}", shown(entry)), allowed);
+      }
+      rows.back().push_back({entry.is_string() ? std::nullopt : entry.value<double>(),
+                             entry.value<std::string>().value_or("")});
+    }
+  }
+  return rows;
+}
+
+std::optional<std::string> Table::whole_text(std::string_view key) const {
+  const toml::node* node = node_->table == nullptr ? nullptr : node_->table->get(key);
+  if (node == nullptr || !node->is_string()) {
+    return std::nullopt;
+  }
+  node_->read.emplace(key);
+  return node->value<std::string>();
+}
+
+bool Table::has_text(std::string_view key) const {
+  const toml::node* node = node_->table == nullptr ? nullptr : node_->table->get(key);
+  const std::function<bool(const toml::node*)> within_it = [&](const toml::node* each) {
+    const toml::array* array = each == nullptr ? nullptr : each->as_array();
+    return array == nullptr
+               ? each != nullptr && each->is_string()
+               : std::any_of(array->begin(), array->end(),
+                             [&](const toml::node& entry) { return within_it(&entry); });
+  };
+  return within_it(node);
 }
 
 Table Table::table(std::string_view key) {

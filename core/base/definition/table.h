@@ -17,6 +17,12 @@ struct NamedText {
   std::string file_name;
 };
 
+/// An entry of an array in which variables may stand for numbers.
+struct NumberOrText {
+  std::optional<double> number;  // nothing: the text counts
+  std::string text;
+};
+
 /// A table of a definition file (TOML), read key by key. Each read checks presence, type and bounds
 /// and notes a problem instead of throwing, so that a definition is validated whole; finish() on
 /// the document then throws one InputError with a sentence for every problem:
@@ -45,11 +51,18 @@ class Table {
   std::string choice(std::string_view key, const std::vector<std::string>& allowed);
   std::vector<double> numbers(std::string_view key, const Bounds& bounds, std::string_view unit);
   std::vector<std::string> texts(std::string_view key);
+  /// An array of numbers and texts as one row, or an array of such arrays: what stands for a vector
+  /// or a matrix if entries may be variables. Bounds are the caller's.
+  std::vector<std::vector<NumberOrText>> rows(std::string_view key, std::string_view allowed);
 
   /// A required table within this one; an absent one is noted and reads as empty without further
   /// problems.
   Table table(std::string_view key);
   bool has(std::string_view key) const;
+  /// Whether a text stands there, alone or within an array.
+  bool has_text(std::string_view key) const;
+  /// The text under `key`; nothing, and no problem, if something else is there.
+  std::optional<std::string> whole_text(std::string_view key) const;
   /// A table of this one that another reader knows: its keys are not looked at here.
   void leave(std::string_view key);
   /// The keys of this table in the order of their names.

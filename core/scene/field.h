@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <variant>
+
+#include "core/scene/field/detent.h"
+#include "core/scene/field/friction.h"
+#include "core/scene/field/hold.h"
+#include "core/scene/field/inertia.h"
+#include "core/scene/field/mover.h"
+#include "core/scene/field/push.h"
+#include "core/scene/field/relief.h"
+#include "core/scene/field/surface.h"
+#include "core/scene/field/vibration.h"
+#include "core/scene/field/viscous.h"
+
+namespace haptrial::scene {
+
+/// The parameters of every kind of field; each struct's header has its law, units and bounds.
+using FieldKind =
+    std::variant<ConstantParameters, RampParameters, PulseParameters, SpringParameters,
+                 LineChannelParameters, AxisChannelParameters, PlaneParameters, SurfaceParameters,
+                 GratingParameters, TextureParameters, ViscousParameters, MatrixViscousParameters,
+                 InertiaParameters, FrictionParameters, SineVibrationParameters,
+                 NoiseVibrationParameters, TapParameters, DetentParameters, ClickParameters,
+                 MoverParameters>;
+
+/// One field of force as a definition states it: plain data that may change between trials.
+struct Field {
+  std::string name;  // of the table [fields.NAME]; other fields lie `on` it by this name
+  FieldKind kind;
+  double limit{10.0};     // the force is scaled to at most this, its direction kept > 0 [N]
+  double fade_in{0.05};   // after it is switched on >= 0 [s]
+  double fade_out{0.05};  // after it is switched off >= 0 [s]
+};
+
+/// The surface that a field lies on; empty if it has none.
+const std::string& surface_of(const Field& field) noexcept;
+
+inline bool is_surface(const Field& field) noexcept {
+  return std::holds_alternative<SurfaceParameters>(field.kind);
+}
+/// A relief shapes the force of the surface that it lies on and has none of its own.
+inline bool is_relief(const Field& field) noexcept {
+  return std::holds_alternative<GratingParameters>(field.kind) ||
+         std::holds_alternative<TextureParameters>(field.kind);
+}
+
+}  // namespace haptrial::scene

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/base/point_state.h"
+
+namespace haptrial::scene {
+
+/// What holds for every law of a scene, whatever its kind.
+struct Setting {
+  double limit{10.0};   // of the field's force, > 0 [N]
+  double rate{1000.0};  // of the servo loop, 1 / T > 0 [Hz]
+};
+
+/// What a surface field tells the fields that lie on it.
+struct SurfaceTouch {
+  Eigen::Vector3d normal{Eigen::Vector3d::UnitY()};  // away from the material
+  double pressing{0.0};                              // normal force >= 0, 0 without contact [N]
+  double closing_speed{0.0};                         // into the material, along the normal [m/s]
+};
+
+/// What a law is given on a tick.
+struct Felt {
+  PointState hand;                       // finite
+  double time{0.0};                      // since the field was switched on [s]
+  const SurfaceTouch* surface{nullptr};  // of the surface it lies on; null in free space
+};
+
+/// What a protocol can read of a field after a tick, to end a stage or to know what was felt.
+struct FieldState {
+  Eigen::Vector3d force{Eigen::Vector3d::Zero()};     // on the hand, limited and faded [N]
+  Eigen::Vector3d velocity{Eigen::Vector3d::Zero()};  // as the field filtered it [m/s]
+  Eigen::Vector3d normal{Eigen::Vector3d::UnitY()};   // of a surface, towards the free side
+  /// Surfaces and clicks: how deep the hand is in. Spring, channel, plane: how far it is from them.
+  /// Mover: the way still to go. Grating, texture: the height under the hand. Friction: the
+  /// bristle's deflection. [m]
+  double depth{0.0};
+  double weight{0.0};   // of the fade, 0 to 1
+  bool contact{false};  // touches the surface; of other fields: gives a force
+  bool limited{false};  // the limit cut the force of this tick
+  bool sliding{false};  // friction: slides rather than sticks
+  bool done{false};     // pulse or mover: over
+
+  // Since the field was switched on or forget_extremes() was called.
+  double max_depth{0.0};  // [m]
+  double max_force{0.0};  // [N]
+  double work{0.0};       // done on the hand: the force held over each tick times the way [J]
+};
+
+}  // namespace haptrial::scene

@@ -1,0 +1,53 @@
+#include "core/scene/field/surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/scene/shape/require.h"
+
+namespace haptrial::scene {
+
+using Eigen::Vector3d;
+
+Surface::Surface(const SurfaceParameters& parameters, const Setting& setting)
+    : shape_(parameters.shape),
+      inside_(parameters.felt_from_inside),
+      gains_(control::PdController(parameters.gains).gains()),
+      limit_(setting.limit) {}
+
+SurfaceDistance Surface::free_side(const Vector3d& p) const noexcept {
+  SurfaceDistance found = shape_.distance(p);
+  if (inside_) {
+    found.distance = -found.distance;
+    found.normal = -found.normal;
+  }
+  return found;
+}
+
+Vector3d Surface::force(const Felt& felt, FieldState& state) noexcept {
+  const SurfaceDistance here = free_side(felt.hand.position);
+  const double depth = relief_.height - here.distance;  // e
+  const Vector3d lean = here.normal - relief_.slope;    // g
+  state.normal = here.normal;
+  state.contact = depth > 0.0;
+  state.depth = std::max(depth, 0.0);
+  touch_ = {here.normal, 0.0, -here.normal.dot(felt.hand.velocity)};
+  if (!state.contact) {
+    return Vector3d::Zero();
+  }
+  const double most = limit_ / (1.0 + relief_.steepest);
+  const double wanted = gains_.stiffness * depth - gains_.damping * lean.dot(felt.hand.velocity);
+  const double pushed = std::clamp(wanted, 0.0, most);
+  state.limited = wanted > most;
+  const Vector3d force = pushed * lean;
+  touch_.pressing = std::max(force.dot(here.normal), 0.0);
+  return force;
+}
+
+double Surface::energy(const Vector3d& p) const noexcept {
+  const double depth = relief_.height - free_side(p).distance;
+  return control::PdController(gains_).stored(std::max(depth, 0.0),
+                                              limit_ / (1.0 + relief_.steepest));
+}
+
+}  // namespace haptrial::scene

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/control/pd_controller.h"
+#include "core/scene/field/field_state.h"
+#include "core/scene/shape/shape.h"
+
+namespace haptrial::scene {
+
+struct SurfaceParameters {
+  Shape shape;
+  bool felt_from_inside{false};        // then the hand is kept in the shape, else out of it
+  control::PdGains gains{800.0, 2.0};  // k >= 0 [N/m], b >= 0 [N·s/m]
+};
+
+/// The sum of the reliefs on a surface at a place.
+struct ReliefHere {
+  double height{0.0};                              // h [m]
+  Eigen::Vector3d slope{Eigen::Vector3d::Zero()};  // its gradient in W
+  double steepest{0.0};                            // bound of the gradient's length anywhere
+};
+
+/// A wall, box, sphere or cylinder that pushes the hand out along its normal n, with relief h:
+///
+///     e = depth + h(p),  g = n - ∇h,  f = clip(k e - b g · v, 0, F) g  if e > 0, else 0
+///
+/// n points to the free side; depth is the distance behind the surface. The hand is never pulled.
+/// F = limit / (1 + steepest slope), so that |f| stays within the limit. Passive: f at rest is
+/// minus the gradient of phi(e) with phi' = clip(k e, 0, F), and clip is monotone, so the damper
+/// takes energy. Reliefs tilt the force against the way uphill, as on real ridges, and change it
+/// along the normal (Minsky 1995 has the lateral part alone).
+class Surface {
+ public:
+  Surface(const SurfaceParameters& parameters, const Setting& setting);
+
+  void lay(const ReliefHere& relief) noexcept { relief_ = relief; }  // before force() or energy()
+  Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
+  double energy(const Eigen::Vector3d& p) const noexcept;  // [J]
+  const SurfaceTouch& touch() const noexcept { return touch_; }
+
+ private:
+  SurfaceDistance free_side(const Eigen::Vector3d& p) const noexcept;
+
+  PlacedShape shape_;
+  bool inside_;
+  control::PdGains gains_;
+  double limit_;
+  ReliefHere relief_;
+  SurfaceTouch touch_;
+};
+
+}  // namespace haptrial::scene

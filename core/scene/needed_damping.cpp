@@ -1,0 +1,96 @@
+#include "core/scene/needed_damping.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+#include <cmath>
+#include <numbers>
+
+namespace haptrial::scene {
+namespace {
+
+Steepness of_gains(const control::PdGains& gains) { return {true, gains.stiffness, gains.damping}; }
+
+Steepness of_matrix(const MatrixViscousParameters& p) {
+  const Eigen::Matrix3d& b = p.matrix;
+  const double size = b.cwiseAbs().maxCoeff();
+  const double largest =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(b + b.transpose()).eigenvalues().maxCoeff();
+  const bool symmetric = (b - b.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * size;
+  const bool takes = largest <= 1e-12 * size;
+  return {takes && (symmetric || std::isinf(p.velocity_filter)), 0.0,
+          Eigen::JacobiSVD<Eigen::Matrix3d>(b).singularValues()[0]};
+}
+
+/// phi(e) with e = depth + h: its second derivative is at most k |g|² along g, and phi' <= limit
+/// where h curves. A surface that closes in around the hand adds k at most.
+Steepness of_surface(const std::vector<Field>& fields, const Field& field) {
+  const auto& p = std::get<SurfaceParameters>(field.kind);
+  double slope = 0.0;
+  double curvature = 0.0;
+  for (const Field& other : fields) {
+    if (surface_of(other) != field.name) {
+      continue;
+    }
+    const Setting setting{other.limit};
+    if (const auto* grating = std::get_if<GratingParameters>(&other.kind)) {
+      slope += Grating(*grating, setting).steepest();
+      curvature += Grating(*grating, setting).most_curved();
+    } else if (const auto* texture = std::get_if<TextureParameters>(&other.kind)) {
+      slope += Texture(*texture, setting).steepest();
+      curvature += Texture(*texture, setting).most_curved();
+    }
+  }
+  const double lean = (1.0 + slope) * (1.0 + slope);
+  const bool closes_in = p.felt_from_inside && !std::holds_alternative<HalfSpace>(p.shape);
+  const double around = closes_in && slope > 0.0 ? p.gains.stiffness : 0.0;
+  return {true, p.gains.stiffness * lean + around + field.limit * curvature,
+          p.gains.damping * lean};
+}
+
+struct SteepnessOf {
+  const std::vector<Field>& fields;
+  const Field& field;
+
+  Steepness operator()(const ConstantParameters&) const { return {true, 0.0, 0.0}; }
+  Steepness operator()(const RampParameters&) const { return {}; }
+  Steepness operator()(const PulseParameters&) const { return {}; }
+  Steepness operator()(const SpringParameters& p) const { return of_gains(p.gains); }
+  Steepness operator()(const LineChannelParameters& p) const { return of_gains(p.gains); }
+  Steepness operator()(const AxisChannelParameters& p) const { return of_gains(p.gains); }
+  Steepness operator()(const PlaneParameters& p) const { return of_gains(p.gains); }
+  Steepness operator()(const SurfaceParameters&) const { return of_surface(fields, field); }
+  Steepness operator()(const GratingParameters&) const { return {true, 0.0, 0.0}; }
+  Steepness operator()(const TextureParameters&) const { return {true, 0.0, 0.0}; }
+  Steepness operator()(const ViscousParameters& p) const { return {true, 0.0, p.damping}; }
+  Steepness operator()(const MatrixViscousParameters& p) const { return of_matrix(p); }
+  Steepness operator()(const InertiaParameters&) const { return {}; }
+  Steepness operator()(const FrictionParameters& p) const { return {true, p.stiffness, 0.0}; }
+  Steepness operator()(const SineVibrationParameters&) const { return {}; }
+  Steepness operator()(const NoiseVibrationParameters&) const { return {}; }
+  Steepness operator()(const TapParameters&) const { return {}; }
+  Steepness operator()(const DetentParameters& p) const {
+    return {true, 2.0 * std::numbers::pi * p.peak / p.spacing, 0.0};
+  }
+  Steepness operator()(const ClickParameters& p) const { return {true, p.peak / p.travel, 0.0}; }
+  Steepness operator()(const MoverParameters& p) const {
+    return {false, p.gains.stiffness, p.gains.damping};
+  }
+};
+
+}  // namespace
+
+Steepness steepness(const std::vector<Field>& fields, std::size_t which) {
+  const Field& field = fields.at(which);
+  return std::visit(SteepnessOf{fields, field}, field.kind);
+}
+
+double needed_damping(const Steepness& field, double rate) noexcept {
+  return 0.5 * field.stiffness / rate + field.damping;
+}
+
+double needed_damping_below(double frequency, const Steepness& field, double rate) noexcept {
+  return 0.5 * field.stiffness / rate -
+         field.damping * std::cos(2.0 * std::numbers::pi * frequency / rate);
+}
+
+}  // namespace haptrial::scene

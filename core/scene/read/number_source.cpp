@@ -1,0 +1,114 @@
+#include "core/scene/read/number_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/base/definition/table.h"
+#include "core/base/definition/table_vector.h"
+
+namespace haptrial::scene {
+namespace {
+
+bool is_within(double x, const Bounds& b) {
+  return std::isfinite(x) && (b.open_low ? x > b.low : x >= b.low) && x <= b.high;
+}
+
+std::string range(const Bounds& b, std::string_view unit) {
+  return fmt::format("a number {} {} and at most {}{}", b.open_low ? "above" : "of at least", b.low,
+                     b.high, unit.empty() ? "" : fmt::format(" [{}]", unit));
+}
+
+constexpr const char* kRowsAllowed =
+    "three rows of three numbers, [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]]";
+
+}  // namespace
+
+std::optional<double> NumberSource::value_of(std::string_view) const { return std::nullopt; }
+std::optional<Eigen::Vector3d> NumberSource::vector_of(std::string_view) const {
+  return std::nullopt;
+}
+
+/// The worth of one text; nothing, with the problem noted, if it has none or is out of bounds.
+std::optional<double> NumberSource::entry(Table& table, std::string_view key, std::string_view text,
+                                          const Bounds& bounds, std::string_view unit) const {
+  const std::optional<double> value = value_of(text);
+  if (!value) {
+    table.reject(key, fmt::format("the text \"{}\"", text), range(bounds, unit));
+  } else if (!is_within(*value, bounds)) {
+    table.reject(key, fmt::format("{} (\"{}\")", *value, text), range(bounds, unit));
+    return std::nullopt;
+  }
+  return value;
+}
+
+double NumberSource::number(Table& table, std::string_view key, const Bounds& bounds,
+                            std::string_view unit) const {
+  if (const auto text = table.whole_text(key); text && value_of(*text)) {
+    const double otherwise = bounds.open_low ? bounds.high : bounds.low;
+    return entry(table, key, *text, bounds, unit).value_or(otherwise);
+  }
+  return table.number(key, bounds, unit);
+}
+
+Eigen::Vector3d NumberSource::vector(Table& table, std::string_view key, const Bounds& bounds,
+                                     std::string_view unit) const {
+  if (!table.has_text(key)) {
+    return read_vector(table, key, bounds, unit);
+  }
+  const std::string allowed =
+      fmt::format("three numbers, x, y and z, each {}", range(bounds, unit));
+  if (const auto whole = table.whole_text(key)) {
+    const auto found = vector_of(*whole);
+    const bool good =
+        found && is_within(found->minCoeff(), bounds) && is_within(found->maxCoeff(), bounds);
+    if (!good) {
+      table.reject(key, fmt::format("the text \"{}\"", *whole), allowed);
+    }
+    return good ? *found : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  }
+  const auto rows = table.rows(key, allowed);
+  if (rows.size() != 1 || rows[0].size() != 3) {
+    table.reject(key, "an array of another size", allowed);
+    return Eigen::Vector3d::Zero();
+  }
+  Eigen::Vector3d vector = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const NumberOrText& each = rows[0][static_cast<std::size_t>(i)];
+    const auto value = each.number ? each.number : entry(table, key, each.text, bounds, unit);
+    vector[i] = value.value_or(0.0);
+    if (value && !is_within(*value, bounds)) {
+      table.reject(key, fmt::format("an array with {}", *value), allowed);
+    }
+  }
+  return vector;
+}
+
+Eigen::Matrix3d NumberSource::matrix(Table& table, std::string_view key, const Bounds& bounds,
+                                     std::string_view unit) const {
+  const auto rows = table.rows(key, kRowsAllowed);
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+  const bool square =
+      rows.size() == 3 &&
+      std::all_of(rows.begin(), rows.end(), [](const auto& row) { return row.size() == 3; });
+  if (!square) {
+    table.reject(key, fmt::format("an array of {}", rows.size()), kRowsAllowed);
+    return matrix;
+  }
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      const NumberOrText& each = rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+      const auto value = each.number ? each.number : entry(table, key, each.text, bounds, unit);
+      matrix(i, j) = value.value_or(0.0);
+      if (value && !is_within(*value, bounds)) {
+        table.reject(key, fmt::format("an array with {}", *value), range(bounds, unit));
+      }
+    }
+  }
+  return matrix;
+}
+
+}  // namespace haptrial::scene

@@ -1,0 +1,304 @@
+#include "core/scene/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <type_traits>
+#include <variant>
+
+#include "core/control/pd_controller.h"
+#include "core/scene/field/fade.h"
+#include "core/scene/shape/require.h"
+
+namespace haptrial::scene {
+namespace {
+
+using Eigen::Vector3d;
+
+using Law = std::variant<Constant, Ramp, Pulse, Hold, Surface, Grating, Texture, Viscous, Inertia,
+                         Friction, SineVibration, NoiseVibration, Tap, Detent, Click, Mover>;
+
+template <class Parameters>
+struct LawOf;
+#define HAPTRIAL_LAW(parameters, law) \
+  template <>                         \
+  struct LawOf<parameters> {          \
+    using type = law;                 \
+  }
+HAPTRIAL_LAW(ConstantParameters, Constant);
+HAPTRIAL_LAW(RampParameters, Ramp);
+HAPTRIAL_LAW(PulseParameters, Pulse);
+HAPTRIAL_LAW(SpringParameters, Hold);
+HAPTRIAL_LAW(LineChannelParameters, Hold);
+HAPTRIAL_LAW(AxisChannelParameters, Hold);
+HAPTRIAL_LAW(PlaneParameters, Hold);
+HAPTRIAL_LAW(SurfaceParameters, Surface);
+HAPTRIAL_LAW(GratingParameters, Grating);
+HAPTRIAL_LAW(TextureParameters, Texture);
+HAPTRIAL_LAW(ViscousParameters, Viscous);
+HAPTRIAL_LAW(MatrixViscousParameters, Viscous);
+HAPTRIAL_LAW(InertiaParameters, Inertia);
+HAPTRIAL_LAW(FrictionParameters, Friction);
+HAPTRIAL_LAW(SineVibrationParameters, SineVibration);
+HAPTRIAL_LAW(NoiseVibrationParameters, NoiseVibration);
+HAPTRIAL_LAW(TapParameters, Tap);
+HAPTRIAL_LAW(DetentParameters, Detent);
+HAPTRIAL_LAW(ClickParameters, Click);
+HAPTRIAL_LAW(MoverParameters, Mover);
+#undef HAPTRIAL_LAW
+
+Law law_of(const Field& field, const Setting& setting) {
+  return std::visit(
+      [&](const auto& parameters) -> Law {
+        return typename LawOf<std::decay_t<decltype(parameters)>>::type(parameters, setting);
+      },
+      field.kind);
+}
+
+constexpr std::size_t kFreeSpace = Scene::kMostFields;
+
+/// The index of the surface that `field` lies on.
+std::size_t index_of_surface(const std::vector<Field>& fields, const Field& field) {
+  const std::string& name = surface_of(field);
+  if (name.empty()) {
+    if (is_relief(field)) {
+      throw std::invalid_argument("Scene: " + field.name + " must lie on a surface");
+    }
+    return kFreeSpace;
+  }
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (fields[i].name == name && is_surface(fields[i])) {
+      return i;
+    }
+  }
+  throw std::invalid_argument("Scene: " + field.name + " lies on " + name +
+                              ", which is not a surface of the scene");
+}
+
+}  // namespace
+
+struct Scene::Part {
+  Law law;
+  std::size_t kind;  // index in FieldKind
+  double limit;
+  double fade_in;
+  double fade_out;
+  std::size_t on;  // index of a surface, or kFreeSpace
+  Fade fade{};
+  bool begins{false};
+  double time{0.0};
+  ReliefHere relief{};  // of a surface
+  FieldState state{};
+
+  bool acts() const noexcept { return fade.on() || !fade.over(); }
+
+  void begin(const PointState& hand) noexcept {
+    begins = false;
+    time = 0.0;
+    std::visit(
+        [&](auto& each) {
+          if constexpr (requires { each.start(hand); }) {
+            each.start(hand);
+          }
+        },
+        law);
+  }
+};
+
+Scene::Scene(const std::vector<Field>& fields, double rate) : period_(1.0 / rate) {
+  require(std::isfinite(rate) && rate > 0.0, "Scene: rate must be finite and above 0");
+  require(fields.size() <= kMostFields, "Scene: at most 64 fields");
+  parts_.reserve(fields.size());
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const Field& field = fields[i];
+    try {
+      require(std::none_of(fields.begin(), fields.begin() + static_cast<std::ptrdiff_t>(i),
+                           [&](const Field& other) { return other.name == field.name; }),
+              "its name occurs twice");
+      require(std::isfinite(field.limit) && field.limit > 0.0, "limit must be finite and above 0");
+      require(std::isfinite(field.fade_in) && field.fade_in >= 0.0,
+              "fade_in must be finite and at least 0");
+      require(std::isfinite(field.fade_out) && field.fade_out >= 0.0,
+              "fade_out must be finite and at least 0");
+      parts_.push_back({law_of(field, {field.limit, rate}), field.kind.index(), field.limit,
+                        field.fade_in, field.fade_out, index_of_surface(fields, field)});
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument("field " + field.name + ": " + error.what());
+    }
+    if (is_relief(field)) {
+      reliefs_.push_back(i);
+    } else if (is_surface(field)) {
+      surfaces_.push_back(i);
+    }
+  }
+  forces_ = surfaces_;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (!is_relief(fields[i]) && !is_surface(fields[i])) {
+      forces_.push_back(i);
+    }
+  }
+}
+
+Scene::~Scene() = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+
+void Scene::switch_to(std::uint64_t mask) noexcept {
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    Part& part = parts_[i];
+    const bool on = (mask >> i & 1u) != 0;
+    if (on == part.fade.on()) {
+      continue;
+    }
+    if (on && !part.acts()) {
+      part.begins = true;
+      part.state = {};
+    }
+    part.fade.turn(on, on ? part.fade_in : part.fade_out);
+  }
+}
+
+void Scene::start_from(const Scene& before) noexcept {
+  before_ = before.before_;
+  const std::size_t shared = std::min(parts_.size(), before.parts_.size());
+  for (std::size_t i = 0; i < shared; ++i) {
+    Part& part = parts_[i];
+    const Part& old = before.parts_[i];
+    if (part.kind != old.kind) {
+      continue;
+    }
+    part.fade = old.fade;
+    part.begins = old.begins;
+    part.time = old.time;
+    part.state = old.state;
+    std::visit(
+        [&](auto& law) {
+          using Same = std::decay_t<decltype(law)>;
+          if constexpr (requires(const Same& same) { law.adopt(same); }) {
+            law.adopt(*std::get_if<Same>(&old.law));
+          }
+        },
+        part.law);
+  }
+}
+
+void Scene::lay_reliefs(const Vector3d& p) noexcept {
+  for (const std::size_t i : surfaces_) {
+    parts_[i].relief = {};
+  }
+  for (const std::size_t i : reliefs_) {
+    Part& part = parts_[i];
+    if (!part.acts() || !parts_[part.on].acts()) {
+      continue;
+    }
+    ReliefHere& relief = parts_[part.on].relief;
+    if (const auto* grating = std::get_if<Grating>(&part.law)) {
+      grating->add(p, part.fade.weight(), relief, part.state);
+    } else if (const auto* texture = std::get_if<Texture>(&part.law)) {
+      texture->add(p, part.fade.weight(), relief, part.state);
+    }
+  }
+  for (const std::size_t i : surfaces_) {
+    std::get_if<Surface>(&parts_[i].law)->lay(parts_[i].relief);
+  }
+}
+
+void Scene::feel(Part& part, const PointState& hand) noexcept {
+  SurfaceTouch touch;
+  Felt felt{hand, part.time, nullptr};
+  if (part.on != kFreeSpace) {
+    const Part& surface = parts_[part.on];
+    if (surface.acts()) {
+      touch = std::get_if<Surface>(&surface.law)->touch();
+      touch.pressing *= surface.fade.weight();
+    }
+    felt.surface = &touch;
+  }
+  FieldState& state = part.state;
+  state.limited = false;
+  Vector3d force = std::visit(
+      [&](auto& law) -> Vector3d {
+        if constexpr (requires { law.force(felt, state); }) {
+          return law.force(felt, state);
+        } else {
+          return Vector3d::Zero();
+        }
+      },
+      part.law);
+  const double size = force.norm();
+  state.limited = state.limited || size > part.limit;
+  if (!std::holds_alternative<Surface>(part.law)) {
+    state.contact = size > 0.0;
+  }
+  state.force = part.fade.weight() * control::saturate(force, part.limit);
+  state.max_force = std::max(state.max_force, part.fade.weight() * std::min(size, part.limit));
+}
+
+Vector3d Scene::force(const PointState& hand) noexcept {
+  if (!hand.position.allFinite() || !hand.velocity.allFinite()) {
+    return Vector3d::Zero();
+  }
+  for (Part& part : parts_) {
+    part.state.work += part.state.force.dot(hand.position - before_);
+    part.state.weight = part.fade.weight();
+    part.state.force.setZero();
+    if (!part.acts()) {
+      part.state.contact = part.state.limited = part.state.sliding = false;
+    }
+    if (part.begins) {
+      part.begin(hand);
+    }
+  }
+  before_ = hand.position;
+  lay_reliefs(hand.position);
+  Vector3d sum = Vector3d::Zero();
+  for (const std::size_t i : forces_) {
+    if (parts_[i].acts()) {
+      feel(parts_[i], hand);
+      sum += parts_[i].state.force;
+    }
+  }
+  for (Part& part : parts_) {
+    if (part.acts()) {
+      part.state.max_depth = std::max(part.state.max_depth, part.state.depth);
+      part.time += period_;
+      part.fade.next(period_);
+    }
+  }
+  return sum;
+}
+
+void Scene::forget_extremes() noexcept {
+  for (Part& part : parts_) {
+    part.state.max_depth = part.state.max_force = part.state.work = 0.0;
+  }
+}
+
+std::size_t Scene::size() const noexcept { return parts_.size(); }
+
+std::uint64_t Scene::mask() const noexcept {
+  std::uint64_t mask = 0;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    mask |= std::uint64_t{parts_[i].fade.on()} << i;
+  }
+  return mask;
+}
+
+const FieldState& Scene::state(std::size_t field) const noexcept { return parts_[field].state; }
+
+double Scene::energy(const Vector3d& p) noexcept {
+  lay_reliefs(p);
+  double sum = 0.0;
+  for (const Part& part : parts_) {
+    std::visit(
+        [&](const auto& law) {
+          if constexpr (requires { law.energy(p); }) {
+            sum += part.fade.weight() * law.energy(p);
+          }
+        },
+        part.law);
+  }
+  return sum;
+}
+
+}  // namespace haptrial::scene

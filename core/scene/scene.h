@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/point_state.h"
+#include "core/scene/field.h"
+
+namespace haptrial::scene {
+
+/// Fields that act together: their forces are added on every tick of the servo loop. Which of them
+/// act is a mask of bits, one a field in the order of the constructor; a stage sets it at its
+/// beginning and the fields fade in and out.
+///
+///     Scene scene(fields, 1000.0);            // before the trial, any thread
+///     scene.start_from(previous);             // servo thread: what goes on acting does not jump
+///     scene.switch_to(0b101);                 // servo thread, when a stage begins
+///     force = scene.force(hand);              // servo thread, every tick
+///
+/// Numbers that change between trials make a new scene. Reliefs are summed first, then surfaces,
+/// then what lies on them or in free space, whatever the order of the fields.
+class Scene {
+ public:
+  static constexpr std::size_t kMostFields = 64;
+  static constexpr std::uint64_t kAll = ~std::uint64_t{0};
+
+  /// @param rate  of the servo loop > 0 [Hz]
+  /// @throws std::invalid_argument naming the field and the parameter that breaks its bound, for a
+  ///         name that occurs twice, or for a field on something that is not a surface of the
+  ///         scene.
+  Scene(const std::vector<Field>& fields, double rate);
+  ~Scene();
+  Scene(Scene&&) noexcept;
+  Scene& operator=(Scene&&) noexcept;
+
+  // Servo thread, all of the following: no allocation, lock, I/O or throw.
+
+  /// Fields in the mask fade in, the others fade out. A field that acts already goes on; one that
+  /// is switched on begins anew (its time, filters and extremes) at the next tick.
+  void switch_to(std::uint64_t mask) noexcept;
+  /// Takes over weights, times, filters and bristles of fields that are of the same kind at the
+  /// same index in `before`.
+  void start_from(const Scene& before) noexcept;
+  /// One tick later. @param hand  position [m] and velocity [m/s] in W
+  /// @returns the force on the hand [N]; zero, with nothing changed, if the hand is not finite.
+  Eigen::Vector3d force(const PointState& hand) noexcept;
+  /// Begins max_depth, max_force and work of every field anew: at a stage's beginning.
+  void forget_extremes() noexcept;
+
+  std::size_t size() const noexcept;
+  std::uint64_t mask() const noexcept;  // what is switched on
+  /// After the last tick. @param field  below size()
+  const FieldState& state(std::size_t field) const noexcept;
+
+  /// What the conservative fields that act store if the hand is at p, with their weights of the
+  /// last tick [J]. Not for a scene with a field whose force is not minus a gradient.
+  double energy(const Eigen::Vector3d& p) noexcept;
+
+ private:
+  struct Part;
+  void feel(Part& part, const PointState& hand) noexcept;
+  void lay_reliefs(const Eigen::Vector3d& p) noexcept;
+
+  std::vector<Part> parts_;
+  std::vector<std::size_t> reliefs_;
+  std::vector<std::size_t> surfaces_;
+  std::vector<std::size_t> forces_;  // surfaces, then what may lie on them: all but reliefs
+  double period_;
+  Eigen::Vector3d before_{Eigen::Vector3d::Zero()};  // the hand a tick ago [m]
+};
+
+}  // namespace haptrial::scene
