@@ -125,6 +125,11 @@ Table Table::load(const std::filesystem::path& file) {
 
 const std::string& Table::source() const { return document_->source; }
 
+bool Table::is_array(std::string_view key) const {
+  return node_->table != nullptr && node_->table->get(key) != nullptr &&
+         node_->table->get(key)->is_array();
+}
+
 bool Table::has(std::string_view key) const {
   node_->asked.emplace(key);
   return node_->table != nullptr && node_->table->contains(key);
@@ -357,6 +362,34 @@ Table Table::table(std::string_view key) {
   auto child = std::make_shared<Node>(Node{inner, node_->full(key), {}, {}});
   document_->nodes.push_back(child);
   return Table(document_, child);
+}
+
+std::vector<Table> Table::tables(std::string_view key) {
+  std::vector<Table> tables;
+  if (node_->table == nullptr) {
+    return tables;
+  }
+  node_->read.emplace(key);
+  const toml::node* node = node_->table->get(key);
+  const toml::array* array = node == nullptr ? nullptr : node->as_array();
+  if (node == nullptr) {
+    note(line_of(node_->table), fmt::format("the tables [[{}]] are missing", node_->full(key)));
+  } else if (array == nullptr || array->empty()) {
+    refuse(key, array == nullptr ? shown(*node) : "an empty array", "tables, each as [[…]]");
+  }
+  for (std::size_t i = 0; array != nullptr && i < array->size(); ++i) {
+    const toml::table* inner = array->get(i)->as_table();
+    if (inner == nullptr) {
+      refuse(key, fmt::format("an array with {}", shown_with_kind(*array->get(i))),
+             "tables, each as [[…]]");
+      continue;
+    }
+    auto child =
+        std::make_shared<Node>(Node{inner, fmt::format("{}[{}]", node_->full(key), i + 1), {}, {}});
+    document_->nodes.push_back(child);
+    tables.push_back(Table(document_, child));
+  }
+  return tables;
 }
 
 void Table::leave(std::string_view key) { node_->read.emplace(key); }

@@ -58,11 +58,15 @@ class Table {
   /// A required table within this one; an absent one is noted and reads as empty without further
   /// problems.
   Table table(std::string_view key);
+  /// The tables of a required array, [[key]], in their order; an absent or empty one is noted.
+  /// Sentences name the second of them "key[2]".
+  std::vector<Table> tables(std::string_view key);
   bool has(std::string_view key) const;
   /// Whether a text stands there, alone or within an array.
   bool has_text(std::string_view key) const;
   /// The text under `key`; nothing, and no problem, if something else is there.
   std::optional<std::string> whole_text(std::string_view key) const;
+  bool is_array(std::string_view key) const;  // false of what is not there
   /// A table of this one that another reader knows: its keys are not looked at here.
   void leave(std::string_view key);
   /// The keys of this table in the order of their names.

@@ -78,6 +78,28 @@ TEST(TableTest, GoodValuesOfEveryTypeComeBack) {
   EXPECT_NO_THROW(t.finish());
 }
 
+TEST(TableTest, TablesOfAnArrayAreReadInTheirOrder) {
+  const auto read = [](Table& t) {
+    for (Table& each : t.tables("stages")) {
+      each.text("name");
+      each.number("time", kPositive, "s");
+    }
+  };
+  Table t = Table::parse("[[stages]]\nname = \"a\"\n[[stages]]\nname = \"b\"\n", "f.toml");
+  std::vector<Table> stages = t.tables("stages");
+  ASSERT_EQ(stages.size(), 2U);
+  EXPECT_EQ(stages[1].text("name"), "b");
+  EXPECT_THAT(
+      problems("[[stages]]\nname = \"a\"\ntime = 1\n[[stages]]\nname = \"b\"\ntime = -1\n", read),
+      ElementsAre("f.toml:6: stages[2].time is -1; allowed: a number above 0 [s]"));
+  EXPECT_THAT(problems("", read), ElementsAre(HasSubstr("the tables [[stages]] are missing")));
+  EXPECT_THAT(problems("stages = 3\n", read), ElementsAre(HasSubstr("stages is 3; allowed:")));
+  EXPECT_THAT(problems("[[stages]]\nname = \"a\"\ntime = 1\ntme = 2\n", read),
+              ElementsAre(HasSubstr("stages[1].tme is not a known key")));
+  EXPECT_TRUE(t.is_array("stages"));
+  EXPECT_FALSE(t.is_array("stage"));
+}
+
 TEST(TableTest, TellsWhatItHolds) {
   const std::string text = "b = 1 # kept\na = 2\n";
   const Table t = Table::parse(text, "f.toml");

@@ -1,0 +1,122 @@
+#include "protocols/trials/language/variables.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/text/nearest.h"
+
+namespace haptrial::protocols {
+namespace {
+
+void refuse_circle(const std::string& name, const std::vector<std::string>& way) {
+  const auto first = std::ranges::find(way, name);
+  if (first != way.end()) {
+    throw InputError(
+        fmt::format("{} depends on itself, by way of {}", name, fmt::join(first, way.end(), ", ")));
+  }
+}
+
+}  // namespace
+
+void Variables::define(const std::string& name, Expression meaning) {
+  if (knows(name)) {
+    throw InputError(fmt::format("there is a variable {} already", name));
+  }
+  meanings_.emplace(name, std::move(meaning));
+}
+
+void Variables::declare(const std::string& name) {
+  if (knows(name)) {
+    throw InputError(fmt::format("there is a variable {} already", name));
+  }
+  given_.emplace(name, std::numeric_limits<double>::quiet_NaN());
+}
+
+bool Variables::knows(const std::string& name) const {
+  return meanings_.contains(name) || given_.contains(name);
+}
+
+std::vector<std::string> Variables::names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, meaning] : meanings_) {
+    names.push_back(name);
+  }
+  for (const auto& [name, value] : given_) {
+    names.push_back(name);
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+void Variables::refuse(const std::string& name) const {
+  throw InputError(
+      fmt::format("there is no variable {}; allowed: {}", name, fmt::join(names(), ", ")));
+}
+
+void Variables::check(const std::string& name, std::vector<std::string>& way) const {
+  refuse_circle(name, way);
+  if (given_.contains(name)) {
+    return;
+  }
+  const auto found = meanings_.find(name);
+  if (found == meanings_.end()) {
+    refuse(name);
+  }
+  way.push_back(name);
+  for (const std::string& each : found->second.names()) {
+    check(each, way);
+  }
+  way.pop_back();
+}
+
+void Variables::check(const Expression& expression) const {
+  std::vector<std::string> way;
+  for (const std::string& name : expression.names()) {
+    check(name, way);
+  }
+}
+
+void Variables::set(const std::string& name, double value) {
+  const auto found = given_.find(name);
+  if (found == given_.end()) {
+    throw std::invalid_argument("Variables::set: " + name + " is not declared");
+  }
+  found->second = value;
+}
+
+double Variables::value(const std::string& name, std::vector<std::string>& way) const {
+  refuse_circle(name, way);
+  if (const auto given = given_.find(name); given != given_.end()) {
+    if (std::isnan(given->second)) {
+      throw InputError(fmt::format("{} has no value yet", name));
+    }
+    return given->second;
+  }
+  const auto found = meanings_.find(name);
+  if (found == meanings_.end()) {
+    refuse(name);
+  }
+  way.push_back(name);
+  const double result =
+      found->second.value([&](const std::string& each) { return value(each, way); });
+  way.pop_back();
+  return result;
+}
+
+double Variables::value(const std::string& name) const {
+  std::vector<std::string> way;
+  return value(name, way);
+}
+
+double Variables::value(const Expression& expression) const {
+  return expression.value([this](const std::string& name) { return value(name); });
+}
+
+}  // namespace haptrial::protocols

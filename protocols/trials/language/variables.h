@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "protocols/trials/language/expression.h"
+
+namespace haptrial::protocols {
+
+/// The variables of a definition: each a number or a formula of others. What is given from outside
+/// (the procedure's level, a factor of the block, the participant's data) stands before what the
+/// definition states.
+class Variables {
+ public:
+  /// @throws InputError if the name is taken
+  void define(const std::string& name, Expression meaning);
+  /// A name that gets its value from outside before it is asked for.
+  void declare(const std::string& name);
+  bool knows(const std::string& name) const;
+  /// All names, in alphabetical order.
+  std::vector<std::string> names() const;
+
+  /// @throws InputError naming a variable that nothing defines, or the circle that a formula is in
+  void check(const Expression& expression) const;
+
+  /// Values of declared names, until they are set anew. @throws std::invalid_argument unless
+  /// `name` is declared
+  void set(const std::string& name, double value);
+  /// @throws InputError as check() does, if a declared name has no value yet, or if a value is not
+  /// finite
+  double value(const Expression& expression) const;
+  double value(const std::string& name) const;
+
+ private:
+  double value(const std::string& name, std::vector<std::string>& way) const;
+  void check(const std::string& name, std::vector<std::string>& way) const;
+  [[noreturn]] void refuse(const std::string& name) const;
+
+  std::map<std::string, Expression> meanings_;
+  std::map<std::string, double> given_;  // NaN: no value yet
+};
+
+}  // namespace haptrial::protocols

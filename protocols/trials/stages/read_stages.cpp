@@ -1,0 +1,200 @@
+#include "protocols/trials/stages/read_stages.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "core/base/definition/table.h"
+#include "core/base/random.h"
+#include "core/scene/read/number_source.h"
+
+namespace haptrial::protocols {
+namespace {
+
+constexpr double kLongest = 3600.0;  // [s]
+constexpr Bounds kDuration{0.0, kLongest, false};
+constexpr Bounds kTimeoutBounds{0.0, kLongest, true};
+constexpr Bounds kSpeed{0.0, 10.0, true};
+constexpr int kMostButtons = 31;
+
+constexpr std::array<std::pair<const char*, Consequence>, 3> kConsequences{
+    {{"abort", Consequence::kAbort},
+     {"repeat", Consequence::kRepeat},
+     {"go on", Consequence::kGoOn}}};
+
+Consequence read_consequence(Table& table, const char* key) {
+  const std::string word = table.choice(key, {"abort", "repeat", "go on"});
+  for (const auto& [name, what] : kConsequences) {
+    if (word == name) {
+      return what;
+    }
+  }
+  return Consequence::kAbort;
+}
+
+class StageReader {
+ public:
+  StageReader(Table& table, const StageSource& source) : table_(table), source_(source) {}
+
+  NamedStage read() {
+    result_.name = table_.text("name");
+    for (const std::string& name : texts("fields")) {
+      const int field = index_of(table_, "fields", name, source_.fields, "field");
+      result_.stage.fields |= field < 0 ? 0 : std::uint64_t{1} << static_cast<unsigned>(field);
+    }
+    result_.show = texts("show");
+    result_.sound = table_.has("sound") ? table_.text("sound") : "";
+    result_.marker = table_.has("marker") ? table_.text("marker") : "";
+    Table until = table_.table("until");
+    read_until(until);
+    read_timeout();
+    read_requirement();
+    if (table_.has("onset")) {
+      Table onset = table_.table("onset");
+      result_.stage.onset_speed = number(onset, "speed_above", kSpeed, "m/s");
+    }
+    return std::move(result_);
+  }
+
+ private:
+  std::vector<std::string> texts(const char* key) {
+    return table_.has(key) ? table_.texts(key) : std::vector<std::string>{};
+  }
+  double number(Table& table, const char* key, const Bounds& bounds, const char* unit) {
+    return source_.numbers.number(table, key, bounds, unit);
+  }
+
+  /// -1 for "null" and, with a problem noted, for what is not there.
+  int index_of(Table& table, const char* key, const std::string& text,
+               const std::vector<std::string>& known, const char* what) {
+    const std::string name = source_.word ? source_.word(text) : text;
+    if (name == "null") {
+      return -1;
+    }
+    const auto found = std::ranges::find(known, name);
+    if (found == known.end()) {
+      table.reject(key, fmt::format("\"{}\"", name),
+                   known.empty() ? fmt::format("no {}: the definition states none", what)
+                                 : fmt::format("a {}: {}", what, fmt::join(known, ", ")));
+      return -1;
+    }
+    return static_cast<int>(found - known.begin());
+  }
+
+  std::uint32_t bits(Table& table, const char* key) {
+    std::uint32_t mask = 0;
+    for (const double number : table.numbers(key, {0.0, kMostButtons, false}, "")) {
+      mask |= std::uint32_t{1} << static_cast<unsigned>(number);
+    }
+    return mask;
+  }
+
+  void read_until(Table& table) {
+    Until& until = result_.stage.until;
+    int asked = 0;
+    const auto has = [&](const char* key) {
+      const bool there = table.has(key);
+      asked += there ? 1 : 0;
+      return there;
+    };
+    if (has("inside")) {
+      until.inside = index_of(table, "inside", table.text("inside"), source_.regions, "region");
+    }
+    if (has("contact")) {
+      until.contact = index_of(table, "contact", table.text("contact"), source_.fields, "field");
+    }
+    if (has("speed_below")) {
+      until.speed_below = number(table, "speed_below", kSpeed, "m/s");
+    }
+    if (has("speed_above")) {
+      until.speed_above = number(table, "speed_above", kSpeed, "m/s");
+    }
+    if (has("buttons")) {
+      until.buttons = bits(table, "buttons");
+    }
+    if (has("keys")) {
+      until.keys = bits(table, "keys");
+    }
+    waits_ = asked > 0;
+    if (has("time")) {
+      until.time = number(table, "time", kDuration, "s");
+    }
+    if (asked == 0) {
+      table_.reject("until",
+                    "names no end of the stage; state a time, a place, a contact, a speed, "
+                    "buttons or keys");
+    }
+    if (table.has("for")) {
+      until.hold = read_hold(table);
+    }
+  }
+
+  double read_hold(Table& table) {
+    const std::vector<double> range = holds_range(table)
+                                          ? table.numbers("for", kDuration, "s")
+                                          : std::vector{number(table, "for", kDuration, "s")};
+    if (range.size() == 1) {
+      return range.front();
+    }
+    if (range.size() != 2 || range[1] < range[0]) {
+      table.reject("for", fmt::format("[{}]", fmt::join(range, ", ")),
+                   "a time or [shortest, longest] [s]");
+      return 0.0;
+    }
+    return source_.random != nullptr ? source_.random->uniform(range[0], range[1]) : range[0];
+  }
+  static bool holds_range(Table& table) { return table.is_array("for"); }
+
+  void read_timeout() {
+    if (table_.has("timeout")) {
+      Table timeout = table_.table("timeout");
+      result_.stage.timeout = number(timeout, "after", kTimeoutBounds, "s");
+      result_.stage.late = read_consequence(timeout, "then");
+    } else if (waits_) {
+      table_.reject("until", "may never come; add timeout = { after = …, then = \"abort\" }");
+    }
+  }
+
+  void read_requirement() {
+    if (!table_.has("require")) {
+      return;
+    }
+    Table table = table_.table("require");
+    Requirement require;
+    const std::string of = table.choice("max_of", {"depth", "force", "speed"});
+    require.of = of == "depth"   ? Requirement::Of::kDepth
+                 : of == "force" ? Requirement::Of::kForce
+                                 : Requirement::Of::kSpeed;
+    const char* unit = of == "depth" ? "m" : of == "force" ? "N" : "m/s";
+    if (require.of != Requirement::Of::kSpeed) {
+      require.field = index_of(table, "field", table.text("field"), source_.fields, "field");
+    }
+    require.at_least = number(table, "at_least", kNonNegative, unit);
+    require.otherwise = read_consequence(table, "else");
+    result_.stage.require = require;
+  }
+
+  Table& table_;
+  const StageSource& source_;
+  NamedStage result_;
+  bool waits_{false};  // for more than a time
+};
+
+}  // namespace
+
+std::vector<NamedStage> read_stages(Table& root, const StageSource& source) {
+  std::vector<NamedStage> stages;
+  for (Table& table : root.tables("stages")) {
+    NamedStage stage = StageReader(table, source).read();
+    if (std::ranges::find(stages, stage.name, &NamedStage::name) != stages.end()) {
+      table.reject("name", fmt::format("\"{}\"", stage.name), "a name that no other stage has");
+    }
+    stages.push_back(std::move(stage));
+  }
+  return stages;
+}
+
+}  // namespace haptrial::protocols

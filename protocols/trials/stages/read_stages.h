@@ -1,0 +1,56 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "protocols/trials/stages/stage.h"
+
+namespace haptrial {
+class RandomStream;
+class Table;
+}  // namespace haptrial
+
+namespace haptrial::scene {
+class NumberSource;
+}
+
+namespace haptrial::protocols {
+
+/// A stage as a definition states it.
+struct NamedStage {
+  std::string name;
+  std::vector<std::string> show;  // what the participant sees
+  std::string sound;              // a file; empty: none
+  std::string marker;             // sent when the stage begins; empty: none
+  Stage stage;
+};
+
+/// What the stages of a definition may name, and where their numbers come from.
+struct StageSource {
+  std::vector<std::string> fields;   // by index
+  std::vector<std::string> regions;  // likewise
+  const scene::NumberSource& numbers;
+  /// The word that a text such as "$field" stands for; "null" is no field. Null: texts stand for
+  /// themselves.
+  std::function<std::string(const std::string&)> word;
+  RandomStream* random{nullptr};  // draws durations "for = [0.5, 1.0]"; null: the shortest
+};
+
+/// Reads the tables [[stages]]. Problems are noted in the table; keys in brackets are optional.
+///
+///     name      unlike every other stage's
+///     [fields]  names; together they act, the others do not
+///     [show]    names
+///     [sound], [marker]
+///     until     one or more of: time [s], inside (region), contact (field), speed_below,
+///               speed_above [m/s], buttons, keys (numbers from 0); [for] = time for which they
+///               hold [s], or [shortest, longest]
+///     [timeout] after [s], then = "abort", "repeat" or "go on"
+///     [require] max_of = "depth", "force" (with field) or "speed", at_least, else = as then
+///     [onset]   speed_above [m/s]
+///
+/// A stage whose until asks for more than a time needs a timeout: it might never end.
+std::vector<NamedStage> read_stages(Table& root, const StageSource& source);
+
+}  // namespace haptrial::protocols

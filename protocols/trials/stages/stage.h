@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+namespace haptrial::protocols {
+
+/// When a stage is over: when all that is stated holds at once, and has held without a break for
+/// `hold`.
+struct Until {
+  double time{0.0};  // has passed since the stage began >= 0 [s]
+  int inside{-1};    // the tool is in this region, by its index; -1: anywhere
+  int contact{-1};   // this field is in contact, by its index; -1: not asked
+  double speed_below{std::numeric_limits<double>::infinity()};  // of the tool [m/s]
+  double speed_above{-1.0};                                     // [m/s]
+  std::uint32_t buttons{0};  // any of these was pressed since the stage began; 0: not asked
+  std::uint32_t keys{0};     // the same of the window's keys
+  double hold{0.0};          // >= 0 [s]
+};
+
+/// What follows when a stage takes too long, or when too little was felt in it.
+enum class Consequence : std::uint8_t {
+  kGoOn,    // to the next stage; the record says so
+  kRepeat,  // the interval, from its first stage
+  kAbort,   // the trial; it is queued again
+};
+
+/// What must have happened in a stage: "did they press at all?"
+struct Requirement {
+  enum class Of : std::uint8_t { kDepth, kForce, kSpeed };
+  Of of{Of::kDepth};
+  int field{-1};         // whose depth or force; -1 of a speed, which is the tool's
+  double at_least{0.0};  // of the largest value in the stage [m, N or m/s]
+  Consequence otherwise{Consequence::kRepeat};
+};
+
+/// One stage of an interval with the numbers of its trial: what can be felt, and until when.
+struct Stage {
+  std::uint64_t fields{0};  // that act: bit i, the field of index i
+  Until until;
+  double timeout{std::numeric_limits<double>::infinity()};  // > 0 [s]
+  Consequence late{Consequence::kAbort};
+  std::optional<Requirement> require;
+  double onset_speed{std::numeric_limits<double>::infinity()};  // a movement begins above it [m/s]
+};
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/device/device.h"
+#include "core/scene/shape/shape.h"
+#include "protocols/trials/stages/stage.h"
+
+namespace haptrial::scene {
+class Scene;
+}
+
+namespace haptrial::protocols {
+
+/// How a stage ended.
+enum class StageEnd : std::uint8_t { kUnderWay, kReached, kLate, kTooLittle };
+
+/// What came of a stage; ticks count from the first of the interval.
+struct StageTimes {
+  std::int64_t begin{-1};  // -1: not begun
+  std::int64_t onset{-1};  // the first tick on which the tool was faster than onset_speed; -1: none
+  std::int64_t end{-1};    // the tick on which its end was seen
+  StageEnd how{StageEnd::kUnderWay};
+  double most{0.0};  // of what is required: the largest value [m, N or m/s]
+};
+
+/// Goes through the stages of one interval, a tick of the servo loop at a time. It switches the
+/// fields of the scene at the beginning of each stage; who asks the scene for its force does so
+/// before tick(). A button or key counts when it goes down during the stage, not when it was held
+/// before.
+class StageMachine {
+ public:
+  enum class State : std::uint8_t { kRunning, kDone, kAborted };
+
+  /// @param stages   at least one
+  /// @param regions  that stages name by index
+  /// @throws std::invalid_argument naming the stage and what it names that is not there, or the
+  /// bound that it breaks
+  StageMachine(std::vector<Stage> stages, std::vector<scene::PlacedShape> regions,
+               std::size_t fields);
+
+  // Servo thread, all of the following: no allocation, lock, I/O or throw.
+
+  /// The interval begins with the next tick. @param most_repeats  of the interval; then it aborts
+  void begin(scene::Scene& scene, int most_repeats) noexcept;
+  /// @param dt  since the tick before [s]
+  void tick(const device::DeviceReading& reading, scene::Scene& scene, double dt) noexcept;
+
+  State state() const noexcept { return state_; }
+  /// That goes on; of an interval that is over the last one.
+  std::size_t stage() const noexcept { return stage_; }
+  double time_in_stage() const noexcept { return in_stage_; }  // [s]
+  int repeats() const noexcept { return repeats_; }
+  /// The stage that an interval was aborted in, and why, are the last that ended.
+  std::span<const StageTimes> times() const noexcept { return times_; }
+
+ private:
+  void enter(std::size_t stage, scene::Scene& scene) noexcept;
+  void leave(StageEnd how, Consequence what, scene::Scene& scene) noexcept;
+  bool holds(const Until& until, const device::DeviceReading& reading,
+             const scene::Scene& scene) const noexcept;
+  void measure(const Stage& stage, double speed, const scene::Scene& scene) noexcept;
+  void press(const device::DeviceReading& reading) noexcept;
+
+  std::vector<Stage> stages_;
+  std::vector<scene::PlacedShape> regions_;
+  std::vector<StageTimes> times_;  // (stages)
+  State state_{State::kDone};
+  std::size_t stage_{0};
+  std::int64_t tick_{0};
+  double in_stage_{0.0};  // [s]
+  double held_{-1.0};     // for which all held [s]; -1: it does not hold
+  std::uint32_t buttons_before_{0}, keys_before_{0};
+  std::uint32_t buttons_pressed_{0}, keys_pressed_{0};  // in this stage
+  bool hands_known_{false};
+  int repeats_{0};
+  int most_repeats_{0};
+};
+
+}  // namespace haptrial::protocols
