@@ -142,6 +142,8 @@ function(haptrial_layer_tests)
     add_dependencies(test_${layer} haptrial)  # its tests run the command
   endforeach()
   target_link_libraries(test_experiments PRIVATE nlohmann_json::nlohmann_json)
+  target_link_libraries(test_protocols PRIVATE haptrial_trials_language haptrial_trials_order
+                                               haptrial_trials_stages)
   # A protocol that only the tests and a page of the documents have.
   target_sources(test_experiments PRIVATE ${CMAKE_SOURCE_DIR}/docs/worked/protocol/springs.cpp)
   target_include_directories(test_experiments PRIVATE ${CMAKE_SOURCE_DIR}/docs/worked/protocol)

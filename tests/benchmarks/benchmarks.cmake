@@ -8,7 +8,7 @@ foreach(source ${benchmarks})
     target_link_libraries(bench_scene PRIVATE haptrial_scene)  # builds without the rest
     continue()
   endif()
-  target_link_libraries(bench_${name} PRIVATE haptrial_experiments fmt::fmt Threads::Threads)
+  target_link_libraries(bench_${name} PRIVATE haptrial_command_line fmt::fmt Threads::Threads)
 endforeach()
 target_sources(bench_servo PRIVATE ${CMAKE_SOURCE_DIR}/tests/experiments/timed_session.cpp
                                    ${CMAKE_SOURCE_DIR}/tests/experiments/shipped.cpp

@@ -135,7 +135,7 @@ TEST(ReadStagesTest, MistakesGetTheirSentence) {
               ElementsAre(HasSubstr("stages[1].untill is not a known key")));
   EXPECT_THAT(problems_of(head + "until = { time = 1.0 }\nrequire = { max_of = \"depth\", field = "
                                  "\"floor\", at_least = 0.01, else = \"wait\" }\n"),
-              ElementsAre(HasSubstr("else is \"wait\"; allowed:")));
+              ElementsAre(HasSubstr("else is 'wait'; allowed: abort, repeat, go on")));
 }
 
 }  // namespace
