@@ -8,7 +8,7 @@
 namespace haptrial::psychometric {
 namespace {
 
-constexpr double kTie = 1e-12;          // [nat]
+constexpr double kTie = 1e-15;          // [nat]
 constexpr double kLeastWeight = 1e-20;  // smaller ones count as 0
 constexpr double kOfLeast = 1e-12;      // more than what all that counts as 0 amounts to [nat]
 

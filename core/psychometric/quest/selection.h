@@ -9,7 +9,7 @@
 namespace haptrial::psychometric {
 
 /// The stimulus of which the expected entropy of the posterior is least, the first of equal ones
-/// (within 1e-12 nat).
+/// (within 1e-15 nat).
 ///
 /// What a stimulus is expected to tell is the information that its outcome and the parameters
 /// share:

@@ -153,7 +153,7 @@ void expect_unbiased(bool marginal) {
   const auto tables = psi_tables(marginal);
   std::vector<double> values;
   int held = 0;
-  constexpr int kSessions = 400;
+  constexpr int kSessions = 200;
   RandomStream random(7, "thresholds");
   for (int i = 0; i < kSessions; ++i) {
     // Thresholds from the prior: then the posterior is calibrated, whatever was presented.
