@@ -9,7 +9,7 @@ namespace haptrial::psychometric {
 namespace {
 
 constexpr int kMostRounds = 1'000'000;
-constexpr double kSettled = 1e-14;  // change of all probabilities together in a round
+constexpr double kSettled = 1e-12;  // change of all probabilities together in a round
 
 /// A rule that never stops and has its last size of steps from the start.
 StaircaseParameters endless(StaircaseParameters p) {
@@ -54,7 +54,9 @@ std::vector<double> stationary(const std::vector<Chain::Node>& nodes) {
       return now;
     }
   }
-  throw std::invalid_argument("settle: the staircase must settle within a million trials");
+  throw std::invalid_argument(
+      "settle: steps, and the distances of low and high from start, must be multiples of a common "
+      "size");
 }
 
 }  // namespace

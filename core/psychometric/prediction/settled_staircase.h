@@ -15,9 +15,11 @@ struct SettledStaircase {
 
 /// Where a staircase settles that never stops, with its last size of steps: the stationary
 /// distribution of the same chain. Levels closer than 1e-9 of the range are one level, so steps
-/// that have no common measure have too many; state them as multiples of a common one.
+/// that have no common measure have too many; state them as multiples of a common one. Let the
+/// bounds be such multiples away from the start too: otherwise a track that touches a bound goes on
+/// among other levels, and it takes very long until that has settled.
 /// @throws std::invalid_argument naming the parameter that breaks its bound, or with more than
-///         200,000 states
+///         200,000 states, or when it has not settled after 1,000,000 rounds
 SettledStaircase settle(const StaircaseParameters& parameters,
                         const AnswerProbability& probability);
 

@@ -120,7 +120,7 @@ bool advance(const StaircaseParameters& p, StaircaseState& state, bool right, do
   const double size = way < 0 ? -step.down : step.up;
   const double wanted = from + (p.right_raises ? -size : size);
   state.x = std::clamp(wanted, p.axis.at(p.low), p.axis.at(p.high));
-  const bool stays = std::abs(state.x - from) <= kNoStep * size;
+  const bool stays = std::abs(state.x - from) <= kNoStep * std::abs(size);
   // No more is counted than matters, so that a track has few states.
   const int most = p.at_bound == Parameters::AtBound::kEnd ? p.blocked_steps : 1;
   state.blocked = stays ? std::min(state.blocked + 1, most) : 0;
