@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/psychometric/prediction/chain_states.h"
+#include "core/psychometric/prediction/staircase_chain.h"
+
+namespace haptrial::psychometric {
+
+/// Where a state goes with each answer, found when it is first asked for.
+class Chain {
+ public:
+  struct Answer {
+    std::size_t to;
+    bool reversal;
+  };
+  struct Node {
+    Answer right, wrong;
+    double probability;  // of a right answer
+  };
+
+  /// @param endless  never stops, and forgets how many reversals there were
+  Chain(const StaircaseParameters& parameters, const AnswerProbability& probability, bool endless,
+        std::size_t most_states);
+
+  /// From a state on trial `trial` (1, 2, ...).
+  const Node& node(std::size_t state, int trial);
+  const StaircaseState& state(std::size_t index) const { return states_[index]; }
+  std::size_t size() const noexcept { return states_.size(); }
+  std::size_t first() const noexcept { return 0; }
+  /// Not by the number of trials.
+  bool stops(std::size_t state) const { return stopped(parameters_, states_[state]); }
+
+ private:
+  Answer follow(std::size_t state, int trial, bool right);
+  double probability_at(double x) const;
+  std::size_t phase_of(int trial) const;
+
+  StaircaseParameters parameters_;
+  AnswerProbability probability_;
+  bool endless_;
+  ChainStates states_;
+  std::vector<std::vector<std::optional<Node>>> nodes_;  // for each size of steps by trials
+};
+
+}  // namespace haptrial::psychometric

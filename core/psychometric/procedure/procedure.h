@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace haptrial::psychometric {
+
+/// What is presented on a trial: one number for each dimension of the stimulus, most often one.
+using Level = std::vector<double>;
+
+/// What a trial gave.
+struct Outcome {
+  double answer;  // which outcome (0, 1, ...; of two, 1 is "correct" or "yes"), or a number given
+  Level applied;  // the level that was really presented: quantised, limited by the device
+};
+
+struct Estimate {
+  std::string name;                 // "threshold, mean of 6 reversals"
+  double value;                     // [unit of the level, or of the parameter]
+  std::optional<double> deviation;  // its standard deviation as the procedure can tell [same]
+};
+
+/// Chooses the next level from the outcomes so far. Its state is a function of its parameters, its
+/// seed and the outcomes in their order, and of nothing else: a session resumes by replay().
+///
+/// Between trials, on one thread; not for the servo thread.
+class Procedure {
+ public:
+  virtual ~Procedure() = default;
+
+  /// The level to present; the same until report() is called.
+  /// @throws std::logic_error when finished.
+  virtual const Level& next() const = 0;
+  /// @throws std::logic_error when finished
+  /// @throws std::invalid_argument when the answer or the size of `applied` is not one of this
+  ///         procedure; its state is then unchanged.
+  virtual void report(double answer, const Level& applied) = 0;
+  virtual bool finished() const = 0;
+  /// Empty while the outcomes do not suffice.
+  virtual std::vector<Estimate> estimates() const = 0;
+};
+
+/// Reports each outcome. @throws as report() does
+void replay(Procedure& procedure, std::span<const Outcome> outcomes);
+
+/// For the procedures themselves.
+namespace checks {
+/// @throws std::invalid_argument "WHO: SENTENCE" unless `holds`.
+void require(bool holds, const char* who, const std::string& sentence);
+/// @throws std::logic_error when a finished procedure is asked or told something.
+void require_running(bool running, const char* who);
+/// @throws std::invalid_argument unless `answer` is 0, 1, ... outcomes - 1
+std::size_t outcome_of(double answer, std::size_t outcomes, const char* who);
+/// @throws std::invalid_argument unless `applied` is one finite number
+double single_level(const Level& applied, const char* who);
+}  // namespace checks
+
+}  // namespace haptrial::psychometric

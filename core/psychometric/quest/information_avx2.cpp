@@ -1,0 +1,34 @@
+// The kernel of this file is compiled for AVX2; it runs where the processor has it.
+#ifdef __x86_64__
+
+// Before the instructions are switched on, so that nothing shared is compiled with them.
+#include <algorithm>
+#include <cstring>
+
+#include "core/psychometric/quest/information.h"
+
+#pragma GCC push_options
+#pragma GCC target("avx2")
+
+namespace haptrial::psychometric {
+namespace {
+
+constexpr std::size_t kLanes = 8;
+
+}  // namespace
+}  // namespace haptrial::psychometric
+
+#include "core/psychometric/quest/information_kernel.h"
+
+namespace haptrial::psychometric {
+
+void row_sums_avx2(const float* rows, std::size_t count, std::size_t cells, const float* weights,
+                   double* sums) {
+  row_sums_of(rows, count, cells, weights, sums);
+}
+
+}  // namespace haptrial::psychometric
+
+#pragma GCC pop_options
+
+#endif

@@ -1,0 +1,121 @@
+#include "core/psychometric/quest/quest_plus.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptrial::psychometric {
+namespace {
+
+constexpr const char* kQuest = "QuestPlus";
+
+std::shared_ptr<const QuestTables> given(std::shared_ptr<const QuestTables> tables) {
+  checks::require(tables != nullptr, kQuest, "tables must be given");
+  return tables;
+}
+
+/// The place of a cell in one dimension of the parameters.
+std::size_t place_of(const std::vector<QuestDimension>& dimensions, std::size_t dimension,
+                     std::size_t cell) {
+  for (std::size_t d = dimensions.size() - 1; d > dimension; --d) {
+    cell /= dimensions[d].values.size();
+  }
+  return cell % dimensions[dimension].values.size();
+}
+
+}  // namespace
+
+QuestPlus::QuestPlus(std::shared_ptr<const QuestTables> tables, const QuestStop& stop)
+    : tables_(given(std::move(tables))),
+      stop_(stop),
+      selection_(*tables_),
+      posterior_(tables_->prior()) {
+  checks::require(stop.trials >= 0, kQuest, "stop trials must be at least 0");
+  checks::require(stop.entropy >= 0.0, kQuest, "stop entropy must be at least 0");
+  checks::require(stop.trials > 0 || stop.entropy > 0.0, kQuest,
+                  "stop trials or stop entropy must be above 0");
+  choose();
+}
+
+const Level& QuestPlus::next() const {
+  checks::require_running(!finished(), kQuest);
+  return next_;
+}
+
+bool QuestPlus::finished() const { return sure_ || (stop_.trials > 0 && trials_ >= stop_.trials); }
+
+void QuestPlus::report(double answer, const Level& applied) {
+  checks::require_running(!finished(), kQuest);
+  const std::size_t outcome = checks::outcome_of(answer, tables_->outcomes(), kQuest);
+  checks::require(applied.size() == next_.size() &&
+                      std::all_of(applied.begin(), applied.end(),
+                                  [](double level) { return std::isfinite(level); }),
+                  kQuest, "applied must have a finite number for each dimension of the stimulus");
+  std::vector<double> off_grid;
+  const double* likelihood = tables_->likelihood(index_, outcome);
+  if (applied != next_) {
+    off_grid = tables_->likelihood_at(applied, outcome);
+    likelihood = off_grid.data();
+  }
+  const double sum = row_sum(likelihood, posterior_.size(), posterior_.data());
+  checks::require(sum > 0.0, kQuest, "the answer must be possible for some of the parameters");
+  for (std::size_t c = 0; c < posterior_.size(); ++c) {
+    posterior_[c] *= likelihood[c] / sum;
+  }
+  ++trials_;
+  choose();
+}
+
+void QuestPlus::choose() {
+  sure_ = stop_.entropy > 0.0 && entropy() <= stop_.entropy;
+  if (!finished()) {
+    index_ = selection_.best(*tables_, posterior_);
+    next_ = tables_->stimulus(index_);
+  }
+}
+
+double QuestPlus::entropy() const {
+  double entropy = 0.0;
+  for (double p : posterior_) {
+    entropy -= p > 0.0 ? p * std::log(p) : 0.0;
+  }
+  return entropy;
+}
+
+std::vector<double> QuestPlus::marginal(std::size_t parameter) const {
+  const auto& dimensions = tables_->definition().parameters;
+  checks::require(parameter < dimensions.size(), kQuest, "parameter must be one of the definition");
+  std::vector<double> shares(dimensions[parameter].values.size());
+  for (std::size_t c = 0; c < posterior_.size(); ++c) {
+    shares[place_of(dimensions, parameter, c)] += posterior_[c];
+  }
+  return shares;
+}
+
+std::vector<Estimate> QuestPlus::estimates() const {
+  const auto& dimensions = tables_->definition().parameters;
+  const auto top = std::max_element(posterior_.begin(), posterior_.end()) - posterior_.begin();
+  const auto mode = tables_->parameters(static_cast<std::size_t>(top));
+  std::vector<Estimate> means;
+  std::vector<Estimate> modes;
+  for (std::size_t d = 0; d < dimensions.size(); ++d) {
+    const auto& values = dimensions[d].values;
+    if (values.size() < 2) {
+      continue;
+    }
+    const auto shares = marginal(d);
+    double mean = 0.0;
+    double square = 0.0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      mean += shares[i] * values[i];
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      square += shares[i] * (values[i] - mean) * (values[i] - mean);
+    }
+    means.push_back({dimensions[d].name + ", mean of the posterior", mean, std::sqrt(square)});
+    modes.push_back({dimensions[d].name + ", mode of the posterior", mode[d], std::nullopt});
+  }
+  means.insert(means.end(), modes.begin(), modes.end());
+  return means;
+}
+
+}  // namespace haptrial::psychometric

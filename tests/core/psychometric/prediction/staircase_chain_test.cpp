@@ -1,0 +1,247 @@
+#include "core/psychometric/prediction/staircase_chain.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "core/base/random.h"
+#include "core/psychometric/function/psychometric_function.h"
+#include "core/psychometric/prediction/settled_staircase.h"
+#include "core/psychometric/procedure/staircase.h"
+
+namespace haptrial::psychometric {
+namespace {
+
+using Parameters = StaircaseParameters;
+
+/// 0.5 + 0.5 Phi(x): levels in units of sigma.
+double two_alternatives(double x) { return 0.5 + 0.25 * std::erfc(-x / std::sqrt(2.0)); }
+
+Parameters two_down_one_up(double step) {
+  Parameters p;
+  p.start = 0.0;
+  p.low = -8.0;
+  p.high = 8.0;
+  p.steps = {{step, step, 0}};
+  p.stop_trials = 60;
+  return p;
+}
+
+// A chance of 1/2 everywhere, one step down and up: the turn of a fair coin. Reversals come with a
+// probability of 1/2 from the second trial on, and the mean of the levels stays at the start.
+TEST(StaircaseChainTest, AFairCoin) {
+  Parameters p;
+  p.start = 0.0;
+  p.low = -1000.0;
+  p.high = 1000.0;
+  p.down = 1;
+  p.steps = {{1.0, 1.0, 0}};
+  p.stop_reversals = 6;
+  const auto predicted = predict_staircase(
+      p, [](double) { return 0.5; }, 0.0);
+  EXPECT_NEAR(predicted.trials, 13.0, 1e-9);                       // 1 + 6 / (1/2)
+  EXPECT_NEAR(predicted.trials_deviation, std::sqrt(12.0), 1e-9);  // negative binomial
+  EXPECT_NEAR(predicted.mean, 0.0, 1e-9);
+  p.stop_reversals = 0;
+  p.stop_trials = 10;
+  p.estimator = Parameters::Estimator::kMeanOfLevels;
+  const auto levels = predict_staircase(
+      p, [](double) { return 0.5; }, -1.0);
+  EXPECT_NEAR(levels.mean, 0.0, 1e-12);
+  EXPECT_NEAR(levels.bias, 1.0, 1e-12);
+  // Variance of the mean of a random walk S_0 .. S_9: sum over j of (10 - j)² / 100, j = 1 .. 9.
+  EXPECT_NEAR(levels.deviation, std::sqrt(2.85), 1e-12);
+}
+
+/// Every sequence of answers, each with its probability: the prediction without a chain.
+StaircasePrediction by_enumeration(const Parameters& p, double target) {
+  double mass = 0.0, sum = 0.0, square = 0.0, trials = 0.0;
+  for (int code = 0; code < 1 << p.stop_trials; ++code) {
+    Staircase staircase(p);
+    double probability = 1.0;
+    int count = 0;
+    while (!staircase.finished()) {
+      const int answer = code >> count & 1;
+      const double right = two_alternatives(staircase.next()[0]);
+      probability *= answer == 1 ? right : 1.0 - right;
+      staircase.report(answer, staircase.next());
+      ++count;
+    }
+    if ((code >> count) != 0) {
+      continue;  // the same track as another sequence
+    }
+    trials += probability * count;
+    const auto estimates = staircase.estimates();
+    if (!estimates.empty()) {
+      mass += probability;
+      sum += probability * estimates[0].value;
+      square += probability * estimates[0].value * estimates[0].value;
+    }
+  }
+  const double mean = sum / mass;
+  return {mean, std::sqrt(square / mass - mean * mean), mean - target, 1.0 - mass, trials, 0.0};
+}
+
+TEST(StaircaseChainTest, EveryRuleAgainstAllSequencesOfAnswers) {
+  std::vector<Parameters> all;
+  auto p = two_down_one_up(0.7);
+  p.stop_trials = 14;
+  p.start = 1.1;
+  all.push_back(p);
+  p.last = 2;
+  all.push_back(p);
+  p.stop_reversals = 4;
+  all.push_back(p);
+  p.last = 3;
+  p.steps = {{1.0, 0.8, 0}, {0.5, 0.3, 2}};
+  all.push_back(p);
+  p.first_down = 1;
+  p.last = 0;
+  p.skip = 1;
+  all.push_back(p);
+  p.low = 0.3;
+  p.high = 2.0;
+  p.at_bound = Parameters::AtBound::kHoldUncounted;
+  all.push_back(p);
+  p.at_bound = Parameters::AtBound::kEnd;
+  p.blocked_steps = 2;
+  all.push_back(p);
+  p = all[0];
+  p.up = 2;
+  p.counting = Parameters::Counting::kInAll;
+  p.schedule = Parameters::Schedule::kTrials;
+  p.steps = {{1.0, 0.8, 0}, {0.5, 0.3, 5}};
+  all.push_back(p);
+  p.estimator = Parameters::Estimator::kMeanOfLevels;
+  p.last = 6;
+  p.right_raises = true;
+  all.push_back(p);
+  p.last = 0;
+  p.skip = 3;
+  all.push_back(p);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto exact = by_enumeration(all[i], 0.5);
+    const auto chain = predict_staircase(all[i], two_alternatives, 0.5);
+    EXPECT_NEAR(chain.mean, exact.mean, 1e-10) << i;
+    EXPECT_NEAR(chain.deviation, exact.deviation, 1e-8) << i;
+    EXPECT_NEAR(chain.bias, exact.bias, 1e-10) << i;
+    EXPECT_NEAR(chain.without_estimate, exact.without_estimate, 1e-10) << i;
+    EXPECT_NEAR(chain.trials, exact.trials, 1e-10) << i;
+  }
+}
+
+TEST(StaircaseChainTest, LongRunsAgainstSimulation) {
+  auto p = two_down_one_up(0.5);
+  p.start = 3.0;
+  p.steps = {{1.0, 1.0, 0}, {0.25, 0.25, 2}};
+  p.stop_trials = 0;
+  p.stop_reversals = 10;
+  p.last = 6;
+  constexpr int kRuns = 20'000;
+  RandomStream random(1, "answers");
+  double sum = 0.0, square = 0.0, trials = 0.0;
+  for (int i = 0; i < kRuns; ++i) {
+    Staircase staircase(p);
+    while (!staircase.finished()) {
+      const int right = random.uniform() < two_alternatives(staircase.next()[0]);
+      staircase.report(right, staircase.next());
+    }
+    const double value = staircase.estimates()[0].value;
+    sum += value;
+    square += value * value;
+    trials += staircase.state().trials;
+  }
+  const double mean = sum / kRuns;
+  const double deviation = std::sqrt(square / kRuns - mean * mean);
+  const auto predicted = predict_staircase(p, two_alternatives, 0.5449);
+  EXPECT_NEAR(predicted.mean, mean, 4.0 * deviation / std::sqrt(1.0 * kRuns));
+  EXPECT_NEAR(predicted.deviation / deviation, 1.0, 0.03);
+  EXPECT_NEAR(predicted.trials, trials / kRuns,
+              4.0 * predicted.trials_deviation / std::sqrt(1.0 * kRuns));
+}
+
+TEST(StaircaseChainTest, WhatCannotBePredictedSaysSo) {
+  auto p = two_down_one_up(0.5);
+  p.estimator = Parameters::Estimator::kMedianOfReversals;
+  EXPECT_THROW(predict_staircase(p, two_alternatives, 0.0), std::invalid_argument);
+  p.estimator = Parameters::Estimator::kMeanOfLevels;
+  p.stop_reversals = 5;
+  EXPECT_THROW(predict_staircase(p, two_alternatives, 0.0), std::invalid_argument);
+  p = two_down_one_up(0.5);
+  EXPECT_THROW(predict_staircase(
+                   p, [](double) { return 1.5; }, 0.0),
+               std::invalid_argument);
+}
+
+// Two alternatives, psi = 0.5 + 0.5 Phi; bounds at 8 sigma on both sides of the threshold.
+TEST(SettledStaircaseTest, TwoDownOneUpDoesNotSitAt0707) {
+  const double steps[] = {0.2, 1.0, 2.0};
+  const double shares[] = {0.702, 0.666, 0.617};
+  for (int i = 0; i < 3; ++i) {
+    const auto settled = settle(two_down_one_up(steps[i]), two_alternatives);
+    EXPECT_NEAR(two_alternatives(settled.mean_level), shares[i], 0.0005) << steps[i];
+  }
+}
+
+TEST(SettledStaircaseTest, AgreesWithALongTrack) {
+  const auto p = two_down_one_up(1.0);
+  const auto settled = settle(p, two_alternatives);
+  RandomStream random(2, "answers");
+  auto state = begin(p);
+  double levels = 0.0, turns = 0.0;
+  int reversals = 0;
+  constexpr int kTrials = 2'000'000;
+  for (int i = 0; i < kTrials; ++i) {
+    const double x = state.x;
+    levels += x;
+    if (advance(p, state, random.uniform() < two_alternatives(x), x)) {
+      turns += x;
+      ++reversals;
+    }
+  }
+  // The standard deviation of the means is below 0.005, from 100 tracks of that length.
+  EXPECT_NEAR(settled.mean_level, levels / kTrials, 0.02);
+  EXPECT_NEAR(settled.mean_reversal, turns / reversals, 0.02);
+  EXPECT_NEAR(settled.trials_a_reversal, static_cast<double>(kTrials) / reversals, 0.02);
+}
+
+// A walk between two levels: right at 0 with 0.3, at 1 with 0.6. Levels' shares are 2/3.. by
+// balance: share(0) (1 - 0.3) = share(1) 0.6.
+TEST(SettledStaircaseTest, TwoLevelsInClosedForm) {
+  Parameters p;
+  p.low = 0.0;
+  p.high = 1.0;
+  p.start = 1.0;
+  p.down = 1;
+  p.steps = {{1.0, 1.0, 0}};
+  p.stop_trials = 1;
+  const auto settled = settle(p, [](double level) { return level < 0.5 ? 0.3 : 0.6; });
+  EXPECT_NEAR(settled.mean_level, 0.7 / 1.3, 1e-12);
+}
+
+// p^n step_down = (1 - p^n) step_up (García-Pérez 1998) holds as steps become small: what is left
+// is in proportion to the step, so two sizes tell where it ends. Ratios have a common measure.
+TEST(SettledStaircaseTest, SmallStepsSettleAtTheBalance) {
+  const double ratios[] = {0.28, 0.55, 0.75, 5.0 / 6.0};
+  for (int n = 1; n <= 4; ++n) {
+    const auto settled_share = [&](double up) {
+      auto p = two_down_one_up(up);
+      p.low = -3.2;  // multiples of every measure, so that the bounds add no other levels
+      p.high = 4.8;
+      p.down = n;
+      p.steps = {{ratios[n - 1] * up, up, 0}};
+      return two_alternatives(settle(p, two_alternatives).mean_level);
+    };
+    const double coarse = settled_share(0.4);
+    const double fine = settled_share(0.2);
+    const double balance = balance_of(n, {ratios[n - 1], 1.0, 0});
+    EXPECT_GT(coarse, fine);
+    EXPECT_GT(fine, balance);
+    EXPECT_NEAR(2.0 * fine - coarse, balance, 0.0005) << n;
+  }
+}
+
+}  // namespace
+}  // namespace haptrial::psychometric
