@@ -194,8 +194,8 @@ void PsychometricPosterior::fill(const GridAxes& axes, const Table& table, std::
   for (std::size_t w = 0; w < axes[kWidth].size(); ++w) {
     const double prior = table.log_prior[kThreshold][threshold] + table.log_prior[kWidth][w];
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      slice.share[i] = sigmoid_.share(coordinates_[i], axes[kThreshold][threshold],
-                                      axes[kWidth][w], slice.beyond[i]);
+      slice.share[i] = sigmoid_.share(coordinates_[i], axes[kThreshold][threshold], axes[kWidth][w],
+                                      slice.beyond[i]);
     }
     for (std::size_t l = 0; l < axes[kLapse].size(); ++l) {
       for (std::size_t g = 0; g < axes[kGuess].size(); ++g, out += etas) {

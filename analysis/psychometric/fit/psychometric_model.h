@@ -43,6 +43,8 @@ class PsychometricFunction {
   double at(double level) const noexcept;
   /// The level with P(correct) = probability; nothing outside of (guess, 1 - lapse).
   std::optional<double> level_at(double probability) const noexcept;
+  /// The level of S = threshold_share.
+  double threshold_level() const noexcept { return sigmoid_.level(parameters_.threshold); }
   /// The level at which S has this share, inside (0, 1): free of guesses and lapses.
   double level_of_share(double share) const noexcept;
   /// d P(correct) / d level at a level [1/unit of the stimulus].

@@ -15,14 +15,60 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
+/// A quotient of polynomials: pairs of coefficients, numerator and denominator side by side, from
+/// the highest power down.
+template <std::size_t N>
+double quotient(const double (&pairs)[N][2], double x) noexcept {
+  double top = pairs[0][0], bottom = pairs[0][1];
+  for (std::size_t i = 1; i < N; ++i) {
+    top = top * x + pairs[i][0];
+    bottom = bottom * x + pairs[i][1];
+  }
+  return top / bottom;
+}
+
+// Of erf(x) / x below 0.46875, of exp(x^2) erfc(x) up to 4, and beyond: Cody 1969, Mathematics of
+// Computation 23. The exponential is that of the density.
+constexpr double kNear[][2] = {{1.85777706184603153e-1, 1.0},
+                               {3.16112374387056560, 2.36012909523441209e1},
+                               {1.13864154151050156e2, 2.44024637934444173e2},
+                               {3.77485237685302021e2, 1.28261652607737228e3},
+                               {3.20937758913846947e3, 2.84423683343917062e3}};
+constexpr double kMiddle[][2] = {{2.15311535474403846e-8, 1.0},
+                                 {5.64188496988670089e-1, 1.57449261107098347e1},
+                                 {8.88314979438837594, 1.17693950891312499e2},
+                                 {6.61191906371416295e1, 5.37181101862009858e2},
+                                 {2.98635138197400131e2, 1.62138957456669019e3},
+                                 {8.81952221241769090e2, 3.29079923573345963e3},
+                                 {1.71204761263407058e3, 4.36261909014324716e3},
+                                 {2.05107837782607147e3, 3.43936767414372164e3},
+                                 {1.23033935479799725e3, 1.23033935480374942e3}};
+constexpr double kFar[][2] = {{1.63153871373020978e-2, 1.0},
+                              {3.05326634961232344e-1, 2.56852019228982242},
+                              {3.60344899949804439e-1, 1.87295284992346725},
+                              {1.25781726111229246e-1, 5.27905102951428412e-1},
+                              {1.60837851487422766e-2, 6.05183413124413191e-2},
+                              {6.58749161529837803e-4, 2.33520497626869185e-3}};
+
+/// P(Z > |z|). @param gauss  exp(-z^2 / 2)
+double normal_tail(double z, double gauss) noexcept {
+  const double x = std::abs(z) * (0.5 * std::numbers::sqrt2);
+  if (x <= 0.46875) {
+    return 0.5 - 0.5 * x * quotient(kNear, x * x);
+  }
+  if (x <= 4.0) {
+    return 0.5 * gauss * quotient(kMiddle, x);
+  }
+  const double y = 1.0 / (x * x);
+  return 0.5 * gauss / x * (std::numbers::inv_sqrtpi - y * quotient(kFar, y));
+}
+
 SigmoidPoint normal_point(double z) noexcept {
-  // Of the smaller tail, and of its complement.
-  const double tail = 0.5 * std::erfc(std::abs(z) * (0.5 * std::numbers::sqrt2));
-  const double density =
-      std::exp(-0.5 * z * z) * (0.5 * std::numbers::inv_sqrtpi * std::numbers::sqrt2);
-  const double share = z < 0.0 ? tail : 1.0 - tail;
-  const double beyond = z < 0.0 ? 1.0 - tail : tail;
-  return {share, beyond, density, -z * density};
+  constexpr double kScale = 0.5 * std::numbers::inv_sqrtpi * std::numbers::sqrt2;
+  const double gauss = std::exp(-0.5 * z * z);
+  const double tail = std::abs(z) < 1e8 ? normal_tail(z, gauss) : 0.0;
+  const double density = kScale * gauss;
+  return {z < 0.0 ? tail : 1.0 - tail, z < 0.0 ? 1.0 - tail : tail, density, -z * density};
 }
 
 SigmoidPoint logistic_point(double z) noexcept {
