@@ -27,10 +27,41 @@ struct Climb {
   bool fisher{false};
 };
 
-/// How a block's likelihood changes with its p: slope, and minus the curvature.
-struct Pull {
-  double slope, curvature;
+constexpr std::size_t kLanes = SigmoidLanes::kCount;
+using Lanes = double[kLanes];
+
+/// Eight blocks: the coordinate of the level, right and wrong answers; none beyond the last block.
+struct Blocks {
+  Lanes x, right, wrong;
 };
+
+/// Where the likelihood is looked at.
+struct Spot {
+  double threshold, rise, lapse, guess;
+  bool tied;    // the guess rate is the lapse rate
+  bool fisher;  // Fisher's information is asked for
+};
+
+/// How the likelihood of each block changes with its p.
+struct Pull {
+  Lanes slope, curvature;
+  Lanes impossible;  // answers that have the probability 0
+};
+
+Pull pull_of(const Blocks& blocks, const Spot& spot, const SigmoidLanes& s) noexcept {
+  const double between = 1.0 - spot.guess - spot.lapse;
+  Pull pull;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const double p = spot.guess + between * s.share[i], q = spot.lapse + between * s.beyond[i];
+    pull.impossible[i] = (p > 0.0 ? 0.0 : blocks.right[i]) + (q > 0.0 ? 0.0 : blocks.wrong[i]);
+    const double by_p = 1.0 / (p > kTiny ? p : kTiny), by_q = 1.0 / (q > kTiny ? q : kTiny);
+    const double good = blocks.right[i] * by_p, bad = blocks.wrong[i] * by_q;
+    const double expected = (blocks.right[i] + blocks.wrong[i]) * by_p * by_q;
+    pull.slope[i] = good - bad;
+    pull.curvature[i] = spot.fisher ? expected : good * by_p + bad * by_q;
+  }
+  return pull;
+}
 
 /// Sums over the blocks of what makes a Climb, in terms of z - q = rise (x - threshold).
 struct Sums {
@@ -38,38 +69,61 @@ struct Sums {
   double bent{0.0}, bent_far{0.0}, bent_far_far{0.0};
   double lapse_near{0.0}, lapse_far{0.0}, guess_near{0.0}, guess_far{0.0};
   double lapse_lapse{0.0}, lapse_guess{0.0}, guess_guess{0.0};
+  double impossible{0.0};
 
-  /// @param from  z - q   @param tied  whether the guess rate is the lapse rate
-  void add(const Pull& pull, const SigmoidPoint& s, double between, double from, bool tied,
-           bool fisher) noexcept {
-    const double f = between * s.density;
-    const double by_lapse = tied ? s.beyond - s.share : -s.share;
-    const double by_guess = tied ? 0.0 : s.beyond;
-    const double second = fisher ? 0.0 : pull.slope;  // times second derivatives of p
-    const double e = pull.curvature * f * f - second * between * s.bend;
-    const double with_lapse =
-        pull.curvature * f * by_lapse + second * s.density * (tied ? 2.0 : 1.0);
-    const double with_guess = tied ? 0.0 : pull.curvature * f * by_guess + second * s.density;
-    density += pull.slope * f, far += pull.slope * f * from;
-    lapse += pull.slope * by_lapse, guess += pull.slope * by_guess;
-    bent += e, bent_far += e * from, bent_far_far += e * from * from;
-    lapse_near += with_lapse, lapse_far += with_lapse * from;
-    guess_near += with_guess, guess_far += with_guess * from;
-    lapse_lapse += pull.curvature * by_lapse * by_lapse;
-    lapse_guess += pull.curvature * by_lapse * by_guess;
-    guess_guess += pull.curvature * by_guess * by_guess;
-  }
-
-  /// dz = -rise d threshold - (z - q) d log width
-  void put(Climb& climb, double rise) const noexcept {
-    const double near = climb.fisher ? 0.0 : density, distant = climb.fisher ? 0.0 : far;
-    climb.slope = {-rise * density, -far, lapse, guess};
-    climb.hessian[0] = {rise * rise * bent};
-    climb.hessian[1] = {rise * (bent_far - near), bent_far_far - distant};
-    climb.hessian[2] = {-rise * lapse_near, -lapse_far, lapse_lapse};
-    climb.hessian[3] = {-rise * guess_near, -guess_far, lapse_guess, guess_guess};
-  }
+  template <bool Guess>
+  void add(const Sigmoid& sigmoid, const Blocks& blocks, const Spot& spot) noexcept;
+  void put(Climb& climb, double rise) const noexcept;
 };
+
+/// @tparam Guess  whether the guess rate is a parameter of its own
+template <bool Guess>
+void Sums::add(const Sigmoid& sigmoid, const Blocks& blocks, const Spot& spot) noexcept {
+  Lanes from, z;
+  SigmoidLanes s;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    from[i] = spot.rise * (blocks.x[i] - spot.threshold);
+    z[i] = sigmoid.centre() + from[i];
+  }
+  sigmoid.at(z, s);
+  const Pull pull = pull_of(blocks, spot, s);
+  const double between = 1.0 - spot.guess - spot.lapse;
+  const double twice = spot.tied ? 2.0 : 1.0, second = spot.fisher ? 0.0 : 1.0;
+  Lanes slope, bend, by_lapse, with_lapse, with_guess;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const double f = between * s.density[i], steep = pull.curvature[i] * between;
+    slope[i] = pull.slope[i] * f;
+    bend[i] = pull.curvature[i] * f * f - second * pull.slope[i] * between * s.bend[i];
+    by_lapse[i] = spot.tied ? s.beyond[i] - s.share[i] : -s.share[i];
+    with_lapse[i] = (steep * by_lapse[i] + second * twice * pull.slope[i]) * s.density[i];
+    with_guess[i] = (steep * s.beyond[i] + second * pull.slope[i]) * s.density[i];
+  }
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    impossible += pull.impossible[i];
+    density += slope[i], far += slope[i] * from[i];
+    lapse += pull.slope[i] * by_lapse[i];
+    bent += bend[i], bent_far += bend[i] * from[i], bent_far_far += bend[i] * from[i] * from[i];
+    lapse_near += with_lapse[i], lapse_far += with_lapse[i] * from[i];
+    lapse_lapse += pull.curvature[i] * by_lapse[i] * by_lapse[i];
+  }
+  for (std::size_t i = 0; Guess && i < kLanes; ++i) {
+    guess += pull.slope[i] * s.beyond[i];
+    guess_near += with_guess[i], guess_far += with_guess[i] * from[i];
+    lapse_guess += pull.curvature[i] * by_lapse[i] * s.beyond[i];
+    guess_guess += pull.curvature[i] * s.beyond[i] * s.beyond[i];
+  }
+}
+
+/// dz = -rise d threshold - (z - q) d log width
+void Sums::put(Climb& climb, double rise) const noexcept {
+  const double near = climb.fisher ? 0.0 : density, distant = climb.fisher ? 0.0 : far;
+  climb.possible = impossible == 0.0;
+  climb.slope = {-rise * density, -far, lapse, guess};
+  climb.hessian[0] = {rise * rise * bent};
+  climb.hessian[1] = {rise * (bent_far - near), bent_far_far - distant};
+  climb.hessian[2] = {-rise * lapse_near, -lapse_far, lapse_lapse};
+  climb.hessian[3] = {-rise * guess_near, -guess_far, lapse_guess, guess_guess};
+}
 
 /// Solves matrix x = right for the free rows by L D L'; false unless it is positive definite.
 bool solved(const Square& matrix, const std::array<bool, kPlaces>& free, const Place& right,
@@ -169,6 +223,8 @@ struct LikelihoodFitter::Search {
 
   Place start(const LikelihoodFitter& fitter) const noexcept;
   void at(const LikelihoodFitter& fitter, const Place& place, Climb& climb) const noexcept;
+  Blocks blocks_from(const LikelihoodFitter& fitter, std::size_t first,
+                     double elsewhere) const noexcept;
   double value(const LikelihoodFitter& fitter, const Place& place) const noexcept;
   Place next_change(const LikelihoodFitter& fitter, const Place& place,
                     const Climb& climb) const noexcept;
@@ -209,24 +265,40 @@ Place LikelihoodFitter::Search::start(const LikelihoodFitter& fitter) const noex
 
 void LikelihoodFitter::Search::at(const LikelihoodFitter& fitter, const Place& place,
                                   Climb& climb) const noexcept {
-  const Sigmoid& sigmoid = fitter.sigmoid_;
   const bool tied = fitter.task_ == Task::kEqualAsymptote;
-  const double lapse = place[2], guess = tied ? lapse : place[3];
-  const double between = 1.0 - guess - lapse;
-  const double rise = sigmoid.spread() * std::exp(-place[1]);
+  const Spot spot{place[0], fitter.sigmoid_.spread() * std::exp(-place[1]),
+                  place[2], tied ? place[2] : place[3],
+                  tied,     climb.fisher};
   Sums sums;
-  for (std::size_t i = 0; i < correct.size(); ++i) {
-    const double from = rise * (fitter.coordinates_[i] - place[0]);
-    const SigmoidPoint s = sigmoid.at(sigmoid.centre() + from);
-    const double p = guess + between * s.share, q = lapse + between * s.beyond;
-    const double k = answers(i), m = trials(i, fitter.totals_[i]) - k;
-    climb.possible = climb.possible && (k == 0.0 || p > 0.0) && (m == 0.0 || q > 0.0);
-    const double by_p = 1.0 / std::max(p, kTiny), by_q = 1.0 / std::max(q, kTiny);
-    const double up = k * by_p, down = m * by_q;
-    const double curvature = climb.fisher ? (k + m) * by_p * by_q : up * by_p + down * by_q;
-    sums.add({up - down, curvature}, s, between, from, tied, climb.fisher);
+  for (std::size_t first = 0; first < correct.size(); first += kLanes) {
+    const Blocks blocks = blocks_from(fitter, first, place[0]);
+    if (low[3] < high[3]) {
+      sums.add<true>(fitter.sigmoid_, blocks, spot);
+    } else {
+      sums.add<false>(fitter.sigmoid_, blocks, spot);
+    }
   }
-  sums.put(climb, rise);
+  sums.put(climb, spot.rise);
+}
+
+/// @param elsewhere  where those beyond the last block are put
+Blocks LikelihoodFitter::Search::blocks_from(const LikelihoodFitter& fitter, std::size_t first,
+                                             double elsewhere) const noexcept {
+  Blocks blocks;
+  const std::size_t count = std::min(kLanes, correct.size() - first);
+  for (std::size_t i = 0; i < count; ++i) {
+    blocks.x[i] = fitter.coordinates_[first + i];
+    blocks.right[i] = correct[first + i];
+    blocks.wrong[i] = fitter.totals_[first + i] - correct[first + i];
+  }
+  for (std::size_t i = count; i < kLanes; ++i) {
+    blocks.x[i] = elsewhere;
+    blocks.right[i] = blocks.wrong[i] = 0.0;
+  }
+  if (without - first < count) {
+    (right ? blocks.right : blocks.wrong)[without - first] -= 1.0;
+  }
+  return blocks;
 }
 
 /// The logarithm of the likelihood, without binomial coefficients.
@@ -246,13 +318,13 @@ double LikelihoodFitter::Search::value(const LikelihoodFitter& fitter,
   return sum;
 }
 
-/// Goes the step or as much of it as leads uphill. False where nothing does. A step that leaves at
-/// most half of the slope along itself needs no value of the likelihood, which takes longest.
+/// Goes the step or as much of it as leads uphill. False where nothing does. A step that ends
+/// before the top or little behind it needs no value of the likelihood, whose logarithms take long.
 bool LikelihoodFitter::Search::step(const LikelihoodFitter& fitter, Place& place, Climb& climb,
                                     const Place& change) const noexcept {
   constexpr int kHalvings = 30;
   double part = 1.0;
-  for (int i = 0; i < kHalvings; ++i, part *= 0.5) {
+  for (int i = 0; i < kHalvings; ++i) {
     Place next = place;
     for (int k = 0; k < kPlaces; ++k) {
       next[k] += part * change[k];
@@ -265,12 +337,13 @@ bool LikelihoodFitter::Search::step(const LikelihoodFitter& fitter, Place& place
       before += climb.slope[k] * (next[k] - place[k]);
       after += there.slope[k] * (next[k] - place[k]);
     }
-    const bool flatter = std::abs(after) <= 0.5 * before;
-    if (there.possible && (flatter || value(fitter, next) > value(fitter, place))) {
+    if (there.possible && before > 0.0 && after >= -0.9 * before) {
       place = next;
       climb = there;
       return true;
     }
+    // Where a parabola would have its top.
+    part *= there.possible ? std::clamp(before / (before - after), 0.1, 0.7) : 0.5;
   }
   return false;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string_view>
 
 namespace haptrial::analysis {
@@ -35,6 +36,15 @@ struct SigmoidPoint {
   double bend{0.0};     // S'' [1/z^2]
 };
 
+/// The same for eight places at once.
+struct SigmoidLanes {
+  static constexpr std::size_t kCount = 8;
+  double share[kCount];
+  double beyond[kCount];
+  double density[kCount];
+  double bend[kCount];
+};
+
 /// S(x; m, w): of shape F, with S(m) = threshold_share, and w the distance over which F goes from
 /// alpha to 1 - alpha:
 ///
@@ -57,6 +67,8 @@ class Sigmoid {
 
   /// S with its derivatives by z.
   SigmoidPoint at(double z) const noexcept;
+  /// The same at SigmoidLanes::kCount places; the smaller of share and beyond to 1e-11 of itself.
+  void at(const double* z, SigmoidLanes& lanes) const noexcept;
   /// S(x); `beyond` gets 1 - S.
   double share(double x, double threshold, double width, double& beyond) const noexcept;
   /// The x with S(x) = share; share inside (0, 1).
