@@ -8,7 +8,7 @@ function(haptrial_optimise target folder)
   if(folder MATCHES "^tests|^experiments/(command|console|stud)")
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1> -Wno-restrict -Wno-array-bounds -Wno-stringop-overread)
   elseif(folder MATCHES "^core/(record|stream|network)|^core/base/definition|^experiments" OR
-         (folder MATCHES "^analysis" AND NOT folder MATCHES "^analysis/alignment"))
+         (folder MATCHES "^analysis" AND NOT folder MATCHES "^analysis/(alignment|psychometric)"))
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O2> -Wno-restrict -Wno-array-bounds -Wno-stringop-overread)
   endif()
 endfunction()

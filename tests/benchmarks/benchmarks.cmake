@@ -17,6 +17,8 @@ target_sources(bench_null_reports PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/for
 target_sources(bench_null_relabelled
                PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/force_training/comparison/null_comparisons.cpp
                        ${CMAKE_SOURCE_DIR}/tests/analysis/bone_drilling/validity/null_validity.cpp)
+target_link_libraries(bench_psychometric PRIVATE haptrial_psychometric_quest haptrial_psychometric_prediction)
+target_link_libraries(bench_psychometric_fit PRIVATE haptrial_psychometric_fit)
 target_compile_definitions(bench_servo PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 target_compile_definitions(bench_mesh PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 # bench_distance compares with those of its peers that are installed.

@@ -1,0 +1,207 @@
+#include "analysis/psychometric/fit/bootstrap_fit.h"
+
+#include <gsl/gsl_randist.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace haptrial::analysis {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// Distribution function of the answers to each block, to draw by a single uniform number.
+class AnswerDraws {
+ public:
+  AnswerDraws(std::span<const TrialBlock> blocks, const std::vector<double>& shares) {
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      std::vector<double>& below = below_.emplace_back();
+      double sum = 0.0;
+      for (int k = 0; k < blocks[i].total; ++k) {
+        sum += gsl_ran_binomial_pdf(static_cast<unsigned>(k), shares[i],
+                                    static_cast<unsigned>(blocks[i].total));
+        below.push_back(sum);
+      }
+    }
+  }
+
+  void draw(RandomStream& random, std::vector<int>& correct) const {
+    for (std::size_t i = 0; i < below_.size(); ++i) {
+      const auto place = std::upper_bound(below_[i].begin(), below_[i].end(), random.uniform());
+      correct[i] = static_cast<int>(place - below_[i].begin());
+    }
+  }
+
+ private:
+  std::vector<std::vector<double>> below_;
+};
+
+std::vector<int> answers_of(std::span<const TrialBlock> blocks) {
+  std::vector<int> correct;
+  for (const TrialBlock& block : blocks) {
+    correct.push_back(block.correct);
+  }
+  return correct;
+}
+
+std::vector<double> shares_of(std::span<const TrialBlock> blocks,
+                              const PsychometricFunction* function) {
+  std::vector<double> shares;
+  for (const TrialBlock& block : blocks) {
+    shares.push_back(function ? std::clamp(function->at(block.level), 0.0, 1.0)
+                              : static_cast<double>(block.correct) / block.total);
+  }
+  return shares;
+}
+
+void check_asked(std::span<const Asked> asked) {
+  for (const Asked& a : asked) {
+    if (!(a.at > 0.0 && a.at < 1.0)) {
+      throw std::invalid_argument("at of a reading must lie inside (0, 1)");
+    }
+    if (!(a.standard > 0.0)) {
+      throw std::invalid_argument("standard of a Weber fraction must be above 0");
+    }
+  }
+}
+
+/// For each asked, the reading without each trial of each block.
+std::vector<std::vector<std::vector<double>>> without_trials(const LikelihoodFitter& fitter,
+                                                             std::span<const TrialBlock> blocks,
+                                                             std::span<const Asked> asked) {
+  const std::vector<int> correct = answers_of(blocks);
+  std::vector<std::vector<std::vector<double>>> result(
+      asked.size(), std::vector<std::vector<double>>(blocks.size()));
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    for (const bool right : {true, false}) {
+      const int count = right ? correct[i] : blocks[i].total - correct[i];
+      if (count == 0) {
+        continue;
+      }
+      const PsychometricFunction function(fitter.sigmoid(),
+                                          fitter.fit_without(correct, i, right).parameters);
+      for (std::size_t a = 0; a < asked.size(); ++a) {
+        result[a][i].insert(result[a][i].end(), static_cast<std::size_t>(count),
+                            read_off(function, asked[a]));
+      }
+    }
+  }
+  return result;
+}
+
+/// What the resamples gave.
+struct Drawn {
+  std::vector<std::vector<double>> readings;  // (asked x resamples)
+  std::vector<char> undetermined;             // (resamples)
+  std::vector<double> deviances;              // (resamples)
+};
+
+Drawn drawn_fits(const LikelihoodFitter& fitter, std::span<const TrialBlock> blocks,
+                 std::span<const Asked> asked, const AnswerDraws& draws,
+                 const Resampling& resampling) {
+  Drawn drawn{std::vector(asked.size(), std::vector<double>(resampling.count)),
+              std::vector<char>(resampling.count), std::vector<double>(resampling.count)};
+  for_each_part(resampling, [&](RandomStream& random, std::size_t first, std::size_t last) {
+    std::vector<int> correct(blocks.size());
+    std::vector<TrialBlock> answered(blocks.begin(), blocks.end());
+    for (std::size_t r = first; r < last; ++r) {
+      draws.draw(random, correct);
+      const LikelihoodFit fit = fitter.fit(correct);
+      const PsychometricFunction function(fitter.sigmoid(), fit.parameters);
+      for (std::size_t a = 0; a < asked.size(); ++a) {
+        drawn.readings[a][r] = read_off(function, asked[a]);
+      }
+      for (std::size_t i = 0; i < blocks.size(); ++i) {
+        answered[i].correct = correct[i];
+      }
+      drawn.undetermined[r] = fit.undetermined ? 1 : 0;
+      drawn.deviances[r] = deviance_of(function, answered).deviance;
+    }
+  });
+  return drawn;
+}
+
+}  // namespace
+
+double read_off(const PsychometricFunction& function, const Asked& asked) {
+  const PsychometricParameters& p = function.parameters();
+  switch (asked.reading) {
+    case Reading::kThreshold:
+      return function.threshold_level();
+    case Reading::kWidth:
+      return p.width;
+    case Reading::kLapse:
+      return p.lapse;
+    case Reading::kGuess:
+      return p.guess;
+    case Reading::kLevelOfShare:
+      return function.level_of_share(asked.at);
+    case Reading::kLevelOfProbability:
+      return function.level_at(asked.at).value_or(kNone);
+    case Reading::kSlope:
+      return function.slope(function.level_of_share(asked.at));
+    case Reading::kWeberThreshold:
+      return std::abs(function.level_of_share(asked.at) - asked.standard) / asked.standard;
+    case Reading::kWeberQuartiles:
+      break;
+  }
+  return 0.5 * std::abs(function.level_of_share(0.75) - function.level_of_share(0.25)) /
+         asked.standard;
+}
+
+BootstrappedFit bootstrap_fit(std::span<const TrialBlock> blocks, const LikelihoodOptions& options,
+                              std::span<const Asked> asked, const FitBootstrap& how) {
+  check_asked(asked);
+  const LikelihoodFitter fitter(options, blocks);
+  BootstrappedFit result;
+  result.fit = fitter.fit(answers_of(blocks));
+  const PsychometricFunction function(fitter.sigmoid(), result.fit.parameters);
+  result.deviance = deviance_of(function, blocks);
+  const AnswerDraws draws(blocks, shares_of(blocks, how.parametric ? &function : nullptr));
+  Drawn drawn = drawn_fits(fitter, blocks, asked, draws, how.resampling);
+  result.undetermined =
+      static_cast<std::size_t>(std::count(drawn.undetermined.begin(), drawn.undetermined.end(), 1));
+  const auto jackknife = without_trials(fitter, blocks, asked);
+  for (std::size_t a = 0; a < asked.size(); ++a) {
+    result.estimates.push_back(read_off(function, asked[a]));
+    result.intervals.push_back(
+        bca_interval(result.estimates[a], std::move(drawn.readings[a]), jackknife[a], how.level));
+  }
+  if (!how.parametric) {
+    Resampling again = how.resampling;
+    again.stream += "/deviance";
+    drawn =
+        drawn_fits(fitter, blocks, {}, AnswerDraws(blocks, shares_of(blocks, &function)), again);
+  }
+  const auto larger = std::count_if(drawn.deviances.begin(), drawn.deviances.end(), [&](double d) {
+    return d >= result.deviance.deviance * (1.0 - 1e-9);
+  });
+  result.deviance_p =
+      (static_cast<double>(larger) + 1.0) / (static_cast<double>(how.resampling.count) + 1.0);
+  return result;
+}
+
+std::vector<std::optional<BlockInfluence>> block_influence(std::span<const TrialBlock> blocks,
+                                                           const LikelihoodOptions& options) {
+  const LikelihoodFit whole = likelihood_fit(blocks, options);
+  const Sigmoid sigmoid(options.shape);
+  const double deviance = deviance_of({sigmoid, whole.parameters}, blocks).deviance;
+  std::vector<std::optional<BlockInfluence>> result;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    std::vector<TrialBlock> others(blocks.begin(), blocks.end());
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    if (others.empty() || pooled(others).size() < 2) {
+      result.emplace_back();
+      continue;
+    }
+    const LikelihoodFit fit = likelihood_fit(others, options);
+    result.push_back(
+        BlockInfluence{fit.parameters.threshold - whole.parameters.threshold,
+                       deviance - deviance_of({sigmoid, fit.parameters}, others).deviance});
+  }
+  return result;
+}
+
+}  // namespace haptrial::analysis

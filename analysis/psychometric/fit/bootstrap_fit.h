@@ -1,0 +1,71 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "analysis/psychometric/fit/likelihood_fit.h"
+#include "analysis/statistics/base/defined.h"
+#include "analysis/statistics/base/resampling.h"
+#include "analysis/statistics/tests/bootstrap.h"
+
+namespace haptrial::analysis {
+
+/// A number that is read off a psychometric function.
+enum class Reading {
+  kThreshold,  // the level of S = threshold_share
+  kWidth,      // in the coordinate of the sigmoid
+  kLapse,
+  kGuess,
+  kLevelOfShare,        // the level of S = at, free of guesses and lapses
+  kLevelOfProbability,  // the level of P(correct) = at
+  kSlope,               // d P / d level at the level of S = at
+  kWeberThreshold,      // |level of S = at - standard| / standard: forced choice against a standard
+  kWeberQuartiles,      // (level of S = 3/4 - that of 1/4) / 2 / standard: "larger" or "smaller"
+};
+
+struct Asked {
+  Reading reading{Reading::kThreshold};
+  double at{0.5};        // where the reading takes a share or a probability, inside (0, 1)
+  double standard{1.0};  // of a Weber fraction, > 0 [unit of the level]
+};
+
+/// The number; NaN where the function does not have it.
+double read_off(const PsychometricFunction& function, const Asked& asked);
+
+struct FitBootstrap {
+  Resampling resampling{.stream = "psychometric bootstrap"};
+  /// Answers drawn from the fitted function; otherwise from the shares of each block themselves.
+  bool parametric{true};
+  double level{0.95};
+};
+
+struct BootstrappedFit {
+  LikelihoodFit fit;
+  PsychometricDeviance deviance;
+  std::vector<double> estimates;                      // one for each asked
+  std::vector<Defined<BootstrapInterval>> intervals;  // bias-corrected and accelerated
+  /// The share of simulated observers who have the fitted function and a deviance at least as
+  /// large: (b + 1) / (m + 1). Small where the function does not describe the answers.
+  double deviance_p{1.0};
+  /// Resamples whose threshold or width is undetermined.
+  std::size_t undetermined{0};
+};
+
+/// The fit with intervals: each resample draws all answers anew and fits them. The result depends
+/// on seed and name of the stream alone, not on the number of threads.
+/// @throws std::invalid_argument as LikelihoodFitter, and naming what of `asked` breaks its bound.
+/// Source: Wichmann and Hill 2001, Perception & Psychophysics 63, 1293 and 1314.
+BootstrappedFit bootstrap_fit(std::span<const TrialBlock> blocks, const LikelihoodOptions& options,
+                              std::span<const Asked> asked, const FitBootstrap& how);
+
+/// What changes when a block is left out.
+struct BlockInfluence {
+  double threshold{0.0};  // threshold without the block - with it, in the coordinate
+  double deviance{0.0};   // by how much the deviance falls
+};
+/// One for each block; nothing where fewer than two levels would remain.
+std::vector<std::optional<BlockInfluence>> block_influence(std::span<const TrialBlock> blocks,
+                                                           const LikelihoodOptions& options);
+
+}  // namespace haptrial::analysis

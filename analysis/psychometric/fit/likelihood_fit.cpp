@@ -1,0 +1,474 @@
+#include "analysis/psychometric/fit/likelihood_fit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "analysis/psychometric/fit/prior.h"
+
+namespace haptrial::analysis {
+namespace {
+
+// Threshold, log width, lapse, guess.
+constexpr int kPlaces = 4;
+using Place = std::array<double, kPlaces>;
+using Square = std::array<Place, kPlaces>;
+
+constexpr double kTiny = 1e-150;  // of a share that is divided by
+
+/// What Newton's method needs of the logarithm of the likelihood at a place.
+struct Climb {
+  bool possible{true};  // the likelihood is not 0
+  Place slope{};
+  Square hessian{};  // of minus the logarithm; or Fisher's information
+  bool fisher{false};
+};
+
+constexpr std::size_t kLanes = SigmoidLanes::kCount;
+using Lanes = double[kLanes];
+
+/// Eight blocks: the coordinate of the level, right and wrong answers; none beyond the last block.
+struct Blocks {
+  Lanes x, right, wrong;
+};
+
+/// Where the likelihood is looked at.
+struct Spot {
+  double threshold, rise, lapse, guess;
+  bool tied;    // the guess rate is the lapse rate
+  bool fisher;  // Fisher's information is asked for
+};
+
+/// How the likelihood of each block changes with its p.
+struct Pull {
+  Lanes slope, curvature;
+  Lanes impossible;  // answers that have the probability 0
+};
+
+Pull pull_of(const Blocks& blocks, const Spot& spot, const SigmoidLanes& s) noexcept {
+  const double between = 1.0 - spot.guess - spot.lapse;
+  Pull pull;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const double p = spot.guess + between * s.share[i], q = spot.lapse + between * s.beyond[i];
+    pull.impossible[i] = (p > 0.0 ? 0.0 : blocks.right[i]) + (q > 0.0 ? 0.0 : blocks.wrong[i]);
+    const double by_p = 1.0 / (p > kTiny ? p : kTiny), by_q = 1.0 / (q > kTiny ? q : kTiny);
+    const double good = blocks.right[i] * by_p, bad = blocks.wrong[i] * by_q;
+    const double expected = (blocks.right[i] + blocks.wrong[i]) * by_p * by_q;
+    pull.slope[i] = good - bad;
+    pull.curvature[i] = spot.fisher ? expected : good * by_p + bad * by_q;
+  }
+  return pull;
+}
+
+/// Sums over the blocks of what makes a Climb, in terms of z - q = rise (x - threshold).
+struct Sums {
+  double density{0.0}, far{0.0}, lapse{0.0}, guess{0.0};  // slopes
+  double bent{0.0}, bent_far{0.0}, bent_far_far{0.0};
+  double lapse_near{0.0}, lapse_far{0.0}, guess_near{0.0}, guess_far{0.0};
+  double lapse_lapse{0.0}, lapse_guess{0.0}, guess_guess{0.0};
+  double impossible{0.0};
+
+  template <bool Guess>
+  void add(const Sigmoid& sigmoid, const Blocks& blocks, const Spot& spot) noexcept;
+  void put(Climb& climb, double rise) const noexcept;
+};
+
+/// @tparam Guess  whether the guess rate is a parameter of its own
+template <bool Guess>
+void Sums::add(const Sigmoid& sigmoid, const Blocks& blocks, const Spot& spot) noexcept {
+  Lanes from, z;
+  SigmoidLanes s;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    from[i] = spot.rise * (blocks.x[i] - spot.threshold);
+    z[i] = sigmoid.centre() + from[i];
+  }
+  sigmoid.at(z, s);
+  const Pull pull = pull_of(blocks, spot, s);
+  const double between = 1.0 - spot.guess - spot.lapse;
+  const double twice = spot.tied ? 2.0 : 1.0, second = spot.fisher ? 0.0 : 1.0;
+  Lanes slope, bend, by_lapse, with_lapse, with_guess;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const double f = between * s.density[i], steep = pull.curvature[i] * between;
+    slope[i] = pull.slope[i] * f;
+    bend[i] = pull.curvature[i] * f * f - second * pull.slope[i] * between * s.bend[i];
+    by_lapse[i] = spot.tied ? s.beyond[i] - s.share[i] : -s.share[i];
+    with_lapse[i] = (steep * by_lapse[i] + second * twice * pull.slope[i]) * s.density[i];
+    with_guess[i] = (steep * s.beyond[i] + second * pull.slope[i]) * s.density[i];
+  }
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    impossible += pull.impossible[i];
+    density += slope[i], far += slope[i] * from[i];
+    lapse += pull.slope[i] * by_lapse[i];
+    bent += bend[i], bent_far += bend[i] * from[i], bent_far_far += bend[i] * from[i] * from[i];
+    lapse_near += with_lapse[i], lapse_far += with_lapse[i] * from[i];
+    lapse_lapse += pull.curvature[i] * by_lapse[i] * by_lapse[i];
+  }
+  for (std::size_t i = 0; Guess && i < kLanes; ++i) {
+    guess += pull.slope[i] * s.beyond[i];
+    guess_near += with_guess[i], guess_far += with_guess[i] * from[i];
+    lapse_guess += pull.curvature[i] * by_lapse[i] * s.beyond[i];
+    guess_guess += pull.curvature[i] * s.beyond[i] * s.beyond[i];
+  }
+}
+
+/// dz = -rise d threshold - (z - q) d log width
+void Sums::put(Climb& climb, double rise) const noexcept {
+  const double near = climb.fisher ? 0.0 : density, distant = climb.fisher ? 0.0 : far;
+  climb.possible = impossible == 0.0;
+  climb.slope = {-rise * density, -far, lapse, guess};
+  climb.hessian[0] = {rise * rise * bent};
+  climb.hessian[1] = {rise * (bent_far - near), bent_far_far - distant};
+  climb.hessian[2] = {-rise * lapse_near, -lapse_far, lapse_lapse};
+  climb.hessian[3] = {-rise * guess_near, -guess_far, lapse_guess, guess_guess};
+}
+
+/// Solves matrix x = right for the free rows by L D L'; false unless it is positive definite.
+bool solved(const Square& matrix, const std::array<bool, kPlaces>& free, const Place& right,
+            Place& x) noexcept {
+  Square lower{};
+  Place pivot{}, y{};
+  for (int i = 0; i < kPlaces; ++i) {
+    if (!free[i]) {
+      continue;
+    }
+    double d = matrix[i][i];
+    y[i] = right[i];
+    for (int j = 0; j < i; ++j) {
+      if (!free[j]) {
+        continue;
+      }
+      double sum = matrix[i][j];
+      for (int k = 0; k < j; ++k) {
+        sum -= free[k] ? lower[i][k] * lower[j][k] * pivot[k] : 0.0;
+      }
+      lower[i][j] = sum / pivot[j];
+      d -= lower[i][j] * sum;
+      y[i] -= lower[i][j] * y[j];
+    }
+    if (!(d > 1e-12 * std::abs(matrix[i][i]))) {
+      return false;
+    }
+    pivot[i] = d;
+  }
+  for (int i = kPlaces; i-- > 0;) {
+    x[i] = free[i] ? y[i] / pivot[i] : 0.0;
+    for (int k = i + 1; free[i] && k < kPlaces; ++k) {
+      x[i] -= free[k] ? lower[k][i] * x[k] : 0.0;
+    }
+  }
+  return true;
+}
+
+void check_rate(const RateBounds& bounds, const char* name) {
+  if (!(bounds.low >= 0.0 && bounds.high >= bounds.low && bounds.high < 0.5)) {
+    throw std::invalid_argument(std::string("bounds of the ") + name +
+                                " rate must have 0 <= low <= high < 0.5");
+  }
+}
+
+/// A step along each free parameter as if it were the only one, from Fisher's information.
+Place alone(const Climb& climb, const std::array<bool, kPlaces>& free) noexcept {
+  Place change{};
+  for (int i = 0; i < kPlaces; ++i) {
+    change[i] = free[i] ? climb.slope[i] / std::max(climb.hessian[i][i], 1e-12) : 0.0;
+  }
+  return change;
+}
+
+/// What a step gains where the likelihood is a parabola.
+double promised(const Climb& climb, const Place& change) noexcept {
+  double sum = 0.0;
+  for (int i = 0; i < kPlaces; ++i) {
+    sum += 0.5 * change[i] * climb.slope[i];
+  }
+  return sum;
+}
+
+double logit(double share) noexcept { return std::log(share / (1.0 - share)); }
+
+}  // namespace
+
+/// One search: the answers, and the bounds of the place.
+struct LikelihoodFitter::Search {
+  std::span<const int> correct;
+  std::size_t without{std::numeric_limits<std::size_t>::max()};
+  bool right{false};  // what is left out
+  Place low{}, high{};
+
+  double answers(std::size_t i) const noexcept {
+    return correct[i] - (i == without && right ? 1.0 : 0.0);
+  }
+  double trials(std::size_t i, int total) const noexcept {
+    return total - (i == without ? 1.0 : 0.0);
+  }
+
+  void clamp(Place& place) const noexcept {
+    for (int i = 0; i < kPlaces; ++i) {
+      place[i] = std::clamp(place[i], low[i], high[i]);
+    }
+  }
+
+  /// Whether a parameter may move uphill.
+  std::array<bool, kPlaces> free(const Place& place, const Place& slope) const noexcept {
+    std::array<bool, kPlaces> result;
+    for (int i = 0; i < kPlaces; ++i) {
+      result[i] = low[i] < high[i] && (place[i] > low[i] || slope[i] > 0.0) &&
+                  (place[i] < high[i] || slope[i] < 0.0);
+    }
+    return result;
+  }
+
+  Place start(const LikelihoodFitter& fitter) const noexcept;
+  void at(const LikelihoodFitter& fitter, const Place& place, Climb& climb) const noexcept;
+  Blocks blocks_from(const LikelihoodFitter& fitter, std::size_t first,
+                     double elsewhere) const noexcept;
+  double value(const LikelihoodFitter& fitter, const Place& place) const noexcept;
+  Place next_change(const LikelihoodFitter& fitter, const Place& place,
+                    const Climb& climb) const noexcept;
+  bool told(const LikelihoodFitter& fitter, const Place& place, const Climb& climb) const noexcept;
+  bool step(const LikelihoodFitter& fitter, Place& place, Climb& climb,
+            const Place& change) const noexcept;
+};
+
+/// A line through the logits of the observed shares, free of guesses and lapses.
+Place LikelihoodFitter::Search::start(const LikelihoodFitter& fitter) const noexcept {
+  const Sigmoid& sigmoid = fitter.sigmoid_;
+  const double lapse = std::min(high[2], low[2] + 0.01);
+  const double guess =
+      fitter.task_ == Task::kEqualAsymptote ? lapse : std::min(high[3], low[3] + 0.01);
+  const double middle = logit(sigmoid.shape().threshold_share);
+  const double spread = 2.0 * logit(1.0 - sigmoid.shape().width_tail);
+  double sum = 0.0, sum_x = 0.0, sum_y = 0.0, sum_xx = 0.0, sum_xy = 0.0;
+  const double origin = 0.5 * (fitter.low_ + fitter.high_);
+  for (std::size_t i = 0; i < correct.size(); ++i) {
+    const double n = trials(i, fitter.totals_[i]);
+    const double observed = (answers(i) + 0.5) / (n + 1.0);
+    const double share = std::clamp((observed - guess) / (1.0 - guess - lapse), 0.02, 0.98);
+    const double weight = n * share * (1.0 - share), x = fitter.coordinates_[i] - origin;
+    const double y = logit(share) - middle;
+    sum += weight, sum_x += weight * x, sum_y += weight * y;
+    sum_xx += weight * x * x, sum_xy += weight * x * y;
+  }
+  const double range = fitter.high_ - fitter.low_;
+  double slope = (sum * sum_xy - sum_x * sum_y) / (sum * sum_xx - sum_x * sum_x);
+  slope = (sigmoid.shape().falling ? -1.0 : 1.0) * slope;
+  const double width = slope > 0.0 ? std::clamp(spread / slope, 0.05 * range, 3.0 * range) : range;
+  const double rise = (sigmoid.shape().falling ? -1.0 : 1.0) * spread / width;
+  Place place{origin + (sum_x - sum_y / rise) / sum, std::log(width), lapse, guess};
+  place[0] = std::clamp(place[0], fitter.low_, fitter.high_);
+  clamp(place);
+  return place;
+}
+
+void LikelihoodFitter::Search::at(const LikelihoodFitter& fitter, const Place& place,
+                                  Climb& climb) const noexcept {
+  const bool tied = fitter.task_ == Task::kEqualAsymptote;
+  const Spot spot{place[0], fitter.sigmoid_.spread() * std::exp(-place[1]),
+                  place[2], tied ? place[2] : place[3],
+                  tied,     climb.fisher};
+  Sums sums;
+  for (std::size_t first = 0; first < correct.size(); first += kLanes) {
+    const Blocks blocks = blocks_from(fitter, first, place[0]);
+    if (low[3] < high[3]) {
+      sums.add<true>(fitter.sigmoid_, blocks, spot);
+    } else {
+      sums.add<false>(fitter.sigmoid_, blocks, spot);
+    }
+  }
+  sums.put(climb, spot.rise);
+}
+
+/// @param elsewhere  where those beyond the last block are put
+Blocks LikelihoodFitter::Search::blocks_from(const LikelihoodFitter& fitter, std::size_t first,
+                                             double elsewhere) const noexcept {
+  Blocks blocks;
+  const std::size_t count = std::min(kLanes, correct.size() - first);
+  for (std::size_t i = 0; i < count; ++i) {
+    blocks.x[i] = fitter.coordinates_[first + i];
+    blocks.right[i] = correct[first + i];
+    blocks.wrong[i] = fitter.totals_[first + i] - correct[first + i];
+  }
+  for (std::size_t i = count; i < kLanes; ++i) {
+    blocks.x[i] = elsewhere;
+    blocks.right[i] = blocks.wrong[i] = 0.0;
+  }
+  if (without - first < count) {
+    (right ? blocks.right : blocks.wrong)[without - first] -= 1.0;
+  }
+  return blocks;
+}
+
+/// The logarithm of the likelihood, without binomial coefficients.
+double LikelihoodFitter::Search::value(const LikelihoodFitter& fitter,
+                                       const Place& place) const noexcept {
+  const double lapse = place[2];
+  const double guess = fitter.task_ == Task::kEqualAsymptote ? lapse : place[3];
+  const double width = std::exp(place[1]);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < correct.size(); ++i) {
+    double beyond = 0.0;
+    const double share = fitter.sigmoid_.share(fitter.coordinates_[i], place[0], width, beyond);
+    const double k = answers(i), m = trials(i, fitter.totals_[i]) - k;
+    sum += k > 0.0 ? k * std::log(guess + (1.0 - guess - lapse) * share) : 0.0;
+    sum += m > 0.0 ? m * std::log(lapse + (1.0 - guess - lapse) * beyond) : 0.0;
+  }
+  return sum;
+}
+
+/// Goes the step or as much of it as leads uphill. False where nothing does. A step that ends
+/// before the top or little behind it needs no value of the likelihood, whose logarithms take long.
+bool LikelihoodFitter::Search::step(const LikelihoodFitter& fitter, Place& place, Climb& climb,
+                                    const Place& change) const noexcept {
+  constexpr int kHalvings = 30;
+  double part = 1.0;
+  for (int i = 0; i < kHalvings; ++i) {
+    Place next = place;
+    for (int k = 0; k < kPlaces; ++k) {
+      next[k] += part * change[k];
+    }
+    clamp(next);
+    Climb there;
+    at(fitter, next, there);
+    double before = 0.0, after = 0.0;
+    for (int k = 0; k < kPlaces; ++k) {
+      before += climb.slope[k] * (next[k] - place[k]);
+      after += there.slope[k] * (next[k] - place[k]);
+    }
+    if (there.possible && before > 0.0 && after >= -0.9 * before) {
+      place = next;
+      climb = there;
+      return true;
+    }
+    // Where a parabola would have its top.
+    part *= there.possible ? std::clamp(before / (before - after), 0.1, 0.7) : 0.5;
+  }
+  return false;
+}
+
+LikelihoodFitter::LikelihoodFitter(const LikelihoodOptions& options,
+                                   std::span<const TrialBlock> blocks)
+    : sigmoid_(options.shape), task_(options.task), lapse_(options.lapse), guess_(options.guess) {
+  check_rate(options.lapse, "lapse");
+  pooled(blocks);  // checks them
+  if (task_ == Task::kForcedChoice) {
+    if (options.alternatives < 2) {
+      throw std::invalid_argument("alternatives must be at least 2");
+    }
+    guess_ = {1.0 / options.alternatives, 1.0 / options.alternatives};
+  } else if (task_ == Task::kEqualAsymptote) {
+    guess_ = {0.0, 0.0};
+  } else {
+    check_rate(options.guess, "guess");
+  }
+  coordinates_ = coordinates(sigmoid_, blocks);
+  const StimulusRange range = stimulus_range(coordinates_);
+  low_ = range.low, high_ = range.high, spacing_ = range.spacing;
+  for (const TrialBlock& block : blocks) {
+    totals_.push_back(block.total);
+  }
+}
+
+int LikelihoodFitter::free_parameters() const noexcept {
+  return 2 + (lapse_.low < lapse_.high ? 1 : 0) + (guess_.low < guess_.high ? 1 : 0);
+}
+
+/// The next change of the place: Newton's, or where the likelihood is not concave, by Fisher's
+/// information. No parameter goes far at once, as a steep function has maxima of its own.
+Place LikelihoodFitter::Search::next_change(const LikelihoodFitter& fitter, const Place& place,
+                                            const Climb& climb) const noexcept {
+  const auto movable = free(place, climb.slope);
+  Place change{};
+  if (!solved(climb.hessian, movable, climb.slope, change)) {
+    Climb expected;
+    expected.fisher = true;
+    at(fitter, place, expected);
+    if (!solved(expected.hessian, movable, climb.slope, change)) {
+      change = alone(expected, movable);
+    }
+  }
+  const Place most{0.25 * (fitter.high_ - fitter.low_), 0.7, 1.0, 1.0};
+  double part = 1.0;
+  for (int i = 0; i < kPlaces; ++i) {
+    part = std::abs(change[i]) > most[i] ? std::min(part, most[i] / std::abs(change[i])) : part;
+  }
+  for (double& c : change) {
+    c *= part;
+  }
+  return change;
+}
+
+/// Whether the answers tell threshold and width at all.
+bool LikelihoodFitter::Search::told(const LikelihoodFitter& fitter, const Place& place,
+                                    const Climb& climb) const noexcept {
+  const double range = fitter.high_ - fitter.low_;
+  // At best, standard errors of the range and of a factor 20.
+  bool inside = climb.hessian[0][0] * range * range > 1.0 && climb.hessian[1][1] > 1.0 / 9.0;
+  for (int i = 0; i < 2; ++i) {
+    inside = inside && place[i] > low[i] && place[i] < high[i];
+  }
+  return inside;
+}
+
+LikelihoodFit LikelihoodFitter::search(Search& search) const noexcept {
+  constexpr int kMost = 200;
+  constexpr double kDone = 1e-8;  // of the logarithm; a Newton step squares what is left
+  const double range = high_ - low_;
+  search.low = {low_ - range, std::log(spacing_), lapse_.low, guess_.low};
+  search.high = {high_ + range, std::log(20.0 * range), lapse_.high, guess_.high};
+  LikelihoodFit fit;
+  Place place = search.start(*this);
+  Climb climb;
+  search.at(*this, place, climb);
+  for (; fit.steps < kMost; ++fit.steps) {
+    Place change = search.next_change(*this, place, climb);
+    const double promise = promised(climb, change);
+    if (promise < kDone) {
+      for (int i = 0; i < kPlaces; ++i) {
+        place[i] += change[i];
+      }
+      search.clamp(place);
+      fit.converged = true;
+      break;
+    }
+    if (!search.step(*this, place, climb, change)) {
+      // A bound bends Newton's direction downhill: each parameter by itself still leads up.
+      Climb expected;
+      expected.fisher = true;
+      search.at(*this, place, expected);
+      change = alone(expected, search.free(place, climb.slope));
+      if (!search.step(*this, place, climb, change)) {
+        break;
+      }
+    }
+  }
+  fit.parameters = {place[0], std::exp(place[1]), place[2],
+                    task_ == Task::kEqualAsymptote ? place[2] : place[3], 0.0};
+  fit.log_likelihood = search.value(*this, place);
+  fit.undetermined = !search.told(*this, place, climb);
+  return fit;
+}
+
+LikelihoodFit LikelihoodFitter::fit(std::span<const int> correct) const noexcept {
+  Search one{correct};
+  return search(one);
+}
+
+LikelihoodFit LikelihoodFitter::fit_without(std::span<const int> correct, std::size_t block,
+                                            bool right) const noexcept {
+  Search one{correct, block, right};
+  return search(one);
+}
+
+LikelihoodFit likelihood_fit(std::span<const TrialBlock> blocks, const LikelihoodOptions& options) {
+  const LikelihoodFitter fitter(options, blocks);
+  std::vector<int> correct;
+  for (const TrialBlock& block : blocks) {
+    correct.push_back(block.correct);
+  }
+  return fitter.fit(correct);
+}
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "analysis/psychometric/fit/psychometric_model.h"
+
+namespace haptrial::analysis {
+
+/// From low to high; equal where the value is known.
+struct RateBounds {
+  double low{0.0};
+  double high{0.06};  // Wichmann and Hill 2001
+};
+
+struct LikelihoodOptions {
+  SigmoidShape shape{};
+  Task task{Task::kForcedChoice};
+  int alternatives{2};  // of a forced choice, >= 2
+  RateBounds lapse{};   // 0 <= low <= high < 0.5
+  RateBounds guess{};   // of a yes/no task, likewise
+};
+
+struct LikelihoodFit {
+  PsychometricParameters parameters;  // eta is 0
+  double log_likelihood{0.0};         // without binomial coefficients
+  int steps{0};
+  /// Whether the slope of the likelihood along every parameter inside its bounds is 0.
+  bool converged{false};
+  /// Threshold or width ended at its bound, or its standard error is at least s or a factor 20: the
+  /// answers do not tell it, for example because all of them change at one level, or none.
+  bool undetermined{false};
+};
+
+/// Fits by maximum likelihood to answers at given levels: Newton's method on threshold, log width,
+/// lapse and guess rate within bounds, Fisher's information where the likelihood is not concave.
+/// The threshold keeps within s = high - low of the levels, the width between their smallest
+/// distance and 20 s: a likelihood may have no maximum, and answers do not tell steps apart that
+/// are steeper than the levels are close.
+/// Source: Wichmann and Hill 2001, Perception & Psychophysics 63, 1293.
+class LikelihoodFitter {
+ public:
+  /// @param blocks  whose levels and totals are taken; two different levels.
+  /// @throws std::invalid_argument naming the option or the part of a block that breaks its bound.
+  LikelihoodFitter(const LikelihoodOptions& options, std::span<const TrialBlock> blocks);
+
+  /// @param correct  answers of each block, as many as there are blocks.
+  /// No allocation, so that simulations can call it in any number.
+  LikelihoodFit fit(std::span<const int> correct) const noexcept;
+  /// The same without one trial: of block `block`, a correct one or a wrong one.
+  LikelihoodFit fit_without(std::span<const int> correct, std::size_t block,
+                            bool right) const noexcept;
+
+  const Sigmoid& sigmoid() const noexcept { return sigmoid_; }
+  /// Parameters that are neither known nor tied to another.
+  int free_parameters() const noexcept;
+
+ private:
+  struct Search;
+  LikelihoodFit search(Search& search) const noexcept;
+
+  Sigmoid sigmoid_;
+  Task task_;
+  RateBounds lapse_, guess_;
+  std::vector<double> coordinates_;
+  std::vector<int> totals_;
+  double low_{0.0}, high_{0.0}, spacing_{0.0};
+};
+
+/// One fit. @throws std::invalid_argument as the constructor.
+LikelihoodFit likelihood_fit(std::span<const TrialBlock> blocks, const LikelihoodOptions& options);
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,279 @@
+#include "analysis/psychometric/fit/sigmoid.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "analysis/statistics/base/distributions.h"
+
+namespace haptrial::analysis {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kNormalScale = 0.5 * std::numbers::inv_sqrtpi * std::numbers::sqrt2;
+
+/// A quotient of polynomials: pairs of coefficients, numerator and denominator side by side, from
+/// the highest power down.
+template <std::size_t N>
+double quotient(const double (&pairs)[N][2], double x) noexcept {
+  double top = pairs[0][0], bottom = pairs[0][1];
+  for (std::size_t i = 1; i < N; ++i) {
+    top = top * x + pairs[i][0];
+    bottom = bottom * x + pairs[i][1];
+  }
+  return top / bottom;
+}
+
+// Of erf(x) / x below 0.46875, of exp(x^2) erfc(x) up to 4, and beyond: Cody 1969, Mathematics of
+// Computation 23. The exponential is that of the density.
+constexpr double kNear[][2] = {{1.85777706184603153e-1, 1.0},
+                               {3.16112374387056560, 2.36012909523441209e1},
+                               {1.13864154151050156e2, 2.44024637934444173e2},
+                               {3.77485237685302021e2, 1.28261652607737228e3},
+                               {3.20937758913846947e3, 2.84423683343917062e3}};
+constexpr double kMiddle[][2] = {{2.15311535474403846e-8, 1.0},
+                                 {5.64188496988670089e-1, 1.57449261107098347e1},
+                                 {8.88314979438837594, 1.17693950891312499e2},
+                                 {6.61191906371416295e1, 5.37181101862009858e2},
+                                 {2.98635138197400131e2, 1.62138957456669019e3},
+                                 {8.81952221241769090e2, 3.29079923573345963e3},
+                                 {1.71204761263407058e3, 4.36261909014324716e3},
+                                 {2.05107837782607147e3, 3.43936767414372164e3},
+                                 {1.23033935479799725e3, 1.23033935480374942e3}};
+constexpr double kFar[][2] = {{1.63153871373020978e-2, 1.0},
+                              {3.05326634961232344e-1, 2.56852019228982242},
+                              {3.60344899949804439e-1, 1.87295284992346725},
+                              {1.25781726111229246e-1, 5.27905102951428412e-1},
+                              {1.60837851487422766e-2, 6.05183413124413191e-2},
+                              {6.58749161529837803e-4, 2.33520497626869185e-3}};
+
+/// P(Z > |z|). @param gauss  exp(-z^2 / 2)
+double normal_tail(double z, double gauss) noexcept {
+  const double x = std::abs(z) * (0.5 * std::numbers::sqrt2);
+  if (x <= 0.46875) {
+    return 0.5 - 0.5 * x * quotient(kNear, x * x);
+  }
+  if (x <= 4.0) {
+    return 0.5 * gauss * quotient(kMiddle, x);
+  }
+  const double y = 1.0 / (x * x);
+  return 0.5 * gauss / x * (std::numbers::inv_sqrtpi - y * quotient(kFar, y));
+}
+
+SigmoidPoint normal_point(double z) noexcept {
+  const double gauss = std::exp(-0.5 * z * z);
+  const double tail = std::abs(z) < 1e8 ? normal_tail(z, gauss) : 0.0;
+  const double density = kNormalScale * gauss;
+  return {z < 0.0 ? tail : 1.0 - tail, z < 0.0 ? 1.0 - tail : tail, density, -z * density};
+}
+
+SigmoidPoint logistic_point(double z) noexcept {
+  const double e = std::exp(-std::abs(z));
+  const double large = 1.0 / (1.0 + e);
+  const double small = e * large;
+  const double share = z < 0.0 ? small : large;
+  const double beyond = z < 0.0 ? large : small;
+  return {share, beyond, small * large, small * large * (beyond - share)};
+}
+
+SigmoidPoint gumbel_point(double z) noexcept {
+  const double e = std::exp(std::min(z, 700.0));
+  const double beyond = std::exp(-e);
+  const double density = e * beyond;
+  return {e < 0.5 ? -std::expm1(-e) : 1.0 - beyond, beyond, density, density - e * density};
+}
+
+SigmoidPoint student_point(double z) noexcept {
+  const double tail =
+      std::abs(z) > 1.0 ? std::atan(1.0 / std::abs(z)) / kPi : 0.5 - std::atan(std::abs(z)) / kPi;
+  const double square = 1.0 + z * z;
+  const double density = 1.0 / (kPi * square);
+  return {z < 0.0 ? tail : 1.0 - tail, z < 0.0 ? 1.0 - tail : tail, density,
+          -2.0 * z * density / square};
+}
+
+SigmoidPoint rising_point(SigmoidForm form, double z) noexcept {
+  switch (form) {
+    case SigmoidForm::kNormal:
+      return normal_point(z);
+    case SigmoidForm::kLogistic:
+      return logistic_point(z);
+    case SigmoidForm::kGumbel:
+      return gumbel_point(z);
+    case SigmoidForm::kReversedGumbel: {
+      const SigmoidPoint mirrored = gumbel_point(-z);
+      return {mirrored.beyond, mirrored.share, mirrored.density, -mirrored.bend};
+    }
+    case SigmoidForm::kStudent:
+      break;
+  }
+  return student_point(z);
+}
+
+double rising_quantile(SigmoidForm form, double share) noexcept {
+  switch (form) {
+    case SigmoidForm::kNormal:
+      return normal_quantile(share);
+    case SigmoidForm::kLogistic:
+      return std::log(share) - std::log1p(-share);
+    case SigmoidForm::kGumbel:
+      return std::log(-std::log1p(-share));
+    case SigmoidForm::kReversedGumbel:
+      return -std::log(-std::log(share));
+    case SigmoidForm::kStudent:
+      break;
+  }
+  return std::tan(kPi * (share - 0.5));
+}
+
+void put_point(const SigmoidPoint& point, std::size_t i, SigmoidLanes& lanes) noexcept {
+  lanes.share[i] = point.share;
+  lanes.beyond[i] = point.beyond;
+  lanes.density[i] = point.density;
+  lanes.bend[i] = point.bend;
+}
+
+// The loops over the lanes have no branch, so that the compiler turns them into vectors. The middle
+// quotient is right to 5e-12 down to 0.
+void normal_lanes(const double* z, SigmoidLanes& lanes) noexcept {
+  constexpr std::size_t kCount = SigmoidLanes::kCount;
+  constexpr double kMiddleEnd = 5.6;  // 4 sqrt 2
+  double gauss[kCount], farthest = 0.0;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    gauss[i] = std::exp(-0.5 * z[i] * z[i]);
+    farthest = std::max(farthest, std::abs(z[i]));
+  }
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const double x = std::abs(z[i]) * (0.5 * std::numbers::sqrt2);
+    const double tail = 0.5 * gauss[i] * quotient(kMiddle, x);
+    lanes.share[i] = z[i] < 0.0 ? tail : 1.0 - tail;
+    lanes.beyond[i] = z[i] < 0.0 ? 1.0 - tail : tail;
+    lanes.density[i] = kNormalScale * gauss[i];
+    lanes.bend[i] = -z[i] * lanes.density[i];
+  }
+  for (std::size_t i = 0; farthest > kMiddleEnd && i < kCount; ++i) {
+    if (std::abs(z[i]) > kMiddleEnd) {
+      put_point(normal_point(z[i]), i, lanes);
+    }
+  }
+}
+
+void logistic_lanes(const double* z, SigmoidLanes& lanes) noexcept {
+  constexpr std::size_t kCount = SigmoidLanes::kCount;
+  double e[kCount];
+  for (std::size_t i = 0; i < kCount; ++i) {
+    e[i] = std::exp(-std::abs(z[i]));
+  }
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const double large = 1.0 / (1.0 + e[i]), small = e[i] * large;
+    lanes.share[i] = z[i] < 0.0 ? small : large;
+    lanes.beyond[i] = z[i] < 0.0 ? large : small;
+    lanes.density[i] = small * large;
+    lanes.bend[i] = small * large * (lanes.beyond[i] - lanes.share[i]);
+  }
+}
+
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
+}  // namespace
+
+SigmoidShape sigmoid_named(std::string_view name) {
+  std::string plain = lower_case(name);
+  SigmoidShape shape;
+  if (plain.starts_with("neg_")) {
+    shape.falling = true;
+    plain.erase(0, 4);
+  }
+  const std::pair<const char*, std::pair<SigmoidForm, bool>> names[] = {
+      {"norm", {SigmoidForm::kNormal, false}},
+      {"gauss", {SigmoidForm::kNormal, false}},
+      {"logistic", {SigmoidForm::kLogistic, false}},
+      {"gumbel", {SigmoidForm::kGumbel, false}},
+      {"rgumbel", {SigmoidForm::kReversedGumbel, false}},
+      {"tdist", {SigmoidForm::kStudent, false}},
+      {"logn", {SigmoidForm::kNormal, true}},
+      {"weibull", {SigmoidForm::kGumbel, true}},
+      {"rweibull", {SigmoidForm::kReversedGumbel, true}},
+  };
+  for (const auto& [known, meaning] : names) {
+    if (plain == known) {
+      shape.form = meaning.first;
+      shape.logarithmic = meaning.second;
+      return shape;
+    }
+  }
+  throw std::invalid_argument("name of a sigmoid: \"" + std::string(name) +
+                              "\"; allowed: norm, gauss, logistic, gumbel, rgumbel, tdist, logn, "
+                              "Weibull, rWeibull, and neg_ before any of these");
+}
+
+Sigmoid::Sigmoid(const SigmoidShape& shape) : shape_(shape) {
+  if (!(shape.threshold_share > 0.0 && shape.threshold_share < 1.0)) {
+    throw std::invalid_argument("threshold_share must lie inside (0, 1)");
+  }
+  if (!(shape.width_tail > 0.0 && shape.width_tail < 0.5)) {
+    throw std::invalid_argument("width_tail must lie inside (0, 0.5)");
+  }
+  centre_ = rising_quantile(shape.form,
+                            shape.falling ? 1.0 - shape.threshold_share : shape.threshold_share);
+  spread_ = rising_quantile(shape.form, 1.0 - shape.width_tail) -
+            rising_quantile(shape.form, shape.width_tail);
+}
+
+double Sigmoid::coordinate(double level) const noexcept {
+  return shape_.logarithmic ? std::log(level) : level;
+}
+
+double Sigmoid::level(double coordinate) const noexcept {
+  return shape_.logarithmic ? std::exp(coordinate) : coordinate;
+}
+
+SigmoidPoint Sigmoid::at(double z) const noexcept {
+  const SigmoidPoint p = rising_point(shape_.form, z);
+  if (shape_.falling) {
+    return {p.beyond, p.share, -p.density, -p.bend};
+  }
+  return p;
+}
+
+void Sigmoid::at(const double* z, SigmoidLanes& lanes) const noexcept {
+  constexpr std::size_t kCount = SigmoidLanes::kCount;
+  if (shape_.form == SigmoidForm::kNormal) {
+    normal_lanes(z, lanes);
+  } else if (shape_.form == SigmoidForm::kLogistic) {
+    logistic_lanes(z, lanes);
+  } else {
+    for (std::size_t i = 0; i < kCount; ++i) {
+      put_point(rising_point(shape_.form, z[i]), i, lanes);
+    }
+  }
+  for (std::size_t i = 0; shape_.falling && i < kCount; ++i) {
+    put_point({lanes.beyond[i], lanes.share[i], -lanes.density[i], -lanes.bend[i]}, i, lanes);
+  }
+}
+
+double Sigmoid::share(double x, double threshold, double width, double& beyond) const noexcept {
+  const SigmoidPoint p = at(centre_ + spread_ * (x - threshold) / width);
+  beyond = p.beyond;
+  return p.share;
+}
+
+double Sigmoid::inverse(double share, double threshold, double width) const noexcept {
+  const double z = rising_quantile(shape_.form, shape_.falling ? 1.0 - share : share);
+  return threshold + width * (z - centre_) / spread_;
+}
+
+double Sigmoid::slope(double x, double threshold, double width) const noexcept {
+  return at(centre_ + spread_ * (x - threshold) / width).density * spread_ / width;
+}
+
+}  // namespace haptrial::analysis

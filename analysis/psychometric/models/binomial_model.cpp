@@ -1,0 +1,160 @@
+#include "analysis/psychometric/models/binomial_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "analysis/psychometric/models/binomial_link.h"
+#include "analysis/statistics/base/decomposition.h"
+#include "analysis/statistics/base/distributions.h"
+
+namespace haptrial::analysis {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Log-likelihood of the observed shares, without binomial coefficients.
+double of_shares(const BinomialData& data) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < data.yes.size(); ++i) {
+    const double yes = data.yes[i], trials = data.trials[i];
+    sum += (yes > 0.0 ? yes * std::log(yes / trials) : 0.0) +
+           (trials > yes ? (trials - yes) * std::log((trials - yes) / trials) : 0.0);
+  }
+  return sum;
+}
+
+/// Coefficients of scaled columns; nothing where the likelihood rises without end.
+std::optional<VectorXd> scored(const BinomialData& data, BinomialLink link,
+                               const MatrixXd& columns) {
+  constexpr int kMost = 100, kHalvings = 40;
+  constexpr double kEndless = 1e-7;  // information of a row, of that at 1/2
+  VectorXd beta = VectorXd::Zero(columns.cols());
+  BinomialRows rows = binomial_rows(data, link, columns * beta);
+  for (int step = 0; step < kMost; ++step) {
+    const VectorXd slope = columns.transpose() * rows.slope;
+    const auto change =
+        solve_positive(columns.transpose() * rows.weight.asDiagonal() * columns, slope);
+    if (!change) {
+      return std::nullopt;
+    }
+    const double promise = 0.5 * change->col(0).dot(slope);
+    double part = 1.0;
+    bool moved = false;
+    for (int i = 0; i < kHalvings && !moved; ++i, part *= 0.5) {
+      const VectorXd next = beta + part * change->col(0);
+      const BinomialRows there = binomial_rows(data, link, columns * next);
+      moved = there.log_likelihood >= rows.log_likelihood - 1e-13 * std::abs(rows.log_likelihood);
+      if (moved) {
+        beta = next;
+        rows = there;
+      }
+    }
+    // Separated answers end at shares of 0 and 1 everywhere.
+    double heaviest = 0.0;
+    for (Index i = 0; i < rows.weight.size(); ++i) {
+      heaviest = std::max(heaviest, rows.weight[i] / data.trials[static_cast<std::size_t>(i)]);
+    }
+    if (heaviest < kEndless) {
+      return std::nullopt;
+    }
+    if (promise < 1e-22 * (1.0 + std::abs(rows.log_likelihood)) || !moved) {
+      return promise < 1e-10 ? std::optional(beta) : std::nullopt;
+    }
+  }
+  // Fisher's scoring converges linearly with the probit link; a likelihood without a maximum
+  // leaves a slope.
+  const VectorXd slope = columns.transpose() * rows.slope;
+  return slope.cwiseAbs().maxCoeff() < 1e-8 ? std::optional(beta) : std::nullopt;
+}
+
+}  // namespace
+
+void add_normal_tests(BinomialModel& model, const VectorXd& estimates) {
+  const double wide = normal_quantile(0.5 + 0.5 * model.level);
+  model.coefficients.clear();
+  for (Index k = 0; k < estimates.size(); ++k) {
+    BinomialCoefficient c{.estimate = estimates[k], .error = std::sqrt(model.covariance(k, k))};
+    c.z = c.estimate / c.error;
+    c.p = std::min(1.0, 2.0 * normal_upper_tail(std::abs(c.z)));
+    c.low = c.estimate - wide * c.error;
+    c.high = c.estimate + wide * c.error;
+    model.coefficients.push_back(c);
+  }
+}
+
+Defined<BinomialModel> binomial_regression(const BinomialData& data, BinomialLink link,
+                                           double level) {
+  if (!(level > 0.0 && level < 1.0)) {
+    throw std::invalid_argument("level of an interval must lie inside (0, 1)");
+  }
+  const MatrixXd raw = checked_columns(data);
+  if (!raw.allFinite()) {
+    return Undefined{"a predictor is not finite"};
+  }
+  if (raw.rows() < raw.cols()) {
+    return Undefined{"there are fewer rows than coefficients"};
+  }
+  const VectorXd scale = raw.colwise().norm().transpose() / std::sqrt(double(raw.rows()));
+  if (!(scale.minCoeff() > 0.0)) {
+    return Undefined{"a predictor is 0 throughout"};
+  }
+  const MatrixXd columns = raw * scale.cwiseInverse().asDiagonal();
+  const MatrixXd gram = columns.transpose() * columns / double(raw.rows());
+  if (!(symmetric_eigen(gram).values[0] > 1e-13)) {
+    return Undefined{"a predictor follows from others or does not vary"};
+  }
+  const auto beta = scored(data, link, columns);
+  if (!beta) {
+    return Undefined{"the predictors separate \"yes\" from \"no\", so that there is no estimate"};
+  }
+  const BinomialRows rows = binomial_rows(data, link, columns * *beta);
+  const auto inverse = solve_positive(columns.transpose() * rows.weight.asDiagonal() * columns,
+                                      MatrixXd::Identity(columns.cols(), columns.cols()));
+  if (!inverse) {
+    return Undefined{"the coefficients have no covariance"};
+  }
+  BinomialModel model;
+  model.level = level;
+  model.observations = data.yes.size();
+  model.covariance =
+      scale.cwiseInverse().asDiagonal() * *inverse * scale.cwiseInverse().asDiagonal();
+  model.log_likelihood = rows.log_likelihood + log_binomials(data);
+  model.deviance = 2.0 * (of_shares(data) - rows.log_likelihood);
+  add_normal_tests(model, beta->cwiseQuotient(scale));
+  return model;
+}
+
+Defined<EqualityPoint> equality_point(const BinomialModel& model, BinomialLink link,
+                                      const VectorXd& intercept, const VectorXd& slope) {
+  const Index count = std::ssize(model.coefficients);
+  if (intercept.size() != count || slope.size() != count) {
+    throw std::invalid_argument("intercept and slope must have a weight for each coefficient");
+  }
+  VectorXd beta(count);
+  for (Index k = 0; k < count; ++k) {
+    beta[k] = model.coefficients[static_cast<std::size_t>(k)].estimate;
+  }
+  const double a = intercept.dot(beta), b = slope.dot(beta);
+  if (b == 0.0) {
+    return Undefined{"the slope is 0"};
+  }
+  const double quarter = link == BinomialLink::kProbit ? normal_quantile(0.75) : std::log(3.0);
+  const double wide = normal_quantile(0.5 + 0.5 * model.level);
+  const auto error = [&](const VectorXd& by) { return std::sqrt(by.dot(model.covariance * by)); };
+  EqualityPoint e;
+  e.point = -a / b;
+  e.point_error = error(-intercept / b + slope * (a / (b * b)));
+  e.jnd = quarter / std::abs(b);
+  e.jnd_error = error(slope * (quarter / (b * b)));
+  e.point_low = e.point - wide * e.point_error;
+  e.point_high = e.point + wide * e.point_error;
+  e.jnd_low = e.jnd - wide * e.jnd_error;
+  e.jnd_high = e.jnd + wide * e.jnd_error;
+  return e;
+}
+
+}  // namespace haptrial::analysis

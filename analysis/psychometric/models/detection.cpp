@@ -1,0 +1,164 @@
+#include "analysis/psychometric/models/detection.h"
+
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_integration.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "analysis/statistics/base/distributions.h"
+#include "analysis/statistics/base/root.h"
+
+namespace haptrial::analysis {
+namespace {
+
+double normal_density(double z) {
+  return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
+}
+
+struct Rate {
+  double value;
+  double trials;
+
+  double z() const { return normal_quantile(value); }
+  /// Of its normal quantile, by the delta method.
+  double variance() const {
+    const double density = normal_density(z());
+    return value * (1.0 - value) / (trials * density * density);
+  }
+};
+
+Defined<Rate> corrected(double count, double others, RateCorrection correction, const char* kind) {
+  const double trials = count + others;
+  if (trials == 0.0) {
+    return Undefined{std::string("there are no ") + kind + " trials"};
+  }
+  switch (correction) {
+    case RateCorrection::kLogLinear:
+      return Rate{(count + 0.5) / (trials + 1.0), trials + 1.0};
+    case RateCorrection::kExtremes:
+      return Rate{count == 0.0    ? 0.5 / trials
+                  : others == 0.0 ? 1.0 - 0.5 / trials
+                                  : count / trials,
+                  trials};
+    case RateCorrection::kNone:
+      break;
+  }
+  if (count == 0.0 || others == 0.0) {
+    return Undefined{std::string("the rate of \"yes\" in ") + kind +
+                     " trials is 0 or 1 and not corrected"};
+  }
+  return Rate{count / trials, trials};
+}
+
+void check_counts(const DetectionCounts& counts, double level) {
+  for (const double count :
+       {counts.hits, counts.misses, counts.false_alarms, counts.correct_rejections}) {
+    if (!(std::isfinite(count) && count >= 0.0)) {
+      throw std::invalid_argument("counts of a detection must be finite and not negative");
+    }
+  }
+  if (!(level > 0.0 && level < 1.0)) {
+    throw std::invalid_argument("level of an interval must lie inside (0, 1)");
+  }
+}
+
+/// @param scale  d' of a yes/no task over that of this task.
+Defined<Detection> indices(const DetectionCounts& counts, RateCorrection correction, double level,
+                           double scale) {
+  check_counts(counts, level);
+  const auto hits = corrected(counts.hits, counts.misses, correction, "signal");
+  const auto alarms =
+      corrected(counts.false_alarms, counts.correct_rejections, correction, "noise");
+  if (!hits || !alarms) {
+    return Undefined{!hits ? hits.because() : alarms.because()};
+  }
+  Detection d;
+  d.hit_rate = hits->value;
+  d.false_alarm_rate = alarms->value;
+  d.d_prime = (hits->z() - alarms->z()) / scale;
+  d.criterion = -0.5 * (hits->z() + alarms->z());
+  if (d.d_prime != 0.0) {
+    d.relative_criterion = d.criterion / d.d_prime;
+  } else {
+    d.relative_criterion = Undefined{"d' is 0"};
+  }
+  d.log_beta = d.criterion * (hits->z() - alarms->z());
+  d.error = std::sqrt(hits->variance() + alarms->variance()) / scale;
+  const double z = normal_quantile(0.5 + 0.5 * level);
+  d.low = d.d_prime - z * d.error;
+  d.high = d.d_prime + z * d.error;
+  return d;
+}
+
+struct Choice {
+  double d_prime;
+  double others;
+};
+
+double choice_density(double x, void* choice) {
+  const auto& c = *static_cast<const Choice*>(choice);
+  return normal_density(x - c.d_prime) * std::pow(gsl_cdf_ugaussian_P(x), c.others);
+}
+
+}  // namespace
+
+RateCorrection rate_correction_named(std::string_view name) {
+  if (name == "none") {
+    return RateCorrection::kNone;
+  }
+  if (name == "loglinear") {
+    return RateCorrection::kLogLinear;
+  }
+  if (name == "extremes") {
+    return RateCorrection::kExtremes;
+  }
+  throw std::invalid_argument("name of a correction: \"" + std::string(name) +
+                              "\"; allowed: none, loglinear, extremes");
+}
+
+Defined<Detection> detection(const DetectionCounts& counts, RateCorrection correction,
+                             double level) {
+  return indices(counts, correction, level, 1.0);
+}
+
+Defined<Detection> forced_choice_detection(const DetectionCounts& counts, RateCorrection correction,
+                                           double level) {
+  return indices(counts, correction, level, std::numbers::sqrt2);
+}
+
+double forced_choice_share(double d_prime, int alternatives) {
+  if (alternatives < 2 || alternatives > 1000) {
+    throw std::invalid_argument("alternatives must lie in 2 .. 1000");
+  }
+  Choice choice{d_prime, static_cast<double>(alternatives - 1)};
+  gsl_function function{choice_density, &choice};
+  constexpr std::size_t kParts = 200;
+  const std::unique_ptr<gsl_integration_workspace, decltype(&gsl_integration_workspace_free)> space(
+      gsl_integration_workspace_alloc(kParts), gsl_integration_workspace_free);
+  double share = 0.0, error = 0.0;
+  gsl_integration_qag(&function, d_prime - 10.0, d_prime + 10.0, 1e-14, 1e-12, kParts,
+                      GSL_INTEG_GAUSS61, space.get(), &share, &error);
+  return share;
+}
+
+Defined<double> forced_choice_d_prime(double share, int alternatives) {
+  if (!(share > 0.0 && share < 1.0)) {
+    return Undefined{"the share of right answers is 0 or 1"};
+  }
+  const auto beyond = [&](double d) { return forced_choice_share(d, alternatives) - share; };
+  double low = -1.0, high = 1.0;
+  for (; beyond(low) > 0.0 && low > -60.0; low *= 2.0) {
+  }
+  for (; beyond(high) < 0.0 && high < 60.0; high *= 2.0) {
+  }
+  if (beyond(low) > 0.0 || beyond(high) < 0.0) {
+    return Undefined{"the share of right answers is too close to 0 or 1"};
+  }
+  return find_root(beyond, low, high);
+}
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "analysis/statistics/base/defined.h"
+
+namespace haptrial::analysis {
+
+/// One magnitude estimate.
+struct MagnitudeTrial {
+  std::size_t participant{0};  // any numbers
+  double level{0.0};           // > 0 [unit of the stimulus]
+  double estimate{0.0};        // > 0, in the participant's own modulus
+};
+
+/// Geometric mean of all participants at a level, after modulus equalisation.
+struct MagnitudeLevel {
+  double level{0.0};
+  double mean{0.0};            // in units of the common modulus
+  double low{0.0}, high{0.0};  // interval over participants; equal to the mean for one
+  std::size_t participants{0};
+};
+
+/// Stevens' power law, estimate = constant level^exponent.
+struct PowerLaw {
+  double exponent{0.0};                   // mean of the participants' exponents
+  double error{0.0};                      // of that mean, over participants
+  Defined<double> low{Undefined{""}};     // Student's interval over participants
+  Defined<double> high{Undefined{""}};    // undefined for one participant
+  double constant{0.0};                   // of the common modulus
+  double r_squared{0.0};                  // of the logarithms of the levels' means
+  std::vector<std::size_t> participants;  // (n) rising
+  std::vector<double> exponents;       // (n) each participant's least-squares slope of log on log
+  std::vector<double> moduli;          // (n) what the participant's estimates are divided by
+  std::vector<MagnitudeLevel> levels;  // rising
+};
+
+/// Repeated estimates of a participant at a level become their geometric mean. A participant's
+/// modulus is the factor of their means over those of all participants at the same levels, from the
+/// least-squares fit of log estimate = participant + level: with a complete design the ratio of
+/// geometric means (Lane, Catania and Stevens 1961).
+/// Undefined when a participant has fewer than two levels, a value is not above 0 or not finite, or
+/// participants have no levels in common, directly or through others.
+/// @param level  coverage of the intervals, inside (0, 1). @throws std::invalid_argument naming it.
+Defined<PowerLaw> power_law(std::span<const MagnitudeTrial> trials, double level = 0.95);
+
+}  // namespace haptrial::analysis

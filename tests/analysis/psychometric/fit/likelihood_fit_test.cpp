@@ -1,0 +1,236 @@
+#include "analysis/psychometric/fit/likelihood_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "analysis/psychometric/fit/bootstrap_fit.h"
+#include "analysis/statistics/base/minimum.h"
+#include "core/base/random.h"
+#include "tests/support/allocation_guard.h"
+
+namespace haptrial::analysis {
+namespace {
+
+/// Eight levels, `trials` each, from an observer.
+std::vector<TrialBlock> answers(RandomStream& random, const PsychometricFunction& observer,
+                                int trials) {
+  std::vector<TrialBlock> blocks;
+  for (int i = 0; i < 8; ++i) {
+    TrialBlock block{0.5 + 0.5 * i, 0, trials};
+    for (int t = 0; t < trials; ++t) {
+      block.correct += random.uniform() < observer.at(block.level) ? 1 : 0;
+    }
+    blocks.push_back(block);
+  }
+  return blocks;
+}
+
+double log_likelihood(const PsychometricFunction& function, const std::vector<TrialBlock>& blocks) {
+  double sum = 0.0;
+  for (const TrialBlock& b : blocks) {
+    const double p = function.at(b.level);
+    sum += (b.correct > 0 ? b.correct * std::log(p) : 0.0) +
+           (b.total > b.correct ? (b.total - b.correct) * std::log1p(-p) : 0.0);
+  }
+  return sum;
+}
+
+struct Kind {
+  const char* sigmoid;
+  Task task;
+};
+
+class LikelihoodFitKinds : public testing::TestWithParam<Kind> {
+ protected:
+  LikelihoodOptions options() const {
+    LikelihoodOptions options{.shape = sigmoid_named(GetParam().sigmoid), .task = GetParam().task};
+    return options;
+  }
+  PsychometricFunction observer() const {
+    const bool logarithmic = options().shape.logarithmic;
+    const double guess = GetParam().task == Task::kForcedChoice ? 0.5 : 0.03;
+    return {Sigmoid(options().shape),
+            {logarithmic ? 0.8 : 2.2, logarithmic ? 1.0 : 2.0, 0.03, guess}};
+  }
+};
+
+// A search without derivatives, from the truth, finds nothing likelier within the same bounds.
+TEST_P(LikelihoodFitKinds, NoOtherSearchFindsALikelierFunction) {
+  RandomStream random(7, std::string("likelihood fit ") + GetParam().sigmoid);
+  const LikelihoodOptions o = options();
+  const Sigmoid sigmoid(o.shape);
+  // The width's lower bound.
+  const double spacing = o.shape.logarithmic ? std::log(4.0 / 3.5) : 0.5;
+  int determined = 0;
+  for (int run = 0; run < 60; ++run) {
+    const auto blocks = answers(random, observer(), 40);
+    const LikelihoodFit fit = likelihood_fit(blocks, o);
+    EXPECT_TRUE(fit.converged) << run;
+    EXPECT_NEAR(fit.log_likelihood, log_likelihood({sigmoid, fit.parameters}, blocks),
+                1e-9 * std::abs(fit.log_likelihood))
+        << run;
+    if (fit.undetermined) {
+      continue;
+    }
+    ++determined;
+    const auto within = [](double x) { return 0.03 - 0.03 * std::cos(x); };  // 0 .. 0.06
+    const auto minus = [&](std::span<const double> x) {
+      PsychometricParameters p{x[0], spacing + std::exp(x[1]), within(x[2]), 0.5};
+      p.guess = o.task == Task::kForcedChoice     ? 0.5
+                : o.task == Task::kEqualAsymptote ? p.lapse
+                                                  : within(x[3]);
+      return -log_likelihood({sigmoid, p}, blocks);
+    };
+    const auto truth = observer().parameters();
+    const std::vector<double> start{truth.threshold, std::log(truth.width - spacing), 1.5, 1.5};
+    const Minimum other = find_minimum(minus, start, std::vector{0.2, 0.2, 0.5, 0.5});
+    EXPECT_GE(fit.log_likelihood, -other.value - 1e-7) << run;
+  }
+  EXPECT_GT(determined, 50);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, LikelihoodFitKinds,
+    testing::Values(Kind{"norm", Task::kForcedChoice}, Kind{"norm", Task::kYesNo},
+                    Kind{"norm", Task::kEqualAsymptote}, Kind{"logistic", Task::kForcedChoice},
+                    Kind{"logistic", Task::kYesNo}, Kind{"gumbel", Task::kForcedChoice},
+                    Kind{"rgumbel", Task::kYesNo}, Kind{"Weibull", Task::kForcedChoice},
+                    Kind{"logn", Task::kYesNo}, Kind{"tdist", Task::kYesNo},
+                    Kind{"neg_norm", Task::kYesNo}, Kind{"neg_gumbel", Task::kForcedChoice}));
+
+// Two levels and no lapses: the function passes through both shares.
+TEST(LikelihoodFit, PassesThroughTwoShares) {
+  LikelihoodOptions options{.shape = sigmoid_named("logistic"), .task = Task::kYesNo};
+  options.lapse = options.guess = {0.0, 0.0};
+  const std::vector<TrialBlock> blocks{{1.0, 2, 10}, {3.0, 9, 10}};
+  const LikelihoodFit fit = likelihood_fit(blocks, options);
+  // logit(p) = a + b x
+  const double low = std::log(0.2 / 0.8), high = std::log(0.9 / 0.1), b = (high - low) / 2.0;
+  EXPECT_TRUE(fit.converged);
+  EXPECT_NEAR(fit.parameters.threshold, 1.0 - low / b, 1e-9);
+  EXPECT_NEAR(fit.parameters.width, 2.0 * std::log(0.95 / 0.05) / b, 1e-9);
+}
+
+TEST(LikelihoodFit, SaysWhereTheAnswersDoNotTell) {
+  LikelihoodOptions options{.shape = sigmoid_named("norm"), .task = Task::kYesNo};
+  const std::vector<TrialBlock> stepped{{1, 0, 20}, {2, 0, 20}, {3, 20, 20}, {4, 20, 20}};
+  const LikelihoodFit fit = likelihood_fit(stepped, options);
+  EXPECT_TRUE(fit.undetermined);
+  EXPECT_GT(fit.parameters.threshold, 2.0);
+  EXPECT_LT(fit.parameters.threshold, 3.0);
+  const std::vector<TrialBlock> all{{1, 20, 20}, {2, 20, 20}, {3, 20, 20}};
+  EXPECT_TRUE(likelihood_fit(all, options).undetermined);
+}
+
+TEST(LikelihoodFit, DoesNotAllocate) {
+  RandomStream random(3, "likelihood fit");
+  const Sigmoid sigmoid(sigmoid_named("norm"));
+  const auto blocks = answers(random, {sigmoid, {2.2, 2.0, 0.02, 0.5}}, 40);
+  const LikelihoodFitter fitter({}, blocks);
+  std::vector<int> correct;
+  for (const TrialBlock& b : blocks) {
+    correct.push_back(b.correct);
+  }
+  const test::AllocationGuard guard;
+  const LikelihoodFit fit = fitter.fit(correct);
+  EXPECT_EQ(guard.count(), 0u);
+  EXPECT_TRUE(fit.converged);
+}
+
+TEST(LikelihoodFit, RefusesWhatIsOutOfBounds) {
+  const std::vector<TrialBlock> blocks{{1, 2, 10}, {2, 8, 10}};
+  LikelihoodOptions options;
+  options.alternatives = 1;
+  EXPECT_THROW(likelihood_fit(blocks, options), std::invalid_argument);
+  options.alternatives = 2;
+  options.lapse = {0.1, 0.05};
+  EXPECT_THROW(likelihood_fit(blocks, options), std::invalid_argument);
+  options.lapse = {};
+  EXPECT_THROW(likelihood_fit(std::vector<TrialBlock>{{1, 2, 10}}, options), std::invalid_argument);
+  EXPECT_THROW(likelihood_fit(std::vector<TrialBlock>{{1, 12, 10}, {2, 3, 4}}, options),
+               std::invalid_argument);
+  options.shape = sigmoid_named("Weibull");
+  EXPECT_THROW(likelihood_fit(std::vector<TrialBlock>{{0.0, 2, 10}, {2, 3, 4}}, options),
+               std::invalid_argument);
+}
+
+std::vector<Asked> all_asked() {
+  return {{Reading::kThreshold},
+          {Reading::kSlope, 0.5},
+          {Reading::kLevelOfProbability, 0.75},
+          {Reading::kWeberQuartiles, 0.5, 2.0}};
+}
+
+TEST(BootstrapFit, DoesNotDependOnTheThreads) {
+  RandomStream random(5, "bootstrap fit");
+  const LikelihoodOptions options{.shape = sigmoid_named("norm"), .task = Task::kYesNo};
+  const auto blocks = answers(random, {Sigmoid(options.shape), {2.2, 2.0, 0.02, 0.02}}, 40);
+  for (const bool parametric : {true, false}) {
+    FitBootstrap how{.parametric = parametric};
+    how.resampling.count = 999;
+    const BootstrappedFit one = bootstrap_fit(blocks, options, all_asked(), how);
+    how.resampling.threads = 3;
+    const BootstrappedFit three = bootstrap_fit(blocks, options, all_asked(), how);
+    how.resampling.seed = 2;
+    const BootstrappedFit other = bootstrap_fit(blocks, options, all_asked(), how);
+    EXPECT_EQ(one.deviance_p, three.deviance_p);
+    for (std::size_t a = 0; a < all_asked().size(); ++a) {
+      ASSERT_TRUE(one.intervals[a]) << one.intervals[a].because();
+      EXPECT_EQ(one.intervals[a]->low, three.intervals[a]->low);
+      EXPECT_EQ(one.intervals[a]->high, three.intervals[a]->high);
+      EXPECT_NE(one.intervals[a]->low, other.intervals[a]->low);
+      EXPECT_LT(one.intervals[a]->low, one.estimates[a]);
+      EXPECT_GT(one.intervals[a]->high, one.estimates[a]);
+    }
+  }
+}
+
+// Without lapses and guesses a probit fit has Fisher's information in closed form: with many
+// trials the interval of the threshold is 1.96 standard errors to either side.
+TEST(BootstrapFit, HasTheWidthThatFishersInformationGives) {
+  LikelihoodOptions options{.shape = sigmoid_named("norm"), .task = Task::kYesNo};
+  options.lapse = options.guess = {0.0, 0.0};
+  const Sigmoid sigmoid(options.shape);
+  const PsychometricFunction truth(sigmoid, {2.2, 2.0});
+  std::vector<TrialBlock> blocks;
+  double a = 0.0, b = 0.0, c = 0.0;  // information of intercept and slope of z = rise (x - 2.2)
+  const double rise = sigmoid.spread() / 2.0;
+  for (int i = 0; i < 8; ++i) {
+    const double x = 0.5 + 0.5 * i, p = truth.at(x), z = rise * (x - 2.2);
+    blocks.push_back({x, static_cast<int>(std::lround(4000 * p)), 4000});
+    const double density = std::exp(-0.5 * z * z) / std::sqrt(2.0 * M_PI);
+    const double weight = 4000 * density * density / (p * (1.0 - p));
+    a += weight, b += weight * (x - 2.2), c += weight * (x - 2.2) * (x - 2.2);
+  }
+  const double error = std::sqrt(c / (a * c - b * b)) / rise;
+  FitBootstrap how;
+  how.resampling.count = 4999;
+  const auto fit = bootstrap_fit(blocks, options, all_asked(), how);
+  // 4,999 draws give a quantile to about 2 % of the interval's width.
+  EXPECT_NEAR(fit.intervals[0]->high - fit.intervals[0]->low, 2.0 * 1.959964 * error,
+              0.06 * 2.0 * 1.959964 * error);
+  EXPECT_GT(fit.deviance_p, 0.5);  // the shares are those of the function
+}
+
+TEST(BootstrapFit, FindsThatAFunctionDoesNotDescribeTheAnswers) {
+  const std::vector<TrialBlock> uneven{
+      {1, 2, 40}, {2, 30, 40}, {3, 5, 40}, {4, 36, 40}, {5, 30, 40}};
+  const LikelihoodOptions options{.shape = sigmoid_named("norm"), .task = Task::kYesNo};
+  FitBootstrap how;
+  how.resampling.count = 999;
+  EXPECT_LE(bootstrap_fit(uneven, options, {}, how).deviance_p, 0.001);
+  const auto influence = block_influence(uneven, options);
+  ASSERT_EQ(influence.size(), 5u);
+  for (std::size_t i = 0; i < 5; ++i) {
+    ASSERT_TRUE(influence[i]);
+    EXPECT_GE(influence[i]->deviance, 0.0);
+  }
+  // Without the low share at 3 the threshold moves down, without the high one at 2 up.
+  EXPECT_LT(influence[2]->threshold, 0.0);
+  EXPECT_GT(influence[1]->threshold, 0.0);
+}
+
+}  // namespace
+}  // namespace haptrial::analysis

@@ -1,0 +1,199 @@
+// Fits of psychometric functions: time of a maximum-likelihood fit of eight levels for each sigmoid
+// and task (processor time of this thread), of a bootstrap and of a Bayesian fit; and the coverage
+// study of docs/algorithms/psychometric-fits.md: observers with a known function, eight levels of
+// 40 trials each, and how often the 95 % interval holds their threshold.
+//
+//     bench_psychometric_fit [observers] [bootstrap resamples]
+
+#include <fmt/format.h>
+#include <time.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "analysis/psychometric/fit/bayesian_fit.h"
+#include "analysis/psychometric/fit/bootstrap_fit.h"
+#include "core/base/parallel.h"
+#include "core/base/random.h"
+
+namespace {
+
+using namespace haptrial::analysis;
+
+double seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+struct Study {
+  const char* sigmoid;
+  Task task;
+  double lapse;
+};
+
+/// Eight levels over 1.2 widths around the threshold 2 (in the coordinate).
+class Observer {
+ public:
+  explicit Observer(const Study& study) : study_(study), sigmoid_(sigmoid_named(study.sigmoid)) {}
+
+  PsychometricFunction function() const {
+    const double guess = study_.task == Task::kForcedChoice ? 0.5 : 0.02;
+    return {sigmoid_, {2.0, 1.0, study_.lapse, guess}};
+  }
+
+  std::vector<TrialBlock> answers(std::uint64_t number) const {
+    haptrial::RandomStream random(number, std::string("observer ") + study_.sigmoid);
+    std::vector<TrialBlock> blocks;
+    for (int i = 0; i < 8; ++i) {
+      TrialBlock block{sigmoid_.level(1.4 + 1.2 * i / 7.0), 0, 40};
+      for (int t = 0; t < 40; ++t) {
+        block.correct += random.uniform() < function().at(block.level) ? 1 : 0;
+      }
+      blocks.push_back(block);
+    }
+    return blocks;
+  }
+
+  LikelihoodOptions options() const {
+    return {.shape = sigmoid_named(study_.sigmoid), .task = study_.task};
+  }
+
+ private:
+  Study study_;
+  Sigmoid sigmoid_;
+};
+
+std::string name_of(const Study& s) {
+  return fmt::format("{:9} {:13}", s.sigmoid,
+                     s.task == Task::kForcedChoice ? "forced choice"
+                     : s.task == Task::kYesNo      ? "yes/no"
+                                                   : "equal");
+}
+
+void time_fit(const Study& study) {
+  const Observer observer(study);
+  constexpr std::size_t kObservers = 200, kRounds = 50;
+  std::vector<LikelihoodFitter> fitters;
+  std::vector<std::vector<int>> correct(kObservers);
+  for (std::size_t i = 0; i < kObservers; ++i) {
+    const auto blocks = observer.answers(i);
+    fitters.emplace_back(observer.options(), blocks);
+    for (const TrialBlock& b : blocks) {
+      correct[i].push_back(b.correct);
+    }
+  }
+  double best = 1e9, steps = 0.0;
+  for (std::size_t round = 0; round < kRounds; ++round) {
+    const double start = seconds();
+    steps = 0.0;
+    for (std::size_t i = 0; i < kObservers; ++i) {
+      steps += fitters[i].fit(correct[i]).steps;
+    }
+    best = std::min(best, seconds() - start);
+  }
+  fmt::print("{}  {:5.2f} us a fit, {:4.1f} steps\n", name_of(study),
+             1e6 * best / static_cast<double>(kObservers), steps / static_cast<double>(kObservers));
+}
+
+/// Intervals that hold the truth, and the estimates.
+struct Counted {
+  double held{0.0}, none{0.0}, sum{0.0}, squares{0.0}, count{0.0};
+
+  void add(double estimate, double truth, bool interval, double low, double high) {
+    count += 1.0;
+    none += interval ? 0.0 : 1.0;
+    held += interval && low <= truth && truth <= high ? 1.0 : 0.0;
+    sum += estimate - truth;
+    squares += (estimate - truth) * (estimate - truth);
+  }
+  void print(const std::string& what) const {
+    const double bias = sum / count;
+    fmt::print("  {:34} held {:5.1f} %, none {:4.1f} %, bias {:+.4f}, SD {:.4f}\n", what,
+               100.0 * held / count, 100.0 * none / count, bias,
+               std::sqrt(squares / count - bias * bias));
+  }
+};
+
+void cover_by_bootstrap(const Observer& observer, std::size_t observers, std::size_t resamples,
+                        bool parametric) {
+  const std::vector<Asked> asked{{Reading::kThreshold}, {Reading::kWidth}};
+  std::vector<BootstrappedFit> fits(observers);
+  const double start = seconds();
+  haptrial::parallel_for(observers, 1, [&](std::size_t i) {
+    FitBootstrap how{.parametric = parametric};
+    how.resampling.count = resamples;
+    how.resampling.seed = i;
+    fits[i] = bootstrap_fit(observer.answers(i), observer.options(), asked, how);
+  });
+  const auto& truth = observer.function().parameters();
+  const double truths[] = {observer.function().threshold_level(), truth.width};
+  const char* const names[] = {"threshold", "width"};
+  for (std::size_t a = 0; a < 2; ++a) {
+    Counted counted;
+    for (const BootstrappedFit& fit : fits) {
+      const auto& found = fit.intervals[a];
+      counted.add(fit.estimates[a], truths[a], bool(found), found ? found->low : 0.0,
+                  found ? found->high : 0.0);
+    }
+    counted.print(std::string(names[a]) + (parametric ? ", parametric" : ", non-parametric"));
+  }
+  double rejected = 0.0;
+  for (const BootstrappedFit& fit : fits) {
+    rejected += fit.deviance_p < 0.05 ? 1.0 : 0.0;
+  }
+  fmt::print("  deviance p < 0.05 in {:.1f} %; {:.1f} ms an observer\n",
+             100.0 * rejected / static_cast<double>(observers),
+             1e3 * (seconds() - start) / static_cast<double>(observers));
+}
+
+void cover_by_posterior(const Observer& observer, std::size_t observers) {
+  BayesianOptions options;
+  options.shape = observer.options().shape;
+  options.task = observer.options().task;
+  std::vector<BayesianFit> fits(observers);
+  const double start = seconds();
+  for (std::size_t i = 0; i < observers; ++i) {
+    fits[i] = bayesian_fit(observer.answers(i), options);
+  }
+  const double each = (seconds() - start) / static_cast<double>(observers);
+  const auto truth = observer.function().parameters();
+  Counted threshold, width, mean;
+  for (const BayesianFit& fit : fits) {
+    const auto& t = fit.intervals[kThreshold][0];
+    const auto& w = fit.intervals[kWidth][0];
+    threshold.add(fit.map.threshold, truth.threshold, true, t.low, t.high);
+    mean.add(fit.mean.threshold, truth.threshold, true, t.low, t.high);
+    width.add(fit.map.width, truth.width, true, w.low, w.high);
+  }
+  threshold.print("threshold, posterior (largest)");
+  mean.print("threshold, posterior (mean)");
+  width.print("width, posterior (largest)");
+  fmt::print("  {:.0f} ms a fit\n", 1e3 * each);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::size_t observers = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 1000;
+  const std::size_t resamples = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 999;
+  for (const char* sigmoid : {"norm", "logistic", "Weibull", "gumbel"}) {
+    for (const Task task : {Task::kForcedChoice, Task::kYesNo, Task::kEqualAsymptote}) {
+      time_fit({sigmoid, task, 0.02});
+    }
+  }
+  for (const Study& study :
+       {Study{"norm", Task::kForcedChoice, 0.02}, Study{"Weibull", Task::kForcedChoice, 0.02},
+        Study{"norm", Task::kYesNo, 0.02}}) {
+    const Observer observer(study);
+    fmt::print("{} {} observers\n", name_of(study), observers);
+    cover_by_bootstrap(observer, observers, resamples, true);
+    cover_by_bootstrap(observer, observers, resamples, false);
+    if (study.task == Task::kForcedChoice) {
+      cover_by_posterior(observer, observers);
+    }
+  }
+  return 0;
+}
