@@ -76,6 +76,18 @@ double fallback(const Bounds& b) {
   return std::isfinite(b.high) ? b.high : 0.0;
 }
 
+/// Copies have no place in a file: sentences about them name no line.
+void fill_in_table(toml::table& table, const toml::table& defaults) {
+  for (const auto& [key, value] : defaults) {
+    toml::node* there = table.get(key.str());
+    if (there == nullptr) {
+      table.insert(key.str(), value);
+    } else if (there->is_table() && value.is_table()) {
+      fill_in_table(*there->as_table(), *value.as_table());
+    }
+  }
+}
+
 }  // namespace
 
 Table::Table(std::shared_ptr<Document> document, std::shared_ptr<Node> node)
@@ -123,11 +135,25 @@ Table Table::load(const std::filesystem::path& file) {
   return parse(file_text(file), file.string());
 }
 
+void Table::fill_in(std::string_view defaults) {
+  fill_in_table(document_->root, parse_toml(defaults, "defaults"));
+}
+
 const std::string& Table::source() const { return document_->source; }
 
 bool Table::is_array(std::string_view key) const {
   return node_->table != nullptr && node_->table->get(key) != nullptr &&
          node_->table->get(key)->is_array();
+}
+
+bool Table::is_nested(std::string_view key) const {
+  return is_array(key) && !node_->table->get(key)->as_array()->empty() &&
+         node_->table->get(key)->as_array()->get(0)->is_array();
+}
+
+bool Table::is_table(std::string_view key) const {
+  return node_->table != nullptr && node_->table->get(key) != nullptr &&
+         node_->table->get(key)->is_table();
 }
 
 bool Table::has(std::string_view key) const {
@@ -141,6 +167,22 @@ std::vector<std::string> Table::keys() const {
     for (const auto& [key, value] : *node_->table) {
       names.emplace_back(key.str());
     }
+  }
+  return names;
+}
+
+std::vector<std::string> Table::keys_as_written() const {
+  std::vector<std::pair<toml::source_position, std::string>> found;
+  if (node_->table != nullptr) {
+    for (const auto& [key, value] : *node_->table) {
+      found.emplace_back(key.source().begin, key.str());
+    }
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::string> names;
+  for (const auto& [place, name] : found) {
+    names.push_back(name);
   }
   return names;
 }

@@ -66,11 +66,18 @@ class Table {
   bool has_text(std::string_view key) const;
   /// The text under `key`; nothing, and no problem, if something else is there.
   std::optional<std::string> whole_text(std::string_view key) const;
-  bool is_array(std::string_view key) const;  // false of what is not there
+  bool is_array(std::string_view key) const;   // false of what is not there
+  bool is_nested(std::string_view key) const;  // an array of arrays
+  bool is_table(std::string_view key) const;   // likewise
+  /// Gives the whole document what it lacks of another TOML text: missing tables, and missing keys
+  /// within tables; what it states stays. source() does not change.
+  void fill_in(std::string_view defaults);
   /// A table of this one that another reader knows: its keys are not looked at here.
   void leave(std::string_view key);
   /// The keys of this table in the order of their names.
   std::vector<std::string> keys() const;
+  /// The same in the order of the text.
+  std::vector<std::string> keys_as_written() const;
 
   /// Notes a problem of values taken together, at the line of `key`. finish() reports these only
   /// if every value is good by itself: a missing value would make them up.

@@ -9,6 +9,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/definition/table_vector.h"
+#include "core/base/error.h"
 
 namespace haptrial::scene {
 namespace {
@@ -35,7 +36,13 @@ std::optional<Eigen::Vector3d> NumberSource::vector_of(std::string_view) const {
 /// The worth of one text; nothing, with the problem noted, if it has none or is out of bounds.
 std::optional<double> NumberSource::entry(Table& table, std::string_view key, std::string_view text,
                                           const Bounds& bounds, std::string_view unit) const {
-  const std::optional<double> value = value_of(text);
+  std::optional<double> value;
+  try {
+    value = value_of(text);
+  } catch (const InputError& error) {
+    table.reject(key, fmt::format("is \"{}\": {}", text, error.what()));
+    return std::nullopt;
+  }
   if (!value) {
     table.reject(key, fmt::format("the text \"{}\"", text), range(bounds, unit));
   } else if (!is_within(*value, bounds)) {
@@ -47,7 +54,7 @@ std::optional<double> NumberSource::entry(Table& table, std::string_view key, st
 
 double NumberSource::number(Table& table, std::string_view key, const Bounds& bounds,
                             std::string_view unit) const {
-  if (const auto text = table.whole_text(key); text && value_of(*text)) {
+  if (const auto text = table.whole_text(key); text && takes_texts()) {
     const double otherwise = bounds.open_low ? bounds.high : bounds.low;
     return entry(table, key, *text, bounds, unit).value_or(otherwise);
   }
@@ -62,7 +69,13 @@ Eigen::Vector3d NumberSource::vector(Table& table, std::string_view key, const B
   const std::string allowed =
       fmt::format("three numbers, x, y and z, each {}", range(bounds, unit));
   if (const auto whole = table.whole_text(key)) {
-    const auto found = vector_of(*whole);
+    std::optional<Eigen::Vector3d> found;
+    try {
+      found = vector_of(*whole);
+    } catch (const InputError& error) {
+      table.reject(key, fmt::format("is \"{}\": {}", *whole, error.what()));
+      return Eigen::Vector3d::Zero();
+    }
     const bool good =
         found && is_within(found->minCoeff(), bounds) && is_within(found->maxCoeff(), bounds);
     if (!good) {

@@ -34,7 +34,10 @@ class NumberSource {
                          std::string_view unit) const;
 
  protected:
-  /// What a text is worth; nothing if no text is allowed or this one has no value.
+  /// Whether a text may stand for a number.
+  virtual bool takes_texts() const { return false; }
+  /// What a text is worth; nothing if no text is allowed.
+  /// @throws InputError saying why this one has no value: a part of the sentence that is noted
   virtual std::optional<double> value_of(std::string_view text) const;
   virtual std::optional<Eigen::Vector3d> vector_of(std::string_view text) const;
 

@@ -3,30 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <optional>
 
 #include "core/base/definition/table.h"
+#include "protocols/definition/window_keys.h"
 
 namespace haptrial::protocols {
 namespace {
 
 constexpr int kMostButtons = 31;
-// As render::KeyPress has them.
-constexpr int kEnter = 257;
-constexpr int kSpace = ' ';
-
-std::optional<int> key_code(const std::string& name) {
-  if (name == "space") {
-    return kSpace;
-  }
-  if (name == "enter") {
-    return kEnter;
-  }
-  const bool plain = name.size() == 1 && (std::isdigit(static_cast<unsigned char>(name[0])) != 0 ||
-                                          (name[0] >= 'A' && name[0] <= 'Z'));
-  return plain ? std::optional<int>(name[0]) : std::nullopt;
-}
 
 void read_buttons(Table& table, const std::string& key, std::uint32_t& mask) {
   for (const double number : table.numbers(key, {0.0, kMostButtons - 1.0}, "")) {
@@ -44,7 +28,7 @@ void read_keys(Table& table, const std::string& key, std::vector<int>& codes) {
     if (const auto code = key_code(name)) {
       codes.push_back(*code);
     } else {
-      table.reject(key, fmt::format("a list with '{}'", name), "space, enter, A to Z, 0 to 9");
+      table.reject(key, fmt::format("a list with '{}'", name), kKeyNames);
     }
   }
 }

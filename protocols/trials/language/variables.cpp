@@ -26,16 +26,13 @@ void refuse_circle(const std::string& name, const std::vector<std::string>& way)
 }  // namespace
 
 void Variables::define(const std::string& name, Expression meaning) {
-  if (knows(name)) {
+  if (meanings_.contains(name)) {
     throw InputError(fmt::format("there is a variable {} already", name));
   }
   meanings_.emplace(name, std::move(meaning));
 }
 
 void Variables::declare(const std::string& name) {
-  if (knows(name)) {
-    throw InputError(fmt::format("there is a variable {} already", name));
-  }
   given_.emplace(name, std::numeric_limits<double>::quiet_NaN());
 }
 
@@ -49,7 +46,9 @@ std::vector<std::string> Variables::names() const {
     names.push_back(name);
   }
   for (const auto& [name, value] : given_) {
-    names.push_back(name);
+    if (!meanings_.contains(name)) {
+      names.push_back(name);
+    }
   }
   std::ranges::sort(names);
   return names;
@@ -62,11 +61,11 @@ void Variables::refuse(const std::string& name) const {
 
 void Variables::check(const std::string& name, std::vector<std::string>& way) const {
   refuse_circle(name, way);
-  if (given_.contains(name)) {
-    return;
-  }
   const auto found = meanings_.find(name);
   if (found == meanings_.end()) {
+    if (given_.contains(name)) {
+      return;
+    }
     refuse(name);
   }
   way.push_back(name);
@@ -91,16 +90,33 @@ void Variables::set(const std::string& name, double value) {
   found->second = value;
 }
 
+void Variables::forget_given() {
+  for (auto& [name, value] : given_) {
+    value = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+std::vector<std::string> Variables::given() const {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : given_) {
+    if (!std::isnan(value)) {
+      names.push_back(name);
+    }
+  }
+  return names;
+}
+
 double Variables::value(const std::string& name, std::vector<std::string>& way) const {
   refuse_circle(name, way);
-  if (const auto given = given_.find(name); given != given_.end()) {
-    if (std::isnan(given->second)) {
-      throw InputError(fmt::format("{} has no value yet", name));
-    }
+  const auto given = given_.find(name);
+  if (given != given_.end() && !std::isnan(given->second)) {
     return given->second;
   }
   const auto found = meanings_.find(name);
   if (found == meanings_.end()) {
+    if (given != given_.end()) {
+      throw InputError(fmt::format("{} has no value yet", name));
+    }
     refuse(name);
   }
   way.push_back(name);

@@ -11,12 +11,12 @@ namespace haptrial::protocols {
 
 /// The variables of a definition: each a number or a formula of others. What is given from outside
 /// (the procedure's level, a factor of the block, the participant's data) stands before what the
-/// definition states.
+/// definition states; a name may have both.
 class Variables {
  public:
   /// @throws InputError if the name is taken
   void define(const std::string& name, Expression meaning);
-  /// A name that gets its value from outside before it is asked for.
+  /// A name that may get its value from outside; again: nothing happens.
   void declare(const std::string& name);
   bool knows(const std::string& name) const;
   /// All names, in alphabetical order.
@@ -25,9 +25,12 @@ class Variables {
   /// @throws InputError naming a variable that nothing defines, or the circle that a formula is in
   void check(const Expression& expression) const;
 
-  /// Values of declared names, until they are set anew. @throws std::invalid_argument unless
-  /// `name` is declared
+  /// Values of declared names, until they are set anew or forgotten. @throws std::invalid_argument
+  /// unless `name` is declared
   void set(const std::string& name, double value);
+  void forget_given();
+  /// Declared names that have a value.
+  std::vector<std::string> given() const;
   /// @throws InputError as check() does, if a declared name has no value yet, or if a value is not
   /// finite
   double value(const Expression& expression) const;

@@ -189,6 +189,7 @@ class Variables final : public NumberSource {
   double level{0.0};
 
  protected:
+  bool takes_texts() const override { return true; }
   std::optional<double> value_of(std::string_view text) const override {
     return text == "$level"    ? std::optional(level)
            : text == "-$level" ? std::optional(-level)

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "core/record/table/table.h"
+
+namespace haptrial::record {
+
+/// The only phase of a trial that a definition states: everything of it is one pass.
+inline constexpr const char* kPresentedPhase = "presented";
+
+/// What a variable of the definition was worth, a row of /variables.
+struct VariableRow {
+  std::int32_t pass{0};      // row of /trials
+  std::int32_t interval{0};  // of the pass, from 1; 0: the same in all of them
+  std::string name;
+  double value{std::numeric_limits<double>::quiet_NaN()};  // NaN: it is a word
+  std::string word;                                        // empty: it is a number
+};
+
+/// What a procedure asked for and what came of it, a row of /levels; of a level with several
+/// dimensions a row each.
+struct LevelRow {
+  std::int32_t pass{0};  // row of /trials
+  std::string track;     // the definition's name for it
+  std::string variable;
+  double asked{0.0};                                         // [unit of the variable]
+  double applied{0.0};                                       // quantised, within the range [same]
+  double outcome{std::numeric_limits<double>::quiet_NaN()};  // that it learnt; NaN: none
+};
+
+/// How a stage went, a row of /stages.
+enum class StageEnding : std::uint8_t { kReached, kLate, kTooLittle, kBrokenOff };
+struct StageRow {
+  std::int32_t pass{0};      // row of /trials
+  std::int32_t interval{0};  // of the pass, from 1
+  std::string stage;
+  std::uint64_t first_sample{0};  // sequence numbers, both inclusive
+  std::uint64_t last_sample{0};
+  std::int64_t onset_sample{-1};  // of the movement; -1: none was seen or asked for
+  StageEnding ending{StageEnding::kReached};
+  double most{std::numeric_limits<double>::quiet_NaN()};  // of what is required; NaN: nothing is
+};
+
+/// Most bytes of a name or word of a definition.
+inline constexpr std::size_t kTrialWordBytes = 64;
+
+template <>
+const Table<VariableRow>& table_of<VariableRow>();
+template <>
+const Table<LevelRow>& table_of<LevelRow>();
+template <>
+const Table<StageRow>& table_of<StageRow>();
+
+/// All of them, in the order in which they are created.
+const TableList& trial_tables();
+
+}  // namespace haptrial::record

@@ -1,0 +1,26 @@
+#include "protocols/definition/window_keys.h"
+
+#include <array>
+#include <cctype>
+#include <utility>
+
+namespace haptrial::protocols {
+
+std::optional<int> key_code(const std::string& name) {
+  static constexpr std::array<std::pair<const char*, int>, 6> kNamed{{{"space", kSpaceKey},
+                                                                      {"enter", kEnterKey},
+                                                                      {"right", 262},
+                                                                      {"left", 263},
+                                                                      {"down", 264},
+                                                                      {"up", 265}}};
+  for (const auto& [known, code] : kNamed) {
+    if (name == known) {
+      return code;
+    }
+  }
+  const bool plain = name.size() == 1 && (std::isdigit(static_cast<unsigned char>(name[0])) != 0 ||
+                                          (name[0] >= 'A' && name[0] <= 'Z'));
+  return plain ? std::optional<int>(name[0]) : std::nullopt;
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,315 @@
+#include "protocols/trials/defined_trials.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/base/error.h"
+#include "core/base/random.h"
+#include "core/record/trials/trial_rows.h"
+#include "protocols/interface/session_file.h"
+#include "protocols/trials/definition/defaults.h"
+#include "protocols/trials/presentation/trial_drawing.h"
+#include "protocols/trials/subject/trials_rig.h"
+
+namespace haptrial::protocols {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr int kPracticeNumbers = 1'000'000;  // a trial of practice is no other's
+
+Table parsed(const Definition& d) {
+  Table root = Table::parse(d.text, d.file_name);
+  root.fill_in(trials_defaults());
+  return root;
+}
+
+Taker taker_of(const StudiedDefinition& d, const SessionPlace& place) {
+  const std::string group = d.groups.size() > 1 ? group_of(d.groups, place.subject)
+                            : d.groups.empty()  ? std::string()
+                                                : d.groups.front().name;
+  return {place.participant, group, place.seed, place.session_seed};
+}
+
+/// Fields whose force is to work on the hand, a bit each: all but those that only give way.
+std::uint64_t pushing(const std::vector<scene::Field>& fields) {
+  std::uint64_t mask = 0;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const auto& kind = fields[i].kind;
+    const bool yields = scene::is_surface(fields[i]) || scene::is_relief(fields[i]) ||
+                        std::holds_alternative<scene::ViscousParameters>(kind) ||
+                        std::holds_alternative<scene::FrictionParameters>(kind);
+    mask |= yields ? 0 : std::uint64_t{1} << i;
+  }
+  return mask;
+}
+
+Mark mark_at(const Eigen::Vector3d& p, double radius) {
+  const Eigen::Vector3f f = p.cast<float>();
+  return {{f.x(), f.y(), f.z()}, static_cast<float>(radius)};
+}
+
+/// Where a region is, and how large.
+Mark mark_of(const scene::Shape& shape) {
+  if (const auto* sphere = std::get_if<scene::Sphere>(&shape)) {
+    return mark_at(sphere->centre, sphere->radius);
+  }
+  if (const auto* box = std::get_if<scene::Box>(&shape)) {
+    return mark_at(box->centre, 0.5 * box->size.maxCoeff());
+  }
+  if (const auto* cylinder = std::get_if<scene::Cylinder>(&shape)) {
+    return mark_at(cylinder->centre, cylinder->radius);
+  }
+  return mark_at(std::get<scene::HalfSpace>(shape).point, 0.0);
+}
+
+record::StageEnding ending_of(StageEnd how) {
+  return how == StageEnd::kReached     ? record::StageEnding::kReached
+         : how == StageEnd::kLate      ? record::StageEnding::kLate
+         : how == StageEnd::kTooLittle ? record::StageEnding::kTooLittle
+                                       : record::StageEnding::kBrokenOff;
+}
+
+}  // namespace
+
+DefinedTrials::DefinedTrials(const StudiedDefinition& definition, const SessionPlace& place)
+    : d_(definition),
+      place_(place),
+      root_(parsed(definition)),
+      names_(read_names(root_, definition)),
+      sequence_(definition, taker_of(definition, place)) {}
+
+Extent DefinedTrials::extent(int most) const {
+  const int trials = d_.most_trials();
+  int blocks = 0;
+  for (const Block& block : d_.order.blocks) {
+    blocks += block.practice ? 0 : 1;
+  }
+  return {most > 0 ? std::min(most, trials) : trials, d_.practice_trials(), blocks};
+}
+
+std::span<const record::Phase> DefinedTrials::phases() const {
+  static constexpr std::array kPhases{record::Phase(record::kPresentedPhase)};
+  return kPhases;
+}
+
+record::TableList DefinedTrials::tables() const {
+  record::TableList tables = record::trial_tables();
+  if (!d_.questions.empty()) {
+    tables.push_back(&record::responses_table());
+  }
+  return tables;
+}
+
+std::unique_ptr<Rig> DefinedTrials::virtual_rig() const {
+  said_ = std::make_unique<SaidAnswer>();
+  return std::make_unique<TrialsRig>(
+      TrialsRig::Briefing{&d_, &d_.observer, &d_.questions, d_.stages, said_.get()},
+      place_.session_seed);
+}
+
+std::optional<PlannedTrial> DefinedTrials::next(const Outcome* last) {
+  if (last != nullptr) {
+    const bool done = last->end == TrialEnd::kCompleted;
+    const bool right = !last->responses.empty() && last->responses.front().correct == 1;
+    sequence_.conclude(done, done ? outcome_of(last->responses) : kNone, right);
+  }
+  const std::optional<NextTrial> next = sequence_.next();
+  if (!next) {
+    return std::nullopt;
+  }
+  current_ = *next;
+  return current_.plan;
+}
+
+/// What the procedure learns from a trial. A session that is resumed computes it from what is
+/// recorded, so it follows from the responses alone.
+double DefinedTrials::outcome_of(const std::vector<record::ResponseRow>& responses) {
+  if (current_.track < 0) {
+    return kNone;
+  }
+  const Track& track = *sequence_.running()[static_cast<std::size_t>(current_.track)].track;
+  if (track.counts.empty()) {
+    return !responses.empty() && responses.front().correct >= 0 ? responses.front().correct : kNone;
+  }
+  give(*names_, d_, current_.values);
+  for (const record::ResponseRow& row : responses) {
+    if (std::isfinite(row.value)) {
+      names_->set(row.question, row.value);
+    }
+  }
+  return names_->value(track.counts);
+}
+
+MakeDrawing DefinedTrials::drawing() { return trial_drawing(d_); }
+
+Pass& DefinedTrials::make_pass(PlannedTrial&, const record::Phase&) {
+  const bool practice = current_.plan.practice;
+  TrialPass::Setup setup;
+  setup.trial = current_.plan.trial + (practice ? kPracticeNumbers : 0);
+  setup.feedback_time = d_.feedback_time;
+  setup.most_repeats = d_.most_repeats;
+  setup.said = said_.get();
+  variables_.clear();
+  stages_.clear();
+  give(*names_, d_, current_.values);
+  note_variables(0, variables_);
+  RandomStream random(current_.plan.stimulus_seed, "durations");
+  for (std::size_t place = 0; place < current_.values.intervals.size(); ++place) {
+    setup.intervals.push_back(make_interval(place, random));
+  }
+  give(*names_, d_, current_.values);
+  setup.questions = make_questions();
+  pass_ = std::make_unique<TrialPass>(std::move(setup));
+  return *pass_;
+}
+
+IntervalRun DefinedTrials::make_interval(std::size_t place, RandomStream& random) {
+  give(*names_, d_, current_.values);
+  give_interval(*names_, d_.intervals[current_.values.intervals[place]], place);
+  note_variables(place + 1, variables_);
+  Presented presented = read_presented(root_, *names_, d_.rate, &random);
+  root_.check();
+  std::vector<Stage> stages;
+  std::vector<StageSight> sights;
+  for (const NamedStage& stage : presented.stages) {
+    stages.push_back(stage.stage);
+    StageSight sight;
+    for (const std::string& name : stage.show) {
+      const auto region =
+          std::find_if(presented.regions.begin(), presented.regions.end(),
+                       [&](const scene::Region& each) { return each.name == name; });
+      if (name == "hand") {
+        sight.hand = true;
+      } else if (name == "interval_number") {
+        sight.interval_number = true;
+      } else if (region != presented.regions.end()) {
+        sight.marks.push_back(mark_of(region->shape));
+      } else if (names_->has_place(name)) {
+        sight.marks.push_back(mark_at(names_->place(name), 0.0));
+      }
+    }
+    sights.push_back(std::move(sight));
+  }
+  std::vector<scene::PlacedShape> regions;
+  for (const scene::Region& region : presented.regions) {
+    regions.emplace_back(region.shape);
+  }
+  stages_.push_back(std::move(presented.stages));
+  return {scene::Scene(presented.fields, d_.rate),
+          StageMachine(std::move(stages), std::move(regions), presented.fields.size()),
+          std::move(sights), pushing(presented.fields)};
+}
+
+std::vector<Asked> DefinedTrials::make_questions() {
+  std::vector<Asked> asked;
+  right_.clear();
+  for (const Question& question : d_.questions) {
+    Asked each{&question};
+    if (!question.correct.empty()) {
+      each.right = right_choice(*names_, question);
+    }
+    each.feedback = question.feedback == Feedback::kAlways ||
+                    (question.feedback == Feedback::kPractice && current_.plan.practice);
+    for (std::size_t i = 0; !question.onset.empty() && i < stages_.back().size(); ++i) {
+      each.onset = stages_.back()[i].name == question.onset ? static_cast<int>(i) : each.onset;
+    }
+    right_.push_back(each.right);
+    asked.push_back(each);
+  }
+  return asked;
+}
+
+/// Those that differ within the pass have a row for each interval, the others one.
+void DefinedTrials::note_variables(std::size_t interval,
+                                   std::vector<record::VariableRow>& rows) const {
+  for (const std::string& name : names_->given()) {
+    const double value = names_->value("$" + name);
+    const auto word = names_->word_of(value);
+    record::VariableRow row{0, static_cast<std::int32_t>(interval), name, word ? kNone : value,
+                            word.value_or("")};
+    const auto same = [&](const record::VariableRow& each) {
+      return each.interval == 0 && each.name == row.name && each.word == row.word &&
+             (each.value == row.value || word);
+    };
+    if (interval == 0 || std::none_of(rows.begin(), rows.end(), same)) {
+      rows.push_back(std::move(row));
+    }
+  }
+}
+
+std::vector<record::ResponseRow> DefinedTrials::responses() {
+  std::vector<record::ResponseRow> rows;
+  for (std::size_t i = 0; i < pass_->answers().size(); ++i) {
+    const Answer& answer = pass_->answers()[i];
+    const Question& question = d_.questions[i];
+    if (!answer.given) {
+      continue;
+    }
+    record::ResponseRow row;
+    row.question = question.name;
+    row.interval = static_cast<std::int32_t>(pass_->intervals_begun());
+    row.value = question.types() ? answer.value : question.first + answer.choice;
+    if (!question.types()) {
+      row.text = question.choices[static_cast<std::size_t>(answer.choice)].value;
+    }
+    row.correct = right_[i] < 0 ? -1 : answer.choice == right_[i] ? 1 : 0;
+    row.source = answer.source;
+    row.code = answer.code;
+    row.reaction_time = answer.reaction_time;
+    row.sequence = answer.sequence;
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+void DefinedTrials::close_pass(SessionFile& file, std::int32_t row) {
+  for (record::VariableRow& each : variables_) {
+    each.pass = row;
+  }
+  file.add(std::span<const record::VariableRow>(variables_));
+  keep_level(file, row);
+  keep_stages(file, row);
+}
+
+void DefinedTrials::keep_level(SessionFile& file, std::int32_t row) {
+  if (current_.track < 0) {
+    return;
+  }
+  const RunningTrack& running = sequence_.running()[static_cast<std::size_t>(current_.track)];
+  const bool done = pass_->state() == PassState::kCompleted;
+  std::vector<record::LevelRow> rows;
+  for (std::size_t i = 0; i < current_.asked.size(); ++i) {
+    rows.push_back({row, running.name, running.track->variable, current_.asked[i],
+                    current_.applied[i], done ? outcome_of(responses()) : kNone});
+  }
+  file.add(std::span<const record::LevelRow>(rows));
+}
+
+void DefinedTrials::keep_stages(SessionFile& file, std::int32_t row) const {
+  std::vector<record::StageRow> rows;
+  for (std::size_t i = 0; i < pass_->intervals_begun(); ++i) {
+    const std::span<const StageTimes> times = pass_->machine(i).times();
+    const std::uint64_t first = pass_->first_tick(i);
+    for (std::size_t k = 0; k < times.size() && times[k].begin >= 0; ++k) {
+      const NamedStage& stage = stages_[i][k];
+      record::StageRow each;
+      each.pass = row;
+      each.interval = static_cast<std::int32_t>(i + 1);
+      each.stage = stage.name;
+      each.first_sample = first + static_cast<std::uint64_t>(times[k].begin);
+      each.last_sample =
+          times[k].end >= 0 ? first + static_cast<std::uint64_t>(times[k].end) : pass_->last_tick();
+      each.onset_sample =
+          times[k].onset >= 0 ? static_cast<std::int64_t>(first) + times[k].onset : -1;
+      each.ending = ending_of(times[k].how);
+      each.most = stage.stage.require ? times[k].most : kNone;
+      rows.push_back(std::move(each));
+    }
+  }
+  file.add(std::span<const record::StageRow>(rows));
+}
+
+const char* DefinedTrials::why_aborted() const { return pass_->why_aborted(); }
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/definition/table.h"
+#include "protocols/interface/trials.h"
+#include "protocols/trials/presentation/trial_pass.h"
+#include "protocols/trials/sequence/trial_sequence.h"
+#include "protocols/trials/studied_definition.h"
+
+namespace haptrial::protocols {
+
+/// The trials of one session as a definition states them.
+class DefinedTrials final : public Trials {
+ public:
+  DefinedTrials(const StudiedDefinition& definition, const SessionPlace& place);
+
+  Extent extent(int most) const override;
+  std::optional<PlannedTrial> next(const Outcome* last) override;
+  std::span<const record::Phase> phases() const override;
+  std::unique_ptr<Rig> virtual_rig() const override;
+  record::TableList tables() const override;
+  void prepare(const PlannedTrial&, SessionFile&) override {}
+  MakeDrawing drawing() override;
+  Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) override;
+  std::vector<record::ResponseRow> responses() override;
+  void close_pass(SessionFile& file, std::int32_t row) override;
+  const char* why_aborted() const override;
+
+ private:
+  IntervalRun make_interval(std::size_t place, RandomStream& random);
+  std::vector<Asked> make_questions();
+  void note_variables(std::size_t interval, std::vector<record::VariableRow>& rows) const;
+  double outcome_of(const std::vector<record::ResponseRow>& responses);
+  void keep_level(SessionFile& file, std::int32_t row);
+  void keep_stages(SessionFile& file, std::int32_t row) const;
+
+  const StudiedDefinition& d_;
+  SessionPlace place_;
+  Table root_;
+  std::unique_ptr<Names> names_;
+  TrialSequence sequence_;
+  NextTrial current_;
+  mutable std::unique_ptr<SaidAnswer> said_;  // of a virtual participant
+  std::unique_ptr<TrialPass> pass_;
+  std::vector<std::vector<NamedStage>> stages_;  // of each interval of the pass
+  std::vector<record::VariableRow> variables_;   // of the pass
+  std::vector<int> right_;                       // choice of each question; -1: none
+};
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,205 @@
+#include "protocols/trials/definition/question.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/definition/table.h"
+#include "core/base/error.h"
+#include "core/record/rows/response.h"
+#include "protocols/definition/window_keys.h"
+
+namespace haptrial::protocols {
+namespace {
+
+constexpr int kMostButtons = 31;
+constexpr std::size_t kMostChoices = 12;
+
+std::uint32_t keys_of(Table& table, const char* key, KeyBits& bits) {
+  std::uint32_t mask = 0;
+  for (const std::string& name : table.texts(key)) {
+    const auto code = key_code(name);
+    if (!code) {
+      table.reject(key, fmt::format("a list with '{}'", name), kKeyNames);
+      continue;
+    }
+    mask |= bits.bit_of(*code);
+  }
+  return mask;
+}
+
+std::uint32_t buttons_of(Table& table, const char* key) {
+  std::uint32_t mask = 0;
+  for (const double number : table.numbers(key, {0.0, kMostButtons - 1.0}, "")) {
+    if (number != std::floor(number)) {
+      table.reject(key, fmt::format("a list with {}", number), "numbers of buttons, from 0");
+      continue;
+    }
+    mask |= std::uint32_t{1} << static_cast<unsigned>(number);
+  }
+  return mask;
+}
+
+Choice read_choice(Table& table, std::size_t place, KeyBits& keys) {
+  Choice choice;
+  choice.value = table.text("value");
+  choice.label = table.has("label") ? table.text("label") : choice.value;
+  if (table.has("keys")) {
+    choice.keys = keys_of(table, "keys", keys);
+  }
+  if (table.has("buttons")) {
+    choice.buttons = buttons_of(table, "buttons");
+  }
+  if (choice.keys == 0 && choice.buttons == 0) {
+    choice.keys = keys.bit_of(static_cast<int>('1' + place));
+    choice.buttons = std::uint32_t{1} << place;
+  }
+  if (choice.value.size() > record::kAnswerBytes) {
+    table.reject("value", "too long", fmt::format("at most {} bytes", record::kAnswerBytes));
+  }
+  return choice;
+}
+
+void read_choices(Table& table, Question& question, KeyBits& keys) {
+  std::vector<Table> choices = table.tables("choices");
+  if (choices.size() < 2 || choices.size() > kMostChoices) {
+    table.reject("choices", fmt::format("a list of {}", choices.size()),
+                 fmt::format("2 to {} choices", kMostChoices));
+    return;
+  }
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    question.choices.push_back(read_choice(choices[i], i, keys));
+    const Choice& last = question.choices.back();
+    const auto same = [&](const Choice& each) {
+      return &each != &last && (each.value == last.value || (each.keys & last.keys) != 0 ||
+                                (each.buttons & last.buttons) != 0);
+    };
+    if (std::any_of(question.choices.begin(), question.choices.end() - 1, same)) {
+      choices[i].reject("value", fmt::format("\"{}\"", last.value),
+                        "a choice whose value, keys and buttons no other choice has");
+    }
+  }
+}
+
+void read_scale(Table& table, Question& question, KeyBits& keys) {
+  const std::vector<double> range = table.numbers("scale", {0.0, 9.0}, "");
+  const bool whole =
+      std::all_of(range.begin(), range.end(), [](double each) { return each == std::floor(each); });
+  if (range.size() != 2 || !whole || range[1] <= range[0]) {
+    table.reject("scale", "another list", "[lowest, highest], whole numbers from 0 to 9");
+    return;
+  }
+  question.first = range[0];
+  for (double value = range[0]; value <= range[1]; ++value) {
+    const std::string digit = fmt::format("{:.0f}", value);
+    const auto button = static_cast<unsigned>(value - range[0]);
+    question.choices.push_back(
+        {digit, digit, keys.bit_of(digit.front()), std::uint32_t{1} << button});
+  }
+}
+
+void read_number(Table& table, Question& question, KeyBits& keys) {
+  const std::vector<double> range = table.numbers("number", {}, "");
+  if (range.size() != 2 || range[1] <= range[0]) {
+    table.reject("number", "another list", "[lowest, highest]");
+    return;
+  }
+  question.low = range[0];
+  question.high = range[1];
+  static constexpr std::array kTyping{'0' + 0, '1' + 0,       '2' + 0,  '3' + 0, '4' + 0,
+                                      '5' + 0, '6' + 0,       '7' + 0,  '8' + 0, '9' + 0,
+                                      '.' + 0, kBackspaceKey, kEnterKey};
+  for (const int code : kTyping) {
+    question.typing.push_back(keys.bit_of(code));
+  }
+}
+
+Question read_question(Table& table, KeyBits& keys) {
+  Question question;
+  question.name = table.has("name") ? table.text("name") : "answer";
+  question.text = table.text("question");
+  const int kinds =
+      (table.has("choices") ? 1 : 0) + (table.has("scale") ? 1 : 0) + (table.has("number") ? 1 : 0);
+  if (kinds != 1) {
+    table.reject("question", "has no one way to be answered; state one of choices, scale, number");
+  } else if (table.has("choices")) {
+    read_choices(table, question, keys);
+  } else if (table.has("scale")) {
+    read_scale(table, question, keys);
+  } else {
+    read_number(table, question, keys);
+  }
+  if (table.has("correct")) {
+    question.correct = table.text("correct");
+  }
+  if (table.has("feedback")) {
+    const std::string when = table.choice("feedback", {"never", "practice", "always"});
+    question.feedback = when == "always"     ? Feedback::kAlways
+                        : when == "practice" ? Feedback::kPractice
+                                             : Feedback::kNever;
+    if (question.feedback != Feedback::kNever && question.correct.empty()) {
+      table.reject("feedback", fmt::format("\"{}\"", when),
+                   "\"never\" unless `correct` says which answer is right");
+    }
+  }
+  if (table.has("timeout")) {
+    question.timeout = table.number("timeout", {0.1, 3600.0}, "s");
+  }
+  if (table.has("reaction_time_from")) {
+    question.onset = table.text("reaction_time_from");
+  }
+  if (question.name.size() > record::kQuestionBytes) {
+    table.reject("name", "too long", fmt::format("at most {} bytes", record::kQuestionBytes));
+  }
+  return question;
+}
+
+}  // namespace
+
+std::uint32_t KeyBits::bit_of(int code) {
+  const auto found = std::find(codes_.begin(), codes_.end(), code);
+  const auto place = static_cast<std::size_t>(found - codes_.begin());
+  if (found == codes_.end()) {
+    if (codes_.size() == kMost) {
+      throw InputError(fmt::format("more than {} keys are used; use fewer", kMost));
+    }
+    codes_.push_back(code);
+  }
+  return std::uint32_t{1} << place;
+}
+
+std::uint32_t KeyBits::bits_of(const std::vector<int>& held) const {
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < codes_.size(); ++i) {
+    if (std::find(held.begin(), held.end(), codes_[i]) != held.end()) {
+      bits |= std::uint32_t{1} << i;
+    }
+  }
+  return bits;
+}
+
+std::vector<Question> read_questions(Table& root, KeyBits& keys) {
+  std::vector<Question> questions;
+  if (root.has("response")) {
+    Table table = root.table("response");
+    questions.push_back(read_question(table, keys));
+  }
+  if (root.has("responses")) {
+    if (!questions.empty()) {
+      root.reject("responses", "stands beside [response]; keep one of the two");
+    }
+    for (Table& table : root.tables("responses")) {
+      questions.push_back(read_question(table, keys));
+      const auto same = [&](const Question& each) { return each.name == questions.back().name; };
+      if (std::any_of(questions.begin(), questions.end() - 1, same)) {
+        table.reject("name", fmt::format("\"{}\"", questions.back().name),
+                     "a name that no other response has");
+      }
+    }
+  }
+  return questions;
+}
+
+}  // namespace haptrial::protocols

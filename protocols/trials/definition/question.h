@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::protocols {
+
+/// The keys of the participant's window that a definition uses, a bit of DeviceReading::keys each.
+class KeyBits {
+ public:
+  static constexpr std::size_t kMost = 32;
+  /// The bit of a key's code; a new one gets the next. @throws InputError beyond kMost keys
+  std::uint32_t bit_of(int code);
+  /// The bits of held keys; keys that nobody asked for have none.
+  std::uint32_t bits_of(const std::vector<int>& held) const;
+
+ private:
+  std::vector<int> codes_;
+};
+
+/// When the participant is told whether an answer was right.
+enum class Feedback : std::uint8_t { kNever, kPractice, kAlways };
+
+/// One answer that may be chosen.
+struct Choice {
+  std::string value;         // what is recorded
+  std::string label;         // what is shown
+  std::uint32_t keys{0};     // of KeyBits: any of these gives it
+  std::uint32_t buttons{0};  // of the device, likewise
+};
+
+/// What the participant is asked after the last interval.
+struct Question {
+  std::string name;             // in /responses and in formulas
+  std::string text;             // what is read
+  std::vector<Choice> choices;  // empty: a number is typed, and ended with enter
+  double first{1.0};            // what formulas take choice 0 for; each further one counts 1 more
+  double low{0.0}, high{0.0};   // bounds of a typed number
+  std::vector<std::uint32_t>
+      typing;           // of KeyBits: 0 to 9, ".", backspace, enter; of a typed number
+  std::string correct;  // formula: the number of the right choice, or its word; empty: none
+  Feedback feedback{Feedback::kNever};
+  double timeout{0.0};  // then the trial is aborted; 0: never [s]
+  std::string onset;    // stage of the last interval from whose beginning the reaction counts;
+                        // empty: from the question
+  bool types() const { return choices.empty(); }
+};
+
+/// Reads [response], or several [[responses]]; without either, nothing is asked. Keys in brackets
+/// are optional.
+///
+///     [name]       "answer" if left out; unlike every other's
+///     question     the text
+///     choices      [{ value, [label], [keys], [buttons] }, …], or
+///     scale        [lowest, highest]: whole numbers, by the keys of their digits, or
+///     number       [lowest, highest]: typed
+///     [correct]    formula of the right choice: its number, from 1, or its value as a word
+///     [feedback]   "never" (as if left out), "practice" or "always"
+///     [timeout]    then the trial is aborted [s]
+///     [reaction_time_from]   a stage
+/// Choices without keys and buttons have the keys 1, 2, … and the buttons 0, 1, …
+std::vector<Question> read_questions(Table& root, KeyBits& keys);
+
+}  // namespace haptrial::protocols

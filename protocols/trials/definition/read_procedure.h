@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/definition/table.h"
+
+namespace haptrial::protocols {
+
+struct Track;
+
+/// Where a track finds its keys: in its own table, or else in that of its procedure.
+struct TrackKeys {
+  Table& track;
+  Table& procedure;
+
+  bool has(std::string_view key) const { return track.has(key) || procedure.has(key); }
+  Table& of(std::string_view key) const { return track.has(key) ? track : procedure; }
+};
+
+/// The words of `kind`.
+const std::vector<std::string>& procedure_kinds();
+
+/// Reads what the kind of a track asks for, and how it begins (track.h). Problems are noted.
+void read_procedure(const TrackKeys& keys, Track& track);
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/scene/field.h"
+#include "core/scene/read/read_shape.h"
+#include "protocols/definition/definition.h"
+#include "protocols/definition/groups.h"
+#include "protocols/trials/definition/block.h"
+#include "protocols/trials/definition/question.h"
+#include "protocols/trials/definition/track.h"
+#include "protocols/trials/language/names.h"
+#include "protocols/trials/stages/read_stages.h"
+
+namespace haptrial {
+class RandomStream;
+}
+
+namespace haptrial::protocols {
+
+inline constexpr const char* kTrials = "trials";  // its name in [experiment]
+
+/// One presentation within a trial, and what it gives the names.
+struct Interval {
+  std::string name;
+  std::vector<GivenValue> values;
+};
+
+/// What an interval consists of once every name has a value.
+struct Presented {
+  std::vector<scene::Field> fields;
+  std::vector<scene::Region> regions;
+  std::vector<NamedStage> stages;
+};
+
+/// How trials look.
+struct TrialsView {
+  bool from_above{true};      // x to the right and z down the screen; else x to the right and y up
+  double width{0.16};         // of the part of W that fills the screen's width [m]
+  double hand_radius{0.003};  // [m]
+};
+
+/// An experiment that a definition file states whole: what can be felt, what a trial is made of,
+/// what is asked, and what follows from the answers (docs/guide-own-experiment.md).
+struct TrialsDefinition : Definition {
+  TrialDesign order;
+  std::vector<Interval> intervals;  // at least one
+  bool random_intervals{false};     // their order, within each trial
+  std::vector<Question> questions;
+  KeyBits keys;
+  std::vector<Track> tracks;
+  std::vector<std::string> stages;  // names, in their order
+  std::vector<StudyGroup> groups;
+  TrialsView view;
+  std::string feedback_right, feedback_wrong;
+  double feedback_time{0.5};  // [s]
+  double stage_time{0.0};     // of one interval at most, roughly [s]
+  int most_repeats{5};        // of an interval whose stage asks for it; then the trial is aborted
+
+  bool has_target() const override { return false; }
+  std::vector<std::string> description() const override;
+  std::vector<std::string> warnings() const override;
+  double longest(int trials) const override;
+  std::uint32_t functions_of(const std::vector<int>& held) const override {
+    return keys.bits_of(held);
+  }
+  /// Trials of one session at most, without practice; and those of practice.
+  int most_trials() const;
+  int practice_trials() const;
+  /// How many combinations of its factors there are.
+  int combinations(const Track& track) const;
+};
+
+/// The names of a definition, ready to be given values.
+std::unique_ptr<Names> read_names(Table& root, const TrialsDefinition& definition);
+
+/// What is presented with the values that the names have. Problems are noted.
+/// @param random  for durations; null: the shortest
+Presented read_presented(Table& root, const Names& names, double rate, RandomStream* random);
+
+/// The choice that is right with the values that the names have, from 0.
+/// @throws InputError for a value that is no choice's number or word
+int right_choice(const Names& names, const Question& question);
+
+/// Reads everything but who stands in for people. Problems are noted.
+void read_trials_definition(Table& root, std::string_view file_name, TrialsDefinition& definition);
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,218 @@
+#include "protocols/trials/presentation/trial_pass.h"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <utility>
+
+namespace haptrial::protocols {
+namespace {
+
+int lowest_bit(std::uint32_t bits) noexcept { return bits == 0 ? -1 : std::countr_zero(bits); }
+
+}  // namespace
+
+TrialPass::TrialPass(Setup setup)
+    : setup_(std::move(setup)),
+      first_ticks_(setup_.intervals.size(), 0),
+      answers_(setup_.questions.size()) {
+  view_.trial = setup_.trial;
+}
+
+void TrialPass::begin(std::uint64_t sequence) noexcept {
+  sequence_ = sequence;
+  begin_interval();
+}
+
+void TrialPass::begin_interval() noexcept {
+  IntervalRun& run = setup_.intervals[interval_];
+  if (interval_ > 0) {
+    run.scene.start_from(setup_.intervals[interval_ - 1].scene);
+  }
+  run.machine.begin(run.scene, setup_.most_repeats);
+  first_ticks_[interval_] = sequence_;
+  begun_ = interval_ + 1;
+  view_.interval = static_cast<std::uint8_t>(interval_ + 1);
+}
+
+PassOutput TrialPass::tick(const Readings& readings, double dt) noexcept {
+  PassOutput out;
+  const device::DeviceReading& reading = readings[0];
+  tick_time_ = dt;
+  look_at_hands(reading);
+  if (state_ == PassState::kRunning) {
+    if (part_ == Part::kIntervals) {
+      present(reading, dt, out);
+    } else {
+      listen(reading, dt);
+    }
+    ++sequence_;
+  }
+  view_.tool = reading.tool.position;
+  out.shown = stimulus::Shown(view_);
+  out.stage = part_ == Part::kIntervals ? record::Stage::kRun : record::Stage::kWait;
+  return out;
+}
+
+void TrialPass::look_at_hands(const device::DeviceReading& reading) noexcept {
+  pressed_buttons_ = hands_known_ ? reading.buttons & ~buttons_ : 0;
+  pressed_keys_ = hands_known_ ? reading.keys & ~keys_ : 0;
+  buttons_ = reading.buttons;
+  keys_ = reading.keys;
+  hands_known_ = true;
+}
+
+void TrialPass::present(const device::DeviceReading& reading, double dt, PassOutput& out) noexcept {
+  IntervalRun& run = setup_.intervals[interval_];
+  const std::size_t stage = run.machine.stage();
+  out.force = run.scene.force(reading.tool);
+  for (std::size_t field = 0; field < run.scene.size(); ++field) {
+    if ((run.pushing >> field & 1) != 0) {
+      out.intent.push += run.scene.state(field).force;
+    }
+    out.saturated = out.saturated || run.scene.state(field).limited;
+  }
+  const StageSight& sight = run.sights[stage];
+  view_.stage = static_cast<std::uint8_t>(stage);
+  view_.hand_shown = sight.hand;
+  view_.number_shown = sight.interval_number;
+  view_.mark_count = static_cast<std::uint8_t>(std::min(sight.marks.size(), TrialView::kMostMarks));
+  std::copy_n(sight.marks.begin(), view_.mark_count, view_.marks.begin());
+  run.machine.tick(reading, run.scene, dt);
+  if (run.machine.state() == StageMachine::State::kAborted) {
+    const StageEnd how = run.machine.times()[run.machine.stage()].how;
+    abort(how == StageEnd::kLate ? "a stage was not done in time"
+                                 : "what the stage asks for was not done");
+  } else if (run.machine.state() == StageMachine::State::kDone) {
+    end_interval();
+  }
+}
+
+void TrialPass::end_interval() noexcept {
+  if (interval_ + 1 < setup_.intervals.size()) {
+    ++interval_;
+    ++sequence_;  // the next interval begins with the next tick
+    begin_interval();
+    --sequence_;
+    return;
+  }
+  view_.interval = 0;
+  view_.mark_count = 0;
+  view_.hand_shown = view_.number_shown = false;
+  ask();
+}
+
+void TrialPass::ask() noexcept {
+  if (question_ == setup_.questions.size()) {
+    state_ = PassState::kCompleted;
+    return;
+  }
+  part_ = Part::kQuestions;
+  view_.question = static_cast<std::uint8_t>(question_ + 1);
+  view_.verdict = Verdict::kNone;
+  view_.typed = {};
+  typed_ = 0;
+  time_ = 0.0;
+  asked_at_ = sequence_ + 1;
+  if (setup_.said != nullptr) {
+    *setup_.said = {};
+  }
+}
+
+void TrialPass::listen(const device::DeviceReading&, double dt) noexcept {
+  time_ += dt;
+  if (part_ == Part::kFeedback) {
+    if (time_ >= setup_.feedback_time) {
+      ++question_;
+      ask();
+    }
+    return;
+  }
+  const Question& question = *setup_.questions[question_].question;
+  Answer answer;
+  if (setup_.said != nullptr && setup_.said->given) {
+    answer.given = true;
+    answer.choice = setup_.said->choice;
+    answer.value = setup_.said->value;
+  } else if (question.types()) {
+    listen_to_number(question, answer);
+  } else {
+    listen_to_choice(question, answer);
+  }
+  if (answer.given) {
+    take(answer);
+  } else if (question.timeout > 0.0 && time_ >= question.timeout) {
+    abort("no answer was given in time");
+  }
+}
+
+void TrialPass::listen_to_choice(const Question& question, Answer& answer) noexcept {
+  for (std::size_t i = 0; i < question.choices.size() && !answer.given; ++i) {
+    const Choice& choice = question.choices[i];
+    const std::uint32_t button = choice.buttons & pressed_buttons_;
+    const std::uint32_t key = choice.keys & pressed_keys_;
+    if (button != 0 || key != 0) {
+      answer.given = true;
+      answer.choice = static_cast<int>(i);
+      answer.source = button != 0 ? record::ResponseSource::kButton : record::ResponseSource::kKey;
+      answer.code = lowest_bit(button != 0 ? button : key);
+    }
+  }
+}
+
+void TrialPass::listen_to_number(const Question& question, Answer& answer) noexcept {
+  const std::vector<std::uint32_t>& bits = question.typing;
+  for (std::size_t i = 0; i < bits.size(); ++i) {
+    if ((pressed_keys_ & bits[i]) == 0) {
+      continue;
+    }
+    constexpr std::size_t kPoint = 10, kBack = 11;
+    if (i <= kPoint) {
+      if (typed_ + 1 < view_.typed.size()) {
+        view_.typed[typed_++] = i == kPoint ? '.' : static_cast<char>('0' + i);
+      }
+    } else if (i == kBack) {
+      typed_ -= typed_ > 0 ? 1 : 0;
+      view_.typed[typed_] = '\0';
+    } else if (typed_ > 0) {
+      double value = question.low - 1.0;  // what is no number is out of the range
+      std::from_chars(view_.typed.data(), view_.typed.data() + typed_, value);
+      answer.given = value >= question.low && value <= question.high;
+      answer.value = value;
+      answer.source = record::ResponseSource::kKey;
+      answer.code = lowest_bit(bits[i]);
+      if (!answer.given) {  // out of the range: to be typed again
+        view_.typed = {};
+        typed_ = 0;
+      }
+    }
+  }
+}
+
+void TrialPass::take(const Answer& given) noexcept {
+  const Asked& asked = setup_.questions[question_];
+  Answer& answer = answers_[question_] = given;
+  answer.sequence = sequence_;
+  std::uint64_t from = asked_at_;
+  if (asked.onset >= 0) {
+    const StageTimes& times =
+        setup_.intervals.back().machine.times()[static_cast<std::size_t>(asked.onset)];
+    from = first_ticks_.back() + static_cast<std::uint64_t>(std::max<std::int64_t>(0, times.begin));
+  }
+  answer.reaction_time = static_cast<double>(sequence_ - from + 1) * tick_time_;
+  if (asked.feedback && asked.right >= 0 && setup_.feedback_time > 0.0) {
+    view_.verdict = answer.choice == asked.right ? Verdict::kRight : Verdict::kWrong;
+    part_ = Part::kFeedback;
+    time_ = 0.0;
+    return;
+  }
+  ++question_;
+  ask();
+}
+
+void TrialPass::abort(const char* why) noexcept {
+  state_ = PassState::kAborted;
+  why_ = why;
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core/record/rows/response.h"
+#include "core/scene/scene.h"
+#include "protocols/interface/pass.h"
+#include "protocols/trials/definition/question.h"
+#include "protocols/trials/presentation/trial_view.h"
+#include "protocols/trials/stages/stage_machine.h"
+
+namespace haptrial::protocols {
+
+/// What is seen during a stage.
+struct StageSight {
+  std::vector<Mark> marks;
+  bool hand{false};
+  bool interval_number{false};
+};
+
+/// One interval, ready to be presented.
+struct IntervalRun {
+  scene::Scene scene;
+  StageMachine machine;
+  std::vector<StageSight> sights;  // (stages)
+  std::uint64_t pushing{0};        // fields that are to work on the hand, a bit each
+};
+
+/// What is asked after the intervals.
+struct Asked {
+  const Question* question{nullptr};  // outlives the pass
+  int right{-1};                      // choice, from 0; -1: none is known to be right
+  bool feedback{false};               // tells whether it was right
+  int onset{-1};  // stage of the last interval from which the reaction counts; -1: the question
+};
+
+/// What was answered.
+struct Answer {
+  bool given{false};
+  int choice{-1};                                          // from 0
+  double value{std::numeric_limits<double>::quiet_NaN()};  // of a typed number
+  record::ResponseSource source{record::ResponseSource::kNone};
+  int code{-1};                                                    // of the button or the key's bit
+  std::uint64_t sequence{0};                                       // of the tick
+  double reaction_time{std::numeric_limits<double>::quiet_NaN()};  // [s]
+};
+
+/// One trial: its intervals one after the other, then its questions. Servo thread, all but the
+/// constructor and what is read after the pass.
+class TrialPass final : public Pass {
+ public:
+  struct Setup {
+    std::int32_t trial{0};
+    std::vector<IntervalRun> intervals;
+    std::vector<Asked> questions;
+    double feedback_time{0.0};  // [s]
+    int most_repeats{5};
+    SaidAnswer* said{nullptr};  // null: a person answers
+  };
+  explicit TrialPass(Setup setup);
+
+  void begin(std::uint64_t sequence) noexcept override;
+  PassOutput tick(const Readings& readings, double dt) noexcept override;
+  PassState state() const noexcept override { return state_; }
+
+  // After the pass.
+  /// Sequence number of the first tick of an interval; 0 for one that did not begin.
+  std::uint64_t first_tick(std::size_t interval) const { return first_ticks_[interval]; }
+  const StageMachine& machine(std::size_t interval) const {
+    return setup_.intervals[interval].machine;
+  }
+  std::size_t intervals_begun() const { return begun_; }
+  std::uint64_t last_tick() const { return sequence_ - 1; }
+  const std::vector<Answer>& answers() const { return answers_; }
+  /// In words; empty if the pass was not aborted by itself.
+  const char* why_aborted() const noexcept { return why_; }
+
+ private:
+  enum class Part : std::uint8_t { kIntervals, kQuestions, kFeedback };
+
+  void begin_interval() noexcept;
+  void present(const device::DeviceReading& reading, double dt, PassOutput& out) noexcept;
+  void end_interval() noexcept;
+  void ask() noexcept;
+  void listen(const device::DeviceReading& reading, double dt) noexcept;
+  void listen_to_choice(const Question& question, Answer& answer) noexcept;
+  void listen_to_number(const Question& question, Answer& answer) noexcept;
+  void take(const Answer& answer) noexcept;
+  void look_at_hands(const device::DeviceReading& reading) noexcept;
+  void abort(const char* why) noexcept;
+
+  Setup setup_;
+  std::vector<std::uint64_t> first_ticks_;
+  std::vector<Answer> answers_;
+  PassState state_{PassState::kRunning};
+  Part part_{Part::kIntervals};
+  std::size_t interval_{0};
+  std::size_t begun_{0};
+  std::size_t question_{0};
+  TrialView view_;
+  std::uint64_t sequence_{0};
+  std::uint64_t asked_at_{0};                           // sequence number
+  double time_{0.0};                                    // in the question or the feedback [s]
+  double tick_time_{0.0};                               // [s]
+  std::uint32_t buttons_{0}, keys_{0};                  // held
+  std::uint32_t pressed_buttons_{0}, pressed_keys_{0};  // went down on this tick
+  bool hands_known_{false};
+  std::size_t typed_{0};
+  const char* why_{""};
+};
+
+}  // namespace haptrial::protocols

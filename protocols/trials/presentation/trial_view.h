@@ -1,0 +1,47 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace haptrial::protocols {
+
+/// A place that is shown: a circle about it, or a dot.
+struct Mark {
+  std::array<float, 3> place{};  // in W [m]
+  float radius{0.0F};            // 0: a dot [m]
+};
+
+enum class Verdict : std::uint8_t { kNone, kRight, kWrong };
+
+/// What a participant of trials sees at one instant; the drawing and the virtual participant take
+/// it from here.
+struct TrialView {
+  static constexpr std::size_t kMostMarks = 8;
+  static constexpr std::size_t kTyped = 16;
+
+  Eigen::Vector3d tool{Eigen::Vector3d::Zero()};
+  std::array<Mark, kMostMarks> marks{};
+  std::array<char, kTyped> typed{};  // of a number, ended by 0
+  std::int32_t trial{0};             // of the presentation: changes from trial to trial
+  std::uint8_t mark_count{0};
+  std::uint8_t interval{0};  // from 1; 0: none
+  std::uint8_t stage{0};     // of the interval, from 0
+  std::uint8_t question{0};  // from 1; 0: nothing is asked
+  Verdict verdict{Verdict::kNone};
+  bool hand_shown{false};
+  bool number_shown{false};  // of the interval
+
+  bool engaged() const noexcept { return interval > 0 || question > 0; }
+};
+
+/// An answer that a virtual participant gives; a person uses buttons and keys. Written and read on
+/// the servo thread.
+struct SaidAnswer {
+  bool given{false};
+  int choice{-1};     // from 0; of a typed number -1
+  double value{0.0};  // of a typed number
+};
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "protocols/trials/definition/trials_definition.h"
+#include "protocols/trials/subject/observer_plan.h"
+
+namespace haptrial::protocols {
+
+/// A definition of trials with those who stand in for people.
+struct StudiedDefinition final : TrialsDefinition {
+  ObserverPlan observer;
+};
+
+}  // namespace haptrial::protocols

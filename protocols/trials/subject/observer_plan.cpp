@@ -1,0 +1,168 @@
+#include "protocols/trials/subject/observer_plan.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <utility>
+
+#include "core/base/definition/table.h"
+#include "core/base/definition/table_vector.h"
+#include "core/scene/read/number_source.h"
+#include "protocols/trials/definition/question.h"
+
+namespace haptrial::protocols {
+namespace {
+
+using subject::Quantity;
+
+constexpr std::array<std::pair<const char*, Quantity>, 7> kQuantities{
+    {{"force", Quantity::kForce},
+     {"stiffness", Quantity::kStiffness},
+     {"compliance", Quantity::kCompliance},
+     {"viscosity", Quantity::kViscosity},
+     {"friction", Quantity::kFriction},
+     {"roughness", Quantity::kRoughness},
+     {"extent", Quantity::kExtent}}};
+
+void check_stage(Table& table, const char* key, const std::string& name,
+                 const std::vector<std::string>& stages) {
+  if (std::find(stages.begin(), stages.end(), name) == stages.end()) {
+    table.reject(key, fmt::format("\"{}\"", name),
+                 fmt::format("a stage: {}", fmt::join(stages, ", ")));
+  }
+}
+
+subject::Probe read_press(Table& table) {
+  subject::Press press;
+  press.force = table.number("force", {0.0, 50.0}, "N");
+  if (table.has("rise")) {
+    press.rise = table.number("rise", {0.01, 60.0}, "s");
+  }
+  if (table.has("travel")) {
+    press.travel = table.number("travel", {0.001, 1.0}, "m");
+  }
+  if (table.has("direction")) {
+    press.direction = read_direction(table, "direction");
+  }
+  return press;
+}
+
+subject::Probe read_stroke(Table& table) {
+  subject::Stroke stroke;
+  stroke.direction = read_direction(table, "direction");
+  stroke.half_length = table.number("half_length", {0.001, 0.5}, "m");
+  stroke.frequency = table.number("frequency", {0.05, 10.0}, "Hz");
+  if (table.has("force")) {
+    stroke.force = table.number("force", {0.0, 50.0}, "N");
+  }
+  if (table.has("normal")) {
+    stroke.normal = read_direction(table, "normal");
+  }
+  return stroke;
+}
+
+StageAction read_action(Table& table, const std::string& stage) {
+  StageAction action;
+  action.stage = stage;
+  const std::string what = table.choice("do", {"rest", "hold", "press", "stroke", "reach"});
+  if (what == "press") {
+    action.probe = read_press(table);
+  } else if (what == "stroke") {
+    action.probe = read_stroke(table);
+  } else if (what == "reach") {
+    action.probe = subject::Reach{{}, table.number("duration", {0.05, 60.0}, "s")};
+    action.to_mark = true;
+  } else if (what == "hold") {
+    action.probe = subject::Hold{};
+  }
+  try {
+    subject::check(action.probe);
+  } catch (const std::invalid_argument& error) {
+    table.reject("do", fmt::format("cannot be done as stated: {}", error.what()));
+  }
+  return action;
+}
+
+subject::LearningRate read_rate(Table& table, const char* key, subject::LearningRate otherwise) {
+  if (!table.has(key)) {
+    return otherwise;
+  }
+  Table rate = table.table(key);
+  return {rate.number("retention", kFraction, "1"), rate.number("learning", kFraction, "1")};
+}
+
+Adaptation read_adaptation(Table& table, const std::vector<std::string>& stages) {
+  Adaptation adaptation;
+  adaptation.stage = table.text("stage");
+  check_stage(table, "stage", adaptation.stage, stages);
+  adaptation.field = scene::NumberSource{}.matrix(table, "matrix", {-1000.0, 1000.0}, "N·s/m");
+  adaptation.rates.fast = read_rate(table, "fast", adaptation.rates.fast);
+  adaptation.rates.slow = read_rate(table, "slow", adaptation.rates.slow);
+  return adaptation;
+}
+
+void read_decision(Table& table, const std::vector<Question>& questions, ObserverPlan& plan) {
+  if (table.has("decides")) {
+    const std::string how = table.choice("decides", {"largest", "smallest", "yes", "magnitude"});
+    plan.decides = how == "smallest"    ? Decides::kSmallest
+                   : how == "yes"       ? Decides::kYes
+                   : how == "magnitude" ? Decides::kMagnitude
+                                        : Decides::kLargest;
+  }
+  if (table.has("yes")) {
+    const std::string value = table.text("yes");
+    const auto* choices = questions.empty() ? nullptr : &questions.front().choices;
+    const auto found = choices == nullptr ? std::vector<Choice>::const_iterator{}
+                                          : std::ranges::find(*choices, value, &Choice::value);
+    if (choices == nullptr || found == choices->end()) {
+      table.reject("yes", fmt::format("\"{}\"", value), "the value of a choice of the response");
+    } else {
+      plan.yes = static_cast<int>(found - choices->begin());
+    }
+  }
+  if (table.has("reaction")) {
+    plan.reaction = table.number("reaction", {0.01, 60.0}, "s");
+  }
+}
+
+}  // namespace
+
+ObserverPlan read_observer(Table& root, const std::vector<Question>& questions,
+                           const std::vector<std::string>& stages) {
+  ObserverPlan plan;
+  Table table = root.table("observer");
+  if (table.has("senses")) {
+    std::vector<std::string> words;
+    for (const auto& [word, quantity] : kQuantities) {
+      words.emplace_back(word);
+    }
+    const std::string word = table.choice("senses", words);
+    plan.senses = std::ranges::find(kQuantities, word, [](const auto& each) {
+                    return std::string(each.first);
+                  })->second;
+  }
+  if (table.has("in_stage")) {
+    plan.stage = table.text("in_stage");
+    check_stage(table, "in_stage", plan.stage, stages);
+  }
+  read_decision(table, questions, plan);
+  if (table.has("actions")) {
+    Table actions = table.table("actions");
+    for (const std::string& stage : actions.keys()) {
+      check_stage(actions, stage.c_str(), stage, stages);
+      Table action = actions.table(stage);
+      plan.actions.push_back(read_action(action, stage));
+    }
+  }
+  if (table.has("adaptation")) {
+    Table adaptation = table.table("adaptation");
+    plan.adaptation = read_adaptation(adaptation, stages);
+  }
+  plan.people.emplace(table);
+  return plan;
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/subject/perceiver/judgement.h"
+#include "core/subject/perceiver/perceiver_population.h"
+#include "core/subject/perceiver/probing.h"
+#include "core/subject/perceiver/two_rate.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::protocols {
+
+struct Question;
+
+/// How virtual participants of trials take what they feel for an answer.
+enum class Decides : std::uint8_t { kLargest, kSmallest, kYes, kMagnitude };
+
+/// What the hand does in a stage.
+struct StageAction {
+  std::string stage;
+  subject::Probe probe;
+  bool to_mark{false};  // a reach to the first mark that is shown
+};
+
+/// Motor adaptation to a field B v.
+struct Adaptation {
+  Eigen::Matrix3d field{Eigen::Matrix3d::Zero()};  // B [N·s/m]
+  subject::TwoRateParameters rates;
+  std::string stage;  // of the reach that is learnt from
+};
+
+/// Who stands in for people in a dry run.
+struct ObserverPlan {
+  subject::Quantity senses{subject::Quantity::kForce};
+  std::string stage;  // in which it is felt; empty: throughout the interval
+  Decides decides{Decides::kLargest};
+  int yes{0};            // choice that means yes, from 0
+  double reaction{0.6};  // median time from question to answer > 0 [s]
+  std::vector<StageAction> actions;
+  std::optional<Adaptation> adaptation;
+  std::optional<subject::PerceiverPopulation> people;
+};
+
+/// Reads [observer]; without it participants answer at random and rest. Keys in brackets are
+/// optional.
+///
+///     [senses]      "force", "stiffness", "compliance", "viscosity", "friction", "roughness",
+///                   "extent"
+///     [in_stage]    in which it is felt
+///     [decides]     "largest", "smallest", "yes" or "magnitude"
+///     [yes]         value of the choice that means yes; the first one if left out
+///     [reaction]    [s]
+///     [actions]     stage = { do = "press", force, [rise], [direction], [travel] },
+///                   { do = "stroke", direction, half_length, frequency, [force], [normal] },
+///                   { do = "reach", duration }: to the first mark that the stage shows,
+///                   { do = "hold" } or { do = "rest" }, as in stages without one
+///     [adaptation]  { stage, matrix, [fast], [slow] }
+///     and the keys of the person (perceiver_population.h)
+ObserverPlan read_observer(Table& root, const std::vector<Question>& questions,
+                           const std::vector<std::string>& stages);
+
+}  // namespace haptrial::protocols

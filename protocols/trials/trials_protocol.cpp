@@ -1,0 +1,51 @@
+#include "protocols/trials/trials_protocol.h"
+
+#include "core/base/error.h"
+#include "core/record/rows/response.h"
+#include "core/record/trials/trial_rows.h"
+#include "protocols/trials/defined_trials.h"
+#include "protocols/trials/definition/every_value.h"
+
+namespace haptrial::protocols {
+namespace {
+
+class TrialsProtocol final : public Protocol {
+ public:
+  std::string_view name() const override { return kTrials; }
+  std::unique_ptr<Definition> read(Table& root, std::string_view file_name,
+                                   const std::filesystem::path*) const override {
+    auto definition = std::make_unique<StudiedDefinition>();
+    read_trials_definition(root, file_name, *definition);
+    definition->observer = read_observer(root, definition->questions, definition->stages);
+    return definition;
+  }
+  void load(Definition& definition, const std::filesystem::path&) const override {
+    check_every_value(dynamic_cast<const TrialsDefinition&>(definition));
+  }
+  std::vector<std::pair<record::Phase, std::string>> phases() const override {
+    return {{record::Phase(record::kPresentedPhase), "a trial is presented and asked about"}};
+  }
+  record::TableList tables() const override {
+    record::TableList tables = record::trial_tables();
+    tables.push_back(&record::responses_table());
+    return tables;
+  }
+  std::unique_ptr<Trials> trials(const Definition& definition,
+                                 const SessionPlace& place) const override {
+    return std::make_unique<DefinedTrials>(dynamic_cast<const StudiedDefinition&>(definition),
+                                           place);
+  }
+  void replay(const ReplayRequest& request) const override {
+    throw InputError(request.file.string() +
+                     ": sessions of trials cannot be replayed; export them to see every tick");
+  }
+};
+
+}  // namespace
+
+const Protocol& trials_protocol() {
+  static const TrialsProtocol protocol;
+  return protocol;
+}
+
+}  // namespace haptrial::protocols
