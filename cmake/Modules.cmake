@@ -136,14 +136,15 @@ function(haptrial_layer_tests)
   list(FILTER helpers EXCLUDE REGEX "_test[.]cpp$")
   foreach(layer protocols experiments)
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/${layer}/*.cpp)
+    list(FILTER sources EXCLUDE REGEX "/tests/protocols/trials/")
     list(APPEND sources ${helpers})
     list(REMOVE_DUPLICATES sources)
     haptrial_test(${layer} command_line ${sources})
     add_dependencies(test_${layer} haptrial)  # its tests run the command
   endforeach()
   target_link_libraries(test_experiments PRIVATE nlohmann_json::nlohmann_json)
-  target_link_libraries(test_protocols PRIVATE haptrial_trials_language haptrial_trials_order
-                                               haptrial_trials_stages)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/protocols/trials/*.cpp)
+  haptrial_test(trials trials ${sources})  # needs no other protocol
   # A protocol that only the tests and a page of the documents have.
   target_sources(test_experiments PRIVATE ${CMAKE_SOURCE_DIR}/docs/worked/protocol/springs.cpp)
   target_include_directories(test_experiments PRIVATE ${CMAKE_SOURCE_DIR}/docs/worked/protocol)

@@ -149,6 +149,7 @@ Pass& DefinedTrials::make_pass(PlannedTrial&, const record::Phase&) {
   setup.trial = current_.plan.trial + (practice ? kPracticeNumbers : 0);
   setup.feedback_time = d_.feedback_time;
   setup.most_repeats = d_.most_repeats;
+  setup.max_force = d_.envelope.max_force;
   setup.said = said_.get();
   variables_.clear();
   stages_.clear();

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/scene/scene.h"
@@ -25,6 +27,32 @@ std::string words_of(const TrialsDefinition& d, const TrialValues& values) {
   return words;
 }
 
+/// The force that a field asks for, whatever the hand does [N].
+double asked_force(const scene::FieldKind& kind) {
+  if (const auto* constant = std::get_if<scene::ConstantParameters>(&kind)) {
+    return constant->force.norm();
+  }
+  if (const auto* ramp = std::get_if<scene::RampParameters>(&kind)) {
+    return std::max(ramp->from.norm(), ramp->to.norm());
+  }
+  const auto* pulse = std::get_if<scene::PulseParameters>(&kind);
+  return pulse != nullptr ? pulse->force.norm() : 0.0;
+}
+
+/// A force that is cut off is not the level that is recorded.
+void check_forces(const TrialsDefinition& d, const std::vector<scene::Field>& fields) {
+  for (const scene::Field& field : fields) {
+    const double force = asked_force(field.kind);
+    const double most = std::min(field.limit, d.envelope.max_force);
+    if (force > most) {
+      throw InputError(fmt::format("{}: fields.{} asks for {:g} N; allowed: at most {:g} [N], {}",
+                                   d.file_name, field.name, force, most,
+                                   field.limit < d.envelope.max_force ? "its limit"
+                                                                      : "envelope.max_force"));
+    }
+  }
+}
+
 void present_once(const TrialsDefinition& d, const TrialValues& values) {
   Table root = Table::parse(d.text, d.file_name);
   root.fill_in(trials_defaults());
@@ -36,6 +64,7 @@ void present_once(const TrialsDefinition& d, const TrialValues& values) {
       const Presented presented = read_presented(root, *names, d.rate, nullptr);
       root.check();
       scene::Scene(presented.fields, d.rate);
+      check_forces(d, presented.fields);
     }
     give(*names, d, values);
     for (const Question& question : d.questions) {

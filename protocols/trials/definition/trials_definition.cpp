@@ -94,23 +94,55 @@ void check_tracks(Table& root, const TrialsDefinition& d) {
   }
 }
 
-void check_kinds_of_tracks(Table& root, const TrialsDefinition& d) {
-  std::string variable;
+/// What a track learns from, and what it could learn at best.
+void check_learning(Table& root, const TrialsDefinition& d) {
+  const char* table = root.has("procedure") ? "procedure" : "procedures";
   for (const Track& track : d.tracks) {
-    const char* table = root.has("procedure") ? "procedure" : "procedures";
-    if (track.counts.empty() && (d.questions.empty() || d.questions.front().correct.empty())) {
-      root.reject(table, fmt::format("learns from right answers (track \"{}\"), and no response "
-                                     "says which is right; add `correct` to [response] or `counts` "
-                                     "to the procedure",
+    if (!track.counts.empty()) {
+      continue;
+    }
+    if (d.questions.empty() || d.questions.front().correct.empty()) {
+      root.reject(table, fmt::format("learns from right answers (\"{}\"), and no response says which "
+                                     "is right; add `correct` to [response] or `counts` to the "
+                                     "procedure",
                                      track.name));
+    } else if (track.staircase && track.staircase->up == 1) {
+      const double balance =
+          psychometric::balance_of(track.staircase->down, track.staircase->steps.back());
+      const double guess = 1.0 / static_cast<double>(d.questions.front().choices.size());
+      if (balance <= guess) {
+        root.reject(table,
+                    fmt::format("is in balance at {:.3g} % right answers (\"{}\"), which guessing "
+                                "gives; let more right answers make a step down, or steps up be "
+                                "larger",
+                                100.0 * balance, track.name));
+      }
     }
-    if (!variable.empty() && variable != track.variable && root.has("procedures")) {
-      // each trial belongs to one track: the others' variables would have no value
-      root.reject(table, fmt::format("set two variables, {} and {}; a trial belongs to one track, "
-                                     "so state the other in [variables] or as a factor",
-                                     variable, track.variable));
+  }
+}
+
+/// Each [[procedures]] has its variable; in its trials the others have what [variables] says.
+void check_variables(Table& root) {
+  if (!root.has("procedures")) {
+    return;
+  }
+  std::set<std::string> variables;
+  for (Table& table : root.tables("procedures")) {
+    const std::string variable = table.text("variable");
+    if (!variables.insert(variable).second) {
+      table.reject("variable", fmt::format("\"{}\"", variable),
+                   "a variable that no other procedure sets; tracks of one procedure are its "
+                   "[[procedures.tracks]]");
     }
-    variable = track.variable;
+  }
+  Table stated = root.has("variables") ? root.table("variables") : root;
+  for (const std::string& variable : variables) {
+    if (variables.size() > 1 && (!root.has("variables") || !stated.has(variable))) {
+      root.reject("procedures",
+                  fmt::format("set {} in some trials only; add its value in the others to "
+                              "[variables]",
+                              variable));
+    }
   }
 }
 
@@ -293,7 +325,8 @@ void read_trials_definition(Table& root, std::string_view file_name, TrialsDefin
   read_intervals(root, d);
   check_common(root, d);
   check_tracks(root, d);
-  check_kinds_of_tracks(root, d);
+  check_learning(root, d);
+  check_variables(root);
   read_first_trial(root, d);
   d.design.participants = d.order.participants;
   d.design.break_after = d.order.break_after;

@@ -72,6 +72,11 @@ void TrialPass::present(const device::DeviceReading& reading, double dt, PassOut
     }
     out.saturated = out.saturated || run.scene.state(field).limited;
   }
+  if (const double size = out.force.norm(); size > setup_.max_force) {
+    out.force *= setup_.max_force / size;
+    out.intent.push *= setup_.max_force / size;
+    out.saturated = true;
+  }
   const StageSight& sight = run.sights[stage];
   view_.stage = static_cast<std::uint8_t>(stage);
   view_.hand_shown = sight.hand;

@@ -1,0 +1,128 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/protocols/trials/definition/small_definition.h"
+
+namespace haptrial::protocols {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+std::string with(const std::string& text, const std::string& what, const std::string& instead) {
+  std::string changed = text;
+  const auto at = changed.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return changed.replace(at, what.size(), instead);
+}
+
+const std::string kSmall = small_trials(kSmallStaircase);
+
+TEST(TrialMistakesTest, AGoodDefinitionHasNone) {
+  EXPECT_THAT(problems_of_trials(kSmall), IsEmpty());
+}
+
+TEST(TrialMistakesTest, UnknownVariable) {
+  EXPECT_THAT(
+      problems_of_trials(with(kSmall, "stiffness = \"$stiffness\"", "stiffness = \"$stifness\"")),
+      Contains(AllOf(HasSubstr("small.toml:10: fields.floor.stiffness is \"$stifness\""),
+                     HasSubstr("there is no variable stifness; allowed: "))));
+  EXPECT_THAT(
+      problems_of_trials(with(kSmall, "stiffness = \"$level\"", "stiffness = \"$lvl + 1\"")),
+      Contains(HasSubstr("no variable lvl")));
+}
+
+TEST(TrialMistakesTest, MistakesOfFormulas) {
+  EXPECT_THAT(problems_of_trials(with(kSmall, "\"$stiffness\"", "\"$stiffness * (2\"")),
+              Contains(HasSubstr("fields.floor.stiffness is \"$stiffness * (2\"")));
+  EXPECT_THAT(
+      problems_of_trials(small_trials(kSmallStaircase, "[variables]\na = \"$b\"\nb = \"$a\"\n")),
+      Contains(AllOf(HasSubstr("variables.a"), HasSubstr("depends on itself"))));
+}
+
+TEST(TrialMistakesTest, AWordIsNoNumber) {
+  EXPECT_THAT(
+      problems_of_trials(with(kSmall, "{ stiffness = 300.0 }", "{ stiffness = \"'soft'\" }")),
+      Contains(HasSubstr("it is the word 'soft', not a number")));
+}
+
+TEST(TrialMistakesTest, StagesWithoutAnEnd) {
+  EXPECT_THAT(problems_of_trials(with(kSmall, "until = { time = 0.2 }", "until = {}")),
+              Contains(HasSubstr("stages[1].until names no end of the stage")));
+  EXPECT_THAT(
+      problems_of_trials(with(kSmall, "until = { time = 0.2 }", "until = { contact = \"floor\" }")),
+      Contains(HasSubstr("may never come; add timeout")));
+}
+
+TEST(TrialMistakesTest, ResponsesWithoutChoices) {
+  EXPECT_THAT(problems_of_trials(
+                  with(kSmall, "choices = [{ value = \"first\" }, { value = \"second\" }]\n", "")),
+              Contains(HasSubstr("response.question has no one way to be answered; state one of "
+                                 "choices, scale, number")));
+  EXPECT_THAT(problems_of_trials(with(kSmall, ", { value = \"second\" }]", "]")),
+              Contains(HasSubstr("response.choices is a list of 1; allowed: 2 to 12 choices")));
+  EXPECT_THAT(problems_of_trials(
+                  with(kSmall, "{ value = \"second\" }", "{ value = \"second\", keys = [\"1\"] }")),
+              Contains(HasSubstr("no other choice has")));
+}
+
+TEST(TrialMistakesTest, ARightAnswerThatIsNoChoice) {
+  EXPECT_THAT(
+      problems_of_trials(with(kSmall, "correct = \"$interval.comparison\"", "correct = \"3\"")),
+      Contains(HasSubstr("is 3 (\"3\"), which is no choice")));
+}
+
+TEST(TrialMistakesTest, TwoProceduresOnOneVariable) {
+  std::string two = kSmallStaircase;
+  two = with(two, "[procedure]", "[[procedures]]");
+  EXPECT_THAT(problems_of_trials(small_trials(two + two)),
+              Contains(HasSubstr("procedures[2].variable is \"level\"; allowed: a variable that no "
+                                 "other procedure sets")));
+}
+
+TEST(TrialMistakesTest, TargetsThatGuessingReaches) {
+  EXPECT_THAT(
+      problems_of_trials(small_trials(std::string(kSmallStaircase) + "down = 1\n")),
+      Contains(HasSubstr("is in balance at 50 % right answers (\"track 1\"), which guessing "
+                         "gives")));
+}
+
+TEST(TrialMistakesTest, LevelsOutsideOfTheDevice) {
+  const std::string pull =
+      "[fields.pull]\ntype = \"constant\"\nforce = [0.0, \"-$level / 40\", 0.0]\n";
+  EXPECT_THAT(problems_of_trials(small_trials(kSmallStaircase, pull)),
+              ElementsAre(HasSubstr("fields.pull asks for 15 N; allowed: at most 8 [N], "
+                                    "envelope.max_force"),
+                          HasSubstr("with block main, level = 600")));
+}
+
+TEST(TrialMistakesTest, NothingToLearnFrom) {
+  EXPECT_THAT(problems_of_trials(with(kSmall, "correct = \"$interval.comparison\"\n", "")),
+              Contains(HasSubstr("no response says which is right")));
+}
+
+TEST(TrialMistakesTest, AProcedureWithoutAnEnd) {
+  EXPECT_THAT(problems_of_trials(with(kSmall, "reversals = 6, trials = 40", "reversals = 6")),
+              Contains(HasSubstr("procedure.stop names no number of trials, so a session might "
+                                 "never end")));
+}
+
+TEST(TrialMistakesTest, UnknownKeysAndTables) {
+  EXPECT_THAT(problems_of_trials(with(kSmall, "start = 500.0", "start = 500.0\nstep = 3.0")),
+              Contains(HasSubstr("procedure.step is not a known key; did you mean")));
+  EXPECT_THAT(problems_of_trials(small_trials(kSmallStaircase, "[feilds.a]\n")),
+              Contains(HasSubstr("[feilds] is not a known table; did you mean fields?")));
+}
+
+TEST(TrialMistakesTest, AFieldThatAFactorNames) {
+  const std::string factor = "[factors]\nfield = [\"floor\", \"flor\"]\n";
+  EXPECT_THAT(problems_of_trials(with(small_trials(kSmallStaircase, factor), "fields = [\"floor\"]",
+                                      "fields = [\"$field\"]")),
+              Contains(AllOf(HasSubstr("stages[1].fields is \"flor\""), HasSubstr("floor"))));
+}
+
+}  // namespace
+}  // namespace haptrial::protocols
