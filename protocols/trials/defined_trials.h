@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/definition/table.h"
+#include "core/record/trials/trial_rows.h"
 #include "protocols/interface/trials.h"
 #include "protocols/trials/presentation/trial_pass.h"
 #include "protocols/trials/sequence/trial_sequence.h"

@@ -14,6 +14,7 @@
 #include "experiments/command/arguments.h"
 #include "experiments/command/commands.h"
 #include "experiments/command/mesh_command.h"
+#include "experiments/command/tools/bone_carving.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -67,7 +67,6 @@ void read_choices(Table& table, Question& question, KeyBits& keys) {
   if (choices.size() < 2 || choices.size() > kMostChoices) {
     table.reject("choices", fmt::format("a list of {}", choices.size()),
                  fmt::format("2 to {} choices", kMostChoices));
-    return;
   }
   for (std::size_t i = 0; i < choices.size(); ++i) {
     question.choices.push_back(read_choice(choices[i], i, keys));

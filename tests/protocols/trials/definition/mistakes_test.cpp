@@ -111,10 +111,10 @@ TEST(TrialMistakesTest, AProcedureWithoutAnEnd) {
 }
 
 TEST(TrialMistakesTest, UnknownKeysAndTables) {
-  EXPECT_THAT(problems_of_trials(with(kSmall, "start = 500.0", "start = 500.0\nstep = 3.0")),
-              Contains(HasSubstr("procedure.step is not a known key; did you mean")));
-  EXPECT_THAT(problems_of_trials(small_trials(kSmallStaircase, "[feilds.a]\n")),
-              Contains(HasSubstr("[feilds] is not a known table; did you mean fields?")));
+  EXPECT_THAT(problems_of_trials(with(kSmall, "start = 500.0", "start = 500.0\nresolutoin = 3.0")),
+              Contains(HasSubstr("procedure.resolutoin is not a known key; did you mean resolution?")));
+  EXPECT_THAT(problems_of_trials(small_trials(kSmallStaircase, "[variabels]\n")),
+              Contains(HasSubstr("[variabels] is not a known table; did you mean variables?")));
 }
 
 TEST(TrialMistakesTest, AFieldThatAFactorNames) {

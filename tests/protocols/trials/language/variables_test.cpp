@@ -59,9 +59,16 @@ TEST_F(VariablesTest, CirclesAreNamed) {
               ThrowsMessage<InputError>("b depends on itself, by way of b, c, a"));
 }
 
-TEST_F(VariablesTest, ANameIsGivenOnce) {
-  EXPECT_THROW(variables_.define("level", Expression(1.0)), InputError);
-  EXPECT_THROW(variables_.declare("weber"), InputError);
+TEST_F(VariablesTest, AMeaningIsStatedOnceAndAGivenValueStandsBeforeIt) {
+  EXPECT_THROW(variables_.define("weber", Expression(1.0)), InputError);
+  const double stated = variables_.value("weber");
+  variables_.declare("weber");
+  EXPECT_EQ(variables_.value("weber"), stated);
+  variables_.set("weber", 5.0);
+  EXPECT_EQ(variables_.value("weber"), 5.0);
+  EXPECT_THAT(variables_.given(), testing::Contains("weber"));
+  variables_.forget_given();
+  EXPECT_EQ(variables_.value("weber"), stated);
 }
 
 }  // namespace
