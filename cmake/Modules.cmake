@@ -169,6 +169,7 @@ function(haptrial_test_needs)
   target_link_libraries(test_record PRIVATE haptrial_bone_record)  # tables to try
   target_link_libraries(test_drilling_analysis PRIVATE haptrial_bone_data)
   target_link_libraries(test_exchange PRIVATE haptrial_force_score)
+  target_link_libraries(test_subject_perceiver PRIVATE haptrial_scene)
   target_link_libraries(test_psychometric_fit PRIVATE nlohmann_json::nlohmann_json)
   target_link_libraries(test_psychometric_models PRIVATE PkgConfig::gsl)
   target_sources(test_force_analysis

@@ -18,19 +18,6 @@ constexpr double kNoiseStep = 0.05;      // between two draws, linear in between
 constexpr double kCorrectionTime = 0.5;  // of the felt speed; slow against its delay [s]
 constexpr double kMostCorrection = 2.0;  // [N]
 
-Variation read_variation(Table& table, const char* key, const Bounds& bounds, const char* unit) {
-  Table entry = table.table(key);
-  Variation v;
-  v.median = entry.number("median", bounds, unit);
-  v.spread = entry.number("spread", {0.0, 2.0}, "");
-  return v;
-}
-
-double draw_one(const Variation& v, std::uint64_t seed, const char* key, double most) {
-  RandomStream stream(seed, key);
-  return std::fmin(v.median * std::exp(v.spread * stream.normal()), most);
-}
-
 }  // namespace
 
 PaceHabits::PaceHabits(Table& table)
@@ -40,9 +27,9 @@ PaceHabits::PaceHabits(Table& table)
 
 PaceParameters PaceHabits::draw(std::uint64_t seed) const {
   PaceParameters person;
-  person.pace = draw_one(pace_, seed, "pace", 0.2);
-  person.variability = draw_one(variability_, seed, "pace variability", 1.0);
-  person.correlation = draw_one(correlation_, seed, "pace correlation", 60.0);
+  person.pace = subject::draw(pace_, seed, "pace", {0.0, 0.2});
+  person.variability = subject::draw(variability_, seed, "pace variability", {0.0, 1.0});
+  person.correlation = subject::draw(correlation_, seed, "pace correlation", {0.0, 60.0});
   return person;
 }
 

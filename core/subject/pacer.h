@@ -20,7 +20,7 @@ struct PaceParameters {
 /// How that varies over people: every field has its variation.
 class PaceHabits {
  public:
-  /// Reads a [pace] table in which every field is { median = M, spread = S }.
+  /// Reads a [pace] table in which every field is { median = M, spread = S } or a number.
   explicit PaceHabits(Table& table);
   /// The habits of a person; their own streams, so that nothing else about the person changes.
   PaceParameters draw(std::uint64_t seed) const;

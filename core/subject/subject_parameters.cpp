@@ -1,10 +1,8 @@
 #include "core/subject/subject_parameters.h"
 
-#include <cmath>
 #include <iterator>
 
 #include "core/base/definition/table.h"
-#include "core/base/random.h"
 
 namespace haptrial::subject {
 namespace {
@@ -48,18 +46,16 @@ constexpr Field kFields[] = {
 Population::Population(Table& table) {
   static_assert(std::size(kFields) == kCount);
   for (int i = 0; i < kCount; ++i) {
-    Table entry = table.table(kFields[i].key);
-    variations_[i].median = entry.number("median", kFields[i].bounds, kFields[i].unit);
-    variations_[i].spread = entry.number("spread", {0.0, 2.0}, "");
+    const Field& field = kFields[i];
+    variations_[i] = read_variation(table, field.key, field.bounds, field.unit);
   }
 }
 
 SubjectParameters Population::draw(std::uint64_t seed) const {
   SubjectParameters person;
   for (int i = 0; i < kCount; ++i) {
-    RandomStream stream(seed, kFields[i].key);
-    const double value = variations_[i].median * std::exp(variations_[i].spread * stream.normal());
-    person.*kFields[i].value = std::fmin(value, kFields[i].bounds.high);
+    const Bounds most{Bounds{}.low, kFields[i].bounds.high};
+    person.*kFields[i].value = subject::draw(variations_[i], seed, kFields[i].key, most);
   }
   return person;
 }

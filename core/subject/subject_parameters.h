@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "core/subject/variation.h"
+
 namespace haptrial {
 class Table;
 }
@@ -32,16 +34,10 @@ struct SubjectParameters {
   double tremor_frequency{9.0};    // [Hz]
 };
 
-/// How a parameter varies over people: value = median · exp(spread · n), n normal.
-struct Variation {
-  double median{0.0};
-  double spread{0.0};
-};
-
 /// A population of virtual people: every field of SubjectParameters has its variation.
 class Population {
  public:
-  /// Reads a [subject] table in which every parameter is { median = M, spread = S }.
+  /// Reads a [subject] table in which every parameter is { median = M, spread = S } or a number.
   explicit Population(Table& table);
   /// The person of a seed; each parameter has its own stream.
   SubjectParameters draw(std::uint64_t seed) const;

@@ -130,6 +130,11 @@ bool Table::is_array(std::string_view key) const {
          node_->table->get(key)->is_array();
 }
 
+bool Table::is_table(std::string_view key) const {
+  return node_->table != nullptr && node_->table->get(key) != nullptr &&
+         node_->table->get(key)->is_table();
+}
+
 bool Table::has(std::string_view key) const {
   node_->asked.emplace(key);
   return node_->table != nullptr && node_->table->contains(key);

@@ -67,6 +67,7 @@ class Table {
   /// The text under `key`; nothing, and no problem, if something else is there.
   std::optional<std::string> whole_text(std::string_view key) const;
   bool is_array(std::string_view key) const;  // false of what is not there
+  bool is_table(std::string_view key) const;
   /// A table of this one that another reader knows: its keys are not looked at here.
   void leave(std::string_view key);
   /// The keys of this table in the order of their names.

@@ -41,6 +41,32 @@ TEST(PopulationTest, WithoutSpreadEverybodyIsTheMedian) {
   EXPECT_EQ(person.tremor_frequency, 0.25);
 }
 
+TEST(PopulationTest, ANumberIsTheSameForEverybody) {
+  const Population people = population(definition(0.1, 0.3, "tremor", "tremor = 0.02"));
+  EXPECT_EQ(people.draw(1).tremor, 0.02);
+  EXPECT_EQ(people.draw(2).tremor, 0.02);
+  EXPECT_NE(people.draw(1).haptic_weber, people.draw(2).haptic_weber);
+}
+
+TEST(PopulationTest, AShiftIsAddedAndCanBeNegative) {
+  Table table = Table::parse("bias = { median = -0.1, spread = 0.2 }", "people.toml");
+  const Variation bias = read_shift(table, "bias", {-1.0, 1.0}, "");
+  table.finish();
+  double sum = 0.0;
+  double squares = 0.0;
+  constexpr int kPeople = 20000;
+  for (int i = 0; i < kPeople; ++i) {
+    const double x = draw(bias, static_cast<std::uint64_t>(i), "bias") + 0.1;
+    sum += x / kPeople;
+    squares += x * x / kPeople;
+  }
+  EXPECT_NEAR(sum, 0.0, 4.0 * 0.2 / std::sqrt(kPeople));
+  EXPECT_NEAR(std::sqrt(squares), 0.2, 4.0 * 0.2 / std::sqrt(2.0 * kPeople));
+  EXPECT_EQ(draw({0.5, 2.0, true}, 1, "bias", {0.49, 0.51}),
+            draw({0.5, 1e9, true}, 1, "bias", {0.49, 0.51}))
+      << "stays within its bounds";
+}
+
 TEST(PopulationTest, SpreadIsThatOfTheLogarithm) {
   const Population people = population(definition(0.1, 0.3));
   double sum = 0.0;
@@ -79,7 +105,8 @@ TEST(PopulationTest, BadValuesAreNamed) {
   };
   expect_named("haptic_weber = { median = -0.1, spread = 0.1 }", "haptic_weber.median is -0.1");
   expect_named("haptic_weber = { median = 0.1, spread = nan }", "haptic_weber.spread is nan");
-  expect_named("haptic_weber = 0.1", "haptic_weber is 0.1; allowed: a table");
+  expect_named("haptic_weber = -0.1", "haptic_weber is -0.1; allowed: a number from 0 to 1");
+  expect_named("haptic_weber = \"low\"", "haptic_weber is \"low\"; allowed: a number from 0 to 1");
   expect_named("tremor_frequency = { median = 0.0, spread = 0.1 }", "tremor_frequency.median is 0");
   expect_named("visual_delay = { median = 2.0, spread = 0.1 }", "visual_delay.median is 2");
 }

@@ -99,6 +99,10 @@ TEST(TableTest, TablesOfAnArrayAreReadInTheirOrder) {
               ElementsAre(HasSubstr("stages[1].tme is not a known key")));
   EXPECT_TRUE(t.is_array("stages"));
   EXPECT_FALSE(t.is_array("stage"));
+  const Table either = Table::parse("a = { median = 1 }\nb = 0.5\n", "either.toml");
+  EXPECT_TRUE(either.is_table("a"));
+  EXPECT_FALSE(either.is_table("b"));
+  EXPECT_FALSE(either.is_table("c"));
 }
 
 TEST(TableTest, TellsWhatItHolds) {

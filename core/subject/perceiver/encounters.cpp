@@ -1,0 +1,169 @@
+#include "core/subject/perceiver/encounters.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace haptrial::subject {
+namespace {
+
+constexpr double kSlowTime = 0.05;     // of the slow part of a force [s]
+constexpr double kFreeAtLeast = 0.05;  // between two contacts [s]
+constexpr double kLeastWay = 1e-4;     // sd of a deflection that has a slope [m]
+
+}  // namespace
+
+void Encounters::Line::add(double px, double py, double w) noexcept {
+  weight += w;
+  x += w * px;
+  y += w * py;
+  xx += w * px * px;
+  xy += w * px * py;
+}
+
+double Encounters::Line::slope(double least_variance) const noexcept {
+  if (!(weight > 0.0)) {
+    return 0.0;
+  }
+  const double variance = (xx - x * x / weight) / weight;
+  if (variance > least_variance) {
+    return (xy - x * y / weight) / weight / variance;
+  }
+  return xx > 0.0 ? xy / xx : 0.0;
+}
+
+Encounters::Encounters(const SenseParameters& senses) noexcept
+    : contact_force_(senses.contact_force), moving_speed_(senses.moving_speed) {}
+
+void Encounters::begin() noexcept {
+  const double contact_force = contact_force_;
+  const double moving_speed = moving_speed_;
+  *this = Encounters(SenseParameters{});
+  contact_force_ = contact_force;
+  moving_speed_ = moving_speed;
+}
+
+void Encounters::feel(const Eigen::Vector3d& force, const PointState& hand, double dt) noexcept {
+  if (!force.allFinite() || !hand.position.allFinite() || !hand.velocity.allFinite()) {
+    return;
+  }
+  if (!begun_) {
+    begun_ = true;
+    start_ = hand.position;
+  }
+  const bool touching = force.norm() > contact_force_;
+  follow(hand.position, touching, dt);
+  if (touching) {
+    touch(force, hand.position - start_, dt);
+  }
+  move(force, hand.velocity, touching, dt);
+}
+
+void Encounters::touch(const Eigen::Vector3d& force, const Eigen::Vector3d& p, double dt) noexcept {
+  upper_.add(force.norm(), dt);
+  cloud_.weight += dt;
+  cloud_.p += dt * p;
+  cloud_.f += dt * force;
+  cloud_.pp += dt * p * p.transpose();
+  cloud_.pf += dt * p * force.transpose();
+  cloud_.ff += dt * force * force.transpose();
+}
+
+void Encounters::move(const Eigen::Vector3d& force, const Eigen::Vector3d& v, bool touching,
+                      double dt) noexcept {
+  const double speed = v.norm();
+  const bool moving = speed > moving_speed_;
+  if (moving) {
+    const double resisting = -force.dot(v) / speed;
+    line_.add(speed, resisting, dt);
+    lost_ += resisting * speed * dt;
+    way_ += speed * dt;
+  }
+  if (!touching || !moving) {
+    slow_age_ = 0.0;
+    return;
+  }
+  slow_ = slow_age_ > 0.0 ? slow_ + std::min(1.0, dt / kSlowTime) * (force - slow_) : force;
+  slow_age_ += dt;
+  if (slow_age_ > 2.0 * kSlowTime) {  // before that the mean is still that of the first tick
+    fluctuation_ += dt * (force - slow_).squaredNorm();
+    rough_time_ += dt;
+  }
+}
+
+void Encounters::follow(const Eigen::Vector3d& p, bool touching, double dt) noexcept {
+  farthest_ = std::max(farthest_, (p - start_).norm());
+  if (!touching) {
+    free_for_ += dt;
+    return;
+  }
+  if (contacts_ == 0) {
+    first_ = p;
+    contacts_ = 1;
+  } else if (free_for_ >= kFreeAtLeast) {
+    ++contacts_;
+    apart_ = std::max(apart_, (p - first_).norm());
+  }
+  free_for_ = 0.0;
+}
+
+double Encounters::stiffness() const noexcept {
+  if (!(cloud_.weight > 0.0)) {
+    return 0.0;
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(cloud_.ff);
+  const Eigen::Vector3d n = solver.eigenvectors().col(2);
+  const double w = cloud_.weight;
+  const double p = n.dot(cloud_.p);
+  const double f = n.dot(cloud_.f);
+  const double variance = (n.dot(cloud_.pp * n) - p * p / w) / w;
+  if (!(variance > kLeastWay * kLeastWay)) {
+    return 0.0;
+  }
+  return std::max(0.0, -(n.dot(cloud_.pf * n) - p * f / w) / w / variance);
+}
+
+double Encounters::viscosity() const noexcept {
+  return std::max(0.0, line_.slope(moving_speed_ * moving_speed_));
+}
+
+double Encounters::friction() const noexcept {
+  return way_ > 0.0 ? std::max(0.0, lost_ / way_) : 0.0;
+}
+
+double Encounters::roughness() const noexcept {
+  return rough_time_ > 0.0 ? std::sqrt(fluctuation_ / rough_time_) : 0.0;
+}
+
+double Encounters::extent() const noexcept {
+  if (contacts_ == 0) {
+    return farthest_;
+  }
+  return contacts_ == 1 ? (first_ - start_).norm() : apart_;
+}
+
+double Encounters::resistance() const noexcept {
+  return line_.weight > 0.0 ? std::max(0.0, line_.y / line_.weight) : 0.0;
+}
+
+Encounter Encounters::met(Quantity quantity) const noexcept {
+  switch (quantity) {
+    case Quantity::kForce:
+      return {force(), force()};
+    case Quantity::kStiffness:
+    case Quantity::kCompliance:
+      return {stiffness(), force()};
+    case Quantity::kViscosity:
+      return {viscosity(), resistance()};
+    case Quantity::kFriction:
+      return {friction(), friction()};
+    case Quantity::kRoughness:
+      return {roughness(), roughness()};
+    case Quantity::kExtent:
+      return {extent(), 0.0};
+  }
+  return {};
+}
+
+}  // namespace haptrial::subject

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/base/point_state.h"
+#include "core/subject/perceiver/felt.h"
+#include "core/subject/perceiver/upper_mean.h"
+
+namespace haptrial::subject {
+
+/// What went through the hand in an interval, as physical quantities: f is the force on the hand,
+/// p and v its position and velocity; in contact |f| is above contact_force, moving |v| above
+/// moving_speed.
+///
+///     force       mean of |f| over the greater half of the time in contact (upper_mean.h)
+///     stiffness   -slope of n·f over n·p in contact, n the axis along which f acts most
+///     viscosity   slope over |v| of the force r = -f·v/|v| that resists, while moving
+///     friction    ∫ r |v| dt / ∫ |v| dt, while moving: what springs give back does not count
+///     roughness   root mean square of f less its mean over the last 50 ms, while moving in contact
+///     extent      greatest way between the places where contacts began, after the first; with one
+///                 contact the way to it; without any the greatest way from the start
+///
+/// Slopes are least-squares lines with an offset. Servo thread: no allocation, lock, I/O or throw.
+class Encounters {
+ public:
+  explicit Encounters(const SenseParameters& senses) noexcept;
+
+  void begin() noexcept;
+  /// A tick. @param force  on the hand, in W [N]; @param dt  > 0 [s]. Not finite: left out.
+  void feel(const Eigen::Vector3d& force, const PointState& hand, double dt) noexcept;
+
+  double force() const noexcept { return upper_.mean(); }  // [N]
+  double stiffness() const noexcept;                       // >= 0, 0 in free air [N/m]
+  double viscosity() const noexcept;                       // >= 0 [N·s/m]
+  double friction() const noexcept;                        // >= 0 [N]
+  double roughness() const noexcept;                       // [N]
+  double extent() const noexcept;                          // [m]
+  double resistance() const noexcept;                      // mean r while moving [N]
+  Encounter met(Quantity quantity) const noexcept;
+
+ private:
+  /// Weighted sums of a line y = a + b x.
+  struct Line {
+    double weight{0.0}, x{0.0}, y{0.0}, xx{0.0}, xy{0.0};
+    void add(double px, double py, double w) noexcept;
+    double slope(double least_variance) const noexcept;  // through the origin if x hardly varies
+  };
+  /// The same of vectors.
+  struct Cloud {
+    double weight{0.0};
+    Eigen::Vector3d p{Eigen::Vector3d::Zero()}, f{Eigen::Vector3d::Zero()};
+    Eigen::Matrix3d pp{Eigen::Matrix3d::Zero()}, pf{Eigen::Matrix3d::Zero()},
+        ff{Eigen::Matrix3d::Zero()};
+  };
+  void touch(const Eigen::Vector3d& force, const Eigen::Vector3d& p, double dt) noexcept;
+  void move(const Eigen::Vector3d& force, const Eigen::Vector3d& v, bool touching,
+            double dt) noexcept;
+  void follow(const Eigen::Vector3d& p, bool touching, double dt) noexcept;
+
+  double contact_force_;
+  double moving_speed_;
+  UpperMean upper_;
+  Cloud cloud_;
+  Line line_;
+  double lost_{0.0}, way_{0.0};                    // ∫ r |v| dt [J], ∫ |v| dt [m]
+  Eigen::Vector3d slow_{Eigen::Vector3d::Zero()};  // [N]
+  double slow_age_{0.0};                           // in contact and moving [s]
+  double fluctuation_{0.0}, rough_time_{0.0};
+  Eigen::Vector3d start_{Eigen::Vector3d::Zero()}, first_{Eigen::Vector3d::Zero()};
+  double farthest_{0.0};  // from the start [m]
+  double apart_{0.0};     // contacts from the first [m]
+  double free_for_{0.0};  // since the last contact [s]
+  int contacts_{0};
+  bool begun_{false};
+};
+
+}  // namespace haptrial::subject

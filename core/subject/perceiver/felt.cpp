@@ -1,0 +1,69 @@
+#include "core/subject/perceiver/felt.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace haptrial::subject {
+
+void check(const SenseParameters& p) {
+  const auto require = [](bool good, const char* what) {
+    if (!good) {
+      throw std::invalid_argument(std::string("senses: ") + what);
+    }
+  };
+  const auto spread = [](double x) { return x >= 0.0 && std::isfinite(x); };
+  const auto size = [](double x) { return x > 0.0 && std::isfinite(x); };
+  require(spread(p.force_weber), "force_weber must be at least 0");
+  require(spread(p.force_floor), "force_floor must be at least 0");
+  require(p.displacement_bias >= 0.0 && p.displacement_bias < 1.0,
+          "displacement_bias must be at least 0 and below 1");
+  require(spread(p.displacement_weber), "displacement_weber must be at least 0");
+  require(spread(p.speed_weber), "speed_weber must be at least 0");
+  require(spread(p.extent_weber), "extent_weber must be at least 0");
+  require(size(p.usual_deflection), "usual_deflection must be above 0");
+  require(spread(p.contact_force), "contact_force must be at least 0");
+  require(size(p.moving_speed), "moving_speed must be above 0");
+}
+
+FeltNoise draw_noise(RandomStream& random) noexcept {
+  FeltNoise n;
+  n.force = random.normal();
+  n.floor = random.normal();
+  n.displacement = random.normal();
+  n.speed = random.normal();
+  n.extent = random.normal();
+  return n;
+}
+
+double felt(const SenseParameters& s, Quantity quantity, const Encounter& met,
+            const FeltNoise& n) noexcept {
+  const double gain = std::exp(s.force_weber * n.force);
+  if (quantity == Quantity::kForce || quantity == Quantity::kFriction ||
+      quantity == Quantity::kRoughness) {
+    return met.amount * gain + s.force_floor * n.floor;
+  }
+  if (quantity == Quantity::kExtent) {
+    return met.amount * std::exp(s.extent_weber * n.extent);
+  }
+  // The force of a stiffness or a viscosity, relative to what it was; never a pull.
+  const double floor = met.force > 0.0 ? s.force_floor * n.floor / met.force : 0.0;
+  const double force = std::max(0.0, gain + floor);
+  if (quantity == Quantity::kViscosity) {
+    return met.amount * force * std::exp(-s.speed_weber * n.speed);
+  }
+  double stiffness = 0.0;
+  if (met.amount > 0.0) {
+    const double deflection = met.force / (met.amount * s.usual_deflection);  // D / D_0
+    const double unfelt = deflection > 0.0 ? std::pow(deflection, s.displacement_bias) : 1.0;
+    stiffness = met.amount * unfelt * force * std::exp(-s.displacement_weber * n.displacement);
+  }
+  if (quantity == Quantity::kStiffness) {
+    return stiffness;
+  }
+  return stiffness > 0.0 ? 1.0 / stiffness : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace haptrial::subject

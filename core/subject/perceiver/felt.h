@@ -1,0 +1,60 @@
+#pragma once
+
+#include "core/base/random.h"
+
+namespace haptrial::subject {
+
+/// What is judged, with its unit.
+enum class Quantity {
+  kForce,       // held through the push [N]
+  kStiffness,   // [N/m]
+  kCompliance,  // [m/N]
+  kViscosity,   // [N·s/m]
+  kFriction,    // resisting force while moving [N]
+  kRoughness,   // root mean square of the force's fluctuation [N]
+  kExtent       // way between contacts [m]
+};
+
+/// The senses of a hand. Sources of the values: docs/algorithms/virtual-perceiver.md.
+struct SenseParameters {
+  double force_weber{0.07};        // sd of the log of a felt force >= 0
+  double force_floor{0.02};        // sd of a felt force beside that >= 0 [N]
+  double displacement_bias{0.53};  // beta: share of a deflection's change that is not felt, 0 to <1
+  double displacement_weber{0.0};  // sd of the log of a felt deflection >= 0
+  double speed_weber{0.23};        // sd of the log of a felt speed >= 0
+  double extent_weber{0.10};       // sd of the log of a felt way >= 0
+  double usual_deflection{0.01};   // D_0 that is felt as it is > 0 [m]
+  double contact_force{0.05};      // below it nothing touches >= 0 [N]
+  double moving_speed{0.005};      // below it the hand rests > 0 [m/s]
+};
+
+/// @throws std::invalid_argument naming the parameter that breaks its bound.
+void check(const SenseParameters& parameters);
+
+/// What the hand met in an interval, without noise.
+struct Encounter {
+  double amount{0.0};  // of the quantity; of compliance its inverse, the stiffness [unit]
+  double force{0.0};   // F that it was felt by >= 0 [N]
+};
+
+/// The noise of an interval: independent normal deviates, the same for the whole interval.
+struct FeltNoise {
+  double force{0.0}, floor{0.0}, displacement{0.0}, speed{0.0}, extent{0.0};
+};
+FeltNoise draw_noise(RandomStream& random) noexcept;
+
+/// How an encounter is felt. With F^ = F exp(force_weber n1) + force_floor n2:
+///
+///     force, friction, roughness   F^
+///     stiffness                    F^ / D^,  D^ = D_0 (D / D_0)^(1 - beta) exp(displacement_weber
+///     n3) compliance                   D^ / F^ viscosity                    F^ / (v
+///     exp(speed_weber n4)) extent                       L exp(extent_weber n5)
+///
+/// with D = F / K. Changes of a deflection are felt too small by beta (Fu, van Paassen and Mulder
+/// 2017): pressed with the same force, springs differ to the senses by K^(1 - beta), so that their
+/// Weber fraction is force_weber / (1 - beta); pushed to the same place, by K, and the fraction is
+/// force_weber. Servo thread: no allocation, lock, I/O or throw.
+double felt(const SenseParameters& senses, Quantity quantity, const Encounter& met,
+            const FeltNoise& noise) noexcept;
+
+}  // namespace haptrial::subject
