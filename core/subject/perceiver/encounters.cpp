@@ -102,26 +102,29 @@ void Encounters::follow(const Eigen::Vector3d& p, bool touching, double dt) noex
     contacts_ = 1;
   } else if (free_for_ >= kFreeAtLeast) {
     ++contacts_;
+    longest_ = cloud_.weight > longest_.weight ? cloud_ : longest_;
+    cloud_ = {};
     apart_ = std::max(apart_, (p - first_).norm());
   }
   free_for_ = 0.0;
 }
 
 double Encounters::stiffness() const noexcept {
-  if (!(cloud_.weight > 0.0)) {
+  const Cloud& cloud = longest_.weight > cloud_.weight ? longest_ : cloud_;
+  if (!(cloud.weight > 0.0)) {
     return 0.0;
   }
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(cloud_.ff);
+  solver.computeDirect(cloud.ff);
   const Eigen::Vector3d n = solver.eigenvectors().col(2);
-  const double w = cloud_.weight;
-  const double p = n.dot(cloud_.p);
-  const double f = n.dot(cloud_.f);
-  const double variance = (n.dot(cloud_.pp * n) - p * p / w) / w;
+  const double w = cloud.weight;
+  const double p = n.dot(cloud.p);
+  const double f = n.dot(cloud.f);
+  const double variance = (n.dot(cloud.pp * n) - p * p / w) / w;
   if (!(variance > kLeastWay * kLeastWay)) {
     return 0.0;
   }
-  return std::max(0.0, -(n.dot(cloud_.pf * n) - p * f / w) / w / variance);
+  return std::max(0.0, -(n.dot(cloud.pf * n) - p * f / w) / w / variance);
 }
 
 double Encounters::viscosity() const noexcept {

@@ -13,7 +13,7 @@ namespace haptrial::subject {
 /// moving_speed.
 ///
 ///     force       mean of |f| over the greater half of the time in contact (upper_mean.h)
-///     stiffness   -slope of n·f over n·p in contact, n the axis along which f acts most
+///     stiffness   -slope of n·f over n·p in the longest contact, n the axis along which f acts most
 ///     viscosity   slope over |v| of the force r = -f·v/|v| that resists, while moving
 ///     friction    ∫ r |v| dt / ∫ |v| dt, while moving: what springs give back does not count
 ///     roughness   root mean square of f less its mean over the last 50 ms, while moving in contact
@@ -60,7 +60,8 @@ class Encounters {
   double contact_force_;
   double moving_speed_;
   UpperMean upper_;
-  Cloud cloud_;
+  Cloud cloud_;    // of the present contact
+  Cloud longest_;  // of those before it
   Line line_;
   double lost_{0.0}, way_{0.0};                    // ∫ r |v| dt [J], ∫ |v| dt [m]
   Eigen::Vector3d slow_{Eigen::Vector3d::Zero()};  // [N]
