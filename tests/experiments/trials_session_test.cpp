@@ -1,0 +1,300 @@
+// Experiments that a definition states whole, through the same sessions as every other: what was
+// presented is what is recorded, a kill loses nothing, a person answers by keys.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <map>
+#include <thread>
+
+#include "core/psychometric/procedure/staircase.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/trials/trial_rows.h"
+#include "experiments/runner/session.h"
+#include "experiments/studies/experiment.h"
+#include "experiments/studies/registry.h"
+#include "protocols/trials/definition/trials_definition.h"
+#include "tests/experiments/live_command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/sanitizer.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/virtual_display.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path shipped(const std::string& name) {
+  return fs::path(HAPTRIAL_SOURCE_DIR "/experiments") / (name + ".toml");
+}
+
+SessionRequest request_for(const Experiment& experiment, const fs::path& file, int trials = 0) {
+  SessionRequest request;
+  request.protocol = &experiment.study->protocol();
+  request.definition = experiment.definition.get();
+  request.subject = "S01";
+  request.seed = 7;
+  request.max_trials = trials;
+  request.file = file;
+  return request;
+}
+
+/// Each pass's value of a variable in an interval; 0: the whole trial.
+std::map<std::pair<int, int>, double> values_of(const record::SessionReader& file,
+                                                const std::string& name) {
+  std::map<std::pair<int, int>, double> values;
+  for (const record::VariableRow& row : file.rows<record::VariableRow>()) {
+    if (row.name == name) {
+      values[{row.pass, row.interval}] = row.value;
+    }
+  }
+  return values;
+}
+
+class ShippedTrialsTest : public testing::TestWithParam<const char*> {};
+
+TEST_P(ShippedTrialsTest, RunsAndIsWhole) {
+  const test::TemporaryFolder folder;
+  const Experiment experiment = load_experiment(shipped(GetParam()));
+  const SessionSummary summary = run_session(request_for(experiment, folder / "S01.h5", 6));
+  EXPECT_EQ(summary.aborted_passes, 0) << "the participant does what is asked";
+  const record::SessionReader file(folder / "S01.h5");
+  EXPECT_TRUE(record::check_session(file, known_tables()).ok);
+  EXPECT_GE(file.passes().size(), 6u);
+  for (const record::StageRow& stage : file.rows<record::StageRow>()) {
+    const record::PassRow& pass = file.passes().at(static_cast<std::size_t>(stage.pass));
+    EXPECT_GE(stage.first_sample, pass.first_sample);
+    EXPECT_LE(stage.last_sample, pass.last_sample);
+    EXPECT_LE(stage.first_sample, stage.last_sample);
+  }
+}
+
+TEST_P(ShippedTrialsTest, StagesFollowEachOtherWithoutAGap) {
+  const test::TemporaryFolder folder;
+  const Experiment experiment = load_experiment(shipped(GetParam()));
+  run_session(request_for(experiment, folder / "S01.h5", 3));
+  const record::SessionReader file(folder / "S01.h5");
+  const auto stages = file.rows<record::StageRow>();
+  ASSERT_FALSE(stages.empty());
+  for (std::size_t i = 1; i < stages.size(); ++i) {
+    if (stages[i].pass == stages[i - 1].pass) {
+      EXPECT_EQ(stages[i].first_sample, stages[i - 1].last_sample + 1) << i;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedTrialsTest,
+                         testing::Values("stiffness_discrimination", "force_discrimination",
+                                         "wall_detection", "grating_discrimination",
+                                         "viscosity_magnitude", "shape_recognition", "curl_field"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+TEST(TrialsSessionTest, WhatWasPresentedIsWhatIsRecorded) {
+  const test::TemporaryFolder folder;
+  const Experiment experiment = load_experiment(shipped("stiffness_discrimination"));
+  run_session(request_for(experiment, folder / "S01.h5", 8));
+  const record::SessionReader file(folder / "S01.h5");
+  const auto stiffness = values_of(file, "stiffness");
+  const auto level = values_of(file, "level");
+  int compared = 0;
+  for (const record::LevelRow& row : file.rows<record::LevelRow>()) {
+    EXPECT_EQ(level.at({row.pass, 0}), row.applied);
+  }
+  for (const record::StageRow& stage : file.rows<record::StageRow>()) {
+    if (stage.stage != "press") {
+      continue;
+    }
+    // Hooke's law of the stiffness that the file states, on every tick deep in the wall.
+    const double k = stiffness.at({stage.pass, stage.interval});
+    constexpr std::uint64_t kFadedIn = 500;  // the field, and the guide away [ticks]
+    for (std::uint64_t at = stage.first_sample + kFadedIn; at <= stage.last_sample; at += 100) {
+      const record::Sample sample = file.samples(at, 1).front();
+      if (sample.position.y() < -0.001) {
+        EXPECT_NEAR(sample.force.y() / (-k * sample.position.y()), 1.0, 1e-3);
+        ++compared;
+      }
+    }
+  }
+  EXPECT_GT(compared, 100);
+}
+
+/// The staircase that the definition states, fed with the outcomes of the file.
+TEST(TrialsSessionTest, EveryLevelFollowsFromTheAnswersBefore) {
+  const test::TemporaryFolder folder;
+  const Experiment experiment = load_experiment(shipped("stiffness_discrimination"));
+  run_session(request_for(experiment, folder / "S01.h5", 40));
+  const record::SessionReader file(folder / "S01.h5");
+  const auto& d = dynamic_cast<const protocols::TrialsDefinition&>(*experiment.definition);
+  std::map<std::string, psychometric::Staircase> tracks;
+  for (const protocols::Track& track : d.tracks) {
+    tracks.emplace(track.name, psychometric::Staircase(*track.staircase));
+  }
+  std::map<std::int32_t, std::int32_t> correct;
+  for (const record::ResponseRow& row : file.responses()) {
+    correct[row.pass] = row.correct;
+  }
+  std::size_t rows = 0;
+  for (const record::LevelRow& row : file.rows<record::LevelRow>()) {
+    psychometric::Staircase& track = tracks.at(row.track);
+    EXPECT_EQ(track.next().front(), row.asked);
+    EXPECT_EQ(row.outcome, correct.at(row.pass));
+    track.report(row.outcome, {row.applied});
+    ++rows;
+  }
+  EXPECT_EQ(rows, 40u);
+}
+
+/// Short trials on the real clock, where a kill loses a moment and not the session.
+class KilledTrialsTest : public testing::Test {
+ protected:
+  KilledTrialsTest() {
+    std::string text = test::read_text(shipped("stiffness_discrimination"));
+    const auto put = [&](const std::string& what, const std::string& instead) {
+      const std::size_t at = text.find(what);
+      ASSERT_NE(at, std::string::npos) << what;
+      text.replace(at, what.size(), instead);
+    };
+    put("until = { time = 2.5 }", "until = { time = 0.6 }");
+    put("until = { inside = \"start\", for = 0.3 }", "until = { inside = \"start\", for = 0.02 }");
+    put("until = { time = 0.5 }", "until = { time = 0.02 }");
+    put("trials = 4\nlevel", "trials = 1\nlevel");
+    put("rise = 0.5", "rise = 0.1");
+    put("decides = \"largest\"", "decides = \"largest\"\nreaction = 0.05");
+    test::write_text(folder_ / "short.toml", text);
+    short_ = load_experiment(folder_ / "short.toml");
+  }
+  SessionRequest short_request(const std::string& name, realtime::ClockKind clock) const {
+    SessionRequest request = request_for(short_, folder_ / name, 8);
+    request.clock = clock;
+    return request;
+  }
+  void run_and_kill(const std::string& name, std::uint64_t at_tick) const {
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      ::alarm(60);
+      std::atomic<std::uint64_t> ticks{0};
+      std::thread([&] {
+        while (ticks.load() < at_tick) {
+          std::this_thread::sleep_for(std::chrono::microseconds(200));
+        }
+        ::kill(::getpid(), SIGKILL);
+      }).detach();
+      SessionRequest request = short_request(name, realtime::ClockKind::kReal);
+      request.ticks = &ticks;
+      run_session(request);
+      ::_exit(0);
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status)) << "it came to its end before it was killed";
+  }
+  struct Done {
+    std::vector<double> asked, outcomes, answers;
+    bool operator==(const Done&) const = default;
+  };
+  /// Of completed passes.
+  static Done done_of(const record::SessionReader& file) {
+    Done done;
+    const auto passes = file.passes();
+    const auto complete = [&](std::int32_t pass) {
+      return passes.at(static_cast<std::size_t>(pass)).status == record::PassStatus::kCompleted;
+    };
+    for (const record::LevelRow& row : file.rows<record::LevelRow>()) {
+      if (complete(row.pass)) {
+        done.asked.push_back(row.asked);
+        done.outcomes.push_back(row.outcome);
+      }
+    }
+    for (const record::ResponseRow& row : file.responses()) {
+      if (complete(row.pass)) {
+        done.answers.push_back(row.value);
+      }
+    }
+    return done;
+  }
+  test::TemporaryFolder folder_;
+  Experiment short_;
+};
+
+TEST_F(KilledTrialsTest, TheStaircaseGoesOnAsItWouldHave) {
+  if (test::kThreadSanitizer) {
+    GTEST_SKIP() << "a process that has threads is forked";
+  }
+  run_session(short_request("whole.h5", realtime::ClockKind::kSimulated));
+  const Done whole = done_of(record::SessionReader(folder_ / "whole.h5"));
+  ASSERT_EQ(whole.asked.size(), 8u);
+  for (const std::uint64_t at : {6000u, 9500u}) {
+    const std::string name = "killed" + std::to_string(at) + ".h5";
+    run_and_kill(name, at);
+    SessionRequest request = short_request(name, realtime::ClockKind::kReal);
+    request.resume = true;
+    run_session(request);
+    const record::SessionReader resumed(folder_ / name);
+    EXPECT_TRUE(record::check_session(resumed, known_tables()).ok);
+    EXPECT_EQ(done_of(resumed), whole);
+  }
+}
+
+class LiveTrialsTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!test::VirtualDisplay::available()) {
+      GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
+    }
+  }
+};
+
+TEST_F(LiveTrialsTest, APersonAnswersByKeysOfTheWindow) {
+  const test::TemporaryFolder folder;
+  std::string text = test::read_text(shipped("wall_detection"));
+  const auto put = [&](const std::string& what, const std::string& instead) {
+    const std::size_t at = text.find(what);
+    ASSERT_NE(at, std::string::npos) << what;
+    text.replace(at, what.size(), instead);
+  };
+  put("until = { time = 2.0 }", "until = { time = 0.3 }");
+  put("decides = \"yes\"", "decides = \"yes\"\nreaction = 60.0");  // it waits: keys answer
+  text += "\n[screen]\nfull_screen = false\n[display]\nwidth = 600\nheight = 440\n";
+  test::write_text(folder / "study.toml", text);
+  test::VirtualDisplay display(640, 480);
+  test::LiveCommand session("run '" + (folder / "study.toml").string() +
+                            "' --subject S01 --trials 2 --out '" + (folder / "out").string() +
+                            "' --window");
+  std::atomic<bool> over{false};
+  std::thread person([&] {
+    while (!over) {  // "2" is no, and the confidence; space begins
+      for (const char key : {' ', '2'}) {
+        try {
+          display.press_key("haptrial", static_cast<unsigned long>(key));
+        } catch (const std::runtime_error&) {  // not open yet, or closed
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(150));
+      }
+    }
+  });
+  const test::CommandResult ended = session.wait(60.0);
+  over = true;
+  person.join();
+  EXPECT_EQ(ended.status, 0) << ended.output;
+  const record::SessionReader file(folder / "out/S01.h5");
+  const auto responses = file.responses();
+  ASSERT_EQ(responses.size(), 4u);
+  for (const record::ResponseRow& row : responses) {
+    EXPECT_EQ(row.source, record::ResponseSource::kKey);
+    EXPECT_EQ(row.text, row.question == "present" ? "no" : "2");
+    EXPECT_GT(row.reaction_time, 0.0);
+    EXPECT_LT(row.reaction_time, 2.0);
+  }
+}
+
+}  // namespace
+}  // namespace haptrial::experiments
