@@ -16,7 +16,7 @@ namespace haptrial::subject {
 ///     stiffness   -slope of n·f over n·p in the longest contact, n the axis along which f acts most
 ///     viscosity   slope over |v| of the force r = -f·v/|v| that resists, while moving
 ///     friction    ∫ r |v| dt / ∫ |v| dt, while moving: what springs give back does not count
-///     roughness   root mean square of f less its mean over the last 50 ms, while moving in contact
+///     roughness   root mean square of f less its slow part (first order, 50 ms), moving in contact
 ///     extent      greatest way between the places where contacts began, after the first; with one
 ///                 contact the way to it; without any the greatest way from the start
 ///

@@ -11,9 +11,10 @@
 namespace haptrial::subject {
 namespace {
 
+constexpr double kFrictionSpeed = 0.005;    // over which the handle's friction is overcome [m/s]
 constexpr double kPositionGain = 200.0;     // kp [N/m]
 constexpr double kVelocityGain = 20.0;      // kd [N·s/m]
-constexpr double kIntegralGain = 1500.0;    // while a place is kept [N/(m·s)]
+constexpr double kIntegralGain = 2500.0;    // while a place is kept [N/(m·s)]
 constexpr double kMostFeedback = 6.0;       // [N]
 constexpr double kHoldBack = 300.0;         // of a press beyond its travel [N/m]
 constexpr double kPressOfStrokeRise = 0.3;  // [s]
@@ -142,9 +143,10 @@ Eigen::Vector3d Prober::track(const Aim& aim, const PointState& hand, double dt)
   }
   const Eigen::Vector3d feedback =
       kPositionGain * error + kVelocityGain * (desired_.velocity - hand.velocity) + integral_;
-  const Eigen::Vector3d own = (hand_.hand_mass + hand_.handle_mass) * aim.acceleration +
-                              hand_.damping * desired_.velocity +
-                              hand_.stiffness * (desired_.position - posture_);
+  const Eigen::Vector3d own =
+      (hand_.hand_mass + hand_.handle_mass) * aim.acceleration + hand_.damping * desired_.velocity +
+      hand_.stiffness * (desired_.position - posture_) +
+      hand_.coulomb_friction * (desired_.velocity / kFrictionSpeed).array().tanh().matrix();
   posture_ += dt / hand_.posture_time * (desired_.position - posture_);
   const Eigen::Vector3d force = control::saturate(feedback, kMostFeedback) + own;
   return force - force.dot(aim.free) * aim.free;

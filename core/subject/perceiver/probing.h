@@ -50,11 +50,11 @@ void check(const Probe& probe);
 
 /// The arm that probes: from a tick's state of the hand to the command for the next step,
 ///
-///     f = P (kp (p_d - p) + kd (v_d - v) + i + m a_d + b v_d + k (p_d - e_d)) + push
+///     f = P (kp (p_d - p) + kd (v_d - v) + i + m a_d + b v_d + k (p_d - e_d) + c) + push
 ///
-/// with m, b, k and the yielding posture e of the hand itself (hand_parameters.h) and P without
-/// the direction along which it pushes. The feedback is at most 6 N; i sums the error while a place
-/// is kept, so that a steady load is carried. Minimum jerk: Flash and Hogan 1985.
+/// with m, b, k, the friction c and the yielding posture e of the hand itself (hand_parameters.h)
+/// and P without the direction along which it pushes. The feedback is at most 6 N; i sums the error
+/// while a place is kept, so that a steady load is carried. Minimum jerk: Flash and Hogan 1985.
 /// Servo thread: no allocation, lock, I/O or throw (ProberTest.DoesNotAllocate).
 class Prober {
  public:

@@ -50,7 +50,8 @@ class TwoRate {
 ///
 ///     e = Σ (F + C) · B v / Σ |B v|²
 ///
-/// 1 - x in the field, -x without it, and 0 in a channel, whose walls take up the compensation.
+/// 1 - x in the field, -x without it, and nearly 0 in a stiff channel, whose walls take up the
+/// compensation but for what the hand carries as they give way.
 /// Servo thread.
 class FieldError {
  public:

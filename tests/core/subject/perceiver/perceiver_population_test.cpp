@@ -62,7 +62,7 @@ TEST(PerceiverPopulationTest, PeopleVaryAsStated) {
 
 TEST(PerceiverPopulationTest, ALinearCriterionCanBeAnywhere) {
   EXPECT_EQ(read("criterion = -0.01\n", false).draw_judgement(1).criterion, -0.01);
-  EXPECT_FALSE(read("", false).draw_judgement(1).logarithmic);
+  EXPECT_FALSE(read("lapse = 0.0\n", false).draw_judgement(1).logarithmic);
 }
 
 TEST(PerceiverPopulationTest, BadValuesAreNamed) {
@@ -73,7 +73,7 @@ TEST(PerceiverPopulationTest, BadValuesAreNamed) {
   EXPECT_THAT(message("lapse = { median = 2.0, spread = 0.1 }\n"), HasSubstr("lapse.median is 2"));
   EXPECT_THAT(message("displacement_bias = 1.0\n"), HasSubstr("displacement_bias is 1"));
   EXPECT_THAT(message("criterion = 0.0\n"), HasSubstr("criterion is 0"));
-  EXPECT_THAT(message("drift = \"up\"\n"), HasSubstr("drift is \"up\"; allowed: a number"));
+  EXPECT_THAT(message("drift = \"up\"\n"), HasSubstr("drift is 'up'; allowed: a number"));
 }
 
 }  // namespace

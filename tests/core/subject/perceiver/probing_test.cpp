@@ -26,7 +26,8 @@ constexpr double kFriction = 0.1;  // of the handle, HandParameters [N]
 TEST(ProberTest, APressSettlesWhereTheWallCarriesItsForce) {
   for (const double stiffness : {150.0, 300.0, 1000.0}) {
     HandRig rig({floor_of(stiffness)}, {0.0, 0.005, 0.0});
-    rig.run(Press{{0.0, -1.0, 0.0}, 3.0, 0.5}, 3.0);
+    // The hand's posture yields with (b + k tau) / K, 0.43 s in the softest wall.
+    rig.run(Press{{0.0, -1.0, 0.0}, 3.0, 0.5}, 6.0);
     // Coulomb friction may carry its share of the force.
     EXPECT_NEAR(-rig.read().position.y(), 3.0 / stiffness, kFriction / stiffness + 2e-5)
         << stiffness;
@@ -66,30 +67,50 @@ TEST(ProberTest, APressIntoNothingEndsAtItsTravel) {
   EXPECT_LT(rig.read().velocity.norm(), 1e-3);
 }
 
+struct Stroked {
+  double half_way;  // half of the way from end to end [m]
+  double fourier;   // amplitude at the frequency [m]
+  double pressing;  // mean force of the floor [N]
+};
+
+Stroked stroked(const std::vector<scene::Field>& fields, const Stroke& stroke) {
+  HandRig rig(fields, {0.0, 0.002, 0.0});
+  rig.run(stroke, 2.0);
+  double most = -1.0;
+  double least = 1.0;
+  double in_phase = 0.0;
+  double quadrature = 0.0;
+  double pressing = 0.0;
+  const double seconds = 4.0;  // whole cycles
+  rig.go_on(seconds, [&](double t, const Vector3d& f, const PointState& hand) {
+    const double x = hand.position.x();
+    most = std::max(most, x);
+    least = std::min(least, x);
+    const double phase = 2.0 * std::numbers::pi * stroke.frequency * t;
+    in_phase += 2.0 * x * std::sin(phase) * kStep / seconds;
+    quadrature += 2.0 * x * std::cos(phase) * kStep / seconds;
+    pressing += f.y() * kStep / seconds;
+  });
+  return {0.5 * (most - least), std::hypot(in_phase, quadrature), pressing};
+}
+
 TEST(ProberTest, AStrokeHasItsAmplitudeAndFrequency) {
   for (const double frequency : {0.5, 1.0, 2.0}) {
-    HandRig rig({floor_of(800.0), field("rub", scene::FrictionParameters{"floor", 0.3, 0.2})},
-                {0.0, 0.002, 0.0});
-    Stroke stroke{{1.0, 0.0, 0.0}, 0.02, frequency, {0.0, -1.0, 0.0}, 1.0};
-    rig.run(stroke, 2.0);
-    double most = -1.0;
-    double least = 1.0;
-    double in_phase = 0.0;
-    double quadrature = 0.0;
-    double pressing = 0.0;
-    const double seconds = 4.0;  // whole cycles
-    rig.go_on(seconds, [&](double t, const Vector3d& f, const PointState& hand) {
-      const double x = hand.position.x();
-      most = std::max(most, x);
-      least = std::min(least, x);
-      const double phase = 2.0 * std::numbers::pi * frequency * t;
-      in_phase += 2.0 * x * std::sin(phase) * kStep / seconds;
-      quadrature += 2.0 * x * std::cos(phase) * kStep / seconds;
-      pressing += f.y() * kStep / seconds;
-    });
-    EXPECT_NEAR(0.5 * (most - least), 0.02, 0.05 * 0.02) << frequency;
-    EXPECT_NEAR(std::hypot(in_phase, quadrature), 0.02, 0.05 * 0.02) << "Fourier, " << frequency;
-    EXPECT_NEAR(pressing, 1.0, kFriction + 0.02) << frequency;
+    const Stroked s = stroked({}, {{1.0, 0.0, 0.0}, 0.02, frequency});
+    EXPECT_NEAR(s.half_way, 0.02, 0.02 * 0.02) << frequency;
+    EXPECT_NEAR(s.fourier, 0.02, 0.02 * 0.02) << frequency;
+  }
+}
+
+TEST(ProberTest, AStrokePressesAndLosesWhatFrictionTakesFromTheFeedback) {
+  const double level = 0.2;
+  for (const double frequency : {0.5, 1.0, 2.0}) {
+    const Stroked s =
+        stroked({floor_of(800.0), field("rub", scene::FrictionParameters{"floor", level, level})},
+                {{1.0, 0.0, 0.0}, 0.02, frequency, {0.0, -1.0, 0.0}, 1.0});
+    EXPECT_NEAR(s.pressing, 1.0, kFriction + 0.02) << frequency;
+    EXPECT_LE(s.half_way, 1.02 * 0.02) << frequency;
+    EXPECT_GE(s.half_way, 0.02 - level * s.pressing / 200.0 - 0.02 * 0.02) << "kp is 200 N/m";
   }
 }
 
@@ -121,7 +142,8 @@ TEST(ProberTest, AReachIsStraightBellShapedAndThere) {
 TEST(ProberTest, AReachIntoASpringGetsThereInTheEnd) {
   HandRig rig({floor_of(300.0)});
   rig.run(Reach{{0.0, -0.01, 0.0}, 0.6}, 2.0);
-  EXPECT_NEAR(rig.read().position.y(), -0.01, 2e-4) << "a push to a depth";
+  EXPECT_NEAR(rig.read().position.y(), -0.01, kFriction / 300.0)
+      << "a push to a depth, but for what the handle's friction carries";
 }
 
 TEST(ProberTest, AHandThatHoldsCarriesASteadyLoadAndOneAtRestDoesNot) {

@@ -163,7 +163,9 @@ TEST(TwoRateTest, ThroughTheHandTheFieldPushesAsideAndTheAftereffectToTheOtherSi
   EXPECT_NEAR(catch_trial.error, -two.state(), 0.05);
   const Reached clamped = reach({channel}, two);
   EXPECT_LT(std::abs(clamped.off), 0.0015);
-  EXPECT_NEAR(clamped.error, 0.0, 0.08) << "no error behind the clamp's walls";
+  // The clamp's walls give way a little; the hand's own 200 + 250 N/m carry at most that share.
+  EXPECT_LE(clamped.error, 0.0);
+  EXPECT_GT(clamped.error, -two.state() * 450.0 / (450.0 + 2000.0));
 }
 
 TEST(TwoRateTest, BadRatesAreNamed) {
