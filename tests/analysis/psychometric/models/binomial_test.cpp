@@ -258,7 +258,8 @@ TEST(BinomialMixedModel, KeepsItsLevelWherePooledTrialsDoNot) {
     const auto all = binomial_regression(data, BinomialLink::kProbit);
     pooled += all->coefficients[2].p < 0.05 ? 1 : 0;
   }
-  // The normal test of ten degrees of freedom finds 8 % (t: 5 %); binomial bound of 99.9 %.
+  // A normal test, with a variance of maximum likelihood that lacks the factor 12/10, of what has
+  // Student's distribution with ten degrees of freedom: 10 %; binomial bound of 99 %.
   EXPECT_LE(mixed, 18);
   EXPECT_GE(pooled, 40);
   RecordProperty("mixed", mixed);
