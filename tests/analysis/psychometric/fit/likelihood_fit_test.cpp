@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "analysis/psychometric/fit/bootstrap_fit.h"
 #include "analysis/statistics/base/minimum.h"
@@ -125,6 +126,35 @@ TEST(LikelihoodFit, SaysWhereTheAnswersDoNotTell) {
   EXPECT_LT(fit.parameters.threshold, 3.0);
   const std::vector<TrialBlock> all{{1, 20, 20}, {2, 20, 20}, {3, 20, 20}};
   EXPECT_TRUE(likelihood_fit(all, options).undetermined);
+}
+
+// A likelihood does not know on which scale its function is stated: natural logarithms, decimal
+// ones and decibels give one function, and the widths have the ratios of the scales.
+TEST(LikelihoodFit, TheScaleOfTheAxisDoesNotMatter) {
+  RandomStream random(6, "likelihood fit");
+  LikelihoodOptions options{.function = parameters_named("neg_Weibull", 0.5)};
+  options.function.axis = {psychometric::Scale::kNaturalLog, -1.0, "N/m"};
+  options.function.share = 0.4;
+  const auto observer = fitted_function(options.function, {0.8, 1.0, 0.02, 0.5});
+  const auto blocks = answers(random, observer, 60);
+  const FittedParameters natural = likelihood_fit(blocks, options).parameters;
+  const PsychometricFunction one = fitted_function(options.function, natural);
+  for (const auto& [scale, ratio] : {std::pair{psychometric::Scale::kLog10, std::log10(M_E)},
+                                     {psychometric::Scale::kDecibel, 20.0 * std::log10(M_E)}}) {
+    options.function.axis.scale = scale;
+    const FittedParameters other = likelihood_fit(blocks, options).parameters;
+    const PsychometricFunction two = fitted_function(options.function, other);
+    EXPECT_NEAR(other.width / natural.width, ratio, 1e-6);
+    EXPECT_NEAR(two.parameters().threshold, one.parameters().threshold, 1e-6);
+    for (const TrialBlock& block : blocks) {
+      EXPECT_NEAR(two(block.level), one(block.level), 1e-6);
+      EXPECT_NEAR(two.derivative(block.level), one.derivative(block.level), 1e-6);
+    }
+    EXPECT_EQ(two.parameters().axis.unit, "N/m");
+  }
+  EXPECT_TRUE(one.parameters().falling);
+  EXPECT_NEAR(one(one.level_for_share(0.4)), 0.5 + (0.5 - natural.lapse) * 0.4, 1e-12);
+  EXPECT_NEAR(one.level_for_share(0.4), one.parameters().threshold, 1e-12);
 }
 
 TEST(LikelihoodFit, DoesNotAllocate) {

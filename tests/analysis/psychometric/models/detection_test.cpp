@@ -28,6 +28,38 @@ TEST(Detection, IsTheDifferenceOfNormalQuantiles) {
   }
 }
 
+// R 4.2.2: qnorm(H) - qnorm(F), -(qnorm(H) + qnorm(F)) / 2 and (qnorm(F)^2 - qnorm(H)^2) / 2.
+TEST(Detection, GivesTheAnswersOfR) {
+  struct Case {
+    DetectionCounts counts;
+    RateCorrection correction;
+    double d_prime, criterion, log_beta, forced_choice;
+  };
+  const Case cases[] = {
+      {{40, 10, 10, 40}, RateCorrection::kNone, 1.6832424671458286, 0.0, 0.0, 1.1902321628999897},
+      {{12, 38, 31, 19},
+       RateCorrection::kNone,
+       -1.0117833509394849,
+       0.20041088737034507,
+       -0.20277239918832343,
+       -0.71543886854095817},
+      {{49, 1, 1, 49}, RateCorrection::kNone, 4.1074978212636442, 0.0, 0.0, 2.9044395631244919},
+      {{20, 0, 0, 25},
+       RateCorrection::kLogLinear,
+       4.0506542275423296,
+       0.044574717123886387,
+       0.1805567663593739,
+       2.8642450725371376}};
+  for (const Case& c : cases) {
+    const auto d = detection(c.counts, c.correction);
+    ASSERT_TRUE(d);
+    EXPECT_NEAR(d->d_prime, c.d_prime, 1e-13);
+    EXPECT_NEAR(d->criterion, c.criterion, 1e-13);
+    EXPECT_NEAR(d->log_beta, c.log_beta, 1e-13);
+    EXPECT_NEAR(forced_choice_detection(c.counts, c.correction)->d_prime, c.forced_choice, 1e-13);
+  }
+}
+
 TEST(Detection, CorrectsExtremeRates) {
   const DetectionCounts all{20, 0, 0, 25};
   EXPECT_FALSE(detection(all, RateCorrection::kNone));
