@@ -10,7 +10,7 @@
 namespace haptrial::analysis {
 namespace {
 
-/// Errors of slope and mean from the scores of the samples (n x 2), by Newey and West's weights.
+/// Variance of the sum of correlated scores (n x 2), by Newey and West's weights.
 Eigen::Matrix2d long_run(const Eigen::MatrixX2d& scores, std::size_t lags) {
   const Eigen::Index n = scores.rows();
   Eigen::Matrix2d sum = scores.transpose() * scores;
@@ -21,6 +21,28 @@ Eigen::Matrix2d long_run(const Eigen::MatrixX2d& scores, std::size_t lags) {
     sum += weight * (cross + cross.transpose());
   }
   return sum;
+}
+
+/// The same where each score follows from the one before, up to what is new in it: the weights are
+/// laid on what is new, and the memory of the scores is put back (Andrews and Monahan 1992).
+Eigen::Matrix2d whitened_long_run(const Eigen::MatrixX2d& scores, std::size_t lags) {
+  constexpr double kMostKept = 0.97;
+  const Eigen::Index n = scores.rows();
+  if (lags == 0) {
+    return long_run(scores, 0);
+  }
+  const auto before = scores.topRows(n - 1);
+  const auto after = scores.bottomRows(n - 1);
+  // Each column on its own: no eigenvalue of a fitted matrix can come too close to 1.
+  Eigen::Array2d keep;
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    const double squares = before.col(k).squaredNorm();
+    keep[k] = squares > 0.0 ? before.col(k).dot(after.col(k)) / squares : 0.0;
+  }
+  keep = keep.max(-kMostKept).min(kMostKept);
+  Eigen::MatrixX2d fresh = after - before * keep.matrix().asDiagonal();
+  const Eigen::Vector2d back = (1.0 / (1.0 - keep)).matrix();
+  return back.asDiagonal() * long_run(fresh, lags) * back.asDiagonal();
 }
 
 }  // namespace
@@ -54,7 +76,7 @@ Defined<ForceCompensation> force_compensation(std::span<const double> measured,
   influence.col(0) = left * u / x->squares;
   influence.col(1) = left / static_cast<double>(n) - x->mean() * influence.col(0).array();
   const double small = static_cast<double>(n) / static_cast<double>(n - 2);
-  const Eigen::Matrix2d covariance = small * long_run(influence, lags);
+  const Eigen::Matrix2d covariance = small * whitened_long_run(influence, lags);
   result.slope_error = std::sqrt(std::max(0.0, covariance(0, 0)));
   result.intercept_error = std::sqrt(std::max(0.0, covariance(1, 1)));
   return result;

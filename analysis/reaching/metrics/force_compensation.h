@@ -14,7 +14,8 @@ namespace haptrial::analysis {
 ///
 /// The slope is the adaptation index: 0 before learning, 1 where the hand presses against the wall
 /// as the field would have needed. Neighbouring samples are alike, so the standard error is that of
-/// Newey and West 1987 (Econometrica 55, 703), whose weights fall to 0 over `memory`.
+/// Newey and West 1987 (Econometrica 55, 703), whose weights fall to 0 over `memory`, after
+/// prewhitening by Andrews and Monahan 1992 (Econometrica 60, 953).
 /// Source: Scheidt et al. 2000, Journal of Neurophysiology 84, 853; Smith et al. 2006, PLoS Biology
 /// 4, e179; Joiner and Smith 2008, Journal of Neurophysiology 100, 2948.
 struct ForceCompensation {
