@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <stdexcept>
@@ -19,9 +20,10 @@ constexpr double kShortest = 0.1;  // [cycles]
 constexpr double kLongest = 10.0;  // times the number of cycles
 constexpr int kGrid = 60;
 
-/// Values with their weights; those without weight are left out.
+/// One for each cycle; the value of one without weight is 0.
 struct Points {
-  Eigen::ArrayXd cycle, value, weight;
+  Eigen::ArrayXd value, weight;
+  double count{0.0};  // with weight
 };
 
 /// Asymptote and amplitude at a time constant, and the weighted squares that are left.
@@ -29,16 +31,40 @@ struct LinearPart {
   double asymptote, amplitude, squares;
 };
 
+/// Weighted means of values and decay.
+struct Centre {
+  double value{0.0}, decay{0.0};
+};
+
+Centre centre_of(const Points& points, double factor) {
+  Centre centre;
+  double total = 0.0;
+  double decay = 1.0;
+  for (Eigen::Index n = 0; n < points.value.size(); ++n, decay *= factor) {
+    total += points.weight[n];
+    centre.value += points.weight[n] * points.value[n];
+    centre.decay += points.weight[n] * decay;
+  }
+  return {centre.value / total, centre.decay / total};
+}
+
 LinearPart linear_part(const Points& points, double time_constant) {
-  const Eigen::ArrayXd decay = (-points.cycle / time_constant).exp();
-  const double total = points.weight.sum();
-  const double x = (points.weight * decay).sum() / total;
-  const double y = (points.weight * points.value).sum() / total;
-  const double spread = (points.weight * (decay - x).square()).sum();
-  const double amplitude =
-      spread > 0.0 ? (points.weight * (decay - x) * (points.value - y)).sum() / spread : 0.0;
-  const Eigen::ArrayXd left = points.value - y - amplitude * (decay - x);
-  return {y - amplitude * x, amplitude, (points.weight * left.square()).sum()};
+  const double factor = std::exp(-1.0 / time_constant);
+  const Centre centre = centre_of(points, factor);
+  double spread = 0.0, common = 0.0, squares = 0.0;
+  double decay = 1.0;
+  for (Eigen::Index n = 0; n < points.value.size(); ++n, decay *= factor) {
+    const double x = decay - centre.decay;
+    spread += points.weight[n] * x * x;
+    common += points.weight[n] * x * (points.value[n] - centre.value);
+  }
+  const double amplitude = spread > 0.0 ? common / spread : 0.0;
+  decay = 1.0;
+  for (Eigen::Index n = 0; n < points.value.size(); ++n, decay *= factor) {
+    const double left = points.value[n] - centre.value - amplitude * (decay - centre.decay);
+    squares += points.weight[n] * left * left;
+  }
+  return {centre.value - amplitude * centre.decay, amplitude, squares};
 }
 
 double squares_at(double log_time, void* points) {
@@ -72,7 +98,7 @@ struct TimeConstant {
 
 TimeConstant best_time_constant(Points& points) {
   const double low = std::log(kShortest);
-  const double high = std::log(kLongest * (points.cycle.maxCoeff() + 1.0));
+  const double high = std::log(kLongest * static_cast<double>(points.value.size()));
   const double step = (high - low) / kGrid;
   std::vector<double> squares;
   for (int i = 0; i <= kGrid; ++i) {
@@ -88,44 +114,47 @@ TimeConstant best_time_constant(Points& points) {
 
 void set_errors(const Points& points, double squares, ExponentialFit& fit) {
   const double t = fit.time_constant;
-  const Eigen::ArrayXd decay = (-points.cycle / t).exp();
-  Eigen::MatrixX3d slopes(points.cycle.size(), 3);
+  const Eigen::Index n = points.value.size();
+  const Eigen::ArrayXd cycle = Eigen::ArrayXd::LinSpaced(n, 0.0, static_cast<double>(n - 1));
+  const Eigen::ArrayXd decay = (-cycle / t).exp();
+  Eigen::MatrixX3d slopes(n, 3);
   slopes.col(0).setOnes();
   slopes.col(1) = decay;
-  slopes.col(2) = fit.amplitude / (t * t) * points.cycle * decay;
-  const double df = static_cast<double>(points.cycle.size()) - 3.0;
+  slopes.col(2) = fit.amplitude / (t * t) * cycle * decay;
+  const double df = points.count - 3.0;
   const Eigen::Matrix3d inverse =
       (slopes.transpose() * points.weight.matrix().asDiagonal() * slopes).inverse();
   const Eigen::Array3d errors = (inverse.diagonal().array().max(0.0) * squares / df).sqrt();
   fit.asymptote_error = errors[0];
   fit.amplitude_error = errors[1];
   fit.time_constant_error = errors[2];
-  fit.deviation =
-      std::sqrt(squares / df * static_cast<double>(points.cycle.size()) / points.weight.sum());
+  fit.deviation = std::sqrt(squares / df * points.count / points.weight.sum());
 }
 
 /// At least five that are finite and vary; otherwise why not.
 Defined<Points> points_of(std::span<const double> values, std::span<const double> weights) {
-  std::vector<double> cycle, value, weight;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double w = weights.empty() ? 1.0 : weights[i];
-    if (w > 0.0) {
-      cycle.push_back(static_cast<double>(i));
-      value.push_back(values[i]);
-      weight.push_back(w);
+  const Eigen::Index n = std::ssize(values);
+  Points points{Eigen::ArrayXd::Zero(n), Eigen::ArrayXd::Zero(n)};
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double w = weights.empty() ? 1.0 : weights[k];
+    if (!(w > 0.0)) {
+      continue;
     }
+    if (!std::isfinite(values[k]) || !std::isfinite(w)) {
+      return Undefined{"a value is not finite"};
+    }
+    points.value[i] = values[k];
+    points.weight[i] = w;
+    points.count += 1.0;
+    low = std::min(low, values[k]);
+    high = std::max(high, values[k]);
   }
-  if (value.size() < 5) {
+  if (points.count < 5.0) {
     return Undefined{"there are fewer than five cycles"};
   }
-  const auto map = [](const std::vector<double>& v) -> Eigen::ArrayXd {
-    return Eigen::ArrayXd::Map(v.data(), std::ssize(v));
-  };
-  Points points{map(cycle), map(value), map(weight)};
-  if (!points.value.isFinite().all() || !points.weight.isFinite().all()) {
-    return Undefined{"a value is not finite"};
-  }
-  if (points.value.maxCoeff() == points.value.minCoeff()) {
+  if (low == high) {
     return Undefined{"the values do not vary"};
   }
   return points;

@@ -45,23 +45,36 @@ struct Squares {
   std::size_t count{0};
 };
 
-void add_sequence(const Parameters& p, const AdaptationSequence& trials, Squares& squares) {
+/// A trial of several participants with the same schedule: the mean of what was measured.
+struct PooledTrial {
+  double perturbation{0.0};
+  bool error_clamp{false};
+  double mean{0.0};
+  double count{0.0};
+};
+
+struct PooledSequence {
+  std::vector<PooledTrial> trials;
+  double within{0.0};  // squared deviations from the means
+};
+
+void add_sequence(const Parameters& p, const std::vector<PooledTrial>& trials, Squares& squares) {
   double fast = 0.0, slow = 0.0;
   Eigen::Vector4d d_fast = Eigen::Vector4d::Zero(), d_slow = Eigen::Vector4d::Zero();
-  for (const AdaptationTrial& trial : trials) {
+  for (const PooledTrial& trial : trials) {
     const double error = trial.error_clamp ? 0.0 : trial.perturbation - fast - slow;
     const Eigen::Vector4d d_state = d_fast + d_slow;
     const Eigen::Vector4d d_error =
         trial.error_clamp ? Eigen::Vector4d::Zero().eval() : (-d_state).eval();
-    if (!std::isnan(trial.measured)) {
+    if (trial.count > 0.0) {
       Parameters slope;
       slope.head<4>() = trial.error_clamp ? d_state : (p[4] * d_error).eval();
       slope[4] = error;
-      const double left = trial.measured - (trial.error_clamp ? fast + slow : p[4] * error);
-      squares.sum += left * left;
-      squares.gradient += left * slope;
-      squares.curvature.selfadjointView<Eigen::Lower>().rankUpdate(slope);
-      ++squares.count;
+      const double left = trial.mean - (trial.error_clamp ? fast + slow : p[4] * error);
+      squares.sum += trial.count * left * left;
+      squares.gradient += trial.count * left * slope;
+      squares.curvature.selfadjointView<Eigen::Lower>().rankUpdate(slope, trial.count);
+      squares.count += static_cast<std::size_t>(trial.count);
     }
     d_fast = p[0] * d_fast + p[1] * d_error;
     d_fast[0] += fast;
@@ -74,16 +87,54 @@ void add_sequence(const Parameters& p, const AdaptationSequence& trials, Squares
   }
 }
 
-/// The participants of the given rows.
+bool same_schedule(const AdaptationSequence& a, const std::vector<PooledTrial>& b) {
+  return std::ranges::equal(a, b, [](const AdaptationTrial& x, const PooledTrial& y) {
+    return x.perturbation == y.perturbation && x.error_clamp == y.error_clamp;
+  });
+}
+
+void pool(const AdaptationSequence& sequence, PooledSequence& pooled) {
+  for (std::size_t i = 0; i < sequence.size(); ++i) {
+    const double value = sequence[i].measured;
+    if (std::isnan(value)) {
+      continue;
+    }
+    PooledTrial& trial = pooled.trials[i];
+    trial.count += 1.0;
+    const double off = value - trial.mean;
+    trial.mean += off / trial.count;
+    pooled.within += off * (value - trial.mean);
+  }
+}
+
+/// Participants of the given rows; those with the same schedule are run through once.
 struct Chosen {
-  std::span<const AdaptationSequence> sequences;
-  std::span<const std::size_t> rows;
+  std::vector<PooledSequence> pooled;
   bool scale{false};
+
+  Chosen(std::span<const AdaptationSequence> sequences, std::span<const std::size_t> rows,
+         bool fit_scale)
+      : scale(fit_scale) {
+    for (const std::size_t row : rows) {
+      const AdaptationSequence& own = sequences[row];
+      auto at = std::ranges::find_if(
+          pooled, [&](const PooledSequence& p) { return same_schedule(own, p.trials); });
+      if (at == pooled.end()) {
+        PooledSequence fresh;
+        for (const AdaptationTrial& trial : own) {
+          fresh.trials.push_back({trial.perturbation, trial.error_clamp, 0.0, 0.0});
+        }
+        at = pooled.insert(pooled.end(), std::move(fresh));
+      }
+      pool(own, *at);
+    }
+  }
 
   Squares squares(const Parameters& p) const {
     Squares all;
-    for (const std::size_t row : rows) {
-      add_sequence(p, sequences[row], all);
+    for (const PooledSequence& sequence : pooled) {
+      add_sequence(p, sequence.trials, all);
+      all.sum += sequence.within;
     }
     const Curvature lower = all.curvature;
     all.curvature = lower.selfadjointView<Eigen::Lower>();
@@ -230,7 +281,7 @@ Defined<TwoRateFit> fit_two_rate(std::span<const AdaptationSequence> sequences,
     return Undefined{"a perturbation or an error is not finite"};
   }
   const auto rows = all_rows_of(sequences);
-  const Chosen chosen{sequences, rows, options.fit_error_scale};
+  const Chosen chosen(sequences, rows, options.fit_error_scale);
   if (chosen.squares(parameters_of(options.start)).count < kFewestMeasured) {
     return Undefined{"there are fewer than eight measured trials"};
   }
@@ -250,7 +301,7 @@ Defined<TwoRateLearning> fit_two_rate_learning(std::span<const AdaptationSequenc
   }
   const auto estimate =
       [&](std::span<const std::size_t> rows) -> std::optional<std::vector<double>> {
-    const Solution s = best_of({participants, rows, options.fit_error_scale}, {fit->model});
+    const Solution s = best_of(Chosen(participants, rows, options.fit_error_scale), {fit->model});
     if (!s.converged) {
       return std::nullopt;
     }

@@ -108,7 +108,7 @@ TEST(ExponentialFitTest, IntervalsHoldTheTruth) {
   for (int study = 0; study < kStudies; ++study) {
     RandomStream random(static_cast<std::uint64_t>(study), "people who learn");
     ParticipantResampling how;
-    how.resampling = {static_cast<std::uint64_t>(study), "coverage", 599, 1};
+    how.resampling = {static_cast<std::uint64_t>(study), "coverage", 999, 1};
     const auto fit = fit_learning(people(random, 16, 32), how);
     ASSERT_TRUE(fit) << fit.because();
     const auto holds = [](const Defined<BootstrapInterval>& i, double truth) {
@@ -118,10 +118,10 @@ TEST(ExponentialFitTest, IntervalsHoldTheTruth) {
     held[1] += holds(fit->amplitude, 8.0);
     held[2] += holds(fit->time_constant, 4.0);
   }
-  for (const int count : held) {
-    RecordProperty("held_" + std::to_string(&count - held.data()), count);
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    RecordProperty("held_" + std::to_string(k), held[k]);
     const double bound = 3.3 * std::sqrt(0.95 * 0.05 * kStudies);  // binomial, one in a thousand
-    EXPECT_NEAR(count, 0.95 * kStudies, bound);
+    EXPECT_NEAR(held[k], 0.95 * kStudies, bound);
   }
 }
 
@@ -133,6 +133,8 @@ TEST(ExponentialFitTest, ThreadsDoNotChangeTheIntervals) {
   const auto one = fit_learning(table, how);
   how.resampling.threads = 3;
   const auto three = fit_learning(table, how);
+  ASSERT_TRUE(one->time_constant && one->amplitude)
+      << (one->time_constant ? "" : one->time_constant.because());
   EXPECT_EQ(one->time_constant->low, three->time_constant->low);
   EXPECT_EQ(one->amplitude->high, three->amplitude->high);
   EXPECT_EQ(one->time_constant->level, 0.95);
