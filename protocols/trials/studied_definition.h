@@ -1,6 +1,6 @@
 #pragma once
 
-#include "protocols/trials/definition/trials_definition.h"
+#include "protocols/trials/definition/read_definition.h"
 #include "protocols/trials/subject/observer_plan.h"
 
 namespace haptrial::protocols {

@@ -9,7 +9,7 @@
 namespace haptrial::protocols {
 namespace {
 
-constexpr long kMostTrials = 100000;
+constexpr long kMostInBlock = 100000;
 
 std::string as_formula(const std::optional<double>& number, const std::string& text) {
   if (number) {
@@ -55,7 +55,7 @@ Block read_block(Table& table, bool procedures) {
     block.right_in_a_row = static_cast<int>(table.integer("right_in_a_row", 1, 1000));
   }
   if (table.has("trials") || block.practice || !procedures) {
-    block.trials = static_cast<int>(table.integer("trials", 1, kMostTrials));
+    block.trials = static_cast<int>(table.integer("trials", 1, kMostInBlock));
   }
   if (table.has("probe")) {
     Table probe = table.table("probe");
@@ -108,7 +108,7 @@ TrialDesign read_trial_design(Table& root, bool procedures) {
   Table design = root.table("design");
   d.participants = static_cast<int>(design.integer("participants", 1, 100000));
   if (design.has("break_after")) {
-    d.break_after = static_cast<int>(design.integer("break_after", 0, kMostTrials));
+    d.break_after = static_cast<int>(design.integer("break_after", 0, kMostInBlock));
   }
   if (design.has("break_duration")) {
     d.break_duration = design.number("break_duration", {0.0, 36000.0}, "s");
@@ -117,8 +117,8 @@ TrialDesign read_trial_design(Table& root, bool procedures) {
   d.factors = read_factors(root);
   if (root.has("practice")) {
     Table table = root.table("practice");
-    d.blocks.push_back({"practice", static_cast<int>(table.integer("trials", 1, kMostTrials)), true,
-                        0, read_values(table, {"trials", "right_in_a_row"}), std::nullopt});
+    d.blocks.push_back({"practice", static_cast<int>(table.integer("trials", 1, kMostInBlock)),
+                        true, 0, read_values(table, {"trials", "right_in_a_row"}), std::nullopt});
     if (table.has("right_in_a_row")) {
       d.blocks.back().right_in_a_row = static_cast<int>(table.integer("right_in_a_row", 1, 1000));
     }

@@ -8,8 +8,8 @@
 #include "core/base/error.h"
 #include "core/scene/scene.h"
 #include "protocols/trials/definition/defaults.h"
+#include "protocols/trials/definition/read_definition.h"
 #include "protocols/trials/definition/trial_values.h"
-#include "protocols/trials/definition/trials_definition.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -45,10 +45,9 @@ void check_forces(const TrialsDefinition& d, const std::vector<scene::Field>& fi
     const double force = asked_force(field.kind);
     const double most = std::min(field.limit, d.envelope.max_force);
     if (force > most) {
-      throw InputError(fmt::format("{}: fields.{} asks for {:g} N; allowed: at most {:g} [N], {}",
-                                   d.file_name, field.name, force, most,
-                                   field.limit < d.envelope.max_force ? "its limit"
-                                                                      : "envelope.max_force"));
+      throw InputError(fmt::format(
+          "{}: fields.{} asks for {:g} N; allowed: at most {:g} [N], {}", d.file_name, field.name,
+          force, most, field.limit < d.envelope.max_force ? "its limit" : "envelope.max_force"));
     }
   }
 }

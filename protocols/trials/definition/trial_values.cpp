@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "protocols/trials/definition/trials_definition.h"
+#include "protocols/trials/language/names.h"
 
 namespace haptrial::protocols {
 namespace {

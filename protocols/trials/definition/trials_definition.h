@@ -1,23 +1,14 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "core/scene/field.h"
-#include "core/scene/read/read_shape.h"
 #include "protocols/definition/definition.h"
 #include "protocols/definition/groups.h"
 #include "protocols/trials/definition/block.h"
 #include "protocols/trials/definition/question.h"
 #include "protocols/trials/definition/track.h"
-#include "protocols/trials/language/names.h"
-#include "protocols/trials/stages/read_stages.h"
-
-namespace haptrial {
-class RandomStream;
-}
 
 namespace haptrial::protocols {
 
@@ -27,13 +18,6 @@ inline constexpr const char* kTrials = "trials";  // its name in [experiment]
 struct Interval {
   std::string name;
   std::vector<GivenValue> values;
-};
-
-/// What an interval consists of once every name has a value.
-struct Presented {
-  std::vector<scene::Field> fields;
-  std::vector<scene::Region> regions;
-  std::vector<NamedStage> stages;
 };
 
 /// How trials look.
@@ -73,19 +57,5 @@ struct TrialsDefinition : Definition {
   /// How many combinations of its factors there are.
   int combinations(const Track& track) const;
 };
-
-/// The names of a definition, ready to be given values.
-std::unique_ptr<Names> read_names(Table& root, const TrialsDefinition& definition);
-
-/// What is presented with the values that the names have. Problems are noted.
-/// @param random  for durations; null: the shortest
-Presented read_presented(Table& root, const Names& names, double rate, RandomStream* random);
-
-/// The choice that is right with the values that the names have, from 0.
-/// @throws InputError for a value that is no choice's number or word
-int right_choice(const Names& names, const Question& question);
-
-/// Reads everything but who stands in for people. Problems are noted.
-void read_trials_definition(Table& root, std::string_view file_name, TrialsDefinition& definition);
 
 }  // namespace haptrial::protocols

@@ -73,7 +73,8 @@ StageAction read_action(Table& table, const std::string& stage) {
   } else if (what == "stroke") {
     action.probe = read_stroke(table);
   } else if (what == "reach") {
-    action.probe = subject::Reach{Eigen::Vector3d::Zero(), table.number("duration", {0.05, 60.0}, "s")};
+    action.probe =
+        subject::Reach{Eigen::Vector3d::Zero(), table.number("duration", {0.05, 60.0}, "s")};
     action.to_mark = true;
   } else if (what == "hold") {
     action.probe = subject::Hold{};

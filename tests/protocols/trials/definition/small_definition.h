@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "protocols/trials/definition/trials_definition.h"
+#include "protocols/trials/definition/read_definition.h"
 
 namespace haptrial::protocols {
 

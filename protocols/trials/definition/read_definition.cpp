@@ -1,0 +1,282 @@
+#include "protocols/trials/definition/read_definition.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/base/definition/table.h"
+#include "core/base/error.h"
+#include "core/scene/read/read_field.h"
+#include "protocols/trials/definition/defaults.h"
+#include "protocols/trials/definition/read_tracks.h"
+#include "protocols/trials/definition/trial_values.h"
+
+namespace haptrial::protocols {
+namespace {
+
+void read_view(Table& root, TrialsDefinition& d) {
+  Table table = root.table("display");
+  d.display = render::read_trial_display_style(table);
+  d.view.from_above = table.choice("seen_from", {"above", "front"}) == "above";
+  d.view.width = table.number("extent", {0.01, 1.0}, "m");
+  d.view.hand_radius = table.number("hand_radius", {0.0005, 0.05}, "m");
+  d.feedback_right = table.text("feedback_right");
+  d.feedback_wrong = table.text("feedback_wrong");
+  d.feedback_time = table.number("feedback_time", {0.0, 10.0}, "s");
+}
+
+std::vector<GivenValue> interval_values(Table& table) {
+  std::vector<GivenValue> values;
+  for (const std::string& key : table.keys()) {
+    const auto text = table.whole_text(key);
+    values.push_back({key, text ? *text : formula_of_value(table, key)});
+  }
+  return values;
+}
+
+void read_intervals(Table& root, TrialsDefinition& d) {
+  if (!root.has("intervals")) {
+    d.intervals.push_back({"only", {}});
+    return;
+  }
+  Table table = root.table("intervals");
+  d.random_intervals =
+      table.has("order") && table.choice("order", {"as stated", "random"}) == "random";
+  for (const std::string& name : table.keys_as_written()) {
+    if (name != "order") {
+      Table interval = table.table(name);
+      d.intervals.push_back({name, interval_values(interval)});
+    }
+  }
+  if (d.intervals.empty()) {
+    table.reject("order", "stands alone; add intervals: reference = { stiffness = 300.0 }");
+    d.intervals.push_back({"only", {}});
+  }
+}
+
+/// Two tracks may not set one variable in the same trial, nor a track what a block gives.
+void check_tracks(Table& root, const TrialsDefinition& d) {
+  std::set<std::string> factors;
+  for (const Factor& factor : d.order.factors) {
+    factors.insert(factor.name);
+  }
+  std::set<std::string> names;
+  for (const Track& track : d.tracks) {
+    const char* table = root.has("procedure") ? "procedure" : "procedures";
+    if (!names.insert(track.name).second) {
+      root.reject(table,
+                  fmt::format("has two tracks \"{}\"; give each a name of its own", track.name));
+    }
+    for (const std::string& factor : track.by) {
+      if (!factors.contains(factor)) {
+        root.reject(table,
+                    fmt::format("names the factor \"{}\" in `by`; allowed: {}", factor,
+                                factors.empty() ? "none, the definition has no [factors]"
+                                                : fmt::format("{}", fmt::join(factors, ", "))));
+      }
+    }
+    if (factors.contains(track.variable)) {
+      root.reject(table, fmt::format("sets \"{}\", which is a factor; let one of the two have "
+                                     "another name",
+                                     track.variable));
+    }
+    for (const Interval& interval : d.intervals) {
+      const auto given = [&](const GivenValue& value) { return value.name == track.variable; };
+      if (std::any_of(interval.values.begin(), interval.values.end(), given)) {
+        root.reject(table, fmt::format("sets \"{}\", which the interval {} gives a value as well; "
+                                       "keep one of the two",
+                                       track.variable, interval.name));
+      }
+    }
+  }
+}
+
+/// What a track learns from, and what it could learn at best.
+void check_learning(Table& root, const TrialsDefinition& d) {
+  const char* table = root.has("procedure") ? "procedure" : "procedures";
+  for (const Track& track : d.tracks) {
+    if (!track.counts.empty()) {
+      continue;
+    }
+    if (d.questions.empty() || d.questions.front().correct.empty()) {
+      root.reject(table,
+                  fmt::format("learns from right answers (\"{}\"), and no response says which "
+                              "is right; add `correct` to [response] or `counts` to the "
+                              "procedure",
+                              track.name));
+    } else if (track.staircase && track.staircase->up == 1) {
+      const double balance =
+          psychometric::balance_of(track.staircase->down, track.staircase->steps.back());
+      const double guess = 1.0 / static_cast<double>(d.questions.front().choices.size());
+      if (balance <= guess) {
+        root.reject(table,
+                    fmt::format("is in balance at {:.3g} % right answers (\"{}\"), which guessing "
+                                "gives; let more right answers make a step down, or steps up be "
+                                "larger",
+                                100.0 * balance, track.name));
+      }
+    }
+  }
+}
+
+/// Each [[procedures]] has its variable; in its trials the others have what [variables] says.
+void check_variables(Table& root) {
+  if (!root.has("procedures")) {
+    return;
+  }
+  std::set<std::string> variables;
+  for (Table& table : root.tables("procedures")) {
+    const std::string variable = table.text("variable");
+    if (!variables.insert(variable).second) {
+      table.reject("variable", fmt::format("\"{}\"", variable),
+                   "a variable that no other procedure sets; tracks of one procedure are its "
+                   "[[procedures.tracks]]");
+    }
+  }
+  Table stated = root.has("variables") ? root.table("variables") : root;
+  for (const std::string& variable : variables) {
+    if (variables.size() > 1 && (!root.has("variables") || !stated.has(variable))) {
+      root.reject("procedures",
+                  fmt::format("set {} in some trials only; add its value in the others to "
+                              "[variables]",
+                              variable));
+    }
+  }
+}
+
+void check_questions(Table& root, const TrialsDefinition& d,
+                     const std::vector<NamedStage>& stages) {
+  for (const Question& question : d.questions) {
+    const auto named = [&](const NamedStage& stage) { return stage.name == question.onset; };
+    if (!question.onset.empty() && std::none_of(stages.begin(), stages.end(), named)) {
+      root.reject(root.has("response") ? "response" : "responses",
+                  fmt::format("counts the reaction from the stage \"{}\", which is not there",
+                              question.onset));
+    }
+  }
+}
+
+/// The values of the first trial that could come: the first level of every factor, the lowest of
+/// every track.
+TrialValues sample_values(const TrialsDefinition& d, std::size_t block) {
+  TrialValues values;
+  values.block = block;
+  values.group = d.groups.empty() ? "" : d.groups.front().name;
+  for (std::size_t i = 0; i < d.intervals.size(); ++i) {
+    values.intervals.push_back(i);
+  }
+  for (const Track& track : d.tracks) {
+    values.levels.emplace_back(track.variable, track.applied(track.low));
+  }
+  for (const Factor& factor : d.order.factors) {
+    values.values.push_back({factor.name, factor.levels.front()});
+  }
+  const Block& given = d.order.blocks[block];
+  values.values.insert(values.values.end(), given.values.begin(), given.values.end());
+  return values;
+}
+
+/// Everything that a first trial would read: so that a mistake has its line.
+void read_first_trial(Table& root, TrialsDefinition& d) {
+  const std::unique_ptr<Names> names = read_names(root, d);
+  names->check(root);
+  std::vector<NamedStage> stages;
+  if (d.order.blocks.empty()) {
+    return;
+  }
+  for (std::size_t place = 0; place < d.intervals.size(); ++place) {
+    try {
+      give(*names, d, sample_values(d, 0));
+      give_interval(*names, d.intervals[place], place);
+    } catch (const InputError& error) {
+      root.reject("experiment", fmt::format("cannot begin: {}", error.what()));
+      return;
+    }
+    stages = read_presented(root, *names, d.rate, nullptr).stages;
+  }
+  for (const NamedStage& stage : stages) {
+    d.stages.push_back(stage.name);
+    const Until& until = stage.stage.until;
+    d.stage_time +=
+        std::max(until.time, until.hold) + (std::isfinite(stage.stage.timeout) ? 1.0 : 0.0);
+  }
+  check_questions(root, d, stages);
+}
+
+}  // namespace
+
+std::unique_ptr<Names> read_names(Table& root, const TrialsDefinition& d) {
+  auto names = std::make_unique<Names>();
+  declare_names(*names, d);
+  names->read(root);
+  return names;
+}
+
+Presented read_presented(Table& root, const Names& names, double rate, RandomStream* random) {
+  Presented presented;
+  std::vector<std::string> fields, regions;
+  if (root.has("fields")) {
+    Table table = root.table("fields");
+    presented.fields = scene::read_fields(table, rate, names);
+  }
+  if (root.has("regions")) {
+    Table table = root.table("regions");
+    presented.regions = scene::read_regions(table, names);
+  }
+  for (const scene::Field& field : presented.fields) {
+    fields.push_back(field.name);
+  }
+  for (const scene::Region& region : presented.regions) {
+    regions.push_back(region.name);
+  }
+  const StageSource source{fields, regions, names,
+                           [&names](const std::string& text) { return names.word(text); }, random};
+  presented.stages = read_stages(root, source);
+  return presented;
+}
+
+int right_choice(const Names& names, const Question& question) {
+  const double value = names.value(question.correct);
+  const auto word = names.word_of(value);
+  const auto count = static_cast<int>(question.choices.size());
+  for (int i = 0; i < count; ++i) {
+    const bool right = word ? question.choices[static_cast<std::size_t>(i)].value == *word
+                            : value == question.first + i;
+    if (right) {
+      return i;
+    }
+  }
+  throw InputError(fmt::format("the right answer to \"{}\" is {} (\"{}\"), which is no choice",
+                               question.text, word ? *word : fmt::format("{:g}", value),
+                               question.correct));
+}
+
+void read_trials_definition(Table& root, std::string_view file_name, TrialsDefinition& d) {
+  root.fill_in(trials_defaults());
+  root.leave("analysis");
+  root.leave("groups");
+  read_common(root, file_name, d);
+  d.protocol = kTrials;
+  read_view(root, d);
+  d.groups = study_groups(root.source(), file_name);
+  d.questions = read_questions(root, d.keys);
+  d.tracks = read_tracks(root);
+  d.order = read_trial_design(root, !d.tracks.empty());
+  read_intervals(root, d);
+  check_common(root, d);
+  check_tracks(root, d);
+  check_learning(root, d);
+  check_variables(root);
+  read_first_trial(root, d);
+  d.design.participants = d.order.participants;
+  d.design.break_after = d.order.break_after;
+  d.design.break_duration = d.order.break_duration;
+  d.design.trials = std::max(1, d.most_trials());
+  d.design.practice = d.practice_trials();
+  d.design.repetitions = 1;
+}
+
+}  // namespace haptrial::protocols
