@@ -48,12 +48,15 @@ Choice read_choice(Table& table, std::size_t place, KeyBits& keys) {
   choice.label = table.has("label") ? table.text("label") : choice.value;
   if (table.has("keys")) {
     choice.keys = keys_of(table, "keys", keys);
+    const std::vector<std::string> names = table.texts("keys");
+    choice.hint = names.empty() ? "" : names.front();
   }
   if (table.has("buttons")) {
     choice.buttons = buttons_of(table, "buttons");
   }
   if (choice.keys == 0 && choice.buttons == 0) {
     choice.keys = keys.bit_of(static_cast<int>('1' + place));
+    choice.hint = fmt::format("{}", place + 1);
     choice.buttons = std::uint32_t{1} << place;
   }
   if (choice.value.size() > record::kAnswerBytes) {
@@ -95,7 +98,7 @@ void read_scale(Table& table, Question& question, KeyBits& keys) {
     const std::string digit = fmt::format("{:.0f}", value);
     const auto button = static_cast<unsigned>(value - range[0]);
     question.choices.push_back(
-        {digit, digit, keys.bit_of(digit.front()), std::uint32_t{1} << button});
+        {digit, digit, "", keys.bit_of(digit.front()), std::uint32_t{1} << button});
   }
 }
 

@@ -30,6 +30,7 @@ enum class Feedback : std::uint8_t { kNever, kPractice, kAlways };
 struct Choice {
   std::string value;         // what is recorded
   std::string label;         // what is shown
+  std::string hint;          // how it is given: "1"; shown before the label; empty: by buttons only
   std::uint32_t keys{0};     // of KeyBits: any of these gives it
   std::uint32_t buttons{0};  // of the device, likewise
 };

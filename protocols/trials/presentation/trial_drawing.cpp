@@ -18,7 +18,9 @@ std::string question_body(const Question& question, const TrialView& view) {
   std::string body;
   for (std::size_t i = 0; i < question.choices.size(); ++i) {
     const Choice& choice = question.choices[i];
-    body += fmt::format("{}{}", body.empty() ? "" : "\n", choice.label);
+    body +=
+        fmt::format("{}{}{}", body.empty() ? "" : "\n",
+                    choice.hint.empty() ? "" : fmt::format("[{}]  ", choice.hint), choice.label);
   }
   return body;
 }
@@ -91,8 +93,8 @@ class TrialDrawing final : public Drawing {
       text_.begin();
       const render::TextStyle style{static_cast<int>(0.12 * 2.0 * middle_.y()), true,
                                     d_.display.marker_colour};
-      text_.line(fmt::format("{}", view.interval), {middle_.x(), 0.4 * middle_.y()}, style,
-                 render::Align::kCentre);
+      const double margin = d_.display.margin;
+      text_.line(fmt::format("{}", view.interval), {margin, margin + style.size}, style);
       text_.end();
     }
   }

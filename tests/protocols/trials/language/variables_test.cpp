@@ -60,15 +60,15 @@ TEST_F(VariablesTest, CirclesAreNamed) {
 }
 
 TEST_F(VariablesTest, AMeaningIsStatedOnceAndAGivenValueStandsBeforeIt) {
-  EXPECT_THROW(variables_.define("weber", Expression(1.0)), InputError);
-  const double stated = variables_.value("weber");
-  variables_.declare("weber");
-  EXPECT_EQ(variables_.value("weber"), stated);
-  variables_.set("weber", 5.0);
-  EXPECT_EQ(variables_.value("weber"), 5.0);
-  EXPECT_THAT(variables_.given(), testing::Contains("weber"));
+  EXPECT_THROW(variables_.define("reference", Expression(1.0)), InputError);
+  const double stated = variables_.value("reference");
+  variables_.declare("reference");
+  EXPECT_EQ(variables_.value("reference"), stated);
+  variables_.set("reference", 5.0);
+  EXPECT_EQ(variables_.value("reference"), 5.0);
+  EXPECT_THAT(variables_.given(), testing::Contains("reference"));
   variables_.forget_given();
-  EXPECT_EQ(variables_.value("weber"), stated);
+  EXPECT_EQ(variables_.value("reference"), stated);
 }
 
 }  // namespace

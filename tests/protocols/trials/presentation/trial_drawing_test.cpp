@@ -1,0 +1,79 @@
+#include "protocols/trials/presentation/trial_drawing.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "core/render/gl/image.h"
+#include "core/render/gl/offscreen.h"
+#include "protocols/trials/presentation/trial_view.h"
+#include "tests/protocols/trials/definition/small_definition.h"
+
+namespace haptrial::protocols {
+namespace {
+
+class TrialDrawingTest : public testing::Test {
+ protected:
+  TrialDrawingTest() : context_(kWidth, kHeight) {
+    read_small(small_trials(kSmallStaircase), definition_);
+    drawing_ = trial_drawing(definition_)(context_.gl(), kWidth, kHeight);
+  }
+  render::Image picture_of(const TrialView& view, const std::string& name) {
+    drawing_->draw(stimulus::Shown(view));
+    render::Image image = context_.read();
+    if (const char* folder = std::getenv("HAPTRIAL_WRITE_PICTURES")) {
+      render::write_png(std::string(folder) + "/" + name + ".png", image);
+    }
+    return image;
+  }
+  /// Pixels that are not background.
+  static auto ink(const render::Image& image) {
+    std::ptrdiff_t count = 0;
+    for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
+      count += image.rgb[i] < 200 || image.rgb[i + 1] < 200 || image.rgb[i + 2] < 200 ? 1 : 0;
+    }
+    return count;
+  }
+  static constexpr int kWidth = 640, kHeight = 360;
+  TrialsDefinition definition_;
+  render::OffscreenContext context_;
+  std::unique_ptr<Drawing> drawing_;
+};
+
+TEST_F(TrialDrawingTest, ShowsWhatAStageNamesAndNothingElse) {
+  TrialView view;
+  view.interval = 1;
+  EXPECT_EQ(ink(picture_of(view, "nothing")), 0);
+  view.hand_shown = true;
+  const auto hand = ink(picture_of(view, "hand"));
+  // A disc of 3 mm in a picture of 16 cm.
+  const double radius = 0.003 / 0.16 * kWidth;
+  EXPECT_NEAR(static_cast<double>(hand), 3.14159 * radius * radius,
+              0.1 * 3.14159 * radius * radius);
+  view.marks[0] = {{0.0F, 0.02F, 0.0F}, 0.008F};
+  view.mark_count = 1;
+  view.number_shown = true;
+  EXPECT_GT(ink(picture_of(view, "interval")), hand + 100);
+}
+
+TEST_F(TrialDrawingTest, AsksAndTellsWhetherItWasRight) {
+  TrialView view;
+  view.question = 1;
+  const auto question = ink(picture_of(view, "question"));
+  EXPECT_GT(question, 500);
+  view.verdict = Verdict::kRight;
+  const auto right = ink(picture_of(view, "right"));
+  EXPECT_GT(right, 0);
+  EXPECT_LT(right, question);
+}
+
+TEST_F(TrialDrawingTest, PixelsArePlaces) {
+  const auto p = drawing_->to_world({0.5 * kWidth + 0.25 * kWidth, 0.5 * kHeight});
+  ASSERT_TRUE(p);
+  EXPECT_NEAR(p->x(), 0.04, 1e-12);
+  EXPECT_NEAR(p->y(), 0.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace haptrial::protocols
