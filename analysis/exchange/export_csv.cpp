@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 #include <set>
+#include <variant>
 
 #include "analysis/exchange/columns.h"
 #include "analysis/exchange/sample_text.h"
@@ -163,6 +164,58 @@ class Tables {
   std::size_t index_{0};
 };
 
+/// A table of a protocol, of all sessions together.
+struct OwnTable {
+  const record::TableDescription* table;
+  std::string text;  // empty: no session has a row
+};
+
+Docs own_docs(const record::TableDescription& table) {
+  Docs docs{kSubject, kSession};
+  for (const record::Column& column : table.schema().columns) {
+    docs.push_back(doc_of(table.schema(), column.name));
+  }
+  return docs;
+}
+
+void add_rows(OwnTable& own, const ExportSession& session, const record::SessionReader& reader) {
+  if (!reader.has(*own.table) || reader.count(*own.table) == 0) {
+    return;
+  }
+  if (own.text.empty()) {
+    own.text = heading(own_docs(*own.table), Delimited::kCsv);
+  }
+  RowText row(own.text, Delimited::kCsv);
+  reader.each_row(*own.table, [&](const std::vector<record::Cell>& cells) {
+    row.add(session.info.subject).add(session.number);
+    for (const record::Cell& cell : cells) {
+      std::visit([&](const auto& value) { row.add(value); }, cell);
+    }
+    row.end();
+  });
+}
+
+/// What belongs to passes; ticks and what a session has from the beginning are too much for a
+/// table.
+std::vector<OwnTable> own_tables(const std::vector<ExportSession>& sessions,
+                                 const record::TableList& tables) {
+  std::vector<OwnTable> all;
+  for (const record::TableDescription* table : tables) {
+    const record::RowsOf of = table->of();
+    if (of == record::RowsOf::kPass || of == record::RowsOf::kEndedPass) {
+      all.push_back({table, ""});
+    }
+  }
+  for (const ExportSession& session : sessions) {
+    const record::SessionReader reader(session.file);
+    for (OwnTable& own : all) {
+      add_rows(own, session, reader);
+    }
+  }
+  std::erase_if(all, [](const OwnTable& own) { return own.text.empty(); });
+  return all;
+}
+
 nlohmann::ordered_json described(const char* what, const Docs& docs) {
   nlohmann::ordered_json json{{"description", what}};
   for (const auto& doc : docs) {
@@ -178,7 +231,8 @@ nlohmann::ordered_json described(const char* what, const Docs& docs) {
   return json;
 }
 
-std::string dictionary(const CsvOptions& options, bool simulated) {
+std::string dictionary(const CsvOptions& options, const std::vector<OwnTable>& own,
+                       bool simulated) {
   nlohmann::ordered_json json;
   json["simulated"] = simulated;
   json["missing"] = "an empty field";
@@ -188,6 +242,10 @@ std::string dictionary(const CsvOptions& options, bool simulated) {
       described("a row for each pass; a trial has one of each phase, more if it was interrupted",
                 trial_docs(options.phases));
   files["events.csv"] = described("what happened when", happening_docs());
+  for (const OwnTable& table : own) {
+    files[table.table->name() + ".csv"] =
+        described(table.table->schema().description, own_docs(*table.table));
+  }
   if (options.samples) {
     files["samples/*.csv.gz"] = described("a row for each tick of the servo loop", sample_docs());
     files["stimuli/*.csv.gz"] =
@@ -249,7 +307,11 @@ CsvSummary export_csv(std::span<const fs::path> files, const fs::path& folder,
   out.write("sessions.csv", tables.sessions);
   out.write("trials.csv", tables.trials);
   out.write("events.csv", tables.events);
-  out.write("dictionary.json", dictionary(options, simulated));
+  const std::vector<OwnTable> own = own_tables(sessions, options.tables);
+  for (const OwnTable& table : own) {
+    out.write(table.table->name() + ".csv", table.text);
+  }
+  out.write("dictionary.json", dictionary(options, own, simulated));
   if (options.samples) {
     const auto stems = file_stems(sessions);
     share_out(

@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "analysis/exchange/export_sessions.h"
+#include "core/record/table/table_description.h"
 
 namespace haptrial::exchange {
 
 struct CsvOptions {
   bool samples{false};  // also every tick and every stimulus, a .csv.gz for each session
   std::vector<std::pair<std::string, std::string>> phases{};  // of protocols, with meanings
+  record::TableList tables{};  // that sessions may have beside those of every session
   int jobs{1};
 };
 
@@ -23,7 +25,8 @@ struct CsvSummary {
 };
 
 /// Writes session files as tidy tables: sessions.csv, trials.csv (a row for each pass), events.csv,
-/// and what each column of them and of scores.csv means in dictionary.json.
+/// a table for each of `tables` that has rows for passes (responses.csv, levels.csv, ...), and what
+/// each column of them and of scores.csv means in dictionary.json.
 /// @param folder  new or empty; it appears whole or not at all.
 /// @throws InputError when there is no file, or one is damaged or given twice; RunError when the
 /// disk is full.

@@ -310,6 +310,19 @@ std::vector<std::int64_t> SessionReader::integers(const TableDescription& table,
   return values;
 }
 
+void SessionReader::each_row(const TableDescription& table,
+                             const std::function<void(const std::vector<Cell>&)>& take) const {
+  const TableSchema& schema = table.schema();
+  const std::size_t bytes = schema.row_bytes();
+  impl_->each_chunk(impl_->own(table), 0, count(table),
+                    [&](const BytePlanes& planes, std::size_t at, std::size_t, std::size_t rows) {
+                      const auto packed = table.packed(planes, at + rows, impl_->version);
+                      for (std::size_t i = at; i < at + rows; ++i) {
+                        take(cells_of(schema, std::span(packed).subspan(i * bytes, bytes)));
+                      }
+                    });
+}
+
 std::vector<TimingRow> SessionReader::timing() const {
   std::vector<TimingRow> bins;
   for (const TimingRow& row : impl_->all(impl_->timing, timing_table())) {

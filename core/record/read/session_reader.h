@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include "core/record/rows/response.h"
 #include "core/record/rows/run_types.h"
 #include "core/record/rows/session_types.h"
+#include "core/record/table/cells.h"
 #include "core/record/table/table.h"
 
 namespace haptrial::record {
@@ -90,6 +92,9 @@ class SessionReader {
   /// One column of integers of a table that the file has.
   std::vector<std::int64_t> integers(const TableDescription& table, const char* column,
                                      std::uint64_t first, std::uint64_t count) const;
+  /// Every row of a table that the file has, value by value, in the present layout.
+  void each_row(const TableDescription& table,
+                const std::function<void(const std::vector<Cell>&)>& take) const;
   std::vector<ResponseRow> responses() const { return rows<ResponseRow>(); }
 
   std::vector<TimingRow> timing() const;  // of all runs together, in ascending order

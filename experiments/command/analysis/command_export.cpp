@@ -59,9 +59,9 @@ void export_as_bids(const ExportOptions& options, const std::vector<fs::path>& f
 
 void export_as_csv(const ExportOptions& options, const std::vector<fs::path>& files, int jobs) {
   ExportWatch watch(files);
-  const auto done =
-      exchange::export_csv(files, options.csv, {options.samples, known_phases(), jobs},
-                           [&](std::uint64_t samples) { watch(samples); });
+  const auto done = exchange::export_csv(files, options.csv,
+                                         {options.samples, known_phases(), known_tables(), jobs},
+                                         [&](std::uint64_t samples) { watch(samples); });
   fmt::print("{}, {}, {}\ntables: {}\n", counted(done.sessions, "session"),
              counted(done.passes, "pass"), counted(done.samples, "sample"), options.csv);
 }

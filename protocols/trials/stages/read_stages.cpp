@@ -46,8 +46,6 @@ class StageReader {
       result_.stage.fields |= field < 0 ? 0 : std::uint64_t{1} << static_cast<unsigned>(field);
     }
     result_.show = texts("show");
-    result_.sound = table_.has("sound") ? table_.text("sound") : "";
-    result_.marker = table_.has("marker") ? table_.text("marker") : "";
     Table until = table_.table("until");
     read_until(until);
     read_timeout();

@@ -21,8 +21,6 @@ namespace haptrial::protocols {
 struct NamedStage {
   std::string name;
   std::vector<std::string> show;  // what the participant sees
-  std::string sound;              // a file; empty: none
-  std::string marker;             // sent when the stage begins; empty: none
   Stage stage;
 };
 
@@ -42,7 +40,6 @@ struct StageSource {
 ///     name      unlike every other stage's
 ///     [fields]  names; together they act, the others do not
 ///     [show]    names
-///     [sound], [marker]
 ///     until     one or more of: time [s], inside (region), contact (field), speed_below,
 ///               speed_above [m/s], buttons, keys (numbers from 0); [for] = time for which they
 ///               hold [s], or [shortest, longest]

@@ -54,8 +54,6 @@ timeout = { after = 5.0, then = "abort" }
 [[stages]]
 name = "press"
 fields = ["floor", "guide"]
-sound = "cue.wav"
-marker = "interval"
 until = { time = 2.5 }
 require = { max_of = "depth", field = "floor", at_least = 0.005, else = "repeat" }
 onset = { speed_above = 0.03 }
@@ -71,8 +69,6 @@ onset = { speed_above = 0.03 }
   EXPECT_THAT(stages[0].show, ElementsAre("hand"));
   EXPECT_EQ(stages[1].stage.fields, 0b11U);
   EXPECT_EQ(stages[1].stage.until.time, 2.5);
-  EXPECT_EQ(stages[1].sound, "cue.wav");
-  EXPECT_EQ(stages[1].marker, "interval");
   ASSERT_TRUE(stages[1].stage.require);
   EXPECT_EQ(stages[1].stage.require->field, 1);
   EXPECT_EQ(stages[1].stage.require->at_least, 0.005);
