@@ -3,12 +3,13 @@
 // study of docs/algorithms/psychometric-fits.md: observers with a known function, eight levels of
 // 40 trials each, and how often the 95 % interval holds their threshold.
 //
-//     bench_psychometric_fit [observers] [bootstrap resamples]
+//     bench_psychometric_fit [observers] [bootstrap resamples] [observers of the Bayesian fit]
 
 #include <fmt/format.h>
 #include <time.h>
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -183,6 +184,8 @@ void cover_by_posterior(const Observer& observer, std::size_t observers) {
 int main(int argc, char** argv) {
   const std::size_t observers = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 1000;
   const std::size_t resamples = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 999;
+  const std::size_t of_posterior = argc > 3 ? std::strtoul(argv[3], nullptr, 10) : observers;
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   for (const char* sigmoid : {"norm", "logistic", "Weibull", "gumbel"}) {
     for (const Task task : {Task::kForcedChoice, Task::kYesNo, Task::kEqualAsymptote}) {
       time_fit({sigmoid, task, 0.02});
@@ -196,7 +199,7 @@ int main(int argc, char** argv) {
     cover_by_bootstrap(observer, observers, resamples, true);
     cover_by_bootstrap(observer, observers, resamples, false);
     if (study.task == Task::kForcedChoice) {
-      cover_by_posterior(observer, observers);
+      cover_by_posterior(observer, of_posterior);
     }
   }
   return 0;
