@@ -12,6 +12,7 @@
 #include "core/psychometric/procedure/staircase.h"
 #include "core/psychometric/quest/psi_definition.h"
 #include "core/psychometric/quest/quest_plus.h"
+#include "protocols/trials/definition/expectation.h"
 #include "protocols/trials/definition/track.h"
 
 namespace haptrial::protocols {
@@ -145,7 +146,7 @@ void read_estimate(const TrackKeys& keys, StaircaseParameters& p) {
 void read_staircase(const TrackKeys& keys, Track& track) {
   read_range(keys, track);
   StaircaseParameters p;
-  p.axis = read_axis(keys, track);
+  p.axis = track.axis = read_axis(keys, track);
   p.low = track.low;
   p.high = track.high;
   p.start = number(keys, "start", {track.low, track.high}, track.unit.c_str());
@@ -178,7 +179,7 @@ void read_staircase(const TrackKeys& keys, Track& track) {
 void read_pest(const TrackKeys& keys, Track& track) {
   read_range(keys, track);
   PestParameters p;
-  p.axis = read_axis(keys, track);
+  p.axis = track.axis = read_axis(keys, track);
   p.low = track.low;
   p.high = track.high;
   p.start = number(keys, "start", {track.low, track.high}, track.unit.c_str());
@@ -254,7 +255,7 @@ PsiParameters read_psi_function(const TrackKeys& keys, Track& track) {
   const auto [least, most] = std::minmax_element(p.levels.begin(), p.levels.end());
   track.low = p.levels.empty() ? 0.0 : *least;
   track.high = p.levels.empty() ? 1.0 : *most;
-  p.function.axis = read_axis(keys, track);
+  p.function.axis = track.axis = read_axis(keys, track);
   p.function.guess = number_or(keys, "guess", 0.5, {0.0, 0.99}, "1");
   if (keys.has("function")) {
     try {
@@ -310,6 +311,9 @@ void read_procedure(const TrackKeys& keys, Track& track) {
     read_constant(keys, track);
   } else {
     read_magnitude(keys, track);
+  }
+  if (keys.has("expect")) {
+    track.expected = read_expectation(keys.of("expect"), track.axis);
   }
 }
 

@@ -20,7 +20,7 @@ namespace haptrial::protocols {
 ///     [by]       factors
 ///     [counts]   formula of the outcome: of a staircase, PEST, psi or constant stimuli 1 or 0, of
 ///                magnitudes a number above 0
-///     [resolution]
+///     [resolution], [expect] (expectation.h)
 ///     range      [lowest, highest]; of listed levels theirs
 ///     [scale]    of steps and functions: "linear", "log10" or "decibel"; [origin]
 ///

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/psychometric/function/psychometric_function.h"
 #include "core/psychometric/procedure/procedure.h"
 #include "core/psychometric/procedure/staircase_rule.h"
 
@@ -25,7 +26,9 @@ struct Track {
   double resolution{0.0};      // the level is rounded to a multiple of it; 0: not [unit]
   int most_trials{0};          // of one track
   bool listed{false};          // its trials are known from the beginning
-  std::optional<psychometric::StaircaseParameters> staircase;  // of a staircase
+  psychometric::Axis axis;     // of its steps
+  std::optional<psychometric::StaircaseParameters> staircase;    // of a staircase
+  std::optional<psychometric::PsychometricParameters> expected;  // that the study counts on
   std::function<std::unique_ptr<psychometric::Procedure>(std::uint64_t seed,
                                                          const std::string& name)>
       begin;

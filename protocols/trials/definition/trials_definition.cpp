@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/base/text/counted.h"
+#include "protocols/trials/definition/expectation.h"
 
 namespace haptrial::protocols {
 
@@ -54,7 +55,12 @@ std::vector<std::string> TrialsDefinition::description() const {
                     track.unit.empty() ? "" : fmt::format(" [{}]", track.unit),
                     counted(track.most_trials, "trial", "trials"),
                     count > 1 ? fmt::format(" in each of {} combinations", count) : ""));
+    if (const auto prediction = predicted(track)) {
+      lines.push_back(*prediction);
+    }
   }
+  lines.push_back(fmt::format("about {:.0f} minutes per participant, breaks not counted",
+                              longest(most_trials()) / 60.0));
   return lines;
 }
 
