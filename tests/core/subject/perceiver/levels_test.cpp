@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "core/subject/perceiver/level_observer.h"
 #include "core/subject/perceiver/sense.h"
@@ -69,9 +70,11 @@ TEST(LevelsTest, AnswersThroughTheHandFollowTheFunctionOfTheLevels) {
   const LevelObserver observer(SenseParameters{}, Quantity::kStiffness, {}, {}, kSeed);
   for (const double ratio : {0.8, 1.0, 1.15, 1.4}) {
     const double p = predicted(observer, reference, ratio * reference);
-    EXPECT_NEAR(through_the_hand(reference, ratio * reference, press, kTrials), p,
-                four_sigma(p, kTrials))
-        << ratio;
+    const double answered = through_the_hand(reference, ratio * reference, press, kTrials);
+    EXPECT_NEAR(answered, p, four_sigma(p, kTrials)) << ratio;
+    const int percent = static_cast<int>(std::lround(100.0 * ratio));
+    RecordProperty("hand_at_" + std::to_string(percent), std::to_string(answered));
+    RecordProperty("levels_at_" + std::to_string(percent), std::to_string(p));
   }
 }
 

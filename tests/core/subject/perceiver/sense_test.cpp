@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include "core/subject/perceiver/trial_stream.h"
 #include "tests/core/subject/perceiver/hand_rig.h"
@@ -94,6 +95,10 @@ TEST(SenseTest, OneModelGivesTheFractionsOfForceStiffnessAndCompliance) {
   EXPECT_NEAR(pressed, force / (1.0 - defaults.displacement_bias), 0.05 * pressed);
   const double compliance = weber(Quantity::kCompliance, 1.0 / 300.0, soft, press);
   EXPECT_NEAR(compliance, 0.15, 0.01);
+  RecordProperty("force", std::to_string(force));
+  RecordProperty("stiffness_at_a_fixed_deflection", std::to_string(fixed));
+  RecordProperty("stiffness_pressed", std::to_string(pressed));
+  RecordProperty("compliance", std::to_string(compliance));
 }
 
 TEST(SenseTest, ViscosityFrictionAndExtentHaveTheirFractions) {
