@@ -25,8 +25,9 @@ struct ParticipantResampling {
 /// Bias-corrected and accelerated intervals by drawing participants with replacement, all numbers
 /// from the same draws. So few participants make such an interval too narrow; it is widened to the
 /// level 1 - 2 Φ(-t sqrt(n / (n - 1))), with Student's t of n - 1 degrees of freedom.
-/// Source: Hesterberg 2015, The American Statistician 69, 371, §5.3 (expanded intervals).
+/// Source: Hesterberg 2015, The American Statistician 69, 371 (expanded percentile intervals).
 /// @param estimates  of all participants; one result for each.
+/// A skewed number from few participants needs 2,000 draws or more.
 /// Undefined, each on its own, as bca_interval and with fewer than three participants.
 /// @throws std::invalid_argument when the level breaks its bound.
 std::vector<Defined<BootstrapInterval>> participant_intervals(std::size_t participants,

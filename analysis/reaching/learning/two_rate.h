@@ -79,6 +79,6 @@ struct TwoRateLearning {
 /// Each draw is searched from the fit of everybody. Undefined as fit_two_rate.
 Defined<TwoRateLearning> fit_two_rate_learning(
     std::span<const AdaptationSequence> participants, const TwoRateOptions& options = {},
-    const ParticipantResampling& how = {.resampling = {.stream = "two-rate", .count = 999}});
+    const ParticipantResampling& how = {.resampling = {.stream = "two-rate", .count = 1999}});
 
 }  // namespace haptrial::analysis

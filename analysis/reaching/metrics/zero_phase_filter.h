@@ -14,7 +14,7 @@ namespace haptrial::analysis {
 ///     gain(f) = 1 / (1 + (√2 - 1) (tan(π f / rate) / tan(π cutoff / rate))^order)
 ///
 /// Order and cut-off are those of both runs together: the gain at the cut-off is 1/√2.
-/// Source: Winter 2009, Biomechanics and Motor Control of Human Movement, ch. 3.
+/// Source: Winter 2009, Biomechanics and Motor Control of Human Movement.
 struct ZeroPhaseFilter {
   int order{4};         // even, 2 .. 16; each run has half of it
   double cutoff{20.0};  // inside (0, rate / 2) [Hz]
