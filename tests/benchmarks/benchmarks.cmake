@@ -4,8 +4,12 @@ foreach(source ${benchmarks})
   get_filename_component(name ${source} NAME_WE)
   string(REGEX REPLACE "_bench$" "" name ${name})
   add_executable(bench_${name} ${source})
+  # These build without the rest.
   if(name STREQUAL scene)
-    target_link_libraries(bench_scene PRIVATE haptrial_scene)  # builds without the rest
+    target_link_libraries(bench_scene PRIVATE haptrial_scene)
+    continue()
+  elseif(name MATCHES "^psychometric")
+    target_link_libraries(bench_${name} PRIVATE haptrial_psychometric haptrial_psychometric_models)
     continue()
   endif()
   target_link_libraries(bench_${name} PRIVATE haptrial_command_line fmt::fmt Threads::Threads)
@@ -17,8 +21,6 @@ target_sources(bench_null_reports PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/for
 target_sources(bench_null_relabelled
                PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/force_training/comparison/null_comparisons.cpp
                        ${CMAKE_SOURCE_DIR}/tests/analysis/bone_drilling/validity/null_validity.cpp)
-target_link_libraries(bench_psychometric PRIVATE haptrial_psychometric_quest haptrial_psychometric_prediction)
-target_link_libraries(bench_psychometric_fit PRIVATE haptrial_psychometric_fit)
 target_compile_definitions(bench_servo PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 target_compile_definitions(bench_mesh PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 # bench_distance compares with those of its peers that are installed.

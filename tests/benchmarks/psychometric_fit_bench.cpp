@@ -21,6 +21,9 @@
 namespace {
 
 using namespace haptrial::analysis;
+using haptrial::psychometric::parameters_named;
+using haptrial::psychometric::PsychometricFunction;
+using haptrial::psychometric::PsychometricParameters;
 
 double seconds() {
   timespec now{};
@@ -37,33 +40,33 @@ struct Study {
 /// Eight levels over 1.2 widths around the threshold 2 (in the coordinate).
 class Observer {
  public:
-  explicit Observer(const Study& study) : study_(study), sigmoid_(sigmoid_named(study.sigmoid)) {}
+  explicit Observer(const Study& study)
+      : study_(study), shape_(parameters_named(study.sigmoid, 0.5)) {}
 
   PsychometricFunction function() const {
     const double guess = study_.task == Task::kForcedChoice ? 0.5 : 0.02;
-    return {sigmoid_, {2.0, 1.0, study_.lapse, guess}};
+    return fitted_function(shape_, {2.0, 1.0, study_.lapse, guess});
   }
 
   std::vector<TrialBlock> answers(std::uint64_t number) const {
     haptrial::RandomStream random(number, std::string("observer ") + study_.sigmoid);
     std::vector<TrialBlock> blocks;
     for (int i = 0; i < 8; ++i) {
-      TrialBlock block{sigmoid_.level(1.4 + 1.2 * i / 7.0), 0, 40};
+      TrialBlock block{shape_.axis.level(1.4 + 1.2 * i / 7.0), 0, 40};
+      const double p = function()(block.level);
       for (int t = 0; t < 40; ++t) {
-        block.correct += random.uniform() < function().at(block.level) ? 1 : 0;
+        block.correct += random.uniform() < p ? 1 : 0;
       }
       blocks.push_back(block);
     }
     return blocks;
   }
 
-  LikelihoodOptions options() const {
-    return {.shape = sigmoid_named(study_.sigmoid), .task = study_.task};
-  }
+  LikelihoodOptions options() const { return {.function = shape_, .task = study_.task}; }
 
  private:
   Study study_;
-  Sigmoid sigmoid_;
+  PsychometricParameters shape_;
 };
 
 std::string name_of(const Study& s) {
@@ -128,8 +131,8 @@ void cover_by_bootstrap(const Observer& observer, std::size_t observers, std::si
     how.resampling.seed = i;
     fits[i] = bootstrap_fit(observer.answers(i), observer.options(), asked, how);
   });
-  const auto& truth = observer.function().parameters();
-  const double truths[] = {observer.function().threshold_level(), truth.width};
+  const auto truth = observer.function().parameters();
+  const double truths[] = {truth.threshold, truth.width};
   const char* const names[] = {"threshold", "width"};
   for (std::size_t a = 0; a < 2; ++a) {
     Counted counted;
@@ -151,7 +154,7 @@ void cover_by_bootstrap(const Observer& observer, std::size_t observers, std::si
 
 void cover_by_posterior(const Observer& observer, std::size_t observers) {
   BayesianOptions options;
-  options.shape = observer.options().shape;
+  options.function = observer.options().function;
   options.task = observer.options().task;
   std::vector<BayesianFit> fits(observers);
   const double start = seconds();
@@ -160,12 +163,13 @@ void cover_by_posterior(const Observer& observer, std::size_t observers) {
   }
   const double each = (seconds() - start) / static_cast<double>(observers);
   const auto truth = observer.function().parameters();
+  const double middle = truth.axis.at(truth.threshold);
   Counted threshold, width, mean;
   for (const BayesianFit& fit : fits) {
     const auto& t = fit.intervals[kThreshold][0];
     const auto& w = fit.intervals[kWidth][0];
-    threshold.add(fit.map.threshold, truth.threshold, true, t.low, t.high);
-    mean.add(fit.mean.threshold, truth.threshold, true, t.low, t.high);
+    threshold.add(fit.map.threshold, middle, true, t.low, t.high);
+    mean.add(fit.mean.threshold, middle, true, t.low, t.high);
     width.add(fit.map.width, truth.width, true, w.low, w.high);
   }
   threshold.print("threshold, posterior (largest)");

@@ -15,9 +15,7 @@ using Steps = std::array<int, kDimensions>;
 using Borders = std::array<PsychometricPrior::Border, kDimensions>;
 
 void check_bayesian(const BayesianOptions& options) {
-  if (options.task == Task::kForcedChoice && options.alternatives < 2) {
-    throw std::invalid_argument("alternatives must be at least 2");
-  }
+  check_task(options.task, options.function);
   if (!(options.border_mass >= 0.0 && options.border_mass < 1.0)) {
     throw std::invalid_argument("border_mass must lie in [0, 1)");
   }
@@ -78,7 +76,7 @@ Borders first_borders(const PsychometricPrior& prior, const BayesianOptions& opt
     }
   }
   if (options.task == Task::kForcedChoice) {
-    borders[kGuess] = {1.0 / options.alternatives, 1.0 / options.alternatives};
+    borders[kGuess] = {options.function.guess, options.function.guess};
   } else if (options.task == Task::kEqualAsymptote) {
     borders[kGuess] = {0.0, 0.0};  // follows the lapse rate
   }
@@ -103,7 +101,7 @@ Borders kept(const std::array<Marginal, kDimensions>& marginals, double mass) {
   return borders;
 }
 
-PsychometricParameters parameters_of(const std::array<double, kDimensions>& p, Task task) {
+FittedParameters parameters_of(const std::array<double, kDimensions>& p, Task task) {
   return {p[kThreshold], p[kWidth], p[kLapse],
           task == Task::kEqualAsymptote ? p[kLapse] : p[kGuess], p[kEta]};
 }
@@ -171,19 +169,20 @@ BayesianFit bayesian_fit(std::span<const TrialBlock> blocks, const BayesianOptio
       options.task == Task::kYesNo ? Steps{25, 30, 10, 10, 15} : Steps{30, 40, 10, 1, 20};
   const Steps usual =
       options.task == Task::kYesNo ? Steps{40, 40, 20, 20, 20} : Steps{40, 40, 20, 1, 20};
-  const Sigmoid sigmoid(options.shape);
   BayesianFit fit;
   fit.blocks = pooled(blocks);
-  const StimulusRange range =
-      options.range ? *options.range : stimulus_range(coordinates(sigmoid, fit.blocks));
+  const StimulusRange range = options.range
+                                  ? *options.range
+                                  : stimulus_range(coordinates(options.function.axis, fit.blocks));
   if (!options.pool_levels) {
     fit.blocks.assign(blocks.begin(), blocks.end());
   }
-  SigmoidShape tails = options.shape;
-  tails.width_tail = 0.05;
-  const PsychometricPrior prior(range, sigmoid.spread() / Sigmoid(tails).spread(),
-                                options.beta_prior);
-  const PsychometricPosterior posterior(sigmoid, options.task, fit.blocks, prior, options.fixed);
+  const psychometric::PsychometricParameters& function = options.function;
+  const double usual_rate = psychometric::rate_of_width(function.sigmoid, 1.0);
+  const double scale =
+      psychometric::rate_of_width(function.sigmoid, 1.0, function.tail) / usual_rate;
+  const PsychometricPrior prior(range, scale, options.beta_prior);
+  const PsychometricPosterior posterior(function, options.task, fit.blocks, prior, options.fixed);
 
   const GridAxes first =
       axes_of(first_borders(prior, options), steps_of(options.first_steps, first_usual));
@@ -204,7 +203,7 @@ BayesianFit bayesian_fit(std::span<const TrialBlock> blocks, const BayesianOptio
   if (options.task == Task::kEqualAsymptote) {
     follow_lapse(fit);
   }
-  fit.deviance = deviance_of({sigmoid, fit.map}, fit.blocks);
+  fit.deviance = deviance_of(fitted_function(function, fit.map), fit.blocks);
   fit.warnings = edge_warnings(fit.marginals, range);
   return fit;
 }

@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "analysis/psychometric/fit/credible.h"
+#include "analysis/psychometric/fit/fitted_function.h"
 #include "analysis/psychometric/fit/prior.h"
-#include "analysis/psychometric/fit/psychometric_model.h"
+#include "analysis/psychometric/fit/trial_blocks.h"
 
 namespace haptrial::analysis {
 
@@ -18,9 +20,10 @@ enum class CredibleMethod {
 };
 
 struct BayesianOptions {
-  SigmoidShape shape;
+  // Sigmoid, axis, share, tail and direction; the guess rate of a forced choice. The rest is
+  // sought.
+  psychometric::PsychometricParameters function{.guess = 0.5};
   Task task{Task::kForcedChoice};
-  int alternatives{2};                                   // of a forced choice, >= 2
   std::array<std::optional<double>, kDimensions> fixed;  // parameters with a known value
   std::optional<StimulusRange> range;                    // else that of the levels
   double beta_prior{10.0};                               // b of lapse, guess and eta, >= 1
@@ -33,24 +36,12 @@ struct BayesianOptions {
   int threads{1};
 };
 
-/// Posterior of one parameter.
-struct Marginal {
-  std::vector<double> values;   // (n) rising
-  std::vector<double> density;  // (n) sums with the weights to 1
-  std::vector<double> weights;  // (n) of the trapezoid rule; 1 for a fixed parameter
-};
-
-struct CredibleInterval {
-  double low{0.0};
-  double high{0.0};
-};
-
 struct BayesianFit {
   std::array<Marginal, kDimensions> marginals;
-  PsychometricParameters map;   // largest posterior density
-  PsychometricParameters mean;  // posterior mean
-  double log_posterior{0.0};    // at the map: prior and likelihood without binomial coefficients
-  double log_evidence{0.0};     // logarithm of the integral over the grid
+  FittedParameters map;       // largest posterior density
+  FittedParameters mean;      // posterior mean
+  double log_posterior{0.0};  // at the map: prior and likelihood without binomial coefficients
+  double log_evidence{0.0};   // logarithm of the integral over the grid
   std::array<std::vector<CredibleInterval>, kDimensions> intervals;  // as BayesianOptions::levels
   std::vector<TrialBlock> blocks;                                    // as they were fitted
   PsychometricDeviance deviance;                                     // of the map
@@ -60,8 +51,8 @@ struct BayesianFit {
 /// The posterior of the five parameters on a grid. A first grid over all that the prior allows
 /// finds the steps that hold at least `border_mass` of a marginal; the grid goes from the step
 /// before these to the one after.
-/// Thresholds and widths are in the coordinate of the sigmoid: natural logarithms of the level for
-/// a logarithmic shape.
+/// Thresholds and widths are on the axis of the function; fitted_function(options.function,
+/// fit.map) is the function itself.
 /// @throws std::invalid_argument naming the option or the part of a block that breaks its bound.
 /// Source: Schuett, Harmeling, Macke and Wichmann 2016, Vision Research 122.
 BayesianFit bayesian_fit(std::span<const TrialBlock> blocks, const BayesianOptions& options);

@@ -10,6 +10,8 @@
 namespace haptrial::analysis {
 namespace {
 
+using psychometric::PsychometricFunction;
+
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Distribution function of the answers to each block, to draw by a single uniform number.
@@ -50,7 +52,7 @@ std::vector<double> shares_of(std::span<const TrialBlock> blocks,
                               const PsychometricFunction* function) {
   std::vector<double> shares;
   for (const TrialBlock& block : blocks) {
-    shares.push_back(function ? std::clamp(function->at(block.level), 0.0, 1.0)
+    shares.push_back(function ? std::clamp((*function)(block.level), 0.0, 1.0)
                               : static_cast<double>(block.correct) / block.total);
   }
   return shares;
@@ -80,8 +82,8 @@ std::vector<std::vector<std::vector<double>>> without_trials(const LikelihoodFit
       if (count == 0) {
         continue;
       }
-      const PsychometricFunction function(fitter.sigmoid(),
-                                          fitter.fit_without(correct, i, right).parameters);
+      const PsychometricFunction function =
+          fitter.function(fitter.fit_without(correct, i, right).parameters);
       for (std::size_t a = 0; a < asked.size(); ++a) {
         result[a][i].insert(result[a][i].end(), static_cast<std::size_t>(count),
                             read_off(function, asked[a]));
@@ -109,7 +111,7 @@ Drawn drawn_fits(const LikelihoodFitter& fitter, std::span<const TrialBlock> blo
     for (std::size_t r = first; r < last; ++r) {
       draws.draw(random, correct);
       const LikelihoodFit fit = fitter.fit(correct);
-      const PsychometricFunction function(fitter.sigmoid(), fit.parameters);
+      const PsychometricFunction function = fitter.function(fit.parameters);
       for (std::size_t a = 0; a < asked.size(); ++a) {
         drawn.readings[a][r] = read_off(function, asked[a]);
       }
@@ -126,10 +128,10 @@ Drawn drawn_fits(const LikelihoodFitter& fitter, std::span<const TrialBlock> blo
 }  // namespace
 
 double read_off(const PsychometricFunction& function, const Asked& asked) {
-  const PsychometricParameters& p = function.parameters();
+  const psychometric::PsychometricParameters& p = function.parameters();
   switch (asked.reading) {
     case Reading::kThreshold:
-      return function.threshold_level();
+      return p.threshold;
     case Reading::kWidth:
       return p.width;
     case Reading::kLapse:
@@ -137,17 +139,17 @@ double read_off(const PsychometricFunction& function, const Asked& asked) {
     case Reading::kGuess:
       return p.guess;
     case Reading::kLevelOfShare:
-      return function.level_of_share(asked.at);
+      return function.level_for_share(asked.at);
     case Reading::kLevelOfProbability:
-      return function.level_at(asked.at).value_or(kNone);
+      return asked.at > p.guess && asked.at < 1.0 - p.lapse ? function.level_for(asked.at) : kNone;
     case Reading::kSlope:
-      return function.slope(function.level_of_share(asked.at));
+      return function.derivative(function.level_for_share(asked.at));
     case Reading::kWeberThreshold:
-      return std::abs(function.level_of_share(asked.at) - asked.standard) / asked.standard;
+      return std::abs(function.level_for_share(asked.at) - asked.standard) / asked.standard;
     case Reading::kWeberQuartiles:
       break;
   }
-  return 0.5 * std::abs(function.level_of_share(0.75) - function.level_of_share(0.25)) /
+  return 0.5 * std::abs(function.level_for_share(0.75) - function.level_for_share(0.25)) /
          asked.standard;
 }
 
@@ -157,7 +159,7 @@ BootstrappedFit bootstrap_fit(std::span<const TrialBlock> blocks, const Likeliho
   const LikelihoodFitter fitter(options, blocks);
   BootstrappedFit result;
   result.fit = fitter.fit(answers_of(blocks));
-  const PsychometricFunction function(fitter.sigmoid(), result.fit.parameters);
+  const PsychometricFunction function = fitter.function(result.fit.parameters);
   result.deviance = deviance_of(function, blocks);
   const AnswerDraws draws(blocks, shares_of(blocks, how.parametric ? &function : nullptr));
   Drawn drawn = drawn_fits(fitter, blocks, asked, draws, how.resampling);
@@ -186,8 +188,8 @@ BootstrappedFit bootstrap_fit(std::span<const TrialBlock> blocks, const Likeliho
 std::vector<std::optional<BlockInfluence>> block_influence(std::span<const TrialBlock> blocks,
                                                            const LikelihoodOptions& options) {
   const LikelihoodFit whole = likelihood_fit(blocks, options);
-  const Sigmoid sigmoid(options.shape);
-  const double deviance = deviance_of({sigmoid, whole.parameters}, blocks).deviance;
+  const double deviance =
+      deviance_of(fitted_function(options.function, whole.parameters), blocks).deviance;
   std::vector<std::optional<BlockInfluence>> result;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     std::vector<TrialBlock> others(blocks.begin(), blocks.end());
@@ -197,9 +199,10 @@ std::vector<std::optional<BlockInfluence>> block_influence(std::span<const Trial
       continue;
     }
     const LikelihoodFit fit = likelihood_fit(others, options);
-    result.push_back(
-        BlockInfluence{fit.parameters.threshold - whole.parameters.threshold,
-                       deviance - deviance_of({sigmoid, fit.parameters}, others).deviance});
+    result.push_back(BlockInfluence{
+        fit.parameters.threshold - whole.parameters.threshold,
+        deviance -
+            deviance_of(fitted_function(options.function, fit.parameters), others).deviance});
   }
   return result;
 }

@@ -13,8 +13,8 @@ namespace haptrial::analysis {
 
 /// A number that is read off a psychometric function.
 enum class Reading {
-  kThreshold,  // the level of S = threshold_share
-  kWidth,      // in the coordinate of the sigmoid
+  kThreshold,  // the level of S = share
+  kWidth,      // on the axis
   kLapse,
   kGuess,
   kLevelOfShare,        // the level of S = at, free of guesses and lapses
@@ -31,7 +31,7 @@ struct Asked {
 };
 
 /// The number; NaN where the function does not have it.
-double read_off(const PsychometricFunction& function, const Asked& asked);
+double read_off(const psychometric::PsychometricFunction& function, const Asked& asked);
 
 struct FitBootstrap {
   Resampling resampling{.stream = "psychometric bootstrap"};

@@ -1,12 +1,24 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
-#include "analysis/psychometric/fit/bayesian_fit.h"
 #include "analysis/psychometric/fit/posterior.h"
 
 namespace haptrial::analysis {
+
+/// Posterior of one parameter.
+struct Marginal {
+  std::vector<double> values;   // (n) rising
+  std::vector<double> density;  // (n) sums with the weights to 1
+  std::vector<double> weights;  // (n) of the trapezoid rule; 1 for a fixed parameter
+};
+
+struct CredibleInterval {
+  double low{0.0};
+  double high{0.0};
+};
 
 /// Marginals of the masses on a grid, and the integral of the density over the largest density.
 std::array<Marginal, kDimensions> marginals_of(const PsychometricPosterior::Masses& masses,

@@ -27,6 +27,9 @@ struct Climb {
   bool fisher{false};
 };
 
+using psychometric::SigmoidCurve;
+using psychometric::SigmoidLanes;
+
 constexpr std::size_t kLanes = SigmoidLanes::kCount;
 using Lanes = double[kLanes];
 
@@ -72,20 +75,20 @@ struct Sums {
   double impossible{0.0};
 
   template <bool Guess>
-  void add(const Sigmoid& sigmoid, const Blocks& blocks, const Spot& spot) noexcept;
+  void add(const SigmoidCurve& curve, const Blocks& blocks, const Spot& spot) noexcept;
   void put(Climb& climb, double rise) const noexcept;
 };
 
 /// @tparam Guess  whether the guess rate is a parameter of its own
 template <bool Guess>
-void Sums::add(const Sigmoid& sigmoid, const Blocks& blocks, const Spot& spot) noexcept {
+void Sums::add(const SigmoidCurve& curve, const Blocks& blocks, const Spot& spot) noexcept {
   Lanes from, z;
   SigmoidLanes s;
   for (std::size_t i = 0; i < kLanes; ++i) {
     from[i] = spot.rise * (blocks.x[i] - spot.threshold);
-    z[i] = sigmoid.centre() + from[i];
+    z[i] = curve.centre() + from[i];
   }
-  sigmoid.at(z, s);
+  curve.at(z, s);
   const Pull pull = pull_of(blocks, spot, s);
   const double between = 1.0 - spot.guess - spot.lapse;
   const double twice = spot.tied ? 2.0 : 1.0, second = spot.fisher ? 0.0 : 1.0;
@@ -235,12 +238,12 @@ struct LikelihoodFitter::Search {
 
 /// A line through the logits of the observed shares, free of guesses and lapses.
 Place LikelihoodFitter::Search::start(const LikelihoodFitter& fitter) const noexcept {
-  const Sigmoid& sigmoid = fitter.sigmoid_;
+  const psychometric::PsychometricParameters& shape = fitter.shape_;
   const double lapse = std::min(high[2], low[2] + 0.01);
   const double guess =
       fitter.task_ == Task::kEqualAsymptote ? lapse : std::min(high[3], low[3] + 0.01);
-  const double middle = logit(sigmoid.shape().threshold_share);
-  const double spread = 2.0 * logit(1.0 - sigmoid.shape().width_tail);
+  const double middle = logit(shape.share);
+  const double spread = 2.0 * logit(1.0 - shape.tail);
   double sum = 0.0, sum_x = 0.0, sum_y = 0.0, sum_xx = 0.0, sum_xy = 0.0;
   const double origin = 0.5 * (fitter.low_ + fitter.high_);
   for (std::size_t i = 0; i < correct.size(); ++i) {
@@ -254,9 +257,9 @@ Place LikelihoodFitter::Search::start(const LikelihoodFitter& fitter) const noex
   }
   const double range = fitter.high_ - fitter.low_;
   double slope = (sum * sum_xy - sum_x * sum_y) / (sum * sum_xx - sum_x * sum_x);
-  slope = (sigmoid.shape().falling ? -1.0 : 1.0) * slope;
+  slope = (shape.falling ? -1.0 : 1.0) * slope;
   const double width = slope > 0.0 ? std::clamp(spread / slope, 0.05 * range, 3.0 * range) : range;
-  const double rise = (sigmoid.shape().falling ? -1.0 : 1.0) * spread / width;
+  const double rise = (shape.falling ? -1.0 : 1.0) * spread / width;
   Place place{origin + (sum_x - sum_y / rise) / sum, std::log(width), lapse, guess};
   place[0] = std::clamp(place[0], fitter.low_, fitter.high_);
   clamp(place);
@@ -266,16 +269,16 @@ Place LikelihoodFitter::Search::start(const LikelihoodFitter& fitter) const noex
 void LikelihoodFitter::Search::at(const LikelihoodFitter& fitter, const Place& place,
                                   Climb& climb) const noexcept {
   const bool tied = fitter.task_ == Task::kEqualAsymptote;
-  const Spot spot{place[0], fitter.sigmoid_.spread() * std::exp(-place[1]),
+  const Spot spot{place[0], fitter.curve_.spread() * std::exp(-place[1]),
                   place[2], tied ? place[2] : place[3],
                   tied,     climb.fisher};
   Sums sums;
   for (std::size_t first = 0; first < correct.size(); first += kLanes) {
     const Blocks blocks = blocks_from(fitter, first, place[0]);
     if (low[3] < high[3]) {
-      sums.add<true>(fitter.sigmoid_, blocks, spot);
+      sums.add<true>(fitter.curve_, blocks, spot);
     } else {
-      sums.add<false>(fitter.sigmoid_, blocks, spot);
+      sums.add<false>(fitter.curve_, blocks, spot);
     }
   }
   sums.put(climb, spot.rise);
@@ -309,11 +312,10 @@ double LikelihoodFitter::Search::value(const LikelihoodFitter& fitter,
   const double width = std::exp(place[1]);
   double sum = 0.0;
   for (std::size_t i = 0; i < correct.size(); ++i) {
-    double beyond = 0.0;
-    const double share = fitter.sigmoid_.share(fitter.coordinates_[i], place[0], width, beyond);
+    const psychometric::SigmoidPoint s = fitter.curve_.at(fitter.coordinates_[i], place[0], width);
     const double k = answers(i), m = trials(i, fitter.totals_[i]) - k;
-    sum += k > 0.0 ? k * std::log(guess + (1.0 - guess - lapse) * share) : 0.0;
-    sum += m > 0.0 ? m * std::log(lapse + (1.0 - guess - lapse) * beyond) : 0.0;
+    sum += k > 0.0 ? k * std::log(guess + (1.0 - guess - lapse) * s.share) : 0.0;
+    sum += m > 0.0 ? m * std::log(lapse + (1.0 - guess - lapse) * s.beyond) : 0.0;
   }
   return sum;
 }
@@ -350,20 +352,22 @@ bool LikelihoodFitter::Search::step(const LikelihoodFitter& fitter, Place& place
 
 LikelihoodFitter::LikelihoodFitter(const LikelihoodOptions& options,
                                    std::span<const TrialBlock> blocks)
-    : sigmoid_(options.shape), task_(options.task), lapse_(options.lapse), guess_(options.guess) {
+    : shape_(options.function),
+      curve_(psychometric::curve_of(shape_)),
+      task_(options.task),
+      lapse_(options.lapse),
+      guess_(options.guess) {
+  check_task(task_, shape_);
   check_rate(options.lapse, "lapse");
   pooled(blocks);  // checks them
   if (task_ == Task::kForcedChoice) {
-    if (options.alternatives < 2) {
-      throw std::invalid_argument("alternatives must be at least 2");
-    }
-    guess_ = {1.0 / options.alternatives, 1.0 / options.alternatives};
+    guess_ = {shape_.guess, shape_.guess};
   } else if (task_ == Task::kEqualAsymptote) {
     guess_ = {0.0, 0.0};
   } else {
     check_rate(options.guess, "guess");
   }
-  coordinates_ = coordinates(sigmoid_, blocks);
+  coordinates_ = coordinates(shape_.axis, blocks);
   const StimulusRange range = stimulus_range(coordinates_);
   low_ = range.low, high_ = range.high, spacing_ = range.spacing;
   for (const TrialBlock& block : blocks) {

@@ -3,7 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "analysis/psychometric/fit/psychometric_model.h"
+#include "analysis/psychometric/fit/fitted_function.h"
+#include "analysis/psychometric/fit/trial_blocks.h"
 
 namespace haptrial::analysis {
 
@@ -14,16 +15,17 @@ struct RateBounds {
 };
 
 struct LikelihoodOptions {
-  SigmoidShape shape{};
+  // Sigmoid, axis, share, tail and direction; the guess rate of a forced choice. The rest is
+  // sought.
+  psychometric::PsychometricParameters function{.guess = 0.5};
   Task task{Task::kForcedChoice};
-  int alternatives{2};  // of a forced choice, >= 2
-  RateBounds lapse{};   // 0 <= low <= high < 0.5
-  RateBounds guess{};   // of a yes/no task, likewise
+  RateBounds lapse{};  // 0 <= low <= high < 0.5
+  RateBounds guess{};  // of a yes/no task, likewise
 };
 
 struct LikelihoodFit {
-  PsychometricParameters parameters;  // eta is 0
-  double log_likelihood{0.0};         // without binomial coefficients
+  FittedParameters parameters;  // eta is 0
+  double log_likelihood{0.0};   // without binomial coefficients
   int steps{0};
   /// Whether the slope of the likelihood along every parameter inside its bounds is 0.
   bool converged{false};
@@ -51,7 +53,10 @@ class LikelihoodFitter {
   LikelihoodFit fit_without(std::span<const int> correct, std::size_t block,
                             bool right) const noexcept;
 
-  const Sigmoid& sigmoid() const noexcept { return sigmoid_; }
+  /// The function of a fit. @throws std::invalid_argument naming what breaks its bound.
+  psychometric::PsychometricFunction function(const FittedParameters& fitted) const {
+    return fitted_function(shape_, curve_, fitted);
+  }
   /// Parameters that are neither known nor tied to another.
   int free_parameters() const noexcept;
 
@@ -59,7 +64,8 @@ class LikelihoodFitter {
   struct Search;
   LikelihoodFit search(Search& search) const noexcept;
 
-  Sigmoid sigmoid_;
+  psychometric::PsychometricParameters shape_;
+  psychometric::SigmoidCurve curve_;
   Task task_;
   RateBounds lapse_, guess_;
   std::vector<double> coordinates_;

@@ -17,7 +17,7 @@ constexpr double kSmallest = 1e-35;
 constexpr int kTogether = 8;  // factors of at least kSmallest whose product is a normal number
 
 /// Places of eta that are computed side by side.
-constexpr std::size_t kLanes = 4;
+constexpr std::size_t kEtaLanes = 4;
 
 /// Products of many factors, each in (0, 1], beside their power of two.
 struct Products {
@@ -74,7 +74,7 @@ struct PsychometricPosterior::Table {
   std::array<std::vector<double>, kDimensions> log_prior;
 
   Table(const PsychometricPosterior& posterior, const GridAxes& axes)
-      : lanes((axes[kEta].size() + kLanes - 1) / kLanes * kLanes) {
+      : lanes((axes[kEta].size() + kEtaLanes - 1) / kEtaLanes * kEtaLanes) {
     const auto answers = static_cast<std::size_t>(posterior.most_answers_);
     slope.resize(answers * lanes);
     offset.resize(answers * lanes);
@@ -129,12 +129,13 @@ struct PsychometricPosterior::Table {
 };
 
 PsychometricPosterior::PsychometricPosterior(
-    const Sigmoid& sigmoid, Task task, std::span<const TrialBlock> blocks,
-    const PsychometricPrior& prior, const std::array<std::optional<double>, kDimensions>& fixed)
-    : sigmoid_(sigmoid),
+    const psychometric::PsychometricParameters& shape, Task task,
+    std::span<const TrialBlock> blocks, const PsychometricPrior& prior,
+    const std::array<std::optional<double>, kDimensions>& fixed)
+    : curve_(psychometric::curve_of(shape)),
       task_(task),
       blocks_(blocks.begin(), blocks.end()),
-      coordinates_(coordinates(sigmoid, blocks)),
+      coordinates_(coordinates(shape.axis, blocks)),
       prior_(prior) {
   for (std::size_t d = 0; d < kDimensions; ++d) {
     fixed_[d] = fixed[d].has_value();
@@ -149,7 +150,7 @@ double PsychometricPosterior::log_prior(Dimension dimension, double value) const
   return fixed_[dimension] ? 0.0 : log_of(prior_.density(dimension, value));
 }
 
-double PsychometricPosterior::log_density(const PsychometricParameters& p) const {
+double PsychometricPosterior::log_density(const FittedParameters& p) const {
   const GridAxes here{std::vector{p.threshold}, std::vector{p.width}, std::vector{p.lapse},
                       std::vector{p.guess}, std::vector{p.eta}};
   if (!(p.width > 0.0 && p.lapse >= 0.0 && p.guess >= 0.0 && p.lapse + p.guess < 1.0 &&
@@ -194,8 +195,10 @@ void PsychometricPosterior::fill(const GridAxes& axes, const Table& table, std::
   for (std::size_t w = 0; w < axes[kWidth].size(); ++w) {
     const double prior = table.log_prior[kThreshold][threshold] + table.log_prior[kWidth][w];
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      slice.share[i] = sigmoid_.share(coordinates_[i], axes[kThreshold][threshold], axes[kWidth][w],
-                                      slice.beyond[i]);
+      const psychometric::SigmoidPoint s =
+          curve_.at(coordinates_[i], axes[kThreshold][threshold], axes[kWidth][w]);
+      slice.share[i] = s.share;
+      slice.beyond[i] = s.beyond;
     }
     for (std::size_t l = 0; l < axes[kLapse].size(); ++l) {
       for (std::size_t g = 0; g < axes[kGuess].size(); ++g, out += etas) {

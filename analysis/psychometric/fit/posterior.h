@@ -5,8 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "analysis/psychometric/fit/fitted_function.h"
 #include "analysis/psychometric/fit/prior.h"
-#include "analysis/psychometric/fit/psychometric_model.h"
+#include "analysis/psychometric/fit/trial_blocks.h"
 
 namespace haptrial::analysis {
 
@@ -25,14 +26,15 @@ std::vector<double> trapezoid_weights(std::span<const double> values);
 /// continuous at eta = 0. A p or 1 - p between 0 and 1e-35 counts as 1e-35.
 class PsychometricPosterior {
  public:
-  /// @param guess  that of the forced choice; nothing where the task has another.
-  /// A parameter that `fixed` names keeps its value and has no prior.
-  PsychometricPosterior(const Sigmoid& sigmoid, Task task, std::span<const TrialBlock> blocks,
-                        const PsychometricPrior& prior,
+  /// @param shape  sigmoid, axis, share, tail and direction; the rest of it is not read
+  /// @param fixed  a parameter with a value here has no prior
+  /// @throws std::invalid_argument naming share or tail, or when a level is not on the axis.
+  PsychometricPosterior(const psychometric::PsychometricParameters& shape, Task task,
+                        std::span<const TrialBlock> blocks, const PsychometricPrior& prior,
                         const std::array<std::optional<double>, kDimensions>& fixed);
 
   /// Logarithm at one place; -infinity where it is 0.
-  double log_density(const PsychometricParameters& parameters) const;
+  double log_density(const FittedParameters& parameters) const;
   /// Mass of each cell by trapezoid weights over the largest density, eta running fastest.
   struct Masses {
     std::vector<double> cells;  // product of the lengths of the axes
@@ -50,7 +52,7 @@ class PsychometricPosterior {
   bool multiply(const Table& table, double lapse, double guess, Slice& slice) const;
   void fill(const GridAxes& axes, const Table& table, std::size_t threshold, double* out) const;
 
-  Sigmoid sigmoid_;
+  psychometric::SigmoidCurve curve_;
   Task task_;
   std::vector<TrialBlock> blocks_;
   std::vector<double> coordinates_;

@@ -10,10 +10,10 @@
 namespace haptrial::analysis {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// From 1 at 0 down to 0 at 1.
-double fall(double part) noexcept { return 0.5 + 0.5 * std::cos(kPi * std::clamp(part, 0.0, 1.0)); }
+double fall(double part) noexcept {
+  return 0.5 + 0.5 * std::cos(std::numbers::pi * std::clamp(part, 0.0, 1.0));
+}
 
 }  // namespace
 

@@ -10,7 +10,7 @@ namespace haptrial::analysis {
 enum Dimension : std::size_t { kThreshold, kWidth, kLapse, kGuess, kEta };
 inline constexpr std::size_t kDimensions = 5;
 
-/// Levels that could be presented, in the coordinate of the sigmoid.
+/// Levels that could be presented, on the axis of the function.
 struct StimulusRange {
   double low{0.0};
   double high{1.0};     // > low
@@ -29,7 +29,7 @@ StimulusRange stimulus_range(std::span<const double> coordinates);
 ///
 /// each divided by its integral. For a width of other tails than 0.05, d and s of the width are
 /// scaled so that the prior of the slope stays.
-/// Source: Schuett, Harmeling, Macke and Wichmann 2016, Vision Research 122, §2.3.
+/// Source: Schuett, Harmeling, Macke and Wichmann 2016, Vision Research 122, part 2.3.
 class PsychometricPrior {
  public:
   /// @param width_scale  width of this definition / width with tails of 0.05.

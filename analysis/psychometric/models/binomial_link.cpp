@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "analysis/psychometric/fit/sigmoid.h"
+#include "core/psychometric/function/sigmoid.h"
 
 namespace haptrial::analysis {
 
@@ -14,11 +14,11 @@ using Eigen::Index;
 
 BinomialRows binomial_rows(const BinomialData& data, BinomialLink link,
                            const Eigen::VectorXd& eta) {
-  const Sigmoid sigmoid(
-      {.form = link == BinomialLink::kProbit ? SigmoidForm::kNormal : SigmoidForm::kLogistic});
+  const auto sigmoid = link == BinomialLink::kProbit ? psychometric::Sigmoid::kGaussian
+                                                     : psychometric::Sigmoid::kLogistic;
   BinomialRows rows{0.0, Eigen::VectorXd::Zero(eta.size()), Eigen::VectorXd::Zero(eta.size())};
   for (Index i = 0; i < eta.size(); ++i) {
-    const SigmoidPoint s = sigmoid.at(eta[i]);
+    const psychometric::SigmoidPoint s = psychometric::sigmoid_point(sigmoid, eta[i]);
     const double yes = data.yes[static_cast<std::size_t>(i)];
     const double trials = data.trials[static_cast<std::size_t>(i)];
     if ((yes > 0.0 && !(s.share > 0.0)) || (trials > yes && !(s.beyond > 0.0))) {

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "analysis/psychometric/models/binomial_model.h"
+#include "analysis/psychometric/models/binomial_data.h"
 
 namespace haptrial::analysis {
 

@@ -2,22 +2,12 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <span>
 #include <vector>
 
+#include "analysis/psychometric/models/binomial_data.h"
 #include "analysis/statistics/base/defined.h"
 
 namespace haptrial::analysis {
-
-/// g(P) = predictors times coefficients.
-enum class BinomialLink { kProbit, kLogit };
-
-/// Answers and what they depend on, a row for each group of trials that share all of it.
-struct BinomialData {
-  std::vector<int> yes;        // (rows) >= 0
-  std::vector<int> trials;     // (rows) >= yes, > 0
-  Eigen::MatrixXd predictors;  // (rows x predictors) without a column for the intercept
-};
 
 /// A coefficient with its normal interval.
 struct BinomialCoefficient {

@@ -8,19 +8,29 @@
 namespace haptrial::psychometric {
 namespace {
 
-void require(bool holds, const std::string& sentence) {
+// A fit makes many functions, so no text is put together unless it is needed.
+void require(bool holds, const char* sentence) {
   if (!holds) {
-    throw std::invalid_argument("PsychometricFunction: " + sentence);
+    throw std::invalid_argument(std::string("PsychometricFunction: ") + sentence);
   }
 }
 
 bool positive(double value) { return value > 0.0 && std::isfinite(value); }
 
+PsychometricParameters with_threshold(PsychometricParameters p, double x) {
+  p.threshold = p.axis.level(x);
+  return p;
+}
+
+double threshold_x(const PsychometricParameters& p) {
+  require(std::isfinite(p.threshold), "threshold must be finite");
+  const double x = p.axis.at(p.threshold);
+  require(std::isfinite(x), "threshold must be above the origin of a logarithmic scale");
+  return x;
+}
+
 const PsychometricParameters& checked(const PsychometricParameters& p) {
   require(std::isfinite(p.axis.origin), "origin must be finite");
-  require(std::isfinite(p.threshold), "threshold must be finite");
-  require(std::isfinite(p.axis.at(p.threshold)),
-          "threshold must be above the origin of a logarithmic scale");
   require(positive(p.width), "width must be finite and above 0");
   require(p.guess >= 0.0, "guess must be at least 0");
   require(p.lapse >= 0.0, "lapse must be at least 0");
@@ -32,33 +42,48 @@ const PsychometricParameters& checked(const PsychometricParameters& p) {
 
 double spread(Sigmoid sigmoid, double tail) {
   require(tail > 0.0 && tail < 0.5, "tail must be between 0 and 0.5");
-  return sigmoid_quantile(sigmoid, 1.0 - tail) - sigmoid_quantile(sigmoid, tail);
-}
-
-double steepness(const PsychometricParameters& p) {
-  return (1.0 - p.guess - p.lapse) *
-         sigmoid_density(p.sigmoid, sigmoid_quantile(p.sigmoid, p.share));
+  return SigmoidCurve(sigmoid, 0.5, tail, false).spread();
 }
 
 }  // namespace
 
+PsychometricParameters parameters_named(std::string_view name, double guess) {
+  const SigmoidForm form = sigmoid_named(name);
+  PsychometricParameters parameters;
+  parameters.sigmoid = form.sigmoid;
+  parameters.axis.scale = form.logarithmic ? Scale::kNaturalLog : Scale::kLinear;
+  parameters.falling = form.falling;
+  parameters.guess = guess;
+  return parameters;
+}
+
+SigmoidCurve curve_of(const PsychometricParameters& p) {
+  return {p.sigmoid, p.share, p.tail, p.falling};
+}
+
 PsychometricFunction::PsychometricFunction(const PsychometricParameters& parameters)
     : parameters_(checked(parameters)),
-      middle_(parameters.axis.at(parameters.threshold)),
-      offset_(sigmoid_quantile(parameters.sigmoid, parameters.share)),
-      rate_(rate_of_width(parameters.sigmoid, parameters.width, parameters.tail)) {}
+      curve_(curve_of(parameters)),
+      middle_(threshold_x(parameters)),
+      rate_(curve_.spread() / parameters.width) {}
+
+PsychometricFunction::PsychometricFunction(const PsychometricParameters& parameters,
+                                           const SigmoidCurve& curve, double x)
+    : parameters_(with_threshold(checked(parameters), x)),
+      curve_(curve),
+      middle_(x),
+      rate_(curve.spread() / parameters.width) {
+  require(std::isfinite(x), "threshold must be finite");
+}
 
 double PsychometricFunction::at(double x) const noexcept {
   const auto& p = parameters_;
-  const double z = z_at(x);
-  const double share = p.falling ? sigmoid_above(p.sigmoid, z) : sigmoid(p.sigmoid, z);
-  return p.guess + (1.0 - p.guess - p.lapse) * share;
+  return p.guess + (1.0 - p.guess - p.lapse) * curve_.at(z_at(x)).share;
 }
 
 double PsychometricFunction::derivative_at(double x) const noexcept {
   const auto& p = parameters_;
-  const double rising = (1.0 - p.guess - p.lapse) * rate_ * sigmoid_density(p.sigmoid, z_at(x));
-  return p.falling ? -rising : rising;
+  return (1.0 - p.guess - p.lapse) * rate_ * curve_.at(z_at(x)).density;
 }
 
 double PsychometricFunction::derivative(double level) const noexcept {
@@ -68,18 +93,23 @@ double PsychometricFunction::derivative(double level) const noexcept {
   return slope == 0.0 || !std::isfinite(x) ? 0.0 : slope * parameters_.axis.gradient(level);
 }
 
+double PsychometricFunction::x_for_share(double share) const {
+  return middle_ + (curve_.z_for(share) - curve_.centre()) / rate_;
+}
+
 double PsychometricFunction::x_for(double probability) const {
   const auto& p = parameters_;
   require(probability > p.guess && probability < 1.0 - p.lapse,
           "probability must be between guess and 1 - lapse");
-  const double above = 1.0 - p.lapse - probability;
-  const double below = probability - p.guess;
-  const double share = (p.falling ? above : below) / (1.0 - p.guess - p.lapse);
-  return middle_ + (sigmoid_quantile(p.sigmoid, share) - offset_) / rate_;
+  return x_for_share((probability - p.guess) / (1.0 - p.guess - p.lapse));
 }
 
 double PsychometricFunction::level_for(double probability) const {
   return parameters_.axis.level(x_for(probability));
+}
+
+double PsychometricFunction::level_for_share(double share) const {
+  return parameters_.axis.level(x_for_share(share));
 }
 
 double rate_of_width(Sigmoid sigmoid, double width, double tail) {
@@ -95,12 +125,16 @@ double width_of_rate(Sigmoid sigmoid, double rate, double tail) {
 double rate_of_weibull_shape(double shape, Scale scale) {
   require(positive(shape), "shape must be finite and above 0");
   require(scale != Scale::kLinear, "a Weibull function needs a logarithmic scale");
-  return shape * std::numbers::ln10 / (scale == Scale::kDecibel ? 20.0 : 1.0);
+  return scale == Scale::kNaturalLog
+             ? shape
+             : shape * std::numbers::ln10 / (scale == Scale::kDecibel ? 20.0 : 1.0);
 }
 
 double slope_at_threshold(const PsychometricParameters& parameters) {
   const auto& p = checked(parameters);
-  return steepness(p) * rate_of_width(p.sigmoid, p.width, p.tail);
+  const SigmoidCurve curve = curve_of(p);
+  return (1.0 - p.guess - p.lapse) * std::abs(curve.at(curve.centre()).density) * curve.spread() /
+         p.width;
 }
 
 double width_for_slope(PsychometricParameters parameters, double slope) {

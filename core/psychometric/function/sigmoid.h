@@ -1,7 +1,6 @@
 #pragma once
 
-#include <span>
-#include <string_view>
+#include <cstddef>
 
 namespace haptrial::psychometric {
 
@@ -21,17 +20,24 @@ double sigmoid_density(Sigmoid kind, double z) noexcept;  // dF/dz
 /// z of F(z) = p. @throws std::invalid_argument unless 0 < p < 1
 double sigmoid_quantile(Sigmoid kind, double p);
 
-/// A name that psignifit 4 (Schütt et al. 2016) or QUEST+ (Watson 2017) gives to a sigmoid; those
-/// that are logarithmic act on the logarithm of the level: weibull, logn.
-struct SigmoidName {
-  std::string_view name;
-  Sigmoid sigmoid;
-  bool logarithmic;
+/// A sigmoid at one place, as fits need it.
+struct SigmoidPoint {
+  double share{0.0};    // F
+  double beyond{0.0};   // 1 - F, without cancellation
+  double density{0.0};  // dF/dz
+  double bend{0.0};     // d2F/dz2
 };
+SigmoidPoint sigmoid_point(Sigmoid kind, double z) noexcept;
 
-std::span<const SigmoidName> sigmoid_names();
-
-/// @throws std::invalid_argument with the names that are allowed
-SigmoidName sigmoid_named(std::string_view name);
+/// The same for eight places at once.
+struct SigmoidLanes {
+  static constexpr std::size_t kCount = 8;
+  double share[kCount];
+  double beyond[kCount];
+  double density[kCount];
+  double bend[kCount];
+};
+/// At z[0] to z[7]; the smaller of share and beyond is right to 1e-11 of itself.
+void sigmoid_lanes(Sigmoid kind, const double* z, SigmoidLanes& lanes) noexcept;
 
 }  // namespace haptrial::psychometric

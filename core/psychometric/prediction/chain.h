@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "core/psychometric/prediction/answer_probability.h"
 #include "core/psychometric/prediction/chain_states.h"
-#include "core/psychometric/prediction/staircase_chain.h"
 
 namespace haptrial::psychometric {
 

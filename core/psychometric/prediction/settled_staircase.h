@@ -2,7 +2,8 @@
 
 #include <cstddef>
 
-#include "core/psychometric/prediction/staircase_chain.h"
+#include "core/psychometric/prediction/answer_probability.h"
+#include "core/psychometric/procedure/staircase_rule.h"
 
 namespace haptrial::psychometric {
 

@@ -1,13 +1,9 @@
 #pragma once
 
-#include <functional>
-
+#include "core/psychometric/prediction/answer_probability.h"
 #include "core/psychometric/procedure/staircase_rule.h"
 
 namespace haptrial::psychometric {
-
-/// Probability of a right answer at a level.
-using AnswerProbability = std::function<double(double level)>;
 
 struct StaircasePrediction {
   double mean;              // expected estimate, given that there is one [axis]

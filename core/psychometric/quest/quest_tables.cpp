@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/psychometric/quest/information.h"
+#include "core/psychometric/quest/surprise.h"
 
 namespace haptrial::psychometric {
 namespace {
@@ -76,9 +77,6 @@ std::vector<double> values_at(const Dimensions& dimensions, std::size_t index) {
   }
   return values;
 }
-
-/// -p log p.
-double surprise(double p) { return p > 0.0 ? -p * std::log(p) : 0.0; }
 
 void check_probabilities(const std::vector<double>& p, const std::vector<double>& stimulus) {
   const double sum = std::accumulate(p.begin(), p.end(), 0.0);

@@ -5,14 +5,14 @@
 #include <limits>
 #include <numeric>
 
+#include "core/psychometric/quest/surprise.h"
+
 namespace haptrial::psychometric {
 namespace {
 
 constexpr double kTie = 1e-15;          // [nat]
 constexpr double kLeastWeight = 1e-20;  // smaller ones count as 0
 constexpr double kOfLeast = 1e-12;      // more than what all that counts as 0 amounts to [nat]
-
-double surprise(double p) { return p > 0.0 ? -p * std::log(p) : 0.0; }
 
 /// What an error of a probability may change in its surprise.
 double surprise_error(double p, double error) {

@@ -44,24 +44,24 @@ std::vector<double> list_of(const Json& value) {
 
 BayesianOptions options_of(const Json& theirs) {
   BayesianOptions options;
-  options.shape = sigmoid_named(theirs.at("sigmoidName").get<std::string>());
-  options.shape.threshold_share = theirs.at("threshPC");
+  options.function = psychometric::parameters_named(theirs.at("sigmoidName").get<std::string>());
+  options.function.share = theirs.at("threshPC");
   options.beta_prior = theirs.at("betaPrior");
   if (theirs.at("expType") == "YesNo") {
     options.task = Task::kYesNo;
   } else {
     EXPECT_EQ(theirs.at("expType"), "2AFC");
-    options.alternatives = theirs.at("expN");
+    options.function.guess = 1.0 / theirs.at("expN").get<double>();
   }
   options.threads = 2;
   return options;
 }
 
-std::array<double, kDimensions> array_of(const PsychometricParameters& p) {
+std::array<double, kDimensions> array_of(const FittedParameters& p) {
   return {p.threshold, p.width, p.lapse, p.guess, p.eta};
 }
 
-PsychometricParameters parameters_of(const std::vector<double>& p) {
+FittedParameters parameters_of(const std::vector<double>& p) {
   return {p[0], p[1], p[2], p[3], p[4]};
 }
 
@@ -111,10 +111,9 @@ TEST_P(PsignifitCase, GivesTheirPosterior) {
 // estimate: within a tenth of the posterior's standard deviation.
 TEST_P(PsignifitCase, FindsTheLargestDensity) {
   const BayesianFit ours = bayesian_fit(blocks_, options_);
-  const Sigmoid sigmoid(options_.shape);
-  const PsychometricPrior prior(stimulus_range(coordinates(sigmoid, ours.blocks)), 1.0,
-                                options_.beta_prior);
-  const PsychometricPosterior posterior(sigmoid, options_.task, ours.blocks, prior, {});
+  const PsychometricPrior prior(stimulus_range(coordinates(options_.function.axis, ours.blocks)),
+                                1.0, options_.beta_prior);
+  const PsychometricPosterior posterior(options_.function, options_.task, ours.blocks, prior, {});
   const auto theirs = list_of(theirs_["Fit"]);
   const double loss = ours.log_posterior - posterior.log_density(parameters_of(theirs));
   EXPECT_GE(loss, -1e-12);
@@ -123,7 +122,8 @@ TEST_P(PsignifitCase, FindsTheLargestDensity) {
     const double variance = theirs_["Cov"][d][d];
     EXPECT_NEAR(map[d], theirs[d], 0.1 * std::sqrt(variance) + 1e-12) << d;
   }
-  const PsychometricDeviance deviance = deviance_of({sigmoid, parameters_of(theirs)}, ours.blocks);
+  const PsychometricDeviance deviance =
+      deviance_of(fitted_function(options_.function, parameters_of(theirs)), ours.blocks);
   EXPECT_NEAR(deviance.deviance, theirs_["deviance"].get<double>(), 1e-9);
   const auto residuals = list_of(theirs_["devianceResiduals"]);
   ASSERT_EQ(deviance.residuals.size(), residuals.size());

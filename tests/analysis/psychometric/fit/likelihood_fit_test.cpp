@@ -13,6 +13,9 @@
 namespace haptrial::analysis {
 namespace {
 
+using psychometric::parameters_named;
+using psychometric::PsychometricFunction;
+
 /// Eight levels, `trials` each, from an observer.
 std::vector<TrialBlock> answers(RandomStream& random, const PsychometricFunction& observer,
                                 int trials) {
@@ -20,7 +23,7 @@ std::vector<TrialBlock> answers(RandomStream& random, const PsychometricFunction
   for (int i = 0; i < 8; ++i) {
     TrialBlock block{0.5 + 0.5 * i, 0, trials};
     for (int t = 0; t < trials; ++t) {
-      block.correct += random.uniform() < observer.at(block.level) ? 1 : 0;
+      block.correct += random.uniform() < observer(block.level) ? 1 : 0;
     }
     blocks.push_back(block);
   }
@@ -30,7 +33,7 @@ std::vector<TrialBlock> answers(RandomStream& random, const PsychometricFunction
 double log_likelihood(const PsychometricFunction& function, const std::vector<TrialBlock>& blocks) {
   double sum = 0.0;
   for (const TrialBlock& b : blocks) {
-    const double p = function.at(b.level);
+    const double p = function(b.level);
     sum += (b.correct > 0 ? b.correct * std::log(p) : 0.0) +
            (b.total > b.correct ? (b.total - b.correct) * std::log1p(-p) : 0.0);
   }
@@ -45,14 +48,13 @@ struct Kind {
 class LikelihoodFitKinds : public testing::TestWithParam<Kind> {
  protected:
   LikelihoodOptions options() const {
-    LikelihoodOptions options{.shape = sigmoid_named(GetParam().sigmoid), .task = GetParam().task};
-    return options;
+    return {.function = parameters_named(GetParam().sigmoid, 0.5), .task = GetParam().task};
   }
   PsychometricFunction observer() const {
-    const bool logarithmic = options().shape.logarithmic;
+    const bool logarithmic = options().function.axis.scale != psychometric::Scale::kLinear;
     const double guess = GetParam().task == Task::kForcedChoice ? 0.5 : 0.03;
-    return {Sigmoid(options().shape),
-            {logarithmic ? 0.8 : 2.2, logarithmic ? 1.0 : 2.0, 0.03, guess}};
+    return fitted_function(options().function,
+                           {logarithmic ? 0.8 : 2.2, logarithmic ? 1.0 : 2.0, 0.03, guess});
   }
 };
 
@@ -60,15 +62,15 @@ class LikelihoodFitKinds : public testing::TestWithParam<Kind> {
 TEST_P(LikelihoodFitKinds, NoOtherSearchFindsALikelierFunction) {
   RandomStream random(7, std::string("likelihood fit ") + GetParam().sigmoid);
   const LikelihoodOptions o = options();
-  const Sigmoid sigmoid(o.shape);
-  // The width's lower bound.
-  const double spacing = o.shape.logarithmic ? std::log(4.0 / 3.5) : 0.5;
+  const psychometric::Axis& axis = o.function.axis;
+  const double spacing = axis.at(4.0) - axis.at(3.5);  // the width's lower bound
   int determined = 0;
   for (int run = 0; run < 60; ++run) {
     const auto blocks = answers(random, observer(), 40);
     const LikelihoodFit fit = likelihood_fit(blocks, o);
     EXPECT_TRUE(fit.converged) << run;
-    EXPECT_NEAR(fit.log_likelihood, log_likelihood({sigmoid, fit.parameters}, blocks),
+    EXPECT_NEAR(fit.log_likelihood,
+                log_likelihood(fitted_function(o.function, fit.parameters), blocks),
                 1e-9 * std::abs(fit.log_likelihood))
         << run;
     if (fit.undetermined) {
@@ -77,14 +79,15 @@ TEST_P(LikelihoodFitKinds, NoOtherSearchFindsALikelierFunction) {
     ++determined;
     const auto within = [](double x) { return 0.03 - 0.03 * std::cos(x); };  // 0 .. 0.06
     const auto minus = [&](std::span<const double> x) {
-      PsychometricParameters p{x[0], spacing + std::exp(x[1]), within(x[2]), 0.5};
+      FittedParameters p{x[0], spacing + std::exp(x[1]), within(x[2]), 0.5};
       p.guess = o.task == Task::kForcedChoice     ? 0.5
                 : o.task == Task::kEqualAsymptote ? p.lapse
                                                   : within(x[3]);
-      return -log_likelihood({sigmoid, p}, blocks);
+      return -log_likelihood(fitted_function(o.function, p), blocks);
     };
     const auto truth = observer().parameters();
-    const std::vector<double> start{truth.threshold, std::log(truth.width - spacing), 1.5, 1.5};
+    const std::vector<double> start{axis.at(truth.threshold), std::log(truth.width - spacing), 1.5,
+                                    1.5};
     const Minimum other = find_minimum(minus, start, std::vector{0.2, 0.2, 0.5, 0.5});
     EXPECT_GE(fit.log_likelihood, -other.value - 1e-7) << run;
   }
@@ -102,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // Two levels and no lapses: the function passes through both shares.
 TEST(LikelihoodFit, PassesThroughTwoShares) {
-  LikelihoodOptions options{.shape = sigmoid_named("logistic"), .task = Task::kYesNo};
+  LikelihoodOptions options{.function = parameters_named("logistic"), .task = Task::kYesNo};
   options.lapse = options.guess = {0.0, 0.0};
   const std::vector<TrialBlock> blocks{{1.0, 2, 10}, {3.0, 9, 10}};
   const LikelihoodFit fit = likelihood_fit(blocks, options);
@@ -114,7 +117,7 @@ TEST(LikelihoodFit, PassesThroughTwoShares) {
 }
 
 TEST(LikelihoodFit, SaysWhereTheAnswersDoNotTell) {
-  LikelihoodOptions options{.shape = sigmoid_named("norm"), .task = Task::kYesNo};
+  LikelihoodOptions options{.function = parameters_named("norm"), .task = Task::kYesNo};
   const std::vector<TrialBlock> stepped{{1, 0, 20}, {2, 0, 20}, {3, 20, 20}, {4, 20, 20}};
   const LikelihoodFit fit = likelihood_fit(stepped, options);
   EXPECT_TRUE(fit.undetermined);
@@ -126,8 +129,8 @@ TEST(LikelihoodFit, SaysWhereTheAnswersDoNotTell) {
 
 TEST(LikelihoodFit, DoesNotAllocate) {
   RandomStream random(3, "likelihood fit");
-  const Sigmoid sigmoid(sigmoid_named("norm"));
-  const auto blocks = answers(random, {sigmoid, {2.2, 2.0, 0.02, 0.5}}, 40);
+  const auto observer = fitted_function(parameters_named("norm"), {2.2, 2.0, 0.02, 0.5});
+  const auto blocks = answers(random, observer, 40);
   const LikelihoodFitter fitter({}, blocks);
   std::vector<int> correct;
   for (const TrialBlock& b : blocks) {
@@ -142,16 +145,16 @@ TEST(LikelihoodFit, DoesNotAllocate) {
 TEST(LikelihoodFit, RefusesWhatIsOutOfBounds) {
   const std::vector<TrialBlock> blocks{{1, 2, 10}, {2, 8, 10}};
   LikelihoodOptions options;
-  options.alternatives = 1;
+  options.function.guess = 0.0;
   EXPECT_THROW(likelihood_fit(blocks, options), std::invalid_argument);
-  options.alternatives = 2;
+  options.function.guess = 0.5;
   options.lapse = {0.1, 0.05};
   EXPECT_THROW(likelihood_fit(blocks, options), std::invalid_argument);
   options.lapse = {};
   EXPECT_THROW(likelihood_fit(std::vector<TrialBlock>{{1, 2, 10}}, options), std::invalid_argument);
   EXPECT_THROW(likelihood_fit(std::vector<TrialBlock>{{1, 12, 10}, {2, 3, 4}}, options),
                std::invalid_argument);
-  options.shape = sigmoid_named("Weibull");
+  options.function = parameters_named("Weibull", 0.5);
   EXPECT_THROW(likelihood_fit(std::vector<TrialBlock>{{0.0, 2, 10}, {2, 3, 4}}, options),
                std::invalid_argument);
 }
@@ -165,8 +168,9 @@ std::vector<Asked> all_asked() {
 
 TEST(BootstrapFit, DoesNotDependOnTheThreads) {
   RandomStream random(5, "bootstrap fit");
-  const LikelihoodOptions options{.shape = sigmoid_named("norm"), .task = Task::kYesNo};
-  const auto blocks = answers(random, {Sigmoid(options.shape), {2.2, 2.0, 0.02, 0.02}}, 40);
+  const LikelihoodOptions options{.function = parameters_named("norm"), .task = Task::kYesNo};
+  const auto blocks =
+      answers(random, fitted_function(options.function, {2.2, 2.0, 0.02, 0.02}), 40);
   for (const bool parametric : {true, false}) {
     FitBootstrap how{.parametric = parametric};
     how.resampling.count = 999;
@@ -190,15 +194,14 @@ TEST(BootstrapFit, DoesNotDependOnTheThreads) {
 // Without lapses and guesses a probit fit has Fisher's information in closed form: with many
 // trials the interval of the threshold is 1.96 standard errors to either side.
 TEST(BootstrapFit, HasTheWidthThatFishersInformationGives) {
-  LikelihoodOptions options{.shape = sigmoid_named("norm"), .task = Task::kYesNo};
+  LikelihoodOptions options{.function = parameters_named("norm"), .task = Task::kYesNo};
   options.lapse = options.guess = {0.0, 0.0};
-  const Sigmoid sigmoid(options.shape);
-  const PsychometricFunction truth(sigmoid, {2.2, 2.0});
+  const PsychometricFunction truth = fitted_function(options.function, {2.2, 2.0});
   std::vector<TrialBlock> blocks;
   double a = 0.0, b = 0.0, c = 0.0;  // information of intercept and slope of z = rise (x - 2.2)
-  const double rise = sigmoid.spread() / 2.0;
+  const double rise = psychometric::rate_of_width(options.function.sigmoid, 2.0);
   for (int i = 0; i < 8; ++i) {
-    const double x = 0.5 + 0.5 * i, p = truth.at(x), z = rise * (x - 2.2);
+    const double x = 0.5 + 0.5 * i, p = truth(x), z = rise * (x - 2.2);
     blocks.push_back({x, static_cast<int>(std::lround(4000 * p)), 4000});
     const double density = std::exp(-0.5 * z * z) / std::sqrt(2.0 * M_PI);
     const double weight = 4000 * density * density / (p * (1.0 - p));
@@ -217,7 +220,7 @@ TEST(BootstrapFit, HasTheWidthThatFishersInformationGives) {
 TEST(BootstrapFit, FindsThatAFunctionDoesNotDescribeTheAnswers) {
   const std::vector<TrialBlock> uneven{
       {1, 2, 40}, {2, 30, 40}, {3, 5, 40}, {4, 36, 40}, {5, 30, 40}};
-  const LikelihoodOptions options{.shape = sigmoid_named("norm"), .task = Task::kYesNo};
+  const LikelihoodOptions options{.function = parameters_named("norm"), .task = Task::kYesNo};
   FitBootstrap how;
   how.resampling.count = 999;
   EXPECT_LE(bootstrap_fit(uneven, options, {}, how).deviance_p, 0.001);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <vector>
@@ -18,7 +19,7 @@ const std::vector<Sigmoid> kAll{Sigmoid::kLogistic, Sigmoid::kGaussian, Sigmoid:
 std::vector<PsychometricParameters> every_kind() {
   std::vector<PsychometricParameters> all;
   for (Sigmoid sigmoid : kAll) {
-    for (Scale scale : {Scale::kLinear, Scale::kLog10, Scale::kDecibel}) {
+    for (Scale scale : {Scale::kLinear, Scale::kLog10, Scale::kNaturalLog, Scale::kDecibel}) {
       for (bool falling : {false, true}) {
         PsychometricParameters p;
         p.sigmoid = sigmoid;
@@ -66,7 +67,56 @@ TEST(SigmoidTest, QuantilesAreTheInverse) {
   }
 }
 
+// Points against differences of the shares, lanes against points.
+TEST(SigmoidTest, PointsAndLanesAgree) {
+  for (Sigmoid kind : kAll) {
+    for (double first = -40.0; first <= 40.0; first += 2.5) {
+      double z[SigmoidLanes::kCount];
+      for (std::size_t i = 0; i < SigmoidLanes::kCount; ++i) {
+        z[i] = first + 0.31 * static_cast<double>(i);
+      }
+      SigmoidLanes lanes;
+      sigmoid_lanes(kind, z, lanes);
+      for (std::size_t i = 0; i < SigmoidLanes::kCount; ++i) {
+        const SigmoidPoint point = sigmoid_point(kind, z[i]);
+        EXPECT_NEAR(lanes.share[i], point.share, 1e-11 * point.share);
+        EXPECT_NEAR(lanes.beyond[i], point.beyond, 1e-11 * point.beyond);
+        EXPECT_NEAR(lanes.density[i], point.density, 1e-14 * point.density);
+        EXPECT_NEAR(lanes.bend[i], point.bend, 1e-14 * (point.density + std::abs(point.bend)));
+        const double h = 1e-5;
+        const double bend =
+            (sigmoid_density(kind, z[i] + h) - sigmoid_density(kind, z[i] - h)) / (2.0 * h);
+        EXPECT_NEAR(point.bend, bend, 1e-9) << static_cast<int>(kind) << " " << z[i];
+      }
+    }
+  }
+}
+
+// The tails of the Gaussian against those of the C library.
+TEST(SigmoidTest, TheGaussianIsThatOfTheLibrary) {
+  for (double z = -37.0; z <= 37.0; z += 0.0137) {
+    const double share = 0.5 * std::erfc(-z / std::numbers::sqrt2);
+    EXPECT_NEAR(sigmoid(Sigmoid::kGaussian, z) / share, 1.0, 1e-13) << z;
+    EXPECT_EQ(sigmoid(Sigmoid::kGaussian, z), sigmoid_above(Sigmoid::kGaussian, -z));
+  }
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (Sigmoid kind : kAll) {
+    EXPECT_EQ(sigmoid(kind, -infinity), 0.0);
+    EXPECT_EQ(sigmoid(kind, infinity), 1.0);
+    EXPECT_TRUE(std::isnan(sigmoid(kind, std::nan(""))));
+  }
+}
+
 TEST(SigmoidTest, NamesOfTheField) {
+  EXPECT_EQ(sigmoid_named("Weibull").sigmoid, Sigmoid::kGumbel);
+  EXPECT_FALSE(sigmoid_named("Weibull").falling);
+  EXPECT_TRUE(sigmoid_named("neg_rWeibull").falling);
+  EXPECT_TRUE(sigmoid_named("neg_rWeibull").logarithmic);
+  EXPECT_EQ(sigmoid_named("neg_rWeibull").sigmoid, Sigmoid::kReversedGumbel);
+  EXPECT_EQ(sigmoid_named("gauss").sigmoid, Sigmoid::kGaussian);
+  for (const SigmoidName& known : sigmoid_names()) {
+    EXPECT_EQ(sigmoid_named(known.name).sigmoid, known.form.sigmoid) << known.name;
+  }
   EXPECT_EQ(sigmoid_named("weibull").sigmoid, Sigmoid::kGumbel);
   EXPECT_TRUE(sigmoid_named("weibull").logarithmic);
   EXPECT_EQ(sigmoid_named("logn").sigmoid, Sigmoid::kGaussian);
@@ -94,15 +144,21 @@ TEST(PsychometricFunctionTest, ThresholdAndWidthAreWhereTheySay) {
     const PsychometricFunction psi(p);
     const auto unscaled = [&](double x) {
       const double share = (psi.at(x) - p.guess) / (1.0 - p.guess - p.lapse);
-      return p.falling ? 1.0 - share : share;
+      return share;
     };
     const double m = p.axis.at(p.threshold);
     EXPECT_NEAR(unscaled(m), 0.6, 1e-12);
     // Both ends of the width, from the inverse at the tails.
-    const auto scaled = [&](double share) {
-      return p.guess + (1.0 - p.guess - p.lapse) * (p.falling ? 1.0 - share : share);
-    };
-    EXPECT_NEAR(psi.x_for(scaled(0.95)) - psi.x_for(scaled(0.05)), p.width, 1e-11 * p.width);
+    const auto scaled = [&](double share) { return p.guess + (1.0 - p.guess - p.lapse) * share; };
+    const double distance = psi.x_for(scaled(0.95)) - psi.x_for(scaled(0.05));
+    EXPECT_NEAR(p.falling ? -distance : distance, p.width, 1e-11 * p.width);
+    EXPECT_NEAR(psi.level_for_share(0.95), psi.level_for(scaled(0.95)), 1e-11);
+    // The same function from its curve and x.
+    auto other = p;
+    other.threshold = 77.0;
+    const PsychometricFunction same(other, curve_of(p), m);
+    EXPECT_NEAR(same.parameters().threshold, p.threshold, 1e-13);
+    EXPECT_EQ(same.at(m + 0.1), psi.at(m + 0.1));
   }
 }
 
@@ -173,6 +229,21 @@ TEST(PsychometricFunctionTest, ParametersOutOfBoundsAreNamed) {
   EXPECT_NE(message([](auto& p) { p.tail = 0.5; }).find("tail"), std::string::npos);
   EXPECT_NE(message([](auto& p) { p.axis.scale = Scale::kLog10; }).find("threshold"),
             std::string::npos);
+}
+
+TEST(AxisTest, LevelsAndUnits) {
+  for (Scale scale : {Scale::kLinear, Scale::kLog10, Scale::kNaturalLog, Scale::kDecibel}) {
+    const Axis axis{scale, 2.0, "N/m"};
+    EXPECT_NEAR(axis.level(axis.at(302.0)), 302.0, 1e-10);
+    const double h = 1e-4;
+    EXPECT_NEAR(axis.gradient(302.0), (axis.at(302.0 + h) - axis.at(302.0 - h)) / (2.0 * h), 1e-9);
+  }
+  EXPECT_DOUBLE_EQ((Axis{Scale::kNaturalLog, 1.0}.at(1.0 + std::numbers::e)), 1.0);
+  EXPECT_DOUBLE_EQ((Axis{Scale::kDecibel, 0.0}.at(100.0)), 40.0);
+  EXPECT_EQ((Axis{Scale::kLinear, 0.0, "N/m"}.x_unit()), "N/m");
+  EXPECT_EQ((Axis{Scale::kLog10, 0.0, "N/m"}.x_unit()), "log10(N/m)");
+  EXPECT_EQ((Axis{Scale::kNaturalLog, 0.0, "N/m"}.x_unit()), "ln(N/m)");
+  EXPECT_EQ((Axis{Scale::kDecibel, 0.0, "N/m"}.x_unit()), "dB re 1 N/m");
 }
 
 }  // namespace

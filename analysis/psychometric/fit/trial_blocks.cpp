@@ -1,4 +1,4 @@
-#include "analysis/psychometric/fit/psychometric_model.h"
+#include "analysis/psychometric/fit/trial_blocks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,37 +8,11 @@ namespace haptrial::analysis {
 namespace {
 
 /// k log(k / (n p)), which is 0 for no trial.
-double surprise(double count, double predicted) noexcept {
+double surprise_of(double count, double predicted) noexcept {
   return count > 0.0 ? count * std::log(count / predicted) : 0.0;
 }
 
 }  // namespace
-
-double PsychometricFunction::at(double level) const noexcept {
-  double beyond = 0.0;
-  const auto& p = parameters_;
-  const double share = sigmoid_.share(sigmoid_.coordinate(level), p.threshold, p.width, beyond);
-  return p.guess + (1.0 - p.guess - p.lapse) * share;
-}
-
-std::optional<double> PsychometricFunction::level_at(double probability) const noexcept {
-  const auto& p = parameters_;
-  if (!(probability > p.guess && probability < 1.0 - p.lapse)) {
-    return std::nullopt;
-  }
-  return level_of_share((probability - p.guess) / (1.0 - p.guess - p.lapse));
-}
-
-double PsychometricFunction::level_of_share(double share) const noexcept {
-  return sigmoid_.level(sigmoid_.inverse(share, parameters_.threshold, parameters_.width));
-}
-
-double PsychometricFunction::slope(double level) const noexcept {
-  const auto& p = parameters_;
-  const double by_coordinate =
-      (1.0 - p.guess - p.lapse) * sigmoid_.slope(sigmoid_.coordinate(level), p.threshold, p.width);
-  return sigmoid_.shape().logarithmic ? by_coordinate / level : by_coordinate;
-}
 
 std::vector<TrialBlock> pooled(std::span<const TrialBlock> blocks) {
   if (blocks.empty()) {
@@ -67,27 +41,29 @@ std::vector<TrialBlock> pooled(std::span<const TrialBlock> blocks) {
   return result;
 }
 
-std::vector<double> coordinates(const Sigmoid& sigmoid, std::span<const TrialBlock> blocks) {
+std::vector<double> coordinates(const psychometric::Axis& axis,
+                                std::span<const TrialBlock> blocks) {
   std::vector<double> result;
   result.reserve(blocks.size());
   for (const TrialBlock& block : blocks) {
-    result.push_back(sigmoid.coordinate(block.level));
+    result.push_back(axis.at(block.level));
     if (!std::isfinite(result.back())) {
       throw std::invalid_argument(
-          "level of a block must be above 0, as the sigmoid takes its logarithm");
+          "level of a block must lie above the origin of its axis, which takes the logarithm");
     }
   }
   return result;
 }
 
-PsychometricDeviance deviance_of(const PsychometricFunction& function,
+PsychometricDeviance deviance_of(const psychometric::PsychometricFunction& function,
                                  std::span<const TrialBlock> blocks) {
   PsychometricDeviance result;
   for (const TrialBlock& block : blocks) {
     const auto n = static_cast<double>(block.total);
     const auto k = static_cast<double>(block.correct);
-    const double p = function.at(block.level);
-    const double part = std::max(0.0, 2.0 * (surprise(k, n * p) + surprise(n - k, n * (1.0 - p))));
+    const double p = function(block.level);
+    const double part =
+        std::max(0.0, 2.0 * (surprise_of(k, n * p) + surprise_of(n - k, n * (1.0 - p))));
     result.deviance += part;
     result.residuals.push_back(std::copysign(std::sqrt(part), k / n - p));
   }
