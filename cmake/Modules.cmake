@@ -171,6 +171,8 @@ function(haptrial_test_needs)
   target_link_libraries(test_exchange PRIVATE haptrial_force_score)
   target_link_libraries(test_psychometric_fit PRIVATE nlohmann_json::nlohmann_json)
   target_link_libraries(test_psychometric_models PRIVATE PkgConfig::gsl)
+  target_link_libraries(test_trials_analysis PRIVATE nlohmann_json::nlohmann_json PkgConfig::gsl
+                                                     haptrial_record_write)
   target_sources(test_force_analysis
                  PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/exchange/small_session.cpp)
   add_dependencies(test_stream stand_in_lsl)
