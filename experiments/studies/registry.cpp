@@ -9,6 +9,7 @@
 #include "core/record/rows/common_tables.h"
 #include "experiments/studies/bone_study.h"
 #include "experiments/studies/force_study.h"
+#include "experiments/studies/trials_study.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -17,6 +18,7 @@ std::vector<const Study*>& all() {
   static std::vector<const Study*> studies{
       &force_study(),
       &bone_study(),
+      &trials_study(),
   };
   return studies;
 }

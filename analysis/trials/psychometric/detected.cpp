@@ -29,7 +29,11 @@ double rating_of(const StudyTrial& trial, const TrialsPlan& plan, int outcome) {
 }
 
 /// 1 signal, 0 noise, -1 neither.
-int signal_in(const StudyTrial& trial, const TrialsPlan& plan) {
+int signal_in(const StudyTrial& trial, const TrialsPlan& plan, int outcome) {
+  const GivenAnswer* answer = answer_to(trial, plan.question);
+  if (answer != nullptr && answer->correct >= 0) {
+    return answer->correct == 1 ? outcome : 1 - outcome;
+  }
   if (!trial.probe.empty()) {
     return 0;
   }
@@ -53,12 +57,13 @@ void add(Collected& collected, int signal, int outcome, double rating) {
 std::vector<DetectedCondition> detected(const TrialsData& data, const TrialsPlan& plan) {
   std::map<Key, Collected> all;
   for (const StudyTrial& trial : data.trials) {
-    const int signal = signal_in(trial, plan);
-    TrialsPlan yes = plan;
     const GivenAnswer* answer = answer_to(trial, plan.question);
-    yes.yes = plan.yes.empty() ? "yes" : plan.yes;
-    const int outcome = answer == nullptr ? -1 : outcome_of(trial, yes);
-    if (trial.counts() && signal >= 0 && outcome >= 0) {
+    if (!trial.counts() || answer == nullptr) {
+      continue;
+    }
+    const int outcome = answer->text == (plan.yes.empty() ? "yes" : plan.yes) ? 1 : 0;
+    const int signal = signal_in(trial, plan, outcome);
+    if (signal >= 0) {
       add(all[{data.session_of(trial).participant, factors_of(data, trial, plan)}], signal, outcome,
           rating_of(trial, plan, outcome));
     }

@@ -22,8 +22,9 @@ struct DetectedCondition {
   Defined<BinormalRoc> binormal{Undefined{"there are no ratings"}};
 };
 
-/// Yes/no detection: signal is every trial with a level above 0 and no probe, noise one with a
-/// probe (a catch trial) or with the level 0. A rating goes from "surely no" to "surely yes": with
+/// Yes/no detection. Signal is every trial in which "yes" is right. If the definition does not say
+/// what is right: one with a level above 0 and no probe; noise is then one with a probe (a catch
+/// trial) or the level 0. A rating goes from "surely no" to "surely yes": with
 /// the answer "no" it counts downwards.
 std::vector<DetectedCondition> detected(const TrialsData& data, const TrialsPlan& plan);
 

@@ -215,7 +215,7 @@ psychometric::PsychometricFunction FunctionFit::function(const TrialsPlan& plan)
   return fitted_function(plan.function, fitted);
 }
 
-FunctionFit fit_series(const Series& series, const TrialsPlan& plan, int threads) {
+FunctionFit fit_series(const AnsweredSeries& series, const TrialsPlan& plan, int threads) {
   FunctionFit result;
   result.participant = series.participant;
   result.levels = series.levels;

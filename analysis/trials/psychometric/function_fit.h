@@ -59,6 +59,6 @@ struct FunctionFit {
 /// of its posterior. Not defined with answers at fewer than two levels, or where they do not tell
 /// the threshold.
 /// @param threads  of the bootstrap and the grid
-FunctionFit fit_series(const Series& series, const TrialsPlan& plan, int threads);
+FunctionFit fit_series(const AnsweredSeries& series, const TrialsPlan& plan, int threads);
 
 }  // namespace haptrial::analysis::trials

@@ -19,20 +19,20 @@ struct Row {
   double side{0.0};  // -1/2, +1/2: condition
 };
 
-std::vector<std::string> conditions_of(const std::vector<Series>& series) {
+std::vector<std::string> conditions_of(const std::vector<AnsweredSeries>& series) {
   std::set<std::string> names;
-  for (const Series& each : series) {
+  for (const AnsweredSeries& each : series) {
     names.insert(each.condition());
   }
   return {names.begin(), names.end()};
 }
 
-std::vector<Row> rows_of(const std::vector<Series>& series,
+std::vector<Row> rows_of(const std::vector<AnsweredSeries>& series,
                          const std::vector<std::string>& conditions,
                          const psychometric::Axis& axis) {
   std::vector<Row> rows;
   std::vector<std::string> people;
-  for (const Series& each : series) {
+  for (const AnsweredSeries& each : series) {
     if (people.empty() || people.back() != each.participant) {
       people.push_back(each.participant);
     }
@@ -105,7 +105,7 @@ Defined<EqualityPoint> crossing(const PopulationModel& made, double side) {
 
 }  // namespace
 
-Defined<PopulationModel> population_model(const std::vector<Series>& series,
+Defined<PopulationModel> population_model(const std::vector<AnsweredSeries>& series,
                                           const TrialsPlan& plan) {
   if (!plan.guess_free && plan.function.guess > 0.0) {
     return Undefined{

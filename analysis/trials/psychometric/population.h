@@ -32,7 +32,7 @@ struct PopulationModel {
 
 /// Undefined with a guess rate above 0, which a probit line cannot have, with more than two
 /// conditions, with fewer than five participants, and as binomial_mixed_model().
-Defined<PopulationModel> population_model(const std::vector<Series>& series,
+Defined<PopulationModel> population_model(const std::vector<AnsweredSeries>& series,
                                           const TrialsPlan& plan);
 
 }  // namespace haptrial::analysis::trials

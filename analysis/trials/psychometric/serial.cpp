@@ -79,7 +79,7 @@ Defined<double> repetition_of(const std::vector<Seen>& seen, const std::vector<i
 }
 
 /// The trials of one participant that have a function, in the order of their recording.
-std::vector<Seen> seen_by(const std::string& participant, const std::vector<Series>& series,
+std::vector<Seen> seen_by(const std::string& participant, const std::vector<AnsweredSeries>& series,
                           const std::vector<FunctionFit>& fits, const TrialsPlan& plan,
                           SerialEffects& effects) {
   constexpr double kEasy = 0.99;
@@ -95,9 +95,9 @@ std::vector<Seen> seen_by(const std::string& participant, const std::vector<Seri
       if (!std::isfinite(plan.function.axis.at(trial.level))) {
         continue;
       }
-      const bool forced = trial.side != 0;
+      const bool chosen = trial.choice != 0;
       seen.push_back({trial.trial, logit(psi), trial.outcome,
-                      forced ? trial.choice : 2 * trial.outcome - 1, forced ? trial.side : 1});
+                      chosen ? trial.choice : 2 * trial.outcome - 1, chosen ? trial.side : 1});
       if ((psi - p.guess) / (1.0 - p.guess - p.lapse) > kEasy) {
         ++effects.easy;
         effects.easy_wrong += trial.outcome == 0 ? 1 : 0;
@@ -132,11 +132,12 @@ std::vector<double> defined_of(const std::vector<SerialEffects>& effects,
 
 }  // namespace
 
-std::vector<SerialEffects> serial_effects(const TrialsData& data, const std::vector<Series>& series,
+std::vector<SerialEffects> serial_effects(const TrialsData& data,
+                                          const std::vector<AnsweredSeries>& series,
                                           const std::vector<FunctionFit>& fits,
                                           const TrialsPlan& plan) {
   std::map<std::string, SerialEffects> people;
-  for (const Series& each : series) {
+  for (const AnsweredSeries& each : series) {
     SerialEffects& own = people[each.participant];
     own.participant = each.participant;
     own.trials += each.trials.size();

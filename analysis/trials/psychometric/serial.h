@@ -23,14 +23,16 @@ struct SerialEffects {
 /// Logistic regressions beside the fitted functions psi of the participant's series, o = logit psi:
 ///
 ///     logit P(answer 1) = a + b o + drift t,                t from -1/2 to 1/2 over the trials
-///     logit P(choice +) = a + b s o + repetition / 2 r      s = side of the right choice, r = +-1
+///     logit P(choice +) = a + b s o + repetition / 2 r      s, r = +-1
 ///
-/// With a question without a right choice s = 1 and the choice is the answer itself. The bias of
+/// s is the side of the choice whose outcome is 1, r the choice before. Without two choices the
+/// outcome counts as the choice, and s = 1. The bias of
 /// the second from the estimated intercept, -1 / (trials w) with w the mean of psi (1 - psi), is
 /// added back (Kendall 1954, Biometrika 41, for a series' correlation with itself). Practice and
 /// trials without a function do not take part; the answer before is that of the trial before in the
 /// session, whatever its condition.
-std::vector<SerialEffects> serial_effects(const TrialsData& data, const std::vector<Series>& series,
+std::vector<SerialEffects> serial_effects(const TrialsData& data,
+                                          const std::vector<AnsweredSeries>& series,
                                           const std::vector<FunctionFit>& fits,
                                           const TrialsPlan& plan);
 

@@ -40,14 +40,12 @@ void add_choice(LevelTrial& made, const StudyTrial& trial, const TrialsPlan& pla
     return;
   }
   made.choice = answer->text == words.back() ? 1 : -1;
-  if (answer->correct >= 0) {
-    made.side = answer->correct == 1 ? made.choice : -made.choice;
-  }
+  made.side = made.outcome == 1 ? made.choice : -made.choice;
 }
 
 }  // namespace
 
-std::string Series::condition() const { return fmt::format("{}", fmt::join(levels, ", ")); }
+std::string AnsweredSeries::condition() const { return fmt::format("{}", fmt::join(levels, ", ")); }
 
 double level_of(const StudyTrial& trial, const TrialsPlan& plan) {
   if (plan.level.empty()) {
@@ -85,9 +83,9 @@ std::vector<std::string> factors_of(const TrialsData& data, const StudyTrial& tr
   return levels;
 }
 
-std::vector<Series> series_of(const TrialsData& data, const TrialsPlan& plan) {
+std::vector<AnsweredSeries> series_of(const TrialsData& data, const TrialsPlan& plan) {
   const std::vector<std::string> words = two_answers(data, plan);
-  std::map<std::string, std::vector<Series>> people;
+  std::map<std::string, std::vector<AnsweredSeries>> people;
   for (std::size_t i = 0; i < data.trials.size(); ++i) {
     const StudyTrial& trial = data.trials[i];
     const double level = level_of(trial, plan);
@@ -101,26 +99,26 @@ std::vector<Series> series_of(const TrialsData& data, const TrialsPlan& plan) {
       made.track = trial.levels.front().track;
     }
     add_choice(made, trial, plan, words);
-    std::vector<Series>& own = people[data.session_of(trial).participant];
+    std::vector<AnsweredSeries>& own = people[data.session_of(trial).participant];
     const std::vector<std::string> levels = factors_of(data, trial, plan);
-    auto at =
-        std::find_if(own.begin(), own.end(), [&](const Series& s) { return s.levels == levels; });
+    auto at = std::find_if(own.begin(), own.end(),
+                           [&](const AnsweredSeries& s) { return s.levels == levels; });
     if (at == own.end()) {
       own.push_back({data.session_of(trial).participant, levels, {}});
       at = own.end() - 1;
     }
     at->trials.push_back(std::move(made));
   }
-  std::vector<Series> all;
+  std::vector<AnsweredSeries> all;
   for (auto& [participant, own] : people) {
     std::sort(own.begin(), own.end(),
-              [](const Series& a, const Series& b) { return a.levels < b.levels; });
+              [](const AnsweredSeries& a, const AnsweredSeries& b) { return a.levels < b.levels; });
     std::move(own.begin(), own.end(), std::back_inserter(all));
   }
   return all;
 }
 
-std::vector<TrialBlock> blocks_of(const Series& series) {
+std::vector<TrialBlock> blocks_of(const AnsweredSeries& series) {
   std::map<double, TrialBlock> blocks;
   for (const LevelTrial& trial : series.trials) {
     TrialBlock& block = blocks[rounded(trial.level)];

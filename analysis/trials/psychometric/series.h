@@ -16,12 +16,12 @@ struct LevelTrial {
   double asked{0.0};
   int outcome{0};     // 1 or 0
   int choice{0};      // of two answers +1 or -1; 0: not known
-  int side{0};        // the choice that was right, likewise
+  int side{0};        // the choice whose outcome would be 1, likewise
   std::string track;  // empty: none
 };
 
 /// The trials of one participant in one combination of factors, in their order.
-struct Series {
+struct AnsweredSeries {
   std::string participant;
   std::vector<std::string> levels;  // of each factor of TrialsPlan::by
   std::vector<LevelTrial> trials;
@@ -39,10 +39,10 @@ std::vector<std::string> factors_of(const TrialsData& data, const StudyTrial& tr
 
 /// Trials that count and have a level and an outcome, ordered by participant and first occurrence
 /// of the combination. Trials of all sessions of a participant stand together.
-std::vector<Series> series_of(const TrialsData& data, const TrialsPlan& plan);
+std::vector<AnsweredSeries> series_of(const TrialsData& data, const TrialsPlan& plan);
 
 /// Answers by level. Levels that agree in nine digits are one, since the arithmetic of a procedure
 /// reaches a level from above and below.
-std::vector<TrialBlock> blocks_of(const Series& series);
+std::vector<TrialBlock> blocks_of(const AnsweredSeries& series);
 
 }  // namespace haptrial::analysis::trials

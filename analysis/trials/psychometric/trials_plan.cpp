@@ -49,7 +49,7 @@ std::string text_or(Table& table, const char* key) {
 }
 
 void read_by(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
-  plan.by = defaults.factors;
+  plan.by = plan.kind == AnalysisKind::kDetection ? std::vector<std::string>{} : defaults.factors;
   if (!table.has("by")) {
     return;
   }
@@ -164,7 +164,10 @@ const char* name_of(AnalysisKind kind) {
 TrialsPlan read_trials_plan(Table& root, const PlanDefaults& defaults) {
   TrialsPlan plan;
   plan.kind = defaults.kind;
-  plan.by = defaults.factors;
+  const bool detects = plan.kind == AnalysisKind::kDetection;
+  plan.by = detects ? std::vector<std::string>{} : defaults.factors;
+  plan.rating = detects ? defaults.rating : "";
+  plan.functions = plan.kind == AnalysisKind::kPsychometric;
   plan.guess_free = !defaults.guess.has_value();
   plan.function.guess = defaults.guess.value_or(0.0);
   plan.function.axis = defaults.axis;
@@ -185,10 +188,14 @@ TrialsPlan read_trials_plan(Table& root, const PlanDefaults& defaults) {
   plan.question = text_or(table, "question");
   plan.yes = text_or(table, "yes");
   plan.level = text_or(table, "level");
-  if (plan.kind == AnalysisKind::kPsychometric) {
+  plan.rating = "";
+  if (plan.kind == AnalysisKind::kDetection) {
+    plan.rating = table.has("rating") ? table.text("rating") : defaults.rating;
+  }
+  plan.functions = plan.kind == AnalysisKind::kPsychometric ||
+                   (plan.kind == AnalysisKind::kDetection && table.has("function"));
+  if (plan.functions) {
     read_psychometric(table, defaults, plan);
-  } else if (plan.kind == AnalysisKind::kDetection) {
-    plan.rating = text_or(table, "rating");
   }
   return plan;
 }

@@ -28,6 +28,7 @@ enum class AnalysisKind {
 struct PlanDefaults {
   AnalysisKind kind{AnalysisKind::kNone};
   std::vector<std::string> factors;  // that [factors] varies, and "group" of several groups
+  std::string rating;                // question of how sure somebody is; empty: none
   std::vector<std::string> names;    // that `by` may name besides
   psychometric::Axis axis;           // of the procedure, with its unit
   std::optional<double> guess;       // 1 / choices where an answer is right; else free
@@ -43,6 +44,7 @@ struct TrialsPlan {
                                 // the right one
   std::string level;            // variable for the level; empty: the one that the procedure set
   std::string rating;           // question with a number: how sure; empty: none
+  bool functions{false};        // whether functions are fitted
   std::string function_name{"norm"};
   psychometric::PsychometricParameters function{.guess = 0.5};
   bool guess_free{false};
@@ -60,7 +62,8 @@ struct TrialsPlan {
 /// Reads the table [analysis], all of whose keys may be left out. Problems are noted.
 ///
 ///     kind          "psychometric", "detection", "magnitude", "reaching" or "none"
-///     by            factors: each combination has a function, d' or exponent of its own
+///     by            factors: each combination has a function, d' or exponent of its own; left out:
+///                   all of them, of detection none, as they may say where the signal is
 ///     tests         planned: "a < b", "a > b" or "a != b" of levels of these factors
 ///     question, yes, level   as TrialsPlan
 ///     function      a sigmoid by its name; "weibull", "log_normal" on a logarithmic axis
@@ -72,6 +75,8 @@ struct TrialsPlan {
 ///     bayesian      whether the Bayesian fit is added
 ///     resamples     of the bootstrap, 0 to 100,000
 ///     rating        question of how sure the participant was
+///
+/// Keys from function to resamples are those of functions; detection fits them if it states one.
 TrialsPlan read_trials_plan(Table& root, const PlanDefaults& defaults);
 
 /// The words of `kind`.

@@ -37,7 +37,7 @@ struct TrialsResult {
   TrialsPlan plan;
   TrialsData data;
   std::vector<ParticipantTrials> participants;  // by name
-  std::vector<Series> series;                   // of a psychometric analysis
+  std::vector<AnsweredSeries> series;           // whose functions are fitted
   std::vector<FunctionFit> fits;                // (series)
   std::vector<TrackEstimate> tracks;
   std::vector<SerialEffects> serial;

@@ -162,19 +162,14 @@ TrialsResult analyze(TrialsData data, const TrialsPlan& plan, const ProcedureOf&
   }
   result.participants = participants_of(result.data, plan);
   result.tracks = track_estimates(result.data, procedure_of);
-  switch (plan.kind) {
-    case AnalysisKind::kPsychometric:
-      add_functions(result, threads);
-      break;
-    case AnalysisKind::kDetection:
-      add_detection(result);
-      break;
-    case AnalysisKind::kMagnitude:
-      add_magnitudes(result);
-      break;
-    case AnalysisKind::kReaching:
-    case AnalysisKind::kNone:
-      break;
+  if (plan.kind == AnalysisKind::kDetection) {
+    add_detection(result);
+  }
+  if (plan.functions) {
+    add_functions(result, threads);
+  }
+  if (plan.kind == AnalysisKind::kMagnitude) {
+    add_magnitudes(result);
   }
   return result;
 }

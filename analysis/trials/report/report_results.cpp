@@ -130,8 +130,10 @@ void add_population(Document& document, const TrialsResult& result) {
 void add_functions(Document& document, const TrialsResult& result,
                    const std::vector<Drawing>& drawings) {
   add_section(document, result, "Psychometric functions");
-  add_means(document, result);
-  add_pictures(document, drawings, "by-condition-", kMostPictures);
+  if (result.plan.kind == AnalysisKind::kPsychometric) {  // else they stand with the detection
+    add_means(document, result);
+    add_pictures(document, drawings, "by-condition-", kMostPictures);
+  }
   add_pictures(document, drawings, "function-", kMostPictures);
   add_fit_table(document, result);
   add_population(document, result);
@@ -195,19 +197,14 @@ void add_laws(Document& document, const TrialsResult& result,
 
 void add_results(Document& document, const TrialsResult& result,
                  const std::vector<Drawing>& drawings) {
-  switch (result.plan.kind) {
-    case AnalysisKind::kPsychometric:
-      add_functions(document, result, drawings);
-      break;
-    case AnalysisKind::kDetection:
-      add_detections(document, result, drawings);
-      break;
-    case AnalysisKind::kMagnitude:
-      add_laws(document, result, drawings);
-      break;
-    case AnalysisKind::kReaching:
-    case AnalysisKind::kNone:
-      break;
+  if (result.plan.kind == AnalysisKind::kDetection) {
+    add_detections(document, result, drawings);
+  }
+  if (result.plan.functions) {
+    add_functions(document, result, drawings);
+  }
+  if (result.plan.kind == AnalysisKind::kMagnitude) {
+    add_laws(document, result, drawings);
   }
 }
 

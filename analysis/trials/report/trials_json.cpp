@@ -198,7 +198,7 @@ std::string results_json(const TrialsResult& result) {
             {"kind", name_of(plan.kind)},
             {"factors", plan.by}};
   root["participants"] = list_of(result.participants);
-  if (plan.kind == AnalysisKind::kPsychometric) {
+  if (plan.functions) {
     root["function"] = {{"sigmoid", plan.function_name},
                         {"axis_unit", plan.function.axis.x_unit()},
                         {"axis_origin", plan.function.axis.origin},

@@ -51,7 +51,7 @@ std::string function_words(const TrialsPlan& plan) {
 void add_methods(Document& document, const TrialsResult& result) {
   document.heading("Methods");
   const TrialsPlan& plan = result.plan;
-  if (plan.kind == AnalysisKind::kPsychometric) {
+  if (plan.functions) {
     document.paragraph(function_words(plan));
     document.paragraph(fmt::format(
         "Functions are fitted to each participant by maximum likelihood; intervals are "
@@ -60,11 +60,13 @@ void add_methods(Document& document, const TrialsResult& result) {
         "grid (Schütt et al. 2016), so that its intervals are wider where answers scatter more "
         "than chance; its estimates are posterior means.",
         plan.resamples));
-  } else if (plan.kind == AnalysisKind::kDetection) {
+  }
+  if (plan.kind == AnalysisKind::kDetection) {
     document.paragraph(
         "d' and criterion are those of equal variances, from counts to which 1/2 was added "
-        "(log-linear correction, Hautus 1995). Signal trials are those with a level above 0; noise "
-        "trials those with the level 0 or a probe.");
+        "(log-linear correction, Hautus 1995). Signal is in the trials in which \"yes\" is right; "
+        "if "
+        "the definition does not say what is right, in those with a level above 0 and no probe.");
   } else if (plan.kind == AnalysisKind::kMagnitude) {
     document.paragraph(
         "A participant's repeated estimates at a level are put together by their geometric mean; "

@@ -286,6 +286,7 @@ TrialsPlan plan_of(const SimulatedTrials& study) {
   if (study.conditions > 1) {
     plan.by = {"light"};
   }
+  plan.functions = plan.kind == AnalysisKind::kPsychometric;
   plan.function = function_of(study, 0.0);
   plan.function_name = study.task == SimulatedTask::kComparison ? "norm" : "weibull";
   plan.guess_free = study.task == SimulatedTask::kComparison;
