@@ -167,12 +167,14 @@ function(haptrial_test_needs)
   target_link_libraries(test_bone_anatomy PRIVATE haptrial_bone_data)
   target_link_libraries(test_bone_drill PRIVATE haptrial_test_references)
   target_link_libraries(test_render_gl PRIVATE haptrial_render_trial)
-  target_link_libraries(test_record PRIVATE haptrial_bone_record)  # tables to try
+  target_link_libraries(test_record PRIVATE haptrial_bone_record haptrial_record_trials)  # tables to try
   target_link_libraries(test_drilling_analysis PRIVATE haptrial_bone_data)
   target_link_libraries(test_exchange PRIVATE haptrial_force_score)
   target_link_libraries(test_subject_perceiver PRIVATE haptrial_scene)
   target_link_libraries(test_psychometric_fit PRIVATE nlohmann_json::nlohmann_json)
   target_link_libraries(test_psychometric_models PRIVATE PkgConfig::gsl)
+  target_link_libraries(test_trials_analysis PRIVATE nlohmann_json::nlohmann_json PkgConfig::gsl
+                                                     haptrial_record_write)
   target_sources(test_force_analysis
                  PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/exchange/small_session.cpp)
   add_dependencies(test_stream stand_in_lsl)

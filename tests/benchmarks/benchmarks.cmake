@@ -12,6 +12,14 @@ foreach(source ${benchmarks})
     target_link_libraries(bench_${name} PRIVATE haptrial_psychometric haptrial_psychometric_models)
     continue()
   endif()
+  if(name STREQUAL null_trials)
+    target_sources(bench_null_trials
+                   PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/trials/simulated_trials.cpp
+                           ${CMAKE_SOURCE_DIR}/tests/analysis/trials/psychometric/null_trials.cpp)
+    target_link_libraries(bench_null_trials PRIVATE haptrial_trials_psychometric haptrial_record_write
+                                                    PkgConfig::gsl)
+    continue()
+  endif()
   target_link_libraries(bench_${name} PRIVATE haptrial_command_line fmt::fmt Threads::Threads)
 endforeach()
 target_sources(bench_servo PRIVATE ${CMAKE_SOURCE_DIR}/tests/experiments/timed_session.cpp

@@ -10,6 +10,7 @@
 #include "core/record/rows/common_tables.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/table/table_page.h"
+#include "core/record/trials/trial_rows.h"
 
 namespace haptrial::record {
 namespace {
@@ -45,6 +46,7 @@ void expect_described(const std::string& name, const TableList& tables) {
 
 TEST(SessionPageTest, TablesOfEverySession) { expect_described("session", session_tables()); }
 TEST(SessionPageTest, TablesOfAnyProtocol) { expect_described("responses", common_tables()); }
+TEST(SessionPageTest, TablesOfTrials) { expect_described("trials", trial_tables()); }
 TEST(SessionPageTest, TablesOfDrillings) { expect_described("drilling", drilling_tables()); }
 
 }  // namespace

@@ -1,0 +1,146 @@
+#include "analysis/trials/data/read_trials.h"
+
+#include <algorithm>
+
+#include "core/base/parallel.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/rows/session_tables.h"
+#include "core/record/trials/trial_rows.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+const char* word_of(record::StageEnding ending) {
+  switch (ending) {
+    case record::StageEnding::kReached:
+      return "reached";
+    case record::StageEnding::kLate:
+      return "late";
+    case record::StageEnding::kTooLittle:
+      return "too little";
+    case record::StageEnding::kBrokenOff:
+      break;
+  }
+  return "broken off";
+}
+
+/// Puts rows that name their pass with the pass; rows of no pass are left out.
+class SessionTrials {
+ public:
+  explicit SessionTrials(const record::SessionReader& reader)
+      : reader_(reader), passes_(reader.passes()), trials_(passes_.size()) {
+    for (std::size_t i = 0; i < passes_.size(); ++i) {
+      add_pass(i);
+    }
+    for (const record::VariableRow& row : reader.rows<record::VariableRow>()) {
+      add(row);
+    }
+    for (const record::LevelRow& row : reader.rows<record::LevelRow>()) {
+      if (StudyTrial* trial = of(row.pass)) {
+        trial->levels.push_back({row.track, row.variable, row.asked, row.applied, row.outcome});
+      }
+    }
+    for (const record::ResponseRow& row : reader.responses()) {
+      if (StudyTrial* trial = of(row.pass)) {
+        trial->answers.push_back(
+            {row.question, row.value, row.text, row.correct, row.reaction_time});
+      }
+    }
+    for (const record::StageRow& row : reader.rows<record::StageRow>()) {
+      add(row);
+    }
+  }
+
+  std::vector<StudyTrial> take() { return std::move(trials_); }
+
+ private:
+  StudyTrial* of(std::int32_t pass) {
+    const auto at = static_cast<std::size_t>(pass);
+    return pass >= 0 && at < trials_.size() ? &trials_[at] : nullptr;
+  }
+
+  void add_pass(std::size_t i) {
+    const record::PassRow& pass = passes_[i];
+    StudyTrial& trial = trials_[i];
+    trial.trial = pass.trial;
+    trial.attempt = pass.attempt;
+    trial.block = pass.block;
+    trial.condition = pass.condition;
+    trial.practice = pass.practice;
+    trial.completed = pass.status == record::PassStatus::kCompleted;
+    trial.start = static_cast<double>(pass.first_sample) / reader_.info().rate;
+    const std::uint64_t rows = reader_.sample_count();
+    const std::uint64_t end = std::min<std::uint64_t>(pass.last_sample + 1, rows);
+    if (pass.first_sample < end) {
+      const std::uint64_t count = end - pass.first_sample;
+      const auto saturated = reader_.integers(record::table_of<record::Sample>(), "saturated",
+                                              pass.first_sample, count);
+      trial.saturated = static_cast<double>(std::count(saturated.begin(), saturated.end(), 1)) /
+                        static_cast<double>(count);
+    }
+  }
+
+  void add(const record::VariableRow& row) {
+    StudyTrial* trial = of(row.pass);
+    if (trial == nullptr) {
+      return;
+    }
+    if (row.name == "probe" && row.interval == 0) {
+      trial->probe = row.word == "no" ? std::string() : row.word;
+      return;
+    }
+    const bool known = row.name == "trial" || row.name == "group" || row.name == "interval";
+    if (!known) {
+      trial->variables.push_back({row.name, row.interval, row.value, row.word});
+    }
+  }
+
+  void add(const record::StageRow& row) {
+    if (StudyTrial* trial = of(row.pass)) {
+      const double rate = reader_.info().rate;
+      StageTime stage{row.stage, row.interval, 0.0, kNotKnown, word_of(row.ending)};
+      stage.duration = static_cast<double>(row.last_sample - row.first_sample + 1) / rate;
+      if (row.onset_sample >= 0) {
+        stage.onset =
+            static_cast<double>(row.onset_sample - static_cast<std::int64_t>(row.first_sample)) /
+            rate;
+      }
+      trial->stages.push_back(std::move(stage));
+    }
+  }
+
+  const record::SessionReader& reader_;
+  std::vector<record::PassRow> passes_;
+  std::vector<StudyTrial> trials_;
+};
+
+}  // namespace
+
+TrialsData read_trials(const std::vector<std::filesystem::path>& files, const GroupOf& group_of,
+                       int threads) {
+  TrialsData data;
+  data.sessions.resize(files.size());
+  std::vector<std::vector<StudyTrial>> by_file(files.size());
+  in_groups(files.size(), 1, threads, [&] {
+    return [&](std::size_t first, std::size_t) {
+      const record::SessionReader reader(files[first]);
+      const record::SessionInfo& info = reader.info();
+      data.sessions[first] = {files[first].filename().string(),
+                              info.subject,
+                              group_of ? group_of(info.subject) : std::string(),
+                              info.clock,
+                              info.simulated,
+                              info.pilot};
+      by_file[first] = SessionTrials(reader).take();
+    };
+  });
+  for (std::size_t session = 0; session < by_file.size(); ++session) {
+    for (StudyTrial& trial : by_file[session]) {
+      trial.session = session;
+      data.trials.push_back(std::move(trial));
+    }
+  }
+  return data;
+}
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "analysis/trials/data/trials_data.h"
+
+namespace haptrial::analysis::trials {
+
+/// A tidy table with a row for every pass, practice and aborted ones too: `counted` is 1 for what
+/// the analysis takes. Columns: who, which trial, its level (track, variable, asked, applied,
+/// outcome), of each question its value, text (.text), correctness (.correct) and reaction time
+/// (.rt), each variable (NAME, or NAME.INTERVAL where intervals differ), and the duration of each
+/// stage (STAGE.INTERVAL.s). Times in seconds; what is not known is empty.
+std::string trials_csv(const TrialsData& data);
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace haptrial::analysis::trials {
+
+inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+
+/// A session of the study.
+struct StudySession {
+  std::string file;  // name without folder
+  std::string participant;
+  std::string group;  // empty: the study has none
+  std::string clock;  // "real" or "simulated"
+  bool simulated{false};
+  bool pilot{false};
+};
+
+/// An answer to one question of a trial.
+struct GivenAnswer {
+  std::string question;
+  double value{kNotKnown};          // NaN: the answer is no number
+  std::string text;                 // the answer as a word
+  int correct{-1};                  // 1 right, 0 wrong, -1 not known
+  double reaction_time{kNotKnown};  // [s]; NaN: not measured
+};
+
+/// What a variable of the definition was worth in a trial or in one of its intervals.
+struct GivenVariable {
+  std::string name;
+  int interval{0};          // from 1; 0: the whole trial
+  double value{kNotKnown};  // in the definition's unit; NaN: it is a word
+  std::string word;
+};
+
+/// What a procedure asked for, and what was presented.
+struct GivenLevel {
+  std::string track;
+  std::string variable;
+  double asked{kNotKnown};  // [unit of the variable]
+  double applied{kNotKnown};
+  double outcome{kNotKnown};  // what the procedure learnt; NaN: nothing
+};
+
+/// How long a stage of an interval took.
+struct StageTime {
+  std::string stage;
+  int interval{1};
+  double duration{0.0};     // [s]
+  double onset{kNotKnown};  // of the movement, from the first tick of the stage [s]
+  std::string ending;       // as /stages has it
+};
+
+/// One pass of a trial, with everything that the session file says of it.
+struct StudyTrial {
+  std::size_t session{0};  // in TrialsData::sessions
+  int trial{0};            // as in /trials
+  int attempt{1};
+  int block{0};
+  std::string condition;
+  std::string probe;  // empty: none
+  bool practice{false};
+  bool completed{true};
+  double start{0.0};               // since the session's first tick [s]
+  double saturated{0.0};           // share of the ticks at the force limit
+  std::vector<GivenLevel> levels;  // of a level with several dimensions one each
+  std::vector<GivenAnswer> answers;
+  std::vector<GivenVariable> variables;
+  std::vector<StageTime> stages;
+
+  /// Whether it is part of the study: completed, and no practice.
+  bool counts() const { return completed && !practice; }
+};
+
+/// All passes of a study, session after session, in the order of their recording.
+struct TrialsData {
+  std::vector<StudySession> sessions;
+  std::vector<StudyTrial> trials;
+
+  bool simulated() const;
+  const StudySession& session_of(const StudyTrial& trial) const { return sessions[trial.session]; }
+};
+
+/// The answer to a question, or the first one for an empty name; null: not given.
+const GivenAnswer* answer_to(const StudyTrial& trial, const std::string& question);
+/// A variable in a trial; null: not there. @param interval  0: the whole trial
+const GivenVariable* variable_of(const StudyTrial& trial, const std::string& name,
+                                 int interval = 0);
+
+/// The level of a trial under a factor, as a word: of "group", "condition", "block", "track" and
+/// "probe" (empty for none), else of the variable of that name; empty: the trial has none.
+std::string factor_level(const TrialsData& data, const StudyTrial& trial,
+                         const std::string& factor);
+
+/// As a table shows it: shortest decimals.
+std::string word_of(const GivenVariable& variable);
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/statistics/base/descriptive.h"
+#include "analysis/statistics/design/design_tests.h"
+#include "analysis/trials/psychometric/trials_plan.h"
+
+namespace haptrial::analysis::trials {
+
+/// One number of a participant under a condition.
+struct QuantityValue {
+  std::string participant;
+  std::vector<std::string> levels;  // of TrialsPlan::by
+  double value{0.0};                // finite
+};
+
+/// A quantity over participants: means of the conditions, and tests between them. A participant is
+/// one value under a condition, however many trials it comes from.
+struct Quantity {
+  std::string name;   // as in results.json: "threshold"
+  std::string title;  // "threshold"
+  std::string unit;   // of the values; empty: a pure number
+  DesignTable table;
+  std::vector<Defined<MeanInterval>> means;  // (cells) over participants
+  DesignTests tests;
+  bool compared{false};  // there are at least two conditions
+};
+
+/// @param plan  its tests are of the conditions; those of names without values are not defined
+/// @throws InputError for a planned test that compares trials with themselves, or a name that
+/// stands for several conditions.
+Quantity quantity(std::string name, std::string title, std::string unit,
+                  const std::vector<QuantityValue>& values, const TrialsPlan& plan);
+
+}  // namespace haptrial::analysis::trials

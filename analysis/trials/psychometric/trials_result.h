@@ -1,0 +1,59 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/trials/psychometric/detected.h"
+#include "analysis/trials/psychometric/function_fit.h"
+#include "analysis/trials/psychometric/magnitudes.h"
+#include "analysis/trials/psychometric/population.h"
+#include "analysis/trials/psychometric/quantity.h"
+#include "analysis/trials/psychometric/serial.h"
+#include "analysis/trials/psychometric/track_estimate.h"
+
+namespace haptrial::analysis::trials {
+
+/// How the trials of one participant went, whatever was asked.
+struct ParticipantTrials {
+  std::string participant;
+  std::string group;
+  std::size_t sessions{0};
+  std::size_t counted{0};
+  std::size_t practice{0};
+  std::size_t aborted{0};                                           // passes
+  Defined<double> reaction_time{Undefined{"it was not measured"}};  // median [s]
+  double saturated{0.0};  // share of the counted trials that reached the force limit
+};
+
+/// A named test of a report, for the level of null studies.
+struct NamedTest {
+  std::string name;
+  double p{1.0};
+};
+
+/// What the sessions of a study gave.
+struct TrialsResult {
+  std::string title;
+  TrialsPlan plan;
+  TrialsData data;
+  std::vector<ParticipantTrials> participants;  // by name
+  std::vector<AnsweredSeries> series;           // whose functions are fitted
+  std::vector<FunctionFit> fits;                // (series)
+  std::vector<TrackEstimate> tracks;
+  std::vector<SerialEffects> serial;
+  Defined<TTest> drift{Undefined{"nothing was fitted"}};  // mean over participants against 0
+  Defined<TTest> repetition{Undefined{"nothing was fitted"}};
+  Defined<PopulationModel> population{Undefined{"nothing was fitted"}};
+  std::vector<DetectedCondition> detected;
+  std::vector<MagnitudeCondition> magnitudes;
+  std::vector<Quantity> quantities;  // what is compared over participants
+  std::vector<std::string> remarks;  // sentences about the files, for the report
+  std::string definition, definition_name;
+
+  bool simulated() const { return data.simulated(); }
+};
+
+/// Every test that the report prints with a p value, by name.
+std::vector<NamedTest> tests_of(const TrialsResult& result);
+
+}  // namespace haptrial::analysis::trials

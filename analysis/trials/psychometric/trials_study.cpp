@@ -1,0 +1,196 @@
+#include "analysis/trials/psychometric/trials_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+std::vector<ParticipantTrials> participants_of(const TrialsData& data, const TrialsPlan& plan) {
+  std::map<std::string, ParticipantTrials> people;
+  std::map<std::string, std::vector<double>> times;
+  for (const StudySession& session : data.sessions) {
+    ParticipantTrials& own = people[session.participant];
+    own.participant = session.participant;
+    own.group = session.group;
+    ++own.sessions;
+  }
+  for (const StudyTrial& trial : data.trials) {
+    ParticipantTrials& own = people[data.session_of(trial).participant];
+    if (!trial.completed) {
+      ++own.aborted;
+    } else if (trial.practice) {
+      ++own.practice;
+    } else {
+      ++own.counted;
+      own.saturated += trial.saturated > 0.0 ? 1.0 : 0.0;
+      const GivenAnswer* answer = answer_to(trial, plan.question);
+      if (answer != nullptr && answer->reaction_time == answer->reaction_time) {
+        times[own.participant].push_back(answer->reaction_time);
+      }
+    }
+  }
+  std::vector<ParticipantTrials> all;
+  for (auto& [name, own] : people) {
+    own.saturated /= std::max<double>(1.0, static_cast<double>(own.counted));
+    if (!times[name].empty()) {
+      own.reaction_time = quantile(times[name], 0.5);
+    }
+    all.push_back(std::move(own));
+  }
+  return all;
+}
+
+template <class Value>
+std::vector<QuantityValue> values_of(const std::vector<FunctionFit>& fits, Value&& value) {
+  std::vector<QuantityValue> values;
+  for (const FunctionFit& fit : fits) {
+    if (fit.likelihood) {
+      values.push_back({fit.participant, fit.levels, value(*fit.likelihood)});
+    }
+  }
+  return values;
+}
+
+void add_functions(TrialsResult& result, int threads) {
+  const TrialsPlan& plan = result.plan;
+  result.series = series_of(result.data, plan);
+  result.fits.resize(result.series.size());
+  in_groups(result.series.size(), 1, threads, [&] {
+    return
+        [&](std::size_t i, std::size_t) { result.fits[i] = fit_series(result.series[i], plan, 1); };
+  });
+  const std::string unit = plan.function.axis.x_unit();
+  result.quantities.push_back(
+      quantity("threshold", "threshold", unit,
+               values_of(result.fits, [](const FunctionReadings& r) { return r.x.value; }), plan));
+  result.quantities.push_back(quantity(
+      "log_width", "logarithm of the width", "",
+      values_of(result.fits, [](const FunctionReadings& r) { return std::log(r.width.value); }),
+      plan));
+  if (plan.reference) {
+    result.quantities.push_back(quantity(
+        "weber_fraction", "Weber fraction", "",
+        values_of(result.fits, [](const FunctionReadings& r) { return r.weber.value; }), plan));
+    result.quantities.back().compared = false;  // it says again what the threshold says
+  }
+  result.serial = serial_effects(result.data, result.series, result.fits, plan);
+  result.drift = against_zero(drifts(result.serial));
+  result.repetition = against_zero(repetitions(result.serial));
+  result.population = population_model(result.series, plan);
+}
+
+void add_detection(TrialsResult& result) {
+  result.detected = detected(result.data, result.plan);
+  std::vector<QuantityValue> d_prime, criterion, area;
+  for (const DetectedCondition& one : result.detected) {
+    if (one.detection) {
+      d_prime.push_back({one.participant, one.levels, one.detection->d_prime});
+      criterion.push_back({one.participant, one.levels, one.detection->criterion});
+    }
+    if (one.roc) {
+      area.push_back({one.participant, one.levels, one.roc->area});
+    }
+  }
+  result.quantities.push_back(quantity("d_prime", "d'", "", d_prime, result.plan));
+  result.quantities.push_back(quantity("criterion", "criterion c", "", criterion, result.plan));
+  if (!area.empty()) {
+    result.quantities.push_back(
+        quantity("roc_area", "area under the ROC curve of ratings", "", area, result.plan));
+  }
+}
+
+void add_magnitudes(TrialsResult& result) {
+  result.magnitudes = magnitudes(result.data, result.plan);
+  std::vector<QuantityValue> exponents;
+  for (const MagnitudeCondition& one : result.magnitudes) {
+    for (std::size_t i = 0; one.law && i < one.law->participants.size(); ++i) {
+      exponents.push_back(
+          {one.participants[one.law->participants[i]], one.levels, one.law->exponents[i]});
+    }
+  }
+  result.quantities.push_back(quantity("exponent", "exponent", "", exponents, result.plan));
+}
+
+void add_tests(const Quantity& q, std::vector<NamedTest>& tests) {
+  for (const auto& effect : q.tests.effects) {
+    if (effect) {
+      tests.push_back({q.title + ": " + effect->factor, effect->p});
+    }
+  }
+  if (q.tests.ranks) {
+    tests.push_back({q.title + ": on ranks", q.tests.ranks->p});
+  }
+  const auto add_family = [&](const TestFamily& family) {
+    for (const SideTest& test : family.tests) {
+      const std::string name =
+          fmt::format("{}: {} {}, ", q.title, family.name, text_of(test.sides));
+      if (test.t) {
+        tests.push_back({name + name_of_test(test), test.t->p});
+      }
+      if (test.ranks) {
+        tests.push_back({name + "ranks", test.ranks->p});
+      }
+      if (test.permutation) {
+        tests.push_back({name + "permutation", test.permutation->p});
+      }
+    }
+  };
+  add_family(q.tests.planned);
+  for (const TestFamily& family : q.tests.families) {
+    add_family(family);
+  }
+}
+
+}  // namespace
+
+TrialsResult analyze(TrialsData data, const TrialsPlan& plan, const ProcedureOf& procedure_of,
+                     int threads) {
+  TrialsResult result;
+  result.plan = plan;
+  result.data = std::move(data);
+  if (std::none_of(result.data.trials.begin(), result.data.trials.end(),
+                   [](const StudyTrial& trial) { return trial.counts(); })) {
+    throw InputError("no session holds a completed trial of the study, so nothing can be analysed");
+  }
+  result.participants = participants_of(result.data, plan);
+  result.tracks = track_estimates(result.data, procedure_of);
+  if (plan.kind == AnalysisKind::kDetection) {
+    add_detection(result);
+  }
+  if (plan.functions) {
+    add_functions(result, threads);
+  }
+  if (plan.kind == AnalysisKind::kMagnitude) {
+    add_magnitudes(result);
+  }
+  return result;
+}
+
+std::vector<NamedTest> tests_of(const TrialsResult& result) {
+  std::vector<NamedTest> tests;
+  for (const Quantity& q : result.quantities) {
+    if (q.compared) {
+      add_tests(q, tests);
+    }
+  }
+  if (result.drift) {
+    tests.push_back({"drift over the trials", result.drift->p});
+  }
+  if (result.repetition) {
+    tests.push_back({"repetition of the answer before", result.repetition->p});
+  }
+  if (result.population && result.population->condition_p) {
+    tests.push_back({"probit mixed model: conditions", *result.population->condition_p});
+  }
+  return tests;
+}
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/trials/report/trials_figures.h"
+#include "analysis/trials/report/trials_words.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+constexpr int kCurvePoints = 120;
+
+/// Lowest and highest level that the answers and the readings of a function have.
+Range levels_of(const std::vector<const FunctionFit*>& fits) {
+  Range range{INFINITY, -INFINITY};
+  for (const FunctionFit* fit : fits) {
+    for (const TrialBlock& block : fit->blocks) {
+      range.first = std::min(range.first, block.level);
+      range.second = std::max(range.second, block.level);
+    }
+  }
+  return range;
+}
+
+/// Shares of the answers. Levels of an adaptive procedure hold few trials each, so neighbours are
+/// put together until there are at least a tenth of the trials, or five.
+Series data_series(const FunctionFit& fit, const Look& look) {
+  Series series{"", Mark::kPoints, look};
+  const int enough = std::max(5, static_cast<int>(fit.trials) / 10);
+  double levels = 0.0;
+  int correct = 0, total = 0;
+  const auto flush = [&] {
+    if (total > 0) {
+      series.x.push_back(levels / total);
+      series.y.push_back(static_cast<double>(correct) / total);
+    }
+    levels = 0.0;
+    correct = total = 0;
+  };
+  for (const TrialBlock& block : fit.blocks) {
+    levels += block.level * block.total;
+    correct += block.correct;
+    total += block.total;
+    if (total >= enough) {
+      flush();
+    }
+  }
+  flush();
+  return series;
+}
+
+Series curve_series(const FunctionFit& fit, const TrialsPlan& plan, const Range& range,
+                    const Look& look) {
+  Series curve{fit.condition.empty() ? "maximum likelihood" : fit.condition, Mark::kLine, look};
+  const auto function = fit.function(plan);
+  for (int i = 0; i < kCurvePoints; ++i) {
+    const double level =
+        range.first + (range.second - range.first) * static_cast<double>(i) / (kCurvePoints - 1);
+    if (std::isfinite(plan.function.axis.at(level))) {
+      curve.x.push_back(level);
+      curve.y.push_back(function(level));
+    }
+  }
+  return curve;
+}
+
+/// The band's edges: intervals of the level at which each share is reached.
+void add_band(Figure& figure, const FunctionFit& fit, const TrialsPlan& plan, const Range& range,
+              Look look) {
+  look.width = 1.0;
+  look.dash = "(3,3)";
+  const auto p = fit.function(plan).parameters();
+  for (const bool high : {false, true}) {
+    Series edge{"", Mark::kLine, look};
+    for (const BandPoint& point : fit.band) {
+      const double level = high ? point.level.high : point.level.low;
+      if (std::isfinite(level) && level >= range.first && level <= range.second) {
+        edge.x.push_back(level);
+        edge.y.push_back(p.guess + (1.0 - p.guess - p.lapse) * point.share);
+      }
+    }
+    if (edge.x.size() > 1) {
+      figure.series.push_back(std::move(edge));
+    }
+  }
+}
+
+Figure function_figure(const TrialsResult& result, const std::vector<const FunctionFit*>& fits) {
+  const std::string& participant = fits.front()->participant;
+  Figure figure = new_figure(
+      result, "function-" + file_word(participant), "Psychometric function of " + participant,
+      level_label(result),
+      result.plan.yes.empty() ? "Share of answers 1" : "Share of \"" + result.plan.yes + "\"");
+  const Range range = levels_of(fits);
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    const FunctionFit& fit = *fits[i];
+    const Look look = look_of(i);
+    figure.series.push_back(data_series(fit, look));
+    if (fit.likelihood) {
+      figure.series.push_back(curve_series(fit, result.plan, range, look));
+      add_band(figure, fit, result.plan, range, look);
+    }
+    figure.alt += fmt::format("{}{}: threshold {}", i == 0 ? "" : "; ",
+                              series_name(participant, fit.condition),
+                              fit.likelihood ? estimate_word(fit.likelihood->threshold) : "–");
+  }
+  figure.y_range = Range{0.0, 1.02};
+  figure.caption =
+      "Points: shares of the answers, neighbouring levels together where one has few trials. "
+      "Thin lines: 95 % bootstrap intervals of the level at which each share is reached.";
+  return figure;
+}
+
+}  // namespace
+
+std::vector<Figure> function_figures(const TrialsResult& result) {
+  std::vector<Figure> figures;
+  for (const ParticipantTrials& person : result.participants) {
+    std::vector<const FunctionFit*> fits;
+    for (const FunctionFit& fit : result.fits) {
+      if (fit.participant == person.participant && !fit.blocks.empty()) {
+        fits.push_back(&fit);
+      }
+    }
+    if (!fits.empty()) {
+      figures.push_back(function_figure(result, fits));
+    }
+  }
+  return figures;
+}
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,211 @@
+#include <fmt/format.h>
+
+#include "analysis/statistics/words/wording.h"
+#include "analysis/trials/report/trials_report.h"
+#include "analysis/trials/report/trials_words.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+constexpr std::size_t kMostPictures = 4;
+
+std::string with_unit(const char* name, const std::string& unit) {
+  return unit.empty() ? name : fmt::format("{} ({})", name, unit);
+}
+
+void add_means(Document& document, const TrialsResult& result) {
+  Rows rows;
+  for (const Quantity& q : result.quantities) {
+    for (std::size_t cell = 0; cell < q.table.cells.size(); ++cell) {
+      rows.push_back({q.title, result.plan.by.empty() ? "all" : q.table.names[cell],
+                      std::to_string(q.table.participants(cell)),
+                      mean_word(result, q, cell) + unit_word(result, q)});
+    }
+  }
+  if (!rows.empty()) {
+    document.table({"quantity", "condition", "participants", "mean over participants"}, rows);
+  }
+}
+
+std::vector<std::string> row_of(const FunctionFit& fit, const char* how,
+                                const Defined<FunctionReadings>& readings, bool weber) {
+  std::vector<std::string> row{series_name(fit.participant, fit.condition), how,
+                               std::to_string(fit.trials)};
+  if (!readings) {
+    row.push_back("not defined, because " + readings.because());
+    row.resize(weber ? 8 : 7, "–");
+    return row;
+  }
+  row.push_back(estimate_word(readings->threshold));
+  row.push_back(estimate_word(readings->width));
+  if (weber) {
+    row.push_back(estimate_word(readings->weber));
+  }
+  row.push_back(estimate_word(readings->lapse));
+  row.push_back(how[0] == 'B' ? fmt::format("η {:.2f}", fit.overdispersion)
+                : fit.deviance_p == fit.deviance_p
+                    ? fmt::format("{:.1f}, {}", fit.deviance, p_value(fit.deviance_p))
+                    : fmt::format("{:.1f}", fit.deviance));
+  return row;
+}
+
+void add_fit_table(Document& document, const TrialsResult& result) {
+  const psychometric::Axis& axis = result.plan.function.axis;
+  const bool weber = result.plan.reference.has_value();
+  std::vector<std::string> heading{"participant", "fit", "trials",
+                                   with_unit("threshold [95 %]", axis.unit),
+                                   with_unit("width [95 %]", axis.x_unit())};
+  if (weber) {
+    heading.emplace_back("Weber fraction [95 %]");
+  }
+  heading.emplace_back("lapse rate");
+  heading.emplace_back("deviance, or overdispersion");
+  Rows rows;
+  for (const FunctionFit& fit : result.fits) {
+    rows.push_back(row_of(fit, "likelihood", fit.likelihood, weber));
+    if (result.plan.bayesian) {
+      rows.push_back(row_of(fit, "Bayesian", fit.bayesian, weber));
+    }
+  }
+  document.table(heading, rows, "Every participant's function");
+  std::vector<std::string> warnings;
+  for (const FunctionFit& fit : result.fits) {
+    for (const std::string& warning : fit.warnings) {
+      warnings.push_back(series_name(fit.participant, fit.condition) + ": " + warning + ".");
+    }
+  }
+  if (!warnings.empty()) {
+    document.subheading("What to be careful about");
+    for (const std::string& warning : warnings) {
+      document.paragraph(warning);
+    }
+  }
+}
+
+void add_population(Document& document, const TrialsResult& result) {
+  const auto& population = result.population;
+  document.subheading("Mixed model over participants");
+  if (!population) {
+    document.paragraph("A probit mixed model is not defined, because " + population.because() +
+                       ".");
+    return;
+  }
+  const BinomialMixedModel& model = population->model;
+  Rows rows;
+  for (std::size_t i = 0; i < population->names.size(); ++i) {
+    const BinomialCoefficient& c = model.fixed.coefficients[i];
+    rows.push_back({population->names[i], number(c.estimate), number(c.error),
+                    fmt::format("{} to {}", number(c.low), number(c.high))});
+  }
+  document.table({"coefficient (probit)", "estimate", "standard error", "95 %"}, rows);
+  Rows points;
+  for (const PopulationPoint& p : population->points) {
+    const psychometric::Axis& axis = result.plan.function.axis;
+    points.push_back({p.condition.empty() ? "all" : p.condition,
+                      p.point ? fmt::format("{} [{}, {}]", number(axis.level(p.point->point)),
+                                            number(axis.level(p.point->point_low)),
+                                            number(axis.level(p.point->point_high)))
+                              : "not defined, because " + p.point.because(),
+                      p.point ? fmt::format("{} [{}, {}]", number(p.point->jnd),
+                                            number(p.point->jnd_low), number(p.point->jnd_high))
+                              : "–"});
+  }
+  document.table({"condition", with_unit("level of 50 %", result.plan.function.axis.unit),
+                  with_unit("from 50 % to 75 %", result.plan.function.axis.x_unit())},
+                 points);
+  document.paragraph(fmt::format(
+      "Answers of all participants in one model, by maximum likelihood in Laplace's approximation. "
+      "Intercept, slope and, with two conditions, their difference vary between participants, with "
+      "all covariances. The level is standardised: (x - {}) / {}.{}{}",
+      number(population->centre), number(population->scale),
+      model.at_boundary ? " Some variance between participants is estimated as 0." : "",
+      population->condition_p
+          ? fmt::format(" Whether the conditions differ: t({}) = {}, {}.", population->condition_df,
+                        number(population->condition_t), p_value(*population->condition_p))
+          : ""));
+}
+
+void add_functions(Document& document, const TrialsResult& result,
+                   const std::vector<Drawing>& drawings) {
+  add_section(document, result, "Psychometric functions");
+  if (result.plan.kind == AnalysisKind::kPsychometric) {  // else they stand with the detection
+    add_means(document, result);
+    add_pictures(document, drawings, "by-condition-", kMostPictures);
+  }
+  add_pictures(document, drawings, "function-", kMostPictures);
+  add_fit_table(document, result);
+  add_population(document, result);
+}
+
+void add_detections(Document& document, const TrialsResult& result,
+                    const std::vector<Drawing>& drawings) {
+  add_section(document, result, "Detection");
+  add_means(document, result);
+  add_pictures(document, drawings, "by-condition-", kMostPictures);
+  add_pictures(document, drawings, "roc", 1);
+  Rows rows;
+  for (const DetectedCondition& one : result.detected) {
+    const auto& d = one.detection;
+    rows.push_back(
+        {series_name(one.participant, one.condition),
+         fmt::format("{:g} of {:g}", one.counts.hits, one.counts.hits + one.counts.misses),
+         fmt::format("{:g} of {:g}", one.counts.false_alarms,
+                     one.counts.false_alarms + one.counts.correct_rejections),
+         d ? estimate_word({d->d_prime, d->low, d->high}) : "not defined, because " + d.because(),
+         d ? number(d->criterion) : "–", one.roc ? fmt::format("{:.3f}", one.roc->area) : "–",
+         one.binormal ? fmt::format("{:.3f}", one.binormal->area) : "–"});
+  }
+  document.table({"participant", "hits", "false alarms", "d' [95 %]", "criterion c",
+                  "ROC area, trapezoids", "ROC area, binormal"},
+                 rows, "Every participant's detection");
+}
+
+void add_laws(Document& document, const TrialsResult& result,
+              const std::vector<Drawing>& drawings) {
+  add_section(document, result, "Magnitudes");
+  add_means(document, result);
+  add_pictures(document, drawings, "magnitudes", 1);
+  add_pictures(document, drawings, "by-condition-", kMostPictures);
+  Rows rows, people;
+  for (const MagnitudeCondition& one : result.magnitudes) {
+    const std::string condition = one.condition.empty() ? "all" : one.condition;
+    if (!one.law) {
+      rows.push_back({condition, "not defined, because " + one.law.because(), "–", "–"});
+      continue;
+    }
+    const PowerLaw& law = *one.law;
+    rows.push_back({condition,
+                    estimate_word({law.exponent, law.low ? *law.low : kNotKnown,
+                                   law.high ? *law.high : kNotKnown}),
+                    number(law.constant), fmt::format("{:.3f}", law.r_squared)});
+    for (std::size_t i = 0; i < law.participants.size(); ++i) {
+      people.push_back({series_name(one.participants[law.participants[i]], one.condition),
+                        number(law.exponents[i]), number(law.moduli[i])});
+    }
+    if (one.not_positive > 0) {
+      document.paragraph(fmt::format("{}: {} of 0 or below left out.", condition,
+                                     counted(one.not_positive, "answer")));
+    }
+  }
+  document.table({"condition", "exponent [95 %]", "constant", "R² of the levels' means"}, rows);
+  document.table({"participant", "exponent", "modulus"}, people, "Every participant's exponent");
+}
+
+}  // namespace
+
+void add_results(Document& document, const TrialsResult& result,
+                 const std::vector<Drawing>& drawings) {
+  if (result.plan.kind == AnalysisKind::kDetection) {
+    add_detections(document, result, drawings);
+  }
+  if (result.plan.functions) {
+    add_functions(document, result, drawings);
+  }
+  if (result.plan.kind == AnalysisKind::kMagnitude) {
+    add_laws(document, result, drawings);
+  }
+}
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,222 @@
+#include "analysis/trials/report/trials_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "analysis/statistics/words/result_json_internal.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+Json to_json(const Defined<T>& value);
+
+Json to_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json to_json(const Estimated& e) {
+  return {{"estimate", to_json(e.value)}, {"low_95", to_json(e.low)}, {"high_95", to_json(e.high)}};
+}
+
+Json to_json(const FunctionReadings& r) {
+  return {{"threshold", to_json(r.threshold)},  {"threshold_on_axis", to_json(r.x)},
+          {"width", to_json(r.width)},          {"slope", to_json(r.slope)},
+          {"weber_fraction", to_json(r.weber)}, {"lapse_rate", to_json(r.lapse)},
+          {"guess_rate", to_json(r.guess)}};
+}
+
+Json to_json(const BinomialCoefficient& c) {
+  return {{"estimate", c.estimate}, {"standard_error", c.error}, {"z", c.z}, {"p", c.p},
+          {"low_95", c.low},        {"high_95", c.high}};
+}
+
+Json to_json(const EqualityPoint& e) {
+  return {{"point_on_axis", e.point},      {"point_low_95", e.point_low},
+          {"point_high_95", e.point_high}, {"jnd_on_axis", e.jnd},
+          {"jnd_low_95", e.jnd_low},       {"jnd_high_95", e.jnd_high}};
+}
+
+Json to_json(const PopulationModel& m) {
+  Json coefficients = Json::object(), points = Json::array();
+  for (std::size_t i = 0; i < m.names.size(); ++i) {
+    coefficients[m.names[i]] = to_json(m.model.fixed.coefficients[i]);
+  }
+  for (const PopulationPoint& p : m.points) {
+    points.push_back({{"condition", p.condition}, {"crossing", to_json(p.point)}});
+  }
+  return {{"centre_on_axis", m.centre},
+          {"scale_on_axis", m.scale},
+          {"coefficients", coefficients},
+          {"log_likelihood", m.model.fixed.log_likelihood},
+          {"at_boundary", m.model.at_boundary},
+          {"points", points},
+          {"condition_p", to_json(m.condition_p)},
+          {"condition_df", m.condition_df}};
+}
+
+Json to_json(const Detection& d) {
+  return {{"hit_rate", d.hit_rate},    {"false_alarm_rate", d.false_alarm_rate},
+          {"d_prime", d.d_prime},      {"d_prime_low_95", d.low},
+          {"d_prime_high_95", d.high}, {"criterion", d.criterion},
+          {"log_beta", d.log_beta}};
+}
+
+Json to_json(const RocInterval& i) { return {{"low_95", i.low}, {"high_95", i.high}}; }
+Json to_json(const Roc& r) { return {{"area", r.area}, {"interval", to_json(r.interval)}}; }
+Json to_json(const BinormalRoc& r) {
+  return {{"a", r.a},
+          {"b", r.b},
+          {"d_a", r.d_a},
+          {"area", r.area},
+          {"low_95", r.area_low},
+          {"high_95", r.area_high}};
+}
+
+template <class T>
+Json to_json(const Defined<T>& value) {
+  using analysis::to_json;
+  using trials::to_json;
+  return value ? to_json(*value) : Json{{"not_defined", value.because()}};
+}
+
+Json to_json(const FunctionFit& fit) {
+  Json blocks = Json::array();
+  for (const TrialBlock& b : fit.blocks) {
+    blocks.push_back({{"level", b.level}, {"ones", b.correct}, {"trials", b.total}});
+  }
+  return {{"participant", fit.participant},
+          {"condition", fit.condition},
+          {"trials", fit.trials},
+          {"likelihood", to_json(fit.likelihood)},
+          {"bayesian", to_json(fit.bayesian)},
+          {"deviance", to_json(fit.deviance)},
+          {"deviance_p", to_json(fit.deviance_p)},
+          {"overdispersion_eta", to_json(fit.overdispersion)},
+          {"warnings", fit.warnings},
+          {"answers", blocks}};
+}
+
+Json to_json(const TrackEstimate& track) {
+  Json estimates = Json::array();
+  for (const auto& e : track.estimates) {
+    estimates.push_back({{"name", e.name},
+                         {"value", to_json(e.value)},
+                         {"deviation", e.deviation ? to_json(*e.deviation) : Json()}});
+  }
+  return {{"participant", track.participant}, {"track", track.track},
+          {"variable", track.variable},       {"trials", track.steps.size()},
+          {"estimates", estimates},           {"none_because", track.because}};
+}
+
+Json to_json(const Quantity& q) {
+  Json cells = Json::array();
+  for (std::size_t cell = 0; cell < q.table.cells.size(); ++cell) {
+    cells.push_back({{"condition", q.table.names[cell]},
+                     {"participants", q.table.participants(cell)},
+                     {"mean", to_json(q.means[cell])}});
+  }
+  Json made{{"name", q.name}, {"title", q.title}, {"unit", q.unit}, {"conditions", cells}};
+  if (q.compared) {
+    made["tests"] = analysis::to_json(q.tests);
+  }
+  return made;
+}
+
+Json to_json(const SerialEffects& s) {
+  return {{"participant", s.participant},
+          {"trials", s.trials},
+          {"drift_log_odds", to_json(s.drift)},
+          {"repetition_log_odds", to_json(s.repetition)},
+          {"easy_trials", s.easy},
+          {"easy_trials_with_answer_0", s.easy_wrong},
+          {"trials_with_another_level_than_asked", s.limited}};
+}
+
+Json to_json(const DetectedCondition& one) {
+  return {{"participant", one.participant},
+          {"condition", one.condition},
+          {"hits", one.counts.hits},
+          {"misses", one.counts.misses},
+          {"false_alarms", one.counts.false_alarms},
+          {"correct_rejections", one.counts.correct_rejections},
+          {"detection", to_json(one.detection)},
+          {"ratings_of_noise", one.ratings.noise},
+          {"ratings_of_signal", one.ratings.signal},
+          {"roc", to_json(one.roc)},
+          {"binormal_roc", to_json(one.binormal)}};
+}
+
+Json to_json(const PowerLaw& law) {
+  Json levels = Json::array();
+  for (const MagnitudeLevel& l : law.levels) {
+    levels.push_back({{"level", l.level},
+                      {"geometric_mean", l.mean},
+                      {"low_95", l.low},
+                      {"high_95", l.high},
+                      {"participants", l.participants}});
+  }
+  return {
+      {"exponent", law.exponent},     {"standard_error", law.error}, {"low_95", to_json(law.low)},
+      {"high_95", to_json(law.high)}, {"constant", law.constant},    {"r_squared", law.r_squared},
+      {"exponents", law.exponents},   {"moduli", law.moduli},        {"levels", levels}};
+}
+
+Json to_json(const MagnitudeCondition& one) {
+  return {{"condition", one.condition},
+          {"participants", one.participants},
+          {"answers_not_above_0", one.not_positive},
+          {"law", to_json(one.law)}};
+}
+
+Json to_json(const ParticipantTrials& p) {
+  return {{"participant", p.participant},
+          {"group", p.group},
+          {"sessions", p.sessions},
+          {"trials", p.counted},
+          {"practice", p.practice},
+          {"aborted", p.aborted},
+          {"median_reaction_time_s", to_json(p.reaction_time)},
+          {"share_of_trials_at_force_limit", p.saturated}};
+}
+
+template <class T>
+Json list_of(const std::vector<T>& values) {
+  Json list = Json::array();
+  for (const T& value : values) {
+    list.push_back(to_json(value));
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string results_json(const TrialsResult& result) {
+  const TrialsPlan& plan = result.plan;
+  Json root{{"title", result.title},
+            {"simulated", result.simulated()},
+            {"kind", name_of(plan.kind)},
+            {"factors", plan.by}};
+  root["participants"] = list_of(result.participants);
+  if (plan.functions) {
+    root["function"] = {{"sigmoid", plan.function_name},
+                        {"axis_unit", plan.function.axis.x_unit()},
+                        {"axis_origin", plan.function.axis.origin},
+                        {"guess", plan.guess_free ? Json("free") : Json(plan.function.guess)},
+                        {"threshold_at", plan.threshold_at},
+                        {"reference", plan.reference ? Json(*plan.reference) : Json()}};
+    root["functions"] = list_of(result.fits);
+    root["population"] = to_json(result.population);
+    root["serial_effects"] = list_of(result.serial);
+    root["drift_over_participants"] = to_json(result.drift);
+    root["repetition_over_participants"] = to_json(result.repetition);
+  }
+  root["quantities"] = list_of(result.quantities);
+  root["tracks"] = list_of(result.tracks);
+  root["detection"] = list_of(result.detected);
+  root["magnitudes"] = list_of(result.magnitudes);
+  root["remarks"] = result.remarks;
+  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,129 @@
+#include "analysis/trials/report/trials_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "analysis/statistics/words/wording.h"
+#include "analysis/trials/report/trials_words.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+void add_design(Document& document, const TrialsResult& result) {
+  add_section(document, result, "Participants and trials");
+  Rows rows;
+  for (const ParticipantTrials& p : result.participants) {
+    rows.push_back({p.participant, p.group.empty() ? "–" : p.group, std::to_string(p.sessions),
+                    std::to_string(p.counted), std::to_string(p.practice),
+                    std::to_string(p.aborted), quantity(p.reaction_time, 1.0, "s")});
+  }
+  document.table({"participant", "group", "sessions", "trials", "practice", "aborted passes",
+                  "median reaction time"},
+                 rows);
+  if (!result.plan.by.empty()) {
+    document.paragraph(
+        fmt::format("Conditions are the levels of {}.", fmt::join(result.plan.by, ", ")));
+  }
+  document.paragraph(
+      "Practice and aborted passes are in trials.csv (column counted: 0) and in nothing else.");
+  for (const std::string& remark : result.remarks) {
+    document.paragraph(remark);
+  }
+}
+
+std::string function_words(const TrialsPlan& plan) {
+  return fmt::format(
+      "The function is {}, over {}{}; guess rate {}; lapse rate {}. The threshold is the level at "
+      "which, lapses aside, the share of answers 1 is {}.",
+      plan.function_name,
+      plan.function.axis.x_unit().empty() ? "the level" : plan.function.axis.x_unit(),
+      plan.function.axis.origin != 0.0
+          ? fmt::format(" of the level less {}", plan.function.axis.origin)
+          : "",
+      plan.guess_free ? "free" : fmt::format("{:g}", plan.function.guess),
+      plan.lapse.low == plan.lapse.high ? fmt::format("{:g}", plan.lapse.low)
+                                        : fmt::format("free up to {:g}", plan.lapse.high),
+      percent(plan.threshold_at));
+}
+
+void add_methods(Document& document, const TrialsResult& result) {
+  document.heading("Methods");
+  const TrialsPlan& plan = result.plan;
+  if (plan.functions) {
+    document.paragraph(function_words(plan));
+    document.paragraph(fmt::format(
+        "Functions are fitted to each participant by maximum likelihood; intervals are "
+        "bias-corrected and accelerated over {} parametric bootstrap samples (Wichmann and Hill "
+        "2001). They take the presented levels as given. The Bayesian fit is beta-binomial on a "
+        "grid (Schütt et al. 2016), so that its intervals are wider where answers scatter more "
+        "than chance; its estimates are posterior means.",
+        plan.resamples));
+  }
+  if (plan.kind == AnalysisKind::kDetection) {
+    document.paragraph(
+        "d' and criterion are those of equal variances, from counts to which 1/2 was added "
+        "(log-linear correction, Hautus 1995). Signal is in the trials in which \"yes\" is right; "
+        "if "
+        "the definition does not say what is right, in those with a level above 0 and no probe.");
+  } else if (plan.kind == AnalysisKind::kMagnitude) {
+    document.paragraph(
+        "A participant's repeated estimates at a level are put together by their geometric mean; "
+        "the exponent is the least-squares slope of log estimate over log level. Moduli are "
+        "equalised before participants are averaged (Lane, Catania and Stevens 1961).");
+  }
+  document.paragraph(
+      "Tests between conditions take one value of each participant for each condition; trials are "
+      "never counted as independent over participants. p values of a family are adjusted together "
+      "by Holm's method.");
+  document.heading("Definition");
+  document.source(result.definition_name, result.definition);
+}
+
+}  // namespace
+
+void add_section(Document& document, const TrialsResult& result, const char* text) {
+  document.heading(result.simulated() ? std::string(text) + " (simulated)" : text);
+}
+
+void add_pictures(Document& document, const std::vector<Drawing>& drawings, const char* begin,
+                  std::size_t most) {
+  std::size_t shown = 0, others = 0;
+  for (const Drawing& drawing : drawings) {
+    if (!drawing.figure.name.starts_with(begin)) {
+      continue;
+    }
+    if (shown < most) {
+      document.picture(drawing);
+      ++shown;
+    } else {
+      ++others;
+    }
+  }
+  if (others > 0) {
+    document.paragraph(fmt::format("{} of the other participants {} beside this report ({}*.svg).",
+                                   counted(others, "picture"), others == 1 ? "lies" : "lie",
+                                   begin));
+  }
+}
+
+Document trials_report(const TrialsResult& result, const std::vector<Drawing>& drawings) {
+  Document document;
+  document.title = result.title;
+  document.simulated = result.simulated();
+  document.subtitle = fmt::format("{} in {}.", counted(result.participants.size(), "participant"),
+                                  counted(result.data.sessions.size(), "session"));
+  if (result.simulated()) {
+    document.alarm(kSimulatedTrials);
+  }
+  document.points(summary_lines(result));
+  add_design(document, result);
+  add_results(document, result, drawings);
+  add_comparisons(document, result);
+  add_trial_quality(document, result, drawings);
+  add_methods(document, result);
+  return document;
+}
+
+}  // namespace haptrial::analysis::trials

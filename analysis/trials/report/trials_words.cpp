@@ -1,0 +1,112 @@
+#include "analysis/trials/report/trials_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/statistics/words/design_lines.h"
+#include "analysis/statistics/words/wording.h"
+
+namespace haptrial::analysis::trials {
+
+const char* const kSimulatedTrials =
+    "SIMULATED: the participants of this study are programs. It is a rehearsal of the experiment "
+    "and its analysis and proves nothing about people.";
+
+namespace {
+
+const std::string kMissing = "–";
+
+/// Values of the threshold are on the axis, and means of them are levels.
+bool on_axis(const Quantity& q) { return q.name == "threshold"; }
+
+void add_quantity(const TrialsResult& result, const Quantity& q, std::vector<std::string>& lines) {
+  for (std::size_t cell = 0; cell < q.table.cells.size(); ++cell) {
+    lines.push_back(fmt::format("{}{}: {}{} ({})", capitalized(q.title),
+                                result.plan.by.empty() ? std::string() : ", " + q.table.names[cell],
+                                mean_word(result, q, cell), unit_word(result, q),
+                                counted(q.table.participants(cell), "participant")));
+  }
+}
+
+void add_tests(const Quantity& q, std::vector<std::string>& lines) {
+  if (!q.compared) {
+    return;
+  }
+  const auto add = [&](std::vector<std::string> more) {
+    for (std::string& line : more) {
+      lines.push_back(capitalized(q.title) + ". " + line);
+    }
+  };
+  add(effect_lines(q.tests));
+  add(planned_lines(q.tests));
+}
+
+std::size_t undetermined(const TrialsResult& result) {
+  return static_cast<std::size_t>(std::count_if(
+      result.fits.begin(), result.fits.end(), [](const FunctionFit& f) { return !f.likelihood; }));
+}
+
+}  // namespace
+
+std::string estimate_word(const Estimated& e) {
+  if (!e.known()) {
+    return kMissing;
+  }
+  const bool interval = std::isfinite(e.low) && std::isfinite(e.high);
+  return interval ? fmt::format("{} [{}, {}]", number(e.value), number(e.low), number(e.high))
+                  : number(e.value);
+}
+
+std::string percent(double share) { return fmt::format("{:.3g} %", 100.0 * share); }
+
+std::string series_name(const std::string& participant, const std::string& condition) {
+  return condition.empty() ? participant : participant + ", " + condition;
+}
+
+std::string mean_word(const TrialsResult& result, const Quantity& q, std::size_t cell) {
+  const auto& mean = q.means[cell];
+  const psychometric::Axis& axis = result.plan.function.axis;
+  const auto level = [&](double value) { return on_axis(q) ? axis.level(value) : value; };
+  if (!mean) {
+    for (const auto& row : q.table.means) {
+      if (row[cell]) {
+        return number(level(*row[cell]));
+      }
+    }
+    return kMissing;
+  }
+  return fmt::format("{}, 95 % CI {} to {}", number(level(mean->mean)), number(level(mean->low)),
+                     number(level(mean->high)));
+}
+
+std::string unit_word(const TrialsResult& result, const Quantity& q) {
+  const std::string& unit = on_axis(q) ? result.plan.function.axis.unit : q.unit;
+  return unit.empty() ? std::string() : " " + unit;
+}
+
+std::vector<std::string> summary_lines(const TrialsResult& result) {
+  std::size_t counted_trials = 0;
+  for (const ParticipantTrials& person : result.participants) {
+    counted_trials += person.counted;
+  }
+  std::vector<std::string> lines{fmt::format("{} of {}{}", counted(counted_trials, "trial"),
+                                             counted(result.participants.size(), "participant"),
+                                             result.simulated() ? " (simulated)" : "")};
+  for (const Quantity& q : result.quantities) {
+    if (q.name != "log_width") {
+      add_quantity(result, q, lines);
+    }
+  }
+  for (const Quantity& q : result.quantities) {
+    add_tests(q, lines);
+  }
+  if (const std::size_t count = undetermined(result); count > 0) {
+    lines.push_back(fmt::format("{} of {} could not be determined from the answers", count,
+                                counted(result.fits.size(), "function")));
+  }
+  return lines;
+}
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/document/document.h"
+#include "analysis/trials/psychometric/trials_result.h"
+
+namespace haptrial::analysis::trials {
+
+/// What a report of a study with simulated participants says wherever it says a result.
+extern const char* const kSimulatedTrials;
+
+/// "338.2 [330.1, 349.0]", "338.2" without an interval, or "–".
+std::string estimate_word(const Estimated& e);
+/// "75 %".
+std::string percent(double share);
+/// "P07", or "P07, visual".
+std::string series_name(const std::string& participant, const std::string& condition);
+/// The mean of a condition over participants with its interval. Thresholds, whose values are on the
+/// axis, are given as levels.
+std::string mean_word(const TrialsResult& result, const Quantity& q, std::size_t cell);
+/// The unit in which mean_word() is: " N/m", or empty.
+std::string unit_word(const TrialsResult& result, const Quantity& q);
+
+/// The results in a few lines, for the command and the head of the report.
+std::vector<std::string> summary_lines(const TrialsResult& result);
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,31 @@
+#include "analysis/trials/report/write_trials.h"
+
+#include "analysis/document/figure_gnuplot.h"
+#include "analysis/files/staging.h"
+#include "analysis/trials/data/trials_csv.h"
+#include "analysis/trials/report/estimates_csv.h"
+#include "analysis/trials/report/trials_figures.h"
+#include "analysis/trials/report/trials_json.h"
+#include "analysis/trials/report/trials_report.h"
+#include "core/base/files/file_text.h"
+
+namespace haptrial::analysis::trials {
+
+void write_trials(const TrialsResult& result, const std::filesystem::path& folder) {
+  const Staging staging(folder);
+  staging.write("trials.csv", trials_csv(result.data));
+  staging.write("estimates.csv", estimates_csv(result));
+  staging.write("results.json", results_json(result));
+  const std::vector<Figure> figures = trials_figures(result);
+  draw_figures(figures, staging.path());
+  std::vector<Drawing> drawings;
+  for (const Figure& figure : figures) {
+    drawings.push_back({figure, file_text(staging.path() / (figure.name + ".svg"))});
+  }
+  const Document report = trials_report(result, drawings);
+  staging.write("report.html", to_html(report));
+  staging.write("report.md", to_markdown(report));
+  staging.publish();
+}
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+
+#include "analysis/trials/psychometric/trials_result.h"
+
+namespace haptrial::analysis::trials {
+
+/// report.html, report.md, results.json, trials.csv, estimates.csv and figures (SVG and PNG) into a
+/// folder, all or none. @throws InputError, RunError as Staging and draw_figures() do.
+void write_trials(const TrialsResult& result, const std::filesystem::path& folder);
+
+}  // namespace haptrial::analysis::trials

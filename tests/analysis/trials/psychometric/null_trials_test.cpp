@@ -1,0 +1,30 @@
+// Among people who do not differ every test of the report finds a difference in one study of
+// twenty. bench_null_trials counts a thousand.
+#include "tests/analysis/trials/psychometric/null_trials.h"
+
+#include <gtest/gtest.h>
+
+namespace haptrial::test {
+namespace {
+
+class NullTrials : public testing::TestWithParam<SimulatedTask> {};
+
+TEST_P(NullTrials, EveryTestKeepsItsLevel) {
+  constexpr std::size_t kStudies = 100;
+  // A test with a level of 0.05 leaves the band once in ten million studies.
+  const auto band = binomial_band(kStudies, 1.0 - 1e-7);
+  const auto levels = null_trials(GetParam(), kStudies, 3, 2);
+  EXPECT_GE(levels.size(), 3u);
+  for (const NullLevel& level : levels) {
+    EXPECT_LE(level.found, band.high) << level.test;
+    EXPECT_GE(level.replications, kStudies / 2) << level.test;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Tasks, NullTrials,
+                         testing::Values(SimulatedTask::kStaircase, SimulatedTask::kConstant,
+                                         SimulatedTask::kComparison, SimulatedTask::kDetection,
+                                         SimulatedTask::kMagnitude));
+
+}  // namespace
+}  // namespace haptrial::test

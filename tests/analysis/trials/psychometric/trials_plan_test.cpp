@@ -1,0 +1,123 @@
+#include "analysis/trials/psychometric/trials_plan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/base/definition/table.h"
+#include "core/base/error.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+PlanDefaults defaults() {
+  PlanDefaults d;
+  d.kind = AnalysisKind::kPsychometric;
+  d.factors = {"visual"};
+  d.names = {"track", "condition"};
+  d.axis = {psychometric::Scale::kLog10, 300.0, "N/m"};
+  d.guess = 0.5;
+  return d;
+}
+
+TrialsPlan read(const std::string& text, const PlanDefaults& d = defaults()) {
+  Table root = Table::parse(text, "study.toml");
+  const TrialsPlan plan = read_trials_plan(root, d);
+  root.finish();
+  return plan;
+}
+
+std::string problems_of(const std::string& text) {
+  try {
+    read(text);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(TrialsPlanTest, EveryKeyMayBeLeftOut) {
+  for (const char* text : {"", "[analysis]\n"}) {
+    const TrialsPlan plan = read(text);
+    EXPECT_EQ(plan.kind, AnalysisKind::kPsychometric);
+    EXPECT_THAT(plan.by, ElementsAre("visual"));
+    EXPECT_EQ(plan.function.guess, 0.5);
+    EXPECT_FALSE(plan.guess_free);
+    EXPECT_EQ(plan.threshold_at, 0.75);
+    EXPECT_EQ(plan.function.share, 0.5);
+    EXPECT_EQ(plan.function.axis.origin, 300.0);
+    EXPECT_EQ(plan.function.axis.scale, psychometric::Scale::kLog10);
+    EXPECT_FALSE(plan.reference);
+  }
+}
+
+TEST(TrialsPlanTest, WhatItStatesCounts) {
+  const TrialsPlan plan = read(R"([analysis]
+kind = "psychometric"
+by = ["track"]
+tests = ["near < far"]
+function = "neg_logistic"
+guess = "free"
+lapse = { free = true, at_most = 0.1 }
+scale = "linear"
+origin = 0.0
+threshold_at = 0.6
+reference = 320.0
+bayesian = false
+resamples = 500
+)");
+  EXPECT_THAT(plan.by, ElementsAre("track"));
+  EXPECT_TRUE(plan.guess_free);
+  EXPECT_EQ(plan.task(), Task::kYesNo);
+  EXPECT_TRUE(plan.function.falling);
+  EXPECT_EQ(plan.function.sigmoid, psychometric::Sigmoid::kLogistic);
+  EXPECT_EQ(plan.lapse.low, 0.0);
+  EXPECT_EQ(plan.lapse.high, 0.1);
+  EXPECT_EQ(plan.function.axis.scale, psychometric::Scale::kLinear);
+  EXPECT_EQ(plan.function.share, 0.6);
+  EXPECT_EQ(plan.reference, 320.0);
+  EXPECT_FALSE(plan.bayesian);
+  EXPECT_EQ(plan.resamples, 500u);
+  ASSERT_EQ(plan.plan.tests.size(), 1u);
+  EXPECT_EQ(plan.plan.tests[0].tail, Tail::kLess);
+}
+
+TEST(TrialsPlanTest, ALogarithmicFunctionHasALogarithmicAxis) {
+  PlanDefaults d = defaults();
+  d.axis = {};
+  EXPECT_EQ(read("[analysis]\nfunction = \"weibull\"\n", d).function.axis.scale,
+            psychometric::Scale::kNaturalLog);
+  EXPECT_EQ(read("[analysis]\nfunction = \"gumbel\"\n", d).function.axis.scale,
+            psychometric::Scale::kLinear);
+}
+
+TEST(TrialsPlanTest, TheThresholdIsAShareOfAnswersApartFromLapses) {
+  const TrialsPlan plan = read("[analysis]\nguess = 0.25\nthreshold_at = 0.7\n");
+  EXPECT_NEAR(plan.function.guess + (1.0 - plan.function.guess) * plan.function.share, 0.7, 1e-12);
+}
+
+TEST(TrialsPlanTest, AMistakeGetsItsSentence) {
+  EXPECT_THAT(problems_of("[analysis]\nkind = \"psychometrics\"\n"),
+              HasSubstr("study.toml:2: analysis.kind is \"psychometrics\"; allowed"));
+  EXPECT_THAT(problems_of("[analysis]\nby = [\"colour\"]\n"),
+              HasSubstr("visual, track, condition"));
+  EXPECT_THAT(problems_of("[analysis]\ntests = [\"a and b\"]\n"), HasSubstr("analysis.tests"));
+  EXPECT_THAT(problems_of("[analysis]\nfunction = \"weibul\"\n"), HasSubstr("weibull"));
+  EXPECT_THAT(problems_of("[analysis]\nthreshold_at = 0.5\n"),
+              HasSubstr("a number above 0.5 and below 1"));
+  EXPECT_THAT(problems_of("[analysis]\nguess = \"none\"\n"), HasSubstr("analysis.guess"));
+  EXPECT_THAT(problems_of("[analysis]\nlaps = 0.1\n"), HasSubstr("laps"));
+  EXPECT_THAT(problems_of("[analysis]\nby = []\ntests = [\"a < b\"]\n"), HasSubstr("by"));
+  EXPECT_THAT(problems_of("[analysis]\nkind = \"magnitude\"\nreference = 3.0\n"),
+              HasSubstr("reference"));
+}
+
+TEST(TrialsPlanTest, KeysOfMovementsAreLeftToTheirAnalysis) {
+  EXPECT_EQ(read("[analysis]\nkind = \"reaching\"\nmetrics = [\"peak_speed\"]\n").kind,
+            AnalysisKind::kReaching);
+}
+
+}  // namespace
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,283 @@
+// Studies of people with known functions: what the analysis finds is what they have.
+#include "analysis/trials/psychometric/trials_study.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/psychometric/procedure/staircase.h"
+#include "tests/analysis/trials/simulated_trials.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+using test::SimulatedTask;
+using test::SimulatedTrials;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+TrialsResult analyzed(const SimulatedTrials& study, const TrialsPlan& plan) {
+  return analyze(test::simulated_trials(study), plan, {}, 2);
+}
+TrialsResult analyzed(const SimulatedTrials& study) {
+  return analyzed(study, test::plan_of(study));
+}
+
+const Quantity& of(const TrialsResult& result, const std::string& name) {
+  const auto at = std::find_if(result.quantities.begin(), result.quantities.end(),
+                               [&](const Quantity& q) { return q.name == name; });
+  if (at == result.quantities.end()) {
+    throw std::out_of_range(name);
+  }
+  return *at;
+}
+
+TEST(TrialsStudyTest, ThresholdsOfTwoIntervalsAreThoseOfThePeople) {
+  SimulatedTrials study;
+  study.task = SimulatedTask::kConstant;
+  study.participants = 40;
+  study.conditions = 1;
+  study.trials = 400;
+  const TrialsResult result = analyzed(study);
+  EXPECT_THAT(result.fits, SizeIs(40));
+  const Quantity& q = of(result, "threshold");
+  ASSERT_THAT(q.means, SizeIs(1));
+  // The mean of 40 people whose standard deviation is 0.16 is within 3 standard errors.
+  ASSERT_TRUE(q.means[0]);
+  EXPECT_NEAR(q.means[0]->mean, test::kTypicalLogThreshold,
+              3.0 * q.means[0]->deviation / std::sqrt(40.0));
+  EXPECT_LT(q.means[0]->deviation, 0.3);
+  // The Weber fraction is the threshold's difference over the standard.
+  const FunctionReadings& r = *result.fits[0].likelihood;
+  EXPECT_NEAR(r.weber.value, (r.threshold.value - 300.0) / 300.0, 1e-9);
+  EXPECT_NEAR(r.x.value, std::log(r.threshold.value - 300.0), 1e-9);
+  EXPECT_FALSE(q.compared);
+}
+
+TEST(TrialsStudyTest, IntervalsHoldTheTruthAndBothFitsAgree) {
+  SimulatedTrials study;
+  study.task = SimulatedTask::kConstant;
+  study.participants = 12;
+  study.conditions = 1;
+  study.trials = 240;
+  study.spread = study.interaction = 0.0;
+  TrialsPlan plan = test::plan_of(study);
+  plan.bayesian = true;
+  plan.resamples = 999;
+  const TrialsResult result = analyzed(study, plan);
+  int likelihood = 0, bayesian = 0;
+  for (const FunctionFit& fit : result.fits) {
+    ASSERT_TRUE(fit.likelihood);
+    ASSERT_TRUE(fit.bayesian);
+    const Estimated a = fit.likelihood->x, b = fit.bayesian->x;
+    likelihood += a.low <= test::kTypicalLogThreshold && test::kTypicalLogThreshold <= a.high;
+    bayesian += b.low <= test::kTypicalLogThreshold && test::kTypicalLogThreshold <= b.high;
+    EXPECT_LT(std::abs(a.value - b.value), 0.5 * (b.high - b.low));
+    EXPECT_THAT(fit.band, SizeIs(9));
+    EXPECT_LE(fit.band.front().level.value, fit.band.back().level.value);
+    EXPECT_GT(fit.deviance_p, 0.0);
+  }
+  // Of 12 intervals of 95 %, 8 or fewer hold the truth once in 400,000 studies.
+  EXPECT_GE(likelihood, 9);
+  EXPECT_GE(bayesian, 9);
+}
+
+TEST(TrialsStudyTest, ADifferenceOfConditionsIsFound) {
+  SimulatedTrials study;
+  study.task = SimulatedTask::kConstant;
+  study.trials = 240;
+  study.effect = 0.4;
+  TrialsPlan plan = test::plan_of(study);
+  plan.plan = parse_analysis_plan({"off < on"}, "", "tests");
+  const TrialsResult result = analyzed(study, plan);
+  const Quantity& q = of(result, "threshold");
+  ASSERT_TRUE(q.compared);
+  ASSERT_TRUE(q.tests.effects[0]);
+  EXPECT_LT(q.tests.effects[0]->p, 0.001);
+  ASSERT_THAT(q.tests.planned.tests, SizeIs(1));
+  ASSERT_TRUE(q.tests.planned.tests[0].t);
+  EXPECT_LT(q.tests.planned.tests[0].t->low, -0.4);
+  EXPECT_GT(q.tests.planned.tests[0].t->high, -0.4);
+}
+
+TEST(TrialsStudyTest, PeopleAreOneInTheMixedModel) {
+  SimulatedTrials study;
+  study.task = SimulatedTask::kComparison;
+  study.trials = 140;
+  study.effect = 1.0;  // [N]
+  study.spread = 0.5;
+  study.interaction = 0.2;
+  const TrialsResult result = analyzed(study);
+  ASSERT_TRUE(result.population) << result.population.because();
+  ASSERT_THAT(result.population->points, SizeIs(2));
+  const auto& off = result.population->points[0];
+  const auto& on = result.population->points[1];
+  ASSERT_TRUE(off.point);
+  ASSERT_TRUE(on.point);
+  EXPECT_EQ(off.condition, "off");
+  EXPECT_LT(off.point->point_low, test::kTypicalPoint);
+  EXPECT_GT(off.point->point_high, test::kTypicalPoint);
+  EXPECT_LT(on.point->point_low, test::kTypicalPoint + 1.0);
+  EXPECT_GT(on.point->point_high, test::kTypicalPoint + 1.0);
+  ASSERT_TRUE(result.population->condition_p);
+  EXPECT_LT(*result.population->condition_p, 0.001);
+  EXPECT_EQ(result.population->condition_df, 11);
+  EXPECT_FALSE(analyzed({}).population);  // two intervals have a guess rate
+}
+
+TEST(TrialsStudyTest, DriftAndRepetitionAreFoundWhereTheyAre) {
+  SimulatedTrials study;
+  study.task = SimulatedTask::kComparison;
+  study.conditions = 1;
+  study.trials = 210;
+  study.repetition = 0.3;  // [N], width 3 N
+  const TrialsResult repeats = analyzed(study);
+  ASSERT_TRUE(repeats.repetition);
+  EXPECT_GT(repeats.repetition->low, 0.0);
+  EXPECT_LT(std::abs(repeats.drift->t), 4.0);
+  study.repetition = 0.0;
+  study.drift = -0.01;  // [N] a trial: "smaller" at last
+  const TrialsResult drifts = analyzed(study);
+  ASSERT_TRUE(drifts.drift);
+  EXPECT_LT(drifts.drift->high, 0.0);
+}
+
+TEST(TrialsStudyTest, DetectionIsThatOfThePeople) {
+  SimulatedTrials study;
+  study.task = SimulatedTask::kDetection;
+  study.participants = 30;
+  study.conditions = 1;
+  study.trials = 400;
+  const TrialsResult result = analyzed(study);
+  const Quantity& q = of(result, "d_prime");
+  ASSERT_TRUE(q.means[0]);
+  EXPECT_NEAR(q.means[0]->mean, test::kTypicalDPrime,
+              3.0 * q.means[0]->deviation / std::sqrt(30.0) + 0.02);
+  // Yes from 0.8 on; the middle between both distributions is at d' / 2.
+  EXPECT_NEAR(of(result, "criterion").means[0]->mean, 0.8 - 0.5 * test::kTypicalDPrime, 0.06);
+  // Of equal variances the area is Phi(d' / sqrt 2).
+  const double area = 0.5 * std::erfc(-test::kTypicalDPrime / 2.0);
+  double binormal = 0.0;
+  for (const DetectedCondition& one : result.detected) {
+    ASSERT_TRUE(one.binormal) << one.binormal.because();
+    EXPECT_THAT(one.ratings.noise, SizeIs(6));
+    binormal += one.binormal->area / 30.0;
+  }
+  EXPECT_NEAR(binormal, area, 0.02);
+}
+
+TEST(TrialsStudyTest, CatchTrialsAreNoise) {
+  TrialsData data = test::simulated_trials({.task = SimulatedTask::kDetection, .conditions = 1});
+  for (StudyTrial& trial : data.trials) {
+    if (trial.levels[0].applied == 0.0) {
+      trial.levels.clear();
+      trial.probe = "catch";
+    }
+  }
+  SimulatedTrials study{.task = SimulatedTask::kDetection, .conditions = 1};
+  const auto as_probe = detected(data, test::plan_of(study));
+  const auto as_level = detected(test::simulated_trials(study), test::plan_of(study));
+  ASSERT_EQ(as_probe.size(), as_level.size());
+  for (std::size_t i = 0; i < as_probe.size(); ++i) {
+    EXPECT_EQ(as_probe[i].counts.false_alarms, as_level[i].counts.false_alarms);
+    EXPECT_EQ(as_probe[i].counts.hits, as_level[i].counts.hits);
+  }
+}
+
+TEST(TrialsStudyTest, ExponentsAreThoseOfThePeople) {
+  SimulatedTrials study;
+  study.task = SimulatedTask::kMagnitude;
+  study.participants = 20;
+  study.trials = 50;
+  const TrialsResult result = analyzed(study);
+  ASSERT_THAT(result.magnitudes, SizeIs(2));
+  for (const MagnitudeCondition& one : result.magnitudes) {
+    ASSERT_TRUE(one.law);
+    EXPECT_LT(*one.law->low, test::kTypicalExponent);
+    EXPECT_GT(*one.law->high, test::kTypicalExponent);
+  }
+  EXPECT_THAT(of(result, "exponent").table.cells, SizeIs(2));
+}
+
+TEST(TrialsStudyTest, ATrackIsReplayedAsItRan) {
+  SimulatedTrials study;
+  study.participants = 1;
+  study.conditions = 1;
+  const TrialsData data = test::simulated_trials(study);
+  psychometric::StaircaseParameters p;
+  p.axis = {psychometric::Scale::kLog10, 300.0, "N/m"};
+  p.start = 450.0;
+  p.low = 302.0;
+  p.high = 600.0;
+  p.steps = {{0.2, 0.2, 0}, {0.1, 0.1, 1}};
+  p.stop_trials = study.trials / 2;
+  p.skip = 2;
+  const auto tracks = track_estimates(data, [&](const std::string& name) {
+    p.start = name.starts_with("track 1") ? 450.0 : 345.0;
+    return std::make_unique<psychometric::Staircase>(p);
+  });
+  ASSERT_THAT(tracks, SizeIs(2));
+  for (const TrackEstimate& track : tracks) {
+    EXPECT_THAT(track.steps, SizeIs(40));
+    ASSERT_THAT(track.estimates, SizeIs(1)) << track.because;
+    // The mean of the reversals that are marked, on the axis, but for the first two.
+    double sum = 0.0;
+    int count = 0;
+    for (const TrackStep& step : track.steps) {
+      if (step.reversal && ++count > 2) {
+        sum += std::log10(step.applied - 300.0);
+      }
+    }
+    ASSERT_GT(count, 4);
+    EXPECT_NEAR(track.estimates[0].value, 300.0 + std::pow(10.0, sum / (count - 2)), 1e-6);
+  }
+}
+
+TEST(TrialsStudyTest, PracticeAndAbortedTrialsCountNowhere) {
+  SimulatedTrials study;
+  study.task = SimulatedTask::kConstant;
+  study.participants = 2;
+  TrialsData data = test::simulated_trials(study);
+  const TrialsResult before = analyze(data, test::plan_of(study), {}, 1);
+  TrialsData more = data;
+  StudyTrial practice = data.trials[0];
+  practice.practice = true;
+  StudyTrial aborted = data.trials[1];
+  aborted.completed = false;
+  more.trials.insert(more.trials.begin(), {practice, aborted, practice});
+  const TrialsResult after = analyze(more, test::plan_of(study), {}, 1);
+  ASSERT_EQ(before.fits.size(), after.fits.size());
+  for (std::size_t i = 0; i < before.fits.size(); ++i) {
+    EXPECT_EQ(before.fits[i].trials, after.fits[i].trials);
+    EXPECT_EQ(before.fits[i].fitted.threshold, after.fits[i].fitted.threshold);
+  }
+  EXPECT_EQ(after.participants[0].practice, 2u);
+  EXPECT_EQ(after.participants[0].aborted, 1u);
+}
+
+TEST(TrialsStudyTest, AnswersThatTellNothingAreNotDefined) {
+  SimulatedTrials study;
+  study.task = SimulatedTask::kConstant;
+  study.participants = 2;
+  study.conditions = 1;
+  TrialsData data = test::simulated_trials(study);
+  for (StudyTrial& trial : data.trials) {
+    trial.levels[0].outcome = 1.0;  // everything right
+  }
+  const TrialsResult result = analyze(data, test::plan_of(study), {}, 1);
+  EXPECT_FALSE(result.fits[0].likelihood);
+  EXPECT_THAT(of(result, "threshold").means, IsEmpty());
+  EXPECT_FALSE(result.drift);
+}
+
+TEST(TrialsStudyTest, NothingToAnalyseIsSaid) {
+  TrialsData data;
+  data.sessions = {{"P01.h5", "P01", "", "simulated", true, false}};
+  EXPECT_THROW(analyze(data, {}, {}, 1), InputError);
+}
+
+}  // namespace
+}  // namespace haptrial::analysis::trials

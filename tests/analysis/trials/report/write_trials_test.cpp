@@ -1,0 +1,101 @@
+// The whole way: sessions in a folder, read, analysed, written.
+#include "analysis/trials/report/write_trials.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "analysis/files/csv.h"
+#include "analysis/trials/data/read_trials.h"
+#include "analysis/trials/psychometric/trials_study.h"
+#include "analysis/trials/report/trials_words.h"
+#include "core/base/files/file_text.h"
+#include "tests/analysis/trials/simulated_trials.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+using test::SimulatedTask;
+using testing::HasSubstr;
+using testing::Not;
+
+class WriteTrials : public testing::TestWithParam<SimulatedTask> {
+ protected:
+  /// HAPTRIAL_KEEP_REPORTS names a folder in which they stay to be looked at.
+  std::filesystem::path place() const {
+    const char* keep = std::getenv("HAPTRIAL_KEEP_REPORTS");
+    return keep != nullptr
+               ? std::filesystem::path(keep) / std::to_string(static_cast<int>(GetParam()))
+               : folder_.path() / "report";
+  }
+  TrialsResult written() {
+    test::SimulatedTrials study;
+    study.task = GetParam();
+    study.participants = 6;
+    study.effect = 0.3;
+    const std::filesystem::path sessions = folder_.path() / "sessions";
+    std::filesystem::create_directories(sessions);
+    test::write_sessions(test::simulated_trials(study), sessions, 3);
+    std::vector<std::filesystem::path> files;
+    for (int p = 1; p <= study.participants; ++p) {
+      files.push_back(sessions / ("P0" + std::to_string(p) + ".h5"));
+    }
+    TrialsPlan plan = test::plan_of(study);
+    plan.resamples = 199;
+    plan.permutations = 999;
+    plan.bayesian = true;
+    plan.plan = parse_analysis_plan({"off < on"}, "", "tests");
+    TrialsResult result = analyze(read_trials(files, {}, 2), plan, {}, 2);
+    result.title = "A study made by hand";
+    result.definition = "# made by hand\n";
+    result.definition_name = "study.toml";
+    write_trials(result, place());
+    return result;
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_P(WriteTrials, EverythingIsWrittenAndMarkedAsSimulated) {
+  const TrialsResult result = written();
+  const std::string markdown = file_text(place() / "report.md");
+  EXPECT_THAT(markdown, HasSubstr(kSimulatedTrials));
+  for (const std::string& line : summary_lines(result)) {
+    EXPECT_THAT(markdown, HasSubstr(line.substr(0, 12))) << line;
+    EXPECT_THAT(line, Not(HasSubstr("nan")));
+  }
+  EXPECT_THAT(markdown, Not(HasSubstr("nan")));
+  EXPECT_THAT(markdown, HasSubstr("(simulated)"));
+  EXPECT_THAT(file_text(place() / "report.html"), HasSubstr("SIMULATED PARTICIPANTS"));
+  EXPECT_THAT(file_text(place() / "report.html"), HasSubstr("# made by hand"));
+  const auto json = nlohmann::json::parse(file_text(place() / "results.json"));
+  EXPECT_TRUE(json.at("simulated").get<bool>());
+  EXPECT_EQ(json.at("participants").size(), 6u);
+  EXPECT_FALSE(json.at("quantities").empty());
+  const CsvTable trials = CsvTable::load(place() / "trials.csv");
+  EXPECT_EQ(trials.rows(), result.data.trials.size());
+  const CsvTable estimates = CsvTable::load(place() / "estimates.csv");
+  EXPECT_GT(estimates.rows(), 0u);
+  for (const double value : estimates.numbers(estimates.column("estimate"))) {
+    EXPECT_TRUE(std::isfinite(value));
+  }
+}
+
+TEST_P(WriteTrials, EqualInputGivesEqualBytes) {
+  written();
+  const std::string first = file_text(place() / "results.json") + file_text(place() / "report.md");
+  std::filesystem::remove_all(folder_.path() / "sessions");
+  std::filesystem::remove_all(place());
+  written();
+  EXPECT_EQ(first, file_text(place() / "results.json") + file_text(place() / "report.md"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Tasks, WriteTrials,
+                         testing::Values(SimulatedTask::kStaircase, SimulatedTask::kConstant,
+                                         SimulatedTask::kComparison, SimulatedTask::kDetection,
+                                         SimulatedTask::kMagnitude));
+
+}  // namespace
+}  // namespace haptrial::analysis::trials
