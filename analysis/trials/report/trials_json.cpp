@@ -10,6 +10,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json to_json(const PowerLaw& law);
+
 template <class T>
 Json to_json(const Defined<T>& value);
 

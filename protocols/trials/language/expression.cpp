@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <utility>
 
 #include "core/base/error.h"
@@ -82,6 +83,14 @@ struct Expression::Formula {
     return &static_cast<Formula*>(self)->values.try_emplace(name, 1.0).first->second;
   }
 
+  /// muParser keeps its decimal point in a static locale that every parser sets as it is made and
+  /// read with, so formulas are made one at a time.
+  static std::unique_ptr<Formula> make(std::string plain_text) {
+    static std::mutex one_at_a_time;
+    const std::lock_guard hold(one_at_a_time);
+    return std::make_unique<Formula>(std::move(plain_text));
+  }
+
   std::string text;
   std::map<std::string, double> values;  // whose addresses the parser keeps
   mu::Parser parser;
@@ -91,7 +100,7 @@ Expression::Expression(double constant) : text_(fmt::format("{}", constant)), co
 
 Expression::Expression(const std::string& text, Labels& labels) : text_(text) {
   try {
-    formula_ = std::make_unique<Formula>(plain(text, labels));
+    formula_ = Formula::make(plain(text, labels));
   } catch (const mu::ParserError& error) {
     throw InputError(trouble_of(text, error));
   }
@@ -99,7 +108,7 @@ Expression::Expression(const std::string& text, Labels& labels) : text_(text) {
 
 Expression::Expression(const Expression& other)
     : text_(other.text_),
-      formula_(other.formula_ ? std::make_unique<Formula>(other.formula_->text) : nullptr),
+      formula_(other.formula_ ? Formula::make(other.formula_->text) : nullptr),
       constant_(other.constant_) {}
 
 Expression::Expression(Expression&&) noexcept = default;

@@ -7,8 +7,10 @@
 
 #include "core/base/random.h"
 #include "core/subject/hand.h"
+#include "core/subject/motor_noise.h"
 #include "core/subject/perceiver/sense.h"
 #include "core/subject/perceiver/trial_stream.h"
+#include "core/subject/subject_parameters.h"
 #include "protocols/trials/definition/question.h"
 
 namespace haptrial::protocols {
@@ -36,7 +38,9 @@ class TrialsRig::Participant final : public stimulus::Observer {
         said_(*briefing.said),
         hand_(hand),
         seed_(derived_seed(seed, "subject")),
-        prober_(briefing.definition->hand),
+        hand_parameters_(briefing.definition->hand),
+        step_(1.0 / briefing.definition->rate),
+        prober_(hand_parameters_),
         judgement_(plan_.people->draw_judgement(seed_)),
         sense_(plan_.people->draw_senses(seed_), plan_.senses),
         judge_(judgement_, seed_),
@@ -84,6 +88,10 @@ class TrialsRig::Participant final : public stimulus::Observer {
     intervals_ = 1;
     percepts_ = {};
     judge_.begin_trial(trial);
+    // A hand that is quite still would look like a device whose reading is frozen.
+    prober_ = subject::Prober(
+        hand_parameters_, subject::MotorNoise(subject::SubjectParameters{}, step_,
+                                              subject::trial_stream(seed_, "motor", trial)));
     reaction_ = subject::trial_stream(seed_, "reaction", trial);
   }
 
@@ -91,16 +99,17 @@ class TrialsRig::Participant final : public stimulus::Observer {
     const int stage = view.interval > 0 ? view.stage : -1;
     const int interval = view.interval - 1;
     intervals_ = std::max<std::size_t>(intervals_, view.interval);
-    if (interval != interval_ && interval >= 0) {
+    if (stage == stage_ && interval == interval_) {
+      return;
+    }
+    const bool another = interval != interval_;
+    leave_stage();
+    if (another && interval >= 0) {
       RandomStream random =
           subject::trial_stream(seed_, interval == 0 ? "sense" : "sense again",
                                 trial_ * static_cast<int>(kMostIntervals) + interval);
       sense_.begin(random);
     }
-    if (stage == stage_ && interval == interval_) {
-      return;
-    }
-    leave_stage();
     stage_ = stage;
     interval_ = interval;
     const StageAction* action = stage >= 0 ? actions_[static_cast<std::size_t>(stage)] : nullptr;
@@ -206,6 +215,8 @@ class TrialsRig::Participant final : public stimulus::Observer {
   SaidAnswer& said_;
   subject::HandModel& hand_;
   std::uint64_t seed_;
+  subject::HandParameters hand_parameters_;
+  double step_;  // [s]
   subject::Prober prober_;
   subject::JudgementParameters judgement_;
   subject::Sense sense_;

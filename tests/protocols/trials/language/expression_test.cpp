@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <thread>
+#include <vector>
+
 #include <cmath>
 #include <map>
 
@@ -90,6 +94,25 @@ TEST(ExpressionTest, MistakesGetTheirSentence) {
   EXPECT_EQ(complaint_about("1 / 0"), "\"1 / 0\" is inf; allowed: a finite number");
   EXPECT_EQ(complaint_about("3 4"), "\"3 4\" cannot be read at '4'");
   EXPECT_EQ(complaint_about(""), "an empty text is no formula");
+}
+
+// The parser that is used keeps its decimal point in a static variable.
+TEST(ExpressionTest, AreMadeInSeveralThreadsAtOnce) {
+  std::vector<std::thread> threads;
+  std::atomic<int> wrong{0};
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&wrong] {
+      Labels labels;
+      for (int i = 0; i < 2000; ++i) {
+        const Expression formula("0.5 * $x + 1.25", labels);
+        wrong += formula.value([](const std::string&) { return 3.0; }) == 2.75 ? 0 : 1;
+      }
+    });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  EXPECT_EQ(wrong, 0);
 }
 
 }  // namespace
