@@ -72,6 +72,8 @@ struct Checker {
   }
 };
 
+constexpr double kLetGo = 0.1;  // after a reaction time people no longer resist what has gone [s]
+
 }  // namespace
 
 void check(const Probe& probe) { std::visit(Checker{}, probe); }
@@ -80,6 +82,7 @@ void Prober::begin(const Probe& probe, const PointState& hand) noexcept {
   probe_ = probe;
   start_ = hand.position;
   posture_ = hand.position;
+  carried_ += integral_;
   integral_.setZero();
   desired_ = {hand.position, Eigen::Vector3d::Zero()};
   time_ = 0.0;
@@ -156,9 +159,11 @@ HandCommand Prober::command(const PointState& hand, double dt) noexcept {
   time_ += dt;
   const Aim wanted = std::visit([&](const auto& probe) { return aim(probe, hand); }, probe_);
   HandCommand command;
+  carried_ *= std::exp(-dt / kLetGo);
   if (!std::holds_alternative<Rest>(probe_)) {
     command.force = wanted.push + track(wanted, hand, dt);
   }
+  command.force += carried_;
   if (noise_) {
     command.force = noise_->press(1.0) * command.force + noise_->tremor();
   }

@@ -93,6 +93,7 @@ class Prober {
   Eigen::Vector3d start_{Eigen::Vector3d::Zero()};     // where it began [m]
   Eigen::Vector3d posture_{Eigen::Vector3d::Zero()};   // e_d [m]
   Eigen::Vector3d integral_{Eigen::Vector3d::Zero()};  // i [N]
+  Eigen::Vector3d carried_{Eigen::Vector3d::Zero()};   // against loads of the probe before [N]
   double time_{0.0};
 };
 

@@ -162,7 +162,9 @@ ObserverPlan read_observer(Table& root, const std::vector<Question>& questions,
     Table adaptation = table.table("adaptation");
     plan.adaptation = read_adaptation(adaptation, stages);
   }
-  plan.people.emplace(table);
+  subject::JudgementParameters judge;
+  judge.logarithmic = plan.decides != Decides::kYes;  // nothing at all has no logarithm
+  plan.people.emplace(table, judge);
   return plan;
 }
 
