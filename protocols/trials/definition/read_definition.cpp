@@ -9,6 +9,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "core/scene/needed_damping.h"
 #include "core/scene/read/read_field.h"
 #include "protocols/trials/definition/defaults.h"
 #include "protocols/trials/definition/read_tracks.h"
@@ -179,6 +180,21 @@ TrialValues sample_values(const TrialsDefinition& d, std::size_t block) {
   return values;
 }
 
+/// Fields that are passive only in continuous time: a held force gives energy at each tick, which
+/// the damping of device and hand must take up (needed_damping.h).
+void note_restless(const std::vector<scene::Field>& fields, TrialsDefinition& d) {
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const scene::Steepness steepness = scene::steepness(fields, i);
+    const double needed = scene::needed_damping_below(0.0, steepness, d.rate);
+    if (steepness.passive && needed > d.hand.damping) {
+      d.restless.push_back(fmt::format(
+          "fields.{} turns by {:.0f} N/m: at {:g} Hz it stays calm with {:.3g} N·s/m of damping, "
+          "and the hand of [hand] has {:g}",
+          fields[i].name, steepness.stiffness, d.rate, needed, d.hand.damping));
+    }
+  }
+}
+
 /// Everything that a first trial would read: so that a mistake has its line.
 void read_first_trial(Table& root, TrialsDefinition& d) {
   const std::unique_ptr<Names> names = read_names(root, d);
@@ -195,7 +211,11 @@ void read_first_trial(Table& root, TrialsDefinition& d) {
       root.reject("experiment", fmt::format("cannot begin: {}", error.what()));
       return;
     }
-    stages = read_presented(root, *names, d.rate, nullptr).stages;
+    Presented presented = read_presented(root, *names, d.rate, nullptr);
+    if (place == 0) {
+      note_restless(presented.fields, d);
+    }
+    stages = std::move(presented.stages);
   }
   for (const NamedStage& stage : stages) {
     d.stages.push_back(stage.name);

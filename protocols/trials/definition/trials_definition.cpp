@@ -64,7 +64,7 @@ std::vector<std::string> TrialsDefinition::description() const {
   return lines;
 }
 
-std::vector<std::string> TrialsDefinition::warnings() const { return {}; }
+std::vector<std::string> TrialsDefinition::warnings() const { return restless; }
 
 double TrialsDefinition::longest(int trials) const {
   constexpr double kAnswer = 2.0;  // [s]

@@ -40,9 +40,10 @@ struct TrialsDefinition : Definition {
   std::vector<StudyGroup> groups;
   TrialsView view;
   std::string feedback_right, feedback_wrong;
-  double feedback_time{0.5};  // [s]
-  double stage_time{0.0};     // of one interval at most, roughly [s]
-  int most_repeats{5};        // of an interval whose stage asks for it; then the trial is aborted
+  double feedback_time{0.5};          // [s]
+  double stage_time{0.0};             // of one interval at most, roughly [s]
+  std::vector<std::string> restless;  // sentences on fields that a light hand would make shake
+  int most_repeats{5};  // of an interval whose stage asks for it; then the trial is aborted
 
   bool has_target() const override { return false; }
   std::vector<std::string> description() const override;

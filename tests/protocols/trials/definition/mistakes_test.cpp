@@ -99,6 +99,16 @@ TEST(TrialMistakesTest, LevelsOutsideOfTheDevice) {
                           HasSubstr("with block main, level = 600")));
 }
 
+// Colgate and Schenkel: K T / 2 < b. 40,000 N/m at 1 kHz ask for 20 N·s/m, the hand has 15.
+TEST(TrialMistakesTest, AFieldThatTheLoopCannotHoldGetsAWarning) {
+  TrialsDefinition calm, restless;
+  read_small(kSmall, calm);
+  EXPECT_THAT(calm.warnings(), IsEmpty());
+  read_small(with(kSmall, "\"$stiffness\"", "40000.0"), restless);
+  EXPECT_THAT(restless.warnings(), ElementsAre(AllOf(HasSubstr("fields.floor turns by 40000 N/m"),
+                                                     HasSubstr("with 20 N·s/m of damping"))));
+}
+
 TEST(TrialMistakesTest, NothingToLearnFrom) {
   EXPECT_THAT(problems_of_trials(with(kSmall, "correct = \"$interval.comparison\"\n", "")),
               Contains(HasSubstr("no response says which is right")));
@@ -111,8 +121,9 @@ TEST(TrialMistakesTest, AProcedureWithoutAnEnd) {
 }
 
 TEST(TrialMistakesTest, UnknownKeysAndTables) {
-  EXPECT_THAT(problems_of_trials(with(kSmall, "start = 500.0", "start = 500.0\nresolutoin = 3.0")),
-              Contains(HasSubstr("procedure.resolutoin is not a known key; did you mean resolution?")));
+  EXPECT_THAT(
+      problems_of_trials(with(kSmall, "start = 500.0", "start = 500.0\nresolutoin = 3.0")),
+      Contains(HasSubstr("procedure.resolutoin is not a known key; did you mean resolution?")));
   EXPECT_THAT(problems_of_trials(small_trials(kSmallStaircase, "[variabels]\n")),
               Contains(HasSubstr("[variabels] is not a known table; did you mean variables?")));
 }
