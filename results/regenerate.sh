@@ -3,7 +3,7 @@
 # manifest that says how. Session files stay out. Needs a build (quickstart.sh makes one).
 #   results/regenerate.sh force_training [SEED]
 # A variant, force_training_..., is also compared with force_training. A study of drillings is rated by
-# simulated raters.
+# simulated raters; of an experiment that its definition states whole a few participants are kept.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 study=${1:?which study? a definition in experiments/, without .toml}
@@ -14,9 +14,15 @@ cd "$root"
 
 out=$(mktemp -d)/sessions
 trap 'rm -rf "$(dirname "$out")"' EXIT
-build/haptrial dry-run "$definition" --seed "$seed" --out "$out"
 table=scores
 rate=
+few=
+if grep -q '^protocol = "trials"' "$definition"; then
+  table=estimates
+  few=' --subjects 6'  # of a rehearsal; unquoted below: two words
+fi
+# shellcheck disable=SC2086
+build/haptrial dry-run "$definition" --seed "$seed"$few --out "$out"
 if grep -q '^protocol = "bone_drilling"' "$definition"; then
   table=metrics
   build/haptrial rate simulate "$out"
@@ -35,7 +41,12 @@ sum() { sha256sum "$1" | cut -d' ' -f1; }
 rm -rf "results/$study"
 mkdir -p "results/$study"
 [ -z "$compare" ] || cp "$out"/comparison.html "$out"/comparison.json "results/$study/"
-cp "$out"/report.html "$out"/report.md "$out/$table.csv" "$out"/statistics.json "$out"/*.svg "results/$study/"
+cp "$out"/report.html "$out/$table.csv" "results/$study/"
+if [ "$table" = estimates ]; then
+  cp "$out"/results.json "results/$study/"  # the pictures are inside the report
+else
+  cp "$out"/report.md "$out"/statistics.json "$out"/*.svg "results/$study/"
+fi
 if [ -n "$rate" ]; then
   cp "$out/ratings.csv" "results/$study/"
 fi
@@ -44,7 +55,7 @@ cat >"results/$study/manifest.json" <<EOF
   "study": "$study",
   "simulated": true,
   "commands": [
-    "haptrial dry-run $definition --seed $seed --out OUT",$rate
+    "haptrial dry-run $definition --seed $seed$few --out OUT",$rate
     "haptrial analyze OUT"$compare
   ],
   "definition_sha256": "$(sum "$definition")",
