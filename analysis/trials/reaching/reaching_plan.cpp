@@ -19,11 +19,11 @@ bool holds(const std::vector<std::string>& names, const std::string& name) {
 
 /// A name that the definition must have, stated or not.
 std::string named(Table& table, const char* key, const std::string& otherwise,
-                  const std::vector<std::string>& known) {
+                  const std::vector<std::string>& known, bool checked) {
   std::string name = table.has(key) ? table.text(key) : otherwise;
   const bool dollar = name.starts_with('$');
   name = dollar ? name.substr(1) : name;
-  if (!holds(known, name)) {
+  if (checked && !holds(known, name)) {
     const std::string allowed = known.empty() ? std::string("none, the definition has none")
                                               : fmt::format("{}", fmt::join(known, ", "));
     if (table.has(key)) {
@@ -40,12 +40,13 @@ std::string named(Table& table, const char* key, const std::string& otherwise,
 
 ReachingPlan read_reaching_plan(Table& table, const ReachingNames& names) {
   ReachingPlan plan;
-  plan.stage = named(table, "stage", plan.stage, names.stages);
-  plan.start = named(table, "start", plan.start, names.places);
-  plan.target = named(table, "target", plan.target, names.places);
+  const bool checked = !names.stages.empty();  // else the definition could not be read
+  plan.stage = named(table, "stage", plan.stage, names.stages, checked);
+  plan.start = named(table, "start", plan.start, names.places, checked);
+  plan.target = named(table, "target", plan.target, names.places, checked);
   if (table.has("field") || !names.fields.empty()) {
-    plan.field =
-        named(table, "field", names.fields.empty() ? "" : names.fields.front(), names.fields);
+    plan.field = named(table, "field", names.fields.empty() ? "" : names.fields.front(),
+                       names.fields, checked);
   }
   if (table.has("clamp")) {
     plan.clamp = table.text("clamp");

@@ -43,6 +43,7 @@ std::vector<Standing> standings(const TrialsData& data, ReachingResult& result) 
     ReachBlock& of = result.blocks[own.block];
     of.trials = std::max(of.trials, own.place + 1);
     all.push_back(own);
+    result.persons.push_back(own.participant);
   }
   return all;
 }

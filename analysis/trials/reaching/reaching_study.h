@@ -67,6 +67,7 @@ struct ReachingResult {
   ReachingPlan plan;
   std::vector<StudyReach> reaches;
   std::vector<std::string> participants;  // by the numbers in tables
+  std::vector<std::size_t> persons;       // (reaches) such a number
   std::vector<ReachBlock> blocks;
   std::vector<BlockMeans> means;  // (blocks)
   ReachCurve plain, catches;      // error, turned [m]
