@@ -4,6 +4,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "experiments/studies/reach_ways.h"
 #include "protocols/trials/definition/trials_definition.h"
 #include "protocols/trials/trials_protocol.h"
 
@@ -45,6 +46,7 @@ void add_names(const protocols::TrialsDefinition& d, PlanDefaults& defaults) {
 PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
   PlanDefaults defaults;
   add_names(d, defaults);
+  defaults.reaching = reaching_names(d);
   for (std::size_t i = 1; i < d.questions.size() && defaults.rating.empty(); ++i) {
     defaults.rating = d.questions[i].correct.empty() ? d.questions[i].name : std::string();
   }

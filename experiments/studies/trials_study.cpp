@@ -10,6 +10,7 @@
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "experiments/studies/live_trials.h"
+#include "experiments/studies/reach_ways.h"
 #include "experiments/studies/trials_analysis.h"
 #include "protocols/trials/definition/trials_definition.h"
 #include "protocols/trials/trials_protocol.h"
@@ -118,6 +119,14 @@ std::vector<std::string> TrialsStudy::analyze(const AnalysisRequest& request) co
     if (q.compared) {
       analysis::check_plan(q.table, plan.plan);
     }
+  }
+  if (plan.kind == trials::AnalysisKind::kReaching) {
+    const auto ways = reach_ways(definition, result.data, plan.reaching);
+    result.reaching = trials::reaching_study(
+        result.data,
+        trials::study_reaches(result.data, request.files.files, ways, plan.reaching.stage,
+                              plan.reaching.clamp, request.threads),
+        plan.reaching, request.threads);
   }
   result.title = definition.name;
   result.remarks = std::move(remarks);

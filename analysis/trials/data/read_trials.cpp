@@ -69,12 +69,13 @@ class SessionTrials {
     trial.practice = pass.practice;
     trial.completed = pass.status == record::PassStatus::kCompleted;
     trial.start = static_cast<double>(pass.first_sample) / reader_.info().rate;
+    trial.first_sample = pass.first_sample;
     const std::uint64_t rows = reader_.sample_count();
     const std::uint64_t end = std::min<std::uint64_t>(pass.last_sample + 1, rows);
     if (pass.first_sample < end) {
       const std::uint64_t count = end - pass.first_sample;
-      const auto saturated = reader_.integers(record::samples_table(), "saturated",
-                                              pass.first_sample, count);
+      const auto saturated =
+          reader_.integers(record::samples_table(), "saturated", pass.first_sample, count);
       trial.saturated = static_cast<double>(std::count(saturated.begin(), saturated.end(), 1)) /
                         static_cast<double>(count);
     }
@@ -98,7 +99,8 @@ class SessionTrials {
   void add(const record::StageRow& row) {
     if (StudyTrial* trial = of(row.pass)) {
       const double rate = reader_.info().rate;
-      StageTime stage{row.stage, row.interval, 0.0, kNotKnown, word_of(row.ending)};
+      StageTime stage{row.stage,        row.interval,   0.0, kNotKnown, word_of(row.ending),
+                      row.first_sample, row.last_sample};
       stage.duration = static_cast<double>(row.last_sample - row.first_sample + 1) / rate;
       if (row.onset_sample >= 0) {
         stage.onset =

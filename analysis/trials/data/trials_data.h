@@ -52,6 +52,7 @@ struct StageTime {
   double duration{0.0};     // [s]
   double onset{kNotKnown};  // of the movement, from the first tick of the stage [s]
   std::string ending;       // as /stages has it
+  std::uint64_t first_sample{0}, last_sample{0};  // both inclusive, in /samples of the session
 };
 
 /// One pass of a trial, with everything that the session file says of it.
@@ -65,6 +66,7 @@ struct StudyTrial {
   bool practice{false};
   bool completed{true};
   double start{0.0};               // since the session's first tick [s]
+  std::uint64_t first_sample{0};   // of the pass, in /samples of the session
   double saturated{0.0};           // share of the ticks at the force limit
   std::vector<GivenLevel> levels;  // of a level with several dimensions one each
   std::vector<GivenAnswer> answers;

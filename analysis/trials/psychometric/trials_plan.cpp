@@ -178,9 +178,9 @@ TrialsPlan read_trials_plan(Table& root, const PlanDefaults& defaults) {
   Table table = root.table("analysis");
   plan.kind = chosen(table, "kind", kKinds, defaults.kind);
   if (plan.kind == AnalysisKind::kReaching) {
-    for (const std::string& key : table.keys()) {
-      table.leave(key);  // the analysis of movements reads them
-    }
+    plan.by.clear();
+    plan.functions = false;
+    plan.reaching = read_reaching_plan(table, defaults.reaching);
     return plan;
   }
   read_by(table, defaults, plan);

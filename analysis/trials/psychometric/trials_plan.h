@@ -8,6 +8,7 @@
 #include "analysis/psychometric/fit/fitted_function.h"
 #include "analysis/psychometric/fit/likelihood_fit.h"
 #include "analysis/statistics/design/analysis_plan.h"
+#include "analysis/trials/reaching/reaching_plan.h"
 
 namespace haptrial {
 class Table;
@@ -32,6 +33,7 @@ struct PlanDefaults {
   std::vector<std::string> names;    // that `by` may name besides
   psychometric::Axis axis;           // of the procedure, with its unit
   std::optional<double> guess;       // 1 / choices where an answer is right; else free
+  ReachingNames reaching;            // that the analysis of movements may name
 };
 
 /// What [analysis] of a definition states.
@@ -55,6 +57,7 @@ struct TrialsPlan {
   std::size_t resamples{1999};  // of each function
   std::size_t permutations{9999};
   std::uint64_t seed{1};
+  ReachingPlan reaching;  // where `kind` is kReaching
 
   Task task() const { return guess_free ? Task::kYesNo : Task::kForcedChoice; }
 };
@@ -77,6 +80,7 @@ struct TrialsPlan {
 ///     rating        question of how sure the participant was
 ///
 /// Keys from function to resamples are those of functions; detection fits them if it states one.
+/// Those of "reaching" are its own (read_reaching_plan).
 TrialsPlan read_trials_plan(Table& root, const PlanDefaults& defaults);
 
 /// The words of `kind`.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "analysis/trials/psychometric/quantity.h"
 #include "analysis/trials/psychometric/serial.h"
 #include "analysis/trials/psychometric/track_estimate.h"
+#include "analysis/trials/reaching/reaching_study.h"
 
 namespace haptrial::analysis::trials {
 
@@ -47,6 +49,7 @@ struct TrialsResult {
   std::vector<DetectedCondition> detected;
   std::vector<MagnitudeCondition> magnitudes;
   std::vector<Quantity> quantities;  // what is compared over participants
+  std::optional<ReachingResult> reaching;
   std::vector<std::string> remarks;  // sentences about the files, for the report
   std::string definition, definition_name;
 

@@ -181,6 +181,13 @@ std::vector<NamedTest> tests_of(const TrialsResult& result) {
       add_tests(q, tests);
     }
   }
+  if (result.reaching) {
+    for (const ReachContrast& each : result.reaching->contrasts) {
+      if (each.contrast) {
+        tests.push_back({each.name, each.contrast->test.p});
+      }
+    }
+  }
   if (result.drift) {
     tests.push_back({"drift over the trials", result.drift->p});
   }

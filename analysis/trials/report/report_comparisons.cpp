@@ -139,6 +139,7 @@ void add_trial_quality(Document& document, const TrialsResult& result,
   add_tracks(document, result, drawings);
   add_section(document, result, "Quality");
   add_serial(document, result);
+  add_reach_quality(document, result);
   std::vector<std::string> limited;
   for (const ParticipantTrials& p : result.participants) {
     if (p.saturated > 0.0) {

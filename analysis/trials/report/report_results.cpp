@@ -206,6 +206,9 @@ void add_results(Document& document, const TrialsResult& result,
   if (result.plan.kind == AnalysisKind::kMagnitude) {
     add_laws(document, result, drawings);
   }
+  if (result.reaching) {
+    add_reaching(document, result, drawings);
+  }
 }
 
 }  // namespace haptrial::analysis::trials

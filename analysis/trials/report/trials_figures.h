@@ -31,6 +31,10 @@ std::vector<Figure> roc_figures(const TrialsResult& result);
 /// Reaction times of each participant: "reaction-times".
 std::vector<Figure> reaction_figures(const TrialsResult& result);
 
+/// Learning curves, and paths of the first and last cycle of each block: "learning-curve",
+/// "force-compensation", "trajectories-BLOCK".
+std::vector<Figure> reaching_pictures(const TrialsResult& result);
+
 /// All of them, as far as there is something to draw.
 std::vector<Figure> trials_figures(const TrialsResult& result);
 

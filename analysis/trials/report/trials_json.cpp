@@ -217,6 +217,9 @@ std::string results_json(const TrialsResult& result) {
   root["tracks"] = list_of(result.tracks);
   root["detection"] = list_of(result.detected);
   root["magnitudes"] = list_of(result.magnitudes);
+  if (result.reaching) {
+    root["reaching"] = Json::parse(reaching_json(*result.reaching));
+  }
   root["remarks"] = result.remarks;
   return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

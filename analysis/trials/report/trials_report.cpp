@@ -73,6 +73,12 @@ void add_methods(Document& document, const TrialsResult& result) {
         "the exponent is the least-squares slope of log estimate over log level. Moduli are "
         "equalised before participants are averaged (Lane, Catania and Stevens 1961).");
   }
+  if (plan.kind == AnalysisKind::kReaching) {
+    add_reaching_methods(document, plan.reaching);
+    document.heading("Definition");
+    document.source(result.definition_name, result.definition);
+    return;
+  }
   document.paragraph(
       "Tests between conditions take one value of each participant for each condition; trials are "
       "never counted as independent over participants. p values of a family are adjusted together "

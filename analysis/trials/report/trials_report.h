@@ -13,6 +13,10 @@ Document trials_report(const TrialsResult& result, const std::vector<Drawing>& d
 /// Parts of it, in their order.
 void add_results(Document& document, const TrialsResult& result,
                  const std::vector<Drawing>& drawings);
+void add_reaching(Document& document, const TrialsResult& result,
+                  const std::vector<Drawing>& drawings);
+void add_reach_quality(Document& document, const TrialsResult& result);
+void add_reaching_methods(Document& document, const ReachingPlan& plan);
 void add_comparisons(Document& document, const TrialsResult& result);
 void add_trial_quality(Document& document, const TrialsResult& result,
                        const std::vector<Drawing>& drawings);

@@ -43,6 +43,29 @@ void add_tests(const Quantity& q, std::vector<std::string>& lines) {
   add(planned_lines(q.tests));
 }
 
+void add_reaching(const ReachingResult& reaching, std::vector<std::string>& lines) {
+  constexpr double kMillimetres = 1000.0;
+  for (const ReachContrast& each : reaching.contrasts) {
+    if (!each.contrast) {
+      continue;
+    }
+    const TTest& test = each.contrast->test;
+    const double scale = each.unit.empty() ? 1.0 : kMillimetres;
+    lines.push_back(fmt::format(
+        "{}: difference {}{}, 95 % CI {} to {}, {}, {} after Holm's adjustment", each.name,
+        number(scale * test.difference), each.unit.empty() ? "" : " mm", number(scale * test.low),
+        number(scale * test.high), t_result(test), p_result(each.holm)));
+  }
+  for (const ReachBlock& block : reaching.blocks) {
+    if (block.fit) {
+      const ExponentialFit& fit = block.fit->fit;
+      lines.push_back(fmt::format("{}: error from {} to {} mm with a time constant of {} cycles",
+                                  block.name, number(kMillimetres * fit.at(0.0)),
+                                  number(kMillimetres * fit.asymptote), number(fit.time_constant)));
+    }
+  }
+}
+
 std::size_t undetermined(const TrialsResult& result) {
   return static_cast<std::size_t>(std::count_if(
       result.fits.begin(), result.fits.end(), [](const FunctionFit& f) { return !f.likelihood; }));
@@ -101,6 +124,9 @@ std::vector<std::string> summary_lines(const TrialsResult& result) {
   }
   for (const Quantity& q : result.quantities) {
     add_tests(q, lines);
+  }
+  if (result.reaching) {
+    add_reaching(*result.reaching, lines);
   }
   if (const std::size_t count = undetermined(result); count > 0) {
     lines.push_back(fmt::format("{} of {} could not be determined from the answers", count,

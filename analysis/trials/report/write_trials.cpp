@@ -4,6 +4,7 @@
 #include "analysis/files/staging.h"
 #include "analysis/trials/data/trials_csv.h"
 #include "analysis/trials/report/estimates_csv.h"
+#include "analysis/trials/report/reaches_csv.h"
 #include "analysis/trials/report/trials_figures.h"
 #include "analysis/trials/report/trials_json.h"
 #include "analysis/trials/report/trials_report.h"
@@ -16,6 +17,9 @@ void write_trials(const TrialsResult& result, const std::filesystem::path& folde
   staging.write("trials.csv", trials_csv(result.data));
   staging.write("estimates.csv", estimates_csv(result));
   staging.write("results.json", results_json(result));
+  if (result.reaching) {
+    staging.write("reaches.csv", reaches_csv(result));
+  }
   const std::vector<Figure> figures = trials_figures(result);
   draw_figures(figures, staging.path());
   std::vector<Drawing> drawings;

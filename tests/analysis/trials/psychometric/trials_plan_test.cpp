@@ -115,7 +115,7 @@ TEST(TrialsPlanTest, AMistakeGetsItsSentence) {
 }
 
 TEST(TrialsPlanTest, KeysOfMovementsAreLeftToTheirAnalysis) {
-  EXPECT_EQ(read("[analysis]\nkind = \"reaching\"\nmetrics = [\"peak_speed\"]\n").kind,
+  EXPECT_EQ(read("[analysis]\nkind = \"reaching\"\nstage = \"reach\"\n").kind,
             AnalysisKind::kReaching);
 }
 

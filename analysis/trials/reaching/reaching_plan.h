@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::analysis::trials {
+
+/// What a definition has that the analysis of reaches may name.
+struct ReachingNames {
+  std::vector<std::string> stages;
+  std::vector<std::string> places;
+  std::vector<std::string> fields;  // of type matrix_viscous
+  std::size_t combinations{8};      // of the factors: as many trials as make a cycle
+};
+
+/// What [analysis] of kind "reaching" states.
+struct ReachingPlan {
+  std::string stage{"reach"};
+  std::string start{"start"};    // a place
+  std::string target{"target"};  // likewise
+  std::string field;             // that is learnt; empty: the definition has none
+  std::string clamp{"clamp"};    // probe
+  std::size_t cycle{8};          // trials
+  bool at_150_ms{false};         // the error that is learnt from; else the largest
+  std::size_t resamples{1999};   // of participants
+  std::uint64_t seed{1};
+};
+
+/// The keys of [analysis], all of which may be left out. Problems are noted.
+///
+///     stage          of the reach: "reach"
+///     start, target  places: "start", "target", with or without $ before them
+///     field          of type matrix_viscous, that is learnt: the first one
+///     clamp          probe whose reaches a channel holds: "clamp"; any channel that acts counts
+///     cycle          trials of a cycle: as many as the factors have combinations
+///     error          "maximum" (largest perpendicular error) or "at_150_ms"
+///     resamples      of the intervals of fits, 0 to 100,000
+ReachingPlan read_reaching_plan(Table& table, const ReachingNames& names);
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "analysis/trials/data/trials_data.h"
+#include "analysis/trials/reaching/reach_trials.h"
+#include "analysis/trials/reaching/reaching_plan.h"
+
+namespace haptrial::protocols {
+struct TrialsDefinition;
+}
+
+namespace haptrial::experiments {
+
+/// What the definition says of each trial's reach: its places, the field that is learnt, and what
+/// acts in the stage, read anew with the values that the session recorded. Nothing for a trial that
+/// does not count.
+/// @throws InputError when the recorded values do not fit the definition.
+std::vector<std::optional<analysis::trials::ReachWay>> reach_ways(
+    const protocols::TrialsDefinition& definition, const analysis::trials::TrialsData& data,
+    const analysis::trials::ReachingPlan& plan);
+
+/// What the definition has that [analysis] of kind "reaching" may name.
+analysis::trials::ReachingNames reaching_names(const protocols::TrialsDefinition& definition);
+
+}  // namespace haptrial::experiments
