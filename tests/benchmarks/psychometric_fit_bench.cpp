@@ -4,6 +4,8 @@
 // 40 trials each, and how often the 95 % interval holds their threshold.
 //
 //     bench_psychometric_fit [observers] [bootstrap resamples] [observers of the Bayesian fit]
+//
+// With 0 resamples or 0 observers that part is left out.
 
 #include <fmt/format.h>
 #include <time.h>
@@ -16,6 +18,7 @@
 
 #include "analysis/psychometric/fit/bayesian_fit.h"
 #include "analysis/psychometric/fit/bootstrap_fit.h"
+#include "analysis/psychometric/fit/profile_interval.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
 
@@ -107,9 +110,12 @@ struct Counted {
   double held{0.0}, none{0.0}, sum{0.0}, squares{0.0}, count{0.0};
 
   void add(double estimate, double truth, bool interval, double low, double high) {
+    add(estimate, truth, interval, interval && low <= truth && truth <= high);
+  }
+  void add(double estimate, double truth, bool interval, bool holds) {
     count += 1.0;
     none += interval ? 0.0 : 1.0;
-    held += interval && low <= truth && truth <= high ? 1.0 : 0.0;
+    held += holds ? 1.0 : 0.0;
     sum += estimate - truth;
     squares += (estimate - truth) * (estimate - truth);
   }
@@ -120,6 +126,32 @@ struct Counted {
                std::sqrt(squares / count - bias * bias));
   }
 };
+
+void cover_by_profile(const Observer& observer, std::size_t observers) {
+  std::vector<ProfiledFit> fits(observers);
+  std::vector<std::vector<TrialBlock>> answers(observers);
+  for (std::size_t i = 0; i < observers; ++i) {
+    answers[i] = observer.answers(i);
+  }
+  const double start = seconds();
+  for (std::size_t i = 0; i < observers; ++i) {
+    fits[i] = profiled_fit(answers[i], observer.options());
+  }
+  const double each = (seconds() - start) / static_cast<double>(observers);
+  const auto truth = observer.function().parameters();
+  const double middle = truth.axis.at(truth.threshold);
+  Counted threshold, width;
+  for (const ProfiledFit& f : fits) {
+    const FittedParameters& p = f.fit.parameters;
+    threshold.add(p.threshold, middle, !f.threshold.low_open && !f.threshold.high_open,
+                  f.threshold.holds(middle));
+    width.add(p.width, truth.width, !f.width.low_open && !f.width.high_open,
+              f.width.holds(truth.width));
+  }
+  threshold.print("threshold, profile (none: open)");
+  width.print("width, profile (none: open)");
+  fmt::print("  {:.1f} us a fit with both intervals\n", 1e6 * each);
+}
 
 void cover_by_bootstrap(const Observer& observer, std::size_t observers, std::size_t resamples,
                         bool parametric) {
@@ -196,9 +228,12 @@ int main(int argc, char** argv) {
         Study{"norm", Task::kYesNo, 0.02}}) {
     const Observer observer(study);
     fmt::print("{} {} observers\n", name_of(study), observers);
-    cover_by_bootstrap(observer, observers, resamples, true);
-    cover_by_bootstrap(observer, observers, resamples, false);
-    if (study.task == Task::kForcedChoice) {
+    cover_by_profile(observer, observers);
+    if (resamples > 0) {
+      cover_by_bootstrap(observer, observers, resamples, true);
+      cover_by_bootstrap(observer, observers, resamples, false);
+    }
+    if (of_posterior > 0 && study.task == Task::kForcedChoice) {
       cover_by_posterior(observer, of_posterior);
     }
   }
