@@ -169,7 +169,8 @@ function(haptrial_test_needs)
   target_link_libraries(test_record PRIVATE haptrial_bone_record)  # tables to try
   target_link_libraries(test_drilling_analysis PRIVATE haptrial_bone_data)
   target_link_libraries(test_exchange PRIVATE haptrial_force_score)
-  target_link_libraries(test_psychometric_fit PRIVATE nlohmann_json::nlohmann_json)
+  target_link_libraries(test_psychometric_fit PRIVATE nlohmann_json::nlohmann_json PkgConfig::gsl
+                                                      haptrial_psychometric)  # virtual sessions
   target_link_libraries(test_psychometric_models PRIVATE PkgConfig::gsl)
   target_sources(test_force_analysis
                  PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/exchange/small_session.cpp)

@@ -109,9 +109,6 @@ void time_fit(const Study& study) {
 struct Counted {
   double held{0.0}, none{0.0}, sum{0.0}, squares{0.0}, count{0.0};
 
-  void add(double estimate, double truth, bool interval, double low, double high) {
-    add(estimate, truth, interval, interval && low <= truth && truth <= high);
-  }
   void add(double estimate, double truth, bool interval, bool holds) {
     count += 1.0;
     none += interval ? 0.0 : 1.0;
@@ -119,10 +116,10 @@ struct Counted {
     sum += estimate - truth;
     squares += (estimate - truth) * (estimate - truth);
   }
-  void print(const std::string& what) const {
+  void print(const std::string& what, const char* lacking = "none") const {
     const double bias = sum / count;
-    fmt::print("  {:34} held {:5.1f} %, none {:4.1f} %, bias {:+.4f}, SD {:.4f}\n", what,
-               100.0 * held / count, 100.0 * none / count, bias,
+    fmt::print("  {:34} held {:5.1f} %, {} {:4.1f} %, bias {:+.4f}, SD {:.4f}\n", what,
+               100.0 * held / count, lacking, 100.0 * none / count, bias,
                std::sqrt(squares / count - bias * bias));
   }
 };
@@ -148,8 +145,8 @@ void cover_by_profile(const Observer& observer, std::size_t observers) {
     width.add(p.width, truth.width, !f.width.low_open && !f.width.high_open,
               f.width.holds(truth.width));
   }
-  threshold.print("threshold, profile (none: open)");
-  width.print("width, profile (none: open)");
+  threshold.print("threshold, profile", "open");
+  width.print("width, profile", "open");
   fmt::print("  {:.1f} us a fit with both intervals\n", 1e6 * each);
 }
 
@@ -171,10 +168,11 @@ void cover_by_bootstrap(const Observer& observer, std::size_t observers, std::si
     Counted counted;
     for (const BootstrappedFit& fit : fits) {
       const auto& found = fit.intervals[a];
-      counted.add(fit.estimates[a], truths[a], bool(found), found ? found->low : 0.0,
-                  found ? found->high : 0.0);
+      counted.add(fit.estimates[a], truths[a], found && found->corrected,
+                  found && found->low <= truths[a] && truths[a] <= found->high);
     }
-    counted.print(std::string(names[a]) + (parametric ? ", parametric" : ", non-parametric"));
+    counted.print(std::string(names[a]) + (parametric ? ", parametric" : ", non-parametric"),
+                  "percentiles");
   }
   double rejected = 0.0;
   for (const BootstrappedFit& fit : fits) {
@@ -201,9 +199,10 @@ void cover_by_posterior(const Observer& observer, std::size_t observers) {
   for (const BayesianFit& fit : fits) {
     const auto& t = fit.intervals[kThreshold][0];
     const auto& w = fit.intervals[kWidth][0];
-    threshold.add(fit.map.threshold, middle, true, t.low, t.high);
-    mean.add(fit.mean.threshold, middle, true, t.low, t.high);
-    width.add(fit.map.width, truth.width, true, w.low, w.high);
+    const bool holds = t.low <= middle && middle <= t.high;
+    threshold.add(fit.map.threshold, middle, true, holds);
+    mean.add(fit.mean.threshold, middle, true, holds);
+    width.add(fit.map.width, truth.width, true, w.low <= truth.width && truth.width <= w.high);
   }
   threshold.print("threshold, posterior (largest)");
   mean.print("threshold, posterior (mean)");

@@ -77,6 +77,10 @@ double promised(const Climb& climb, const Place& change) noexcept {
   return sum;
 }
 
+Place place_of(const FittedParameters& p) noexcept {
+  return {p.threshold, std::log(p.width), p.lapse, p.guess};
+}
+
 double logit(double share) noexcept { return std::log(share / (1.0 - share)); }
 
 }  // namespace
@@ -366,11 +370,20 @@ LikelihoodFit LikelihoodFitter::fit_without(std::span<const int> correct, std::s
   return search(one, one.start(*this), climb);
 }
 
+LikelihoodFit LikelihoodFitter::fit_from(std::span<const int> correct,
+                                         const FittedParameters& from) const noexcept {
+  const Search one(*this, correct);
+  Place place = place_of(from);
+  one.clamp(place);
+  Climb climb;
+  return search(one, place, climb);
+}
+
 HeldFit LikelihoodFitter::fit_holding(std::span<const int> correct, Held held, double value,
                                       const FittedParameters& from) const noexcept {
   const std::size_t which = held == Held::kThreshold ? 0 : 1;
   Search one(*this, correct);
-  Place place{from.threshold, std::log(from.width), from.lapse, from.guess};
+  Place place = place_of(from);
   place[which] = value;
   one.clamp(place);
   one.low[which] = one.high[which] = place[which];

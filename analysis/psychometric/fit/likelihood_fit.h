@@ -76,6 +76,8 @@ class LikelihoodFitter {
   /// The same without one trial: of block `block`, a correct one or a wrong one.
   LikelihoodFit fit_without(std::span<const int> correct, std::size_t block,
                             bool right) const noexcept;
+  /// The same from a place of one's own: answers to single trials may have several maxima.
+  LikelihoodFit fit_from(std::span<const int> correct, const FittedParameters& from) const noexcept;
   /// The fit with one parameter held at a value within its bounds. @param from  where to begin
   HeldFit fit_holding(std::span<const int> correct, Held held, double value,
                       const FittedParameters& from) const noexcept;

@@ -20,7 +20,8 @@ struct ProfileInterval {
   }
 };
 
-/// A fit with intervals of its threshold [axis] and its width [axis].
+/// The fit, the likeliest of several maxima that a search finds, with intervals of its threshold
+/// [axis] and its width [axis].
 struct ProfiledFit {
   LikelihoodFit fit;
   ProfileInterval threshold;
