@@ -171,7 +171,8 @@ function(haptrial_test_needs)
   target_link_libraries(test_drilling_analysis PRIVATE haptrial_bone_data)
   target_link_libraries(test_exchange PRIVATE haptrial_force_score)
   target_link_libraries(test_subject_perceiver PRIVATE haptrial_scene)
-  target_link_libraries(test_psychometric_fit PRIVATE nlohmann_json::nlohmann_json)
+  target_link_libraries(test_psychometric_fit PRIVATE nlohmann_json::nlohmann_json PkgConfig::gsl
+                                                      haptrial_psychometric)  # virtual sessions
   target_link_libraries(test_psychometric_models PRIVATE PkgConfig::gsl)
   target_link_libraries(test_trials_analysis PRIVATE nlohmann_json::nlohmann_json PkgConfig::gsl
                                                      haptrial_record_write)

@@ -8,7 +8,7 @@ foreach(source ${benchmarks})
   if(name STREQUAL scene)
     target_link_libraries(bench_scene PRIVATE haptrial_scene)
     continue()
-  elseif(name MATCHES "^psychometric")
+  elseif(name MATCHES "^(psychometric|procedure)")
     target_link_libraries(bench_${name} PRIVATE haptrial_psychometric haptrial_psychometric_models)
     continue()
   endif()
@@ -25,6 +25,8 @@ endforeach()
 target_sources(bench_servo PRIVATE ${CMAKE_SOURCE_DIR}/tests/experiments/timed_session.cpp
                                    ${CMAKE_SOURCE_DIR}/tests/experiments/shipped.cpp
                                    ${CMAKE_SOURCE_DIR}/tests/support/temporary_folder.cpp)
+target_sources(bench_procedure_coverage PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/psychometric/fit/procedure_study.cpp)
+target_link_libraries(bench_procedure_coverage PRIVATE PkgConfig::gsl)
 target_sources(bench_null_reports PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/force_training/statistics/null_reports.cpp)
 target_sources(bench_null_relabelled
                PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/force_training/comparison/null_comparisons.cpp

@@ -4,6 +4,8 @@
 // 40 trials each, and how often the 95 % interval holds their threshold.
 //
 //     bench_psychometric_fit [observers] [bootstrap resamples] [observers of the Bayesian fit]
+//
+// With 0 resamples or 0 observers that part is left out.
 
 #include <fmt/format.h>
 #include <time.h>
@@ -16,6 +18,7 @@
 
 #include "analysis/psychometric/fit/bayesian_fit.h"
 #include "analysis/psychometric/fit/bootstrap_fit.h"
+#include "analysis/psychometric/fit/profile_interval.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
 
@@ -106,20 +109,46 @@ void time_fit(const Study& study) {
 struct Counted {
   double held{0.0}, none{0.0}, sum{0.0}, squares{0.0}, count{0.0};
 
-  void add(double estimate, double truth, bool interval, double low, double high) {
+  void add(double estimate, double truth, bool interval, bool holds) {
     count += 1.0;
     none += interval ? 0.0 : 1.0;
-    held += interval && low <= truth && truth <= high ? 1.0 : 0.0;
+    held += holds ? 1.0 : 0.0;
     sum += estimate - truth;
     squares += (estimate - truth) * (estimate - truth);
   }
-  void print(const std::string& what) const {
+  void print(const std::string& what, const char* lacking = "none") const {
     const double bias = sum / count;
-    fmt::print("  {:34} held {:5.1f} %, none {:4.1f} %, bias {:+.4f}, SD {:.4f}\n", what,
-               100.0 * held / count, 100.0 * none / count, bias,
+    fmt::print("  {:34} held {:5.1f} %, {} {:4.1f} %, bias {:+.4f}, SD {:.4f}\n", what,
+               100.0 * held / count, lacking, 100.0 * none / count, bias,
                std::sqrt(squares / count - bias * bias));
   }
 };
+
+void cover_by_profile(const Observer& observer, std::size_t observers) {
+  std::vector<ProfiledFit> fits(observers);
+  std::vector<std::vector<TrialBlock>> answers(observers);
+  for (std::size_t i = 0; i < observers; ++i) {
+    answers[i] = observer.answers(i);
+  }
+  const double start = seconds();
+  for (std::size_t i = 0; i < observers; ++i) {
+    fits[i] = profiled_fit(answers[i], observer.options());
+  }
+  const double each = (seconds() - start) / static_cast<double>(observers);
+  const auto truth = observer.function().parameters();
+  const double middle = truth.axis.at(truth.threshold);
+  Counted threshold, width;
+  for (const ProfiledFit& f : fits) {
+    const FittedParameters& p = f.fit.parameters;
+    threshold.add(p.threshold, middle, !f.threshold.low_open && !f.threshold.high_open,
+                  f.threshold.holds(middle));
+    width.add(p.width, truth.width, !f.width.low_open && !f.width.high_open,
+              f.width.holds(truth.width));
+  }
+  threshold.print("threshold, profile", "open");
+  width.print("width, profile", "open");
+  fmt::print("  {:.1f} us a fit with both intervals\n", 1e6 * each);
+}
 
 void cover_by_bootstrap(const Observer& observer, std::size_t observers, std::size_t resamples,
                         bool parametric) {
@@ -139,10 +168,11 @@ void cover_by_bootstrap(const Observer& observer, std::size_t observers, std::si
     Counted counted;
     for (const BootstrappedFit& fit : fits) {
       const auto& found = fit.intervals[a];
-      counted.add(fit.estimates[a], truths[a], bool(found), found ? found->low : 0.0,
-                  found ? found->high : 0.0);
+      counted.add(fit.estimates[a], truths[a], found && found->corrected,
+                  found && found->low <= truths[a] && truths[a] <= found->high);
     }
-    counted.print(std::string(names[a]) + (parametric ? ", parametric" : ", non-parametric"));
+    counted.print(std::string(names[a]) + (parametric ? ", parametric" : ", non-parametric"),
+                  "percentiles");
   }
   double rejected = 0.0;
   for (const BootstrappedFit& fit : fits) {
@@ -169,9 +199,10 @@ void cover_by_posterior(const Observer& observer, std::size_t observers) {
   for (const BayesianFit& fit : fits) {
     const auto& t = fit.intervals[kThreshold][0];
     const auto& w = fit.intervals[kWidth][0];
-    threshold.add(fit.map.threshold, middle, true, t.low, t.high);
-    mean.add(fit.mean.threshold, middle, true, t.low, t.high);
-    width.add(fit.map.width, truth.width, true, w.low, w.high);
+    const bool holds = t.low <= middle && middle <= t.high;
+    threshold.add(fit.map.threshold, middle, true, holds);
+    mean.add(fit.mean.threshold, middle, true, holds);
+    width.add(fit.map.width, truth.width, true, w.low <= truth.width && truth.width <= w.high);
   }
   threshold.print("threshold, posterior (largest)");
   mean.print("threshold, posterior (mean)");
@@ -196,9 +227,12 @@ int main(int argc, char** argv) {
         Study{"norm", Task::kYesNo, 0.02}}) {
     const Observer observer(study);
     fmt::print("{} {} observers\n", name_of(study), observers);
-    cover_by_bootstrap(observer, observers, resamples, true);
-    cover_by_bootstrap(observer, observers, resamples, false);
-    if (study.task == Task::kForcedChoice) {
+    cover_by_profile(observer, observers);
+    if (resamples > 0) {
+      cover_by_bootstrap(observer, observers, resamples, true);
+      cover_by_bootstrap(observer, observers, resamples, false);
+    }
+    if (of_posterior > 0 && study.task == Task::kForcedChoice) {
       cover_by_posterior(observer, of_posterior);
     }
   }

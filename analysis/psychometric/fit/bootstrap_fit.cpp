@@ -168,8 +168,11 @@ BootstrappedFit bootstrap_fit(std::span<const TrialBlock> blocks, const Likeliho
   const auto jackknife = without_trials(fitter, blocks, asked);
   for (std::size_t a = 0; a < asked.size(); ++a) {
     result.estimates.push_back(read_off(function, asked[a]));
+    const auto corrected =
+        bca_interval(result.estimates[a], drawn.readings[a], jackknife[a], how.level);
     result.intervals.push_back(
-        bca_interval(result.estimates[a], std::move(drawn.readings[a]), jackknife[a], how.level));
+        corrected ? corrected
+                  : percentile_interval(result.estimates[a], drawn.readings[a], how.level));
   }
   if (!how.parametric) {
     Resampling again = how.resampling;

@@ -44,7 +44,7 @@ struct BootstrappedFit {
   LikelihoodFit fit;
   PsychometricDeviance deviance;
   std::vector<double> estimates;                      // one for each asked
-  std::vector<Defined<BootstrapInterval>> intervals;  // bias-corrected and accelerated
+  std::vector<Defined<BootstrapInterval>> intervals;  // corrected, else percentiles
   /// The share of simulated observers who have the fitted function and a deviance at least as
   /// large: (b + 1) / (m + 1). Small where the function does not describe the answers.
   double deviance_p{1.0};
@@ -52,8 +52,10 @@ struct BootstrappedFit {
   std::size_t undetermined{0};
 };
 
-/// The fit with intervals: each resample draws all answers anew and fits them. The result depends
-/// on seed and name of the stream alone, not on the number of threads.
+/// The fit with bootstrap intervals of anything that can be read off it. For threshold and width
+/// take profiled_fit(), whose intervals hold the truth more reliably. Each resample draws all
+/// answers anew and fits them. The result depends on seed and name of the stream alone, not on the
+/// number of threads.
 /// @throws std::invalid_argument as LikelihoodFitter, and naming what of `asked` breaks its bound.
 /// Source: Wichmann and Hill 2001, Perception & Psychophysics 63, 1293 and 1314.
 BootstrappedFit bootstrap_fit(std::span<const TrialBlock> blocks, const LikelihoodOptions& options,

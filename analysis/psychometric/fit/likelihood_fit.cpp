@@ -1,132 +1,19 @@
 #include "analysis/psychometric/fit/likelihood_fit.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
+#include "analysis/psychometric/fit/likelihood_climb.h"
 #include "analysis/psychometric/fit/prior.h"
 
 namespace haptrial::analysis {
 namespace {
 
-// Threshold, log width, lapse, guess.
-constexpr int kPlaces = 4;
-using Place = std::array<double, kPlaces>;
-using Square = std::array<Place, kPlaces>;
-
-constexpr double kTiny = 1e-150;  // of a share that is divided by
-
-/// What Newton's method needs of the logarithm of the likelihood at a place.
-struct Climb {
-  bool possible{true};  // the likelihood is not 0
-  Place slope{};
-  Square hessian{};  // of minus the logarithm; or Fisher's information
-  bool fisher{false};
-};
-
-using psychometric::SigmoidCurve;
-using psychometric::SigmoidLanes;
-
-constexpr std::size_t kLanes = SigmoidLanes::kCount;
-using Lanes = double[kLanes];
-
-/// Eight blocks: the coordinate of the level, right and wrong answers; none beyond the last block.
-struct Blocks {
-  Lanes x, right, wrong;
-};
-
-/// Where the likelihood is looked at.
-struct Spot {
-  double threshold, rise, lapse, guess;
-  bool tied;    // the guess rate is the lapse rate
-  bool fisher;  // Fisher's information is asked for
-};
-
-/// How the likelihood of each block changes with its p.
-struct Pull {
-  Lanes slope, curvature;
-  Lanes impossible;  // answers that have the probability 0
-};
-
-Pull pull_of(const Blocks& blocks, const Spot& spot, const SigmoidLanes& s) noexcept {
-  const double between = 1.0 - spot.guess - spot.lapse;
-  Pull pull;
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    const double p = spot.guess + between * s.share[i], q = spot.lapse + between * s.beyond[i];
-    pull.impossible[i] = (p > 0.0 ? 0.0 : blocks.right[i]) + (q > 0.0 ? 0.0 : blocks.wrong[i]);
-    const double by_p = 1.0 / (p > kTiny ? p : kTiny), by_q = 1.0 / (q > kTiny ? q : kTiny);
-    const double good = blocks.right[i] * by_p, bad = blocks.wrong[i] * by_q;
-    const double expected = (blocks.right[i] + blocks.wrong[i]) * by_p * by_q;
-    pull.slope[i] = good - bad;
-    pull.curvature[i] = spot.fisher ? expected : good * by_p + bad * by_q;
-  }
-  return pull;
-}
-
-/// Sums over the blocks of what makes a Climb, in terms of z - q = rise (x - threshold).
-struct Sums {
-  double density{0.0}, far{0.0}, lapse{0.0}, guess{0.0};  // slopes
-  double bent{0.0}, bent_far{0.0}, bent_far_far{0.0};
-  double lapse_near{0.0}, lapse_far{0.0}, guess_near{0.0}, guess_far{0.0};
-  double lapse_lapse{0.0}, lapse_guess{0.0}, guess_guess{0.0};
-  double impossible{0.0};
-
-  template <bool Guess>
-  void add(const SigmoidCurve& curve, const Blocks& blocks, const Spot& spot) noexcept;
-  void put(Climb& climb, double rise) const noexcept;
-};
-
-/// @tparam Guess  whether the guess rate is a parameter of its own
-template <bool Guess>
-void Sums::add(const SigmoidCurve& curve, const Blocks& blocks, const Spot& spot) noexcept {
-  Lanes from, z;
-  SigmoidLanes s;
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    from[i] = spot.rise * (blocks.x[i] - spot.threshold);
-    z[i] = curve.centre() + from[i];
-  }
-  curve.at(z, s);
-  const Pull pull = pull_of(blocks, spot, s);
-  const double between = 1.0 - spot.guess - spot.lapse;
-  const double twice = spot.tied ? 2.0 : 1.0, second = spot.fisher ? 0.0 : 1.0;
-  Lanes slope, bend, by_lapse, with_lapse, with_guess;
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    const double f = between * s.density[i], steep = pull.curvature[i] * between;
-    slope[i] = pull.slope[i] * f;
-    bend[i] = pull.curvature[i] * f * f - second * pull.slope[i] * between * s.bend[i];
-    by_lapse[i] = spot.tied ? s.beyond[i] - s.share[i] : -s.share[i];
-    with_lapse[i] = (steep * by_lapse[i] + second * twice * pull.slope[i]) * s.density[i];
-    with_guess[i] = (steep * s.beyond[i] + second * pull.slope[i]) * s.density[i];
-  }
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    impossible += pull.impossible[i];
-    density += slope[i], far += slope[i] * from[i];
-    lapse += pull.slope[i] * by_lapse[i];
-    bent += bend[i], bent_far += bend[i] * from[i], bent_far_far += bend[i] * from[i] * from[i];
-    lapse_near += with_lapse[i], lapse_far += with_lapse[i] * from[i];
-    lapse_lapse += pull.curvature[i] * by_lapse[i] * by_lapse[i];
-  }
-  for (std::size_t i = 0; Guess && i < kLanes; ++i) {
-    guess += pull.slope[i] * s.beyond[i];
-    guess_near += with_guess[i], guess_far += with_guess[i] * from[i];
-    lapse_guess += pull.curvature[i] * by_lapse[i] * s.beyond[i];
-    guess_guess += pull.curvature[i] * s.beyond[i] * s.beyond[i];
-  }
-}
-
-/// dz = -rise d threshold - (z - q) d log width
-void Sums::put(Climb& climb, double rise) const noexcept {
-  const double near = climb.fisher ? 0.0 : density, distant = climb.fisher ? 0.0 : far;
-  climb.possible = impossible == 0.0;
-  climb.slope = {-rise * density, -far, lapse, guess};
-  climb.hessian[0] = {rise * rise * bent};
-  climb.hessian[1] = {rise * (bent_far - near), bent_far_far - distant};
-  climb.hessian[2] = {-rise * lapse_near, -lapse_far, lapse_lapse};
-  climb.hessian[3] = {-rise * guess_near, -guess_far, lapse_guess, guess_guess};
-}
+using namespace climbing;
 
 /// Solves matrix x = right for the free rows by L D L'; false unless it is positive definite.
 bool solved(const Square& matrix, const std::array<bool, kPlaces>& free, const Place& right,
@@ -190,16 +77,30 @@ double promised(const Climb& climb, const Place& change) noexcept {
   return sum;
 }
 
+Place place_of(const FittedParameters& p) noexcept {
+  return {p.threshold, std::log(p.width), p.lapse, p.guess};
+}
+
 double logit(double share) noexcept { return std::log(share / (1.0 - share)); }
 
 }  // namespace
 
 /// One search: the answers, and the bounds of the place.
 struct LikelihoodFitter::Search {
+  Search(const LikelihoodFitter& fitter, std::span<const int> answers,
+         std::size_t block = std::numeric_limits<std::size_t>::max(),
+         bool correct_one = false) noexcept
+      : correct(answers), without(block), right(correct_one) {
+    const SearchBounds threshold = fitter.bounds(Held::kThreshold);
+    const SearchBounds width = fitter.bounds(Held::kWidth);
+    low = {threshold.low, width.low, fitter.lapse_.low, fitter.guess_.low};
+    high = {threshold.high, width.high, fitter.lapse_.high, fitter.guess_.high};
+  }
+
   std::span<const int> correct;
-  std::size_t without{std::numeric_limits<std::size_t>::max()};
-  bool right{false};  // what is left out
-  Place low{}, high{};
+  std::size_t without;  // of which block a trial is left out
+  bool right;           // which one
+  Place low, high;
 
   double answers(std::size_t i) const noexcept {
     return correct[i] - (i == without && right ? 1.0 : 0.0);
@@ -375,6 +276,10 @@ LikelihoodFitter::LikelihoodFitter(const LikelihoodOptions& options,
   }
 }
 
+int LikelihoodFitter::trials() const noexcept {
+  return std::accumulate(totals_.begin(), totals_.end(), 0);
+}
+
 int LikelihoodFitter::free_parameters() const noexcept {
   return 2 + (lapse_.low < lapse_.high ? 1 : 0) + (guess_.low < guess_.high ? 1 : 0);
 }
@@ -416,15 +321,12 @@ bool LikelihoodFitter::Search::told(const LikelihoodFitter& fitter, const Place&
   return inside;
 }
 
-LikelihoodFit LikelihoodFitter::search(Search& search) const noexcept {
+/// Climbs from a place to the next top within the bounds. @param climb  the last one
+LikelihoodFit LikelihoodFitter::search(const Search& search, Place place,
+                                       Climb& climb) const noexcept {
   constexpr int kMost = 200;
   constexpr double kDone = 1e-8;  // of the logarithm; a Newton step squares what is left
-  const double range = high_ - low_;
-  search.low = {low_ - range, std::log(spacing_), lapse_.low, guess_.low};
-  search.high = {high_ + range, std::log(20.0 * range), lapse_.high, guess_.high};
   LikelihoodFit fit;
-  Place place = search.start(*this);
-  Climb climb;
   search.at(*this, place, climb);
   for (; fit.steps < kMost; ++fit.steps) {
     Place change = search.next_change(*this, place, climb);
@@ -456,14 +358,48 @@ LikelihoodFit LikelihoodFitter::search(Search& search) const noexcept {
 }
 
 LikelihoodFit LikelihoodFitter::fit(std::span<const int> correct) const noexcept {
-  Search one{correct};
-  return search(one);
+  Climb climb;
+  const Search one(*this, correct);
+  return search(one, one.start(*this), climb);
 }
 
 LikelihoodFit LikelihoodFitter::fit_without(std::span<const int> correct, std::size_t block,
                                             bool right) const noexcept {
-  Search one{correct, block, right};
-  return search(one);
+  Climb climb;
+  const Search one(*this, correct, block, right);
+  return search(one, one.start(*this), climb);
+}
+
+LikelihoodFit LikelihoodFitter::fit_from(std::span<const int> correct,
+                                         const FittedParameters& from) const noexcept {
+  const Search one(*this, correct);
+  Place place = place_of(from);
+  one.clamp(place);
+  Climb climb;
+  return search(one, place, climb);
+}
+
+HeldFit LikelihoodFitter::fit_holding(std::span<const int> correct, Held held, double value,
+                                      const FittedParameters& from) const noexcept {
+  const std::size_t which = held == Held::kThreshold ? 0 : 1;
+  Search one(*this, correct);
+  Place place = place_of(from);
+  place[which] = value;
+  one.clamp(place);
+  one.low[which] = one.high[which] = place[which];
+  Climb climb;
+  LikelihoodFit fit = search(one, place, climb);
+  if (!fit.converged) {
+    place = one.start(*this);
+    fit = search(one, place, climb);
+  }
+  return {fit.parameters, fit.log_likelihood, climb.slope[which]};
+}
+
+SearchBounds LikelihoodFitter::bounds(Held held) const noexcept {
+  const double range = high_ - low_;
+  return held == Held::kThreshold ? SearchBounds{low_ - range, high_ + range}
+                                  : SearchBounds{std::log(spacing_), std::log(20.0 * range)};
 }
 
 LikelihoodFit likelihood_fit(std::span<const TrialBlock> blocks, const LikelihoodOptions& options) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -7,6 +8,11 @@
 #include "analysis/psychometric/fit/trial_blocks.h"
 
 namespace haptrial::analysis {
+
+namespace climbing {
+struct Climb;
+using Place = std::array<double, 4>;  // threshold, log width, lapse, guess
+}  // namespace climbing
 
 /// From low to high; equal where the value is known.
 struct RateBounds {
@@ -34,6 +40,24 @@ struct LikelihoodFit {
   bool undetermined{false};
 };
 
+/// A parameter that is held while the others are fitted, and how its value is stated.
+enum class Held {
+  kThreshold,  // on the axis
+  kWidth,      // as its natural logarithm
+};
+
+struct SearchBounds {
+  double low{0.0};
+  double high{0.0};
+};
+
+/// A point of a profile likelihood.
+struct HeldFit {
+  FittedParameters parameters;
+  double log_likelihood{0.0};
+  double slope{0.0};  // of the profile: d log-likelihood / d value
+};
+
 /// Fits by maximum likelihood to answers at given levels: Newton's method on threshold, log width,
 /// lapse and guess rate within bounds, Fisher's information where the likelihood is not concave.
 /// The threshold keeps within s = high - low of the levels, the width between their smallest
@@ -52,17 +76,25 @@ class LikelihoodFitter {
   /// The same without one trial: of block `block`, a correct one or a wrong one.
   LikelihoodFit fit_without(std::span<const int> correct, std::size_t block,
                             bool right) const noexcept;
+  /// The same from a place of one's own: answers to single trials may have several maxima.
+  LikelihoodFit fit_from(std::span<const int> correct, const FittedParameters& from) const noexcept;
+  /// The fit with one parameter held at a value within its bounds. @param from  where to begin
+  HeldFit fit_holding(std::span<const int> correct, Held held, double value,
+                      const FittedParameters& from) const noexcept;
+  SearchBounds bounds(Held held) const noexcept;
 
   /// The function of a fit. @throws std::invalid_argument naming what breaks its bound.
   psychometric::PsychometricFunction function(const FittedParameters& fitted) const {
     return fitted_function(shape_, curve_, fitted);
   }
+  int trials() const noexcept;  // in all blocks
   /// Parameters that are neither known nor tied to another.
   int free_parameters() const noexcept;
 
  private:
   struct Search;
-  LikelihoodFit search(Search& search) const noexcept;
+  LikelihoodFit search(const Search& search, climbing::Place place,
+                       climbing::Climb& climb) const noexcept;
 
   psychometric::PsychometricParameters shape_;
   psychometric::SigmoidCurve curve_;

@@ -138,7 +138,21 @@ Defined<BootstrapInterval> bca_interval(double estimate, std::vector<double> rep
   if (!low || !high) {
     return Undefined{!low ? low.because() : high.because()};
   }
-  return BootstrapInterval{estimate, *low, *high, level, *bias, a, replicates.size()};
+  return BootstrapInterval{estimate, *low, *high, level, *bias, a, replicates.size(), true};
+}
+
+Defined<BootstrapInterval> percentile_interval(double estimate, std::vector<double> replicates,
+                                               double level) {
+  if (!std::isfinite(estimate) || !all_finite(replicates)) {
+    return Undefined{"the statistic does not exist for these values or some resamples"};
+  }
+  std::sort(replicates.begin(), replicates.end());
+  const auto low = normal_interpolated(replicates, 0.5 * (1.0 - level));
+  const auto high = normal_interpolated(replicates, 0.5 * (1.0 + level));
+  if (!low || !high) {
+    return Undefined{!low ? low.because() : high.because()};
+  }
+  return BootstrapInterval{estimate, *low, *high, level, 0.0, 0.0, replicates.size(), false};
 }
 
 Defined<BootstrapInterval> bootstrap(const std::vector<std::size_t>& sizes,

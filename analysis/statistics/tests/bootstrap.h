@@ -10,7 +10,7 @@
 
 namespace haptrial::analysis {
 
-/// An estimate with its bias-corrected and accelerated interval.
+/// An estimate with its bootstrap interval.
 struct BootstrapInterval {
   double estimate{0.0};
   double low{0.0};
@@ -19,6 +19,7 @@ struct BootstrapInterval {
   double bias{0.0};          // z0, in standard normal units
   double acceleration{0.0};  // a
   std::size_t resamples{0};
+  bool corrected{true};  // bias-corrected and accelerated; else percentiles
 };
 
 /// The rows drawn from each sample; a row may come more than once.
@@ -38,6 +39,11 @@ using RowStatistic = std::function<double(const DrawnRows& rows)>;
 Defined<BootstrapInterval> bca_interval(double estimate, std::vector<double> replicates,
                                         const std::vector<std::vector<double>>& jackknife,
                                         double level = 0.95);
+
+/// The percentiles of given replicates, for where the corrected interval does not exist.
+/// Undefined when a number is not finite or there are too few replicates for the level.
+Defined<BootstrapInterval> percentile_interval(double estimate, std::vector<double> replicates,
+                                               double level = 0.95);
 
 /// Draws rows with replacement within each sample of the given sizes.
 /// Undefined as bca_interval, and with fewer than two rows in a sample.
