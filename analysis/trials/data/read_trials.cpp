@@ -73,8 +73,8 @@ class SessionTrials {
     const std::uint64_t end = std::min<std::uint64_t>(pass.last_sample + 1, rows);
     if (pass.first_sample < end) {
       const std::uint64_t count = end - pass.first_sample;
-      const auto saturated = reader_.integers(record::table_of<record::Sample>(), "saturated",
-                                              pass.first_sample, count);
+      const auto saturated =
+          reader_.integers(record::samples_table(), "saturated", pass.first_sample, count);
       trial.saturated = static_cast<double>(std::count(saturated.begin(), saturated.end(), 1)) /
                         static_cast<double>(count);
     }

@@ -12,6 +12,7 @@ using Json = nlohmann::ordered_json;
 
 template <class T>
 Json to_json(const Defined<T>& value);
+Json to_json(const PowerLaw& law);
 
 Json to_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
