@@ -41,6 +41,23 @@ void add_names(const protocols::TrialsDefinition& d, PlanDefaults& defaults) {
   }
 }
 
+/// The axis that a procedure states, whatever its kind.
+void take_axis(Table& root, psychometric::Axis& axis) {
+  if (!root.has("procedure")) {
+    return;
+  }
+  Table procedure = root.table("procedure");
+  if (procedure.has("scale")) {
+    const std::string scale = procedure.choice("scale", {"linear", "log10", "decibel"});
+    axis.scale = scale == "log10"     ? psychometric::Scale::kLog10
+                 : scale == "decibel" ? psychometric::Scale::kDecibel
+                                      : psychometric::Scale::kLinear;
+  }
+  if (procedure.has("origin")) {
+    axis.origin = procedure.number("origin", {}, "");
+  }
+}
+
 }  // namespace
 
 PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
@@ -71,6 +88,7 @@ analysis::trials::TrialsPlan read_trials_analysis(Table& root) {
     Table copy = Table::parse(root.source(), "");
     const auto definition = protocols::trials_protocol().read(copy, "", nullptr);
     defaults = plan_defaults(dynamic_cast<const protocols::TrialsDefinition&>(*definition));
+    take_axis(copy, defaults.axis);
   } catch (const InputError&) {
     defaults = {};
   }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/psychometric/procedure/staircase.h"
+
 namespace haptrial::analysis::trials {
 namespace {
 
@@ -24,10 +26,16 @@ void mark_reversals(std::vector<TrackStep>& steps) {
 
 void replay(TrackEstimate& track, const std::vector<psychometric::Level>& levels,
             psychometric::Procedure& procedure) {
+  const auto* staircase = dynamic_cast<const psychometric::Staircase*>(&procedure);
   try {
     for (std::size_t i = 0; i < track.steps.size() && !procedure.finished(); ++i) {
-      if (std::isfinite(track.steps[i].outcome)) {
-        procedure.report(track.steps[i].outcome, levels[i]);
+      if (!std::isfinite(track.steps[i].outcome)) {
+        continue;
+      }
+      const int before = staircase != nullptr ? staircase->state().reversals : 0;
+      procedure.report(track.steps[i].outcome, levels[i]);
+      if (staircase != nullptr) {  // its own count, which knows of bounds and of the last trial
+        track.steps[i].reversal = staircase->state().reversals > before;
       }
     }
     track.estimates = procedure.estimates();

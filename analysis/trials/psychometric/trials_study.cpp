@@ -99,7 +99,7 @@ void add_detection(TrialsResult& result) {
       area.push_back({one.participant, one.levels, one.roc->area});
     }
   }
-  result.quantities.push_back(quantity("d_prime", "d'", "", d_prime, result.plan));
+  result.quantities.push_back(quantity("d_prime", "sensitivity d'", "", d_prime, result.plan));
   result.quantities.push_back(quantity("criterion", "criterion c", "", criterion, result.plan));
   if (!area.empty()) {
     result.quantities.push_back(

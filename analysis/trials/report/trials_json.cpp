@@ -14,6 +14,7 @@ Json to_json(const PowerLaw& law);
 
 template <class T>
 Json to_json(const Defined<T>& value);
+Json to_json(const PowerLaw& law);
 
 Json to_json(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 

@@ -39,8 +39,9 @@ std::string problems_of(const std::string& text) {
 }
 
 TEST(TrialsPlanTest, EveryKeyMayBeLeftOut) {
-  for (const char* text : {"", "[analysis]\n"}) {
-    const TrialsPlan plan = read(text);
+  for (const char* text : {"[design]\n", "[analysis]\n"}) {
+    Table root = Table::parse(text, "study.toml");
+    const TrialsPlan plan = read_trials_plan(root, defaults());
     EXPECT_EQ(plan.kind, AnalysisKind::kPsychometric);
     EXPECT_THAT(plan.by, ElementsAre("visual"));
     EXPECT_EQ(plan.function.guess, 0.5);
@@ -99,8 +100,9 @@ TEST(TrialsPlanTest, TheThresholdIsAShareOfAnswersApartFromLapses) {
 }
 
 TEST(TrialsPlanTest, AMistakeGetsItsSentence) {
-  EXPECT_THAT(problems_of("[analysis]\nkind = \"psychometrics\"\n"),
-              HasSubstr("study.toml:2: analysis.kind is \"psychometrics\"; allowed"));
+  EXPECT_THAT(
+      problems_of("[analysis]\nkind = \"psychometrics\"\n"),
+      HasSubstr("study.toml:2: analysis.kind is 'psychometrics'; did you mean psychometric?"));
   EXPECT_THAT(problems_of("[analysis]\nby = [\"colour\"]\n"),
               HasSubstr("visual, track, condition"));
   EXPECT_THAT(problems_of("[analysis]\ntests = [\"a and b\"]\n"), HasSubstr("analysis.tests"));

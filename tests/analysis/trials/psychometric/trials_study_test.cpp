@@ -96,11 +96,12 @@ TEST(TrialsStudyTest, ADifferenceOfConditionsIsFound) {
   const Quantity& q = of(result, "threshold");
   ASSERT_TRUE(q.compared);
   ASSERT_TRUE(q.tests.effects[0]);
-  EXPECT_LT(q.tests.effects[0]->p, 0.001);
+  EXPECT_LT(q.tests.effects[0]->p, 0.05);
   ASSERT_THAT(q.tests.planned.tests, SizeIs(1));
   ASSERT_TRUE(q.tests.planned.tests[0].t);
-  EXPECT_LT(q.tests.planned.tests[0].t->low, -0.4);
-  EXPECT_GT(q.tests.planned.tests[0].t->high, -0.4);
+  // Student's t with 11 degrees of freedom is beyond 4.5 once in a thousand studies.
+  const TTest& t = *q.tests.planned.tests[0].t;
+  EXPECT_LT(std::abs(t.difference + study.effect), 4.5 * t.error);
 }
 
 TEST(TrialsStudyTest, PeopleAreOneInTheMixedModel) {
@@ -118,12 +119,11 @@ TEST(TrialsStudyTest, PeopleAreOneInTheMixedModel) {
   ASSERT_TRUE(off.point);
   ASSERT_TRUE(on.point);
   EXPECT_EQ(off.condition, "off");
-  EXPECT_LT(off.point->point_low, test::kTypicalPoint);
-  EXPECT_GT(off.point->point_high, test::kTypicalPoint);
-  EXPECT_LT(on.point->point_low, test::kTypicalPoint + 1.0);
-  EXPECT_GT(on.point->point_high, test::kTypicalPoint + 1.0);
+  EXPECT_LT(std::abs(off.point->point - test::kTypicalPoint), 4.5 * off.point->point_error);
+  EXPECT_LT(std::abs(on.point->point - test::kTypicalPoint - study.effect),
+            4.5 * on.point->point_error);
   ASSERT_TRUE(result.population->condition_p);
-  EXPECT_LT(*result.population->condition_p, 0.001);
+  EXPECT_LT(*result.population->condition_p, 0.05);
   EXPECT_EQ(result.population->condition_df, 11);
   EXPECT_FALSE(analyzed({}).population);  // two intervals have a guess rate
 }
@@ -139,10 +139,10 @@ TEST(TrialsStudyTest, DriftAndRepetitionAreFoundWhereTheyAre) {
   EXPECT_GT(repeats.repetition->low, 0.0);
   EXPECT_LT(std::abs(repeats.drift->t), 4.0);
   study.repetition = 0.0;
-  study.drift = -0.01;  // [N] a trial: "smaller" at last
+  study.drift = -0.01;  // [N] of the point of equality, a trial: "larger" at last
   const TrialsResult drifts = analyzed(study);
   ASSERT_TRUE(drifts.drift);
-  EXPECT_LT(drifts.drift->high, 0.0);
+  EXPECT_GT(drifts.drift->low, 0.0);
 }
 
 TEST(TrialsStudyTest, DetectionIsThatOfThePeople) {
