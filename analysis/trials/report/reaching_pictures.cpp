@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 #include <map>
 
 #include "analysis/reaching/figures/reaching_figures.h"
@@ -86,11 +86,11 @@ std::vector<BlockPaths> paths_of_blocks(const ReachingResult& reaching) {
                cycle[&reach] == number;
       };
     };
-    all.push_back(paths_of(reaching, block.name + ", first cycle", of_cycle(0)));
+    all.push_back(paths_of(reaching, block.name + " (first cycle)", of_cycle(0)));
     if (block.cycles > 1) {
-      all.push_back(paths_of(reaching, block.name + ", last cycle", of_cycle(block.cycles - 1)));
+      all.push_back(paths_of(reaching, block.name + " (last cycle)", of_cycle(block.cycles - 1)));
     }
-    all.push_back(paths_of(reaching, block.name + ", catch trials", [&](const StudyReach& reach) {
+    all.push_back(paths_of(reaching, block.name + " (catch trials)", [&](const StudyReach& reach) {
       return reach.block == block.name && reach.kind == ReachKind::kCatch;
     }));
   }
@@ -108,8 +108,18 @@ DrawnCurve drawn(const ReachCurve& curve, const ReachBlock& block, std::string l
   return made;
 }
 
+/// From the first to the last cycle that has a value.
 DrawnCurve whole(const ReachCurve& curve, std::string label) {
-  return {std::move(label), curve.points, 1.0, std::nullopt};
+  const auto has_value = [](const CyclePoint& point) { return point.participants > 0; };
+  const auto first = std::find_if(curve.points.begin(), curve.points.end(), has_value);
+  const auto end = std::find_if(curve.points.rbegin(), curve.points.rend(), has_value).base();
+  DrawnCurve made;
+  made.label = std::move(label);
+  made.first_cycle = static_cast<double>(first - curve.points.begin() + 1);
+  if (first < end) {
+    made.points.assign(first, end);
+  }
+  return made;
 }
 
 std::vector<BlockStart> starts_of(const ReachingResult& reaching) {
@@ -123,7 +133,7 @@ std::vector<BlockStart> starts_of(const ReachingResult& reaching) {
 LearningFigure error_figure(const ReachingResult& reaching) {
   constexpr double kMillimetres = 1000.0;
   LearningFigure figure;
-  figure.title = "Perpendicular error over cycles";
+  figure.title = "Perpendicular error";
   figure.metric = reaching.plan.at_150_ms ? "Perpendicular error at 150 ms (mm)"
                                           : "Largest perpendicular error (mm)";
   figure.scale = kMillimetres;
@@ -152,7 +162,7 @@ std::vector<Figure> reaching_pictures(const TrialsResult& result) {
   if (reaching.clamps.reaches > 0) {
     curves.emplace_back();
     curves.back().name = "force-compensation";
-    curves.back().title = "Force compensation in channels over cycles";
+    curves.back().title = "Force compensation in channels";
     curves.back().metric = "Force compensation (1: all of the field)";
     curves.back().curves.push_back(whole(reaching.clamps, "error clamps"));
   }

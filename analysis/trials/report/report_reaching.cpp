@@ -13,7 +13,7 @@ namespace {
 using Rows = std::vector<std::vector<std::string>>;
 
 constexpr double kMillimetres = 1000.0;
-constexpr std::size_t kMostPaths = 8;
+constexpr std::size_t kMostPaths = 24;
 
 std::string interval_word(const Defined<MeanInterval>& mean, double scale) {
   return mean ? estimate_word({scale * mean->mean, scale * mean->low, scale * mean->high}) : "–";

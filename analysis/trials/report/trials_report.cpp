@@ -14,14 +14,21 @@ using Rows = std::vector<std::vector<std::string>>;
 void add_design(Document& document, const TrialsResult& result) {
   add_section(document, result, "Participants and trials");
   Rows rows;
+  std::vector<std::string> heading{
+      "participant",         "group", "sessions", "trials", "practice", "aborted passes",
+      "median reaction time"};
   for (const ParticipantTrials& p : result.participants) {
     rows.push_back({p.participant, p.group.empty() ? "–" : p.group, std::to_string(p.sessions),
                     std::to_string(p.counted), std::to_string(p.practice),
                     std::to_string(p.aborted), quantity(p.reaction_time, 1.0, "s")});
   }
-  document.table({"participant", "group", "sessions", "trials", "practice", "aborted passes",
-                  "median reaction time"},
-                 rows);
+  if (result.reaching) {  // nothing is asked there
+    heading.pop_back();
+    for (auto& row : rows) {
+      row.pop_back();
+    }
+  }
+  document.table(heading, rows);
   if (!result.plan.by.empty()) {
     document.paragraph(
         fmt::format("Conditions are the levels of {}.", fmt::join(result.plan.by, ", ")));

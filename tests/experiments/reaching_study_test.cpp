@@ -1,0 +1,134 @@
+// A study of reaches in a curl field, small, by virtual participants whose adaptation is known: the
+// whole way from the definition to the report.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "analysis/files/csv.h"
+#include "core/base/files/file_text.h"
+#include "tests/experiments/command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+
+void replace_all(std::string& text, const std::string& from, const std::string& to) {
+  ASSERT_NE(text.find(from), std::string::npos) << from;
+  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+}
+
+/// Analysed sessions of six participants, three in the field of each direction.
+class ReachingStudyTest : public testing::Test {
+ protected:
+  void run(bool field) {
+    std::string text = file_text(HAPTRIAL_SOURCE_DIR "/experiments/curl_field.toml");
+    replace_all(text, "participants = 16", "participants = 6");
+    replace_all(text, "clockwise = 8", "clockwise = 3");
+    replace_all(text, "trials = 64", "trials = 32");
+    replace_all(text, "trials = 192", "trials = 96");
+    if (!field) {
+      replace_all(text, "field = \"curl\"", "field = \"none\"");
+    }
+    test::write_text(folder_ / "study.toml", text);
+    const std::string place = (folder_ / "sessions").string();
+    const auto done =
+        test::run_command("haptrial dry-run " + (folder_ / "study.toml").string() +
+                          " --subjects 6 --out " + place + " && haptrial analyze " + place);
+    ASSERT_EQ(done.status, 0) << done.errors;
+    said_ = done.output;
+    reaching_ = json::parse(file_text(folder_ / "sessions" / "results.json")).at("reaching");
+  }
+  fs::path report(const char* name) const { return folder_ / "sessions" / name; }
+
+  json contrast(const std::string& name) const {
+    for (const json& each : reaching_.at("contrasts")) {
+      if (each.at("name") == name) {
+        return each;
+      }
+    }
+    ADD_FAILURE() << name;
+    return {};
+  }
+  double difference(const std::string& name) const {
+    return contrast(name).at("test").at("difference").get<double>();
+  }
+  /// Means of the learning curve, by cycle.
+  std::map<int, double> curve(const char* name) const {
+    std::map<int, double> means;
+    for (const json& point : reaching_.at(name)) {
+      means[point.at("cycle").get<int>()] = point.at("mean").get<double>();
+    }
+    return means;
+  }
+
+  test::TemporaryFolder folder_;
+  std::string said_;
+  json reaching_;
+};
+
+TEST_F(ReachingStudyTest, AdaptationIsFoundAndItsAftereffectHasTheOppositeSign) {
+  ASSERT_NO_FATAL_FAILURE(run(true));
+  const std::map<int, double> error = curve("learning_curve");
+  ASSERT_EQ(error.size(), 20u) << "4, 12 and 4 cycles of eight trials";
+  const double first = error.at(5), last = error.at(16), after = error.at(17);
+  for (int cycle = 1; cycle <= 4; ++cycle) {
+    EXPECT_LT(std::abs(error.at(cycle)), 0.2 * first) << "straight before the field, " << cycle;
+  }
+  EXPECT_GT(first, 0.005) << "the field pushes to +, whichever way it turns";
+  EXPECT_LT(last, 0.75 * first) << "the error falls";
+  EXPECT_LT(after, -0.2 * first)
+      << "and what was learnt pushes to the other side without the field";
+  EXPECT_GT(error.at(20), after) << "until it is forgotten";
+  for (const auto& [cycle, mean] : curve("catch_trials")) {
+    EXPECT_TRUE(cycle <= 5 || mean < 0.0) << "catch trials show it at once, cycle " << cycle;
+  }
+  EXPECT_LT(contrast("adaptation: first cycle against its last").at("p_holm").get<double>(), 0.05);
+  EXPECT_LT(difference("washout: first cycle against the last of baseline"), 0.0);
+  EXPECT_LT(contrast("washout: first cycle against 0").at("p_holm").get<double>(), 0.05);
+  EXPECT_THAT(said_, HasSubstr("washout: first cycle against 0"));
+}
+
+TEST_F(ReachingStudyTest, EveryReachIsARowAndEveryPictureIsInTheReport) {
+  ASSERT_NO_FATAL_FAILURE(run(true));
+  const analysis::CsvTable rows = analysis::CsvTable::load(report("reaches.csv"));
+  EXPECT_EQ(rows.rows(), 6u * 160u);
+  const std::string markdown = file_text(report("report.md"));
+  for (const char* picture :
+       {"learning-curve.svg", "force-compensation.svg", "trajectories-adaptation--first-cycle-.svg",
+        "trajectories-washout--first-cycle-.svg"}) {
+    EXPECT_TRUE(fs::exists(report(picture))) << picture;
+    EXPECT_THAT(markdown, HasSubstr(picture));
+  }
+  EXPECT_THAT(markdown, testing::Not(HasSubstr("nan")));
+  EXPECT_THAT(markdown, HasSubstr("at the force limit"));
+}
+
+TEST_F(ReachingStudyTest, WithoutAFieldNothingIsFound) {
+  ASSERT_NO_FATAL_FAILURE(run(false));
+  for (const json& each : reaching_.at("contrasts")) {
+    if (each.contains("p_holm")) {
+      EXPECT_GT(each.at("p_holm").get<double>(), 0.05) << each.at("name");
+    }
+  }
+  for (const json& block : reaching_.at("blocks")) {
+    EXPECT_TRUE(block.at("exponential").contains("not_defined")) << block.at("block");
+  }
+  EXPECT_TRUE(reaching_.at("two_rate").contains("not_defined"));
+}
+
+}  // namespace
+}  // namespace haptrial::experiments
