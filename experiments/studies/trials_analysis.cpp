@@ -4,7 +4,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "experiments/studies/reach_ways.h"
+#include "experiments/studies/reaching/reach_ways.h"
 #include "protocols/trials/definition/trials_definition.h"
 #include "protocols/trials/trials_protocol.h"
 

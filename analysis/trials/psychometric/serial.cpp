@@ -27,7 +27,7 @@ double variance_at(double offset) {
   return p * (1.0 - p);
 }
 
-BinomialData rows_of(std::size_t count, Eigen::Index predictors) {
+BinomialData empty_rows(std::size_t count, Eigen::Index predictors) {
   BinomialData data;
   data.yes.reserve(count);
   data.trials.assign(count, 1);
@@ -45,7 +45,7 @@ Defined<double> last_coefficient(const BinomialData& data) {
 }
 
 Defined<double> drift_of(const std::vector<Seen>& seen) {
-  BinomialData data = rows_of(seen.size(), 2);
+  BinomialData data = empty_rows(seen.size(), 2);
   const double last = std::max(1.0, static_cast<double>(seen.size()) - 1.0);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     data.yes.push_back(seen[i].outcome);
@@ -64,7 +64,7 @@ Defined<double> repetition_of(const std::vector<Seen>& seen, const std::vector<i
       used.push_back(i);
     }
   }
-  BinomialData data = rows_of(used.size(), 2);
+  BinomialData data = empty_rows(used.size(), 2);
   double weight = 0.0;
   for (std::size_t k = 0; k < used.size(); ++k) {
     const Seen& one = seen[used[k]];

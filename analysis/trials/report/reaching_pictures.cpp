@@ -33,7 +33,7 @@ struct TargetPaths {
   std::size_t count{0};
 };
 
-void add(std::vector<TargetPaths>& all, const StudyReach& reach) {
+void add_reach(std::vector<TargetPaths>& all, const StudyReach& reach) {
   auto at = std::find_if(all.begin(), all.end(), [&](const TargetPaths& each) {
     return (each.target - reach.way.target).norm() < kSameTarget;
   });
@@ -57,7 +57,7 @@ BlockPaths paths_of(const ReachingResult& reaching, std::string name, Takes&& ta
   for (const StudyReach& reach : reaching.reaches) {
     if (!reach.path.empty() && takes(reach)) {
       paths.start = reach.way.start;
-      add(targets, reach);
+      add_reach(targets, reach);
     }
   }
   for (TargetPaths& each : targets) {

@@ -21,7 +21,7 @@ const std::string kMissing = "–";
 /// Values of the threshold are on the axis, and means of them are levels.
 bool on_axis(const Quantity& q) { return q.name == "threshold"; }
 
-void add_quantity(const TrialsResult& result, const Quantity& q, std::vector<std::string>& lines) {
+void say_quantity(const TrialsResult& result, const Quantity& q, std::vector<std::string>& lines) {
   for (std::size_t cell = 0; cell < q.table.cells.size(); ++cell) {
     lines.push_back(fmt::format("{}{}: {}{} ({})", capitalized(q.title),
                                 result.plan.by.empty() ? std::string() : ", " + q.table.names[cell],
@@ -119,7 +119,7 @@ std::vector<std::string> summary_lines(const TrialsResult& result) {
                                              result.simulated() ? " (simulated)" : "")};
   for (const Quantity& q : result.quantities) {
     if (q.name != "log_width") {
-      add_quantity(result, q, lines);
+      say_quantity(result, q, lines);
     }
   }
   for (const Quantity& q : result.quantities) {

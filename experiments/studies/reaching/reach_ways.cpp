@@ -1,4 +1,4 @@
-#include "experiments/studies/reach_ways.h"
+#include "experiments/studies/reaching/reach_ways.h"
 
 #include <fmt/format.h>
 
