@@ -3,7 +3,7 @@
 // the truth. The tables of docs/algorithms/procedure-coverage.md. The numbers do not depend on the
 // number of threads.
 //
-//     bench_procedure_coverage [observers] [threads]
+//     bench_procedure_coverage [observers] [threads] [part of a name]
 
 #include <fmt/format.h>
 
@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 
 #include "tests/analysis/psychometric/fit/procedure_study.h"
 
@@ -63,9 +64,12 @@ void report(const ProcedureStudy& study, int observers, int threads) {
 int main(int argc, char** argv) {
   const int observers = argc > 1 ? std::atoi(argv[1]) : 1000;
   const int threads = argc > 2 ? std::atoi(argv[2]) : 2;
+  const std::string part = argc > 3 ? argv[3] : "";
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   for (const ProcedureStudy& study : haptrial::test::procedure_studies()) {
-    report(study, observers, threads);
+    if (study.name.find(part) != std::string::npos) {
+      report(study, observers, threads);
+    }
   }
   return 0;
 }

@@ -37,8 +37,10 @@ struct ProfiledFit {
 /// follow a change of scale: those of a level, a Weber fraction against a standard or a slope free
 /// of lapses are the same interval converted, and another share has its own fit.
 ///
-/// This is the interval that reports state: it holds the truth as often as it says
-/// (docs/algorithms/procedure-coverage.md), which bootstrap_fit's does not at some hundred trials.
+/// This is the interval that reports state: with some 200 trials or more, at given levels or in
+/// several tracks, it holds the truth as often as it says, which bootstrap_fit's does not. A single
+/// adaptive track of some 50 trials tells less than its likelihood seems to: intervals of its fit
+/// hold too rarely (docs/algorithms/procedure-coverage.md).
 /// No allocation. @param level  inside (0, 1); @throws std::invalid_argument naming it.
 /// Source: Venzon and Moolgavkar 1988, Applied Statistics 37, 87.
 ProfiledFit profiled_fit(const LikelihoodFitter& fitter, std::span<const int> correct,
