@@ -2,30 +2,25 @@
 
 #include <cstring>
 
+#include "core/record/table/field_codec.h"
+
 namespace haptrial::record {
 namespace {
-
-template <class T>
-T value_at(const std::uint8_t* bytes) {
-  T value;
-  std::memcpy(&value, bytes, sizeof(T));
-  return value;
-}
 
 Cell cell_of(const Column& column, const std::uint8_t* bytes) {
   switch (column.type) {
     case ColumnType::kU8:
       return std::int64_t{*bytes};
     case ColumnType::kI32:
-      return std::int64_t{value_at<std::int32_t>(bytes)};
+      return std::int64_t{value_at<std::int32_t>(bytes, 0, 0)};
     case ColumnType::kI64:
-      return value_at<std::int64_t>(bytes);
+      return value_at<std::int64_t>(bytes, 0, 0);
     case ColumnType::kU64:
-      return value_at<std::uint64_t>(bytes);
+      return value_at<std::uint64_t>(bytes, 0, 0);
     case ColumnType::kF32:
-      return value_at<float>(bytes);
+      return value_at<float>(bytes, 0, 0);
     case ColumnType::kF64:
-      return value_at<double>(bytes);
+      return value_at<double>(bytes, 0, 0);
     case ColumnType::kText:
       break;
   }
