@@ -5,6 +5,7 @@
 
 #include "analysis/reaching/figures/reaching_figures.h"
 #include "analysis/trials/report/trials_figures.h"
+#include "analysis/trials/report/trials_words.h"
 
 namespace haptrial::analysis::trials {
 namespace {
@@ -131,7 +132,6 @@ std::vector<BlockStart> starts_of(const ReachingResult& reaching) {
 }
 
 LearningFigure error_figure(const ReachingResult& reaching) {
-  constexpr double kMillimetres = 1000.0;
   LearningFigure figure;
   figure.title = "Perpendicular error";
   figure.metric = reaching.plan.at_150_ms ? "Perpendicular error at 150 ms (mm)"

@@ -12,7 +12,6 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-constexpr double kMillimetres = 1000.0;
 constexpr std::size_t kMostPaths = 24;
 
 std::string interval_word(const Defined<MeanInterval>& mean, double scale) {

@@ -44,7 +44,6 @@ void add_tests(const Quantity& q, std::vector<std::string>& lines) {
 }
 
 void add_reaching(const ReachingResult& reaching, std::vector<std::string>& lines) {
-  constexpr double kMillimetres = 1000.0;
   for (const ReachContrast& each : reaching.contrasts) {
     if (!each.contrast) {
       continue;

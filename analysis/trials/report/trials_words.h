@@ -11,6 +11,8 @@ namespace haptrial::analysis::trials {
 /// What a report of a study with simulated participants says wherever it says a result.
 extern const char* const kSimulatedTrials;
 
+inline constexpr double kMillimetres = 1000.0;  // in a metre
+
 /// "338.2 [330.1, 349.0]", "338.2" without an interval, or "–".
 std::string estimate_word(const Estimated& e);
 /// "75 %".
