@@ -23,6 +23,7 @@ class Readings {
     return all_[device];
   }
   std::size_t size() const noexcept { return all_.size(); }
+  std::span<const device::DeviceReading> all() const noexcept { return all_; }
 
  private:
   std::span<const device::DeviceReading> all_;

@@ -1,5 +1,8 @@
 #include "protocols/trials/defined_trials.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -46,7 +49,7 @@ std::uint64_t pushing(const std::vector<scene::Field>& fields) {
 
 Mark mark_at(const Eigen::Vector3d& p, double radius) {
   const Eigen::Vector3f f = p.cast<float>();
-  return {{f.x(), f.y(), f.z()}, static_cast<float>(radius)};
+  return {{f.x(), f.y(), f.z()}, static_cast<float>(radius), 0};
 }
 
 /// Where a region is, and how large.
@@ -61,6 +64,30 @@ Mark mark_of(const scene::Shape& shape) {
     return mark_at(cylinder->centre, cylinder->radius);
   }
   return mark_at(std::get<scene::HalfSpace>(shape).point, 0.0);
+}
+
+/// What a stage shows. @param seed  of its dots
+StageSight sight_of(const NamedStage& stage, const Presented& presented, const Names& names,
+                    std::uint64_t seed) {
+  StageSight sight;
+  for (const std::string& name : stage.show) {
+    const auto region = std::ranges::find(presented.regions, name, &scene::Region::name);
+    const auto look = std::ranges::find(presented.looks, name, &Look::name);
+    if (name == "hand") {
+      sight.hand = true;
+    } else if (name == "interval_number") {
+      sight.interval_number = true;
+    } else if (region != presented.regions.end()) {
+      sight.marks.push_back(mark_of(region->shape));
+      const auto index = static_cast<std::size_t>(region - presented.regions.begin());
+      sight.marks.back().device = static_cast<std::uint8_t>(presented.region_devices[index]);
+    } else if (look != presented.looks.end()) {
+      sight.dots = {look->dots, seed, true};
+    } else if (names.has_place(name)) {
+      sight.marks.push_back(mark_at(names.place(name), 0.0));
+    }
+  }
+  return sight;
 }
 
 record::StageEnding ending_of(StageEnd how) {
@@ -104,7 +131,7 @@ record::TableList DefinedTrials::tables() const {
 std::unique_ptr<Rig> DefinedTrials::virtual_rig() const {
   said_ = std::make_unique<SaidAnswer>();
   return std::make_unique<TrialsRig>(
-      TrialsRig::Briefing{&d_, &d_.observer, &d_.questions, d_.stages, said_.get()},
+      TrialsRig::Briefing{&d_, &d_.observer, &d_.questions, d_.stages, &d_.hands, said_.get()},
       place_.session_seed);
 }
 
@@ -169,37 +196,30 @@ IntervalRun DefinedTrials::make_interval(std::size_t place, RandomStream& random
   give(*names_, d_, current_.values);
   give_interval(*names_, d_.intervals[current_.values.intervals[place]], place);
   note_variables(place + 1, variables_);
-  Presented presented = read_presented(root_, *names_, d_.rate, &random);
+  Presented presented = read_presented(root_, *names_, d_, &random);
   root_.check();
+  const std::uint64_t seed =
+      derived_seed(current_.plan.stimulus_seed, fmt::format("dots {}", place));
   std::vector<Stage> stages;
   std::vector<StageSight> sights;
   for (const NamedStage& stage : presented.stages) {
     stages.push_back(stage.stage);
-    StageSight sight;
-    for (const std::string& name : stage.show) {
-      const auto region =
-          std::find_if(presented.regions.begin(), presented.regions.end(),
-                       [&](const scene::Region& each) { return each.name == name; });
-      if (name == "hand") {
-        sight.hand = true;
-      } else if (name == "interval_number") {
-        sight.interval_number = true;
-      } else if (region != presented.regions.end()) {
-        sight.marks.push_back(mark_of(region->shape));
-      } else if (names_->has_place(name)) {
-        sight.marks.push_back(mark_at(names_->place(name), 0.0));
-      }
-    }
-    sights.push_back(std::move(sight));
+    sights.push_back(sight_of(stage, presented, *names_, seed));
   }
-  std::vector<scene::PlacedShape> regions;
-  for (const scene::Region& region : presented.regions) {
-    regions.emplace_back(region.shape);
+  std::vector<StageRegion> regions;
+  for (std::size_t i = 0; i < presented.regions.size(); ++i) {
+    regions.push_back(
+        {scene::PlacedShape(presented.regions[i].shape), presented.region_devices[i]});
+  }
+  std::vector<scene::Scene> scenes;
+  for (std::size_t device = 0; device < presented.felt.size(); ++device) {
+    scenes.emplace_back(presented.fields, d_.rate);
   }
   stages_.push_back(std::move(presented.stages));
-  return {scene::Scene(presented.fields, d_.rate),
-          StageMachine(std::move(stages), std::move(regions), presented.fields.size()),
-          std::move(sights), pushing(presented.fields)};
+  return {
+      std::move(scenes),
+      StageMachine(std::move(stages), std::move(regions), presented.fields.size(), presented.felt),
+      std::move(sights), pushing(presented.fields)};
 }
 
 std::vector<Asked> DefinedTrials::make_questions() {

@@ -16,7 +16,8 @@ class TrialsProtocol final : public Protocol {
                                    const std::filesystem::path*) const override {
     auto definition = std::make_unique<StudiedDefinition>();
     read_trials_definition(root, file_name, *definition);
-    definition->observer = read_observer(root, definition->questions, definition->stages);
+    definition->observer = read_observer(root, definition->questions, definition->stages,
+                                           definition->hands);
     return definition;
   }
   void load(Definition& definition, const std::filesystem::path&) const override {

@@ -78,7 +78,7 @@ class Ways {
   ReachWay read(const StudyTrial& trial, const std::string& group) {
     give(trial, group);
     const protocols::Presented presented =
-        protocols::read_presented(root_, *names_, definition_.rate, nullptr);
+        protocols::read_presented(root_, *names_, definition_, nullptr);
     root_.check();
     ReachWay way;
     way.start = names_->place(plan_.start);

@@ -60,7 +60,7 @@ void present_once(const TrialsDefinition& d, const TrialValues& values) {
     for (std::size_t place = 0; place < d.intervals.size(); ++place) {
       give(*names, d, values);
       give_interval(*names, d.intervals[values.intervals[place]], place);
-      const Presented presented = read_presented(root, *names, d.rate, nullptr);
+      const Presented presented = read_presented(root, *names, d, nullptr);
       root.check();
       scene::Scene(presented.fields, d.rate);
       check_forces(d, presented.fields);
@@ -80,9 +80,10 @@ void present_once(const TrialsDefinition& d, const TrialValues& values) {
 
 void check_every_value(const TrialsDefinition& d) {
   for (std::size_t block = 0; block < d.order.blocks.size(); ++block) {
+    const std::vector<const Factor*> varied = d.varied_in(d.order.blocks[block]);
     std::size_t combinations = 1;
-    for (const Factor& factor : d.order.factors) {
-      combinations = std::min(kMostCombinations, combinations * factor.levels.size());
+    for (const Factor* factor : varied) {
+      combinations = std::min(kMostCombinations, combinations * factor->levels.size());
     }
     for (std::size_t c = 0; c < combinations; ++c) {
       for (const bool high : {false, true}) {
@@ -96,9 +97,9 @@ void check_every_value(const TrialsDefinition& d) {
           values.levels.emplace_back(track.variable, track.applied(high ? track.high : track.low));
         }
         std::size_t rest = c;
-        for (const Factor& factor : d.order.factors) {
-          values.values.push_back({factor.name, factor.levels[rest % factor.levels.size()]});
-          rest /= factor.levels.size();
+        for (const Factor* factor : varied) {
+          values.values.push_back({factor->name, factor->levels[rest % factor->levels.size()]});
+          rest /= factor->levels.size();
         }
         const Block& given = d.order.blocks[block];
         values.values.insert(values.values.end(), given.values.begin(), given.values.end());

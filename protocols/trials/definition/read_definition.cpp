@@ -13,6 +13,7 @@
 #include "core/scene/read/read_field.h"
 #include "protocols/trials/definition/defaults.h"
 #include "protocols/trials/definition/read_tracks.h"
+#include "protocols/trials/definition/trial_devices.h"
 #include "protocols/trials/definition/trial_values.h"
 
 namespace haptrial::protocols {
@@ -27,6 +28,18 @@ void read_view(Table& root, TrialsDefinition& d) {
   d.feedback_right = table.text("feedback_right");
   d.feedback_wrong = table.text("feedback_wrong");
   d.feedback_time = table.number("feedback_time", {0.0, 10.0}, "s");
+  d.view.stereo = table.has("stereo") && table.boolean("stereo");
+  if (table.has("eye_distance")) {
+    d.view.eyes.eye_distance = table.number("eye_distance", {0.02, 0.2}, "m");
+  }
+  if (table.has("viewing_distance")) {
+    d.view.eyes.viewing_distance = table.number("viewing_distance", {0.1, 10.0}, "m");
+  }
+  if (root.has("looks") && !d.view.stereo) {
+    table.reject("stereo",
+                 "is not true, but a bar of random dots is seen with two eyes only; add stereo = "
+                 "true, which shows the eyes' pictures side by side");
+  }
 }
 
 std::vector<GivenValue> interval_values(Table& table) {
@@ -211,7 +224,7 @@ void read_first_trial(Table& root, TrialsDefinition& d) {
       root.reject("experiment", fmt::format("cannot begin: {}", error.what()));
       return;
     }
-    Presented presented = read_presented(root, *names, d.rate, nullptr);
+    Presented presented = read_presented(root, *names, d, nullptr);
     if (place == 0) {
       note_restless(presented.fields, d);
     }
@@ -235,25 +248,46 @@ std::unique_ptr<Names> read_names(Table& root, const TrialsDefinition& d) {
   return names;
 }
 
-Presented read_presented(Table& root, const Names& names, double rate, RandomStream* random) {
+Presented read_presented(Table& root, const Names& names, const TrialsDefinition& d,
+                         RandomStream* random) {
   Presented presented;
   std::vector<std::string> fields, regions;
+  std::vector<std::string> sights{"hand", "interval_number"};
   if (root.has("fields")) {
     Table table = root.table("fields");
-    presented.fields = scene::read_fields(table, rate, names);
+    const DeviceOf devices = devices_of(table, d.hands);
+    presented.fields = scene::read_fields(table, d.rate, names);
+    presented.felt = felt_by(presented.fields, devices, d.hands);
   }
+  presented.felt.resize(static_cast<std::size_t>(d.devices()), 0);
   if (root.has("regions")) {
     Table table = root.table("regions");
+    const DeviceOf devices = devices_of(table, d.hands);
     presented.regions = scene::read_regions(table, names);
+    for (const scene::Region& region : presented.regions) {
+      const auto own = devices.find(region.name);
+      presented.region_devices.push_back(own == devices.end() ? 0 : own->second);
+    }
+  }
+  if (root.has("looks")) {
+    Table table = root.table("looks");
+    presented.looks = read_looks(table, names);
   }
   for (const scene::Field& field : presented.fields) {
     fields.push_back(field.name);
   }
   for (const scene::Region& region : presented.regions) {
     regions.push_back(region.name);
+    sights.push_back(region.name);
   }
-  const StageSource source{fields, regions, names,
-                           [&names](const std::string& text) { return names.word(text); }, random};
+  for (const Look& look : presented.looks) {
+    sights.push_back(look.name);
+  }
+  const std::vector<std::string> places = names.places();
+  sights.insert(sights.end(), places.begin(), places.end());
+  const StageSource source{fields, regions,
+                           names,  [&names](const std::string& text) { return names.word(text); },
+                           random, sights};
   presented.stages = read_stages(root, source);
   return presented;
 }
@@ -281,6 +315,7 @@ void read_trials_definition(Table& root, std::string_view file_name, TrialsDefin
   read_common(root, file_name, d);
   d.protocol = kTrials;
   read_view(root, d);
+  d.hands = read_devices(root);
   d.groups = study_groups(root.source(), file_name);
   d.questions = read_questions(root, d.keys);
   d.tracks = read_tracks(root);

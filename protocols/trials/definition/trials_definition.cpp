@@ -9,23 +9,34 @@
 
 namespace haptrial::protocols {
 
-int TrialsDefinition::combinations(const Track& track) const {
-  std::size_t count = 1;
+std::vector<const Factor*> TrialsDefinition::varied_in(const Block& block) const {
+  std::vector<const Factor*> varied;
   for (const Factor& factor : order.factors) {
-    if (std::find(track.by.begin(), track.by.end(), factor.name) != track.by.end()) {
-      count *= factor.levels.size();
+    const auto given = [&](const GivenValue& value) { return value.name == factor.name; };
+    if (std::none_of(block.values.begin(), block.values.end(), given)) {
+      varied.push_back(&factor);
+    }
+  }
+  return varied;
+}
+
+int TrialsDefinition::combinations(const Track& track, const Block& block) const {
+  std::size_t count = 1;
+  for (const Factor* factor : varied_in(block)) {
+    if (std::find(track.by.begin(), track.by.end(), factor->name) != track.by.end()) {
+      count *= factor->levels.size();
     }
   }
   return static_cast<int>(count);
 }
 
 int TrialsDefinition::most_trials() const {
-  int of_tracks = 0;
-  for (const Track& track : tracks) {
-    of_tracks += track.most_trials * combinations(track);
-  }
   int trials = 0;
   for (const Block& block : order.blocks) {
+    int of_tracks = 0;
+    for (const Track& track : tracks) {
+      of_tracks += track.most_trials * combinations(track, block);
+    }
     trials += block.practice ? 0 : block.trials > 0 ? block.trials : of_tracks;
   }
   return trials;
@@ -49,7 +60,10 @@ std::vector<std::string> TrialsDefinition::description() const {
                               counted(static_cast<int>(intervals.size()), "interval", "intervals"),
                               questions.empty() ? "" : ", then asks: " + questions.front().text));
   for (const Track& track : tracks) {
-    const int count = combinations(track);
+    int count = 1;
+    for (const Block& block : order.blocks) {
+      count = std::max(count, combinations(track, block));
+    }
     lines.push_back(
         fmt::format("{}: {} of {}{}, at most {}{}", track.name, track.kind, track.variable,
                     track.unit.empty() ? "" : fmt::format(" [{}]", track.unit),

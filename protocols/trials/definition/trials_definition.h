@@ -9,6 +9,8 @@
 #include "protocols/trials/definition/block.h"
 #include "protocols/trials/definition/question.h"
 #include "protocols/trials/definition/track.h"
+#include "protocols/trials/definition/trial_devices.h"
+#include "protocols/trials/looks/look.h"
 
 namespace haptrial::protocols {
 
@@ -25,6 +27,8 @@ struct TrialsView {
   bool from_above{true};      // x to the right and z down the screen; else x to the right and y up
   double width{0.16};         // of the part of W that fills the screen's width [m]
   double hand_radius{0.003};  // [m]
+  bool stereo{false};         // the pictures of the left and of the right eye, side by side
+  TwoEyes eyes;               // of them
 };
 
 /// An experiment that a definition file states whole: what can be felt, what a trial is made of,
@@ -38,6 +42,7 @@ struct TrialsDefinition : Definition {
   std::vector<Track> tracks;
   std::vector<std::string> stages;  // names, in their order
   std::vector<StudyGroup> groups;
+  std::vector<TrialDevice> hands;  // in the order of the session's devices; empty: one, unnamed
   TrialsView view;
   std::string feedback_right, feedback_wrong;
   double feedback_time{0.5};          // [s]
@@ -45,6 +50,7 @@ struct TrialsDefinition : Definition {
   std::vector<std::string> restless;  // sentences on fields that a light hand would make shake
   int most_repeats{5};  // of an interval whose stage asks for it; then the trial is aborted
 
+  int devices() const override { return hands.empty() ? 1 : static_cast<int>(hands.size()); }
   bool has_target() const override { return false; }
   std::vector<std::string> description() const override;
   std::vector<std::string> warnings() const override;
@@ -55,8 +61,10 @@ struct TrialsDefinition : Definition {
   /// Trials of one session at most, without practice; and those of practice.
   int most_trials() const;
   int practice_trials() const;
-  /// How many combinations of its factors there are.
-  int combinations(const Track& track) const;
+  /// The factors that vary in a block: those that it gives no value of its own.
+  std::vector<const Factor*> varied_in(const Block& block) const;
+  /// How many combinations of its factors a track has in a block.
+  int combinations(const Track& track, const Block& block) const;
 };
 
 }  // namespace haptrial::protocols

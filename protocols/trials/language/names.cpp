@@ -105,6 +105,14 @@ std::string Names::word(const std::string& text) const {
   return word ? *word : fmt::format("{:g}", value);
 }
 
+std::vector<std::string> Names::places() const {
+  std::vector<std::string> names;
+  for (const auto& [name, coordinates] : places_) {
+    names.push_back(name);
+  }
+  return names;
+}
+
 Eigen::Vector3d Names::place(const std::string& name) const {
   const auto found = places_.find(name);
   if (found == places_.end()) {

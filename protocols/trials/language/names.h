@@ -55,6 +55,8 @@ class Names final : public scene::NumberSource {
   const std::vector<std::string>& stated() const { return stated_; }
   /// @throws InputError naming a place that is not there
   Eigen::Vector3d place(const std::string& name) const;
+  /// Names of [places], in alphabetical order.
+  std::vector<std::string> places() const;
   bool has_place(const std::string& name) const { return places_.contains(name); }
   /// Notes formulas with unknown names or circles. Once everything is declared.
   void check(Table& root) const;

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <optional>
+#include <vector>
+
 #include "core/render/flat/painter.h"
 #include "core/render/flat/text.h"
 #include "core/render/flat/text_screen.h"
@@ -25,6 +29,12 @@ std::string question_body(const Question& question, const TrialView& view) {
   return body;
 }
 
+/// The part of the window that one eye, or both, look at.
+struct Part {
+  int side{0};                                      // -1 left eye, +1 right eye, 0 both
+  Eigen::Vector2d middle{Eigen::Vector2d::Zero()};  // [px]
+};
+
 class TrialDrawing final : public Drawing {
  public:
   TrialDrawing(const render::Gl& gl, int width, int height, const TrialsDefinition& d)
@@ -33,8 +43,15 @@ class TrialDrawing final : public Drawing {
         text_(gl, width, height),
         page_(gl, width, height, d.display.background, d.display.marker_colour,
               d.display.target_colour),
-        middle_(0.5 * width, 0.5 * height),
-        scale_(width / d.view.width) {}
+        half_(0.5 * width / (d.view.stereo ? 2.0 : 1.0), 0.5 * height),
+        scale_(2.0 * half_.x() / d.view.width) {
+    if (d.view.stereo) {
+      parts_ = {{-1, half_}, {1, {3.0 * half_.x(), half_.y()}}};
+    } else {
+      parts_ = {{0, half_}};
+    }
+    dots_.resize(parts_.size());
+  }
 
   void draw(const stimulus::Shown& shown) override {
     const TrialView* view = shown.as<TrialView>();
@@ -48,15 +65,21 @@ class TrialDrawing final : public Drawing {
     }
   }
   std::optional<Eigen::Vector3d> to_world(const Eigen::Vector2d& pixel) const override {
-    const Eigen::Vector2d p = (pixel - middle_) / scale_;
+    const Eigen::Vector2d p = (pixel - parts_.front().middle) / scale_;
     return d_.view.from_above ? Eigen::Vector3d(p.x(), 0.0, p.y())
                               : Eigen::Vector3d(p.x(), -p.y(), 0.0);
   }
 
  private:
-  Eigen::Vector2d pixel_of(const Eigen::Vector3d& p) const {
-    return middle_ + scale_ * (d_.view.from_above ? Eigen::Vector2d(p.x(), p.z())
-                                                  : Eigen::Vector2d(p.x(), -p.y()));
+  /// From the middle of the screen, x to the right and y down [m].
+  Eigen::Vector2d on_screen(const Eigen::Vector3d& p) const {
+    return d_.view.from_above ? Eigen::Vector2d(p.x(), p.z()) : Eigen::Vector2d(p.x(), -p.y());
+  }
+  Eigen::Vector2d pixel_of(const Eigen::Vector3d& p, const Part& part) const {
+    return part.middle + scale_ * on_screen(p);
+  }
+  static Eigen::Vector3d place_of(const std::array<float, 3>& p) {
+    return Eigen::Vector3f(p[0], p[1], p[2]).cast<double>();
   }
 
   void draw_question(const TrialView& view) {
@@ -73,11 +96,50 @@ class TrialDrawing final : public Drawing {
 
   void draw_interval(const TrialView& view) {
     painter_.begin(d_.display.background);
+    if (view.dots.shown) {
+      lay_dots(view.dots);
+    }
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      if (view.dots.shown) {
+        draw_dots(view.dots, i);
+      }
+      draw_marks(view, parts_[i]);
+    }
+    painter_.end();
+    if (view.number_shown) {
+      draw_number(view);
+    }
+  }
+
+  /// The dots of both eyes, once for each stereogram.
+  void lay_dots(const DotsShown& shown) {
+    if (laid_ && *laid_ == shown.seed) {
+      return;
+    }
+    laid_ = shown.seed;
+    const auto& [x, y, z] = shown.dots.centre;
+    const Eigen::Vector2d centre = on_screen({x, y, z});
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      dots_[i] = dots_for_eye(shown.dots, 2.0 * half_ / scale_, centre, d_.view.eyes,
+                              parts_[i].side, shown.seed);
+    }
+  }
+
+  void draw_dots(const DotsShown& shown, std::size_t part) {
+    const double radius = 0.5 * scale_ * shown.dots.diameter;
+    for (const EyeDot& dot : dots_[part]) {
+      const Eigen::Vector2d from_middle = scale_ * dot;
+      if (std::abs(from_middle.x()) < half_.x() - radius) {  // none reaches the other eye
+        painter_.disc(parts_[part].middle + from_middle, radius, d_.display.marker_colour);
+      }
+    }
+  }
+
+  void draw_marks(const TrialView& view, const Part& part) {
     constexpr double kLine = 3.0, kDot = 6.0;  // [px]
     for (std::size_t i = 0; i < view.mark_count; ++i) {
       const Mark& mark = view.marks[i];
-      const Eigen::Vector2d centre =
-          pixel_of(Eigen::Vector3d(mark.place[0], mark.place[1], mark.place[2]));
+      const Eigen::Vector2d centre = pixel_of(place_of(mark.place), part);
       if (mark.radius > 0.0F) {
         painter_.circle(centre, scale_ * static_cast<double>(mark.radius), kLine,
                         d_.display.target_colour);
@@ -85,26 +147,37 @@ class TrialDrawing final : public Drawing {
         painter_.disc(centre, kDot, d_.display.target_colour);
       }
     }
-    if (view.hand_shown) {
-      painter_.disc(pixel_of(view.tool), scale_ * d_.view.hand_radius, d_.display.marker_colour);
+    if (!view.hand_shown) {
+      return;
     }
-    painter_.end();
-    if (view.number_shown) {
-      text_.begin();
-      const render::TextStyle style{static_cast<int>(0.12 * 2.0 * middle_.y()), true,
-                                    d_.display.marker_colour};
-      const double margin = d_.display.margin;
-      text_.line(fmt::format("{}", view.interval), {margin, margin + style.size}, style);
-      text_.end();
+    const double radius = scale_ * d_.view.hand_radius;
+    painter_.disc(pixel_of(view.tool, part), radius, d_.display.marker_colour);
+    for (std::size_t i = 0; i < view.other_count; ++i) {
+      painter_.disc(pixel_of(place_of(view.others[i]), part), radius, d_.display.marker_colour);
     }
+  }
+
+  void draw_number(const TrialView& view) {
+    text_.begin();
+    const render::TextStyle style{static_cast<int>(0.12 * 2.0 * half_.y()), true,
+                                  d_.display.marker_colour};
+    const double margin = d_.display.margin;
+    for (const Part& part : parts_) {
+      text_.line(fmt::format("{}", view.interval),
+                 {part.middle.x() - half_.x() + margin, margin + style.size}, style);
+    }
+    text_.end();
   }
 
   const TrialsDefinition& d_;
   render::Painter painter_;
   render::TextPainter text_;
   render::TextScreen page_;
-  Eigen::Vector2d middle_;  // [px]
-  double scale_;            // [px/m]
+  Eigen::Vector2d half_;  // of a part [px]
+  double scale_;          // [px/m]
+  std::vector<Part> parts_;
+  std::vector<std::vector<EyeDot>> dots_;  // (parts)
+  std::optional<std::uint64_t> laid_;      // seed of them
 };
 
 }  // namespace

@@ -26,64 +26,94 @@ void TrialPass::begin(std::uint64_t sequence) noexcept {
 
 void TrialPass::begin_interval() noexcept {
   IntervalRun& run = setup_.intervals[interval_];
-  if (interval_ > 0) {
-    run.scene.start_from(setup_.intervals[interval_ - 1].scene);
+  for (std::size_t device = 0; interval_ > 0 && device < run.scenes.size(); ++device) {
+    run.scenes[device].start_from(setup_.intervals[interval_ - 1].scenes[device]);
   }
-  run.machine.begin(run.scene, setup_.most_repeats);
+  run.machine.begin(run.scenes, setup_.most_repeats);
   first_ticks_[interval_] = sequence_;
   begun_ = interval_ + 1;
   view_.interval = static_cast<std::uint8_t>(interval_ + 1);
 }
 
 PassOutput TrialPass::tick(const Readings& readings, double dt) noexcept {
-  PassOutput out;
-  const device::DeviceReading& reading = readings[0];
   tick_time_ = dt;
-  look_at_hands(reading);
+  drives_ = {};
+  saturated_ = false;
+  device_count_ = std::min(readings.size(), kMostDevices);
+  look_at_hands(readings);
   if (state_ == PassState::kRunning) {
     if (part_ == Part::kIntervals) {
-      present(reading, dt, out);
+      present(readings, dt);
     } else {
-      listen(reading, dt);
+      listen(dt);
     }
     ++sequence_;
   }
-  view_.tool = reading.tool.position;
+  PassOutput out;
+  static_cast<Drive&>(out) = drives_[0];
+  out.saturated = saturated_;
   out.shown = stimulus::Shown(view_);
   out.stage = part_ == Part::kIntervals ? record::Stage::kRun : record::Stage::kWait;
   return out;
 }
 
-void TrialPass::look_at_hands(const device::DeviceReading& reading) noexcept {
-  pressed_buttons_ = hands_known_ ? reading.buttons & ~buttons_ : 0;
-  pressed_keys_ = hands_known_ ? reading.keys & ~keys_ : 0;
-  buttons_ = reading.buttons;
-  keys_ = reading.keys;
+void TrialPass::look_at_hands(const Readings& readings) noexcept {
+  std::uint32_t buttons = 0;
+  for (std::size_t device = 0; device < device_count_; ++device) {
+    buttons |= readings[device].buttons;
+  }
+  const std::uint32_t keys = readings[0].keys;  // of the window: all devices are given the same
+  pressed_buttons_ = hands_known_ ? buttons & ~buttons_ : 0;
+  pressed_keys_ = hands_known_ ? keys & ~keys_ : 0;
+  buttons_ = buttons;
+  keys_ = keys;
   hands_known_ = true;
+  view_.tool = readings[0].tool.position;
+  view_.other_count = static_cast<std::uint8_t>(device_count_ - 1);
+  for (std::size_t device = 1; device < device_count_; ++device) {
+    const Eigen::Vector3f p = readings[device].tool.position.cast<float>();
+    view_.others[device - 1] = {p.x(), p.y(), p.z()};
+  }
 }
 
-void TrialPass::present(const device::DeviceReading& reading, double dt, PassOutput& out) noexcept {
-  IntervalRun& run = setup_.intervals[interval_];
-  const std::size_t stage = run.machine.stage();
-  out.force = run.scene.force(reading.tool);
-  for (std::size_t field = 0; field < run.scene.size(); ++field) {
+/// The force on one device, scaled to the limit.
+Drive TrialPass::drive(const IntervalRun& run, std::size_t device,
+                       const Eigen::Vector3d& force) noexcept {
+  const scene::Scene& scene = run.scenes[device];
+  Drive drive;
+  drive.force = force;
+  for (std::size_t field = 0; field < scene.size(); ++field) {
     if ((run.pushing >> field & 1) != 0) {
-      out.intent.push += run.scene.state(field).force;
+      drive.intent.push += scene.state(field).force;
     }
-    out.saturated = out.saturated || run.scene.state(field).limited;
+    saturated_ = saturated_ || scene.state(field).limited;
   }
-  if (const double size = out.force.norm(); size > setup_.max_force) {
-    out.force *= setup_.max_force / size;
-    out.intent.push *= setup_.max_force / size;
-    out.saturated = true;
+  if (const double size = force.norm(); size > setup_.max_force) {
+    drive.force *= setup_.max_force / size;
+    drive.intent.push *= setup_.max_force / size;
+    saturated_ = true;
   }
-  const StageSight& sight = run.sights[stage];
-  view_.stage = static_cast<std::uint8_t>(stage);
+  return drive;
+}
+
+void TrialPass::show(const StageSight& sight) noexcept {
   view_.hand_shown = sight.hand;
   view_.number_shown = sight.interval_number;
+  view_.dots = sight.dots;
   view_.mark_count = static_cast<std::uint8_t>(std::min(sight.marks.size(), TrialView::kMostMarks));
   std::copy_n(sight.marks.begin(), view_.mark_count, view_.marks.begin());
-  run.machine.tick(reading, run.scene, dt);
+}
+
+void TrialPass::present(const Readings& readings, double dt) noexcept {
+  IntervalRun& run = setup_.intervals[interval_];
+  const std::size_t stage = run.machine.stage();
+  const std::size_t devices = std::min(device_count_, run.scenes.size());
+  for (std::size_t device = 0; device < devices; ++device) {
+    drives_[device] = drive(run, device, run.scenes[device].force(readings[device].tool));
+  }
+  view_.stage = static_cast<std::uint8_t>(stage);
+  show(run.sights[stage]);
+  run.machine.tick(readings.all().first(devices), run.scenes, dt);
   if (run.machine.state() == StageMachine::State::kAborted) {
     const StageEnd how = run.machine.times()[run.machine.stage()].how;
     abort(how == StageEnd::kLate ? "a stage was not done in time"
@@ -103,7 +133,7 @@ void TrialPass::end_interval() noexcept {
   }
   view_.interval = 0;
   view_.mark_count = 0;
-  view_.hand_shown = view_.number_shown = false;
+  view_.hand_shown = view_.number_shown = view_.dots.shown = false;
   ask();
 }
 
@@ -124,7 +154,7 @@ void TrialPass::ask() noexcept {
   }
 }
 
-void TrialPass::listen(const device::DeviceReading&, double dt) noexcept {
+void TrialPass::listen(double dt) noexcept {
   time_ += dt;
   if (part_ == Part::kFeedback) {
     if (time_ >= setup_.feedback_time) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -17,13 +18,14 @@ namespace haptrial::protocols {
 /// What is seen during a stage.
 struct StageSight {
   std::vector<Mark> marks;
+  DotsShown dots;
   bool hand{false};
   bool interval_number{false};
 };
 
 /// One interval, ready to be presented.
 struct IntervalRun {
-  scene::Scene scene;
+  std::vector<scene::Scene> scenes;  // (devices)
   StageMachine machine;
   std::vector<StageSight> sights;  // (stages)
   std::uint64_t pushing{0};        // fields that are to work on the hand, a bit each
@@ -58,13 +60,16 @@ class TrialPass final : public Pass {
     std::vector<Asked> questions;
     double feedback_time{0.0};  // [s]
     int most_repeats{5};
-    double max_force{8.0};      // the sum of all fields is scaled to at most this [N]
+    double max_force{8.0};      // the sum of a device's fields is scaled to at most this [N]
     SaidAnswer* said{nullptr};  // null: a person answers
   };
   explicit TrialPass(Setup setup);
 
   void begin(std::uint64_t sequence) noexcept override;
   PassOutput tick(const Readings& readings, double dt) noexcept override;
+  std::span<const Drive> others() const noexcept override {
+    return {drives_.data() + 1, device_count_ - 1};
+  }
   PassState state() const noexcept override { return state_; }
 
   // After the pass.
@@ -83,14 +88,16 @@ class TrialPass final : public Pass {
   enum class Part : std::uint8_t { kIntervals, kQuestions, kFeedback };
 
   void begin_interval() noexcept;
-  void present(const device::DeviceReading& reading, double dt, PassOutput& out) noexcept;
+  void present(const Readings& readings, double dt) noexcept;
+  Drive drive(const IntervalRun& run, std::size_t device, const Eigen::Vector3d& force) noexcept;
+  void show(const StageSight& sight) noexcept;
   void end_interval() noexcept;
   void ask() noexcept;
-  void listen(const device::DeviceReading& reading, double dt) noexcept;
+  void listen(double dt) noexcept;
   void listen_to_choice(const Question& question, Answer& answer) noexcept;
   void listen_to_number(const Question& question, Answer& answer) noexcept;
   void take(const Answer& answer) noexcept;
-  void look_at_hands(const device::DeviceReading& reading) noexcept;
+  void look_at_hands(const Readings& readings) noexcept;
   void abort(const char* why) noexcept;
 
   Setup setup_;
@@ -102,6 +109,9 @@ class TrialPass final : public Pass {
   std::size_t begun_{0};
   std::size_t question_{0};
   TrialView view_;
+  std::array<Drive, kMostDevices> drives_{};  // of the last tick
+  std::size_t device_count_{1};
+  bool saturated_{false};
   std::uint64_t sequence_{0};
   std::uint64_t asked_at_{0};                           // sequence number
   double time_{0.0};                                    // in the question or the feedback [s]

@@ -5,12 +5,23 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "protocols/interface/pass.h"
+#include "protocols/trials/looks/look.h"
+
 namespace haptrial::protocols {
 
 /// A place that is shown: a circle about it, or a dot.
 struct Mark {
   std::array<float, 3> place{};  // in W [m]
   float radius{0.0F};            // 0: a dot [m]
+  std::uint8_t device{0};        // whose tool it is for, from 0
+};
+
+/// A stereogram that is shown.
+struct DotsShown {
+  RandomDots dots;
+  std::uint64_t seed{0};
+  bool shown{false};
 };
 
 enum class Verdict : std::uint8_t { kNone, kRight, kWrong };
@@ -21,10 +32,13 @@ struct TrialView {
   static constexpr std::size_t kMostMarks = 8;
   static constexpr std::size_t kTyped = 16;
 
-  Eigen::Vector3d tool{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d tool{Eigen::Vector3d::Zero()};                // of the first device
+  std::array<std::array<float, 3>, kMostDevices - 1> others{};  // tools of the others [m]
+  DotsShown dots;
   std::array<Mark, kMostMarks> marks{};
   std::array<char, kTyped> typed{};  // of a number, ended by 0
   std::int32_t trial{0};             // of the presentation: changes from trial to trial
+  std::uint8_t other_count{0};
   std::uint8_t mark_count{0};
   std::uint8_t interval{0};  // from 1; 0: none
   std::uint8_t stage{0};     // of the interval, from 0

@@ -100,9 +100,9 @@ void TrialSequence::begin_block() {
   }
   for (const Track& track : d_.tracks) {
     std::vector<const Factor*> by;
-    for (const Factor& factor : d_.order.factors) {
-      if (std::find(track.by.begin(), track.by.end(), factor.name) != track.by.end()) {
-        by.push_back(&factor);
+    for (const Factor* factor : d_.varied_in(block())) {
+      if (std::find(track.by.begin(), track.by.end(), factor->name) != track.by.end()) {
+        by.push_back(factor);
       }
     }
     for (const auto& combination : crossed(by)) {
@@ -116,11 +116,7 @@ void TrialSequence::begin_block() {
 
 /// Cycles of all combinations, each in an order of its own, or one order under the rule.
 void TrialSequence::make_fixed() {
-  std::vector<const Factor*> factors;
-  for (const Factor& factor : d_.order.factors) {
-    factors.push_back(&factor);
-  }
-  const auto combinations = crossed(factors);
+  const auto combinations = crossed(d_.varied_in(block()));
   const auto count = static_cast<std::size_t>(block().trials);
   std::vector<int> which;
   for (std::size_t cycle = 0; which.size() < count; ++cycle) {
@@ -302,9 +298,9 @@ void TrialSequence::choose_track(NextTrial& next) {
 void TrialSequence::add_factors(NextTrial& next, const std::vector<std::string>& settled,
                                 std::size_t stream, int count) const {
   std::vector<const Factor*> factors;
-  for (const Factor& factor : d_.order.factors) {
-    if (std::find(settled.begin(), settled.end(), factor.name) == settled.end()) {
-      factors.push_back(&factor);
+  for (const Factor* factor : d_.varied_in(block())) {
+    if (std::find(settled.begin(), settled.end(), factor->name) == settled.end()) {
+      factors.push_back(factor);
     }
   }
   const auto combinations = crossed(factors);

@@ -41,11 +41,18 @@ class StageReader {
 
   NamedStage read() {
     result_.name = table_.text("name");
-    for (const std::string& name : texts("fields")) {
-      const int field = index_of(table_, "fields", name, source_.fields, "field");
-      result_.stage.fields |= field < 0 ? 0 : std::uint64_t{1} << static_cast<unsigned>(field);
+    if (table_.has("fields")) {
+      result_.stage.fields = mask(table_, "fields", source_.fields, "field");
     }
-    result_.show = texts("show");
+    for (const std::string& text : texts("show")) {
+      const std::string name = word(text);
+      if (name == "null") {
+        continue;
+      }
+      if (source_.sights.empty() || index_of(table_, "show", name, source_.sights, "sight") >= 0) {
+        result_.show.push_back(name);
+      }
+    }
     Table until = table_.table("until");
     read_until(until);
     read_timeout();
@@ -65,10 +72,27 @@ class StageReader {
     return source_.numbers.number(table, key, bounds, unit);
   }
 
+  std::string word(const std::string& text) const {
+    return source_.word ? source_.word(text) : text;
+  }
+
+  /// A bit for each name: of one text or of an array of them.
+  std::uint64_t mask(Table& table, const char* key, const std::vector<std::string>& known,
+                     const char* what) {
+    const std::vector<std::string> names =
+        table.is_array(key) ? table.texts(key) : std::vector{table.text(key)};
+    std::uint64_t bits = 0;
+    for (const std::string& name : names) {
+      const int index = index_of(table, key, name, known, what);
+      bits |= index < 0 ? 0 : std::uint64_t{1} << static_cast<unsigned>(index);
+    }
+    return bits;
+  }
+
   /// -1 for "null" and, with a problem noted, for what is not there.
   int index_of(Table& table, const char* key, const std::string& text,
                const std::vector<std::string>& known, const char* what) {
-    const std::string name = source_.word ? source_.word(text) : text;
+    const std::string name = word(text);
     if (name == "null") {
       return -1;
     }
@@ -99,10 +123,10 @@ class StageReader {
       return there;
     };
     if (has("inside")) {
-      until.inside = index_of(table, "inside", table.text("inside"), source_.regions, "region");
+      until.inside = mask(table, "inside", source_.regions, "region");
     }
     if (has("contact")) {
-      until.contact = index_of(table, "contact", table.text("contact"), source_.fields, "field");
+      until.contact = mask(table, "contact", source_.fields, "field");
     }
     if (has("speed_below")) {
       until.speed_below = number(table, "speed_below", kSpeed, "m/s");

@@ -32,15 +32,17 @@ struct StageSource {
   /// The word that a text such as "$field" stands for; "null" is no field. Null: texts stand for
   /// themselves.
   std::function<std::string(const std::string&)> word;
-  RandomStream* random{nullptr};  // draws durations "for = [0.5, 1.0]"; null: the shortest
+  RandomStream* random{nullptr};      // draws durations "for = [0.5, 1.0]"; null: the shortest
+  std::vector<std::string> sights{};  // what can be shown; empty: anything
 };
 
 /// Reads the tables [[stages]]. Problems are noted in the table; keys in brackets are optional.
 ///
 ///     name      unlike every other stage's
 ///     [fields]  names; together they act, the others do not
-///     [show]    names
-///     until     one or more of: time [s], inside (region), contact (field), speed_below,
+///     [show]    names, or texts such as "$seen"; "null" is nothing
+///     until     one or more of: time [s], inside (a region, or several), contact (a field, or
+///               several), speed_below,
 ///               speed_above [m/s], buttons, keys (numbers from 0); [for] = time for which they
 ///               hold [s], or [shortest, longest]
 ///     [timeout] after [s], then = "abort", "repeat" or "go on"

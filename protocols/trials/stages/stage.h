@@ -9,10 +9,10 @@ namespace haptrial::protocols {
 /// When a stage is over: when all that is stated holds at once, and has held without a break for
 /// `hold`.
 struct Until {
-  double time{0.0};  // has passed since the stage began >= 0 [s]
-  int inside{-1};    // the tool is in this region, by its index; -1: anywhere
-  int contact{-1};   // this field is in contact, by its index; -1: not asked
-  double speed_below{std::numeric_limits<double>::infinity()};  // of the tool [m/s]
+  double time{0.0};          // has passed since the stage began >= 0 [s]
+  std::uint64_t inside{0};   // tools are in all of these regions: bit i, the region of index i
+  std::uint64_t contact{0};  // every device that feels one of these fields touches it, likewise
+  double speed_below{std::numeric_limits<double>::infinity()};  // of the fastest tool [m/s]
   double speed_above{-1.0};                                     // [m/s]
   std::uint32_t buttons{0};  // any of these was pressed since the stage began; 0: not asked
   std::uint32_t keys{0};     // the same of the window's keys
@@ -30,8 +30,8 @@ enum class Consequence : std::uint8_t {
 struct Requirement {
   enum class Of : std::uint8_t { kDepth, kForce, kSpeed };
   Of of{Of::kDepth};
-  int field{-1};         // whose depth or force; -1 of a speed, which is the tool's
-  double at_least{0.0};  // of the largest value in the stage [m, N or m/s]
+  int field{-1};         // whose depth or force; -1 of a speed, which is that of tools
+  double at_least{0.0};  // of the largest value in the stage, of any device [m, N or m/s]
   Consequence otherwise{Consequence::kRepeat};
 };
 

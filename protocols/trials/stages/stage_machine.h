@@ -27,10 +27,16 @@ struct StageTimes {
   double most{0.0};  // of what is required: the largest value [m, N or m/s]
 };
 
-/// Goes through the stages of one interval, a tick of the servo loop at a time. It switches the
-/// fields of the scene at the beginning of each stage; who asks the scene for its force does so
-/// before tick(). A button or key counts when it goes down during the stage, not when it was held
-/// before.
+/// A part of space that stages ask about, and the device whose tool is to be in it, from 0.
+struct StageRegion {
+  scene::PlacedShape shape;
+  std::size_t device{0};
+};
+
+/// Goes through the stages of one interval, a tick of the servo loop at a time. Each device has a
+/// scene of all fields; the machine switches those that it feels at the beginning of each stage.
+/// Who asks the scenes for their forces does so before tick(). A button or key counts when it goes
+/// down during the stage, not when it was held before.
 class StageMachine {
  public:
   enum class State : std::uint8_t { kRunning, kDone, kAborted };
@@ -39,15 +45,19 @@ class StageMachine {
   /// @param regions  that stages name by index
   /// @throws std::invalid_argument naming the stage and what it names that is not there, or the
   /// bound that it breaks
-  StageMachine(std::vector<Stage> stages, std::vector<scene::PlacedShape> regions,
-               std::size_t fields);
+  /// @param felt     (devices) the fields that act on each, a bit each
+  StageMachine(std::vector<Stage> stages, std::vector<StageRegion> regions, std::size_t fields,
+               std::vector<std::uint64_t> felt = {~std::uint64_t{0}});
 
   // Servo thread, all of the following: no allocation, lock, I/O or throw.
 
+  using Scenes = std::span<scene::Scene>;                   // (devices)
+  using Readings = std::span<const device::DeviceReading>;  // likewise
+
   /// The interval begins with the next tick. @param most_repeats  of the interval; then it aborts
-  void begin(scene::Scene& scene, int most_repeats) noexcept;
+  void begin(Scenes scenes, int most_repeats) noexcept;
   /// @param dt  since the tick before [s]
-  void tick(const device::DeviceReading& reading, scene::Scene& scene, double dt) noexcept;
+  void tick(Readings readings, Scenes scenes, double dt) noexcept;
 
   State state() const noexcept { return state_; }
   /// That goes on; of an interval that is over the last one.
@@ -58,16 +68,18 @@ class StageMachine {
   std::span<const StageTimes> times() const noexcept { return times_; }
 
  private:
-  void enter(std::size_t stage, scene::Scene& scene) noexcept;
-  void leave(StageEnd how, Consequence what, scene::Scene& scene) noexcept;
-  bool holds(const Until& until, const device::DeviceReading& reading,
-             const scene::Scene& scene) const noexcept;
-  void measure(const Stage& stage, double speed, const scene::Scene& scene) noexcept;
-  void press(const device::DeviceReading& reading) noexcept;
+  void enter(std::size_t stage, Scenes scenes) noexcept;
+  void leave(StageEnd how, Consequence what, Scenes scenes) noexcept;
+  bool holds(const Until& until, Readings readings, Scenes scenes, double speed) const noexcept;
+  bool all_inside(std::uint64_t regions, Readings readings) const noexcept;
+  bool all_touch(std::uint64_t fields, Scenes scenes) const noexcept;
+  void measure(const Stage& stage, double speed, Scenes scenes) noexcept;
+  void press(Readings readings) noexcept;
 
   std::vector<Stage> stages_;
-  std::vector<scene::PlacedShape> regions_;
-  std::vector<StageTimes> times_;  // (stages)
+  std::vector<StageRegion> regions_;
+  std::vector<std::uint64_t> felt_;  // (devices)
+  std::vector<StageTimes> times_;    // (stages)
   State state_{State::kDone};
   std::size_t stage_{0};
   std::int64_t tick_{0};

@@ -12,6 +12,7 @@
 #include "core/base/definition/table_vector.h"
 #include "core/scene/read/number_source.h"
 #include "protocols/trials/definition/question.h"
+#include "protocols/trials/definition/trials_definition.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -87,6 +88,42 @@ StageAction read_action(Table& table, const std::string& stage) {
   return action;
 }
 
+/// One action of every hand, or one of each device that is named.
+void read_actions(Table& table, const std::string& stage, const std::vector<TrialDevice>& devices,
+                  std::vector<StageAction>& actions) {
+  if (devices.empty() || table.has("do")) {
+    StageAction action = read_action(table, stage);
+    for (std::size_t device = 0; device < std::max<std::size_t>(1, devices.size()); ++device) {
+      action.device = device;
+      actions.push_back(action);
+    }
+    return;
+  }
+  for (std::size_t device = 0; device < devices.size(); ++device) {
+    if (table.has(devices[device].name)) {
+      Table own = table.table(devices[device].name);
+      actions.push_back(read_action(own, stage));
+      actions.back().device = device;
+    }
+  }
+}
+
+std::optional<subject::SightParameters> read_sight(Table& table) {
+  subject::SightParameters sight;
+  sight.noise = table.numbers("noise", kNonNegative, "");
+  sight.sd = table.numbers("sd", kPositive, "m");
+  if (table.has("spread")) {
+    sight.spread = table.number("spread", {0.0, 2.0}, "");
+  }
+  try {
+    subject::check(sight);
+  } catch (const std::invalid_argument& error) {
+    table.reject("noise", fmt::format("cannot be used with sd: {}", error.what()));
+    return std::nullopt;
+  }
+  return sight;
+}
+
 subject::LearningRate read_rate(Table& table, const char* key, subject::LearningRate otherwise) {
   if (!table.has(key)) {
     return otherwise;
@@ -132,7 +169,8 @@ void read_decision(Table& table, const std::vector<Question>& questions, Observe
 }  // namespace
 
 ObserverPlan read_observer(Table& root, const std::vector<Question>& questions,
-                           const std::vector<std::string>& stages) {
+                           const std::vector<std::string>& stages,
+                           const std::vector<TrialDevice>& devices) {
   ObserverPlan plan;
   Table table = root.table("observer");
   if (table.has("senses")) {
@@ -155,12 +193,16 @@ ObserverPlan read_observer(Table& root, const std::vector<Question>& questions,
     for (const std::string& stage : actions.keys()) {
       check_stage(actions, stage.c_str(), stage, stages);
       Table action = actions.table(stage);
-      plan.actions.push_back(read_action(action, stage));
+      read_actions(action, stage, devices, plan.actions);
     }
   }
   if (table.has("adaptation")) {
     Table adaptation = table.table("adaptation");
     plan.adaptation = read_adaptation(adaptation, stages);
+  }
+  if (table.has("sight")) {
+    Table sight = table.table("sight");
+    plan.sight = read_sight(sight);
   }
   subject::JudgementParameters judge;
   judge.logarithmic = plan.decides != Decides::kYes;  // nothing at all has no logarithm

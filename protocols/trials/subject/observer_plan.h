@@ -9,6 +9,7 @@
 #include "core/subject/perceiver/judgement.h"
 #include "core/subject/perceiver/perceiver_population.h"
 #include "core/subject/perceiver/probing.h"
+#include "core/subject/perceiver/sight.h"
 #include "core/subject/perceiver/two_rate.h"
 
 namespace haptrial {
@@ -18,15 +19,17 @@ class Table;
 namespace haptrial::protocols {
 
 struct Question;
+struct TrialDevice;
 
 /// How virtual participants of trials take what they feel for an answer.
 enum class Decides : std::uint8_t { kLargest, kSmallest, kYes, kMagnitude };
 
-/// What the hand does in a stage.
+/// What a hand does in a stage.
 struct StageAction {
   std::string stage;
+  std::size_t device{0};  // whose hand
   subject::Probe probe;
-  bool to_mark{false};  // a reach to the first mark that is shown
+  bool to_mark{false};  // a reach to the first mark for this device that is shown
 };
 
 /// Motor adaptation to a field B v.
@@ -45,6 +48,7 @@ struct ObserverPlan {
   double reaction{0.6};  // median time from question to answer > 0 [s]
   std::vector<StageAction> actions;
   std::optional<Adaptation> adaptation;
+  std::optional<subject::SightParameters> sight;
   std::optional<subject::PerceiverPopulation> people;
 };
 
@@ -60,10 +64,13 @@ struct ObserverPlan {
 ///     [actions]     stage = { do = "press", force, [rise], [direction], [travel] },
 ///                   { do = "stroke", direction, half_length, frequency, [force], [normal] },
 ///                   { do = "reach", duration }: to the first mark that the stage shows,
-///                   { do = "hold" } or { do = "rest" }, as in stages without one
+///                   { do = "hold" } or { do = "rest" }, as in stages without one;
+///                   with [devices] stage = { NAME = { do = … }, … }, or the same for all of them
+///     [sight]       { noise, sd [m], [spread] } of a size that is seen (core/subject/perceiver)
 ///     [adaptation]  { stage, matrix, [fast], [slow] }
 ///     and the keys of the person (perceiver_population.h)
 ObserverPlan read_observer(Table& root, const std::vector<Question>& questions,
-                           const std::vector<std::string>& stages);
+                           const std::vector<std::string>& stages,
+                           const std::vector<TrialDevice>& devices = {});
 
 }  // namespace haptrial::protocols

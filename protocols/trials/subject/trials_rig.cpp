@@ -3,15 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/base/random.h"
 #include "core/subject/hand.h"
 #include "core/subject/motor_noise.h"
+#include "core/subject/perceiver/grip.h"
 #include "core/subject/perceiver/sense.h"
+#include "core/subject/perceiver/sight.h"
 #include "core/subject/perceiver/trial_stream.h"
 #include "core/subject/subject_parameters.h"
 #include "protocols/trials/definition/question.h"
+#include "protocols/trials/definition/trials_definition.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -32,26 +36,29 @@ int index_of(const std::vector<std::string>& names, const std::string& name) {
 /// Servo thread, but for the constructor.
 class TrialsRig::Participant final : public stimulus::Observer {
  public:
-  Participant(const Briefing& briefing, subject::HandModel& hand, std::uint64_t seed)
+  Participant(const Briefing& briefing, const std::vector<subject::HandModel*>& hands,
+              std::uint64_t seed)
       : plan_(*briefing.plan),
         questions_(*briefing.questions),
         said_(*briefing.said),
-        hand_(hand),
         seed_(derived_seed(seed, "subject")),
         hand_parameters_(briefing.definition->hand),
         step_(1.0 / briefing.definition->rate),
-        prober_(hand_parameters_),
         judgement_(plan_.people->draw_judgement(seed_)),
-        sense_(plan_.people->draw_senses(seed_), plan_.senses),
+        senses_(plan_.people->draw_senses(seed_)),
+        sense_(senses_, plan_.senses),
+        grip_(senses_),
         judge_(judgement_, seed_),
         felt_in_(index_of(briefing.stages, plan_.stage)),
         reaction_(seed_, "reaction") {
-    for (const std::string& stage : briefing.stages) {
-      const StageAction* action = nullptr;
-      for (const StageAction& each : plan_.actions) {
-        action = each.stage == stage ? &each : action;
+    for (std::size_t device = 0; device < hands.size(); ++device) {
+      Limb& limb = limbs_.emplace_back(Limb{hands[device], subject::Prober(hand_parameters_), {}});
+      for (const std::string& stage : briefing.stages) {
+        limb.actions.push_back(action_in(stage, device));
       }
-      actions_.push_back(action);
+    }
+    if (plan_.sight) {
+      sight_.emplace(*plan_.sight, seed_);
     }
     if (plan_.adaptation) {
       adaptation_.emplace(plan_.adaptation->rates);
@@ -63,24 +70,45 @@ class TrialsRig::Participant final : public stimulus::Observer {
   void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
                double dt) noexcept override {
     const TrialView* view = shown.as<TrialView>();
-    const PointState hand = hand_.state();
     if (view == nullptr) {
       leave_stage();
       begun_ = false;
-      hand_.command({});
+      for (Limb& limb : limbs_) {
+        limb.hand->command({});
+      }
       return;
+    }
+    for (Limb& limb : limbs_) {
+      limb.state = limb.hand->state();
     }
     if (!begun_ || view->trial != trial_) {
       begin_trial(view->trial);
     }
-    follow(*view, hand);
-    feel(*view, forces[0], hand, dt);
+    follow(*view);
+    feel(*view, forces, dt);
     answer(*view, dt);
-    act(hand, dt);
+    act(dt);
   }
 
  private:
+  /// A hand, what it is about to do, and where it is.
+  struct Limb {
+    subject::HandModel* hand;
+    subject::Prober prober;
+    std::vector<const StageAction*> actions;  // (stages), null: rests
+    PointState state{};                       // at this tick
+  };
+
+  const StageAction* action_in(const std::string& stage, std::size_t device) const {
+    const StageAction* action = nullptr;
+    for (const StageAction& each : plan_.actions) {
+      action = each.stage == stage && each.device == device ? &each : action;
+    }
+    return action;
+  }
+
   void begin_trial(int trial) noexcept {
+    constexpr const char* kMotor[kMostDevices] = {"motor", "motor 2", "motor 3", "motor 4"};
     begun_ = true;
     trial_ = trial;
     stage_ = interval_ = -1;
@@ -89,13 +117,15 @@ class TrialsRig::Participant final : public stimulus::Observer {
     percepts_ = {};
     judge_.begin_trial(trial);
     // A hand that is quite still would look like a device whose reading is frozen.
-    prober_ = subject::Prober(
-        hand_parameters_, subject::MotorNoise(subject::SubjectParameters{}, step_,
-                                              subject::trial_stream(seed_, "motor", trial)));
+    for (std::size_t i = 0; i < limbs_.size(); ++i) {
+      limbs_[i].prober = subject::Prober(
+          hand_parameters_, subject::MotorNoise(subject::SubjectParameters{}, step_,
+                                                subject::trial_stream(seed_, kMotor[i], trial)));
+    }
     reaction_ = subject::trial_stream(seed_, "reaction", trial);
   }
 
-  void follow(const TrialView& view, const PointState& hand) noexcept {
+  void follow(const TrialView& view) noexcept {
     const int stage = view.interval > 0 ? view.stage : -1;
     const int interval = view.interval - 1;
     intervals_ = std::max<std::size_t>(intervals_, view.interval);
@@ -105,31 +135,49 @@ class TrialsRig::Participant final : public stimulus::Observer {
     const bool another = interval != interval_;
     leave_stage();
     if (another && interval >= 0) {
-      RandomStream random =
-          subject::trial_stream(seed_, interval == 0 ? "sense" : "sense again",
-                                trial_ * static_cast<int>(kMostIntervals) + interval);
-      sense_.begin(random);
+      begin_interval(interval);
     }
     stage_ = stage;
     interval_ = interval;
-    const StageAction* action = stage >= 0 ? actions_[static_cast<std::size_t>(stage)] : nullptr;
-    subject::Probe probe = action != nullptr ? action->probe : subject::Probe{subject::Rest{}};
-    if (action != nullptr && action->to_mark && view.mark_count > 0) {
-      auto& reach = std::get<subject::Reach>(probe);
-      const auto& place = view.marks[0].place;
-      reach.to = {place[0], place[1], place[2]};
+    for (std::size_t i = 0; i < limbs_.size(); ++i) {
+      begin_probe(i, view);
     }
-    prober_.begin(probe, hand);
     if (error_ && stage == learnt_in_) {
       error_->begin();
     }
+  }
+
+  void begin_interval(int interval) noexcept {
+    const int number = trial_ * static_cast<int>(kMostIntervals) + interval;
+    RandomStream random =
+        subject::trial_stream(seed_, interval == 0 ? "sense" : "sense again", number);
+    sense_.begin(random);
+    RandomStream cues = subject::trial_stream(seed_, "cues", number);
+    grip_noise_ = subject::draw_noise(cues);
+    sight_noise_ = cues.normal();
+    grip_.begin();
+    seen_ = {};
+  }
+
+  void begin_probe(std::size_t device, const TrialView& view) noexcept {
+    Limb& limb = limbs_[device];
+    const StageAction* action =
+        stage_ >= 0 ? limb.actions[static_cast<std::size_t>(stage_)] : nullptr;
+    subject::Probe probe = action != nullptr ? action->probe : subject::Probe{subject::Rest{}};
+    for (std::size_t i = view.mark_count; action != nullptr && action->to_mark && i-- > 0;) {
+      if (view.marks[i].device == device) {  // the first one is the last to be set
+        const auto& place = view.marks[i].place;
+        std::get<subject::Reach>(probe).to = {place[0], place[1], place[2]};
+      }
+    }
+    limb.prober.begin(probe, limb.state);
   }
 
   /// What was felt of it is kept; a reach is learnt from.
   void leave_stage() noexcept {
     if (interval_ >= 0 && static_cast<std::size_t>(interval_) < kMostIntervals &&
         (felt_in_ < 0 || stage_ == felt_in_)) {
-      percepts_[static_cast<std::size_t>(interval_)] = sense_.percept();
+      percepts_[static_cast<std::size_t>(interval_)] = percept();
     }
     if (adaptation_ && stage_ >= 0 && stage_ == learnt_in_) {
       adaptation_->learn(error_->error());
@@ -137,29 +185,59 @@ class TrialsRig::Participant final : public stimulus::Observer {
     stage_ = interval_ = -1;
   }
 
-  void feel(const TrialView& view, const Eigen::Vector3d& force, const PointState& hand,
-            double dt) noexcept {
+  /// Of one hand what it feels; between two fingertips, or by eye, a size.
+  double percept() const noexcept {
+    const bool both = limbs_.size() > 1 && plan_.senses == subject::Quantity::kExtent;
+    if (!both && !sight_) {
+      return sense_.percept();
+    }
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    subject::Cue felt{0.0, kNever};
+    if (both && grip_.held()) {
+      const subject::Encounter met = grip_.met();
+      felt = {subject::felt(senses_, plan_.senses, met, grip_noise_),
+              senses_.extent_weber * met.amount};
+    } else if (!both && sense_.met().force > 0.0) {
+      felt = {sense_.percept(), senses_.extent_weber * sense_.percept()};
+    }
+    const bool sees = sight_ && seen_.shown;
+    const subject::Cue seen = sees ? sight_->see(seen_.dots.height, seen_.dots.noise, sight_noise_)
+                                   : subject::Cue{0.0, kNever};
+    return subject::combine(felt, seen).estimate;
+  }
+
+  void feel(const TrialView& view, const stimulus::Forces& forces, double dt) noexcept {
     if (view.interval == 0) {
       return;
     }
+    const PointState& hand = limbs_.front().state;
     if (felt_in_ < 0 || stage_ == felt_in_) {
-      sense_.feel(force, hand, dt);
+      sense_.feel(forces[0], hand, dt);
+      if (limbs_.size() > 1 && forces.size() > 1) {
+        grip_.feel({forces[0], hand}, {forces[1], limbs_[1].state}, dt);
+      }
+      seen_ = view.dots.shown ? view.dots : seen_;
     }
     if (error_ && stage_ == learnt_in_) {
-      error_->feel(force, compensation(), prober_.desired().velocity);
+      error_->feel(forces[0], compensation(), limbs_.front().prober.desired().velocity);
     }
   }
 
   Eigen::Vector3d compensation() const noexcept {
     return adaptation_ && stage_ >= 0 && stage_ == learnt_in_
-               ? adaptation_->compensation(plan_.adaptation->field, prober_.desired().velocity)
+               ? adaptation_->compensation(plan_.adaptation->field,
+                                           limbs_.front().prober.desired().velocity)
                : Eigen::Vector3d(Eigen::Vector3d::Zero());
   }
 
-  void act(const PointState& hand, double dt) noexcept {
-    subject::HandCommand command = prober_.command(hand, dt);
-    command.force += compensation();
-    hand_.command(command);
+  void act(double dt) noexcept {
+    for (std::size_t i = 0; i < limbs_.size(); ++i) {
+      subject::HandCommand command = limbs_[i].prober.command(limbs_[i].state, dt);
+      if (i == 0) {
+        command.force += compensation();
+      }
+      limbs_[i].hand->command(command);
+    }
   }
 
   void answer(const TrialView& view, double dt) noexcept {
@@ -213,17 +291,21 @@ class TrialsRig::Participant final : public stimulus::Observer {
   const ObserverPlan& plan_;
   const std::vector<Question>& questions_;
   SaidAnswer& said_;
-  subject::HandModel& hand_;
   std::uint64_t seed_;
   subject::HandParameters hand_parameters_;
   double step_;  // [s]
-  subject::Prober prober_;
   subject::JudgementParameters judgement_;
+  subject::SenseParameters senses_;
   subject::Sense sense_;
+  subject::Grip grip_;
+  subject::FeltNoise grip_noise_;
+  std::optional<subject::Sight> sight_;
+  double sight_noise_{0.0};  // of the interval, standard normal
+  DotsShown seen_;           // in the interval
+  std::vector<Limb> limbs_;  // (devices)
   subject::Judge judge_;
   int felt_in_;  // stage; -1: all
   RandomStream reaction_;
-  std::vector<const StageAction*> actions_;  // (stages), null: rests
   std::optional<subject::TwoRate> adaptation_;
   std::optional<subject::FieldError> error_;
   int learnt_in_{-1};
@@ -237,13 +319,35 @@ class TrialsRig::Participant final : public stimulus::Observer {
   std::array<double, kMostIntervals> percepts_{};
 };
 
+TrialsRig::Arm::Arm(const Definition& d, const Eigen::Vector3d& start)
+    : hand(std::make_unique<subject::Hand>(d.hand, 1.0 / d.rate, start)),
+      device(d.device, *hand, d.rate) {}
+
 TrialsRig::TrialsRig(const Briefing& briefing, std::uint64_t session_seed)
-    : hand_(std::make_unique<subject::Hand>(
-          briefing.definition->hand, 1.0 / briefing.definition->rate, Eigen::Vector3d::Zero())),
-      device_(briefing.definition->device, *hand_, briefing.definition->rate),
-      participant_(std::make_unique<Participant>(briefing, *hand_, session_seed)) {}
+    : envelope_(briefing.definition->envelope) {
+  const Definition& d = *briefing.definition;
+  for (const TrialDevice& each : *briefing.devices) {
+    arms_.push_back(std::make_unique<Arm>(d, each.start));
+  }
+  if (arms_.empty()) {
+    arms_.push_back(std::make_unique<Arm>(d, Eigen::Vector3d::Zero()));
+  }
+  std::vector<subject::HandModel*> hands;
+  for (const auto& arm : arms_) {
+    hands.push_back(arm->hand.get());
+  }
+  participant_ = std::make_unique<Participant>(briefing, hands, session_seed);
+}
 
 TrialsRig::~TrialsRig() = default;
+
+std::vector<DeviceSet::Arm> TrialsRig::others() {
+  std::vector<DeviceSet::Arm> others;
+  for (std::size_t i = 1; i < arms_.size(); ++i) {
+    others.push_back({&arms_[i]->device, envelope_});
+  }
+  return others;
+}
 
 stimulus::Observer* TrialsRig::subject() { return participant_.get(); }
 

@@ -15,8 +15,10 @@
 namespace haptrial::protocols {
 
 struct Question;
+struct TrialDevice;
 
-/// A virtual device with the hand of a virtual participant, who explores, feels and answers.
+/// A virtual device with the hand of a virtual participant, who explores, feels and answers; or
+/// several devices, a hand or fingertip at each.
 class TrialsRig final : public Rig {
  public:
   /// What a participant has been told.
@@ -25,20 +27,28 @@ class TrialsRig final : public Rig {
     const ObserverPlan* plan{nullptr};
     const std::vector<Question>* questions{nullptr};
     std::vector<std::string> stages;  // names, in their order
-    SaidAnswer* said{nullptr};        // where answers go
+    const std::vector<TrialDevice>* devices{nullptr};
+    SaidAnswer* said{nullptr};  // where answers go
   };
   /// @param briefing  what it points to outlives the rig
   /// @param session_seed  the person, and every random number of theirs, follows from it
   TrialsRig(const Briefing& briefing, std::uint64_t session_seed);
   ~TrialsRig() override;
 
-  device::Device& device() override { return device_; }
+  device::Device& device() override { return arms_.front()->device; }
+  std::vector<DeviceSet::Arm> others() override;
   stimulus::Observer* subject() override;
 
  private:
+  /// A hand at its device.
+  struct Arm {
+    Arm(const Definition& definition, const Eigen::Vector3d& start);
+    std::unique_ptr<subject::HandModel> hand;
+    device::VirtualDevice device;
+  };
   class Participant;
-  std::unique_ptr<subject::HandModel> hand_;
-  device::VirtualDevice device_;
+  device::EnvelopeLimits envelope_;
+  std::vector<std::unique_ptr<Arm>> arms_;
   std::unique_ptr<Participant> participant_;
 };
 

@@ -62,7 +62,7 @@ onset = { speed_above = 0.03 }
   EXPECT_THAT(problems, ElementsAre());
   ASSERT_EQ(stages.size(), 2U);
   EXPECT_EQ(stages[0].stage.fields, 0b01U);
-  EXPECT_EQ(stages[0].stage.until.inside, 0);
+  EXPECT_EQ(stages[0].stage.until.inside, 0b1U);
   EXPECT_EQ(stages[0].stage.until.hold, 0.3);
   EXPECT_EQ(stages[0].stage.timeout, 5.0);
   EXPECT_EQ(stages[0].stage.late, Consequence::kAbort);

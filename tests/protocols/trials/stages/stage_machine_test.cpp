@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <stdexcept>
@@ -30,17 +31,17 @@ class StageMachineTest : public testing::Test {
 
   /// A machine with one region, a ball of 1 cm about the origin.
   StageMachine machine(std::vector<Stage> stages) {
-    return {std::move(stages), {scene::PlacedShape(scene::Sphere{{0.0, 0.0, 0.0}, 0.01})}, 1};
+    return {std::move(stages), {{scene::PlacedShape(scene::Sphere{{0.0, 0.0, 0.0}, 0.01}), 0}}, 1};
   }
   /// Ticks until the machine is no longer running. @returns how many
   int run(StageMachine& m, const std::function<device::DeviceReading(double)>& at,
           int most = 100000) {
-    m.begin(scene_, repeats_);
+    m.begin({&scene_, 1}, repeats_);
     int ticks = 0;
     while (m.state() == State::kRunning && ticks < most) {
       const device::DeviceReading reading = at(ticks * kDt);
       scene_.force(reading.tool);
-      m.tick(reading, scene_, kDt);
+      m.tick({&reading, 1}, {&scene_, 1}, kDt);
       ++ticks;
     }
     return ticks;
@@ -70,7 +71,7 @@ TEST_F(StageMachineTest, AStageOfATimeLastsAsManyTicks) {
 
 TEST_F(StageMachineTest, WhatHasToHoldHoldsWithoutABreak) {
   Stage stage;
-  stage.until.inside = 0;
+  stage.until.inside = 0b1;
   stage.until.hold = 0.1;
   StageMachine m = machine({stage});
   // In the ball from 0.2 s on, but for one tick at 0.25 s.
@@ -87,7 +88,7 @@ TEST_F(StageMachineTest, SpeedsAndContactEndAStage) {
   rest.until.speed_below = 0.01;
   Stage touch;
   touch.fields = 1;
-  touch.until.contact = 0;
+  touch.until.contact = 0b1;
   StageMachine m = machine({rest, touch});
   run(m, [](double t) { return at_height(0.03 - 0.1 * t, t < 0.1 - 1e-9 ? -0.1 : 0.0); });
   EXPECT_EQ(m.times()[0].end, 100);
@@ -123,7 +124,7 @@ TEST_F(StageMachineTest, AKeyOfTheWindowCountsTheSame) {
 
 TEST_F(StageMachineTest, LateStagesGoOnAbortOrRepeat) {
   Stage stage;
-  stage.until.inside = 0;
+  stage.until.inside = 0b1;
   stage.timeout = 0.05;
   const auto outside = [](double) { return at_height(1.0); };
   stage.late = Consequence::kGoOn;
@@ -160,7 +161,7 @@ TEST_F(StageMachineTest, WhoDidNotPressGetsTheIntervalAgain) {
 
 TEST_F(StageMachineTest, TheOnsetOfAMovementIsKnownToTheTick) {
   Stage reach;
-  reach.until.inside = 0;
+  reach.until.inside = 0b1;
   reach.onset_speed = 0.03;
   StageMachine m = machine({reach});
   // From rest with 0.2 m/s²: faster than 0.03 m/s after 0.15 s.
@@ -175,18 +176,18 @@ TEST_F(StageMachineTest, FieldsActInTheirStagesAlone) {
   Stage on = off;
   on.fields = 1;
   StageMachine m = machine({off, on, off});
-  m.begin(scene_, 0);
+  m.begin({&scene_, 1}, 0);
   const device::DeviceReading deep = at_height(-0.004);
   for (int k = 0; k < 30; ++k) {
     const double force = scene_.force(deep.tool).y();
     EXPECT_NEAR(force, k >= 10 && k < 20 ? 2.0 : 0.0, 1e-9) << k;
-    m.tick(deep, scene_, kDt);
+    m.tick({&deep, 1}, {&scene_, 1}, kDt);
   }
 }
 
 TEST_F(StageMachineTest, WhatIsNotThereIsNamed) {
   Stage stage;
-  stage.until.inside = 1;
+  stage.until.inside = 0b10;
   EXPECT_THAT(
       [&] {
         machine({Stage{}, stage});
@@ -206,12 +207,85 @@ TEST_F(StageMachineTest, ATickDoesNotAllocate) {
   StageMachine m = machine({stage, stage});
   const device::DeviceReading reading = at_height(-0.001);
   const test::AllocationGuard guard;
-  m.begin(scene_, 2);
+  m.begin({&scene_, 1}, 2);
   for (int k = 0; k < 100; ++k) {
     scene_.force(reading.tool);
-    m.tick(reading, scene_, kDt);
+    m.tick({&reading, 1}, {&scene_, 1}, kDt);
   }
   EXPECT_EQ(guard.count(), 0U);
+}
+
+/// A floor at 0 that two fingertips feel, and one that the second alone feels.
+class TwoDevicesTest : public testing::Test {
+ protected:
+  TwoDevicesTest() {
+    scene::Field own = floor_field();
+    own.name = "own";
+    const std::vector<scene::Field> fields{floor_field(), own};
+    for (int i = 0; i < 2; ++i) {
+      scenes_.emplace_back(fields, 1.0 / kDt);
+    }
+  }
+  StageMachine machine(const Stage& stage) {
+    const scene::PlacedShape ball(scene::Sphere{{0.0, 0.0, 0.0}, 0.01});
+    return {{stage}, {{ball, 0}, {ball, 1}}, 2, {0b01, 0b11}};
+  }
+  /// Ticks until the machine is done, the heights of the tips given by time.
+  int run(StageMachine& m, const std::function<std::array<double, 2>(double)>& heights) {
+    m.begin(scenes_, 0);
+    int ticks = 0;
+    for (; m.state() == State::kRunning && ticks < 10000; ++ticks) {
+      std::array<device::DeviceReading, 2> readings;
+      for (std::size_t i = 0; i < 2; ++i) {
+        readings[i].tool.position.y() = heights(ticks * kDt)[i];
+        scenes_[i].force(readings[i].tool);
+      }
+      m.tick(readings, scenes_, kDt);
+    }
+    return ticks;
+  }
+  std::vector<scene::Scene> scenes_;
+};
+
+TEST_F(TwoDevicesTest, EachRegionIsAskedOfItsOwnTool) {
+  Stage stage;
+  stage.until.inside = 0b11;
+  StageMachine both = machine(stage);
+  EXPECT_EQ(run(both, [](double t) {
+              return std::array{t < 0.1 - 1e-9 ? 0.05 : 0.0, t < 0.3 - 1e-9 ? 0.05 : 0.0};
+            }),
+            301);
+  stage.until.inside = 0b10;
+  StageMachine second = machine(stage);
+  EXPECT_EQ(run(second, [](double t) { return std::array{0.05, t < 0.2 - 1e-9 ? 0.05 : 0.0}; }),
+            201);
+}
+
+TEST_F(TwoDevicesTest, ContactIsThatOfEveryDeviceThatFeelsTheField) {
+  Stage stage;
+  stage.fields = 0b11;
+  stage.until.contact = 0b01;
+  StageMachine both = machine(stage);
+  const auto tips = [](double t) {
+    return std::array{t < 0.1 - 1e-9 ? 0.01 : -0.001, t < 0.3 - 1e-9 ? 0.01 : -0.001};
+  };
+  EXPECT_NEAR(run(both, tips), 301, 1);
+  stage.until.contact = 0b10;  // felt by the second alone
+  StageMachine second = machine(stage);
+  EXPECT_NEAR(run(second, [](double t) {
+                return std::array{0.05, t < 0.2 - 1e-9 ? 0.01 : -0.001};
+              }),
+              201, 1);
+}
+
+TEST_F(TwoDevicesTest, AFieldOfOneDeviceDoesNotPushTheOther) {
+  Stage stage;
+  stage.fields = 0b10;
+  stage.until.time = 0.1;
+  StageMachine m = machine(stage);
+  run(m, [](double) { return std::array{-0.002, -0.002}; });
+  EXPECT_EQ(scenes_[0].state(1).force.norm(), 0.0);
+  EXPECT_NEAR(scenes_[1].state(1).force.y(), 500.0 * 0.002, 1e-12);
 }
 
 }  // namespace

@@ -1,0 +1,53 @@
+#include "core/subject/perceiver/sight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/base/random.h"
+
+namespace haptrial::subject {
+
+void check(const SightParameters& sight) {
+  const bool rising = std::adjacent_find(sight.noise.begin(), sight.noise.end(),
+                                         std::greater_equal<>()) == sight.noise.end();
+  if (sight.noise.empty() || !rising) {
+    throw std::invalid_argument("noise must be one or more rising numbers");
+  }
+  if (sight.sd.size() != sight.noise.size()) {
+    throw std::invalid_argument("sd must have as many numbers as noise");
+  }
+  if (std::any_of(sight.sd.begin(), sight.sd.end(), [](double sd) { return !(sd > 0.0); })) {
+    throw std::invalid_argument("sd must be above 0");
+  }
+  if (!(sight.spread >= 0.0)) {
+    throw std::invalid_argument("spread must be at least 0");
+  }
+}
+
+Sight::Sight(const SightParameters& sight, std::uint64_t seed) : sight_(sight) {
+  check(sight_);
+  RandomStream random(seed, "observer sight");
+  factor_ = std::exp(sight_.spread * random.normal());
+}
+
+double Sight::spread_at(double noise) const noexcept {
+  const std::vector<double>& x = sight_.noise;
+  const auto above =
+      static_cast<std::size_t>(std::upper_bound(x.begin(), x.end(), noise) - x.begin());
+  if (above == 0) {
+    return factor_ * sight_.sd.front();
+  }
+  if (above == x.size()) {
+    return factor_ * sight_.sd.back();
+  }
+  const double share = (noise - x[above - 1]) / (x[above] - x[above - 1]);
+  return factor_ * ((1.0 - share) * sight_.sd[above - 1] + share * sight_.sd[above]);
+}
+
+Cue Sight::see(double size, double noise, double deviate) const noexcept {
+  const double spread = spread_at(noise);
+  return {size + spread * deviate, spread};
+}
+
+}  // namespace haptrial::subject

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/subject/perceiver/cue_combination.h"
+
+namespace haptrial::subject {
+
+/// How well a size is seen: the standard deviation at each noise of the picture.
+struct SightParameters {
+  std::vector<double> noise;  // rising, at least one
+  std::vector<double> sd;     // (noise) > 0 [m]
+  double spread{0.0};         // between people: sd of the log of a factor on all of them >= 0
+};
+
+/// @throws std::invalid_argument naming what breaks its bound.
+void check(const SightParameters& sight);
+
+/// The eyes of one person. Servo thread after construction: no allocation, lock, I/O or throw.
+class Sight {
+ public:
+  /// @param sight  passes check(). @param seed  of the person; the stream is "observer sight"
+  Sight(const SightParameters& sight, std::uint64_t seed);
+  /// The standard deviation at a noise: straight lines between those that are known, the outermost
+  /// ones beyond them [m].
+  double spread_at(double noise) const noexcept;
+  /// What is seen of a size. @param deviate  standard normal
+  Cue see(double size, double noise, double deviate) const noexcept;
+
+ private:
+  SightParameters sight_;
+  double factor_{1.0};
+};
+
+}  // namespace haptrial::subject
