@@ -36,7 +36,8 @@ bone::DrillingView from_the_start(bone::DrillingView seen, const protocols::Bone
 // Draws a procedure at moments that `wanted` chooses; the last picture is the cavity at the end.
 class Watcher {
  public:
-  Watcher(const protocols::BoneReplay& replay, int trial) : replay_(replay), last_(replay.ticks(trial) - 1) {}
+  Watcher(const protocols::BoneReplay& replay, int trial)
+      : replay_(replay), last_(replay.ticks(trial) - 1) {}
 
   template <class Wanted, class Frame, class End>
   protocols::BoneReplay::Watch watch(Wanted wanted, Frame frame, End end) {
@@ -112,7 +113,8 @@ render::Image frame_sheet(const protocols::BoneReplay& replay, int trial, int fr
   return contact_sheet(pictures, kColumns, cavity);
 }
 
-void film(const protocols::BoneReplay& replay, int trial, const std::filesystem::path& file, double speed) {
+void film(const protocols::BoneReplay& replay, int trial, const std::filesystem::path& file,
+          double speed) {
   constexpr int kFps = 15;
   constexpr int kSecondsOfTheEnd = 4;
   VideoWriter video(file, kFps);

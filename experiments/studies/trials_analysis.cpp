@@ -71,8 +71,9 @@ PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
     return defaults;
   }
   const protocols::Track& track = d.tracks.front();
-  defaults.kind =
-      track.kind == "magnitude" ? AnalysisKind::kMagnitude : AnalysisKind::kPsychometric;
+  defaults.kind = track.kind == "magnitude"    ? AnalysisKind::kMagnitude
+                  : track.kind == "adjustment" ? AnalysisKind::kAdjustment
+                                               : AnalysisKind::kPsychometric;
   defaults.guess = guess_of(d);
   if (track.staircase) {
     defaults.axis = track.staircase->axis;

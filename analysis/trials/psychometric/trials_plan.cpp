@@ -16,10 +16,11 @@ namespace {
 
 using psychometric::Scale;
 
-constexpr std::array<std::pair<AnalysisKind, const char*>, 5> kKinds{
+constexpr std::array<std::pair<AnalysisKind, const char*>, 6> kKinds{
     {{AnalysisKind::kPsychometric, "psychometric"},
      {AnalysisKind::kDetection, "detection"},
      {AnalysisKind::kMagnitude, "magnitude"},
+     {AnalysisKind::kAdjustment, "adjustment"},
      {AnalysisKind::kReaching, "reaching"},
      {AnalysisKind::kNone, "none"}}};
 constexpr std::array<std::pair<Scale, const char*>, 4> kScales{{{Scale::kLinear, "linear"},

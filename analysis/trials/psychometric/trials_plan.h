@@ -22,6 +22,7 @@ enum class AnalysisKind {
   kPsychometric,  // functions of the level: thresholds, slopes, Weber fractions
   kDetection,     // signal and noise: d', criterion, ROC of ratings
   kMagnitude,     // numbers in proportion to what was felt: exponents
+  kAdjustment,    // levels that participants set: means
   kReaching,      // movements, which have an analysis of their own
 };
 
@@ -64,7 +65,7 @@ struct TrialsPlan {
 
 /// Reads the table [analysis], all of whose keys may be left out. Problems are noted.
 ///
-///     kind          "psychometric", "detection", "magnitude", "reaching" or "none"
+///     kind          "psychometric", "detection", "magnitude", "adjustment", "reaching" or "none"
 ///     by            factors: each combination has a function, d' or exponent of its own; left out:
 ///                   all of them, of detection none, as they may say where the signal is
 ///     tests         planned: "a < b", "a > b" or "a != b" of levels of these factors

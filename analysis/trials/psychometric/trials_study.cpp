@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "core/base/error.h"
@@ -119,6 +120,26 @@ void add_magnitudes(TrialsResult& result) {
   result.quantities.push_back(quantity("exponent", "exponent", "", exponents, result.plan));
 }
 
+/// A participant's setting under a condition: the mean of their tracks' own estimates.
+void add_settings(TrialsResult& result) {
+  std::map<std::pair<std::string, std::vector<std::string>>, std::vector<double>> settings;
+  for (const TrackEstimate& track : result.tracks) {
+    if (!track.estimates.empty() && !track.steps.empty()) {
+      const StudyTrial& first = result.data.trials[track.steps.front().trial];
+      settings[{track.participant, factors_of(result.data, first, result.plan)}].push_back(
+          track.estimates.front().value);
+    }
+  }
+  std::vector<QuantityValue> values;
+  for (const auto& [of, each] : settings) {
+    values.push_back(
+        {of.first, of.second,
+         std::accumulate(each.begin(), each.end(), 0.0) / static_cast<double>(each.size())});
+  }
+  result.quantities.push_back(
+      quantity("setting", "setting", result.plan.function.axis.unit, values, result.plan));
+}
+
 void add_tests(const Quantity& q, std::vector<NamedTest>& tests) {
   for (const auto& effect : q.tests.effects) {
     if (effect) {
@@ -170,6 +191,9 @@ TrialsResult analyze(TrialsData data, const TrialsPlan& plan, const ProcedureOf&
   }
   if (plan.kind == AnalysisKind::kMagnitude) {
     add_magnitudes(result);
+  }
+  if (plan.kind == AnalysisKind::kAdjustment) {
+    add_settings(result);
   }
   return result;
 }

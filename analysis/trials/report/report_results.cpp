@@ -193,6 +193,26 @@ void add_laws(Document& document, const TrialsResult& result,
   document.table({"participant", "exponent", "modulus"}, people, "Every participant's exponent");
 }
 
+void add_settings(Document& document, const TrialsResult& result,
+                  const std::vector<Drawing>& drawings) {
+  add_section(document, result, "Settings");
+  add_means(document, result);
+  add_pictures(document, drawings, "by-condition-", kMostPictures);
+  Rows rows;
+  for (const TrackEstimate& track : result.tracks) {
+    const bool known = !track.estimates.empty();
+    rows.push_back({series_name(track.participant, track.track), std::to_string(track.steps.size()),
+                    known ? track.estimates.front().name : "not defined, because " + track.because,
+                    known ? number(track.estimates.front().value) : "–",
+                    known && track.estimates.front().deviation
+                        ? number(*track.estimates.front().deviation)
+                        : "–"});
+  }
+  document.table({"participant", "presentations", "estimate",
+                  with_unit("level", result.plan.function.axis.unit), "standard error"},
+                 rows, "Every participant's settings");
+}
+
 }  // namespace
 
 void add_results(Document& document, const TrialsResult& result,
@@ -205,6 +225,9 @@ void add_results(Document& document, const TrialsResult& result,
   }
   if (result.plan.kind == AnalysisKind::kMagnitude) {
     add_laws(document, result, drawings);
+  }
+  if (result.plan.kind == AnalysisKind::kAdjustment) {
+    add_settings(document, result, drawings);
   }
   if (result.reaching) {
     add_reaching(document, result, drawings);

@@ -80,6 +80,11 @@ void add_methods(Document& document, const TrialsResult& result) {
         "the exponent is the least-squares slope of log estimate over log level. Moduli are "
         "equalised before participants are averaged (Lane, Catania and Stevens 1961).");
   }
+  if (plan.kind == AnalysisKind::kAdjustment) {
+    document.paragraph(
+        "A setting is the level at which an adjustment was left; those of a track are averaged, "
+        "and the tracks of a participant under a condition again.");
+  }
   if (plan.kind == AnalysisKind::kReaching) {
     add_reaching_methods(document, plan.reaching);
     document.heading("Definition");

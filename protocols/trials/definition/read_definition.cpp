@@ -115,7 +115,12 @@ void check_learning(Table& root, const TrialsDefinition& d) {
     if (!track.counts.empty()) {
       continue;
     }
-    if (d.questions.empty() || d.questions.front().correct.empty()) {
+    if (track.kind == "adjustment") {
+      root.reject(table, fmt::format("does not say which answer raises the level (\"{}\"); add "
+                                     "`counts`, a formula that is 1, -1 or 0: \"$answer == 1 ? 1 "
+                                     ": $answer == 2 ? -1 : 0\"",
+                                     track.name));
+    } else if (d.questions.empty() || d.questions.front().correct.empty()) {
       root.reject(table,
                   fmt::format("learns from right answers (\"{}\"), and no response says which "
                               "is right; add `correct` to [response] or `counts` to the "

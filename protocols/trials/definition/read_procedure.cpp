@@ -7,6 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "core/psychometric/procedure/adjusting.h"
 #include "core/psychometric/procedure/listed.h"
 #include "core/psychometric/procedure/pest.h"
 #include "core/psychometric/procedure/staircase.h"
@@ -248,6 +249,25 @@ void read_magnitude(const TrackKeys& keys, Track& track) {
   };
 }
 
+/// Steps that get finer, from starts of either side.
+void read_adjustment(const TrackKeys& keys, Track& track) {
+  read_range(keys, track);
+  AdjustingParameters p;
+  p.axis = track.axis = read_axis(keys, track);
+  p.low = track.low;
+  p.high = track.high;
+  p.starts.levels = read_grid(keys, "starts");
+  p.starts.repetitions = whole_or(keys, "repetitions", 1, 1, 10000);
+  p.starts.in_rounds = truth_of(keys, "in_rounds");
+  p.steps = keys.of("steps").numbers("steps", kPositive, "");
+  p.most_presentations = whole_or(keys, "most_presentations", p.most_presentations, 1, 1000);
+  track.most_trials =
+      static_cast<int>(p.starts.levels.size()) * p.starts.repetitions * p.most_presentations;
+  track.begin = [p](std::uint64_t seed, const std::string& name) {
+    return std::make_unique<Adjusting>(p, seed, name);
+  };
+}
+
 /// The levels that a psi may present, as the range of a track.
 PsiParameters read_psi_function(const TrackKeys& keys, Track& track) {
   PsiParameters p;
@@ -296,7 +316,8 @@ void read_psi(const TrackKeys& keys, Track& track) {
 }  // namespace
 
 const std::vector<std::string>& procedure_kinds() {
-  static const std::vector<std::string> kinds{"staircase", "pest", "psi", "constant", "magnitude"};
+  static const std::vector<std::string> kinds{"staircase", "pest",       "psi",
+                                              "constant",  "adjustment", "magnitude"};
   return kinds;
 }
 
@@ -309,6 +330,8 @@ void read_procedure(const TrackKeys& keys, Track& track) {
     read_psi(keys, track);
   } else if (track.kind == "constant") {
     read_constant(keys, track);
+  } else if (track.kind == "adjustment") {
+    read_adjustment(keys, track);
   } else {
     read_magnitude(keys, track);
   }

@@ -17,7 +17,8 @@ namespace haptrial::protocols {
 /// what came of it.
 struct Track {
   std::string name;
-  std::string kind;             // "staircase", "pest", "psi", "constant", "magnitude"
+  std::string kind;             // "staircase", "pest", "psi", "constant", "adjustment",
+                                // "magnitude"
   std::string variable;         // that it sets
   std::string unit;             // of the variable, as a text
   std::vector<std::string> by;  // factors: each combination has a track of its own

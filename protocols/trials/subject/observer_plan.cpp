@@ -142,23 +142,40 @@ Adaptation read_adaptation(Table& table, const std::vector<std::string>& stages)
   return adaptation;
 }
 
+/// The choice of the first question whose value the key names, from 0.
+int read_choice(Table& table, const char* key, const std::vector<Question>& questions,
+                int otherwise) {
+  if (!table.has(key)) {
+    return otherwise;
+  }
+  const std::string value = table.text(key);
+  const std::vector<Choice> choices =
+      questions.empty() ? std::vector<Choice>{} : questions.front().choices;
+  const auto found = std::ranges::find(choices, value, &Choice::value);
+  if (found == choices.end()) {
+    table.reject(key, fmt::format("\"{}\"", value), "the value of a choice of the response");
+    return otherwise;
+  }
+  return static_cast<int>(found - choices.begin());
+}
+
 void read_decision(Table& table, const std::vector<Question>& questions, ObserverPlan& plan) {
   if (table.has("decides")) {
-    const std::string how = table.choice("decides", {"largest", "smallest", "yes", "magnitude"});
+    const std::string how =
+        table.choice("decides", {"largest", "smallest", "yes", "magnitude", "adjust"});
     plan.decides = how == "smallest"    ? Decides::kSmallest
                    : how == "yes"       ? Decides::kYes
                    : how == "magnitude" ? Decides::kMagnitude
+                   : how == "adjust"    ? Decides::kAdjust
                                         : Decides::kLargest;
   }
-  if (table.has("yes")) {
-    const std::string value = table.text("yes");
-    const auto* choices = questions.empty() ? nullptr : &questions.front().choices;
-    const auto found = choices == nullptr ? std::vector<Choice>::const_iterator{}
-                                          : std::ranges::find(*choices, value, &Choice::value);
-    if (choices == nullptr || found == choices->end()) {
-      table.reject("yes", fmt::format("\"{}\"", value), "the value of a choice of the response");
-    } else {
-      plan.yes = static_cast<int>(found - choices->begin());
+  plan.yes = read_choice(table, "yes", questions, plan.yes);
+  if (plan.decides == Decides::kAdjust) {
+    plan.raise = read_choice(table, "raise", questions, plan.raise);
+    plan.lower = read_choice(table, "lower", questions, plan.lower);
+    plan.done = read_choice(table, "done", questions, plan.done);
+    if (table.has("wanted")) {
+      plan.wanted = table.number("wanted", kPositive, "");
     }
   }
   if (table.has("reaction")) {

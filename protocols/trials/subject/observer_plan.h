@@ -22,7 +22,7 @@ struct Question;
 struct TrialDevice;
 
 /// How virtual participants of trials take what they feel for an answer.
-enum class Decides : std::uint8_t { kLargest, kSmallest, kYes, kMagnitude };
+enum class Decides : std::uint8_t { kLargest, kSmallest, kYes, kMagnitude, kAdjust };
 
 /// What a hand does in a stage.
 struct StageAction {
@@ -44,7 +44,9 @@ struct ObserverPlan {
   subject::Quantity senses{subject::Quantity::kForce};
   std::string stage;  // in which it is felt; empty: throughout the interval
   Decides decides{Decides::kLargest};
-  int yes{0};            // choice that means yes, from 0
+  int yes{0};                       // choice that means yes, from 0
+  int raise{0}, lower{1}, done{2};  // choices of an adjustment, from 0
+  double wanted{1.0};    // percept that is adjusted to, if the trial shows none before [its unit]
   double reaction{0.6};  // median time from question to answer > 0 [s]
   std::vector<StageAction> actions;
   std::optional<Adaptation> adaptation;
@@ -58,7 +60,10 @@ struct ObserverPlan {
 ///     [senses]      "force", "stiffness", "compliance", "viscosity", "friction", "roughness",
 ///                   "extent"
 ///     [in_stage]    in which it is felt
-///     [decides]     "largest", "smallest", "yes" or "magnitude"
+///     [decides]     "largest", "smallest", "yes", "magnitude" or "adjust": the last interval until
+///                   it feels as the first one, or as `wanted`
+///     [raise], [lower], [done]  values of the choices of an adjustment; the first three in this
+///                   order if left out. [wanted] a percept
 ///     [yes]         value of the choice that means yes; the first one if left out
 ///     [reaction]    [s]
 ///     [actions]     stage = { do = "press", force, [rise], [direction], [travel] },

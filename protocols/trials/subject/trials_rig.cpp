@@ -265,7 +265,11 @@ class TrialsRig::Participant final : public stimulus::Observer {
       return;
     }
     const int most = static_cast<int>(question.choices.size());
-    if (first) {
+    if (first && plan_.decides == Decides::kAdjust) {
+      const double wanted = intervals_ > 1 ? percepts_[0] : plan_.wanted;
+      const int way = judge_.adjust(percepts_[intervals_ - 1], wanted);
+      said_.choice = way > 0 ? plan_.raise : way < 0 ? plan_.lower : plan_.done;
+    } else if (first) {
       decision_ = judged();
       said_.choice = plan_.decides == Decides::kYes
                          ? (decision_.answer == 1 ? plan_.yes : 1 - plan_.yes)

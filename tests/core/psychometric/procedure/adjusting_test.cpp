@@ -1,0 +1,111 @@
+#include "core/psychometric/procedure/adjusting.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace haptrial::psychometric {
+namespace {
+
+AdjustingParameters from(std::vector<double> starts) {
+  AdjustingParameters p;
+  p.starts.levels = std::move(starts);
+  p.starts.in_rounds = true;
+  p.steps = {4.0, 2.0, 1.0};
+  p.low = 0.0;
+  p.high = 30.0;
+  return p;
+}
+
+void answer(Adjusting& procedure, double answer) { procedure.report(answer, procedure.next()); }
+
+TEST(AdjustingTest, StepsGetFinerAtEveryTurnAndASettingEndsAnAdjustment) {
+  Adjusting procedure(from({10.0}), 1, "a");
+  EXPECT_EQ(procedure.next(), Level{10.0});
+  answer(procedure, 1.0);
+  EXPECT_EQ(procedure.next(), Level{14.0});
+  answer(procedure, 1.0);
+  EXPECT_EQ(procedure.next(), Level{18.0});
+  answer(procedure, -1.0);  // a turn
+  EXPECT_EQ(procedure.next(), Level{16.0});
+  answer(procedure, 1.0);  // another
+  EXPECT_EQ(procedure.next(), Level{17.0});
+  answer(procedure, -1.0);  // there is no finer step
+  EXPECT_EQ(procedure.next(), Level{16.0});
+  answer(procedure, 0.0);
+  EXPECT_TRUE(procedure.finished());
+  ASSERT_EQ(procedure.settings().size(), 1U);
+  EXPECT_EQ(procedure.settings()[0], 16.0);
+  EXPECT_THROW(procedure.next(), std::logic_error);
+}
+
+TEST(AdjustingTest, TheLevelThatWasPresentedIsWhereItGoesOnFrom) {
+  Adjusting procedure(from({10.0}), 1, "a");
+  procedure.report(1.0, {10.5});  // rounded by the device
+  EXPECT_EQ(procedure.next(), Level{14.5});
+  procedure.report(0.0, {14.25});
+  EXPECT_EQ(procedure.settings()[0], 14.25);
+}
+
+TEST(AdjustingTest, StaysWithinItsRangeAndGivesUpAnEndlessAdjustment) {
+  AdjustingParameters p = from({28.0});
+  p.most_presentations = 5;
+  Adjusting procedure(p, 1, "a");
+  for (int i = 0; i < 5; ++i) {
+    answer(procedure, 1.0);
+    if (!procedure.finished()) {
+      EXPECT_LE(procedure.next().front(), 30.0);
+    }
+  }
+  EXPECT_TRUE(procedure.finished());
+  EXPECT_EQ(procedure.given_up(), 1);
+  EXPECT_TRUE(procedure.estimates().empty());
+}
+
+TEST(AdjustingTest, SomebodyWhoKnowsTheStandardSetsItFromBothSides) {
+  AdjustingParameters p = from({5.0, 25.0});
+  p.starts.repetitions = 3;
+  Adjusting procedure(p, 7, "a");
+  int presentations = 0;
+  while (!procedure.finished() && ++presentations < 500) {
+    const double d = procedure.next().front() - 13.2;
+    answer(procedure, std::abs(d) <= 0.5 ? 0.0 : d > 0.0 ? -1.0 : 1.0);
+  }
+  ASSERT_EQ(procedure.settings().size(), 6U);
+  for (const double setting : procedure.settings()) {
+    EXPECT_NEAR(setting, 13.2, 0.5);
+  }
+  const auto estimates = procedure.estimates();
+  ASSERT_EQ(estimates.size(), 1U);
+  EXPECT_EQ(estimates[0].name, "mean of 6 settings");
+  EXPECT_NEAR(estimates[0].value, 13.2, 0.5);
+}
+
+TEST(AdjustingTest, ARepetitionOfTheOutcomesGivesTheSameLevels) {
+  AdjustingParameters p = from({5.0, 15.0, 25.0});
+  p.starts.repetitions = 2;
+  Adjusting first(p, 3, "a");
+  std::vector<Outcome> outcomes;
+  for (int i = 0; i < 25 && !first.finished(); ++i) {
+    outcomes.push_back({i % 4 == 3 ? 0.0 : i % 3 == 0 ? 1.0 : -1.0, first.next()});
+    first.report(outcomes.back().answer, outcomes.back().applied);
+  }
+  Adjusting again(p, 3, "a");
+  replay(again, outcomes);
+  EXPECT_EQ(again.settings(), first.settings());
+  EXPECT_EQ(again.finished(), first.finished());
+}
+
+TEST(AdjustingTest, RefusesWhatItCannotUse) {
+  AdjustingParameters p = from({40.0});
+  EXPECT_THROW(Adjusting(p, 1, "a"), std::invalid_argument);
+  p = from({10.0});
+  p.steps = {1.0, 0.0};
+  EXPECT_THROW(Adjusting(p, 1, "a"), std::invalid_argument);
+  Adjusting procedure(from({10.0}), 1, "a");
+  EXPECT_THROW(procedure.report(2.0, {10.0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace haptrial::psychometric
