@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+
+#include "analysis/psychometric/fit/profile_interval.h"
 
 namespace haptrial::analysis::trials {
 namespace {
@@ -51,6 +54,53 @@ Estimated estimated(const BootstrappedFit& fit, std::size_t at) {
     e.high = fit.intervals[at]->high;
   }
   return e;
+}
+
+/// The Weber fraction of a threshold above or below the standard, or of half the distance of the
+/// quartiles on a linear axis.
+Estimated converted_weber(const FunctionReadings& r, const TrialsPlan& plan) {
+  if (!plan.reference) {
+    return {};
+  }
+  const double standard = *plan.reference;
+  if (weber_reading(plan) == Reading::kWeberThreshold) {
+    const auto of = [&](double level) { return std::abs(level - standard) / standard; };
+    Estimated e{of(r.threshold.value), of(r.threshold.low), of(r.threshold.high)};
+    if (e.low > e.high) {
+      std::swap(e.low, e.high);
+    }
+    const bool across = (r.threshold.low - standard) * (r.threshold.high - standard) < 0.0;
+    e.low = across ? 0.0 : e.low;
+    return e;
+  }
+  if (plan.function.axis.scale != psychometric::Scale::kLinear) {
+    return {};
+  }
+  const auto curve = psychometric::curve_of(plan.function);
+  const double share = (curve.z_for(0.75) - curve.z_for(0.25)) / curve.spread() / 2.0 / standard;
+  const double k = std::abs(share);
+  return {k * r.width.value, k * r.width.low, k * r.width.high};
+}
+
+/// A side without an end is infinite.
+Estimated profiled(double value, const ProfileInterval& interval, double lowest) {
+  constexpr double kOpen = std::numeric_limits<double>::infinity();
+  return {value, interval.low_open ? lowest : interval.low,
+          interval.high_open ? kOpen : interval.high};
+}
+
+/// Threshold and width, and what is one of them on another scale: their intervals hold the truth
+/// more often than a bootstrap's.
+void take_profile(FunctionReadings& r, const ProfiledFit& fit, const TrialsPlan& plan) {
+  const psychometric::Axis& axis = plan.function.axis;
+  r.x = profiled(fit.fit.parameters.threshold, fit.threshold,
+                 -std::numeric_limits<double>::infinity());
+  r.threshold = {axis.level(r.x.value), axis.level(r.x.low), axis.level(r.x.high)};
+  r.width = profiled(fit.fit.parameters.width, fit.width, 0.0);
+  if (plan.reference) {
+    const Estimated converted = converted_weber(r, plan);
+    r.weber = converted.known() ? converted : r.weber;
+  }
 }
 
 Estimated on_axis(const Estimated& level, const psychometric::Axis& axis) {
@@ -128,7 +178,9 @@ void fit_likelihood(FunctionFit& result, const TrialsPlan& plan, int threads) {
   }
   result.deviance = fit.deviance.deviance;
   result.deviance_p = drawn ? fit.deviance_p : kNotKnown;
-  result.likelihood = readings_of(fit, plan);
+  FunctionReadings readings = readings_of(fit, plan);
+  take_profile(readings, profiled_fit(result.blocks, options), plan);
+  result.likelihood = readings;
   for (std::size_t i = 0; drawn && i < kBandShares.size(); ++i) {
     result.band.push_back({kBandShares[i], estimated(fit, band + i)});
   }
@@ -147,32 +199,6 @@ Estimated marginal(const BayesianFit& fit, Dimension dimension, double value) {
     e.high = fit.intervals[dimension].front().high;
   }
   return e;
-}
-
-/// The Weber fraction of a threshold above or below the standard, or of half the distance of the
-/// quartiles on a linear axis.
-Estimated bayesian_weber(const FunctionReadings& r, const TrialsPlan& plan) {
-  if (!plan.reference) {
-    return {};
-  }
-  const double standard = *plan.reference;
-  if (weber_reading(plan) == Reading::kWeberThreshold) {
-    const auto of = [&](double level) { return std::abs(level - standard) / standard; };
-    Estimated e{of(r.threshold.value), of(r.threshold.low), of(r.threshold.high)};
-    if (e.low > e.high) {
-      std::swap(e.low, e.high);
-    }
-    const bool across = (r.threshold.low - standard) * (r.threshold.high - standard) < 0.0;
-    e.low = across ? 0.0 : e.low;
-    return e;
-  }
-  if (plan.function.axis.scale != psychometric::Scale::kLinear) {
-    return {};
-  }
-  const auto curve = psychometric::curve_of(plan.function);
-  const double share = (curve.z_for(0.75) - curve.z_for(0.25)) / curve.spread() / 2.0 / standard;
-  const double k = std::abs(share);
-  return {k * r.width.value, k * r.width.low, k * r.width.high};
 }
 
 void fit_bayesian(FunctionFit& result, const TrialsPlan& plan, int threads) {
@@ -198,7 +224,7 @@ void fit_bayesian(FunctionFit& result, const TrialsPlan& plan, int threads) {
   if (plan.guess_free) {
     r.guess = marginal(fit, kGuess, fit.mean.guess);
   }
-  r.weber = bayesian_weber(r, plan);
+  r.weber = converted_weber(r, plan);
   result.bayesian = r;
   result.overdispersion = fit.mean.eta;
   for (const std::string& warning : fit.warnings) {

@@ -12,7 +12,7 @@ namespace haptrial::analysis::trials {
 /// A number with its interval, if it has one.
 struct Estimated {
   double value{kNotKnown};
-  double low{kNotKnown}, high{kNotKnown};  // 95 %; NaN: not defined
+  double low{kNotKnown}, high{kNotKnown};  // 95 %; NaN: not defined; infinite: no end
 
   bool known() const { return value == value; }
 };
@@ -54,8 +54,9 @@ struct FunctionFit {
   psychometric::PsychometricFunction function(const TrialsPlan& plan) const;
 };
 
-/// Fits the function of a series: maximum likelihood with bootstrap intervals (bias-corrected and
-/// accelerated, from the fitted function), and the Bayesian beta-binomial fit with the percentiles
+/// Fits the function of a series: maximum likelihood with profile intervals of threshold, width and
+/// what follows from one of them, and bootstrap intervals of the rest (bias-corrected and
+/// accelerated, from the fitted function); and the Bayesian beta-binomial fit with the percentiles
 /// of its posterior. Not defined with answers at fewer than two levels, or where they do not tell
 /// the threshold.
 /// @param threads  of the bootstrap and the grid

@@ -61,11 +61,14 @@ void add_methods(Document& document, const TrialsResult& result) {
   if (plan.functions) {
     document.paragraph(function_words(plan));
     document.paragraph(fmt::format(
-        "Functions are fitted to each participant by maximum likelihood; intervals are "
-        "bias-corrected and accelerated over {} parametric bootstrap samples (Wichmann and Hill "
-        "2001). They take the presented levels as given. The Bayesian fit is beta-binomial on a "
-        "grid (Schütt et al. 2016), so that its intervals are wider where answers scatter more "
-        "than chance; its estimates are posterior means.",
+        "Functions are fitted to each participant by maximum likelihood. Intervals of threshold, "
+        "width and Weber fraction are those of the profile likelihood (Venzon and Moolgavkar "
+        "1988); they hold the truth as often as they say with some 200 trials at given levels or "
+        "in several tracks, but too rarely (74 to 87 %) with one adaptive track of some 50 trials. "
+        "Those of slope, lapse rate and band are bias-corrected and accelerated over {} parametric "
+        "bootstrap samples (Wichmann and Hill 2001). Both take the presented levels as given. The "
+        "Bayesian fit is beta-binomial on a grid (Schütt et al. 2016), so that its intervals are "
+        "wider where answers scatter more than chance; its estimates are posterior means.",
         plan.resamples));
   }
   if (plan.kind == AnalysisKind::kDetection) {

@@ -76,8 +76,9 @@ std::string estimate_word(const Estimated& e) {
   if (!e.known()) {
     return kMissing;
   }
-  const bool interval = std::isfinite(e.low) && std::isfinite(e.high);
-  return interval ? fmt::format("{} [{}, {}]", number(e.value), number(e.low), number(e.high))
+  const auto end = [](double x) { return std::isinf(x) ? std::string("open") : number(x); };
+  const bool interval = !std::isnan(e.low) && !std::isnan(e.high);
+  return interval ? fmt::format("{} [{}, {}]", number(e.value), end(e.low), end(e.high))
                   : number(e.value);
 }
 
