@@ -7,6 +7,7 @@
 
 #include "core/record/read/definition_versions.h"
 #include "experiments/runner/session_opening.h"
+#include "protocols/interface/recorded_outcome.h"
 
 namespace haptrial::experiments {
 
@@ -20,11 +21,6 @@ std::string name_of(const PlannedTrial& trial) {
 }
 
 /// Whether a pass is one of a trial's.
-bool is_of(const record::PassRow& pass, const PlannedTrial& trial) {
-  return pass.trial == trial.trial && pass.practice == trial.practice &&
-         pass.condition == trial.condition;
-}
-
 record::PassRow row_of(const PlannedTrial& trial, const record::Phase& phase, int attempt) {
   record::PassRow row;
   row.trial = trial.trial;
@@ -140,30 +136,12 @@ std::uint64_t SessionRecord::dropped() const {
 
 std::optional<protocols::Outcome> SessionRecord::outcome(const PlannedTrial& trial,
                                                          const record::Phase& last) const {
-  using protocols::TrialEnd;
-  std::optional<protocols::Outcome> found;
-  if (was_skipped(trial)) {
-    found = {trial, TrialEnd::kSkipped, {}};
-  }
-  for (std::size_t row = 0; row < before_.passes.size(); ++row) {
-    const record::PassRow& pass = before_.passes[row];
-    if (!is_of(pass, trial) || (found && found->end != TrialEnd::kAborted)) {
-      continue;
-    }
-    const bool done = pass.phase == last && pass.status == record::PassStatus::kCompleted;
-    found = {trial, done ? TrialEnd::kCompleted : TrialEnd::kAborted, {}};
-    for (const record::ResponseRow& response : before_.responses) {
-      if (is_of(before_.passes[static_cast<std::size_t>(response.pass)], trial) &&
-          before_.passes[static_cast<std::size_t>(response.pass)].attempt == pass.attempt) {
-        found->responses.push_back(response);
-      }
-    }
-  }
-  return found;
+  return protocols::recorded_outcome({before_.passes, before_.responses, before_.skipped}, trial,
+                                     last);
 }
 
 bool SessionRecord::is_last(const PlannedTrial& trial) const {
-  return !before_.passes.empty() && is_of(before_.passes.back(), trial);
+  return !before_.passes.empty() && protocols::is_of(before_.passes.back(), trial);
 }
 
 int SessionRecord::finished(const record::Phase& last) const {

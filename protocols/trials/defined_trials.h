@@ -30,6 +30,10 @@ class DefinedTrials final : public Trials {
   void close_pass(SessionFile& file, std::int32_t row) override;
   const char* why_aborted() const override;
 
+  /// The pass that make_pass() made last, and names of the stages of its intervals.
+  const TrialPass& pass() const { return *pass_; }
+  const std::vector<std::vector<NamedStage>>& stages() const { return stages_; }
+
  private:
   IntervalRun make_interval(std::size_t place, RandomStream& random);
   std::vector<Asked> make_questions();

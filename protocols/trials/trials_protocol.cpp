@@ -1,10 +1,10 @@
 #include "protocols/trials/trials_protocol.h"
 
-#include "core/base/error.h"
 #include "core/record/rows/response.h"
 #include "core/record/trials/trial_rows.h"
 #include "protocols/trials/defined_trials.h"
 #include "protocols/trials/definition/every_value.h"
+#include "protocols/trials/trials_replay.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -16,8 +16,8 @@ class TrialsProtocol final : public Protocol {
                                    const std::filesystem::path*) const override {
     auto definition = std::make_unique<StudiedDefinition>();
     read_trials_definition(root, file_name, *definition);
-    definition->observer = read_observer(root, definition->questions, definition->stages,
-                                           definition->hands);
+    definition->observer =
+        read_observer(root, definition->questions, definition->stages, definition->hands);
     return definition;
   }
   void load(Definition& definition, const std::filesystem::path&) const override {
@@ -36,10 +36,7 @@ class TrialsProtocol final : public Protocol {
     return std::make_unique<DefinedTrials>(dynamic_cast<const StudiedDefinition&>(definition),
                                            place);
   }
-  void replay(const ReplayRequest& request) const override {
-    throw InputError(request.file.string() +
-                     ": sessions of trials cannot be replayed; export them to see every tick");
-  }
+  void replay(const ReplayRequest& request) const override { replay_trials(request); }
 };
 
 }  // namespace

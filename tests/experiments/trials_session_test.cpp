@@ -10,10 +10,12 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <limits>
 #include <map>
 #include <thread>
 
+#include "core/base/error.h"
 #include "core/psychometric/procedure/staircase.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
@@ -246,12 +248,45 @@ TEST_F(KilledTrialsTest, TheStaircaseGoesOnAsItWouldHave) {
   }
 }
 
+TEST(TrialsReplayTest, DrawsWhatWasShownAndRefusesWhatIsNotThere) {
+  const test::TemporaryFolder folder;
+  const Experiment experiment = load_experiment(shipped("stiffness_discrimination"));
+  run_session(request_for(experiment, folder / "S01.h5", 3));
+  protocols::ReplayRequest request;
+  request.file = folder / "S01.h5";
+  request.trial = 3;
+  request.fps = 10;
+  request.pictures = true;
+  std::vector<render::Image> pictures;
+  request.picture = [&](const render::Image& image) { pictures.push_back(image); };
+  request.progress = [](double, double, const std::string&, double) {};
+  request.tell = [](const std::string&) {};
+  const protocols::Protocol& protocol = experiment.study->protocol();
+  protocol.replay(request);
+  const record::SessionReader file(folder / "S01.h5");
+  const auto passes = file.passes();
+  const record::PassRow& pass = passes.back();
+  const double seconds = 1e-3 * static_cast<double>(pass.last_sample - pass.first_sample);
+  EXPECT_EQ(pictures.size(), static_cast<std::size_t>(std::floor(seconds * 10.0 + 1e-9)) + 1);
+  // The first picture shows the hand and the start, the last the question; the press is between.
+  const auto ink = [](const render::Image& image) {
+    return std::count_if(image.rgb.begin(), image.rgb.end(),
+                         [](std::uint8_t value) { return value < 200; });
+  };
+  EXPECT_GT(ink(pictures.front()), 1000);
+  EXPECT_GT(ink(pictures.back()), 2 * ink(pictures.front()));
+  request.trial = 99;
+  EXPECT_THAT([&] { protocol.replay(request); },
+              testing::ThrowsMessage<InputError>(testing::HasSubstr("allowed: 1 to 3")));
+}
+
 /// Somebody at a shipped definition's window: what is pressed, and what comes of it.
 struct AtTheWindow {
   const char* name;
   std::vector<unsigned long> keys;  // again and again; space begins
   const char* text;                 // of each answer; null: a number, or nothing is asked
   double value;                     // of each answer; NaN: nothing is asked
+  bool always{false};               // else only when every window is asked for
 };
 
 constexpr double kNotAsked = std::numeric_limits<double>::quiet_NaN();
@@ -261,6 +296,9 @@ class LiveTrialsTest : public testing::TestWithParam<AtTheWindow> {
   void SetUp() override {
     if (!test::VirtualDisplay::available()) {
       GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
+    }
+    if (!GetParam().always && std::getenv("HAPTRIAL_EVERY_WINDOW") == nullptr) {
+      GTEST_SKIP() << "takes half a minute; set HAPTRIAL_EVERY_WINDOW=1 to run it";
     }
   }
   /// The shipped definition for a virtual hand and a person's keys, in a small window.
@@ -311,7 +349,7 @@ TEST_P(LiveTrialsTest, APersonAnswersByKeysOfTheWindow) {
   EXPECT_TRUE(record::check_session(file, known_tables()).ok);
   int completed = 0;
   for (const record::PassRow& pass : file.passes()) {
-    completed += pass.completed && !pass.practice ? 1 : 0;
+    completed += pass.status == record::PassStatus::kCompleted && !pass.practice ? 1 : 0;
   }
   EXPECT_EQ(completed, 2) << ended.output;
   if (std::isnan(person_at.value)) {
@@ -334,15 +372,16 @@ INSTANTIATE_TEST_SUITE_P(
     Shipped, LiveTrialsTest,
     testing::Values(AtTheWindow{"stiffness_discrimination", {' ', '2'}, "second", 2.0},
                     AtTheWindow{"force_discrimination", {' ', '2'}, "second", 2.0},
-                    AtTheWindow{"wall_detection", {' ', '2'}, "no", 2.0},
+                    AtTheWindow{"wall_detection", {' ', '2'}, "no", 2.0, true},
                     AtTheWindow{"grating_discrimination", {' ', '2'}, "second", 2.0},
                     AtTheWindow{"viscosity_magnitude",
                                 {' ', '4', '2', test::VirtualDisplay::kEnter},
                                 nullptr,
-                                42.0},
+                                42.0,
+                                true},
                     AtTheWindow{"shape_recognition", {' ', '2'}, nullptr, 2.0},
                     AtTheWindow{"curl_field", {' '}, nullptr, kNotAsked},
-                    AtTheWindow{"size_by_eye_and_hand", {' ', '2'}, "second", 2.0}),
+                    AtTheWindow{"size_by_eye_and_hand", {' ', '2'}, "second", 2.0, true}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace

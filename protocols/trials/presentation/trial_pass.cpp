@@ -96,14 +96,6 @@ Drive TrialPass::drive(const IntervalRun& run, std::size_t device,
   return drive;
 }
 
-void TrialPass::show(const StageSight& sight) noexcept {
-  view_.hand_shown = sight.hand;
-  view_.number_shown = sight.interval_number;
-  view_.dots = sight.dots;
-  view_.mark_count = static_cast<std::uint8_t>(std::min(sight.marks.size(), TrialView::kMostMarks));
-  std::copy_n(sight.marks.begin(), view_.mark_count, view_.marks.begin());
-}
-
 void TrialPass::present(const Readings& readings, double dt) noexcept {
   IntervalRun& run = setup_.intervals[interval_];
   const std::size_t stage = run.machine.stage();
@@ -112,7 +104,8 @@ void TrialPass::present(const Readings& readings, double dt) noexcept {
     drives_[device] = drive(run, device, run.scenes[device].force(readings[device].tool));
   }
   view_.stage = static_cast<std::uint8_t>(stage);
-  show(run.sights[stage]);
+  const StageSight& sight = run.sights[stage];
+  view_.show(sight.marks, sight.hand, sight.interval_number, sight.dots);
   run.machine.tick(readings.all().first(devices), run.scenes, dt);
   if (run.machine.state() == StageMachine::State::kAborted) {
     const StageEnd how = run.machine.times()[run.machine.stage()].how;

@@ -79,6 +79,10 @@ class TrialPass final : public Pass {
     return setup_.intervals[interval].machine;
   }
   std::size_t intervals_begun() const { return begun_; }
+  const StageSight& sight(std::size_t interval, std::size_t stage) const {
+    return setup_.intervals[interval].sights[stage];
+  }
+  std::int32_t trial() const { return setup_.trial; }  // as the view has it
   std::uint64_t last_tick() const { return sequence_ - 1; }
   const std::vector<Answer>& answers() const { return answers_; }
   /// In words; empty if the pass was not aborted by itself.
@@ -90,7 +94,6 @@ class TrialPass final : public Pass {
   void begin_interval() noexcept;
   void present(const Readings& readings, double dt) noexcept;
   Drive drive(const IntervalRun& run, std::size_t device, const Eigen::Vector3d& force) noexcept;
-  void show(const StageSight& sight) noexcept;
   void end_interval() noexcept;
   void ask() noexcept;
   void listen(double dt) noexcept;

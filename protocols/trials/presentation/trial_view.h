@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "protocols/interface/pass.h"
 #include "protocols/trials/looks/look.h"
@@ -48,6 +50,14 @@ struct TrialView {
   bool number_shown{false};  // of the interval
 
   bool engaged() const noexcept { return interval > 0 || question > 0; }
+  /// What a stage shows; at most kMostMarks marks. Servo thread: no allocation or throw.
+  void show(std::span<const Mark> seen, bool hand, bool number, const DotsShown& bar) noexcept {
+    hand_shown = hand;
+    number_shown = number;
+    dots = bar;
+    mark_count = static_cast<std::uint8_t>(std::min(seen.size(), kMostMarks));
+    std::copy_n(seen.begin(), mark_count, marks.begin());
+  }
 };
 
 /// An answer that a virtual participant gives; a person uses buttons and keys. Written and read on

@@ -1,0 +1,245 @@
+#include "protocols/trials/trials_replay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/base/definition/table.h"
+#include "core/base/error.h"
+#include "core/base/random.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/rows/device_row.h"
+#include "core/record/trials/trial_rows.h"
+#include "core/render/gl/offscreen.h"
+#include "protocols/interface/recorded_outcome.h"
+#include "protocols/interface/session_file.h"
+#include "protocols/trials/defined_trials.h"
+#include "protocols/trials/trials_protocol.h"
+
+namespace haptrial::protocols {
+namespace {
+
+/// Takes the variables that a pass would write, to compare them with those that are written.
+class Variables final : public SessionFile {
+ public:
+  std::vector<record::VariableRow> rows;
+
+  void keep_stimulus(std::int32_t, std::span<const record::StimulusRow>) override {}
+  bool holds_stimulus(std::int32_t) const override { return true; }
+  void event(const std::string&, const std::string&) override {}
+  const std::vector<record::PassRow>& earlier_passes() const override { return none_; }
+  bool was_cut_short(const PlannedTrial&) const override { return false; }
+
+ protected:
+  void put(const record::Rows& batch) override {
+    const auto taken = batch.as<record::VariableRow>();
+    rows.insert(rows.end(), taken.begin(), taken.end());
+  }
+
+ private:
+  std::vector<record::PassRow> none_;
+};
+
+bool same(const record::VariableRow& a, const record::VariableRow& b) {
+  const bool value = a.value == b.value || (std::isnan(a.value) && std::isnan(b.value));
+  return a.interval == b.interval && a.name == b.name && a.word == b.word && value;
+}
+
+class TrialReplay {
+ public:
+  explicit TrialReplay(const ReplayRequest& request)
+      : request_(request),
+        reader_(request.file),
+        passes_(reader_.passes()),
+        responses_(reader_.responses()),
+        skipped_(reader_.rows<record::SkippedRow>()),
+        variables_(reader_.rows<record::VariableRow>()),
+        definition_(read_definition()),
+        place_(place()),
+        trials_(*definition_, place_) {}
+
+  void run() {
+    find_pass();
+    const record::PassRow& pass = passes_[row_];
+    const auto samples =
+        reader_.samples(pass.first_sample, pass.last_sample - pass.first_sample + 1);
+    const int width = definition_->display.width;
+    const int height = definition_->display.height;
+    render::OffscreenContext context(width, height);
+    const auto drawing = trials_.drawing()(context.gl(), width, height);
+    const double duration = static_cast<double>(samples.size() - 1) / definition_->rate;
+    const int count = static_cast<int>(std::floor(duration * request_.fps + 1e-9)) + 1;
+    for (int i = 0; i < count; ++i) {
+      request_.progress(i, count, fmt::format("{} of {} pictures", i, count), request_.fps);
+      const auto at = static_cast<std::size_t>(std::lround(i * definition_->rate / request_.fps));
+      context.make_current();
+      drawing->draw(stimulus::Shown(view_at(samples[std::min(at, samples.size() - 1)])));
+      request_.picture(context.read());
+    }
+    request_.tell(
+        fmt::format("{} pictures, {:.1f} s at {} a second", count, duration, request_.fps));
+  }
+
+ private:
+  std::unique_ptr<StudiedDefinition> read_definition() const {
+    try {
+      Table root = Table::parse(reader_.info().definition, reader_.info().definition_name);
+      auto read = trials_protocol().read(root, reader_.info().definition_name, nullptr);
+      return std::unique_ptr<StudiedDefinition>(dynamic_cast<StudiedDefinition*>(read.release()));
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: its definition is not one of this version of haptrial: {}",
+                                   reader_.path().string(), error.what()));
+    }
+  }
+
+  SessionPlace place() const {
+    SessionPlace place;
+    place.subject = reader_.info().subject;
+    place.seed = reader_.info().seed;
+    place.session_seed = derived_seed(place.seed, "participant " + place.subject);
+    const auto number = std::ranges::find(variables_, "participant", &record::VariableRow::name);
+    if (number == variables_.end()) {
+      throw InputError(fmt::format("{}: holds no trials", reader_.path().string()));
+    }
+    place.participant = static_cast<int>(std::lround(number->value)) - 1;
+    place.real = true;
+    return place;
+  }
+
+  /// Leads the definition to the trial that is asked for, and makes its pass.
+  void find_pass() {
+    const record::Phase last = trials_.phases().back();
+    std::set<int> known;
+    std::optional<PlannedTrial> trial = trials_.next(nullptr);
+    while (trial) {
+      if (const auto row = row_of(*trial); row && !trial->practice) {
+        known.insert(trial->trial);
+        if (trial->trial == request_.trial) {
+          row_ = *row;
+          trials_.make_pass(*trial, last);
+          take_rows();
+          return;
+        }
+      }
+      const auto outcome = recorded_outcome({passes_, responses_, skipped_}, *trial, last);
+      trial = outcome ? trials_.next(&*outcome) : std::nullopt;
+    }
+    if (known.empty()) {
+      throw InputError(fmt::format("{}: holds no trials", reader_.path().string()));
+    }
+    throw InputError(fmt::format("--trial is {}; allowed: {} to {}, the trials of {}",
+                                 request_.trial, *known.begin(), *known.rbegin(),
+                                 reader_.path().string()));
+  }
+
+  /// The last attempt at a trial.
+  std::optional<std::size_t> row_of(const PlannedTrial& trial) const {
+    std::optional<std::size_t> row;
+    for (std::size_t i = 0; i < passes_.size(); ++i) {
+      row = is_of(passes_[i], trial) ? i : row;
+    }
+    return row;
+  }
+
+  void take_rows() {
+    const auto of_another = [this](const auto& row) { return std::cmp_not_equal(row.pass, row_); };
+    Variables now;
+    trials_.close_pass(now, static_cast<std::int32_t>(row_));
+    std::erase_if(variables_, of_another);
+    if (!std::ranges::equal(now.rows, variables_, same)) {
+      throw RunError(
+          fmt::format("{}: trial {} had other values than this version of haptrial would present; "
+                      "replay it with the version that recorded it, {}",
+                      reader_.path().string(), request_.trial, reader_.info().program_version));
+    }
+    stages_ = reader_.rows<record::StageRow>();
+    std::erase_if(stages_, of_another);
+    std::erase_if(responses_, of_another);
+    if (definition_->devices() > 1) {
+      others_ = reader_.rows<record::DeviceRow>();
+    }
+  }
+
+  TrialView view_at(const record::Sample& sample) const {
+    TrialView view;
+    view.trial = trials_.pass().trial();
+    view.tool = sample.position;
+    add_others(sample.sequence, view);
+    for (const record::StageRow& stage : stages_) {
+      if (sample.sequence >= stage.first_sample && sample.sequence <= stage.last_sample) {
+        show(stage, view);
+        return view;
+      }
+    }
+    std::size_t answered = 0;  // the question that is open is the first one without an answer
+    for (const record::ResponseRow& row : responses_) {
+      answered += row.sequence < sample.sequence ? 1 : 0;
+    }
+    const std::size_t questions = definition_->questions.size();
+    view.question = static_cast<std::uint8_t>(std::min(answered + 1, questions));
+    return view;
+  }
+
+  void add_others(std::uint64_t sequence, TrialView& view) const {
+    auto row = std::ranges::lower_bound(others_, sequence, {}, &record::DeviceRow::sequence);
+    for (; row != others_.end() && row->sequence == sequence; ++row) {
+      if (row->device < 1 || std::cmp_greater_equal(row->device, kMostDevices)) {
+        continue;
+      }
+      const Eigen::Vector3f p = row->position.cast<float>();
+      view.others[static_cast<std::size_t>(row->device) - 1] = {p.x(), p.y(), p.z()};
+      view.other_count = std::max(view.other_count, static_cast<std::uint8_t>(row->device));
+    }
+  }
+
+  void show(const record::StageRow& row, TrialView& view) const {
+    const auto interval = static_cast<std::size_t>(row.interval - 1);
+    const std::vector<NamedStage>& stages = trials_.stages().at(interval);
+    const auto at = std::ranges::find(stages, row.stage, &NamedStage::name);
+    if (at == stages.end()) {
+      throw InputError(fmt::format("{}: /stages names \"{}\", which the definition does not have",
+                                   reader_.path().string(), row.stage));
+    }
+    const auto stage = static_cast<std::size_t>(at - stages.begin());
+    const StageSight& sight = trials_.pass().sight(interval, stage);
+    view.interval = static_cast<std::uint8_t>(row.interval);
+    view.stage = static_cast<std::uint8_t>(stage);
+    view.show(sight.marks, sight.hand, sight.interval_number, sight.dots);
+  }
+
+  const ReplayRequest& request_;
+  record::SessionReader reader_;
+  std::vector<record::PassRow> passes_;
+  std::vector<record::ResponseRow> responses_;
+  std::vector<record::SkippedRow> skipped_;
+  std::vector<record::VariableRow> variables_;
+  std::unique_ptr<StudiedDefinition> definition_;
+  SessionPlace place_;
+  DefinedTrials trials_;
+  std::size_t row_{0};  // of /trials
+  std::vector<record::StageRow> stages_;
+  std::vector<record::DeviceRow> others_;
+};
+
+}  // namespace
+
+void replay_trials(const ReplayRequest& request) {
+  if (request.trial == 0) {
+    throw InputError("--trial is missing; give the number of the trial to show");
+  }
+  if (!request.phase.empty() && request.phase != record::kPresentedPhase) {
+    throw InputError(
+        fmt::format("--phase is '{}'; allowed: {}", request.phase, record::kPresentedPhase));
+  }
+  if (!request.sound.empty()) {
+    throw InputError("--sound is given for a session without drilling; leave it out");
+  }
+  if (!request.pictures) {
+    throw InputError("neither --video nor --frames is given; add one to write to");
+  }
+  TrialReplay(request).run();
+}
+
+}  // namespace haptrial::protocols
