@@ -14,6 +14,10 @@ DefinitionRules of_every_study() {
                 "force_dimension",
                 "open_haptics",
                 "mouse",
+                "markers.serial",
+                "markers.baud",
+                "markers.pulse",
+                "sounds.device",
                 "design.participants",
                 "analysis.planned",
                 "analysis.reference"};
