@@ -198,7 +198,8 @@ class Easel {
     draw_patch(shown);
   }
 
-  /// The square is white from this frame on. @returns the onsets that it shows first; 0: no new ones
+  /// The square is white from this frame on. @returns the onsets that it shows first; 0: no new
+  /// ones
   std::uint64_t flash(std::uint64_t onsets) {
     if (photodiode_ != protocols::Photodiode::kOnset || onsets == onsets_) {
       return 0;
@@ -253,7 +254,7 @@ class Easel {
   protocols::Photodiode photodiode_;
   std::chrono::duration<double> flash_time_;
   Clock::time_point white_until_{};
-  std::uint64_t onsets_{0};  // that were shown
+  std::uint64_t onsets_{0};     // that were shown
   render::TrialDisplay trial_;  // where a pointer is while no drawing says it
   render::TextScreen text_;
   render::Painter patch_;

@@ -23,9 +23,7 @@ Photodiode read_photodiode(Table& table) {
   if (when == "frames") {
     return Photodiode::kEveryFrame;
   }
-  return when == "run"     ? Photodiode::kRun
-         : when == "onset" ? Photodiode::kOnset
-                           : Photodiode::kOff;
+  return when == "run" ? Photodiode::kRun : when == "onset" ? Photodiode::kOnset : Photodiode::kOff;
 }
 
 }  // namespace

@@ -69,7 +69,8 @@ bool SessionTask::tick(const realtime::Tick& tick) noexcept {
 
 void SessionTask::put_onset(const realtime::Tick& tick, const markers::Onset& onset,
                             bool over) noexcept {
-  onsets_->put({onset, 0, origin_.sequence + tick.index, origin_.time_ns + tick.time_ns, row_, over});
+  onsets_->put(
+      {onset, 0, origin_.sequence + tick.index, origin_.time_ns + tick.time_ns, row_, over});
 }
 
 /// A pass begins with its trial; then its own onsets, or its stages.
@@ -112,8 +113,7 @@ void SessionTask::record(const realtime::Tick& tick, const PassOutput& out) noex
   for (std::size_t device = 1; device_log_ != nullptr && device < readings.size(); ++device) {
     device_log_->push({sample.sequence, static_cast<std::int32_t>(device),
                        readings[device].tool.position, readings[device].tool.velocity,
-                       forces[device],
-                       static_cast<std::int32_t>(readings[device].buttons)});
+                       forces[device], static_cast<std::int32_t>(readings[device].buttons)});
   }
   if (tick_log_ != nullptr) {
     tick_log_->record(sample.sequence, readings);

@@ -128,7 +128,7 @@ class SessionTask final : public realtime::ServoTask {
   bool broken_off_{false};
   bool begins_{false};                              // the pass has had no tick yet
   record::Stage told_stage_{record::Stage::kIdle};  // of the pass
-  PassResult result_;  // published by busy_
+  PassResult result_;                               // published by busy_
 };
 
 }  // namespace haptrial::protocols

@@ -21,6 +21,7 @@
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/marker_row.h"
 #include "core/record/trials/trial_rows.h"
+#include "core/sound/cues/cue.h"
 #include "experiments/runner/session.h"
 #include "protocols/trials/trials_protocol.h"
 #include "tests/support/pseudo_terminal.h"
@@ -140,10 +141,9 @@ class SessionMarkersTest : public testing::Test {
       }
     }
     for (const record::StageRow& stage : file.rows<record::StageRow>()) {
-      if (stage.stage == "ready") {  // an interval begins with it
+      if (stage.stage == "ready") {                                // an interval begins with it
         const auto own = part.find({stage.pass, stage.interval});  // else as in the whole trial
-        const bool whole =
-            (own != part.end() ? own->second : part.at({stage.pass, 0})) == 1.0;
+        const bool whole = (own != part.end() ? own->second : part.at({stage.pass, 0})) == 1.0;
         expected.emplace(MarkerOf::kInterval, stage.first_sample, whole ? 11 : 12);
       }
     }

@@ -292,10 +292,13 @@ Presented read_presented(Table& root, const Names& names, double rate, RandomStr
   for (const scene::Region& region : presented.regions) {
     regions.push_back(region.name);
   }
-  const StageSource source{fields, regions, names,
-                           [&names](const std::string& text) { return names.word(text); }, random,
-                           root.has("sounds") ? sound::cue_names(root.table("sounds"))
-                                              : std::vector<std::string>{}};
+  const StageSource source{
+      fields,
+      regions,
+      names,
+      [&names](const std::string& text) { return names.word(text); },
+      random,
+      root.has("sounds") ? sound::cue_names(root.table("sounds")) : std::vector<std::string>{}};
   presented.stages = read_stages(root, source);
   return presented;
 }

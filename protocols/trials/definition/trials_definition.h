@@ -42,11 +42,11 @@ struct TrialsDefinition : Definition {
   std::vector<StudyGroup> groups;
   TrialsView view;
   std::string feedback_right, feedback_wrong;
-  double feedback_time{0.5};          // [s]
+  double feedback_time{0.5};  // [s]
   sound::CueSet cues;
   int sound_right{-1}, sound_wrong{-1};  // of the cues, with the feedback; -1: none
-  double stage_time{0.0};             // of one interval at most, roughly [s]
-  std::vector<std::string> restless;  // sentences on fields that a light hand would make shake
+  double stage_time{0.0};                // of one interval at most, roughly [s]
+  std::vector<std::string> restless;     // sentences on fields that a light hand would make shake
   int most_repeats{5};  // of an interval whose stage asks for it; then the trial is aborted
 
   bool has_target() const override { return false; }

@@ -215,9 +215,7 @@ void TrialPass::listen_to_number(const Question& question, Answer& answer) noexc
 /// The participant hears whether the answer was right when this is shown.
 int TrialPass::sound_of(const Asked& asked, const Answer& answer) const noexcept {
   const bool told = asked.feedback && asked.right >= 0 && setup_.feedback_time > 0.0;
-  return !told                          ? -1
-         : answer.choice == asked.right ? setup_.sound_right
-                                        : setup_.sound_wrong;
+  return !told ? -1 : answer.choice == asked.right ? setup_.sound_right : setup_.sound_wrong;
 }
 
 void TrialPass::take(const Answer& given, PassOutput& out) noexcept {

@@ -61,8 +61,8 @@ class TrialPass final : public Pass {
     std::vector<Asked> questions;
     double feedback_time{0.0};  // [s]
     int most_repeats{5};
-    double max_force{8.0};      // the sum of all fields is scaled to at most this [N]
-    SaidAnswer* said{nullptr};  // null: a person answers
+    double max_force{8.0};                 // the sum of all fields is scaled to at most this [N]
+    SaidAnswer* said{nullptr};             // null: a person answers
     int sound_right{-1}, sound_wrong{-1};  // with the feedback; -1: none
   };
   explicit TrialPass(Setup setup);

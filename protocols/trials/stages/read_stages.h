@@ -34,7 +34,7 @@ struct StageSource {
   /// The word that a text such as "$field" stands for; "null" is no field. Null: texts stand for
   /// themselves.
   std::function<std::string(const std::string&)> word;
-  RandomStream* random{nullptr};  // draws durations "for = [0.5, 1.0]"; null: the shortest
+  RandomStream* random{nullptr};      // draws durations "for = [0.5, 1.0]"; null: the shortest
   std::vector<std::string> sounds{};  // by index
 };
 

@@ -201,7 +201,8 @@ TEST_F(ScreenTest, ThePhotodiodesSquareFlashesWithAnOnset) {
   EXPECT_TRUE(screen.take_flashes().empty());
   log.put({});
   EXPECT_TRUE(eventually([&] { return corner() == white; }));
-  EXPECT_TRUE(eventually([&] { return corner() == Eigen::Vector3d::Zero(); })) << "half a second on";
+  EXPECT_TRUE(eventually([&] { return corner() == Eigen::Vector3d::Zero(); }))
+      << "half a second on";
   const std::vector<Flash> flashes = screen.take_flashes();
   ASSERT_EQ(flashes.size(), 1u);
   EXPECT_EQ(flashes[0].onsets, 1u);
