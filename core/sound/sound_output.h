@@ -1,11 +1,10 @@
 #pragma once
 
-#include <atomic>
-#include <memory>
+#include <cstdint>
 #include <string>
-#include <thread>
 
 #include "core/realtime/latest_value.h"
+#include "core/sound/card_player.h"
 #include "core/sound/drill_sound.h"
 
 namespace haptrial::sound {
@@ -18,31 +17,24 @@ class SoundOutput {
   /// on without, and its sound can be made from its record (SoundTrack). Else as DrillSound does.
   SoundOutput(SpectrumTable table, const ThinBone& thin, std::uint64_t seed,
               const std::string& device = "default");
-  ~SoundOutput();
   SoundOutput(const SoundOutput&) = delete;
   SoundOutput& operator=(const SoundOutput&) = delete;
 
   /// What the drill does from now on. Servo thread: no allocation, lock, wait or throw.
   void set(const DrillState& drill) noexcept { latest_.write(drill); }
 
-  /// Samples that were handed to the card, and how often it ran out of them. Any thread.
-  std::uint64_t played() const noexcept { return played_.load(std::memory_order_relaxed); }
-  std::uint64_t gaps() const noexcept { return gaps_.load(std::memory_order_relaxed); }
-  /// Whether the card was lost: nothing is played any more. Any thread.
-  bool lost() const noexcept { return lost_.load(std::memory_order_relaxed); }
+  /// As CardPlayer has them. Any thread.
+  std::uint64_t played() const noexcept { return player_.played(); }
+  std::uint64_t gaps() const noexcept { return player_.gaps(); }
+  bool lost() const noexcept { return player_.lost(); }
 
  private:
-  struct Card;
-  void run();
+  void fill(std::span<float> part) noexcept;
 
   DrillSound sound_;
-  std::unique_ptr<Card> card_;
+  DrillState drill_;  // of the player's thread
   realtime::LatestValue<DrillState> latest_;
-  std::atomic<std::uint64_t> played_{0};
-  std::atomic<std::uint64_t> gaps_{0};
-  std::atomic<bool> lost_{false};
-  std::atomic<bool> stop_{false};
-  std::thread thread_;
+  CardPlayer player_;  // last: its thread uses the others
 };
 
 }  // namespace haptrial::sound

@@ -5,6 +5,7 @@
 #include <array>
 #include <exception>
 #include <limits>
+#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -121,6 +122,7 @@ struct LslOutlet::Impl {
   std::vector<double> timestamps;
   std::uint64_t refused{0};
   std::string first_refusal;
+  mutable std::mutex mutex;  // all of it, once the streams are open
 };
 
 /// The closest of a few readings: whatever interrupts one of them does not interrupt them all.
@@ -227,6 +229,7 @@ void LslOutlet::push(std::span<const record::Sample> samples) {
   if (samples.empty()) {
     return;
   }
+  const std::lock_guard lock(impl_->mutex);
   constexpr std::int64_t kEvery = 1'000'000'000;
   if (!impl_->measured || samples.back().time_ns - *impl_->measured >= kEvery) {
     impl_->synchronise();
@@ -243,14 +246,24 @@ void LslOutlet::push(std::span<const record::Sample> samples) {
               samples.size());
 }
 
-void LslOutlet::mark(const std::string& text, std::int64_t session_ns) {
+bool LslOutlet::mark(const std::string& text, std::int64_t session_ns) {
+  const std::lock_guard lock(impl_->mutex);
   impl_->synchronise();  // a session's clock stands before its first tick
   const char* marker = text.c_str();
-  impl_->note(impl_->lsl.push_text(impl_->markers, &marker, impl_->offset + seconds(session_ns)),
-              1);
+  const std::int32_t result =
+      impl_->lsl.push_text(impl_->markers, &marker, impl_->offset + seconds(session_ns));
+  impl_->note(result, 1);
+  return result == 0;
 }
 
-std::uint64_t LslOutlet::refused() const noexcept { return impl_->refused; }
-const std::string& LslOutlet::first_refusal() const noexcept { return impl_->first_refusal; }
+std::uint64_t LslOutlet::refused() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->refused;
+}
+
+std::string LslOutlet::first_refusal() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->first_refusal;
+}
 
 }  // namespace haptrial::stream

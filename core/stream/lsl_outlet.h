@@ -27,8 +27,8 @@ using SessionClock = std::function<std::int64_t()>;
 /// another, on the layer's own clock, so that an EEG or eye tracker can be put beside it. The
 /// layer's library is loaded at run time.
 ///
-/// A push may wait for a lock of the library: everything belongs to the thread that empties the
-/// block log, never to the servo thread.
+/// A push may wait for a lock: everything belongs to the threads that empty logs, which may call at
+/// the same time, never to the servo thread.
 ///
 /// Streams: "haptrial SUBJECT" of type Haptics, double precision, one channel a column of
 /// channels(); "haptrial SUBJECT markers" of type Markers, one text a marker.
@@ -59,11 +59,12 @@ class LslOutlet {
   /// Times are given to the layer on its own clock. How far that is from the session's is measured
   /// at the first push, then every second, and for each marker.
   void push(std::span<const record::Sample> samples);
-  void mark(const std::string& text, std::int64_t session_ns);
+  /// @returns whether the library took it
+  bool mark(const std::string& text, std::int64_t session_ns);
 
   /// Samples and markers that the library did not take, and its words for the first one.
-  std::uint64_t refused() const noexcept;
-  const std::string& first_refusal() const noexcept;
+  std::uint64_t refused() const;
+  std::string first_refusal() const;
 
  private:
   struct Impl;

@@ -73,6 +73,7 @@ class Session {
   std::vector<stimulus::Observer*> observers();
   SessionDesk::Actions desk_actions();
 
+  void watch_flashes();
   void show_trial();
   void run_trials();
   std::optional<PlannedTrial> following(const Outcome* last);
@@ -83,6 +84,7 @@ class Session {
   void keep_responses();
   protocols::SessionPlace place();
   void note_damping(const protocols::PassResult& result);
+  void note_marker_troubles();
   void after_abort(const protocols::PassResult& result);
   std::string why_broken_off();
 
@@ -99,6 +101,7 @@ class Session {
   std::vector<record::ResponseRow> responses_;  // of the present attempt
   bool left_{false};  // trials that an abort kept from being presented to their end
   realtime::ServoLoop loop_;
+  markers::OnsetLog onsets_;  // before the screen and the record, whose threads look at it
   // Before the task: the servo thread may be using its pass when an error
   // leaves a function.
   protocols::SessionPlace place_;
@@ -149,14 +152,15 @@ Session::Session(const SessionRequest& request)
       rig_(make_rig(choices_of(request), d_, [this] { return trials_->virtual_rig(); })),
       screen_(open_screen(request, rig_->mouse(), &held_keys_, &begin_pressed_)),
       live_(open_live(request, place_.resumed)),
-      record_(request, rig_->device().info(), loop_, *trials_, live_.get()),
+      record_(request, rig_->device().info(), loop_, *trials_, onsets_, live_.get()),
       desk_(request.control, desk_actions()),
       task_({.devices = arms_of(*rig_, d_.envelope),
              .log = record_.log(),
              .device_log = &record_.device_log(),
              .tick_log = trials_->tick_log(),
              .observers = observers(),
-             .keys = &held_keys_},
+             .keys = &held_keys_,
+             .onsets = d_.markers.used ? &onsets_ : nullptr},
             real_ ? protocols::SessionTask::Leave::kNever
                   : protocols::SessionTask::Leave::kAfterPassOrSlice,
             record_.origin()),
@@ -174,8 +178,23 @@ Session::Session(const SessionRequest& request)
   if (real_) {
     watched_.emplace(stop_);
   }
+  watch_flashes();
   if (request.control != nullptr) {
     request.control->on_emergency([this] { task_.emergency_stop(); });
+  }
+}
+
+/// The frames that show a photodiode what began.
+void Session::watch_flashes() {
+  if (screen_ && d_.screen.photodiode == protocols::Photodiode::kOnset) {
+    screen_->flash_with(&onsets_);
+    record_.markers().watch([this] {
+      std::vector<Flash> flashes = screen_->take_flashes();
+      for (Flash& flash : flashes) {
+        flash.time_ns = record_.session_time(flash.time_ns);
+      }
+      return flashes;
+    });
   }
 }
 
@@ -214,6 +233,7 @@ SessionSummary Session::run() {
       servo_.start();
     }
     notices_.note(record_.notice());
+    notices_.note(record_.markers().notice());
     for (const std::string& notice : trials_->notices()) {
       notices_.note(notice);
     }
@@ -357,6 +377,7 @@ bool Session::run_pass(const PlannedTrial& trial, const record::Phase& phase, in
   trials_->close_pass(record_, number);
   keep_responses();
   record_.end_pass(result);
+  note_marker_troubles();
   note_damping(result);
   if (aborted) {
     after_abort(result);
@@ -370,6 +391,12 @@ void Session::keep_responses() {
   if (!rows.empty()) {
     responses_.insert(responses_.end(), rows.begin(), rows.end());
     record_.keep_responses(std::move(rows));
+  }
+}
+
+void Session::note_marker_troubles() {
+  for (const std::string& trouble : record_.markers().troubles()) {
+    notices_.note(trouble);
   }
 }
 
@@ -443,6 +470,7 @@ void Session::finish() {
     live_->finish();
     summary_.figures = live_->done();
   }
+  summary_.markers = record_.markers().latencies();
   summary_.simulated = rig_->device().info().simulated;
   summary_.ticks = loop_.ticks();
   summary_.overruns = loop_.overruns();

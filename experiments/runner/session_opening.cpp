@@ -12,6 +12,7 @@
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/common_tables.h"
 #include "core/record/rows/device_row.h"
+#include "core/record/rows/marker_row.h"
 #include "core/record/rows/trial_facts.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/runner/version.h"
@@ -69,13 +70,16 @@ record::SessionInfo session_info(const SessionRequest& request, const device::De
   return info;
 }
 
-/// Those of the protocol, what may become of trials, and that of further devices.
+/// Those of the protocol, what may become of trials, those of further devices and of markers.
 static record::TableList tables_of(const SessionRequest& request, const protocols::Trials& trials) {
   record::TableList tables = trials.tables();
   tables.push_back(&record::table_of<record::SkippedRow>());
   tables.push_back(&record::table_of<record::DampingRow>());
   if (request.definition->devices() > 1) {
     tables.push_back(&record::table_of<record::DeviceRow>());
+  }
+  if (request.definition->markers.used) {
+    tables.push_back(&record::table_of<record::MarkerRow>());
   }
   return tables;
 }

@@ -48,12 +48,13 @@ std::int64_t last_time(const record::Resumed& before) {
 
 SessionRecord::SessionRecord(const SessionRequest& request, const device::DeviceInfo& device,
                              const realtime::ServoLoop& loop, protocols::Trials& trials,
-                             record::LiveFigures* live)
+                             markers::OnsetLog& onsets, record::LiveFigures* live)
     : request_(request),
       loop_(loop),
       real_(request.clock == realtime::ClockKind::kReal),
       outlet_(open_outlet(
           request, device.simulated, [this] { return now_ns(); }, notice_)),
+      markers_(request, onsets, outlet_.get(), [this] { return now_ns(); }),
       writer_(open_writer(request, device, before_, trials)),
       file_(writer_),
       stream_(outlet_.get()),
@@ -93,6 +94,9 @@ void SessionRecord::open(const std::string& text) {
   event(before_.rows > 0 ? "session_resumed" : "session_start", text);
   writer_.note_counts({0, 0, 0});
   keep_definition();
+  if (const std::string state = markers_.sound_state(); !state.empty()) {
+    event("sound", state);
+  }
   if (!before_.passes.empty()) {
     last_ = before_.passes.back();
   }
@@ -215,6 +219,7 @@ std::int32_t SessionRecord::begin_pass(const PlannedTrial& trial, const record::
   row_ = row_of(trial, phase, attempt);
   row_open_ = true;
   times_.clear();
+  markers_.begin_pass(passes_, row_.trial);
   writer_.begin_pass({passes_, row_});
   for (record::Sink* sink : sinks_) {
     sink->begin_pass(row_, passes_);
@@ -224,6 +229,7 @@ std::int32_t SessionRecord::begin_pass(const PlannedTrial& trial, const record::
 
 void SessionRecord::end_pass(const protocols::PassResult& result) {
   append_rest();
+  keep_markers(false);
   const bool aborted = result.state == protocols::PassState::kAborted;
   add_pass(aborted ? record::PassStatus::kAborted : record::PassStatus::kCompleted,
            result.first_sample, result.last_sample);
@@ -285,6 +291,20 @@ void SessionRecord::put(const record::Rows& batch) {
   }
 }
 
+/// Before the row of their pass: a finished trial has its markers, whatever follows.
+void SessionRecord::keep_markers(bool last) {
+  const std::vector<record::MarkerRow> rows = markers_.take_rows(last);
+  if (!rows.empty()) {
+    put(record::Rows(std::span<const record::MarkerRow>(rows)));
+  }
+  if (!last || !markers_.used()) {
+    return;
+  }
+  for (const std::string& line : markers_.latencies()) {
+    event("markers", line);
+  }
+}
+
 void SessionRecord::append_rest() {
   log_.flush([this](std::span<const record::Sample> samples) { append(samples); });
 }
@@ -310,6 +330,7 @@ void SessionRecord::mark_trial(const std::string& kind, const PlannedTrial& tria
 
 void SessionRecord::stop(const std::string& text) {
   append_rest();
+  keep_markers(true);
   event("session_stopped", text);
   write_timing(record::RunState::kStopped);
   writer_.sync();
@@ -332,6 +353,7 @@ std::int64_t SessionRecord::now_ns() const { return start_ns_ + loop_.elapsed_ns
 
 void SessionRecord::close(const std::string& text) {
   append_rest();
+  keep_markers(true);
   event("session_end", text);
   write_timing(record::RunState::kEnded);
   writer_.close();
@@ -343,6 +365,7 @@ void SessionRecord::give_up(const protocols::SessionTask& task) {
     return;
   }
   append_rest();
+  keep_markers(true);
   const protocols::PassResult& result = task.result();
   if (row_open_ && result.begun) {
     add_pass(record::PassStatus::kAborted, result.first_sample,

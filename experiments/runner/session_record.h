@@ -15,6 +15,7 @@
 #include "core/record/rows/live_figures.h"
 #include "core/record/write/session_writer.h"
 #include "core/stream/lsl_outlet.h"
+#include "experiments/runner/session_markers.h"
 #include "experiments/runner/session_request.h"
 #include "experiments/runner/sinks.h"
 #include "protocols/interface/session_file.h"
@@ -31,10 +32,11 @@ class SessionRecord final : public protocols::SessionFile {
   /// Opens the session file, or goes on with it, and the streams.
   /// @param loop    whose ticks are recorded and give events their time; outlives the record
   /// @param trials  of the session; outlive the record
+  /// @param onsets  of the servo thread; outlive the record
   /// @param live    gets what is recorded, or null; outlives the record
   SessionRecord(const SessionRequest& request, const device::DeviceInfo& device,
                 const realtime::ServoLoop& loop, protocols::Trials& trials,
-                record::LiveFigures* live);
+                markers::OnsetLog& onsets, record::LiveFigures* live);
 
   /// Where the servo thread leaves its records.
   protocols::SessionTask::Log& log() { return log_; }
@@ -44,6 +46,7 @@ class SessionRecord final : public protocols::SessionFile {
   std::uint64_t dropped() const;
   /// Why there are no streams though they were asked for, in a sentence; else empty.
   const std::string& notice() const { return notice_; }
+  SessionMarkers& markers() { return markers_; }
 
   /// The first event, after rows for the passes during which an earlier run ended.
   void open(const std::string& text);
@@ -80,6 +83,8 @@ class SessionRecord final : public protocols::SessionFile {
   /// @returns the number of records.
   using Follower = std::function<void(std::span<const record::Sample>)>;
   std::size_t collect(const Follower& follow);
+  /// A time since this run's first tick, since the session's.
+  std::int64_t session_time(std::int64_t time_ns) const { return start_ns_ + time_ns; }
   /// @param frames  with times since this run's first tick
   void keep_frames(std::vector<record::FrameRow> frames);
   void event(const std::string& kind, const std::string& text) override;
@@ -109,6 +114,7 @@ class SessionRecord final : public protocols::SessionFile {
   bool was_skipped(const protocols::PlannedTrial& trial) const;
   void append(std::span<const record::Sample> samples);
   void append_rest();
+  void keep_markers(bool last);
   void add_pass(record::PassStatus status, std::uint64_t first_sample, std::uint64_t last_sample);
   void tell_what_was_kept();
   record::TimingSummary counts() const;
@@ -121,6 +127,7 @@ class SessionRecord final : public protocols::SessionFile {
   // Before the writer: without the streams that it needs a session leaves no file.
   std::string notice_;
   std::unique_ptr<stream::LslOutlet> outlet_;
+  SessionMarkers markers_;
   record::SessionWriter writer_;
   FileSink file_;
   StreamSink stream_;

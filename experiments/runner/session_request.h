@@ -60,6 +60,7 @@ struct SessionSummary {
   std::vector<record::LiveState>
       figures;                       // of the trials of this run; on the real clock, or attended
   std::vector<std::string> notices;  // sentences: real time, screen, streams
+  std::vector<std::string> markers;  // how soon they went, a line each way
 };
 
 }  // namespace haptrial::experiments

@@ -91,10 +91,13 @@ struct Screen::Impl {
 
   realtime::LatestValue<stimulus::Shown> shown;  // servo thread -> screen's
   std::atomic<std::int64_t> first_tick_ns{0};    // 0: none yet
+  std::atomic<const markers::OnsetLog*> onsets{nullptr};
 
   mutable std::mutex mutex;  // all below
   Scene scene;
   std::vector<record::FrameRow> frames;
+  std::int64_t frame_count{0};
+  std::vector<Flash> flashes;
   ScreenSummary summary;
   realtime::DurationHistogram draw_times;
   std::string trouble;
@@ -103,7 +106,8 @@ struct Screen::Impl {
   std::condition_variable picture_taken;
 
   void run();
-  void count(const record::FrameRow& frame);
+  void count(const record::FrameRow& frame, std::uint64_t flashed);
+  std::uint64_t onsets_so_far() const;
 };
 
 namespace {
@@ -160,6 +164,7 @@ class Easel {
       : window_(window),
         style_(style),
         photodiode_(options.photodiode),
+        flash_time_(options.photodiode_time),
         trial_(window.gl(), style, style.width, style.height),
         text_(window.gl(), style.width, style.height, style.background, style.marker_colour,
               style.target_colour),
@@ -193,6 +198,17 @@ class Easel {
     draw_patch(shown);
   }
 
+  /// The square is white from this frame on. @returns the onsets that it shows first; 0: no new
+  /// ones
+  std::uint64_t flash(std::uint64_t onsets) {
+    if (photodiode_ != protocols::Photodiode::kOnset || onsets == onsets_) {
+      return 0;
+    }
+    onsets_ = onsets;
+    white_until_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(flash_time_);
+    return onsets;
+  }
+
   /// How fast the display takes pictures [s]; shows empty ones.
   double probe() {
     std::array<double, kProbes> intervals{};
@@ -222,7 +238,9 @@ class Easel {
       return;
     }
     const bool runs = drawing_ != nullptr && shown.engaged();
-    const bool white = photodiode_ == protocols::Photodiode::kRun ? runs : frames_ % 2 == 0;
+    const bool white = photodiode_ == protocols::Photodiode::kRun     ? runs
+                       : photodiode_ == protocols::Photodiode::kOnset ? Clock::now() < white_until_
+                                                                      : frames_ % 2 == 0;
     const double side = std::round(kPatchSide * std::min(style_.width, style_.height));
     const double shade = white ? 1.0 : 0.0;
     patch_.begin_over();
@@ -234,6 +252,9 @@ class Easel {
   render::Window& window_;
   render::TrialDisplayStyle style_;
   protocols::Photodiode photodiode_;
+  std::chrono::duration<double> flash_time_;
+  Clock::time_point white_until_{};
+  std::uint64_t onsets_{0};     // that were shown
   render::TrialDisplay trial_;  // where a pointer is while no drawing says it
   render::TextScreen text_;
   render::Painter patch_;
@@ -288,6 +309,7 @@ void Screen::Impl::run() {
         other_view = easel.take(scene);
       }
       shown.read(seen);
+      const std::uint64_t flashed = easel.flash(onsets_so_far());  // after what they belong to
       easel.draw(seen);
       {
         const std::lock_guard lock(mutex);
@@ -298,7 +320,7 @@ void Screen::Impl::run() {
       }
       const std::int64_t drawn = now_ns();
       window.swap();
-      count(pace.shown(drawn - start));
+      count(pace.shown(drawn - start), flashed);
       window.poll();
       std::vector<int> now_held = window.held_keys();
       for (const render::KeyPress& press : window.take_keys()) {
@@ -331,7 +353,12 @@ void Screen::Impl::run() {
   }
 }
 
-void Screen::Impl::count(const record::FrameRow& frame) {
+std::uint64_t Screen::Impl::onsets_so_far() const {
+  const markers::OnsetLog* log = onsets.load(std::memory_order_acquire);
+  return log != nullptr ? log->count() : 0;
+}
+
+void Screen::Impl::count(const record::FrameRow& frame, std::uint64_t flashed) {
   const std::int64_t first = first_tick_ns.load(std::memory_order_relaxed);
   const std::lock_guard lock(mutex);
   ++summary.frames;
@@ -339,6 +366,10 @@ void Screen::Impl::count(const record::FrameRow& frame) {
   draw_times.add(frame.frame_time_ns);
   if (first != 0 && frame.time_ns >= first) {
     frames.push_back({frame.time_ns - first, frame.frame_time_ns, frame.dropped});
+    if (flashed > 0) {
+      flashes.push_back({flashed, frame_count, frame.time_ns - first});
+    }
+    ++frame_count;
   }
 }
 
@@ -383,6 +414,15 @@ void Screen::observe(const stimulus::Shown& shown, const stimulus::Forces&, doub
 std::vector<record::FrameRow> Screen::take_frames() {
   const std::lock_guard lock(impl_->mutex);
   return std::exchange(impl_->frames, {});
+}
+
+void Screen::flash_with(const markers::OnsetLog* log) {
+  impl_->onsets.store(log, std::memory_order_release);
+}
+
+std::vector<Flash> Screen::take_flashes() {
+  const std::lock_guard lock(impl_->mutex);
+  return std::exchange(impl_->flashes, {});
 }
 
 ScreenSummary Screen::summary() const {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/markers/onset_log.h"
 #include "core/record/rows/session_types.h"
 #include "core/render/flat/text_screen.h"
 #include "core/render/gl/window.h"
@@ -28,6 +29,13 @@ struct ScreenSummary {
   double draw_median_ms{0.0};  // to draw a picture, without the wait for the refresh
   double draw_worst_ms{0.0};
   std::string notice;  // one sentence; empty where the refresh sets the pace
+};
+
+/// The first frame that a photodiode's square was white in after an onset.
+struct Flash {
+  std::uint64_t onsets{0};  // of the run, up to and with those that it shows
+  std::int64_t frame{0};    // of take_frames(), from 0
+  std::int64_t time_ns{0};  // when it was shown, as a frame's
 };
 
 /// The mouse over what a protocol shows.
@@ -80,12 +88,18 @@ class Screen final : public stimulus::Observer {
   /// From the next picture on, whatever this makes.
   void show(protocols::MakeDrawing make);
 
+  /// Whose onsets make the photodiode's square white (Photodiode::kOnset). @param log  outlives the
+  /// screen
+  void flash_with(const markers::OnsetLog* log);
+
   /// Servo thread: hands the newest presentation over; no allocation, lock, I/O or throw.
   void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
                double dt) noexcept override;
 
   /// The pictures since the last call, from the session's first tick on, in order.
   std::vector<record::FrameRow> take_frames();
+  /// The flashes since the last call, in order.
+  std::vector<Flash> take_flashes();
   ScreenSummary summary() const;
   /// Why the screen has stopped drawing, in a sentence; empty while it draws.
   std::string trouble() const;

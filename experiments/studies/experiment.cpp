@@ -32,6 +32,7 @@ Experiment read(Table& root, std::string_view file_name, const std::filesystem::
   experiment.study = &study_of(root);
   experiment.definition = experiment.study->protocol().read(root, file_name, folder);
   experiment.study->read_analysis(root, folder != nullptr);
+  protocols::check_markers(root, *experiment.definition);
   root.finish();
   return experiment;
 }

@@ -54,6 +54,13 @@ void read_common(Table& root, std::string_view file_name, Definition& definition
   definition.screen = read_screen_options(screen);
   definition.texts = read_session_texts(texts);
   read_devices(root, definition);
+  if (root.has("markers")) {
+    Table markers = root.table("markers");
+    definition.markers = markers::read_marker_options(markers);
+  }
+  if (definition.screen.photodiode == Photodiode::kOnset) {
+    definition.markers.used = true;
+  }
 }
 
 void check_common(Table& root, const Definition& definition) {
@@ -73,6 +80,23 @@ void check_common(Table& root, const Definition& definition) {
   if (!plain) {
     root.table("experiment")
         .reject("name", fmt::format("'{}'", definition.name), "letters, digits, '-' and '_'");
+  }
+}
+
+std::vector<markers::MarkerMeaning> Definition::marker_meanings() const {
+  using record::MarkerOf;
+  const int stage = markers.stage;
+  return {{MarkerOf::kTrial, 0, "trial", markers.trial},
+          {MarkerOf::kStage, 0, "approach", stage},
+          {MarkerOf::kStage, 1, "wait", stage + 1},
+          {MarkerOf::kStage, 2, "run", stage + 2},
+          {MarkerOf::kStage, 3, "return", stage + 3}};
+}
+
+void check_markers(Table& root, const Definition& definition) {
+  if (definition.markers.used) {
+    const char* key = root.has("markers") ? "markers" : root.has("stages") ? "stages" : "screen";
+    markers::check_meanings(root, key, definition.marker_meanings());
   }
 }
 

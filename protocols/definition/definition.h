@@ -10,6 +10,7 @@
 #include "core/device/vendor/force_dimension.h"
 #include "core/device/vendor/open_haptics.h"
 #include "core/device/virtual_device.h"
+#include "core/markers/marker_options.h"
 #include "core/render/trial/trial_display_style.h"
 #include "core/subject/hand_parameters.h"
 #include "protocols/definition/schedule.h"
@@ -17,6 +18,10 @@
 
 namespace haptrial {
 class Table;
+}
+
+namespace haptrial::sound {
+struct CueSet;
 }
 
 namespace haptrial::protocols {
@@ -48,6 +53,7 @@ struct Definition {
   device::ForceDimensionParameters force_dimension{};
   device::OpenHapticsParameters open_haptics{};
   device::MouseParameters mouse{};
+  markers::MarkerOptions markers{};
 
   /// How many devices a session drives, 1 to kMostDevices.
   virtual int devices() const { return 1; }
@@ -61,6 +67,11 @@ struct Definition {
   virtual std::vector<std::string> left_out_of_dry_runs() const { return {}; }
   /// Time of a participant's session at most, roughly, without breaks [s]. @param trials  of it
   virtual double longest(int trials) const = 0;
+
+  /// What the codes of its markers stand for: here a trial and the stages of /samples.
+  virtual std::vector<markers::MarkerMeaning> marker_meanings() const;
+  /// What it plays beside what the protocol sounds like itself; null: nothing.
+  virtual const sound::CueSet* sounds() const { return nullptr; }
 
   /// Whether there is a force that the participant is to follow or to recall.
   virtual bool has_target() const { return true; }
@@ -80,6 +91,9 @@ void read_common(Table& root, std::string_view file_name, Definition& definition
 
 /// Notes what no table can see alone.
 void check_common(Table& root, const Definition& definition);
+
+/// Notes codes of markers that are out of range or have two meanings; when all else is read.
+void check_markers(Table& root, const Definition& definition);
 
 /// Notes a speed that the envelope ends, either as such or as a jump within a tick.
 void reject_speed(Table& root, const Definition& definition, const char* table, const char* key,

@@ -19,11 +19,11 @@ std::string read_text(Table& table, std::string_view key) {
 }
 
 Photodiode read_photodiode(Table& table) {
-  const std::string when = table.choice("photodiode", {"off", "frames", "run"});
+  const std::string when = table.choice("photodiode", {"off", "frames", "run", "onset"});
   if (when == "frames") {
     return Photodiode::kEveryFrame;
   }
-  return when == "run" ? Photodiode::kRun : Photodiode::kOff;
+  return when == "run" ? Photodiode::kRun : when == "onset" ? Photodiode::kOnset : Photodiode::kOff;
 }
 
 }  // namespace
@@ -48,6 +48,9 @@ ScreenOptions read_screen_options(Table& table) {
   }
   if (table.has("photodiode")) {
     options.photodiode = read_photodiode(table);
+  }
+  if (table.has("photodiode_time")) {
+    options.photodiode_time = table.number("photodiode_time", {0.0, 10.0, true}, "s");
   }
   return options;
 }

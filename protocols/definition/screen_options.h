@@ -16,6 +16,7 @@ enum class Photodiode : std::uint8_t {
   kOff,         // no square
   kEveryFrame,  // every other frame
   kRun,         // while the participant runs along the path
+  kOnset,       // for a while from the frame on that follows the onset of a marker
 };
 
 /// The participant's screen.
@@ -25,6 +26,7 @@ struct ScreenOptions {
   int monitor{0};          // from 0, the primary one
   bool refresh_lock{true};
   Photodiode photodiode{Photodiode::kOff};
+  double photodiode_time{0.05};    // for which it stays white after an onset > 0 [s]
   bool participant_steers{false};  // by its keys: start, pause, repeat, skip, clear, abort
 };
 
@@ -53,7 +55,10 @@ struct SessionTexts {
 ///     monitor       from 0
 ///     refresh_lock  true or false: whether drawing waits for the monitor
 ///     participant_steers  true or false: whether keys of the participant's window do more than
-///     stop photodiode    "off", "frames" (white every other frame) or "run" (white during the run)
+///                         stop
+///     photodiode    "off", "frames" (white every other frame), "run" (white during the run) or
+///                   "onset" (white for photodiode_time after the onset of a marker)
+///     photodiode_time  [s]
 ScreenOptions read_screen_options(Table& table);
 
 /// Reads a [texts] table. Required: instructions, practice, rest, thanks; the others have defaults.

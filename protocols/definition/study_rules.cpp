@@ -5,7 +5,8 @@ namespace {
 
 constexpr std::string_view kVirtualDevice = "virtual";
 
-/// What participants read, on what, and how many are to come; what is asked of the data.
+/// What participants read, on what, and how many are to come; where markers and sounds go; what is
+/// asked of the data.
 DefinitionRules of_every_study() {
   DefinitionRules rules;
   rules.free = {"texts",
@@ -14,6 +15,10 @@ DefinitionRules of_every_study() {
                 "force_dimension",
                 "open_haptics",
                 "mouse",
+                "markers.serial",
+                "markers.baud",
+                "markers.pulse",
+                "sounds.device",
                 "design.participants",
                 "analysis.planned",
                 "analysis.reference"};

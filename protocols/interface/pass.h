@@ -7,6 +7,7 @@
 
 #include "core/device/device.h"
 #include "core/device/energy_watch.h"
+#include "core/markers/onset.h"
 #include "core/record/rows/session_types.h"
 #include "core/stimulus/shown.h"
 
@@ -43,6 +44,7 @@ struct PassOutput : Drive {  // of the first device
   record::Stage stage{record::Stage::kIdle};
   bool saturated{false};      // the device's force limit was reached
   double damping_share{1.0};  // of the damping that the definition asks for
+  markers::Onsets onsets;     // what begins on this tick, if the pass names its onsets
 };
 
 enum class PassState : std::uint8_t { kRunning, kCompleted, kAborted };
@@ -59,6 +61,8 @@ class Pass {
   /// What the last tick() asks of the devices after the first, in their order.
   virtual std::span<const Drive> others() const noexcept { return {}; }
   virtual PassState state() const noexcept = 0;
+  /// Whether PassOutput::onsets says what begins when; else the stages of PassOutput do.
+  virtual bool names_onsets() const noexcept { return false; }
   /// On a simulated clock: whether the session's thread has to empty the protocol's own logs.
   virtual bool wants_attention() noexcept { return false; }
 };

@@ -11,6 +11,7 @@ SessionTask::SessionTask(const Parts& parts, Leave leave, Origin origin)
       device_log_(parts.device_log),
       tick_log_(parts.tick_log),
       keys_(parts.keys),
+      onsets_(parts.onsets),
       observers_(parts.observers),
       leave_(leave),
       origin_(origin) {}
@@ -44,6 +45,7 @@ bool SessionTask::tick(const realtime::Tick& tick) noexcept {
 
   devices_.read(keys_ != nullptr ? keys_->load(std::memory_order_relaxed) : 0);
   const PassOutput out = ask_pass(tick.dt);
+  note_onsets(tick, out);  // before anybody sees what begins
   devices_.limit(out, pass_ != nullptr ? pass_->others() : std::span<const Drive>{}, tick.dt);
   if (take_stop()) {  // it came during the tick, which a slow device may draw out
     devices_.drop();
@@ -57,9 +59,40 @@ bool SessionTask::tick(const realtime::Tick& tick) noexcept {
 
   const bool attention = pass_ != nullptr && pass_->wants_attention();
   const bool ended = end_if_over(tick.index);
+  if (ended && onsets_ != nullptr) {
+    put_onset(tick, {}, true);
+  }
   const std::uint64_t next = tick.index + 1;
   return leave_ == Leave::kNever ||
          !(ended || attention || next % kSlice == 0 || next == leave_before_);
+}
+
+void SessionTask::put_onset(const realtime::Tick& tick, const markers::Onset& onset,
+                            bool over) noexcept {
+  onsets_->put(
+      {onset, 0, origin_.sequence + tick.index, origin_.time_ns + tick.time_ns, row_, over});
+}
+
+/// A pass begins with its trial; then its own onsets, or its stages.
+void SessionTask::note_onsets(const realtime::Tick& tick, const PassOutput& out) noexcept {
+  if (onsets_ == nullptr || pass_ == nullptr) {
+    return;
+  }
+  if (std::exchange(begins_, false)) {
+    put_onset(tick, {}, false);
+    told_stage_ = record::Stage::kIdle;
+  }
+  for (const markers::Onset& onset : out.onsets.all()) {
+    put_onset(tick, onset, false);
+  }
+  if (!pass_->names_onsets() && out.stage != told_stage_) {
+    told_stage_ = out.stage;
+    if (out.stage != record::Stage::kIdle) {
+      markers::Onset onset{record::MarkerOf::kStage};
+      onset.index = static_cast<std::int16_t>(static_cast<int>(out.stage) - 1);
+      put_onset(tick, onset, false);
+    }
+  }
 }
 
 void SessionTask::record(const realtime::Tick& tick, const PassOutput& out) noexcept {
@@ -80,8 +113,7 @@ void SessionTask::record(const realtime::Tick& tick, const PassOutput& out) noex
   for (std::size_t device = 1; device_log_ != nullptr && device < readings.size(); ++device) {
     device_log_->push({sample.sequence, static_cast<std::int32_t>(device),
                        readings[device].tool.position, readings[device].tool.velocity,
-                       forces[device],
-                       static_cast<std::int32_t>(readings[device].buttons)});
+                       forces[device], static_cast<std::int32_t>(readings[device].buttons)});
   }
   if (tick_log_ != nullptr) {
     tick_log_->record(sample.sequence, readings);
@@ -128,6 +160,7 @@ void SessionTask::begin(std::uint64_t sequence) noexcept {
   pass_ = std::exchange(waiting_, nullptr);
   row_ = asked_row_.load(std::memory_order_relaxed);
   broken_off_ = false;
+  begins_ = true;
   result_.begun = true;
   result_.first_sample = origin_.sequence + sequence;
   pass_->begin(result_.first_sample);

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/markers/onset_log.h"
 #include "core/realtime/block_log.h"
 #include "core/realtime/servo_loop.h"
 #include "core/record/rows/device_row.h"
@@ -58,6 +59,7 @@ class SessionTask final : public realtime::ServoTask {
     TickLog* tick_log{nullptr};      // the protocol's own
     std::vector<stimulus::Observer*> observers{};
     const std::atomic<std::uint32_t>* keys{nullptr};  // DeviceReading::keys, of the window
+    markers::OnsetLog* onsets{nullptr};               // null: nobody is told what begins when
   };
   explicit SessionTask(const Parts& parts, Leave leave, Origin origin = Origin{});
   /// Of one device.
@@ -97,12 +99,15 @@ class SessionTask final : public realtime::ServoTask {
   bool end_if_over(std::uint64_t sequence) noexcept;
   void record(const realtime::Tick& tick, const PassOutput& out) noexcept;
   PassOutput ask_pass(double dt) noexcept;
+  void note_onsets(const realtime::Tick& tick, const PassOutput& out) noexcept;
+  void put_onset(const realtime::Tick& tick, const markers::Onset& onset, bool over) noexcept;
 
   DeviceSet devices_;
   Log& log_;
   DeviceLog* device_log_;
   TickLog* tick_log_;
   const std::atomic<std::uint32_t>* keys_;
+  markers::OnsetLog* onsets_;
   std::vector<stimulus::Observer*> observers_;
   Leave leave_;
   Origin origin_;
@@ -121,7 +126,9 @@ class SessionTask final : public realtime::ServoTask {
   Pass* pass_{nullptr};
   std::int32_t row_{-1};
   bool broken_off_{false};
-  PassResult result_;  // published by busy_
+  bool begins_{false};                              // the pass has had no tick yet
+  record::Stage told_stage_{record::Stage::kIdle};  // of the pass
+  PassResult result_;                               // published by busy_
 };
 
 }  // namespace haptrial::protocols

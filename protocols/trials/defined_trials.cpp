@@ -70,6 +70,7 @@ Mark mark_of(const scene::Shape& shape) {
 StageSight sight_of(const NamedStage& stage, const Presented& presented, const Names& names,
                     std::uint64_t seed) {
   StageSight sight;
+  sight.sound = stage.sound;
   for (const std::string& name : stage.show) {
     const auto region = std::ranges::find(presented.regions, name, &scene::Region::name);
     const auto look = std::ranges::find(presented.looks, name, &Look::name);
@@ -178,6 +179,8 @@ Pass& DefinedTrials::make_pass(PlannedTrial&, const record::Phase&) {
   setup.most_repeats = d_.most_repeats;
   setup.max_force = d_.envelope.max_force;
   setup.said = said_.get();
+  setup.sound_right = d_.sound_right;
+  setup.sound_wrong = d_.sound_wrong;
   variables_.clear();
   stages_.clear();
   give(*names_, d_, current_.values);
@@ -219,14 +222,18 @@ IntervalRun DefinedTrials::make_interval(std::size_t place, RandomStream& random
   return {
       std::move(scenes),
       StageMachine(std::move(stages), std::move(regions), presented.fields.size(), presented.felt),
-      std::move(sights), pushing(presented.fields)};
+      std::move(sights), pushing(presented.fields),
+      d_.intervals.size() > 1 ? static_cast<int>(current_.values.intervals[place]) : -1};
 }
 
 std::vector<Asked> DefinedTrials::make_questions() {
   std::vector<Asked> asked;
   right_.clear();
+  int marker = 0;
   for (const Question& question : d_.questions) {
     Asked each{&question};
+    each.marker = marker;
+    marker += static_cast<int>(question.answers().size());
     if (!question.correct.empty()) {
       each.right = right_choice(*names_, question);
     }

@@ -13,15 +13,24 @@ class TrialsProtocol final : public Protocol {
  public:
   std::string_view name() const override { return kTrials; }
   std::unique_ptr<Definition> read(Table& root, std::string_view file_name,
-                                   const std::filesystem::path*) const override {
+                                   const std::filesystem::path* folder) const override {
     auto definition = std::make_unique<StudiedDefinition>();
     read_trials_definition(root, file_name, *definition);
+    for (sound::Cue& cue : definition->cues.cues) {
+      if (folder != nullptr && cue.file.is_relative() && !cue.file.empty()) {
+        cue.file = *folder / cue.file;
+      }
+    }
     definition->observer =
         read_observer(root, definition->questions, definition->stages, definition->hands);
     return definition;
   }
   void load(Definition& definition, const std::filesystem::path&) const override {
-    check_every_value(dynamic_cast<const TrialsDefinition&>(definition));
+    const auto& d = dynamic_cast<const TrialsDefinition&>(definition);
+    check_every_value(d);
+    for (const sound::Cue& cue : d.cues.cues) {
+      sound::rendered(cue, 0);  // a file that cannot be played is a mistake of the definition
+    }
   }
   std::vector<std::pair<record::Phase, std::string>> phases() const override {
     return {{record::Phase(record::kPresentedPhase), "a trial is presented and asked about"}};

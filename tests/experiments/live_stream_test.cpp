@@ -11,6 +11,7 @@
 
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/rows/marker_row.h"
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
@@ -109,6 +110,38 @@ TEST_F(LiveStreamTest, SamplesAndMarkersArriveInALibraryThatTheLoaderFinds) {
     EXPECT_THAT(heard, testing::Contains(event));
   }
   EXPECT_GE(expected.size(), 2u) << "the start and the end";
+}
+
+/// Of every protocol: the study of force curves has the stages of its passes.
+TEST_F(LiveStreamTest, OnsetsArriveWithTheirCodes) {
+  test::write_text(folder_ / "study.toml", test::brisk_text() + "\n[markers]\nstage = 41\n");
+  const CommandResult ended = LiveCommand(run(), with_the_layer()).wait(40.0);
+  ASSERT_EQ(ended.status, 0) << ended.errors;
+  std::vector<std::string> heard;
+  for (const Fields& row : streams_in(folder_ / "heard").at(1)) {
+    if (row.size() > 1 && row[1].starts_with("onset: ")) {
+      heard.push_back(row[1]);
+    }
+  }
+  const record::SessionReader reader(file());
+  const auto rows = reader.rows<record::MarkerRow>();
+  ASSERT_FALSE(rows.empty());
+  ASSERT_EQ(heard.size(), rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const record::MarkerRow& row = rows[i];
+    EXPECT_EQ(row.way, record::MarkerWay::kStream);
+    EXPECT_GE(row.latency, 0.0);
+    EXPECT_EQ(heard[i], "onset: what=" + std::string(record::name_of(row.what)) +
+                            " name=" + row.name + " code=" + std::to_string(row.code) +
+                            " trial=1 interval=0 pass=" + std::to_string(row.pass));
+    const record::Sample sample = reader.samples(row.sequence, 1).front();
+    EXPECT_EQ(sample.time_ns, row.time_ns);
+    if (row.what == record::MarkerOf::kStage) {
+      EXPECT_EQ(row.code, 40 + static_cast<int>(sample.stage));
+      EXPECT_NE(reader.samples(row.sequence - 1, 1).front().stage, sample.stage);
+    }
+  }
+  EXPECT_THAT(ended.output, HasSubstr("markers, stream: " + std::to_string(rows.size())));
 }
 
 TEST_F(LiveStreamTest, TimesAreThoseOfTheSamplesFromTheFirstOneOn) {

@@ -123,6 +123,7 @@ TrialsData read_trials(const std::vector<std::filesystem::path>& files, const Gr
   TrialsData data;
   data.sessions.resize(files.size());
   std::vector<std::vector<StudyTrial>> by_file(files.size());
+  std::vector<markers::MarkerLatencies> markers(files.size());
   in_groups(files.size(), 1, threads, [&] {
     return [&](std::size_t first, std::size_t) {
       const record::SessionReader reader(files[first]);
@@ -134,9 +135,12 @@ TrialsData read_trials(const std::vector<std::filesystem::path>& files, const Gr
                               info.simulated,
                               info.pilot};
       by_file[first] = SessionTrials(reader).take();
+      const std::vector<record::MarkerRow> rows = reader.rows<record::MarkerRow>();
+      markers[first].add(rows);
     };
   });
   for (std::size_t session = 0; session < by_file.size(); ++session) {
+    data.markers.add(markers[session]);
     for (StudyTrial& trial : by_file[session]) {
       trial.session = session;
       data.trials.push_back(std::move(trial));

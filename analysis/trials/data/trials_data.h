@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/markers/marker_times.h"
+
 namespace haptrial::analysis::trials {
 
 inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
@@ -81,6 +83,7 @@ struct StudyTrial {
 struct TrialsData {
   std::vector<StudySession> sessions;
   std::vector<StudyTrial> trials;
+  markers::MarkerLatencies markers;  // of all sessions
 
   bool simulated() const;
   const StudySession& session_of(const StudyTrial& trial) const { return sessions[trial.session]; }

@@ -134,6 +134,17 @@ void add_comparisons(Document& document, const TrialsResult& result) {
   }
 }
 
+/// How soon those who listened were told what began.
+static void add_markers(Document& document, const TrialsResult& result) {
+  std::vector<std::string> sentences;
+  for (const markers::MarkerTimes& times : result.data.markers.times()) {
+    sentences.push_back(sentence_of(times));
+  }
+  if (!sentences.empty()) {
+    document.paragraph(fmt::format("Markers: {}.", fmt::join(sentences, "; ")));
+  }
+}
+
 void add_trial_quality(Document& document, const TrialsResult& result,
                        const std::vector<Drawing>& drawings) {
   add_tracks(document, result, drawings);
@@ -149,6 +160,7 @@ void add_trial_quality(Document& document, const TrialsResult& result,
   document.paragraph(limited.empty() ? std::string("The device never came to its force limit.")
                                      : fmt::format("The force limit was reached by {}.",
                                                    fmt::join(limited, ", ")));
+  add_markers(document, result);
   add_pictures(document, drawings, "reaction-times", 1);
 }
 

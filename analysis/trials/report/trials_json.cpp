@@ -183,6 +183,15 @@ Json to_json(const ParticipantTrials& p) {
           {"share_of_trials_at_force_limit", p.saturated}};
 }
 
+Json to_json(const markers::MarkerTimes& times) {
+  return {{"way", record::name_of(times.way)},
+          {"markers", times.sent},
+          {"lost", times.lost},
+          {"median_latency_s", to_json(times.median)},
+          {"p99_latency_s", to_json(times.p99)},
+          {"largest_latency_s", to_json(times.largest)}};
+}
+
 template <class T>
 Json list_of(const std::vector<T>& values) {
   Json list = Json::array();
@@ -220,6 +229,9 @@ std::string results_json(const TrialsResult& result) {
   root["magnitudes"] = list_of(result.magnitudes);
   if (result.reaching) {
     root["reaching"] = Json::parse(reaching_json(*result.reaching));
+  }
+  if (const auto times = result.data.markers.times(); !times.empty()) {
+    root["markers"] = list_of(times);  // of sessions that recorded any
   }
   root["remarks"] = result.remarks;
   return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -5,7 +5,7 @@
 namespace haptrial::record {
 
 /// What a session of any protocol may have beside the tables of every session: answers, further
-/// devices, what became of trials.
+/// devices, what became of trials, markers.
 const TableList& common_tables();
 
 /// Recovery knows whose a chunk is by its inflated size.

@@ -10,6 +10,7 @@
 
 #include "analysis/quality/timing.h"
 #include "core/base/text/counted.h"
+#include "core/markers/marker_times.h"
 #include "core/record/hdf5/file_lock.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/readable.h"
@@ -52,6 +53,15 @@ void print_loop(const record::SessionReader& reader) {
     const auto us = [](std::int64_t ns) { return 1e-3 * static_cast<double>(ns); };
     fmt::print("lateness    median {:.2f}, 99 % {:.2f}, 99.9 % {:.2f}, worst {:.2f} µs\n",
                us(late.median_ns), us(late.p99_ns), us(late.p999_ns), us(late.highest_ns));
+  }
+}
+
+void print_markers(const record::SessionReader& reader) {
+  markers::MarkerLatencies latencies;
+  const std::vector<record::MarkerRow> rows = reader.rows<record::MarkerRow>();
+  latencies.add(rows);
+  for (const markers::MarkerTimes& times : latencies.times()) {
+    fmt::print("markers     {}\n", sentence_of(times));
   }
 }
 
@@ -118,6 +128,7 @@ int info(const std::string& file) {
              integrity.practice);
   print_loop(reader);
   print_frames(reader.frames());
+  print_markers(reader);
   for (const record::EventRow& event : reader.events()) {
     if (is_told(event.kind)) {
       fmt::print("{:<11} at {:.3f} s: {}\n", event.kind, 1e-9 * static_cast<double>(event.time_ns),

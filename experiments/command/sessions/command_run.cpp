@@ -155,6 +155,9 @@ int run(const RunOptions& options) {
              counted(done.overruns, "overrun", "overruns"),
              counted(done.dropped, "lost record", "lost records"),
              counted(done.aborted_passes, "pass", "passes"));
+  for (const std::string& line : done.markers) {
+    fmt::print("markers, {}\n", line);
+  }
   if (const auto late = record::too_many_overruns(done.ticks, done.overruns)) {
     fmt::print("WARNING: the servo loop did not keep its rate: {}\n", *late);
   }

@@ -160,6 +160,14 @@ Question read_question(Table& table, KeyBits& keys) {
 
 }  // namespace
 
+std::vector<std::string> Question::answers() const {
+  std::vector<std::string> values;
+  for (const Choice& choice : choices) {
+    values.push_back(choice.value);
+  }
+  return values.empty() ? std::vector<std::string>{"number"} : values;
+}
+
 std::uint32_t KeyBits::bit_of(int code) {
   const auto found = std::find(codes_.begin(), codes_.end(), code);
   const auto place = static_cast<std::size_t>(found - codes_.begin());

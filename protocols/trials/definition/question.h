@@ -50,6 +50,8 @@ struct Question {
   std::string onset;    // stage of the last interval from whose beginning the reaction counts;
                         // empty: from the question
   bool types() const { return choices.empty(); }
+  /// Each answer that has a marker of its own: the choices, or "number".
+  std::vector<std::string> answers() const;
 };
 
 /// Reads [response], or several [[responses]]; without either, nothing is asked. Keys in brackets

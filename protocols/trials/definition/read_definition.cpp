@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/scene/needed_damping.h"
 #include "core/scene/read/read_field.h"
+#include "core/sound/cues/read_cues.h"
 #include "protocols/trials/definition/defaults.h"
 #include "protocols/trials/definition/read_tracks.h"
 #include "protocols/trials/definition/trial_devices.h"
@@ -39,6 +40,42 @@ void read_view(Table& root, TrialsDefinition& d) {
     table.reject("stereo",
                  "is not true, but a bar of random dots is seen with two eyes only; add stereo = "
                  "true, which shows the eyes' pictures side by side");
+  }
+}
+
+/// The sounds, and those that go with the feedback.
+void read_sounds(Table& root, TrialsDefinition& d) {
+  if (root.has("sounds")) {
+    Table table = root.table("sounds");
+    d.cues = sound::read_cues(table);
+    d.markers.used = true;
+  }
+  Table display = root.table("display");
+  const auto read = [&](const char* key, int& into) {
+    if (!display.has(key)) {
+      return;
+    }
+    const std::string name = display.text(key);
+    const auto found = std::ranges::find(d.cues.cues, name, &sound::Cue::name);
+    if (found == d.cues.cues.end()) {
+      display.reject(key, fmt::format("\"{}\"", name), "a sound of [sounds]");
+    }
+    into = static_cast<int>(found - d.cues.cues.begin());
+  };
+  read("sound_right", d.sound_right);
+  read("sound_wrong", d.sound_wrong);
+}
+
+/// Masking noise in stages that are not there would never be heard.
+void check_masking(Table& root, const TrialsDefinition& d) {
+  if (!d.cues.masking) {
+    return;
+  }
+  for (const std::string& stage : d.cues.masking->stages) {
+    if (std::ranges::find(d.stages, stage) == d.stages.end()) {
+      root.reject("sounds", fmt::format("masking names the stage \"{}\"; allowed: {}", stage,
+                                        fmt::join(d.stages, ", ")));
+    }
   }
 }
 
@@ -237,11 +274,14 @@ void read_first_trial(Table& root, TrialsDefinition& d) {
   }
   for (const NamedStage& stage : stages) {
     d.stages.push_back(stage.name);
+    d.stage_markers.push_back(stage.marker);
+    d.markers.used = d.markers.used || stage.marker > 0;
     const Until& until = stage.stage.until;
     d.stage_time +=
         std::max(until.time, until.hold) + (std::isfinite(stage.stage.timeout) ? 1.0 : 0.0);
   }
   check_questions(root, d, stages);
+  check_masking(root, d);
 }
 
 }  // namespace
@@ -290,9 +330,14 @@ Presented read_presented(Table& root, const Names& names, const TrialsDefinition
   }
   const std::vector<std::string> places = names.places();
   sights.insert(sights.end(), places.begin(), places.end());
-  const StageSource source{fields, regions,
-                           names,  [&names](const std::string& text) { return names.word(text); },
-                           random, sights};
+  const StageSource source{
+      fields,
+      regions,
+      names,
+      [&names](const std::string& text) { return names.word(text); },
+      random,
+      root.has("sounds") ? sound::cue_names(root.table("sounds")) : std::vector<std::string>{},
+      sights};
   presented.stages = read_stages(root, source);
   return presented;
 }
@@ -321,6 +366,7 @@ void read_trials_definition(Table& root, std::string_view file_name, TrialsDefin
   d.protocol = kTrials;
   read_view(root, d);
   d.hands = read_devices(root);
+  read_sounds(root, d);
   d.groups = study_groups(root.source(), file_name);
   d.questions = read_questions(root, d.keys);
   d.tracks = read_tracks(root);

@@ -73,9 +73,37 @@ std::vector<std::string> TrialsDefinition::description() const {
       lines.push_back(*prediction);
     }
   }
+  if (markers.used) {
+    lines.push_back("markers: " + markers::words_of(marker_meanings()));
+  }
   lines.push_back(fmt::format("about {:.0f} minutes per participant, breaks not counted",
                               longest(most_trials()) / 60.0));
   return lines;
+}
+
+std::vector<markers::MarkerMeaning> TrialsDefinition::marker_meanings() const {
+  using record::MarkerOf;
+  std::vector<markers::MarkerMeaning> all{{MarkerOf::kTrial, 0, "trial", markers.trial}};
+  const auto add = [&](MarkerOf what, std::size_t index, const std::string& word, int code) {
+    all.push_back({what, static_cast<std::int16_t>(index), word, code});
+  };
+  for (std::size_t i = 0; intervals.size() > 1 && i < intervals.size(); ++i) {
+    add(MarkerOf::kInterval, i, intervals[i].name, markers.interval + static_cast<int>(i));
+  }
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    add(MarkerOf::kStage, i, stages[i],
+        stage_markers[i] > 0 ? stage_markers[i] : markers.stage + static_cast<int>(i));
+  }
+  int code = markers.response;
+  for (const Question& question : questions) {
+    const std::string of = questions.size() > 1 ? question.name + " " : "";
+    for (const std::string& answer : question.answers()) {
+      add(MarkerOf::kResponse, static_cast<std::size_t>(code - markers.response), of + answer,
+          code);
+      ++code;
+    }
+  }
+  return all;
 }
 
 std::vector<std::string> TrialsDefinition::warnings() const { return restless; }

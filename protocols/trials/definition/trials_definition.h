@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/sound/cues/cue.h"
 #include "protocols/definition/definition.h"
 #include "protocols/definition/groups.h"
 #include "protocols/trials/definition/block.h"
@@ -41,13 +42,16 @@ struct TrialsDefinition : Definition {
   KeyBits keys;
   std::vector<Track> tracks;
   std::vector<std::string> stages;  // names, in their order
+  std::vector<int> stage_markers;   // the code of each; 0: the one of its place
   std::vector<StudyGroup> groups;
   std::vector<TrialDevice> hands;  // in the order of the session's devices; empty: one, unnamed
   TrialsView view;
   std::string feedback_right, feedback_wrong;
-  double feedback_time{0.5};          // [s]
-  double stage_time{0.0};             // of one interval at most, roughly [s]
-  std::vector<std::string> restless;  // sentences on fields that a light hand would make shake
+  double feedback_time{0.5};  // [s]
+  sound::CueSet cues;
+  int sound_right{-1}, sound_wrong{-1};  // of the cues, with the feedback; -1: none
+  double stage_time{0.0};                // of one interval at most, roughly [s]
+  std::vector<std::string> restless;     // sentences on fields that a light hand would make shake
   int most_repeats{5};  // of an interval whose stage asks for it; then the trial is aborted
 
   int devices() const override { return hands.empty() ? 1 : static_cast<int>(hands.size()); }
@@ -55,6 +59,9 @@ struct TrialsDefinition : Definition {
   std::vector<std::string> description() const override;
   std::vector<std::string> warnings() const override;
   double longest(int trials) const override;
+  /// Intervals if there are several, stages, and the answers to all questions in their order.
+  std::vector<markers::MarkerMeaning> marker_meanings() const override;
+  const sound::CueSet* sounds() const override { return cues.empty() ? nullptr : &cues; }
   std::uint32_t functions_of(const std::vector<int>& held) const override {
     return keys.bits_of(held);
   }

@@ -36,6 +36,7 @@ void TrialPass::begin_interval() noexcept {
 }
 
 PassOutput TrialPass::tick(const Readings& readings, double dt) noexcept {
+  PassOutput out;
   tick_time_ = dt;
   drives_ = {};
   saturated_ = false;
@@ -43,13 +44,12 @@ PassOutput TrialPass::tick(const Readings& readings, double dt) noexcept {
   look_at_hands(readings);
   if (state_ == PassState::kRunning) {
     if (part_ == Part::kIntervals) {
-      present(readings, dt);
+      present(readings, dt, out);
     } else {
-      listen(dt);
+      listen(dt, out);
     }
     ++sequence_;
   }
-  PassOutput out;
   static_cast<Drive&>(out) = drives_[0];
   out.saturated = saturated_;
   out.shown = stimulus::Shown(view_);
@@ -96,9 +96,27 @@ Drive TrialPass::drive(const IntervalRun& run, std::size_t device,
   return drive;
 }
 
-void TrialPass::present(const Readings& readings, double dt) noexcept {
+/// On the first tick of a stage, which /stages names, too.
+void TrialPass::note_stage(const IntervalRun& run, PassOutput& out) noexcept {
+  const std::size_t stage = run.machine.stage();
+  const auto begin = static_cast<std::uint64_t>(run.machine.times()[stage].begin);
+  if (first_ticks_[interval_] + begin == stage_begun_) {
+    return;
+  }
+  const bool first = first_ticks_[interval_] == sequence_;
+  const auto place = static_cast<std::int16_t>(interval_ + 1);
+  stage_begun_ = first_ticks_[interval_] + begin;
+  if (first && run.marker >= 0) {
+    out.onsets.add({record::MarkerOf::kInterval, static_cast<std::int16_t>(run.marker), place, -1});
+  }
+  out.onsets.add({record::MarkerOf::kStage, static_cast<std::int16_t>(stage), place,
+                  static_cast<std::int16_t>(run.sights[stage].sound)});
+}
+
+void TrialPass::present(const Readings& readings, double dt, PassOutput& out) noexcept {
   IntervalRun& run = setup_.intervals[interval_];
   const std::size_t stage = run.machine.stage();
+  note_stage(run, out);
   const std::size_t devices = std::min(device_count_, run.scenes.size());
   for (std::size_t device = 0; device < devices; ++device) {
     drives_[device] = drive(run, device, run.scenes[device].force(readings[device].tool));
@@ -147,7 +165,7 @@ void TrialPass::ask() noexcept {
   }
 }
 
-void TrialPass::listen(double dt) noexcept {
+void TrialPass::listen(double dt, PassOutput& out) noexcept {
   time_ += dt;
   if (part_ == Part::kFeedback) {
     if (time_ >= setup_.feedback_time) {
@@ -168,7 +186,7 @@ void TrialPass::listen(double dt) noexcept {
     listen_to_choice(question, answer);
   }
   if (answer.given) {
-    take(answer);
+    take(answer, out);
   } else if (question.timeout > 0.0 && time_ >= question.timeout) {
     abort("no answer was given in time");
   }
@@ -217,7 +235,13 @@ void TrialPass::listen_to_number(const Question& question, Answer& answer) noexc
   }
 }
 
-void TrialPass::take(const Answer& given) noexcept {
+/// The participant hears whether the answer was right when this is shown.
+int TrialPass::sound_of(const Asked& asked, const Answer& answer) const noexcept {
+  const bool told = asked.feedback && asked.right >= 0 && setup_.feedback_time > 0.0;
+  return !told ? -1 : answer.choice == asked.right ? setup_.sound_right : setup_.sound_wrong;
+}
+
+void TrialPass::take(const Answer& given, PassOutput& out) noexcept {
   const Asked& asked = setup_.questions[question_];
   Answer& answer = answers_[question_] = given;
   answer.sequence = sequence_;
@@ -227,6 +251,9 @@ void TrialPass::take(const Answer& given) noexcept {
         setup_.intervals.back().machine.times()[static_cast<std::size_t>(asked.onset)];
     from = first_ticks_.back() + static_cast<std::uint64_t>(std::max<std::int64_t>(0, times.begin));
   }
+  out.onsets.add({record::MarkerOf::kResponse,
+                  static_cast<std::int16_t>(asked.marker + std::max(0, answer.choice)), 0,
+                  static_cast<std::int16_t>(sound_of(asked, answer))});
   answer.reaction_time = static_cast<double>(sequence_ - from + 1) * tick_time_;
   if (asked.feedback && asked.right >= 0 && setup_.feedback_time > 0.0) {
     view_.verdict = answer.choice == asked.right ? Verdict::kRight : Verdict::kWrong;

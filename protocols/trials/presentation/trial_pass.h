@@ -21,6 +21,7 @@ struct StageSight {
   DotsShown dots;
   bool hand{false};
   bool interval_number{false};
+  int sound{-1};  // that begins with the stage; -1: none
 };
 
 /// One interval, ready to be presented.
@@ -29,6 +30,7 @@ struct IntervalRun {
   StageMachine machine;
   std::vector<StageSight> sights;  // (stages)
   std::uint64_t pushing{0};        // fields that are to work on the hand, a bit each
+  int marker{-1};                  // index of its onset's marker; -1: it has none
 };
 
 /// What is asked after the intervals.
@@ -37,6 +39,7 @@ struct Asked {
   int right{-1};                      // choice, from 0; -1: none is known to be right
   bool feedback{false};               // tells whether it was right
   int onset{-1};  // stage of the last interval from which the reaction counts; -1: the question
+  int marker{0};  // index of the first answer's marker; those of the others follow
 };
 
 /// What was answered.
@@ -62,6 +65,7 @@ class TrialPass final : public Pass {
     int most_repeats{5};
     double max_force{8.0};      // the sum of a device's fields is scaled to at most this [N]
     SaidAnswer* said{nullptr};  // null: a person answers
+    int sound_right{-1}, sound_wrong{-1};  // with the feedback; -1: none
   };
   explicit TrialPass(Setup setup);
 
@@ -71,6 +75,7 @@ class TrialPass final : public Pass {
     return {drives_.data() + 1, device_count_ - 1};
   }
   PassState state() const noexcept override { return state_; }
+  bool names_onsets() const noexcept override { return true; }
 
   // After the pass.
   /// Sequence number of the first tick of an interval; 0 for one that did not begin.
@@ -92,16 +97,20 @@ class TrialPass final : public Pass {
   enum class Part : std::uint8_t { kIntervals, kQuestions, kFeedback };
 
   void begin_interval() noexcept;
-  void present(const Readings& readings, double dt) noexcept;
+  void note_stage(const IntervalRun& run, PassOutput& out) noexcept;
+  int sound_of(const Asked& asked, const Answer& answer) const noexcept;
+  void present(const Readings& readings, double dt, PassOutput& out) noexcept;
   Drive drive(const IntervalRun& run, std::size_t device, const Eigen::Vector3d& force) noexcept;
   void end_interval() noexcept;
   void ask() noexcept;
-  void listen(double dt) noexcept;
+  void listen(double dt, PassOutput& out) noexcept;
   void listen_to_choice(const Question& question, Answer& answer) noexcept;
   void listen_to_number(const Question& question, Answer& answer) noexcept;
-  void take(const Answer& answer) noexcept;
+  void take(const Answer& answer, PassOutput& out) noexcept;
   void look_at_hands(const Readings& readings) noexcept;
   void abort(const char* why) noexcept;
+
+  static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
 
   Setup setup_;
   std::vector<std::uint64_t> first_ticks_;
@@ -110,6 +119,7 @@ class TrialPass final : public Pass {
   Part part_{Part::kIntervals};
   std::size_t interval_{0};
   std::size_t begun_{0};
+  std::uint64_t stage_begun_{kNever};  // tick at which the stage that was told last began
   std::size_t question_{0};
   TrialView view_;
   std::array<Drive, kMostDevices> drives_{};  // of the last tick

@@ -61,6 +61,12 @@ class StageReader {
       Table onset = table_.table("onset");
       result_.stage.onset_speed = number(onset, "speed_above", kSpeed, "m/s");
     }
+    if (table_.has("sound")) {
+      result_.sound = index_of(table_, "sound", table_.text("sound"), source_.sounds, "sound");
+    }
+    if (table_.has("marker")) {
+      result_.marker = static_cast<int>(table_.integer("marker", 1, 255));
+    }
     return std::move(result_);
   }
 

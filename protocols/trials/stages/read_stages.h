@@ -21,6 +21,8 @@ namespace haptrial::protocols {
 struct NamedStage {
   std::string name;
   std::vector<std::string> show;  // what the participant sees
+  int sound{-1};                  // begins with it, by its index; -1: none
+  int marker{0};                  // its code; 0: the one of its place
   Stage stage;
 };
 
@@ -33,6 +35,7 @@ struct StageSource {
   /// themselves.
   std::function<std::string(const std::string&)> word;
   RandomStream* random{nullptr};      // draws durations "for = [0.5, 1.0]"; null: the shortest
+  std::vector<std::string> sounds{};  // by index
   std::vector<std::string> sights{};  // what can be shown; empty: anything
 };
 
@@ -48,6 +51,8 @@ struct StageSource {
 ///     [timeout] after [s], then = "abort", "repeat" or "go on"
 ///     [require] max_of = "depth", "force" (with field) or "speed", at_least, else = as then
 ///     [onset]   speed_above [m/s]
+///     [sound]   name, or "$name"; begins with the stage
+///     [marker]  code of its onset, 1 to 255
 ///
 /// A stage whose until asks for more than a time needs a timeout: it might never end.
 std::vector<NamedStage> read_stages(Table& root, const StageSource& source);

@@ -187,6 +187,31 @@ TEST_F(ScreenTest, ThePhotodiodesSquareTogglesEveryFrame) {
   EXPECT_GE(black, 3);
 }
 
+TEST_F(ScreenTest, ThePhotodiodesSquareFlashesWithAnOnset) {
+  options_.photodiode = protocols::Photodiode::kOnset;
+  options_.photodiode_time = 0.5;
+  markers::OnsetLog log;
+  Screen screen(options_, style());
+  screen.flash_with(&log);
+  screen.show(protocols::path_drawing(style(), path()));
+  screen.observe(running(), kNoForce, 1e-3);
+  const auto corner = [&] { return render::pixel(on_monitor(), 5, kHeight - 6); };
+  const Eigen::Vector3d white = Eigen::Vector3d::Constant(255.0);
+  EXPECT_TRUE(eventually([&] { return corner() == Eigen::Vector3d::Zero(); }));
+  EXPECT_TRUE(screen.take_flashes().empty());
+  log.put({});
+  EXPECT_TRUE(eventually([&] { return corner() == white; }));
+  EXPECT_TRUE(eventually([&] { return corner() == Eigen::Vector3d::Zero(); }))
+      << "half a second on";
+  const std::vector<Flash> flashes = screen.take_flashes();
+  ASSERT_EQ(flashes.size(), 1u);
+  EXPECT_EQ(flashes[0].onsets, 1u);
+  const auto frames = screen.take_frames();
+  ASSERT_LT(flashes[0].frame, static_cast<std::int64_t>(frames.size()));
+  EXPECT_EQ(flashes[0].time_ns, frames[static_cast<std::size_t>(flashes[0].frame)].time_ns);
+  screen.flash_with(nullptr);
+}
+
 TEST_F(ScreenTest, KeysPointerAndCloseButtonReachTheCallbacks) {
   std::mutex mutex;
   std::vector<Request> requests;

@@ -60,7 +60,8 @@ TEST(ScreenOptionsTest, EveryKeyIsReadAndNoneIsNeeded) {
 TEST(ScreenOptionsTest, BadValuesAndUnknownKeysAreNamedWithTheirLine) {
   EXPECT_THAT(screen_problem("full_screen = 1"), HasSubstr("x.toml:2: screen.full_screen is"));
   EXPECT_THAT(screen_problem("monitor = -1"), HasSubstr("screen.monitor is -1; allowed:"));
-  EXPECT_THAT(screen_problem("photodiode = \"always\""), HasSubstr("allowed: off, frames, run"));
+  EXPECT_THAT(screen_problem("photodiode = \"always\""),
+              HasSubstr("allowed: off, frames, run, onset"));
   EXPECT_THAT(screen_problem("fullscreen = true"), HasSubstr("fullscreen"));
   EXPECT_THAT(screen_problem("title = 3"), HasSubstr("screen.title"));
   EXPECT_EQ(screen_problem("monitor = 0"), "");

@@ -1,0 +1,105 @@
+#include "core/markers/marker_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "core/base/definition/table.h"
+#include "core/markers/serial_line.h"
+
+namespace haptrial::markers {
+namespace {
+
+using record::MarkerOf;
+
+constexpr int kMostCode = 255;
+
+void read_send(Table& table, MarkerOptions& options) {
+  options.send.clear();
+  for (const std::string& word : table.texts("send")) {
+    constexpr std::array kAll{MarkerOf::kTrial, MarkerOf::kInterval, MarkerOf::kStage,
+                              MarkerOf::kResponse};
+    const auto* found = std::find_if(kAll.begin(), kAll.end(),
+                                     [&](MarkerOf what) { return word == record::name_of(what); });
+    if (found == kAll.end()) {
+      table.reject("send", fmt::format("\"{}\"", word), "stage, response, interval, trial");
+    } else if (std::ranges::find(options.send, *found) == options.send.end()) {
+      options.send.push_back(*found);
+    }
+  }
+}
+
+/// "stage press", or "trial" alone.
+std::string full_name(const MarkerMeaning& meaning) {
+  const std::string what = record::name_of(meaning.what);
+  return meaning.name == what ? what : what + " " + meaning.name;
+}
+
+}  // namespace
+
+MarkerOptions read_marker_options(Table& table) {
+  MarkerOptions options;
+  options.used = true;
+  if (table.has("serial")) {
+    options.serial = table.text("serial");
+  }
+  if (table.has("baud")) {
+    options.baud = static_cast<int>(table.integer("baud", 1, 10'000'000));
+    if (!SerialLine::has_rate(options.baud)) {
+      table.reject("baud", fmt::format("{}", options.baud),
+                   "9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600");
+    }
+  }
+  if (table.has("pulse")) {
+    options.pulse = table.number("pulse", {0.0, 1.0}, "s");
+  }
+  for (const auto& [key, code] :
+       std::initializer_list<std::pair<const char*, int*>>{{"trial", &options.trial},
+                                                           {"interval", &options.interval},
+                                                           {"stage", &options.stage},
+                                                           {"response", &options.response}}) {
+    if (table.has(key)) {
+      *code = static_cast<int>(table.integer(key, 1, kMostCode));
+    }
+  }
+  if (table.has("send")) {
+    read_send(table, options);
+  }
+  return options;
+}
+
+void check_meanings(Table& root, const char* key, const std::vector<MarkerMeaning>& meanings) {
+  for (std::size_t i = 0; i < meanings.size(); ++i) {
+    const MarkerMeaning& one = meanings[i];
+    if (one.code < 1 || one.code > kMostCode) {
+      root.reject(key, fmt::format("give {} the code {}; allowed: 1 to {}. Choose another first "
+                                   "code of its kind",
+                                   full_name(one), one.code, kMostCode));
+    }
+    for (std::size_t k = 0; k < i; ++k) {
+      if (meanings[k].code == one.code) {
+        root.reject(key, fmt::format("give the code {} two meanings, {} and {}; give one of them "
+                                     "another",
+                                     one.code, full_name(meanings[k]), full_name(one)));
+      }
+    }
+  }
+}
+
+std::string words_of(const std::vector<MarkerMeaning>& meanings) {
+  std::string words;
+  for (const MarkerMeaning& meaning : meanings) {
+    words += fmt::format("{}{} {}", words.empty() ? "" : ", ", full_name(meaning), meaning.code);
+  }
+  return words;
+}
+
+const MarkerMeaning* meaning_of(const std::vector<MarkerMeaning>& meanings, const Onset& onset) {
+  const auto found = std::find_if(meanings.begin(), meanings.end(), [&](const MarkerMeaning& each) {
+    return each.what == onset.what && each.index == onset.index;
+  });
+  return found == meanings.end() ? nullptr : &*found;
+}
+
+}  // namespace haptrial::markers

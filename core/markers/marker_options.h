@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/markers/onset.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::markers {
+
+/// What [markers] of a definition says. Codes are of the first of their kind; the others count on.
+struct MarkerOptions {
+  bool used{false};    // a session records its markers
+  std::string serial;  // a serial line, such as /dev/ttyUSB0; empty: none
+  int baud{115200};
+  double pulse{0.005};  // for which a code stands on the line >= 0 [s]; 0: it stays
+  int trial{1};
+  int interval{11};
+  int stage{21};
+  int response{101};
+  /// What is sent on the serial line; onsets of one tick in this order.
+  std::vector<record::MarkerOf> send{record::MarkerOf::kStage, record::MarkerOf::kResponse,
+                                     record::MarkerOf::kInterval, record::MarkerOf::kTrial};
+};
+
+/// Reads a [markers] table; every key is optional.
+///
+///     serial  a serial line            baud   9600 to 921600 (115200)
+///     pulse   of a code [s] (0.005)    send   of "stage", "response", "interval", "trial"
+///     trial (1), interval (11), stage (21), response (101)   codes, 1 to 255
+MarkerOptions read_marker_options(Table& table);
+
+/// What a code stands for.
+struct MarkerMeaning {
+  record::MarkerOf what{record::MarkerOf::kTrial};
+  std::int16_t index{0};  // as Onset::index
+  std::string name;
+  int code{0};
+};
+
+/// Notes codes outside 1 to 255, and two meanings of one code. @param key  the table that the
+/// sentences name
+void check_meanings(Table& root, const char* key, const std::vector<MarkerMeaning>& meanings);
+
+/// "trial 1, stage press 21, response yes 101".
+std::string words_of(const std::vector<MarkerMeaning>& meanings);
+
+/// The meaning of an onset; null if there is none.
+const MarkerMeaning* meaning_of(const std::vector<MarkerMeaning>& meanings, const Onset& onset);
+
+}  // namespace haptrial::markers

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace haptrial::markers {
+
+/// A serial line that takes trigger codes, a byte each: a trigger box or a USB adapter whose data
+/// lines are an amplifier's TTL inputs. Raw: 8 bits, no parity, one stop bit, no flow control. One
+/// thread.
+class SerialLine {
+ public:
+  /// @param device  such as /dev/ttyUSB0
+  /// @param baud    one of 9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600
+  /// @throws InputError in a sentence if it cannot be opened or is no serial line;
+  /// std::invalid_argument for another rate
+  SerialLine(std::string device, int baud);
+  ~SerialLine();
+  SerialLine(const SerialLine&) = delete;
+  SerialLine& operator=(const SerialLine&) = delete;
+
+  static bool has_rate(int baud) noexcept;
+
+  /// Does not wait: a line that takes nothing has failed. @returns whether the system took the byte
+  bool write(std::uint8_t byte) noexcept;
+  /// Of the last write() that failed: errno; 0 if none has.
+  int error() const noexcept { return error_; }
+  const std::string& device() const { return device_; }
+
+ private:
+  std::string device_;
+  int file_{-1};
+  int error_{0};
+};
+
+}  // namespace haptrial::markers

@@ -1,0 +1,270 @@
+#include "experiments/runner/session_markers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/random.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using markers::TimedOnset;
+using record::MarkerOf;
+using record::MarkerRow;
+using record::MarkerWay;
+
+constexpr std::chrono::milliseconds kLongestWait{100};  // for what is on its way
+
+}  // namespace
+
+SessionMarkers::SessionMarkers(const SessionRequest& request, markers::OnsetLog& log,
+                               stream::LslOutlet* outlet, std::function<std::int64_t()> now)
+    : definition_(*request.definition),
+      real_(request.clock == realtime::ClockKind::kReal),
+      log_(log),
+      now_(std::move(now)),
+      meanings_(definition_.marker_meanings()) {
+  if (used() && real_) {
+    open_ways(request, outlet);
+  }
+}
+
+/// Masking noise fades before the card is let go.
+SessionMarkers::~SessionMarkers() {
+  thread_.reset();
+  if (player_ && definition_.sounds()->masking) {
+    constexpr double kLongestFade = 2.0;  // [s]
+    player_->mask(false);
+    const double fade = std::min(kLongestFade, definition_.sounds()->masking->fade);
+    std::this_thread::sleep_for(std::chrono::duration<double>(fade + 0.03));
+  }
+}
+
+void SessionMarkers::open_ways(const SessionRequest& request, stream::LslOutlet* outlet) {
+  const markers::MarkerOptions& options = definition_.markers;
+  if (!options.serial.empty()) {
+    line_ = std::make_unique<markers::SerialLine>(options.serial, options.baud);
+  }
+  if (definition_.sounds() != nullptr) {
+    open_sound(request);
+  }
+  markers::MarkerThread::Ways ways;
+  ways.serial = line_.get();
+  ways.other = [this](const TimedOnset& onset) { hear(onset); };
+  streams_ = outlet != nullptr;
+  if (streams_) {
+    ways.stream = [this, outlet](const TimedOnset& onset) { return stream(*outlet, onset); };
+  }
+  thread_ =
+      std::make_unique<markers::MarkerThread>(log_, options, meanings_, std::move(ways), now_);
+}
+
+/// A session goes on without its sounds, and says so.
+void SessionMarkers::open_sound(const SessionRequest& request) {
+  const sound::CueSet& set = *definition_.sounds();
+  if (set.masking) {
+    for (const markers::MarkerMeaning& meaning : meanings_) {
+      if (meaning.what == MarkerOf::kStage && !set.masking->stages.empty()) {
+        masked_.push_back(std::ranges::find(set.masking->stages, meaning.name) !=
+                          set.masking->stages.end());
+      }
+    }
+  }
+  try {
+    player_ = std::make_unique<sound::CuePlayer>(
+        set, derived_seed(request.seed, "participant " + request.subject), now_);
+    player_->mask(set.masking && masked_.empty());
+  } catch (const RunError& error) {
+    notice_ = fmt::format("{}; the session goes on without its sounds", error.what());
+  }
+}
+
+std::string SessionMarkers::sound_state() const {
+  if (definition_.sounds() == nullptr) {
+    return "";
+  }
+  return player_ ? fmt::format("played on '{}'", definition_.sounds()->device)
+         : real_ ? "not played: " + notice_
+                 : "not played: the session is simulated";
+}
+
+void SessionMarkers::begin_pass(std::int32_t row, std::int32_t trial) {
+  const std::lock_guard lock(mutex_);
+  trials_[row] = trial;
+}
+
+/// The sending thread.
+void SessionMarkers::hear(const TimedOnset& onset) {
+  if (player_) {
+    if (!onset.over && onset.onset.sound >= 0) {
+      player_->start(static_cast<std::size_t>(onset.onset.sound), onset.number);
+    }
+    const bool stage = !onset.over && onset.onset.what == MarkerOf::kStage;
+    if (!masked_.empty() && (onset.over || stage)) {
+      player_->mask(stage && masked_[static_cast<std::size_t>(onset.onset.index)]);
+    }
+  }
+  const std::lock_guard lock(mutex_);
+  heard_.push_back(onset);
+}
+
+/// The sending thread.
+bool SessionMarkers::stream(stream::LslOutlet& outlet, const TimedOnset& onset) const {
+  const MarkerRow row = row_of(onset);
+  return outlet.mark(
+      fmt::format("onset: what={} name={} code={} trial={} interval={} pass={}",
+                  record::name_of(row.what), row.name, row.code, row.trial, row.interval, row.pass),
+      onset.time_ns);
+}
+
+MarkerRow SessionMarkers::row_of(const TimedOnset& onset) const {
+  MarkerRow row;
+  row.pass = onset.pass;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto trial = trials_.find(onset.pass);
+    row.trial = trial == trials_.end() ? 0 : trial->second;
+  }
+  row.interval = onset.onset.interval;
+  row.what = onset.onset.what;
+  if (const markers::MarkerMeaning* meaning = meaning_of(meanings_, onset.onset)) {
+    row.name = meaning->name.substr(0, record::kMarkerNameBytes);
+    row.code = meaning->code;
+  }
+  row.sequence = onset.sequence;
+  row.time_ns = onset.time_ns;
+  return row;
+}
+
+void SessionMarkers::add(const TimedOnset& onset, MarkerWay way, std::int64_t written_ns,
+                         std::int64_t frame) {
+  MarkerRow row = row_of(onset);
+  row.way = way;
+  row.frame = frame;
+  if (written_ns >= 0) {
+    row.written = 1e-9 * static_cast<double>(written_ns);
+    row.latency = 1e-9 * static_cast<double>(written_ns - onset.time_ns);
+  }
+  latencies_.add(std::span(&row, 1));
+  rows_.push_back(std::move(row));
+}
+
+/// What an onset is to wait for; one that goes nowhere has a row all the same.
+void SessionMarkers::take_in(const TimedOnset& onset) {
+  if (onset.over) {
+    return;
+  }
+  const auto& send = definition_.markers.send;
+  bool goes = streams_ || (line_ && std::ranges::find(send, onset.onset.what) != send.end());
+  if (flashes_) {
+    unseen_.push_back(onset);
+    goes = true;
+  }
+  if (onset.onset.sound >= 0 && real_) {
+    if (player_) {
+      unheard_[onset.number] = onset;
+    } else {
+      add(onset, MarkerWay::kSound, -1);
+    }
+    goes = true;
+  }
+  if (!goes) {
+    add(onset, MarkerWay::kNone, -1);
+  }
+}
+
+void SessionMarkers::gather() {
+  if (!thread_) {
+    log_.take([this](const TimedOnset& onset) { take_in(onset); });
+    return;
+  }
+  std::vector<TimedOnset> heard;
+  {
+    const std::lock_guard lock(mutex_);
+    heard.swap(heard_);
+  }
+  std::ranges::for_each(heard, [this](const TimedOnset& onset) { take_in(onset); });
+  for (const markers::SentOnset& sent : thread_->take_sent()) {
+    add(sent.onset, sent.way, sent.written_ns);
+  }
+  for (const Flash& flash : flashes_ ? flashes_() : std::vector<Flash>{}) {
+    const auto shown = [&](const TimedOnset& onset) { return onset.number <= flash.onsets; };
+    for (const TimedOnset& onset : unseen_) {
+      if (shown(onset)) {
+        add(onset, MarkerWay::kScreen, flash.time_ns, flash.frame);
+      }
+    }
+    std::erase_if(unseen_, shown);
+  }
+  for (const sound::StartedCue& cue :
+       player_ ? player_->take_started() : std::vector<sound::StartedCue>{}) {
+    if (const auto found = unheard_.find(cue.ticket); found != unheard_.end()) {
+      add(found->second, MarkerWay::kSound, cue.handed_ns);
+      unheard_.erase(found);
+    }
+  }
+}
+
+bool SessionMarkers::complete() const {
+  return !thread_ || (thread_->wait_until_sent(std::chrono::milliseconds(0)) && unseen_.empty() &&
+                      unheard_.empty());
+}
+
+/// The screen or the card has stopped.
+void SessionMarkers::give_up_waiting() {
+  for (const TimedOnset& onset : unseen_) {
+    add(onset, MarkerWay::kScreen, -1);
+  }
+  for (const auto& [number, onset] : unheard_) {
+    add(onset, MarkerWay::kSound, -1);
+  }
+  unseen_.clear();
+  unheard_.clear();
+}
+
+std::vector<MarkerRow> SessionMarkers::take_rows(bool last) {
+  if (!used()) {
+    return {};
+  }
+  const auto end = std::chrono::steady_clock::now() + kLongestWait;
+  gather();
+  while (!complete() && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    gather();
+  }
+  gather();  // what came since it was complete
+  if (last) {
+    give_up_waiting();
+  }
+  std::vector<MarkerRow> rows = std::exchange(rows_, {});
+  std::ranges::stable_sort(rows, [](const MarkerRow& a, const MarkerRow& b) {
+    return std::pair(a.pass, a.sequence) < std::pair(b.pass, b.sequence);
+  });
+  return rows;
+}
+
+std::vector<std::string> SessionMarkers::troubles() const {
+  std::vector<std::string> all;
+  for (std::string trouble : {thread_ ? thread_->trouble() : std::string(),
+                              player_ ? player_->trouble() : std::string()}) {
+    if (!trouble.empty()) {
+      all.push_back(std::move(trouble));
+    }
+  }
+  return all;
+}
+
+std::vector<std::string> SessionMarkers::latencies() const {
+  std::vector<std::string> lines;
+  for (const markers::MarkerTimes& times : latencies_.times()) {
+    lines.push_back(sentence_of(times));
+  }
+  return lines;
+}
+
+}  // namespace haptrial::experiments
