@@ -53,6 +53,7 @@ void read_common(Table& root, std::string_view file_name, Definition& definition
   }
   definition.screen = read_screen_options(screen);
   definition.texts = read_session_texts(texts);
+  definition.pages = pages::read_pages(root);
   read_devices(root, definition);
 }
 

@@ -183,6 +183,19 @@ Json to_json(const ParticipantTrials& p) {
           {"share_of_trials_at_force_limit", p.saturated}};
 }
 
+Json scores_json(const std::vector<PageScore>& scores) {
+  Json all = Json::array();
+  for (const PageScore& s : scores) {
+    all.push_back({{"participant", s.participant},
+                   {"group", s.group},
+                   {"page", s.page},
+                   {"when", s.when},
+                   {"score", s.score},
+                   {"value", s.value}});
+  }
+  return all;
+}
+
 template <class T>
 Json list_of(const std::vector<T>& values) {
   Json list = Json::array();
@@ -220,6 +233,9 @@ std::string results_json(const TrialsResult& result) {
   root["magnitudes"] = list_of(result.magnitudes);
   if (result.reaching) {
     root["reaching"] = Json::parse(reaching_json(*result.reaching));
+  }
+  if (!result.page_scores.empty()) {
+    root["page_scores"] = scores_json(result.page_scores);
   }
   root["remarks"] = result.remarks;
   return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/record/rows/device_row.h"
+#include "core/record/rows/page_answer.h"
 #include "core/record/rows/response.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/rows/trial_facts.h"
@@ -14,7 +15,7 @@ namespace haptrial::record {
 
 const TableList& common_tables() {
   static const TableList tables{&responses_table(), &table_of<DeviceRow>(), &table_of<SkippedRow>(),
-                                &table_of<DampingRow>()};
+                                &table_of<DampingRow>(), &table_of<AnswerRow>()};
   return tables;
 }
 
