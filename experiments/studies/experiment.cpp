@@ -14,9 +14,9 @@
 #include "core/base/error.h"
 #include "core/render/flat/typesetter.h"
 #include "core/render/gl/image.h"
-#include "experiments/studies/languages.h"
 #include "experiments/studies/registry.h"
 #include "protocols/definition/lab_file.h"
+#include "protocols/definition/languages.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -73,7 +73,7 @@ Experiment load_experiment(const std::filesystem::path& file, const std::string&
   Table root = protocols::load_with_lab(file);
   std::optional<Translations> translations;
   if (!language.empty()) {
-    translations = translations_for(file, language);
+    translations = protocols::translations_for(file, language);
     root.translate(*translations);
   }
   Experiment experiment = read(root, file.string(), &folder);

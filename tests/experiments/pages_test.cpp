@@ -17,8 +17,8 @@
 #include "experiments/pages/virtual_answers.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
-#include "experiments/studies/languages.h"
 #include "experiments/studies/registry.h"
+#include "protocols/definition/languages.h"
 #include "tests/experiments/command.h"
 #include "tests/support/temporary_folder.h"
 
@@ -300,7 +300,7 @@ weighted = true
             "Angehalten\nDie Kräfte sind abgeschaltet. Bitte warten Sie auf die Versuchsleitung.");
   const Experiment english = load_experiment(file);
   EXPECT_EQ(english.definition->text, german.definition->text) << "the same study";
-  EXPECT_THAT(languages_of(file), ElementsAre("de"));
+  EXPECT_THAT(protocols::languages_of(file), ElementsAre("de"));
 }
 
 TEST(LanguagesTest, ALanguageIsRecorded) {

@@ -2,7 +2,7 @@
 
 #include "experiments/command/commands.h"
 #include "experiments/studies/experiment.h"
-#include "experiments/studies/languages.h"
+#include "protocols/definition/languages.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -26,7 +26,7 @@ int validate(const std::string& file) {
   }
   print_warnings(experiment);
   print_undrawable(experiment);
-  for (const std::string& language : languages_of(file)) {
+  for (const std::string& language : protocols::languages_of(file)) {
     const Experiment translated = load_experiment(file, language);
     fmt::print("language {}: {}\n", language,
                translated.untranslated.empty() ? "complete" : "incomplete");

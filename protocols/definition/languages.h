@@ -6,7 +6,7 @@
 
 #include "core/base/definition/translations.h"
 
-namespace haptrial::experiments {
+namespace haptrial::protocols {
 
 /// The file with a definition's texts in another language: DEFINITION.texts.LANGUAGE.toml for
 /// DEFINITION.toml, or texts.LANGUAGE.toml for all definitions of the folder. Empty: there is none.
@@ -20,4 +20,4 @@ std::vector<std::string> languages_of(const std::filesystem::path& definition);
 /// @throws InputError if there is neither, or the file is wrong
 Translations translations_for(const std::filesystem::path& definition, const std::string& language);
 
-}  // namespace haptrial::experiments
+}  // namespace haptrial::protocols

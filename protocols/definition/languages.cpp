@@ -1,4 +1,4 @@
-#include "experiments/studies/languages.h"
+#include "protocols/definition/languages.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,7 +11,7 @@
 #include "core/base/error.h"
 #include "protocols/definition/program_words.h"
 
-namespace haptrial::experiments {
+namespace haptrial::protocols {
 namespace {
 
 namespace fs = std::filesystem;
@@ -70,7 +70,7 @@ Translations translations_for(const fs::path& definition, const std::string& lan
         fmt::format("--language is '{}'; allowed: a language such as de or pt-BR", language));
   }
   const fs::path file = language_file(definition, language);
-  const std::vector<std::string>& known = protocols::program_languages();
+  const std::vector<std::string>& known = program_languages();
   const bool program_speaks = std::find(known.begin(), known.end(), language) != known.end();
   if (file.empty() && !program_speaks) {
     const std::vector<std::string> there = languages_of(definition);
@@ -85,8 +85,8 @@ Translations translations_for(const fs::path& definition, const std::string& lan
                                              (own_begin(definition) + language + std::string(kEnd)))
                                                 .string()}
                    : load_translations(file, language);
-  translations.by_text = protocols::program_words(language);
+  translations.by_text = program_words(language);
   return translations;
 }
 
-}  // namespace haptrial::experiments
+}  // namespace haptrial::protocols
