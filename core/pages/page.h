@@ -4,10 +4,6 @@
 #include <string>
 #include <vector>
 
-namespace haptrial {
-class Table;
-}
-
 namespace haptrial::pages {
 
 /// What is done with one screenful.
@@ -59,29 +55,10 @@ struct PagePlan {
   bool empty() const { return pages.empty(); }
   /// @throws std::invalid_argument if there is none of that name
   const Page& page(const std::string& name) const;
-  /// Whether a page wants more than to be read.
-  bool asks() const;
 };
 
 /// Bounds of what is recorded [bytes].
 inline constexpr std::size_t kNameBytes = 64;
 inline constexpr std::size_t kTextBytes = 1000;
-
-/// Reads [pages] of a definition; a definition without has none. Keys in brackets are optional.
-///
-///     [before], [after]  names of pages, in their order
-///     [after_block]      { BLOCK = [names], … }
-///     [pages.NAME]
-///     kind      "text" (as if left out), "consent", "nasa_tlx", "edinburgh" or "questions"
-///     [title], text, [picture]         of text and consent; the picture is a PNG file
-///     [accept], [decline]              of consent: what the two choices say
-///     [weighted]                       of nasa_tlx: true also asks the 15 pairs
-///     [title], items                   of questions: [[pages.NAME.items]]
-///     name, question                   of an item, and one of
-///     choices   [{ value, [label], [number] }, …]
-///     scale     [lowest, highest], with [step], [ends] = { low, high }
-///     number    [lowest, highest]
-///     words     true: any text
-PagePlan read_pages(Table& root);
 
 }  // namespace haptrial::pages

@@ -263,6 +263,7 @@ void Session::run_trials() {
   if (!pages_.before()) {
     left_ = !pages_.declined();
     if (pages_.declined()) {
+      notices_.note("the participant did not agree to take part, so nothing was presented");
       pace_.let_read(d_.texts.declined, "thanks");
     }
     return;

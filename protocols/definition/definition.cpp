@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "core/base/definition/table.h"
+#include "core/pages/read_pages.h"
 
 namespace haptrial::protocols {
 namespace {

@@ -14,7 +14,7 @@
 namespace haptrial::analysis::trials {
 namespace {
 
-std::string word_of(const record::AnswerRow& row) {
+std::string time_word(const record::AnswerRow& row) {
   switch (row.when) {
     case record::PageTime::kBefore:
       return "before";
@@ -35,7 +35,7 @@ struct Filled {
 std::vector<Filled> filled_pages(const record::SessionReader& reader) {
   std::vector<Filled> all;
   for (const record::AnswerRow& row : reader.rows<record::AnswerRow>()) {
-    const std::string when = word_of(row);
+    const std::string when = time_word(row);
     auto found = std::find_if(all.begin(), all.end(), [&](const Filled& each) {
       return each.page == row.questionnaire && each.when == when;
     });

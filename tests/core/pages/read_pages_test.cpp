@@ -1,4 +1,4 @@
-#include "core/pages/page.h"
+#include "core/pages/read_pages.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
