@@ -13,6 +13,7 @@
 #include "analysis/files/new_folder.h"
 #include "analysis/quality/quality_columns.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/rows/page_answer.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/table/schema.h"
 
@@ -195,14 +196,15 @@ void add_rows(OwnTable& own, const ExportSession& session, const record::Session
   });
 }
 
-/// What belongs to passes; ticks and what a session has from the beginning are too much for a
-/// table.
+/// What belongs to passes, and answers to pages; ticks and what a session has from the beginning
+/// are too much for a table.
 std::vector<OwnTable> own_tables(const std::vector<ExportSession>& sessions,
                                  const record::TableList& tables) {
   std::vector<OwnTable> all;
   for (const record::TableDescription* table : tables) {
     const record::RowsOf of = table->of();
-    if (of == record::RowsOf::kPass || of == record::RowsOf::kEndedPass) {
+    if (of == record::RowsOf::kPass || of == record::RowsOf::kEndedPass ||
+        table == &record::table_of<record::AnswerRow>()) {
       all.push_back({table, ""});
     }
   }

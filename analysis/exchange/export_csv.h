@@ -25,8 +25,8 @@ struct CsvSummary {
 };
 
 /// Writes session files as tidy tables: sessions.csv, trials.csv (a row for each pass), events.csv,
-/// a table for each of `tables` that has rows for passes (responses.csv, levels.csv, ...), and what
-/// each column of them and of scores.csv means in dictionary.json.
+/// a table for each of `tables` that has rows for passes (responses.csv, levels.csv, ...) and
+/// answers.csv of pages, and what each column of them and of scores.csv means in dictionary.json.
 /// @param folder  new or empty; it appears whole or not at all.
 /// @throws InputError when there is no file, or one is damaged or given twice; RunError when the
 /// disk is full.

@@ -20,6 +20,7 @@ struct DryRunOptions {
   std::string out;          // default: a new folder out/NAME-001
   int frames{0};
   std::optional<int> trials;  // default: all
+  std::string language;       // of what participants read; default: the definition's own
 };
 int dry_run(const DryRunOptions& options);
 
@@ -27,7 +28,7 @@ struct RunOptions {
   std::string definition;
   std::string subject;
   std::vector<std::string> devices{"virtual"};  // in the order in which the protocol has them
-  std::string library;  // of the device's vendor, in place of the search
+  std::string library;                          // of the device's vendor, in place of the search
   std::string seed{"1"};
   std::optional<int> participant;  // default: the number at the end of the subject's identifier
   std::string out{"out/sessions"};
@@ -42,6 +43,7 @@ struct RunOptions {
   bool stream_optional{false};
   bool resume{false};
   bool pilot{false};
+  std::string language;  // of what the participant reads; default: the definition's own
   record::Participant person;
 };
 int run(const RunOptions& options);

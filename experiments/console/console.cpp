@@ -291,6 +291,7 @@ void Console::Implementation::set_up_server() {
     answer(request, response);
   };
   server_.Get("/", handler).Get("/events", handler).Post("/ask", handler).Post("/note", handler);
+  server_.Post("/answer", handler);
   server_.set_error_handler(httplib::Server::Handler([this](const auto& request, auto& response) {
     if (response.body.empty()) {
       const int cut_off = status_of(t_job->connection.trouble());
@@ -316,6 +317,9 @@ void Console::Implementation::answer(const httplib::Request& request, httplib::R
   try {
     if (request.path == "/ask") {
       control_.ask(parse_request(request.body));
+    } else if (request.path == "/answer") {
+      auto [number, text] = parse_answer(request.body);
+      control_.answer(number, std::move(text));
     } else {
       control_.note(parse_note(request.body));
     }

@@ -55,8 +55,8 @@ std::optional<Refusal> Gate::judge(const RequestHead& head) const {
     return refusal;
   }
   const bool reads = head.path == "/" || head.path == "/events";
-  if (!reads && head.path != "/ask" && head.path != "/note") {
-    return Refusal{404, "no such page; there are /, /events, /ask and /note"};
+  if (!reads && head.path != "/ask" && head.path != "/note" && head.path != "/answer") {
+    return Refusal{404, "no such page; there are /, /events, /ask, /note and /answer"};
   }
   if (head.method != (reads ? "GET" : "POST")) {
     return Refusal{405, fmt::format("this address takes {} only", reads ? "GET" : "POST")};

@@ -36,6 +36,17 @@ std::string only_string(const std::string& text, const char* key) {
   return body[key].get<std::string>();
 }
 
+/// Null while nothing is asked.
+json asked_json(const AskedItem& asked) {
+  if (asked.number == 0) {
+    return nullptr;
+  }
+  return {{"number", asked.number},    {"kind", asked.kind},       {"title", asked.title},
+          {"text", asked.text},        {"choices", asked.choices}, {"low", asked.low},
+          {"high", asked.high},        {"step", asked.step},       {"low_end", asked.low_end},
+          {"high_end", asked.high_end}};
+}
+
 /// Null in a session without live figures.
 json figures_json(const std::optional<record::LiveState>& state) {
   if (!state) {
@@ -88,6 +99,29 @@ std::string parse_note(const std::string& text) {
   return note;
 }
 
+std::pair<int, std::string> parse_answer(const std::string& text) {
+  const json body = json::parse(text, nullptr, false);
+  const bool good = !body.is_discarded() && body.is_object() && body.size() == 2 &&
+                    body.contains("number") && body["number"].is_number_integer() &&
+                    body.contains("text") && body["text"].is_string();
+  if (!good) {
+    throw InputError(
+        "the body must be an object with the integer \"number\" and the string \"text\"");
+  }
+  const auto number = body["number"].get<std::int64_t>();
+  constexpr std::int64_t kMost = 1000000;
+  const auto answer = body["text"].get<std::string>();
+  constexpr std::size_t kLongest = 1000;
+  if (number < 1 || number > kMost || answer.size() > kLongest ||
+      answer.find('\0') != std::string::npos) {
+    throw InputError(
+        fmt::format("allowed: the number of a question from 1, and an answer of at most {} bytes "
+                    "without zero bytes",
+                    kLongest));
+  }
+  return {static_cast<int>(number), answer};
+}
+
 std::string status_json(const SessionStatus& s, std::uint64_t refused) {
   const json out{
       {"subject", s.subject},
@@ -120,6 +154,7 @@ std::string status_json(const SessionStatus& s, std::uint64_t refused) {
       {"refused", refused},
       {"notices", s.notices},
       {"figures", figures_json(s.figures)},
+      {"asked", asked_json(s.asked)},
       {"has_target", s.has_target},
   };
   return out.dump(-1, ' ', false, json::error_handler_t::replace);

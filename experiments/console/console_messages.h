@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "experiments/control/session_control.h"
 
@@ -19,6 +20,10 @@ Request parse_request(const std::string& json);
 /// {"text": "..."}, 1 to 2000 bytes.
 /// @throws InputError
 std::string parse_note(const std::string& json);
+
+/// {"number": 3, "text": "..."}: an answer to what a page asks.
+/// @throws InputError
+std::pair<int, std::string> parse_answer(const std::string& json);
 
 /// "pause"
 const char* name_of(Request request) noexcept;

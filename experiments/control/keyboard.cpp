@@ -132,7 +132,7 @@ class Keyboard::Implementation {
   bool active() const { return thread_.joinable(); }
 
  private:
-  enum class Mode { kKeys, kConfirmAbort, kNote };
+  enum class Mode { kKeys, kConfirmAbort, kNote, kAnswer };
 
   /// @returns whether a key came within `milliseconds` (-1: any time).
   bool wait(int milliseconds) {
@@ -187,6 +187,9 @@ class Keyboard::Implementation {
       return;
     }
     const SessionStatus status = control_.status();
+    if (status.asked.number > shown_) {
+      show_asked(status.asked);
+    }
     if (status.figures && (status.state == "running" || status.state == "practice")) {
       say(fit((status.simulated ? "SIMULATED " : "") + status.figures->line));
       status_shown_ = true;
@@ -235,15 +238,48 @@ class Keyboard::Implementation {
         }
         break;
       case Mode::kNote:
+      case Mode::kAnswer:
         type(key);
         break;
     }
+  }
+
+  /// What a page asks, so that it can be answered here: once by itself, and whenever Enter asks.
+  void show_asked(const AskedItem& asked) {
+    shown_ = asked.number;
+    std::string lines = asked.title + (asked.title.empty() ? "" : "\n") + asked.text + "\n";
+    for (std::size_t i = 0; i < asked.choices.size(); ++i) {
+      lines += "  " + std::to_string(i + 1) + "  " + asked.choices[i] + "\n";
+    }
+    if (!asked.low_end.empty()) {
+      lines += "  " + asked.low_end + " ... " + asked.high_end + "\n";
+    }
+    show(lines + "Enter: answer\n");
+  }
+
+  void begin_answer() {
+    const AskedItem asked = control_.status().asked;
+    if (asked.number == 0) {
+      return;
+    }
+    if (asked.kind == "read") {
+      control_.answer(asked.number, "", Asker::kTerminal);
+      return;
+    }
+    answered_ = asked.number;
+    note_.clear();
+    mode_ = Mode::kAnswer;
+    show("answer: ");
   }
 
   void command(char key) {
     switch (key) {
       case ' ':
         start_or_pause();
+        break;
+      case '\n':
+      case '\r':
+        begin_answer();
         break;
       case 'p':
         ask(Request::kPause, "pause\n");
@@ -283,7 +319,9 @@ class Keyboard::Implementation {
   void type(char key) {
     constexpr std::size_t kLongest = 500;
     if (key == '\n' || key == '\r') {
-      if (!note_.empty()) {
+      if (mode_ == Mode::kAnswer) {
+        control_.answer(answered_, note_, Asker::kTerminal);
+      } else if (!note_.empty()) {
         control_.note(note_);
       }
       leave_mode();
@@ -341,6 +379,8 @@ class Keyboard::Implementation {
   bool status_shown_{false};
   bool ended_{false};
   Mode mode_{Mode::kKeys};
+  int shown_{0};     // the last question of a page that was printed
+  int answered_{0};  // the one that is being answered
   std::string note_;
   std::chrono::steady_clock::time_point escaped_{};  // the last key was an escape
   termios original_{};
@@ -356,7 +396,7 @@ bool Keyboard::active() const { return implementation_->active(); }
 
 const char* Keyboard::help() {
   return "space start/pause   p pause   r repeat this trial   s skip   n note   a abort\n"
-         "Escape EMERGENCY STOP   c clear";
+         "Escape EMERGENCY STOP   c clear   Enter answer a page";
 }
 
 }  // namespace haptrial::experiments

@@ -41,6 +41,11 @@ void SessionControl::note(std::string text) {
   messages_.push_back({true, Request::kStart, std::move(text), Asker::kConsole});
 }
 
+void SessionControl::answer(int number, std::string text, Asker by) {
+  const std::lock_guard lock(mutex_);
+  messages_.push_back({false, Request::kStart, std::move(text), by, number});
+}
+
 std::vector<SessionControl::Message> SessionControl::take() {
   const std::lock_guard lock(mutex_);
   return std::exchange(messages_, {});

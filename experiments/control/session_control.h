@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/record/rows/live_figures.h"
+#include "experiments/control/asked_item.h"
 
 namespace haptrial::experiments {
 
@@ -59,6 +60,7 @@ struct SessionStatus {
   double lateness_worst_us{0.0};
   int aborted_passes{0};
   std::vector<std::string> notices;          // sentences that an experimenter has to know
+  AskedItem asked;                           // by a page
   bool has_target{true};                     // there is a force to follow
   std::optional<record::LiveState> figures;  // of the present trial, if the study has some
 };
@@ -74,12 +76,16 @@ class SessionControl {
   /// @param text  kept as an event of kind "note", at most 2000 bytes; longer ones are cut.
   void note(std::string text);
 
+  /// An answer to what a page asks. @param number  of AskedItem  @param text  PageInput::give()
+  void answer(int number, std::string text, Asker by = Asker::kConsole);
+
   /// Session's thread: what came since the last call, in order.
   struct Message {
     bool is_note{false};
     Request request{Request::kStart};
     std::string text;
     Asker by{Asker::kConsole};
+    int answers{0};  // number of the question; 0: it is no answer
   };
   std::vector<Message> take();
 

@@ -18,12 +18,18 @@ void SessionDesk::take_messages() {
     return;
   }
   for (const SessionControl::Message& message : control_->take()) {
-    if (message.is_note) {
+    if (message.answers > 0) {
+      answers_.push_back(message);
+    } else if (message.is_note) {
       actions_.event("note", message.text);
     } else {
       heed(message.request, message.by);
     }
   }
+}
+
+std::vector<SessionControl::Message> SessionDesk::take_answers() {
+  return std::exchange(answers_, {});
 }
 
 void SessionDesk::heed(Request request, Asker by) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/record/rows/session_types.h"
 #include "experiments/control/live_status.h"
@@ -39,6 +40,8 @@ class SessionDesk {
   void follow(std::span<const record::Sample> samples, double period_ns);
 
   void take_messages();
+  /// Answers to pages that came and nobody has taken yet.
+  std::vector<SessionControl::Message> take_answers();
   Wishes& wishes() { return wishes_; }
 
   /// Fields that the session fills itself.
@@ -54,6 +57,7 @@ class SessionDesk {
   LiveStatus live_;
   TickRate rate_;
   Wishes wishes_;
+  std::vector<SessionControl::Message> answers_;
   SessionStatus status_;
   std::chrono::steady_clock::time_point published_{};
 };

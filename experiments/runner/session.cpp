@@ -18,6 +18,7 @@
 #include "experiments/runner/session_notices.h"
 #include "experiments/runner/session_opening.h"
 #include "experiments/runner/session_pace.h"
+#include "experiments/runner/session_pages.h"
 #include "experiments/runner/session_record.h"
 #include "protocols/interface/session_task.h"
 #include "protocols/interface/trials.h"
@@ -76,6 +77,7 @@ class Session {
   void watch_flashes();
   void show_trial();
   void run_trials();
+  void note_language();
   std::optional<PlannedTrial> following(const Outcome* last);
   bool has_break_after(const PlannedTrial& trial) const;
   Outcome present(const PlannedTrial& trial);
@@ -109,12 +111,14 @@ class Session {
   std::unique_ptr<protocols::Rig> rig_;
   std::atomic<std::uint32_t> held_keys_{0};  // functions, from the screen's thread
   std::atomic<bool> begin_pressed_{false};   // likewise, without an experimenter
+  PageKeys page_keys_;                       // likewise
   std::unique_ptr<Screen> screen_;
   std::unique_ptr<record::LiveFigures> live_;
   SessionRecord record_;  // opened when everything else is there
   SessionDesk desk_;
   protocols::SessionTask task_;
   SessionPace pace_;
+  SessionPages pages_;
   SessionNotices notices_;
   ServoThread servo_;  // on a real clock
   SessionStop stop_;
@@ -150,7 +154,7 @@ Session::Session(const SessionRequest& request)
       place_(place()),
       trials_(request.protocol->trials(d_, place_)),
       rig_(make_rig(choices_of(request), d_, [this] { return trials_->virtual_rig(); })),
-      screen_(open_screen(request, rig_->mouse(), &held_keys_, &begin_pressed_)),
+      screen_(open_screen(request, rig_->mouse(), &held_keys_, &begin_pressed_, &page_keys_)),
       live_(open_live(request, place_.resumed)),
       record_(request, rig_->device().info(), loop_, *trials_, onsets_, live_.get()),
       desk_(request.control, desk_actions()),
@@ -166,6 +170,7 @@ Session::Session(const SessionRequest& request)
             record_.origin()),
       pace_({request, loop_, record_, desk_, task_, is_felt(*rig_), screen_.get(), &begin_pressed_,
              live_.get()}),
+      pages_({request, record_, desk_, pace_, page_keys_, screen_.get(), place_.session_seed}),
       notices_({request, loop_, record_, desk_, summary_}),
       servo_(loop_, task_, longest_fade(d_.envelope)),
       stop_(task_, servo_, rig_->device()) {
@@ -263,11 +268,26 @@ std::optional<PlannedTrial> Session::following(const Outcome* last) {
       return trial;
     }
     trial = trials_->next(&*before);
+    const PlannedTrial& over = before->trial;
+    const bool block_over = !trial || trial->block != over.block;
+    if (block_over && !pages_.after_block(over.block, over.block_name, true)) {
+      left_ = true;
+      return std::nullopt;
+    }
   }
   return trial;
 }
 
 void Session::run_trials() {
+  note_language();
+  if (!pages_.before()) {
+    left_ = !pages_.declined();
+    if (pages_.declined()) {
+      notices_.note("the participant did not agree to take part, so nothing was presented");
+      pace_.let_read(d_.texts.declined, "thanks");
+    }
+    return;
+  }
   pace_.wait_to_begin(d_.instructions());
   bool practised = false;
   std::optional<PlannedTrial> trial = following(nullptr);
@@ -288,11 +308,27 @@ void Session::run_trials() {
       break;
     }
     trial = following(&outcome);
+    const PlannedTrial& over = outcome.trial;
+    if ((!trial || trial->block != over.block) &&
+        !pages_.after_block(over.block, over.block_name)) {
+      left_ = true;
+      break;
+    }
     if (rests && trial) {
       pace_.take_break();
     }
   }
+  if (!left_ && !pages_.after()) {
+    left_ = true;
+  }
   pace_.let_read(d_.texts.thanks, "thanks");
+}
+
+/// An event for each run: a resumed session may go on in another language.
+void Session::note_language() {
+  if (!d_.language.empty()) {
+    record_.event("language", d_.language);
+  }
 }
 
 void Session::show_trial() {

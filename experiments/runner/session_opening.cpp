@@ -13,6 +13,7 @@
 #include "core/record/rows/common_tables.h"
 #include "core/record/rows/device_row.h"
 #include "core/record/rows/marker_row.h"
+#include "core/record/rows/page_answer.h"
 #include "core/record/rows/trial_facts.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/runner/version.h"
@@ -75,6 +76,9 @@ static record::TableList tables_of(const SessionRequest& request, const protocol
   record::TableList tables = trials.tables();
   tables.push_back(&record::table_of<record::SkippedRow>());
   tables.push_back(&record::table_of<record::DampingRow>());
+  if (!request.definition->pages.empty()) {
+    tables.push_back(&record::table_of<record::AnswerRow>());
+  }
   if (request.definition->devices() > 1) {
     tables.push_back(&record::table_of<record::DeviceRow>());
   }
@@ -130,7 +134,8 @@ bool close_what_had_ended(const SessionRequest& request) {
 }
 
 std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::MouseDevice* mouse,
-                                    std::atomic<std::uint32_t>* held, std::atomic<bool>* begin) {
+                                    std::atomic<std::uint32_t>* held, std::atomic<bool>* begin,
+                                    PageKeys* pages) {
   if (!request.window) {
     return nullptr;
   }
@@ -138,7 +143,10 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::Mouse
   SessionControl* control = request.control;
   if (control != nullptr) {
     const bool steers = request.definition->screen.participant_steers;
-    callbacks.key = [control, steers, &request](const render::KeyPress& press) {
+    callbacks.key = [control, steers, pages, &request](const render::KeyPress& press) {
+      if (pages->take(press) || press.character != 0) {
+        return;
+      }
       const auto asked = request_of(press);
       const bool of_trial = request.definition->functions_of({press.key}) != 0;
       const bool may = asked == Request::kEmergencyStop || steers;
@@ -150,7 +158,10 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::Mouse
       control->ask(steers ? Request::kAbort : Request::kEmergencyStop, Asker::kWindow);
     };
   } else {  // nobody is there who could clear a stop or say that it goes on
-    callbacks.key = [begin](const render::KeyPress& press) {
+    callbacks.key = [begin, pages](const render::KeyPress& press) {
+      if (pages->take(press)) {
+        return;
+      }
       if (press.key == render::KeyPress::kEscape) {
         interrupt();
       } else if (press.key == render::KeyPress::kEnter || press.key == render::KeyPress::kSpace) {

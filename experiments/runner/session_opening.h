@@ -10,6 +10,7 @@
 #include "core/record/recovery/session_resume.h"
 #include "core/record/write/session_writer.h"
 #include "core/stream/lsl_outlet.h"
+#include "experiments/pages/page_keys.h"
 #include "experiments/runner/session_request.h"
 #include "experiments/screen/screen.h"
 #include "protocols/interface/trials.h"
@@ -43,8 +44,10 @@ bool close_what_had_ended(const SessionRequest& request);
 /// @param mouse  null for any other device
 /// @param held   receives the functions that keys of the window hold; outlives the screen
 /// @param begin  set by Enter and space where nobody attends; outlives the screen
+/// @param pages  take the keys while a page is open; outlive the screen
 std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::MouseDevice* mouse,
-                                    std::atomic<std::uint32_t>* held, std::atomic<bool>* begin);
+                                    std::atomic<std::uint32_t>* held, std::atomic<bool>* begin,
+                                    PageKeys* pages);
 
 /// The streams, where they were asked for; null where they were not, and, with a sentence in
 /// `notice`, where they cannot be had and the session may do without them.

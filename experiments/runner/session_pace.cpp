@@ -171,6 +171,21 @@ void SessionPace::show_text(const std::string& text, const std::string& hint, do
   text_shown_ = true;
 }
 
+void SessionPace::show_page(render::TextPage page, const std::string& text) {
+  if (p_.screen != nullptr) {
+    p_.screen->show_text(std::move(page));
+  }
+  p_.desk.status().screen = text;
+  text_shown_ = true;
+}
+
+void SessionPace::wait_a_little(const char* state) {
+  wait(0.02, state);
+  if (asked_to_stop()) {
+    end_early("interrupted");
+  }
+}
+
 void SessionPace::let_read(const std::string& text, const char* state) {
   constexpr double kTimeToRead = 5.0;  // [s]
   show_text(text, "");

@@ -7,8 +7,8 @@
 #include "experiments/control/session_desk.h"
 #include "experiments/runner/loop_watch.h"
 #include "experiments/runner/servo_thread.h"
-#include "experiments/runner/session_request.h"
 #include "experiments/runner/session_record.h"
+#include "experiments/runner/session_request.h"
 #include "protocols/interface/session_task.h"
 
 namespace haptrial::experiments {
@@ -57,6 +57,9 @@ class SessionPace {
 
   /// On the participant's screen and the experimenter's.
   void show_text(const std::string& text, const std::string& hint, double countdown = 0.0);
+  void show_page(render::TextPage page, const std::string& text);
+  /// Between two looks at what a page is answered. @throws RunError on an interrupt
+  void wait_a_little(const char* state);
   void publish(const char* state);
   /// A last page, for as long as it takes to read where there is a screen.
   void let_read(const std::string& text, const char* state);

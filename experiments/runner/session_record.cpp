@@ -214,6 +214,25 @@ void SessionRecord::keep_responses(std::vector<record::ResponseRow> rows) {
   put(record::Rows(std::span<const record::ResponseRow>(rows)));
 }
 
+void SessionRecord::keep_answer(record::AnswerRow row) {
+  row.time_ns = now_ns();
+  put(record::Rows(std::span<const record::AnswerRow>(&row, 1)));
+  if (real_) {
+    writer_.sync_soon();  // nobody is to be asked twice
+  }
+}
+
+std::optional<record::AnswerRow> SessionRecord::earlier_answer(
+    const record::AnswerRow& asked) const {
+  for (const record::AnswerRow& row : before_.answers) {
+    if (row.when == asked.when && row.block == asked.block &&
+        row.questionnaire == asked.questionnaire && row.item == asked.item) {
+      return row;
+    }
+  }
+  return std::nullopt;
+}
+
 std::int32_t SessionRecord::begin_pass(const PlannedTrial& trial, const record::Phase& phase,
                                        int attempt) {
   row_ = row_of(trial, phase, attempt);

@@ -69,6 +69,10 @@ class SessionRecord final : public protocols::SessionFile {
   bool holds_stimulus(std::int32_t block) const override;
   const std::vector<record::PassRow>& earlier_passes() const override { return before_.passes; }
   bool was_cut_short(const protocols::PlannedTrial& trial) const override;
+  /// An answer to a page; its time is filled in.
+  void keep_answer(record::AnswerRow row);
+  /// What was answered to the same item on the same occasion in an earlier run.
+  std::optional<record::AnswerRow> earlier_answer(const record::AnswerRow& asked) const;
   /// Answers of the pass that has ended, before its row.
   void keep_responses(std::vector<record::ResponseRow> rows);
 

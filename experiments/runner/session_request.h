@@ -29,7 +29,8 @@ struct SessionRequest {
   std::uint64_t seed{0};  // of the study
   realtime::ClockKind clock{realtime::ClockKind::kSimulated};
   std::filesystem::path file;
-  int frames_per_pass{0};  // pictures of what was shown, into frames_folder
+  std::filesystem::path definition_folder;  // of the pictures of pages
+  int frames_per_pass{0};                   // pictures of what was shown, into frames_folder
   std::filesystem::path frames_folder;
   int max_trials{0};                           // of the study proper; 0: all
   std::atomic<std::uint64_t>* ticks{nullptr};  // counts what is done, for a progress line

@@ -327,7 +327,8 @@ void Screen::Impl::run() {
         if (callbacks.key) {
           callbacks.key(press);
         }
-        if (std::find(now_held.begin(), now_held.end(), press.key) == now_held.end()) {
+        const bool typed = press.character != 0;
+        if (!typed && std::find(now_held.begin(), now_held.end(), press.key) == now_held.end()) {
           now_held.push_back(press.key);  // let go again already: held for a picture all the same
         }
       }

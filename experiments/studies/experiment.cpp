@@ -1,16 +1,22 @@
 #include "experiments/studies/experiment.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
+#include <optional>
 #include <string_view>
 #include <system_error>
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "core/render/flat/typesetter.h"
+#include "core/render/gl/image.h"
 #include "experiments/studies/registry.h"
 #include "protocols/definition/lab_file.h"
+#include "protocols/definition/languages.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -34,16 +40,48 @@ Experiment read(Table& root, std::string_view file_name, const std::filesystem::
   experiment.study->read_analysis(root, folder != nullptr);
   protocols::check_markers(root, *experiment.definition);
   root.finish();
+  experiment.shown = root.shown_texts();
   return experiment;
+}
+
+/// The pictures of pages, before somebody looks at them.
+void check_pictures(const protocols::Definition& definition, const std::filesystem::path& folder) {
+  for (const pages::Page& page : definition.pages.pages) {
+    for (const pages::Item& item : page.items) {
+      if (!item.picture.empty()) {
+        static_cast<void>(render::read_png(folder / item.picture));
+      }
+    }
+  }
+}
+
+/// After it was read: what the file has, and what it lacks. @throws InputError for what it has
+/// beside the definition's texts
+void check_translations(const Translations& translations, Experiment& experiment) {
+  const auto unknown = unknown_translations(translations, experiment.shown);
+  if (!unknown.empty()) {
+    throw InputError(fmt::format("{}", fmt::join(unknown, "\n")));
+  }
+  experiment.untranslated = missing_translations(translations, experiment.shown);
+  experiment.definition->language = translations.language;
 }
 
 }  // namespace
 
-Experiment load_experiment(const std::filesystem::path& file) {
+Experiment load_experiment(const std::filesystem::path& file, const std::string& language) {
   const std::filesystem::path folder = file.parent_path();
   refuse_session(file);
   Table root = protocols::load_with_lab(file);
+  std::optional<Translations> translations;
+  if (!language.empty()) {
+    translations = protocols::translations_for(file, language);
+    root.translate(*translations);
+  }
   Experiment experiment = read(root, file.string(), &folder);
+  if (translations) {
+    check_translations(*translations, experiment);
+  }
+  check_pictures(*experiment.definition, folder);
   experiment.study->protocol().load(*experiment.definition, folder);
   return experiment;
 }
@@ -59,6 +97,26 @@ std::vector<std::string> warnings_of(const Experiment& experiment) {
     warnings.push_back(std::move(warning));
   }
   return warnings;
+}
+
+std::vector<std::string> undrawable_texts(const Experiment& experiment) {
+  std::vector<std::string> sentences;
+  for (const ShownText& text : experiment.shown) {
+    const bool plain = std::all_of(text.text.begin(), text.text.end(),
+                                   [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+    const auto missing = plain ? std::vector<char32_t>() : render::missing_characters(text.text);
+    if (!missing.empty()) {
+      std::vector<std::string> names;
+      for (const char32_t c : missing) {
+        names.push_back(fmt::format("U+{:04X}", static_cast<unsigned>(c)));
+      }
+      sentences.push_back(fmt::format(
+          "{} has characters that no typeface of this machine has, which are shown as boxes: {}; "
+          "install one that has them, such as a package fonts-noto-…",
+          text.key, fmt::join(names, ", ")));
+    }
+  }
+  return sentences;
 }
 
 void print_warnings(const Experiment& experiment) {

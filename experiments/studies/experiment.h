@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/translations.h"
 #include "experiments/studies/study.h"
 
 namespace haptrial::experiments {
@@ -13,16 +14,22 @@ namespace haptrial::experiments {
 struct Experiment {
   const Study* study{nullptr};
   std::unique_ptr<protocols::Definition> definition;
+  std::vector<ShownText> shown{};           // everything that participants read
+  std::vector<std::string> untranslated{};  // sentences: texts that the language lacks
 };
 
 /// @throws InputError with a sentence for every problem of the file.
-Experiment load_experiment(const std::filesystem::path& file);
+/// @param language  of what participants read, "de"; empty: as the definition has it
+Experiment load_experiment(const std::filesystem::path& file, const std::string& language = "");
 /// From the text that a session file keeps: what the protocol loads beside it is not.
 Experiment parse_experiment(std::string_view text, std::string_view file_name);
 
 /// Sentences on what a definition allows but what spoils its data without a word: what was found,
 /// and what will happen. None where all is well.
 std::vector<std::string> warnings_of(const Experiment& experiment);
+
+/// Sentences on texts with characters that no typeface of this machine has, each with its key.
+std::vector<std::string> undrawable_texts(const Experiment& experiment);
 
 /// Prints each, after "warning: ".
 void print_warnings(const Experiment& experiment);

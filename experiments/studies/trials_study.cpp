@@ -128,6 +128,7 @@ std::vector<std::string> TrialsStudy::analyze(const AnalysisRequest& request) co
                               plan.reaching.clamp, request.threads),
         plan.reaching, request.threads);
   }
+  result.page_scores = trials::page_scores(request.files.files, definition.pages, group_of);
   result.title = definition.name;
   result.remarks = std::move(remarks);
   result.definition = first.definition;

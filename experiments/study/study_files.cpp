@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/rows/page_answer.h"
 #include "experiments/study/study_definitions.h"
 #include "experiments/study/study_run.h"
 
@@ -17,12 +18,25 @@ namespace fs = std::filesystem;
 struct Sorted {
   std::vector<fs::path> study;
   std::vector<fs::path> pilots;
+  std::vector<fs::path> declined;
 };
+
+/// Whether the participant did not agree to take part, so that nothing was presented.
+bool is_declined(const record::SessionReader& reader) {
+  const auto answers = reader.rows<record::AnswerRow>();
+  return std::any_of(answers.begin(), answers.end(), [](const record::AnswerRow& row) {
+    return row.item == "consent" && row.text == "declined";
+  });
+}
 
 Sorted sorted_files(const fs::path& folder) {
   Sorted sorted;
   for (const fs::path& file : session_files(folder)) {
-    (record::SessionReader(file).info().pilot ? sorted.pilots : sorted.study).push_back(file);
+    const record::SessionReader reader(file);
+    (is_declined(reader)   ? sorted.declined
+     : reader.info().pilot ? sorted.pilots
+                           : sorted.study)
+        .push_back(file);
   }
   return sorted;
 }
@@ -30,6 +44,10 @@ Sorted sorted_files(const fs::path& folder) {
 std::vector<fs::path> taken(const Sorted& sorted, const fs::path& folder, Pilots pilots) {
   const bool alone = pilots == Pilots::kAlone;
   const auto& files = alone ? sorted.pilots : sorted.study;
+  if (files.empty() && sorted.study.empty() && sorted.pilots.empty()) {
+    throw InputError(fmt::format("{}: holds only sessions of participants who did not consent",
+                                 folder.string()));
+  }
   if (files.empty()) {
     throw InputError(fmt::format("{}: holds {}", folder.string(),
                                  alone
@@ -89,6 +107,10 @@ StudyFiles study_files(const fs::path& folder, Pilots pilots) {
   study.first = record::SessionReader(study.files.front()).info();
   if (const std::string remark = remark_on_pilots(sorted, pilots); !remark.empty()) {
     study.remarks.push_back(remark);
+  }
+  if (!sorted.declined.empty()) {
+    study.remarks.push_back(fmt::format(
+        "Not analysed, because the participant did not consent: {}.", names_of(sorted.declined)));
   }
   const std::vector<std::string> changed = definition_remarks(study.files);
   study.remarks.insert(study.remarks.end(), changed.begin(), changed.end());

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "core/base/definition/table.h"
+#include "core/pages/read_pages.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -53,6 +54,7 @@ void read_common(Table& root, std::string_view file_name, Definition& definition
   }
   definition.screen = read_screen_options(screen);
   definition.texts = read_session_texts(texts);
+  definition.pages = pages::read_pages(root);
   read_devices(root, definition);
   if (root.has("markers")) {
     Table markers = root.table("markers");

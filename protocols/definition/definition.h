@@ -11,6 +11,7 @@
 #include "core/device/vendor/open_haptics.h"
 #include "core/device/virtual_device.h"
 #include "core/markers/marker_options.h"
+#include "core/pages/page.h"
 #include "core/render/trial/trial_display_style.h"
 #include "core/subject/hand_parameters.h"
 #include "protocols/definition/schedule.h"
@@ -48,6 +49,8 @@ struct Definition {
   render::TrialDisplayStyle display;
   ScreenOptions screen;
   SessionTexts texts;
+  haptrial::pages::PagePlan pages;  // beside the trials
+  std::string language;             // of the texts; empty: the definition's own
   // Of the devices that may take the virtual one's place; a table that is left out has its
   // defaults.
   device::ForceDimensionParameters force_dimension{};

@@ -34,6 +34,7 @@ struct PlannedTrial {
   std::string condition;
   std::uint64_t stimulus_seed{0};  // the same within a block
   bool practice{false};            // before the study: not scored
+  std::string block_name{};        // the definition's; empty: it has none
 };
 
 /// The rows of a Williams design for n >= 1 conditions: every condition at every place equally

@@ -9,8 +9,9 @@ namespace {
 
 constexpr std::size_t kLongestText = 4000;  // [bytes]; more would not be legible on a screen
 
-std::string read_text(Table& table, std::string_view key) {
-  const std::string text = table.text(key);
+std::string read_text(Table& table, std::string_view key, std::string_view otherwise = "") {
+  const std::string text =
+      otherwise.empty() ? table.shown_text(key) : table.shown_text(key, otherwise);
   if (text.size() > kLongestText) {
     table.reject(key, fmt::format("{} bytes long", text.size()),
                  fmt::format("at most {} bytes", kLongestText));
@@ -62,9 +63,7 @@ SessionTexts read_session_texts(Table& table) {
   texts.rest = read_text(table, "rest");
   texts.thanks = read_text(table, "thanks");
   const auto read_if_there = [&table](std::string_view key, std::string& text) {
-    if (table.has(key)) {
-      text = read_text(table, key);
-    }
+    text = read_text(table, key, text);
   };
   read_if_there("stopped", texts.stopped);
   read_if_there("paused", texts.paused);
@@ -72,6 +71,12 @@ SessionTexts read_session_texts(Table& table) {
   read_if_there("limit", texts.limit);
   read_if_there("begin", texts.begin);
   read_if_there("begin_alone", texts.begin_alone);
+  read_if_there("go_on", texts.go_on);
+  read_if_there("choose", texts.choose);
+  read_if_there("move_mark", texts.move_mark);
+  read_if_there("type_number", texts.type_number);
+  read_if_there("type_words", texts.type_words);
+  read_if_there("declined", texts.declined);
   return texts;
 }
 

@@ -46,6 +46,14 @@ struct SessionTexts {
       "A square in the upper right corner shows that the device is at its force limit."};
   std::string begin{"The experimenter will start"};  // the small line below a text that waits
   std::string begin_alone{"Press Enter or the space bar to begin"};  // without an experimenter
+  // The small line below a page, by what is done there.
+  std::string go_on{"Press Enter to go on"};
+  std::string choose{"Choose with a number key or the arrows, then press Enter"};
+  std::string move_mark{"Move the mark with the arrow keys, then press Enter"};
+  std::string type_number{"Type a number, then press Enter"};
+  std::string type_words{"Type your answer, then press Enter"};
+  std::string declined{// who does not consent
+                       "Thank you\nYou did not agree to take part, so the session ends here."};
 };
 
 /// Reads a [screen] table; every key is optional.

@@ -318,7 +318,8 @@ TEST(ArchitectureTest, FoldersHoldOneIdea) {
 
 TEST(ArchitectureTest, HeavyLibrariesStayOutOfHeaders) {
   const std::regex heavy(
-      "(toml\\+\\+/|toml\\.hpp|nlohmann/|gsl/|hdf5|H5|GL/|GLFW/|X11/|ft2build|freetype/|CLI/"
+      "(toml\\+\\+/|toml\\.hpp|nlohmann/|gsl/|hdf5|H5|GL/|GLFW/|X11/|ft2build|freetype/|pango/"
+      "|fontconfig/|CLI/"
       "|sundials/|cvode/|boost/|fmt/).*");
   for (const auto& [name, module] : modules_of_project()) {
     for (const fs::path& file : sources(kRoot / module.folder, false)) {

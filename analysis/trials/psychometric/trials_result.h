@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/trials/data/page_scores.h"
 #include "analysis/trials/psychometric/detected.h"
 #include "analysis/trials/psychometric/function_fit.h"
 #include "analysis/trials/psychometric/magnitudes.h"
@@ -50,7 +51,8 @@ struct TrialsResult {
   std::vector<MagnitudeCondition> magnitudes;
   std::vector<Quantity> quantities;  // what is compared over participants
   std::optional<ReachingResult> reaching;
-  std::vector<std::string> remarks;  // sentences about the files, for the report
+  std::vector<PageScore> page_scores;  // of questionnaires
+  std::vector<std::string> remarks;    // sentences about the files, for the report
   std::string definition, definition_name;
 
   bool simulated() const { return data.simulated(); }

@@ -192,6 +192,19 @@ Json to_json(const markers::MarkerTimes& times) {
           {"largest_latency_s", to_json(times.largest)}};
 }
 
+Json scores_json(const std::vector<PageScore>& scores) {
+  Json all = Json::array();
+  for (const PageScore& s : scores) {
+    all.push_back({{"participant", s.participant},
+                   {"group", s.group},
+                   {"page", s.page},
+                   {"when", s.when},
+                   {"score", s.score},
+                   {"value", s.value}});
+  }
+  return all;
+}
+
 template <class T>
 Json list_of(const std::vector<T>& values) {
   Json list = Json::array();
@@ -232,6 +245,9 @@ std::string results_json(const TrialsResult& result) {
   }
   if (const auto times = result.data.markers.times(); !times.empty()) {
     root["markers"] = list_of(times);  // of sessions that recorded any
+  }
+  if (!result.page_scores.empty()) {
+    root["page_scores"] = scores_json(result.page_scores);
   }
   root["remarks"] = result.remarks;
   return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -40,6 +40,26 @@ void add_design(Document& document, const TrialsResult& result) {
   }
 }
 
+/// Scores of questionnaires over participants.
+void add_pages(Document& document, const TrialsResult& result) {
+  if (result.page_scores.empty()) {
+    return;
+  }
+  add_section(document, result, "Questionnaires");
+  Rows rows;
+  for (const PageSummary& s : summaries_of(result.page_scores)) {
+    rows.push_back({s.page, s.when, s.score, s.group.empty() ? "–" : s.group,
+                    std::to_string(s.count), fmt::format("{:.4g}", s.mean),
+                    s.count > 1 ? fmt::format("{:.3g}", s.deviation) : "–"});
+  }
+  document.table({"page", "when", "score", "group", "participants", "mean", "standard deviation"},
+                 rows);
+  document.paragraph(
+      "Scores of the NASA-TLX are from 0 to 100: raw is the mean of the six ratings, weighted "
+      "weighs them by the 15 pairs. The laterality quotient of the Edinburgh inventory is from "
+      "-100 (left) to 100 (right).");
+}
+
 std::string function_words(const TrialsPlan& plan) {
   return fmt::format(
       "The function is {}, over {}{}; guess rate {}; lapse rate {}. The threshold is the level at "
@@ -140,6 +160,7 @@ Document trials_report(const TrialsResult& result, const std::vector<Drawing>& d
   }
   document.points(summary_lines(result));
   add_design(document, result);
+  add_pages(document, result);
   add_results(document, result, drawings);
   add_comparisons(document, result);
   add_trial_quality(document, result, drawings);

@@ -46,6 +46,8 @@ struct Table::Document {
   }
 
   std::vector<std::shared_ptr<Node>> nodes;  // tables that somebody asked for
+  Translations translations;
+  std::vector<ShownText> shown;
 };
 
 struct Table::Node {
@@ -53,9 +55,13 @@ struct Table::Node {
   std::string path;          // "trajectory", "gains.plane"; empty for the root
   std::set<std::string, std::less<>> read;
   std::set<std::string, std::less<>> asked;  // by has(): known, but not known to be read
+  std::string named{path};                   // the path with names in place of numbers
 
   std::string full(std::string_view key) const {
     return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
+  }
+  std::string full_name(std::string_view key) const {
+    return named.empty() ? std::string(key) : fmt::format("{}.{}", named, key);
   }
 };
 
@@ -110,7 +116,7 @@ Table Table::parse(const std::vector<NamedText>& parts) {
     throw InputError(
         fmt::format("{}: the definition is empty; write at least one KEY = VALUE", file_name));
   }
-  auto root = std::make_shared<Node>(Node{&document->root, "", {}, {}});
+  auto root = std::make_shared<Node>(Node{&document->root, "", {}, {}, ""});
   document->nodes.push_back(root);
   return Table(document, root);
 }
@@ -270,6 +276,38 @@ std::string Table::text(std::string_view key) {
   return value.value_or("");
 }
 
+std::string Table::shown_text(std::string_view key) {
+  return node_->table == nullptr ? "" : shown_as(key, text(key));
+}
+
+std::string Table::shown_text(std::string_view key, std::string_view otherwise) {
+  return shown_as(key, has(key) ? text(key) : std::string(otherwise));
+}
+
+std::string Table::shown_as(std::string_view key, std::string text) {
+  const std::string name = node_->full_name(key);
+  const std::string* found = document_->translations.of(name, text);
+  std::vector<ShownText>& all = document_->shown;
+  ShownText entry{name, found != nullptr ? *found : text, found != nullptr};
+  const auto known =
+      std::find_if(all.begin(), all.end(), [&](const ShownText& each) { return each.key == name; });
+  if (known == all.end()) {
+    all.push_back(entry);
+  } else {
+    *known = entry;
+  }
+  return entry.text;
+}
+
+void Table::translate(const Translations& translations) { document_->translations = translations; }
+
+std::vector<ShownText> Table::shown_texts() const { return document_->shown; }
+
+void Table::name_entry(std::string_view name) {
+  const std::size_t dot = node_->named.rfind('.');
+  node_->named = node_->named.substr(0, dot == std::string::npos ? 0 : dot + 1) + std::string(name);
+}
+
 std::string Table::choice(std::string_view key, const std::vector<std::string>& allowed) {
   const auto value = get<std::string>(key, joined(allowed), false);
   if (value && std::find(allowed.begin(), allowed.end(), *value) == allowed.end()) {
@@ -401,7 +439,7 @@ Table Table::table(std::string_view key) {
       refuse(key, shown(*node), "a table");
     }
   }
-  auto child = std::make_shared<Node>(Node{inner, node_->full(key), {}, {}});
+  auto child = std::make_shared<Node>(Node{inner, node_->full(key), {}, {}, node_->full_name(key)});
   document_->nodes.push_back(child);
   return Table(document_, child);
 }
@@ -426,8 +464,11 @@ std::vector<Table> Table::tables(std::string_view key) {
              "tables, each as [[…]]");
       continue;
     }
-    auto child =
-        std::make_shared<Node>(Node{inner, fmt::format("{}[{}]", node_->full(key), i + 1), {}, {}});
+    auto child = std::make_shared<Node>(Node{inner,
+                                             fmt::format("{}[{}]", node_->full(key), i + 1),
+                                             {},
+                                             {},
+                                             fmt::format("{}.{}", node_->full_name(key), i + 1)});
     document_->nodes.push_back(child);
     tables.push_back(Table(document_, child));
   }

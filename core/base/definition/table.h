@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/definition/bounds.h"
+#include "core/base/definition/translations.h"
 
 namespace haptrial {
 
@@ -48,6 +49,12 @@ class Table {
   long integer(std::string_view key, long low, long high);
   bool boolean(std::string_view key);
   std::string text(std::string_view key);
+  /// A text that participants read: required, or `otherwise` if the key is left out. After
+  /// translate() it is the translation.
+  std::string shown_text(std::string_view key);
+  std::string shown_text(std::string_view key, std::string_view otherwise);
+  /// The same of a text of the program's own, as if it stood under `key`.
+  std::string shown_as(std::string_view key, std::string text);
   std::string choice(std::string_view key, const std::vector<std::string>& allowed);
   std::vector<double> numbers(std::string_view key, const Bounds& bounds, std::string_view unit);
   std::vector<std::string> texts(std::string_view key);
@@ -72,6 +79,13 @@ class Table {
   /// Gives the whole document what it lacks of another TOML text: missing tables, and missing keys
   /// within tables; what it states stays. source() does not change.
   void fill_in(std::string_view defaults);
+  /// From now on shown_text() gives texts in another language. source() does not change.
+  void translate(const Translations& translations);
+  /// What shown_text() gave so far, each key once, in the order of first reading. Of an entry of an
+  /// array of tables the key has the name instead of the number: "response.choices.yes.label".
+  std::vector<ShownText> shown_texts() const;
+  /// The name of this table among those of its array, for keys of shown_texts().
+  void name_entry(std::string_view name);
   /// A table of this one that another reader knows: its keys are not looked at here.
   void leave(std::string_view key);
   /// The keys of this table in the order of their names.

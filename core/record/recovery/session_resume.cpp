@@ -70,6 +70,9 @@ Resumed examine(const SessionReader& reader) {
   if (reader.has(responses_table())) {
     found.responses = reader.responses();
   }
+  if (reader.has(table_of<AnswerRow>())) {
+    found.answers = reader.rows<AnswerRow>();
+  }
   for (const StimulusRow& row : reader.stimuli()) {
     if (found.blocks.empty() || found.blocks.back() != row.block) {
       found.blocks.push_back(row.block);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/record/rows/page_answer.h"
 #include "core/record/rows/response.h"
 #include "core/record/rows/run_types.h"
 #include "core/record/rows/session_types.h"
@@ -27,6 +28,7 @@ struct Resumed {
   std::vector<OpenPass> open_passes;  // in order; their rows follow those of `passes`
   std::vector<ResponseRow> responses;
   std::vector<SkippedRow> skipped;
+  std::vector<AnswerRow> answers;    // to pages
   std::vector<std::int32_t> blocks;  // whose stimuli are there
   std::uint64_t rows{0};             // of /samples
   std::uint64_t next_sequence{0};    // of the first sample to append

@@ -7,6 +7,7 @@
 
 #include "core/record/rows/device_row.h"
 #include "core/record/rows/marker_row.h"
+#include "core/record/rows/page_answer.h"
 #include "core/record/rows/response.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/rows/trial_facts.h"
@@ -15,7 +16,8 @@ namespace haptrial::record {
 
 const TableList& common_tables() {
   static const TableList tables{&responses_table(), &table_of<DeviceRow>(), &table_of<SkippedRow>(),
-                                &table_of<DampingRow>(), &table_of<MarkerRow>()};
+                                &table_of<DampingRow>(), &table_of<MarkerRow>(),
+                                &table_of<AnswerRow>()};
   return tables;
 }
 

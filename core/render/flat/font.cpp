@@ -8,12 +8,10 @@
 #include <stdexcept>
 
 #include "core/base/error.h"
-#include "core/base/text/utf8.h"
 
 namespace haptrial::render {
 namespace {
 
-constexpr char32_t kReplacement = 0xfffd;
 constexpr FT_Pos kUnit = 64;  // FreeType counts in 1/64 px
 
 struct CloseLibrary {
@@ -55,14 +53,14 @@ struct Font::Impl {
   }
 };
 
-Font::Font(const std::filesystem::path& file) : impl_(std::make_unique<Impl>()) {
+Font::Font(const std::filesystem::path& file, long number) : impl_(std::make_unique<Impl>()) {
   FT_Library library = nullptr;
   if (FT_Init_FreeType(&library) != 0) {
     throw RunError("FreeType cannot be started, so no text can be drawn");
   }
   impl_->library.reset(library);
   FT_Face face = nullptr;
-  if (FT_New_Face(library, file.c_str(), 0, &face) != 0) {
+  if (FT_New_Face(library, file.c_str(), number, &face) != 0) {
     throw RunError(fmt::format("{}: absent or not a typeface that FreeType reads", file.string()));
   }
   impl_->face.reset(face);
@@ -75,13 +73,15 @@ Font& Font::operator=(Font&&) noexcept = default;
 Font Font::sans() { return debian_font("DejaVuSans.ttf"); }
 Font Font::sans_bold() { return debian_font("DejaVuSans-Bold.ttf"); }
 
-Glyph Font::glyph(char32_t character, int size) const {
+std::uint32_t Font::index_of(char32_t character) const {
+  return FT_Get_Char_Index(impl_->face.get(), character);
+}
+
+Glyph Font::glyph(std::uint32_t index, int size) const {
   impl_->use(size);
-  // Index 0, for a character that is not there, is the box.
-  const FT_UInt index = FT_Get_Char_Index(impl_->face.get(), character);
   if (FT_Load_Glyph(impl_->face.get(), index, FT_LOAD_RENDER | FT_LOAD_TARGET_LIGHT) != 0) {
-    throw RunError(fmt::format("FreeType cannot draw the character U+{:04X}",
-                               static_cast<unsigned>(character)));
+    throw RunError(
+        fmt::format("FreeType cannot draw glyph {} of {}", index, impl_->face->family_name));
   }
   const FT_GlyphSlot slot = impl_->face->glyph;
   const FT_Bitmap& bitmap = slot->bitmap;
@@ -99,18 +99,6 @@ Glyph Font::glyph(char32_t character, int size) const {
   return glyph;
 }
 
-bool Font::has(char32_t character) const {
-  return FT_Get_Char_Index(impl_->face.get(), character) != 0;
-}
-
-int Font::kerning(char32_t left, char32_t right, int size) const {
-  impl_->use(size);
-  FT_Vector shift{};
-  FT_Get_Kerning(impl_->face.get(), FT_Get_Char_Index(impl_->face.get(), left),
-                 FT_Get_Char_Index(impl_->face.get(), right), FT_KERNING_DEFAULT, &shift);
-  return static_cast<int>(shift.x / kUnit);
-}
-
 int Font::ascent(int size) const {
   impl_->use(size);
   return rounded(impl_->face->size->metrics.ascender);
@@ -119,40 +107,6 @@ int Font::ascent(int size) const {
 int Font::line_height(int size) const {
   impl_->use(size);
   return rounded(impl_->face->size->metrics.height);
-}
-
-namespace {
-
-/// The character of a whole, well-formed sequence; U+FFFD for anything else.
-char32_t character_of(std::string_view bytes) {
-  constexpr char32_t kSmallest[] = {0, 0, 0x80, 0x800, 0x10000};
-  char32_t value = static_cast<unsigned char>(bytes.front());
-  if (bytes.size() == 1) {
-    return value;
-  }
-  value &= 0xffu >> (bytes.size() + 1);
-  for (const char byte : bytes.substr(1)) {
-    if (!continues_character(byte)) {
-      return kReplacement;
-    }
-    value = (value << 6) | (static_cast<unsigned char>(byte) & 0x3fu);
-  }
-  const bool surrogate = value >= 0xd800 && value < 0xe000;
-  return value < kSmallest[bytes.size()] || value > 0x10ffff || surrogate ? kReplacement : value;
-}
-
-}  // namespace
-
-std::u32string decode_utf8(std::string_view text) {
-  std::u32string characters;
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t length = character_bytes(text[i]);
-    const bool whole = length > 0 && i + length <= text.size();
-    const char32_t character = whole ? character_of(text.substr(i, length)) : kReplacement;
-    characters.push_back(character);
-    i += whole && character != kReplacement ? length : 1;
-  }
-  return characters;
 }
 
 }  // namespace haptrial::render

@@ -33,12 +33,7 @@ double start_of(double anchor, int width, Align align) {
 }  // namespace
 
 TextPainter::TextPainter(const Gl& gl, int width, int height)
-    : gl_(gl),
-      width_(width),
-      height_(height),
-      regular_(Font::sans()),
-      bold_(Font::sans_bold()),
-      quads_(gl, kLetterAttributes) {
+    : gl_(gl), width_(width), height_(height), quads_(gl, kLetterAttributes) {
   static_assert(sizeof(Letter) == kLetterAttributes * 4 * sizeof(float));
   build_program();
   gl_.gen_textures(1, &atlas_texture_);
@@ -83,19 +78,18 @@ void TextPainter::flush() {
   letters_.clear();
 }
 
-const TextPainter::Entry& TextPainter::entry(char32_t character, const TextStyle& style) {
-  const auto key = std::tuple(character, style.size, style.bold);
+const TextPainter::Entry& TextPainter::entry(const SetGlyph& set) {
+  const auto key = std::tuple(set.face, set.index, set.size);
   if (const auto known = entries_.find(key); known != entries_.end()) {
     return known->second;
   }
-  const Glyph glyph = font(style).glyph(character, style.size);
+  const Glyph glyph = setter_.glyph(set);
   make_room(glyph);
   for (int row = 0; row < glyph.height; ++row) {
     std::copy_n(glyph.coverage.begin() + row * glyph.width, glyph.width,
                 atlas_.begin() + (shelf_y_ + row) * kAtlasWidth + shelf_x_);
   }
-  const Entry added{shelf_x_,    shelf_y_,     glyph.left,   glyph.top,
-                    glyph.width, glyph.height, glyph.advance};
+  const Entry added{shelf_x_, shelf_y_, glyph.left, glyph.top, glyph.width, glyph.height};
   shelf_x_ += glyph.width;
   shelf_height_ = std::max(shelf_height_, glyph.height);
   atlas_changed_ = true;
@@ -114,42 +108,33 @@ void TextPainter::make_room(const Glyph& glyph) {
   }
 }
 
-int TextPainter::width_of(std::u32string_view text, const TextStyle& style) {
+int TextPainter::width_of(std::string_view text, const TextStyle& style) {
   int width = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    width += entry(text[i], style).advance;
-    if (i > 0) {
-      width += font(style).kerning(text[i - 1], text[i], style.size);
-    }
+  for (const SetLine& line : setter_.lines(text, style.size, style.bold, 0)) {
+    width = std::max(width, line.width);
   }
   return width;
 }
 
-int TextPainter::width_of(std::string_view text, const TextStyle& style) {
-  return width_of(decode_utf8(text), style);
-}
-
 int TextPainter::line_height(const TextStyle& style) const {
-  return font(style).line_height(style.size);
+  return setter_.line_height(style.size, style.bold);
 }
 
 /// @param pen  on the baseline, in whole pixels
-void TextPainter::place(std::u32string_view text, Eigen::Vector2d pen, const TextStyle& style,
+void TextPainter::place(const SetLine& line, const Eigen::Vector2d& pen, const TextStyle& style,
                         bool upwards) {
   const Colour& c = style.colour;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const Entry& e = entry(text[i], style);
-    const int kerning = i > 0 ? font(style).kerning(text[i - 1], text[i], style.size) : 0;
-    (upwards ? pen.y() : pen.x()) += upwards ? -kerning : kerning;
+  for (const SetGlyph& glyph : line.glyphs) {
+    const Entry& e = entry(glyph);
     Letter letter{{},
                   {f(e.x), f(e.y), upwards ? 1.0f : 0.0f, 0.0f},
                   {f(c.red), f(c.green), f(c.blue), f(c.alpha)}};
     if (upwards) {
-      letter.place = {f(pen.x() - e.top), f(pen.y() - e.left - e.width), f(e.height), f(e.width)};
-      pen.y() -= e.advance;
+      letter.place = {f(pen.x() + glyph.y - e.top), f(pen.y() - glyph.x - e.left - e.width),
+                      f(e.height), f(e.width)};
     } else {
-      letter.place = {f(pen.x() + e.left), f(pen.y() - e.top), f(e.width), f(e.height)};
-      pen.x() += e.advance;
+      letter.place = {f(pen.x() + glyph.x + e.left), f(pen.y() + glyph.y - e.top), f(e.width),
+                      f(e.height)};
     }
     if (e.width > 0) {
       letters_.push_back(letter);
@@ -159,71 +144,33 @@ void TextPainter::place(std::u32string_view text, Eigen::Vector2d pen, const Tex
 
 void TextPainter::line(std::string_view text, const Eigen::Vector2d& anchor, const TextStyle& style,
                        Align align) {
-  const std::u32string characters = decode_utf8(text);
-  const double x = start_of(anchor.x(), width_of(characters, style), align);
-  place(characters, {x, std::round(anchor.y())}, style, false);
+  const SetLine& line = setter_.lines(text, style.size, style.bold, 0).front();
+  place(line, {start_of(anchor.x(), line.width, align), std::round(anchor.y())}, style, false);
 }
 
 void TextPainter::line_upwards(std::string_view text, const Eigen::Vector2d& anchor,
                                const TextStyle& style) {
-  const std::u32string characters = decode_utf8(text);
-  const double y = std::round(anchor.y() + 0.5 * width_of(characters, style));
-  place(characters, {std::round(anchor.x()), y}, style, true);
-}
-
-std::vector<std::u32string> TextPainter::wrapped(std::string_view text, double width,
-                                                 const TextStyle& style) {
-  std::vector<std::u32string> lines{{}};
-  std::u32string word;
-  const auto fits = [&](const std::u32string& line) { return width_of(line, style) <= width; };
-  const auto take_word = [&] {
-    if (word.empty()) {
-      return;
-    }
-    const std::u32string longer = lines.back().empty() ? word : lines.back() + U' ' + word;
-    if (fits(longer)) {
-      lines.back() = longer;
-    } else {
-      if (!lines.back().empty()) {
-        lines.emplace_back();
-      }
-      for (const char32_t character : word) {  // broken only where it fills more than a line
-        if (!lines.back().empty() && !fits(lines.back() + character)) {
-          lines.emplace_back();
-        }
-        lines.back() += character;
-      }
-    }
-    word.clear();
-  };
-  for (const char32_t character : decode_utf8(text)) {
-    if (character == U' ' || character == U'\t' || character == U'\r') {
-      take_word();
-    } else if (character == U'\n') {
-      take_word();
-      lines.emplace_back();
-    } else {
-      word += character;
-    }
-  }
-  take_word();
-  return lines;
+  const SetLine& line = setter_.lines(text, style.size, style.bold, 0).front();
+  const double y = std::round(anchor.y() + 0.5 * line.width);
+  place(line, {std::round(anchor.x()), y}, style, true);
 }
 
 double TextPainter::height_of(std::string_view text, double width, const TextStyle& style) {
-  return static_cast<double>(wrapped(text, width, style).size()) * line_height(style);
+  const int room = std::max(1, static_cast<int>(width));
+  return static_cast<double>(setter_.lines(text, style.size, style.bold, room).size()) *
+         line_height(style);
 }
 
 double TextPainter::paragraphs(std::string_view text, const Eigen::Vector2d& top, double width,
                                const TextStyle& style, Align align) {
-  const int ascent = font(style).ascent(style.size);
-  const std::vector<std::u32string> lines = wrapped(text, width, style);
+  const int room = std::max(1, static_cast<int>(width));
+  const int ascent = setter_.ascent(style.size, style.bold);
   double y = std::round(top.y());
-  for (const std::u32string& line : lines) {
-    place(line, {start_of(top.x(), width_of(line, style), align), y + ascent}, style, false);
+  for (const SetLine& line : setter_.lines(text, style.size, style.bold, room)) {
+    place(line, {start_of(top.x(), line.width, align), y + ascent}, style, false);
     y += line_height(style);
   }
-  return static_cast<double>(lines.size()) * line_height(style);
+  return y - std::round(top.y());
 }
 
 }  // namespace haptrial::render

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/render/flat/flat_quads.h"
-#include "core/render/flat/font.h"
+#include "core/render/flat/typesetter.h"
 #include "core/render/flat/view.h"
 #include "core/render/gl/colour.h"
 #include "core/render/gl/gl.h"
@@ -25,9 +25,9 @@ struct TextStyle {
   Colour colour{};
 };
 
-/// Draws UTF-8 text over what is in the bound framebuffer, between begin() and end(). Characters
-/// sit on whole pixels and come from a texture that holds each one once, so that text costs little
-/// more than a rectangle a letter.
+/// Draws UTF-8 text of any script over what is in the bound framebuffer, between begin() and end().
+/// Glyphs sit on whole pixels and come from a texture that holds each one once, and lines are set
+/// once (Typesetter), so that text costs little more than a rectangle a glyph.
 ///
 /// Coordinates as in Painter. One thread, with the OpenGL context current whose functions are
 /// given, also for the destructor.
@@ -59,9 +59,9 @@ class TextPainter {
   int line_height(const TextStyle& style) const;
 
  private:
-  struct Entry {  // a character in the atlas
+  struct Entry {  // a glyph in the atlas
     int x{0}, y{0};
-    int left{0}, top{0}, width{0}, height{0}, advance{0};
+    int left{0}, top{0}, width{0}, height{0};
   };
   struct Letter {                 // as the shader reads it
     std::array<float, 4> place;   // left, top, width, height on the screen [px]
@@ -69,24 +69,20 @@ class TextPainter {
     std::array<float, 4> colour;
   };
 
-  const Font& font(const TextStyle& style) const { return style.bold ? bold_ : regular_; }
-  const Entry& entry(char32_t character, const TextStyle& style);
+  const Entry& entry(const SetGlyph& glyph);
   void make_room(const Glyph& glyph);
-  int width_of(std::u32string_view text, const TextStyle& style);
-  std::vector<std::u32string> wrapped(std::string_view text, double width, const TextStyle& style);
-  void place(std::u32string_view text, Eigen::Vector2d pen, const TextStyle& style, bool upwards);
+  void place(const SetLine& line, const Eigen::Vector2d& pen, const TextStyle& style, bool upwards);
   void build_program();
   void flush();
 
   Gl gl_;
   int width_;
   int height_;
-  Font regular_;
-  Font bold_;
-  std::map<std::tuple<char32_t, int, bool>, Entry> entries_;
+  Typesetter setter_;
+  std::map<std::tuple<int, std::uint32_t, int>, Entry> entries_;  // by face, glyph, size
   std::vector<std::uint8_t> atlas_;  // (atlas_height_ x kAtlasWidth) coverage
   int atlas_height_{0};
-  int shelf_x_{0}, shelf_y_{0}, shelf_height_{0};  // where the next character goes
+  int shelf_x_{0}, shelf_y_{0}, shelf_height_{0};  // where the next glyph goes
   bool atlas_changed_{true};
   std::vector<Letter> letters_;
   Gl::Name program_{0};

@@ -18,6 +18,9 @@ constexpr double kGap = 0.05;
 constexpr double kColumn = 1.45;  // longest line: longer ones are tiring to read
 constexpr double kShrink = 0.9;   // from one try to the next
 constexpr double kSmallest = 0.3;
+constexpr double kPicture = 0.4;  // most of the screen's height that a picture takes
+constexpr double kTick = 0.03;    // of a scale
+constexpr double kLine = 1.35;    // from choice to choice, of their height
 
 }  // namespace
 
@@ -34,7 +37,8 @@ TextScreen::TextScreen(const Gl& gl, int width, int height, const Colour& backgr
       ink_(ink),
       accent_(accent),
       painter_(gl, width, height),
-      text_(gl, width, height) {}
+      text_(gl, width, height),
+      picture_(gl, width, height) {}
 
 double TextScreen::margin() const { return kMargin * std::min(width_, height_); }
 
@@ -49,26 +53,49 @@ TextScreen::Sizes TextScreen::sizes(double scale) const {
           {pixels(kHint), false, with_alpha(ink_, 0.62)}};
 }
 
+double TextScreen::gap() const { return kGap * std::min(width_, height_); }
+
+double TextScreen::column() const {
+  return std::min(width_ - 2.0 * margin(), kColumn * std::min(width_, height_));
+}
+
+double TextScreen::picture_height(const TextPage& page) const {
+  return page.picture ? std::min<double>(page.picture->height, kPicture * height_) : 0.0;
+}
+
+double TextScreen::answer_height(const TextPage& page, const Sizes& sizes) {
+  double height = 0.0;
+  for (const std::string& choice : page.choices) {
+    height += kLine * text_.height_of(choice, column(), sizes.body);
+  }
+  if (page.scale) {
+    height += 2.0 * text_.line_height(sizes.body) + 2.0 * kTick * std::min(width_, height_);
+  }
+  if (page.typed) {
+    height += text_.height_of(*page.typed + "_", column(), sizes.body);
+  }
+  return height;
+}
+
 double TextScreen::height_of(const TextPage& page, const Sizes& sizes) {
-  const double gap = kGap * std::min(width_, height_);
-  const double column = std::min(width_ - 2.0 * margin(), kColumn * std::min(width_, height_));
-  double height = -gap;
+  double height = -gap();
   for (const auto& [text, style] :
        {std::pair(&page.title, sizes.title), {&page.body, sizes.body}}) {
-    height += text->empty() ? 0.0 : gap + text_.height_of(*text, column, style);
+    height += text->empty() ? 0.0 : gap() + text_.height_of(*text, column(), style);
   }
-  height += page.countdown ? gap + text_.line_height(sizes.countdown) : 0.0;
+  const double answer = answer_height(page, sizes);
+  height += answer > 0.0 ? gap() + answer : 0.0;
+  height += page.picture ? gap() + picture_height(page) : 0.0;
+  height += page.countdown ? gap() + text_.line_height(sizes.countdown) : 0.0;
   return std::max(height, 0.0);
 }
 
 void TextScreen::draw(const TextPage& page) {
-  const double gap = kGap * std::min(width_, height_);
-  const double column = std::min(width_ - 2.0 * margin(), kColumn * std::min(width_, height_));
   double scale = 1.0;
   double foot = 0.0;
   Sizes s = sizes(scale);
   const auto room = [&] {
-    foot = page.hint.empty() ? 0.0 : gap + text_.height_of(page.hint, column, s.hint);
+    foot = page.hint.empty() ? 0.0 : gap() + text_.height_of(page.hint, column(), s.hint);
     return height_ - 2.0 * margin() - foot;
   };
   while (height_of(page, s) > room() && scale > kSmallest) {
@@ -81,18 +108,86 @@ void TextScreen::draw(const TextPage& page) {
   const double centre = 0.5 * width_;
   double y = margin() + std::max(0.0, 0.5 * (room() - height_of(page, s)));
   if (!page.title.empty()) {
-    y += gap + text_.paragraphs(page.title, {centre, y}, column, s.title);
+    y += gap() + text_.paragraphs(page.title, {centre, y}, column(), s.title);
   }
+  y += draw_picture(page, y);
   if (!page.body.empty()) {
-    y += gap + text_.paragraphs(page.body, {centre, y}, column, s.body);
+    y += gap() + text_.paragraphs(page.body, {centre, y}, column(), s.body);
   }
   if (page.countdown) {
-    text_.paragraphs(as_clock(*page.countdown), {centre, y}, column, s.countdown);
+    text_.paragraphs(as_clock(*page.countdown), {centre, y}, column(), s.countdown);
   }
+  draw_answer(page, s, y);
   if (!page.hint.empty()) {
-    text_.paragraphs(page.hint, {centre, height_ - margin() - foot + gap}, column, s.hint);
+    text_.paragraphs(page.hint, {centre, height_ - margin() - foot + gap()}, column(), s.hint);
   }
   text_.end();
+}
+
+/// @returns the height that it takes
+double TextScreen::draw_picture(const TextPage& page, double y) {
+  if (!page.picture) {
+    return 0.0;
+  }
+  const double height = picture_height(page);
+  const double width = height * page.picture->width / page.picture->height;
+  const double left = 0.5 * (width_ - width);
+  picture_.draw(page.picture, {{left, y}, {left + width, y + height}});
+  return gap() + height;
+}
+
+void TextScreen::draw_answer(const TextPage& page, const Sizes& sizes, double y) {
+  draw_choices(page, sizes, y);
+  if (page.scale) {
+    draw_scale(page, sizes, y);
+  }
+  if (page.typed) {
+    TextStyle style = sizes.body;
+    style.colour = accent_;
+    text_.paragraphs(*page.typed + "_", {0.5 * width_, y}, column(), style);
+  }
+}
+
+void TextScreen::draw_choices(const TextPage& page, const Sizes& sizes, double y) {
+  for (std::size_t i = 0; i < page.choices.size(); ++i) {
+    TextStyle style = sizes.body;
+    const bool chosen = static_cast<int>(i) == page.chosen;
+    const double height = text_.height_of(page.choices[i], column(), style);
+    if (chosen) {
+      style.colour = accent_;
+      const double half = 0.5 * text_.width_of(page.choices[i], style) + 0.5 * gap();
+      painter_.begin_over();
+      painter_.outline(
+          {{0.5 * width_ - half, y - 0.1 * height}, {0.5 * width_ + half, y + 1.1 * height}},
+          0.3 * height, 2.0, accent_);
+      painter_.end();
+    }
+    text_.paragraphs(page.choices[i], {0.5 * width_, y}, column(), style);
+    y += kLine * height;
+  }
+}
+
+/// A line with a tick for each step, words below its ends, and the mark.
+void TextScreen::draw_scale(const TextPage& page, const Sizes& sizes, double y) {
+  const double tick = kTick * std::min(width_, height_);
+  const double half = 0.4 * column();
+  const double left = 0.5 * width_ - half;
+  const double middle = y + tick;
+  painter_.begin_over();
+  painter_.line({left, middle}, {left + 2.0 * half, middle}, 2.0, ink_);
+  for (int i = 0; i <= page.scale->steps; ++i) {
+    const double x = left + 2.0 * half * i / page.scale->steps;
+    painter_.line({x, middle - 0.5 * tick}, {x, middle + 0.5 * tick}, 2.0, ink_);
+  }
+  if (page.chosen >= 0) {
+    painter_.disc({left + 2.0 * half * page.chosen / page.scale->steps, middle}, 0.6 * tick,
+                  accent_);
+  }
+  painter_.end();
+  const double below = middle + 1.2 * tick;
+  text_.paragraphs(page.scale->low_end, {left, below}, half, sizes.body, Align::kCentre);
+  text_.paragraphs(page.scale->high_end, {left + 2.0 * half, below}, half, sizes.body,
+                   Align::kCentre);
 }
 
 }  // namespace haptrial::render

@@ -1,19 +1,34 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/render/flat/painter.h"
+#include "core/render/flat/picture_quad.h"
 #include "core/render/flat/text.h"
+#include "core/render/gl/image.h"
 
 namespace haptrial::render {
 
-/// What a participant reads between passes.
+/// A scale that is answered with a mark.
+struct PageScale {
+  int steps{20};  // from end to end, >= 1
+  std::string low_end, high_end;
+};
+
+/// What a participant reads between passes, and how it is answered.
 struct TextPage {
   std::string title;
-  std::string body;                 // line breaks end paragraphs
-  std::string hint;                 // at the bottom: "Press the button to go on"
-  std::optional<double> countdown;  // shown as minutes and seconds [s]
+  std::string body;                        // line breaks end paragraphs
+  std::string hint;                        // at the bottom: "Press the button to go on"
+  std::optional<double> countdown;         // shown as minutes and seconds [s]
+  std::shared_ptr<const Image> picture{};  // between title and text; null: none
+  std::vector<std::string> choices{};      // below the text
+  std::optional<PageScale> scale{};        // likewise
+  std::optional<std::string> typed{};      // likewise; a cursor follows
+  int chosen{-1};                          // choice, or step of the scale; -1: none yet
 };
 
 /// "10:00" for 600 s; a part of a second counts as a whole one, so that 0:00 is the end.
@@ -35,7 +50,15 @@ class TextScreen {
     TextStyle title, body, countdown, hint;
   };
   Sizes sizes(double scale) const;
+  double gap() const;
+  double column() const;
   double height_of(const TextPage& page, const Sizes& sizes);
+  double picture_height(const TextPage& page) const;
+  double answer_height(const TextPage& page, const Sizes& sizes);
+  double draw_picture(const TextPage& page, double y);
+  void draw_answer(const TextPage& page, const Sizes& sizes, double y);
+  void draw_choices(const TextPage& page, const Sizes& sizes, double y);
+  void draw_scale(const TextPage& page, const Sizes& sizes, double y);
 
   int width_;
   int height_;
@@ -44,6 +67,7 @@ class TextScreen {
   Colour accent_;
   Painter painter_;
   TextPainter text_;
+  PictureQuad picture_;
 };
 
 }  // namespace haptrial::render

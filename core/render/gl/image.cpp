@@ -58,6 +58,31 @@ Image coarser(const Image& fine, int times) {
   return image;
 }
 
+Image read_png(const std::filesystem::path& path) {
+  constexpr png_uint_32 kLargest = 4096;
+  png_image description{};
+  description.version = PNG_IMAGE_VERSION;
+  const auto refuse = [&](const std::string& why) {
+    png_image_free(&description);
+    throw InputError(fmt::format("{}: {}; give a picture in PNG format, at most {} x {} pixels",
+                                 path.string(), why, kLargest, kLargest));
+  };
+  if (png_image_begin_read_from_file(&description, path.c_str()) == 0) {
+    refuse(description.message);
+  }
+  if (description.width > kLargest || description.height > kLargest) {
+    refuse(fmt::format("has {} x {} pixels", description.width, description.height));
+  }
+  description.format = PNG_FORMAT_RGB;
+  Image image{static_cast<int>(description.width), static_cast<int>(description.height), {}};
+  image.rgb.resize(PNG_IMAGE_SIZE(description));
+  const png_color white{255, 255, 255};
+  if (png_image_finish_read(&description, &white, image.rgb.data(), 0, nullptr) == 0) {
+    refuse(description.message);
+  }
+  return image;
+}
+
 void write_png(const std::filesystem::path& path, const Image& image) {
   const auto expected = static_cast<std::size_t>(std::max(image.width, 0)) *
                         static_cast<std::size_t>(std::max(image.height, 0)) * kChannels;

@@ -23,4 +23,8 @@ Image coarser(const Image& fine, int times);
 /// a full disk; std::invalid_argument when the image's size and bytes do not agree.
 void write_png(const std::filesystem::path& path, const Image& image);
 
+/// Reads a PNG file; what is transparent shows white.
+/// @throws InputError when the file is absent, no PNG, or larger than 4096 x 4096 pixels
+Image read_png(const std::filesystem::path& path);
+
 }  // namespace haptrial::render

@@ -68,6 +68,16 @@ int key_of(int glfw_key) {
     case GLFW_KEY_ENTER:
     case GLFW_KEY_KP_ENTER:
       return KeyPress::kEnter;
+    case GLFW_KEY_BACKSPACE:
+      return KeyPress::kBackspace;
+    case GLFW_KEY_RIGHT:
+      return KeyPress::kRight;
+    case GLFW_KEY_LEFT:
+      return KeyPress::kLeft;
+    case GLFW_KEY_DOWN:
+      return KeyPress::kDown;
+    case GLFW_KEY_UP:
+      return KeyPress::kUp;
     default:
       return glfw_key >= GLFW_KEY_SPACE && glfw_key <= GLFW_KEY_GRAVE_ACCENT ? glfw_key
                                                                              : KeyPress::kOther;
@@ -149,6 +159,9 @@ void Window::Impl::listen() {
     } else if (action == GLFW_RELEASE) {  // also when another window takes the keyboard
       std::erase(of(w).held, key_of(key));
     }
+  });
+  glfwSetCharCallback(window.get(), [](GLFWwindow* w, unsigned int character) {
+    of(w).keys.push_back({KeyPress::kOther, static_cast<char32_t>(character)});
   });
   glfwSetCursorPosCallback(window.get(),
                            [](GLFWwindow* w, double x, double y) { of(w).point_at(x, y); });

@@ -17,6 +17,8 @@ void add_dry_run(CLI::App& app, int& status) {
   sub->add_option("--out", o.out, "New folder for the session files (default: out/NAME-001)");
   sub->add_option("--trials", o.trials,
                   "Number of trials of each subject, from the first (default: all)");
+  sub->add_option("--language", o.language,
+                  "Language of what participants read, such as de (default: the definition's)");
   sub->add_option("--frames", o.frames,
                   "Number of pictures to write of each pass, as the subject saw it (default: 0)");
 }
@@ -47,6 +49,8 @@ void add_run(CLI::App& app, int& status) {
   sub->add_flag("--lsl-optional", o.stream_optional,
                 "Stream to the Lab Streaming Layer if its library is present");
   sub->add_flag("--resume", o.resume, "Resume the participant's unfinished session");
+  sub->add_option("--language", o.language,
+                  "Language of what the participant reads, such as de (default: the definition's)");
   sub->add_flag("--pilot", o.pilot, "Mark the session as a pilot, which analyze leaves out");
   sub->add_option("--handedness", o.person.handedness, "Participant's handedness");
   sub->add_option("--age-band", o.person.age_band, "Participant's age band, such as 18-25");

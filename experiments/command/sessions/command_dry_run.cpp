@@ -30,7 +30,7 @@ fs::path fresh_folder(const std::string& name) {
 
 int dry_run(const DryRunOptions& options) {
   watch_for_interrupt();
-  const Experiment experiment = load_experiment(options.definition);
+  const Experiment experiment = load_experiment(options.definition, options.language);
   const protocols::Definition& setup = *experiment.definition;
   DryRun dry;
   dry.participants =
@@ -45,6 +45,9 @@ int dry_run(const DryRunOptions& options) {
   }
   dry.folder = options.out.empty() ? fresh_folder(setup.name) : fs::path(options.out);
   print_warnings(experiment);
+  for (const std::string& sentence : experiment.untranslated) {
+    fmt::print("{}\n", sentence);
+  }
   for (const std::string& line : setup.left_out_of_dry_runs()) {
     fmt::print("{}\n", line);
   }

@@ -94,15 +94,35 @@ SessionSummary attended_session(SessionRequest& request, const RunOptions& optio
   return run_session(request);
 }
 
+/// Somebody must be able to answer what pages ask.
+void check_pages(const RunOptions& options, const protocols::Definition& definition) {
+  const bool person = options.devices.front() != "virtual";
+  if (person && !definition.pages.empty() && !options.window && !options.console &&
+      !options.keyboard) {
+    throw InputError(
+        "the definition has [pages], which nobody could read or answer; add --window, --console "
+        "or --keyboard");
+  }
+}
+
 }  // namespace
 
 int run(const RunOptions& options) {
   watch_for_interrupt();
   watch_fatal_signals();
   check_run_options(options);
-  const Experiment experiment = load_experiment(options.definition);
+  const Experiment experiment = load_experiment(options.definition, options.language);
   const protocols::Definition& setup = *experiment.definition;
   check_recording(options, setup);
+  check_pages(options, setup);
+  for (const std::string& sentence : experiment.untranslated) {
+    fmt::print("{}\n", sentence);
+  }
+  if (options.window) {
+    for (const std::string& sentence : undrawable_texts(experiment)) {
+      fmt::print("warning: {}\n", sentence);
+    }
+  }
   if (options.stream && !options.stream_optional) {
     require_streams();
   }
@@ -112,6 +132,7 @@ int run(const RunOptions& options) {
   request.live = [&experiment](const fs::path& resumed) {
     return experiment.study->live_figures(*experiment.definition, resumed);
   };
+  request.definition_folder = fs::path(options.definition).parent_path();
   request.subject = options.subject;
   request.participant = participant_of(options);
   request.seed = checked_seed(options.seed);

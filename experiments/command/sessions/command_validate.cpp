@@ -2,8 +2,18 @@
 
 #include "experiments/command/commands.h"
 #include "experiments/studies/experiment.h"
+#include "protocols/definition/languages.h"
 
 namespace haptrial::experiments {
+namespace {
+
+void print_undrawable(const Experiment& experiment) {
+  for (const std::string& sentence : undrawable_texts(experiment)) {
+    fmt::print("warning: {}\n", sentence);
+  }
+}
+
+}  // namespace
 
 int validate(const std::string& file) {
   const Experiment experiment = load_experiment(file);
@@ -15,6 +25,16 @@ int validate(const std::string& file) {
     fmt::print("{}\n", line);
   }
   print_warnings(experiment);
+  print_undrawable(experiment);
+  for (const std::string& language : protocols::languages_of(file)) {
+    const Experiment translated = load_experiment(file, language);
+    fmt::print("language {}: {}\n", language,
+               translated.untranslated.empty() ? "complete" : "incomplete");
+    for (const std::string& sentence : translated.untranslated) {
+      fmt::print("{}\n", sentence);
+    }
+    print_undrawable(translated);
+  }
   return 0;
 }
 

@@ -45,7 +45,8 @@ std::uint32_t buttons_of(Table& table, const char* key) {
 Choice read_choice(Table& table, std::size_t place, KeyBits& keys) {
   Choice choice;
   choice.value = table.text("value");
-  choice.label = table.has("label") ? table.text("label") : choice.value;
+  table.name_entry(choice.value);
+  choice.label = table.shown_text("label", choice.value);
   if (table.has("keys")) {
     choice.keys = keys_of(table, "keys", keys);
     const std::vector<std::string> names = table.texts("keys");
@@ -118,10 +119,17 @@ void read_number(Table& table, Question& question, KeyBits& keys) {
   }
 }
 
-Question read_question(Table& table, KeyBits& keys) {
+/// @param listed  one of several, which translations tell apart by their names
+Question read_question(Table& table, KeyBits& keys, bool listed) {
   Question question;
-  question.name = table.has("name") ? table.text("name") : "answer";
-  question.text = table.text("question");
+  question.name = "answer";
+  if (table.has("name")) {
+    question.name = table.text("name");
+  }
+  if (listed) {
+    table.name_entry(question.name);
+  }
+  question.text = table.shown_text("question");
   const int kinds =
       (table.has("choices") ? 1 : 0) + (table.has("scale") ? 1 : 0) + (table.has("number") ? 1 : 0);
   if (kinds != 1) {
@@ -194,14 +202,14 @@ std::vector<Question> read_questions(Table& root, KeyBits& keys) {
   std::vector<Question> questions;
   if (root.has("response")) {
     Table table = root.table("response");
-    questions.push_back(read_question(table, keys));
+    questions.push_back(read_question(table, keys, false));
   }
   if (root.has("responses")) {
     if (!questions.empty()) {
       root.reject("responses", "stands beside [response]; keep one of the two");
     }
     for (Table& table : root.tables("responses")) {
-      questions.push_back(read_question(table, keys));
+      questions.push_back(read_question(table, keys, true));
       const auto same = [&](const Question& each) { return each.name == questions.back().name; };
       if (std::any_of(questions.begin(), questions.end() - 1, same)) {
         table.reject("name", fmt::format("\"{}\"", questions.back().name),

@@ -26,8 +26,8 @@ void read_view(Table& root, TrialsDefinition& d) {
   d.view.from_above = table.choice("seen_from", {"above", "front"}) == "above";
   d.view.width = table.number("extent", {0.01, 1.0}, "m");
   d.view.hand_radius = table.number("hand_radius", {0.0005, 0.05}, "m");
-  d.feedback_right = table.text("feedback_right");
-  d.feedback_wrong = table.text("feedback_wrong");
+  d.feedback_right = table.shown_text("feedback_right");
+  d.feedback_wrong = table.shown_text("feedback_wrong");
   d.feedback_time = table.number("feedback_time", {0.0, 10.0}, "s");
   d.view.stereo = table.has("stereo") && table.boolean("stereo");
   if (table.has("eye_distance")) {

@@ -194,6 +194,7 @@ NextTrial TrialSequence::make_next() {
   plan.block = practice ? -practice_blocks_ : study_blocks_;
   plan.repetition = ++in_block_;
   plan.practice = practice;
+  plan.block_name = block().name;
   const std::string number = fmt::format("{} {}", practice ? "practice" : "trial", plan.trial);
   plan.stimulus_seed = derived_seed(taker_.session_seed, number);
   TrialValues& values = next.values;

@@ -1,0 +1,77 @@
+#include "core/base/definition/translations.h"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+#include <algorithm>
+
+#include "core/base/definition/toml_text_internal.h"
+#include "core/base/error.h"
+#include "core/base/files/file_text.h"
+#include "core/base/text/nearest.h"
+
+namespace haptrial {
+namespace {
+
+void take_texts(const toml::table& table, const std::string& path, Translations& into) {
+  for (const auto& [key, value] : table) {
+    const std::string name =
+        path.empty() ? std::string(key.str()) : fmt::format("{}.{}", path, key.str());
+    if (const toml::table* inner = value.as_table()) {
+      take_texts(*inner, name, into);
+    } else if (const auto text = value.value_exact<std::string>(); text && !text->empty()) {
+      into.by_key[name] = *text;
+    } else {
+      throw InputError(
+          fmt::format("{}:{}: {} is not a text; allowed: a text in quotes that is not empty",
+                      into.file, value.source().begin.line, name));
+    }
+  }
+}
+
+}  // namespace
+
+const std::string* Translations::of(std::string_view key, std::string_view text) const {
+  if (const auto found = by_key.find(key); found != by_key.end()) {
+    return &found->second;
+  }
+  const auto found = by_text.find(text);
+  return found != by_text.end() ? &found->second : nullptr;
+}
+
+Translations load_translations(const std::filesystem::path& file, std::string_view language) {
+  Translations translations{std::string(language), file.string()};
+  take_texts(parse_toml(file_text(file), file.string()), "", translations);
+  return translations;
+}
+
+std::vector<std::string> unknown_translations(const Translations& translations,
+                                              const std::vector<ShownText>& shown) {
+  std::vector<std::string> known;
+  std::transform(shown.begin(), shown.end(), std::back_inserter(known),
+                 [](const ShownText& text) { return text.key; });
+  std::vector<std::string> sentences;
+  for (const auto& [key, text] : translations.by_key) {
+    if (std::find(known.begin(), known.end(), key) == known.end()) {
+      const std::string hint = did_you_mean(key, known);
+      sentences.push_back(
+          fmt::format("{}: {} is no text that participants of this definition read{}",
+                      translations.file, key, hint));
+    }
+  }
+  return sentences;
+}
+
+std::vector<std::string> missing_translations(const Translations& translations,
+                                              const std::vector<ShownText>& shown) {
+  std::vector<std::string> sentences;
+  for (const ShownText& text : shown) {
+    if (!text.translated) {
+      sentences.push_back(fmt::format("{}: {} is missing; it is shown as the definition has it",
+                                      translations.file, text.key));
+    }
+  }
+  return sentences;
+}
+
+}  // namespace haptrial

@@ -1,0 +1,101 @@
+#include "core/pages/known_questionnaires.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <utility>
+
+namespace haptrial::pages {
+namespace {
+
+struct TlxScale {
+  const char* title;
+  const char* question;
+};
+
+constexpr std::array<TlxScale, kTlxScales.size()> kTlxTexts{{
+    {"Mental demand", "How mentally demanding was the task?"},
+    {"Physical demand", "How physically demanding was the task?"},
+    {"Temporal demand", "How hurried or rushed was the pace of the task?"},
+    {"Performance", "How successful were you in accomplishing what you were asked to do?"},
+    {"Effort", "How hard did you have to work to accomplish your level of performance?"},
+    {"Frustration", "How insecure, discouraged, irritated, stressed and annoyed were you?"},
+}};
+
+struct Activity {
+  const char* name;
+  const char* question;
+};
+
+constexpr std::array<Activity, 10> kActivities{{
+    {"writing", "Writing"},
+    {"drawing", "Drawing"},
+    {"throwing", "Throwing"},
+    {"scissors", "Scissors"},
+    {"toothbrush", "Toothbrush"},
+    {"knife", "Knife (without fork)"},
+    {"spoon", "Spoon"},
+    {"broom", "Broom (upper hand)"},
+    {"match", "Striking a match (the match)"},
+    {"box", "Opening a box (the lid)"},
+}};
+
+Item rating(std::size_t scale) {
+  Item item;
+  item.name = kTlxScales[scale];
+  item.kind = ItemKind::kScale;
+  item.title = kTlxTexts[scale].title;
+  item.text = kTlxTexts[scale].question;
+  item.step = 5.0;
+  const bool performance = item.name == "performance";
+  item.low_end = performance ? "Perfect" : "Very low";
+  item.high_end = performance ? "Failure" : "Very high";
+  return item;
+}
+
+Item pair(std::size_t first, std::size_t second) {
+  Item item;
+  item.name = fmt::format("{} or {}", kTlxScales[first], kTlxScales[second]);
+  item.kind = ItemKind::kChoice;
+  item.text = "Which contributed more to the workload of the task?";
+  item.choices = {{kTlxScales[first], kTlxTexts[first].title, 1.0},
+                  {kTlxScales[second], kTlxTexts[second].title, 2.0}};
+  return item;
+}
+
+}  // namespace
+
+std::vector<Item> nasa_tlx_items(bool weighted) {
+  std::vector<Item> items;
+  for (std::size_t scale = 0; scale < kTlxScales.size(); ++scale) {
+    items.push_back(rating(scale));
+  }
+  for (std::size_t first = 0; weighted && first < kTlxScales.size(); ++first) {
+    for (std::size_t second = first + 1; second < kTlxScales.size(); ++second) {
+      items.push_back(pair(first, second));
+    }
+  }
+  return items;
+}
+
+std::vector<Item> edinburgh_items() {
+  std::vector<Item> items;
+  for (const Activity& activity : kActivities) {
+    Item item;
+    item.name = activity.name;
+    item.kind = ItemKind::kChoice;
+    item.title = activity.question;
+    item.text = "Which hand do you prefer for it?";
+    item.choices = {
+        {"always left", "Left, never the other", -2.0},
+        {"left", "Left hand", -1.0},
+        {"either", "Either", 0.0},
+        {"right", "Right hand", 1.0},
+        {"always right", "Right, never the other", 2.0},
+        {"never done", "I have never done it", std::numeric_limits<double>::quiet_NaN()}};
+    items.push_back(std::move(item));
+  }
+  return items;
+}
+
+}  // namespace haptrial::pages

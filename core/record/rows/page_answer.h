@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "core/record/table/table.h"
+
+namespace haptrial::record {
+
+/// When a page was shown.
+enum class PageTime : std::uint8_t { kBefore, kAfterBlock, kAfter };
+
+/// Where an answer to a page was given.
+enum class AnsweredAt : std::uint8_t { kWindow, kConsole, kTerminal, kVirtual };
+
+/// An answer to an item of a page, a row of /answers; in files whose definition has pages.
+struct AnswerRow {
+  std::int64_t time_ns{0};  // since the first tick of the session
+  PageTime when{PageTime::kBefore};
+  std::int32_t block{0};      // after which the page was shown, as in /trials; 0: after none
+  std::string questionnaire;  // the page's name
+  std::string item;
+  double value{std::numeric_limits<double>::quiet_NaN()};  // NaN: the answer is no number
+  std::string text;  // the answer as a word, or what was typed
+  AnsweredAt source{AnsweredAt::kWindow};
+  double duration{0.0};  // from the moment on in which it was asked [s]
+};
+
+/// Most bytes of a name and of an answer.
+inline constexpr std::size_t kPageNameBytes = 64;
+inline constexpr std::size_t kPageTextBytes = 1000;
+
+template <>
+const Table<AnswerRow>& table_of<AnswerRow>();
+
+}  // namespace haptrial::record

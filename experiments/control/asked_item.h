@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace haptrial::experiments {
+
+/// What a page asks at the moment, for those who answer it elsewhere than in the participant's
+/// window.
+struct AskedItem {
+  int number{0};     // counts what was asked, from 1; 0: nothing is asked
+  std::string kind;  // "read", "choice", "scale", "number", "words"
+  std::string title;
+  std::string text;
+  std::vector<std::string> choices;  // labels
+  double low{0.0}, high{0.0}, step{0.0};
+  std::string low_end, high_end;
+  std::string hint;
+};
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/pages/page.h"
+#include "core/render/flat/text_screen.h"
+#include "core/render/gl/window.h"
+#include "experiments/control/asked_item.h"
+#include "protocols/definition/screen_options.h"
+
+namespace haptrial::experiments {
+
+/// An answer to an item of a page, as the session file has it.
+struct PageAnswer {
+  double value{0.0};  // NaN: it is no number
+  std::string text;
+};
+
+/// How one item is answered, wherever: by single keys of the participant's window, or in one go
+/// from the console or the terminal. Any one thread.
+///
+/// Keys: digits and arrows choose, arrows move the mark of a scale, characters are typed, Enter
+/// gives the answer.
+class PageInput {
+ public:
+  /// Both outlive the input.
+  PageInput(const pages::Item& item, const protocols::SessionTexts& words);
+
+  /// A key of the participant's window. @returns whether what is shown has changed
+  bool press(const render::KeyPress& key);
+  /// A whole answer: of choices the number of one, from 1; of scales and numbers a number; any
+  /// text; of what is read anything. @returns a sentence if it is not allowed; else empty
+  std::string give(const std::string& answer);
+
+  /// Once it was given.
+  const std::optional<PageAnswer>& answer() const { return answer_; }
+  /// As the participant sees it. @param picture  of the item, or null
+  render::TextPage page(std::shared_ptr<const render::Image> picture) const;
+  /// As the others see it. @param number  of the question
+  AskedItem asked(int number) const;
+
+ private:
+  bool chooses() const;
+  bool press_choice(int key);
+  bool press_scale(int key);
+  bool press_typed(const render::KeyPress& key);
+  void enter();
+  int steps() const;
+  std::string give_choice(const std::string& answer);
+  std::string give_number(const std::string& answer);
+  const std::string& hint() const;
+
+  const pages::Item& item_;
+  const protocols::SessionTexts& words_;
+  int chosen_{-1};  // choice, or step of a scale
+  std::string typed_;
+  std::optional<PageAnswer> answer_;
+};
+
+}  // namespace haptrial::experiments

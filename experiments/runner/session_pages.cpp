@@ -1,0 +1,149 @@
+#include "experiments/runner/session_pages.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+
+#include "core/render/gl/image.h"
+#include "experiments/pages/virtual_answers.h"
+#include "experiments/screen/screen.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using pages::ItemKind;
+using record::AnsweredAt;
+using record::PageTime;
+
+AnsweredAt source_of(Asker by) {
+  return by == Asker::kConsole ? AnsweredAt::kConsole : AnsweredAt::kTerminal;
+}
+
+std::string occasion_of(PageTime when, int block) {
+  return when == PageTime::kBefore  ? "before"
+         : when == PageTime::kAfter ? "after"
+                                    : fmt::format("after block {}", block);
+}
+
+}  // namespace
+
+SessionPages::SessionPages(const Parts& parts) : p_(parts), d_(*parts.request.definition) {}
+
+bool SessionPages::before() { return show(d_.pages.before, PageTime::kBefore, 0); }
+
+bool SessionPages::after() { return show(d_.pages.after, PageTime::kAfter, 0); }
+
+bool SessionPages::after_block(int block, const std::string& name, bool missed) {
+  const auto found = d_.pages.after_block.find(name);
+  return found == d_.pages.after_block.end() ||
+         show(found->second, PageTime::kAfterBlock, block, missed);
+}
+
+bool SessionPages::show(const std::vector<std::string>& names, PageTime when, int block,
+                        bool missed) {
+  for (const std::string& name : names) {
+    const pages::Page& page = d_.pages.page(name);
+    for (const pages::Item& item : page.items) {
+      const bool read_before = missed && item.kind == ItemKind::kRead;
+      if (!read_before && !show_item(page, item, when, block)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// What an earlier run answered stands; texts are shown again, as instructions are.
+bool SessionPages::show_item(const pages::Page& page, const pages::Item& item, PageTime when,
+                             int block) {
+  record::AnswerRow row;
+  row.when = when;
+  row.block = block;
+  row.questionnaire = page.name;
+  row.item = item.name;
+  if (const auto earlier = p_.record.earlier_answer(row)) {
+    declined_ = declined_ || (item.kind == ItemKind::kConsent && earlier->value == 0.0);
+    return !declined_;
+  }
+  PageAnswer answer;
+  const auto begun = std::chrono::steady_clock::now();
+  if (person_answers()) {
+    if (!ask(item, answer, row.source)) {
+      return false;
+    }
+    row.duration = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  } else {
+    answer = virtual_answer(page, item, p_.session_seed, occasion_of(when, block));
+    row.source = AnsweredAt::kVirtual;
+  }
+  if (item.kind != ItemKind::kRead) {
+    row.value = answer.value;
+    row.text = answer.text;
+    p_.record.keep_answer(row);
+  }
+  if (item.kind == ItemKind::kConsent && answer.value == 0.0) {
+    declined_ = true;
+    p_.record.event("consent_declined", "the participant did not agree to take part");
+  }
+  return !declined_;
+}
+
+bool SessionPages::person_answers() const { return p_.desk.attended() || p_.screen != nullptr; }
+
+/// Shows the item until it is answered. @returns false if the session is ended meanwhile
+bool SessionPages::ask(const pages::Item& item, PageAnswer& answer, AnsweredAt& source) {
+  std::shared_ptr<const render::Image> picture;
+  if (!item.picture.empty() && p_.screen != nullptr) {
+    picture = std::make_shared<render::Image>(
+        render::read_png(p_.request.definition_folder / item.picture));
+  }
+  PageInput input(item, d_.texts);
+  const auto draw = [&] {
+    p_.pace.show_page(input.page(picture),
+                      item.title.empty() ? item.text : item.title + "\n" + item.text);
+  };
+  p_.keys.set_open(true);
+  p_.desk.status().asked = input.asked(++asked_);
+  draw();
+  const Wishes& wishes = p_.desk.wishes();
+  while (!input.answer() && !wishes.abort) {
+    if (wishes.stopped || wishes.pause) {
+      p_.pace.pause_where_asked();
+      draw();
+    }
+    p_.pace.wait_a_little("page");
+    for (const render::KeyPress& key : p_.keys.pressed()) {
+      if (!input.answer() && input.press(key)) {
+        source = AnsweredAt::kWindow;
+        draw();
+      }
+    }
+    take_answers(input, source);
+    if (item.kind == ItemKind::kRead && wishes.start && !input.answer()) {
+      input.give("");  // the experimenter goes on
+      source = AnsweredAt::kConsole;
+    }
+  }
+  p_.desk.status().asked = {};
+  p_.keys.set_open(false);
+  p_.pace.clear_text();
+  if (input.answer()) {
+    answer = *input.answer();
+  }
+  return input.answer().has_value();
+}
+
+/// From elsewhere than the window. An answer that is not allowed is refused with a notice.
+void SessionPages::take_answers(PageInput& input, AnsweredAt& source) {
+  for (const SessionControl::Message& message : p_.desk.take_answers()) {
+    if (message.answers != asked_ || input.answer()) {
+      continue;  // to what was asked before
+    }
+    const std::string problem = input.give(message.text);
+    source = source_of(message.by);
+    p_.desk.status().asked.hint = problem;
+  }
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "experiments/control/session_desk.h"
+#include "experiments/pages/page_input.h"
+#include "experiments/pages/page_keys.h"
+#include "experiments/runner/session_pace.h"
+#include "experiments/runner/session_record.h"
+#include "experiments/runner/session_request.h"
+
+namespace haptrial::experiments {
+
+class Screen;
+
+/// Shows the pages of a definition and records what is answered: in the participant's window, on
+/// the console or in the terminal alike; without any of them, and on a simulated clock, a virtual
+/// participant answers. What an earlier run recorded is not asked again. Session's thread.
+class SessionPages {
+ public:
+  /// All of them outlive the pages.
+  struct Parts {
+    const SessionRequest& request;
+    SessionRecord& record;
+    SessionDesk& desk;
+    SessionPace& pace;
+    PageKeys& keys;
+    Screen* screen{nullptr};
+    std::uint64_t session_seed{0};
+  };
+  explicit SessionPages(const Parts& parts);
+
+  /// @returns false if the participant did not consent, or the experimenter ended the session
+  bool before();
+  /// After the last trial of a block. @param block  number of it  @param name  the definition's
+  /// @param missed  of an earlier run: only what it left unanswered is asked
+  bool after_block(int block, const std::string& name, bool missed = false);
+  bool after();
+  /// Whether the participant did not consent, in this run or an earlier one.
+  bool declined() const { return declined_; }
+
+ private:
+  bool show(const std::vector<std::string>& names, record::PageTime when, int block,
+            bool missed = false);
+  bool show_item(const pages::Page& page, const pages::Item& item, record::PageTime when,
+                 int block);
+  bool ask(const pages::Item& item, PageAnswer& answer, record::AnsweredAt& source);
+  void take_answers(PageInput& input, record::AnsweredAt& source);
+  bool person_answers() const;
+
+  Parts p_;
+  const protocols::Definition& d_;
+  int asked_{0};
+  bool declined_{false};
+};
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/base/definition/translations.h"
+
+namespace haptrial::protocols {
+
+/// The file with a definition's texts in another language: DEFINITION.texts.LANGUAGE.toml for
+/// DEFINITION.toml, or texts.LANGUAGE.toml for all definitions of the folder. Empty: there is none.
+std::filesystem::path language_file(const std::filesystem::path& definition,
+                                    const std::string& language);
+
+/// The languages for which a definition has a file of its own or its folder has one, by name.
+std::vector<std::string> languages_of(const std::filesystem::path& definition);
+
+/// What a definition's texts are in a language: those of its file, and the program's own words.
+/// @throws InputError if there is neither, or the file is wrong
+Translations translations_for(const std::filesystem::path& definition, const std::string& language);
+
+}  // namespace haptrial::protocols

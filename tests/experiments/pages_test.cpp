@@ -1,0 +1,320 @@
+// Pages of a definition: what is answered by keys, on the console and by virtual participants.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "core/base/error.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/rows/page_answer.h"
+#include "experiments/control/session_control.h"
+#include "experiments/pages/page_input.h"
+#include "experiments/pages/virtual_answers.h"
+#include "experiments/runner/session.h"
+#include "experiments/studies/experiment.h"
+#include "experiments/studies/registry.h"
+#include "protocols/definition/languages.h"
+#include "tests/experiments/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using pages::Item;
+using pages::ItemKind;
+using record::AnswerRow;
+using render::KeyPress;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr const char* kPages = R"(
+[pages]
+before = ["welcome", "agree", "hand"]
+after = ["load", "you"]
+[pages.welcome]
+title = "Welcome"
+text = "A study of touch."
+[pages.agree]
+kind = "consent"
+text = "Do you take part?"
+[pages.hand]
+kind = "edinburgh"
+[pages.load]
+kind = "nasa_tlx"
+weighted = true
+[pages.you]
+kind = "questions"
+[[pages.you.items]]
+name = "age"
+question = "How old are you?"
+number = [18, 99]
+[[pages.you.items]]
+name = "else"
+question = "Anything else?"
+words = true
+)";
+
+fs::path write_definition(const fs::path& folder, const std::string& pages = kPages) {
+  std::ifstream in(HAPTRIAL_SOURCE_DIR "/experiments/first_experiment.toml");
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  std::ofstream(folder / "study.toml") << text << pages;
+  return folder / "study.toml";
+}
+
+SessionRequest request_for(const Experiment& experiment, const fs::path& file) {
+  SessionRequest request;
+  request.protocol = &experiment.study->protocol();
+  request.definition = experiment.definition.get();
+  request.definition_folder = file.parent_path();
+  request.subject = "S01";
+  request.seed = 7;
+  request.max_trials = 2;
+  request.file = file;
+  return request;
+}
+
+Item item_of(ItemKind kind) {
+  Item item;
+  item.name = "x";
+  item.kind = kind;
+  item.text = "?";
+  item.choices = {{"a", "A", 1.0}, {"b", "B", 2.0}};
+  item.step = 5.0;
+  return item;
+}
+
+TEST(PageInputTest, KeysAndTheConsoleGiveTheSameAnswers) {
+  const protocols::SessionTexts words;
+  const Item choice = item_of(ItemKind::kChoice);
+  PageInput keys(choice, words);
+  EXPECT_FALSE(keys.press({'9'})) << "there is no ninth";
+  keys.press({KeyPress::kEnter});
+  EXPECT_FALSE(keys.answer()) << "nothing is chosen";
+  EXPECT_TRUE(keys.press({'2'}));
+  keys.press({KeyPress::kEnter});
+  ASSERT_TRUE(keys.answer());
+  PageInput console(choice, words);
+  EXPECT_THAT(console.give("3"), HasSubstr("allowed: the number of a choice, 1 to 2"));
+  EXPECT_FALSE(console.answer());
+  EXPECT_EQ(console.give("2"), "");
+  EXPECT_EQ(keys.answer()->text, "b");
+  EXPECT_EQ(console.answer()->text, "b");
+  EXPECT_EQ(console.answer()->value, 2.0);
+}
+
+TEST(PageInputTest, AMarkMovesInStepsAndStopsAtTheEnds) {
+  const protocols::SessionTexts words;
+  const Item scale = item_of(ItemKind::kScale);
+  PageInput input(scale, words);
+  input.press({KeyPress::kEnter});
+  EXPECT_FALSE(input.answer()) << "the mark has no place before it is moved";
+  for (int i = 0; i < 30; ++i) {
+    input.press({KeyPress::kRight});
+  }
+  input.press({KeyPress::kLeft});
+  input.press({KeyPress::kEnter});
+  ASSERT_TRUE(input.answer());
+  EXPECT_EQ(input.answer()->value, 95.0);
+  PageInput console(scale, words);
+  EXPECT_THAT(console.give("93"), HasSubstr("in steps of 5"));
+  EXPECT_THAT(console.give("105"), HasSubstr("a number from 0 to 100"));
+}
+
+TEST(PageInputTest, WordsOfAnyScriptAreTyped) {
+  const protocols::SessionTexts words;
+  const Item text = item_of(ItemKind::kText);
+  PageInput input(text, words);
+  for (const char32_t c : std::u32string(U"नहीं!é")) {
+    input.press({KeyPress::kOther, c});
+  }
+  input.press({KeyPress::kBackspace});
+  input.press({KeyPress::kEnter});
+  ASSERT_TRUE(input.answer());
+  EXPECT_EQ(input.answer()->text, "नहीं!");
+  const Item number = item_of(ItemKind::kNumber);
+  PageInput typed(number, words);
+  for (const char32_t c : std::u32string(U"4x2,5")) {
+    typed.press({KeyPress::kOther, c});
+  }
+  typed.press({KeyPress::kEnter});
+  ASSERT_TRUE(typed.answer());
+  EXPECT_EQ(typed.answer()->value, 42.5);
+}
+
+TEST(SessionPagesTest, VirtualParticipantsAnswerEveryPage) {
+  const test::TemporaryFolder folder;
+  const Experiment experiment = load_experiment(write_definition(folder.path()));
+  run_session(request_for(experiment, folder / "S01.h5"));
+  const record::SessionReader file(folder / "S01.h5");
+  EXPECT_TRUE(record::check_session(file, known_tables()).ok);
+  const auto rows = file.rows<AnswerRow>();
+  ASSERT_EQ(rows.size(), 1u + 10u + 21u + 2u);
+  EXPECT_EQ(rows.front().text, "accepted");
+  EXPECT_EQ(rows.front().when, record::PageTime::kBefore);
+  EXPECT_EQ(rows.back().text, "SIMULATED");
+  EXPECT_EQ(rows.back().when, record::PageTime::kAfter);
+  const Item& age = experiment.definition->pages.page("you").items.front();
+  EXPECT_GE(rows[rows.size() - 2].value, age.low);
+  EXPECT_LE(rows[rows.size() - 2].value, age.high);
+  for (const AnswerRow& row : rows) {
+    EXPECT_EQ(row.source, record::AnsweredAt::kVirtual) << row.item;
+  }
+  EXPECT_GE(file.passes().size(), 2u);
+}
+
+/// A participant's answers, given as the console gives them. @returns how many
+class AtTheConsole {
+ public:
+  AtTheConsole(SessionControl& control, int until) : control_(control), until_(until) {
+    thread_ = std::thread([this] { work(); });
+  }
+  ~AtTheConsole() {
+    stop_ = true;
+    thread_.join();
+  }
+
+ private:
+  void work() {
+    int answered = 0;
+    while (!stop_) {
+      const SessionStatus status = control_.status();
+      if (status.asked.number > answered) {
+        answered = status.asked.number;
+        if (answered > until_) {
+          control_.ask(Request::kAbort);
+          return;
+        }
+        control_.answer(answered, answer_to(status.asked));
+      } else if (status.asked.number == 0 && status.state == "instructions") {
+        control_.ask(Request::kStart);
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
+  static std::string answer_to(const AskedItem& asked) {
+    return asked.kind == "choice" ? "1" : asked.kind == "words" ? "no" : "50";
+  }
+
+  SessionControl& control_;
+  int until_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+SessionRequest live_request(const Experiment& experiment, const fs::path& file,
+                            SessionControl& control) {
+  SessionRequest request = request_for(experiment, file);
+  request.clock = realtime::ClockKind::kReal;
+  request.device = {"virtual", "", 0};
+  request.control = &control;
+  return request;
+}
+
+TEST(SessionPagesTest, WhatWasAnsweredIsNotAskedAgainAfterAResume) {
+  const test::TemporaryFolder folder;
+  const Experiment experiment = load_experiment(write_definition(folder.path()));
+  const fs::path file = folder / "S01.h5";
+  SessionControl control;
+  SessionRequest request = live_request(experiment, file, control);
+  request.max_trials = 1;
+  {
+    const AtTheConsole person(control, 5);  // the text, consent, three activities; then stops
+    EXPECT_TRUE(run_session(request).stopped);
+  }
+  const auto first = record::SessionReader(file.string() + ".partial").rows<AnswerRow>();
+  ASSERT_EQ(first.size(), 4u);
+  SessionControl again;
+  request.control = &again;
+  request.resume = true;
+  {
+    const AtTheConsole person(again, 1000);
+    EXPECT_FALSE(run_session(request).stopped);
+  }
+  const auto rows = record::SessionReader(file).rows<AnswerRow>();
+  ASSERT_EQ(rows.size(), 1u + 10u + 21u + 2u) << "each item once";
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    EXPECT_EQ(rows[i].item, first[i].item);
+    EXPECT_EQ(rows[i].time_ns, first[i].time_ns) << "as it was answered the first time";
+  }
+  EXPECT_EQ(rows[1].source, record::AnsweredAt::kConsole);
+}
+
+TEST(SessionPagesTest, WhoDeclinesIsPresentedNothing) {
+  const test::TemporaryFolder folder;
+  const Experiment experiment = load_experiment(write_definition(folder.path()));
+  SessionControl control;
+  SessionRequest request = live_request(experiment, folder / "S01.h5", control);
+  std::atomic<bool> done{false};
+  std::thread person([&] {
+    int answered = 0;
+    while (!done) {
+      const SessionStatus status = control.status();
+      if (status.asked.number > answered) {
+        answered = status.asked.number;
+        control.answer(answered, status.asked.kind == "choice" ? "2" : "");
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  });
+  const SessionSummary summary = run_session(request);
+  done = true;
+  person.join();
+  EXPECT_FALSE(summary.stopped);
+  EXPECT_THAT(summary.notices, testing::Contains(HasSubstr("did not agree to take part")));
+  const record::SessionReader file(folder / "S01.h5");
+  EXPECT_TRUE(file.passes().empty());
+  const auto rows = file.rows<AnswerRow>();
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows.front().text, "declined");
+  const auto events = file.events();
+  EXPECT_TRUE(std::any_of(events.begin(), events.end(),
+                          [](const auto& event) { return event.kind == "consent_declined"; }));
+}
+
+TEST(LanguagesTest, GermanIsComplete) {
+  const test::TemporaryFolder folder;
+  const fs::path file = write_definition(folder.path(), R"(
+[pages]
+before = ["hand"]
+after = ["load"]
+[pages.hand]
+kind = "edinburgh"
+[pages.load]
+kind = "nasa_tlx"
+weighted = true
+)");
+  fs::copy_file(HAPTRIAL_SOURCE_DIR "/experiments/first_experiment.texts.de.toml",
+                folder / "study.texts.de.toml");
+  const Experiment german = load_experiment(file, "de");
+  EXPECT_THAT(german.untranslated, ElementsAre());
+  EXPECT_EQ(german.definition->texts.rest, "Zeit für eine Pause\nLassen Sie den Griff los.");
+  EXPECT_EQ(german.definition->texts.stopped,
+            "Angehalten\nDie Kräfte sind abgeschaltet. Bitte warten Sie auf die Versuchsleitung.");
+  const Experiment english = load_experiment(file);
+  EXPECT_EQ(english.definition->text, german.definition->text) << "the same study";
+  EXPECT_THAT(protocols::languages_of(file), ElementsAre("de"));
+}
+
+TEST(LanguagesTest, ALanguageIsRecorded) {
+  const test::TemporaryFolder folder;
+  const fs::path file = write_definition(folder.path());
+  std::ofstream(folder / "texts.ar.toml") << "[texts]\nrest = \"وقت الراحة\"\n";
+  const Experiment arabic = load_experiment(file, "ar");
+  EXPECT_EQ(arabic.definition->texts.rest, "وقت الراحة");
+  EXPECT_FALSE(arabic.untranslated.empty());
+  run_session(request_for(arabic, folder / "S01.h5"));
+  const auto events = record::SessionReader(folder / "S01.h5").events();
+  EXPECT_TRUE(std::any_of(events.begin(), events.end(), [](const auto& event) {
+    return event.kind == "language" && event.text == "ar";
+  }));
+  EXPECT_THROW(load_experiment(file, "hi"), InputError);
+}
+
+}  // namespace
+}  // namespace haptrial::experiments
