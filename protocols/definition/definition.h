@@ -49,6 +49,8 @@ struct Definition {
   device::OpenHapticsParameters open_haptics{};
   device::MouseParameters mouse{};
 
+  /// How many sessions each participant comes to, on days of their own; at least 1.
+  virtual int sessions() const { return 1; }
   /// How many devices a session drives, 1 to kMostDevices.
   virtual int devices() const { return 1; }
   /// Lines that say what the definition asks for.

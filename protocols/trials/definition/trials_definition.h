@@ -52,9 +52,11 @@ struct TrialsDefinition : Definition {
   std::uint32_t functions_of(const std::vector<int>& held) const override {
     return keys.bits_of(held);
   }
-  /// Trials of one session at most, without practice; and those of practice.
-  int most_trials() const;
-  int practice_trials() const;
+  int sessions() const override { return order.sessions; }
+  /// Trials of a session at most, without practice; and those of practice.
+  /// @param session  from 1; 0: the longest
+  int most_trials(int session = 0) const;
+  int practice_trials(int session = 0) const;
   /// How many combinations of its factors there are.
   int combinations(const Track& track) const;
 };

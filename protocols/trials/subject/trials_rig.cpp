@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <optional>
 
@@ -29,20 +30,21 @@ int index_of(const std::vector<std::string>& names, const std::string& name) {
 
 }  // namespace
 
-/// Servo thread, but for the constructor.
+/// Servo thread, but for the constructor, recall() and carried_over().
 class TrialsRig::Participant final : public stimulus::Observer {
  public:
-  Participant(const Briefing& briefing, subject::HandModel& hand, std::uint64_t seed)
+  Participant(const Briefing& briefing, subject::HandModel& hand, std::uint64_t person_seed,
+              std::uint64_t session_seed)
       : plan_(*briefing.plan),
         questions_(*briefing.questions),
         said_(*briefing.said),
         hand_(hand),
-        seed_(derived_seed(seed, "subject")),
+        seed_(derived_seed(session_seed, "subject")),
         hand_parameters_(briefing.definition->hand),
         step_(1.0 / briefing.definition->rate),
         prober_(hand_parameters_),
-        judgement_(plan_.people->draw_judgement(seed_)),
-        sense_(plan_.people->draw_senses(seed_), plan_.senses),
+        judgement_(plan_.people->draw_judgement(derived_seed(person_seed, "subject"))),
+        sense_(plan_.people->draw_senses(derived_seed(person_seed, "subject")), plan_.senses),
         judge_(judgement_, seed_),
         felt_in_(index_of(briefing.stages, plan_.stage)),
         reaction_(seed_, "reaction") {
@@ -58,6 +60,11 @@ class TrialsRig::Participant final : public stimulus::Observer {
       error_.emplace(plan_.adaptation->field);
       learnt_in_ = index_of(briefing.stages, plan_.adaptation->stage);
     }
+  }
+
+  void recall(const CarriedOver& before) { recalled_ = before; }
+  CarriedOver carried_over() const {
+    return {-1, fast_.load(std::memory_order_relaxed), slow_.load(std::memory_order_relaxed)};
   }
 
   void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
@@ -77,10 +84,37 @@ class TrialsRig::Participant final : public stimulus::Observer {
     feel(*view, forces[0], hand, dt);
     answer(*view, dt);
     act(hand, dt);
+    note_learnt();
   }
 
  private:
+  /// The pass hands over to this thread what the session's thread wrote before it.
+  void take_recalled() noexcept {
+    if (!recalled_) {
+      return;
+    }
+    judge_.set_previous(recalled_->previous);
+    if (adaptation_) {
+      adaptation_->recall(recalled_->fast, recalled_->slow);
+    }
+    recalled_.reset();
+  }
+
+  /// What is learnt if the reach ends with this tick: the pass may end before it is noticed.
+  void note_learnt() noexcept {
+    if (!adaptation_) {
+      return;
+    }
+    subject::TwoRate after = *adaptation_;
+    if (stage_ >= 0 && stage_ == learnt_in_) {
+      after.learn(error_->error());
+    }
+    fast_.store(after.fast(), std::memory_order_relaxed);
+    slow_.store(after.slow(), std::memory_order_relaxed);
+  }
+
   void begin_trial(int trial) noexcept {
+    take_recalled();
     begun_ = true;
     trial_ = trial;
     stage_ = interval_ = -1;
@@ -89,9 +123,9 @@ class TrialsRig::Participant final : public stimulus::Observer {
     percepts_ = {};
     judge_.begin_trial(trial);
     // A hand that is quite still would look like a device whose reading is frozen.
-    prober_ = subject::Prober(
-        hand_parameters_, subject::MotorNoise(subject::SubjectParameters{}, step_,
-                                              subject::trial_stream(seed_, "motor", trial)));
+    prober_ = subject::Prober(hand_parameters_,
+                              subject::MotorNoise(subject::SubjectParameters{}, step_,
+                                                  subject::trial_stream(seed_, "motor", trial)));
     reaction_ = subject::trial_stream(seed_, "reaction", trial);
   }
 
@@ -227,6 +261,8 @@ class TrialsRig::Participant final : public stimulus::Observer {
   std::optional<subject::TwoRate> adaptation_;
   std::optional<subject::FieldError> error_;
   int learnt_in_{-1};
+  std::optional<CarriedOver> recalled_;  // until the first trial
+  std::atomic<double> fast_{0.0}, slow_{0.0};
   bool begun_{false};
   int trial_{0};
   int stage_{-1}, interval_{-1};
@@ -237,14 +273,19 @@ class TrialsRig::Participant final : public stimulus::Observer {
   std::array<double, kMostIntervals> percepts_{};
 };
 
-TrialsRig::TrialsRig(const Briefing& briefing, std::uint64_t session_seed)
+TrialsRig::TrialsRig(const Briefing& briefing, std::uint64_t person_seed,
+                     std::uint64_t session_seed)
     : hand_(std::make_unique<subject::Hand>(
           briefing.definition->hand, 1.0 / briefing.definition->rate, Eigen::Vector3d::Zero())),
       device_(briefing.definition->device, *hand_, briefing.definition->rate),
-      participant_(std::make_unique<Participant>(briefing, *hand_, session_seed)) {}
+      participant_(std::make_unique<Participant>(briefing, *hand_, person_seed, session_seed)) {}
 
 TrialsRig::~TrialsRig() = default;
 
 stimulus::Observer* TrialsRig::subject() { return participant_.get(); }
+
+void TrialsRig::recall(const CarriedOver& before) { participant_->recall(before); }
+
+CarriedOver TrialsRig::carried_over() const { return participant_->carried_over(); }
 
 }  // namespace haptrial::protocols
