@@ -72,8 +72,8 @@ TEST(KeyExplorationTest, SaysWhatTheReaderSays) {
   const KnownKey rate = found(keys, "loop.rate");
   EXPECT_EQ(rate.type, "number");
   EXPECT_EQ(rate.unit, "Hz");
-  EXPECT_EQ(rate.otherwise, "1000");
-  EXPECT_EQ(rate.allowed, "a number from 100 to 8000 [Hz]");
+  EXPECT_EQ(rate.otherwise, "1000.0");  // as the text has it
+  EXPECT_EQ(rate.allowed, "a number of at least 100 and at most 8000 [Hz]");
   const KnownKey damping = found(keys, "fields[].damping");
   EXPECT_TRUE(damping.optional);
   EXPECT_EQ(damping.otherwise, "0.5");
