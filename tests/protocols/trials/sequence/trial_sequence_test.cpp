@@ -283,7 +283,8 @@ std::string two_days(const std::string& order) {
 
 std::vector<std::string> names_of(const TrialsDefinition& d, const Taker& taker) {
   std::vector<std::string> names;
-  for (const std::size_t block : TrialSequence(d, taker).blocks()) {
+  const TrialSequence sequence(d, taker);
+  for (const std::size_t block : sequence.blocks()) {
     names.push_back(d.order.blocks[block].name);
   }
   return names;
