@@ -11,7 +11,7 @@
 
 #include "analysis/files/csv.h"
 #include "core/base/error.h"
-#include "core/base/random.h"
+#include "core/record/read/session_reader.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/session_name.h"
