@@ -135,7 +135,7 @@ void add_validate(CLI::App& app, int& status) {
 
 void add_keys(CLI::App& app, int& status) {
   CLI::App* sub = subcommand(app, "keys", "List every key that a definition may have",
-                             "haptrial keys trials", {"", "keys.md"});
+                             "haptrial keys trials", {"", "guide-own-experiment.md"});
   auto& protocol = options_of<std::string>(*sub, status, keys);
   sub->add_option("PROTOCOL", protocol,
                   "Only the keys of definitions with this protocol (default: all)");
