@@ -253,7 +253,7 @@ std::string participants_table(std::span<const Session> sessions) {
   RowText row(text, Delimited::kTsv);
   for (const Session& session : sessions) {
     const ExportSession& source = session.source;
-    if (source.number == 1) {
+    if (source.first) {
       const auto& person = source.info.participant;
       row.add(session.subject).add(source.info.subject).add(person.sex).add(person.handedness);
       row.add(person.age_band).add(truth(source.info.simulated));

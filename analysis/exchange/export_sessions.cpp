@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <set>
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
@@ -25,6 +26,24 @@ void refuse_twins(const std::vector<ExportSession>& sessions) {
       throw InputError(
           fmt::format("{}: is given twice; give each session once", session.file.string()));
     }
+  }
+}
+
+/// As the files say it. A subject who has a number twice, as in studies of one session that was
+/// repeated, has them in the order of start.
+void number_sessions(std::vector<ExportSession>& sessions) {
+  std::map<std::string, std::set<std::uint64_t>> numbers;
+  std::set<std::string> repeated;
+  for (const auto& session : sessions) {
+    if (!numbers[session.info.subject].insert(session.info.session).second) {
+      repeated.insert(session.info.subject);
+    }
+  }
+  std::map<std::string, int> count;
+  for (auto& session : sessions) {
+    const int place = ++count[session.info.subject];
+    session.number =
+        repeated.contains(session.info.subject) ? place : static_cast<int>(session.info.session);
   }
 }
 
@@ -51,9 +70,10 @@ std::vector<ExportSession> sessions_to_export(std::span<const fs::path> files) {
     return std::tie(a.info.subject, a.info.start_utc, a.file) <
            std::tie(b.info.subject, b.info.start_utc, b.file);
   });
+  number_sessions(sessions);
   std::map<std::string, int> count;
   for (auto& session : sessions) {
-    session.number = ++count[session.info.subject];
+    session.first = ++count[session.info.subject] == 1;
   }
   for (auto& session : sessions) {
     session.of = count[session.info.subject];

@@ -19,8 +19,10 @@ struct ExportSession {
   std::uint64_t samples{0};  // rows of /samples
   std::size_t passes{0};     // 0 of a session that was recovered without any
   bool stimuli{false};       // it has rows of /stimuli
-  int number{1};             // among this subject's sessions in order of start, from 1
+  int number{1};             // of the subject's session, from 1; if the files give a number twice,
+                             // the place among the subject's sessions in order of start
   int of{1};                 // how many this subject has
+  bool first{true};          // of this subject's here
 };
 
 /// @returns the sessions by subject, then start.

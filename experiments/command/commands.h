@@ -19,18 +19,20 @@ struct DryRunOptions {
   std::optional<int> jobs;  // default: one per processor
   std::string out;          // default: a new folder out/NAME-001
   int frames{0};
-  std::optional<int> trials;  // default: all
-  std::string language;       // of what participants read; default: the definition's own
+  std::optional<int> trials;   // default: all
+  std::optional<int> session;  // of each subject; default: all, in their order
+  std::string language;        // of what participants read; default: the definition's own
 };
 int dry_run(const DryRunOptions& options);
 
 struct RunOptions {
   std::string definition;
-  std::string subject;
+  std::string subject;                          // empty: the next one of the roster
   std::vector<std::string> devices{"virtual"};  // in the order in which the protocol has them
   std::string library;                          // of the device's vendor, in place of the search
   std::string seed{"1"};
   std::optional<int> participant;  // default: the number at the end of the subject's identifier
+  std::optional<int> session;      // default: the first that the subject has left
   std::string out{"out/sessions"};
   std::optional<int> trials;  // default: all
   bool console{false};
@@ -47,6 +49,16 @@ struct RunOptions {
   record::Participant person;
 };
 int run(const RunOptions& options);
+
+/// Who has done what in a study, and who is next.
+struct RosterOptions {
+  std::string definition;
+  std::string folder;               // of session files
+  std::optional<std::string> seed;  // of new participants; default: that of the sessions, or 1
+  std::string json;                 // file for the same; empty: none
+  std::string csv;                  // likewise, a row for each session
+};
+int roster(const RosterOptions& options);
 
 struct ReplayOptions {
   std::string file;
@@ -137,6 +149,8 @@ int info(const std::string& file);
 /// @returns 0 when something was recovered, else 1.
 int recover(const std::string& file, const std::string& out);
 int validate(const std::string& definition);
+/// @param protocol  empty: all
+int keys(const std::string& protocol);
 
 /// Two of an effect (delta and sd, or f), n and power; the third is computed.
 struct PowerOptions {

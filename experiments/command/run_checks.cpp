@@ -97,14 +97,16 @@ struct EarlierSession {
 
 /// Of the folder that are of the same kind, finished or not, by name. What cannot be read says
 /// nothing about the study: `analyze` names it.
-std::vector<EarlierSession> earlier_sessions(const RunOptions& options) {
+/// @param own  file of the session that is to be recorded
+std::vector<EarlierSession> earlier_sessions(const RunOptions& options, const fs::path& own) {
   std::vector<EarlierSession> sessions;
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(options.out, ignored)) {
     const fs::path& file = entry.path();
-    if (file.stem().stem() == options.subject ||
-        (file.extension() != ".h5" && file.extension() != ".partial")) {
-      continue;  // the subject's own is looked at when it is resumed
+    const bool same = file == own || file == record::partial_path(own) ||
+                      file.stem().stem() == own.stem();  // or what was recovered of it
+    if (same || (file.extension() != ".h5" && file.extension() != ".partial")) {
+      continue;  // its own is looked at when it is resumed
     }
     try {
       const record::SessionInfo info = record::SessionReader(file).info();
@@ -122,7 +124,9 @@ std::vector<EarlierSession> earlier_sessions(const RunOptions& options) {
 }  // namespace
 
 void check_run_options(const RunOptions& options) {
-  check_subject(options.subject);
+  if (!options.subject.empty()) {
+    check_subject(options.subject);
+  }
   check_device(options);
   check_console(options);
   if (options.stream && options.stream_optional) {
@@ -150,9 +154,10 @@ void check_session_file(const RunOptions& options, const fs::path& file) {
   }
 }
 
-std::string check_study(const RunOptions& options, const protocols::Definition& setup) {
+std::string check_study(const RunOptions& options, const protocols::Definition& setup,
+                        const fs::path& own) {
   std::string changed;
-  for (const auto& [file, info] : earlier_sessions(options)) {
+  for (const auto& [file, info] : earlier_sessions(options, own)) {
     const DefinitionChanges changes =
         protocols::study_changes(info, setup.text, options.devices.front());
     if (!changes.same_study()) {

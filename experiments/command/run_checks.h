@@ -22,7 +22,9 @@ void check_session_file(const RunOptions& options, const std::filesystem::path& 
 /// Compares the definition with those of the sessions that the folder holds already, pilots with
 /// pilots and others with others. @returns a sentence about keys that differ and may; empty if none
 /// @throws InputError if they are of another study; names the keys.
-std::string check_study(const RunOptions& options, const protocols::Definition& setup);
+/// @param own  file of the session that is to be recorded
+std::string check_study(const RunOptions& options, const protocols::Definition& setup,
+                        const std::filesystem::path& own);
 
 /// @throws InputError where a recording drives the session (--device replay:FILE) and is of another
 /// subject, seed or definition, or more devices are named than the definition drives.

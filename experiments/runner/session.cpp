@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/random.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/last_stop.h"
 #include "experiments/control/progress.h"
@@ -130,7 +129,8 @@ protocols::SessionPlace Session::place() {
   place.subject = request_.subject;
   place.participant = request_.participant;
   place.seed = request_.seed;
-  place.session_seed = derived_seed(request_.seed, "participant " + request_.subject);
+  place.session = request_.session;
+  give_seeds(place);
   place.real = real_;
   place.window = request_.window;
   place.frames_per_pass = request_.frames_per_pass;
@@ -233,7 +233,7 @@ SessionSummary Session::run() {
   const protocols::Extent extent = trials_->extent(request_.max_trials);
   try {
     record_.set_planned(extent.trials);
-    record_.open(planned_of(extent, d_.design.trials));
+    record_.open(planned_of(extent, trials_->extent(0).trials));
     if (real_) {
       servo_.start();
     }
@@ -243,7 +243,8 @@ SessionSummary Session::run() {
       notices_.note(notice);
     }
     notices_.note_real_time();
-    notices_.say_plan(extent, record_.finished(trials_->phases().back()));
+    notices_.say_plan(extent, trials_->extent(0).trials,
+                      record_.finished(trials_->phases().back()));
     run_trials();
     finish();
   } catch (...) {

@@ -64,11 +64,11 @@ void SessionNotices::note_overruns(const LoopWatch& watch) {
   }
 }
 
-void SessionNotices::say_plan(const protocols::Extent& extent, int over) {
+void SessionNotices::say_plan(const protocols::Extent& extent, int defined, int over) {
   SessionStatus& status = p_.desk.status();
   status.trials = extent.trials;
   status.blocks = extent.blocks;
-  status.trials_defined = p_.request.definition->design.trials;
+  status.trials_defined = defined;
   tell(fmt::format("recording {}{}: {}{}", p_.request.file.string(),
                    p_.request.pilot ? " as a pilot" : "", planned_of(extent, status.trials_defined),
                    over > 0 ? fmt::format(", {} of them done already", over) : ""));

@@ -6,8 +6,8 @@
 #include "core/realtime/servo_loop.h"
 #include "experiments/control/session_desk.h"
 #include "experiments/runner/loop_watch.h"
-#include "experiments/runner/session_request.h"
 #include "experiments/runner/session_record.h"
+#include "experiments/runner/session_request.h"
 #include "protocols/interface/trials.h"
 
 namespace haptrial::experiments {
@@ -37,8 +37,8 @@ class SessionNotices {
   void note_overruns(const LoopWatch& watch);
 
   /// What is recorded where, and how many trials.
-  /// @param over  of them, from earlier runs
-  void say_plan(const protocols::Extent& extent, int over);
+  /// @param defined  trials of the whole session  @param over  of them, from earlier runs
+  void say_plan(const protocols::Extent& extent, int defined, int over);
   /// @param how  "completed", "skipped", "aborted"
   void say_trial(const protocols::PlannedTrial& trial, const char* how) const;
 

@@ -46,6 +46,10 @@ void check_same_session(const SessionRequest& request, const record::SessionInfo
                                  before.pilot ? "a pilot" : "part of the study",
                                  before.pilot ? "with" : "without"));
   }
+  if (before.session != static_cast<std::uint64_t>(request.session)) {
+    throw InputError(fmt::format("{}: was recorded as session {}; resume it with --session {}",
+                                 partial, before.session, before.session));
+  }
 }
 
 }  // namespace
@@ -67,6 +71,7 @@ record::SessionInfo session_info(const SessionRequest& request, const device::De
   info.start_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
   info.simulated = device.simulated;
   info.pilot = request.pilot;
+  info.session = static_cast<std::uint64_t>(request.session);
   info.participant = request.person;
   return info;
 }

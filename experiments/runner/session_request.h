@@ -26,6 +26,7 @@ struct SessionRequest {
   std::function<std::unique_ptr<record::LiveFigures>(const std::filesystem::path& resumed)> live;
   std::string subject;    // identifier, such as "S01"
   int participant{0};     // from 0; chooses the order of conditions
+  int session{1};         // of the participant, from 1 to those of the definition
   std::uint64_t seed{0};  // of the study
   realtime::ClockKind clock{realtime::ClockKind::kSimulated};
   std::filesystem::path file;

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <map>
+#include <set>
+
 #include "analysis/trials/data/read_trials.h"
 #include "analysis/trials/psychometric/trials_study.h"
 #include "analysis/trials/report/trials_words.h"
@@ -55,14 +58,46 @@ void take_planned(const AnalysisRequest& request, trials::TrialsPlan& plan,
   }
 }
 
+/// The sessions that a participant should have had and has not, and those that there are twice.
+void add_sessions_of(const std::string& participant, const std::multiset<int>& there, int sessions,
+                     std::vector<std::string>& remarks) {
+  std::vector<int> missing, twice;
+  for (int session = 1; session <= sessions; ++session) {
+    const std::size_t files = there.count(session);
+    if (files == 0) {
+      missing.push_back(session);
+    } else if (files > 1) {
+      twice.push_back(session);
+    }
+  }
+  if (!missing.empty()) {
+    remarks.push_back(fmt::format("{} has no {} {}.", participant,
+                                  missing.size() > 1 ? "sessions" : "session",
+                                  fmt::join(missing, ", ")));
+  }
+  if (!twice.empty()) {
+    remarks.push_back(fmt::format("{} has several files of {} {}; all of them are analysed.",
+                                  participant, twice.size() > 1 ? "sessions" : "session",
+                                  fmt::join(twice, ", ")));
+  }
+}
+
 /// Sentences about sessions that the study planned and the folder lacks.
 void add_missing(const AnalysisRequest& request, const TrialsDefinition& definition,
-                 std::vector<std::string>& remarks) {
-  const std::size_t sessions = request.files.files.size();
+                 const trials::TrialsData& data, std::vector<std::string>& remarks) {
+  std::map<std::string, std::multiset<int>> sessions;
+  for (const trials::StudySession& session : data.sessions) {
+    sessions[session.participant].insert(session.session);
+  }
   const auto planned = static_cast<std::size_t>(definition.design.participants);
-  if (request.pilots == Pilots::kLeftOut && sessions < planned) {
+  if (request.pilots == Pilots::kLeftOut && sessions.size() < planned) {
     remarks.push_back(fmt::format("{} of {} planned participants {} a session in this folder.",
-                                  sessions, planned, sessions == 1 ? "has" : "have"));
+                                  sessions.size(), planned, sessions.size() == 1 ? "has" : "have"));
+  }
+  for (const auto& [participant, there] : sessions) {
+    if (definition.sessions() > 1) {
+      add_sessions_of(participant, there, definition.sessions(), remarks);
+    }
   }
   if (const auto unfinished = unfinished_sessions(request.folder); !unfinished.empty()) {
     remarks.push_back(fmt::format("Not analysed, because the session is unfinished: {}.",
@@ -107,14 +142,14 @@ std::vector<std::string> TrialsStudy::analyze(const AnalysisRequest& request) co
   trials::TrialsPlan plan = plan_of_text(first.definition, first.definition_name);
   std::vector<std::string> remarks = request.files.remarks;
   take_planned(request, plan, remarks);
-  add_missing(request, definition, remarks);
   const auto group_of = [&](const std::string& subject) {
     return definition.groups.size() > 1 ? protocols::group_of(definition.groups, subject)
                                         : std::string();
   };
+  trials::TrialsData data = trials::read_trials(request.files.files, group_of, request.threads);
+  add_missing(request, definition, data, remarks);
   trials::TrialsResult result =
-      trials::analyze(trials::read_trials(request.files.files, group_of, request.threads), plan,
-                      procedures_of(definition), request.threads);
+      trials::analyze(std::move(data), plan, procedures_of(definition), request.threads);
   for (const trials::Quantity& q : result.quantities) {
     if (q.compared) {
       analysis::check_plan(q.table, plan.plan);

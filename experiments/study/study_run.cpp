@@ -12,6 +12,7 @@
 #include "core/base/parallel.h"
 #include "experiments/control/progress.h"
 #include "experiments/runner/session.h"
+#include "experiments/study/session_name.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
@@ -60,8 +61,8 @@ class Crew {
 
   DryRunSummary run() {
     const auto start = std::chrono::steady_clock::now();
-    SharedWork sessions(static_cast<std::size_t>(dry_run_.participants), dry_run_.jobs,
-                        [this] { return [this](std::size_t p) { work(static_cast<int>(p)); }; });
+    SharedWork sessions(static_cast<std::size_t>(count()), dry_run_.jobs,
+                        [this] { return [this](std::size_t i) { work(static_cast<int>(i)); }; });
     show_progress(sessions);
     sessions.finish();
     if (failure_) {
@@ -75,12 +76,12 @@ class Crew {
 
  private:
   /// The first failure stops the others, whose own failure then says nothing.
-  void work(int participant) {
+  void work(int place) {
     if (cancel_) {
       return;
     }
     try {
-      const SessionSummary done = run_session(request(participant));
+      const SessionSummary done = run_session(request(place));
       const std::lock_guard lock(mutex_);
       summary_.ticks += done.ticks;
       summary_.passes += done.passes;
@@ -95,12 +96,18 @@ class Crew {
     ++finished_;
   }
 
-  SessionRequest request(int participant) {
+  int sessions_each() const { return dry_run_.session > 0 ? 1 : setup_.sessions(); }
+  int count() const { return dry_run_.participants * sessions_each(); }
+
+  /// @param place  participant after participant, each with the sessions in their order
+  SessionRequest request(int place) {
+    const int participant = place / sessions_each();
     SessionRequest r = first_;
+    r.session = dry_run_.session > 0 ? dry_run_.session : 1 + place % sessions_each();
     r.subject = participant_name(participant);
     r.participant = participant;
     r.seed = dry_run_.seed;
-    r.file = dry_run_.folder / (r.subject + ".h5");
+    r.file = dry_run_.folder / session_file_name(r.subject, r.session, setup_.sessions());
     r.frames_per_pass = dry_run_.frames_per_pass;
     r.frames_folder = dry_run_.folder / "frames";
     r.max_trials = dry_run_.max_trials;
@@ -110,11 +117,10 @@ class Crew {
   }
 
   void show_progress(SharedWork& sessions) {
-    Progress progress("dry run", ticks_each_ * dry_run_.participants);
+    Progress progress("dry run", ticks_each_ * count());
     while (!sessions.ended_within(std::chrono::milliseconds(20)) && !cancel_) {
       const auto done = static_cast<double>(ticks_.load(std::memory_order_relaxed));
-      progress.update(done,
-                      fmt::format("{} of {} sessions", finished_.load(), dry_run_.participants),
+      progress.update(done, fmt::format("{} of {} sessions", finished_.load(), count()),
                       setup_.rate);
     }
   }

@@ -13,7 +13,8 @@ struct DryRun {
   std::uint64_t seed{1};
   int jobs{1};
   int frames_per_pass{0};
-  int max_trials{0};             // of each participant; 0: all
+  int max_trials{0};             // of each session; 0: all
+  int session{0};                // of each participant; 0: all of the definition, in their order
   std::filesystem::path folder;  // created; one session file per participant
 };
 

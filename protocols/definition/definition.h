@@ -58,6 +58,8 @@ struct Definition {
   device::MouseParameters mouse{};
   markers::MarkerOptions markers{};
 
+  /// How many sessions each participant comes to, on days of their own; at least 1.
+  virtual int sessions() const { return 1; }
   /// How many devices a session drives, 1 to kMostDevices.
   virtual int devices() const { return 1; }
   /// Lines that say what the definition asks for.

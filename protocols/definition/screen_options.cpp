@@ -63,6 +63,7 @@ SessionTexts read_session_texts(Table& table) {
   texts.rest = read_text(table, "rest");
   texts.thanks = read_text(table, "thanks");
   const auto read_if_there = [&table](std::string_view key, std::string& text) {
+    table.otherwise(key, text);
     text = read_text(table, key, text);
   };
   read_if_there("stopped", texts.stopped);

@@ -37,6 +37,14 @@ class Protocol {
   /// The trials of one session. @param definition  of this protocol; it and the place outlive them
   virtual std::unique_ptr<Trials> trials(const Definition& definition,
                                          const SessionPlace& place) const = 0;
+  /// What a session presents, in its order and in the definition's words; none where the protocol
+  /// has no such words. @param definition  of this protocol
+  virtual std::vector<std::string> blocks(const Definition& definition,
+                                          const SessionPlace& place) const {
+    static_cast<void>(definition);
+    static_cast<void>(place);
+    return {};
+  }
   /// Goes through recorded trials again, and says what came of it.
   /// @throws InputError for what the file does not hold; RunError if it differs from the recording
   virtual void replay(const ReplayRequest& request) const = 0;

@@ -1,9 +1,20 @@
 #include "protocols/interface/trials.h"
 
+#include <fmt/format.h>
+
 #include <set>
 #include <utility>
 
+#include "core/base/random.h"
+
 namespace haptrial::protocols {
+
+void give_seeds(SessionPlace& place) {
+  place.person_seed = derived_seed(place.seed, "participant " + place.subject);
+  place.session_seed =
+      place.session > 1 ? derived_seed(place.person_seed, fmt::format("session {}", place.session))
+                        : place.person_seed;
+}
 
 FixedPlan::FixedPlan(std::vector<PlannedTrial> plan) : plan_(std::move(plan)) {}
 

@@ -32,7 +32,9 @@ struct SessionPlace {
   std::string subject;            // identifier
   int participant{0};             // from 0
   std::uint64_t seed{0};          // of the study
-  std::uint64_t session_seed{0};  // of the participant
+  int session{1};                 // of the participant, from 1
+  std::uint64_t person_seed{0};   // of the participant, the same in every session
+  std::uint64_t session_seed{0};  // of this session
   bool real{false};               // on a real clock: a person, or a rehearsal
   bool window{false};             // the participant has a screen
   int frames_per_pass{0};         // pictures of what was shown, into frames_folder
@@ -42,6 +44,9 @@ struct SessionPlace {
   /// @throws RunError on an interrupt
   std::function<void(const char* what, double share)> pulse;
 };
+
+/// Gives a place its seeds. @param place  with subject, session and the study's seed
+void give_seeds(SessionPlace& place);
 
 /// How a trial ended.
 enum class TrialEnd : std::uint8_t { kCompleted, kSkipped, kAborted };

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
+#include "core/record/read/session_reader.h"
 #include "core/record/trials/trial_rows.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/trials/definition/defaults.h"
@@ -27,11 +28,11 @@ Table parsed(const Definition& d) {
   return root;
 }
 
-Taker taker_of(const StudiedDefinition& d, const SessionPlace& place) {
+Taker taker_of(const TrialsDefinition& d, const SessionPlace& place) {
   const std::string group = d.groups.size() > 1 ? group_of(d.groups, place.subject)
                             : d.groups.empty()  ? std::string()
                                                 : d.groups.front().name;
-  return {place.participant, group, place.seed, place.session_seed};
+  return {place.participant, group, place.seed, place.session_seed, place.session};
 }
 
 /// Fields whose force is to work on the hand, a bit each: all but those that only give way.
@@ -100,6 +101,15 @@ record::StageEnding ending_of(StageEnd how) {
 
 }  // namespace
 
+std::vector<std::string> blocks_of(const TrialsDefinition& definition, const SessionPlace& place) {
+  const TrialSequence sequence(definition, taker_of(definition, place));
+  std::vector<std::string> names;
+  for (const std::size_t block : sequence.blocks()) {
+    names.push_back(definition.order.blocks[block].name);
+  }
+  return names;
+}
+
 DefinedTrials::DefinedTrials(const StudiedDefinition& definition, const SessionPlace& place)
     : d_(definition),
       place_(place),
@@ -108,12 +118,12 @@ DefinedTrials::DefinedTrials(const StudiedDefinition& definition, const SessionP
       sequence_(definition, taker_of(definition, place)) {}
 
 Extent DefinedTrials::extent(int most) const {
-  const int trials = d_.most_trials();
+  const int trials = d_.most_trials(place_.session);
   int blocks = 0;
-  for (const Block& block : d_.order.blocks) {
-    blocks += block.practice ? 0 : 1;
+  for (const std::size_t block : d_.order.blocks_of(place_.session)) {
+    blocks += d_.order.blocks[block].practice ? 0 : 1;
   }
-  return {most > 0 ? std::min(most, trials) : trials, d_.practice_trials(), blocks};
+  return {most > 0 ? std::min(most, trials) : trials, d_.practice_trials(place_.session), blocks};
 }
 
 std::span<const record::Phase> DefinedTrials::phases() const {
@@ -126,14 +136,38 @@ record::TableList DefinedTrials::tables() const {
   if (!d_.questions.empty()) {
     tables.push_back(&record::responses_table());
   }
+  if (adapts()) {
+    tables.push_back(&record::table_of<record::AdaptationRow>());
+  }
   return tables;
+}
+
+/// A virtual participant goes on as if the session had not been interrupted.
+void DefinedTrials::check_resumed(const record::SessionReader& file) const {
+  if (rig_ == nullptr) {
+    return;
+  }
+  CarriedOver before;
+  for (const record::ResponseRow& row : file.responses()) {
+    if (!d_.questions.empty() && !d_.questions.front().types() &&
+        row.question == d_.questions.front().name) {
+      before.previous = static_cast<int>(std::lround(row.value - d_.questions.front().first));
+    }
+  }
+  if (const auto learnt = file.rows<record::AdaptationRow>(); !learnt.empty()) {
+    before.fast = learnt.back().fast;
+    before.slow = learnt.back().slow;
+  }
+  rig_->recall(before);
 }
 
 std::unique_ptr<Rig> DefinedTrials::virtual_rig() const {
   said_ = std::make_unique<SaidAnswer>();
-  return std::make_unique<TrialsRig>(
+  auto rig = std::make_unique<TrialsRig>(
       TrialsRig::Briefing{&d_, &d_.observer, &d_.questions, d_.stages, &d_.hands, said_.get()},
-      place_.session_seed);
+      place_.person_seed, place_.session_seed);
+  rig_ = rig.get();
+  return rig;
 }
 
 std::optional<PlannedTrial> DefinedTrials::next(const Outcome* last) {
@@ -298,6 +332,15 @@ void DefinedTrials::close_pass(SessionFile& file, std::int32_t row) {
   file.add(std::span<const record::VariableRow>(variables_));
   keep_level(file, row);
   keep_stages(file, row);
+  keep_adaptation(file, row);
+}
+
+void DefinedTrials::keep_adaptation(SessionFile& file, std::int32_t row) const {
+  if (adapts()) {
+    const CarriedOver now = rig_->carried_over();
+    const record::AdaptationRow learnt{row, now.fast, now.slow};
+    file.add(std::span(&learnt, 1));
+  }
 }
 
 void DefinedTrials::keep_level(SessionFile& file, std::int32_t row) {

@@ -13,6 +13,11 @@
 
 namespace haptrial::protocols {
 
+class TrialsRig;
+
+/// The names of the blocks of a session, in the order in which they come.
+std::vector<std::string> blocks_of(const TrialsDefinition& definition, const SessionPlace& place);
+
 /// The trials of one session as a definition states them.
 class DefinedTrials final : public Trials {
  public:
@@ -23,6 +28,7 @@ class DefinedTrials final : public Trials {
   std::span<const record::Phase> phases() const override;
   std::unique_ptr<Rig> virtual_rig() const override;
   record::TableList tables() const override;
+  void check_resumed(const record::SessionReader& file) const override;
   void prepare(const PlannedTrial&, SessionFile&) override {}
   MakeDrawing drawing() override;
   Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) override;
@@ -48,7 +54,11 @@ class DefinedTrials final : public Trials {
   std::unique_ptr<Names> names_;
   TrialSequence sequence_;
   NextTrial current_;
+  void keep_adaptation(SessionFile& file, std::int32_t row) const;
+  bool adapts() const { return rig_ != nullptr && d_.observer.adaptation.has_value(); }
+
   mutable std::unique_ptr<SaidAnswer> said_;  // of a virtual participant
+  mutable TrialsRig* rig_{nullptr};           // likewise; the runner's
   std::unique_ptr<TrialPass> pass_;
   std::vector<std::vector<NamedStage>> stages_;  // of each interval of the pass
   std::vector<record::VariableRow> variables_;   // of the pass

@@ -38,12 +38,17 @@ class TrialsProtocol final : public Protocol {
   record::TableList tables() const override {
     record::TableList tables = record::trial_tables();
     tables.push_back(&record::responses_table());
+    tables.push_back(&record::table_of<record::AdaptationRow>());
     return tables;
   }
   std::unique_ptr<Trials> trials(const Definition& definition,
                                  const SessionPlace& place) const override {
     return std::make_unique<DefinedTrials>(dynamic_cast<const StudiedDefinition&>(definition),
                                            place);
+  }
+  std::vector<std::string> blocks(const Definition& definition,
+                                  const SessionPlace& place) const override {
+    return blocks_of(dynamic_cast<const TrialsDefinition&>(definition), place);
   }
   void replay(const ReplayRequest& request) const override { replay_trials(request); }
 };

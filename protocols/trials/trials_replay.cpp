@@ -8,7 +8,6 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "core/base/random.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/device_row.h"
 #include "core/record/trials/trial_rows.h"
@@ -98,7 +97,8 @@ class TrialReplay {
     SessionPlace place;
     place.subject = reader_.info().subject;
     place.seed = reader_.info().seed;
-    place.session_seed = derived_seed(place.seed, "participant " + place.subject);
+    place.session = static_cast<int>(reader_.info().session);
+    give_seeds(place);
     const auto number = std::ranges::find(variables_, "participant", &record::VariableRow::name);
     if (number == variables_.end()) {
       throw InputError(fmt::format("{}: holds no trials", reader_.path().string()));

@@ -90,7 +90,8 @@ class SessionTrials {
       trial->probe = row.word == "no" ? std::string() : row.word;
       return;
     }
-    const bool known = row.name == "trial" || row.name == "group" || row.name == "interval";
+    const bool known = row.name == "trial" || row.name == "group" || row.name == "interval" ||
+                       row.name == "session";
     if (!known) {
       trial->variables.push_back({row.name, row.interval, row.value, row.word});
     }
@@ -133,7 +134,8 @@ TrialsData read_trials(const std::vector<std::filesystem::path>& files, const Gr
                               group_of ? group_of(info.subject) : std::string(),
                               info.clock,
                               info.simulated,
-                              info.pilot};
+                              info.pilot,
+                              static_cast<int>(info.session)};
       by_file[first] = SessionTrials(reader).take();
       const std::vector<record::MarkerRow> rows = reader.rows<record::MarkerRow>();
       markers[first].add(rows);

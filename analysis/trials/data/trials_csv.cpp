@@ -16,9 +16,9 @@ using exchange::RowText;
 
 const std::vector<std::string>& fixed_columns() {
   static const std::vector<std::string> names{
-      "participant", "group",     "session",  "simulated", "pilot",   "trial",   "attempt",
-      "block",       "condition", "probe",    "practice",  "status",  "counted", "start",
-      "saturated",   "track",     "variable", "asked",     "applied", "outcome"};
+      "participant", "group",     "session",   "file",     "simulated", "pilot",   "trial",
+      "attempt",     "block",     "condition", "probe",    "practice",  "status",  "counted",
+      "start",       "saturated", "track",     "variable", "asked",     "applied", "outcome"};
   return names;
 }
 
@@ -144,7 +144,7 @@ std::string trials_csv(const TrialsData& data) {
   RowText row(text, exchange::Delimited::kCsv);
   for (const StudyTrial& trial : data.trials) {
     const StudySession& session = data.session_of(trial);
-    row.add(session.participant).add(session.group).add(session.file);
+    row.add(session.participant).add(session.group).add(session.session).add(session.file);
     row.add(session.simulated ? 1 : 0).add(session.pilot ? 1 : 0);
     row.add(trial.trial).add(trial.attempt).add(trial.block).add(trial.condition).add(trial.probe);
     row.add(trial.practice ? 1 : 0).add(trial.completed ? "completed" : "aborted");

@@ -19,6 +19,7 @@ struct StudySession {
   std::string clock;  // "real" or "simulated"
   bool simulated{false};
   bool pilot{false};
+  int session{1};  // of the participant, from 1
 };
 
 /// An answer to one question of a trial.

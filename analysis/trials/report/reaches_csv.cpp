@@ -9,9 +9,10 @@ namespace {
 
 using exchange::RowText;
 
-constexpr std::array<const char*, 38> kColumns{"participant",
+constexpr std::array<const char*, 39> kColumns{"participant",
                                                "group",
                                                "session",
+                                               "file",
                                                "trial",
                                                "order",
                                                "block",
@@ -97,7 +98,7 @@ std::string reaches_csv(const TrialsResult& result) {
   for (const StudyReach& reach : result.reaching->reaches) {
     const StudyTrial& trial = result.data.trials[reach.trial];
     const StudySession& session = result.data.session_of(trial);
-    row.add(session.participant).add(session.group).add(session.file);
+    row.add(session.participant).add(session.group).add(session.session).add(session.file);
     row.add(trial.trial).add(static_cast<std::uint64_t>(reach.order)).add(reach.block);
     row.add(trial.probe).add(word_of(reach.kind));
     for (const Eigen::Vector3d& place : {reach.way.start, reach.way.target}) {

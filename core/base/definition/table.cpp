@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "core/base/definition/table_parts_internal.h"
 #include "core/base/definition/table_words_internal.h"
 #include "core/base/definition/toml_text_internal.h"
 #include "core/base/error.h"
@@ -16,54 +17,6 @@
 #include "core/base/text/nearest.h"
 
 namespace haptrial {
-
-struct Table::Document {
-  struct Part {
-    unsigned lines_before;
-    std::string file_name;
-  };
-  std::vector<Part> parts;  // in order; at least one
-  std::string source;
-  toml::table root;
-  std::multimap<unsigned, std::string> problems;  // of one value each, by line
-  std::multimap<unsigned, std::string> together;  // of values taken together, by line
-
-  /// Notes a problem once, on one line of text whatever the definition holds.
-  void note(std::multimap<unsigned, std::string>& in, unsigned line, std::string_view problem) {
-    const auto part = std::find_if(parts.rbegin(), parts.rend() - 1,
-                                   [line](const Part& each) { return each.lines_before < line; });
-    std::string sentence =
-        line == 0 ? fmt::format("{}: {}", parts.front().file_name, problem)
-                  : fmt::format("{}:{}: {}", part->file_name, line - part->lines_before, problem);
-    for (char& c : sentence) {
-      const bool control = (c >= 0 && c < ' ') || c == '\x7f';
-      c = control ? ' ' : c;
-    }
-    const auto [begin, end] = in.equal_range(line);
-    if (std::none_of(begin, end, [&](const auto& noted) { return noted.second == sentence; })) {
-      in.emplace(line, std::move(sentence));
-    }
-  }
-
-  std::vector<std::shared_ptr<Node>> nodes;  // tables that somebody asked for
-  Translations translations;
-  std::vector<ShownText> shown;
-};
-
-struct Table::Node {
-  const toml::table* table;  // null where the definition lacks it
-  std::string path;          // "trajectory", "gains.plane"; empty for the root
-  std::set<std::string, std::less<>> read;
-  std::set<std::string, std::less<>> asked;  // by has(): known, but not known to be read
-  std::string named{path};                   // the path with names in place of numbers
-
-  std::string full(std::string_view key) const {
-    return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
-  }
-  std::string full_name(std::string_view key) const {
-    return named.empty() ? std::string(key) : fmt::format("{}.{}", named, key);
-  }
-};
 
 namespace {
 
@@ -80,6 +33,14 @@ double fallback(const Bounds& b) {
     return b.open_low ? std::nextafter(b.low, b.high) : b.low;
   }
   return std::isfinite(b.high) ? b.high : 0.0;
+}
+
+/// A number within bounds that no reader minds.
+double harmless(const Bounds& b) {
+  if (within(1.0, b)) {
+    return 1.0;
+  }
+  return std::isfinite(b.low) && std::isfinite(b.high) ? 0.5 * (b.low + b.high) : fallback(b);
 }
 
 /// Copies have no place in a file: sentences about them name no line.
@@ -148,6 +109,9 @@ void Table::fill_in(std::string_view defaults) {
 const std::string& Table::source() const { return document_->source; }
 
 bool Table::is_array(std::string_view key) const {
+  if (exploration() != nullptr && !states(key)) {
+    return exploration()->is_there(node_->path, key, "an array", false);
+  }
   return node_->table != nullptr && node_->table->get(key) != nullptr &&
          node_->table->get(key)->is_array();
 }
@@ -158,12 +122,18 @@ bool Table::is_nested(std::string_view key) const {
 }
 
 bool Table::is_table(std::string_view key) const {
+  if (exploration() != nullptr && !states(key)) {
+    return exploration()->is_there(node_->path, key, "a table", false);
+  }
   return node_->table != nullptr && node_->table->get(key) != nullptr &&
          node_->table->get(key)->is_table();
 }
 
 bool Table::has(std::string_view key) const {
   node_->asked.emplace(key);
+  if (exploration() != nullptr && !states(key)) {
+    return exploration()->is_there(node_->path, key, "there", true);
+  }
   return node_->table != nullptr && node_->table->contains(key);
 }
 
@@ -173,6 +143,8 @@ std::vector<std::string> Table::keys() const {
     for (const auto& [key, value] : *node_->table) {
       names.emplace_back(key.str());
     }
+  } else if (exploration() != nullptr) {
+    names.emplace_back("NAME");
   }
   return names;
 }
@@ -187,6 +159,9 @@ std::vector<std::string> Table::keys_as_written() const {
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<std::string> names;
+  if (node_->table == nullptr && exploration() != nullptr) {
+    names.emplace_back("NAME");
+  }
   for (const auto& [place, name] : found) {
     names.push_back(name);
   }
@@ -246,6 +221,11 @@ std::optional<T> Table::get(std::string_view key, std::string_view allowed, bool
 
 double Table::number(std::string_view key, const Bounds& bounds, std::string_view unit) {
   const std::string allowed = words(bounds, unit);
+  if (exploration() != nullptr) {
+    tell(key, "number", allowed, unit);
+    const double usual = exploration()->default_of(node_->path, key).value_or(harmless(bounds));
+    return states(key) ? node_->table->get(key)->value<double>().value_or(usual) : usual;
+  }
   const auto value = get<double>(key, allowed);
   if (value && !within(*value, bounds)) {
     refuse(key, fmt::format("{}", *value), allowed);
@@ -256,6 +236,11 @@ double Table::number(std::string_view key, const Bounds& bounds, std::string_vie
 
 long Table::integer(std::string_view key, long low, long high) {
   const std::string allowed = fmt::format("a whole number from {} to {}", low, high);
+  if (exploration() != nullptr) {
+    tell(key, "whole number", allowed);
+    return states(key) ? node_->table->get(key)->value<long>().value_or(low)
+                       : std::clamp(1L, low, high);
+  }
   const auto value = get<std::int64_t>(key, allowed);
   if (value && (*value < low || *value > high)) {
     refuse(key, fmt::format("{}", *value), allowed);
@@ -265,10 +250,18 @@ long Table::integer(std::string_view key, long low, long high) {
 }
 
 bool Table::boolean(std::string_view key) {
+  if (exploration() != nullptr) {
+    tell(key, "true or false", "true or false");
+    return exploration()->is_there(node_->path, key, "true", true);
+  }
   return get<bool>(key, "true or false").value_or(false);
 }
 
 std::string Table::text(std::string_view key) {
+  if (exploration() != nullptr) {
+    tell(key, "text", "a text in quotes that is not empty");
+    return states(key) ? node_->table->get(key)->value<std::string>().value_or("NAME") : "NAME";
+  }
   auto value = get<std::string>(key, "a text in quotes that is not empty");
   if (value && value->empty()) {
     refuse(key, "an empty text", "a text in quotes that is not empty");
@@ -309,6 +302,12 @@ void Table::name_entry(std::string_view name) {
 }
 
 std::string Table::choice(std::string_view key, const std::vector<std::string>& allowed) {
+  if (exploration() != nullptr) {
+    tell(key, "choice", joined(allowed));
+    return exploration()->choose(
+        node_->path, key, allowed,
+        states(key) ? node_->table->get(key)->value_or(std::string()) : "");
+  }
   const auto value = get<std::string>(key, joined(allowed), false);
   if (value && std::find(allowed.begin(), allowed.end(), *value) == allowed.end()) {
     note(line(key), not_allowed(node_->full(key), shown(*node_->table->get(key)), allowed));
@@ -356,6 +355,11 @@ std::vector<T> Table::array(std::string_view key, const std::string& allowed) {
 std::vector<double> Table::numbers(std::string_view key, const Bounds& bounds,
                                    std::string_view unit) {
   const std::string allowed = fmt::format("an array, each {}", words(bounds, unit));
+  if (exploration() != nullptr) {
+    tell(key, "list of numbers", allowed, unit);
+    constexpr std::size_t kOfAVector = 3;
+    return std::vector<double>(kOfAVector, harmless(bounds));
+  }
   auto values = array<double>(key, allowed);
   for (const double value : values) {
     if (!within(value, bounds)) {
@@ -366,11 +370,19 @@ std::vector<double> Table::numbers(std::string_view key, const Bounds& bounds,
 }
 
 std::vector<std::string> Table::texts(std::string_view key) {
+  if (exploration() != nullptr) {
+    tell(key, "list of texts", "an array of texts in quotes");
+    return {"NAME"};
+  }
   return array<std::string>(key, "an array of texts in quotes");
 }
 
 std::vector<std::vector<NumberOrText>> Table::rows(std::string_view key, std::string_view allowed) {
   std::vector<std::vector<NumberOrText>> rows;
+  if (exploration() != nullptr) {
+    tell(key, "list", allowed);
+    return {{{1.0, ""}, {1.0, ""}, {1.0, ""}}};
+  }
   if (node_->table == nullptr) {
     return rows;
   }
@@ -407,6 +419,11 @@ std::vector<std::vector<NumberOrText>> Table::rows(std::string_view key, std::st
 }
 
 std::optional<std::string> Table::whole_text(std::string_view key) const {
+  if (exploration() != nullptr && !states(key)) {
+    const std::string word = exploration()->chosen(node_->path, key);
+    exploration()->note_text(node_->path, key);
+    return word.empty() ? std::nullopt : std::optional(word);
+  }
   const toml::node* node = node_->table == nullptr ? nullptr : node_->table->get(key);
   if (node == nullptr || !node->is_string()) {
     return std::nullopt;
@@ -416,6 +433,10 @@ std::optional<std::string> Table::whole_text(std::string_view key) const {
 }
 
 bool Table::has_text(std::string_view key) const {
+  if (exploration() != nullptr && !states(key)) {
+    exploration()->note_text(node_->path, key);
+    return false;
+  }
   const toml::node* node = node_->table == nullptr ? nullptr : node_->table->get(key);
   const std::function<bool(const toml::node*)> within_it = [&](const toml::node* each) {
     const toml::array* array = each == nullptr ? nullptr : each->as_array();
@@ -429,7 +450,9 @@ bool Table::has_text(std::string_view key) const {
 
 Table Table::table(std::string_view key) {
   const toml::table* inner = nullptr;
-  if (node_->table != nullptr) {
+  if (exploration() != nullptr) {
+    inner = states(key) ? node_->table->get(key)->as_table() : nullptr;
+  } else if (node_->table != nullptr) {
     node_->read.emplace(key);
     const toml::node* node = node_->table->get(key);
     inner = node == nullptr ? nullptr : node->as_table();
@@ -446,6 +469,12 @@ Table Table::table(std::string_view key) {
 
 std::vector<Table> Table::tables(std::string_view key) {
   std::vector<Table> tables;
+  if (exploration() != nullptr) {
+    auto child = std::make_shared<Node>(Node{nullptr, node_->full(key) + "[]", {}, {}});
+    document_->nodes.push_back(child);
+    tables.push_back(Table(document_, child));
+    return tables;
+  }
   if (node_->table == nullptr) {
     return tables;
   }
@@ -475,14 +504,19 @@ std::vector<Table> Table::tables(std::string_view key) {
   return tables;
 }
 
-void Table::leave(std::string_view key) { node_->read.emplace(key); }
+void Table::leave(std::string_view key) {
+  node_->read.emplace(key);
+  if (exploration() != nullptr) {
+    tell(key, "table", "");
+  }
+}
 
 void Table::reject(std::string_view key, std::string_view rest) {
   document_->note(document_->together, line(key), fmt::format("{} {}", node_->full(key), rest));
 }
 
 bool Table::misspelled(std::string_view key) {
-  if (has(key)) {
+  if (exploration() != nullptr || has(key)) {
     return false;
   }
   for (const std::string& there : keys()) {

@@ -12,6 +12,8 @@
 
 namespace haptrial {
 
+class KeyExploration;
+
 /// A file's text and its name as sentences say it.
 struct NamedText {
   std::string text;
@@ -40,6 +42,9 @@ class Table {
   /// own lines. A text must end in a newline, and one that is not the first must begin with a
   /// table's header. @throws InputError as above
   static Table parse(const std::vector<NamedText>& parts);
+  /// A definition whose absent keys are there or not as the exploration says, so that a reader
+  /// shows what it knows (key_exploration.h). @param exploration  outlives the table
+  static Table explore(std::string_view text, KeyExploration& exploration);
   /// @throws InputError when the file is absent, a directory, unreadable, empty or not TOML.
   static Table load(const std::filesystem::path& file);
 
@@ -61,6 +66,14 @@ class Table {
   /// An array of numbers and texts as one row, or an array of such arrays: what stands for a vector
   /// or a matrix if entries may be variables. Bounds are the caller's.
   std::vector<std::vector<NumberOrText>> rows(std::string_view key, std::string_view allowed);
+
+  /// The same of a key that may be left out.
+  double number_or(std::string_view key, double otherwise, const Bounds& bounds,
+                   std::string_view unit);
+  int integer_or(std::string_view key, int otherwise, long low, long high);
+  /// Says what the reader takes for a key that is left out; only an exploration listens.
+  void otherwise(std::string_view key, double value) const;
+  void otherwise(std::string_view key, std::string_view value) const;
 
   /// A required table within this one; an absent one is noted and reads as empty without further
   /// problems.
@@ -125,6 +138,10 @@ class Table {
   void refuse(std::string_view key, std::string_view found, std::string_view allowed);
   void note_unknown_keys() const;
   unsigned line(std::string_view key) const;
+  KeyExploration* exploration() const;
+  bool states(std::string_view key) const;
+  void tell(std::string_view key, const char* type, std::string_view allowed,
+            std::string_view unit = "") const;
   template <class T>
   std::optional<T> get(std::string_view key, std::string_view allowed, bool any = true);
   template <class T>

@@ -96,11 +96,7 @@ BurrParameters read_burr_parameters(Table& table) {
                             : BurrKind::kDiamond;
   BurrParameters p = default_burr(kind, table.number("diameter", kDiameter, "m"));
   const auto optional = [&](const char* key, const Bounds& bounds, const char* unit,
-                            double& value) {
-    if (table.has(key)) {
-      value = table.number(key, bounds, unit);
-    }
-  };
+                            double& value) { value = table.number_or(key, value, bounds, unit); };
   optional("sample_spacing", {least_spacing(p.diameter), 0.5 * p.diameter}, "m", p.sample_spacing);
   optional("removal_rate", {0.0, 1e6}, "1/(N·s)", p.removal_rate);
   optional("falloff", {0.0, 1e6}, "1/(N·s·rad)", p.falloff);

@@ -32,11 +32,7 @@ FeelParameters default_feel(double burr_radius) {
 FeelParameters read_feel_parameters(Table& table, double burr_radius) {
   FeelParameters p = default_feel(burr_radius);
   const auto optional = [&](const char* key, const Bounds& bounds, const char* unit,
-                            double& value) {
-    if (table.has(key)) {
-      value = table.number(key, bounds, unit);
-    }
-  };
+                            double& value) { value = table.number_or(key, value, bounds, unit); };
   optional("first_gain", kPositive, "N/m^3", p.first_gain);
   optional("second_gain", kPositive, "N/m^3", p.second_gain);
   optional("threshold", kPositive, "m^3", p.threshold);

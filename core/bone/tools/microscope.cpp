@@ -23,7 +23,7 @@ MicroscopeParameters read_microscope_parameters(Table& table) {
   p.start.up = read_vector(table, "up", kReach, "");
   const auto optional = [&](const char* key, double& value, const Bounds& bounds,
                             const char* unit) {
-    value = table.has(key) ? table.number(key, bounds, unit) : value;
+    value = table.number_or(key, value, bounds, unit);
   };
   optional("narrowest", p.narrowest, {0.001, 3.0}, "rad");
   optional("widest", p.widest, {0.001, 3.0}, "rad");

@@ -14,7 +14,7 @@ constexpr int kMostTools = 32;
 
 void optional(Table& table, const char* key, double& value, const Bounds& bounds,
               const char* unit) {
-  value = table.has(key) ? table.number(key, bounds, unit) : value;
+  value = table.number_or(key, value, bounds, unit);
 }
 
 BurrTool read_burr(Table& table) {

@@ -114,4 +114,9 @@ std::uint64_t get_u64(const Id& object, const char* attribute) {
   return get_number<std::uint64_t>(object, attribute, H5T_NATIVE_UINT64, H5T_INTEGER);
 }
 
+bool has_attribute(const Id& object, const char* attribute) {
+  const Lock lock;
+  return H5Aexists(object.get(), attribute) > 0;
+}
+
 }  // namespace haptrial::record::h5

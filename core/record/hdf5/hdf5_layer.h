@@ -39,6 +39,7 @@ std::string get_text(const Id& object, const char* attribute);
 double get_f64(const Id& object, const char* attribute);
 std::int64_t get_i64(const Id& object, const char* attribute);
 std::uint64_t get_u64(const Id& object, const char* attribute);
+bool has_attribute(const Id& object, const char* attribute);
 
 /// An empty extendible dataset with its columns, units and resolutions as attributes.
 Id create_table(const Id& file, const TableSchema& schema);

@@ -11,7 +11,9 @@ namespace {
 
 /// Not in files of the first schema version; later ones are read from /attributes, whose absent
 /// rows leave a field as it is by default.
-bool is_new(std::string_view name) { return name.starts_with("participant_") || name == "pilot"; }
+bool is_new(std::string_view name) {
+  return name.starts_with("participant_") || name == "pilot" || name == "session";
+}
 
 /// Calls visit(name, field) for every field, in the order of the file.
 template <typename Info, typename Visit>
@@ -30,6 +32,7 @@ void each_field(Info& info, Visit visit) {
   visit("start_utc", info.start_utc);
   visit("simulated", info.simulated);
   visit("pilot", info.pilot);
+  visit("session", info.session);
   visit("participant_identifier", info.participant.identifier);
   visit("participant_handedness", info.participant.handedness);
   visit("participant_age_band", info.participant.age_band);
@@ -55,6 +58,9 @@ struct Get {
   void operator()(const char* name, T& value) const {
     if (version < 2 && is_new(name)) {
       return;
+    }
+    if (std::string_view(name) == "session" && !h5::has_attribute(file, name)) {
+      return;  // written before studies could have several sessions
     }
     if constexpr (std::is_same_v<T, std::string>) {
       value = h5::get_text(file, name);

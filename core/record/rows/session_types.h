@@ -138,6 +138,7 @@ struct SessionInfo {
   std::string start_utc;                // ISO 8601, "2026-11-20T09:30:00Z"
   bool simulated{true};                 // the participant is a virtual subject
   bool pilot{false};                    // tried before the study: no part of it
+  std::uint64_t session{1};             // of the participant, from 1: studies may take several days
   Participant participant{};
 };
 

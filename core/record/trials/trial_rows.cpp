@@ -69,6 +69,27 @@ const Table<StageRow>& table_of<StageRow>() {
   return table;
 }
 
+template <>
+const Table<AdaptationRow>& table_of<AdaptationRow>() {
+  using R = AdaptationRow;
+  using T = Table<R>;
+  static const T table(
+      {"adaptation",
+       "what a virtual participant had adapted to by the end of a pass",
+       352,
+       RowsOf::kPass,
+       {"pass"}},
+      {T::column("pass", &R::pass, "1", "row of /trials"),
+       T::column("fast", &R::fast, "1", "state of the fast process, as a share of the field"),
+       T::column("slow", &R::slow, "1", "state of the slow process, likewise")});
+  return table;
+}
+
+const TableList& adaptation_tables() {
+  static const TableList tables{&table_of<AdaptationRow>()};
+  return tables;
+}
+
 const TableList& trial_tables() {
   static const TableList tables{&table_of<VariableRow>(), &table_of<LevelRow>(),
                                 &table_of<StageRow>()};

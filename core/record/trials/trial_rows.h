@@ -44,6 +44,14 @@ struct StageRow {
   double most{std::numeric_limits<double>::quiet_NaN()};  // of what is required; NaN: nothing is
 };
 
+/// What a virtual participant had adapted to a field by the end of a pass, in shares of the field
+/// (core/subject/perceiver/two_rate.h); a row of /adaptation. A resumed session goes on from it.
+struct AdaptationRow {
+  std::int32_t pass{0};  // row of /trials
+  double fast{0.0};
+  double slow{0.0};
+};
+
 /// Most bytes of a name or word of a definition.
 inline constexpr std::size_t kTrialWordBytes = 64;
 
@@ -53,8 +61,12 @@ template <>
 const Table<LevelRow>& table_of<LevelRow>();
 template <>
 const Table<StageRow>& table_of<StageRow>();
+template <>
+const Table<AdaptationRow>& table_of<AdaptationRow>();
 
-/// All of them, in the order in which they are created.
+/// All of them but /adaptation, in the order in which they are created.
 const TableList& trial_tables();
+/// The one that only sessions of virtual participants who adapt have.
+const TableList& adaptation_tables();
 
 }  // namespace haptrial::record

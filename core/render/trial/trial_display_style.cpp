@@ -17,19 +17,23 @@ constexpr Bounds kPixels{0.0, static_cast<double>(kLargestSide), true};
 constexpr Bounds kPixelsOrNone{0.0, static_cast<double>(kLargestSide), false};
 
 void read_side(Table& table, std::string_view key, int& value) {
-  if (table.has(key)) {
-    value = static_cast<int>(table.integer(key, kSmallestSide, kLargestSide));
-  }
+  value = table.integer_or(key, value, kSmallestSide, kLargestSide);
 }
 
 void read_number(Table& table, std::string_view key, const Bounds& bounds, std::string_view unit,
                  double& value) {
-  if (table.has(key)) {
-    value = table.number(key, bounds, unit);
-  }
+  value = table.number_or(key, value, bounds, unit);
+}
+
+/// As a definition writes it.
+std::string words_of(const Colour& colour) {
+  const auto byte = [](double share) { return static_cast<int>(std::lround(255.0 * share)); };
+  return fmt::format("#{:02x}{:02x}{:02x}", byte(colour.red), byte(colour.green),
+                     byte(colour.blue));
 }
 
 void read_colour(Table& table, std::string_view key, Colour& value) {
+  table.otherwise(key, words_of(value));
   if (!table.has(key)) {
     return;
   }

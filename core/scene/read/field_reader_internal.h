@@ -35,6 +35,7 @@ struct FieldReader {
   }
   double number_or(double otherwise, std::string_view key, const Bounds& bounds,
                    std::string_view unit) const {
+    table.otherwise(key, otherwise);
     return table.has(key) ? number(key, bounds, unit) : otherwise;
   }
   Eigen::Vector3d vector(std::string_view key, const Bounds& bounds, std::string_view unit) const {

@@ -41,7 +41,7 @@ DrillingHandParameters read_drilling_hand_parameters(Table& table) {
   }
   p.along = (p.along - p.along.dot(p.inward) * p.inward).normalized();
   const auto number = [&](const char* key, double& value, const Bounds& bounds, const char* unit) {
-    value = table.has(key) ? table.number(key, bounds, unit) : value;
+    value = table.number_or(key, value, bounds, unit);
   };
   number("width", p.width, {1e-4, 0.1}, "m");
   number("height", p.height, {0.0, 0.1}, "m");
@@ -56,7 +56,7 @@ DrillingHandParameters read_drilling_hand_parameters(Table& table) {
   number("tremor_frequency", p.tremor_frequency, {1.0, 50.0}, "Hz");
   number("suction_time", p.suction_time, {0.0, 600.0}, "s");
   const auto whole = [&](const char* key, int& value, long low, long high) {
-    value = table.has(key) ? static_cast<int>(table.integer(key, low, high)) : value;
+    value = table.integer_or(key, value, low, high);
   };
   whole("power_button", p.power_button, 0, 30);
   whole("next_button", p.next_button, -1, 30);

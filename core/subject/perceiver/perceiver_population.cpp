@@ -59,6 +59,7 @@ Key<J> judgement_key(int i, bool logarithmic) {
 
 template <class Person>
 Variation read_key(Table& table, const Key<Person>& key, const Person& defaults) {
+  table.otherwise(key.name, defaults.*key.value);
   if (!table.has(key.name)) {
     return {defaults.*key.value, 0.0, key.shifted};
   }

@@ -28,6 +28,11 @@ class TwoRate {
 
   void learn(double error) noexcept;  // after a trial; 0 after an error clamp
   void forget() noexcept { fast_ = slow_ = 0.0; }
+  /// Goes on from what was learnt before.
+  void recall(double fast, double slow) noexcept {
+    fast_ = fast;
+    slow_ = slow;
+  }
 
   double state() const noexcept { return fast_ + slow_; }  // x
   double fast() const noexcept { return fast_; }           // x_f

@@ -24,6 +24,7 @@ CLI::App* subcommand(CLI::App& app, const char* name, const char* what, const ch
 void declare_subcommands(CLI::App& app, int& status) {
   add_dry_run(app, status);
   add_run(app, status);
+  add_roster(app, status);
   add_analyze(app, status);
   add_export(app, status);
   add_align(app, status);
@@ -33,6 +34,7 @@ void declare_subcommands(CLI::App& app, int& status) {
   add_recover(app, status);
   add_replay(app, status);
   add_validate(app, status);
+  add_keys(app, status);
   add_power(app, status);
   add_devices(app, status);
   add_device_test(app, status);

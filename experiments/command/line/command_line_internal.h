@@ -14,10 +14,12 @@ namespace haptrial::experiments {
 // command_line_sessions.cpp: to run sessions, look into them, mend and show them
 void add_dry_run(CLI::App& app, int& status);
 void add_run(CLI::App& app, int& status);
+void add_roster(CLI::App& app, int& status);
 void add_info(CLI::App& app, int& status);
 void add_recover(CLI::App& app, int& status);
 void add_replay(CLI::App& app, int& status);
 void add_validate(CLI::App& app, int& status);
+void add_keys(CLI::App& app, int& status);
 void add_devices(CLI::App& app, int& status);
 void add_device_test(CLI::App& app, int& status);
 

@@ -16,7 +16,9 @@ void add_dry_run(CLI::App& app, int& status) {
   sub->add_option("--jobs", o.jobs, "Number of threads (default: one per processor)");
   sub->add_option("--out", o.out, "New folder for the session files (default: out/NAME-001)");
   sub->add_option("--trials", o.trials,
-                  "Number of trials of each subject, from the first (default: all)");
+                  "Number of trials of each session, from the first (default: all)");
+  sub->add_option("--session", o.session,
+                  "Only this session of each subject (default: all of them, in their order)");
   sub->add_option("--language", o.language,
                   "Language of what participants read, such as de (default: the definition's)");
   sub->add_option("--frames", o.frames,
@@ -29,8 +31,12 @@ void add_run(CLI::App& app, int& status) {
                              {"the session file ID.h5, for analyze", "guide-experimenter.md"});
   auto& o = options_of<RunOptions>(*sub, status, run);
   sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
-  sub->add_option("--subject", o.subject, "Participant's identifier: letters, digits, '-', '_'")
-      ->required();
+  sub->add_option("--subject", o.subject,
+                  "Participant's identifier: letters, digits, '-', '_' (default: the next one of "
+                  "the roster)");
+  sub->add_option("--session", o.session,
+                  "Number of the participant's session, of a study on several days (default: the "
+                  "first that is left)");
   sub->add_option("--device", o.devices,
                   "Device: virtual, mouse, force-dimension, open-haptics or replay:FILE "
                   "(default: virtual); repeated for each device of an experiment with several")
@@ -65,6 +71,21 @@ void add_run(CLI::App& app, int& status) {
                   "the identifier)");
   sub->add_option("--trials", o.trials, "Number of trials, from the first (default: all)");
   sub->add_option("--out", o.out, "Folder for the session file (default: out/sessions)");
+}
+
+void add_roster(CLI::App& app, int& status) {
+  CLI::App* sub =
+      subcommand(app, "roster", "Show who has done what in a study, and who is next",
+                 "haptrial roster experiments/curl_field.toml out/curl_field",
+                 {"the same as JSON or as a table if asked for", "guide-experimenter.md"});
+  auto& o = options_of<RosterOptions>(*sub, status, roster);
+  sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
+  sub->add_option("FOLDER", o.folder, "Folder of the session files; need not be there yet")
+      ->required();
+  sub->add_option("--seed", o.seed,
+                  "Seed of the study, for orders (default: that of the sessions, else 1)");
+  sub->add_option("--json", o.json, "New file for the roster as JSON");
+  sub->add_option("--csv", o.csv, "New file for the roster as a table, a row for each session");
 }
 
 void add_info(CLI::App& app, int& status) {
@@ -114,6 +135,14 @@ void add_validate(CLI::App& app, int& status) {
                              {"", "guide-experimenter.md"});
   auto& definition = options_of<std::string>(*sub, status, validate);
   sub->add_option("DEFINITION", definition, "Experiment definition (.toml)")->required();
+}
+
+void add_keys(CLI::App& app, int& status) {
+  CLI::App* sub = subcommand(app, "keys", "List every key that a definition may have",
+                             "haptrial keys trials", {"", "guide-own-experiment.md"});
+  auto& protocol = options_of<std::string>(*sub, status, keys);
+  sub->add_option("PROTOCOL", protocol,
+                  "Only the keys of definitions with this protocol (default: all)");
 }
 
 void add_devices(CLI::App& app, int& status) {

@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "core/base/error.h"
 #include "core/base/text/counted.h"
 #include "experiments/command/arguments.h"
+#include "experiments/command/sessions/next_session.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/signals.h"
 #include "experiments/studies/experiment.h"
+#include "experiments/study/session_name.h"
 #include "experiments/study/study_run.h"
 
 namespace haptrial::experiments {
@@ -40,6 +43,8 @@ int dry_run(const DryRunOptions& options) {
   dry.frames_per_pass = checked_number("--frames", options.frames, 0, 1000);
   dry.max_trials =
       options.trials ? checked_number("--trials", *options.trials, 1, setup.design.trials) : 0;
+  dry.session = options.session ? checked_session(*options.session, setup) : 0;
+  const int sessions = dry.participants * (dry.session > 0 ? 1 : setup.sessions());
   if (interrupted()) {  // while the definition was read, which makes its bones
     throw RunError("interrupted");
   }
@@ -53,11 +58,13 @@ int dry_run(const DryRunOptions& options) {
   }
   const DryRunSummary done = run_dry(experiment.study->protocol(), setup, dry);
   fmt::print("{}, {:.0f} s of simulated time in {:.1f} s ({:.0f} times real time)\n",
-             counted(dry.participants, "session", "sessions"), done.recorded_seconds,
-             done.elapsed_seconds, done.recorded_seconds / done.elapsed_seconds);
+             counted(sessions, "session", "sessions"), done.recorded_seconds, done.elapsed_seconds,
+             done.recorded_seconds / done.elapsed_seconds);
   if (done.aborted_passes == done.passes) {
-    throw RunError(fmt::format("every pass was aborted; haptrial info {} says why",
-                               (dry.folder / "S01.h5").string()));
+    const fs::path first =
+        dry.folder / session_file_name("S01", std::max(1, dry.session), setup.sessions());
+    throw RunError(
+        fmt::format("every pass was aborted; haptrial info {} says why", first.string()));
   }
   if (done.aborted_passes > 0) {
     fmt::print("{}; haptrial info FILE says which and why\n",

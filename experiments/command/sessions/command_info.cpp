@@ -111,8 +111,9 @@ int info(const std::string& file) {
     integrity.problems.push_back(*unreadable);
     integrity.ok = false;
   }
-  fmt::print("subject     {}{}{}\n", i.subject, i.simulated ? " (simulated)" : "",
-             i.pilot ? " (pilot, not part of the study)" : "");
+  fmt::print("subject     {}{}{}{}\n", i.subject,
+             i.session > 1 ? fmt::format(", session {}", i.session) : "",
+             i.simulated ? " (simulated)" : "", i.pilot ? " (pilot, not part of the study)" : "");
   print_participant(i.participant);
   const std::string lab = protocols::lab_of(i.definition);
   fmt::print("definition  {}{}{}, seed {}\n", i.definition_name, lab.empty() ? "" : " with ", lab,

@@ -13,12 +13,14 @@
 #include "core/stream/lsl_outlet.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/run_checks.h"
+#include "experiments/command/sessions/next_session.h"
 #include "experiments/console/console.h"
 #include "experiments/control/keyboard.h"
 #include "experiments/control/last_stop.h"
 #include "experiments/control/signals.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
+#include "experiments/study/session_name.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
@@ -40,15 +42,14 @@ int participant_of(const RunOptions& options) {
   if (options.participant) {
     return checked_number("--participant", *options.participant, 1, kMost) - 1;
   }
-  const auto letter = options.subject.find_last_not_of("0123456789");
-  const std::string digits = options.subject.substr(letter == std::string::npos ? 0 : letter + 1);
-  if (digits.empty() || digits.size() > 5 || std::stoi(digits) < 1 || std::stoi(digits) > kMost) {
+  const int number = number_of_subject(options.subject);
+  if (number == 0) {
     throw InputError(
         fmt::format("--subject '{}' does not end in a number from 1 to {}, so the order of "
                     "conditions is not known; add --participant NUMBER",
                     options.subject, kMost));
   }
-  return std::stoi(digits) - 1;
+  return number - 1;
 }
 
 /// Before anything moves or is recorded.
@@ -107,12 +108,17 @@ void check_pages(const RunOptions& options, const protocols::Definition& definit
 
 }  // namespace
 
-int run(const RunOptions& options) {
+int run(const RunOptions& asked) {
   watch_for_interrupt();
   watch_fatal_signals();
+  RunOptions options = asked;
   check_run_options(options);
   const Experiment experiment = load_experiment(options.definition, options.language);
   const protocols::Definition& setup = *experiment.definition;
+  if (const std::string chosen = choose_session(options, experiment); !chosen.empty()) {
+    fmt::print("{}\n", chosen);
+    std::fflush(stdout);
+  }
   check_recording(options, setup);
   check_pages(options, setup);
   for (const std::string& sentence : experiment.untranslated) {
@@ -139,10 +145,12 @@ int run(const RunOptions& options) {
   request.clock = realtime::ClockKind::kReal;
   request.max_trials =
       options.trials ? checked_number("--trials", *options.trials, 1, setup.design.trials) : 0;
-  request.file = fs::path(options.out) / (options.subject + ".h5");
+  request.session = options.session.value_or(1);
+  request.file =
+      fs::path(options.out) / session_file_name(options.subject, request.session, setup.sessions());
   check_session_file(options, request.file);
   if (!options.resume) {
-    if (const std::string changed = check_study(options, setup); !changed.empty()) {
+    if (const std::string changed = check_study(options, setup, request.file); !changed.empty()) {
       fmt::print("{}\n", changed);
     }
   }

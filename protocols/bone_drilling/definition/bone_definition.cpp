@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 void optional(Table& table, const char* key, double& value, const Bounds& bounds,
               const char* unit) {
-  value = table.has(key) ? table.number(key, bounds, unit) : value;
+  value = table.number_or(key, value, bounds, unit);
 }
 
 protocols::Design read_procedures(Table& table) {
@@ -135,7 +135,7 @@ void read_surgeons(Table& root, BoneDefinition& d) {
   optional(table, "within", p.spread.within, {0.0, 1.0}, "");
   optional(table, "learning", p.spread.learning, kFraction, "");
   const auto button = [&](const char* key, int& value, long low) {
-    value = table.has(key) ? static_cast<int>(table.integer(key, low, 30)) : value;
+    value = table.integer_or(key, value, low, 30);
   };
   button("power_button", p.power_button, 0);
   button("next_button", p.next_button, 0);

@@ -169,7 +169,7 @@ void find_surface(subject::DrillingChart& chart, const bone::BoneModel& model,
 CavityParameters read_cavity_parameters(Table& table) {
   CavityParameters p;
   const auto number = [&](const char* key, double& value, const Bounds& bounds, const char* unit) {
-    value = table.has(key) ? table.number(key, bounds, unit) : value;
+    value = table.number_or(key, value, bounds, unit);
   };
   if (table.has("inward")) {
     p.inward = read_direction(table, "inward");

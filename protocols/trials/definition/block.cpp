@@ -1,8 +1,11 @@
 #include "protocols/trials/definition/block.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <numeric>
+#include <set>
 
 #include "core/base/definition/table.h"
 
@@ -94,7 +97,81 @@ void read_order(Table& design, TrialDesign& d) {
   }
 }
 
+/// The places of the blocks that a session names.
+std::vector<std::size_t> read_session(Table& session, const std::vector<Block>& blocks) {
+  std::vector<std::string> names;
+  for (const Block& block : blocks) {
+    names.push_back(block.name);
+  }
+  std::vector<std::size_t> places;
+  for (const std::string& name : session.texts("blocks")) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at == names.end()) {
+      session.reject("blocks", fmt::format("an array with \"{}\"", name),
+                     fmt::format("blocks of the definition: {}", fmt::join(names, ", ")));
+    } else {
+      places.push_back(static_cast<std::size_t>(at - names.begin()));
+    }
+  }
+  return places;
+}
+
+/// A name that two blocks have says nothing, and a block of no session would never come.
+void check_sessions(Table& design, const TrialDesign& d) {
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < d.blocks.size(); ++i) {
+    const std::string& name = d.blocks[i].name;
+    if (!names.insert(name).second) {
+      design.reject("session", fmt::format("names blocks, and two are called \"{}\"; give each a "
+                                           "name of its own",
+                                           name));
+    }
+    const bool presented = std::any_of(d.by_session.begin(), d.by_session.end(), [i](auto& each) {
+      return std::find(each.begin(), each.end(), i) != each.end();
+    });
+    if (!presented) {
+      design.reject("session", fmt::format("leaves out the block \"{}\"; add it to the blocks of "
+                                           "a session, or delete it",
+                                           name));
+    }
+  }
+}
+
+void read_sessions(Table& design, TrialDesign& d) {
+  constexpr long kMostSessions = 100;
+  if (design.has("sessions")) {
+    d.sessions = static_cast<int>(design.integer("sessions", 1, kMostSessions));
+  }
+  if (!design.has("session")) {
+    return;
+  }
+  Table table = design.table("session");
+  for (int session = 1; session <= d.sessions; ++session) {
+    const std::string number = std::to_string(session);
+    if (table.has(number)) {
+      Table one = table.table(number);
+      d.by_session.push_back(read_session(one, d.blocks));
+    } else {
+      design.reject("session", fmt::format("says nothing of session {0}; add [design.session.{0}] "
+                                           "with its blocks",
+                                           number));
+      d.by_session.emplace_back();
+    }
+  }
+  check_sessions(design, d);
+}
+
 }  // namespace
+
+std::vector<std::size_t> TrialDesign::blocks_of(int session) const {
+  const auto at = static_cast<std::size_t>(std::max(1, session) - 1);
+  if (at < by_session.size()) {
+    return by_session[at];
+  }
+  std::vector<std::size_t> all(blocks.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
 
 std::string formula_of_value(Table& table, const std::string& key) {
   if (const auto text = table.whole_text(key)) {
@@ -132,6 +209,7 @@ TrialDesign read_trial_design(Table& root, bool procedures) {
   } else {
     root.reject("design", "has nothing to present; add a [procedure] or [[blocks]]");
   }
+  read_sessions(design, d);
   return d;
 }
 

@@ -44,18 +44,25 @@ struct Block {
 /// What a study presents, and in which order.
 struct TrialDesign {
   int participants{1};
+  int sessions{1};                 // of each participant
   int break_after{0};              // trials; 0: no breaks
   double break_duration{60.0};     // [s]
   Balance order{Balance::kFixed};  // of the blocks that are not practice
   int most_in_a_row{0};            // trials of one combination of factors; 0: no matter
   std::vector<Factor> factors;
-  std::vector<Block> blocks;  // at least one; practice first
+  std::vector<Block> blocks;                         // at least one; practice first
+  std::vector<std::vector<std::size_t>> by_session;  // blocks of each; empty: all in each
+
+  /// The blocks of a session as the definition lists them. @param session  from 1
+  std::vector<std::size_t> blocks_of(int session) const;
 };
 
 /// Reads [design], [factors], [practice] and [[blocks]]; only [design] must be there. Keys in
 /// brackets are optional.
 ///
-///     [design]    participants, [break_after], [break_duration], [blocks], [most_in_a_row]
+///     [design]    participants, [break_after], [break_duration], [blocks], [most_in_a_row],
+///                 [sessions]
+///     [design.session.N]  blocks = ["practice", …]: those of session N; of all sessions or of none
 ///     [factors]   name = [level, level, …]: numbers, words, or formulas with $
 ///     [practice]  trials, [right_in_a_row], and values as of a block
 ///     [[blocks]]  name, [trials], [practice], [right_in_a_row], [probe] = { name, share, … };

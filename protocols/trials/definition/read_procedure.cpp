@@ -28,12 +28,15 @@ double number(const TrackKeys& keys, const char* key, const Bounds& bounds, cons
 }
 double number_or(const TrackKeys& keys, const char* key, double otherwise, const Bounds& bounds,
                  const char* unit) {
+  keys.track.otherwise(key, otherwise);
   return keys.has(key) ? number(keys, key, bounds, unit) : otherwise;
 }
 int whole_or(const TrackKeys& keys, const char* key, int otherwise, int low, int high) {
+  keys.track.otherwise(key, otherwise);
   return keys.has(key) ? static_cast<int>(keys.of(key).integer(key, low, high)) : otherwise;
 }
 bool truth_of(const TrackKeys& keys, const char* key) {
+  keys.track.otherwise(key, "false");
   return keys.has(key) && keys.of(key).boolean(key);
 }
 

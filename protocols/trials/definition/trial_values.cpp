@@ -26,7 +26,8 @@ void give_value(Names& names, const GivenValue& value) {
 }  // namespace
 
 void declare_names(Names& names, const TrialsDefinition& d) {
-  for (const char* name : {"trial", "block", "interval", "participant", "group", "probe"}) {
+  for (const char* name :
+       {"trial", "block", "interval", "participant", "session", "group", "probe"}) {
     names.declare(name);
   }
   for (const Block& block : d.order.blocks) {
@@ -55,6 +56,7 @@ void give(Names& names, const TrialsDefinition& d, const TrialValues& v) {
   names.set("trial", v.trial);
   names.set("block", d.order.blocks[v.block].name);
   names.set("participant", v.participant);
+  names.set("session", v.session);
   names.set("group", v.group);
   names.set("probe", v.probe.empty() ? std::string("no") : v.probe);
   for (std::size_t place = 0; place < v.intervals.size(); ++place) {

@@ -18,6 +18,7 @@ struct TrialValues {
   int trial{1};
   std::size_t block{0};  // of the definition
   int participant{1};
+  int session{1};
   std::string group;
   std::string probe;               // empty: none
   std::vector<GivenValue> values;  // of block, factors and probe; a later one stands before
@@ -26,9 +27,9 @@ struct TrialValues {
 };
 
 /// Everything that a trial may give a value: "trial", "block", "interval" (its place in the trial,
-/// from 1), "participant", "group", "probe" (a word; 'no' of a trial without), what blocks, factors
-/// and intervals name, the variables of tracks, "interval.NAME" (the place of the interval NAME),
-/// and each question's name (its answer).
+/// from 1), "participant", "session", "group", "probe" (a word; 'no' of a trial without), what
+/// blocks, factors and intervals name, the variables of tracks, "interval.NAME" (the place of the
+/// interval NAME), and each question's name (its answer).
 void declare_names(Names& names, const TrialsDefinition& definition);
 
 /// Gives the values that hold throughout the trial; all others are forgotten.

@@ -1,6 +1,7 @@
 #include "protocols/trials/definition/trials_definition.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -30,30 +31,69 @@ int TrialsDefinition::combinations(const Track& track, const Block& block) const
   return static_cast<int>(count);
 }
 
-int TrialsDefinition::most_trials() const {
-  int trials = 0;
-  for (const Block& block : order.blocks) {
+namespace {
+
+/// Of the session that is asked for; the most of all sessions for 0.
+template <class Trials>
+int of_sessions(const TrialDesign& design, int session, Trials&& trials) {
+  int most = 0;
+  for (int each = 1; each <= design.sessions; ++each) {
+    if (session == 0 || session == each) {
+      int sum = 0;
+      for (const std::size_t block : design.blocks_of(each)) {
+        sum += trials(design.blocks[block]);
+      }
+      most = std::max(most, sum);
+    }
+  }
+  return most;
+}
+
+}  // namespace
+
+int TrialsDefinition::most_trials(int session) const {
+  return of_sessions(order, session, [&](const Block& block) {
     int of_tracks = 0;
     for (const Track& track : tracks) {
       of_tracks += track.most_trials * combinations(track, block);
     }
-    trials += block.practice ? 0 : block.trials > 0 ? block.trials : of_tracks;
-  }
-  return trials;
+    return block.practice ? 0 : block.trials > 0 ? block.trials : of_tracks;
+  });
 }
 
-int TrialsDefinition::practice_trials() const {
-  int trials = 0;
-  for (const Block& block : order.blocks) {
-    trials += block.practice ? block.trials : 0;
-  }
-  return trials;
+int TrialsDefinition::practice_trials(int session) const {
+  return of_sessions(order, session,
+                     [](const Block& block) { return block.practice ? block.trials : 0; });
 }
+
+namespace {
+
+/// How long each participant's session takes, or each of several sessions.
+void add_sessions(const TrialsDefinition& d, std::vector<std::string>& lines) {
+  if (d.order.sessions == 1) {
+    lines.push_back(fmt::format("about {:.0f} minutes per participant, breaks not counted",
+                                d.longest(d.most_trials()) / 60.0));
+    return;
+  }
+  for (int session = 1; session <= d.order.sessions; ++session) {
+    std::vector<std::string> names;
+    for (const std::size_t block : d.order.blocks_of(session)) {
+      names.push_back(d.order.blocks[block].name);
+    }
+    lines.push_back(fmt::format("session {}: {}; at most {}, about {:.0f} minutes", session,
+                                fmt::join(names, ", "),
+                                counted(d.most_trials(session), "trial", "trials"),
+                                d.longest(d.most_trials(session)) / 60.0));
+  }
+}
+
+}  // namespace
 
 std::vector<std::string> TrialsDefinition::description() const {
   std::vector<std::string> lines{fmt::format(
-      "{}: {}, at most {}{}, {} Hz", name,
+      "{}: {}{}, at most {}{}, {} Hz", name,
       counted(design.participants, "participant", "participants"),
+      order.sessions > 1 ? fmt::format(" with {} sessions each", order.sessions) : "",
       counted(most_trials(), "trial", "trials"),
       practice_trials() > 0 ? fmt::format(" and {} of practice", practice_trials()) : "", rate)};
   lines.push_back(fmt::format("each of {}{}",
@@ -76,8 +116,7 @@ std::vector<std::string> TrialsDefinition::description() const {
   if (markers.used) {
     lines.push_back("markers: " + markers::words_of(marker_meanings()));
   }
-  lines.push_back(fmt::format("about {:.0f} minutes per participant, breaks not counted",
-                              longest(most_trials()) / 60.0));
+  add_sessions(*this, lines);
   return lines;
 }
 

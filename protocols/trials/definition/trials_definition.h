@@ -65,9 +65,11 @@ struct TrialsDefinition : Definition {
   std::uint32_t functions_of(const std::vector<int>& held) const override {
     return keys.bits_of(held);
   }
-  /// Trials of one session at most, without practice; and those of practice.
-  int most_trials() const;
-  int practice_trials() const;
+  int sessions() const override { return order.sessions; }
+  /// Trials of a session at most, without practice; and those of practice.
+  /// @param session  from 1; 0: the longest
+  int most_trials(int session = 0) const;
+  int practice_trials(int session = 0) const;
   /// The factors that vary in a block: those that it gives no value of its own.
   std::vector<const Factor*> varied_in(const Block& block) const;
   /// How many combinations of its factors a track has in a block.

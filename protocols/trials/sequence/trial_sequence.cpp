@@ -62,13 +62,16 @@ std::vector<std::size_t> shuffled_indices(std::size_t count, RandomStream& rando
 TrialSequence::TrialSequence(const TrialsDefinition& definition, const Taker& taker)
     : d_(definition), taker_(taker) {
   std::vector<std::size_t> others;
-  for (std::size_t i = 0; i < d_.order.blocks.size(); ++i) {
+  for (const std::size_t i : d_.order.blocks_of(taker.session)) {
     (d_.order.blocks[i].practice ? blocks_ : others).push_back(i);
   }
   if (!others.empty()) {
-    for (const int place :
-         order_of_levels(d_.order.order, static_cast<int>(others.size()), taker.participant,
-                         taker.study_seed, taker.session_seed)) {
+    // Each session is balanced by itself.
+    const std::uint64_t seed =
+        taker.session > 1 ? derived_seed(taker.study_seed, fmt::format("session {}", taker.session))
+                          : taker.study_seed;
+    for (const int place : order_of_levels(d_.order.order, static_cast<int>(others.size()),
+                                           taker.participant, seed, taker.session_seed)) {
       blocks_.push_back(others[static_cast<std::size_t>(place)]);
     }
   }
@@ -201,6 +204,7 @@ NextTrial TrialSequence::make_next() {
   values.trial = plan.trial;
   values.block = blocks_[at_];
   values.participant = taker_.participant + 1;
+  values.session = taker_.session;
   values.group = taker_.group;
   RandomStream random(plan.stimulus_seed, "intervals");
   values.intervals = shuffled_indices(d_.intervals.size(), random);

@@ -19,6 +19,7 @@ struct Taker {
   std::string group;
   std::uint64_t study_seed{0};
   std::uint64_t session_seed{0};
+  int session{1};  // from 1
 };
 
 /// One track in one combination of its factors.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -33,19 +34,19 @@ int index_of(const std::vector<std::string>& names, const std::string& name) {
 
 }  // namespace
 
-/// Servo thread, but for the constructor.
+/// Servo thread, but for the constructor, recall() and carried_over().
 class TrialsRig::Participant final : public stimulus::Observer {
  public:
   Participant(const Briefing& briefing, const std::vector<subject::HandModel*>& hands,
-              std::uint64_t seed)
+              std::uint64_t person_seed, std::uint64_t session_seed)
       : plan_(*briefing.plan),
         questions_(*briefing.questions),
         said_(*briefing.said),
-        seed_(derived_seed(seed, "subject")),
+        seed_(derived_seed(session_seed, "subject")),
         hand_parameters_(briefing.definition->hand),
         step_(1.0 / briefing.definition->rate),
-        judgement_(plan_.people->draw_judgement(seed_)),
-        senses_(plan_.people->draw_senses(seed_)),
+        judgement_(plan_.people->draw_judgement(derived_seed(person_seed, "subject"))),
+        senses_(plan_.people->draw_senses(derived_seed(person_seed, "subject"))),
         sense_(senses_, plan_.senses),
         grip_(senses_),
         judge_(judgement_, seed_),
@@ -58,13 +59,18 @@ class TrialsRig::Participant final : public stimulus::Observer {
       }
     }
     if (plan_.sight) {
-      sight_.emplace(*plan_.sight, seed_);
+      sight_.emplace(*plan_.sight, derived_seed(person_seed, "subject"));
     }
     if (plan_.adaptation) {
       adaptation_.emplace(plan_.adaptation->rates);
       error_.emplace(plan_.adaptation->field);
       learnt_in_ = index_of(briefing.stages, plan_.adaptation->stage);
     }
+  }
+
+  void recall(const CarriedOver& before) { recalled_ = before; }
+  CarriedOver carried_over() const {
+    return {-1, fast_.load(std::memory_order_relaxed), slow_.load(std::memory_order_relaxed)};
   }
 
   void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
@@ -88,6 +94,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
     feel(*view, forces, dt);
     answer(*view, dt);
     act(dt);
+    note_learnt();
   }
 
  private:
@@ -107,8 +114,34 @@ class TrialsRig::Participant final : public stimulus::Observer {
     return action;
   }
 
+  /// The pass hands over to this thread what the session's thread wrote before it.
+  void take_recalled() noexcept {
+    if (!recalled_) {
+      return;
+    }
+    judge_.set_previous(recalled_->previous);
+    if (adaptation_) {
+      adaptation_->recall(recalled_->fast, recalled_->slow);
+    }
+    recalled_.reset();
+  }
+
+  /// What is learnt if the reach ends with this tick: the pass may end before it is noticed.
+  void note_learnt() noexcept {
+    if (!adaptation_) {
+      return;
+    }
+    subject::TwoRate after = *adaptation_;
+    if (stage_ >= 0 && stage_ == learnt_in_) {
+      after.learn(error_->error());
+    }
+    fast_.store(after.fast(), std::memory_order_relaxed);
+    slow_.store(after.slow(), std::memory_order_relaxed);
+  }
+
   void begin_trial(int trial) noexcept {
     constexpr const char* kMotor[kMostDevices] = {"motor", "motor 2", "motor 3", "motor 4"};
+    take_recalled();
     begun_ = true;
     trial_ = trial;
     stage_ = interval_ = -1;
@@ -313,6 +346,8 @@ class TrialsRig::Participant final : public stimulus::Observer {
   std::optional<subject::TwoRate> adaptation_;
   std::optional<subject::FieldError> error_;
   int learnt_in_{-1};
+  std::optional<CarriedOver> recalled_;  // until the first trial
+  std::atomic<double> fast_{0.0}, slow_{0.0};
   bool begun_{false};
   int trial_{0};
   int stage_{-1}, interval_{-1};
@@ -327,7 +362,8 @@ TrialsRig::Arm::Arm(const Definition& d, const Eigen::Vector3d& start)
     : hand(std::make_unique<subject::Hand>(d.hand, 1.0 / d.rate, start)),
       device(d.device, *hand, d.rate) {}
 
-TrialsRig::TrialsRig(const Briefing& briefing, std::uint64_t session_seed)
+TrialsRig::TrialsRig(const Briefing& briefing, std::uint64_t person_seed,
+                     std::uint64_t session_seed)
     : envelope_(briefing.definition->envelope) {
   const Definition& d = *briefing.definition;
   for (const TrialDevice& each : *briefing.devices) {
@@ -340,7 +376,7 @@ TrialsRig::TrialsRig(const Briefing& briefing, std::uint64_t session_seed)
   for (const auto& arm : arms_) {
     hands.push_back(arm->hand.get());
   }
-  participant_ = std::make_unique<Participant>(briefing, hands, session_seed);
+  participant_ = std::make_unique<Participant>(briefing, hands, person_seed, session_seed);
 }
 
 TrialsRig::~TrialsRig() = default;
@@ -354,5 +390,9 @@ std::vector<DeviceSet::Arm> TrialsRig::others() {
 }
 
 stimulus::Observer* TrialsRig::subject() { return participant_.get(); }
+
+void TrialsRig::recall(const CarriedOver& before) { participant_->recall(before); }
+
+CarriedOver TrialsRig::carried_over() const { return participant_->carried_over(); }
 
 }  // namespace haptrial::protocols

@@ -17,6 +17,13 @@ namespace haptrial::protocols {
 struct Question;
 struct TrialDevice;
 
+/// What a virtual participant carries from one trial to the next.
+struct CarriedOver {
+  int previous{-1};  // choice that was answered last, from 0; -1: none
+  double fast{0.0};  // of the adaptation, in shares of the field
+  double slow{0.0};
+};
+
 /// A virtual device with the hand of a virtual participant, who explores, feels and answers; or
 /// several devices, a hand or fingertip at each.
 class TrialsRig final : public Rig {
@@ -31,13 +38,19 @@ class TrialsRig final : public Rig {
     SaidAnswer* said{nullptr};  // where answers go
   };
   /// @param briefing  what it points to outlives the rig
-  /// @param session_seed  the person, and every random number of theirs, follows from it
-  TrialsRig(const Briefing& briefing, std::uint64_t session_seed);
+  /// @param person_seed   who it is follows from it: the same person in every session
+  /// @param session_seed  every random number of theirs follows from it
+  TrialsRig(const Briefing& briefing, std::uint64_t person_seed, std::uint64_t session_seed);
   ~TrialsRig() override;
 
   device::Device& device() override { return arms_.front()->device; }
   std::vector<DeviceSet::Arm> others() override;
   stimulus::Observer* subject() override;
+  /// Goes on from what an earlier run of the session left. Session's thread, before the first pass.
+  void recall(const CarriedOver& before);
+  /// What was learnt up to the end of the last pass, whether or not the participant has noticed
+  /// that it ended. Session's thread, between passes.
+  CarriedOver carried_over() const;
 
  private:
   /// A hand at its device.

@@ -46,7 +46,11 @@ void expect_described(const std::string& name, const TableList& tables) {
 
 TEST(SessionPageTest, TablesOfEverySession) { expect_described("session", session_tables()); }
 TEST(SessionPageTest, TablesOfAnyProtocol) { expect_described("responses", common_tables()); }
-TEST(SessionPageTest, TablesOfTrials) { expect_described("trials", trial_tables()); }
+TEST(SessionPageTest, TablesOfTrials) {
+  TableList tables = trial_tables();
+  tables.insert(tables.end(), adaptation_tables().begin(), adaptation_tables().end());
+  expect_described("trials", tables);
+}
 TEST(SessionPageTest, TablesOfDrillings) { expect_described("drilling", drilling_tables()); }
 
 }  // namespace

@@ -135,5 +135,28 @@ TEST(TrialMistakesTest, AFieldThatAFactorNames) {
               Contains(AllOf(HasSubstr("stages[1].fields is \"flor\""), HasSubstr("floor"))));
 }
 
+std::string on_days(const std::string& days) {
+  const std::string blocks = "[[blocks]]\nname = \"a\"\n[[blocks]]\nname = \"b\"\n";
+  return with(kSmall, "participants = 4", "participants = 4\nsessions = 2") + blocks + days;
+}
+
+TEST(TrialMistakesTest, SessionsOnSeveralDays) {
+  const std::string first = "[design.session.1]\nblocks = [\"a\"]\n";
+  const std::string second = "[design.session.2]\nblocks = [\"b\"]\n";
+  EXPECT_THAT(problems_of_trials(on_days("")), IsEmpty());
+  EXPECT_THAT(problems_of_trials(on_days(first + second)), IsEmpty());
+  EXPECT_THAT(problems_of_trials(on_days(first)),
+              Contains(HasSubstr("design.session says nothing of session 2; add "
+                                 "[design.session.2] with its blocks")));
+  EXPECT_THAT(problems_of_trials(on_days(first + with(second, "\"b\"", "\"a\""))),
+              ElementsAre(HasSubstr("leaves out the block \"b\"")));
+  EXPECT_THAT(problems_of_trials(on_days(first + with(second, "\"b\"", "\"b\", \"c\""))),
+              ElementsAre(AllOf(HasSubstr("design.session.2.blocks is an array with \"c\""),
+                                HasSubstr("allowed: blocks of the definition: a, b"))));
+  EXPECT_THAT(
+      problems_of_trials(on_days(first + second + "[design.session.3]\nblocks = [\"a\"]\n")),
+      ElementsAre(HasSubstr("design.session.3")));
+}
+
 }  // namespace
 }  // namespace haptrial::protocols

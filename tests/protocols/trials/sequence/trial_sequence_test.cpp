@@ -268,6 +268,71 @@ TEST(TrialSequenceTest, BlocksAreCounterbalancedOverParticipants) {
   EXPECT_EQ(at.size(), 16U);  // each block once at each place
 }
 
+const char* const kFourBlocks =
+    "[[blocks]]\nname = \"a\"\ntrials = 1\n[[blocks]]\nname = \"b\"\ntrials = 1\n"
+    "[[blocks]]\nname = \"c\"\ntrials = 1\n[[blocks]]\nname = \"d\"\ntrials = 1\n";
+
+/// Four blocks over two days: three on the first, two on the second, one of them for a second time.
+std::string two_days(const std::string& order) {
+  std::string text = blocks_only(std::string(kFourBlocks) +
+                                 "[design.session.1]\nblocks = [\"d\", \"a\", \"b\"]\n" +
+                                 "[design.session.2]\nblocks = [\"c\", \"a\"]\n");
+  return text.replace(text.find("participants = 4"), 16,
+                      "participants = 4\nsessions = 2\nblocks = \"" + order + "\"");
+}
+
+std::vector<std::string> names_of(const TrialsDefinition& d, const Taker& taker) {
+  std::vector<std::string> names;
+  const TrialSequence sequence(d, taker);
+  for (const std::size_t block : sequence.blocks()) {
+    names.push_back(d.order.blocks[block].name);
+  }
+  return names;
+}
+
+TEST(TrialSequenceTest, ASessionHasItsBlocksAlone) {
+  TrialsDefinition d;
+  read_small(two_days("fixed"), d);
+  Taker own = taker();
+  EXPECT_THAT(names_of(d, own), ElementsAre("d", "a", "b"));
+  own.session = 2;
+  EXPECT_THAT(names_of(d, own), ElementsAre("c", "a"));
+  EXPECT_EQ(d.most_trials(1), 3);
+  EXPECT_EQ(d.most_trials(2), 2);
+  EXPECT_EQ(d.most_trials(), 3);
+  TrialSequence sequence(d, own);
+  std::vector<double> sessions;
+  while (const auto next = sequence.next()) {
+    sessions.push_back(next->values.session);
+    sequence.conclude(true, kNothing, false);
+  }
+  EXPECT_THAT(sessions, ElementsAre(2.0, 2.0));
+}
+
+TEST(TrialSequenceTest, EachSessionIsCounterbalancedByItself) {
+  TrialsDefinition d;
+  read_small(two_days("latin"), d);
+  std::map<std::pair<std::string, std::size_t>, int> first_day, second_day;
+  for (int participant = 0; participant < 6; ++participant) {
+    Taker own = taker(participant);
+    for (auto* day : {&first_day, &second_day}) {
+      own.session = day == &first_day ? 1 : 2;
+      const auto names = names_of(d, own);
+      for (std::size_t place = 0; place < names.size(); ++place) {
+        ++(*day)[{names[place], place}];
+      }
+    }
+  }
+  EXPECT_EQ(first_day.size(), 9U);
+  EXPECT_EQ(second_day.size(), 4U);
+  for (const auto& [where, times] : first_day) {
+    EXPECT_EQ(times, 2) << where.first << " at " << where.second;  // 6 participants, 3 places
+  }
+  for (const auto& [where, times] : second_day) {
+    EXPECT_EQ(times, 3) << where.first << " at " << where.second;
+  }
+}
+
 TEST(TrialSequenceTest, LevelsAreQuantisedWithinTheirRange) {
   Track track;
   track.low = 310.0;

@@ -1,0 +1,199 @@
+#include "core/base/definition/key_exploration.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <deque>
+#include <exception>
+
+#include "core/base/definition/table.h"
+
+namespace haptrial {
+namespace {
+
+constexpr std::size_t kMostReadings = 50000;
+
+std::string path_of(std::string_view table, std::string_view key) {
+  return table.empty() ? std::string(key) : fmt::format("{}.{}", table, key);
+}
+
+/// Adds what is asked for another way. Bounds that follow from other keys have no end of ways.
+void join(std::string& all, const std::string& another) {
+  constexpr const char* kDepends = ", or as other keys say";
+  constexpr std::size_t kMost = 2;
+  std::size_t ways = 1;
+  for (std::size_t at = all.find(" or a"); at != std::string::npos;
+       at = all.find(" or a", at + 1)) {
+    ++ways;
+  }
+  if (another.empty() || all.find(another) != std::string::npos || all.ends_with(kDepends)) {
+    return;
+  }
+  all += all.empty() ? another : ways < kMost ? " or " + another : kDepends;
+}
+
+}  // namespace
+
+void KeyExploration::begin(Plan plan) {
+  plan_ = std::move(plan);
+  taken_.clear();
+  chosen_.clear();
+}
+
+std::vector<KeyExploration::Plan> KeyExploration::further() {
+  std::vector<Plan> plans;
+  for (const auto& [name, ways] : taken_) {
+    for (std::size_t way = 1; way < ways; ++way) {
+      if (seen_.emplace(name, way).second) {
+        plans.push_back(plan_);
+        plans.back()[name] = way;
+      }
+    }
+  }
+  return plans;
+}
+
+std::size_t KeyExploration::take(const std::string& name, std::size_t ways) {
+  taken_.emplace_back(name, ways);
+  const auto at = plan_.find(name);
+  return at != plan_.end() ? std::min(at->second, ways - 1) : 0;
+}
+
+bool KeyExploration::is_there(std::string_view table, std::string_view key, std::string_view what,
+                              bool first) {
+  if (what == "there") {
+    optional_.insert(path_of(table, key));
+  }
+  const std::size_t way = take(fmt::format("{} is {}", path_of(table, key), what), 2);
+  return (way == 0) == first;
+}
+
+std::string KeyExploration::choose(std::string_view table, std::string_view key,
+                                   const std::vector<std::string>& allowed,
+                                   const std::string& first) {
+  std::vector<std::string> words = allowed;
+  const auto at = std::find(words.begin(), words.end(), first);
+  if (at != words.end()) {
+    std::rotate(words.begin(), at, at + 1);
+  }
+  words_[std::string(table)][std::string(key)] = allowed;
+  const std::string& word = words.at(take(path_of(table, key), words.size()));
+  chosen_[std::string(table)][std::string(key)] = word;
+  return word;
+}
+
+void KeyExploration::ask(KnownKey key) {
+  const std::string table = key.table;
+  const std::string own = key.key;
+  Known& known = known_[key.path()];
+  if (known.askings == 0) {
+    known.key = std::move(key);
+    known.order = known_.size();
+  } else {
+    join(known.key.type, key.type);
+    join(known.key.unit, key.unit);
+    join(known.key.allowed, key.allowed);
+  }
+  ++known.askings;
+  for (const auto& [choice, word] : chosen_[table]) {
+    if (choice != own) {
+      known.with[choice].insert(word);
+      ++known.with_count[choice];
+    }
+  }
+}
+
+void KeyExploration::note_default(std::string_view table, std::string_view key,
+                                  const std::string& value) {
+  std::string& known = defaults_[path_of(table, key)];
+  constexpr const char* kDepends = ", or as other keys say";
+  if (known.empty()) {
+    known = value;
+  } else if (known != value && !known.ends_with(kDepends)) {
+    known += kDepends;
+  }
+  optional_.insert(path_of(table, key));
+}
+
+std::optional<double> KeyExploration::default_of(std::string_view table,
+                                                 std::string_view key) const {
+  const auto at = defaults_.find(path_of(table, key));
+  double value = 0.0;
+  if (at == defaults_.end() ||
+      std::from_chars(at->second.data(), at->second.data() + at->second.size(), value).ec !=
+          std::errc()) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+void KeyExploration::note_text(std::string_view table, std::string_view key) {
+  texts_.insert(path_of(table, key));
+}
+
+std::string KeyExploration::chosen(std::string_view table, std::string_view key) const {
+  const auto at = chosen_.find(std::string(table));
+  if (at == chosen_.end()) {
+    return "";
+  }
+  const auto word = at->second.find(std::string(key));
+  return word != at->second.end() ? word->second : "";
+}
+
+std::vector<KnownKey> KeyExploration::keys() const {
+  std::vector<const Known*> all;
+  for (const auto& [path, known] : known_) {
+    all.push_back(&known);
+  }
+  std::sort(all.begin(), all.end(),
+            [](const Known* a, const Known* b) { return a->order < b->order; });
+  std::vector<KnownKey> keys;
+  for (const Known* known : all) {
+    KnownKey key = known->key;
+    const std::string path = key.path();
+    key.optional = optional_.contains(path) || !key.otherwise.empty();
+    if (const auto at = defaults_.find(path); at != defaults_.end() && key.otherwise.empty()) {
+      key.otherwise = at->second;
+    }
+    if (texts_.contains(path) && key.type.find("text") == std::string::npos) {
+      key.type += " or text";
+    }
+    const auto choices = words_.find(key.table);
+    for (const auto& [choice, with] : known->with) {
+      const std::vector<std::string>& words = choices->second.at(choice);
+      // Where it is asked for with some words of a choice alone, and never before the choice.
+      if (with.size() < words.size() && known->with_count.at(choice) == known->askings) {
+        std::vector<std::string> own;
+        std::copy_if(words.begin(), words.end(), std::back_inserter(own),
+                     [&](const std::string& word) { return with.contains(word); });
+        key.when.push_back(fmt::format("{}: {}", choice, fmt::join(own, ", ")));
+      }
+    }
+    keys.push_back(std::move(key));
+  }
+  return keys;
+}
+
+std::vector<KnownKey> known_keys(std::string_view text,
+                                 const std::function<void(Table& root)>& reader) {
+  KeyExploration exploration;
+  std::deque<KeyExploration::Plan> plans{{}};
+  for (std::size_t reading = 0; !plans.empty() && reading < kMostReadings; ++reading) {
+    exploration.begin(std::move(plans.front()));
+    plans.pop_front();
+    try {
+      Table root = Table::explore(text, exploration);
+      reader(root);
+    } catch (const std::exception&) {
+      // Values that no definition would have; what was asked for before counts.
+    }
+    for (KeyExploration::Plan& plan : exploration.further()) {
+      plans.push_back(std::move(plan));
+    }
+  }
+  return exploration.keys();
+}
+
+}  // namespace haptrial

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace haptrial {
+
+class Table;
+
+/// A key that a reader of definitions knows.
+struct KnownKey {
+  std::string table;  // "fields.NAME", "blocks[]"; NAME stands for any; empty: the root
+  std::string key;
+  std::string type;     // "number", "whole number", "true or false", "text", "list of numbers", …
+  std::string allowed;  // in the words of sentences: "a number above 0 [m/s]"
+  std::string unit;     // as in definitions, "m/s"; empty: none
+  std::string otherwise;  // what it is worth if it is left out; empty: the reader does not say
+  bool optional{false};   // the reader asks whether it is there
+  std::vector<std::string> when;  // "type: wall, box": only with these choices of the same table
+
+  std::string path() const { return table.empty() ? key : table + "." + key; }
+};
+
+/// Finds every key that a reader asks for, by reading definitions that are not there: each key that
+/// is looked for is found, or not, and each choice takes each of its words, until no reading has
+/// anything new. What the reader does with the values does not matter; its problems are dropped.
+///
+///     const auto keys = known_keys("[experiment]\n", [](Table& root) { read(root); });
+///
+/// @param text  keys with values that the reader is to find, as its defaults are
+std::vector<KnownKey> known_keys(std::string_view text,
+                                 const std::function<void(Table& root)>& reader);
+
+/// What a Table asks while a definition is explored; see known_keys().
+class KeyExploration {
+ public:
+  /// One reading: which way was taken where, by name; the ways that are not named are the first.
+  using Plan = std::map<std::string, std::size_t>;
+  void begin(Plan plan);
+  /// Plans for the ways that this reading saw and no reading has taken.
+  std::vector<Plan> further();
+
+  bool is_there(std::string_view table, std::string_view key, std::string_view what, bool first);
+  std::string choose(std::string_view table, std::string_view key,
+                     const std::vector<std::string>& allowed, const std::string& first);
+  void ask(KnownKey key);
+  void note_default(std::string_view table, std::string_view key, const std::string& value);
+  /// What note_default() said in any reading, if it is a number.
+  std::optional<double> default_of(std::string_view table, std::string_view key) const;
+  void note_text(std::string_view table, std::string_view key);  // a text may stand there too
+  /// What choose() took in this reading; empty: nothing was chosen.
+  std::string chosen(std::string_view table, std::string_view key) const;
+
+  std::vector<KnownKey> keys() const;
+
+ private:
+  using Choices = std::map<std::string, std::string>;  // word by key
+  std::size_t take(const std::string& name, std::size_t ways);
+
+  Plan plan_;
+  std::vector<std::pair<std::string, std::size_t>> taken_;  // of this reading: name, ways
+  std::set<std::pair<std::string, std::size_t>> seen_;
+  std::map<std::string, Choices> chosen_;  // of this reading, by table
+  struct Known {
+    KnownKey key;
+    std::size_t order{0};
+    std::size_t askings{0};
+    std::map<std::string, std::set<std::string>> with;  // words by key, of the same table
+    std::map<std::string, std::size_t> with_count;
+  };
+  std::map<std::string, Known> known_;                                            // by path
+  std::map<std::string, std::map<std::string, std::vector<std::string>>> words_;  // table, key
+  std::set<std::string> optional_, texts_;
+  std::map<std::string, std::string> defaults_;
+};
+
+}  // namespace haptrial

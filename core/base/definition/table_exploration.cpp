@@ -1,0 +1,58 @@
+// What a table of definitions tells an exploration of its keys.
+#include <fmt/format.h>
+
+#include "core/base/definition/table_parts_internal.h"
+#include "core/base/definition/table_words_internal.h"
+
+namespace haptrial {
+
+Table Table::explore(std::string_view text, KeyExploration& exploration) {
+  Table root = parse(text, "definition");
+  root.document_->exploration = &exploration;
+  return root;
+}
+
+KeyExploration* Table::exploration() const { return document_->exploration; }
+
+/// Whether a value stands there, of whatever kind.
+bool Table::states(std::string_view key) const {
+  return node_->table != nullptr && node_->table->contains(key);
+}
+
+/// What an exploration is to know of a key.
+void Table::tell(std::string_view key, const char* type, std::string_view allowed,
+                 std::string_view unit) const {
+  exploration()->ask({node_->path,
+                      std::string(key),
+                      type,
+                      std::string(allowed),
+                      std::string(unit),
+                      states(key) ? shown(*node_->table->get(key)) : "",
+                      false,
+                      {}});
+}
+
+void Table::otherwise(std::string_view key, double value) const {
+  if (exploration() != nullptr) {
+    exploration()->note_default(node_->path, key, fmt::format("{}", value));
+  }
+}
+
+void Table::otherwise(std::string_view key, std::string_view value) const {
+  if (exploration() != nullptr) {
+    exploration()->note_default(node_->path, key, std::string(value));
+  }
+}
+
+double Table::number_or(std::string_view key, double value, const Bounds& bounds,
+                        std::string_view unit) {
+  otherwise(key, value);
+  return has(key) ? number(key, bounds, unit) : value;
+}
+
+int Table::integer_or(std::string_view key, int value, long low, long high) {
+  otherwise(key, value);
+  return has(key) ? static_cast<int>(integer(key, low, high)) : value;
+}
+
+}  // namespace haptrial

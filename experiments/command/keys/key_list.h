@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/definition/key_exploration.h"
+
+namespace haptrial::experiments {
+
+class Study;
+
+/// Every key of a definition of a study, each once: what tables share is under one of them, and
+/// keys that vary over people are "number or { median, spread }". The readers say what is there.
+std::vector<KnownKey> keys_of(const Study& study);
+
+/// A key and whose it is.
+struct ListedKey {
+  KnownKey key;
+  std::string words;      // one line of what it is
+  std::string otherwise;  // what it is worth if it is left out: as the reader says, else in words
+};
+
+/// Keys that have one place on the page.
+struct KeySection {
+  std::string protocol;  // empty: of every protocol
+  std::vector<ListedKey> keys;
+};
+
+/// All keys of the program; those that every protocol has, with the same bounds and defaults, once.
+/// @param protocol  its keys alone, with those of every protocol; empty: all
+/// @throws InputError for a protocol that is not known
+std::vector<KeySection> key_sections(const std::string& protocol);
+
+/// The list as a page of Markdown.
+std::string key_page(const std::vector<KeySection>& sections);
+
+/// Keys that have no line of words, and lines of words that no key has, with lines that state a
+/// default which the reader states itself: all of them mistakes of key_words.cpp.
+std::vector<std::string> mistakes_of_key_words();
+
+}  // namespace haptrial::experiments

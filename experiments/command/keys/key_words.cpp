@@ -1,0 +1,549 @@
+#include "experiments/command/keys/key_words_internal.h"
+
+namespace haptrial::experiments {
+
+std::string_view key_words() {
+  return R"(
+experiment.name | | of the study, for reports and new folders
+experiment.protocol | force_training | what kind of experiment it is
+experiment.rate | | ticks of the servo loop per second
+lab.use | the definition has the tables of machines itself | file with tables of devices and screen, relative to the definition
+envelope.max_force | | limit of the commanded force
+envelope.max_force_rate | | limit of its change
+envelope.workspace_radius | | beyond it the force goes off
+envelope.max_speed | | of the hand; above it the force goes off
+envelope.max_jump | | greatest change of position between two ticks
+envelope.ramp_in | | time over which the force of a pass grows
+envelope.ramp_out | | time over which it falls after a normal end
+envelope.max_saturation | 3 | longest time without a break at max_force
+envelope.holding_force | from the friction of [hand] | change of force that friction and a still hand may hide
+device.max_force | | at which the virtual device's motors saturate
+device.workspace_radius | | of the virtual device
+device.position_quantum | | resolution of its encoders
+device.velocity_window | | readings in the slope that estimates velocity
+device.force_delay | 1 | ticks from a command to its force
+force_dimension.index | | of the device, where several are connected
+force_dimension.max_force | | at which the driver saturates
+force_dimension.workspace_radius | | of the device
+force_dimension.effector_mass | | mass mounted on the handle
+force_dimension.gravity_compensation | | whether the device carries its own weight
+force_dimension.velocity_window | | time over which velocity is estimated
+force_dimension.watchdog | | the motors switch off after this time without a command
+force_dimension.velocity_threshold | the device's own | velocity at which the device brakes, in its own units
+force_dimension.time_guard | | shortest time between two readings; 0: off
+force_dimension.stop_button | | button of the handle for emergency stops; -1: none
+open_haptics.name | | of the device, as its vendor's set-up has it
+open_haptics.max_force | | at most the device's own limit is used
+open_haptics.workspace_radius | | of the device
+open_haptics.patience | | how long one side goes on without word from the other
+open_haptics.stop_button | | button of the handle for emergency stops; -1: none
+mouse.pointer_speed | | greatest speed at which the mass follows the pointer
+mouse.max_press | | greatest pressing force
+mouse.first_press | | pressing force when the left button goes down
+mouse.press_step | | change of it for each step of the wheel
+mouse.stop_button | | button for emergency stops; -1: none
+hand.integrator | | exact solution of the virtual hand, or CVODE's
+hand.handle_mass | | that moves with the hand
+hand.coulomb_friction | | of the handle
+hand.hand_mass | | of the hand
+hand.damping | | of the grip
+hand.stiffness | | of the grip
+hand.posture_time | | time constant at which the hand's posture follows
+hand.excitation_time | | time constant of the muscles' excitation
+hand.activation_time | | time constant of the muscles' activation
+display.width | | of pictures and of a window
+display.height | | of pictures and of a window
+display.margin | | between the picture's edge and what is drawn
+display.trajectory_width | | of the line of the trajectory
+display.marker_radius | | of the marker of the hand
+display.full_scale | | force of a full bar
+display.bar_width | | of the bars of force
+display.bar_height | | of a full bar
+display.bar_gap | | between the bars, and between marker and bars
+display.saturation_size | | side of the square that shows that the force limit is reached
+display.background | | colour behind everything
+display.trajectory_colour | | of the line
+display.marker_colour | | of the marker
+display.target_colour | | of the bar of the target force
+display.applied_colour | | of the bar of the applied force
+display.saturation_colour | | of the square of the force limit
+display.seen_from | | above: x to the right, z down the screen; front: x to the right, y up
+display.extent | | part of the world that fills the screen's width
+display.hand_radius | | of the dot of the hand
+display.feedback_right | | what is shown after a right answer
+display.feedback_wrong | | what is shown after a wrong one
+display.feedback_time | | for which it is shown
+display.stereo | false | pictures for the left and the right eye side by side
+display.eye_distance | | between the eyes, in the scene
+display.stills | 0 | stills of the bone's stages that can be shown
+screen.title | haptrial | of the participant's window
+screen.full_screen | true | whether the window fills the monitor
+screen.monitor | 0 | from 0, the primary one
+screen.refresh_lock | true | whether pictures wait for the monitor's refresh
+screen.participant_steers | false | whether the participant's keys start, pause, repeat, skip and clear
+screen.photodiode | off | square in a corner that changes with each picture, or is white while a trial runs
+texts.instructions | | before the first trial; the first line of every text is its title
+texts.practice | | before practice
+texts.rest | | during a break
+texts.thanks | | after the last trial
+texts.stopped | | after a fault or an emergency stop
+texts.paused | | while the experimenter pauses the session
+texts.recovering | | while the force stays off after an aborted pass
+texts.limit | | last paragraph of the instructions of a force study
+texts.begin | | small line below a text that the experimenter ends
+texts.begin_alone | | the same in a session without an experimenter
+design.participants | | of the study
+design.sessions | 1 | of each participant, on days of their own
+design.session.NAME.blocks | all blocks in every session | blocks of the session of this number
+trials:design.break_after | 0 | trials after which a break comes; 0: no breaks
+bone_drilling:design.break_after | 0 | procedures after which a break comes; 0: no breaks
+design.break_after | | trials after which a break comes; 0: no breaks
+trials:design.break_duration | 60 | of a break
+bone_drilling:design.break_duration | | of a break
+design.break_duration | | of a break
+design.blocks | fixed | order of the blocks over participants
+design.most_in_a_row | no limit | trials of one combination of factors
+design.trials | | of each participant
+design.repetitions | | trials of a block: same stimulus, same condition
+design.practice | | practice trials of each condition; not scored
+design.conditions | | of training
+design.procedures | | trials of each participant, each with a new bone
+groups | one group of everybody | participants of each group, in the order of their numbers: NAME = 8
+groups.NAME | | participants of the group, in the order of their numbers
+factors.NAME | | levels of a factor: two or more numbers, words or formulas
+variables.NAME | | a number, formula or quoted word
+variables.NAME.from | | name whose word chooses among the other keys
+variables.NAME.NAME | | what the name is worth with this word
+places.NAME | | x, y, z: three numbers or formulas
+practice.trials | | of practice
+practice.right_in_a_row | all trials | practice ends with so many right answers in a row
+practice.NAME | | what a name is worth during practice
+practice.duration | | of practice before the first procedure
+practice.bone | | that is practised on
+practice.text | | what is read before practice
+blocks[].name | | of the block
+blocks[].trials | until its procedures are finished | of the block; needed without a procedure
+blocks[].practice | false | whether it is practice, which is not scored
+blocks[].right_in_a_row | all trials | practice ends with so many right answers in a row
+blocks[].NAME | | what a name is worth in the block
+blocks[].probe.name | probe | what the trials are called
+blocks[].probe.share | | of the block's trials
+blocks[].probe.NAME | | what a name is worth in these trials
+intervals | one interval | presentations within a trial: NAME = { name = value, ... }
+intervals.order | as stated | whether they are shuffled in every trial
+intervals.NAME.NAME | | what a name is worth in the interval
+stages[].name | | unlike every other stage's
+stages[].fields | none | that act; "$name" is the field that the name stands for
+stages[].show | nothing | hand, interval_number, regions and places
+stages[].until.time | no such condition | the stage ends after this time
+stages[].until.inside | no such condition | the hand is in this region
+stages[].until.contact | no such condition | the hand touches this field
+stages[].until.speed_below | no such condition | the hand is slower
+stages[].until.speed_above | no such condition | the hand is faster
+stages[].until.buttons | no such condition | one of these buttons is pressed
+stages[].until.keys | no such condition | one of these keys is pressed
+stages[].until.for | 0 | how long all of it must hold; [shortest, longest] is drawn in every trial
+stages[].timeout.after | none | longest duration of the stage
+stages[].timeout.then | | whether the trial comes again, the interval does, or the trial goes on
+stages[].require.max_of | nothing is required | what must have been enough
+stages[].require.field | | in which depth or force counts
+stages[].require.at_least | | of the largest value in the stage
+stages[].require.else | | what happens if it was not enough
+stages[].onset.speed_above | not looked for | speed at which a movement begins
+response.name | answer | in formulas and files
+response.question | | what is read
+response.choices[].value | | of the choice, as files and formulas have it
+response.choices[].label | the value | what is shown
+response.choices[].keys | the digit of its place | of the window, that choose it
+response.choices[].buttons | the button of its place | of the device, that choose it
+response.scale | choices or a number | lowest and highest digit
+response.number | choices or a scale | lowest and highest number that may be typed
+response.correct | no answer is right | formula of the right choice: its number, or its value as a word
+response.feedback | never | when right or wrong is shown
+response.timeout | none | then the trial is aborted and comes again
+response.reaction_time_from | the question | stage from which the reaction is counted
+procedure.kind | | how levels follow from outcomes
+procedure.variable | | name that it sets
+procedure.name | track 1, track 2, ... | of the track
+procedure.unit | none | of the variable
+procedure.by | none | factors each of whose levels has a track of its own
+procedure.counts | whether the first answer was right | formula of the outcome
+procedure.resolution | not rounded | to which levels are rounded
+procedure.range | | lowest and highest level
+procedure.scale | linear | of the difference to origin, on which steps and functions are
+procedure.origin | | of the scale
+procedure.start | | first level
+procedure.steps | | sizes of steps, the next after each reversal; or pairs [down, up]
+procedure.down | | right answers in a row for a step down
+procedure.up | | wrong answers in a row for a step up
+procedure.first_down | | the same until the first reversal; 0: as down
+procedure.first_up | | likewise; 0: as up
+procedure.schedule | reversals | what takes the next size of steps
+procedure.at_bound | hold | what a step beyond the range does: stays, stays without a reversal, ends the track
+procedure.right_raises | | whether right answers raise the level
+procedure.stop.reversals | no such end | after which the track ends
+procedure.stop.trials | needed but for another end | after which the track ends
+procedure.stop.entropy | no such end | of the posterior, below which the track ends
+procedure.estimate.of | | what the threshold is the mean of
+procedure.estimate.skip | 0 | first reversals, or levels, that are left out
+procedure.estimate.last | all | last ones alone that count
+procedure.target | | share of right answers that is sought
+procedure.deviation | | of the count of right answers that is tolerated
+procedure.first_step | | on the scale
+procedure.smallest_step | | on the scale; a step as small ends the track
+procedure.largest_step | | on the scale
+procedure.levels | | that may be presented: a list, or { from, to, count, spacing }
+procedure.levels.from | | first level
+procedure.levels.to | | last level
+procedure.levels.count | | of levels
+procedure.levels.spacing | linear | of levels
+procedure.function | norm | sigmoid of the function
+procedure.guess | | answers 1 far below the threshold
+procedure.threshold | the levels | thresholds that are considered: a list, or { from, to, count, spacing }
+procedure.threshold.from | | first one
+procedure.threshold.to | | last one
+procedure.threshold.count | | how many
+procedure.threshold.spacing | linear | of them
+procedure.width | an eighth, a quarter, half and all of the range | widths that are considered, likewise
+procedure.width.from | | first one
+procedure.width.to | | last one
+procedure.width.count | | how many
+procedure.width.spacing | linear | of them
+procedure.lapse | 0, 0.02, 0.05 | lapse rates that are considered, likewise
+procedure.lapse.from | | first one
+procedure.lapse.to | | last one
+procedure.lapse.count | | how many
+procedure.lapse.spacing | linear | of them
+procedure.marginal | | whether only the threshold is to become sure
+procedure.repetitions | | of each level
+procedure.in_rounds | | whether each level comes once before any comes again
+procedure.modulus | none is stated | number that the first level is called
+procedure.expect.threshold | | what you count on, for validate
+procedure.expect.width | | likewise
+procedure.expect.function | norm | likewise
+procedure.expect.guess | 0.5 | likewise
+procedure.expect.lapse | 0 | likewise
+procedure.expect.share | 0.5 | of answers 1, guesses and lapses aside, at the threshold
+fields.NAME.type | | law of the field
+fields.NAME.limit | | of the field's own force
+fields.NAME.fade_in | | time over which it grows
+fields.NAME.fade_out | | time over which it goes
+fields.NAME.force | | in the world frame
+fields.NAME.to | | force at the end, or place that is pulled to
+fields.NAME.from | no force, of a channel axes | force at the beginning, or end of the channel
+fields.NAME.rise | | time over which the force grows
+fields.NAME.duration | | of the pulse or movement
+fields.NAME.delay | | before the pulse
+fields.NAME.stiffness | | of the spring that holds, or of the bristles of friction
+fields.NAME.damping | | against the motion
+fields.NAME.point | | of the wall
+fields.NAME.normal | | direction out of the surface
+fields.NAME.centre | | of the solid
+fields.NAME.radius | | of the solid
+fields.NAME.size | | edges of the box
+fields.NAME.turn | not turned | rotation vector of the box
+fields.NAME.axis | | direction of the cylinder
+fields.NAME.length | | of the cylinder
+fields.NAME.felt_from | outside | side from which the surface is felt
+fields.NAME.axes | | that are free: x, y, z
+fields.NAME.through | | point of the channel or plane
+fields.NAME.velocity_filter | | cut-off of the filter of velocity
+fields.NAME.matrix | | B of the force B v
+fields.NAME.mass | | that is felt
+fields.NAME.acceleration_filter | | cut-off of the filter of acceleration
+fields.NAME.on | everywhere | field of a surface that this one belongs to
+fields.NAME.static | | friction before it slips: a force, or on a surface a coefficient
+fields.NAME.dynamic | | friction while it slips, likewise
+fields.NAME.model | bristle | of friction
+fields.NAME.direction | | in which the field acts or is laid out
+fields.NAME.amplitude | | of the relief, or of the vibration
+fields.NAME.period | | of the grating
+fields.NAME.phase | | of the grating, or of the vibration
+fields.NAME.profile | sine | of the grating
+fields.NAME.roughness | | root mean square of the relief
+fields.NAME.lowest | | frequency of the noise
+fields.NAME.highest | | frequency of the noise
+fields.NAME.seed | 1 | of the noise
+fields.NAME.rms | a sine with amplitude | root mean square of a vibration that is noise
+fields.NAME.frequency | | of the vibration
+fields.NAME.decay | | time constant of the tap
+fields.NAME.at | | place of the first detent, or of the click
+fields.NAME.spacing | | of detents
+fields.NAME.peak | | greatest force, at most the field's limit
+fields.NAME.count | no end | of detents
+fields.NAME.travel | | of the click up to its peak
+fields.NAME.drop | | of force after the peak
+fields.NAME.drop_travel | | over which it drops
+regions.NAME.type | | shape of the region
+regions.NAME.point | | of the half space
+regions.NAME.normal | | direction out of the region
+regions.NAME.centre | | of the region
+regions.NAME.radius | | of the region
+regions.NAME.size | | edges of the box
+regions.NAME.turn | not turned | rotation vector of the box
+regions.NAME.axis | | direction of the cylinder
+regions.NAME.length | | of the cylinder
+observer.senses | force | what the virtual participant feels
+observer.in_stage | throughout the interval | stage in which it is felt
+observer.decides | largest | how what is felt becomes an answer
+observer.yes | the first choice | value of the choice that means yes
+observer.reaction | 0.6 | median time from question to answer
+observer.actions.NAME.do | | what the hand does in the stage NAME
+observer.actions.NAME.force | | with which it presses
+observer.actions.NAME.rise | 0.5 | time over which it grows
+observer.actions.NAME.travel | 0.05 | after which it presses no further
+observer.actions.NAME.direction | down | of pressing or stroking
+observer.actions.NAME.half_length | | of a stroke
+observer.actions.NAME.frequency | | of strokes
+observer.actions.NAME.normal | up | of the surface that is stroked
+observer.actions.NAME.duration | | of the reach
+observer.adaptation.stage | | of the reach that is learnt from
+observer.adaptation.matrix | | B of the field that is learnt
+observer.adaptation.fast.retention | 0.59 | of the fast process from trial to trial
+observer.adaptation.fast.learning | 0.21 | from an error
+observer.adaptation.slow.retention | 0.992 | of the slow process
+observer.adaptation.slow.learning | 0.02 | from an error
+observer.force_weber | | spread of a felt force, as a share of it
+observer.force_floor | | spread of a felt force of zero
+observer.displacement_bias | | share of a displacement that is not felt
+observer.displacement_weber | | spread of a felt displacement, as a share of it
+observer.speed_weber | | spread of a felt speed, as a share of it
+observer.extent_weber | | spread of a felt extent, as a share of it
+observer.usual_deflection | | of a surface that is pressed
+observer.contact_force | | above which something is felt to be touched
+observer.moving_speed | | above which the hand is felt to move
+observer.decision_noise | | spread of the evidence, beside that of the sense
+observer.bias_first | | added to the evidence of the first interval
+observer.repetition | | added to the evidence of the answer before
+observer.criterion | | above which the answer is yes
+observer.drift | | of the criterion a trial
+observer.lapse | | probability of an answer at random
+observer.exponent | | of magnitudes
+observer.modulus | | magnitude of a percept of 1
+observer.magnitude_noise | | spread of the logarithm of a magnitude
+observer.tolerance | | of an adjustment
+trials:analysis.kind | as the procedure is | what is computed
+trials:analysis.by | all factors, of detection none | factors whose levels are told apart
+trials:analysis.tests | none | planned: "a < b", "a > b" or "a != b" of levels
+trials:analysis.question | the first | whose answer counts
+trials:analysis.yes | what the procedure learnt, else the right one | the answer that counts 1
+trials:analysis.level | the one that the procedure set | variable for the level
+trials:analysis.rating | the second question | question of how sure the participant was
+trials:analysis.function | norm | sigmoid that is fitted
+trials:analysis.scale | of the procedure | of the axis
+trials:analysis.origin | of the procedure | of the axis
+trials:analysis.guess | 1 / choices, else free | guess rate, or "free"
+trials:analysis.lapse | { free = true, at_most = 0.06 } | lapse rate, or how it is fitted
+trials:analysis.lapse.free | true | whether it is fitted
+trials:analysis.lapse.at_most | 0.06 | its upper bound
+trials:analysis.threshold_at | 0.75, or 0.5 if the guess rate is free | share of answers 1 at the threshold, lapses aside
+trials:analysis.reference | no Weber fractions | standard stimulus
+trials:analysis.bayesian | true | whether the Bayesian fit is added
+trials:analysis.resamples | 1999 | of the bootstrap
+trials:analysis.stage | reach | of the reach
+trials:analysis.start | start | place where reaches begin
+trials:analysis.target | target | place where they end
+trials:analysis.field | the first of type matrix_viscous | that is learnt
+trials:analysis.clamp | clamp | probe whose reaches a channel holds
+trials:analysis.cycle | combinations of the factors | trials of a cycle
+trials:analysis.error | maximum | that is learnt from
+analysis.planned | none | planned tests: "a < b", "a > b" or "a != b" of conditions
+analysis.reference | the first | condition that the others are compared with
+trajectory.from | generated curves | file with the curve to follow
+trajectory.speed | | along the arc
+trajectory.length_x | | of the trajectory from left to right
+trajectory.range_z | | of the trajectory across
+trajectory.sinusoids | | that the trajectory is the sum of
+trajectory.max_spatial_frequency | | of the sinusoids
+force_pattern.sinusoids | | that the base is the sum of
+force_pattern.max_frequency | | of the sinusoids
+force_pattern.base_max | | greatest force of the base
+force_pattern.bumps_min | | least number of bumps
+force_pattern.bumps_max | | greatest number of bumps
+force_pattern.bump_max | | greatest force with bumps
+force_pattern.bump_width_min | | least width of a bump
+force_pattern.bump_width_max | | greatest width of a bump
+force_pattern.ramp | | time over which the force begins and ends
+guidance.kind | trajectory | whether a point is followed in time, or a curve at the participant's own pace
+guidance.force_limit | | of the commanded force
+guidance.approach_speed | | peak speed on the way to the start
+guidance.settle_distance | | the hand has arrived when it is this near the start
+guidance.wait | | time that the hand must stay there
+guidance.wait_timeout | | the pass is aborted after this time
+guidance.recovery | | time without force after an aborted pass
+guidance.run_timeout | | longest duration of a run at one's own pace
+guidance.trajectory.stiffness | | of the spring to the trajectory
+guidance.trajectory.damping | | along it
+guidance.plane.stiffness | | of the spring to the plane
+guidance.plane.damping | | along it
+guidance.curve.step | | between neighbouring points of the curve
+guidance.curve.reach | | within which the next point is looked for
+guidance.curve.margin | | by which another branch must be nearer
+recording.stimulus_rate | | samples of the stored target curves
+pace.pace | | along a path of the reference curvature
+pace.variability | | spread of the intended speed within a pass
+pace.correlation | | time over which it is alike
+subject.visual_weber | | spread of a seen bar height, as a share of it
+subject.haptic_weber | | spread of a felt force, as a share of it
+subject.visual_memory_noise | | of a height kept in memory, as a force
+subject.haptic_memory_noise | | of a force kept in memory
+subject.haptic_bias | | spread of the felt scale from pass to pass
+subject.bar_misjudgement | | spread of newtons per bar height before calibration
+subject.calibration_loss | | share of a calibration that is gone after a block
+subject.forgetting | | drift of the memory between passes
+subject.memory_correlation | | time over which memory errors are alike
+subject.production_bias | | spread of the produced scale from recall to recall
+subject.timing_error | | spread of the time at which a remembered force comes
+subject.timing_correlation | | time over which timing errors are alike
+subject.visual_delay | | reaction to what is seen
+subject.haptic_delay | | reaction to what is felt
+subject.force_noise | | spread of a held force, as a share of it
+subject.force_noise_time | | its correlation time
+subject.tremor | | root mean square of the tremor
+subject.tremor_frequency | | of the tremor
+force_training:analysis.samples | | of the common time base
+force_training:analysis.filter_width | | of the box filter on the applied force
+force_training:analysis.power | | exponent of the differences
+force_training:analysis.force_weight | | weight of the difference of forces
+force_training:analysis.slope_weight | | weight of the difference of slopes
+force_training:analysis.penalty | | cost of a step that stretches or compresses time
+force_training:analysis.cost_share | | weight of the alignment's cost in the score
+force_training:analysis.force_share | | weight of the difference of forces in the score
+force_training:analysis.slope_share | | weight of the difference of slopes in the score
+force_training:analysis.step_pattern | published | steps that the alignment may take
+force_training:analysis.window | no window | greatest difference in time
+force_training:analysis.open_begin | false | whether the applied curve may begin late
+force_training:analysis.open_end | false | whether it may end early
+bone.bones | | procedural temporal, procedural mandible, or files; procedures use them in turn
+bone.seed | 1 | of procedural bones
+bone.spacing | of the bone | of voxels
+bone.centre | | of the volume in the world
+bone.x_to | | direction of the bone's x axis in the world
+bone.y_to | | direction of its y axis
+tools.in_hand | | names of tools, in the order in which a button selects them
+tools.NAME.type | | what the tool is
+tools.NAME.handle_radius | | of the tool's handle
+tools.NAME.handle_length | | of the tool's handle
+tools.NAME.kind | | of the burr
+tools.NAME.diameter | | of the burr
+tools.NAME.sample_spacing | | edge of a cell of the burr with one sample
+tools.NAME.removal_rate | | share of the immersed volume that is removed
+tools.NAME.falloff | | of that rate with latitude
+tools.NAME.tangential_gain | | of the force along the surface
+tools.NAME.right_handed | true | direction in which the burr turns
+tools.NAME.feel.first_gain | | force for an immersed volume just after contact
+tools.NAME.feel.second_gain | | the same deeper
+tools.NAME.feel.threshold | | immersed volume at which the gain changes
+tools.NAME.feel.force_limit | | of the contact
+tools.NAME.feel.least_agreement | | of the pushes of samples, below which the force fades
+tools.NAME.radius | | of the opening of a suction tube
+tools.NAME.width | | of the plane of a cut
+tools.NAME.height | | of the plane of a cut
+tools.NAME.depth | | of a cut
+tools.NAME.shape | | of the plate
+tools.NAME.holes | 4 | of a straight plate
+tools.NAME.contact.samples | | of the plate that touch
+tools.NAME.contact.extrusion | | by which they stand out
+tools.NAME.contact.reach | | within which bone is felt
+tools.NAME.contact.stiffness | | of the contact
+tools.NAME.reach | | within which a grip takes a piece
+drilling.force_limit | | of the commanded force
+drilling.time_limit | | longest duration of a procedure
+drilling.handle | | direction from the tip along the handle
+drilling.scale | | size of the device's workspace over that of the scene
+drilling.recovery | | time without force after an aborted pass
+buttons.analog_pedal | false | whether the pedal sets the speed of the burr
+pieces.capacity | | greatest number of pieces
+pieces.smallest_piece | | in voxels; smaller parts turn to dust
+pieces.moves_per_tick | | voxels that are moved to a new piece per tick, at most
+pieces.split_initial | | whether parts that are separate at the start become pieces
+camera.eye | | of the microscope
+camera.target | | that is looked at
+camera.up | | upward in the picture
+camera.field_of_view | | at the start
+camera.move_gain | | distance of the view for a distance of the hand
+camera.turn_gain | | angle of the view for a distance of the hand
+camera.zoom_rate | | of a held button
+camera.narrowest | | field of view
+camera.widest | | field of view
+dust.cell | | edge of a cell
+dust.bulking | | volume of loose dust over that of solid bone
+dust.fall_speed | | of dust
+dust.slope | | steepest slope of a pile at rest
+dust.suction_rate | | volume of dust that suction takes
+dust.suction_reach | | distance from the mouth of the tube
+sound.card | false | whether sound is played live
+sound.vibration_gain | | strength of the burr's vibration in the handle
+sound.thin_threshold | | thinner bone sounds higher
+sound.thin_rise | | rise of the pitch, as a share, where no bone is left
+sound.spectra | built in | file with spectra of the sound
+sound.vibration | built in | file with spectra of the vibration
+drilling_hand.start | | of the hand, above the region's centre
+drilling_hand.inward | | direction into the bone
+drilling_hand.along | | direction of strokes
+drilling_hand.width | | of the region along strokes
+drilling_hand.height | | of the region across strokes
+drilling_hand.depth | | below the place where bone was first touched
+drilling_hand.line | | distance between neighbouring strokes
+drilling_hand.press | | pressing force
+drilling_hand.speed | | along a stroke
+drilling_hand.hover | | height above the bone between strokes
+drilling_hand.force_noise | | as a share of the press
+drilling_hand.force_noise_time | | its correlation time
+drilling_hand.tremor | | root mean square of the tremor
+drilling_hand.tremor_frequency | | of the tremor
+drilling_hand.suction_time | | duration of a suction
+drilling_hand.power_button | | of the device: the burr turns
+drilling_hand.next_button | | takes the next tool; -1: no suction
+drilling_hand.previous_button | | takes the tool before
+drilling_hand.look_button | | turns the camera while held; -1: it is never used
+drilling_hand.suction_tool | | place of the suction among the tools
+drilling_hand.strokes_to_suction | | suction follows after this many strokes
+cavity.inward | towards the structure that it ends at | direction into the bone
+cavity.beside | the facial nerve | structure beside which the cavity ends
+cavity.offset | none | of its end from that structure
+cavity.radius | | at its end
+cavity.slope | | radius by height
+cavity.margin | | to any structure
+cavity.structures | none | that have margins of their own
+cavity.margins | none | theirs
+virtual_surgeons.rough | | burr for most of the bone
+virtual_surgeons.fine | | burr near structures
+virtual_surgeons.between | | spread of skill between surgeons
+virtual_surgeons.within | | spread from procedure to procedure
+virtual_surgeons.learning | | share of the lack of skill that a procedure takes
+virtual_surgeons.power_button | | of the device: the burr turns
+virtual_surgeons.next_button | | takes the next tool
+virtual_surgeons.previous_button | | takes the tool before
+virtual_surgeons.look_button | | turns the camera while held; -1: none
+virtual_surgeons.finish_button | | ends the procedure; -1: none
+virtual_surgeons.skill | | from 0 to 1
+virtual_surgeons.skill.NAME | | of the group, from 0 to 1
+buttons.power | none | numbers of the device: the burr turns
+buttons.next_tool | none | numbers of the device: takes the next tool
+buttons.previous_tool | none | numbers of the device: takes the tool before
+buttons.camera_move | none | numbers of the device: while held, the hand moves the camera
+buttons.camera_turn | none | numbers of the device: while held, the hand turns the camera
+buttons.zoom_in | none | numbers of the device: makes the picture larger
+buttons.zoom_out | none | numbers of the device: makes it smaller
+buttons.carry | none | numbers of the device: while held, the touched piece of bone goes with the hand
+buttons.apply | none | numbers of the device: fixes the plate or cuts the plane
+buttons.detach | none | numbers of the device: the plate that was fixed last comes off
+buttons.finish | none | numbers of the device: ends the procedure
+buttons.still | none | numbers of the device: shows the next still
+keys.power | none | keys of the window: the burr turns
+keys.next_tool | none | keys of the window: takes the next tool
+keys.previous_tool | none | keys of the window: takes the tool before
+keys.camera_move | none | keys of the window: while held, the hand moves the camera
+keys.camera_turn | none | keys of the window: while held, the hand turns the camera
+keys.zoom_in | none | keys of the window: makes the picture larger
+keys.zoom_out | none | keys of the window: makes it smaller
+keys.carry | none | keys of the window: while held, the touched piece of bone goes with the hand
+keys.apply | none | keys of the window: fixes the plate or cuts the plane
+keys.detach | none | keys of the window: the plate that was fixed last comes off
+keys.finish | none | keys of the window: ends the procedure
+keys.still | none | keys of the window: shows the next still
+)";
+}
+
+}  // namespace haptrial::experiments

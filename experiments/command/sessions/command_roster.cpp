@@ -1,0 +1,190 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "analysis/files/delimited.h"
+#include "core/base/error.h"
+#include "core/base/files/file_text.h"
+#include "core/base/text/counted.h"
+#include "experiments/command/arguments.h"
+#include "experiments/command/commands.h"
+#include "experiments/command/sessions/next_session.h"
+#include "experiments/studies/experiment.h"
+#include "experiments/study/roster.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using Row = std::vector<std::string>;
+
+std::string sessions_in(const RosterPerson& person, SessionState state, int sessions) {
+  std::string all;
+  for (const RosterSession& each : person.sessions) {
+    if (each.state == state) {
+      all += (all.empty() ? "" : " ") + std::to_string(each.session);
+    }
+  }
+  return sessions > 1 || all.empty() ? all : "yes";
+}
+
+std::string standing_of(const RosterPerson& person) {
+  return person.pilot       ? "pilot"
+         : person.excluded  ? "excluded"
+         : person.simulated ? "simulated"
+                            : "";
+}
+
+/// Columns as wide as their longest entry.
+void print_table(const std::vector<Row>& rows) {
+  std::vector<std::size_t> widths(rows.front().size());
+  for (const Row& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      widths[i] = std::max(widths[i], row[i].size());
+    }
+  }
+  for (const Row& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      line += fmt::format("{:<{}}  ", row[i], widths[i]);
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    fmt::print("{}\n", line);
+  }
+}
+
+void print_persons(const Roster& roster) {
+  std::vector<Row> rows{{"participant", "group", "done", "aborted", "unfinished", "next", "note"}};
+  for (const RosterPerson& person : roster.persons) {
+    const std::string running = sessions_in(person, SessionState::kRunning, 2);
+    rows.push_back({person.subject, person.group.empty() ? "-" : person.group,
+                    sessions_in(person, SessionState::kDone, roster.sessions),
+                    sessions_in(person, SessionState::kAborted, roster.sessions),
+                    sessions_in(person, SessionState::kUnfinished, roster.sessions),
+                    person.next == 0 || person.pilot ? "-" : std::to_string(person.next),
+                    running.empty() ? standing_of(person) : "recording session " + running});
+  }
+  print_table(rows);
+}
+
+void print_roster(const Roster& roster) {
+  if (roster.persons.empty()) {
+    fmt::print("nobody has a session yet\n");
+  } else {
+    print_persons(roster);
+  }
+  fmt::print("\n");
+  for (const RosterGroup& group : roster.groups) {
+    fmt::print("{}{} of {} begun, {} with {}\n", group.name.empty() ? "" : group.name + ": ",
+               group.begun, counted(group.planned, "participant", "participants"), group.finished,
+               roster.sessions > 1 ? "every session" : "their session");
+  }
+  for (const std::string& remark : roster.remarks) {
+    fmt::print("{}\n", remark);
+  }
+  for (const RosterNext& next : roster.next) {
+    fmt::print("{}: {}\n      {}\n", &next == roster.next.data() ? "next" : "or",
+               words_of(next, roster.sessions), next.command);
+  }
+  if (roster.next.empty()) {
+    fmt::print("every planned participant has had every session\n");
+  }
+}
+
+std::string json_of(const Roster& roster) {
+  nlohmann::ordered_json json;
+  json["sessions"] = roster.sessions;
+  json["seed"] = roster.seed;
+  json["groups"] = nlohmann::ordered_json::array();
+  for (const RosterGroup& group : roster.groups) {
+    json["groups"].push_back({{"name", group.name},
+                              {"planned", group.planned},
+                              {"begun", group.begun},
+                              {"finished", group.finished}});
+  }
+  json["participants"] = nlohmann::ordered_json::array();
+  for (const RosterPerson& person : roster.persons) {
+    nlohmann::ordered_json own{{"subject", person.subject},   {"number", person.number},
+                               {"group", person.group},       {"pilot", person.pilot},
+                               {"excluded", person.excluded}, {"simulated", person.simulated},
+                               {"next_session", person.next}};
+    own["sessions"] = nlohmann::ordered_json::array();
+    for (const RosterSession& each : person.sessions) {
+      own["sessions"].push_back({{"session", each.session},
+                                 {"state", name_of(each.state)},
+                                 {"trials", each.trials},
+                                 {"file", each.file}});
+    }
+    json["participants"].push_back(std::move(own));
+  }
+  json["next"] = nlohmann::ordered_json::array();
+  for (const RosterNext& next : roster.next) {
+    json["next"].push_back({{"subject", next.subject},
+                            {"number", next.number},
+                            {"group", next.group},
+                            {"session", next.session},
+                            {"new", next.fresh},
+                            {"resume", next.resume},
+                            {"blocks", next.blocks},
+                            {"command", next.command}});
+  }
+  json["remarks"] = roster.remarks;
+  return json.dump(2) + "\n";
+}
+
+std::string csv_of(const Roster& roster) {
+  std::string text;
+  exchange::RowText row(text, exchange::Delimited::kCsv);
+  for (const char* name : {"participant", "number", "group", "pilot", "excluded", "simulated",
+                           "session", "state", "trials", "file", "next_session"}) {
+    row.add(name);
+  }
+  row.end();
+  for (const RosterPerson& person : roster.persons) {
+    for (const RosterSession& each : person.sessions) {
+      row.add(person.subject).add(person.number).add(person.group);
+      row.add(person.pilot ? 1 : 0).add(person.excluded ? 1 : 0).add(person.simulated ? 1 : 0);
+      row.add(each.session).add(name_of(each.state)).add(each.trials).add(each.file);
+      row.add(person.next).end();
+    }
+  }
+  return text;
+}
+
+void write_new(const std::string& file, const std::string& text) {
+  if (file.empty()) {
+    return;
+  }
+  if (fs::exists(file)) {
+    throw InputError(fmt::format("{}: exists already; give the name of a new file", file));
+  }
+  write_text(file, text);
+  fmt::print("roster: {}\n", file);
+}
+
+}  // namespace
+
+int roster(const RosterOptions& options) {
+  const Experiment experiment = load_experiment(options.definition);
+  RosterRequest request;
+  request.protocol = &experiment.study->protocol();
+  request.definition = experiment.definition.get();
+  request.definition_file = options.definition;
+  request.folder = options.folder;
+  if (options.seed) {
+    request.seed = checked_seed(*options.seed);
+  }
+  if (fs::exists(options.folder) && !fs::is_directory(options.folder)) {
+    throw InputError(options.folder + ": not a folder; give the folder of the session files");
+  }
+  const Roster roster = make_roster(request);
+  print_roster(roster);
+  write_new(options.json, json_of(roster));
+  write_new(options.csv, csv_of(roster));
+  return 0;
+}
+
+}  // namespace haptrial::experiments

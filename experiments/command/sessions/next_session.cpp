@@ -1,0 +1,101 @@
+#include "experiments/command/sessions/next_session.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/base/text/counted.h"
+#include "experiments/command/arguments.h"
+
+namespace haptrial::experiments {
+namespace {
+
+Roster roster_of(const RunOptions& options, const Experiment& experiment) {
+  RosterRequest request;
+  request.protocol = &experiment.study->protocol();
+  request.definition = experiment.definition.get();
+  request.definition_file = options.definition;
+  request.folder = options.out;
+  request.seed = checked_seed(options.seed);
+  return make_roster(request);
+}
+
+/// Somebody new before those who have sessions left; with --resume only who has an unfinished one.
+const RosterNext* next_of(const Roster& roster, const RunOptions& options) {
+  const auto at = std::find_if(roster.next.begin(), roster.next.end(), [&](const auto& next) {
+    return next.resume == options.resume && next.session == options.session.value_or(next.session);
+  });
+  return at != roster.next.end() ? &*at : nullptr;
+}
+
+std::string choose_subject(RunOptions& options, const Experiment& experiment) {
+  if (options.pilot) {
+    throw InputError(
+        "--pilot is given without --subject; the roster names no pilots: add --subject");
+  }
+  const Roster roster = roster_of(options, experiment);
+  const RosterNext* next = next_of(roster, options);
+  if (next == nullptr && options.resume) {
+    throw InputError(fmt::format("{}: no session is unfinished; leave out --resume", options.out));
+  }
+  if (next == nullptr) {
+    throw InputError(fmt::format(
+        "{}: nobody is next: haptrial roster {} {} shows why; add --subject for somebody else",
+        options.out, options.definition, options.out));
+  }
+  options.subject = next->subject;
+  options.session = next->session;
+  if (!options.participant && next->number > 0) {
+    options.participant = next->number;
+  }
+  return "next: " + words_of(*next, roster.sessions);
+}
+
+/// The first session that the subject has left.
+std::string choose_number(RunOptions& options, const Experiment& experiment) {
+  const Roster roster = roster_of(options, experiment);
+  const auto at =
+      std::find_if(roster.persons.begin(), roster.persons.end(), [&](const RosterPerson& person) {
+        return person.subject == options.subject && person.pilot == options.pilot &&
+               !person.excluded;
+      });
+  const int session = at != roster.persons.end() ? at->next : 1;
+  if (session == 0) {
+    throw InputError(fmt::format("{}: {} has had {}", options.out, options.subject,
+                                 counted(roster.sessions, "session", "sessions")));
+  }
+  options.session = session;
+  return fmt::format("next of {}: session {} of {}", options.subject, session, roster.sessions);
+}
+
+}  // namespace
+
+int checked_session(int session, const protocols::Definition& setup) {
+  return checked_number("--session", session, 1, setup.sessions());
+}
+
+std::string words_of(const RosterNext& next, int sessions) {
+  std::string words = next.subject;
+  words += next.group.empty() ? "" : fmt::format(" (group {})", next.group);
+  words += sessions > 1 ? fmt::format(", session {} of {}", next.session, sessions) : "";
+  words += next.resume ? ", to be resumed" : "";
+  words += next.blocks.empty() ? "" : fmt::format(": {}", fmt::join(next.blocks, ", "));
+  return words;
+}
+
+std::string choose_session(RunOptions& options, const Experiment& experiment) {
+  if (options.session) {
+    checked_session(*options.session, *experiment.definition);
+  }
+  if (options.subject.empty()) {
+    return choose_subject(options, experiment);
+  }
+  if (!options.session && experiment.definition->sessions() > 1) {
+    return choose_number(options, experiment);
+  }
+  return "";
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "experiments/command/commands.h"
+#include "experiments/studies/experiment.h"
+#include "experiments/study/roster.h"
+
+namespace haptrial::experiments {
+
+/// `session` if the definition has it. @throws InputError naming the option
+int checked_session(int session, const protocols::Definition& setup);
+
+/// Fills in who is next in which session where the command line does not say it.
+/// @returns a sentence that says who was chosen, and what comes; empty where nothing was left open
+/// @throws InputError where nobody is next, or for a session that the definition does not have
+std::string choose_session(RunOptions& options, const Experiment& experiment);
+
+/// "P04 (group clockwise), session 2 of 4: visual, haptic"
+std::string words_of(const RosterNext& next, int sessions);
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,320 @@
+#include "experiments/study/roster.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "core/base/error.h"
+#include "core/record/hdf5/file_lock.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/read/trial_progress.h"
+#include "experiments/study/session_name.h"
+#include "protocols/definition/groups.h"
+#include "protocols/definition/study_rules.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using protocols::StudyGroup;
+
+constexpr const char* kExcluded = "excluded";
+constexpr const char* kVirtual = "virtual";
+
+struct FoundFile {
+  fs::path file;
+  record::SessionInfo info;
+  RosterSession session;
+};
+
+SessionState state_of(const fs::path& file, const record::SessionReader& reader) {
+  if (file.extension() == ".partial") {
+    return record::FileLock::taken(file) ? SessionState::kRunning : SessionState::kUnfinished;
+  }
+  const auto events = reader.events();
+  const bool aborted = std::any_of(events.begin(), events.end(), [](const record::EventRow& event) {
+    return event.kind == "ended_for_good";
+  });
+  return aborted ? SessionState::kAborted : SessionState::kDone;
+}
+
+/// The session files of a folder, finished or not; what cannot be read gets a sentence.
+std::vector<FoundFile> found_in(const fs::path& folder, std::vector<std::string>& remarks) {
+  std::vector<fs::path> files;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().extension() == ".h5" || entry.path().extension() == ".partial") {
+      files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  std::vector<FoundFile> found;
+  for (const fs::path& file : files) {
+    try {
+      const record::SessionReader reader(file);
+      FoundFile one{file, reader.info(), {}};
+      one.session = {static_cast<int>(one.info.session), state_of(file, reader),
+                     record::trial_progress(reader).done, file.filename().string(),
+                     one.info.device};
+      found.push_back(std::move(one));
+    } catch (const InputError& error) {
+      remarks.push_back(fmt::format("Not counted, because it cannot be read: {}", error.what()));
+    }
+  }
+  return found;
+}
+
+/// As a shell takes it.
+std::string typed(const std::string& path) {
+  return path.find_first_of(" ()&;'") == std::string::npos ? path : fmt::format("\"{}\"", path);
+}
+
+class RosterMaker {
+ public:
+  explicit RosterMaker(const RosterRequest& request)
+      : request_(request),
+        d_(*request.definition),
+        groups_(protocols::study_groups(d_.text, d_.file_name)) {}
+
+  Roster make() {
+    roster_.sessions = d_.sessions();
+    add_files(found_in(request_.folder, roster_.remarks), false);
+    add_files(found_in(request_.folder / kExcluded, roster_.remarks), true);
+    roster_.seed = request_.seed.value_or(seed_.value_or(1));
+    std::sort(roster_.persons.begin(), roster_.persons.end(), [](const auto& a, const auto& b) {
+      return std::tie(a.pilot, a.excluded, a.subject) < std::tie(b.pilot, b.excluded, b.subject);
+    });
+    for (RosterPerson& person : roster_.persons) {
+      complete(person);
+    }
+    add_groups();
+    add_next();
+    return std::move(roster_);
+  }
+
+ private:
+  void add_files(const std::vector<FoundFile>& files, bool excluded) {
+    for (const FoundFile& found : files) {
+      check_study(found);
+      const record::SessionInfo& info = found.info;
+      auto at = std::find_if(roster_.persons.begin(), roster_.persons.end(), [&](const auto& each) {
+        return each.subject == info.subject && each.pilot == info.pilot &&
+               each.excluded == excluded;
+      });
+      if (at == roster_.persons.end()) {
+        roster_.persons.push_back({info.subject,
+                                   number_of_subject(info.subject),
+                                   "",
+                                   info.pilot,
+                                   excluded,
+                                   info.simulated,
+                                   {},
+                                   0});
+        at = roster_.persons.end() - 1;
+      }
+      if (at->session(found.session.session) != nullptr) {
+        roster_.remarks.push_back(fmt::format(
+            "{} has two files of session {}: {} and {}.", info.subject, found.session.session,
+            at->session(found.session.session)->file, found.session.file));
+      }
+      at->sessions.push_back(found.session);
+      if (!info.pilot && !excluded) {
+        newest_ = found.info.start_utc > newest_.start_utc ? found.info : newest_;
+      }
+    }
+  }
+
+  void check_study(const FoundFile& found) {
+    const DefinitionChanges changes =
+        protocols::study_changes(found.info, d_.text, found.info.device);
+    if (!changes.same_study()) {
+      throw InputError(
+          fmt::format("{}: was recorded with another definition than {}: {}; give the "
+                      "folder of one study",
+                      found.file.string(), d_.file_name, sentence_of(changes.binding)));
+    }
+    if (found.info.pilot) {
+      return;
+    }
+    seed_ = request_.seed ? request_.seed : seed_ ? seed_ : found.info.seed;
+    if (*seed_ != found.info.seed) {
+      throw InputError(
+          fmt::format("{}: was recorded with seed {}, not with {}; orders are balanced "
+                      "over the sessions of one seed",
+                      found.file.string(), found.info.seed, *seed_));
+    }
+  }
+
+  std::string group_of(int number) const {
+    return groups_.size() > 1 && number > 0 && number <= planned()
+               ? protocols::group_of(groups_, std::to_string(number))
+               : std::string();
+  }
+  /// Participants: of all groups, or where there is one of everybody, as [design] says.
+  int planned() const {
+    int all = 0;
+    for (const StudyGroup& group : groups_) {
+      all += group.participants;
+    }
+    return all > 0 ? all : d_.design.participants;
+  }
+
+  void complete(RosterPerson& person) const {
+    person.group = group_of(person.number);
+    std::sort(person.sessions.begin(), person.sessions.end(),
+              [](const auto& a, const auto& b) { return a.session < b.session; });
+    for (int session = roster_.sessions; session >= 1 && !person.excluded; --session) {
+      const RosterSession* there = person.session(session);
+      if (there == nullptr || there->state == SessionState::kUnfinished) {
+        person.next = session;
+      }
+    }
+  }
+
+  void add_groups() {
+    for (const StudyGroup& group : groups_) {
+      roster_.groups.push_back({groups_.size() > 1 ? group.name : "",
+                                group.participants > 0 ? group.participants : planned(), 0, 0});
+    }
+    std::map<int, std::string> holders;
+    for (const RosterPerson& person : roster_.persons) {
+      if (person.pilot || person.excluded) {
+        continue;
+      }
+      if (person.number < 1 || person.number > planned()) {
+        roster_.remarks.push_back(fmt::format("{} has no place in the plan of {} participants.",
+                                              person.subject, planned()));
+        continue;
+      }
+      const auto [holder, fresh] = holders.emplace(person.number, person.subject);
+      if (!fresh) {
+        roster_.remarks.push_back(fmt::format("{} and {} have the same number, so the same order.",
+                                              holder->second, person.subject));
+        continue;
+      }
+      RosterGroup& group = of(person.group);
+      ++group.begun;
+      group.finished += person.next == 0 ? 1 : 0;
+      taken_.insert(person.number);
+    }
+  }
+
+  RosterGroup& of(const std::string& name) {
+    return *std::find_if(roster_.groups.begin(), roster_.groups.end(),
+                         [&](const RosterGroup& group) { return group.name == name; });
+  }
+
+  /// New participants of each group that has a place, the emptiest group first; then who has
+  /// sessions left, by number.
+  void add_next() {
+    std::vector<const RosterGroup*> open;
+    for (const RosterGroup& group : roster_.groups) {
+      if (group.begun < group.planned) {
+        open.push_back(&group);
+      }
+    }
+    std::stable_sort(open.begin(), open.end(), [](const RosterGroup* a, const RosterGroup* b) {
+      return a->begun * b->planned < b->begun * a->planned;
+    });
+    for (const RosterGroup* group : open) {
+      for (int number = 1; number <= planned(); ++number) {
+        if (!taken_.contains(number) && group_of(number) == group->name) {
+          add_next({subject_for(number), number, group->name, 1, true, false, {}, ""});
+          break;
+        }
+      }
+    }
+    for (const RosterPerson& person : roster_.persons) {
+      if (!person.pilot && person.next > 0) {
+        const bool resume = person.session(person.next) != nullptr;
+        add_next({person.subject, person.number, person.group, person.next, false, resume, {}, ""});
+      }
+    }
+  }
+
+  /// As the identifiers before: "P07". After somebody who was excluded: "Pb07", then "Pc07".
+  std::string subject_for(int number) const {
+    std::string prefix = "P";
+    std::size_t digits = 2;
+    for (const RosterPerson& person : roster_.persons) {
+      if (!person.pilot && !person.excluded && person.number > 0) {
+        const std::size_t letters = person.subject.find_last_not_of("0123456789") + 1;
+        prefix = person.subject.substr(0, letters);
+        digits = person.subject.size() - letters;
+        break;
+      }
+    }
+    const auto name = [&](const std::string& mark) {
+      return fmt::format("{}{}{:0{}}", prefix, mark, number, digits);
+    };
+    std::string free = name("");
+    for (char mark = 'b'; is_known(free) && mark <= 'z'; ++mark) {
+      free = name(std::string(1, mark));
+    }
+    return free;
+  }
+  bool is_known(const std::string& subject) const {
+    return std::any_of(roster_.persons.begin(), roster_.persons.end(),
+                       [&](const RosterPerson& person) { return person.subject == subject; });
+  }
+
+  void add_next(RosterNext next) {
+    protocols::SessionPlace place;
+    place.subject = next.subject;
+    place.participant = std::max(0, next.number - 1);
+    place.session = next.session;
+    place.seed = roster_.seed;
+    give_seeds(place);
+    try {
+      next.blocks = request_.protocol->blocks(d_, place);
+    } catch (const InputError& error) {
+      roster_.remarks.push_back(error.what());
+    }
+    next.command =
+        fmt::format("haptrial run {} --subject {}", typed(request_.definition_file), next.subject);
+    next.command += roster_.sessions > 1 ? fmt::format(" --session {}", next.session) : "";
+    next.command += next.resume ? " --resume" : "";
+    const std::string& device = newest_.device;
+    next.command += device.empty() || device == kVirtual ? "" : fmt::format(" --device {}", device);
+    next.command += roster_.seed != 1 ? fmt::format(" --seed {}", roster_.seed) : "";
+    next.command += fmt::format(" --out {}", typed(request_.folder.string()));
+    roster_.next.push_back(std::move(next));
+  }
+
+  const RosterRequest& request_;
+  const protocols::Definition& d_;
+  std::vector<StudyGroup> groups_;
+  std::optional<std::uint64_t> seed_;
+  record::SessionInfo newest_;  // of the study
+  std::set<int> taken_;         // numbers
+  Roster roster_;
+};
+
+}  // namespace
+
+const char* name_of(SessionState state) {
+  switch (state) {
+    case SessionState::kAborted:
+      return "aborted";
+    case SessionState::kUnfinished:
+      return "unfinished";
+    case SessionState::kRunning:
+      return "running";
+    case SessionState::kDone:
+      break;
+  }
+  return "done";
+}
+
+const RosterSession* RosterPerson::session(int wanted) const {
+  const auto at = std::find_if(sessions.begin(), sessions.end(),
+                               [&](const RosterSession& each) { return each.session == wanted; });
+  return at != sessions.end() ? &*at : nullptr;
+}
+
+Roster make_roster(const RosterRequest& request) { return RosterMaker(request).make(); }
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,25 @@
+#include "experiments/study/session_name.h"
+
+#include <fmt/format.h>
+
+namespace haptrial::experiments {
+
+std::string session_file_name(const std::string& subject, int session, int sessions) {
+  const std::size_t digits = std::to_string(sessions).size();
+  return sessions > 1 ? fmt::format("{}-session-{:0{}}.h5", subject, session, digits)
+                      : subject + ".h5";
+}
+
+int number_of_subject(const std::string& subject) {
+  constexpr std::size_t kMostDigits = 5;
+  constexpr int kMost = 10000;
+  const auto letter = subject.find_last_not_of("0123456789");
+  const std::string digits = subject.substr(letter == std::string::npos ? 0 : letter + 1);
+  if (digits.empty() || digits.size() > kMostDigits) {
+    return 0;
+  }
+  const int number = std::stoi(digits);
+  return number <= kMost ? number : 0;
+}
+
+}  // namespace haptrial::experiments

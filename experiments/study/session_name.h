@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+namespace haptrial::experiments {
+
+/// The name of a session's file: "P01.h5"; where participants come several times
+/// "P01-session-2.h5", with as many digits as the last session has, so that names sort as sessions
+/// follow each other.
+/// @param session  from 1 to `sessions`
+std::string session_file_name(const std::string& subject, int session, int sessions);
+
+/// The number at the end of an identifier, from 1 to 10000; 0 if it has none.
+int number_of_subject(const std::string& subject);
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,243 @@
+// Who has done what, and who is next: read from the session files alone.
+
+#include "experiments/study/roster.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "analysis/files/csv.h"
+#include "core/base/error.h"
+#include "core/record/read/session_reader.h"
+#include "experiments/runner/session.h"
+#include "experiments/studies/experiment.h"
+#include "experiments/study/session_name.h"
+#include "protocols/trials/definition/trials_definition.h"
+#include "tests/experiments/command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/message_of.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const char* const kGroups = R"([experiment]
+protocol = "trials"
+name = "groups"
+[design]
+participants = 6
+sessions = 2
+blocks = "latin"
+[groups]
+left = 2
+right = 4
+[[blocks]]
+name = "slow"
+trials = 1
+[[blocks]]
+name = "fast"
+trials = 1
+[[stages]]
+name = "wait"
+until = { time = 0.05 }
+)";
+
+class RosterTest : public testing::Test {
+ protected:
+  RosterTest() {
+    test::write_text(definition_, kGroups);
+    experiment_ = load_experiment(definition_);
+    fs::create_directory(sessions_);
+  }
+
+  void record(const std::string& subject, int session, bool pilot = false,
+              std::uint64_t seed = 1) const {
+    SessionRequest request;
+    request.protocol = &experiment_.study->protocol();
+    request.definition = experiment_.definition.get();
+    request.subject = subject;
+    request.participant = number_of_subject(subject) - 1;
+    request.session = session;
+    request.seed = seed;
+    request.pilot = pilot;
+    request.file = sessions_ / session_file_name(subject, session, 2);
+    run_session(request);
+  }
+  Roster roster() const {
+    return make_roster({&experiment_.study->protocol(),
+                        experiment_.definition.get(),
+                        definition_.string(),
+                        sessions_,
+                        {}});
+  }
+  static std::vector<std::string> nexts(const Roster& roster) {
+    std::vector<std::string> all;
+    for (const RosterNext& next : roster.next) {
+      all.push_back(next.subject + " " + std::to_string(next.session));
+    }
+    return all;
+  }
+  test::CommandResult haptrial(const std::string& arguments) const {
+    return test::run_command("haptrial " + arguments);
+  }
+  std::string quoted(const fs::path& path) const { return "'" + path.string() + "'"; }
+
+  test::TemporaryFolder folder_;
+  fs::path definition_{folder_ / "groups.toml"};
+  fs::path sessions_{folder_ / "sessions"};
+  Experiment experiment_;
+};
+
+TEST_F(RosterTest, NobodyYet) {
+  const Roster empty = roster();
+  EXPECT_THAT(empty.persons, IsEmpty());
+  // Participants 1 and 2 are of the first group, 3 to 6 of the second.
+  EXPECT_THAT(nexts(empty), ElementsAre("P01 1", "P03 1"));
+  EXPECT_EQ(empty.next[0].group, "left");
+  EXPECT_EQ(empty.next[1].group, "right");
+}
+
+TEST_F(RosterTest, TheEmptiestGroupIsFilledFirst) {
+  // Shares after each: 1/2 and 0/4, 1/2 and 1/4, 1/2 and 2/4, 2/2 and 2/4, ...
+  std::vector<std::string> came;
+  while (came.size() < 6) {
+    const Roster now = roster();
+    const RosterNext& next = now.next.front();
+    ASSERT_TRUE(next.fresh);
+    came.push_back(next.subject);
+    record(next.subject, 1);
+  }
+  EXPECT_THAT(came, ElementsAre("P01", "P03", "P04", "P02", "P05", "P06"));
+  const Roster full = roster();
+  EXPECT_FALSE(full.next.front().fresh);
+  EXPECT_THAT(nexts(full), ElementsAre("P01 2", "P02 2", "P03 2", "P04 2", "P05 2", "P06 2"));
+}
+
+TEST_F(RosterTest, TheNextSessionIsTheOneThatIsLeft) {
+  record("P01", 1);
+  record("P01", 2);
+  record("P03", 1);
+  const Roster now = roster();
+  EXPECT_THAT(nexts(now), ElementsAre("P04 1", "P02 1", "P03 2"));
+  ASSERT_EQ(now.groups.size(), 2u);
+  EXPECT_EQ(now.groups[0].begun, 1);
+  EXPECT_EQ(now.groups[0].finished, 1);
+  EXPECT_EQ(now.groups[1].begun, 1);
+  EXPECT_EQ(now.groups[1].finished, 0);
+  EXPECT_EQ(now.persons.at(0).next, 0);
+  EXPECT_EQ(now.persons.at(1).next, 2);
+  EXPECT_EQ(now.persons.at(1).sessions.at(0).trials, 2);
+}
+
+TEST_F(RosterTest, ItSaysTheBlocksThatTheSessionThenHas) {
+  const Roster now = roster();
+  record("P01", 1);
+  const record::SessionReader file(sessions_ / "P01-session-1.h5");
+  std::vector<std::string> blocks;
+  for (const record::PassRow& pass : file.passes()) {
+    blocks.push_back(pass.condition);
+  }
+  EXPECT_EQ(now.next.front().blocks, blocks);
+}
+
+TEST_F(RosterTest, PilotsHaveNoPlace) {
+  record("P01", 1, true);
+  const Roster now = roster();
+  ASSERT_EQ(now.persons.size(), 1u);
+  EXPECT_TRUE(now.persons[0].pilot);
+  EXPECT_EQ(now.groups[0].begun, 0);
+  EXPECT_EQ(now.next.front().number, 1);
+}
+
+TEST_F(RosterTest, TheNumberOfAnExcludedParticipantIsFreeAgain) {
+  record("P01", 1);
+  fs::create_directory(sessions_ / "excluded");
+  fs::rename(sessions_ / "P01-session-1.h5", sessions_ / "excluded/P01-session-1.h5");
+  const Roster now = roster();
+  ASSERT_EQ(now.persons.size(), 1u);
+  EXPECT_TRUE(now.persons[0].excluded);
+  EXPECT_EQ(now.persons[0].next, 0);
+  EXPECT_EQ(now.next.front().subject, "Pb01");
+  EXPECT_EQ(now.next.front().number, 1);
+}
+
+TEST_F(RosterTest, WhatIsWrongIsSaid) {
+  record("P01", 1);
+  record("Q01", 1);
+  record("P09", 1);
+  EXPECT_THAT(roster().remarks,
+              ElementsAre(HasSubstr("P09 has no place in the plan of 6 participants"),
+                          HasSubstr("P01 and Q01 have the same number")));
+  record("P02", 1, false, 2);
+  EXPECT_THAT(test::message_of<InputError>([&] { roster(); }),
+              HasSubstr("was recorded with seed 2, not with 1"));
+  fs::remove(sessions_ / "P02-session-1.h5");
+  test::write_text(definition_, std::string(kGroups) + "onset = { speed_above = 0.1 }\n");
+  const Experiment changed = load_experiment(definition_);
+  EXPECT_THAT(test::message_of<InputError>([&] {
+                make_roster({&changed.study->protocol(),
+                             changed.definition.get(),
+                             definition_.string(),
+                             sessions_,
+                             {}});
+              }),
+              HasSubstr("was recorded with another definition"));
+}
+
+TEST_F(RosterTest, RunWithoutASubjectTakesTheNextOne) {
+  const std::string run = "run " + quoted(definition_) + " --out " + quoted(sessions_);
+  const auto first = haptrial(run);
+  ASSERT_EQ(first.status, 0) << first.errors;
+  EXPECT_THAT(first.output, HasSubstr("next: P01 (group left), session 1 of 2: "));
+  const auto second = haptrial(run);
+  ASSERT_EQ(second.status, 0) << second.errors;
+  EXPECT_THAT(second.output, HasSubstr("next: P03 (group right), session 1 of 2: "));
+  EXPECT_TRUE(fs::exists(sessions_ / "P03-session-1.h5"));
+  const auto resumed = haptrial(run + " --resume");
+  EXPECT_EQ(resumed.status, 2);
+  EXPECT_THAT(resumed.errors, HasSubstr("no session is unfinished"));
+  const auto pilot = haptrial(run + " --pilot");
+  EXPECT_EQ(pilot.status, 2);
+  EXPECT_THAT(pilot.errors, HasSubstr("add --subject"));
+}
+
+TEST_F(RosterTest, TheCommandsThatItShowsAreGood) {
+  record("P01", 1);
+  const Roster before = roster();
+  for (const RosterNext& next : before.next) {
+    const auto done = test::run_command(next.command);
+    EXPECT_EQ(done.status, 0) << next.command << "\n" << done.errors;
+    const fs::path file = sessions_ / session_file_name(next.subject, next.session, 2);
+    EXPECT_TRUE(fs::exists(file)) << next.command;
+  }
+}
+
+TEST_F(RosterTest, TheSameAsATableAndAsNumbers) {
+  record("P01", 1);
+  record("P03", 1);
+  const auto done =
+      haptrial("roster " + quoted(definition_) + " " + quoted(sessions_) + " --json " +
+               quoted(folder_ / "r.json") + " --csv " + quoted(folder_ / "r.csv"));
+  ASSERT_EQ(done.status, 0) << done.errors;
+  EXPECT_THAT(done.output, HasSubstr("left: 1 of 2 participants begun, 0 with every session"));
+  EXPECT_THAT(done.output, HasSubstr("next: P04 (group right), session 1 of 2: "));
+  const auto json = nlohmann::json::parse(test::read_text(folder_ / "r.json"));
+  EXPECT_EQ(json.at("next").at(0).at("subject"), "P04");
+  EXPECT_EQ(json.at("participants").size(), 2u);
+  EXPECT_EQ(json.at("participants").at(0).at("sessions").at(0).at("state"), "done");
+  const auto table = analysis::CsvTable::load(folder_ / "r.csv");
+  ASSERT_EQ(table.rows(), 2u);
+  EXPECT_EQ(table.text(1, table.column("group")), "right");
+  EXPECT_EQ(table.text(1, table.column("next_session")), "2");
+}
+
+}  // namespace
+}  // namespace haptrial::experiments
