@@ -90,7 +90,7 @@ void add_cues(const CuePlan& plan, const std::string& unit, const CueStudy& cues
         mean(&CuePerson::second_sd, true), mean(&CuePerson::both_sd, true),
         mean(&CuePerson::predicted_sd, true), tested(level.log_sd), tested(level.beats_best)));
     if (!level.left_out.empty()) {
-      lines.push_back(fmt::format("{} left out{}, for lack of a condition",
+      lines.push_back(fmt::format("{} left out{}, for lack of a condition or of a function",
                                   counted(level.left_out.size(), "participant"), at));
     }
   }

@@ -96,7 +96,9 @@ TEST_P(WriteTrials, EqualInputGivesEqualBytes) {
 TEST(WriteCues, TheirCombinationLeadsTheReport) {
   test::SimulatedCues study;
   study.participants = 4;
-  study.eye_sd = {0.003, 0.006};
+  study.eye_sd = {0.004, 0.006};
+  study.exact = true;
+  study.repetitions = 40;
   TrialsData data = test::simulated_cues(study);
   std::erase_if(data.trials, [&](const StudyTrial& trial) {
     return trial.session == 3 && factor_level(data, trial, "modality") == "hand";
