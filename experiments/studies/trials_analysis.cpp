@@ -1,6 +1,10 @@
 #include "experiments/studies/trials_analysis.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdlib>
+#include <map>
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
@@ -41,6 +45,78 @@ void add_names(const protocols::TrialsDefinition& d, PlanDefaults& defaults) {
   }
 }
 
+/// A level as a table of trials shows it; empty: it depends on others.
+std::string level_of_formula(const std::string& formula) {
+  constexpr char kQuote = '\'';
+  if (formula.size() > 1 && formula.front() == kQuote && formula.back() == kQuote) {
+    const std::string word = formula.substr(1, formula.size() - 2);
+    return word.find(kQuote) == std::string::npos ? word : std::string();
+  }
+  char* end = nullptr;
+  const double number = std::strtod(formula.c_str(), &end);
+  return end != formula.c_str() && *end == '\0' ? fmt::format("{}", number) : std::string();
+}
+
+/// Levels of factors and of what blocks give, and what [variables] says elsewhere. Factors with a
+/// level that depends on others are left out.
+std::map<std::string, std::vector<std::string>> stated_levels(const protocols::TrialsDefinition& d,
+                                                              Table& root) {
+  std::map<std::string, std::vector<std::string>> formulas;
+  for (const protocols::Factor& factor : d.order.factors) {
+    formulas[factor.name] = factor.levels;
+  }
+  for (const protocols::Block& block : d.order.blocks) {
+    for (const protocols::GivenValue& value : block.values) {
+      formulas[value.name].push_back(value.formula);
+    }
+  }
+  std::map<std::string, std::vector<std::string>> stated;
+  for (auto& [name, all] : formulas) {
+    if (root.has("variables") && root.table("variables").has(name)) {
+      Table variables = root.table("variables");
+      all.push_back(variables.is_table(name) ? "$" + name
+                    : variables.has_text(name)
+                        ? variables.text(name)
+                        : fmt::format("{:.17g}", variables.number(name, {}, "")));
+    }
+    std::vector<std::string> levels;
+    for (const std::string& formula : all) {
+      const std::string level = level_of_formula(formula);
+      if (std::find(levels.begin(), levels.end(), level) == levels.end()) {
+        levels.push_back(level);
+      }
+    }
+    if (std::find(levels.begin(), levels.end(), "") == levels.end()) {
+      stated[name] = levels;
+    }
+  }
+  return stated;
+}
+
+/// What the comparison of cues may name.
+analysis::trials::CueNames cue_names(const protocols::TrialsDefinition& d) {
+  Table root = Table::parse(d.text, d.file_name);
+  analysis::trials::CueNames names;
+  names.levels = stated_levels(d, root);
+  const auto add = [&](const std::string& name) {
+    if (std::find(names.variables.begin(), names.variables.end(), name) == names.variables.end()) {
+      names.variables.push_back(name);
+    }
+  };
+  for (const protocols::Interval& interval : d.intervals) {
+    names.intervals.push_back(interval.name);
+    for (const protocols::GivenValue& value : interval.values) {
+      add(value.name);
+    }
+  }
+  if (root.has("variables")) {
+    for (const std::string& name : root.table("variables").keys_as_written()) {
+      add(name);
+    }
+  }
+  return names;
+}
+
 /// The axis that a procedure states, whatever its kind.
 void take_axis(Table& root, psychometric::Axis& axis) {
   if (!root.has("procedure")) {
@@ -64,6 +140,7 @@ PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
   PlanDefaults defaults;
   add_names(d, defaults);
   defaults.reaching = reaching_names(d);
+  defaults.cues = cue_names(d);
   for (std::size_t i = 1; i < d.questions.size() && defaults.rating.empty(); ++i) {
     defaults.rating = d.questions[i].correct.empty() ? d.questions[i].name : std::string();
   }

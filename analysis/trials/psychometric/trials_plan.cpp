@@ -153,6 +153,8 @@ void read_psychometric(Table& table, const PlanDefaults& defaults, TrialsPlan& p
   if (table.has("resamples")) {
     plan.resamples = static_cast<std::size_t>(table.integer("resamples", 0, 100'000));
   }
+  plan.cues =
+      read_cue_plan(table, defaults.cues, plan.by, plan.guess_free ? 0.0 : plan.function.guess);
 }
 
 }  // namespace

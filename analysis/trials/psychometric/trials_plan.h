@@ -8,6 +8,7 @@
 #include "analysis/psychometric/fit/fitted_function.h"
 #include "analysis/psychometric/fit/likelihood_fit.h"
 #include "analysis/statistics/design/analysis_plan.h"
+#include "analysis/trials/psychometric/cue_plan.h"
 #include "analysis/trials/reaching/reaching_plan.h"
 
 namespace haptrial {
@@ -35,6 +36,7 @@ struct PlanDefaults {
   psychometric::Axis axis;           // of the procedure, with its unit
   std::optional<double> guess;       // 1 / choices where an answer is right; else free
   ReachingNames reaching;            // that the analysis of movements may name
+  CueNames cues;                     // that the comparison of cues may name
 };
 
 /// What [analysis] of a definition states.
@@ -58,7 +60,8 @@ struct TrialsPlan {
   std::size_t resamples{1999};  // of each function
   std::size_t permutations{9999};
   std::uint64_t seed{1};
-  ReachingPlan reaching;  // where `kind` is kReaching
+  std::optional<CuePlan> cues;  // two cues whose combination is compared with the best
+  ReachingPlan reaching;        // where `kind` is kReaching
 
   Task task() const { return guess_free ? Task::kYesNo : Task::kForcedChoice; }
 };
@@ -78,10 +81,11 @@ struct TrialsPlan {
 ///     reference     standard stimulus
 ///     bayesian      whether the Bayesian fit is added
 ///     resamples     of the bootstrap, 0 to 100,000
+///     cue_combination   as read_cue_plan()
 ///     rating        question of how sure the participant was
 ///
-/// Keys from function to resamples are those of functions; detection fits them if it states one.
-/// Those of "reaching" are its own (read_reaching_plan).
+/// Keys from function to cue_combination are those of functions; detection fits them if it states
+/// one. Those of "reaching" are its own (read_reaching_plan).
 TrialsPlan read_trials_plan(Table& root, const PlanDefaults& defaults);
 
 /// The words of `kind`.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "analysis/trials/data/page_scores.h"
+#include "analysis/trials/psychometric/cue_study.h"
 #include "analysis/trials/psychometric/detected.h"
 #include "analysis/trials/psychometric/function_fit.h"
 #include "analysis/trials/psychometric/magnitudes.h"
@@ -50,6 +51,7 @@ struct TrialsResult {
   std::vector<DetectedCondition> detected;
   std::vector<MagnitudeCondition> magnitudes;
   std::vector<Quantity> quantities;  // what is compared over participants
+  std::optional<CueStudy> cues;      // if the plan asks for them
   std::optional<ReachingResult> reaching;
   std::vector<PageScore> page_scores;  // of questionnaires
   std::vector<std::string> remarks;    // sentences about the files, for the report

@@ -86,6 +86,9 @@ void add_functions(TrialsResult& result, int threads) {
   result.drift = against_zero(drifts(result.serial));
   result.repetition = against_zero(repetitions(result.serial));
   result.population = population_model(result.series, plan);
+  if (plan.cues) {
+    result.cues = cue_study(result.data, result.series, result.fits, plan);
+  }
 }
 
 void add_detection(TrialsResult& result) {
@@ -170,6 +173,19 @@ void add_tests(const Quantity& q, std::vector<NamedTest>& tests) {
   }
 }
 
+void add_tests(const CueStudy& cues, std::vector<NamedTest>& tests) {
+  for (const CueLevel& level : cues.levels) {
+    const std::string at = level.level.empty() ? std::string() : " at " + level.level;
+    for (const auto& [name, of] : {std::pair("weight, observed and predicted", &level.weight),
+                                   {"standard deviation, observed and predicted", &level.log_sd},
+                                   {"both cues and the better one", &level.beats_best}}) {
+      if (of->test) {
+        tests.push_back({fmt::format("cues{}: {}", at, name), of->test->p});
+      }
+    }
+  }
+}
+
 }  // namespace
 
 TrialsResult analyze(TrialsData data, const TrialsPlan& plan, const ProcedureOf& procedure_of,
@@ -204,6 +220,9 @@ std::vector<NamedTest> tests_of(const TrialsResult& result) {
     if (q.compared) {
       add_tests(q, tests);
     }
+  }
+  if (result.cues) {
+    add_tests(*result.cues, tests);
   }
   if (result.reaching) {
     for (const ReachContrast& each : result.reaching->contrasts) {

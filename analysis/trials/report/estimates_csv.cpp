@@ -85,6 +85,28 @@ void add_detection(const DetectedCondition& one, Estimates& rows) {
   }
 }
 
+void add_cues(const TrialsResult& result, Estimates& rows) {
+  const CuePlan& plan = *result.plan.cues;
+  const std::string unit = result.plan.function.axis.x_unit();
+  for (const CueLevel& level : result.cues->levels) {
+    std::vector<std::string> levels;  // of `at` alone
+    for (const std::string& factor : result.plan.by) {
+      levels.push_back(factor == plan.at ? level.level : std::string());
+    }
+    for (const CuePerson& p : level.people) {
+      const auto add = [&](const char* name, const Estimated& e, const std::string& of) {
+        rows.add(p.participant, levels, "", "cues", name, e, of);
+      };
+      add("first_weight", p.weight, "");
+      add("first_weight_predicted", p.predicted_weight, "");
+      add("first_sd", p.first_sd, unit);
+      add("second_sd", p.second_sd, unit);
+      add("both_sd", p.both_sd, unit);
+      add("both_sd_predicted", p.predicted_sd, unit);
+    }
+  }
+}
+
 }  // namespace
 
 std::string estimates_csv(const TrialsResult& result) {
@@ -92,6 +114,9 @@ std::string estimates_csv(const TrialsResult& result) {
   for (const FunctionFit& fit : result.fits) {
     rows.add(fit, fit.likelihood, "likelihood");
     rows.add(fit, fit.bayesian, "bayesian");
+  }
+  if (result.cues) {
+    add_cues(result, rows);
   }
   for (const TrackEstimate& track : result.tracks) {
     for (const psychometric::Estimate& e : track.estimates) {

@@ -220,6 +220,9 @@ void add_results(Document& document, const TrialsResult& result,
   if (result.plan.kind == AnalysisKind::kDetection) {
     add_detections(document, result, drawings);
   }
+  if (result.cues) {
+    add_cues(document, result, drawings);
+  }
   if (result.plan.functions) {
     add_functions(document, result, drawings);
   }

@@ -262,7 +262,7 @@ std::vector<Figure> reaction_figures(const TrialsResult& result) {
 
 std::vector<Figure> trials_figures(const TrialsResult& result) {
   std::vector<Figure> all;
-  for (auto make : {quantity_figures, function_figures, magnitude_figures, roc_figures,
+  for (auto make : {cue_figures, quantity_figures, function_figures, magnitude_figures, roc_figures,
                     track_figures, reaction_figures, reaching_pictures}) {
     std::vector<Figure> some = make(result);
     std::move(some.begin(), some.end(), std::back_inserter(all));

@@ -24,6 +24,9 @@ std::vector<Figure> track_figures(const TrialsResult& result);
 std::vector<Figure> function_figures(const TrialsResult& result);
 /// A quantity by condition, participants beside the mean: "by-condition-threshold".
 std::vector<Figure> quantity_figures(const TrialsResult& result);
+/// Weights and standard deviations of two cues, observed and predicted: "cues-weights",
+/// "cues-deviations".
+std::vector<Figure> cue_figures(const TrialsResult& result);
 /// Magnitudes over levels, both logarithmic: "magnitudes".
 std::vector<Figure> magnitude_figures(const TrialsResult& result);
 /// ROC curves of ratings: "roc".

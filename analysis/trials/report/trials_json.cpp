@@ -205,6 +205,24 @@ Json scores_json(const std::vector<PageScore>& scores) {
   return all;
 }
 
+Json to_json(const CuePerson& p) {
+  return {{"participant", p.participant},
+          {"first_weight", to_json(p.weight)},
+          {"first_weight_predicted", to_json(p.predicted_weight)},
+          {"first_sd", to_json(p.first_sd)},
+          {"second_sd", to_json(p.second_sd)},
+          {"both_sd", to_json(p.both_sd)},
+          {"both_sd_predicted", to_json(p.predicted_sd)},
+          {"bias", to_json(p.bias)},
+          {"conflicts", p.conflicts}};
+}
+
+Json to_json(const CueTest& test) {
+  return {{"test", to_json(test.test)}, {"p_holm", to_json(test.holm)}};
+}
+
+Json to_json(const CueLevel& level);
+
 template <class T>
 Json list_of(const std::vector<T>& values) {
   Json list = Json::array();
@@ -212,6 +230,30 @@ Json list_of(const std::vector<T>& values) {
     list.push_back(to_json(value));
   }
   return list;
+}
+
+Json to_json(const CueLevel& level) {
+  const auto mean = [&](Estimated CuePerson::*number, bool geometric) {
+    return trials::to_json(mean_of(level, number, geometric));
+  };
+  return {{"level", level.level},
+          {"means",
+           {{"first_weight", mean(&CuePerson::weight, false)},
+            {"first_weight_predicted", mean(&CuePerson::predicted_weight, false)},
+            {"first_sd", mean(&CuePerson::first_sd, true)},
+            {"second_sd", mean(&CuePerson::second_sd, true)},
+            {"both_sd", mean(&CuePerson::both_sd, true)},
+            {"both_sd_predicted", mean(&CuePerson::predicted_sd, true)}}},
+          {"weight_observed_less_predicted", to_json(level.weight)},
+          {"log_sd_observed_less_predicted", to_json(level.log_sd)},
+          {"log_sd_observed_less_better_cue", to_json(level.beats_best)},
+          {"participants", list_of(level.people)},
+          {"left_out", level.left_out}};
+}
+
+Json cues_json(const CuePlan& plan, const CueStudy& cues) {
+  return {{"first", plan.first}, {"second", plan.second},     {"both", plan.both},
+          {"at", plan.at},       {"conflict", plan.conflict}, {"levels", list_of(cues.levels)}};
 }
 
 }  // namespace
@@ -235,6 +277,9 @@ std::string results_json(const TrialsResult& result) {
     root["serial_effects"] = list_of(result.serial);
     root["drift_over_participants"] = to_json(result.drift);
     root["repetition_over_participants"] = to_json(result.repetition);
+  }
+  if (result.cues) {
+    root["cue_combination"] = cues_json(*plan.cues, *result.cues);
   }
   root["quantities"] = list_of(result.quantities);
   root["tracks"] = list_of(result.tracks);

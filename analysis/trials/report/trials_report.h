@@ -13,6 +13,7 @@ Document trials_report(const TrialsResult& result, const std::vector<Drawing>& d
 /// Parts of it, in their order.
 void add_results(Document& document, const TrialsResult& result,
                  const std::vector<Drawing>& drawings);
+void add_cues(Document& document, const TrialsResult& result, const std::vector<Drawing>& drawings);
 void add_reaching(Document& document, const TrialsResult& result,
                   const std::vector<Drawing>& drawings);
 void add_reach_quality(Document& document, const TrialsResult& result);

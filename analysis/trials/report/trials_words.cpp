@@ -30,7 +30,7 @@ void say_quantity(const TrialsResult& result, const Quantity& q, std::vector<std
   }
 }
 
-void add_tests(const Quantity& q, std::vector<std::string>& lines) {
+void add_tests(const Quantity& q, bool effects, std::vector<std::string>& lines) {
   if (!q.compared) {
     return;
   }
@@ -39,7 +39,9 @@ void add_tests(const Quantity& q, std::vector<std::string>& lines) {
       lines.push_back(capitalized(q.title) + ". " + line);
     }
   };
-  add(effect_lines(q.tests));
+  if (effects) {
+    add(effect_lines(q.tests));
+  }
   add(planned_lines(q.tests));
 }
 
@@ -62,6 +64,39 @@ void add_reaching(const ReachingResult& reaching, std::vector<std::string>& line
                                   block.name, number(kMillimetres * fit.at(0.0)),
                                   number(kMillimetres * fit.asymptote), number(fit.time_constant)));
     }
+  }
+}
+
+void add_cues(const CuePlan& plan, const std::string& unit, const CueStudy& cues,
+              std::vector<std::string>& lines) {
+  const std::string first = name_of_cue(plan.first), second = name_of_cue(plan.second);
+  for (const CueLevel& level : cues.levels) {
+    const std::string at =
+        level.level.empty() ? std::string() : fmt::format(" at {} {}", plan.at, level.level);
+    const auto mean = [&](Estimated CuePerson::*number, bool geometric) {
+      return estimate_word(mean_of(level, number, geometric));
+    };
+    const auto tested = [](const CueTest& test) {
+      return t_result(test.test) + (test.holm ? ", " + p_result(test.holm) + " after Holm" : "");
+    };
+    lines.push_back(fmt::format("Weight of {}{}: observed {}, predicted {}; {} ({})", first, at,
+                                mean(&CuePerson::weight, false),
+                                mean(&CuePerson::predicted_weight, false), tested(level.weight),
+                                counted(level.people.size(), "participant")));
+    lines.push_back(fmt::format(
+        "Standard deviation{}{}: {} {}, {} {}, both {}, predicted {}; observed and predicted {}; "
+        "both better than the better one {}",
+        at, unit.empty() ? "" : " (" + unit + ")", first, mean(&CuePerson::first_sd, true), second,
+        mean(&CuePerson::second_sd, true), mean(&CuePerson::both_sd, true),
+        mean(&CuePerson::predicted_sd, true), tested(level.log_sd), tested(level.beats_best)));
+    if (!level.left_out.empty()) {
+      lines.push_back(fmt::format("{} left out{}, for lack of a condition or of a function",
+                                  counted(level.left_out.size(), "participant"), at));
+    }
+  }
+  if (cues.levels.empty()) {
+    lines.push_back(
+        fmt::format("Cues cannot be compared: there are no answers of {}", name_of_cue(plan.both)));
   }
 }
 
@@ -117,13 +152,16 @@ std::vector<std::string> summary_lines(const TrialsResult& result) {
   std::vector<std::string> lines{fmt::format("{} of {}{}", counted(counted_trials, "trial"),
                                              counted(result.participants.size(), "participant"),
                                              result.simulated() ? " (simulated)" : "")};
+  if (result.cues) {
+    add_cues(*result.plan.cues, result.plan.function.axis.x_unit(), *result.cues, lines);
+  }
   for (const Quantity& q : result.quantities) {
-    if (q.name != "log_width") {
+    if (q.name != "log_width" && !result.cues) {  // beside cues, a table says it
       say_quantity(result, q, lines);
     }
   }
   for (const Quantity& q : result.quantities) {
-    add_tests(q, lines);
+    add_tests(q, !result.cues, lines);
   }
   if (result.reaching) {
     add_reaching(*result.reaching, lines);

@@ -116,6 +116,82 @@ TEST(TrialsPlanTest, AMistakeGetsItsSentence) {
               HasSubstr("reference"));
 }
 
+const char* const kCues = R"([analysis]
+guess = 0.0
+by = ["modality", "noise", "conflict"]
+[analysis.cue_combination]
+first = { modality = "eye" }
+second = { modality = "hand" }
+both = { modality = "both" }
+at = "noise"
+conflict = "conflict"
+standard = "standard"
+first_shows = "seen"
+second_shows = "felt"
+)";
+
+PlanDefaults defaults_of_cues() {
+  PlanDefaults d = defaults();
+  d.factors = {"noise", "conflict"};
+  d.names = {"modality"};
+  d.guess.reset();
+  d.cues.levels = {{"modality", {"hand", "eye", "both"}}, {"noise", {"0", "0.67"}}};
+  d.cues.intervals = {"standard", "comparison"};
+  d.cues.variables = {"felt", "seen"};
+  return d;
+}
+
+/// What is said of the table with one thing written otherwise.
+std::string problems_with(const std::string& what, const std::string& by) {
+  std::string text = kCues;
+  text.replace(text.find(what), what.size(), by);
+  try {
+    read(text, defaults_of_cues());
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(TrialsPlanTest, CuesAreReadWithTheirConditions) {
+  const TrialsPlan plan = read(kCues, defaults_of_cues());
+  ASSERT_TRUE(plan.cues);
+  EXPECT_EQ(plan.cues->first.at("modality"), "eye");
+  EXPECT_EQ(plan.cues->second.at("modality"), "hand");
+  EXPECT_EQ(plan.cues->at, "noise");
+  EXPECT_EQ(plan.cues->second_shows, "felt");
+  EXPECT_EQ(name_of_cue(plan.cues->both), "both");
+  EXPECT_EQ(problems_with("{ modality = \"eye\" }", "{ modality = \"eye\", noise = 0.67 }"), "");
+  EXPECT_FALSE(read("[analysis]\n").cues);
+}
+
+TEST(TrialsPlanTest, AMistakeInCuesGetsItsSentence) {
+  EXPECT_THAT(problems_with("\"eye\"", "\"eyes\""),
+              HasSubstr("analysis.cue_combination.first.modality is \"eyes\"; allowed: a level of "
+                        "modality: hand, eye, both"));
+  EXPECT_THAT(problems_with("first = { modality", "first = { mode"),
+              HasSubstr("state a factor of analysis.by: modality, noise, conflict"));
+  EXPECT_THAT(problems_with("{ modality = \"eye\" }", "{ modality = \"eye\", noise = 0.5 }"),
+              HasSubstr("a level of noise: 0, 0.67"));
+  EXPECT_THAT(problems_with("\"hand\"", "\"eye\""),
+              HasSubstr("analysis.cue_combination.second does not differ from `first`"));
+  EXPECT_THAT(problems_with("\"both\"", "\"eye\""), HasSubstr("does not differ from `first`"));
+  EXPECT_THAT(
+      problems_with("at = \"noise\"", "at = \"nois\""),
+      HasSubstr("analysis.cue_combination.at is \"nois\"; allowed: a factor of analysis.by"));
+  EXPECT_THAT(problems_with("at = \"noise\"", "at = \"conflict\""),
+              HasSubstr("another factor than that of `conflict`"));
+  EXPECT_THAT(problems_with("at = \"noise\"\n", ""),
+              HasSubstr("analysis.by names \"noise\", of which cue_combination says nothing"));
+  EXPECT_THAT(problems_with("\"standard\"", "\"first\""), HasSubstr("standard, comparison"));
+  EXPECT_THAT(problems_with("\"seen\"", "\"looked\""), HasSubstr("felt, seen"));
+  EXPECT_THAT(problems_with("conflict = \"conflict\"\n", ""),
+              HasSubstr("analysis.cue_combination.conflict"));
+  EXPECT_THAT(problems_with("guess = 0.0", "guess = 0.5"),
+              HasSubstr("set guess = 0.0 or \"free\""));
+  EXPECT_THAT(problems_with("both =", "all ="), HasSubstr("all"));
+}
+
 TEST(TrialsPlanTest, KeysOfMovementsAreLeftToTheirAnalysis) {
   EXPECT_EQ(read("[analysis]\nkind = \"reaching\"\nstage = \"reach\"\n").kind,
             AnalysisKind::kReaching);

@@ -12,6 +12,7 @@
 #include "analysis/trials/psychometric/trials_study.h"
 #include "analysis/trials/report/trials_words.h"
 #include "core/base/files/file_text.h"
+#include "tests/analysis/trials/psychometric/simulated_cues.h"
 #include "tests/analysis/trials/simulated_trials.h"
 #include "tests/support/temporary_folder.h"
 
@@ -90,6 +91,55 @@ TEST_P(WriteTrials, EqualInputGivesEqualBytes) {
   std::filesystem::remove_all(place());
   written();
   EXPECT_EQ(first, file_text(place() / "results.json") + file_text(place() / "report.md"));
+}
+
+TEST(WriteCues, TheirCombinationLeadsTheReport) {
+  test::SimulatedCues study;
+  study.participants = 4;
+  study.eye_sd = {0.004, 0.006};
+  study.exact = true;
+  study.repetitions = 40;
+  TrialsData data = test::simulated_cues(study);
+  std::erase_if(data.trials, [&](const StudyTrial& trial) {
+    return trial.session == 3 && factor_level(data, trial, "modality") == "hand";
+  });
+  TrialsPlan plan = test::plan_of(study);
+  plan.resamples = 49;
+  TrialsResult result = analyze(std::move(data), plan, {}, 2);
+  result.title = "Two cues";
+  const auto lines = summary_lines(result);
+  ASSERT_GT(lines.size(), 2u);
+  EXPECT_THAT(lines[1], HasSubstr("Weight of eye at noise 0: observed"));
+  EXPECT_THAT(lines[2], HasSubstr("Standard deviation at noise 0 (m): eye"));
+  for (const std::string& line : lines) {
+    EXPECT_THAT(line, Not(HasSubstr("more than two factors")));
+  }
+  const test::TemporaryFolder folder;
+  write_trials(result, folder / "report");
+  const std::string markdown = file_text(folder / "report/report.md");
+  EXPECT_THAT(markdown, HasSubstr("## Combination of cues (simulated)"));
+  EXPECT_LT(markdown.find("## Combination of cues"), markdown.find("## Psychometric functions"));
+  EXPECT_THAT(markdown, HasSubstr("Left out at noise 0: P04: there are no answers of hand"));
+  EXPECT_THAT(markdown, Not(HasSubstr("nan")));
+  for (const char* picture : {"report/cues-weights.svg", "report/cues-deviations.svg"}) {
+    EXPECT_THAT(file_text(folder / picture), HasSubstr("SIMULATED")) << picture;
+  }
+  const auto json = nlohmann::json::parse(file_text(folder / "report/results.json"));
+  const auto& levels = json.at("cue_combination").at("levels");
+  ASSERT_EQ(levels.size(), 2u);
+  EXPECT_EQ(levels[0].at("participants").size(), 3u);
+  EXPECT_EQ(levels[1].at("left_out").size(), 1u);
+  EXPECT_TRUE(levels[0].at("weight_observed_less_predicted").at("test").contains("p"));
+  const CsvTable estimates = CsvTable::load(folder / "report/estimates.csv");
+  const std::size_t source = estimates.column("source"), noise = estimates.column("noise");
+  int rows = 0, second = 0;
+  for (std::size_t row = 0; row < estimates.rows(); ++row) {
+    const bool cues = estimates.text(row, source) == "cues";
+    rows += cues;
+    second += cues && estimates.text(row, noise) == "1";
+  }
+  EXPECT_EQ(rows, 3 * 2 * 6) << "participants, levels, numbers";
+  EXPECT_EQ(second, 3 * 6);
 }
 
 INSTANTIATE_TEST_SUITE_P(Tasks, WriteTrials,
