@@ -40,7 +40,7 @@ LikelihoodOptions likelihood_options(const TrialsPlan& plan) {
   options.function = plan.function;
   options.task = plan.task();
   options.lapse = plan.lapse;
-  if (!plan.guess_free && plan.function.guess == 0.0) {
+  if (!plan.guess_free && !plan.guess_is_lapse && plan.function.guess == 0.0) {
     options.task = Task::kYesNo;  // a guess rate that is known to be 0
     options.guess = {0.0, 0.0};
   }
@@ -207,7 +207,7 @@ void fit_bayesian(FunctionFit& result, const TrialsPlan& plan, int threads) {
   options.task = plan.task();
   options.threads = threads;
   options.levels = {0.95};
-  if (!plan.guess_free && plan.function.guess == 0.0) {
+  if (!plan.guess_free && !plan.guess_is_lapse && plan.function.guess == 0.0) {
     options.task = Task::kYesNo;
     options.fixed[kGuess] = 0.0;
   }

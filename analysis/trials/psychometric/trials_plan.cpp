@@ -105,7 +105,9 @@ void read_guess(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
   plan.guess_free = !defaults.guess.has_value();
   plan.function.guess = defaults.guess.value_or(0.0);
   if (table.has_text("guess")) {
-    plan.guess_free = table.choice("guess", {"free"}) == "free";
+    const std::string word = table.choice("guess", {"free", "lapse"});
+    plan.guess_is_lapse = word == "lapse";
+    plan.guess_free = word == "free";
     plan.function.guess = 0.0;
   } else if (table.has("guess")) {
     plan.function.guess = table.number("guess", {0.0, kMostGuess}, "");

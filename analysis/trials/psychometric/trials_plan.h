@@ -53,6 +53,7 @@ struct TrialsPlan {
   std::string function_name{"norm"};
   psychometric::PsychometricParameters function{.guess = 0.5};
   bool guess_free{false};
+  bool guess_is_lapse{false};  // a lapse is as likely to be the one answer as the other
   RateBounds lapse{};
   double threshold_at{0.75};        // share of answers 1 at the threshold, lapses aside
   std::optional<double> reference;  // standard stimulus, for Weber fractions [unit of the level]
@@ -63,7 +64,9 @@ struct TrialsPlan {
   std::optional<CuePlan> cues;  // two cues whose combination is compared with the best
   ReachingPlan reaching;        // where `kind` is kReaching
 
-  Task task() const { return guess_free ? Task::kYesNo : Task::kForcedChoice; }
+  Task task() const {
+    return guess_is_lapse ? Task::kEqualAsymptote : guess_free ? Task::kYesNo : Task::kForcedChoice;
+  }
 };
 
 /// Reads the table [analysis], all of whose keys may be left out. Problems are noted.
@@ -74,7 +77,8 @@ struct TrialsPlan {
 ///     tests         planned: "a < b", "a > b" or "a != b" of levels of these factors
 ///     question, yes, level   as TrialsPlan
 ///     function      a sigmoid by its name; "weibull", "log_normal" on a logarithmic axis
-///     guess         0 to 0.9, or "free" for "yes" or "no", "larger" or "smaller"
+///     guess         0 to 0.9; "free" for "yes" or "no"; "lapse", which is as large as the lapse
+///                   rate, for "larger" or "smaller"
 ///     lapse         { free = true, at_most = 0.06 }, or a number
 ///     scale, origin   of the axis: "linear", "log10", "ln" or "decibel"
 ///     threshold_at  between guess and 1: 0.75 of two intervals, 0.5 if the guess rate is free
