@@ -69,7 +69,9 @@ std::string function_words(const TrialsPlan& plan) {
       plan.function.axis.origin != 0.0
           ? fmt::format(" of the level less {}", plan.function.axis.origin)
           : "",
-      plan.guess_free ? "free" : fmt::format("{:g}", plan.function.guess),
+      plan.guess_free       ? "free"
+      : plan.guess_is_lapse ? "as the lapse rate"
+                            : fmt::format("{:g}", plan.function.guess),
       plan.lapse.low == plan.lapse.high ? fmt::format("{:g}", plan.lapse.low)
                                         : fmt::format("free up to {:g}", plan.lapse.high),
       percent(plan.threshold_at));
