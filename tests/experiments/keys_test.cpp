@@ -1,4 +1,4 @@
-// The list of every key is what the readers ask for.
+// The list of every key is what the readers ask for, each key with its words.
 
 #include "experiments/command/keys/key_list.h"
 
@@ -6,9 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <toml++/toml.h>
+#include <cstdlib>
 #include <filesystem>
 #include <sstream>
 
+#include "core/base/files/file_text.h"
 #include "experiments/studies/registry.h"
 #include "tests/experiments/command.h"
 
@@ -17,7 +19,24 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::Not;
+
+TEST(KeysTest, EveryKeyHasItsWordsAndNoOthersAreThere) {
+  EXPECT_THAT(mistakes_of_key_words(), IsEmpty());
+}
+
+/// With HAPTRIAL_WRITE_PAGES=1 in the environment the page is written anew.
+TEST(KeysTest, ThePageIsWhatTheProgramPrints) {
+  const fs::path page = HAPTRIAL_SOURCE_DIR "/docs/keys.md";
+  const std::string text = key_page(key_sections(""));
+  if (std::getenv("HAPTRIAL_WRITE_PAGES") != nullptr) {
+    write_text(page, text);
+  }
+  EXPECT_EQ(file_text(page), text)
+      << "write docs/keys.md anew: HAPTRIAL_WRITE_PAGES=1 build/test_experiments "
+         "--gtest_filter='KeysTest.*'";
+}
 
 TEST(KeysTest, TheCommandPrintsOneProtocolOrAll) {
   const auto trials = test::run_command("haptrial keys trials");

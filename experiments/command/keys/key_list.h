@@ -31,7 +31,7 @@ struct KeySection {
 /// @throws InputError for a protocol that is not known
 std::vector<KeySection> key_sections(const std::string& protocol);
 
-/// The list as a page of Markdown.
+/// The page docs/keys.md.
 std::string key_page(const std::vector<KeySection>& sections);
 
 /// Keys that have no line of words, and lines of words that no key has, with lines that state a

@@ -139,7 +139,7 @@ void add_validate(CLI::App& app, int& status) {
 
 void add_keys(CLI::App& app, int& status) {
   CLI::App* sub = subcommand(app, "keys", "List every key that a definition may have",
-                             "haptrial keys trials", {"", "guide-own-experiment.md"});
+                             "haptrial keys trials", {"", "keys.md"});
   auto& protocol = options_of<std::string>(*sub, status, keys);
   sub->add_option("PROTOCOL", protocol,
                   "Only the keys of definitions with this protocol (default: all)");
