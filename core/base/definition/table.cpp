@@ -117,7 +117,7 @@ bool Table::is_array(std::string_view key) const {
 }
 
 bool Table::is_nested(std::string_view key) const {
-  return is_array(key) && !node_->table->get(key)->as_array()->empty() &&
+  return states(key) && is_array(key) && !node_->table->get(key)->as_array()->empty() &&
          node_->table->get(key)->as_array()->get(0)->is_array();
 }
 
@@ -270,7 +270,8 @@ std::string Table::text(std::string_view key) {
 }
 
 std::string Table::shown_text(std::string_view key) {
-  return node_->table == nullptr ? "" : shown_as(key, text(key));
+  const bool absent = node_->table == nullptr && exploration() == nullptr;
+  return absent ? "" : shown_as(key, text(key));
 }
 
 std::string Table::shown_text(std::string_view key, std::string_view otherwise) {
