@@ -50,7 +50,7 @@ class TrialsProtocol final : public Protocol {
                                   const SessionPlace& place) const override {
     return blocks_of(dynamic_cast<const TrialsDefinition&>(definition), place);
   }
-  void replay(const ReplayRequest& request) const override { replay_trials(request); }
+  void replay(const ReplayRequest& request) const override { replay_trials(*this, request); }
 };
 
 }  // namespace

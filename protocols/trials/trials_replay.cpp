@@ -12,10 +12,10 @@
 #include "core/record/rows/device_row.h"
 #include "core/record/trials/trial_rows.h"
 #include "core/render/gl/offscreen.h"
+#include "protocols/interface/protocol.h"
 #include "protocols/interface/recorded_outcome.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/trials/defined_trials.h"
-#include "protocols/trials/trials_protocol.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -48,8 +48,9 @@ bool same(const record::VariableRow& a, const record::VariableRow& b) {
 
 class TrialReplay {
  public:
-  explicit TrialReplay(const ReplayRequest& request)
-      : request_(request),
+  TrialReplay(const Protocol& protocol, const ReplayRequest& request)
+      : protocol_(protocol),
+        request_(request),
         reader_(request.file),
         passes_(reader_.passes()),
         responses_(reader_.responses()),
@@ -85,7 +86,7 @@ class TrialReplay {
   std::unique_ptr<StudiedDefinition> read_definition() const {
     try {
       Table root = Table::parse(reader_.info().definition, reader_.info().definition_name);
-      auto read = trials_protocol().read(root, reader_.info().definition_name, nullptr);
+      auto read = protocol_.read(root, reader_.info().definition_name, nullptr);
       return std::unique_ptr<StudiedDefinition>(dynamic_cast<StudiedDefinition*>(read.release()));
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: its definition is not one of this version of haptrial: {}",
@@ -209,6 +210,7 @@ class TrialReplay {
     view.show(sight.marks, sight.hand, sight.interval_number, sight.dots);
   }
 
+  const Protocol& protocol_;
   const ReplayRequest& request_;
   record::SessionReader reader_;
   std::vector<record::PassRow> passes_;
@@ -225,7 +227,7 @@ class TrialReplay {
 
 }  // namespace
 
-void replay_trials(const ReplayRequest& request) {
+void replay_trials(const Protocol& protocol, const ReplayRequest& request) {
   if (request.trial == 0) {
     throw InputError("--trial is missing; give the number of the trial to show");
   }
@@ -239,7 +241,7 @@ void replay_trials(const ReplayRequest& request) {
   if (!request.pictures) {
     throw InputError("neither --video nor --frames is given; add one to write to");
   }
-  TrialReplay(request).run();
+  TrialReplay(protocol, request).run();
 }
 
 }  // namespace haptrial::protocols

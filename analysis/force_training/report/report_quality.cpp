@@ -2,7 +2,7 @@
 
 #include "analysis/force_training/report/report_parts.h"
 #include "analysis/statistics/words/wording.h"
-#include "core/record/rows/overruns.h"
+#include "core/record/read/overruns.h"
 
 namespace haptrial::analysis {
 namespace {

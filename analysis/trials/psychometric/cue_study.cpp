@@ -36,7 +36,7 @@ struct LogSd {
   }
 };
 
-Estimated estimated(const CuePrediction& p, bool with_interval) {
+Estimated estimated_of(const CuePrediction& p, bool with_interval) {
   return with_interval ? Estimated{p.value, p.low, p.high} : Estimated{p.value};
 }
 
@@ -119,8 +119,8 @@ class PersonalCues {
     made.both_sd = together.sd();
     const bool known = std::isfinite(first->error) && std::isfinite(second->error);
     const CombinedCues predicted = predict_combination(first->known(), second->known());
-    made.predicted_weight = estimated(predicted.first_weight, known);
-    made.predicted_sd = estimated(predicted.combined_sd, known);
+    made.predicted_weight = estimated_of(predicted.first_weight, known);
+    made.predicted_sd = estimated_of(predicted.combined_sd, known);
     return made;
   }
 
@@ -267,7 +267,7 @@ class PersonalCues {
       return Undefined{weight.because()};
     }
     CuePerson made;
-    made.weight = estimated(weight->first_weight, known);
+    made.weight = estimated_of(weight->first_weight, known);
     made.bias = weight->bias;
     made.conflicts = conflicts.size();
     return made;

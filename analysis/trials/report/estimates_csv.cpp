@@ -85,7 +85,7 @@ void add_detection(const DetectedCondition& one, Estimates& rows) {
   }
 }
 
-void add_cues(const TrialsResult& result, Estimates& rows) {
+void add_cue_rows(const TrialsResult& result, Estimates& rows) {
   const CuePlan& plan = *result.plan.cues;
   const std::string unit = result.plan.function.axis.x_unit();
   for (const CueLevel& level : result.cues->levels) {
@@ -116,7 +116,7 @@ std::string estimates_csv(const TrialsResult& result) {
     rows.add(fit, fit.bayesian, "bayesian");
   }
   if (result.cues) {
-    add_cues(result, rows);
+    add_cue_rows(result, rows);
   }
   for (const TrackEstimate& track : result.tracks) {
     for (const psychometric::Estimate& e : track.estimates) {

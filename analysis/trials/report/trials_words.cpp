@@ -67,8 +67,8 @@ void add_reaching(const ReachingResult& reaching, std::vector<std::string>& line
   }
 }
 
-void add_cues(const CuePlan& plan, const std::string& unit, const CueStudy& cues,
-              std::vector<std::string>& lines) {
+void add_cue_lines(const CuePlan& plan, const std::string& unit, const CueStudy& cues,
+                   std::vector<std::string>& lines) {
   const std::string first = name_of_cue(plan.first), second = name_of_cue(plan.second);
   for (const CueLevel& level : cues.levels) {
     const std::string at =
@@ -153,7 +153,7 @@ std::vector<std::string> summary_lines(const TrialsResult& result) {
                                              counted(result.participants.size(), "participant"),
                                              result.simulated() ? " (simulated)" : "")};
   if (result.cues) {
-    add_cues(*result.plan.cues, result.plan.function.axis.x_unit(), *result.cues, lines);
+    add_cue_lines(*result.plan.cues, result.plan.function.axis.x_unit(), *result.cues, lines);
   }
   for (const Quantity& q : result.quantities) {
     if (q.name != "log_width" && !result.cues) {  // beside cues, a table says it

@@ -5,15 +5,9 @@
 
 #include <algorithm>
 #include <charconv>
-#include <deque>
-#include <exception>
-
-#include "core/base/definition/table.h"
 
 namespace haptrial {
 namespace {
-
-constexpr std::size_t kMostReadings = 50000;
 
 std::string path_of(std::string_view table, std::string_view key) {
   return table.empty() ? std::string(key) : fmt::format("{}.{}", table, key);
@@ -174,26 +168,6 @@ std::vector<KnownKey> KeyExploration::keys() const {
     keys.push_back(std::move(key));
   }
   return keys;
-}
-
-std::vector<KnownKey> known_keys(std::string_view text,
-                                 const std::function<void(Table& root)>& reader) {
-  KeyExploration exploration;
-  std::deque<KeyExploration::Plan> plans{{}};
-  for (std::size_t reading = 0; !plans.empty() && reading < kMostReadings; ++reading) {
-    exploration.begin(std::move(plans.front()));
-    plans.pop_front();
-    try {
-      Table root = Table::explore(text, exploration);
-      reader(root);
-    } catch (const std::exception&) {
-      // Values that no definition would have; what was asked for before counts.
-    }
-    for (KeyExploration::Plan& plan : exploration.further()) {
-      plans.push_back(std::move(plan));
-    }
-  }
-  return exploration.keys();
 }
 
 }  // namespace haptrial

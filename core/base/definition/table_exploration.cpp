@@ -1,10 +1,18 @@
 // What a table of definitions tells an exploration of its keys.
 #include <fmt/format.h>
 
+#include <deque>
+#include <exception>
+
 #include "core/base/definition/table_parts_internal.h"
 #include "core/base/definition/table_words_internal.h"
 
 namespace haptrial {
+namespace {
+
+constexpr std::size_t kMostReadings = 50000;
+
+}  // namespace
 
 Table Table::explore(std::string_view text, KeyExploration& exploration) {
   Table root = parse(text, "definition");
@@ -53,6 +61,26 @@ double Table::number_or(std::string_view key, double value, const Bounds& bounds
 int Table::integer_or(std::string_view key, int value, long low, long high) {
   otherwise(key, value);
   return has(key) ? static_cast<int>(integer(key, low, high)) : value;
+}
+
+std::vector<KnownKey> known_keys(std::string_view text,
+                                 const std::function<void(Table& root)>& reader) {
+  KeyExploration exploration;
+  std::deque<KeyExploration::Plan> plans{{}};
+  for (std::size_t reading = 0; !plans.empty() && reading < kMostReadings; ++reading) {
+    exploration.begin(std::move(plans.front()));
+    plans.pop_front();
+    try {
+      Table root = Table::explore(text, exploration);
+      reader(root);
+    } catch (const std::exception&) {
+      // Values that no definition would have; what was asked for before counts.
+    }
+    for (KeyExploration::Plan& plan : exploration.further()) {
+      plans.push_back(std::move(plan));
+    }
+  }
+  return exploration.keys();
 }
 
 }  // namespace haptrial

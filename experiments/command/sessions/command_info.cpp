@@ -16,7 +16,7 @@
 #include "core/record/read/readable.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/read/trial_progress.h"
-#include "core/record/rows/overruns.h"
+#include "core/record/read/overruns.h"
 #include "experiments/studies/registry.h"
 #include "protocols/definition/lab_file.h"
 

@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text/counted.h"
-#include "core/record/rows/overruns.h"
+#include "core/record/read/overruns.h"
 #include "core/stream/lsl_outlet.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/run_checks.h"

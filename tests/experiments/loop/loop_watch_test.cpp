@@ -1,4 +1,4 @@
-#include "experiments/runner/loop_watch.h"
+#include "experiments/loop/loop_watch.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "experiments/runner/servo_thread.h"
+#include "experiments/loop/servo_thread.h"
 
 #include <unistd.h>
 

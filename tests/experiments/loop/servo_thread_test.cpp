@@ -1,4 +1,4 @@
-#include "experiments/runner/servo_thread.h"
+#include "experiments/loop/servo_thread.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "core/record/rows/overruns.h"
+#include "core/record/read/overruns.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
-#include "experiments/runner/loop_watch.h"
+#include "experiments/loop/loop_watch.h"
 
 #include <fmt/format.h>
 
-#include "core/record/rows/overruns.h"
+#include "core/record/read/overruns.h"
 
 namespace haptrial::experiments {
 
