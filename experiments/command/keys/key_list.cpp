@@ -4,6 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <deque>
+#include <exception>
+#include <functional>
 #include <map>
 #include <memory>
 #include <set>
@@ -40,6 +43,58 @@ std::string shared(const std::string& table) {
   return found;
 }
 
+/// Beginnings that no reading with one change after another comes to: a question that has one way
+/// of being answered alone, a channel without a second place. Choices beyond the last are the last.
+std::vector<KeyExploration::Plan> beginnings() {
+  constexpr std::size_t kMostChoices = 40;
+  constexpr std::size_t kNotThere = 1;
+  const auto there = [](const std::string& key) { return key + " is there"; };
+  const std::vector<std::string> questions{"response.", "pages.NAME.items[]."};
+  const std::vector<std::string> ways{"choices", "scale", "number"};
+  std::vector<KeyExploration::Plan> plans{{}};
+  for (const std::string& question : questions) {
+    for (const std::string& way : ways) {
+      KeyExploration::Plan plan{{"pages.NAME.kind", kMostChoices},  // questions
+                                {there(question + "words"), kNotThere}};
+      for (const std::string& other : ways) {
+        if (other != way) {
+          plan[there(question + other)] = kNotThere;
+        }
+      }
+      plans.push_back(std::move(plan));
+    }
+  }
+  for (std::size_t type = 0; type < kMostChoices; ++type) {
+    plans.push_back({{"fields.NAME.type", type},
+                     {there("fields.NAME.from"), kNotThere},
+                     {there("fields.NAME.to"), kNotThere}});
+  }
+  return plans;
+}
+
+/// As known_keys(), with these beginnings.
+std::vector<KnownKey> explored(const std::string& text,
+                               const std::function<void(Table& root)>& reader) {
+  constexpr std::size_t kMostReadings = 50000;
+  KeyExploration exploration;
+  const std::vector<KeyExploration::Plan> first = beginnings();
+  std::deque<KeyExploration::Plan> plans(first.begin(), first.end());
+  for (std::size_t reading = 0; !plans.empty() && reading < kMostReadings; ++reading) {
+    exploration.begin(std::move(plans.front()));
+    plans.pop_front();
+    try {
+      Table root = Table::explore(text, exploration);
+      reader(root);
+    } catch (const std::exception&) {
+      // Values that no definition would have; what was asked for before counts.
+    }
+    for (KeyExploration::Plan& plan : exploration.further()) {
+      plans.push_back(std::move(plan));
+    }
+  }
+  return exploration.keys();
+}
+
 /// The facts of a key, to compare those of two protocols.
 bool same(const KnownKey& a, const KnownKey& b) {
   return a.path() == b.path() && a.type == b.type && a.allowed == b.allowed && a.unit == b.unit &&
@@ -48,6 +103,11 @@ bool same(const KnownKey& a, const KnownKey& b) {
 
 void add(std::vector<KnownKey>& keys, KnownKey key) {
   key.table = shared(key.table);
+  if (key.path() == "experiment.protocol") {
+    key.otherwise.clear();  // stated for the reader here; a definition may leave it out
+  } else if (key.path() == "virtual_surgeons.skill.participants") {
+    key.key = "NAME";  // of a group; this is the one of definitions without groups
+  }
   const auto at = std::find_if(keys.begin(), keys.end(),
                                [&](const KnownKey& each) { return each.path() == key.path(); });
   if (at == keys.end()) {
@@ -88,7 +148,8 @@ std::vector<KnownKey> without_spreads(const std::vector<KnownKey>& keys) {
   return rest;
 }
 
-/// Tables whose keys are listed are no keys themselves.
+/// Tables whose keys are listed are no keys themselves; others are left to other readers, so that
+/// this one does not need them.
 std::vector<KnownKey> without_tables(const std::vector<KnownKey>& keys) {
   std::vector<KnownKey> rest;
   std::copy_if(keys.begin(), keys.end(), std::back_inserter(rest), [&](const KnownKey& key) {
@@ -96,6 +157,9 @@ std::vector<KnownKey> without_tables(const std::vector<KnownKey>& keys) {
              return each.table == key.path() || each.table.starts_with(key.path() + ".");
            });
   });
+  for (KnownKey& key : rest) {
+    key.optional = key.optional || key.type == "table";
+  }
   return rest;
 }
 
@@ -181,7 +245,7 @@ std::vector<KeySection> sections_of_all(std::map<std::string, Words>& words) {
 std::vector<KnownKey> keys_of(const Study& study) {
   const std::string text =
       fmt::format("[experiment]\nprotocol = \"{}\"\n", study.protocol().name());
-  const auto found = known_keys(text, [&](Table& root) {
+  const auto found = explored(text, [&](Table& root) {
     std::unique_ptr<protocols::Definition> definition;
     try {
       definition = study.protocol().read(root, "definition", nullptr);

@@ -7,7 +7,7 @@ std::string_view key_words() {
 experiment.name | | of the study, for reports and new folders
 experiment.protocol | force_training | what kind of experiment it is
 experiment.rate | | ticks of the servo loop per second
-lab.use | the definition has the tables of machines itself | file with tables of devices and screen, relative to the definition
+lab.use | | file with tables of devices and screen, relative to the definition; without [lab] the definition has them
 envelope.max_force | | limit of the commanded force
 envelope.max_force_rate | | limit of its change
 envelope.workspace_radius | | beyond it the force goes off
@@ -43,7 +43,7 @@ mouse.first_press | | pressing force when the left button goes down
 mouse.press_step | | change of it for each step of the wheel
 mouse.stop_button | | button for emergency stops; -1: none
 hand.integrator | | exact solution of the virtual hand, or CVODE's
-hand.handle_mass | | that moves with the hand
+hand.handle_mass | | of the handle, which moves with the hand
 hand.coulomb_friction | | of the handle
 hand.hand_mass | | of the hand
 hand.damping | | of the grip
@@ -74,14 +74,36 @@ display.feedback_right | | what is shown after a right answer
 display.feedback_wrong | | what is shown after a wrong one
 display.feedback_time | | for which it is shown
 display.stereo | false | pictures for the left and the right eye side by side
+trials:display.eye_distance | 0.063 | between the eyes
 display.eye_distance | | between the eyes, in the scene
+display.viewing_distance | 0.5 | from the eyes to the screen
+display.sound_right | none | sound after a right answer, where feedback is given
+display.sound_wrong | none | sound after a wrong one
+devices.NAME.start | | where the hand of a virtual participant begins
+sounds.device | default | ALSA's name of the sound card
+sounds.NAME.type | | what the sound is
+sounds.NAME.level | 0 of a file, else needed | root mean square below full scale; of a file, its gain
+sounds.NAME.duration | 0.001 of a click, else needed | of the sound
+sounds.NAME.rise | 0.005 | time of the ramps at both ends
+sounds.NAME.frequency | | of the tone
+sounds.NAME.colour | white | spectrum of the noise
+sounds.NAME.low | 20, of a band needed | lowest frequency of the noise
+sounds.NAME.high | 20000, of a band needed | highest frequency of the noise
+sounds.NAME.file | | recording at 48,000 samples a second, relative to the definition
+sounds.masking.colour | pink | spectrum of the masking noise
+sounds.masking.low | 20, of a band needed | its lowest frequency
+sounds.masking.high | 20000, of a band needed | its highest frequency
+sounds.masking.level | | its root mean square below full scale
+sounds.masking.fade | 0.5 | time over which it comes and goes
+sounds.masking.stages | the whole session | stages in which it sounds
 display.stills | 0 | stills of the bone's stages that can be shown
 screen.title | haptrial | of the participant's window
 screen.full_screen | true | whether the window fills the monitor
 screen.monitor | 0 | from 0, the primary one
 screen.refresh_lock | true | whether pictures wait for the monitor's refresh
 screen.participant_steers | false | whether the participant's keys start, pause, repeat, skip and clear
-screen.photodiode | off | square in a corner that changes with each picture, or is white while a trial runs
+screen.photodiode | off | square in a corner: changes with each picture, is white while a trial runs, or after onsets
+screen.photodiode_time | 0.05 | how long the square stays white after an onset
 texts.instructions | | before the first trial; the first line of every text is its title
 texts.practice | | before practice
 texts.rest | | during a break
@@ -92,9 +114,44 @@ texts.recovering | | while the force stays off after an aborted pass
 texts.limit | | last paragraph of the instructions of a force study
 texts.begin | | small line below a text that the experimenter ends
 texts.begin_alone | | the same in a session without an experimenter
+texts.go_on | | small line below a page that is only read
+texts.choose | | small line below a question with choices
+texts.move_mark | | small line below a scale
+texts.type_number | | small line below a question for a number
+texts.type_words | | small line below a question for words
+texts.declined | | for a participant who does not consent
+pages.before | none | names of pages before the first trial, in this order
+pages.after | none | names of pages after the last trial
+pages.after_block.NAME | | names of pages after the last trial of the block of this name
+pages.NAME.kind | text | what the page is
+pages.NAME.title | none | heading of the page
+pages.NAME.text | | what is read
+pages.NAME.picture | none | PNG file, relative to the definition
+pages.NAME.accept | I agree to take part | choice of those who take part
+pages.NAME.decline | I do not agree | choice that ends the session
+pages.NAME.weighted | false | whether the 15 pairs of NASA-TLX are asked, too
+pages.NAME.items[].name | | of the question, in files
+pages.NAME.items[].question | | what is read
+pages.NAME.items[].words | false | whether words are typed; one of choices, scale, number and words is needed
+pages.NAME.items[].choices[].value | | of the choice, as files have it
+pages.NAME.items[].choices[].label | the value | what is shown
+pages.NAME.items[].choices[].number | none | value of the choice as a number
+pages.NAME.items[].scale | choices, a number or words | lowest and highest value of a scale
+pages.NAME.items[].step | 1 | between neighbouring values of the scale
+pages.NAME.items[].ends.low | | words at the scale's lowest value
+pages.NAME.items[].ends.high | | words at its highest value
+pages.NAME.items[].number | choices, a scale or words | lowest and highest number that may be typed
+markers.serial | none | serial line that receives each code as a byte, such as "/dev/ttyUSB0"
+markers.baud | 115200 | speed of the line, in bits per second
+markers.pulse | 0.005 | how long a code stands before a zero follows; 0: it stays
+markers.trial | 1 | code of a trial's beginning
+markers.interval | 11 | code of the first interval; the others count on
+markers.stage | 21 | code of the first stage; the others count on
+markers.response | 101 | code of the first answer; the others count on
+markers.send | stage, response, interval, trial | what goes to the serial line; codes of one tick go in this order
 design.participants | | of the study
 design.sessions | 1 | of each participant, on days of their own
-design.session.NAME.blocks | all blocks in every session | blocks of the session of this number
+design.session.NAME.blocks | | blocks of the session of this number; without [design.session] every session has all of them
 trials:design.break_after | 0 | trials after which a break comes; 0: no breaks
 bone_drilling:design.break_after | 0 | procedures after which a break comes; 0: no breaks
 design.break_after | | trials after which a break comes; 0: no breaks
@@ -105,8 +162,8 @@ design.blocks | fixed | order of the blocks over participants
 design.most_in_a_row | no limit | trials of one combination of factors
 design.trials | | of each participant
 design.repetitions | | trials of a block: same stimulus, same condition
-design.practice | | practice trials of each condition; not scored
-design.conditions | | of training
+design.practice | 0 | practice trials of each condition; not scored
+design.conditions | needed | of training
 design.procedures | | trials of each participant, each with a new bone
 groups | one group of everybody | participants of each group, in the order of their numbers: NAME = 8
 groups.NAME | | participants of the group, in the order of their numbers
@@ -119,8 +176,6 @@ practice.trials | | of practice
 practice.right_in_a_row | all trials | practice ends with so many right answers in a row
 practice.NAME | | what a name is worth during practice
 practice.duration | | of practice before the first procedure
-practice.bone | | that is practised on
-practice.text | | what is read before practice
 blocks[].name | | of the block
 blocks[].trials | until its procedures are finished | of the block; needed without a procedure
 blocks[].practice | false | whether it is practice, which is not scored
@@ -129,12 +184,11 @@ blocks[].NAME | | what a name is worth in the block
 blocks[].probe.name | probe | what the trials are called
 blocks[].probe.share | | of the block's trials
 blocks[].probe.NAME | | what a name is worth in these trials
-intervals | one interval | presentations within a trial: NAME = { name = value, ... }
 intervals.order | as stated | whether they are shuffled in every trial
 intervals.NAME.NAME | | what a name is worth in the interval
 stages[].name | | unlike every other stage's
-stages[].fields | none | that act; "$name" is the field that the name stands for
-stages[].show | nothing | hand, interval_number, regions and places
+stages[].fields | none | fields that act; "$name" is the field that the name stands for
+stages[].show | nothing | hand, interval_number, regions, looks and places
 stages[].until.time | no such condition | the stage ends after this time
 stages[].until.inside | no such condition | the hand is in this region
 stages[].until.contact | no such condition | the hand touches this field
@@ -143,13 +197,15 @@ stages[].until.speed_above | no such condition | the hand is faster
 stages[].until.buttons | no such condition | one of these buttons is pressed
 stages[].until.keys | no such condition | one of these keys is pressed
 stages[].until.for | 0 | how long all of it must hold; [shortest, longest] is drawn in every trial
-stages[].timeout.after | none | longest duration of the stage
+stages[].timeout.after | | longest duration of the stage
 stages[].timeout.then | | whether the trial comes again, the interval does, or the trial goes on
-stages[].require.max_of | nothing is required | what must have been enough
+stages[].require.max_of | | what must have been enough; without [require] nothing must
 stages[].require.field | | in which depth or force counts
 stages[].require.at_least | | of the largest value in the stage
 stages[].require.else | | what happens if it was not enough
-stages[].onset.speed_above | not looked for | speed at which a movement begins
+stages[].onset.speed_above | | speed at which a movement begins; without [onset] none is looked for
+stages[].sound | none | sound that begins with the stage
+stages[].marker | counted on from markers.stage | code of the stage's marker
 response.name | answer | in formulas and files
 response.question | | what is read
 response.choices[].value | | of the choice, as files and formulas have it
@@ -162,18 +218,18 @@ response.correct | no answer is right | formula of the right choice: its number,
 response.feedback | never | when right or wrong is shown
 response.timeout | none | then the trial is aborted and comes again
 response.reaction_time_from | the question | stage from which the reaction is counted
-procedure.kind | | how levels follow from outcomes
-procedure.variable | | name that it sets
+procedure.kind | needed; a track takes its procedure's | how levels follow from outcomes
+procedure.variable | needed; a track takes its procedure's | name that it sets
 procedure.name | track 1, track 2, ... | of the track
 procedure.unit | none | of the variable
 procedure.by | none | factors each of whose levels has a track of its own
 procedure.counts | whether the first answer was right | formula of the outcome
 procedure.resolution | not rounded | to which levels are rounded
-procedure.range | | lowest and highest level
+procedure.range | needed; a track takes its procedure's | lowest and highest level
 procedure.scale | linear | of the difference to origin, on which steps and functions are
 procedure.origin | | of the scale
-procedure.start | | first level
-procedure.steps | | sizes of steps, the next after each reversal; or pairs [down, up]
+procedure.start | needed; a track takes its procedure's | first level
+procedure.steps | needed; a track takes its procedure's | sizes of steps, the next after each reversal; or pairs [down, up]
 procedure.down | | right answers in a row for a step down
 procedure.up | | wrong answers in a row for a step up
 procedure.first_down | | the same until the first reversal; 0: as down
@@ -182,17 +238,17 @@ procedure.schedule | reversals | what takes the next size of steps
 procedure.at_bound | hold | what a step beyond the range does: stays, stays without a reversal, ends the track
 procedure.right_raises | | whether right answers raise the level
 procedure.stop.reversals | no such end | after which the track ends
-procedure.stop.trials | needed but for another end | after which the track ends
+procedure.stop.trials | needed | after which the track ends
 procedure.stop.entropy | no such end | of the posterior, below which the track ends
 procedure.estimate.of | | what the threshold is the mean of
 procedure.estimate.skip | 0 | first reversals, or levels, that are left out
 procedure.estimate.last | all | last ones alone that count
 procedure.target | | share of right answers that is sought
 procedure.deviation | | of the count of right answers that is tolerated
-procedure.first_step | | on the scale
-procedure.smallest_step | | on the scale; a step as small ends the track
-procedure.largest_step | | on the scale
-procedure.levels | | that may be presented: a list, or { from, to, count, spacing }
+procedure.first_step | needed; a track takes its procedure's | on the scale
+procedure.smallest_step | needed; a track takes its procedure's | on the scale; a step as small ends the track
+procedure.largest_step | needed; a track takes its procedure's | on the scale
+procedure.levels | needed; a track takes its procedure's | levels that may be presented: a list, or { from, to, count, spacing }
 procedure.levels.from | | first level
 procedure.levels.to | | last level
 procedure.levels.count | | of levels
@@ -218,6 +274,12 @@ procedure.marginal | | whether only the threshold is to become sure
 procedure.repetitions | | of each level
 procedure.in_rounds | | whether each level comes once before any comes again
 procedure.modulus | none is stated | number that the first level is called
+procedure.starts | needed; a track takes its procedure's | levels at which adjustments begin: a list, or { from, to, count, spacing }
+procedure.starts.from | | first one
+procedure.starts.to | | last one
+procedure.starts.count | | how many
+procedure.starts.spacing | linear | of them
+procedure.most_presentations | | of one adjustment; then it ends without a setting
 procedure.expect.threshold | | what you count on, for validate
 procedure.expect.width | | likewise
 procedure.expect.function | norm | likewise
@@ -225,12 +287,13 @@ procedure.expect.guess | 0.5 | likewise
 procedure.expect.lapse | 0 | likewise
 procedure.expect.share | 0.5 | of answers 1, guesses and lapses aside, at the threshold
 fields.NAME.type | | law of the field
+fields.NAME.device | all devices | device that feels the field
 fields.NAME.limit | | of the field's own force
 fields.NAME.fade_in | | time over which it grows
 fields.NAME.fade_out | | time over which it goes
 fields.NAME.force | | in the world frame
-fields.NAME.to | | force at the end, or place that is pulled to
-fields.NAME.from | no force, of a channel axes | force at the beginning, or end of the channel
+fields.NAME.to | needed, but for a channel with axes | force at the end, or place that is pulled to
+fields.NAME.from | no force of a ramp, axes of a channel | force at the beginning, or end of the channel
 fields.NAME.rise | | time over which the force grows
 fields.NAME.duration | | of the pulse or movement
 fields.NAME.delay | | before the pulse
@@ -245,11 +308,11 @@ fields.NAME.turn | not turned | rotation vector of the box
 fields.NAME.axis | | direction of the cylinder
 fields.NAME.length | | of the cylinder
 fields.NAME.felt_from | outside | side from which the surface is felt
-fields.NAME.axes | | that are free: x, y, z
+fields.NAME.axes | | free axes of the channel: x, y, z
 fields.NAME.through | | point of the channel or plane
 fields.NAME.velocity_filter | | cut-off of the filter of velocity
 fields.NAME.matrix | | B of the force B v
-fields.NAME.mass | | that is felt
+fields.NAME.mass | | mass that is felt
 fields.NAME.acceleration_filter | | cut-off of the filter of acceleration
 fields.NAME.on | everywhere | field of a surface that this one belongs to
 fields.NAME.static | | friction before it slips: a force, or on a surface a coefficient
@@ -263,7 +326,7 @@ fields.NAME.profile | sine | of the grating
 fields.NAME.roughness | | root mean square of the relief
 fields.NAME.lowest | | frequency of the noise
 fields.NAME.highest | | frequency of the noise
-fields.NAME.seed | 1 | of the noise
+fields.NAME.seed | | of the noise
 fields.NAME.rms | a sine with amplitude | root mean square of a vibration that is noise
 fields.NAME.frequency | | of the vibration
 fields.NAME.decay | | time constant of the tap
@@ -275,6 +338,7 @@ fields.NAME.travel | | of the click up to its peak
 fields.NAME.drop | | of force after the peak
 fields.NAME.drop_travel | | over which it drops
 regions.NAME.type | | shape of the region
+regions.NAME.device | the first device | device whose tool must be in the region
 regions.NAME.point | | of the half space
 regions.NAME.normal | | direction out of the region
 regions.NAME.centre | | of the region
@@ -283,26 +347,50 @@ regions.NAME.size | | edges of the box
 regions.NAME.turn | not turned | rotation vector of the box
 regions.NAME.axis | | direction of the cylinder
 regions.NAME.length | | of the cylinder
+looks.NAME.type | | what can be seen: a bar of random dots
+looks.NAME.width | | of the bar
+looks.NAME.height | | of the bar
+looks.NAME.step | 0.03 | depth of the bar before its background
+looks.NAME.noise | 0 | spread of a dot's depth, as a share of the step
+looks.NAME.dot | 0.0012 | diameter of a dot
+looks.NAME.centre | 0, 0, 0 | of the bar
+looks.NAME.dots | 2500 | number of dots on the screen
 observer.senses | force | what the virtual participant feels
 observer.in_stage | throughout the interval | stage in which it is felt
 observer.decides | largest | how what is felt becomes an answer
 observer.yes | the first choice | value of the choice that means yes
+observer.raise | the first choice | value of the choice that raises an adjusted level
+observer.lower | the second choice | value of the choice that lowers it
+observer.done | the third choice | value of the choice that ends the adjustment
+observer.wanted | 1 | percept that is adjusted to where the trial shows none before
 observer.reaction | 0.6 | median time from question to answer
-observer.actions.NAME.do | | what the hand does in the stage NAME
-observer.actions.NAME.force | | with which it presses
+observer.actions.NAME.do | needed, or a table for each device | what the hand does in the stage NAME
+observer.actions.NAME.force | 0 of a stroke, needed of a press | with which it presses
 observer.actions.NAME.rise | 0.5 | time over which it grows
 observer.actions.NAME.travel | 0.05 | after which it presses no further
-observer.actions.NAME.direction | down | of pressing or stroking
+observer.actions.NAME.direction | down of a press, needed of a stroke | of pressing or stroking
 observer.actions.NAME.half_length | | of a stroke
 observer.actions.NAME.frequency | | of strokes
-observer.actions.NAME.normal | up | of the surface that is stroked
+observer.actions.NAME.normal | down | direction in which a stroke presses
 observer.actions.NAME.duration | | of the reach
+observer.actions.NAME.NAME.do | | what the hand at the device of the second name does
+observer.actions.NAME.NAME.force | 0 of a stroke, needed of a press | with which it presses
+observer.actions.NAME.NAME.rise | 0.5 | time over which it grows
+observer.actions.NAME.NAME.travel | 0.05 | after which it presses no further
+observer.actions.NAME.NAME.direction | down of a press, needed of a stroke | of pressing or stroking
+observer.actions.NAME.NAME.half_length | | of a stroke
+observer.actions.NAME.NAME.frequency | | of strokes
+observer.actions.NAME.NAME.normal | down | direction in which a stroke presses
+observer.actions.NAME.NAME.duration | | of the reach
 observer.adaptation.stage | | of the reach that is learnt from
 observer.adaptation.matrix | | B of the field that is learnt
-observer.adaptation.fast.retention | 0.59 | of the fast process from trial to trial
-observer.adaptation.fast.learning | 0.21 | from an error
-observer.adaptation.slow.retention | 0.992 | of the slow process
-observer.adaptation.slow.learning | 0.02 | from an error
+observer.adaptation.fast.retention | | of the fast process from trial to trial; without the table 0.59
+observer.adaptation.fast.learning | | of the fast process from an error; without the table 0.21
+observer.adaptation.slow.retention | | of the slow process from trial to trial; without the table 0.992
+observer.adaptation.slow.learning | | of the slow process from an error; without the table 0.02
+observer.sight.noise | | noises of the picture, rising
+observer.sight.sd | | spread of a seen size at each of these noises
+observer.sight.spread | 0 | spread of it between people, as a logarithm
 observer.force_weber | | spread of a felt force, as a share of it
 observer.force_floor | | spread of a felt force of zero
 observer.displacement_bias | | share of a displacement that is not felt
@@ -332,30 +420,38 @@ trials:analysis.rating | the second question | question of how sure the particip
 trials:analysis.function | norm | sigmoid that is fitted
 trials:analysis.scale | of the procedure | of the axis
 trials:analysis.origin | of the procedure | of the axis
-trials:analysis.guess | 1 / choices, else free | guess rate, or "free"
+trials:analysis.guess | 1 / choices, else free | guess rate, "free", or "lapse" for the lapse rate
 trials:analysis.lapse | { free = true, at_most = 0.06 } | lapse rate, or how it is fitted
 trials:analysis.lapse.free | true | whether it is fitted
 trials:analysis.lapse.at_most | 0.06 | its upper bound
-trials:analysis.threshold_at | 0.75, or 0.5 if the guess rate is free | share of answers 1 at the threshold, lapses aside
+trials:analysis.threshold_at | halfway from the guess rate to 1; 0.5 if that is free | share of answers 1 at the threshold, lapses aside
 trials:analysis.reference | no Weber fractions | standard stimulus
 trials:analysis.bayesian | true | whether the Bayesian fit is added
 trials:analysis.resamples | 1999 | of the bootstrap
+trials:analysis.cue_combination.first.NAME | | level of a factor in conditions with the first cue alone
+trials:analysis.cue_combination.second.NAME | | level of a factor in conditions with the second cue alone
+trials:analysis.cue_combination.both.NAME | | level of a factor in conditions with both cues
+trials:analysis.cue_combination.at | none | factor that changes how reliable the first cue is
+trials:analysis.cue_combination.conflict | | factor by which the cues of the standard disagree
+trials:analysis.cue_combination.standard | | interval whose cues disagree
+trials:analysis.cue_combination.first_shows | | variable of that interval that the first cue shows
+trials:analysis.cue_combination.second_shows | | variable of that interval that the second cue shows
 trials:analysis.stage | reach | of the reach
 trials:analysis.start | start | place where reaches begin
 trials:analysis.target | target | place where they end
-trials:analysis.field | the first of type matrix_viscous | that is learnt
+trials:analysis.field | the first of type matrix_viscous | field that is learnt
 trials:analysis.clamp | clamp | probe whose reaches a channel holds
 trials:analysis.cycle | combinations of the factors | trials of a cycle
-trials:analysis.error | maximum | that is learnt from
+trials:analysis.error | maximum | error of a reach that is learnt from
 analysis.planned | none | planned tests: "a < b", "a > b" or "a != b" of conditions
 analysis.reference | the first | condition that the others are compared with
 trajectory.from | generated curves | file with the curve to follow
 trajectory.speed | | along the arc
 trajectory.length_x | | of the trajectory from left to right
 trajectory.range_z | | of the trajectory across
-trajectory.sinusoids | | that the trajectory is the sum of
+trajectory.sinusoids | | number of sinusoids that the trajectory is the sum of
 trajectory.max_spatial_frequency | | of the sinusoids
-force_pattern.sinusoids | | that the base is the sum of
+force_pattern.sinusoids | | number of sinusoids that the base is the sum of
 force_pattern.max_frequency | | of the sinusoids
 force_pattern.base_max | | greatest force of the base
 force_pattern.bumps_min | | least number of bumps
@@ -380,36 +476,36 @@ guidance.curve.step | | between neighbouring points of the curve
 guidance.curve.reach | | within which the next point is looked for
 guidance.curve.margin | | by which another branch must be nearer
 recording.stimulus_rate | | samples of the stored target curves
-pace.pace | | along a path of the reference curvature
-pace.variability | | spread of the intended speed within a pass
-pace.correlation | | time over which it is alike
-subject.visual_weber | | spread of a seen bar height, as a share of it
-subject.haptic_weber | | spread of a felt force, as a share of it
-subject.visual_memory_noise | | of a height kept in memory, as a force
-subject.haptic_memory_noise | | of a force kept in memory
-subject.haptic_bias | | spread of the felt scale from pass to pass
-subject.bar_misjudgement | | spread of newtons per bar height before calibration
-subject.calibration_loss | | share of a calibration that is gone after a block
-subject.forgetting | | drift of the memory between passes
-subject.memory_correlation | | time over which memory errors are alike
-subject.production_bias | | spread of the produced scale from recall to recall
-subject.timing_error | | spread of the time at which a remembered force comes
-subject.timing_correlation | | time over which timing errors are alike
-subject.visual_delay | | reaction to what is seen
-subject.haptic_delay | | reaction to what is felt
-subject.force_noise | | spread of a held force, as a share of it
-subject.force_noise_time | | its correlation time
-subject.tremor | | root mean square of the tremor
-subject.tremor_frequency | | of the tremor
+pace.pace | needed | along a path of the reference curvature
+pace.variability | needed | spread of the intended speed within a pass
+pace.correlation | needed | time over which it is alike
+subject.visual_weber | needed | spread of a seen bar height, as a share of it
+subject.haptic_weber | needed | spread of a felt force, as a share of it
+subject.visual_memory_noise | needed | of a height kept in memory, as a force
+subject.haptic_memory_noise | needed | of a force kept in memory
+subject.haptic_bias | needed | spread of the felt scale from pass to pass
+subject.bar_misjudgement | needed | spread of newtons per bar height before calibration
+subject.calibration_loss | needed | share of a calibration that is gone after a block
+subject.forgetting | needed | drift of the memory between passes
+subject.memory_correlation | needed | time over which memory errors are alike
+subject.production_bias | needed | spread of the produced scale from recall to recall
+subject.timing_error | needed | spread of the time at which a remembered force comes
+subject.timing_correlation | needed | time over which timing errors are alike
+subject.visual_delay | needed | reaction to what is seen
+subject.haptic_delay | needed | reaction to what is felt
+subject.force_noise | needed | spread of a held force, as a share of it
+subject.force_noise_time | needed | its correlation time
+subject.tremor | needed | root mean square of the tremor
+subject.tremor_frequency | needed | of the tremor
 force_training:analysis.samples | | of the common time base
 force_training:analysis.filter_width | | of the box filter on the applied force
 force_training:analysis.power | | exponent of the differences
 force_training:analysis.force_weight | | weight of the difference of forces
 force_training:analysis.slope_weight | | weight of the difference of slopes
 force_training:analysis.penalty | | cost of a step that stretches or compresses time
-force_training:analysis.cost_share | | weight of the alignment's cost in the score
-force_training:analysis.force_share | | weight of the difference of forces in the score
-force_training:analysis.slope_share | | weight of the difference of slopes in the score
+force_training:analysis.cost_share | needed | weight of the alignment's cost in the score
+force_training:analysis.force_share | needed | weight of the difference of forces in the score
+force_training:analysis.slope_share | needed | weight of the difference of slopes in the score
 force_training:analysis.step_pattern | published | steps that the alignment may take
 force_training:analysis.window | no window | greatest difference in time
 force_training:analysis.open_begin | false | whether the applied curve may begin late
@@ -453,12 +549,13 @@ drilling.handle | | direction from the tip along the handle
 drilling.scale | | size of the device's workspace over that of the scene
 drilling.recovery | | time without force after an aborted pass
 buttons.analog_pedal | false | whether the pedal sets the speed of the burr
+keys.analog_pedal | false | the same as in [buttons]; the value in [keys] counts if both are there
 pieces.capacity | | greatest number of pieces
 pieces.smallest_piece | | in voxels; smaller parts turn to dust
 pieces.moves_per_tick | | voxels that are moved to a new piece per tick, at most
 pieces.split_initial | | whether parts that are separate at the start become pieces
 camera.eye | | of the microscope
-camera.target | | that is looked at
+camera.target | | point that the microscope looks at
 camera.up | | upward in the picture
 camera.field_of_view | | at the start
 camera.move_gain | | distance of the view for a distance of the hand
@@ -505,7 +602,7 @@ cavity.offset | none | of its end from that structure
 cavity.radius | | at its end
 cavity.slope | | radius by height
 cavity.margin | | to any structure
-cavity.structures | none | that have margins of their own
+cavity.structures | none | structures that have margins of their own
 cavity.margins | none | theirs
 virtual_surgeons.rough | | burr for most of the bone
 virtual_surgeons.fine | | burr near structures
@@ -518,7 +615,7 @@ virtual_surgeons.previous_button | | takes the tool before
 virtual_surgeons.look_button | | turns the camera while held; -1: none
 virtual_surgeons.finish_button | | ends the procedure; -1: none
 virtual_surgeons.skill | | from 0 to 1
-virtual_surgeons.skill.NAME | | of the group, from 0 to 1
+virtual_surgeons.skill.NAME | | skill of the group, from 0 to 1
 buttons.power | none | numbers of the device: the burr turns
 buttons.next_tool | none | numbers of the device: takes the next tool
 buttons.previous_tool | none | numbers of the device: takes the tool before
