@@ -98,7 +98,8 @@ std::string replaced(std::string path, const std::string& what, const std::strin
 TEST(KeysTest, EveryKeyOfTheShippedDefinitionsIsListed) {
   int checked = 0;
   for (const auto& entry : fs::directory_iterator(HAPTRIAL_SOURCE_DIR "/experiments")) {
-    if (entry.path().extension() != ".toml") {
+    const bool translation = entry.path().stem().string().find(".texts.") != std::string::npos;
+    if (entry.path().extension() != ".toml" || translation) {
       continue;
     }
     const toml::table root = toml::parse_file(entry.path().string());

@@ -9,8 +9,9 @@
 namespace haptrial::experiments {
 namespace {
 
-/// A bar would begin another cell.
+/// A bar would begin another cell, and a line break another row.
 std::string cell(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
   for (std::size_t at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2)) {
     text.replace(at, 1, "\\|");
   }

@@ -21,7 +21,9 @@ IntervalRun interval(int marker) {
   Stage ready, feel;
   ready.until.time = 0.01;
   feel.until.time = 0.02;
-  IntervalRun run{scene::Scene({}, 1.0 / kDt), StageMachine({ready, feel}, {}, 0), {}, 0, marker};
+  std::vector<scene::Scene> scenes;
+  scenes.emplace_back(std::vector<scene::Field>{}, 1.0 / kDt);
+  IntervalRun run{std::move(scenes), StageMachine({ready, feel}, {}, 0), {}, 0, marker};
   run.sights.resize(2);
   run.sights[1].sound = 3;
   return run;
