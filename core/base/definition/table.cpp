@@ -9,7 +9,7 @@
 #include <set>
 #include <sstream>
 
-#include "core/base/definition/table_parts_internal.h"
+#include "core/base/definition/table_internal.h"
 #include "core/base/definition/table_words_internal.h"
 #include "core/base/definition/toml_text_internal.h"
 #include "core/base/error.h"

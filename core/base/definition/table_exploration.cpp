@@ -4,7 +4,7 @@
 #include <deque>
 #include <exception>
 
-#include "core/base/definition/table_parts_internal.h"
+#include "core/base/definition/table_internal.h"
 #include "core/base/definition/table_words_internal.h"
 
 namespace haptrial {
