@@ -115,7 +115,7 @@ TEST_F(CommandTest, BashCompletesSubcommandsAndOptions) {
   EXPECT_EQ(names.output, "dry-run devices device-test\n");
   const CommandResult options = run_command(
       source + "COMP_WORDS=(haptrial dry-run --se) COMP_CWORD=2; _haptrial; echo ${COMPREPLY[@]}");
-  EXPECT_EQ(options.output, "--seed\n");
+  EXPECT_EQ(options.output, "--seed --session\n");
   const CommandResult nested = run_command(
       source + "COMP_WORDS=(haptrial rate i) COMP_CWORD=2; _haptrial; echo ${COMPREPLY[@]}");
   EXPECT_EQ(nested.output, "import\n");

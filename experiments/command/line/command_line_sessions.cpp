@@ -18,7 +18,7 @@ void add_dry_run(CLI::App& app, int& status) {
   sub->add_option("--trials", o.trials,
                   "Number of trials of each session, from the first (default: all)");
   sub->add_option("--session", o.session,
-                  "Only this session of each subject (default: all of them, in their order)");
+                  "Number of the one session of each subject to run (default: all, in their order)");
   sub->add_option("--language", o.language,
                   "Language of what participants read, such as de (default: the definition's)");
   sub->add_option("--frames", o.frames,
@@ -83,7 +83,7 @@ void add_roster(CLI::App& app, int& status) {
   sub->add_option("FOLDER", o.folder, "Folder of the session files; need not be there yet")
       ->required();
   sub->add_option("--seed", o.seed,
-                  "Seed of the study, for orders (default: that of the sessions, else 1)");
+                  "Seed of the study, for orders (default: that of the sessions; 1 if there are none)");
   sub->add_option("--json", o.json, "New file for the roster as JSON");
   sub->add_option("--csv", o.csv, "New file for the roster as a table, a row for each session");
 }
@@ -142,7 +142,7 @@ void add_keys(CLI::App& app, int& status) {
                              "haptrial keys trials", {"", "keys.md"});
   auto& protocol = options_of<std::string>(*sub, status, keys);
   sub->add_option("PROTOCOL", protocol,
-                  "Only the keys of definitions with this protocol (default: all)");
+                  "Protocol whose keys are listed (default: every protocol)");
 }
 
 void add_devices(CLI::App& app, int& status) {
