@@ -118,7 +118,8 @@ TEST_F(LiveStreamTest, OnsetsArriveWithTheirCodes) {
   const CommandResult ended = LiveCommand(run(), with_the_layer()).wait(40.0);
   ASSERT_EQ(ended.status, 0) << ended.errors;
   std::vector<std::string> heard;
-  for (const Fields& row : streams_in(folder_ / "heard").at(1)) {
+  const auto streams = streams_in(folder_ / "heard");
+  for (const Fields& row : streams.at(1)) {
     if (row.size() > 1 && row[1].starts_with("onset: ")) {
       heard.push_back(row[1]);
     }
