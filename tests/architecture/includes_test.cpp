@@ -147,18 +147,17 @@ std::string idea_of(const std::string& pair) {
   return pair.ends_with(kInternal) ? pair.substr(0, pair.size() - kInternal.size()) : pair;
 }
 
-/// Each file pair with those that it includes; a header for the files of a pair alone is part of
-/// it.
+/// Each file pair with those that it includes, but for an internal header of its own.
 using Pairs = std::map<std::string, std::set<std::string>>;
 
 Pairs pairs_below(const fs::path& root, const std::string& folder) {
   Pairs pairs;
   for (const fs::path& file : sources(root / folder, true)) {
-    const std::string pair = idea_of(pair_of(fs::relative(file, root)));
+    const std::string pair = pair_of(fs::relative(file, root));
     auto& reached = pairs[pair];
     for (const std::string& include : includes(contents(file))) {
-      const std::string other = idea_of(pair_of(include));
-      if (fs::exists(root / include) && other != pair) {
+      const std::string other = pair_of(include);
+      if (fs::exists(root / include) && idea_of(other) != idea_of(pair)) {
         reached.insert(other);
       }
     }
