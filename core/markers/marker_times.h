@@ -27,7 +27,7 @@ class MarkerLatencies {
  public:
   void add(std::span<const record::MarkerRow> rows);
   void add(const MarkerLatencies& others);
-  /// Of each way that markers went, in the order of MarkerWay; kNone is none.
+  /// One for each way that markers went, in the order of MarkerWay, without kNone.
   std::vector<MarkerTimes> times() const;
 
  private:

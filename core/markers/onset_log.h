@@ -25,7 +25,7 @@ class OnsetLog {
 
   /// Onsets so far, without ends of passes. Any thread.
   std::uint64_t count() const noexcept { return count_.load(std::memory_order_acquire); }
-  /// Of the log, both kinds; those that it had no room for. Any thread.
+  /// How many onsets of both kinds the log had no room for. Any thread.
   std::uint64_t put_so_far() const noexcept { return log_.pushed(); }
   std::uint64_t dropped() const noexcept { return log_.dropped(); }
 

@@ -23,7 +23,7 @@ class SerialLine {
 
   /// Does not wait: a line that takes nothing has failed. @returns whether the system took the byte
   bool write(std::uint8_t byte) noexcept;
-  /// Of the last write() that failed: errno; 0 if none has.
+  /// errno of the last write() that failed; 0 if all went well.
   int error() const noexcept { return error_; }
   const std::string& device() const { return device_; }
 

@@ -42,7 +42,7 @@ void hint_lightly(FcPattern* pattern, gpointer) {
   FcPatternAddBool(pattern, FC_EMBEDDED_BITMAP, FcFalse);
 }
 
-/// Of this thread: looking for typefaces takes longer than everything else.
+/// One for each thread, kept: looking for typefaces takes longer than everything else.
 PangoFontMap* font_map() {
   thread_local const Owned<PangoFontMap> map = [] {
     Owned<PangoFontMap> made(pango_ft2_font_map_new());
