@@ -29,7 +29,9 @@ void SessionTask::clear_fault() noexcept { clear_asked_.store(true, std::memory_
 
 void SessionTask::emergency_stop() noexcept { stop_asked_.store(true, std::memory_order_release); }
 
-void SessionTask::break_off() noexcept { break_asked_.store(true, std::memory_order_release); }
+void SessionTask::break_off() noexcept {
+  break_row_.store(asked_row_.load(std::memory_order_relaxed), std::memory_order_release);
+}
 
 bool SessionTask::at_rest() const noexcept {
   return idle() && force_gone_.load(std::memory_order_acquire);
@@ -121,29 +123,38 @@ void SessionTask::record(const realtime::Tick& tick, const PassOutput& out) noex
 }
 
 void SessionTask::take_requests(std::uint64_t sequence) noexcept {
-  // Looked at in the reverse of the order in which the session's thread asks: who sees the pass
-  // sees the clearing that came before it. The stop is last, so that no clearing wipes it out.
-  Pass* const asked = asked_.load(std::memory_order_acquire);
+  // Looked at in the reverse of the order in which the session's thread asks: who sees that a pass
+  // is to be broken off sees the pass, who sees the pass sees the clearing that came before it. The
+  // stop is last, so that no clearing wipes it out.
+  const std::int32_t broken = break_row_.load(std::memory_order_acquire);
+  if (Pass* const asked = asked_.load(std::memory_order_acquire)) {
+    asked_.store(nullptr, std::memory_order_relaxed);
+    waiting_ = asked;
+  }
   if (clear_asked_.load(std::memory_order_acquire)) {
     clear_asked_.store(false, std::memory_order_relaxed);
     devices_.reset();
   }
   take_stop();
-  if (break_asked_.load(std::memory_order_acquire)) {
-    break_asked_.store(false, std::memory_order_relaxed);
-    if (waiting_ != nullptr) {
-      begin(sequence);
-    }
-    broken_off_ = pass_ != nullptr;
-    devices_.release();  // nothing is wrong: the force is let go, not cut
-  }
-  if (asked != nullptr) {
-    asked_.store(nullptr, std::memory_order_relaxed);
-    waiting_ = asked;
+  if (broken >= 0) {
+    break_off_row(broken, sequence);
   }
   if (waiting_ != nullptr && devices_.may_begin()) {
     begin(sequence);
   }
+}
+
+/// Nothing is wrong, so the force is let go, not cut. Whoever asked when the pass had just ended
+/// did not mean the next one.
+void SessionTask::break_off_row(std::int32_t row, std::uint64_t sequence) noexcept {
+  if (waiting_ != nullptr && asked_row_.load(std::memory_order_relaxed) == row) {
+    begin(sequence);
+  }
+  if (pass_ != nullptr && row_ == row) {
+    broken_off_ = true;
+    devices_.release();
+  }
+  break_row_.compare_exchange_strong(row, -1, std::memory_order_relaxed);
 }
 
 /// @returns whether an emergency stop was asked for.

@@ -81,7 +81,8 @@ class SessionTask final : public realtime::ServoTask {
   void leave_before(std::uint64_t index) noexcept { leave_before_ = index; }
   /// Clears a fault before the next pass; the force ramps in again.
   void clear_fault() noexcept;
-  /// Ends the present pass as aborted without a fault: to repeat or to skip its trial.
+  /// Ends the pass that was started last as aborted without a fault: to repeat or to skip its
+  /// trial. Nothing happens when it has ended.
   void break_off() noexcept;
   /// Force to zero from the next tick on, the present pass aborted. Also from a signal's handler.
   void emergency_stop() noexcept;
@@ -95,6 +96,7 @@ class SessionTask final : public realtime::ServoTask {
  private:
   void take_requests(std::uint64_t sequence) noexcept;
   bool take_stop() noexcept;
+  void break_off_row(std::int32_t row, std::uint64_t sequence) noexcept;
   void begin(std::uint64_t sequence) noexcept;
   bool end_if_over(std::uint64_t sequence) noexcept;
   void record(const realtime::Tick& tick, const PassOutput& out) noexcept;
@@ -119,7 +121,7 @@ class SessionTask final : public realtime::ServoTask {
   std::atomic<bool> force_gone_{true};  // the device took a force of zero last
   std::atomic<bool> clear_asked_{false};
   std::atomic<bool> stop_asked_{false};
-  std::atomic<bool> break_asked_{false};
+  std::atomic<std::int32_t> break_row_{-1};  // of the pass to break off
 
   // Servo thread.
   Pass* waiting_{nullptr};  // until it may begin

@@ -208,6 +208,30 @@ TEST_F(SessionTaskTest, APassThatWaitsCanBeBrokenOffOrStopped) {
   }
 }
 
+TEST_F(SessionTaskTest, APassIsBrokenOffAlsoBetweenTwoTicks) {
+  ConstantPass pass({0, 5, 0}, 5);
+  task_.start(pass, 0);
+  task_.break_off();
+  ticks(1);
+  ASSERT_TRUE(task_.idle()) << "both came before the loop looked";
+  EXPECT_EQ(task_.result().state, PassState::kAborted);
+}
+
+TEST_F(SessionTaskTest, WhoBreaksOffAPassThatHasEndedDoesNotMeanTheNext) {
+  ConstantPass first({0, 5, 0}, 5);
+  task_.start(first, 0);
+  ticks(6);
+  ASSERT_TRUE(task_.idle());
+  task_.break_off();
+  ConstantPass second({0, 5, 0}, 5);
+  task_.start(second, 1);
+  while (!task_.idle()) {
+    ticks(1);
+  }
+  EXPECT_EQ(task_.result().state, PassState::kCompleted);
+  EXPECT_EQ(second.done(), 5);
+}
+
 TEST_F(SessionTaskTest, TheStopButtonTakesTheForceAwayAtOnceAndForGood) {
   device_.on_read = [](std::size_t tick, DeviceReading& r) {
     r.stop_pressed = tick == 5;
