@@ -13,7 +13,10 @@
 #include "experiments/control/progress.h"
 #include "experiments/control/session_desk.h"
 #include "experiments/loop/servo_thread.h"
+#include "experiments/runner/aborted_pass.h"
 #include "experiments/runner/devices.h"
+#include "experiments/runner/earlier_run.h"
+#include "experiments/runner/next_trial.h"
 #include "experiments/runner/session_notices.h"
 #include "experiments/runner/session_opening.h"
 #include "experiments/runner/session_pace.h"
@@ -30,38 +33,6 @@ using protocols::PlannedTrial;
 using protocols::TrialEnd;
 using realtime::ClockKind;
 
-/// Where somebody looks at the figures: at a console, or at the end.
-std::unique_ptr<record::LiveFigures> open_live(const SessionRequest& request,
-                                               const std::filesystem::path& resumed) {
-  const bool seen = request.clock == ClockKind::kReal || request.control != nullptr;
-  return seen && request.live ? request.live(resumed) : nullptr;
-}
-
-std::filesystem::path resumed_file(const SessionRequest& request) {
-  return request.resume ? std::filesystem::path(request.file.string() + ".partial")
-                        : std::filesystem::path();
-}
-
-std::vector<DeviceChoice> choices_of(const SessionRequest& request) {
-  std::vector<DeviceChoice> choices{request.device};
-  choices.insert(choices.end(), request.more_devices.begin(), request.more_devices.end());
-  return choices;
-}
-
-std::vector<protocols::DeviceSet::Arm> arms_of(protocols::Rig& rig,
-                                               const device::EnvelopeLimits& envelope) {
-  std::vector<protocols::DeviceSet::Arm> arms{{&rig.device(), envelope}};
-  for (const protocols::DeviceSet::Arm& arm : rig.others()) {
-    arms.push_back(arm);
-  }
-  return arms;
-}
-
-/// Whether somebody feels the forces.
-bool is_felt(protocols::Rig& rig) {
-  return !rig.device().info().simulated && rig.mouse() == nullptr;
-}
-
 class Session {
  public:
   explicit Session(const SessionRequest& request);
@@ -77,22 +48,16 @@ class Session {
   void show_trial();
   void run_trials();
   void note_language();
-  std::optional<PlannedTrial> following(const Outcome* last);
   bool has_break_after(const PlannedTrial& trial) const;
   Outcome present(const PlannedTrial& trial);
   bool run_trial(const PlannedTrial& trial, int attempt);
   bool run_pass(const PlannedTrial& trial, const record::Phase& phase, int attempt);
   void keep_responses();
   protocols::SessionPlace place();
-  void note_damping(const protocols::PassResult& result);
-  void note_marker_troubles();
-  void after_abort(const protocols::PassResult& result);
-  std::string why_broken_off();
 
   void finish();
   void give_up() noexcept;
   void end_servo();
-  void note_troubles();
 
   const SessionRequest& request_;
   const protocols::Definition& d_;
@@ -118,7 +83,9 @@ class Session {
   protocols::SessionTask task_;
   SessionPace pace_;
   SessionPages pages_;
+  NextTrial next_;
   SessionNotices notices_;
+  AbortedPass aborted_;
   ServoThread servo_;  // on a real clock
   SessionStop stop_;
   std::optional<WatchedStop> watched_;  // on a real clock
@@ -155,10 +122,10 @@ Session::Session(const SessionRequest& request)
       trials_(request.protocol->trials(d_, place_)),
       rig_(make_rig(choices_of(request), d_, [this] { return trials_->virtual_rig(); })),
       screen_(open_screen(request, rig_->mouse(), &held_keys_, &begin_pressed_, &page_keys_)),
-      live_(open_live(request, place_.resumed)),
+      live_(open_live(request)),
       record_(request, rig_->device().info(), loop_, *trials_, onsets_, live_.get()),
       desk_(request.control, desk_actions()),
-      task_({.devices = arms_of(*rig_, d_.envelope),
+      task_({.devices = rig_->arms(d_.envelope),
              .log = record_.log(),
              .device_log = &record_.device_log(),
              .tick_log = trials_->tick_log(),
@@ -168,10 +135,12 @@ Session::Session(const SessionRequest& request)
             real_ ? protocols::SessionTask::Leave::kNever
                   : protocols::SessionTask::Leave::kAfterPassOrSlice,
             record_.origin()),
-      pace_({request, loop_, record_, desk_, task_, is_felt(*rig_), screen_.get(), &begin_pressed_,
+      pace_({request, loop_, record_, desk_, task_, rig_->felt(), screen_.get(), &begin_pressed_,
              live_.get()}),
       pages_({request, record_, desk_, pace_, page_keys_, screen_.get(), place_.session_seed}),
+      next_({request, *trials_, record_, pages_}),
       notices_({request, loop_, record_, desk_, summary_}),
+      aborted_({d_, *rig_, *trials_, record_, desk_, pace_, real_}),
       servo_(loop_, task_, longest_fade(d_.envelope)),
       stop_(task_, servo_, rig_->device()) {
   SessionStatus& status = desk_.status();
@@ -244,7 +213,7 @@ SessionSummary Session::run() {
     }
     notices_.note_real_time();
     notices_.say_plan(extent, trials_->extent(0).trials,
-                      record_.finished(trials_->phases().back()));
+                      finished_trials(record_.earlier(), trials_->phases().back()));
     run_trials();
     finish();
   } catch (...) {
@@ -252,31 +221,6 @@ SessionSummary Session::run() {
     throw;
   }
   return summary_;
-}
-
-/// The next trial that this session is to present. What an earlier run recorded is not presented
-/// again: its outcome goes into the same procedure, which leads to the same trials.
-std::optional<PlannedTrial> Session::following(const Outcome* last) {
-  std::optional<PlannedTrial> trial = trials_->next(last);
-  while (trial) {
-    if (request_.max_trials > 0 && !trial->practice && trial->trial > request_.max_trials) {
-      return std::nullopt;
-    }
-    const auto before = record_.outcome(*trial, trials_->phases().back());
-    const bool again = before && before->end == TrialEnd::kAborted &&
-                       (trials_->presents_aborted_again() || record_.is_last(*trial));
-    if (!before || again) {
-      return trial;
-    }
-    trial = trials_->next(&*before);
-    const PlannedTrial& over = before->trial;
-    const bool block_over = !trial || trial->block != over.block;
-    if (block_over && !pages_.after_block(over.block, over.block_name, true)) {
-      left_ = true;
-      return std::nullopt;
-    }
-  }
-  return trial;
 }
 
 void Session::run_trials() {
@@ -291,7 +235,7 @@ void Session::run_trials() {
   }
   pace_.wait_to_begin(d_.instructions());
   bool practised = false;
-  std::optional<PlannedTrial> trial = following(nullptr);
+  std::optional<PlannedTrial> trial = next_.after(nullptr);
   while (trial) {
     if (desk_.wishes().abort) {
       left_ = true;
@@ -305,10 +249,10 @@ void Session::run_trials() {
     const bool stopped = desk_.wishes().abort;
     const bool rests = has_break_after(*trial) && !stopped;
     if (stopped) {
-      left_ = left_ || following(&outcome).has_value();
+      left_ = left_ || next_.after(&outcome).has_value();
       break;
     }
-    trial = following(&outcome);
+    trial = next_.after(&outcome);
     const PlannedTrial& over = outcome.trial;
     if ((!trial || trial->block != over.block) &&
         !pages_.after_block(over.block, over.block_name)) {
@@ -319,6 +263,7 @@ void Session::run_trials() {
       pace_.take_break();
     }
   }
+  left_ = left_ || next_.ended_at_page();
   if (!left_ && !pages_.after()) {
     left_ = true;
   }
@@ -346,7 +291,7 @@ Outcome Session::present(const PlannedTrial& trial) {
   progress_.reset();
   Wishes& wishes = desk_.wishes();
   Outcome outcome{trial, TrialEnd::kAborted, {}};
-  for (int attempt = record_.attempts(trial) + 1; !wishes.abort; ++attempt) {
+  for (int attempt = attempts_of(record_.earlier(), trial) + 1; !wishes.abort; ++attempt) {
     const bool anew = std::exchange(wishes.repeat, false);
     wishes.skip = false;
     responses_.clear();
@@ -414,10 +359,10 @@ bool Session::run_pass(const PlannedTrial& trial, const record::Phase& phase, in
   trials_->close_pass(record_, number);
   keep_responses();
   record_.end_pass(result);
-  note_marker_troubles();
-  note_damping(result);
+  notices_.note_pass(result);
   if (aborted) {
-    after_abort(result);
+    desk_.status().aborted_passes = ++summary_.aborted_passes;
+    aborted_.see_to(result);
   }
   trials_->draw_pictures(trial, phase);
   return !aborted;
@@ -431,68 +376,12 @@ void Session::keep_responses() {
   }
 }
 
-void Session::note_marker_troubles() {
-  for (const std::string& trouble : record_.markers().troubles()) {
-    notices_.note(trouble);
-  }
-}
-
-/// A hand that did not carry all the damping was guided less firmly, which an analyst has to know.
-void Session::note_damping(const protocols::PassResult& result) {
-  if (result.reduced_ticks > 0) {
-    record_.note_damping(result.least_damping, static_cast<double>(result.reduced_ticks) / d_.rate);
-  }
-}
-
-void Session::after_abort(const protocols::PassResult& result) {
-  desk_.status().aborted_passes = ++summary_.aborted_passes;
-  const bool fault = result.fault != device::Fault::kNone;
-  std::string why = fault ? device::describe(result.fault) : why_broken_off();
-  if (fault && d_.devices() > 1) {
-    why = fmt::format("device {}: {}", result.device + 1, why);
-  }
-  const std::string trouble = fault ? rig_->device().trouble() : "";
-  const bool overloaded = !pace_.overload().empty();  // and no better the next time
-  record_.event("aborted", fmt::format("trial {}: {}{}{}", record_.pass().trial, why,
-                                       trouble.empty() ? "" : "; ", trouble));
-  if (result.fault == device::Fault::kStopButton) {
-    record_.event("emergency_stop", "by the handle");
-  }
-  if ((fault || overloaded) && desk_.attended()) {
-    desk_.status().fault = trouble.empty() ? why : why + "; " + trouble;
-    desk_.wishes().stopped = true;  // a person sees to the cause
-  } else if ((fault || overloaded) && real_) {
-    // Nobody is at a console or keyboard to see to the cause and say that it may go on.
-    pace_.let_read(d_.texts.stopped, "stopped");
-    pace_.end_early(trouble.empty() ? why : why + "; " + trouble);
-  } else {
-    pace_.recover();
-  }
-}
-
-std::string Session::why_broken_off() {
-  const Wishes& wishes = desk_.wishes();
-  if (!pace_.overload().empty()) {
-    return pace_.overload();
-  }
-  if (wishes.repeat) {
-    return "to be repeated";
-  }
-  if (wishes.skip) {
-    return "skipped";
-  }
-  if (wishes.abort) {
-    return wishes.for_good ? "the session was ended for good" : "the session was stopped";
-  }
-  return trials_->why_aborted();
-}
-
 void Session::finish() {
   end_servo();
   if (screen_) {
     record_.keep_frames(screen_->take_frames());
   }
-  note_troubles();
+  notices_.note_troubles(live_.get(), screen_.get());
   const Wishes& wishes = desk_.wishes();
   summary_.stopped = left_ && wishes.abort && !wishes.for_good;
   if (summary_.stopped) {
@@ -533,21 +422,8 @@ void Session::give_up() noexcept {
 /// The force fades when nothing is wrong with the device; a fault has cut it already.
 void Session::end_servo() {
   servo_.end();
-  for (const protocols::DeviceSet::Arm& arm : arms_of(*rig_, d_.envelope)) {
+  for (const protocols::DeviceSet::Arm& arm : rig_->arms(d_.envelope)) {
     arm.device->write(Eigen::Vector3d::Zero());
-  }
-}
-
-void Session::note_troubles() {
-  notices_.note(live_ ? live_->trouble() : "");
-  notices_.note(loop_.real_time_status().notice);
-  if (loop_.resynchronised() > 0) {
-    notices_.note(fmt::format("the loop was suspended {} times and continued at the present time",
-                              loop_.resynchronised()));
-  }
-  if (screen_) {
-    notices_.note(screen_->summary().notice);
-    notices_.note(screen_->trouble());
   }
 }
 

@@ -64,6 +64,29 @@ void SessionNotices::note_overruns(const LoopWatch& watch) {
   }
 }
 
+void SessionNotices::note_pass(const protocols::PassResult& result) {
+  for (const std::string& trouble : p_.record.markers().troubles()) {
+    note(trouble);
+  }
+  // A hand that did not carry all the damping was guided less firmly, which an analyst has to know.
+  if (result.reduced_ticks > 0) {
+    const double rate = p_.request.definition->rate;
+    p_.record.note_damping(result.least_damping, static_cast<double>(result.reduced_ticks) / rate);
+  }
+}
+
+void SessionNotices::note_troubles(const record::LiveFigures* live, const Screen* screen) {
+  note(live != nullptr ? live->trouble() : "");
+  note(p_.loop.real_time_status().notice);
+  if (const auto times = p_.loop.resynchronised(); times > 0) {
+    note(fmt::format("the loop was suspended {} times and continued at the present time", times));
+  }
+  if (screen != nullptr) {
+    note(screen->summary().notice);
+    note(screen->trouble());
+  }
+}
+
 void SessionNotices::say_plan(const protocols::Extent& extent, int defined, int over) {
   SessionStatus& status = p_.desk.status();
   status.trials = extent.trials;

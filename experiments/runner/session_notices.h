@@ -8,6 +8,8 @@
 #include "experiments/loop/loop_watch.h"
 #include "experiments/runner/session_record.h"
 #include "experiments/runner/session_request.h"
+#include "experiments/screen/screen.h"
+#include "protocols/interface/session_task.h"
 #include "protocols/interface/trials.h"
 
 namespace haptrial::experiments {
@@ -35,6 +37,11 @@ class SessionNotices {
   void note_real_time();
   /// The pass that has just ended. @param watch  of it
   void note_overruns(const LoopWatch& watch);
+
+  /// What the pass that has just ended had of trouble that did not end it.
+  void note_pass(const protocols::PassResult& result);
+  /// At the end of the session. @param live, screen  null where there is none
+  void note_troubles(const record::LiveFigures* live, const Screen* screen);
 
   /// What is recorded where, and how many trials.
   /// @param defined  trials of the whole session  @param over  of them, from earlier runs

@@ -138,6 +138,22 @@ bool close_what_had_ended(const SessionRequest& request) {
   return found.ended;
 }
 
+std::vector<DeviceChoice> choices_of(const SessionRequest& request) {
+  std::vector<DeviceChoice> choices{request.device};
+  choices.insert(choices.end(), request.more_devices.begin(), request.more_devices.end());
+  return choices;
+}
+
+std::unique_ptr<record::LiveFigures> open_live(const SessionRequest& request) {
+  const bool seen = request.clock == realtime::ClockKind::kReal || request.control != nullptr;
+  return seen && request.live ? request.live(resumed_file(request)) : nullptr;
+}
+
+std::filesystem::path resumed_file(const SessionRequest& request) {
+  return request.resume ? std::filesystem::path(request.file.string() + ".partial")
+                        : std::filesystem::path();
+}
+
 std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::MouseDevice* mouse,
                                     std::atomic<std::uint32_t>* held, std::atomic<bool>* begin,
                                     PageKeys* pages) {

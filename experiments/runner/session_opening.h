@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "core/base/definition/definition_changes.h"
 #include "core/record/recovery/session_resume.h"
+#include "core/record/rows/live_figures.h"
 #include "core/record/write/session_writer.h"
 #include "core/stream/lsl_outlet.h"
 #include "experiments/pages/page_keys.h"
@@ -38,6 +40,15 @@ record::SessionWriter open_writer(const SessionRequest& request, const device::D
 /// last steps. @returns whether it had; else nothing is changed
 /// @throws InputError, RunError as SessionWriter does
 bool close_what_had_ended(const SessionRequest& request);
+
+/// Of every device; the last one stands for those that follow.
+std::vector<DeviceChoice> choices_of(const SessionRequest& request);
+
+/// Where somebody looks at the figures: at a console, or at the end; else null.
+std::unique_ptr<record::LiveFigures> open_live(const SessionRequest& request);
+
+/// FILE.partial, which the session goes on with; empty for a new one.
+std::filesystem::path resumed_file(const SessionRequest& request);
 
 /// The participant's screen, where one was asked for; else null. Its Escape stops the session, its
 /// other keys steer it where the definition says so; its pointer moves the mouse device.

@@ -62,7 +62,7 @@ bool SessionPages::show_item(const pages::Page& page, const pages::Item& item, P
   row.block = block;
   row.questionnaire = page.name;
   row.item = item.name;
-  if (const auto earlier = p_.record.earlier_answer(row)) {
+  if (const auto earlier = answer_to(p_.record.earlier(), row)) {
     declined_ = declined_ || (item.kind == ItemKind::kConsent && earlier->value == 0.0);
     return !declined_;
   }

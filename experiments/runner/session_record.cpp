@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "core/record/read/definition_versions.h"
+#include "experiments/runner/earlier_run.h"
 #include "experiments/runner/session_opening.h"
-#include "protocols/interface/recorded_outcome.h"
 
 namespace haptrial::experiments {
 
@@ -20,7 +19,6 @@ std::string name_of(const PlannedTrial& trial) {
                      trial.condition);
 }
 
-/// Whether a pass is one of a trial's.
 record::PassRow row_of(const PlannedTrial& trial, const record::Phase& phase, int attempt) {
   record::PassRow row;
   row.trial = trial.trial;
@@ -32,16 +30,6 @@ record::PassRow row_of(const PlannedTrial& trial, const record::Phase& phase, in
   row.practice = trial.practice;
   row.attempt = attempt;
   return row;
-}
-
-/// Of all that is recorded: the last events may be younger than the last ticks that reached the
-/// file.
-std::int64_t last_time(const record::Resumed& before) {
-  std::int64_t last = before.last_time_ns;
-  for (const record::EventRow& event : before.events) {
-    last = std::max(last, event.time_ns);
-  }
-  return last;
 }
 
 }  // namespace
@@ -70,11 +58,6 @@ SessionRecord::SessionRecord(const SessionRequest& request, const device::Device
 }
 
 protocols::Origin SessionRecord::origin() const { return {before_.next_sequence, start_ns_}; }
-
-bool SessionRecord::is_over(const PlannedTrial& trial) const {
-  const auto before = outcome(trial, trials_.phases().back());
-  return before && before->end != protocols::TrialEnd::kAborted;
-}
 
 void SessionRecord::open(const std::string& text) {
   for (const record::OpenPass& open : before_.open_passes) {
@@ -131,41 +114,11 @@ void SessionRecord::keep_definition() {
 }
 
 bool SessionRecord::was_cut_short(const PlannedTrial& trial) const {
-  return !before_.open_passes.empty() && before_.passes.back().trial == trial.trial;
+  return cut_short(before_, trial);
 }
 
 std::uint64_t SessionRecord::dropped() const {
   return log_.dropped() + device_log_.dropped() + trials_.dropped();
-}
-
-std::optional<protocols::Outcome> SessionRecord::outcome(const PlannedTrial& trial,
-                                                         const record::Phase& last) const {
-  return protocols::recorded_outcome({before_.passes, before_.responses, before_.skipped}, trial,
-                                     last);
-}
-
-bool SessionRecord::is_last(const PlannedTrial& trial) const {
-  return !before_.passes.empty() && protocols::is_of(before_.passes.back(), trial);
-}
-
-int SessionRecord::finished(const record::Phase& last) const {
-  std::set<std::int32_t> trials;
-  for (const record::PassRow& pass : before_.passes) {
-    PlannedTrial trial;
-    trial.trial = pass.trial;
-    trial.condition = pass.condition;
-    const bool done = pass.phase == last && pass.status == record::PassStatus::kCompleted;
-    if (!pass.practice && (done || was_skipped(trial))) {
-      trials.insert(pass.trial);
-    }
-  }
-  return static_cast<int>(trials.size());
-}
-
-bool SessionRecord::was_skipped(const PlannedTrial& trial) const {
-  return std::ranges::any_of(before_.skipped, [&](const record::SkippedRow& row) {
-    return row.trial == trial.trial && row.practice == trial.practice;
-  });
 }
 
 void SessionRecord::note_damping(double least, double seconds) {
@@ -184,14 +137,6 @@ void SessionRecord::skip(const PlannedTrial& trial) {
   if (real_) {
     writer_.flush();
   }
-}
-
-int SessionRecord::attempts(const PlannedTrial& trial) const {
-  int most = 0;
-  for (const record::PassRow& pass : before_.passes) {
-    most = is_of(pass, trial) ? std::max(most, static_cast<int>(pass.attempt)) : most;
-  }
-  return most;
 }
 
 bool SessionRecord::holds_stimulus(std::int32_t block) const {
@@ -220,17 +165,6 @@ void SessionRecord::keep_answer(record::AnswerRow row) {
   if (real_) {
     writer_.sync_soon();  // nobody is to be asked twice
   }
-}
-
-std::optional<record::AnswerRow> SessionRecord::earlier_answer(
-    const record::AnswerRow& asked) const {
-  for (const record::AnswerRow& row : before_.answers) {
-    if (row.when == asked.when && row.block == asked.block &&
-        row.questionnaire == asked.questionnaire && row.item == asked.item) {
-      return row;
-    }
-  }
-  return std::nullopt;
 }
 
 std::int32_t SessionRecord::begin_pass(const PlannedTrial& trial, const record::Phase& phase,

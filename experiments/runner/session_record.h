@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,31 +47,21 @@ class SessionRecord final : public protocols::SessionFile {
   const std::string& notice() const { return notice_; }
   SessionMarkers& markers() { return markers_; }
 
+  /// What a resumed file holds; see earlier_run.h.
+  const record::Resumed& earlier() const { return before_; }
   /// The first event, after rows for the passes during which an earlier run ended.
   void open(const std::string& text);
-  /// What came of a trial in an earlier run: its last pass was completed, it was skipped, or every
-  /// attempt was aborted; nothing if it has none. @param last  phase of a trial
-  std::optional<protocols::Outcome> outcome(const protocols::PlannedTrial& trial,
-                                            const record::Phase& last) const;
-  /// Whether an earlier run ended with this trial.
-  bool is_last(const protocols::PlannedTrial& trial) const;
-  /// Trials of the study that earlier runs have come to the end of.
-  int finished(const record::Phase& last) const;
   /// The hand did not carry all the damping in the pass that ended.
   /// @param least  smallest share of it  @param seconds  for which it was reduced
   void note_damping(double least, double seconds);
   /// The trial was skipped for good: it does not come again, not after a resume either.
   void skip(const protocols::PlannedTrial& trial);
-  /// Of a trial in a resumed file; 0 where it has none.
-  int attempts(const protocols::PlannedTrial& trial) const;
   void keep_stimulus(std::int32_t block, std::span<const record::StimulusRow> rows) override;
   bool holds_stimulus(std::int32_t block) const override;
   const std::vector<record::PassRow>& earlier_passes() const override { return before_.passes; }
   bool was_cut_short(const protocols::PlannedTrial& trial) const override;
   /// An answer to a page; its time is filled in.
   void keep_answer(record::AnswerRow row);
-  /// What was answered to the same item on the same occasion in an earlier run.
-  std::optional<record::AnswerRow> earlier_answer(const record::AnswerRow& asked) const;
   /// Answers of the pass that has ended, before its row.
   void keep_responses(std::vector<record::ResponseRow> rows);
 
@@ -114,8 +103,6 @@ class SessionRecord final : public protocols::SessionFile {
   std::int64_t time_of(std::uint64_t sequence) const;
   void mark(const std::string& text);
   void keep_definition();
-  bool is_over(const protocols::PlannedTrial& trial) const;
-  bool was_skipped(const protocols::PlannedTrial& trial) const;
   void append(std::span<const record::Sample> samples);
   void append_rest();
   void keep_markers(bool last);

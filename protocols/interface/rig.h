@@ -18,10 +18,18 @@ class Rig {
   virtual device::Device& device() = 0;  // the first
   /// The devices after the first, each with its envelope.
   virtual std::vector<DeviceSet::Arm> others() { return {}; }
+  /// All of them. @param envelope  of the first
+  std::vector<DeviceSet::Arm> arms(const device::EnvelopeLimits& envelope) {
+    std::vector<DeviceSet::Arm> all = others();
+    all.insert(all.begin(), {&device(), envelope});
+    return all;
+  }
   /// The virtual subject; null where a person holds the devices.
   virtual stimulus::Observer* subject() { return nullptr; }
   /// Where the screen's pointer goes; null for any other device.
   virtual device::MouseDevice* mouse() { return nullptr; }
+  /// Whether somebody feels the forces.
+  bool felt() { return !device().info().simulated && mouse() == nullptr; }
 };
 
 }  // namespace haptrial::protocols

@@ -1,0 +1,52 @@
+#include "experiments/runner/aborted_pass.h"
+
+#include <fmt/format.h>
+
+namespace haptrial::experiments {
+
+void AbortedPass::see_to(const protocols::PassResult& result) {
+  const bool fault = result.fault != device::Fault::kNone;
+  const std::string why = fault ? cause(result) : why_broken_off();
+  const std::string trouble = fault ? p_.rig.device().trouble() : "";
+  const std::string all = trouble.empty() ? why : why + "; " + trouble;
+  const bool overloaded = !p_.pace.overload().empty();  // and no better the next time
+  p_.record.event("aborted", fmt::format("trial {}: {}", p_.record.pass().trial, all));
+  if (result.fault == device::Fault::kStopButton) {
+    p_.record.event("emergency_stop", "by the handle");
+  }
+  if ((fault || overloaded) && p_.desk.attended()) {
+    p_.desk.status().fault = all;
+    p_.desk.wishes().stopped = true;  // a person sees to the cause
+  } else if ((fault || overloaded) && p_.real) {
+    // Nobody is at a console or keyboard to see to the cause and say that it may go on.
+    p_.pace.let_read(p_.definition.texts.stopped, "stopped");
+    p_.pace.end_early(all);
+  } else {
+    p_.pace.recover();
+  }
+}
+
+std::string AbortedPass::cause(const protocols::PassResult& result) const {
+  const std::string fault = device::describe(result.fault);
+  return p_.definition.devices() > 1 ? fmt::format("device {}: {}", result.device + 1, fault)
+                                     : fault;
+}
+
+std::string AbortedPass::why_broken_off() const {
+  const Wishes& wishes = p_.desk.wishes();
+  if (!p_.pace.overload().empty()) {
+    return p_.pace.overload();
+  }
+  if (wishes.repeat) {
+    return "to be repeated";
+  }
+  if (wishes.skip) {
+    return "skipped";
+  }
+  if (wishes.abort) {
+    return wishes.for_good ? "the session was ended for good" : "the session was stopped";
+  }
+  return p_.trials.why_aborted();
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+
+#include "experiments/control/session_desk.h"
+#include "experiments/runner/session_pace.h"
+#include "experiments/runner/session_record.h"
+#include "protocols/interface/rig.h"
+#include "protocols/interface/session_task.h"
+#include "protocols/interface/trials.h"
+
+namespace haptrial::experiments {
+
+/// What follows a pass that was aborted: why it was is recorded and said; then somebody sees to the
+/// cause, or the session ends, or the device recovers. Session's thread.
+class AbortedPass {
+ public:
+  /// All of them outlive it.
+  struct Parts {
+    const protocols::Definition& definition;
+    protocols::Rig& rig;
+    protocols::Trials& trials;
+    SessionRecord& record;
+    SessionDesk& desk;
+    SessionPace& pace;
+    bool real{false};  // on a real clock
+  };
+  explicit AbortedPass(const Parts& parts) : p_(parts) {}
+
+  /// @throws RunError where nobody is there to see to a fault
+  void see_to(const protocols::PassResult& result);
+
+ private:
+  std::string cause(const protocols::PassResult& result) const;
+  std::string why_broken_off() const;
+
+  Parts p_;
+};
+
+}  // namespace haptrial::experiments
