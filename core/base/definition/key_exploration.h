@@ -28,16 +28,6 @@ struct KnownKey {
   std::string path() const { return table.empty() ? key : table + "." + key; }
 };
 
-/// Finds every key that a reader asks for, by reading definitions that are not there: each key that
-/// is looked for is found, or not, and each choice takes each of its words, until no reading has
-/// anything new. What the reader does with the values does not matter; its problems are dropped.
-///
-///     const auto keys = known_keys("[experiment]\n", [](Table& root) { read(root); });
-///
-/// @param text  keys with values that the reader is to find, as its defaults are
-std::vector<KnownKey> known_keys(std::string_view text,
-                                 const std::function<void(Table& root)>& reader);
-
 /// What a Table asks while a definition is explored; see known_keys().
 class KeyExploration {
  public:
@@ -80,5 +70,17 @@ class KeyExploration {
   std::set<std::string> optional_, texts_;
   std::map<std::string, std::string> defaults_;
 };
+
+/// Finds every key that a reader asks for, by reading definitions that are not there: each key that
+/// is looked for is found, or not, and each choice takes each of its words, until no reading has
+/// anything new. What the reader does with the values does not matter; its problems are dropped.
+///
+///     const auto keys = known_keys("[experiment]\n", [](Table& root) { read(root); });
+///
+/// @param text        keys with values that the reader is to find, as its defaults are
+/// @param beginnings  first readings, where one change after another does not lead everywhere
+std::vector<KnownKey> known_keys(std::string_view text,
+                                 const std::function<void(Table& root)>& reader,
+                                 const std::vector<KeyExploration::Plan>& beginnings = {{}});
 
 }  // namespace haptrial

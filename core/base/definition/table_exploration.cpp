@@ -64,9 +64,10 @@ int Table::integer_or(std::string_view key, int value, long low, long high) {
 }
 
 std::vector<KnownKey> known_keys(std::string_view text,
-                                 const std::function<void(Table& root)>& reader) {
+                                 const std::function<void(Table& root)>& reader,
+                                 const std::vector<KeyExploration::Plan>& beginnings) {
   KeyExploration exploration;
-  std::deque<KeyExploration::Plan> plans{{}};
+  std::deque<KeyExploration::Plan> plans(beginnings.begin(), beginnings.end());
   for (std::size_t reading = 0; !plans.empty() && reading < kMostReadings; ++reading) {
     exploration.begin(std::move(plans.front()));
     plans.pop_front();

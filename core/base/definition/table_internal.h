@@ -20,6 +20,11 @@ namespace haptrial {
 
 // What a Table is made of; for the files that implement it.
 
+/// 0 where nothing is written.
+inline unsigned line_of(const toml::node* node) {
+  return node == nullptr ? 0u : static_cast<unsigned>(node->source().begin.line);
+}
+
 struct Table::Document {
   struct Part {
     unsigned lines_before;

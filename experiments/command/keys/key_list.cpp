@@ -4,8 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <deque>
-#include <exception>
 #include <functional>
 #include <map>
 #include <memory>
@@ -70,29 +68,6 @@ std::vector<KeyExploration::Plan> beginnings() {
                      {there("fields.NAME.to"), kNotThere}});
   }
   return plans;
-}
-
-/// As known_keys(), with these beginnings.
-std::vector<KnownKey> explored(const std::string& text,
-                               const std::function<void(Table& root)>& reader) {
-  constexpr std::size_t kMostReadings = 50000;
-  KeyExploration exploration;
-  const std::vector<KeyExploration::Plan> first = beginnings();
-  std::deque<KeyExploration::Plan> plans(first.begin(), first.end());
-  for (std::size_t reading = 0; !plans.empty() && reading < kMostReadings; ++reading) {
-    exploration.begin(std::move(plans.front()));
-    plans.pop_front();
-    try {
-      Table root = Table::explore(text, exploration);
-      reader(root);
-    } catch (const std::exception&) {
-      // Values that no definition would have; what was asked for before counts.
-    }
-    for (KeyExploration::Plan& plan : exploration.further()) {
-      plans.push_back(std::move(plan));
-    }
-  }
-  return exploration.keys();
 }
 
 /// The facts of a key, to compare those of two protocols.
@@ -245,7 +220,7 @@ std::vector<KeySection> sections_of_all(std::map<std::string, Words>& words) {
 std::vector<KnownKey> keys_of(const Study& study) {
   const std::string text =
       fmt::format("[experiment]\nprotocol = \"{}\"\n", study.protocol().name());
-  const auto found = explored(text, [&](Table& root) {
+  const auto read = [&](Table& root) {
     std::unique_ptr<protocols::Definition> definition;
     try {
       definition = study.protocol().read(root, "definition", nullptr);
@@ -253,7 +228,8 @@ std::vector<KnownKey> keys_of(const Study& study) {
       // What the analysis asks for is asked for all the same.
     }
     study.read_analysis(root, true);
-  });
+  };
+  const auto found = known_keys(text, read, beginnings());
   std::vector<KnownKey> keys;
   for (const KnownKey& key : found) {
     add(keys, key);
