@@ -23,7 +23,7 @@
 #include "tests/support/sanitizer.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::experiments {
+namespace haptrial::experiments::resumed_participant_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -137,12 +137,12 @@ TEST_F(ResumedParticipantTest, TheAnswerBeforeCounts) {
   const std::vector<double> whole = answers_of(record::SessionReader(folder_ / "whole.h5"));
   ASSERT_EQ(whole, (std::vector<double>{1, 2, 1, 2, 1, 2, 1, 2, 1, 2}));
   bool telling = false;
-  for (const std::uint64_t at : {1500u, 2200u, 2900u}) {
+  for (std::uint64_t at = 1500; at < 6000 && !telling; at += 700) {  // a loaded machine is late
     const std::string name = "killed" + std::to_string(at) + ".h5";
     kill_at(name, kTrials, at);
     const auto before = answers_of(record::SessionReader(folder_ / (name + ".partial")));
     // A participant who has forgotten the answer "first" would give it again.
-    telling = telling || (!before.empty() && before.back() == 1.0);
+    telling = !before.empty() && before.back() == 1.0;
     resume(name, kTrials);
     EXPECT_EQ(answers_of(record::SessionReader(folder_ / name)), whole) << at;
   }
@@ -199,4 +199,4 @@ TEST_F(ResumedParticipantTest, WhatWasLearntOfTheCurlFieldIsKept) {
 }
 
 }  // namespace
-}  // namespace haptrial::experiments
+}  // namespace haptrial::experiments::resumed_participant_test

@@ -226,10 +226,10 @@ TEST_F(RosterTest, TheSameAsATableAndAsNumbers) {
   ASSERT_EQ(done.status, 0) << done.errors;
   EXPECT_THAT(done.output, HasSubstr("left: 1 of 2 participants begun, 0 with every session"));
   EXPECT_THAT(done.output, HasSubstr("next: P04 (group right), session 1 of 2: "));
-  const auto json = nlohmann::json::parse(test::read_text(folder_ / "r.json"));
-  EXPECT_EQ(json.at("next").at(0).at("subject"), "P04");
-  EXPECT_EQ(json.at("participants").size(), 2u);
-  EXPECT_EQ(json.at("participants").at(0).at("sessions").at(0).at("state"), "done");
+  const auto told = nlohmann::json::parse(test::read_text(folder_ / "r.json"));
+  EXPECT_EQ(told.at("next").at(0).at("subject"), "P04");
+  EXPECT_EQ(told.at("participants").size(), 2u);
+  EXPECT_EQ(told.at("participants").at(0).at("sessions").at(0).at("state"), "done");
   const auto table = analysis::CsvTable::load(folder_ / "r.csv");
   ASSERT_EQ(table.rows(), 2u);
   EXPECT_EQ(table.text(1, table.column("group")), "right");

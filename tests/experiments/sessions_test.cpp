@@ -162,9 +162,9 @@ TEST_F(SessionsTest, TheAnalysisJoinsThemAndSaysWhatIsMissing) {
   EXPECT_EQ((rows[{"S01", 1.0}]), 48);
   EXPECT_EQ((rows[{"S01", 2.0}]), 24);
   EXPECT_EQ((rows[{"S03", 1.0}]), 48);
-  const auto json = nlohmann::json::parse(test::read_text(file("results.json")));
-  EXPECT_EQ(json.at("participants").size(), 3u);
-  EXPECT_EQ(json.at("participants")[0].at("sessions"), 2);
+  const auto results = nlohmann::json::parse(test::read_text(file("results.json")));
+  EXPECT_EQ(results.at("participants").size(), 3u);
+  EXPECT_EQ(results.at("participants")[0].at("sessions"), 2);
 }
 
 TEST_F(SessionsTest, TablesForOtherProgramsHaveTheNumber) {

@@ -58,8 +58,11 @@ std::filesystem::path write_small_drilling(
       {"start", "start = [0.0, 0.012, 0.0]"},
       {"width", "width = 0.008"},
       {"height", "height = 0.006"},
+      // Voxels as coarse as these give way in steps; pressed harder the drill chatters into a stop.
+      {"press", "press = 2.5"},
       {"depth", "depth = 0.009"},
-      {"press", "press = 4.0"},
+      // Voxels as coarse as these give way in steps; pressed harder the drill chatters into a stop.
+      {"press", "press = 2.5"},
       {"strokes_to_suction", "strokes_to_suction = 4"},
       {"suction_time", "suction_time = 0.5"}};
   lines.insert(lines.end(), more.begin(), more.end());

@@ -188,11 +188,12 @@ NullLevels report_of(std::span<const TrialScore> scores, NullDesign design, std:
   questions.factors = relabel(relabelled, design, random);
   using analysis::Tail;
   const bool three = questions.factors.size() == 1 || design == NullDesign::kMixed;
-  questions.plan.tests =
-      three ? std::vector<analysis::PlannedTest>{{"visual", "haptic", Tail::kLess},
-                                                 {"visuohaptic", "visual", Tail::kLess}}
-            : std::vector<analysis::PlannedTest>{{"now", "soon", Tail::kLess},
-                                                 {"x", "y", Tail::kTwoSided}};
+  if (three) {
+    questions.plan.tests = {{"visual", "haptic", Tail::kLess},
+                            {"visuohaptic", "visual", Tail::kLess}};
+  } else {
+    questions.plan.tests = {{"now", "soon", Tail::kLess}, {"x", "y", Tail::kTwoSided}};
+  }
   questions.resampling = {replication, "", 999, 1};
   return notes_of(study_statistics(relabelled, questions));
 }
