@@ -17,7 +17,7 @@ data=${HAPTRIAL_DATA:-$root/../shared/data}
 [ -d "$data" ] || say "no folder $data: tests on real data will skip"
 
 run_tests() {
-  ctest --test-dir "$root/$1" --output-on-failure --no-tests=error -j "$(nproc)" "${@:2}"
+  ctest --test-dir "$root/$1" --output-on-failure --no-tests=error -j $((2 * $(nproc))) "${@:2}"
 }
 
 case "${1:-release}" in

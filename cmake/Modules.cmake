@@ -6,6 +6,19 @@ function(haptrial_unite target)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
+# haptrial_unite_tests(TARGET SOURCE...): the same for tests, at most a dozen files of a folder as one.
+function(haptrial_unite_tests target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${HAPTRIAL_UNITY} UNITY_BUILD_MODE GROUP)
+  foreach(source ${ARGN})
+    cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${CMAKE_SOURCE_DIR} OUTPUT_VARIABLE id)
+    cmake_path(GET id PARENT_PATH id)
+    string(MAKE_C_IDENTIFIER "${id}" id)
+    math(EXPR files_${id} "0${files_${id}} + 1")
+    math(EXPR part "${files_${id}} / 12")
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${id}_${part})
+  endforeach()
+endfunction()
+
 # haptrial_module(NAME FOLDER LINKS ... USES ...): every source in FOLDER becomes haptrial_NAME.
 function(haptrial_module name folder)
   cmake_parse_arguments(ARG "" "" "LINKS;USES" ${ARGN})
@@ -94,6 +107,7 @@ function(haptrial_test name link)
                                              GTest::gtest GTest::gtest_main)
   haptrial_precompile(test_${name} tests)
   haptrial_optimise(test_${name} tests)
+  haptrial_unite_tests(test_${name} ${ARGN})
   # The allocation guard sees malloc of our objects too (Eigen calls it directly); it is linked
   # also where no test names it.
   target_link_options(test_${name} PRIVATE LINKER:--undefined=__wrap_malloc
@@ -104,7 +118,17 @@ function(haptrial_test name link)
   if(name STREQUAL realtime)
     set(alone RUN_SERIAL TRUE)  # these measure time
   endif()
-  gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 ${alone})
+  haptrial_discover(test_${name} "-*Live*" 2 ${alone})
+  if(name STREQUAL experiments)
+    haptrial_discover(test_${name} "*Live*" 1 ${alone})
+  endif()
+endfunction()
+
+# Tests run on twice as many places as there are processors. One that computes takes two; one of a
+# live session, which sleeps most of its time, takes one.
+function(haptrial_discover target filter places)
+  gtest_discover_tests(${target} TEST_FILTER ${filter} DISCOVERY_TIMEOUT 60
+                       PROPERTIES TIMEOUT 600 PROCESSORS ${places} ${ARGN})
 endfunction()
 
 # tests/FOLDER/*.cpp becomes test_NAME for a module; those of a group's modules are one program, and
@@ -209,5 +233,5 @@ function(haptrial_tests)
   add_executable(test_architecture ${architecture})
   target_link_libraries(test_architecture PRIVATE GTest::gmock GTest::gtest GTest::gtest_main)
   target_compile_definitions(test_architecture PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
-  gtest_discover_tests(test_architecture)
+  haptrial_discover(test_architecture "*" 2)
 endfunction()

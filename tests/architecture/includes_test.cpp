@@ -15,7 +15,7 @@
 
 // The arrows between modules stand once, in the haptrial_module lines of CMakeLists.txt. These
 // tests hold every #include against them, and the arrows against the layers of the design.
-namespace haptrial {
+namespace haptrial::includes_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -339,4 +339,4 @@ TEST(ArchitectureTest, HeavyLibrariesStayOutOfHeaders) {
 }
 
 }  // namespace
-}  // namespace haptrial
+}  // namespace haptrial::includes_test

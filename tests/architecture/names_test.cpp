@@ -30,18 +30,21 @@ std::optional<std::string> name_in(const std::string& line) {
   return std::nullopt;
 }
 
-/// The names that a file's anonymous namespace gives.
+/// The names that a file's anonymous namespace gives, each with the namespace around it.
 std::set<std::string> own_names(std::istream& in) {
   std::set<std::string> names;
+  std::string around;
   bool inside = false;
   for (std::string line; std::getline(in, line);) {
-    if (line == "namespace {") {
+    if (line.starts_with("namespace haptrial")) {
+      around = line.substr(line.find(' ') + 1, line.rfind(' ') - line.find(' ') - 1) + "::";
+    } else if (line == "namespace {") {
       inside = true;
     } else if (line == "}  // namespace") {
       inside = false;
     } else if (inside && !line.empty() && std::isalpha(static_cast<unsigned char>(line[0]))) {
       if (const auto name = name_in(line)) {
-        names.insert(*name);
+        names.insert(around + *name);
       }
     }
   }
@@ -68,7 +71,7 @@ TEST(NamesTest, FilesOfAFolderDoNotShareNamesOfTheirOwn) {
   const std::set<std::string> palette = palette_names();
   ASSERT_GT(palette.size(), 8U);
   std::map<std::pair<fs::path, std::string>, fs::path> given;
-  for (const char* layer : {"core", "protocols", "experiments", "analysis"}) {
+  for (const char* layer : {"core", "protocols", "experiments", "analysis", "tests"}) {
     for (const auto& entry :
          fs::recursive_directory_iterator(fs::path(HAPTRIAL_SOURCE_DIR) / layer)) {
       const fs::path& file = entry.path();
@@ -80,7 +83,7 @@ TEST(NamesTest, FilesOfAFolderDoNotShareNamesOfTheirOwn) {
         const auto [at, is_new] = given.try_emplace({file.parent_path(), name}, file);
         EXPECT_TRUE(is_new) << name << " is in " << at->second << " and in " << file;
         EXPECT_FALSE(file.string().find("/analysis/") != std::string::npos &&
-                     palette.contains(name))
+                     palette.contains(name.substr(name.rfind(':') + 1)))
             << name << " in " << file << " hides that of the palette";
       }
     }

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace haptrial {
+namespace haptrial::seam_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -84,4 +84,4 @@ TEST(SeamTest, NothingThatServesEveryProtocolNamesOne) {
 }
 
 }  // namespace
-}  // namespace haptrial
+}  // namespace haptrial::seam_test

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace haptrial {
+namespace haptrial::sections_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -95,4 +95,4 @@ TEST(SectionsTest, EverySectionThatAHeaderNamesHasARow) {
 }
 
 }  // namespace
-}  // namespace haptrial
+}  // namespace haptrial::sections_test

@@ -14,7 +14,7 @@
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial {
+namespace haptrial::align_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -260,4 +260,4 @@ TEST_F(AlignCommandTest, BashCompletesItsOptions) {
 }
 
 }  // namespace
-}  // namespace haptrial
+}  // namespace haptrial::align_command_test

@@ -20,7 +20,7 @@
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::experiments {
+namespace haptrial::experiments::bone_session_test {
 namespace {
 
 using testing::HasSubstr;
@@ -220,4 +220,4 @@ TEST_F(BoneSessionTest, ATrialThatIsNotThereIsNamed) {
 }
 
 }  // namespace
-}  // namespace haptrial::experiments
+}  // namespace haptrial::experiments::bone_session_test

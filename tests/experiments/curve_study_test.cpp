@@ -22,7 +22,7 @@
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::experiments {
+namespace haptrial::experiments::curve_study_test {
 namespace {
 
 using record::Phase;
@@ -284,4 +284,4 @@ TEST_F(CurveStudyTest, DefinitionsThatMixTheKindsAreRefused) {
 }
 
 }  // namespace
-}  // namespace haptrial::experiments
+}  // namespace haptrial::experiments::curve_study_test

@@ -14,7 +14,7 @@
 #include "experiments/studies/registry.h"
 #include "tests/experiments/command.h"
 
-namespace haptrial::experiments {
+namespace haptrial::experiments::keys_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -128,4 +128,4 @@ TEST(KeysTest, EveryKeyOfTheShippedDefinitionsIsListed) {
 }
 
 }  // namespace
-}  // namespace haptrial::experiments
+}  // namespace haptrial::experiments::keys_test

@@ -13,7 +13,7 @@
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::experiments {
+namespace haptrial::experiments::light_hand_test {
 namespace {
 
 struct Outcome {
@@ -78,4 +78,4 @@ TEST(LightHandTest, TheMarginOfTheShippedStudySaysWhichHandsCarryIt) {
 }
 
 }  // namespace
-}  // namespace haptrial::experiments
+}  // namespace haptrial::experiments::light_hand_test

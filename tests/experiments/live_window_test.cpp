@@ -19,7 +19,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/virtual_display.h"
 
-namespace haptrial {
+namespace haptrial::live_window_test {
 namespace {
 
 using render::Blob;
@@ -238,4 +238,4 @@ TEST(LiveWindowWithoutDisplayTest, IsASentenceAndLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace haptrial
+}  // namespace haptrial::live_window_test

@@ -24,7 +24,7 @@
 #include "tests/support/stand_in.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::experiments {
+namespace haptrial::experiments::lost_disk_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -125,4 +125,4 @@ TEST(LostDiskTest, TheForceFadesAndWhatWasRecordedIsKept) {
 }
 
 }  // namespace
-}  // namespace haptrial::experiments
+}  // namespace haptrial::experiments::lost_disk_test

@@ -13,7 +13,7 @@
 #include "tests/support/stand_in.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::experiments {
+namespace haptrial::experiments::overload_test {
 namespace {
 
 using testing::HasSubstr;
@@ -62,4 +62,4 @@ TEST(OverloadTest, APassIsAbortedWithASentenceAndAnEvent) {
 }
 
 }  // namespace
-}  // namespace haptrial::experiments
+}  // namespace haptrial::experiments::overload_test

@@ -27,7 +27,7 @@
 #include "tests/support/sanitizer.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::experiments {
+namespace haptrial::experiments::own_protocol_test {
 namespace {
 
 constexpr const char* kDefinition = HAPTRIAL_SOURCE_DIR "/docs/worked/protocol/springs.toml";
@@ -277,4 +277,4 @@ TEST(OwnProtocolTest, TheScreenDrawsItsView) {
 }
 
 }  // namespace
-}  // namespace haptrial::experiments
+}  // namespace haptrial::experiments::own_protocol_test

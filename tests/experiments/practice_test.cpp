@@ -11,7 +11,7 @@
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial {
+namespace haptrial::practice_test {
 namespace {
 
 using record::PassRow;
@@ -117,4 +117,4 @@ TEST_F(PracticeTest, ComesFirstIsMarkedAndIsNotScored) {
 }
 
 }  // namespace
-}  // namespace haptrial
+}  // namespace haptrial::practice_test

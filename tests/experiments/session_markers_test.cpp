@@ -29,7 +29,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/virtual_display.h"
 
-namespace haptrial::experiments {
+namespace haptrial::experiments::session_markers_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -378,4 +378,4 @@ TEST_F(SessionMarkersTest, TheScreenSaysWhichFrameWasWhite) {
 }
 
 }  // namespace
-}  // namespace haptrial::experiments
+}  // namespace haptrial::experiments::session_markers_test

@@ -20,7 +20,7 @@
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::experiments {
+namespace haptrial::experiments::two_devices_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -316,4 +316,4 @@ TEST_F(TwoDevicesTest, ARefusedForceIsTakenBackFromTheOther) {
 }
 
 }  // namespace
-}  // namespace haptrial::experiments
+}  // namespace haptrial::experiments::two_devices_test

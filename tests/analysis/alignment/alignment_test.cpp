@@ -8,7 +8,7 @@
 
 #include "tests/analysis/alignment/cases.h"
 
-namespace haptrial::analysis {
+namespace haptrial::analysis::alignment_test {
 namespace {
 
 using test::Curve;
@@ -271,4 +271,4 @@ TEST(AlignmentTest, BadInputIsRefused) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis
+}  // namespace haptrial::analysis::alignment_test

@@ -12,7 +12,7 @@
 #include "tests/analysis/alignment/search.h"
 #include "tests/support/allocation_guard.h"
 
-namespace haptrial::analysis {
+namespace haptrial::analysis::options_test {
 namespace {
 
 using test::Curve;
@@ -332,4 +332,4 @@ TEST(AlignmentOptionsTest, LargeValuesAreRefusedInEveryForm) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis
+}  // namespace haptrial::analysis::options_test

@@ -12,7 +12,7 @@
 #include "tests/analysis/exchange/small_session.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::exchange {
+namespace haptrial::exchange::export_bids_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -297,4 +297,4 @@ TEST(BidsLabelTest, KeepsLettersAndDigits) {
 }
 
 }  // namespace
-}  // namespace haptrial::exchange
+}  // namespace haptrial::exchange::export_bids_test

@@ -14,7 +14,7 @@
 #include "tests/analysis/exchange/small_session.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::exchange {
+namespace haptrial::exchange::export_csv_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -195,4 +195,4 @@ TEST(ExportCsvTest, TheDictionaryKnowsTheColumnsOfTheScores) {
 }
 
 }  // namespace
-}  // namespace haptrial::exchange
+}  // namespace haptrial::exchange::export_csv_test

@@ -11,7 +11,7 @@
 #include "analysis/statistics/variance/levene.h"
 #include "core/base/random.h"
 
-namespace haptrial::analysis {
+namespace haptrial::analysis::checks_test {
 namespace {
 
 using testing::HasSubstr;
@@ -112,4 +112,4 @@ TEST(ShapiroWilk, SaysWhyItIsNotDefined) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis
+}  // namespace haptrial::analysis::checks_test

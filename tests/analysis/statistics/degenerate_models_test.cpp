@@ -15,7 +15,7 @@
 #include "analysis/statistics/variance/generalized_eta.h"
 #include "tests/analysis/statistics/degenerate_samples.h"
 
-namespace haptrial::analysis {
+namespace haptrial::analysis::degenerate_models_test {
 namespace {
 
 using degenerate::expect_numbers;
@@ -160,4 +160,4 @@ TEST(DegenerateData, GiveNumbersOrASentenceInPlans) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis
+}  // namespace haptrial::analysis::degenerate_models_test

@@ -12,7 +12,7 @@
 #include "tests/support/allocation_guard.h"
 #include "tests/support/free_mass.h"
 
-namespace haptrial::control {
+namespace haptrial::control::pd_controller_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -189,4 +189,4 @@ TEST(SaturateTest, LimitsTheLengthAndKeepsTheDirection) {
 }
 
 }  // namespace
-}  // namespace haptrial::control
+}  // namespace haptrial::control::pd_controller_test

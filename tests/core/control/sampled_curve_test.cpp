@@ -12,7 +12,7 @@
 #include "tests/support/allocation_guard.h"
 #include "tests/support/neighbour_method.h"
 
-namespace haptrial::control {
+namespace haptrial::control::sampled_curve_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -357,4 +357,4 @@ TEST(SampledCurveTest, TwoMillionPointsAreSearchedExactly) {
 }
 
 }  // namespace
-}  // namespace haptrial::control
+}  // namespace haptrial::control::sampled_curve_test

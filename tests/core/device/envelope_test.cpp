@@ -17,7 +17,7 @@
 #include "core/base/random.h"
 #include "tests/support/allocation_guard.h"
 
-namespace haptrial::device {
+namespace haptrial::device::envelope_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -493,4 +493,4 @@ TEST(EnvelopeTest, LimitsAreReadWithTheirBounds) {
 }
 
 }  // namespace
-}  // namespace haptrial::device
+}  // namespace haptrial::device::envelope_test

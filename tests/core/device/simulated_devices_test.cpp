@@ -11,7 +11,7 @@
 #include "core/device/mouse.h"
 #include "core/device/replay.h"
 
-namespace haptrial::device {
+namespace haptrial::device::simulated_devices_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -228,4 +228,4 @@ TEST(ReplayTest, AnEmptyRecordingIsRefused) {
 }
 
 }  // namespace
-}  // namespace haptrial::device
+}  // namespace haptrial::device::simulated_devices_test

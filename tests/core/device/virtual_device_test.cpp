@@ -13,7 +13,7 @@
 #include "tests/support/allocation_guard.h"
 #include "tests/support/free_mass.h"
 
-namespace haptrial::device {
+namespace haptrial::device::virtual_device_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -221,4 +221,4 @@ TEST(VirtualDeviceTest, ParametersAreReadWithTheirBounds) {
 }
 
 }  // namespace
-}  // namespace haptrial::device
+}  // namespace haptrial::device::virtual_device_test

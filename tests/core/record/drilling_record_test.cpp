@@ -21,7 +21,7 @@
 #include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
-namespace haptrial::record {
+namespace haptrial::record::drilling_record_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -276,4 +276,4 @@ TEST(DrillingRecordTest, AFileThatLostItsHeaderGivesItsDrillingBack) {
 }
 
 }  // namespace
-}  // namespace haptrial::record
+}  // namespace haptrial::record::drilling_record_test

@@ -21,7 +21,7 @@
 #include "tests/core/record/disk_tap.h"
 #include "tests/core/record/session_fixture.h"
 
-namespace haptrial::record {
+namespace haptrial::record::power_cut_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -372,4 +372,4 @@ TEST(PowerCutTest, WhatWasNotSyncedOfADrillingMayBeLostOrReordered) {
 }
 
 }  // namespace
-}  // namespace haptrial::record
+}  // namespace haptrial::record::power_cut_test

@@ -18,7 +18,7 @@
 #include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
-namespace haptrial::record {
+namespace haptrial::record::session_kill_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -217,4 +217,4 @@ TEST(SessionKillTest, HundredKillsLoseAtMostASecondAndTheSessionGoesOn) {
 }
 
 }  // namespace
-}  // namespace haptrial::record
+}  // namespace haptrial::record::session_kill_test

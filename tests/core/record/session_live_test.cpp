@@ -20,7 +20,7 @@
 #include "tests/core/record/session_fixture.h"
 #include "tests/support/message_of.h"
 
-namespace haptrial::record {
+namespace haptrial::record::session_live_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -255,4 +255,4 @@ TEST(SessionLiveTest, AFileInUseIsRefusedUntilItsProcessDies) {
 }
 
 }  // namespace
-}  // namespace haptrial::record
+}  // namespace haptrial::record::session_live_test

@@ -12,7 +12,7 @@
 #include "core/record/table/table_page.h"
 #include "core/record/trials/trial_rows.h"
 
-namespace haptrial::record {
+namespace haptrial::record::session_page_test {
 namespace {
 
 const std::string kPage = HAPTRIAL_SOURCE_DIR "/docs/session-file.md";
@@ -54,4 +54,4 @@ TEST(SessionPageTest, TablesOfTrials) {
 TEST(SessionPageTest, TablesOfDrillings) { expect_described("drilling", drilling_tables()); }
 
 }  // namespace
-}  // namespace haptrial::record
+}  // namespace haptrial::record::session_page_test

@@ -12,7 +12,7 @@
 #include "core/scene/scene.h"
 #include "tests/core/scene/every_scene.h"
 
-namespace haptrial::scene {
+namespace haptrial::scene::laws_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -263,4 +263,4 @@ TEST(NeededDampingTest, FieldsOfTimeAndLateAccelerationAreNotPassive) {
 }
 
 }  // namespace
-}  // namespace haptrial::scene
+}  // namespace haptrial::scene::laws_test

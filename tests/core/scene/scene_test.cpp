@@ -12,7 +12,7 @@
 #include "tests/support/allocation_guard.h"
 #include "tests/support/message_of.h"
 
-namespace haptrial::scene {
+namespace haptrial::scene::scene_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -337,4 +337,4 @@ TEST(SceneTest, BadScenesAreNamed) {
 }
 
 }  // namespace
-}  // namespace haptrial::scene
+}  // namespace haptrial::scene::scene_test

@@ -11,7 +11,7 @@
 #include "tests/core/sound/lines.h"
 #include "tests/support/allocation_guard.h"
 
-namespace haptrial::sound {
+namespace haptrial::sound::harmonics_test {
 namespace {
 
 constexpr double kTau = 2.0 * std::numbers::pi;
@@ -120,4 +120,4 @@ TEST(HarmonicsTest, TheSameSeedGivesTheSameSamplesAndNothingIsAllocated) {
 }
 
 }  // namespace
-}  // namespace haptrial::sound
+}  // namespace haptrial::sound::harmonics_test

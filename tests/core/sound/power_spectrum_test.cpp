@@ -13,7 +13,7 @@
 #include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::sound {
+namespace haptrial::sound::power_spectrum_test {
 namespace {
 
 constexpr double kTau = 2.0 * std::numbers::pi;
@@ -115,4 +115,4 @@ TEST(PowerSpectrumTest, WhatIsMadeFromARecordingHasItsPeaks) {
 }
 
 }  // namespace
-}  // namespace haptrial::sound
+}  // namespace haptrial::sound::power_spectrum_test

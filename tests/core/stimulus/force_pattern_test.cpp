@@ -12,7 +12,7 @@
 #include "core/stimulus/stimulus.h"
 #include "tests/support/allocation_guard.h"
 
-namespace haptrial::stimulus {
+namespace haptrial::stimulus::force_pattern_test {
 namespace {
 
 constexpr double kDuration = 15.0;  // [s]
@@ -223,4 +223,4 @@ TEST(StimulusTest, ForceParametersLeaveThePathAlone) {
 }
 
 }  // namespace
-}  // namespace haptrial::stimulus
+}  // namespace haptrial::stimulus::force_pattern_test

@@ -13,7 +13,7 @@
 #include "core/base/random.h"
 #include "tests/support/allocation_guard.h"
 
-namespace haptrial::stimulus {
+namespace haptrial::stimulus::spatial_trajectory_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -223,4 +223,4 @@ TEST(SpatialTrajectoryTest, ParametersAreReadWithTheirBounds) {
 }
 
 }  // namespace
-}  // namespace haptrial::stimulus
+}  // namespace haptrial::stimulus::spatial_trajectory_test

@@ -8,7 +8,7 @@
 #include "core/subject/hand_cvode.h"
 #include "tests/support/allocation_guard.h"
 
-namespace haptrial::subject {
+namespace haptrial::subject::hand_test {
 namespace {
 
 constexpr double kStep = 1e-3;
@@ -161,4 +161,4 @@ TEST(HandTest, StepDoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace haptrial::subject
+}  // namespace haptrial::subject::hand_test

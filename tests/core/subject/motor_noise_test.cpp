@@ -9,7 +9,7 @@
 
 #include "tests/support/allocation_guard.h"
 
-namespace haptrial::subject {
+namespace haptrial::subject::motor_noise_test {
 namespace {
 
 constexpr double kStep = 1e-3;
@@ -78,4 +78,4 @@ TEST(MotorNoiseTest, DoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace haptrial::subject
+}  // namespace haptrial::subject::motor_noise_test

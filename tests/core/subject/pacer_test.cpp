@@ -11,7 +11,7 @@
 #include "core/subject/virtual_subject.h"
 #include "tests/support/allocation_guard.h"
 
-namespace haptrial::subject {
+namespace haptrial::subject::pacer_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -199,4 +199,4 @@ TEST_F(SelfPacedSubjectTest, WithoutHabitsItWaits) {
 }
 
 }  // namespace
-}  // namespace haptrial::subject
+}  // namespace haptrial::subject::pacer_test

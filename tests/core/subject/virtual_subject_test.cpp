@@ -7,7 +7,7 @@
 
 #include "tests/support/allocation_guard.h"
 
-namespace haptrial::subject {
+namespace haptrial::subject::virtual_subject_test {
 namespace {
 
 using stimulus::Instruction;
@@ -185,4 +185,4 @@ TEST_F(VirtualSubjectTest, ObserveDoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace haptrial::subject
+}  // namespace haptrial::subject::virtual_subject_test

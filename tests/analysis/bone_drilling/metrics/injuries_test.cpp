@@ -10,7 +10,7 @@
 #include "analysis/bone_drilling/procedure/study_bones.h"
 #include "tests/analysis/bone_drilling/hand_made.h"
 
-namespace haptrial::analysis::drilling {
+namespace haptrial::analysis::drilling::injuries_test {
 namespace {
 
 /// A row of 20 voxels; the last two are a nerve, the first two a vein; the ossicle is nowhere.
@@ -109,4 +109,4 @@ TEST(InjuriesTest, WhatFallsToDustIsLostToo) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis::drilling
+}  // namespace haptrial::analysis::drilling::injuries_test

@@ -10,7 +10,7 @@
 #include "analysis/files/csv.h"
 #include "tests/analysis/bone_drilling/hand_made.h"
 
-namespace haptrial::analysis::drilling {
+namespace haptrial::analysis::drilling::metrics_test {
 namespace {
 
 /// A row of bone with a nerve at its end and a second one, not vital, at its beginning.
@@ -138,4 +138,4 @@ TEST_F(MetricsTest, FieldsOfABoneAreMadeOnce) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis::drilling
+}  // namespace haptrial::analysis::drilling::metrics_test

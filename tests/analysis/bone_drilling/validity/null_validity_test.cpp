@@ -8,7 +8,7 @@
 
 #include "core/base/random.h"
 
-namespace haptrial::analysis::drilling {
+namespace haptrial::analysis::drilling::null_validity_test {
 namespace {
 
 using test::NullLabels;
@@ -97,4 +97,4 @@ TEST(NullValidity, GroupsOfDifferentSpreadDeceiveOnlyTestsThatAssumeOneSpread) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis::drilling
+}  // namespace haptrial::analysis::drilling::null_validity_test

@@ -13,7 +13,7 @@
 #include "analysis/force_training/score/score_parameters.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::exchange {
+namespace haptrial::exchange::import_checks_test {
 namespace {
 
 using testing::AllOf;
@@ -166,4 +166,4 @@ TEST_F(ImportChecksTest, CurvesOfDifferentLength) {
 }
 
 }  // namespace
-}  // namespace haptrial::exchange
+}  // namespace haptrial::exchange::import_checks_test

@@ -17,7 +17,7 @@
 #include "tests/analysis/exchange/small_session.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::exchange {
+namespace haptrial::exchange::import_curves_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -214,4 +214,4 @@ TEST_F(ImportCurvesTest, TwoSessionsOfASubjectHaveNoCommonTable) {
 }
 
 }  // namespace
-}  // namespace haptrial::exchange
+}  // namespace haptrial::exchange::import_curves_test

@@ -12,7 +12,7 @@
 #include "core/base/error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::exchange {
+namespace haptrial::exchange::import_table_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -162,4 +162,4 @@ TEST_F(ImportTableTest, BadInputGetsASentence) {
 }
 
 }  // namespace
-}  // namespace haptrial::exchange
+}  // namespace haptrial::exchange::import_table_test

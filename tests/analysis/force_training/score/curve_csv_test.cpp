@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/random.h"
 
-namespace haptrial::analysis {
+namespace haptrial::analysis::curve_csv_test {
 namespace {
 
 using testing::ElementsAre;
@@ -160,4 +160,4 @@ TEST(AlignCurvesTest, AWindowInSecondsKeepsPairsThatClose) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis
+}  // namespace haptrial::analysis::curve_csv_test

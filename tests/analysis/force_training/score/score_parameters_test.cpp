@@ -11,7 +11,7 @@
 
 #include "core/base/error.h"
 
-namespace haptrial::analysis {
+namespace haptrial::analysis::score_parameters_test {
 namespace {
 
 using testing::HasSubstr;
@@ -142,4 +142,4 @@ TEST(ScoreParametersTest, CheckRefusesWhatTheTableRefuses) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis
+}  // namespace haptrial::analysis::score_parameters_test

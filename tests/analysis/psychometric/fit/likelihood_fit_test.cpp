@@ -11,7 +11,7 @@
 #include "core/base/random.h"
 #include "tests/support/allocation_guard.h"
 
-namespace haptrial::analysis {
+namespace haptrial::analysis::likelihood_fit_test {
 namespace {
 
 using psychometric::parameters_named;
@@ -266,4 +266,4 @@ TEST(BootstrapFit, FindsThatAFunctionDoesNotDescribeTheAnswers) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis
+}  // namespace haptrial::analysis::likelihood_fit_test

@@ -9,7 +9,7 @@
 #include "core/base/random.h"
 #include "tests/support/allocation_guard.h"
 
-namespace haptrial::analysis {
+namespace haptrial::analysis::profile_interval_test {
 namespace {
 
 using psychometric::parameters_named;
@@ -181,4 +181,4 @@ TEST(ProfileInterval, DoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis
+}  // namespace haptrial::analysis::profile_interval_test

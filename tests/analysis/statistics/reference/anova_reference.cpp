@@ -1,7 +1,7 @@
 #include "analysis/statistics/variance/anova.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
-namespace haptrial::analysis::reference {
+namespace haptrial::analysis::reference::anova_reference {
 namespace {
 
 void compare_case(Answers& r, const char* name, const std::vector<std::vector<double>>& groups) {
@@ -25,4 +25,4 @@ void compare(Answers& r) {
 const Topic kTopic("anova", compare);
 
 }  // namespace
-}  // namespace haptrial::analysis::reference
+}  // namespace haptrial::analysis::reference::anova_reference

@@ -4,7 +4,7 @@
 #include "analysis/statistics/variance/welch_anova.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
-namespace haptrial::analysis::reference {
+namespace haptrial::analysis::reference::between_anova_reference {
 namespace {
 
 void compare_welch(Answers& r, const char* name) {
@@ -51,4 +51,4 @@ void compare(Answers& r) {
 const Topic kTopic("between_anova", compare);
 
 }  // namespace
-}  // namespace haptrial::analysis::reference
+}  // namespace haptrial::analysis::reference::between_anova_reference

@@ -7,7 +7,7 @@
 #include "analysis/statistics/tests/bootstrap.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
-namespace haptrial::analysis::reference {
+namespace haptrial::analysis::reference::bootstrap_reference {
 namespace {
 
 using Values = std::vector<double>;
@@ -113,4 +113,4 @@ void compare(Answers& r) {
 const Topic kTopic("bootstrap", compare);
 
 }  // namespace
-}  // namespace haptrial::analysis::reference
+}  // namespace haptrial::analysis::reference::bootstrap_reference

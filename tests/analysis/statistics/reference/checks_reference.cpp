@@ -3,7 +3,7 @@
 #include "analysis/statistics/variance/levene.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
-namespace haptrial::analysis::reference {
+namespace haptrial::analysis::reference::checks_reference {
 namespace {
 
 using Values = std::vector<double>;
@@ -83,4 +83,4 @@ void compare(Answers& r) {
 const Topic kTopic("checks", compare);
 
 }  // namespace
-}  // namespace haptrial::analysis::reference
+}  // namespace haptrial::analysis::reference::checks_reference

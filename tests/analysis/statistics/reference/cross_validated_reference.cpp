@@ -3,7 +3,7 @@
 #include "analysis/statistics/relation/cross_validated.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
-namespace haptrial::analysis::reference {
+namespace haptrial::analysis::reference::cross_validated_reference {
 namespace {
 
 void compare(Answers& r) {
@@ -35,4 +35,4 @@ void compare(Answers& r) {
 const Topic kTopic("cross_validated", compare);
 
 }  // namespace
-}  // namespace haptrial::analysis::reference
+}  // namespace haptrial::analysis::reference::cross_validated_reference

@@ -3,7 +3,7 @@
 #include "analysis/statistics/base/distributions.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
-namespace haptrial::analysis::reference {
+namespace haptrial::analysis::reference::distributions_reference {
 namespace {
 
 using Values = std::vector<double>;
@@ -48,4 +48,4 @@ void compare(Answers& r) {
 const Topic kTopic("distributions", compare);
 
 }  // namespace
-}  // namespace haptrial::analysis::reference
+}  // namespace haptrial::analysis::reference::distributions_reference

@@ -5,7 +5,7 @@
 #include "analysis/statistics/variance/repeated_anova.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
-namespace haptrial::analysis::reference {
+namespace haptrial::analysis::reference::effect_sizes_reference {
 namespace {
 
 using Values = std::vector<double>;
@@ -86,4 +86,4 @@ void compare(Answers& r) {
 const Topic kTopic("effect_sizes", compare);
 
 }  // namespace
-}  // namespace haptrial::analysis::reference
+}  // namespace haptrial::analysis::reference::effect_sizes_reference

@@ -1,7 +1,7 @@
 #include "analysis/statistics/relation/intraclass.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
-namespace haptrial::analysis::reference {
+namespace haptrial::analysis::reference::intraclass_reference {
 namespace {
 
 using Eigen::MatrixXd;
@@ -53,4 +53,4 @@ void compare(Answers& r) {
 const Topic kTopic("intraclass", compare);
 
 }  // namespace
-}  // namespace haptrial::analysis::reference
+}  // namespace haptrial::analysis::reference::intraclass_reference

@@ -7,7 +7,7 @@
 #include "analysis/statistics/relation/regression.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
-namespace haptrial::analysis::reference {
+namespace haptrial::analysis::reference::linear_model_reference {
 namespace {
 
 using Eigen::MatrixXd;
@@ -217,4 +217,4 @@ const Topic kMixedModel("mixed_model", [](Answers& r) {
 });
 
 }  // namespace
-}  // namespace haptrial::analysis::reference
+}  // namespace haptrial::analysis::reference::linear_model_reference

@@ -5,7 +5,7 @@
 #include "analysis/statistics/mixed/mixed_model.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
-namespace haptrial::analysis::reference {
+namespace haptrial::analysis::reference::mixed_terms_reference {
 namespace {
 
 using Eigen::MatrixXd;
@@ -184,4 +184,4 @@ const Topic kMixedTerms("mixed_terms", [](Answers& r) {
 });
 
 }  // namespace
-}  // namespace haptrial::analysis::reference
+}  // namespace haptrial::analysis::reference::mixed_terms_reference

@@ -4,7 +4,7 @@
 #include "analysis/statistics/base/root.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
-namespace haptrial::analysis::reference {
+namespace haptrial::analysis::reference::noncentral_reference {
 namespace {
 
 // R is right to 1e-12 absolute: smaller probabilities were left out.
@@ -72,4 +72,4 @@ void compare(Answers& r) {
 const Topic kTopic("noncentral", compare);
 
 }  // namespace
-}  // namespace haptrial::analysis::reference
+}  // namespace haptrial::analysis::reference::noncentral_reference

@@ -2,7 +2,7 @@
 
 #include "tests/analysis/statistics/reference/reference.h"
 
-namespace haptrial::analysis::reference {
+namespace haptrial::analysis::reference::p_adjust_reference {
 namespace {
 
 using Values = std::vector<double>;
@@ -30,4 +30,4 @@ void compare(Answers& r) {
 const Topic kTopic("p_adjust", compare);
 
 }  // namespace
-}  // namespace haptrial::analysis::reference
+}  // namespace haptrial::analysis::reference::p_adjust_reference

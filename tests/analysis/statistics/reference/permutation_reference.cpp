@@ -1,7 +1,7 @@
 #include "analysis/statistics/tests/permutation.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
-namespace haptrial::analysis::reference {
+namespace haptrial::analysis::reference::permutation_reference {
 namespace {
 
 using Values = std::vector<double>;
@@ -51,4 +51,4 @@ void compare(Answers& r) {
 const Topic kTopic("permutation", compare);
 
 }  // namespace
-}  // namespace haptrial::analysis::reference
+}  // namespace haptrial::analysis::reference::permutation_reference

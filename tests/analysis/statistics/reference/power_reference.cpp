@@ -3,7 +3,7 @@
 #include "analysis/statistics/tests/power.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
-namespace haptrial::analysis::reference {
+namespace haptrial::analysis::reference::power_reference {
 namespace {
 
 void compare_t(Answers& r, const std::string& name, TPlan plan) {
@@ -52,4 +52,4 @@ void compare(Answers& r) {
 const Topic kTopic("power", compare);
 
 }  // namespace
-}  // namespace haptrial::analysis::reference
+}  // namespace haptrial::analysis::reference::power_reference

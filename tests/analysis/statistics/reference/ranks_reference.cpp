@@ -2,7 +2,7 @@
 #include "analysis/statistics/variance/rank_anova.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
-namespace haptrial::analysis::reference {
+namespace haptrial::analysis::reference::ranks_reference {
 namespace {
 
 using Values = std::vector<double>;
@@ -113,4 +113,4 @@ void compare(Answers& r) {
 const Topic kTopic("ranks", compare);
 
 }  // namespace
-}  // namespace haptrial::analysis::reference
+}  // namespace haptrial::analysis::reference::ranks_reference

@@ -13,7 +13,7 @@
 #include "tests/analysis/statistics/reference/nist.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::analysis::reference {
+namespace haptrial::analysis::reference::reference_test {
 namespace {
 
 using testing::IsEmpty;
@@ -198,4 +198,4 @@ TEST(AccuracyTable, IsWhatTheTestsMeasure) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis::reference
+}  // namespace haptrial::analysis::reference::reference_test

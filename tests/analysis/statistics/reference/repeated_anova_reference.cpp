@@ -3,7 +3,7 @@
 #include "analysis/statistics/variance/mixed_anova.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
-namespace haptrial::analysis::reference {
+namespace haptrial::analysis::reference::repeated_anova_reference {
 namespace {
 
 using Table = std::vector<std::vector<double>>;
@@ -157,4 +157,4 @@ void compare_mixed(Answers& r) {
 const Topic kMixed("mixed_anova", compare_mixed);
 
 }  // namespace
-}  // namespace haptrial::analysis::reference
+}  // namespace haptrial::analysis::reference::repeated_anova_reference

@@ -1,7 +1,7 @@
 #include "analysis/statistics/relation/roc.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
-namespace haptrial::analysis::reference {
+namespace haptrial::analysis::reference::roc_reference {
 namespace {
 
 using Values = std::vector<double>;
@@ -32,4 +32,4 @@ void compare(Answers& r) {
 const Topic kTopic("roc", compare);
 
 }  // namespace
-}  // namespace haptrial::analysis::reference
+}  // namespace haptrial::analysis::reference::roc_reference

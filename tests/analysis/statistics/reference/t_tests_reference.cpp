@@ -1,7 +1,7 @@
 #include "analysis/statistics/tests/t_tests.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
-namespace haptrial::analysis::reference {
+namespace haptrial::analysis::reference::t_tests_reference {
 namespace {
 
 using Values = std::vector<double>;
@@ -53,4 +53,4 @@ void compare(Answers& r) {
 const Topic kTopic("t_tests", compare);
 
 }  // namespace
-}  // namespace haptrial::analysis::reference
+}  // namespace haptrial::analysis::reference::t_tests_reference

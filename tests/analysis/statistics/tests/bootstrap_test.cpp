@@ -11,7 +11,7 @@
 #include "analysis/statistics/base/descriptive.h"
 #include "core/base/random.h"
 
-namespace haptrial::analysis {
+namespace haptrial::analysis::bootstrap_test {
 namespace {
 
 using testing::HasSubstr;
@@ -153,4 +153,4 @@ TEST(Bca, SaysWhyItIsNotDefined) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis
+}  // namespace haptrial::analysis::bootstrap_test

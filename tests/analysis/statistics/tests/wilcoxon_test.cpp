@@ -11,7 +11,7 @@
 
 #include "core/base/random.h"
 
-namespace haptrial::analysis {
+namespace haptrial::analysis::wilcoxon_test {
 namespace {
 
 using testing::HasSubstr;
@@ -187,4 +187,4 @@ TEST(RankTests, SayWhyTheyAreNotDefined) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis
+}  // namespace haptrial::analysis::wilcoxon_test

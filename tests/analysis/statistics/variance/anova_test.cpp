@@ -12,7 +12,7 @@
 #include "analysis/statistics/variance/repeated_anova.h"
 #include "core/base/random.h"
 
-namespace haptrial::analysis {
+namespace haptrial::analysis::anova_test {
 namespace {
 
 using testing::HasSubstr;
@@ -197,4 +197,4 @@ TEST(RepeatedAnova, SaysWhyItIsNotDefined) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis
+}  // namespace haptrial::analysis::anova_test

@@ -14,7 +14,7 @@
 #include "core/base/random.h"
 #include "tests/analysis/statistics/normal_values.h"
 
-namespace haptrial::analysis {
+namespace haptrial::analysis::effect_size_test {
 namespace {
 
 using test::normal_values;
@@ -173,4 +173,4 @@ TEST(EffectSize, SaysWhyItIsNotDefined) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis
+}  // namespace haptrial::analysis::effect_size_test

@@ -11,7 +11,7 @@
 #include "analysis/statistics/variance/anova.h"
 #include "core/base/random.h"
 
-namespace haptrial::analysis {
+namespace haptrial::analysis::rank_anova_test {
 namespace {
 
 using testing::ElementsAre;
@@ -115,4 +115,4 @@ TEST(Friedman, SaysWhyItIsNotDefined) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis
+}  // namespace haptrial::analysis::rank_anova_test

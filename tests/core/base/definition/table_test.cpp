@@ -13,7 +13,7 @@
 
 #include "core/base/error.h"
 
-namespace haptrial {
+namespace haptrial::table_test {
 namespace {
 
 using ::testing::AnyOf;
@@ -495,4 +495,4 @@ TEST_F(TableFileTest, WhatCannotBeADefinitionIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace haptrial
+}  // namespace haptrial::table_test

@@ -12,7 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/random.h"
 
-namespace haptrial {
+namespace haptrial::toml_mistake_test {
 namespace {
 
 using ::testing::AllOf;
@@ -202,4 +202,4 @@ TEST(TomlMistakeTest, ABracketTakenAwayIsMissedInItsLine) {
 }
 
 }  // namespace
-}  // namespace haptrial
+}  // namespace haptrial::toml_mistake_test

@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial {
+namespace haptrial::translations_test {
 namespace {
 
 using testing::ElementsAre;
@@ -80,4 +80,4 @@ TEST(TranslationsTest, OnlyTextsAreTranslations) {
 }
 
 }  // namespace
-}  // namespace haptrial
+}  // namespace haptrial::translations_test

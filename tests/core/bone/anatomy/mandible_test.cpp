@@ -10,7 +10,7 @@
 #include "core/bone/data/bone_summary.h"
 #include "tests/core/bone/anatomy/made_bones.h"
 
-namespace haptrial::bone {
+namespace haptrial::bone::mandible_test {
 namespace {
 
 using test::places_of;
@@ -117,4 +117,4 @@ TEST(MandibleTest, SidesMirrorSeedsVaryAndThreadsDoNot) {
 }
 
 }  // namespace
-}  // namespace haptrial::bone
+}  // namespace haptrial::bone::mandible_test

@@ -15,7 +15,7 @@
 #include "core/bone/data/bone_summary.h"
 #include "tests/core/bone/anatomy/made_bones.h"
 
-namespace haptrial::bone {
+namespace haptrial::bone::temporal_bone_test {
 namespace {
 
 using test::places_of;
@@ -214,4 +214,4 @@ TEST(TemporalBoneTest, SeedsVaryAndThreadsDoNot) {
 }
 
 }  // namespace
-}  // namespace haptrial::bone
+}  // namespace haptrial::bone::temporal_bone_test

@@ -10,7 +10,7 @@
 #include "core/bone/drill/drill.h"
 #include "tests/support/solid_bone.h"
 
-namespace haptrial::bone {
+namespace haptrial::bone::drill_remove_test {
 namespace {
 
 using Eigen::Quaterniond;
@@ -194,4 +194,4 @@ TEST(DrillRemoveTest, NothingIsTakenWithoutForcePowerOrTime) {
 }
 
 }  // namespace
-}  // namespace haptrial::bone
+}  // namespace haptrial::bone::drill_remove_test

@@ -12,7 +12,7 @@
 #include "tests/support/allocation_guard.h"
 #include "tests/support/solid_bone.h"
 
-namespace haptrial::bone {
+namespace haptrial::bone::drill_test {
 namespace {
 
 using Eigen::Quaterniond;
@@ -315,4 +315,4 @@ TEST(DrillTest, ContactsOfSeveralBonesAddUp) {
 }
 
 }  // namespace
-}  // namespace haptrial::bone
+}  // namespace haptrial::bone::drill_test

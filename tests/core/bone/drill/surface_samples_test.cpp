@@ -12,7 +12,7 @@
 #include "tests/support/allocation_guard.h"
 #include "tests/support/solid_bone.h"
 
-namespace haptrial::bone {
+namespace haptrial::bone::surface_samples_test {
 namespace {
 
 using Eigen::Quaterniond;
@@ -130,4 +130,4 @@ TEST(SurfaceSamplesTest, TickDoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace haptrial::bone
+}  // namespace haptrial::bone::surface_samples_test

@@ -7,7 +7,7 @@
 #include "core/base/random.h"
 #include "tests/core/bone/surface/surface_checks.h"
 
-namespace haptrial::bone {
+namespace haptrial::bone::near_structures_test {
 namespace {
 
 constexpr int kSize = 34;
@@ -89,4 +89,4 @@ TEST(NearStructuresTest, WithoutDepthsNothingShows) {
 }
 
 }  // namespace
-}  // namespace haptrial::bone
+}  // namespace haptrial::bone::near_structures_test

@@ -11,7 +11,7 @@
 #include "tests/core/bone/pieces/pieces_support.h"
 #include "tests/support/allocation_guard.h"
 
-namespace haptrial::bone {
+namespace haptrial::bone::cut_plane_test {
 namespace {
 
 using Eigen::Isometry3d;
@@ -257,4 +257,4 @@ TEST(CutPlaneTest, EachVoxelIsToldOnceWithItsPieceAndLabelAndNoStepEmptiesTooMan
 }
 
 }  // namespace
-}  // namespace haptrial::bone
+}  // namespace haptrial::bone::cut_plane_test

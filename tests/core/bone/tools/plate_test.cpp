@@ -14,7 +14,7 @@
 #include "tests/support/allocation_guard.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::bone {
+namespace haptrial::bone::plate_test {
 namespace {
 
 using Eigen::Isometry3d;
@@ -309,4 +309,4 @@ TEST(PlateModelTest, ACoarseMeshIsFeltAllOver) {
 }
 
 }  // namespace
-}  // namespace haptrial::bone
+}  // namespace haptrial::bone::plate_test

@@ -7,7 +7,7 @@
 
 #include "core/geometry/mesh/procedural.h"
 
-namespace haptrial::geometry {
+namespace haptrial::geometry::mesh_check_test {
 namespace {
 
 using ::testing::Contains;
@@ -189,4 +189,4 @@ TEST(MeshCheckTest, AMeshOfNothingButRepeatedCornersHasNoSurface) {
 }
 
 }  // namespace
-}  // namespace haptrial::geometry
+}  // namespace haptrial::geometry::mesh_check_test

@@ -11,7 +11,7 @@
 #include "core/geometry/mesh/procedural.h"
 #include "core/geometry/repair/mesh_check.h"
 
-namespace haptrial::geometry {
+namespace haptrial::geometry::mesh_repair_test {
 namespace {
 
 /// Every triangle with vertices of its own, as STL has them, each moved by up to `noise`.
@@ -177,4 +177,4 @@ TEST(RepairTest, NothingLeftIsASentence) {
 }
 
 }  // namespace
-}  // namespace haptrial::geometry
+}  // namespace haptrial::geometry::mesh_repair_test

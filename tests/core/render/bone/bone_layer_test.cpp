@@ -15,7 +15,7 @@
 #include "tests/core/render/flat/pixels.h"
 #include "tests/support/virtual_display.h"
 
-namespace haptrial::render {
+namespace haptrial::render::bone_layer_test {
 namespace {
 
 using bone::BoneModel;
@@ -279,4 +279,4 @@ TEST(BoneLayerScenesTest, ABoxCoversThePixelsOfAllThatItHolds) {
 }
 
 }  // namespace
-}  // namespace haptrial::render
+}  // namespace haptrial::render::bone_layer_test

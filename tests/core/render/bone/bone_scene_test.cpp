@@ -15,7 +15,7 @@
 #include "tests/core/bone/surface/surface_checks.h"
 #include "tests/core/render/flat/pixels.h"
 
-namespace haptrial::render {
+namespace haptrial::render::bone_scene_test {
 namespace {
 
 using bone::BoneModel;
@@ -356,4 +356,4 @@ TEST(GlBufferTest, RunsCoverEveryNumberAndFewOthers) {
 }
 
 }  // namespace
-}  // namespace haptrial::render
+}  // namespace haptrial::render::bone_scene_test

@@ -6,7 +6,7 @@
 #include "core/render/gl/offscreen.h"
 #include "tests/core/render/flat/pixels.h"
 
-namespace haptrial::render {
+namespace haptrial::render::bone_stills_test {
 namespace {
 
 constexpr int kWidth = 400;
@@ -89,4 +89,4 @@ TEST(BoneStillsTest, EveryEyeHasItsOwnAndAHighStillFits) {
 }
 
 }  // namespace
-}  // namespace haptrial::render
+}  // namespace haptrial::render::bone_stills_test

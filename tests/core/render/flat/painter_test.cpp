@@ -12,7 +12,7 @@
 #include "core/render/gl/offscreen.h"
 #include "tests/core/render/flat/pixels.h"
 
-namespace haptrial::render {
+namespace haptrial::render::painter_test {
 namespace {
 
 constexpr int kSide = 100;
@@ -189,4 +189,4 @@ TEST(ViewTest, RejectsWhatHasNoSize) {
 }
 
 }  // namespace
-}  // namespace haptrial::render
+}  // namespace haptrial::render::painter_test

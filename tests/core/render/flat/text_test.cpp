@@ -8,7 +8,7 @@
 #include "core/render/gl/offscreen.h"
 #include "tests/core/render/flat/pixels.h"
 
-namespace haptrial::render {
+namespace haptrial::render::text_test {
 namespace {
 
 constexpr int kWidth = 400;
@@ -167,4 +167,4 @@ TEST_F(TextPainterTest, GoesOverWhatIsThereAndBlends) {
 }
 
 }  // namespace
-}  // namespace haptrial::render
+}  // namespace haptrial::render::text_test

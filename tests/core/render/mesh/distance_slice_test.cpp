@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace haptrial::render {
+namespace haptrial::render::distance_slice_test {
 namespace {
 
 struct Pixel {
@@ -76,4 +76,4 @@ TEST(DistanceSliceTest, RefusesWhatIsNoGrid) {
 }
 
 }  // namespace
-}  // namespace haptrial::render
+}  // namespace haptrial::render::distance_slice_test

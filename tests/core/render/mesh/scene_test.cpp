@@ -12,7 +12,7 @@
 #include "core/geometry/volume/voxelize.h"
 #include "core/render/mesh/mesh_scene.h"
 
-namespace haptrial::render {
+namespace haptrial::render::scene_test {
 namespace {
 
 using Pixel = std::array<int, 3>;
@@ -128,4 +128,4 @@ TEST(SceneTest, NothingOrNotANumberIsRefused) {
 }
 
 }  // namespace
-}  // namespace haptrial::render
+}  // namespace haptrial::render::scene_test

@@ -8,7 +8,7 @@
 #include "core/render/gl/offscreen.h"
 #include "tests/core/render/flat/pixels.h"
 
-namespace haptrial::render {
+namespace haptrial::render::force_panel_test {
 namespace {
 
 constexpr int kWidth = 900;
@@ -120,4 +120,4 @@ TEST_F(ForcePanelTest, RejectsColumnsThatDoNotAgree) {
 }
 
 }  // namespace
-}  // namespace haptrial::render
+}  // namespace haptrial::render::force_panel_test

@@ -14,7 +14,7 @@
 #include "core/render/trial/frames.h"
 #include "tests/core/render/flat/pixels.h"
 
-namespace haptrial::render {
+namespace haptrial::render::trial_display_test {
 namespace {
 
 constexpr int kWidth = 640;
@@ -387,4 +387,4 @@ TEST(TrialDisplayArgumentsTest, RejectsAStyleThatCannotBeDrawn) {
 }
 
 }  // namespace
-}  // namespace haptrial::render
+}  // namespace haptrial::render::trial_display_test

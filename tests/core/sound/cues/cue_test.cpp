@@ -14,7 +14,7 @@
 #include "core/sound/wav.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::sound {
+namespace haptrial::sound::cue_test {
 namespace {
 
 using testing::ElementsAre;
@@ -183,4 +183,4 @@ TEST(CueTest, MistakesGetASentence) {
 }
 
 }  // namespace
-}  // namespace haptrial::sound
+}  // namespace haptrial::sound::cue_test

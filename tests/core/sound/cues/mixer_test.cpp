@@ -12,7 +12,7 @@
 #include "core/sound/cues/cue_player.h"
 #include "tests/support/allocation_guard.h"
 
-namespace haptrial::sound {
+namespace haptrial::sound::mixer_test {
 namespace {
 
 using testing::HasSubstr;
@@ -134,4 +134,4 @@ TEST(CuePlayerTest, WithoutACardThereIsASentence) {
 }
 
 }  // namespace
-}  // namespace haptrial::sound
+}  // namespace haptrial::sound::mixer_test

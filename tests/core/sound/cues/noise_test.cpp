@@ -9,7 +9,7 @@
 
 #include "core/sound/power_spectrum.h"
 
-namespace haptrial::sound {
+namespace haptrial::sound::noise_test {
 namespace {
 
 constexpr double kRate = 48'000.0;
@@ -111,4 +111,4 @@ TEST(NoiseTest, RefusesWhatIsNoNoise) {
 }
 
 }  // namespace
-}  // namespace haptrial::sound
+}  // namespace haptrial::sound::noise_test

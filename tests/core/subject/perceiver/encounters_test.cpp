@@ -8,7 +8,7 @@
 #include "core/subject/perceiver/upper_mean.h"
 #include "tests/core/subject/perceiver/hand_rig.h"
 
-namespace haptrial::subject {
+namespace haptrial::subject::encounters_test {
 namespace {
 
 using test::field;
@@ -190,4 +190,4 @@ TEST(EncountersTest, WhatIsNotFiniteIsLeftOutAndBeginForgets) {
 }
 
 }  // namespace
-}  // namespace haptrial::subject
+}  // namespace haptrial::subject::encounters_test

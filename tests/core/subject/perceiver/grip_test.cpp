@@ -44,7 +44,7 @@ TEST(GripTest, TheWayIsThatOfTipsThatTouchAndRest) {
 
 TEST(GripTest, DoesNotAllocate) {
   Grip grip{SenseParameters{}};
-  const test::AllocationGuard guard;
+  const haptrial::test::AllocationGuard guard;
   for (int i = 0; i < 100; ++i) {
     grip.feel(tip(0.025, 1.0), tip(-0.025, 1.0), kDt);
   }

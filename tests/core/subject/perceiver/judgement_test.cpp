@@ -12,7 +12,7 @@
 #include "tests/support/allocation_guard.h"
 #include "tests/support/message_of.h"
 
-namespace haptrial::subject {
+namespace haptrial::subject::judgement_test {
 namespace {
 
 using testing::HasSubstr;
@@ -238,4 +238,4 @@ TEST(JudgeTest, DoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace haptrial::subject
+}  // namespace haptrial::subject::judgement_test

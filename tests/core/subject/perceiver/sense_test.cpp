@@ -13,7 +13,7 @@
 #include "tests/support/allocation_guard.h"
 #include "tests/support/message_of.h"
 
-namespace haptrial::subject {
+namespace haptrial::subject::sense_test {
 namespace {
 
 using test::field;
@@ -192,4 +192,4 @@ TEST(SenseTest, DoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace haptrial::subject
+}  // namespace haptrial::subject::sense_test

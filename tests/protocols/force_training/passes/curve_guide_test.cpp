@@ -15,7 +15,7 @@
 #include "protocols/force_training/passes/recorded_pass.h"
 #include "tests/support/allocation_guard.h"
 
-namespace haptrial::protocols {
+namespace haptrial::protocols::curve_guide_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -259,4 +259,4 @@ TEST(CurveGuideTest, TheKindOfGuidanceIsRead) {
 }
 
 }  // namespace
-}  // namespace haptrial::protocols
+}  // namespace haptrial::protocols::curve_guide_test

@@ -9,7 +9,7 @@
 #include "protocols/interface/session_task.h"
 #include "tests/support/scripted_device.h"
 
-namespace haptrial::protocols {
+namespace haptrial::protocols::recorded_pass_test {
 namespace {
 
 using record::Phase;
@@ -124,4 +124,4 @@ TEST(RecordedPassTest, TheTestIsTheSameForEveryCondition) {
 }
 
 }  // namespace
-}  // namespace haptrial::protocols
+}  // namespace haptrial::protocols::recorded_pass_test

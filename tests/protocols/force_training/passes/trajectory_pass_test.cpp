@@ -14,7 +14,7 @@
 #include "tests/support/allocation_guard.h"
 #include "tests/support/free_mass.h"
 
-namespace haptrial::protocols {
+namespace haptrial::protocols::trajectory_pass_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -374,4 +374,4 @@ TEST(GuidanceTest, ParametersAreReadWithTheirBounds) {
 }
 
 }  // namespace
-}  // namespace haptrial::protocols
+}  // namespace haptrial::protocols::trajectory_pass_test

@@ -8,7 +8,7 @@
 #include "protocols/trials/definition/read_definition.h"
 #include "tests/protocols/trials/definition/small_definition.h"
 
-namespace haptrial::protocols {
+namespace haptrial::protocols::markers_test {
 namespace {
 
 using testing::HasSubstr;
@@ -111,4 +111,4 @@ TEST(TrialMarkersTest, SoundsThatAreNotThereGetASentence) {
 }
 
 }  // namespace
-}  // namespace haptrial::protocols
+}  // namespace haptrial::protocols::markers_test

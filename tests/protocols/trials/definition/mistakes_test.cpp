@@ -3,7 +3,7 @@
 
 #include "tests/protocols/trials/definition/small_definition.h"
 
-namespace haptrial::protocols {
+namespace haptrial::protocols::mistakes_test {
 namespace {
 
 using testing::AllOf;
@@ -159,4 +159,4 @@ TEST(TrialMistakesTest, SessionsOnSeveralDays) {
 }
 
 }  // namespace
-}  // namespace haptrial::protocols
+}  // namespace haptrial::protocols::mistakes_test
