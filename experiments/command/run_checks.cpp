@@ -12,7 +12,7 @@
 #include "core/record/write/session_target.h"
 #include "core/record/write/session_writer.h"
 #include "experiments/command/arguments.h"
-#include "experiments/runner/devices.h"
+#include "experiments/devices/devices.h"
 #include "experiments/study/study_files.h"
 #include "protocols/definition/definition.h"
 #include "protocols/definition/study_rules.h"

@@ -14,7 +14,7 @@
 #include "experiments/control/session_desk.h"
 #include "experiments/loop/servo_thread.h"
 #include "experiments/runner/aborted_pass.h"
-#include "experiments/runner/devices.h"
+#include "experiments/devices/devices.h"
 #include "experiments/runner/earlier_run.h"
 #include "experiments/runner/next_trial.h"
 #include "experiments/runner/session_notices.h"

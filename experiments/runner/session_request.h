@@ -11,7 +11,7 @@
 #include "core/realtime/servo_loop.h"
 #include "core/record/rows/live_figures.h"
 #include "experiments/control/session_control.h"
-#include "experiments/runner/devices.h"
+#include "experiments/devices/devices.h"
 #include "protocols/interface/protocol.h"
 
 namespace haptrial::experiments {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/record/rows/session_types.h"
-#include "experiments/runner/definition_events.h"
 
 namespace haptrial::record {
 class SessionReader;

@@ -67,6 +67,11 @@ bool stands_alone(const fs::path& file) {
   return std::regex_search(file.string(), std::regex("(baseline|avx2|avx512)\\.cpp$"));
 }
 
+/// Benchmarks and fuzz targets: a program each.
+bool is_a_program(const fs::path& file) {
+  return std::regex_search(file.string(), std::regex("tests/(benchmarks|fuzz)/"));
+}
+
 TEST(NamesTest, FilesOfAFolderDoNotShareNamesOfTheirOwn) {
   const std::set<std::string> palette = palette_names();
   ASSERT_GT(palette.size(), 8U);
@@ -75,7 +80,7 @@ TEST(NamesTest, FilesOfAFolderDoNotShareNamesOfTheirOwn) {
     for (const auto& entry :
          fs::recursive_directory_iterator(fs::path(HAPTRIAL_SOURCE_DIR) / layer)) {
       const fs::path& file = entry.path();
-      if (file.extension() != ".cpp" || stands_alone(file)) {
+      if (file.extension() != ".cpp" || stands_alone(file) || is_a_program(file)) {
         continue;
       }
       std::ifstream in(file);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -24,95 +25,96 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-TEST(ResultsTest, ManifestsReproduce) {
-  if (test::kThreadSanitizer) {
-    GTEST_SKIP() << "whole studies take too long here; other builds make them anew";
+const fs::path kSource = HAPTRIAL_SOURCE_DIR;
+
+std::string sum_of(const fs::path& file) {
+  return test::run_command("sha256sum < '" + file.string() + "'").output.substr(0, 64);
+}
+
+/// The folders of results/ that hold a file.
+std::vector<fs::path> results_with(const char* name) {
+  std::vector<fs::path> folders;
+  for (const auto& entry : fs::directory_iterator(kSource / "results")) {
+    if (fs::exists(entry.path() / name)) {
+      folders.push_back(entry.path());
+    }
   }
-  int studies = 0;
-  int comparisons = 0;
-  const fs::path source = HAPTRIAL_SOURCE_DIR;
-  for (const auto& entry : fs::directory_iterator(source / "results")) {
-    if (!entry.is_directory()) {
-      continue;
-    }
-    const fs::path folder = entry.path();
-    const auto manifest = nlohmann::json::parse(test::read_text(folder / "manifest.json"));
-    if (!manifest.contains("scores_sha256")) {
-      continue;  // a study of drillings: ValidityResultsTest
-    }
-    const test::TemporaryFolder out;
-    std::string script = "set -e; cd '" + source.string() + "'\n";
-    for (const std::string command : manifest["commands"]) {
-      script += replaced(command, " OUT", " '" + (out / "study").string() + "'") + "\n";
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
+std::string study_of(const testing::TestParamInfo<fs::path>& folder) {
+  return folder.param.filename().string();
+}
+
+/// Runs the commands of a manifest again.
+class Results : public testing::TestWithParam<fs::path> {
+ protected:
+  void make_again() {
+    std::string script = "set -e; cd '" + kSource.string() + "'\n";
+    for (const std::string command : manifest_["commands"]) {
+      script += replaced(command, " OUT", " '" + (out_ / "study").string() + "'") + "\n";
     }
     const test::CommandResult result = test::run_command(script);
     ASSERT_EQ(result.status, 0) << result.errors;
-    EXPECT_EQ(test::read_text(out / "study" / "scores.csv"), test::read_text(folder / "scores.csv"))
-        << folder << " is not what its manifest gives; results/regenerate.sh makes it anew";
-    for (const char* name : {"comparison.json", "comparison.html", "comparison.svg"}) {
-      if (fs::exists(folder / name)) {
-        EXPECT_EQ(test::read_text(out / "study" / name), test::read_text(folder / name)) << name;
-        ++comparisons;
-      }
-    }
-    const auto sum = [](const fs::path& file) {
-      return test::run_command("sha256sum < '" + file.string() + "'").output.substr(0, 64);
-    };
-    EXPECT_EQ(sum(folder / "scores.csv"), manifest["scores_sha256"]);
-    const std::string definition = manifest["study"].get<std::string>() + ".toml";
-    EXPECT_EQ(sum(source / "experiments" / definition), manifest["definition_sha256"]);
-    EXPECT_TRUE(manifest["simulated"].get<bool>());
-    EXPECT_THAT(test::read_text(folder / "report.html"), testing::HasSubstr("SIMULATED"));
-    EXPECT_FALSE(fs::exists(folder / "S01.h5")) << "session files stay out";
-    ++studies;
+    const std::string definition = manifest_["study"].get<std::string>() + ".toml";
+    EXPECT_EQ(sum_of(kSource / "experiments" / definition), manifest_["definition_sha256"]);
+    EXPECT_THAT(test::read_text(folder_ / "report.html"), testing::HasSubstr("SIMULATED"));
   }
-  EXPECT_GE(studies, 2);
-  EXPECT_EQ(comparisons, 3);
-}
-
-/// Runs the commands of a manifest again and compares the estimates.
-void expect_the_same(const fs::path& folder) {
-  const fs::path source = HAPTRIAL_SOURCE_DIR;
-  const auto manifest = nlohmann::json::parse(test::read_text(folder / "manifest.json"));
-  const test::TemporaryFolder out;
-  std::string script = "set -e; cd '" + source.string() + "'\n";
-  for (const std::string command : manifest["commands"]) {
-    script += replaced(command, " OUT", " '" + (out / "study").string() + "'") + "\n";
+  void expect_the_same(const std::string& name) const {
+    EXPECT_EQ(test::read_text(out_ / "study" / name), test::read_text(folder_ / name))
+        << name << " is not what the manifest gives; results/regenerate.sh makes it anew";
   }
-  const test::CommandResult result = test::run_command(script);
-  ASSERT_EQ(result.status, 0) << result.errors;
-  EXPECT_EQ(test::read_text(out / "study/estimates.csv"), test::read_text(folder / "estimates.csv"))
-      << folder << " is not what its manifest gives; results/regenerate.sh makes it anew";
-  const auto sum = [](const fs::path& file) {
-    return test::run_command("sha256sum < '" + file.string() + "'").output.substr(0, 64);
-  };
-  const std::string definition = manifest["study"].get<std::string>() + ".toml";
-  EXPECT_EQ(sum(source / "experiments" / definition), manifest["definition_sha256"]);
-  EXPECT_THAT(test::read_text(folder / "report.html"), testing::HasSubstr("SIMULATED"));
-}
+  const fs::path folder_ = GetParam();
+  const nlohmann::json manifest_ =
+      nlohmann::json::parse(test::read_text(folder_ / "manifest.json"));
+  const test::TemporaryFolder out_;
+};
 
-constexpr const char* kLongest = "size_by_eye_and_hand";
+/// Studies of force curves.
+class ScoredResults : public Results {};
 
-// Experiments that their definitions state whole: what virtual participants were estimated to be.
-TEST(ResultsTest, EstimatesOfOwnExperimentsReproduce) {
+TEST_P(ScoredResults, Reproduce) {
   if (test::kThreadSanitizer) {
     GTEST_SKIP() << "whole studies take too long here; other builds make them anew";
   }
-  int studies = 0;
-  for (const auto& entry : fs::directory_iterator(fs::path(HAPTRIAL_SOURCE_DIR) / "results")) {
-    if (fs::exists(entry.path() / "estimates.csv") && entry.path().filename() != kLongest) {
-      expect_the_same(entry.path());
-      ++studies;
+  ASSERT_NO_FATAL_FAILURE(make_again());
+  expect_the_same("scores.csv");
+  for (const char* name : {"comparison.json", "comparison.html", "comparison.svg"}) {
+    if (fs::exists(folder_ / name)) {
+      expect_the_same(name);
     }
   }
-  EXPECT_GE(studies, 7);
+  EXPECT_EQ(sum_of(folder_ / "scores.csv"), manifest_["scores_sha256"]);
+  EXPECT_TRUE(manifest_["simulated"].get<bool>());
+  EXPECT_FALSE(fs::exists(folder_ / "S01.h5")) << "session files stay out";
 }
 
-TEST(ResultsTest, EstimatesOfTheLongestReproduce) {
-  if (std::getenv("HAPTRIAL_EVERY_STUDY") == nullptr) {
+INSTANTIATE_TEST_SUITE_P(Shipped, ScoredResults, testing::ValuesIn(results_with("scores.csv")),
+                         study_of);
+
+/// Experiments that their definitions state whole: what virtual participants were estimated to be.
+class EstimatedResults : public Results {};
+
+TEST_P(EstimatedResults, Reproduce) {
+  if (test::kThreadSanitizer) {
+    GTEST_SKIP() << "whole studies take too long here; other builds make them anew";
+  }
+  constexpr const char* kLongest = "size_by_eye_and_hand";
+  if (folder_.filename() == kLongest && std::getenv("HAPTRIAL_EVERY_STUDY") == nullptr) {
     GTEST_SKIP() << "8,568 trials take minutes; set HAPTRIAL_EVERY_STUDY=1 to make them anew";
   }
-  expect_the_same(fs::path(HAPTRIAL_SOURCE_DIR) / "results" / kLongest);
+  ASSERT_NO_FATAL_FAILURE(make_again());
+  expect_the_same("estimates.csv");
+}
+
+INSTANTIATE_TEST_SUITE_P(Shipped, EstimatedResults,
+                         testing::ValuesIn(results_with("estimates.csv")), study_of);
+
+TEST(ResultsTest, EveryStudyIsThere) {
+  EXPECT_GE(results_with("scores.csv").size(), 2u);
+  EXPECT_EQ(results_with("estimates.csv").size(), 8u);
+  EXPECT_EQ(results_with("comparison.json").size(), 1u);
 }
 
 }  // namespace

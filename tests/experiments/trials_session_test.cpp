@@ -30,7 +30,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/virtual_display.h"
 
-namespace haptrial::experiments {
+namespace haptrial::experiments::trials_session_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -385,4 +385,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace
-}  // namespace haptrial::experiments
+}  // namespace haptrial::experiments::trials_session_test

@@ -20,7 +20,7 @@
 #include "experiments/control/interrupt.h"
 #include "experiments/control/last_stop.h"
 #include "experiments/control/signals.h"
-#include "experiments/runner/devices.h"
+#include "experiments/devices/devices.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
 

@@ -10,7 +10,7 @@
 #include "tests/support/allocation_guard.h"
 #include "tests/support/free_mass.h"
 
-namespace haptrial::device {
+namespace haptrial::device::force_watch_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -147,4 +147,4 @@ TEST(ForceWatchTest, ATickDoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace haptrial::device
+}  // namespace haptrial::device::force_watch_test

@@ -1,4 +1,4 @@
-#include "experiments/runner/devices.h"
+#include "experiments/devices/devices.h"
 
 #include <fmt/format.h>
 
