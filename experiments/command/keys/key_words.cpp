@@ -120,6 +120,8 @@ texts.move_mark | | small line below a scale
 texts.type_number | | small line below a question for a number
 texts.type_words | | small line below a question for words
 texts.declined | | for a participant who does not consent
+texts.too_fast | Too fast | after an answer below `too_fast` of its response
+texts.too_slow | Too slow | after an answer above `too_slow`
 pages.before | none | names of pages before the first trial, in this order
 pages.after | none | names of pages after the last trial
 pages.after_block.NAME | | names of pages after the last trial of the block of this name
@@ -213,12 +215,18 @@ response.choices[].label | the value | what is shown
 response.choices[].keys | the digit of its place | of the window, that choose it
 response.choices[].buttons | the button of its place | of the device, that choose it
 response.scale | choices or a number | lowest and highest digit
+response.choices[].touch | none | region into which the tip of the tool is moved for it
+response.choices[].pedal | none | depth of an analog pedal from which on it chooses it
 response.number | choices or a scale | lowest and highest number that may be typed
 response.correct | no answer is right | formula of the right choice: its number, or its value as a word
 response.feedback | never | when right or wrong is shown
 response.timeout | none | then the trial is aborted and comes again
 response.reaction_time_from | the question | stage from which the reaction is counted
 procedure.kind | needed; a track takes its procedure's | how levels follow from outcomes
+response.touch_for | 0.2 | how long the tip stays in a region that is touched
+response.too_fast | no limit | reaction time below which an answer is told to be too fast
+response.too_slow | no limit | reaction time above which an answer is told to be too slow
+response.out_of_time | go on | what follows from such an answer: it counts, or the trial comes again at the end of its block
 procedure.variable | needed; a track takes its procedure's | name that it sets
 procedure.name | track 1, track 2, ... | of the track
 procedure.unit | none | of the variable

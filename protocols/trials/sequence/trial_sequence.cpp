@@ -340,3 +340,17 @@ void TrialSequence::conclude(bool presented, double outcome, bool right) {
 }
 
 }  // namespace haptrial::protocols
+void TrialSequence::postpone() {
+  if (!next_) {
+    throw std::logic_error("TrialSequence: no trial has been asked for");
+  }
+  const NextTrial done = *std::exchange(next_, std::nullopt);
+  ++failed_;
+  if (running_.empty()) {
+    const Fixed again = fixed_[fixed_at_++];
+    fixed_.push_back(again);
+  } else if (done.track >= 0) {
+    running_[static_cast<std::size_t>(done.track)].procedure->postpone();
+  }
+}
+
