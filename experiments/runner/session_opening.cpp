@@ -138,6 +138,11 @@ bool close_what_had_ended(const SessionRequest& request) {
   return found.ended;
 }
 
+/// Enter and the space bar.
+static bool begins(const render::KeyPress& press) {
+  return press.key == render::KeyPress::kEnter || press.key == render::KeyPress::kSpace;
+}
+
 std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::MouseDevice* mouse,
                                     std::atomic<std::uint32_t>* held, std::atomic<bool>* begin,
                                     PageKeys* pages) {
@@ -148,9 +153,12 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::Mouse
   SessionControl* control = request.control;
   if (control != nullptr) {
     const bool steers = request.definition->screen.participant_steers;
-    callbacks.key = [control, steers, pages, &request](const render::KeyPress& press) {
+    callbacks.key = [control, steers, begin, pages, &request](const render::KeyPress& press) {
       if (pages->take(press) || press.character != 0) {
         return;
+      }
+      if (begins(press)) {  // heard in a break that the participant ends
+        begin->store(true);
       }
       const auto asked = request_of(press);
       const bool of_trial = request.definition->functions_of({press.key}) != 0;
@@ -169,7 +177,7 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::Mouse
       }
       if (press.key == render::KeyPress::kEscape) {
         interrupt();
-      } else if (press.key == render::KeyPress::kEnter || press.key == render::KeyPress::kSpace) {
+      } else if (begins(press)) {
         begin->store(true);
       }
     };

@@ -155,6 +155,7 @@ design.participants | | of the study
 design.sessions | 1 | of each participant, on days of their own
 design.session.NAME.blocks | | blocks of the session of this number; without [design.session] every session has all of them
 trials:design.break_after | 0 | trials after which a break comes; 0: no breaks
+design.break_until | time | what ends a break: its duration, or after that the participant or the experimenter
 bone_drilling:design.break_after | 0 | procedures after which a break comes; 0: no breaks
 design.break_after | | trials after which a break comes; 0: no breaks
 trials:design.break_duration | 60 | of a break

@@ -386,3 +386,4 @@ void read_trials_definition(Table& root, std::string_view file_name, TrialsDefin
 }
 
 }  // namespace haptrial::protocols
+  d.design.break_until_ready = d.order.break_until_ready;
