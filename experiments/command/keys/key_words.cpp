@@ -323,6 +323,12 @@ fields.NAME.velocity_filter | | cut-off of the filter of velocity
 fields.NAME.matrix | | B of the force B v
 fields.NAME.mass | | mass that is felt
 fields.NAME.acceleration_filter | | cut-off of the filter of acceleration
+fields.NAME.points | needed; or a curve | places that the path goes through
+fields.NAME.curve.length_x | | of a random path, from left to right
+fields.NAME.curve.range_z | | of its z
+fields.NAME.curve.sinusoids | | that are summed
+fields.NAME.curve.max_spatial_frequency | | of each
+fields.NAME.curve.seed | | of the path
 fields.NAME.on | everywhere | field of a surface that this one belongs to
 fields.NAME.static | | friction before it slips: a force, or on a surface a coefficient
 fields.NAME.dynamic | | friction while it slips, likewise

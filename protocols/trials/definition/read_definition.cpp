@@ -12,6 +12,7 @@
 #include "core/scene/needed_damping.h"
 #include "core/scene/read/read_field.h"
 #include "core/sound/cues/read_cues.h"
+#include "protocols/definition/handle_loop.h"
 #include "protocols/trials/definition/defaults.h"
 #include "protocols/trials/definition/read_tracks.h"
 #include "protocols/trials/definition/trial_devices.h"
@@ -309,6 +310,11 @@ Presented read_presented(Table& root, const Names& names, const TrialsDefinition
     Table table = root.table("regions");
     const DeviceOf devices = devices_of(table, d.hands);
     presented.regions = scene::read_regions(table, names);
+    for (scene::Field& field : presented.fields) {
+      if (auto* path = std::get_if<scene::PathParameters>(&field.kind)) {
+        path->loop = handle_loop(d);
+      }
+    }
     for (const scene::Region& region : presented.regions) {
       const auto own = devices.find(region.name);
       presented.region_devices.push_back(own == devices.end() ? 0 : own->second);
