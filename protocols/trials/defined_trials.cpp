@@ -366,9 +366,10 @@ void DefinedTrials::keep_level(SessionFile& file, std::int32_t row) {
   const RunningTrack& running = sequence_.running()[static_cast<std::size_t>(current_.track)];
   const bool done = pass_->state() == PassState::kCompleted && !comes_again(responses());
   std::vector<record::LevelRow> rows;
+  const std::vector<std::string> variables = running.track->variables();
   for (std::size_t i = 0; i < current_.asked.size(); ++i) {
-    rows.push_back({row, running.name, running.track->variable, current_.asked[i],
-                    current_.applied[i], done ? outcome_of(responses()) : kNone});
+    rows.push_back({row, running.name, variables[i], current_.asked[i], current_.applied[i],
+                    done ? outcome_of(responses()) : kNone});
   }
   file.add(std::span<const record::LevelRow>(rows));
 }
