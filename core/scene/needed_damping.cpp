@@ -75,6 +75,9 @@ struct SteepnessOf {
   Steepness operator()(const MoverParameters& p) const {
     return {false, p.gains.stiffness, p.gains.damping};
   }
+  Steepness operator()(const PathParameters& p) const {
+    return {false, p.gains.stiffness, p.gains.damping};
+  }
 };
 
 }  // namespace

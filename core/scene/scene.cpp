@@ -15,8 +15,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-using Law = std::variant<Constant, Ramp, Pulse, Hold, Surface, Grating, Texture, Viscous, Inertia,
-                         Friction, SineVibration, NoiseVibration, Tap, Detent, Click, Mover>;
+using Law =
+    std::variant<Constant, Ramp, Pulse, Hold, Surface, Grating, Texture, Viscous, Inertia, Friction,
+                 SineVibration, NoiseVibration, Tap, Detent, Click, Mover, PathGuide>;
 
 template <class Parameters>
 struct LawOf;
@@ -45,6 +46,7 @@ HAPTRIAL_LAW(TapParameters, Tap);
 HAPTRIAL_LAW(DetentParameters, Detent);
 HAPTRIAL_LAW(ClickParameters, Click);
 HAPTRIAL_LAW(MoverParameters, Mover);
+HAPTRIAL_LAW(PathParameters, PathGuide);
 #undef HAPTRIAL_LAW
 
 Law law_of(const Field& field, const Setting& setting) {

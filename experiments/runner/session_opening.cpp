@@ -154,6 +154,11 @@ std::filesystem::path resumed_file(const SessionRequest& request) {
                         : std::filesystem::path();
 }
 
+/// Enter and the space bar.
+static bool begins(const render::KeyPress& press) {
+  return press.key == render::KeyPress::kEnter || press.key == render::KeyPress::kSpace;
+}
+
 std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::MouseDevice* mouse,
                                     std::atomic<std::uint32_t>* held, std::atomic<bool>* begin,
                                     PageKeys* pages) {
@@ -164,9 +169,12 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::Mouse
   SessionControl* control = request.control;
   if (control != nullptr) {
     const bool steers = request.definition->screen.participant_steers;
-    callbacks.key = [control, steers, pages, &request](const render::KeyPress& press) {
+    callbacks.key = [control, steers, begin, pages, &request](const render::KeyPress& press) {
       if (pages->take(press) || press.character != 0) {
         return;
+      }
+      if (begins(press)) {  // heard in a break that the participant ends
+        begin->store(true);
       }
       const auto asked = request_of(press);
       const bool of_trial = request.definition->functions_of({press.key}) != 0;
@@ -185,7 +193,7 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::Mouse
       }
       if (press.key == render::KeyPress::kEscape) {
         interrupt();
-      } else if (press.key == render::KeyPress::kEnter || press.key == render::KeyPress::kSpace) {
+      } else if (begins(press)) {
         begin->store(true);
       }
     };

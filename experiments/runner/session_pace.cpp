@@ -151,11 +151,36 @@ void SessionPace::recover() {
 }
 
 void SessionPace::take_break() {
-  p_.record.event("break", fmt::format("{} s", d_.design.break_duration));
+  const bool until_ready = d_.design.break_until_ready;
+  p_.record.event("break", fmt::format("{} s{}", d_.design.break_duration,
+                                       until_ready ? ", then until ready" : ""));
   if (real_) {
     show_text(d_.texts.rest, "", d_.design.break_duration);
-    wait(d_.design.break_duration, "break", true);
+    wait(d_.design.break_duration, "break", !until_ready);
+    if (until_ready) {
+      wait_until_ready();
+    }
     pause_where_asked();
+  }
+}
+
+/// Until the participant or the experimenter goes on, where there is one of them.
+void SessionPace::wait_until_ready() {
+  if (!p_.desk.attended() && p_.screen == nullptr) {
+    return;
+  }
+  const Wishes& wishes = p_.desk.wishes();
+  p_.begin_pressed->store(false);
+  show_text(d_.texts.rest, p_.screen != nullptr ? d_.texts.begin_alone : d_.texts.begin);
+  while (!wishes.abort && !wishes.stopped && !wishes.pause && !asked_to_stop()) {
+    wait(0.02, "break", true);
+    if (p_.begin_pressed->load()) {
+      p_.record.event("start", fmt::format("by the {}", name_of(Asker::kWindow)));
+      return;
+    }
+    if (wishes.start) {
+      return;
+    }
   }
 }
 

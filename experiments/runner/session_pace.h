@@ -29,7 +29,7 @@ class SessionPace {
     protocols::SessionTask& task;
     bool felt{false};  // somebody feels what the device does
     Screen* screen{nullptr};
-    std::atomic<bool>* begin_pressed{nullptr};  // in the window of a session without experimenter
+    std::atomic<bool>* begin_pressed{nullptr};  // Enter or space, in the participant's window
     const record::LiveFigures* live{nullptr};
   };
   explicit SessionPace(const Parts& parts);
@@ -73,6 +73,7 @@ class SessionPace {
   void collect();
   void wait_for_experimenter(const char* state, const std::string& text, const std::string& hint);
   void wait_for_participant();
+  void wait_until_ready();
   bool asked_to_stop() const;
   void watch_loop();
 

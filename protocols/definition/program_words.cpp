@@ -17,6 +17,8 @@ constexpr std::array kSessionInGerman{
     Words{"Thank you\nThe session is over.", "Vielen Dank\nDie Sitzung ist zu Ende."},
     Words{"Right", "Richtig"},
     Words{"Wrong", "Falsch"},
+    Words{"Too fast", "Zu schnell"},
+    Words{"Too slow", "Zu langsam"},
     Words{"Stopped\nThe forces are off. Please wait for the experimenter.",
           "Angehalten\nDie Kräfte sind abgeschaltet. Bitte warten Sie auf die Versuchsleitung."},
     Words{"A short pause\nThe session continues in a moment.",

@@ -10,6 +10,19 @@
 
 namespace haptrial::protocols {
 
+bool read_break_until_ready(Table& table, int break_after) {
+  if (!table.has("break_until")) {
+    return false;
+  }
+  const bool ready = table.choice("break_until", {"time", "ready"}) == "ready";
+  if (ready && break_after == 0) {
+    table.reject("break_until",
+                 "is \"ready\", but there are no breaks; add break_after, a number "
+                 "of trials");
+  }
+  return ready;
+}
+
 Design read_design(Table& table) {
   Design d;
   d.participants = static_cast<int>(table.integer("participants", 1, 10000));
@@ -17,6 +30,7 @@ Design read_design(Table& table) {
   d.repetitions = static_cast<int>(table.integer("repetitions", 1, 1000));
   d.break_after = static_cast<int>(table.integer("break_after", 0, 100000));
   d.break_duration = table.number("break_duration", {0.0, 86400.0}, "s");
+  d.break_until_ready = read_break_until_ready(table, d.break_after);
   d.practice = table.has("practice") ? static_cast<int>(table.integer("practice", 0, 100)) : 0;
   d.conditions = table.texts("conditions");
 

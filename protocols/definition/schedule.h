@@ -19,12 +19,17 @@ struct Design {
   double break_duration{600.0};  // [s]
   int practice{0};               // trials of each condition before the first
   std::vector<std::string> conditions;  // of training
+  bool break_until_ready{false};        // a break lasts break_duration, then until somebody goes on
 
   int blocks() const { return trials / repetitions; }
 };
 
 /// Reads a [design] table; a design that does not divide is noted as a problem.
 Design read_design(Table& table);
+
+/// Reads the key `break_until` of a [design] table, "time" (as if left out) or "ready".
+/// @param break_after  that the design has; 0: no breaks
+bool read_break_until_ready(Table& table, int break_after);
 
 /// One trial of a participant.
 struct PlannedTrial {

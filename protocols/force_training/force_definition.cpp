@@ -11,24 +11,13 @@
 #include "core/base/text/counted.h"
 #include "core/base/text/nearest.h"
 #include "core/control/loop_margin.h"
+#include "protocols/definition/handle_loop.h"
 #include "protocols/definition/lab_file.h"
 #include "protocols/force_training/passes/training_pass.h"
 #include "protocols/force_training/recorded_path.h"
 
 namespace haptrial::protocols {
 namespace {
-
-/// The loop of the device with the longest velocity window, so that the damping is safe with all.
-control::HandleLoop handle_loop(const Definition& d) {
-  control::HandleLoop loop;
-  loop.handle_mass = d.hand.handle_mass;
-  loop.rate = d.rate;
-  loop.force_delay = d.device.force_delay;
-  loop.velocity_window =
-      std::max({2, d.device.velocity_window,
-                static_cast<int>(std::lround(d.force_dimension.velocity_window * d.rate))});
-  return loop;
-}
 
 constexpr double kLongestPass = 300.0;  // along x; the curve itself is a few times longer [s]
 

@@ -13,6 +13,7 @@
 #include "core/record/trials/trial_rows.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/trials/definition/defaults.h"
+#include "protocols/trials/presentation/stage_sight.h"
 #include "protocols/trials/presentation/trial_drawing.h"
 #include "protocols/trials/subject/trials_rig.h"
 
@@ -46,50 +47,6 @@ std::uint64_t pushing(const std::vector<scene::Field>& fields) {
     mask |= yields ? 0 : std::uint64_t{1} << i;
   }
   return mask;
-}
-
-Mark mark_at(const Eigen::Vector3d& p, double radius) {
-  const Eigen::Vector3f f = p.cast<float>();
-  return {{f.x(), f.y(), f.z()}, static_cast<float>(radius), 0};
-}
-
-/// Where a region is, and how large.
-Mark mark_of(const scene::Shape& shape) {
-  if (const auto* sphere = std::get_if<scene::Sphere>(&shape)) {
-    return mark_at(sphere->centre, sphere->radius);
-  }
-  if (const auto* box = std::get_if<scene::Box>(&shape)) {
-    return mark_at(box->centre, 0.5 * box->size.maxCoeff());
-  }
-  if (const auto* cylinder = std::get_if<scene::Cylinder>(&shape)) {
-    return mark_at(cylinder->centre, cylinder->radius);
-  }
-  return mark_at(std::get<scene::HalfSpace>(shape).point, 0.0);
-}
-
-/// What a stage shows. @param seed  of its dots
-StageSight sight_of(const NamedStage& stage, const Presented& presented, const Names& names,
-                    std::uint64_t seed) {
-  StageSight sight;
-  sight.sound = stage.sound;
-  for (const std::string& name : stage.show) {
-    const auto region = std::ranges::find(presented.regions, name, &scene::Region::name);
-    const auto look = std::ranges::find(presented.looks, name, &Look::name);
-    if (name == "hand") {
-      sight.hand = true;
-    } else if (name == "interval_number") {
-      sight.interval_number = true;
-    } else if (region != presented.regions.end()) {
-      sight.marks.push_back(mark_of(region->shape));
-      const auto index = static_cast<std::size_t>(region - presented.regions.begin());
-      sight.marks.back().device = static_cast<std::uint8_t>(presented.region_devices[index]);
-    } else if (look != presented.looks.end()) {
-      sight.dots = {look->dots, seed, true};
-    } else if (names.has_place(name)) {
-      sight.marks.push_back(mark_at(names.place(name), 0.0));
-    }
-  }
-  return sight;
 }
 
 record::StageEnding ending_of(StageEnd how) {
@@ -139,6 +96,9 @@ record::TableList DefinedTrials::tables() const {
   if (adapts()) {
     tables.push_back(&record::table_of<record::AdaptationRow>());
   }
+  if (std::ranges::any_of(d_.questions, &Question::has_limits)) {
+    tables.push_back(&record::table_of<record::OutOfTimeRow>());
+  }
   return tables;
 }
 
@@ -174,7 +134,11 @@ std::optional<PlannedTrial> DefinedTrials::next(const Outcome* last) {
   if (last != nullptr) {
     const bool done = last->end == TrialEnd::kCompleted;
     const bool right = !last->responses.empty() && last->responses.front().correct == 1;
-    sequence_.conclude(done, done ? outcome_of(last->responses) : kNone, right);
+    if (done && comes_again(last->responses)) {
+      sequence_.postpone();
+    } else {
+      sequence_.conclude(done, done ? outcome_of(last->responses) : kNone, right);
+    }
   }
   const std::optional<NextTrial> next = sequence_.next();
   if (!next) {
@@ -182,6 +146,15 @@ std::optional<PlannedTrial> DefinedTrials::next(const Outcome* last) {
   }
   current_ = *next;
   return current_.plan;
+}
+
+/// Whether an answer came too early or too late for its trial to count. It follows from what is
+/// recorded, as what a procedure learns.
+bool DefinedTrials::comes_again(const std::vector<record::ResponseRow>& responses) const {
+  return std::ranges::any_of(responses, [this](const record::ResponseRow& row) {
+    const auto at = std::ranges::find(d_.questions, row.question, &Question::name);
+    return at != d_.questions.end() && at->again && at->pace_of(row.reaction_time) != Pace::kInTime;
+  });
 }
 
 /// What the procedure learns from a trial. A session that is resumed computes it from what is
@@ -243,6 +216,8 @@ IntervalRun DefinedTrials::make_interval(std::size_t place, RandomStream& random
     stages.push_back(stage.stage);
     sights.push_back(sight_of(stage, presented, *names_, seed));
   }
+  regions_ = presented.regions;
+  region_devices_ = presented.region_devices;
   std::vector<StageRegion> regions;
   for (std::size_t i = 0; i < presented.regions.size(); ++i) {
     regions.push_back(
@@ -276,10 +251,32 @@ std::vector<Asked> DefinedTrials::make_questions() {
     for (std::size_t i = 0; !question.onset.empty() && i < stages_.back().size(); ++i) {
       each.onset = stages_.back()[i].name == question.onset ? static_cast<int>(i) : each.onset;
     }
+    each.places = places_of(question);
+    for (const TouchedPlace& place : each.places) {
+      const scene::Region& region = regions_[static_cast<std::size_t>(place.region)];
+      each.sight.marks.push_back(mark_to_touch(region.shape, place.device));
+    }
+    each.sight.hand = !each.places.empty();
     right_.push_back(each.right);
-    asked.push_back(each);
+    asked.push_back(std::move(each));
   }
   return asked;
+}
+
+/// Regions as they are in the last interval.
+std::vector<TouchedPlace> DefinedTrials::places_of(const Question& question) const {
+  std::vector<TouchedPlace> places;
+  for (std::size_t i = 0; i < question.choices.size(); ++i) {
+    const auto region =
+        std::ranges::find(regions_, question.choices[i].touch, &scene::Region::name);
+    if (!question.choices[i].touch.empty() && region != regions_.end()) {
+      const auto index = region - regions_.begin();
+      places.push_back({scene::PlacedShape(region->shape),
+                        region_devices_[static_cast<std::size_t>(index)], i,
+                        static_cast<int>(index)});
+    }
+  }
+  return places;
 }
 
 /// Those that differ within the pass have a row for each interval, the others one.
@@ -333,6 +330,25 @@ void DefinedTrials::close_pass(SessionFile& file, std::int32_t row) {
   keep_level(file, row);
   keep_stages(file, row);
   keep_adaptation(file, row);
+  keep_out_of_time(file, row);
+}
+
+void DefinedTrials::keep_out_of_time(SessionFile& file, std::int32_t row) const {
+  std::vector<record::OutOfTimeRow> rows;
+  for (std::size_t i = 0; i < pass_->answers().size(); ++i) {
+    const Answer& answer = pass_->answers()[i];
+    const Question& question = d_.questions[i];
+    if (answer.given && answer.pace != Pace::kInTime) {
+      const bool fast = answer.pace == Pace::kTooFast;
+      rows.push_back({row, question.name,
+                      fast ? record::OutOfTime::kTooFast : record::OutOfTime::kTooSlow,
+                      answer.reaction_time, fast ? question.too_fast : question.too_slow,
+                      question.again && pass_->state() == PassState::kCompleted});
+    }
+  }
+  if (!rows.empty()) {
+    file.add(std::span<const record::OutOfTimeRow>(rows));
+  }
 }
 
 void DefinedTrials::keep_adaptation(SessionFile& file, std::int32_t row) const {
@@ -348,11 +364,12 @@ void DefinedTrials::keep_level(SessionFile& file, std::int32_t row) {
     return;
   }
   const RunningTrack& running = sequence_.running()[static_cast<std::size_t>(current_.track)];
-  const bool done = pass_->state() == PassState::kCompleted;
+  const bool done = pass_->state() == PassState::kCompleted && !comes_again(responses());
   std::vector<record::LevelRow> rows;
+  const std::vector<std::string> variables = running.track->variables();
   for (std::size_t i = 0; i < current_.asked.size(); ++i) {
-    rows.push_back({row, running.name, running.track->variable, current_.asked[i],
-                    current_.applied[i], done ? outcome_of(responses()) : kNone});
+    rows.push_back({row, running.name, variables[i], current_.asked[i], current_.applied[i],
+                    done ? outcome_of(responses()) : kNone});
   }
   file.add(std::span<const record::LevelRow>(rows));
 }

@@ -45,6 +45,9 @@ class DefinedTrials final : public Trials {
   std::vector<Asked> make_questions();
   void note_variables(std::size_t interval, std::vector<record::VariableRow>& rows) const;
   double outcome_of(const std::vector<record::ResponseRow>& responses);
+  bool comes_again(const std::vector<record::ResponseRow>& responses) const;
+  std::vector<TouchedPlace> places_of(const Question& question) const;
+  void keep_out_of_time(SessionFile& file, std::int32_t row) const;
   void keep_level(SessionFile& file, std::int32_t row);
   void keep_stages(SessionFile& file, std::int32_t row) const;
 
@@ -61,6 +64,8 @@ class DefinedTrials final : public Trials {
   mutable TrialsRig* rig_{nullptr};           // likewise; the runner's
   std::unique_ptr<TrialPass> pass_;
   std::vector<std::vector<NamedStage>> stages_;  // of each interval of the pass
+  std::vector<scene::Region> regions_;           // of the last interval
+  std::vector<std::size_t> region_devices_;      // likewise
   std::vector<record::VariableRow> variables_;   // of the pass
   std::vector<int> right_;                       // choice of each question; -1: none
 };

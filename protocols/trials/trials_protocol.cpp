@@ -39,6 +39,7 @@ class TrialsProtocol final : public Protocol {
     record::TableList tables = record::trial_tables();
     tables.push_back(&record::responses_table());
     tables.push_back(&record::table_of<record::AdaptationRow>());
+    tables.push_back(&record::table_of<record::OutOfTimeRow>());
     return tables;
   }
   std::unique_ptr<Trials> trials(const Definition& definition,

@@ -180,6 +180,10 @@ class TrialReplay {
     }
     const std::size_t questions = definition_->questions.size();
     view.question = static_cast<std::uint8_t>(std::min(answered + 1, questions));
+    if (view.question > 0) {
+      const StageSight& sight = trials_.pass().question_sight(view.question - 1U);
+      view.show(sight.marks, sight.hand, false, {});
+    }
     return view;
   }
 

@@ -4,9 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "core/record/read/session_reader.h"
 #include "tests/experiments/console_person.h"
@@ -51,6 +53,35 @@ TEST_F(LiveBreaksTest, ABreakEndsBeforeItsTimeWhenTheExperimenterStarts) {
   ASSERT_NO_FATAL_FAILURE(come_to_the_break(person));
   EXPECT_THAT(person.status()["screen"].get<std::string>(), HasSubstr("Let go of the handle"));
   ASSERT_TRUE(person.ask("start"));
+  EXPECT_TRUE(person.sees("running", "run", 5.0));
+  EXPECT_EQ(person.status()["trial"], 2);
+}
+
+TEST_F(LiveBreaksTest, ABreakUntilReadyLastsItsTimeAndThenUntilTheExperimenterStarts) {
+  LiveCommand session(
+      run({{"break_duration", "break_duration = 2.0\nbreak_until = \"ready\""}}));
+  ConsolePerson person(session.line_after("console: "));
+  ASSERT_NO_FATAL_FAILURE(come_to_the_break(person));
+  ASSERT_TRUE(person.ask("start"));  // before its time
+  std::this_thread::sleep_for(std::chrono::milliseconds(3500));
+  EXPECT_TRUE(person.sees("break", "", 0.5)) << "its time is over, and nobody was ready since";
+  ASSERT_TRUE(person.ask("start"));
+  EXPECT_TRUE(person.sees("running", "run", 5.0));
+  EXPECT_EQ(person.status()["trial"], 2);
+}
+
+TEST_F(LiveBreaksTest, ABreakUntilReadyEndsWhenTheParticipantPressesEnter) {
+  if (!test::VirtualDisplay::available()) {
+    GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
+  }
+  const test::VirtualDisplay display(1280, 720);
+  LiveCommand session(run({{"break_duration", "break_duration = 0.5\nbreak_until = \"ready\""}},
+                          "--console --window"));
+  ConsolePerson person(session.line_after("console: "));
+  ASSERT_NO_FATAL_FAILURE(come_to_the_break(person));
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  EXPECT_TRUE(person.sees("break", "", 0.5));
+  display.press_key("haptrial", test::VirtualDisplay::kEnter);
   EXPECT_TRUE(person.sees("running", "run", 5.0));
   EXPECT_EQ(person.status()["trial"], 2);
 }

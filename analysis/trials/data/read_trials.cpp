@@ -43,10 +43,13 @@ class SessionTrials {
     for (const record::ResponseRow& row : reader.responses()) {
       if (StudyTrial* trial = of(row.pass)) {
         trial->answers.push_back(
-            {row.question, row.value, row.text, row.correct, row.reaction_time});
+            {row.question, row.value, row.text, row.correct, row.reaction_time, {}});
       }
     }
     for (const record::StageRow& row : reader.rows<record::StageRow>()) {
+      add(row);
+    }
+    for (const record::OutOfTimeRow& row : reader.rows<record::OutOfTimeRow>()) {
       add(row);
     }
   }
@@ -109,6 +112,19 @@ class SessionTrials {
             rate;
       }
       trial->stages.push_back(std::move(stage));
+    }
+  }
+
+  void add(const record::OutOfTimeRow& row) {
+    StudyTrial* trial = of(row.pass);
+    if (trial == nullptr) {
+      return;
+    }
+    trial->again = trial->again || row.again;
+    for (GivenAnswer& answer : trial->answers) {
+      if (answer.question == row.question) {
+        answer.out_of_time = row.how == record::OutOfTime::kTooFast ? "too fast" : "too slow";
+      }
     }
   }
 

@@ -34,6 +34,7 @@ void note(std::vector<Key>& keys, const Key& key) {
 struct Columns {
   std::vector<std::string> dimensions;  // variables of levels, where there are several
   std::vector<std::string> questions;
+  std::vector<std::string> limited;  // questions with an answer that was too fast or too slow
   std::vector<std::pair<std::string, int>> variables;  // with interval
   std::vector<std::pair<std::string, int>> stages;     // likewise
 };
@@ -48,6 +49,9 @@ Columns columns_of(const TrialsData& data) {
     }
     for (const GivenAnswer& answer : trial.answers) {
       note(columns.questions, answer.question);
+      if (!answer.out_of_time.empty()) {
+        note(columns.limited, answer.question);
+      }
     }
     for (const GivenVariable& variable : trial.variables) {
       note(columns.variables, std::pair(variable.name, variable.interval));
@@ -96,6 +100,9 @@ void add_heading(std::string& text, const Columns& columns) {
     heading.add(name + ".correct");
     heading.add(name + ".rt");
   }
+  for (const std::string& name : columns.limited) {
+    heading.add(name + ".out_of_time");
+  }
   for (const auto& [name, interval] : columns.variables) {
     heading.add(interval == 0 ? name == "block" ? "block.name" : name
                               : fmt::format("{}.{}", name, interval));
@@ -133,6 +140,10 @@ void add_answers(RowText& row, const StudyTrial& trial, const Columns& columns) 
     answer->correct < 0 ? row.add_missing() : row.add(answer->correct);
     row.add(answer->reaction_time);
   }
+  for (const std::string& name : columns.limited) {
+    const GivenAnswer* answer = answer_to(trial, name);
+    answer == nullptr ? row.add_missing() : row.add(answer->out_of_time);
+  }
 }
 
 }  // namespace
@@ -147,7 +158,8 @@ std::string trials_csv(const TrialsData& data) {
     row.add(session.participant).add(session.group).add(session.session).add(session.file);
     row.add(session.simulated ? 1 : 0).add(session.pilot ? 1 : 0);
     row.add(trial.trial).add(trial.attempt).add(trial.block).add(trial.condition).add(trial.probe);
-    row.add(trial.practice ? 1 : 0).add(trial.completed ? "completed" : "aborted");
+    row.add(trial.practice ? 1 : 0);
+    row.add(!trial.completed ? "aborted" : trial.again ? "out of time" : "completed");
     row.add(trial.counts() ? 1 : 0).add(trial.start).add(trial.saturated);
     add_levels(row, trial, columns);
     add_answers(row, trial, columns);

@@ -29,6 +29,7 @@ struct GivenAnswer {
   std::string text;                 // the answer as a word
   int correct{-1};                  // 1 right, 0 wrong, -1 not known
   double reaction_time{kNotKnown};  // [s]; NaN: not measured
+  std::string out_of_time{};        // "too fast" or "too slow"; empty: neither
 };
 
 /// What a variable of the definition was worth in a trial or in one of its intervals.
@@ -68,6 +69,7 @@ struct StudyTrial {
   std::string probe;  // empty: none
   bool practice{false};
   bool completed{true};
+  bool again{false};               // an answer was too fast or too slow, and the trial came again
   double start{0.0};               // since the session's first tick [s]
   std::uint64_t first_sample{0};   // of the pass, in /samples of the session
   double saturated{0.0};           // share of the ticks at the force limit
@@ -76,8 +78,8 @@ struct StudyTrial {
   std::vector<GivenVariable> variables;
   std::vector<StageTime> stages;
 
-  /// Whether it is part of the study: completed, and no practice.
-  bool counts() const { return completed && !practice; }
+  /// Whether it is part of the study: completed, not presented again, and no practice.
+  bool counts() const { return completed && !again && !practice; }
 };
 
 /// All passes of a study, session after session, in the order of their recording.

@@ -25,7 +25,7 @@ std::vector<ParticipantTrials> participants_of(const TrialsData& data, const Tri
   }
   for (const StudyTrial& trial : data.trials) {
     ParticipantTrials& own = people[data.session_of(trial).participant];
-    if (!trial.completed) {
+    if (!trial.completed || trial.again) {
       ++own.aborted;
     } else if (trial.practice) {
       ++own.practice;

@@ -54,6 +54,12 @@ void Listed::report(double answer, const Level& applied) {
   outcomes_.push_back({answer, applied});
 }
 
+void Listed::postpone() {
+  checks::require_running(!finished(), who_);
+  const auto present = order_.begin() + static_cast<std::ptrdiff_t>(outcomes_.size());
+  std::rotate(present, present + 1, order_.end());
+}
+
 ConstantStimuli::ConstantStimuli(const ListParameters& list, std::uint64_t seed,
                                  std::string_view name, std::size_t outcomes)
     : Listed(shuffled(list, seed, name, kConstant), kConstant), number_of_outcomes_(outcomes) {

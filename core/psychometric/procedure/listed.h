@@ -10,6 +10,8 @@ class Listed : public Procedure {
  public:
   const Level& next() const override;
   void report(double answer, const Level& applied) override;
+  /// To the end of the list.
+  void postpone() override;
   bool finished() const override { return outcomes_.size() == order_.size(); }
 
   const std::vector<Outcome>& outcomes() const noexcept { return outcomes_; }

@@ -38,6 +38,9 @@ class Procedure {
   /// @throws std::invalid_argument when the answer or the size of `applied` is not one of this
   ///         procedure; its state is then unchanged.
   virtual void report(double answer, const Level& applied) = 0;
+  /// The present level comes again later, if the procedure knows its levels before the first
+  /// trial; another one asks for the same level next. @throws std::logic_error when finished
+  virtual void postpone() {}
   virtual bool finished() const = 0;
   /// Empty while the outcomes do not suffice.
   virtual std::vector<Estimate> estimates() const = 0;

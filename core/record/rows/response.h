@@ -9,7 +9,7 @@
 namespace haptrial::record {
 
 /// What an answer was given with.
-enum class ResponseSource : std::uint8_t { kNone, kKey, kButton, kPlace, kPointer };
+enum class ResponseSource : std::uint8_t { kNone, kKey, kButton, kPlace, kPointer, kPedal };
 
 /// One answer, a row of /responses; in files whose protocol asks something.
 struct ResponseRow {

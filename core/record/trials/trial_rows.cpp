@@ -4,6 +4,15 @@ namespace haptrial::record {
 namespace {
 
 constexpr std::size_t kEndingBytes = 16;
+constexpr std::size_t kPaceBytes = 16;
+constexpr std::size_t kQuestionNameBytes = 64;
+
+Words paces() {
+  const auto entry = [](OutOfTime how, const char* word) {
+    return Words::Entry{static_cast<std::uint8_t>(how), word};
+  };
+  return Words({entry(OutOfTime::kTooFast, "too fast"), entry(OutOfTime::kTooSlow, "too slow")});
+}
 
 Words endings() {
   const auto entry = [](StageEnding ending, const char* word) {
@@ -83,6 +92,30 @@ const Table<AdaptationRow>& table_of<AdaptationRow>() {
        T::column("fast", &R::fast, "1", "state of the fast process, as a share of the field"),
        T::column("slow", &R::slow, "1", "state of the slow process, likewise")});
   return table;
+}
+
+template <>
+const Table<OutOfTimeRow>& table_of<OutOfTimeRow>() {
+  using R = OutOfTimeRow;
+  using T = Table<R>;
+  static const T table({"out_of_time",
+                        "one row for each answer that came too early or too late",
+                        72,
+                        RowsOf::kPass,
+                        {"pass"}},
+                       {T::column("pass", &R::pass, "1", "row of /trials"),
+                        T::text("question", &R::question, kQuestionNameBytes, "as in /responses"),
+                        T::word("how", &R::how, kPaceBytes, paces(), "too fast or too slow"),
+                        T::column("reaction_time", &R::reaction_time, "s", "as in /responses"),
+                        T::column("limit", &R::limit, "s", "the limit that it broke"),
+                        T::column("again", &R::again, "1",
+                                  "1: the trial counts as not presented and came again later")});
+  return table;
+}
+
+const TableList& out_of_time_tables() {
+  static const TableList tables{&table_of<OutOfTimeRow>()};
+  return tables;
 }
 
 const TableList& adaptation_tables() {

@@ -52,6 +52,18 @@ struct AdaptationRow {
   double slow{0.0};
 };
 
+/// An answer that came before `too_fast` or after `too_slow` of its question, a row of
+/// /out_of_time.
+enum class OutOfTime : std::uint8_t { kTooFast, kTooSlow };
+struct OutOfTimeRow {
+  std::int32_t pass{0};  // row of /trials
+  std::string question;
+  OutOfTime how{OutOfTime::kTooFast};
+  double reaction_time{0.0};  // as in /responses [s]
+  double limit{0.0};          // that it broke [s]
+  bool again{false};          // the trial counts as not presented and came again
+};
+
 /// Most bytes of a name or word of a definition.
 inline constexpr std::size_t kTrialWordBytes = 64;
 
@@ -63,10 +75,14 @@ template <>
 const Table<StageRow>& table_of<StageRow>();
 template <>
 const Table<AdaptationRow>& table_of<AdaptationRow>();
+template <>
+const Table<OutOfTimeRow>& table_of<OutOfTimeRow>();
 
-/// All of them but /adaptation, in the order in which they are created.
+/// Those that every session of trials has, in the order in which they are created.
 const TableList& trial_tables();
 /// The one that only sessions of virtual participants who adapt have.
 const TableList& adaptation_tables();
+/// The one of sessions whose questions limit reaction times.
+const TableList& out_of_time_tables();
 
 }  // namespace haptrial::record

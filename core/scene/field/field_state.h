@@ -32,14 +32,14 @@ struct FieldState {
   Eigen::Vector3d velocity{Eigen::Vector3d::Zero()};  // as the field filtered it [m/s]
   Eigen::Vector3d normal{Eigen::Vector3d::UnitY()};   // of a surface, towards the free side
   /// Surfaces and clicks: how deep the hand is in. Spring, channel, plane: how far it is from them.
-  /// Mover: the way still to go. Grating, texture: the height under the hand. Friction: the
-  /// bristle's deflection. [m]
+  /// Mover: the way still to go; path: to the point that travels it. Grating, texture: the height
+  /// under the hand. Friction: the bristle's deflection. [m]
   double depth{0.0};
   double weight{0.0};   // of the fade, 0 to 1
   bool contact{false};  // touches the surface; of other fields: gives a force
   bool limited{false};  // the limit cut the force of this tick
   bool sliding{false};  // friction: slides rather than sticks
-  bool done{false};     // pulse or mover: over
+  bool done{false};     // pulse, mover or path: over
 
   // Since the field was switched on or forget_extremes() was called.
   double max_depth{0.0};  // [m]

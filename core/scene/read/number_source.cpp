@@ -61,36 +61,36 @@ double NumberSource::number(Table& table, std::string_view key, const Bounds& bo
   return table.number(key, bounds, unit);
 }
 
-Eigen::Vector3d NumberSource::vector(Table& table, std::string_view key, const Bounds& bounds,
-                                     std::string_view unit) const {
-  if (!table.has_text(key)) {
-    return read_vector(table, key, bounds, unit);
+/// The place that one text stands for; nothing, with the problem noted, if there is none.
+std::optional<Eigen::Vector3d> NumberSource::place(Table& table, std::string_view key,
+                                                   std::string_view text, const Bounds& bounds,
+                                                   std::string_view allowed) const {
+  std::optional<Eigen::Vector3d> found;
+  try {
+    found = vector_of(text);
+  } catch (const InputError& error) {
+    table.reject(key, fmt::format("is \"{}\": {}", text, error.what()));
+    return std::nullopt;
   }
-  const std::string allowed =
-      fmt::format("three numbers, x, y and z, each {}", range(bounds, unit));
-  if (const auto whole = table.whole_text(key)) {
-    std::optional<Eigen::Vector3d> found;
-    try {
-      found = vector_of(*whole);
-    } catch (const InputError& error) {
-      table.reject(key, fmt::format("is \"{}\": {}", *whole, error.what()));
-      return Eigen::Vector3d::Zero();
-    }
-    const bool good =
-        found && is_within(found->minCoeff(), bounds) && is_within(found->maxCoeff(), bounds);
-    if (!good) {
-      table.reject(key, fmt::format("the text \"{}\"", *whole), allowed);
-    }
-    return good ? *found : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  if (!found || !is_within(found->minCoeff(), bounds) || !is_within(found->maxCoeff(), bounds)) {
+    table.reject(key, fmt::format("the text \"{}\"", text), allowed);
+    return std::nullopt;
   }
-  const auto rows = table.rows(key, allowed);
-  if (rows.size() != 1 || rows[0].size() != 3) {
+  return found;
+}
+
+/// The place of three entries; nothing, with the problem noted, if they are no place.
+std::optional<Eigen::Vector3d> NumberSource::row(Table& table, std::string_view key,
+                                                 const std::vector<NumberOrText>& entries,
+                                                 const Bounds& bounds, std::string_view unit,
+                                                 std::string_view allowed) const {
+  if (entries.size() != 3) {
     table.reject(key, "an array of another size", allowed);
-    return Eigen::Vector3d::Zero();
+    return std::nullopt;
   }
   Eigen::Vector3d vector = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < 3; ++i) {
-    const NumberOrText& each = rows[0][static_cast<std::size_t>(i)];
+    const NumberOrText& each = entries[static_cast<std::size_t>(i)];
     const auto value = each.number ? each.number : entry(table, key, each.text, bounds, unit);
     vector[i] = value.value_or(0.0);
     if (value && !is_within(*value, bounds)) {
@@ -98,6 +98,53 @@ Eigen::Vector3d NumberSource::vector(Table& table, std::string_view key, const B
     }
   }
   return vector;
+}
+
+Eigen::Vector3d NumberSource::vector(Table& table, std::string_view key, const Bounds& bounds,
+                                     std::string_view unit) const {
+  if (!table.has_text(key)) {
+    return read_vector(table, key, bounds, unit);
+  }
+  const std::string allowed =
+      fmt::format("three numbers, x, y and z, each {}", range(bounds, unit));
+  std::optional<Eigen::Vector3d> found;
+  if (const auto whole = table.whole_text(key)) {
+    found = place(table, key, *whole, bounds, allowed);
+  } else if (const auto rows = table.rows(key, allowed); rows.size() == 1) {
+    found = row(table, key, rows.front(), bounds, unit, allowed);
+  } else {
+    table.reject(key, "an array of another size", allowed);
+  }
+  return found.value_or(Eigen::Vector3d::Zero());
+}
+
+std::vector<Eigen::Vector3d> NumberSource::vectors(Table& table, std::string_view key,
+                                                   const Bounds& bounds,
+                                                   std::string_view unit) const {
+  const std::string allowed =
+      fmt::format("a list of places, [[x, y, z], …], each number {}", range(bounds, unit));
+  std::vector<Eigen::Vector3d> places;
+  const auto add = [&](const std::optional<Eigen::Vector3d>& found) {
+    if (found) {
+      places.push_back(*found);
+    }
+  };
+  const auto rows = table.rows(key, allowed);
+  const bool named = rows.size() == 1 && !table.is_nested(key);
+  for (const auto& entries : rows) {
+    if (!named) {
+      add(row(table, key, entries, bounds, unit, allowed));
+      continue;
+    }
+    for (const NumberOrText& each : entries) {
+      if (each.number) {
+        table.reject(key, fmt::format("a list with {}", *each.number), allowed);
+        return places;
+      }
+      add(place(table, key, each.text, bounds, allowed));
+    }
+  }
+  return places;
 }
 
 Eigen::Matrix3d NumberSource::matrix(Table& table, std::string_view key, const Bounds& bounds,

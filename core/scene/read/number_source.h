@@ -3,12 +3,14 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "core/base/definition/bounds.h"
 
 namespace haptrial {
 class Table;
-}
+struct NumberOrText;
+}  // namespace haptrial
 
 namespace haptrial::scene {
 
@@ -29,6 +31,9 @@ class NumberSource {
                 std::string_view unit) const;
   Eigen::Vector3d vector(Table& table, std::string_view key, const Bounds& bounds,
                          std::string_view unit) const;
+  /// A list of places: [[x, y, z], …], or texts that stand for one each.
+  std::vector<Eigen::Vector3d> vectors(Table& table, std::string_view key, const Bounds& bounds,
+                                       std::string_view unit) const;
   /// By rows, [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]].
   Eigen::Matrix3d matrix(Table& table, std::string_view key, const Bounds& bounds,
                          std::string_view unit) const;
@@ -42,6 +47,11 @@ class NumberSource {
   virtual std::optional<Eigen::Vector3d> vector_of(std::string_view text) const;
 
  private:
+  std::optional<Eigen::Vector3d> place(Table& table, std::string_view key, std::string_view text,
+                                       const Bounds& bounds, std::string_view allowed) const;
+  std::optional<Eigen::Vector3d> row(Table& table, std::string_view key,
+                                     const std::vector<NumberOrText>& entries, const Bounds& bounds,
+                                     std::string_view unit, std::string_view allowed) const;
   std::optional<double> entry(Table& table, std::string_view key, std::string_view text,
                               const Bounds& bounds, std::string_view unit) const;
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/base/random.h"
 #include "core/scene/read/field_reader_internal.h"
 #include "core/scene/read/read_shape.h"
 
@@ -231,6 +232,43 @@ FieldKind read_mover(const FieldReader& read) {
                          read.gains()};
 }
 
+/// A random path as the force study draws it.
+std::vector<Eigen::Vector3d> read_curve(const FieldReader& read) {
+  Table table = read.table.table("curve");
+  const FieldReader of{table, read.source, read.rate};
+  stimulus::TrajectoryParameters p;
+  p.length_x = of.number("length_x", kLengthBounds, "m");
+  p.range_z = of.number("range_z", kLengthBounds, "m");
+  p.sinusoids = static_cast<int>(of.number_or(p.sinusoids, "sinusoids", {1.0, 1000.0}, ""));
+  p.max_spatial_frequency =
+      of.number_or(p.max_spatial_frequency, "max_spatial_frequency", {0.1, 1000.0}, "cycles/m");
+  RandomStream random(of.seed(), "path");
+  return stimulus::SpatialTrajectory(p, random).points();
+}
+
+FieldKind read_path(const FieldReader& read) {
+  PathParameters p;
+  const bool both = read.table.has("points") && read.table.has("curve");
+  if (both) {
+    read.table.reject("curve", "stands beside points; keep one of the two");
+    read.table.leave("points");
+  }
+  std::vector<Eigen::Vector3d> points =
+      read.table.has("curve") ? read_curve(read)
+                              : read.source.vectors(read.table, "points", kPlaceBounds, "m");
+  const bool moves = std::any_of(points.begin(), points.end(), [&](const Eigen::Vector3d& each) {
+    return each != points.front();
+  });
+  if (moves) {
+    p.points = std::move(points);
+  } else {
+    read.table.reject("points", "go nowhere; write two places or more that are not the same");
+  }
+  p.duration = read.number("duration", kDurationBounds, "s");
+  p.gains = read.gains();
+  return p;
+}
+
 struct KindOfField {
   const char* word;
   FieldKind (*read)(const FieldReader&);
@@ -249,7 +287,7 @@ constexpr KindOfField kKinds[] = {
     {"grating", read_grating, kSoft},     {"texture", read_texture, kSoft},
     {"vibration", read_vibration, 0.0},   {"tap", read_tap, 0.0},
     {"detent", read_detent, kSoft},       {"click", read_click, kSoft},
-    {"minimum_jerk", read_mover, 0.0},
+    {"minimum_jerk", read_mover, 0.0},    {"path", read_path, kSoft},
 };
 
 /// Null, with the problem noted, if the type is not known.

@@ -33,6 +33,8 @@ namespace haptrial::scene {
 ///     detent          at, direction, spacing, peak, [count]
 ///     click           at, direction, peak, travel, drop, drop_travel
 ///     minimum_jerk    to, duration, stiffness, damping
+///     path            points, [[x, y, z], …], or curve = { length_x, range_z, seed, [sinusoids],
+///                     [max_spatial_frequency] }; duration, stiffness, damping
 ///
 /// limit is 10 N if left out; the fades are 0.05 s, 0 for ramp, pulse, vibration, tap,
 /// minimum_jerk.

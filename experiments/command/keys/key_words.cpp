@@ -120,6 +120,8 @@ texts.move_mark | | small line below a scale
 texts.type_number | | small line below a question for a number
 texts.type_words | | small line below a question for words
 texts.declined | | for a participant who does not consent
+texts.too_fast | Too fast | after an answer below `too_fast` of its response
+texts.too_slow | Too slow | after an answer above `too_slow`
 pages.before | none | names of pages before the first trial, in this order
 pages.after | none | names of pages after the last trial
 pages.after_block.NAME | | names of pages after the last trial of the block of this name
@@ -153,6 +155,7 @@ design.participants | | of the study
 design.sessions | 1 | of each participant, on days of their own
 design.session.NAME.blocks | | blocks of the session of this number; without [design.session] every session has all of them
 trials:design.break_after | 0 | trials after which a break comes; 0: no breaks
+design.break_until | time | what ends a break: its duration, or after that the participant or the experimenter
 bone_drilling:design.break_after | 0 | procedures after which a break comes; 0: no breaks
 design.break_after | | trials after which a break comes; 0: no breaks
 trials:design.break_duration | 60 | of a break
@@ -212,12 +215,18 @@ response.choices[].value | | of the choice, as files and formulas have it
 response.choices[].label | the value | what is shown
 response.choices[].keys | the digit of its place | of the window, that choose it
 response.choices[].buttons | the button of its place | of the device, that choose it
+response.choices[].touch | none | region into which the tip of the tool is moved for it
+response.choices[].pedal | none | depth of an analog pedal from which on it chooses it
 response.scale | choices or a number | lowest and highest digit
 response.number | choices or a scale | lowest and highest number that may be typed
 response.correct | no answer is right | formula of the right choice: its number, or its value as a word
 response.feedback | never | when right or wrong is shown
 response.timeout | none | then the trial is aborted and comes again
 response.reaction_time_from | the question | stage from which the reaction is counted
+response.touch_for | 0.2 | how long the tip stays in a region that is touched
+response.too_fast | no limit | reaction time below which an answer is told to be too fast
+response.too_slow | no limit | reaction time above which an answer is told to be too slow
+response.out_of_time | go on | what follows from such an answer: it counts, or the trial comes again at the end of its block
 procedure.kind | needed; a track takes its procedure's | how levels follow from outcomes
 procedure.variable | needed; a track takes its procedure's | name that it sets
 procedure.name | track 1, track 2, ... | of the track
@@ -253,7 +262,25 @@ procedure.levels.from | | first level
 procedure.levels.to | | last level
 procedure.levels.count | | of levels
 procedure.levels.spacing | linear | of levels
-procedure.function | norm | sigmoid of the function
+procedure.stimulus.NAME | needed | variable that it sets, with its levels: a list, { from, to, count, spacing } or { values }
+procedure.stimulus.NAME.values | from, to and count | levels
+procedure.stimulus.NAME.from | | first level
+procedure.stimulus.NAME.to | | last level
+procedure.stimulus.NAME.count | | of levels
+procedure.stimulus.NAME.spacing | linear | of levels
+procedure.stimulus.NAME.resolution | not rounded | to which the variable is rounded
+procedure.parameters.NAME | needed | parameter of the formula, with the values that are considered, likewise
+procedure.parameters.NAME.values | from, to and count | values
+procedure.parameters.NAME.from | | first one
+procedure.parameters.NAME.to | | last one
+procedure.parameters.NAME.count | | how many
+procedure.parameters.NAME.spacing | linear | of them
+procedure.parameters.NAME.prior | all equal | weights of the values, or { mean, sd } of a normal distribution
+procedure.parameters.NAME.prior.mean | | of that
+procedure.parameters.NAME.prior.sd | | of that
+procedure.parameters.NAME.nuisance | false | whether trials are not spent on knowing it
+procedure.probability | needed; or a function | formula of the answer 1, or a list, of the answers 1, 2, and so on
+procedure.function | logistic, or of quest_plus a probability | sigmoid of the function
 procedure.guess | | answers 1 far below the threshold
 procedure.threshold | the levels | thresholds that are considered: a list, or { from, to, count, spacing }
 procedure.threshold.from | | first one
@@ -282,7 +309,7 @@ procedure.starts.spacing | linear | of them
 procedure.most_presentations | | of one adjustment; then it ends without a setting
 procedure.expect.threshold | | what you count on, for validate
 procedure.expect.width | | likewise
-procedure.expect.function | norm | likewise
+procedure.expect.function | logistic | likewise
 procedure.expect.guess | 0.5 | likewise
 procedure.expect.lapse | 0 | likewise
 procedure.expect.share | 0.5 | of answers 1, guesses and lapses aside, at the threshold
@@ -296,6 +323,12 @@ fields.NAME.to | needed, but for a channel with axes | force at the end, or plac
 fields.NAME.from | no force of a ramp, axes of a channel | force at the beginning, or end of the channel
 fields.NAME.rise | | time over which the force grows
 fields.NAME.duration | | of the pulse or movement
+fields.NAME.points | needed; or a curve | places that the path goes through
+fields.NAME.curve.length_x | | of a random path, from left to right
+fields.NAME.curve.range_z | | of its z
+fields.NAME.curve.sinusoids | | that are summed
+fields.NAME.curve.max_spatial_frequency | | of each
+fields.NAME.curve.seed | | of the path
 fields.NAME.delay | | before the pulse
 fields.NAME.stiffness | | of the spring that holds, or of the bristles of friction
 fields.NAME.damping | | against the motion

@@ -31,6 +31,7 @@ protocols::Design read_procedures(Table& table) {
       table.has("break_after") ? static_cast<int>(table.integer("break_after", 0, 999)) : 0;
   design.break_duration = 0.0;
   optional(table, "break_duration", design.break_duration, {0.0, 86400.0}, "s");
+  design.break_until_ready = protocols::read_break_until_ready(table, design.break_after);
   design.conditions = {"drilling"};
   if (design.break_after >= design.trials && design.break_after > 0) {
     table.reject(

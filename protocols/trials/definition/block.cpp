@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/base/definition/table.h"
+#include "protocols/definition/schedule.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -190,6 +191,7 @@ TrialDesign read_trial_design(Table& root, bool procedures) {
   if (design.has("break_duration")) {
     d.break_duration = design.number("break_duration", {0.0, 36000.0}, "s");
   }
+  d.break_until_ready = read_break_until_ready(design, d.break_after);
   read_order(design, d);
   d.factors = read_factors(root);
   if (root.has("practice")) {

@@ -47,6 +47,7 @@ struct TrialDesign {
   int sessions{1};                 // of each participant
   int break_after{0};              // trials; 0: no breaks
   double break_duration{60.0};     // [s]
+  bool break_until_ready{false};   // and then until somebody goes on
   Balance order{Balance::kFixed};  // of the blocks that are not practice
   int most_in_a_row{0};            // trials of one combination of factors; 0: no matter
   std::vector<Factor> factors;
@@ -60,8 +61,8 @@ struct TrialDesign {
 /// Reads [design], [factors], [practice] and [[blocks]]; only [design] must be there. Keys in
 /// brackets are optional.
 ///
-///     [design]    participants, [break_after], [break_duration], [blocks], [most_in_a_row],
-///                 [sessions]
+///     [design]    participants, [break_after], [break_duration], [break_until], [blocks],
+///                 [most_in_a_row], [sessions]
 ///     [design.session.N]  blocks = ["practice", …]: those of session N; of all sessions or of none
 ///     [factors]   name = [level, level, …]: numbers, words, or formulas with $
 ///     [practice]  trials, [right_in_a_row], and values as of a block

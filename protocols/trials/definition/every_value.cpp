@@ -94,7 +94,7 @@ void check_every_value(const TrialsDefinition& d) {
           values.intervals.push_back(i);
         }
         for (const Track& track : d.tracks) {
-          values.levels.emplace_back(track.variable, track.applied(high ? track.high : track.low));
+          give_corner(track, high, values);
         }
         std::size_t rest = c;
         for (const Factor* factor : varied) {

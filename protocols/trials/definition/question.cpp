@@ -1,10 +1,12 @@
 #include "protocols/trials/definition/question.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
@@ -42,7 +44,24 @@ std::uint32_t buttons_of(Table& table, const char* key) {
   return mask;
 }
 
-Choice read_choice(Table& table, std::size_t place, KeyBits& keys) {
+/// What answers may be given with.
+struct Means {
+  KeyBits& keys;
+  std::vector<std::string> regions;
+};
+
+void read_touch(Table& table, const Means& means, Choice& choice) {
+  choice.touch = table.text("touch");
+  if (std::ranges::find(means.regions, choice.touch) == means.regions.end()) {
+    table.reject("touch", fmt::format("\"{}\"", choice.touch),
+                 means.regions.empty()
+                     ? "no region: the definition states none; add [regions.NAME]"
+                     : fmt::format("a region: {}", fmt::join(means.regions, ", ")));
+  }
+}
+
+Choice read_choice(Table& table, std::size_t place, Means& means) {
+  KeyBits& keys = means.keys;
   Choice choice;
   choice.value = table.text("value");
   table.name_entry(choice.value);
@@ -55,7 +74,13 @@ Choice read_choice(Table& table, std::size_t place, KeyBits& keys) {
   if (table.has("buttons")) {
     choice.buttons = buttons_of(table, "buttons");
   }
-  if (choice.keys == 0 && choice.buttons == 0) {
+  if (table.has("touch")) {
+    read_touch(table, means, choice);
+  }
+  if (table.has("pedal")) {
+    choice.pedal = table.number("pedal", {0.0, 1.0, true}, "1");
+  }
+  if (choice.keys == 0 && choice.buttons == 0 && choice.touch.empty() && choice.pedal == 0.0) {
     choice.keys = keys.bit_of(static_cast<int>('1' + place));
     choice.hint = fmt::format("{}", place + 1);
     choice.buttons = std::uint32_t{1} << place;
@@ -66,23 +91,31 @@ Choice read_choice(Table& table, std::size_t place, KeyBits& keys) {
   return choice;
 }
 
-void read_choices(Table& table, Question& question, KeyBits& keys) {
+void read_choices(Table& table, Question& question, Means& means) {
   std::vector<Table> choices = table.tables("choices");
   if (choices.size() < 2 || choices.size() > kMostChoices) {
     table.reject("choices", fmt::format("a list of {}", choices.size()),
                  fmt::format("2 to {} choices", kMostChoices));
   }
   for (std::size_t i = 0; i < choices.size(); ++i) {
-    question.choices.push_back(read_choice(choices[i], i, keys));
+    question.choices.push_back(read_choice(choices[i], i, means));
     const Choice& last = question.choices.back();
     const auto same = [&](const Choice& each) {
       return &each != &last && (each.value == last.value || (each.keys & last.keys) != 0 ||
-                                (each.buttons & last.buttons) != 0);
+                                (each.buttons & last.buttons) != 0 ||
+                                (!each.touch.empty() && each.touch == last.touch) ||
+                                (each.pedal > 0.0 && last.pedal > 0.0));
     };
     if (std::any_of(question.choices.begin(), question.choices.end() - 1, same)) {
       choices[i].reject("value", fmt::format("\"{}\"", last.value),
-                        "a choice whose value, keys and buttons no other choice has");
+                        "a choice whose value, keys, buttons, place and pedal no other choice has");
     }
+  }
+  const auto touched = std::ranges::count_if(
+      question.choices, [](const Choice& choice) { return !choice.touch.empty(); });
+  if (std::cmp_greater(touched, kMostTouched)) {
+    table.reject("choices", fmt::format("a list with {} places to touch", touched),
+                 fmt::format("at most {}", kMostTouched));
   }
 }
 
@@ -119,8 +152,40 @@ void read_number(Table& table, Question& question, KeyBits& keys) {
   }
 }
 
+/// What an answer is told that comes too early or too late, and what follows.
+void read_limits(Table& table, Table& root, Question& question) {
+  constexpr Bounds kLimit{0.0, 3600.0, true};
+  if (table.has("too_fast")) {
+    question.too_fast = table.number("too_fast", kLimit, "s");
+  }
+  if (table.has("too_slow")) {
+    question.too_slow = table.number("too_slow", kLimit, "s");
+  }
+  if (table.has("out_of_time")) {
+    question.again = table.choice("out_of_time", {"go on", "repeat"}) == "repeat";
+    if (!question.has_limits()) {
+      table.reject("out_of_time", "stands alone; add too_fast or too_slow, a limit in seconds");
+    }
+  }
+  if (question.has_limits()) {
+    Table texts = root.table("texts");
+    question.fast_text = texts.shown_text("too_fast", "Too fast");
+    question.slow_text = texts.shown_text("too_slow", "Too slow");
+  }
+  if (question.too_fast >= question.too_slow) {
+    table.reject("too_slow", fmt::format("{} s", question.too_slow),
+                 fmt::format("above too_fast, {} s", question.too_fast));
+  }
+  if (std::isfinite(question.too_slow) && question.timeout > 0.0 &&
+      question.timeout <= question.too_slow) {
+    table.reject("too_slow", fmt::format("{} s", question.too_slow),
+                 fmt::format("below timeout, {} s, which ends the trial", question.timeout));
+  }
+}
+
 /// @param listed  one of several, which translations tell apart by their names
-Question read_question(Table& table, KeyBits& keys, bool listed) {
+Question read_question(Table& table, Table& root, Means& means, bool listed) {
+  KeyBits& keys = means.keys;
   Question question;
   question.name = "answer";
   if (table.has("name")) {
@@ -135,7 +200,7 @@ Question read_question(Table& table, KeyBits& keys, bool listed) {
   if (kinds != 1) {
     table.reject("question", "has no one way to be answered; state one of choices, scale, number");
   } else if (table.has("choices")) {
-    read_choices(table, question, keys);
+    read_choices(table, question, means);
   } else if (table.has("scale")) {
     read_scale(table, question, keys);
   } else {
@@ -160,6 +225,13 @@ Question read_question(Table& table, KeyBits& keys, bool listed) {
   if (table.has("reaction_time_from")) {
     question.onset = table.text("reaction_time_from");
   }
+  if (table.has("touch_for")) {
+    question.touch_for = table.number("touch_for", {0.0, 60.0}, "s");
+    if (!question.touched()) {
+      table.reject("touch_for", "stands alone; add touch, a region, to a choice");
+    }
+  }
+  read_limits(table, root, question);
   if (question.name.size() > record::kQuestionBytes) {
     table.reject("name", "too long", fmt::format("at most {} bytes", record::kQuestionBytes));
   }
@@ -174,6 +246,18 @@ std::vector<std::string> Question::answers() const {
     values.push_back(choice.value);
   }
   return values.empty() ? std::vector<std::string>{"number"} : values;
+}
+
+bool Question::touched() const {
+  return std::ranges::any_of(choices, [](const Choice& choice) { return !choice.touch.empty(); });
+}
+
+bool Question::has_limits() const { return too_fast > 0.0 || std::isfinite(too_slow); }
+
+Pace Question::pace_of(double reaction_time) const noexcept {
+  return reaction_time < too_fast   ? Pace::kTooFast
+         : reaction_time > too_slow ? Pace::kTooSlow
+                                    : Pace::kInTime;
 }
 
 std::uint32_t KeyBits::bit_of(int code) {
@@ -200,16 +284,18 @@ std::uint32_t KeyBits::bits_of(const std::vector<int>& held) const {
 
 std::vector<Question> read_questions(Table& root, KeyBits& keys) {
   std::vector<Question> questions;
+  Means means{keys,
+              root.has("regions") ? root.table("regions").keys() : std::vector<std::string>{}};
   if (root.has("response")) {
     Table table = root.table("response");
-    questions.push_back(read_question(table, keys, false));
+    questions.push_back(read_question(table, root, means, false));
   }
   if (root.has("responses")) {
     if (!questions.empty()) {
       root.reject("responses", "stands beside [response]; keep one of the two");
     }
     for (Table& table : root.tables("responses")) {
-      questions.push_back(read_question(table, keys, true));
+      questions.push_back(read_question(table, root, means, true));
       const auto same = [&](const Question& each) { return each.name == questions.back().name; };
       if (std::any_of(questions.begin(), questions.end() - 1, same)) {
         table.reject("name", fmt::format("\"{}\"", questions.back().name),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,15 @@ struct Choice {
   std::string hint;          // how it is given: "1"; shown before the label; empty: by buttons only
   std::uint32_t keys{0};     // of KeyBits: any of these gives it
   std::uint32_t buttons{0};  // of the device, likewise
+  std::string touch{};       // region into which the tip of the tool is moved; empty: none
+  double pedal{0.0};         // depth of an analog pedal from which on it gives it; 0: it does not
 };
+
+/// Most choices of a question that are given by touch.
+inline constexpr std::size_t kMostTouched = 8;
+
+/// When an answer came.
+enum class Pace : std::uint8_t { kInTime, kTooFast, kTooSlow };
 
 /// What the participant is asked after the last interval.
 struct Question {
@@ -46,10 +55,20 @@ struct Question {
       typing;           // of KeyBits: 0 to 9, ".", backspace, enter; of a typed number
   std::string correct;  // formula: the number of the right choice, or its word; empty: none
   Feedback feedback{Feedback::kNever};
-  double timeout{0.0};  // then the trial is aborted; 0: never [s]
-  std::string onset;    // stage of the last interval from whose beginning the reaction counts;
-                        // empty: from the question
+  double timeout{0.0};    // then the trial is aborted; 0: never [s]
+  std::string onset;      // stage of the last interval from whose beginning the reaction counts;
+                          // empty: from the question
+  double touch_for{0.2};  // the tip stays in the region for it [s]
+  double too_fast{0.0};   // an answer before it is told so [s]
+  double too_slow{std::numeric_limits<double>::infinity()};  // an answer after it, likewise [s]
+  bool again{false};  // the trial of such an answer comes again at the end of its block
+  std::string fast_text, slow_text;  // what is told
+
   bool types() const { return choices.empty(); }
+  bool touched() const;     // whether a choice is given by touch
+  bool has_limits() const;  // whether an answer can be too fast or too slow
+  /// @param reaction_time  [s]; NaN is in time
+  Pace pace_of(double reaction_time) const noexcept;
   /// Each answer that has a marker of its own: the choices, or "number".
   std::vector<std::string> answers() const;
 };
@@ -59,14 +78,19 @@ struct Question {
 ///
 ///     [name]       "answer" if left out; unlike every other's
 ///     question     the text
-///     choices      [{ value, [label], [keys], [buttons] }, …], or
+///     choices      [{ value, [label], [keys], [buttons], [touch], [pedal] }, …], or
 ///     scale        [lowest, highest]: whole numbers, by the keys of their digits, or
 ///     number       [lowest, highest]: typed
 ///     [correct]    formula of the right choice: its number, from 1, or its value as a word
 ///     [feedback]   "never" (as if left out), "practice" or "always"
 ///     [timeout]    then the trial is aborted [s]
 ///     [reaction_time_from]   a stage
-/// Choices without keys and buttons have the keys 1, 2, … and the buttons 0, 1, …
+///     [touch_for]  how long the tip stays in a region that is touched [s]
+///     [too_fast], [too_slow]   limits of the reaction time [s]; the participant reads
+///                  texts.too_fast or texts.too_slow
+///     [out_of_time]  of answers beyond them: "go on" (as if left out), or "repeat", the trial at
+///                  the end of its block
+/// Choices without keys, buttons, touch and pedal have the keys 1, 2, … and the buttons 0, 1, …
 std::vector<Question> read_questions(Table& root, KeyBits& keys);
 
 }  // namespace haptrial::protocols

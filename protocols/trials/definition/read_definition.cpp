@@ -12,6 +12,7 @@
 #include "core/scene/needed_damping.h"
 #include "core/scene/read/read_field.h"
 #include "core/sound/cues/read_cues.h"
+#include "protocols/definition/handle_loop.h"
 #include "protocols/trials/definition/defaults.h"
 #include "protocols/trials/definition/read_tracks.h"
 #include "protocols/trials/definition/trial_devices.h"
@@ -129,17 +130,20 @@ void check_tracks(Table& root, const TrialsDefinition& d) {
                                                 : fmt::format("{}", fmt::join(factors, ", "))));
       }
     }
-    if (factors.contains(track.variable)) {
-      root.reject(table, fmt::format("sets \"{}\", which is a factor; let one of the two have "
-                                     "another name",
-                                     track.variable));
-    }
-    for (const Interval& interval : d.intervals) {
-      const auto given = [&](const GivenValue& value) { return value.name == track.variable; };
-      if (std::any_of(interval.values.begin(), interval.values.end(), given)) {
-        root.reject(table, fmt::format("sets \"{}\", which the interval {} gives a value as well; "
-                                       "keep one of the two",
-                                       track.variable, interval.name));
+    for (const std::string& variable : track.variables()) {
+      if (factors.contains(variable)) {
+        root.reject(table, fmt::format("sets \"{}\", which is a factor; let one of the two have "
+                                       "another name",
+                                       variable));
+      }
+      for (const Interval& interval : d.intervals) {
+        const auto given = [&](const GivenValue& value) { return value.name == variable; };
+        if (std::any_of(interval.values.begin(), interval.values.end(), given)) {
+          root.reject(table,
+                      fmt::format("sets \"{}\", which the interval {} gives a value as well; "
+                                  "keep one of the two",
+                                  variable, interval.name));
+        }
       }
     }
   }
@@ -185,11 +189,15 @@ void check_variables(Table& root) {
   }
   std::set<std::string> variables;
   for (Table& table : root.tables("procedures")) {
-    const std::string variable = table.text("variable");
-    if (!variables.insert(variable).second) {
-      table.reject("variable", fmt::format("\"{}\"", variable),
-                   "a variable that no other procedure sets; tracks of one procedure are its "
-                   "[[procedures.tracks]]");
+    const bool several = table.has("stimulus");  // of quest_plus
+    const char* key = several ? "stimulus" : "variable";
+    for (const std::string& variable :
+         several ? table.table(key).keys_as_written() : std::vector{table.text(key)}) {
+      if (!variables.insert(variable).second) {
+        table.reject(key, fmt::format("\"{}\"", variable),
+                     "a variable that no other procedure sets; tracks of one procedure are its "
+                     "[[procedures.tracks]]");
+      }
     }
   }
   Table stated = root.has("variables") ? root.table("variables") : root;
@@ -225,7 +233,7 @@ TrialValues sample_values(const TrialsDefinition& d, std::size_t block) {
     values.intervals.push_back(i);
   }
   for (const Track& track : d.tracks) {
-    values.levels.emplace_back(track.variable, track.applied(track.low));
+    give_corner(track, false, values);
   }
   for (const Factor& factor : d.order.factors) {
     values.values.push_back({factor.name, factor.levels.front()});
@@ -302,6 +310,11 @@ Presented read_presented(Table& root, const Names& names, const TrialsDefinition
     Table table = root.table("fields");
     const DeviceOf devices = devices_of(table, d.hands);
     presented.fields = scene::read_fields(table, d.rate, names);
+    for (scene::Field& field : presented.fields) {
+      if (auto* path = std::get_if<scene::PathParameters>(&field.kind)) {
+        path->loop = handle_loop(d);
+      }
+    }
     presented.felt = felt_by(presented.fields, devices, d.hands);
   }
   presented.felt.resize(static_cast<std::size_t>(d.devices()), 0);
@@ -380,6 +393,7 @@ void read_trials_definition(Table& root, std::string_view file_name, TrialsDefin
   d.design.participants = d.order.participants;
   d.design.break_after = d.order.break_after;
   d.design.break_duration = d.order.break_duration;
+  d.design.break_until_ready = d.order.break_until_ready;
   d.design.trials = std::max(1, d.most_trials());
   d.design.practice = d.practice_trials();
   d.design.repetitions = 1;

@@ -14,6 +14,8 @@
 #include "core/psychometric/quest/psi_definition.h"
 #include "core/psychometric/quest/quest_plus.h"
 #include "protocols/trials/definition/expectation.h"
+#include "protocols/trials/definition/grid.h"
+#include "protocols/trials/definition/read_quest.h"
 #include "protocols/trials/definition/track.h"
 
 namespace haptrial::protocols {
@@ -51,6 +53,8 @@ void read_range(const TrackKeys& keys, Track& track) {
   track.high = range[1];
 }
 
+}  // namespace
+
 Axis read_axis(const TrackKeys& keys, const Track& track) {
   Axis axis;
   if (keys.has("scale")) {
@@ -66,6 +70,8 @@ Axis read_axis(const TrackKeys& keys, const Track& track) {
   }
   return axis;
 }
+
+namespace {
 
 /// Reversals and trials at which a track stops; 0: not by these.
 struct Stop {
@@ -198,31 +204,8 @@ void read_pest(const TrackKeys& keys, Track& track) {
   track.begin = [p](std::uint64_t, const std::string&) { return std::make_unique<Pest>(p); };
 }
 
-/// A list, or { from, to, count, [spacing] }.
-std::vector<double> read_grid(const TrackKeys& keys, const char* key) {
-  Table& table = keys.of(key);
-  if (!table.is_table(key)) {
-    return table.is_array(key) ? table.numbers(key, {}, "")
-                               : std::vector<double>{table.number(key, {}, "")};
-  }
-  Table grid = table.table(key);
-  const double from = grid.number("from", {}, ""), to = grid.number("to", {}, "");
-  const auto count = static_cast<int>(grid.integer("count", 2, 2000));
-  const bool log = grid.has("spacing") && grid.choice("spacing", {"linear", "log"}) == "log";
-  if (!(from < to) || (log && from <= 0.0)) {
-    grid.reject("from", fmt::format("{}", from), log ? "above 0 and below `to`" : "below `to`");
-    return {from};
-  }
-  std::vector<double> values;
-  for (int i = 0; i < count; ++i) {
-    const double share = static_cast<double>(i) / (count - 1);
-    values.push_back(log ? from * std::pow(to / from, share) : from + share * (to - from));
-  }
-  return values;
-}
-
 void read_listed(const TrackKeys& keys, Track& track, ListParameters& list) {
-  list.levels = read_grid(keys, "levels");
+  list.levels = read_grid(keys.of("levels"), "levels");
   list.repetitions = whole_or(keys, "repetitions", 1, 1, 10000);
   list.in_rounds = truth_of(keys, "in_rounds");
   const auto [least, most] = std::minmax_element(list.levels.begin(), list.levels.end());
@@ -259,7 +242,7 @@ void read_adjustment(const TrackKeys& keys, Track& track) {
   p.axis = track.axis = read_axis(keys, track);
   p.low = track.low;
   p.high = track.high;
-  p.starts.levels = read_grid(keys, "starts");
+  p.starts.levels = read_grid(keys.of("starts"), "starts");
   p.starts.repetitions = whole_or(keys, "repetitions", 1, 1, 10000);
   p.starts.in_rounds = truth_of(keys, "in_rounds");
   p.steps = keys.of("steps").numbers("steps", kPositive, "");
@@ -274,7 +257,7 @@ void read_adjustment(const TrackKeys& keys, Track& track) {
 /// The levels that a psi may present, as the range of a track.
 PsiParameters read_psi_function(const TrackKeys& keys, Track& track) {
   PsiParameters p;
-  p.levels = read_grid(keys, "levels");
+  p.levels = read_grid(keys.of("levels"), "levels");
   const auto [least, most] = std::minmax_element(p.levels.begin(), p.levels.end());
   track.low = p.levels.empty() ? 0.0 : *least;
   track.high = p.levels.empty() ? 1.0 : *most;
@@ -298,10 +281,12 @@ void read_psi(const TrackKeys& keys, Track& track) {
   PsiParameters p = read_psi_function(keys, track);
   const auto axis_of = [&](double level) { return p.function.axis.at(level); };
   const double span = std::abs(axis_of(track.high) - axis_of(track.low));
-  p.threshold.values = keys.has("threshold") ? read_grid(keys, "threshold") : p.levels;
-  p.width.values = keys.has("width") ? read_grid(keys, "width")
+  p.threshold.values =
+      keys.has("threshold") ? read_grid(keys.of("threshold"), "threshold") : p.levels;
+  p.width.values = keys.has("width") ? read_grid(keys.of("width"), "width")
                                      : std::vector{0.125 * span, 0.25 * span, 0.5 * span, span};
-  p.lapse.values = keys.has("lapse") ? read_grid(keys, "lapse") : std::vector{0.0, 0.02, 0.05};
+  p.lapse.values =
+      keys.has("lapse") ? read_grid(keys.of("lapse"), "lapse") : std::vector{0.0, 0.02, 0.05};
   p.width.nuisance = p.lapse.nuisance = truth_of(keys, "marginal");
   const Stop stop = read_stop(keys);
   track.most_trials = stop.trials;
@@ -319,7 +304,7 @@ void read_psi(const TrackKeys& keys, Track& track) {
 }  // namespace
 
 const std::vector<std::string>& procedure_kinds() {
-  static const std::vector<std::string> kinds{"staircase", "pest",       "psi",
+  static const std::vector<std::string> kinds{"staircase", "pest",       "psi",      "quest_plus",
                                               "constant",  "adjustment", "magnitude"};
   return kinds;
 }
@@ -331,6 +316,11 @@ void read_procedure(const TrackKeys& keys, Track& track) {
     read_pest(keys, track);
   } else if (track.kind == "psi") {
     read_psi(keys, track);
+  } else if (track.kind == "quest_plus") {
+    const Stop stop = read_stop(keys);
+    track.most_trials = stop.trials;
+    read_quest(keys, {stop.trials, stop.entropy}, track);
+    return;
   } else if (track.kind == "constant") {
     read_constant(keys, track);
   } else if (track.kind == "adjustment") {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/definition/table.h"
+#include "core/psychometric/function/axis.h"
 
 namespace haptrial::protocols {
 
@@ -21,6 +22,9 @@ struct TrackKeys {
 
 /// The words of `kind`.
 const std::vector<std::string>& procedure_kinds();
+
+/// Reads `scale` and `origin` of the steps or the function of a track whose range is known.
+psychometric::Axis read_axis(const TrackKeys& keys, const Track& track);
 
 /// Reads what the kind of a track asks for, and how it begins (track.h). Problems are noted.
 void read_procedure(const TrackKeys& keys, Track& track);

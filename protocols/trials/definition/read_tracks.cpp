@@ -15,7 +15,9 @@ constexpr std::size_t kMostTracks = 64;
 /// Keys of a track, and of the procedure that it belongs to.
 void read_common_keys(TrackKeys& keys, Track& track, std::size_t number) {
   track.kind = keys.of("kind").choice("kind", procedure_kinds());
-  track.variable = keys.of("variable").text("variable");
+  if (track.kind != "quest_plus") {  // which names several in its stimulus
+    track.variable = keys.of("variable").text("variable");
+  }
   track.name = keys.track.has("name") ? keys.track.text("name") : fmt::format("track {}", number);
   track.unit = keys.has("unit") ? keys.of("unit").text("unit") : "";
   if (keys.has("by")) {
@@ -24,7 +26,7 @@ void read_common_keys(TrackKeys& keys, Track& track, std::size_t number) {
   if (keys.has("counts")) {
     track.counts = keys.of("counts").text("counts");
   }
-  if (keys.has("resolution")) {
+  if (track.kind != "quest_plus" && keys.has("resolution")) {
     track.resolution = keys.of("resolution").number("resolution", kPositive, track.unit);
   }
 }

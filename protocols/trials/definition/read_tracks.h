@@ -14,7 +14,8 @@ namespace haptrial::protocols {
 /// [[procedure.tracks]], if there are any, are tracks of their own: each key is taken from the
 /// track or else from the procedure. Keys in brackets are optional.
 ///
-///     kind       "staircase", "pest", "psi", "constant" or "magnitude"
+///     kind       "staircase", "pest", "psi", "quest_plus" (read_quest.h), "constant",
+///                "adjustment" or "magnitude"
 ///     variable   that it sets; [unit]
 ///     [name]     of a track; "track 1", … if left out
 ///     [by]       factors

@@ -5,7 +5,9 @@
 
 namespace haptrial::protocols {
 
-double Track::applied(double asked) const noexcept {
+namespace {
+
+double rounded_within(double asked, double low, double high, double resolution) noexcept {
   const double kept = std::clamp(asked, low, high);
   if (resolution <= 0.0) {
     return kept;
@@ -14,6 +16,42 @@ double Track::applied(double asked) const noexcept {
   return rounded < low    ? std::ceil(low / resolution) * resolution
          : rounded > high ? std::floor(high / resolution) * resolution
                           : rounded;
+}
+
+}  // namespace
+
+double Track::applied(double asked) const noexcept {
+  return rounded_within(asked, low, high, resolution);
+}
+
+psychometric::Level Track::applied(const psychometric::Level& asked) const {
+  psychometric::Level level{applied(asked.front())};
+  for (std::size_t i = 0; i < further.size(); ++i) {
+    const TrackDimension& own = further[i];
+    level.push_back(rounded_within(asked[i + 1], own.low, own.high, own.resolution));
+  }
+  return level;
+}
+
+std::vector<std::string> Track::variables() const {
+  std::vector<std::string> names{variable};
+  for (const TrackDimension& each : further) {
+    names.push_back(each.variable);
+  }
+  return names;
+}
+
+bool Track::sets(const std::string& one) const {
+  const std::vector<std::string> names = variables();
+  return std::ranges::find(names, one) != names.end();
+}
+
+psychometric::Level Track::corner(bool of_high) const {
+  psychometric::Level level{of_high ? high : low};
+  for (const TrackDimension& each : further) {
+    level.push_back(of_high ? each.high : each.low);
+  }
+  return applied(level);
 }
 
 }  // namespace haptrial::protocols

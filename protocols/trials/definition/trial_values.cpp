@@ -25,6 +25,14 @@ void give_value(Names& names, const GivenValue& value) {
 
 }  // namespace
 
+void give_corner(const Track& track, bool high, TrialValues& values) {
+  const std::vector<std::string> names = track.variables();
+  const psychometric::Level corner = track.corner(high);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    values.levels.emplace_back(names[i], corner[i]);
+  }
+}
+
 void declare_names(Names& names, const TrialsDefinition& d) {
   for (const char* name :
        {"trial", "block", "interval", "participant", "session", "group", "probe"}) {
@@ -44,7 +52,9 @@ void declare_names(Names& names, const TrialsDefinition& d) {
     names.declare("interval." + interval.name);
   }
   for (const Track& track : d.tracks) {
-    names.declare(track.variable);
+    for (const std::string& name : track.variables()) {
+      names.declare(name);
+    }
   }
   for (const Question& question : d.questions) {
     names.declare(question.name);

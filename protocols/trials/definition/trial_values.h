@@ -11,6 +11,7 @@ namespace haptrial::protocols {
 
 class Names;
 struct Interval;
+struct Track;
 struct TrialsDefinition;
 
 /// What one trial gives the names of a definition.
@@ -25,6 +26,9 @@ struct TrialValues {
   std::vector<std::pair<std::string, double>> levels;  // that procedures set
   std::vector<std::size_t> intervals;  // of the definition, in the order of their presentation
 };
+
+/// The lowest levels of a track, or the highest.
+void give_corner(const Track& track, bool high, TrialValues& values);
 
 /// Everything that a trial may give a value: "trial", "block", "interval" (its place in the trial,
 /// from 1), "participant", "session", "group", "probe" (a word; 'no' of a trial without), what

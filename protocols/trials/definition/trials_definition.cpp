@@ -105,7 +105,8 @@ std::vector<std::string> TrialsDefinition::description() const {
       count = std::max(count, combinations(track, block));
     }
     lines.push_back(
-        fmt::format("{}: {} of {}{}, at most {}{}", track.name, track.kind, track.variable,
+        fmt::format("{}: {} of {}{}, at most {}{}", track.name, track.kind,
+                    fmt::join(track.variables(), " and "),
                     track.unit.empty() ? "" : fmt::format(" [{}]", track.unit),
                     counted(track.most_trials, "trial", "trials"),
                     count > 1 ? fmt::format(" in each of {} combinations", count) : ""));

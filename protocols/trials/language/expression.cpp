@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <numbers>
 #include <utility>
 
 #include "core/base/error.h"
@@ -21,6 +22,9 @@ double both(double a, double b) { return a != 0.0 && b != 0.0 ? 1.0 : 0.0; }
 double either(double a, double b) { return a != 0.0 || b != 0.0 ? 1.0 : 0.0; }
 double negated(double a) { return a == 0.0 ? 1.0 : 0.0; }
 double lies_between(double x, double low, double high) { return x >= low && x <= high ? 1.0 : 0.0; }
+
+/// The share of a standard normal distribution below z.
+double normal_below(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 
 /// The formula as muParser takes it: words become numbers, $ goes.
 /// @throws InputError for a word without its closing quote
@@ -73,6 +77,7 @@ struct Expression::Formula {
     parser.DefineOprt("or", either, mu::prLOR);
     parser.DefineFun("not", negated);
     parser.DefineFun("between", lies_between);
+    parser.DefineFun("normcdf", normal_below);
     parser.SetExpr(text);
     parser.Eval();  // every variable 1: finds what is wrong with the form
   }
@@ -140,6 +145,21 @@ double Expression::value(const std::function<double(const std::string&)>& value_
   for (auto& [name, value] : formula_->values) {
     value = value_of(name);
   }
+  return evaluated();
+}
+
+double Expression::value_at(std::span<const double> values) const {
+  if (!formula_) {
+    return constant_;
+  }
+  std::size_t i = 0;
+  for (auto& [name, value] : formula_->values) {
+    value = values[i++];
+  }
+  return evaluated();
+}
+
+double Expression::evaluated() const {
   double result = std::nan("");
   try {
     result = formula_->parser.Eval();

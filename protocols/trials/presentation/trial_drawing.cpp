@@ -87,11 +87,60 @@ class TrialDrawing final : public Drawing {
     render::TextPage page;
     page.title = question.text;
     page.body = question_body(question, view);
-    if (view.verdict != Verdict::kNone) {
-      page.title = view.verdict == Verdict::kRight ? d_.feedback_right : d_.feedback_wrong;
-      page.body.clear();
+    if (view.told()) {
+      const std::string pace = view.pace == Pace::kTooFast   ? question.fast_text
+                               : view.pace == Pace::kTooSlow ? question.slow_text
+                                                             : "";
+      const std::string verdict = view.verdict == Verdict::kRight   ? d_.feedback_right
+                                  : view.verdict == Verdict::kWrong ? d_.feedback_wrong
+                                                                    : "";
+      page.title = verdict.empty() ? pace : verdict;
+      page.body = verdict.empty() ? "" : pace;
+    } else if (question.touched()) {
+      draw_places(question, view);
+      return;
     }
     page_.draw(page);
+  }
+
+  /// The places to touch with their choices, the hand, and above them the question; below them the
+  /// choices that are given in another way.
+  void draw_places(const Question& question, const TrialView& view) {
+    painter_.begin(d_.display.background);
+    for (const Part& part : parts_) {
+      draw_marks(view, part);
+    }
+    painter_.end();
+    text_.begin();
+    const double margin = d_.display.margin;
+    const render::TextStyle asked{static_cast<int>(0.1 * half_.y()), true,
+                                  d_.display.marker_colour};
+    const render::TextStyle label{static_cast<int>(0.07 * half_.y()), false,
+                                  d_.display.marker_colour};
+    for (const Part& part : parts_) {
+      const Eigen::Vector2d top{part.middle.x(), margin};
+      text_.paragraphs(question.text, top, 2.0 * (half_.x() - margin), asked);
+      double y = 2.0 * half_.y() - margin;
+      std::size_t mark = 0;
+      for (const Choice& choice : question.choices) {
+        if (!choice.touch.empty() && mark < view.mark_count) {
+          draw_label(choice, view.marks[mark++], part, label);
+        } else if (choice.touch.empty()) {
+          const std::string hint = choice.hint.empty() ? "" : fmt::format("[{}]  ", choice.hint);
+          text_.line(hint + choice.label, {part.middle.x(), y}, label, render::Align::kCentre);
+          y -= text_.line_height(label);
+        }
+      }
+    }
+    text_.end();
+  }
+
+  /// Below its place.
+  void draw_label(const Choice& choice, const Mark& mark, const Part& part,
+                  const render::TextStyle& style) {
+    const double below = scale_ * static_cast<double>(mark.radius) + 1.2 * style.size;
+    text_.line(choice.label, pixel_of(place_of(mark.place), part) + Eigen::Vector2d(0.0, below),
+               style, render::Align::kCentre);
   }
 
   void draw_interval(const TrialView& view) {

@@ -46,7 +46,7 @@ PassOutput TrialPass::tick(const Readings& readings, double dt) noexcept {
     if (part_ == Part::kIntervals) {
       present(readings, dt, out);
     } else {
-      listen(dt, out);
+      listen(readings, dt, out);
     }
     ++sequence_;
   }
@@ -68,6 +68,11 @@ void TrialPass::look_at_hands(const Readings& readings) noexcept {
   buttons_ = buttons;
   keys_ = keys;
   hands_known_ = true;
+  pedal_ = 0.0;
+  for (std::size_t device = 0; device < device_count_; ++device) {
+    pedal_ = std::max(pedal_, readings[device].pedal);
+  }
+  pedal_up_ = std::min(pedal_up_, pedal_);
   view_.tool = readings[0].tool.position;
   view_.other_count = static_cast<std::uint8_t>(device_count_ - 1);
   for (std::size_t device = 1; device < device_count_; ++device) {
@@ -156,6 +161,11 @@ void TrialPass::ask() noexcept {
   part_ = Part::kQuestions;
   view_.question = static_cast<std::uint8_t>(question_ + 1);
   view_.verdict = Verdict::kNone;
+  view_.pace = Pace::kInTime;
+  const StageSight& sight = setup_.questions[question_].sight;
+  view_.show(sight.marks, sight.hand, false, {});
+  dwells_ = {};
+  pedal_up_ = pedal_;
   view_.typed = {};
   typed_ = 0;
   time_ = 0.0;
@@ -165,12 +175,22 @@ void TrialPass::ask() noexcept {
   }
 }
 
-void TrialPass::listen(double dt, PassOutput& out) noexcept {
+/// To the next question; a trial that comes again is not asked about any further.
+void TrialPass::go_on() noexcept {
+  const Asked& asked = setup_.questions[question_];
+  if (answers_[question_].pace != Pace::kInTime && asked.question->again) {
+    state_ = PassState::kCompleted;
+    return;
+  }
+  ++question_;
+  ask();
+}
+
+void TrialPass::listen(const Readings& readings, double dt, PassOutput& out) noexcept {
   time_ += dt;
   if (part_ == Part::kFeedback) {
     if (time_ >= setup_.feedback_time) {
-      ++question_;
-      ask();
+      go_on();
     }
     return;
   }
@@ -184,6 +204,8 @@ void TrialPass::listen(double dt, PassOutput& out) noexcept {
     listen_to_number(question, answer);
   } else {
     listen_to_choice(question, answer);
+    listen_to_pedal(question, answer);
+    watch_places(readings, answer);
   }
   if (answer.given) {
     take(answer, out);
@@ -202,6 +224,45 @@ void TrialPass::listen_to_choice(const Question& question, Answer& answer) noexc
       answer.choice = static_cast<int>(i);
       answer.source = button != 0 ? record::ResponseSource::kButton : record::ResponseSource::kKey;
       answer.code = lowest_bit(button != 0 ? button : key);
+    }
+  }
+}
+
+/// It counts when it goes down during the question, from half that depth or less.
+void TrialPass::listen_to_pedal(const Question& question, Answer& answer) noexcept {
+  for (std::size_t i = 0; i < question.choices.size() && !answer.given; ++i) {
+    const double depth = question.choices[i].pedal;
+    if (depth > 0.0 && pedal_ >= depth && pedal_up_ <= 0.5 * depth) {
+      answer.given = true;
+      answer.choice = static_cast<int>(i);
+      answer.source = record::ResponseSource::kPedal;
+    }
+  }
+}
+
+/// The answer is of the tick on which the tip came in; it counts when it has stayed.
+void TrialPass::watch_places(const Readings& readings, Answer& answer) noexcept {
+  constexpr double kRounding = 1e-9;  // [s]
+  const Asked& asked = setup_.questions[question_];
+  for (std::size_t i = 0; i < asked.places.size(); ++i) {
+    const TouchedPlace& place = asked.places[i];
+    Dwell& dwell = dwells_[i];
+    if (place.device >= device_count_ ||
+        !place.shape.contains(readings[place.device].tool.position)) {
+      dwell = {true, false, 0};
+      continue;
+    }
+    if (dwell.was_outside && !dwell.inside) {
+      dwell.inside = true;
+      dwell.since = sequence_;
+    }
+    const double stayed = static_cast<double>(sequence_ - dwell.since) * tick_time_;
+    if (dwell.inside && !answer.given && stayed >= asked.question->touch_for - kRounding) {
+      answer.given = true;
+      answer.choice = static_cast<int>(place.choice);
+      answer.source = record::ResponseSource::kPlace;
+      answer.code = place.region;
+      answer.sequence = dwell.since;
     }
   }
 }
@@ -238,31 +299,40 @@ void TrialPass::listen_to_number(const Question& question, Answer& answer) noexc
 /// The participant hears whether the answer was right when this is shown.
 int TrialPass::sound_of(const Asked& asked, const Answer& answer) const noexcept {
   const bool told = asked.feedback && asked.right >= 0 && setup_.feedback_time > 0.0;
-  return !told ? -1 : answer.choice == asked.right ? setup_.sound_right : setup_.sound_wrong;
+  const bool again = answer.pace != Pace::kInTime && asked.question->again;
+  return !told || again                 ? -1
+         : answer.choice == asked.right ? setup_.sound_right
+                                        : setup_.sound_wrong;
 }
 
 void TrialPass::take(const Answer& given, PassOutput& out) noexcept {
   const Asked& asked = setup_.questions[question_];
   Answer& answer = answers_[question_] = given;
-  answer.sequence = sequence_;
+  if (answer.source != record::ResponseSource::kPlace) {
+    answer.sequence = sequence_;
+  }
   std::uint64_t from = asked_at_;
   if (asked.onset >= 0) {
     const StageTimes& times =
         setup_.intervals.back().machine.times()[static_cast<std::size_t>(asked.onset)];
     from = first_ticks_.back() + static_cast<std::uint64_t>(std::max<std::int64_t>(0, times.begin));
   }
+  answer.reaction_time = static_cast<double>(answer.sequence - from + 1) * tick_time_;
+  answer.pace = asked.question->pace_of(answer.reaction_time);
   out.onsets.add({record::MarkerOf::kResponse,
                   static_cast<std::int16_t>(asked.marker + std::max(0, answer.choice)), 0,
                   static_cast<std::int16_t>(sound_of(asked, answer))});
-  answer.reaction_time = static_cast<double>(sequence_ - from + 1) * tick_time_;
-  if (asked.feedback && asked.right >= 0 && setup_.feedback_time > 0.0) {
+  const bool again = answer.pace != Pace::kInTime && asked.question->again;
+  if (asked.feedback && asked.right >= 0 && !again) {
     view_.verdict = answer.choice == asked.right ? Verdict::kRight : Verdict::kWrong;
+  }
+  view_.pace = answer.pace;
+  if (view_.told() && setup_.feedback_time > 0.0) {
     part_ = Part::kFeedback;
     time_ = 0.0;
     return;
   }
-  ++question_;
-  ask();
+  go_on();
 }
 
 void TrialPass::abort(const char* why) noexcept {

@@ -8,6 +8,7 @@
 
 #include "core/record/rows/response.h"
 #include "core/scene/scene.h"
+#include "core/scene/shape/shape.h"
 #include "protocols/interface/pass.h"
 #include "protocols/trials/definition/question.h"
 #include "protocols/trials/presentation/trial_view.h"
@@ -33,6 +34,14 @@ struct IntervalRun {
   int marker{-1};                  // index of its onset's marker; -1: it has none
 };
 
+/// A place that gives a choice when the tip of the tool is moved into it.
+struct TouchedPlace {
+  scene::PlacedShape shape;
+  std::size_t device{0};  // whose tool
+  std::size_t choice{0};  // from 0
+  int region{-1};         // of the definition's [regions], in the order of their names
+};
+
 /// What is asked after the intervals.
 struct Asked {
   const Question* question{nullptr};  // outlives the pass
@@ -40,6 +49,8 @@ struct Asked {
   bool feedback{false};               // tells whether it was right
   int onset{-1};  // stage of the last interval from which the reaction counts; -1: the question
   int marker{0};  // index of the first answer's marker; those of the others follow
+  std::vector<TouchedPlace> places{};  // in the order of the choices that they give
+  StageSight sight{};                  // these places, and the hand
 };
 
 /// What was answered.
@@ -51,6 +62,7 @@ struct Answer {
   int code{-1};                                                    // of the button or the key's bit
   std::uint64_t sequence{0};                                       // of the tick
   double reaction_time{std::numeric_limits<double>::quiet_NaN()};  // [s]
+  Pace pace{Pace::kInTime};
 };
 
 /// One trial: its intervals one after the other, then its questions. Servo thread, all but the
@@ -90,6 +102,10 @@ class TrialPass final : public Pass {
   std::int32_t trial() const { return setup_.trial; }  // as the view has it
   std::uint64_t last_tick() const { return sequence_ - 1; }
   const std::vector<Answer>& answers() const { return answers_; }
+  /// What a question shows beside its text.
+  const StageSight& question_sight(std::size_t question) const {
+    return setup_.questions[question].sight;
+  }
   /// In words; empty if the pass was not aborted by itself.
   const char* why_aborted() const noexcept { return why_; }
 
@@ -103,10 +119,13 @@ class TrialPass final : public Pass {
   Drive drive(const IntervalRun& run, std::size_t device, const Eigen::Vector3d& force) noexcept;
   void end_interval() noexcept;
   void ask() noexcept;
-  void listen(double dt, PassOutput& out) noexcept;
+  void listen(const Readings& readings, double dt, PassOutput& out) noexcept;
   void listen_to_choice(const Question& question, Answer& answer) noexcept;
+  void listen_to_pedal(const Question& question, Answer& answer) noexcept;
+  void watch_places(const Readings& readings, Answer& answer) noexcept;
   void listen_to_number(const Question& question, Answer& answer) noexcept;
   void take(const Answer& answer, PassOutput& out) noexcept;
+  void go_on() noexcept;
   void look_at_hands(const Readings& readings) noexcept;
   void abort(const char* why) noexcept;
 
@@ -131,6 +150,15 @@ class TrialPass final : public Pass {
   double tick_time_{0.0};                               // [s]
   std::uint32_t buttons_{0}, keys_{0};                  // held
   std::uint32_t pressed_buttons_{0}, pressed_keys_{0};  // went down on this tick
+  double pedal_{0.0};                                   // how far it is down, 0 to 1
+  double pedal_up_{0.0};                                // the least since the question
+  /// The tip in a place that can be touched: it counts when it comes from outside.
+  struct Dwell {
+    bool was_outside{false};
+    bool inside{false};
+    std::uint64_t since{0};  // sequence number
+  };
+  std::array<Dwell, kMostTouched> dwells_{};  // (places of the question)
   bool hands_known_{false};
   std::size_t typed_{0};
   const char* why_{""};

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "protocols/interface/pass.h"
+#include "protocols/trials/definition/question.h"
 #include "protocols/trials/looks/look.h"
 
 namespace haptrial::protocols {
@@ -33,6 +34,7 @@ enum class Verdict : std::uint8_t { kNone, kRight, kWrong };
 struct TrialView {
   static constexpr std::size_t kMostMarks = 8;
   static constexpr std::size_t kTyped = 16;
+  static_assert(kMostTouched <= kMostMarks);
 
   Eigen::Vector3d tool{Eigen::Vector3d::Zero()};                // of the first device
   std::array<std::array<float, 3>, kMostDevices - 1> others{};  // tools of the others [m]
@@ -46,10 +48,12 @@ struct TrialView {
   std::uint8_t stage{0};     // of the interval, from 0
   std::uint8_t question{0};  // from 1; 0: nothing is asked
   Verdict verdict{Verdict::kNone};
+  Pace pace{Pace::kInTime};  // of the answer that is told about
   bool hand_shown{false};
   bool number_shown{false};  // of the interval
 
   bool engaged() const noexcept { return interval > 0 || question > 0; }
+  bool told() const noexcept { return verdict != Verdict::kNone || pace != Pace::kInTime; }
   /// What a stage shows; at most kMostMarks marks. Servo thread: no allocation or throw.
   void show(std::span<const Mark> seen, bool hand, bool number, const DotsShown& bar) noexcept {
     hand_shown = hand;

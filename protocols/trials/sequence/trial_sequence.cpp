@@ -84,7 +84,7 @@ TrialSequence::TrialSequence(const TrialsDefinition& definition, const Taker& ta
 bool TrialSequence::asks_procedures(const Block& block) const {
   const auto given = [&](const Track& track) {
     return std::any_of(block.values.begin(), block.values.end(),
-                       [&](const GivenValue& value) { return value.name == track.variable; });
+                       [&](const GivenValue& value) { return track.sets(value.name); });
   };
   return !d_.tracks.empty() && std::none_of(d_.tracks.begin(), d_.tracks.end(), given);
 }
@@ -286,8 +286,11 @@ void TrialSequence::choose_track(NextTrial& next) {
   RunningTrack& running = running_[chosen];
   next.track = static_cast<int>(chosen);
   next.asked = running.procedure->next();
-  next.applied = {running.track->applied(next.asked.front())};
-  next.values.levels.emplace_back(running.track->variable, next.applied.front());
+  next.applied = running.track->applied(next.asked);
+  const std::vector<std::string> variables = running.track->variables();
+  for (std::size_t i = 0; i < variables.size(); ++i) {
+    next.values.levels.emplace_back(variables[i], next.applied[i]);
+  }
   next.values.values.insert(next.values.values.end(), running.values.begin(), running.values.end());
   add_factors(next, running.track->by, chosen, running.trials);
   next.plan.condition = label_of(running.values);
@@ -336,6 +339,20 @@ void TrialSequence::conclude(bool presented, double outcome, bool right) {
     if (std::isfinite(outcome)) {
       running.procedure->report(outcome, done.applied);
     }
+  }
+}
+
+void TrialSequence::postpone() {
+  if (!next_) {
+    throw std::logic_error("TrialSequence: no trial has been asked for");
+  }
+  const NextTrial done = *std::exchange(next_, std::nullopt);
+  ++failed_;
+  if (running_.empty()) {
+    const Fixed again = fixed_[fixed_at_++];
+    fixed_.push_back(again);
+  } else if (done.track >= 0) {
+    running_[static_cast<std::size_t>(done.track)].procedure->postpone();
   }
 }
 

@@ -56,6 +56,11 @@ class TrialSequence {
   /// @throws std::logic_error without a next() before
   void conclude(bool presented, double outcome, bool right);
 
+  /// In place of conclude(): what was presented does not count and comes again at the end of its
+  /// block; a procedure that follows the answers asks for the same level in its next trial.
+  /// @throws std::logic_error without a next() before
+  void postpone();
+
   const std::vector<RunningTrack>& running() const { return running_; }
   /// The block that a trial belongs to, in the order of this participant.
   const std::vector<std::size_t>& blocks() const { return blocks_; }

@@ -17,6 +17,7 @@
 #include "core/subject/subject_parameters.h"
 #include "protocols/trials/definition/question.h"
 #include "protocols/trials/definition/trials_definition.h"
+#include "protocols/trials/subject/answer_by_hand.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -37,7 +38,7 @@ int index_of(const std::vector<std::string>& names, const std::string& name) {
 /// Servo thread, but for the constructor, recall() and carried_over().
 class TrialsRig::Participant final : public stimulus::Observer {
  public:
-  Participant(const Briefing& briefing, const std::vector<subject::HandModel*>& hands,
+  Participant(const Briefing& briefing, const std::vector<std::unique_ptr<Arm>>& arms,
               std::uint64_t person_seed, std::uint64_t session_seed)
       : plan_(*briefing.plan),
         questions_(*briefing.questions),
@@ -52,8 +53,10 @@ class TrialsRig::Participant final : public stimulus::Observer {
         judge_(judgement_, seed_),
         felt_in_(index_of(briefing.stages, plan_.stage)),
         reaction_(seed_, "reaction") {
-    for (std::size_t device = 0; device < hands.size(); ++device) {
-      Limb& limb = limbs_.emplace_back(Limb{hands[device], subject::Prober(hand_parameters_), {}});
+    for (const auto& arm : arms) {
+      const std::size_t device = limbs_.size();
+      Limb& limb = limbs_.emplace_back(
+          Limb{arm->hand.get(), &arm->device, subject::Prober(hand_parameters_), {}});
       for (const std::string& stage : briefing.stages) {
         limb.actions.push_back(action_in(stage, device));
       }
@@ -79,6 +82,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
     if (view == nullptr) {
       leave_stage();
       begun_ = false;
+      end_answer();
       for (Limb& limb : limbs_) {
         limb.hand->command({});
       }
@@ -101,6 +105,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
   /// A hand, what it is about to do, and where it is.
   struct Limb {
     subject::HandModel* hand;
+    device::VirtualDevice* device;
     subject::Prober prober;
     std::vector<const StageAction*> actions;  // (stages), null: rests
     PointState state{};                       // at this tick
@@ -146,6 +151,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
     trial_ = trial;
     stage_ = interval_ = -1;
     question_ = 0;
+    end_answer();
     intervals_ = 1;
     percepts_ = {};
     judge_.begin_trial(trial);
@@ -277,17 +283,54 @@ class TrialsRig::Participant final : public stimulus::Observer {
     if (view.question == 0) {
       return;
     }
+    if (view.question != question_ || view.told()) {
+      end_answer();
+    }
     if (view.question != question_) {
       question_ = view.question;
       constexpr double kSpread = 0.3;  // of the log of reaction times
       wait_ = plan_.reaction * std::exp(kSpread * reaction_.normal());
     }
     wait_ -= dt;
-    if (wait_ > 0.0 || said_.given || view.verdict != Verdict::kNone) {
+    if (by_hand_.under_way()) {
+      Limb& limb = limbs_[by_hand_.device()];
+      by_hand_.tick(limb.prober, limb.state, dt);
+    }
+    if (wait_ > 0.0 || decided_ || view.told()) {
       return;
     }
-    decide(questions_[view.question - 1U], view.question == 1);
-    said_.given = true;
+    const Question& question = questions_[view.question - 1U];
+    decide(question, view.question == 1);
+    decided_ = true;
+    give(question, view);
+  }
+
+  /// The answer that is decided, in the way in which it is to be given.
+  void give(const Question& question, const TrialView& view) noexcept {
+    const int place = AnswerByHand::place_of(question, said_.choice);
+    if (place >= 0 && place < view.mark_count) {
+      const auto mark = static_cast<std::size_t>(place);
+      Limb& limb = limbs_[std::min<std::size_t>(view.marks[mark].device, limbs_.size() - 1)];
+      by_hand_.begin(view, mark, limb.prober, limb.state);
+    } else if (said_.choice >= 0 &&
+               question.choices[static_cast<std::size_t>(said_.choice)].pedal > 0.0) {
+      hold_pedal(1.0);
+    } else {
+      said_.given = true;
+    }
+  }
+
+  void hold_pedal(double depth) noexcept {
+    pedal_ = depth;
+    limbs_.front().device->hold(0, depth, Eigen::Quaterniond::Identity());
+  }
+
+  void end_answer() noexcept {
+    decided_ = false;
+    by_hand_.end();
+    if (pedal_ > 0.0) {
+      hold_pedal(0.0);
+    }
   }
 
   void decide(const Question& question, bool first) noexcept {
@@ -354,6 +397,9 @@ class TrialsRig::Participant final : public stimulus::Observer {
   std::size_t intervals_{1};
   int question_{0};
   double wait_{0.0};  // [s]
+  bool decided_{false};
+  AnswerByHand by_hand_;
+  double pedal_{0.0};  // how far it is held down
   subject::Decision decision_;
   std::array<double, kMostIntervals> percepts_{};
 };
@@ -372,11 +418,7 @@ TrialsRig::TrialsRig(const Briefing& briefing, std::uint64_t person_seed,
   if (arms_.empty()) {
     arms_.push_back(std::make_unique<Arm>(d, Eigen::Vector3d::Zero()));
   }
-  std::vector<subject::HandModel*> hands;
-  for (const auto& arm : arms_) {
-    hands.push_back(arm->hand.get());
-  }
-  participant_ = std::make_unique<Participant>(briefing, hands, person_seed, session_seed);
+  participant_ = std::make_unique<Participant>(briefing, arms_, person_seed, session_seed);
 }
 
 TrialsRig::~TrialsRig() = default;

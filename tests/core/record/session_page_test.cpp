@@ -49,6 +49,7 @@ TEST(SessionPageTest, TablesOfAnyProtocol) { expect_described("responses", commo
 TEST(SessionPageTest, TablesOfTrials) {
   TableList tables = trial_tables();
   tables.insert(tables.end(), adaptation_tables().begin(), adaptation_tables().end());
+  tables.insert(tables.end(), out_of_time_tables().begin(), out_of_time_tables().end());
   expect_described("trials", tables);
 }
 TEST(SessionPageTest, TablesOfDrillings) { expect_described("drilling", drilling_tables()); }

@@ -250,7 +250,7 @@ TEST(NeededDampingTest, SaysWhatColgateAndSchenkelSay) {
 TEST(NeededDampingTest, FieldsOfTimeAndLateAccelerationAreNotPassive) {
   const std::vector<FieldKind> active{
       RampParameters{},           PulseParameters{}, InertiaParameters{}, SineVibrationParameters{},
-      NoiseVibrationParameters{}, TapParameters{},   MoverParameters{}};
+      NoiseVibrationParameters{}, TapParameters{},   MoverParameters{},   PathParameters{}};
   for (const FieldKind& kind : active) {
     EXPECT_FALSE(steepness({test::field("active", kind)}, 0).passive) << kind.index();
   }

@@ -61,6 +61,7 @@ std::vector<Field> every_kind() {
           field("detent", DetentParameters{}),
           field("click", ClickParameters{}),
           field("mover", MoverParameters{}),
+          field("path", PathParameters{}),
           field("ball", SurfaceParameters{Sphere{}})};
 }
 

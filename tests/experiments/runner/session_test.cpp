@@ -1,6 +1,7 @@
 #include "experiments/runner/session.h"
 #include "experiments/studies/curve_analysis.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -138,6 +139,21 @@ TEST_F(SessionTest, BreaksComeAgainAndAgainButNotAfterTheLastTrial) {
   };
   EXPECT_EQ(breaks(10), 3);
   EXPECT_EQ(breaks(9), 2);
+}
+
+TEST_F(SessionTest, AVirtualParticipantIsReadyAtOnce) {
+  definition_.design.break_after = 2;
+  definition_.design.break_until_ready = true;
+  const auto reader = record_session(definition_, folder_ / "ready.h5", 5);
+  std::vector<std::string> breaks;
+  for (const record::EventRow& event : reader.events()) {
+    if (event.kind == "break") {
+      breaks.push_back(event.text);
+    }
+  }
+  const std::string said = fmt::format("{} s, then until ready", definition_.design.break_duration);
+  EXPECT_EQ(breaks, (std::vector<std::string>{said, said}));
+  EXPECT_EQ(reader.passes().back().trial, 5);
 }
 
 TEST_F(SessionTest, TheFileSaysHowManyTrialsArePlannedOfHowMany) {

@@ -198,6 +198,16 @@ TEST_F(DesignTest, ABreakWithinABlockOrAfterTheEndIsRefused) {
                           "trials, or 0 for no break"));
 }
 
+TEST_F(DesignTest, ABreakMayLastUntilSomebodyIsReady) {
+  const std::string line = "break_duration = 600.0\n";
+  EXPECT_THAT(problems(line, line + "break_until = \"ready\"\n"), ElementsAre());
+  EXPECT_THAT(problems(line, line + "break_until = \"red\"\n"),
+              ElementsAre(HasSubstr("d.toml:6: break_until is 'red'")));
+  EXPECT_THAT(problems("36\n" + line, "0\n" + line + "break_until = \"ready\"\n"),
+              ElementsAre("d.toml:6: break_until is \"ready\", but there are no breaks; add "
+                          "break_after, a number of trials"));
+}
+
 TEST_F(DesignTest, AConditionNamedTwiceIsRefused) {
   EXPECT_THAT(
       problems("\"haptic\"", "\"visual\""),

@@ -16,6 +16,7 @@
 #include "core/scene/field/inertia.h"
 #include "core/scene/field/low_pass.h"
 #include "core/scene/field/mover.h"
+#include "core/scene/field/path.h"
 #include "core/scene/field/push.h"
 #include "core/scene/field/relief.h"
 #include "core/scene/field/vibration.h"
@@ -497,6 +498,52 @@ TEST(MoverTest, AHandThatIsThereAlreadyIsHeld) {
   EXPECT_NEAR(force.x(), -3.0, 1e-12);
 }
 
+const std::vector<Vector3d> kCorner{{0.0, 0.0, 0.0}, {0.03, 0.0, 0.0}, {0.03, 0.0, 0.04}};
+
+TEST(PathGuideTest, PullsToAPointThatTravelsAtConstantSpeedAndRests) {
+  PathGuide guide({kCorner, 2.0, {900.0, 0.0}}, kSetting);  // 7 cm in 2 s: 35 mm/s
+  FieldState state;
+  const auto pull = [&](double time) { return guide.force({{}, time, nullptr}, state); };
+  const double near = 900.0 * 2e-7;  // chords of 50 µm cut a corner by less
+  EXPECT_LT((pull(0.4) - 900.0 * Vector3d(0.014, 0.0, 0.0)).norm(), near);
+  EXPECT_LT((pull(1.0) - 900.0 * Vector3d(0.03, 0.0, 0.005)).norm(), near);
+  EXPECT_FALSE(state.done);
+  EXPECT_LT((pull(2.5) - 900.0 * Vector3d(0.03, 0.0, 0.04)).norm(), near);
+  EXPECT_TRUE(state.done);
+  EXPECT_NEAR(state.depth, 0.05, 1e-9);
+}
+
+/// On the path itself only the damper is felt: b times the speed that the point has over the hand.
+TEST(PathGuideTest, TheDamperComesAndGoesWithTheSpeed) {
+  const double carried = 1.0;  // N·s/m; the bare handle carries it, so the governor leaves it whole
+  const std::vector<Vector3d> line{{0.0, 0.0, 0.0}, {0.07, 0.0, 0.0}};
+  PathGuide guide({line, 2.0, {900.0, carried}}, kSetting);
+  FieldState state;
+  const auto on_path = [&](double time) {
+    return guide.force({{{0.035 * time, 0.0, 0.0}, Vector3d::Zero()}, time, nullptr}, state).x();
+  };
+  EXPECT_NEAR(on_path(0.0), 0.0, 1e-12);
+  EXPECT_NEAR(on_path(0.04), 0.5 * 0.035, 1e-9);
+  EXPECT_NEAR(on_path(1.0), 0.035, 1e-9);
+  EXPECT_NEAR(on_path(1.96), 0.5 * 0.035, 1e-9);
+}
+
+/// A mass with the hand's damping, led by the study's gains.
+TEST(PathGuideTest, LeadsAHandAlongThePath) {
+  PathGuide guide({kCorner, 4.0, {900.0, 100.0}}, kSetting);
+  PointState hand;
+  FieldState state;
+  double worst = 0.0;
+  for (int i = 0; i < 4500; ++i) {
+    const Vector3d force = guide.force({hand, i * 1e-3, nullptr}, state);
+    hand.velocity += 1e-3 * (force - 15.0 * hand.velocity) / 1.0;
+    hand.position += 1e-3 * hand.velocity;
+    worst = std::max(worst, state.depth);
+  }
+  EXPECT_LT((hand.position - kCorner.back()).norm(), 2e-4);
+  EXPECT_LT(worst, 0.002);
+}
+
 TEST(ReliefTest, BoundsOfSlopeAndCurvatureHoldAndAreNearlyReached) {
   const Grating sine({"floor", Vector3d::UnitX(), 2e-4, 0.003}, kSetting);
   GratingParameters soft{"floor", Vector3d::UnitX(), 2e-4, 0.003};
@@ -580,6 +627,16 @@ TEST(FieldTest, BadParametersAreNamed) {
                 largest_stable_mass(20.0, {0.2, 1000.0, 1, 0});
               }),
               HasSubstr("velocity_window"));
+}
+
+TEST(PathGuideTest, RefusesWhatIsNoPath) {
+  const auto told = [](auto law) { return test::message_of<std::invalid_argument>(law); };
+  EXPECT_THAT(told([] { PathGuide({{kOrigin, kOrigin}, 1.0}, kSetting); }), HasSubstr("points"));
+  EXPECT_THAT(told([] { PathGuide({kCorner, 0.0}, kSetting); }), HasSubstr("duration"));
+  EXPECT_THAT(told([] {
+                PathGuide({kCorner, 1.0, {-1.0, 0.0}}, kSetting);
+              }),
+              HasSubstr("stiffness"));
 }
 
 }  // namespace

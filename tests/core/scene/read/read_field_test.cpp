@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,8 @@ tap      = { type = "tap", on = "floor", amplitude = 5.0, frequency = 200.0, dec
 notch    = { type = "detent", at = [0, 0, 0], direction = [1, 0, 0], spacing = 0.01, peak = 1.0, count = 5 }
 key      = { type = "click", at = [0, 0, 0], direction = [0, -1, 0], peak = 2.0, travel = 0.003, drop = 1.2, drop_travel = 0.0005 }
 return   = { type = "minimum_jerk", to = [0, 0, 0], duration = 0.8, stiffness = 300.0, damping = 20.0 }
+lead     = { type = "path", points = [[0, 0, 0], [0.03, 0, 0], [0.03, 0, 0.04]], duration = 2.0, stiffness = 900.0, damping = 100.0 }
+stray    = { type = "path", curve = { length_x = 0.1, range_z = 0.06, seed = 3 }, duration = 9.0, stiffness = 900.0, damping = 100.0 }
 )";
 
 std::map<std::string, Field> by_name(const std::vector<Field>& fields) {
@@ -71,7 +74,8 @@ TEST(ReadFieldTest, EveryKindIsReadAndMakesAScene) {
   const std::vector<Field> fields = read(kEveryKind);
   EXPECT_NO_THROW(Scene(fields, kRate));
   const auto all = by_name(fields);
-  EXPECT_EQ(all.size(), 24u);
+  EXPECT_EQ(all.size(), 26u);
+  EXPECT_EQ(std::get<PathParameters>(all.at("lead").kind).points[2], Vector3d(0.03, 0.0, 0.04));
   const auto& spring = std::get<SpringParameters>(all.at("guide").kind);
   EXPECT_EQ(spring.to, Vector3d(0.0, 0.02, 0.0));
   EXPECT_EQ(spring.gains.stiffness, 150.0);
@@ -273,6 +277,42 @@ TEST(ReadRegionTest, MistakesGetTheirSentence) {
   const std::string told = test::message_of([&] { document.finish(); });
   EXPECT_THAT(told, HasSubstr("x.toml:2: regions.a.type is 'ball'"));
   EXPECT_THAT(told, HasSubstr("x.toml:3: regions.b.radius is -1"));
+}
+
+/// Places by their names, and one number.
+class NamedPlaces final : public NumberSource {
+ protected:
+  bool takes_texts() const override { return true; }
+  std::optional<double> value_of(std::string_view text) const override {
+    return text == "$x" ? std::optional(0.05) : std::nullopt;
+  }
+  std::optional<Vector3d> vector_of(std::string_view text) const override {
+    return text == "$start" ? std::optional(Vector3d(0.01, 0.0, 0.0))
+           : text == "$far" ? std::optional(Vector3d(3.0, 0.0, 0.0))
+                            : std::optional(Vector3d(0.02, 0.0, 0.0));
+  }
+};
+
+TEST(ReadFieldTest, APathTakesPlacesNumbersAndNames) {
+  const std::string rest = ", duration = 1.0, stiffness = 900.0, damping = 10.0 }";
+  const auto points = [&](const std::string& list) {
+    const auto fields =
+        read("[fields]\na = { type = \"path\", points = " + list + rest + "\n", NamedPlaces{});
+    return std::get<PathParameters>(fields.front().kind).points;
+  };
+  const std::vector<Vector3d> expected{{0.01, 0.0, 0.0}, {0.02, 0.0, 0.0}};
+  EXPECT_EQ(points("[\"$start\", \"$goal\"]"), expected);
+  EXPECT_EQ(points("[[0.01, 0, 0], [\"$x\", 0, 0]]")[1], Vector3d(0.05, 0.0, 0.0));
+  const auto said = [&](const std::string& list) {
+    return told("a = { type = \"path\", points = " + list + rest, NamedPlaces{});
+  };
+  EXPECT_THAT(said("[[0, 0, 0], [0, 0]]"), HasSubstr("a list of places, [[x, y, z], …]"));
+  EXPECT_THAT(said("[[0, 0, 0], [0, 0, 0]]"), HasSubstr("fields.a.points go nowhere"));
+  EXPECT_THAT(said("[0, 0, 0.1]"), HasSubstr("a list of places"));
+  EXPECT_THAT(said("[\"$start\", \"$far\"]"), HasSubstr("the text \"$far\"; allowed: "));
+  EXPECT_THAT(
+      said("[[0, 0, 0], [0, 0, 0.1]], curve = { length_x = 0.1, range_z = 0.05, seed = 1 }"),
+      HasSubstr("fields.a.curve stands beside points"));
 }
 
 }  // namespace

@@ -69,6 +69,55 @@ TEST(TrialMistakesTest, ResponsesWithoutChoices) {
               Contains(HasSubstr("no other choice has")));
 }
 
+const char* const kBoxes = R"([regions.near]
+type = "sphere"
+centre = [0.0, 0.0, 0.03]
+radius = 0.01
+[regions.far]
+type = "sphere"
+centre = [0.0, 0.0, -0.03]
+radius = 0.01
+)";
+
+std::string with_choices(const std::string& choices, const std::string& more = "") {
+  return with(small_trials(kSmallStaircase, kBoxes),
+              "choices = [{ value = \"first\" }, { value = \"second\" }]",
+              "choices = " + choices + "\n" + more);
+}
+
+TEST(TrialMistakesTest, AnswersByPlaceAndPedal) {
+  const std::string good = "[{ value = \"a\", touch = \"near\" }, { value = \"b\", pedal = 0.5 }]";
+  EXPECT_THAT(problems_of_trials(with_choices(good, "touch_for = 0.3\n")), IsEmpty());
+  EXPECT_THAT(
+      problems_of_trials(with_choices("[{ value = \"a\", touch = \"nea\" }, { value = \"b\" }]")),
+      Contains(HasSubstr("response.choices[1].touch is \"nea\"; allowed: a region: far, near")));
+  EXPECT_THAT(problems_of_trials(
+                  with(kSmall, "{ value = \"first\" }", "{ value = \"first\", touch = \"near\" }")),
+              Contains(HasSubstr("no region: the definition states none; add [regions.NAME]")));
+  EXPECT_THAT(problems_of_trials(with_choices(
+                  "[{ value = \"a\", touch = \"near\" }, { value = \"b\", touch = \"near\" }]")),
+              Contains(HasSubstr("place and pedal no other choice has")));
+  EXPECT_THAT(problems_of_trials(
+                  with_choices("[{ value = \"a\", pedal = 0.2 }, { value = \"b\", pedal = 0.8 }]")),
+              Contains(HasSubstr("place and pedal no other choice has")));
+  EXPECT_THAT(problems_of_trials(
+                  with_choices("[{ value = \"a\" }, { value = \"b\" }]", "touch_for = 0.3\n")),
+              Contains(HasSubstr("response.touch_for stands alone; add touch")));
+}
+
+TEST(TrialMistakesTest, LimitsOfReactionTimes) {
+  const std::string two = "[{ value = \"a\" }, { value = \"b\" }]";
+  EXPECT_THAT(problems_of_trials(
+                  with_choices(two, "too_fast = 0.15\ntoo_slow = 2.0\nout_of_time = \"repeat\"\n")),
+              IsEmpty());
+  EXPECT_THAT(problems_of_trials(with_choices(two, "out_of_time = \"repeat\"\n")),
+              Contains(HasSubstr("response.out_of_time stands alone; add too_fast or too_slow")));
+  EXPECT_THAT(problems_of_trials(with_choices(two, "too_fast = 2.0\ntoo_slow = 1.0\n")),
+              Contains(HasSubstr("response.too_slow is 1 s; allowed: above too_fast, 2 s")));
+  EXPECT_THAT(problems_of_trials(with_choices(two, "too_slow = 3.0\ntimeout = 2.0\n")),
+              Contains(HasSubstr("response.too_slow is 3 s; allowed: below timeout, 2 s")));
+}
+
 TEST(TrialMistakesTest, ARightAnswerThatIsNoChoice) {
   EXPECT_THAT(
       problems_of_trials(with(kSmall, "correct = \"$interval.comparison\"", "correct = \"3\"")),

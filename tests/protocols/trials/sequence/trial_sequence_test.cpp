@@ -343,5 +343,62 @@ TEST(TrialSequenceTest, LevelsAreQuantisedWithinTheirRange) {
   EXPECT_DOUBLE_EQ(track.applied(1e4), 600.0);
 }
 
+TEST(TrialSequenceTest, WhatIsPostponedComesAtTheEndOfItsBlock) {
+  const auto d = definition("",
+                            "[factors]\nlevel = [310, 320, 330, 340, 350]\n[[blocks]]\nname = "
+                            "\"one\"\ntrials = 5\n[[blocks]]\nname = \"two\"\ntrials = 5\n");
+  TrialSequence plain(*d, taker()), sequence(*d, taker());
+  std::vector<std::string> planned, presented;
+  while (const auto next = plain.next()) {
+    planned.push_back(next->plan.condition);
+    plain.conclude(true, 1.0, true);
+  }
+  ASSERT_EQ(planned.size(), 10U);
+  while (const auto next = sequence.next()) {
+    presented.push_back(next->plan.condition);
+    if (presented.size() == 2) {
+      sequence.postpone();
+    } else {
+      sequence.conclude(true, 1.0, true);
+    }
+  }
+  std::vector<std::string> expected = planned;
+  expected.insert(expected.begin() + 5, planned[1]);
+  EXPECT_EQ(presented, expected);
+}
+
+TEST(TrialSequenceTest, AListOfLevelsTakesAPostponedOneLast) {
+  const auto d = definition(
+      "[procedure]\nkind = \"constant\"\nvariable = \"level\"\nlevels = [310.0, 320.0, "
+      "330.0]\nrepetitions = 2\n");
+  TrialSequence plain(*d, taker()), sequence(*d, taker());
+  std::vector<double> planned, presented;
+  while (const auto next = plain.next()) {
+    planned.push_back(next->applied.front());
+    plain.conclude(true, 1.0, true);
+  }
+  while (const auto next = sequence.next()) {
+    presented.push_back(next->applied.front());
+    if (presented.size() == 3) {
+      sequence.postpone();
+    } else {
+      sequence.conclude(true, 1.0, true);
+    }
+  }
+  ASSERT_EQ(planned.size(), 6U);
+  planned.push_back(planned[2]);
+  EXPECT_EQ(presented, planned);
+}
+
+TEST(TrialSequenceTest, AStaircaseAsksForAPostponedLevelAgain) {
+  const auto d = definition(kSmallStaircase);
+  TrialSequence sequence(*d, taker());
+  const double first = sequence.next()->applied.front();
+  sequence.postpone();
+  EXPECT_EQ(sequence.next()->applied.front(), first);
+  EXPECT_EQ(sequence.next()->plan.trial, 2);
+  EXPECT_EQ(sequence.running().front().trials, 0);
+}
+
 }  // namespace
 }  // namespace haptrial::protocols

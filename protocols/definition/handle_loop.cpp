@@ -1,0 +1,21 @@
+#include "protocols/definition/handle_loop.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "protocols/definition/definition.h"
+
+namespace haptrial::protocols {
+
+control::HandleLoop handle_loop(const Definition& d) {
+  control::HandleLoop loop;
+  loop.handle_mass = d.hand.handle_mass;
+  loop.rate = d.rate;
+  loop.force_delay = d.device.force_delay;
+  loop.velocity_window =
+      std::max({2, d.device.velocity_window,
+                static_cast<int>(std::lround(d.force_dimension.velocity_window * d.rate))});
+  return loop;
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,36 @@
+#include "protocols/trials/definition/grid.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/base/definition/table.h"
+
+namespace haptrial::protocols {
+
+std::vector<double> read_grid(Table& table, const std::string& key) {
+  if (table.is_table(key)) {
+    Table grid = table.table(key);
+    return read_spaced_grid(grid);
+  }
+  return table.is_array(key) ? table.numbers(key, {}, "")
+                             : std::vector<double>{table.number(key, {}, "")};
+}
+
+std::vector<double> read_spaced_grid(Table& grid) {
+  const double from = grid.number("from", {}, ""), to = grid.number("to", {}, "");
+  const auto count = static_cast<int>(grid.integer("count", 2, 2000));
+  const bool log = grid.has("spacing") && grid.choice("spacing", {"linear", "log"}) == "log";
+  if (!(from < to) || (log && from <= 0.0)) {
+    grid.reject("from", fmt::format("{}", from), log ? "above 0 and below `to`" : "below `to`");
+    return {from};
+  }
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) {
+    const double share = static_cast<double>(i) / (count - 1);
+    values.push_back(log ? from * std::pow(to / from, share) : from + share * (to - from));
+  }
+  return values;
+}
+
+}  // namespace haptrial::protocols

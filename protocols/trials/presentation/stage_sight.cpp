@@ -1,0 +1,66 @@
+#include "protocols/trials/presentation/stage_sight.h"
+
+#include <algorithm>
+#include <variant>
+
+#include "protocols/trials/definition/read_definition.h"
+
+namespace haptrial::protocols {
+namespace {
+
+Mark mark_at(const Eigen::Vector3d& p, double radius) {
+  const Eigen::Vector3f f = p.cast<float>();
+  return {{f.x(), f.y(), f.z()}, static_cast<float>(radius), 0};
+}
+
+/// Where a region is, and how large.
+Mark mark_of(const scene::Shape& shape) {
+  if (const auto* sphere = std::get_if<scene::Sphere>(&shape)) {
+    return mark_at(sphere->centre, sphere->radius);
+  }
+  if (const auto* box = std::get_if<scene::Box>(&shape)) {
+    return mark_at(box->centre, 0.5 * box->size.maxCoeff());
+  }
+  if (const auto* cylinder = std::get_if<scene::Cylinder>(&shape)) {
+    return mark_at(cylinder->centre, cylinder->radius);
+  }
+  return mark_at(std::get<scene::HalfSpace>(shape).point, 0.0);
+}
+
+}  // namespace
+
+Mark mark_to_touch(const scene::Shape& shape, std::size_t device) {
+  constexpr double kBehind = 0.01;  // a plane [m]
+  Mark mark = mark_of(shape);
+  if (const auto* half = std::get_if<scene::HalfSpace>(&shape)) {
+    mark = mark_at(half->point - kBehind * half->normal.normalized(), 0.0);
+  }
+  mark.device = static_cast<std::uint8_t>(device);
+  return mark;
+}
+
+StageSight sight_of(const NamedStage& stage, const Presented& presented, const Names& names,
+                    std::uint64_t seed) {
+  StageSight sight;
+  sight.sound = stage.sound;
+  for (const std::string& name : stage.show) {
+    const auto region = std::ranges::find(presented.regions, name, &scene::Region::name);
+    const auto look = std::ranges::find(presented.looks, name, &Look::name);
+    if (name == "hand") {
+      sight.hand = true;
+    } else if (name == "interval_number") {
+      sight.interval_number = true;
+    } else if (region != presented.regions.end()) {
+      sight.marks.push_back(mark_of(region->shape));
+      const auto index = static_cast<std::size_t>(region - presented.regions.begin());
+      sight.marks.back().device = static_cast<std::uint8_t>(presented.region_devices[index]);
+    } else if (look != presented.looks.end()) {
+      sight.dots = {look->dots, seed, true};
+    } else if (names.has_place(name)) {
+      sight.marks.push_back(mark_at(names.place(name), 0.0));
+    }
+  }
+  return sight;
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/scene/shape/shape.h"
+#include "protocols/trials/presentation/trial_pass.h"
+
+namespace haptrial::protocols {
+
+class Names;
+struct NamedStage;
+struct Presented;
+
+/// What a stage shows. @param seed  of its dots
+StageSight sight_of(const NamedStage& stage, const Presented& presented, const Names& names,
+                    std::uint64_t seed);
+
+/// Where a place to touch is shown, and where a hand aims at: inside of it.
+Mark mark_to_touch(const scene::Shape& shape, std::size_t device);
+
+}  // namespace haptrial::protocols
