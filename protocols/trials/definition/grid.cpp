@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/base/definition/table.h"
+#include "protocols/trials/definition/track.h"
 
 namespace haptrial::protocols {
 
@@ -31,6 +31,24 @@ std::vector<double> read_spaced_grid(Table& grid) {
     values.push_back(log ? from * std::pow(to / from, share) : from + share * (to - from));
   }
   return values;
+}
+
+psychometric::Axis read_axis(const TrackKeys& keys, const Track& track) {
+  using psychometric::Scale;
+  psychometric::Axis axis;
+  if (keys.has("scale")) {
+    const std::string scale = keys.of("scale").choice("scale", {"linear", "log10", "decibel"});
+    axis.scale = scale == "log10"     ? Scale::kLog10
+                 : scale == "decibel" ? Scale::kDecibel
+                                      : Scale::kLinear;
+  }
+  keys.track.otherwise("origin", 0.0);
+  axis.origin = keys.has("origin") ? keys.of("origin").number("origin", {}, track.unit) : 0.0;
+  if (axis.scale != Scale::kLinear && track.low <= axis.origin) {
+    keys.of("scale").reject("scale", "logarithmic", "\"linear\", or a range above the origin");
+    axis.scale = Scale::kLinear;
+  }
+  return axis;
 }
 
 }  // namespace haptrial::protocols

@@ -1,13 +1,27 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
-namespace haptrial {
-class Table;
-}
+#include "core/base/definition/table.h"
+#include "core/psychometric/function/axis.h"
 
 namespace haptrial::protocols {
+
+struct Track;
+
+/// Where a track finds its keys: in its own table, or else in that of its procedure.
+struct TrackKeys {
+  Table& track;
+  Table& procedure;
+
+  bool has(std::string_view key) const { return track.has(key) || procedure.has(key); }
+  Table& of(std::string_view key) const { return track.has(key) ? track : procedure; }
+};
+
+/// Reads `scale` and `origin` of the steps or the function of a track whose range is known.
+psychometric::Axis read_axis(const TrackKeys& keys, const Track& track);
 
 /// A list of numbers, one number, or { from, to, count, [spacing] }. Problems are noted.
 std::vector<double> read_grid(Table& table, const std::string& key);

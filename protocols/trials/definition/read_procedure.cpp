@@ -53,26 +53,6 @@ void read_range(const TrackKeys& keys, Track& track) {
   track.high = range[1];
 }
 
-}  // namespace
-
-Axis read_axis(const TrackKeys& keys, const Track& track) {
-  Axis axis;
-  if (keys.has("scale")) {
-    const std::string scale = keys.of("scale").choice("scale", {"linear", "log10", "decibel"});
-    axis.scale = scale == "log10"     ? Scale::kLog10
-                 : scale == "decibel" ? Scale::kDecibel
-                                      : Scale::kLinear;
-  }
-  axis.origin = number_or(keys, "origin", 0.0, {}, track.unit.c_str());
-  if (axis.scale != Scale::kLinear && track.low <= axis.origin) {
-    keys.of("scale").reject("scale", "logarithmic", "\"linear\", or a range above the origin");
-    axis.scale = Scale::kLinear;
-  }
-  return axis;
-}
-
-namespace {
-
 /// Reversals and trials at which a track stops; 0: not by these.
 struct Stop {
   int reversals{0};

@@ -15,7 +15,6 @@
 #include "core/psychometric/function/sigmoid_names.h"
 #include "core/psychometric/quest/psi_definition.h"
 #include "protocols/trials/definition/grid.h"
-#include "protocols/trials/definition/read_procedure.h"
 #include "protocols/trials/definition/track.h"
 #include "protocols/trials/language/expression.h"
 #include "protocols/trials/language/labels.h"

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "core/base/definition/table.h"
+#include "protocols/trials/definition/grid.h"
 #include "protocols/trials/definition/read_procedure.h"
 
 namespace haptrial::protocols {
