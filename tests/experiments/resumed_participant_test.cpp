@@ -123,7 +123,9 @@ std::vector<double> answers_of(const record::SessionReader& file) {
   std::vector<double> answers;
   const auto passes = file.passes();
   for (const record::ResponseRow& row : file.responses()) {
-    if (passes.at(static_cast<std::size_t>(row.pass)).status == record::PassStatus::kCompleted) {
+    const auto pass = static_cast<std::size_t>(row.pass);
+    // A kill may come between an answer and the row of its pass.
+    if (pass < passes.size() && passes[pass].status == record::PassStatus::kCompleted) {
       answers.push_back(row.value);
     }
   }
