@@ -30,7 +30,7 @@ constexpr double kMostPairs = 1e7;
 constexpr std::size_t kMostOutcomes = 64;
 
 /// What stands beside a grid, which has a table of its own then.
-std::vector<double> read_values(Table& all, const std::string& name) {
+std::vector<double> read_dimension_values(Table& all, const std::string& name) {
   if (!all.is_table(name)) {
     return read_grid(all, name);
   }
@@ -41,7 +41,7 @@ std::vector<double> read_values(Table& all, const std::string& name) {
 void read_stimulus(const TrackKeys& keys, QuestDefinition& quest, Track& track) {
   Table all = keys.of("stimulus").table("stimulus");
   for (const std::string& name : all.keys_as_written()) {
-    std::vector<double> values = read_values(all, name);
+    std::vector<double> values = read_dimension_values(all, name);
     double resolution = 0.0;
     if (all.is_table(name)) {
       Table own = all.table(name);
@@ -90,7 +90,7 @@ std::vector<double> read_prior(Table& own, const std::vector<double>& values) {
 void read_parameters(const TrackKeys& keys, QuestDefinition& quest) {
   Table all = keys.of("parameters").table("parameters");
   for (const std::string& name : all.keys_as_written()) {
-    QuestDimension parameter{name, read_values(all, name), {}, false};
+    QuestDimension parameter{name, read_dimension_values(all, name), {}, false};
     if (all.is_table(name)) {
       Table own = all.table(name);
       if (own.has("prior")) {
@@ -256,8 +256,9 @@ void read_quest(const TrackKeys& keys, const QuestStop& stop, Track& track) {
   const bool named = keys.has("function");
   const char* key = named ? "function" : "probability";
   if (named == keys.has("probability")) {
-    keys.of("kind").reject("kind", "\"quest_plus\" without one way from stimulus to answer",
-                           "with one of probability, a formula, and function, a sigmoid");
+    keys.of("kind").reject("kind",
+                           "is \"quest_plus\", which needs one way from stimulus to answer; state "
+                           "probability, a formula, or function, a sigmoid");
     for (const char* each : {"probability", "function"}) {
       static_cast<void>(keys.of(each).whole_text(each));
     }
