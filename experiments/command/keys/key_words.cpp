@@ -262,14 +262,14 @@ procedure.levels.from | | first level
 procedure.levels.to | | last level
 procedure.levels.count | | of levels
 procedure.levels.spacing | linear | of levels
-procedure.stimulus.NAME | needed | variable that it sets, with its levels: a list, { from, to, count, spacing } or { values }
+procedure.stimulus.NAME | | variable that it sets, with its levels: a list, { from, to, count, spacing } or { values }
 procedure.stimulus.NAME.values | from, to and count | levels
 procedure.stimulus.NAME.from | | first level
 procedure.stimulus.NAME.to | | last level
 procedure.stimulus.NAME.count | | of levels
 procedure.stimulus.NAME.spacing | linear | of levels
-procedure.stimulus.NAME.resolution | not rounded | to which the variable is rounded
-procedure.parameters.NAME | needed | parameter of the formula, with the values that are considered, likewise
+procedure.stimulus.NAME.resolution | | to which the variable is rounded
+procedure.parameters.NAME | | parameter of the formula, with the values that are considered, likewise
 procedure.parameters.NAME.values | from, to and count | values
 procedure.parameters.NAME.from | | first one
 procedure.parameters.NAME.to | | last one
