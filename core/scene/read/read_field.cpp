@@ -251,7 +251,7 @@ FieldKind read_path(const FieldReader& read) {
   const bool both = read.table.has("points") && read.table.has("curve");
   if (both) {
     read.table.reject("curve", "stands beside points; keep one of the two");
-    read.table.leave("points");
+    static_cast<void>(read.source.vectors(read.table, "points", kPlaceBounds, "m"));
   }
   std::vector<Eigen::Vector3d> points =
       read.table.has("curve") ? read_curve(read)

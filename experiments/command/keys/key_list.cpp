@@ -42,8 +42,7 @@ std::string shared(const std::string& table) {
 }
 
 /// Beginnings that no reading with one change after another comes to: a question that has one way
-/// of being answered alone, a channel without a second place, a procedure without a named function.
-/// Choices beyond the last are the last.
+/// of being answered alone, a channel without a second place. Choices beyond the last are the last.
 std::vector<KeyExploration::Plan> beginnings() {
   constexpr std::size_t kMostChoices = 40;
   constexpr std::size_t kNotThere = 1;
@@ -67,15 +66,6 @@ std::vector<KeyExploration::Plan> beginnings() {
     plans.push_back({{"fields.NAME.type", type},
                      {there("fields.NAME.from"), kNotThere},
                      {there("fields.NAME.to"), kNotThere}});
-  }
-  constexpr std::size_t kKinds = 10;
-  for (std::size_t kind = 0; kind < kKinds; ++kind) {
-    KeyExploration::Plan plan;
-    for (const std::string table : {"procedure", "procedure.tracks[]"}) {
-      plan[table + ".kind"] = kind;
-      plan[there(table + ".function")] = kNotThere;
-    }
-    plans.push_back(std::move(plan));
   }
   return plans;
 }

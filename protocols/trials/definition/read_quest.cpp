@@ -172,11 +172,18 @@ class Formulas {
   std::vector<double> values_;
 };
 
-void read_formulas(const TrackKeys& keys, QuestDefinition& quest) {
+std::vector<std::string> read_probability(const TrackKeys& keys) {
+  if (!keys.has("probability")) {
+    return {};
+  }
   Table& table = keys.of("probability");
-  const std::vector<std::string> texts = table.is_array("probability")
-                                             ? table.texts("probability")
-                                             : std::vector{table.text("probability")};
+  return table.is_array("probability") ? table.texts("probability")
+                                       : std::vector{table.text("probability")};
+}
+
+void take_formulas(const TrackKeys& keys, const std::vector<std::string>& texts,
+                   QuestDefinition& quest) {
+  Table& table = keys.of("probability");
   quest.outcomes = texts.size() + 1;
   if (texts.empty() || quest.outcomes > kMostOutcomes) {
     table.reject("probability", fmt::format("a list of {}", texts.size()),
@@ -195,12 +202,13 @@ void read_formulas(const TrackKeys& keys, QuestDefinition& quest) {
 }
 
 /// A sigmoid of one stimulus: psi's model, with priors.
-QuestDefinition read_function(const TrackKeys& keys, const QuestDefinition& quest, Track& track) {
+QuestDefinition take_function(const TrackKeys& keys, const std::string& name,
+                              const QuestDefinition& quest, Track& track) {
   PsiParameters p;
   p.levels = quest.stimulus.front().values;
   p.function.axis = track.axis = read_axis(keys, track);
   p.function.guess = 0.5;
-  const SigmoidForm named = sigmoid_named(keys.of("function").text("function"));
+  const SigmoidForm named = sigmoid_named(name);
   p.function.sigmoid = named.sigmoid;
   if (named.logarithmic && p.function.axis.scale == Scale::kLinear) {
     p.function.axis.scale = Scale::kLog10;
@@ -252,14 +260,14 @@ void read_quest(const TrackKeys& keys, const QuestStop& stop, Track& track) {
   QuestDefinition quest;
   read_stimulus(keys, quest, track);
   read_parameters(keys, quest);
+  const std::vector<std::string> formulas = read_probability(keys);
   const bool named = keys.has("function");
+  const std::string name = named ? keys.of("function").text("function") : "";
   const char* key = named ? "function" : "probability";
   if (named == keys.has("probability")) {
-    keys.of("kind").reject("kind", "\"quest_plus\" without one way from stimulus to answer",
-                           "with one of probability, a formula, and function, a sigmoid");
-    for (const char* each : {"probability", "function"}) {
-      static_cast<void>(keys.of(each).whole_text(each));
-    }
+    keys.of("kind").reject("kind",
+                           "is \"quest_plus\", which needs one way from stimulus to answer; state "
+                           "probability, a formula, or function, a sigmoid");
     return;
   }
   if (quest.stimulus.empty() || quest.parameters.empty()) {
@@ -267,11 +275,11 @@ void read_quest(const TrackKeys& keys, const QuestStop& stop, Track& track) {
   }
   try {
     if (!named) {
-      read_formulas(keys, quest);
+      take_formulas(keys, formulas, quest);
     }
     check_size(quest);
     if (named) {
-      quest = read_function(keys, quest, track);
+      quest = take_function(keys, name, quest, track);
     }
     if (!quest.model) {
       return;

@@ -208,7 +208,7 @@ TEST(QuestDefinitionTest, MistakesHaveTheirSentence) {
   EXPECT_THAT(problems_of_trials(changed("normcdf(", "2 * normcdf(")),
               Contains(HasSubstr("procedure.probability cannot be used as stated")));
   EXPECT_THAT(problems_of_trials(changed("counts =", "function = \"norm\"\ncounts =")),
-              Contains(HasSubstr("with one of probability, a formula, and function, a sigmoid")));
+              Contains(HasSubstr("state probability, a formula, or function, a sigmoid")));
   EXPECT_THAT(problems_of_trials(changed("1, 1, 1, 2]", "1, 1, 2]")),
               Contains(HasSubstr("procedure.parameters.gain.prior is a list of 5; allowed: 6, a "
                                  "weight for each value")));

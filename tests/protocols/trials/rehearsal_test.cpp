@@ -1,0 +1,317 @@
+// Whole sessions of virtual participants without a runner: a hand goes to a place or presses the
+// pedal, answers out of time come again, QUEST+ of two dimensions finds what is felt.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "core/base/definition/table.h"
+#include "core/psychometric/procedure/procedure.h"
+#include "core/record/trials/trial_rows.h"
+#include "protocols/interface/session_file.h"
+#include "protocols/interface/session_task.h"
+#include "protocols/trials/defined_trials.h"
+#include "protocols/trials/trials_protocol.h"
+
+namespace haptrial::protocols {
+namespace {
+
+using record::ResponseSource;
+
+/// A pull to the right that is felt or not. @param response  its choices, and what else it has
+std::string felt_or_not(const std::string& response) {
+  return R"([experiment]
+protocol = "trials"
+name = "felt"
+[design]
+participants = 1
+[fields.pull]
+type = "constant"
+force = ["$level", 0.0, 0.0]
+[fields.home]
+type = "minimum_jerk"
+to = [0.0, 0.0, 0.0]
+duration = 0.4
+stiffness = 300.0
+damping = 20.0
+[regions.left]
+type = "sphere"
+centre = [-0.03, 0.0, 0.0]
+radius = 0.01
+[regions.right]
+type = "box"
+centre = [0.03, 0.0, 0.0]
+size = [0.02, 0.02, 0.02]
+[[stages]]
+name = "home"
+fields = ["home"]
+until = { time = 0.6 }
+[[stages]]
+name = "feel"
+fields = ["pull"]
+until = { time = 0.4 }
+[procedure]
+kind = "constant"
+variable = "level"
+levels = [0.02, 1.0]
+repetitions = 6
+counts = "$answer == 1"
+[observer]
+decides = "yes"
+in_stage = "feel"
+criterion = 0.4
+force_floor = 0.02
+[observer.actions]
+feel = { do = "hold" }
+[response]
+question = "Did it pull?"
+)" + response;
+}
+
+/// Where the tip was on each tick.
+class Tips final : public stimulus::Observer {
+ public:
+  void observe(const stimulus::Shown& shown, const stimulus::Forces&, double) noexcept override {
+    at.push_back(shown.tool);
+  }
+  std::vector<Eigen::Vector3d> at;
+};
+
+/// Keeps rows in memory.
+class Rows final : public SessionFile {
+ public:
+  std::vector<record::LevelRow> levels;
+  std::vector<record::OutOfTimeRow> late;
+  std::vector<record::StageRow> stages;
+
+  void keep_stimulus(std::int32_t, std::span<const record::StimulusRow>) override {}
+  bool holds_stimulus(std::int32_t) const override { return true; }
+  void event(const std::string&, const std::string&) override {}
+  const std::vector<record::PassRow>& earlier_passes() const override { return none_; }
+  bool was_cut_short(const PlannedTrial&) const override { return false; }
+
+ protected:
+  void put(const record::Rows& batch) override {
+    const auto add = [&](auto& to) {
+      using Row = typename std::decay_t<decltype(to)>::value_type;
+      const auto rows = batch.as<Row>();
+      to.insert(to.end(), rows.begin(), rows.end());
+    };
+    add(levels);
+    add(late);
+    add(stages);
+  }
+
+ private:
+  std::vector<record::PassRow> none_;
+};
+
+/// A session of one virtual participant.
+class RehearsalTest : public testing::Test {
+ protected:
+  void rehearse(const std::string& text) {
+    Table root = Table::parse(text, "study.toml");
+    definition_ = trials_protocol().read(root, "study.toml", nullptr);
+    root.finish();
+    DefinedTrials trials(studied(), place());
+    const std::unique_ptr<Rig> rig = trials.virtual_rig();
+    SessionTask::Log log(64, 64);  // nobody reads it
+    SessionTask task({.devices = {{&rig->device(), definition_->envelope}},
+                      .log = log,
+                      .observers = {rig->subject(), &tips_}},
+                     SessionTask::Leave::kNever);
+    std::uint64_t index = 0;
+    for (auto trial = trials.next(nullptr); trial; trial = trials.next(&outcomes_.back())) {
+      const auto row = static_cast<std::int32_t>(outcomes_.size());
+      Pass& pass = trials.make_pass(*trial, trials.phases().front());
+      task.start(pass, row);
+      for (const std::uint64_t last = index + 30000; !task.idle(); ++index) {
+        ASSERT_LT(index, last) << "half a minute and no answer";
+        task.tick({index, static_cast<std::int64_t>(index) * 1'000'000, 1e-3});
+      }
+      ASSERT_EQ(task.result().state, PassState::kCompleted) << trials.why_aborted();
+      trials.close_pass(rows_, row);
+      outcomes_.push_back({*trial, TrialEnd::kCompleted, trials.responses()});
+      for (record::ResponseRow& response : outcomes_.back().responses) {
+        response.pass = row;
+        responses_.push_back(response);
+      }
+    }
+  }
+  const StudiedDefinition& studied() const {
+    return dynamic_cast<const StudiedDefinition&>(*definition_);
+  }
+  static SessionPlace place() {
+    SessionPlace place;
+    place.subject = "S01";
+    place.seed = 7;
+    give_seeds(place);
+    return place;
+  }
+
+  std::unique_ptr<Definition> definition_;
+  Tips tips_;
+  Rows rows_;
+  std::vector<Outcome> outcomes_;
+  std::vector<record::ResponseRow> responses_;
+};
+
+TEST_F(RehearsalTest, AVirtualHandGoesToThePlaceOfItsAnswer) {
+  ASSERT_NO_FATAL_FAILURE(
+      rehearse(felt_or_not("choices = [{ value = \"yes\", touch = \"right\" }, { value = \"no\", "
+                           "touch = \"left\" }]\n")));
+  ASSERT_EQ(responses_.size(), 12u);
+  std::map<std::int32_t, std::uint64_t> asked;  // the first tick after the last stage
+  for (const record::StageRow& stage : rows_.stages) {
+    asked[stage.pass] = stage.last_sample + 1;
+  }
+  std::map<std::string, int> given;
+  for (const record::ResponseRow& row : responses_) {
+    ++given[row.text];
+    EXPECT_EQ(row.source, ResponseSource::kPlace);
+    EXPECT_EQ(row.code, row.text == "yes" ? 1 : 0) << "left is the first region by name";
+    const auto inside = [&](std::uint64_t tick) {
+      const Eigen::Vector3d& p = tips_.at.at(tick);
+      return row.text == "yes" ? (p - Eigen::Vector3d(0.03, 0.0, 0.0)).cwiseAbs().maxCoeff() <= 0.01
+                               : (p - Eigen::Vector3d(-0.03, 0.0, 0.0)).norm() <= 0.01;
+    };
+    EXPECT_TRUE(inside(row.sequence)) << "the tick on which the tip came in";
+    EXPECT_FALSE(inside(row.sequence - 1));
+    for (std::uint64_t tick = row.sequence; tick <= row.sequence + 200; ++tick) {
+      ASSERT_TRUE(inside(tick));
+    }
+    const auto ticks = static_cast<double>(row.sequence - asked.at(row.pass) + 1);
+    EXPECT_NEAR(row.reaction_time, ticks / 1000.0, 1e-9);
+  }
+  EXPECT_EQ(given, (std::map<std::string, int>{{"yes", 6}, {"no", 6}}));
+}
+
+TEST_F(RehearsalTest, AHandThatIsInThePlaceAlreadyLeavesItFirst) {
+  std::string text = felt_or_not(
+      "choices = [{ value = \"yes\", touch = \"right\" }, { value = \"no\", touch = \"left\" }]\n");
+  const std::string home = "to = [0.0, 0.0, 0.0]";
+  text.replace(text.find(home), home.size(), "to = [0.03, 0.0, 0.0]");
+  ASSERT_NO_FATAL_FAILURE(rehearse(text));
+  for (const record::ResponseRow& row : responses_) {
+    EXPECT_GT(row.reaction_time, row.text == "yes" ? 0.6 : 0.1);
+  }
+  EXPECT_EQ(responses_.size(), 12u);
+}
+
+TEST_F(RehearsalTest, AVirtualParticipantPressesThePedal) {
+  ASSERT_NO_FATAL_FAILURE(rehearse(felt_or_not(
+      "choices = [{ value = \"yes\", pedal = 0.5 }, { value = \"no\", buttons = [0] }]\n")));
+  int pedal = 0;
+  for (const record::ResponseRow& row : responses_) {
+    EXPECT_EQ(row.source == ResponseSource::kPedal, row.text == "yes");
+    pedal += row.source == ResponseSource::kPedal ? 1 : 0;
+    EXPECT_GT(row.reaction_time, 0.1);
+  }
+  EXPECT_EQ(pedal, 6);
+}
+
+const char* const kTwoKeys =
+    "choices = [{ value = \"yes\" }, { value = \"no\" }]\ntoo_fast = 0.5\ntoo_slow = 0.7\n";
+
+TEST_F(RehearsalTest, AnswersOutOfTimeAreToldAndCount) {
+  ASSERT_NO_FATAL_FAILURE(rehearse(felt_or_not(kTwoKeys)));
+  std::size_t beyond = 0;
+  for (const record::ResponseRow& row : responses_) {
+    beyond += row.reaction_time < 0.5 || row.reaction_time > 0.7 ? 1 : 0;
+  }
+  EXPECT_EQ(responses_.size(), 12u);
+  EXPECT_EQ(rows_.late.size(), beyond);
+  EXPECT_GT(beyond, 0u) << "the median is 0.6 s and the spread 0.3";
+  for (const record::OutOfTimeRow& row : rows_.late) {
+    EXPECT_FALSE(row.again);
+    EXPECT_EQ(row.limit, row.how == record::OutOfTime::kTooFast ? 0.5 : 0.7);
+  }
+  for (const record::LevelRow& row : rows_.levels) {
+    EXPECT_TRUE(std::isfinite(row.outcome));
+  }
+}
+
+TEST_F(RehearsalTest, TrialsOfAnswersOutOfTimeComeAgainUntilAllAreInTime) {
+  ASSERT_NO_FATAL_FAILURE(
+      rehearse(felt_or_not(std::string(kTwoKeys) + "out_of_time = \"repeat\"\n")));
+  std::map<std::int32_t, bool> again;
+  for (const record::OutOfTimeRow& row : rows_.late) {
+    EXPECT_TRUE(row.again);
+    again[row.pass] = true;
+  }
+  ASSERT_GT(again.size(), 0u);
+  std::map<double, int> learnt;
+  for (const record::LevelRow& row : rows_.levels) {
+    EXPECT_EQ(std::isnan(row.outcome), again.contains(row.pass));
+    learnt[row.applied] += std::isnan(row.outcome) ? 0 : 1;
+  }
+  EXPECT_EQ(learnt, (std::map<double, int>{{0.02, 6}, {1.0, 6}}));
+  EXPECT_EQ(outcomes_.size(), 12u + again.size());
+  // A resumed session goes the same way from what is recorded.
+  DefinedTrials resumed(studied(), place());
+  std::optional<PlannedTrial> trial = resumed.next(nullptr);
+  for (const Outcome& outcome : outcomes_) {
+    ASSERT_TRUE(trial);
+    EXPECT_EQ(trial->stimulus_seed, outcome.trial.stimulus_seed);
+    EXPECT_EQ(trial->trial, outcome.trial.trial);
+    trial = resumed.next(&outcome);
+  }
+  EXPECT_FALSE(trial);
+}
+
+/// The size of the pull decides: yes where it is felt above the criterion.
+TEST_F(RehearsalTest, QuestOfTwoDimensionsFindsTheCriterionOfTheParticipant) {
+  ASSERT_NO_FATAL_FAILURE(rehearse(R"toml([experiment]
+protocol = "trials"
+name = "plane"
+[design]
+participants = 1
+[fields.pull]
+type = "constant"
+force = ["$x", "-$y", 0.0]
+[[stages]]
+name = "feel"
+fields = ["pull"]
+until = { time = 0.4 }
+[response]
+question = "Did it pull?"
+choices = [{ value = "yes" }, { value = "no" }]
+[procedure]
+kind = "quest_plus"
+probability = "normcdf((sqrt($x ^ 2 + $y ^ 2) - $threshold) / $spread)"
+counts = "$answer == 1"
+stop = { trials = 60 }
+[procedure.stimulus]
+x = { from = 0.0, to = 2.0, count = 9, resolution = 0.1 }
+y = { from = 0.0, to = 2.0, count = 9 }
+[procedure.parameters]
+threshold = { from = 0.2, to = 1.8, count = 33 }
+spread = [0.05, 0.1, 0.2, 0.4]
+[observer]
+decides = "yes"
+criterion = 0.8
+force_floor = 0.1
+force_weber = 0.05
+lapse = 0.0
+[observer.actions]
+feel = { do = "hold" }
+)toml"));
+  const auto procedure = studied().tracks.front().begin(1, "track 1");
+  const std::vector<record::LevelRow>& levels = rows_.levels;
+  ASSERT_EQ(levels.size(), 120u) << "a row for each dimension";
+  for (std::size_t i = 0; i < levels.size(); i += 2) {
+    EXPECT_EQ(levels[i].variable, "x");
+    EXPECT_EQ(levels[i + 1].variable, "y");
+    EXPECT_EQ(procedure->next(), (psychometric::Level{levels[i].asked, levels[i + 1].asked}));
+    procedure->report(levels[i].outcome, {levels[i].applied, levels[i + 1].applied});
+  }
+  const auto found = procedure->estimates();
+  ASSERT_FALSE(found.empty());
+  EXPECT_NEAR(found.front().value, 0.8, 3.0 * *found.front().deviation);
+  EXPECT_LT(*found.front().deviation, 0.1);
+}
+
+}  // namespace
+}  // namespace haptrial::protocols
