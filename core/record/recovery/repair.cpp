@@ -228,8 +228,10 @@ void write_repaired(SessionWriter writer, const RecoveredRows& rows, const Plan&
 }
 
 /// Rows of a table of a protocol that nothing in /samples or /trials goes with.
+/// @param end  behind the last tick  @param passes, sampled  rows of /trials; passes that samples
+/// name, too: a row of any other would be taken for one of the next pass
 std::optional<std::string> wrong_in(const TableDescription& table, const SessionReader& reader,
-                                    std::uint64_t end, std::size_t passes) {
+                                    std::uint64_t end, std::size_t passes, std::size_t sampled) {
   const std::uint64_t count = reader.count(table);
   if (table.of() == RowsOf::kEachTick && count != reader.sample_count()) {
     return fmt::format("/{} has {} rows, and /samples {}", table.name(), count,
@@ -239,12 +241,17 @@ std::optional<std::string> wrong_in(const TableDescription& table, const Session
       static_cast<std::uint64_t>(reader.integers(table, "sequence", count - 1, 1).front()) >= end) {
     return fmt::format("/{} refers to ticks that are missing", table.name());
   }
-  if (table.of() != RowsOf::kEndedPass) {
+  if (table.of() != RowsOf::kEndedPass && table.of() != RowsOf::kPass) {
     return std::nullopt;
   }
+  const bool ended = table.of() == RowsOf::kEndedPass;
+  if (!ended && reader.sample_count() == 0) {
+    return std::nullopt;  // the rows that stand here are all that is left
+  }
   for (const std::int64_t pass : reader.integers(table, "pass", 0, count)) {
-    if (pass >= static_cast<std::int64_t>(passes)) {
-      return fmt::format("pass {} of /{} is not in /trials", pass, table.name());
+    if (pass >= static_cast<std::int64_t>(ended ? passes : std::max(passes, sampled))) {
+      return fmt::format("pass {} of /{} is not in /{}", pass, table.name(),
+                         ended ? "trials" : "samples");
     }
   }
   return std::nullopt;
@@ -254,8 +261,10 @@ std::optional<std::string> wrong_in(const TableDescription& table, const Session
 std::optional<std::string> wrong_between_rows(const SessionReader& reader,
                                               const TableList& tables) {
   std::uint64_t next = 0;
+  std::size_t sampled = 0;  // passes
   std::optional<std::string> wrong;
   each_sample(reader, [&](const Sample& sample) {
+    sampled = std::max(sampled, static_cast<std::size_t>(sample.pass + 1));
     if (sample.sequence < next && !wrong) {
       wrong = fmt::format("sequence number {} of /samples follows {}", sample.sequence, next - 1);
     }
@@ -274,7 +283,7 @@ std::optional<std::string> wrong_between_rows(const SessionReader& reader,
     if (!reader.has(*table)) {
       continue;
     }
-    wrong = wrong_in(*table, reader, next, passes.size());
+    wrong = wrong_in(*table, reader, next, passes.size(), sampled);
     if (wrong) {
       return wrong;
     }

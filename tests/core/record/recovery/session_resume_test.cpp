@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/rows/response.h"
 #include "core/record/table/schema.h"
 #include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
@@ -181,6 +182,33 @@ TEST(SessionResumeTest, APassWithoutAllOfItsSamplesIsOpenAgain) {
   EXPECT_EQ(reader.passes()[0].status, PassStatus::kCompleted);
   EXPECT_EQ(reader.passes()[1].status, PassStatus::kAborted);
   EXPECT_TRUE(check_session(reader).ok);
+}
+
+/// Answers are in the file at once, samples when their chunk is full: a kill may keep the one and
+/// lose the others. The next pass gets the row of the lost one, but not its answers.
+TEST(SessionResumeTest, AnswersOfAPassThatLeftNoSamplesAreDropped) {
+  const TemporaryFolder folder;
+  {
+    SessionWriter writer(folder / "a.h5", live_info(), {&responses_table()});
+    writer.append(ticks(0, 4300));
+    writer.add_pass(pass_row(0));
+    for (const std::int32_t pass : {0, 1, 2}) {  // of 1 there are samples, and no row; of 2 none
+      ResponseRow answer;
+      answer.pass = pass;
+      answer.question = "which";
+      writer.add_response(answer);
+    }
+  }
+  Resumed found;
+  SessionWriter writer = SessionWriter::resume(folder / "a.h5", found);
+  EXPECT_THAT(found.repaired, HasSubstr("pass 2 of /responses is not in /samples"));
+  ASSERT_EQ(found.open_passes.size(), 1u);
+  EXPECT_EQ(found.open_passes[0].row, 1);
+  for (const ResponseRow& row : found.responses) {
+    EXPECT_LT(row.pass, 2);
+  }
+  EXPECT_GE(found.responses.size(), 1u);
+  EXPECT_TRUE(fs::exists(folder / "a.h5.partial.damaged"));
 }
 
 TEST(SessionResumeTest, ASessionWhoseLoopHadEndedNeedsOnlyToBeClosed) {
