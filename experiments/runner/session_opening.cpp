@@ -96,8 +96,11 @@ static record::TableList tables_of(const SessionRequest& request, const protocol
 /// What its file may have already: the tables of the protocol, and those of any.
 static record::TableList possible_tables(const SessionRequest& request) {
   record::TableList tables = request.protocol->tables();
-  const record::TableList& common = record::common_tables();
-  tables.insert(tables.end(), common.begin(), common.end());
+  for (const record::TableDescription* table : record::common_tables()) {
+    if (std::find(tables.begin(), tables.end(), table) == tables.end()) {
+      tables.push_back(table);
+    }
+  }
   return tables;
 }
 

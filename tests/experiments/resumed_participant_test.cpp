@@ -14,7 +14,9 @@
 
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/recovery/session_resume.h"
 #include "core/record/trials/trial_rows.h"
+#include "core/record/write/session_writer.h"
 #include "core/subject/perceiver/two_rate.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
@@ -149,6 +151,25 @@ TEST_F(ResumedParticipantTest, TheAnswerBeforeCounts) {
     EXPECT_EQ(answers_of(record::SessionReader(folder_ / name)), whole) << at;
   }
   EXPECT_TRUE(telling);
+}
+
+TEST_F(ResumedParticipantTest, AnAnswerWhosePassIsLostIsGivenAgain) {
+  constexpr int kTrials = 4;
+  use(kAlternates);
+  kill_at("killed.h5", kTrials, 1500);
+  {  // what a kill leaves between an answer and the samples of its pass
+    record::Resumed found;
+    auto writer = record::SessionWriter::resume(folder_ / "killed.h5", found, known_tables());
+    record::ResponseRow lost;
+    lost.pass = static_cast<std::int32_t>(found.passes.size() + found.open_passes.size());
+    lost.question = "answer";
+    lost.value = 2.0;
+    writer.add_response(lost);
+  }
+  resume("killed.h5", kTrials);
+  EXPECT_EQ(answers_of(record::SessionReader(folder_ / "killed.h5")),
+            (std::vector<double>{1, 2, 1, 2}));
+  EXPECT_TRUE(fs::exists(folder_ / "killed.h5.partial.damaged"));
 }
 
 std::string short_curl_field() {
