@@ -32,7 +32,7 @@ int attempts_of(const record::Resumed& before, const protocols::PlannedTrial& tr
 std::optional<record::AnswerRow> answer_to(const record::Resumed& before,
                                            const record::AnswerRow& asked);
 
-/// Of all that is recorded [ns]: the last events may be younger than the last ticks that reached
+/// The time of the youngest record [ns]: events may be younger than the last ticks that reached
 /// the file.
 std::int64_t last_time(const record::Resumed& before);
 

@@ -41,7 +41,7 @@ record::SessionWriter open_writer(const SessionRequest& request, const device::D
 /// @throws InputError, RunError as SessionWriter does
 bool close_what_had_ended(const SessionRequest& request);
 
-/// Of every device; the last one stands for those that follow.
+/// The choice for each device; the last one holds for those that follow.
 std::vector<DeviceChoice> choices_of(const SessionRequest& request);
 
 /// Where somebody looks at the figures: at a console, or at the end; else null.
