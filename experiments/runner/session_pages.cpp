@@ -7,6 +7,7 @@
 
 #include "core/render/gl/image.h"
 #include "experiments/pages/virtual_answers.h"
+#include "experiments/runner/earlier_run.h"
 #include "experiments/screen/screen.h"
 
 namespace haptrial::experiments {

@@ -9,6 +9,7 @@
 #include "core/base/definition/table.h"
 #include "core/base/definition/table_internal.h"
 #include "core/base/definition/table_words_internal.h"
+#include "core/base/text/nearest.h"
 
 namespace haptrial {
 
