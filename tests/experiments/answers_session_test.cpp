@@ -15,63 +15,13 @@
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
 #include "tests/experiments/shipped.h"
+#include "tests/support/felt_or_not.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments {
 namespace {
 
 using record::ResponseSource;
-
-/// A pull to the right that is felt or not. @param choices  of the response, and what else it has
-std::string felt_or_not(const std::string& response, const std::string& more = "") {
-  return R"([experiment]
-protocol = "trials"
-name = "felt"
-[design]
-participants = 1
-[fields.pull]
-type = "constant"
-force = ["$level", 0.0, 0.0]
-[fields.home]
-type = "minimum_jerk"
-to = [0.0, 0.0, 0.0]
-duration = 0.4
-stiffness = 300.0
-damping = 20.0
-[regions.left]
-type = "sphere"
-centre = [-0.03, 0.0, 0.0]
-radius = 0.01
-[regions.right]
-type = "box"
-centre = [0.03, 0.0, 0.0]
-size = [0.02, 0.02, 0.02]
-[[stages]]
-name = "home"
-fields = ["home"]
-until = { time = 0.6 }
-[[stages]]
-name = "feel"
-fields = ["pull"]
-until = { time = 0.4 }
-[procedure]
-kind = "constant"
-variable = "level"
-levels = [0.02, 1.0]
-repetitions = 6
-counts = "$answer == 1"
-[observer]
-decides = "yes"
-in_stage = "feel"
-criterion = 0.4
-force_floor = 0.02
-[observer.actions]
-feel = { do = "hold" }
-[response]
-question = "Did it pull?"
-)" + response +
-         more;
-}
 
 class AnswersSessionTest : public testing::Test {
  protected:
@@ -96,9 +46,9 @@ class AnswersSessionTest : public testing::Test {
 };
 
 TEST_F(AnswersSessionTest, TheSamplesShowWhenTheTipCameIntoItsPlace) {
-  const auto file =
-      run(felt_or_not("choices = [{ value = \"yes\", touch = \"right\" }, { value = \"no\", touch "
-                      "= \"left\" }]\n"));
+  const auto file = run(test::felt_or_not(
+      "choices = [{ value = \"yes\", touch = \"right\" }, { value = \"no\", touch "
+      "= \"left\" }]\n"));
   const auto responses = file->responses();
   ASSERT_EQ(responses.size(), 12u);
   std::map<std::string, int> given;
@@ -133,7 +83,7 @@ const char* const kTwoKeys =
     "choices = [{ value = \"yes\" }, { value = \"no\" }]\ntoo_fast = 0.5\ntoo_slow = 0.7\n";
 
 TEST_F(AnswersSessionTest, AnalysisAndReplayKnowWhichTrialsCameAgain) {
-  const auto file = run(felt_or_not(kTwoKeys, "out_of_time = \"repeat\"\n"));
+  const auto file = run(test::felt_or_not(std::string(kTwoKeys) + "out_of_time = \"repeat\"\n"));
   std::map<std::int32_t, bool> again;
   for (const record::OutOfTimeRow& row : file->rows<record::OutOfTimeRow>()) {
     EXPECT_TRUE(row.again);

@@ -14,61 +14,12 @@
 #include "protocols/interface/session_task.h"
 #include "protocols/trials/defined_trials.h"
 #include "protocols/trials/trials_protocol.h"
+#include "tests/support/felt_or_not.h"
 
 namespace haptrial::protocols {
 namespace {
 
 using record::ResponseSource;
-
-/// A pull to the right that is felt or not. @param response  its choices, and what else it has
-std::string felt_or_not(const std::string& response) {
-  return R"([experiment]
-protocol = "trials"
-name = "felt"
-[design]
-participants = 1
-[fields.pull]
-type = "constant"
-force = ["$level", 0.0, 0.0]
-[fields.home]
-type = "minimum_jerk"
-to = [0.0, 0.0, 0.0]
-duration = 0.4
-stiffness = 300.0
-damping = 20.0
-[regions.left]
-type = "sphere"
-centre = [-0.03, 0.0, 0.0]
-radius = 0.01
-[regions.right]
-type = "box"
-centre = [0.03, 0.0, 0.0]
-size = [0.02, 0.02, 0.02]
-[[stages]]
-name = "home"
-fields = ["home"]
-until = { time = 0.6 }
-[[stages]]
-name = "feel"
-fields = ["pull"]
-until = { time = 0.4 }
-[procedure]
-kind = "constant"
-variable = "level"
-levels = [0.02, 1.0]
-repetitions = 6
-counts = "$answer == 1"
-[observer]
-decides = "yes"
-in_stage = "feel"
-criterion = 0.4
-force_floor = 0.02
-[observer.actions]
-feel = { do = "hold" }
-[response]
-question = "Did it pull?"
-)" + response;
-}
 
 /// Where the tip was on each tick.
 class Tips final : public stimulus::Observer {
@@ -159,9 +110,9 @@ class RehearsalTest : public testing::Test {
 };
 
 TEST_F(RehearsalTest, AVirtualHandGoesToThePlaceOfItsAnswer) {
-  ASSERT_NO_FATAL_FAILURE(
-      rehearse(felt_or_not("choices = [{ value = \"yes\", touch = \"right\" }, { value = \"no\", "
-                           "touch = \"left\" }]\n")));
+  ASSERT_NO_FATAL_FAILURE(rehearse(
+      test::felt_or_not("choices = [{ value = \"yes\", touch = \"right\" }, { value = \"no\", "
+                        "touch = \"left\" }]\n")));
   ASSERT_EQ(responses_.size(), 12u);
   std::map<std::int32_t, std::uint64_t> asked;  // the first tick after the last stage
   for (const record::StageRow& stage : rows_.stages) {
@@ -189,7 +140,7 @@ TEST_F(RehearsalTest, AVirtualHandGoesToThePlaceOfItsAnswer) {
 }
 
 TEST_F(RehearsalTest, AHandThatIsInThePlaceAlreadyLeavesItFirst) {
-  std::string text = felt_or_not(
+  std::string text = test::felt_or_not(
       "choices = [{ value = \"yes\", touch = \"right\" }, { value = \"no\", touch = \"left\" }]\n");
   const std::string home = "to = [0.0, 0.0, 0.0]";
   text.replace(text.find(home), home.size(), "to = [0.03, 0.0, 0.0]");
@@ -201,7 +152,7 @@ TEST_F(RehearsalTest, AHandThatIsInThePlaceAlreadyLeavesItFirst) {
 }
 
 TEST_F(RehearsalTest, AVirtualParticipantPressesThePedal) {
-  ASSERT_NO_FATAL_FAILURE(rehearse(felt_or_not(
+  ASSERT_NO_FATAL_FAILURE(rehearse(test::felt_or_not(
       "choices = [{ value = \"yes\", pedal = 0.5 }, { value = \"no\", buttons = [0] }]\n")));
   int pedal = 0;
   for (const record::ResponseRow& row : responses_) {
@@ -216,7 +167,7 @@ const char* const kTwoKeys =
     "choices = [{ value = \"yes\" }, { value = \"no\" }]\ntoo_fast = 0.5\ntoo_slow = 0.7\n";
 
 TEST_F(RehearsalTest, AnswersOutOfTimeAreToldAndCount) {
-  ASSERT_NO_FATAL_FAILURE(rehearse(felt_or_not(kTwoKeys)));
+  ASSERT_NO_FATAL_FAILURE(rehearse(test::felt_or_not(kTwoKeys)));
   std::size_t beyond = 0;
   for (const record::ResponseRow& row : responses_) {
     beyond += row.reaction_time < 0.5 || row.reaction_time > 0.7 ? 1 : 0;
@@ -235,7 +186,7 @@ TEST_F(RehearsalTest, AnswersOutOfTimeAreToldAndCount) {
 
 TEST_F(RehearsalTest, TrialsOfAnswersOutOfTimeComeAgainUntilAllAreInTime) {
   ASSERT_NO_FATAL_FAILURE(
-      rehearse(felt_or_not(std::string(kTwoKeys) + "out_of_time = \"repeat\"\n")));
+      rehearse(test::felt_or_not(std::string(kTwoKeys) + "out_of_time = \"repeat\"\n")));
   std::map<std::int32_t, bool> again;
   for (const record::OutOfTimeRow& row : rows_.late) {
     EXPECT_TRUE(row.again);
