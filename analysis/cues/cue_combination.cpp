@@ -116,8 +116,9 @@ CueComparison compare_cues(std::span<const CueParticipant> participants, double 
     check_sd(p.second_sd, "second_sd");
     check_sd(p.combined_sd, "combined_sd");
     weights.push_back(p.first_weight);
-    predicted.push_back(weight_of_first(p.first_sd, p.second_sd));
-    sds.push_back(sd_of_both(p.first_sd, p.second_sd));
+    predicted.push_back(p.predicted_weight.value_or(weight_of_first(p.first_sd, p.second_sd)));
+    sds.push_back(p.predicted_sd.value_or(sd_of_both(p.first_sd, p.second_sd)));
+    check_sd(sds.back(), "predicted_sd");
     observed_logs.push_back(std::log(p.combined_sd));
     predicted_logs.push_back(std::log(sds.back()));
     best_logs.push_back(std::log(std::min(p.first_sd, p.second_sd)));

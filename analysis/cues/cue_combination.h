@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -68,11 +69,13 @@ struct CueParticipant {
   double first_sd{0.0}, second_sd{0.0};  // of one cue alone, > 0
   double combined_sd{0.0};               // of both cues, > 0
   double first_weight{0.0};              // observed
+  /// Predicted; left out: what first_sd and second_sd give.
+  std::optional<double> predicted_sd{}, predicted_weight{};
 };
 
 /// Observed against predicted, over participants. Standard deviations are compared by their
-/// logarithms. The predicted one is too low by about w_1 w_2 (ε_1² + ε_2²) of itself when the
-/// single ones have the relative errors ε (1 % at 15 %), and the better of two estimated cues is
+/// logarithms. One that is predicted from single ones is too low by about w_1 w_2 (ε_1² + ε_2²) of
+/// itself when these have the relative errors ε (1 % at 15 %). The better of two estimated cues is
 /// better by luck, too: `beats_best` is therefore conservative.
 struct CueComparison {
   std::vector<double> predicted_weights;  // (n) of the first cue

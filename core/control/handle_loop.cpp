@@ -1,9 +1,10 @@
 #include "core/control/handle_loop.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <stdexcept>
-#include <unsupported/Eigen/MatrixFunctions>
+
+#include "core/base/matrix_functions.h"
 
 namespace haptrial::control {
 namespace {
@@ -23,7 +24,7 @@ Eigen::Matrix<double, 2, 3> exact_step(const HandleLoop& loop, const HeldBy& han
   Eigen::Matrix3d flow = Eigen::Matrix3d::Zero();
   flow.row(0) << 0.0, 1.0, 0.0;
   flow.row(1) << -hand.stiffness / mass, -hand.damping / mass, 1.0 / mass;
-  return Eigen::Matrix3d((flow / loop.rate).exp()).topRows<2>();
+  return matrix_exponential(flow / loop.rate).topRows(2);
 }
 
 }  // namespace
@@ -55,7 +56,7 @@ double spectral_radius(const PdGains& gains, const HandleLoop& loop, const HeldB
   for (int i = 1; i < n; ++i) {
     tick(reading + i, reading + i - 1) = 1.0;
   }
-  return Eigen::EigenSolver<Eigen::MatrixXd>(tick, false).eigenvalues().cwiseAbs().maxCoeff();
+  return haptrial::spectral_radius(tick);
 }
 
 double lightest_stable_hand(const PdGains& gains, const HandleLoop& loop, double heaviest) {

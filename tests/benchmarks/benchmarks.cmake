@@ -4,6 +4,7 @@ foreach(source ${benchmarks})
   get_filename_component(name ${source} NAME_WE)
   string(REGEX REPLACE "_bench$" "" name ${name})
   add_executable(bench_${name} ${source})
+  target_compile_options(bench_${name} PRIVATE -Wno-restrict)  # GCC 12 sees overlaps that cannot be
   # These build without the rest.
   if(name STREQUAL scene)
     target_link_libraries(bench_scene PRIVATE haptrial_scene)
@@ -18,7 +19,9 @@ foreach(source ${benchmarks})
   if(name STREQUAL null_trials)
     target_sources(bench_null_trials
                    PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/trials/simulated_trials.cpp
-                           ${CMAKE_SOURCE_DIR}/tests/analysis/trials/psychometric/null_trials.cpp)
+                           ${CMAKE_SOURCE_DIR}/tests/analysis/trials/psychometric/null_cues.cpp
+                           ${CMAKE_SOURCE_DIR}/tests/analysis/trials/psychometric/null_trials.cpp
+                           ${CMAKE_SOURCE_DIR}/tests/analysis/trials/psychometric/simulated_cues.cpp)
     target_link_libraries(bench_null_trials PRIVATE haptrial_trials_psychometric haptrial_record_write
                                                     PkgConfig::gsl)
     continue()

@@ -1,12 +1,35 @@
 // How often each test of a report on trials is below 0.05 when conditions do not differ and nobody
 // drifts or repeats answers: studies of 12 people at the level of answers. Prints the table of
 // docs/algorithms/trials-analysis.md.
-//   bench_null_trials [STUDIES] [SEED] [THREADS] [PERMUTATIONS] [TASK from 0; all if left out]
+//   bench_null_trials [STUDIES] [SEED] [THREADS] [PERMUTATIONS] [TASK 0 to 5; all if left out]
 #include <fmt/format.h>
 
 #include <cstdlib>
 
+#include "tests/analysis/trials/psychometric/null_cues.h"
 #include "tests/analysis/trials/psychometric/null_trials.h"
+
+namespace {
+
+void print(const char* study, const std::string& test, std::size_t found, std::size_t of) {
+  const auto band = haptrial::test::binomial_band(of, 0.95);
+  const char* where = found > band.high ? "ABOVE" : found < band.low ? "below" : "inside";
+  fmt::print("| {} | {} | {} of {} | {} |\n", study, test, found, of, where);
+}
+
+/// People who combine two cues with the least variance, but for the last test: the better one
+/// alone.
+void print_cues(std::size_t studies, std::uint64_t seed, int threads) {
+  using haptrial::test::CueUse;
+  const auto best = null_cues(CueUse::kLeastVariance, studies, 100000 * seed, threads);
+  const auto alone = null_cues(CueUse::kBetterAlone, studies, 100000 * seed, threads);
+  for (const auto& test : {best.tests[0], best.tests[1], alone.tests[2]}) {
+    print("two cues", test.name, test.found, test.replications);
+    fmt::print("  mean difference {:.4f}, standard error {:.4f}\n", test.mean, test.error);
+  }
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using haptrial::test::SimulatedTask;
@@ -23,14 +46,12 @@ int main(int argc, char** argv) {
     }
     for (const auto& level :
          haptrial::test::null_trials(task, studies, seed, threads, permutations)) {
-      const auto band = haptrial::test::binomial_band(level.replications, 0.95);
-      const char* where = level.found > band.high  ? "ABOVE"
-                          : level.found < band.low ? "below"
-                                                   : "inside";
-      fmt::print("| {} | {} | {} of {} | {} |\n", name_of(task), level.test, level.found,
-                 level.replications, where);
+      print(name_of(task), level.test, level.found, level.replications);
     }
     std::fflush(stdout);
+  }
+  if (only < 0 || only == 5) {
+    print_cues(studies, seed, threads);
   }
   return 0;
 }

@@ -1,11 +1,11 @@
 #include "analysis/psychometric/fit/bootstrap_fit.h"
 
-#include <gsl/gsl_randist.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+
+#include "analysis/psychometric/fit/answer_draws.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -13,32 +13,6 @@ namespace {
 using psychometric::PsychometricFunction;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-/// Distribution function of the answers to each block, to draw by a single uniform number.
-class AnswerDraws {
- public:
-  AnswerDraws(std::span<const TrialBlock> blocks, const std::vector<double>& shares) {
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
-      std::vector<double>& below = below_.emplace_back();
-      double sum = 0.0;
-      for (int k = 0; k < blocks[i].total; ++k) {
-        sum += gsl_ran_binomial_pdf(static_cast<unsigned>(k), shares[i],
-                                    static_cast<unsigned>(blocks[i].total));
-        below.push_back(sum);
-      }
-    }
-  }
-
-  void draw(RandomStream& random, std::vector<int>& correct) const {
-    for (std::size_t i = 0; i < below_.size(); ++i) {
-      const auto place = std::upper_bound(below_[i].begin(), below_[i].end(), random.uniform());
-      correct[i] = static_cast<int>(place - below_[i].begin());
-    }
-  }
-
- private:
-  std::vector<std::vector<double>> below_;
-};
 
 std::vector<int> answers_of(std::span<const TrialBlock> blocks) {
   std::vector<int> correct;
@@ -48,12 +22,10 @@ std::vector<int> answers_of(std::span<const TrialBlock> blocks) {
   return correct;
 }
 
-std::vector<double> shares_of(std::span<const TrialBlock> blocks,
-                              const PsychometricFunction* function) {
+std::vector<double> shares_of(std::span<const TrialBlock> blocks) {
   std::vector<double> shares;
   for (const TrialBlock& block : blocks) {
-    shares.push_back(function ? std::clamp((*function)(block.level), 0.0, 1.0)
-                              : static_cast<double>(block.correct) / block.total);
+    shares.push_back(static_cast<double>(block.correct) / block.total);
   }
   return shares;
 }
@@ -161,7 +133,8 @@ BootstrappedFit bootstrap_fit(std::span<const TrialBlock> blocks, const Likeliho
   result.fit = fitter.fit(answers_of(blocks));
   const PsychometricFunction function = fitter.function(result.fit.parameters);
   result.deviance = deviance_of(function, blocks);
-  const AnswerDraws draws(blocks, shares_of(blocks, how.parametric ? &function : nullptr));
+  const AnswerDraws draws =
+      how.parametric ? AnswerDraws(blocks, function) : AnswerDraws(blocks, shares_of(blocks));
   Drawn drawn = drawn_fits(fitter, blocks, asked, draws, how.resampling);
   result.undetermined =
       static_cast<std::size_t>(std::count(drawn.undetermined.begin(), drawn.undetermined.end(), 1));
@@ -177,8 +150,7 @@ BootstrappedFit bootstrap_fit(std::span<const TrialBlock> blocks, const Likeliho
   if (!how.parametric) {
     Resampling again = how.resampling;
     again.stream += "/deviance";
-    drawn =
-        drawn_fits(fitter, blocks, {}, AnswerDraws(blocks, shares_of(blocks, &function)), again);
+    drawn = drawn_fits(fitter, blocks, {}, AnswerDraws(blocks, function), again);
   }
   const auto larger = std::count_if(drawn.deviances.begin(), drawn.deviances.end(), [&](double d) {
     return d >= result.deviance.deviance * (1.0 - 1e-9);

@@ -1,13 +1,13 @@
 #include "analysis/reaching/learning/two_rate.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
+
+#include "analysis/statistics/base/decomposition.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -172,7 +172,7 @@ Solution descend_from(const Chosen& chosen, const TwoRateModel& start) {
   for (int step = 0; step < kSteps; ++step) {
     Curvature damped = here.curvature;
     damped.diagonal() += damping * here.curvature.diagonal().cwiseMax(1e-12);
-    const Parameters move = damped.ldlt().solve(here.gradient);
+    const Parameters move = solve_pivoted(damped, here.gradient).solved;
     const Parameters next = line + move;
     const Squares there = on_line(chosen, next);
     if (move.allFinite() && there.sum <= here.sum) {
@@ -229,8 +229,8 @@ Defined<TwoRateFit> described(const Chosen& chosen, const Solution& solution) {
   const Squares squares = chosen.squares(solution.at);
   const Parameters unit = squares.curvature.diagonal().cwiseSqrt().cwiseInverse();
   const Curvature scaled = unit.asDiagonal() * squares.curvature * unit.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Curvature> solver(scaled);
-  if (!unit.allFinite() || !(solver.eigenvalues()[0] > 1e-11)) {
+  const auto inverse = solve_positive(squares.curvature, Curvature::Identity());
+  if (!unit.allFinite() || !(symmetric_eigen(scaled).values[0] > 1e-11) || !inverse) {
     return Undefined{"these trials cannot tell the two processes apart"};
   }
   const double df = static_cast<double>(squares.count) - (chosen.scale ? 5.0 : 4.0);
@@ -239,8 +239,7 @@ Defined<TwoRateFit> described(const Chosen& chosen, const Solution& solution) {
   fit.squares = squares.sum;
   fit.count = squares.count;
   fit.deviation = std::sqrt(squares.sum / df);
-  const Curvature inverse = squares.curvature.inverse();
-  fit.errors = model_of(fit.deviation * inverse.diagonal().cwiseMax(0.0).cwiseSqrt());
+  fit.errors = model_of(fit.deviation * inverse->diagonal().cwiseMax(0.0).cwiseSqrt());
   fit.errors.error_scale = chosen.scale ? fit.errors.error_scale : 0.0;
   return fit;
 }

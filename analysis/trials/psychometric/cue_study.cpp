@@ -11,6 +11,7 @@
 #include "analysis/statistics/base/descriptive.h"
 #include "analysis/statistics/base/distributions.h"
 #include "analysis/statistics/base/p_adjust.h"
+#include "analysis/trials/psychometric/cue_bias.h"
 
 namespace haptrial::analysis::trials {
 namespace {
@@ -113,19 +114,40 @@ class PersonalCues {
     }
     CuePerson made = *weight;
     made.participant = participant;
-    const LogSd together = sd_of(*both);
-    made.first_sd = first->sd();
-    made.second_sd = second->sd();
-    made.both_sd = together.sd();
-    const bool known = std::isfinite(first->error) && std::isfinite(second->error);
-    const CombinedCues predicted = predict_combination(first->known(), second->known());
-    made.predicted_weight = estimated_of(predicted.first_weight, known);
-    made.predicted_sd = estimated_of(predicted.combined_sd, known);
+    const LogSd one = sd_of(*first), other = sd_of(*second);
+    made.first_sd = one.sd();
+    made.second_sd = other.sd();
+    made.both_sd = sd_of(*both).sd();
+    predict(one, other,
+            cue_bias(fits_at(*first), fits_at(*second), fits_at(*both), plan_,
+                     fmt::format("cue prediction {} {}", participant, at)),
+            made);
     return made;
   }
 
  private:
   using Places = std::vector<std::size_t>;  // in fits_
+
+  /// What functions of these cues would show in these trials of somebody who combines best.
+  static void predict(const LogSd& first, const LogSd& second, const CueBias& bias,
+                      CuePerson& made) {
+    const bool known = std::isfinite(first.error) && std::isfinite(second.error);
+    const CombinedCues predicted = predict_combination(first.known(), second.known());
+    made.predicted_weight = estimated_of(predicted.first_weight, known);
+    made.predicted_sd = estimated_of(predicted.combined_sd, known);
+    for (double Estimated::*part : {&Estimated::value, &Estimated::low, &Estimated::high}) {
+      made.predicted_sd.*part *= std::exp(bias.log_sd);
+      made.predicted_weight.*part = std::clamp(made.predicted_weight.*part - bias.weight, 0.0, 1.0);
+    }
+  }
+
+  std::vector<const FunctionFit*> fits_at(const Places& places) const {
+    std::vector<const FunctionFit*> fits;
+    for (const std::size_t i : places) {
+      fits.push_back(&fits_[i]);
+    }
+    return fits;
+  }
 
   Places places_of(const std::string& participant, const FactorLevels& levels,
                    const std::string* at) const {
@@ -168,8 +190,8 @@ class PersonalCues {
     return geometric_mean(sds);
   }
 
-  Defined<LogSd> alone(const std::string& participant, const FactorLevels& levels,
-                       const std::string& at, bool elsewhere) const {
+  Defined<Places> alone(const std::string& participant, const FactorLevels& levels,
+                        const std::string& at, bool elsewhere) const {
     Places places = places_of(participant, levels, &at);
     if (places.empty() && elsewhere) {  // this cue does not change with `at`
       places = places_of(participant, levels, nullptr);
@@ -185,7 +207,7 @@ class PersonalCues {
     if (const FunctionFit* fit = undefined_in(places)) {
       return because_of(*fit);
     }
-    return sd_of(places);
+    return places;
   }
 
   /// The functions of all conflicts that anybody has at this level.
@@ -301,8 +323,9 @@ std::vector<std::string> in_order(const std::set<std::string>& words) {
 void compare(CueLevel& level) {
   std::vector<CueParticipant> people;
   for (const CuePerson& person : level.people) {
-    people.push_back(
-        {person.first_sd.value, person.second_sd.value, person.both_sd.value, person.weight.value});
+    people.push_back({person.first_sd.value, person.second_sd.value, person.both_sd.value,
+                      person.weight.value, person.predicted_sd.value,
+                      person.predicted_weight.value});
   }
   if (people.empty()) {
     return;

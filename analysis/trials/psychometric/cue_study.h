@@ -14,8 +14,8 @@ struct CuePerson {
   std::string participant;
   Estimated first_sd, second_sd;  // of one cue alone
   Estimated both_sd;              // geometric mean over conflicts
-  Estimated predicted_sd;
-  Estimated weight;  // of the first cue, from the levels of equality of the conflicts
+  Estimated predicted_sd;         // that somebody who combines best would show (cue_bias.h)
+  Estimated weight;               // of the first cue, from the levels of equality of the conflicts
   Estimated predicted_weight;
   double bias{0.0};          // of all conflicts alike [unit of the axis]
   std::size_t conflicts{0};  // from which the weight comes

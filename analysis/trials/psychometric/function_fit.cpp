@@ -35,18 +35,6 @@ std::vector<Asked> asked_of(const TrialsPlan& plan) {
   return asked;
 }
 
-LikelihoodOptions likelihood_options(const TrialsPlan& plan) {
-  LikelihoodOptions options;
-  options.function = plan.function;
-  options.task = plan.task();
-  options.lapse = plan.lapse;
-  if (!plan.guess_free && !plan.guess_is_lapse && plan.function.guess == 0.0) {
-    options.task = Task::kYesNo;  // a guess rate that is known to be 0
-    options.guess = {0.0, 0.0};
-  }
-  return options;
-}
-
 Estimated estimated(const BootstrappedFit& fit, std::size_t at) {
   Estimated e{fit.estimates[at]};
   if (at < fit.intervals.size() && fit.intervals[at]) {
@@ -233,6 +221,18 @@ void fit_bayesian(FunctionFit& result, const TrialsPlan& plan, int threads) {
 }
 
 }  // namespace
+
+LikelihoodOptions likelihood_options(const TrialsPlan& plan) {
+  LikelihoodOptions options;
+  options.function = plan.function;
+  options.task = plan.task();
+  options.lapse = plan.lapse;
+  if (!plan.guess_free && !plan.guess_is_lapse && plan.function.guess == 0.0) {
+    options.task = Task::kYesNo;  // a guess rate that is known to be 0
+    options.guess = {0.0, 0.0};
+  }
+  return options;
+}
 
 psychometric::PsychometricFunction FunctionFit::function(const TrialsPlan& plan) const {
   if (!likelihood) {

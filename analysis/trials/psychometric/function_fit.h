@@ -54,6 +54,9 @@ struct FunctionFit {
   psychometric::PsychometricFunction function(const TrialsPlan& plan) const;
 };
 
+/// How the plan's functions are fitted.
+LikelihoodOptions likelihood_options(const TrialsPlan& plan);
+
 /// Fits the function of a series: maximum likelihood with profile intervals of threshold, width and
 /// what follows from one of them, and bootstrap intervals of the rest (bias-corrected and
 /// accelerated, from the fitted function); and the Bayesian beta-binomial fit with the percentiles

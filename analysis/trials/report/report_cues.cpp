@@ -158,7 +158,8 @@ void add_cues(Document& document, const TrialsResult& result,
       "standard deviation of a fitted function, the distance from a share of 50 % to one of 84 %; "
       "that of {} is the geometric mean over {}. The weight of {} is the slope of the level of "
       "equality over the difference of what the cues of {} show. Predicted is what the functions "
-      "of one cue alone give.",
+      "of one cue alone give, corrected by what simulated answers in the same numbers at the same "
+      "levels show: fits of few answers are a little too steep.",
       first, second, name_of_cue(cues.both), cues.conflict, first, cues.standard));
   add_pictures(document, drawings, "cues-", 2);
   const std::string at = cues.at.empty() ? "condition" : cues.at;
@@ -166,9 +167,8 @@ void add_cues(Document& document, const TrialsResult& result,
   add_deviations(document, result, at);
   document.paragraph(
       "Means over participants (geometric of σ) with 95 % intervals; p values of each of the three "
-      "tests are adjusted together over the rows. Estimates of one cue have errors, which make "
-      "the predicted σ too low by about one per cent and the better cue alone look better than it "
-      "is.");
+      "tests are adjusted together over the rows. Of two estimated cues the better one looks better "
+      "than it is, so that the last test finds too little rather than too much.");
   for (const CueLevel& level : result.cues->levels) {
     for (const std::string& who : level.left_out) {
       document.paragraph(fmt::format(

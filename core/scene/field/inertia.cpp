@@ -1,10 +1,11 @@
 #include "core/scene/field/inertia.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
+#include "core/base/matrix_functions.h"
 #include "core/scene/shape/require.h"
 
 namespace haptrial::scene {
@@ -38,7 +39,7 @@ double largest_root(const std::vector<double>& c) {
       companion(i, i - 1) = 1.0;
     }
   }
-  return Eigen::EigenSolver<Eigen::MatrixXd>(companion, false).eigenvalues().cwiseAbs().maxCoeff();
+  return spectral_radius(companion);
 }
 
 }  // namespace

@@ -6,10 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "analysis/trials/psychometric/trials_study.h"
-#include "tests/analysis/trials/psychometric/simulated_cues.h"
+#include "tests/analysis/trials/psychometric/null_cues.h"
 #include "tests/support/null_levels.h"
 
 namespace haptrial::analysis::trials {
@@ -23,17 +22,8 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-CueStudy studied(const TrialsData& data, const TrialsPlan& plan) {
-  const auto series = series_of(data, plan);
-  std::vector<FunctionFit> fits;
-  for (const AnsweredSeries& each : series) {
-    fits.push_back(fit_series(each, plan, 1));
-  }
-  return cue_study(data, series, fits, plan);
-}
-
 CueStudy studied(const SimulatedCues& study) {
-  return studied(test::simulated_cues(study), test::plan_of(study));
+  return test::studied(test::simulated_cues(study), test::plan_of(study));
 }
 
 // Answers in the proportions of known functions give their standard deviations and weights.
@@ -58,7 +48,8 @@ TEST(CueStudyTest, ExactAnswersGiveTheirWeightsAndDeviations) {
       EXPECT_NEAR(found.first_sd.value / own.eye, 1.0, 0.01);
       EXPECT_NEAR(found.second_sd.value / own.hand, 1.0, 0.01);
       EXPECT_NEAR(found.both_sd.value / own.both, 1.0, 0.01);
-      EXPECT_NEAR(found.predicted_sd.value / own.both, 1.0, 0.01);
+      // Corrected for what chance does to answers that are drawn, about 1 %.
+      EXPECT_NEAR(found.predicted_sd.value / own.both, 1.0, 0.02);
       EXPECT_NEAR(found.weight.value, own.weight, 0.01);
       EXPECT_NEAR(found.predicted_weight.value, own.weight, 0.01);
       EXPECT_EQ(found.conflicts, 3u);
@@ -73,7 +64,7 @@ TEST(CueStudyTest, IntervalsHoldWeightsAndPredictions) {
   study.repetitions = 40;
   TrialsPlan plan = test::plan_of(study);
   plan.resamples = 199;
-  const CueStudy cues = studied(test::simulated_cues(study), plan);
+  const CueStudy cues = test::studied(test::simulated_cues(study), plan);
   ASSERT_THAT(cues.levels, SizeIs(1));
   ASSERT_GE(cues.levels[0].people.size(), 18u) << "functions of 280 trials are mostly determined";
   const auto holds = [](const Estimated& e, double truth) {
@@ -96,65 +87,24 @@ TEST(CueStudyTest, IntervalsHoldWeightsAndPredictions) {
   EXPECT_GE(together, people - 1) << "two intervals of the same number overlap";
 }
 
-struct Found {
-  std::size_t weight{0}, log_sd{0}, beats_best{0};
-  double weight_bias{0.0}, log_sd_bias{0.0}, best_bias{0.0};
-};
-
-/// How often the tests of studies of 8 give p < 0.05, and mean differences.
-Found found_in(std::size_t studies, CueUse use) {
-  std::vector<Found> each(studies);
-  const auto levels = test::null_levels(studies, 2, [&](std::size_t number) {
-    SimulatedCues study;
-    study.use = use;
-    study.seed = 1000 + number;
-    const CueStudy cues = studied(study);
-    const CueLevel& level = cues.levels.at(0);
-    test::NullLevels found;
-    for (const auto& [name, of] : {std::pair("weight", &level.weight),
-                                   {"log sd", &level.log_sd},
-                                   {"best", &level.beats_best}}) {
-      found.note(name, true, of->test && of->test->p < 0.05);
-      EXPECT_EQ(*of->holm, of->test->p) << "one level needs no adjustment";
-    }
-    each[number] = {0,
-                    0,
-                    0,
-                    level.weight.test->difference,
-                    level.log_sd.test->difference,
-                    level.beats_best.test->difference};
-    return found;
-  });
-  Found sum{levels.at(0).found, levels.at(1).found, levels.at(2).found};
-  for (const Found& one : each) {
-    sum.weight_bias += one.weight_bias / static_cast<double>(studies);
-    sum.log_sd_bias += one.log_sd_bias / static_cast<double>(studies);
-    sum.best_bias += one.best_bias / static_cast<double>(studies);
-  }
-  std::printf(
-      "p < 0.05 in %zu studies: weight %zu, log sd %zu, better than the better one %zu; mean "
-      "differences %.4f, %.4f, %.4f\n",
-      studies, sum.weight, sum.log_sd, sum.beats_best, sum.weight_bias, sum.log_sd_bias,
-      sum.best_bias);
-  return sum;
-}
-
-// Among people who combine with the least variance the test of weights keeps its level; observed
-// standard deviations come out too large beside predicted ones, by what the page says
-// (docs/algorithms/cue-combination.md).
-TEST(CueStudyTest, TheTestOfWeightsKeepsItsLevelAmongThoseWhoCombineBest) {
-  constexpr std::size_t kStudies = 400;
-  const Found found = found_in(kStudies, CueUse::kLeastVariance);
-  EXPECT_LE(found.weight, test::binomial_band(kStudies, 0.999).high);
-  EXPECT_GT(found.log_sd_bias, 0.02);
-  EXPECT_LT(found.log_sd_bias, 0.1);
+// Among people who combine with the least variance observed weights and standard deviations are
+// those predicted, in the mean and as often as a level of 0.05 says. bench_null_trials counts more.
+TEST(CueStudyTest, TestsKeepTheirLevelAmongThoseWhoCombineBest) {
+  constexpr std::size_t kStudies = 200;
+  const test::NullCues found = test::null_cues(CueUse::kLeastVariance, kStudies, 1000, 2);
+  EXPECT_LE(found.of("weight").found, test::binomial_band(kStudies, 0.999).high);
+  EXPECT_LE(found.of("log sd").found, test::binomial_band(kStudies, 0.999).high);
+  // Without the correction the mean of 400 studies was 0.063. Standard errors here: 0.006, 0.007.
+  EXPECT_NEAR(found.of("weight").mean, 0.0, 0.035);
+  EXPECT_NEAR(found.of("log sd").mean, 0.0, 0.04);
 }
 
 TEST(CueStudyTest, NobodyBeatsTheBetterCueWhoUsesItAlone) {
-  constexpr std::size_t kStudies = 400;
-  const Found found = found_in(kStudies, CueUse::kBetterAlone);
-  EXPECT_LE(found.beats_best, test::binomial_band(kStudies, 0.999).high);
-  EXPECT_GT(found.weight, kStudies / 2) << "their weights are 0 or 1";
+  constexpr std::size_t kStudies = 200;
+  const test::NullCues found = test::null_cues(CueUse::kBetterAlone, kStudies, 1000, 2);
+  EXPECT_LE(found.of("better than the better one").found,
+            test::binomial_band(kStudies, 0.999).high);
+  EXPECT_GT(found.of("weight").found, kStudies / 2) << "their weights are 0 or 1";
 }
 
 TEST(CueStudyTest, WhatIsMissingIsSaid) {
@@ -171,7 +121,7 @@ TEST(CueStudyTest, WhatIsMissingIsSaid) {
            (trial.session == 1 && modality == "eye" && noise == "1") ||
            (trial.session == 2 && modality == "both" && noise == "0" && conflict == "0.006");
   });
-  const CueStudy cues = studied(data, test::plan_of(study));
+  const CueStudy cues = test::studied(data, test::plan_of(study));
   ASSERT_THAT(cues.levels, SizeIs(2));
   EXPECT_THAT(cues.levels[0].left_out,
               ElementsAre("P01: there are no answers of hand at noise 0",
@@ -194,7 +144,7 @@ TEST(CueStudyTest, AFunctionOrAStandardThatIsNotDefinedIsSaid) {
       std::erase_if(trial.variables, [](const GivenVariable& v) { return v.name == "seen"; });
     }
   }
-  const CueStudy cues = studied(data, test::plan_of(study));
+  const CueStudy cues = test::studied(data, test::plan_of(study));
   ASSERT_THAT(cues.levels, SizeIs(1));
   ASSERT_THAT(cues.levels[0].left_out, SizeIs(2));
   EXPECT_THAT(cues.levels[0].left_out[0], HasSubstr("the function of eye, 0, 0 is not defined"));
