@@ -3,7 +3,6 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <ctime>
 #include <utility>
 
@@ -95,13 +94,7 @@ static record::TableList tables_of(const SessionRequest& request, const protocol
 
 /// What its file may have already: the tables of the protocol, and those of any.
 static record::TableList possible_tables(const SessionRequest& request) {
-  record::TableList tables = request.protocol->tables();
-  for (const record::TableDescription* table : record::common_tables()) {
-    if (std::find(tables.begin(), tables.end(), table) == tables.end()) {
-      tables.push_back(table);
-    }
-  }
-  return tables;
+  return record::with_tables(request.protocol->tables(), record::common_tables());
 }
 
 record::SessionWriter open_writer(const SessionRequest& request, const device::DeviceInfo& device,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "core/base/definition/table.h"
 #include "core/record/rows/common_tables.h"
@@ -54,11 +55,7 @@ void add_study(const Study& study) {
 record::TableList known_tables() {
   record::TableList tables = record::common_tables();
   for (const Study* study : all()) {
-    for (const record::TableDescription* table : study->protocol().tables()) {
-      if (std::find(tables.begin(), tables.end(), table) == tables.end()) {
-        tables.push_back(table);
-      }
-    }
+    tables = record::with_tables(std::move(tables), study->protocol().tables());
   }
   return tables;
 }

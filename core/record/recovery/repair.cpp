@@ -1,11 +1,10 @@
 #include "core/record/recovery/repair.h"
 
 #include <fmt/format.h>
-#include <iterator>
-#include <utility>
 
 #include <algorithm>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
@@ -14,6 +13,7 @@
 #include "core/record/read/session_reader.h"
 #include "core/record/recovery/rewrite.h"
 #include "core/record/recovery/tick_ranges.h"
+#include "core/record/rows/common_tables.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/table/schema.h"
 #include "core/record/write/session_target.h"
@@ -197,15 +197,6 @@ void keep_damaged(const fs::path& partial, const fs::path& damaged) {
   sync_file(damaged);
 }
 
-/// Of which rows were found, and what the session needs beside them.
-TableList tables_of(const RecoveredRows& rows, const TableList& needed) {
-  TableList tables = rows.tables();
-  std::copy_if(needed.begin(), needed.end(), std::back_inserter(tables), [&](const auto* table) {
-    return std::find(tables.begin(), tables.end(), table) == tables.end();
-  });
-  return tables;
-}
-
 void write_repaired(SessionWriter writer, const RecoveredRows& rows, const Plan& plan,
                     const std::function<std::string(const Written&)>& sentence) {
   Written written;
@@ -335,7 +326,7 @@ Repair repair_session(const fs::path& partial, const std::string& wrong, const T
   const fs::path damaged = name_for_damaged(partial);
   Repair repair;
   repair.dropped_passes = plan.dropped_passes();
-  SessionWriter writer(out, *info, tables_of(rows, needed));
+  SessionWriter writer(out, *info, with_tables(rows.tables(), needed));
   write_repaired(std::move(writer), rows, plan, [&](const Written& written) {
     repair.dropped_rows = rows.counts.at(samples_table().schema().name) - written.samples;
     repair.told = fmt::format(

@@ -1,5 +1,6 @@
 #include "core/record/rows/common_tables.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -18,6 +19,15 @@ const TableList& common_tables() {
   static const TableList tables{&responses_table(), &table_of<DeviceRow>(), &table_of<SkippedRow>(),
                                 &table_of<DampingRow>(), &table_of<MarkerRow>(),
                                 &table_of<AnswerRow>()};
+  return tables;
+}
+
+TableList with_tables(TableList tables, const TableList& more) {
+  for (const TableDescription* table : more) {
+    if (std::find(tables.begin(), tables.end(), table) == tables.end()) {
+      tables.push_back(table);
+    }
+  }
   return tables;
 }
 

@@ -8,6 +8,9 @@ namespace haptrial::record {
 /// devices, what became of trials, markers.
 const TableList& common_tables();
 
+/// `tables` and after them those of `more` that are not among them.
+TableList with_tables(TableList tables, const TableList& more);
+
 /// Recovery knows whose a chunk is by its inflated size.
 /// @param own  tables of protocols
 /// @throws std::invalid_argument naming two tables, of these and those of every session, whose
