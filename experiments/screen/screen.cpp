@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <condition_variable>
 #include <future>
 #include <mutex>
@@ -16,22 +14,11 @@
 #include "core/base/error.h"
 #include "core/realtime/histogram.h"
 #include "core/realtime/latest_value.h"
-#include "core/render/flat/painter.h"
-#include "core/render/trial/trial_display.h"
+#include "experiments/screen/easel.h"
+#include "experiments/screen/pace.h"
 
 namespace haptrial::experiments {
 namespace {
-
-using Clock = std::chrono::steady_clock;  // CLOCK_MONOTONIC, as the servo loop's
-
-constexpr double kPatchSide = 0.06;  // of the photodiode's square, of the screen's shorter side
-constexpr std::size_t kProbes = 12;  // pictures by which the display's pace is known
-constexpr double kPaceTolerance = 0.25;
-
-std::int64_t now_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch())
-      .count();
-}
 
 render::WindowOptions window_options(const protocols::ScreenOptions& options,
                                      const render::TrialDisplayStyle& style) {
@@ -50,14 +37,6 @@ render::TrialDisplayStyle fitted(render::TrialDisplayStyle style, const render::
   }
   return style;
 }
-
-/// What the session's thread asks to be shown.
-struct Scene {
-  std::uint64_t version{0};
-  protocols::MakeDrawing make;  // empty: the page
-  render::TextPage page;
-  Clock::time_point shown;  // when the page was asked for
-};
 
 }  // namespace
 
@@ -106,180 +85,57 @@ struct Screen::Impl {
   std::condition_variable picture_taken;
 
   void run();
+  void show_pictures(render::Window& window, Easel& easel, const AgreedPace& agreed);
+  bool take_scene(Easel& easel);
+  void give_picture(render::Window& window);
   void count(const record::FrameRow& frame, std::uint64_t flashed);
   std::uint64_t onsets_so_far() const;
 };
 
 namespace {
 
-/// Decides when the next picture is due, and which refreshes passed without one.
-class Pace {
+/// What happens at a window, told once: keys, held keys, the pointer, the close button.
+class Happenings {
  public:
-  explicit Pace(double rate, bool locked)
-      : period_ns_(1e9 / rate),
-        locked_(locked),
-        last_(now_ns()),
-        due_(static_cast<double>(last_)) {}
+  Happenings(render::Window& window, const ScreenCallbacks& callbacks)
+      : window_(window), callbacks_(callbacks), pointer_(window.pointer()) {}
 
-  /// Before a picture is drawn; returns at once where the swap waits for the refresh.
-  void wait() {
-    if (locked_) {
-      return;
+  /// @param other_view  the view moved under the pointer
+  void tell(const Easel& easel, bool other_view) {
+    tell_keys();
+    const bool moved = std::exchange(pointer_, window_.pointer()) != pointer_;
+    if (callbacks_.pointer && (moved || other_view)) {
+      callbacks_.pointer(easel.pointer());
     }
-    due_ += period_ns_;
-    const auto now = static_cast<double>(now_ns());
-    if (now > due_) {  // too late for this one: on to the next in step
-      const double missed = std::ceil((now - due_) / period_ns_);
-      due_ += missed * period_ns_;
-      missed_ += static_cast<std::int32_t>(missed);
+    if (window_.close_asked() && !std::exchange(closed_, true) && callbacks_.closed) {
+      callbacks_.closed();
     }
-    std::this_thread::sleep_until(
-        Clock::time_point(std::chrono::nanoseconds(static_cast<std::int64_t>(due_))));
-  }
-
-  /// When the display has a picture.
-  record::FrameRow shown(std::int64_t draw_ns) {
-    const std::int64_t now = now_ns();
-    const std::int64_t since = now - std::exchange(last_, now);
-    if (locked_) {  // pictures come at refreshes, so that their distance tells
-      const auto refreshes = std::lround(static_cast<double>(since) / period_ns_);
-      missed_ = static_cast<std::int32_t>(std::max(0L, refreshes - 1));
-    }
-    return {now, draw_ns, std::exchange(missed_, 0)};
   }
 
  private:
-  double period_ns_;
-  bool locked_;
-  std::int64_t last_;
-  double due_;
-  std::int32_t missed_{0};  // before the next picture
-};
-
-/// Draws the pictures; lives on the screen's thread.
-class Easel {
- public:
-  Easel(render::Window& window, const render::TrialDisplayStyle& style,
-        const protocols::ScreenOptions& options)
-      : window_(window),
-        style_(style),
-        photodiode_(options.photodiode),
-        flash_time_(options.photodiode_time),
-        trial_(window.gl(), style, style.width, style.height),
-        text_(window.gl(), style.width, style.height, style.background, style.marker_colour,
-              style.target_colour),
-        patch_(window.gl(), style.width, style.height) {}
-
-  /// @returns whether it is another one than before.
-  bool take(const Scene& scene) {
-    if (scene.version == scene_.version) {
-      return false;
-    }
-    scene_ = scene;
-    if (drawing_) {
-      before_ = std::move(drawing_);
-    }
-    drawing_ = scene_.make ? scene_.make(window_.gl(), style_.width, style_.height) : nullptr;
-    return true;
-  }
-
-  void draw(const stimulus::Shown& shown) {
-    if (drawing_) {
-      drawing_->draw(shown);
-    } else {
-      render::TextPage page = scene_.page;
-      if (page.countdown) {
-        const double gone = std::chrono::duration<double>(Clock::now() - scene_.shown).count();
-        page.countdown = std::max(0.0, *page.countdown - gone);
+  void tell_keys() {
+    std::vector<int> held = window_.held_keys();
+    for (const render::KeyPress& press : window_.take_keys()) {
+      if (callbacks_.key) {
+        callbacks_.key(press);
       }
-      text_.draw(page);
+      const bool typed = press.character != 0;
+      if (!typed && std::find(held.begin(), held.end(), press.key) == held.end()) {
+        held.push_back(press.key);  // let go again already: held for a picture all the same
+      }
     }
-    ++frames_;
-    draw_patch(shown);
-  }
-
-  /// The square is white from this frame on. @returns the onsets that it shows first; 0: no new
-  /// ones
-  std::uint64_t flash(std::uint64_t onsets) {
-    if (photodiode_ != protocols::Photodiode::kOnset || onsets == onsets_) {
-      return 0;
+    if (callbacks_.held && held != held_) {
+      held_ = std::move(held);
+      callbacks_.held(held_);
     }
-    onsets_ = onsets;
-    white_until_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(flash_time_);
-    return onsets;
-  }
-
-  /// How fast the display takes pictures [s]; shows empty ones.
-  double probe() {
-    std::array<double, kProbes> intervals{};
-    for (double& interval : intervals) {
-      const auto start = Clock::now();
-      trial_.draw({});
-      window_.swap();
-      window_.poll();
-      interval = std::chrono::duration<double>(Clock::now() - start).count();
-    }
-    const auto middle = intervals.begin() + kProbes / 2;
-    std::nth_element(intervals.begin(), middle, intervals.end());
-    return *middle;
-  }
-
-  ScreenPointer pointer() const {
-    const render::Pointer p = window_.pointer();
-    const protocols::Drawing* drawing = drawing_ ? drawing_.get() : before_.get();
-    const auto seen = drawing != nullptr ? drawing->to_world(p.position) : std::nullopt;
-    const Eigen::Vector3d point = seen.value_or(trial_.to_world(p.position));
-    return {point.x(), point.z(), p.wheel, p.buttons};
-  }
-
- private:
-  void draw_patch(const stimulus::Shown& shown) {
-    if (photodiode_ == protocols::Photodiode::kOff) {
-      return;
-    }
-    const bool runs = drawing_ != nullptr && shown.engaged();
-    const bool white = photodiode_ == protocols::Photodiode::kRun     ? runs
-                       : photodiode_ == protocols::Photodiode::kOnset ? Clock::now() < white_until_
-                                                                      : frames_ % 2 == 0;
-    const double side = std::round(kPatchSide * std::min(style_.width, style_.height));
-    const double shade = white ? 1.0 : 0.0;
-    patch_.begin_over();
-    patch_.fill({{0.0, style_.height - side}, {side, static_cast<double>(style_.height)}}, 0.0,
-                render::Colour{shade, shade, shade});
-    patch_.end();
   }
 
   render::Window& window_;
-  render::TrialDisplayStyle style_;
-  protocols::Photodiode photodiode_;
-  std::chrono::duration<double> flash_time_;
-  Clock::time_point white_until_{};
-  std::uint64_t onsets_{0};     // that were shown
-  render::TrialDisplay trial_;  // where a pointer is while no drawing says it
-  render::TextScreen text_;
-  render::Painter patch_;
-  Scene scene_;
-  std::unique_ptr<protocols::Drawing> drawing_;
-  std::unique_ptr<protocols::Drawing> before_;  // a page: what is behind it
-  std::uint64_t frames_{0};
+  const ScreenCallbacks& callbacks_;
+  render::Pointer pointer_;
+  std::vector<int> held_;
+  bool closed_{false};
 };
-
-/// Who sets the pace: the display, if it keeps to the rate that its monitor states, or a timer.
-ScreenSummary agreed_pace(const protocols::ScreenOptions& options, double monitor_rate,
-                          double interval) {
-  ScreenSummary summary;
-  const bool steady = std::abs(interval * monitor_rate - 1.0) < kPaceTolerance;
-  summary.refresh_locked = options.refresh_lock && monitor_rate > 0.0 && steady;
-  summary.rate = monitor_rate > 0.0 ? monitor_rate : Screen::kTimerRate;
-  if (!summary.refresh_locked) {
-    summary.notice =
-        fmt::format("{}, so a timer draws the screen at {:.0f} Hz and pictures may tear",
-                    options.refresh_lock ? "the display does not wait for its monitor's refresh"
-                                         : "the definition asks for no refresh lock",
-                    summary.rate);
-  }
-  return summary;
-}
 
 }  // namespace
 
@@ -288,62 +144,17 @@ void Screen::Impl::run() {
   try {
     render::Window window(window_options(options, style));
     Easel easel(window, fitted(style, window), options);
-    const ScreenSummary agreed = agreed_pace(options, window.refresh_rate(), easel.probe());
+    const AgreedPace agreed =
+        agreed_pace(options.refresh_lock, window.refresh_rate(), easel.probe(), kTimerRate);
     {
       const std::lock_guard lock(mutex);
-      summary = agreed;
+      summary.rate = agreed.rate;
+      summary.refresh_locked = agreed.refresh_locked;
+      summary.notice = agreed.notice;
     }
-    Pace pace(agreed.rate, agreed.refresh_locked);
     open = true;
     opened.set_value();
-    stimulus::Shown seen;
-    render::Pointer pointer = window.pointer();
-    std::vector<int> held;
-    bool closed = false;
-    while (!stop.load(std::memory_order_relaxed)) {
-      pace.wait();
-      const std::int64_t start = now_ns();
-      bool other_view = false;
-      {
-        const std::lock_guard lock(mutex);
-        other_view = easel.take(scene);
-      }
-      shown.read(seen);
-      const std::uint64_t flashed = easel.flash(onsets_so_far());  // after what they belong to
-      easel.draw(seen);
-      {
-        const std::lock_guard lock(mutex);
-        if (std::exchange(picture_asked, false)) {
-          picture = window.read();
-          picture_taken.notify_all();
-        }
-      }
-      const std::int64_t drawn = now_ns();
-      window.swap();
-      count(pace.shown(drawn - start), flashed);
-      window.poll();
-      std::vector<int> now_held = window.held_keys();
-      for (const render::KeyPress& press : window.take_keys()) {
-        if (callbacks.key) {
-          callbacks.key(press);
-        }
-        const bool typed = press.character != 0;
-        if (!typed && std::find(now_held.begin(), now_held.end(), press.key) == now_held.end()) {
-          now_held.push_back(press.key);  // let go again already: held for a picture all the same
-        }
-      }
-      if (callbacks.held && now_held != held) {
-        held = now_held;
-        callbacks.held(held);
-      }
-      const bool moved = std::exchange(pointer, window.pointer()) != pointer;
-      if (callbacks.pointer && (moved || other_view)) {  // a view may move under the pointer
-        callbacks.pointer(easel.pointer());
-      }
-      if (window.close_asked() && !std::exchange(closed, true) && callbacks.closed) {
-        callbacks.closed();
-      }
-    }
+    show_pictures(window, easel, agreed);
   } catch (const std::exception& error) {
     if (!open) {
       opened.set_exception(std::current_exception());
@@ -351,6 +162,39 @@ void Screen::Impl::run() {
     }
     const std::lock_guard lock(mutex);
     trouble = fmt::format("the screen has stopped: {}", error.what());
+  }
+}
+
+void Screen::Impl::show_pictures(render::Window& window, Easel& easel, const AgreedPace& agreed) {
+  Pace pace(agreed);
+  Happenings happenings(window, callbacks);
+  stimulus::Shown seen;
+  while (!stop.load(std::memory_order_relaxed)) {
+    pace.wait();
+    const std::int64_t start = screen_ns();
+    const bool other_view = take_scene(easel);
+    shown.read(seen);
+    const std::uint64_t flashed = easel.flash(onsets_so_far());  // after what they belong to
+    easel.draw(seen);
+    give_picture(window);
+    const std::int64_t drawn = screen_ns();
+    window.swap();
+    count(pace.shown(drawn - start), flashed);
+    window.poll();
+    happenings.tell(easel, other_view);
+  }
+}
+
+bool Screen::Impl::take_scene(Easel& easel) {
+  const std::lock_guard lock(mutex);
+  return easel.take(scene);
+}
+
+void Screen::Impl::give_picture(render::Window& window) {
+  const std::lock_guard lock(mutex);
+  if (std::exchange(picture_asked, false)) {
+    picture = window.read();
+    picture_taken.notify_all();
   }
 }
 
@@ -397,7 +241,7 @@ Screen::~Screen() {
 
 void Screen::show_text(render::TextPage page) {
   const std::lock_guard lock(impl_->mutex);
-  impl_->scene = {impl_->scene.version + 1, {}, std::move(page), Clock::now()};
+  impl_->scene = {impl_->scene.version + 1, {}, std::move(page), ScreenClock::now()};
 }
 
 void Screen::show(protocols::MakeDrawing make) {
@@ -407,7 +251,7 @@ void Screen::show(protocols::MakeDrawing make) {
 
 void Screen::observe(const stimulus::Shown& shown, const stimulus::Forces&, double) noexcept {
   if (impl_->first_tick_ns.load(std::memory_order_relaxed) == 0) {
-    impl_->first_tick_ns.store(now_ns(), std::memory_order_relaxed);
+    impl_->first_tick_ns.store(screen_ns(), std::memory_order_relaxed);
   }
   impl_->shown.write(shown);
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -15,6 +14,7 @@
 #include "core/render/trial/trial_display_style.h"
 #include "core/stimulus/observer.h"
 #include "experiments/control/session_control.h"
+#include "experiments/screen/screen_pointer.h"
 #include "protocols/definition/screen_options.h"
 #include "protocols/interface/drawing.h"
 
@@ -36,14 +36,6 @@ struct Flash {
   std::uint64_t onsets{0};  // of the run, up to and with those that it shows
   std::int64_t frame{0};    // of take_frames(), from 0
   std::int64_t time_ns{0};  // when it was shown, as a frame's
-};
-
-/// The mouse over what a protocol shows.
-struct ScreenPointer {
-  double x{0.0};             // p_W in the xz plane [m]
-  double z{0.0};             // [m]
-  double wheel{0.0};         // steps since the screen opened, up > 0
-  std::uint32_t buttons{0};  // bit 0 left, 1 right, 2 middle
 };
 
 /// What happens at the screen; called on its thread. They must not call back into the screen.
@@ -81,11 +73,7 @@ class Screen final : public stimulus::Observer {
 
   /// From the next picture on, a page; a countdown runs from this call.
   void show_text(render::TextPage page);
-  /// From the next picture on, what observe() is given.
-  /// @param points  the path of the block, p_W (N x 3) [m]
-  void show_trial(std::vector<Eigen::Vector3d> points);
-
-  /// From the next picture on, whatever this makes.
+  /// From the next picture on, what this makes of what observe() is given.
   void show(protocols::MakeDrawing make);
 
   /// Whose onsets make the photodiode's square white (Photodiode::kOnset). @param log  outlives the

@@ -1,0 +1,118 @@
+#include "experiments/screen/easel.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "core/render/gl/window.h"
+
+namespace haptrial::experiments {
+namespace {
+
+constexpr double kPatchSide = 0.06;  // of the photodiode's square, of the screen's shorter side
+constexpr std::size_t kProbes = 12;  // pictures by which the display's pace is known
+
+double seconds_since(ScreenClock::time_point start) {
+  return std::chrono::duration<double>(ScreenClock::now() - start).count();
+}
+
+}  // namespace
+
+Easel::Easel(render::Window& window, const render::TrialDisplayStyle& style,
+             const protocols::ScreenOptions& options)
+    : window_(window),
+      style_(style),
+      photodiode_(options.photodiode),
+      flash_time_(options.photodiode_time),
+      trial_(window.gl(), style, style.width, style.height),
+      text_(window.gl(), style.width, style.height, style.background, style.marker_colour,
+            style.target_colour),
+      patch_(window.gl(), style.width, style.height) {}
+
+Easel::~Easel() = default;
+
+bool Easel::take(const Scene& scene) {
+  if (scene.version == scene_.version) {
+    return false;
+  }
+  scene_ = scene;
+  if (drawing_) {
+    before_ = std::move(drawing_);
+  }
+  drawing_ = scene_.make ? scene_.make(window_.gl(), style_.width, style_.height) : nullptr;
+  return true;
+}
+
+void Easel::draw(const stimulus::Shown& shown) {
+  if (drawing_) {
+    drawing_->draw(shown);
+  } else {
+    render::TextPage page = scene_.page;
+    if (page.countdown) {
+      page.countdown = std::max(0.0, *page.countdown - seconds_since(scene_.shown));
+    }
+    text_.draw(page);
+  }
+  ++frames_;
+  draw_patch(shown);
+}
+
+std::uint64_t Easel::flash(std::uint64_t onsets) {
+  if (photodiode_ != protocols::Photodiode::kOnset || onsets == onsets_) {
+    return 0;
+  }
+  onsets_ = onsets;
+  white_until_ =
+      ScreenClock::now() + std::chrono::duration_cast<ScreenClock::duration>(flash_time_);
+  return onsets;
+}
+
+double Easel::probe() {
+  std::array<double, kProbes> intervals{};
+  for (double& interval : intervals) {
+    const auto start = ScreenClock::now();
+    trial_.draw({});
+    window_.swap();
+    window_.poll();
+    interval = seconds_since(start);
+  }
+  const auto middle = intervals.begin() + kProbes / 2;
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return *middle;
+}
+
+ScreenPointer Easel::pointer() const {
+  const render::Pointer p = window_.pointer();
+  const protocols::Drawing* drawing = drawing_ ? drawing_.get() : before_.get();
+  const auto seen = drawing != nullptr ? drawing->to_world(p.position) : std::nullopt;
+  const Eigen::Vector3d point = seen.value_or(trial_.to_world(p.position));
+  return {point.x(), point.z(), p.wheel, p.buttons};
+}
+
+bool Easel::is_white(const stimulus::Shown& shown) const {
+  switch (photodiode_) {
+    case protocols::Photodiode::kRun:
+      return drawing_ != nullptr && shown.engaged();
+    case protocols::Photodiode::kOnset:
+      return ScreenClock::now() < white_until_;
+    default:
+      return frames_ % 2 == 0;
+  }
+}
+
+void Easel::draw_patch(const stimulus::Shown& shown) {
+  if (photodiode_ == protocols::Photodiode::kOff) {
+    return;
+  }
+  const double side = std::round(kPatchSide * std::min(style_.width, style_.height));
+  const double shade = is_white(shown) ? 1.0 : 0.0;
+  patch_.begin_over();
+  patch_.fill({{0.0, style_.height - side}, {side, static_cast<double>(style_.height)}}, 0.0,
+              render::Colour{shade, shade, shade});
+  patch_.end();
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,68 @@
+#include "experiments/screen/pace.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+namespace haptrial::experiments {
+namespace {
+
+constexpr double kPaceTolerance = 0.25;
+
+}  // namespace
+
+std::int64_t screen_ns() noexcept {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(ScreenClock::now().time_since_epoch())
+      .count();
+}
+
+AgreedPace agreed_pace(bool wants_lock, double monitor_rate, double interval, double timer_rate) {
+  AgreedPace agreed;
+  const bool steady = std::abs(interval * monitor_rate - 1.0) < kPaceTolerance;
+  agreed.refresh_locked = wants_lock && monitor_rate > 0.0 && steady;
+  agreed.rate = monitor_rate > 0.0 ? monitor_rate : timer_rate;
+  if (!agreed.refresh_locked) {
+    agreed.notice =
+        fmt::format("{}, so a timer draws the screen at {:.0f} Hz and pictures may tear",
+                    wants_lock ? "the display does not wait for its monitor's refresh"
+                               : "the definition asks for no refresh lock",
+                    agreed.rate);
+  }
+  return agreed;
+}
+
+Pace::Pace(const AgreedPace& agreed)
+    : period_ns_(1e9 / agreed.rate),
+      locked_(agreed.refresh_locked),
+      last_(screen_ns()),
+      due_(static_cast<double>(last_)) {}
+
+void Pace::wait() {
+  if (locked_) {
+    return;
+  }
+  due_ += period_ns_;
+  const auto now = static_cast<double>(screen_ns());
+  if (now > due_) {  // too late for this one: on to the next in step
+    const double missed = std::ceil((now - due_) / period_ns_);
+    due_ += missed * period_ns_;
+    missed_ += static_cast<std::int32_t>(missed);
+  }
+  std::this_thread::sleep_until(
+      ScreenClock::time_point(std::chrono::nanoseconds(static_cast<std::int64_t>(due_))));
+}
+
+record::FrameRow Pace::shown(std::int64_t draw_ns) {
+  const std::int64_t now = screen_ns();
+  const std::int64_t since = now - std::exchange(last_, now);
+  if (locked_) {  // pictures come at refreshes, so that their distance tells
+    const auto refreshes = std::lround(static_cast<double>(since) / period_ns_);
+    missed_ = static_cast<std::int32_t>(std::max(0L, refreshes - 1));
+  }
+  return {now, draw_ns, std::exchange(missed_, 0)};
+}
+
+}  // namespace haptrial::experiments
