@@ -14,6 +14,11 @@ add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-con
                     -ffp-contract=off)
 # GCC 12 sees an overflow in fmt 9 that cannot happen.
 add_compile_options(-Wno-stringop-overflow)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # The compiler looks for memory to free every time that its heap has grown by a third; with this it
+  # begins at 256 MB, which takes 40 MB more and a sixth less time.
+  add_compile_options($<$<COMPILE_LANGUAGE:CXX>:--param=ggc-min-heapsize=262144>)
+endif()
 
 set(HAPTRIAL_SANITIZER "" CACHE STRING "address or thread")
 if(HAPTRIAL_SANITIZER STREQUAL "address")

@@ -240,6 +240,7 @@ class Console::Implementation {
   void answer(const httplib::Request& request, httplib::Response& response);
   void send_page(httplib::Response& response);
   void send_events(httplib::Response& response);
+  void send_picture(httplib::Response& response);
   static void refuse(httplib::Response& response, int status, const std::string& reason);
 
   SessionControl& control_;
@@ -291,7 +292,7 @@ void Console::Implementation::set_up_server() {
     answer(request, response);
   };
   server_.Get("/", handler).Get("/events", handler).Post("/ask", handler).Post("/note", handler);
-  server_.Post("/answer", handler);
+  server_.Get("/picture", handler).Post("/answer", handler);
   server_.set_error_handler(httplib::Server::Handler([this](const auto& request, auto& response) {
     if (response.body.empty()) {
       const int cut_off = status_of(t_job->connection.trouble());
@@ -314,6 +315,9 @@ void Console::Implementation::answer(const httplib::Request& request, httplib::R
   if (request.path == "/events") {
     return send_events(response);
   }
+  if (request.path == "/picture") {
+    return send_picture(response);
+  }
   try {
     if (request.path == "/ask") {
       control_.ask(parse_request(request.body));
@@ -333,6 +337,15 @@ void Console::Implementation::send_page(httplib::Response& response) {
   const std::string nonce = make_token();
   response.set_header("Content-Security-Policy", console_page_policy(nonce));
   response.set_content(console_page(nonce), "text/html; charset=utf-8");
+}
+
+/// Of what a page asks at the moment.
+void Console::Implementation::send_picture(httplib::Response& response) {
+  const auto picture = control_.status().asked.picture;
+  if (!picture) {
+    return refuse(response, 404, "no picture is shown now");
+  }
+  response.set_content(*picture, "image/png");
 }
 
 void Console::Implementation::send_events(httplib::Response& response) {

@@ -54,9 +54,9 @@ std::optional<Refusal> Gate::judge(const RequestHead& head) const {
   if (auto refusal = judge_sender(head)) {
     return refusal;
   }
-  const bool reads = head.path == "/" || head.path == "/events";
+  const bool reads = head.path == "/" || head.path == "/events" || head.path == "/picture";
   if (!reads && head.path != "/ask" && head.path != "/note" && head.path != "/answer") {
-    return Refusal{404, "no such page; there are /, /events, /ask, /note and /answer"};
+    return Refusal{404, "no such page; there are /, /events, /picture, /ask, /note and /answer"};
   }
   if (head.method != (reads ? "GET" : "POST")) {
     return Refusal{405, fmt::format("this address takes {} only", reads ? "GET" : "POST")};

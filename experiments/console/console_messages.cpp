@@ -41,10 +41,17 @@ json asked_json(const AskedItem& asked) {
   if (asked.number == 0) {
     return nullptr;
   }
-  return {{"number", asked.number},    {"kind", asked.kind},       {"title", asked.title},
-          {"text", asked.text},        {"choices", asked.choices}, {"low", asked.low},
-          {"high", asked.high},        {"step", asked.step},       {"low_end", asked.low_end},
-          {"high_end", asked.high_end}};
+  return {{"number", asked.number},
+          {"kind", asked.kind},
+          {"title", asked.title},
+          {"text", asked.text},
+          {"choices", asked.choices},
+          {"low", asked.low},
+          {"high", asked.high},
+          {"step", asked.step},
+          {"low_end", asked.low_end},
+          {"high_end", asked.high_end},
+          {"picture", asked.picture != nullptr}};
 }
 
 /// Null in a session without live figures.

@@ -16,7 +16,7 @@ std::string console_page(const std::string& nonce) {
 std::string console_page_policy(const std::string& nonce) {
   return fmt::format(
       "default-src 'none'; script-src 'nonce-{0}'; style-src 'nonce-{0}'; connect-src 'self'; "
-      "img-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+      "img-src 'self' data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
       nonce);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct AskedItem {
   double low{0.0}, high{0.0}, step{0.0};
   std::string low_end, high_end;
   std::string hint;
+  std::string picture_file;                    // as the definition names it; empty: none
+  std::shared_ptr<const std::string> picture;  // its bytes, a PNG file; null: none
 };
 
 }  // namespace haptrial::experiments

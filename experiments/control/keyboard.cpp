@@ -251,6 +251,9 @@ class Keyboard::Implementation {
     for (std::size_t i = 0; i < asked.choices.size(); ++i) {
       lines += "  " + std::to_string(i + 1) + "  " + asked.choices[i] + "\n";
     }
+    if (!asked.picture_file.empty()) {
+      lines += "  (picture: " + asked.picture_file + ")\n";
+    }
     if (!asked.low_end.empty()) {
       lines += "  " + asked.low_end + " ... " + asked.high_end + "\n";
     }

@@ -239,7 +239,12 @@ render::TextPage PageInput::page(std::shared_ptr<const render::Image> picture) c
 }
 
 AskedItem PageInput::asked(int number) const {
-  AskedItem asked{number, kind_of(item_), item_.title, item_.text, {}, 0.0, 0.0, 0.0, "", "", ""};
+  AskedItem asked;
+  asked.number = number;
+  asked.kind = kind_of(item_);
+  asked.title = item_.title;
+  asked.text = item_.text;
+  asked.picture_file = item_.picture;
   for (const pages::ItemChoice& choice : item_.choices) {
     asked.choices.push_back(choice.label);
   }

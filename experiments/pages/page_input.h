@@ -37,7 +37,7 @@ class PageInput {
   const std::optional<PageAnswer>& answer() const { return answer_; }
   /// As the participant sees it. @param picture  of the item, or null
   render::TextPage page(std::shared_ptr<const render::Image> picture) const;
-  /// As the others see it. @param number  of the question
+  /// As the others see it, but for the picture's bytes. @param number  of the question
   AskedItem asked(int number) const;
 
  private:

@@ -4,7 +4,10 @@
 
 #include <chrono>
 #include <filesystem>
+#include <memory>
+#include <utility>
 
+#include "core/base/files/file_text.h"
 #include "core/render/gl/image.h"
 #include "experiments/pages/virtual_answers.h"
 #include "experiments/runner/earlier_run.h"
@@ -94,18 +97,21 @@ bool SessionPages::person_answers() const { return p_.desk.attended() || p_.scre
 
 /// Shows the item until it is answered. @returns false if the session is ended meanwhile
 bool SessionPages::ask(const pages::Item& item, PageAnswer& answer, AnsweredAt& source) {
-  std::shared_ptr<const render::Image> picture;
-  if (!item.picture.empty() && p_.screen != nullptr) {
-    picture = std::make_shared<render::Image>(
-        render::read_png(p_.request.definition_folder / item.picture));
-  }
   PageInput input(item, d_.texts);
+  AskedItem asked = input.asked(++asked_);
+  std::shared_ptr<const render::Image> picture;
+  if (!item.picture.empty()) {
+    const auto file = p_.request.definition_folder / item.picture;
+    asked.picture = std::make_shared<std::string>(file_text(file));
+    picture =
+        p_.screen == nullptr ? nullptr : std::make_shared<render::Image>(render::read_png(file));
+  }
   const auto draw = [&] {
     p_.pace.show_page(input.page(picture),
                       item.title.empty() ? item.text : item.title + "\n" + item.text);
   };
   p_.keys.set_open(true);
-  p_.desk.status().asked = input.asked(++asked_);
+  p_.desk.status().asked = std::move(asked);
   draw();
   const Wishes& wishes = p_.desk.wishes();
   while (!input.answer() && !wishes.abort) {

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "core/base/error.h"
+#include "core/base/files/file_text.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/page_answer.h"
@@ -243,6 +244,35 @@ TEST(SessionPagesTest, WhatWasAnsweredIsNotAskedAgainAfterAResume) {
     EXPECT_EQ(rows[i].time_ns, first[i].time_ns) << "as it was answered the first time";
   }
   EXPECT_EQ(rows[1].source, record::AnsweredAt::kConsole);
+}
+
+TEST(SessionPagesTest, ThePictureOfAPageReachesTheConsole) {
+  const test::TemporaryFolder folder;
+  const Experiment experiment = load_experiment(write_definition(folder.path(), R"(
+[pages]
+before = ["welcome"]
+[pages.welcome]
+text = "Hold it like this."
+picture = "grip.png"
+)"));
+  fs::copy_file(HAPTRIAL_SOURCE_DIR "/docs/algorithms/drilled-floor.png", folder / "grip.png");
+  SessionControl control;
+  const SessionRequest request = live_request(experiment, folder / "S01.h5", control);
+  AskedItem asked;
+  std::atomic<bool> done{false};
+  std::thread person([&] {
+    while (!done && asked.number == 0) {
+      asked = control.status().asked;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    control.ask(Request::kAbort);
+  });
+  EXPECT_TRUE(run_session(request).stopped);
+  done = true;
+  person.join();
+  EXPECT_EQ(asked.picture_file, "grip.png");
+  ASSERT_TRUE(asked.picture);
+  EXPECT_EQ(*asked.picture, file_text(folder / "grip.png"));
 }
 
 TEST(SessionPagesTest, WhoDeclinesIsPresentedNothing) {

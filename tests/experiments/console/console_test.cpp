@@ -146,6 +146,26 @@ TEST_F(ConsoleTest, ThePageIsTheSourceWithItsNonceAndLoadsNothingElse) {
   EXPECT_THAT(second, Not(HasSubstr(nonce))) << "a nonce is used once";
 }
 
+// Binary bytes as they are, to those who have the token, while a page asks something with a
+// picture.
+TEST_F(ConsoleTest, ThePictureOfAPageIsServedWhileItIsAsked) {
+  const Console console(control_);
+  EXPECT_EQ(status_of(exchange(console, reading(console, "/picture"))), 404);
+  const std::string bytes("\x89PNG\r\n\x1a\n\0\xff\r\n\r\n more", 20);
+  SessionStatus status;
+  status.asked.number = 3;
+  status.asked.picture = std::make_shared<std::string>(bytes);
+  control_.publish(status);
+  const std::string answer = exchange(console, reading(console, "/picture"));
+  EXPECT_EQ(status_of(answer), 200);
+  EXPECT_THAT(answer, HasSubstr("Content-Type: image/png"));
+  EXPECT_EQ(answer.substr(answer.find("\r\n\r\n") + 4), bytes);
+  EXPECT_EQ(json::parse(status_json(status, 0))["asked"]["picture"], true);
+  RawRequest stranger = reading(console, "/picture");
+  stranger.target = "/picture?token=" + std::string(32, '0');
+  EXPECT_EQ(status_of(exchange(console, stranger)), 403);
+}
+
 TEST_F(ConsoleTest, TheUrlOpensThePage) {
   const Console console(control_);
   const std::string start = "http://127.0.0.1:" + std::to_string(console.port());
