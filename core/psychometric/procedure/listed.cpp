@@ -7,7 +7,6 @@ namespace haptrial::psychometric {
 namespace {
 
 constexpr const char* kConstant = "ConstantStimuli";
-constexpr const char* kAdjustment = "Adjustment";
 constexpr const char* kMagnitude = "MagnitudeEstimation";
 
 /// Sums about the means of both.
@@ -68,30 +67,6 @@ ConstantStimuli::ConstantStimuli(const ListParameters& list, std::uint64_t seed,
 
 void ConstantStimuli::check(double answer) const {
   checks::outcome_of(answer, number_of_outcomes_, kConstant);
-}
-
-Adjustment::Adjustment(const ListParameters& starts, std::uint64_t seed, std::string_view name)
-    : Listed(shuffled(starts, seed, name, kAdjustment), kAdjustment) {}
-
-void Adjustment::check(double answer) const {
-  checks::require(std::isfinite(answer), kAdjustment, "answer must be finite");
-}
-
-std::vector<Estimate> Adjustment::estimates() const {
-  const std::size_t n = outcomes().size();
-  if (n == 0) {
-    return {};
-  }
-  std::vector<double> set;
-  for (const Outcome& outcome : outcomes()) {
-    set.push_back(outcome.answer);
-  }
-  const Products p = products(set, set);
-  Estimate estimate{"mean of " + std::to_string(n) + " adjustments", p.mean_x, {}};
-  if (n > 1) {
-    estimate.deviation = std::sqrt(p.xx / static_cast<double>(n - 1) / static_cast<double>(n));
-  }
-  return {estimate};
 }
 
 MagnitudeEstimation::MagnitudeEstimation(const ListParameters& list, std::optional<double> modulus,

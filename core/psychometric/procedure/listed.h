@@ -43,18 +43,6 @@ class ConstantStimuli final : public Listed {
   std::size_t number_of_outcomes_;
 };
 
-/// Method of adjustment: the levels are where an adjustment starts, an answer is the level at which
-/// it was left. Estimate: the mean of what was set, with its standard error.
-class Adjustment final : public Listed {
- public:
-  /// @throws std::invalid_argument naming the parameter that breaks its bound.
-  Adjustment(const ListParameters& starts, std::uint64_t seed, std::string_view name);
-  std::vector<Estimate> estimates() const override;
-
- private:
-  void check(double answer) const override;
-};
-
 /// Magnitude estimation: an answer is a positive number in proportion to what was felt. Estimate:
 /// the exponent of Stevens' power law, the slope of log answer over log level, and its standard
 /// error by least squares. A modulus is the number that the participant was told to give to a

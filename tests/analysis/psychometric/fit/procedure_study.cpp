@@ -9,6 +9,7 @@
 
 #include "core/base/parallel.h"
 #include "core/psychometric/function/response_observer.h"
+#include "core/psychometric/procedure/adjusting.h"
 #include "core/psychometric/procedure/listed.h"
 #include "core/psychometric/procedure/pest.h"
 #include "core/psychometric/procedure/staircase.h"
@@ -207,18 +208,23 @@ Session psi(const Truth& truth, std::uint64_t seed, std::shared_ptr<const QuestT
 Session adjustment(const Truth& truth, std::uint64_t seed) {
   Session session;
   auto observer = observer_of(truth, Task::kYesNo, seed);
-  Adjustment settings({{-3.0, -2.5, -2.0, 2.0, 2.5, 3.0}, 2, false}, seed, "coverage/order");
+  AdjustingParameters parameters;
+  parameters.starts = {{-3.0, -2.5, -2.0, 2.0, 2.5, 3.0}, 2, false};
+  parameters.steps = {0.2};
+  parameters.low = -20.0;
+  parameters.high = 20.0;
+  parameters.most_presentations = 1000;
+  Adjusting settings(parameters, seed, "coverage/order");
   while (!settings.finished()) {
-    const Level start = settings.next();
-    double level = start[0];
-    int before = -1;
+    double before = 0.0;
     for (int turns = 0; turns < 4;) {
-      const int answer = observer.answer(level);  // 1: larger than the standard
-      turns += before >= 0 && answer != before ? 1 : 0;
+      const Level level = settings.next();
+      const double answer = observer.answer(level[0]) == 1 ? -1.0 : 1.0;  // 1: larger than equal
+      turns += before != 0.0 && answer != before ? 1 : 0;
       before = answer;
-      level += answer == 1 ? -0.2 : 0.2;
+      settings.report(answer, level);
     }
-    settings.report(level, start);
+    settings.report(0.0, Level(settings.next()));
     ++session.trials;
   }
   const auto estimate = settings.estimates().at(0);

@@ -82,6 +82,21 @@ TEST(AdjustingTest, SomebodyWhoKnowsTheStandardSetsItFromBothSides) {
   EXPECT_NEAR(estimates[0].value, 13.2, 0.5);
 }
 
+// 1, 2, 3, 6: mean 3, standard deviation √(14/3), error √(14/12).
+TEST(AdjustingTest, MeanAndStandardErrorOfTheSettings) {
+  AdjustingParameters parameters;
+  parameters.starts = {{1.0, 2.0, 3.0, 6.0}, 1, false};
+  parameters.low = 0.0;
+  parameters.high = 10.0;
+  Adjusting procedure(parameters, 1, "starts");
+  EXPECT_TRUE(procedure.estimates().empty());
+  while (!procedure.finished()) {
+    procedure.report(0.0, Level(procedure.next()));
+  }
+  EXPECT_DOUBLE_EQ(procedure.estimates()[0].value, 3.0);
+  EXPECT_NEAR(procedure.estimates()[0].deviation.value(), std::sqrt(14.0 / 12.0), 1e-14);
+}
+
 TEST(AdjustingTest, ARepetitionOfTheOutcomesGivesTheSameLevels) {
   AdjustingParameters p = from({5.0, 15.0, 25.0});
   p.starts.repetitions = 2;

@@ -73,18 +73,6 @@ TEST(ConstantStimuliTest, BoundsOfItsParameters) {
   EXPECT_THROW(three.report(3, {1.0}), std::invalid_argument);
 }
 
-// 1, 2, 3, 6: mean 3, standard deviation √(14/3), error √(14/12).
-TEST(AdjustmentTest, MeanAndStandardError) {
-  Adjustment procedure({{0.0, 10.0}, 2, false}, 1, "starts");
-  EXPECT_TRUE(procedure.estimates().empty());
-  for (double set : {1.0, 2.0, 3.0, 6.0}) {
-    procedure.report(set, procedure.next());
-  }
-  EXPECT_TRUE(procedure.finished());
-  EXPECT_DOUBLE_EQ(procedure.estimates()[0].value, 3.0);
-  EXPECT_NEAR(procedure.estimates()[0].deviation.value(), std::sqrt(14.0 / 12.0), 1e-14);
-}
-
 TEST(MagnitudeEstimationTest, TheExponentOfAnExactPowerLaw) {
   MagnitudeEstimation procedure({{1.0, 2.0, 5.0, 9.0}, 3, false}, 10.0, 1, "levels");
   while (!procedure.finished()) {
