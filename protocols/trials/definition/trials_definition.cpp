@@ -146,7 +146,19 @@ std::vector<markers::MarkerMeaning> TrialsDefinition::marker_meanings() const {
   return all;
 }
 
-std::vector<std::string> TrialsDefinition::warnings() const { return restless; }
+std::vector<std::string> TrialsDefinition::warnings() const {
+  std::vector<std::string> all = restless;
+  for (const Question& question : questions) {
+    const bool tells = question.has_limits() || question.feedback != Feedback::kNever;
+    if (tells && feedback_time == 0.0) {
+      all.push_back(fmt::format(
+          "the participant is to be told of answers to \"{}\", but display.feedback_time is 0 s, so "
+          "that nothing is shown",
+          question.name));
+    }
+  }
+  return all;
+}
 
 double TrialsDefinition::longest(int trials) const {
   constexpr double kAnswer = 2.0;  // [s]

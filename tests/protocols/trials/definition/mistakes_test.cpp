@@ -118,6 +118,22 @@ TEST(TrialMistakesTest, LimitsOfReactionTimes) {
               Contains(HasSubstr("response.too_slow is 3 s; allowed: below timeout, 2 s")));
 }
 
+TEST(TrialMistakesTest, FeedbackForNoTimeGetsAWarning) {
+  const std::string no_time = "[display]\nfeedback_time = 0.0\n";
+  TrialsDefinition silent, told, late;
+  read_small(
+      with(small_trials(kSmallStaircase, no_time), "correct =", "feedback = \"never\"\ncorrect ="),
+      silent);
+  EXPECT_THAT(silent.warnings(), IsEmpty());
+  read_small(
+      with(small_trials(kSmallStaircase, no_time), "correct =", "feedback = \"always\"\ncorrect ="),
+      told);
+  EXPECT_THAT(told.warnings(), ElementsAre(HasSubstr("display.feedback_time is 0 s")));
+  read_small(with(small_trials(kSmallStaircase, no_time), "correct =", "too_slow = 2.0\ncorrect ="),
+             late);
+  EXPECT_THAT(late.warnings(), ElementsAre(HasSubstr("so that nothing is shown")));
+}
+
 TEST(TrialMistakesTest, ARightAnswerThatIsNoChoice) {
   EXPECT_THAT(
       problems_of_trials(with(kSmall, "correct = \"$interval.comparison\"", "correct = \"3\"")),
