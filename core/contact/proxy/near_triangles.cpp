@@ -6,10 +6,11 @@
 namespace haptrial::contact {
 namespace {
 
-constexpr std::size_t kMostListed = 384;
-// A list of this many is short enough; one of more than the other is made smaller next time.
-constexpr int kFew = 12;
-constexpr int kMany = 48;
+constexpr std::size_t kMostListed = 1024;
+// A list of few may reach farther next time, one of many less far. A sphere looks at most of its
+// list but once.
+constexpr int kFew = 12, kMany = 48;
+constexpr int kFewOfSphere = 60, kManyOfSphere = 200;
 
 }  // namespace
 
@@ -40,21 +41,35 @@ bool NearTriangles::is_clear(const Sweep& sweep, double length) noexcept {
          (sweep.from - clear_centre_).norm() + length < clear_ - radius_ - 2.0 * sweep.skin.rest();
 }
 
-/// Makes a list that covers the move, if one of sensible length can.
+/// Makes a list that covers the move or, for a sphere, its beginning, if one of sensible length
+/// can.
 bool NearTriangles::collect(const Sweep& sweep, double length) noexcept {
   const double apart = (sweep.from - centre_).norm();
   if (covered_ > 0.0 && apart + length < covered_) {
     return true;
   }
-  if (!(length < 8.0 * reach_)) {
-    return false;
+  if (radius_ == 0.0) {
+    return length < 8.0 * reach_ && list_around(sweep, std::max(reach_, 2.0 * length));
   }
-  const double wanted = std::max(reach_, 2.0 * length);
+  if (covered_ > 0.0 && apart < 0.5 * covered_) {
+    return true;
+  }
+  for (int attempt = 0; attempt < 8; ++attempt) {
+    if (list_around(sweep, reach_)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool NearTriangles::list_around(const Sweep& sweep, double reach) noexcept {
   const double around = radius_ + 2.0 * sweep.skin.rest();
-  const int count = surface_->gather(sweep.from, around + wanted, found_);
-  if (count < 0 || count > kMany) {
+  const int count = surface_->gather(sweep.from, around + reach, found_);
+  const bool point = radius_ == 0.0;
+  if (count < 0 || count > (point ? kMany : kManyOfSphere)) {
     reach_ *= 0.6;
-  } else if (count < kFew && reach_ < 4.0 * surface_->typical_edge() + radius_) {
+  } else if (count < (point ? kFew : kFewOfSphere) &&
+             reach_ < 4.0 * surface_->typical_edge() + radius_) {
     reach_ *= 1.2;
   }
   if (count < 0) {
@@ -62,11 +77,26 @@ bool NearTriangles::collect(const Sweep& sweep, double length) noexcept {
     return false;
   }
   centre_ = sweep.from;
-  covered_ = wanted;
+  covered_ = reach;
   count_ = count;
   path_ = 0.0;
   for (int i = 0; i < count; ++i) {
-    listed_[i] = {found_[i].distance - around, found_[i].slot};
+    Known& known = listed_[i];
+    known.clear_until = found_[i].distance - around;
+    known.slot = found_[i].slot;
+    const geometry::Corners& c = surface_->corners(known.slot);
+    known.centre = (c[0] + c[1] + c[2]) / 3.0;
+    known.normal = surface_->normal(known.slot);
+    double square = 0.0;
+    known.low = known.high = 0.0;
+    for (const Eigen::Vector3d& corner : c) {
+      const Eigen::Vector3d out = corner - known.centre;
+      const double height = known.normal.dot(out);
+      square = std::max(square, out.squaredNorm());
+      known.low = std::min(known.low, height);
+      known.high = std::max(known.high, height);
+    }
+    known.ball = std::sqrt(square);
   }
   if (count == 0) {
     clear_centre_ = sweep.from;
@@ -75,13 +105,28 @@ bool NearTriangles::collect(const Sweep& sweep, double length) noexcept {
   return true;
 }
 
+/// False only if the proxy cannot meet the triangle on this part of its move.
+bool NearTriangles::can_meet(const Sweep& sweep, Known& known, double end,
+                             double length) const noexcept {
+  const double rest = 2.0 * sweep.skin.rest();
+  const Eigen::Vector3d from = sweep.from - known.centre;
+  const double apart = from.norm() - known.ball - radius_ - rest;
+  if (apart > end * length) {
+    known.clear_until = path_ + apart;
+    return false;
+  }
+  const double at = known.normal.dot(from), then = at + end * known.normal.dot(sweep.move);
+  const double off = radius_ + (radius_ > 0.0 ? sweep.skin.rest() : 1.25 * sweep.skin.thickness);
+  return !(std::min(at, then) > known.high + off || std::max(at, then) < known.low - off);
+}
+
 bool NearTriangles::first_listed(const Sweep& sweep, double end, double length,
                                  SweepHit& hit) noexcept {
   bool met = false;
-  const double until = path_ + end * length;
+  double until = path_ + end * length;
   for (int i = 0; i < count_; ++i) {
     Known& known = listed_[i];
-    if (known.clear_until > until) {
+    if (known.clear_until > until || !can_meet(sweep, known, end, length)) {
       continue;
     }
     SweepHit here;
@@ -98,6 +143,8 @@ bool NearTriangles::first_listed(const Sweep& sweep, double end, double length,
     if (meets_it && (!met || here.t < hit.t)) {
       hit = here;
       met = true;
+      end = std::min(end, here.t);  // what is farther away stops it no sooner
+      until = path_ + end * length + sweep.skin.rest();
     }
   }
   return met;
@@ -131,20 +178,28 @@ bool NearTriangles::first_of_all(const Sweep& sweep, SweepHit& hit) const noexce
   return search.met;
 }
 
-bool NearTriangles::first_hit(const Sweep& sweep, SweepHit& hit) noexcept {
+bool NearTriangles::first_hit(const Sweep& sweep, SweepHit& hit, double& seen) noexcept {
   const double length = sweep.move.norm();
+  seen = 1.0;
   if (is_clear(sweep, length)) {
     return false;
   }
-  if (collect(sweep, length)) {
+  const bool listed = collect(sweep, length);
+  const double left = covered_ - (sweep.from - centre_).norm();
+  if (listed && length < left) {
     return first_listed(sweep, 1.0, length, hit);
   }
-  // A long move: what it meets may be near.
-  if (covered_ > 0.0) {
-    const double part = (covered_ - (sweep.from - centre_).norm()) / length;
-    if (part > 0.0 && part < 1.0 && first_listed(sweep, part, length, hit)) {
-      return true;
-    }
+  // A long move most often meets something near.
+  const double part = left / length;
+  if (part > 0.0 && part < 1.0 &&
+      (first_listed(sweep, 0.1 * part, length, hit) || first_listed(sweep, part, length, hit))) {
+    return true;
+  }
+  if (radius_ > 0.0 && listed) {
+    const double clear =
+        clear_ - radius_ - 2.0 * sweep.skin.rest() - (sweep.from - clear_centre_).norm();
+    seen = std::clamp(std::max(left, clear) / length, 0.0, 1.0);
+    return false;
   }
   return first_of_all(sweep, hit);
 }

@@ -24,7 +24,9 @@ class NearTriangles {
 
   /// Whether the proxy meets a triangle on its move; then `hit` says where first.
   /// @param sweep  starts where the proxy is
-  bool first_hit(const Sweep& sweep, SweepHit& hit) noexcept;
+  /// @param seen  receives the part of the move that was looked at: all of it for a point; for a
+  ///     sphere less if the move is long
+  bool first_hit(const Sweep& sweep, SweepHit& hit, double& seen) noexcept;
 
   /// Whether one triangle is met. Does not look at others.
   bool meets(const Sweep& sweep, std::int32_t slot, SweepHit& hit) const noexcept;
@@ -33,10 +35,16 @@ class NearTriangles {
   struct Known {
     double clear_until;  // the path at which the proxy may first touch the triangle [m]
     std::int32_t slot;
+    double ball;             // the triangle lies in a ball of this radius [m]
+    Eigen::Vector3d centre;  // around this point [m]
+    Eigen::Vector3d normal;  // and between two planes across this direction,
+    double low, high;        // so high [m]
   };
 
   bool is_clear(const Sweep& sweep, double length) noexcept;
   bool collect(const Sweep& sweep, double length) noexcept;
+  bool list_around(const Sweep& sweep, double reach) noexcept;
+  bool can_meet(const Sweep& sweep, Known& known, double end, double length) const noexcept;
   bool first_listed(const Sweep& sweep, double end, double length, SweepHit& hit) noexcept;
   bool first_of_all(const Sweep& sweep, SweepHit& hit) const noexcept;
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -35,6 +36,14 @@ struct PlaneSolution {
 class PlaneSet {
  public:
   static constexpr int kMost = 12;
+
+  PlaneSet() = default;
+  PlaneSet(const PlaneSet& other) noexcept { *this = other; }
+  PlaneSet& operator=(const PlaneSet& other) noexcept {  // a few of a dozen
+    count_ = other.count_;
+    std::copy_n(other.planes_.begin(), count_, planes_.begin());
+    return *this;
+  }
 
   void clear() noexcept { count_ = 0; }
   int size() const noexcept { return count_; }

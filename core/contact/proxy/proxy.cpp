@@ -62,7 +62,8 @@ void Proxy::step_to(const Vector3d& at) noexcept {
   way_[way_length_++] = at;
 }
 
-/// Moves until something is met, which becomes a plane. @returns whether something was met.
+/// Moves until something is met, which becomes a plane, or as far as was looked.
+/// @returns false at the end of the move.
 bool Proxy::go(Tick& tick, const Vector3d& move) noexcept {
   const Sweep sweep{state_.position, move, options_.radius, tick.skin};
   SweepHit hit;
@@ -73,12 +74,13 @@ bool Proxy::go(Tick& tick, const Vector3d& move) noexcept {
     met = near_.meets(sweep, before_[i].slot, hit) && hit.t * length <= 2.0 * tick.least;
     hit.t = 0.0;
   }
+  double seen = 1.0;
   if (!met) {
-    met = near_.first_hit(sweep, hit);
+    met = near_.first_hit(sweep, hit, seen);
   }
   if (!met) {
-    step_to(state_.position + move);
-    return false;
+    step_to(state_.position + seen * move);
+    return seen < 1.0;  // the same planes lead on
   }
   if (hit.t > 0.0) {
     step_to(state_.position + hit.t * move);
@@ -114,15 +116,22 @@ bool Proxy::find_way_out(Tick& tick) noexcept {
     const Vector3d move = allowed_by_friction(solution, sticks);
     const double length = move.norm();
     const double enough = 4.0 * tick.least;
-    if (!solution.solved || !(length > enough) || !(solution.pressure() >= 0.0)) {
+    if (!solution.solved || !(length > enough) || !(solution.residual.norm() < wish.norm())) {
       return false;
     }
+    const Sweep sweep{state_.position, move, options_.radius, tick.skin};
     SweepHit hit;
-    const bool met = near_.first_hit({state_.position, move, options_.radius, tick.skin}, hit);
-    if (met && hit.t * length <= enough) {
+    for (int i = 0; i < count; ++i) {
+      if (near_.meets(sweep, planes_[i].slot, hit) && hit.t * length <= enough) {
+        return false;
+      }
+    }
+    double seen = 1.0;
+    const double free = near_.first_hit(sweep, hit, seen) ? hit.t : seen;
+    if (free * length <= enough) {
       return false;
     }
-    step_to(state_.position + (met ? hit.t : 1.0) * move);
+    step_to(state_.position + free * move);
     return true;
   };
   for (int i = 0; i < count; ++i) {
@@ -168,11 +177,14 @@ bool Proxy::go_round(Tick& tick, const PlaneSolution& solution) noexcept {
   const Vector3d end = nearest.point + along + plane.level * normal;
   const Vector3d first = corner - state_.position;
   SweepHit hit;
-  if (near_.first_hit({state_.position, first, options_.radius, tick.skin}, hit)) {
+  double seen = 1.0;
+  if (near_.first_hit({state_.position, first, options_.radius, tick.skin}, hit, seen) ||
+      seen < 1.0) {
     return false;
   }
   near_.moved(first.norm());
-  if (near_.first_hit({corner, end - corner, options_.radius, tick.skin}, hit)) {
+  if (near_.first_hit({corner, end - corner, options_.radius, tick.skin}, hit, seen) ||
+      seen < 1.0) {
     return false;
   }
   step_to(corner);

@@ -42,7 +42,7 @@ struct ProxyState {
 struct ProxyOptions {
   double radius{0.0};  // >= 0; 0: a point [m]
   Friction friction;
-  int most_steps{48};  // a tick, 1 to 48
+  int most_steps{16};  // a tick, 1 to 48
   /// Ruspini's method is without the two: ways out of places where the planes stop the proxy and
   /// the triangles do not; paths round the arcs of a sphere.
   bool ways_out{true};

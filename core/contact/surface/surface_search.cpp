@@ -91,6 +91,15 @@ int full_places(const Boxes& boxes) {
   return count;
 }
 
+/// Asks for the boxes of a node that will be looked at soon: they come from far, several at once.
+void fetch_early(const BvhData& data, std::int32_t node) {
+  const Boxes& boxes = node < 0 ? data.leaf_boxes[~node] : data.nodes[node].boxes;
+  for (int axis = 0; axis < 3; ++axis) {
+    __builtin_prefetch(boxes.low[axis]);
+    __builtin_prefetch(boxes.high[axis]);
+  }
+}
+
 struct Child {
   float entry;  // about how far along the segment it begins
   std::int32_t place;
@@ -124,13 +133,18 @@ int ContactSurface::gather(const Eigen::Vector3d& centre, double reach,
       }
       if (node >= 0) {
         stack[top++] = data.nodes[node].child[i];
+        fetch_early(data, stack[top - 1]);
         continue;
       }
       if (count == found.size()) {
         return -1;
       }
       const double apart = std::sqrt(static_cast<double>(squares[i])) * (1.0 - kRounded) - rounded;
-      found[count++] = {std::max(apart, 0.0) / data.frame.scale, ~node * kWidth + i};
+      const std::int32_t slot = ~node * kWidth + i;
+      found[count++] = {std::max(apart, 0.0) / data.frame.scale, slot};
+      __builtin_prefetch(&corners_[slot]);
+      __builtin_prefetch(&corners_[slot][2].z());
+      __builtin_prefetch(&normals_[slot]);
     }
   }
   return static_cast<int>(count);
@@ -175,6 +189,7 @@ void ContactSurface::along(const Eigen::Vector3d& from, const Eigen::Vector3d& m
     for (int i = 0; i < count; ++i) {
       if (node >= 0) {
         stack[top++] = data.nodes[node].child[children[i].place];
+        fetch_early(data, stack[top - 1]);
         continue;
       }
       const double left = visit(context, ~node * kWidth + children[i].place);

@@ -71,6 +71,39 @@ inline bool segment_meets_triangle(const Eigen::Vector3d& p, const Eigen::Vector
   return left == 0 || right == 0;
 }
 
+/// Whether a closed mesh holds a point, decided without rounding: by the parity of the triangles that
+/// a segment to a far point crosses, one that meets no edge and no corner.
+inline bool holds(const geometry::Mesh& mesh, const Eigen::Vector3d& p) {
+  using geometry::side_of_plane;
+  const Eigen::AlignedBox3d box = geometry::bounds(mesh);
+  for (int attempt = 0;; ++attempt) {
+    const Eigen::Vector3d aside(std::sin(1.0 + attempt), std::sin(2.0 + 1.7 * attempt), 4.0);
+    const Eigen::Vector3d q = box.center() + box.sizes().maxCoeff() * aside;
+    bool inside = false, clear = true;
+    for (std::size_t i = 0; i < mesh.triangles.size() && clear; ++i) {
+      const geometry::Triangle& c = mesh.triangles[i];
+      const Eigen::Vector3d t[3] = {mesh.vertices[c[0]], mesh.vertices[c[1]], mesh.vertices[c[2]]};
+      const int at_p = side_of_plane(t[0], t[1], t[2], p);
+      const int at_q = side_of_plane(t[0], t[1], t[2], q);
+      if (at_p == at_q) {
+        continue;  // beside it, or it has no area
+      }
+      int left = 0, right = 0;
+      for (int k = 0; k < 3; ++k) {
+        const int side = side_of_plane(p, q, t[k], t[(k + 1) % 3]);
+        left += side >= 0;
+        right += side <= 0;
+      }
+      const bool meets = left == 3 || right == 3;
+      clear = !meets || (left + right == 3 && at_p * at_q != 0);
+      inside ^= meets;
+    }
+    if (clear) {
+      return inside;
+    }
+  }
+}
+
 /// Finds the triangle of a mesh that a segment meets, by a grid of cells of its own.
 class ExactCrossing {
  public:

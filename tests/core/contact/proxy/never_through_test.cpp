@@ -125,9 +125,10 @@ void try_to_get_through(const HardMesh& hard, const Place& place, double radius,
     const double slack = 16.0 * Skin::of(surface.magnitude()).thickness;
     ASSERT_LE((state.position - tool).norm(), (before - tool).norm() + slack)
         << "step " << i << ", farther by "
-        << (state.position - tool).norm() - (before - tool).norm();
+        << (state.position - tool).norm() - (before - tool).norm() << " in " << way.size()
+        << " parts, first to " << (way[std::min<std::size_t>(1, way.size() - 1)] - tool).norm();
     if (hard.closed && i % 1000 == 0) {
-      ASSERT_FALSE(surface.bvh().contains(state.position)) << "step " << i;
+      ASSERT_FALSE(holds(mesh, state.position)) << "step " << i;
     }
   }
 }
