@@ -99,11 +99,13 @@ PlaneSolution PlaneSet::solve(const Vector3d& proxy, const Vector3d& wish,
     return best;
   }
   best.solved = false;
+  const double farthest = wish.norm() + 8.0 * tolerance;  // staying where it is is as good
+  least = farthest * farthest;
   bool sure = false;  // no plane pulls: then no point is nearer
   const auto consider = [&](std::span<const int> which) {
     const PlaneSolution s = solve_on(which, proxy, wish);
     const double square = s.residual.squaredNorm();
-    if (s.solved && (!best.solved || square < least) && allowed(s.move)) {
+    if (s.solved && square < least && allowed(s.move)) {
       best = s;
       least = square;
       sure = s.push[0] >= 0.0 && s.push[1] >= 0.0 && s.push[2] >= 0.0;
