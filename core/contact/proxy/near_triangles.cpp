@@ -105,6 +105,19 @@ bool NearTriangles::list_around(const Sweep& sweep, double reach) noexcept {
   return true;
 }
 
+namespace {
+
+/// Of two hits at the same place, to rounding, a face is the better one: the edge of a triangle
+/// that lies in the same plane has a normal that is tilted towards it.
+bool is_sooner(const SweepHit& here, const SweepHit& other, double length, double same) {
+  if (std::abs(here.t - other.t) * length <= same && here.plane.curved != other.plane.curved) {
+    return other.plane.curved;
+  }
+  return here.t < other.t;
+}
+
+}  // namespace
+
 /// False only if the proxy cannot meet the triangle on this part of its move.
 bool NearTriangles::can_meet(const Sweep& sweep, Known& known, double end,
                              double length) const noexcept {
@@ -140,11 +153,14 @@ bool NearTriangles::first_listed(const Sweep& sweep, double end, double length,
       meets_it = sweep_point(sweep, surface_->corners(known.slot), surface_->normal(known.slot),
                              known.slot, end, here);
     }
-    if (meets_it && (!met || here.t < hit.t)) {
+    if (meets_it && (!met || is_sooner(here, hit, length, sweep.skin.thickness))) {
+      const double t = met ? std::min(hit.t, here.t) : here.t;
       hit = here;
+      hit.t = t;
       met = true;
-      end = std::min(end, here.t);  // what is farther away stops it no sooner
-      until = path_ + end * length + sweep.skin.rest();
+      // What is farther away stops it no sooner.
+      until = path_ + t * length + sweep.skin.rest();
+      end = std::min(end, t + sweep.skin.rest() / length);
     }
   }
   return met;

@@ -46,6 +46,7 @@ class PlaneSet {
   }
 
   void clear() noexcept { count_ = 0; }
+  void keep_first(int count) noexcept { count_ = std::min(count, count_); }
   int size() const noexcept { return count_; }
   const ContactPlane& operator[](int i) const noexcept { return planes_[i]; }
   /// False if a plane of the same triangle with the same normal is there already, or no room is

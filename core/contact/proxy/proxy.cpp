@@ -38,6 +38,7 @@ struct Proxy::Tick {
   double least;          // moves shorter than this are none [m]
   bool slipped{false};   // along a surface
   bool repeated{false};  // the last hit was a plane that is known: rounding is all that is left
+  bool lifted{false};
 };
 
 Proxy::Proxy(const ContactSurface& surface, const ProxyOptions& options)
@@ -71,7 +72,8 @@ bool Proxy::go(Tick& tick, const Vector3d& move) noexcept {
   const double length = move.norm();
   for (int i = 0; i < before_.size() && !met; ++i) {
     // What held the proxy a moment ago most often still does; then it is not moved at all.
-    met = near_.meets(sweep, before_[i].slot, hit) && hit.t * length <= 2.0 * tick.least;
+    met = near_.meets(sweep, before_[i].slot, hit) && hit.t * length <= 2.0 * tick.least &&
+          !hit.plane.curved;
     hit.t = 0.0;
   }
   double seen = 1.0;
@@ -105,47 +107,68 @@ Vector3d Proxy::allowed_by_friction(const PlaneSolution& solution, bool& sticks)
   return solution.move * std::max(0.0, 1.0 - f.dynamic_friction * pressure / length);
 }
 
+/// A proxy at the very limit of its skin is set off from what is around it.
+void Proxy::lift(Tick& tick) noexcept {
+  Vector3d away = Vector3d::Zero();
+  for (int i = 0; i < planes_.size(); ++i) {
+    away += planes_[i].normal;
+  }
+  const double length = away.norm();
+  tick.repeated = false;
+  tick.lifted = true;
+  planes_.clear();
+  if (length > 0.1) {
+    go(tick, tick.skin.thickness / length * away);
+    planes_.clear();
+    tick.repeated = false;
+  }
+}
+
 /// Planes reach beyond their triangles: where they stop the proxy, one or two of them alone may let
 /// it pass beside the others.
 bool Proxy::find_way_out(Tick& tick) noexcept {
   const Vector3d wish = tick.goal - state_.position;
-  const int count = std::min(planes_.size(), 4);
+  const double enough = 4.0 * tick.least;
+  constexpr int kMostTried = 8;
+  const int known = planes_.size();
   const auto try_on = [&](std::span<const int> which) {
     const PlaneSolution solution = planes_.solve_on(which, state_.position, wish);
     bool sticks = false;
     const Vector3d move = allowed_by_friction(solution, sticks);
     const double length = move.norm();
-    const double enough = 4.0 * tick.least;
     if (!solution.solved || !(length > enough) || !(solution.residual.norm() < wish.norm())) {
       return false;
     }
     const Sweep sweep{state_.position, move, options_.radius, tick.skin};
     SweepHit hit;
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < planes_.size(); ++i) {
       if (near_.meets(sweep, planes_[i].slot, hit) && hit.t * length <= enough) {
         return false;
       }
     }
     double seen = 1.0;
-    const double free = near_.first_hit(sweep, hit, seen) ? hit.t : seen;
+    const bool met = near_.first_hit(sweep, hit, seen);
+    const double free = met ? hit.t : seen;
     if (free * length <= enough) {
+      if (met && planes_.size() < kMostTried) {
+        planes_.add(hit.plane);  // the way may go along this one
+      }
       return false;
     }
     step_to(state_.position + free * move);
     return true;
   };
-  for (int i = 0; i < count; ++i) {
-    if (try_on(std::array{i})) {
+  for (int j = 0; j < planes_.size(); ++j) {
+    if (try_on(std::array{j})) {
       return true;
     }
-  }
-  for (int i = 0; i < count && count > 2; ++i) {
-    for (int j = i + 1; j < count; ++j) {
+    for (int i = 0; i < j && planes_.size() > 2; ++i) {
       if (try_on(std::array{i, j})) {
         return true;
       }
     }
   }
+  planes_.keep_first(known);
   return false;
 }
 
@@ -242,6 +265,10 @@ const ProxyState& Proxy::follow(const Vector3d& tool) noexcept {
     const Vector3d move = allowed_by_friction(solution, sticks);
     const bool arrived = move.norm() <= tick.least;
     if (arrived || tick.repeated) {
+      if (tick.repeated && !tick.lifted) {
+        lift(tick);
+        continue;
+      }
       if (!sticks && options_.ways_out && planes_.size() > 1 && find_way_out(tick)) {
         tick.slipped = slipping_ = true;
         tick.repeated = false;

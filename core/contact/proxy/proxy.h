@@ -41,7 +41,7 @@ struct ProxyState {
 
 struct ProxyOptions {
   double radius{0.0};  // >= 0; 0: a point [m]
-  Friction friction;
+  Friction friction{};
   int most_steps{16};  // a tick, 1 to 48
   /// Ruspini's method is without the two: ways out of places where the planes stop the proxy and
   /// the triangles do not; paths round the arcs of a sphere.
@@ -83,6 +83,7 @@ class Proxy {
   struct Tick;
   bool go(Tick& tick, const Eigen::Vector3d& move) noexcept;
   bool still_there(Tick& tick) noexcept;
+  void lift(Tick& tick) noexcept;
   bool find_way_out(Tick& tick) noexcept;
   bool go_round(Tick& tick, const PlaneSolution& solution) noexcept;
   Eigen::Vector3d allowed_by_friction(const PlaneSolution& solution, bool& sticks) const noexcept;

@@ -58,6 +58,9 @@ bool sweep_sphere(const Sweep& sweep, const geometry::Corners& c, const Vector3d
       return false;  // convex: it only recedes from here on
     }
     const double gap = away.distance - limit;
+    if (gap <= 0.25 * h && away.distance + rate * (end - t) >= sweep.radius + 0.5 * h) {
+      return false;  // along the surface, to rounding
+    }
     if (gap <= 0.25 * h || step == kMostSteps) {
       hit.t = std::clamp(t - (rest - away.distance) / -rate, 0.0, t);
       hit.plane = {away.normal, away.point, rest, slot, away.curved};
