@@ -194,27 +194,40 @@ bool Proxy::go_round(Tick& tick, const PlaneSolution& solution) noexcept {
   if (!(depth > tick.least) || !(plane.normal.dot(to_goal) > 0.05 * depth)) {
     return false;  // the goal is on the edge or behind it
   }
-  const Vector3d normal = to_goal / depth;
-  const Vector3d corner = nearest.point + 0.5 * along +
-                          plane.level / (1.0 + plane.normal.dot(normal)) * (plane.normal + normal);
-  const Vector3d end = nearest.point + along + plane.level * normal;
-  const Vector3d first = corner - state_.position;
-  SweepHit hit;
-  double seen = 1.0;
-  if (near_.first_hit({state_.position, first, options_.radius, tick.skin}, hit, seen) ||
-      seen < 1.0) {
-    return false;
+  const Vector3d wanted = to_goal / depth;
+  Vector3d normal = wanted;
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    const Vector3d corner =
+        nearest.point + 0.5 * along +
+        plane.level / (1.0 + plane.normal.dot(normal)) * (plane.normal + normal);
+    const Vector3d end = nearest.point + along + plane.level * normal;
+    const Vector3d first = corner - state_.position;
+    SweepHit hit;
+    double seen = 1.0;
+    bool met = near_.first_hit({state_.position, first, options_.radius, tick.skin}, hit, seen);
+    if (!met && seen == 1.0) {
+      near_.moved(first.norm());
+      met = near_.first_hit({corner, end - corner, options_.radius, tick.skin}, hit, seen);
+    }
+    if (!met && seen == 1.0) {
+      step_to(corner);
+      step_to(end);
+      before_ = planes_;
+      planes_.clear();
+      return true;
+    }
+    // The arc ends where the face beside the edge begins.
+    normal = met ? hit.plane.normal : plane.normal;
+    const double length = along.norm();
+    if (length > 0.0) {
+      normal -= along * (along.dot(normal) / (length * length));
+    }
+    normal.normalize();
+    if (!(normal.dot(wanted) > plane.normal.dot(wanted) + 1e-12)) {
+      return false;
+    }
   }
-  near_.moved(first.norm());
-  if (near_.first_hit({corner, end - corner, options_.radius, tick.skin}, hit, seen) ||
-      seen < 1.0) {
-    return false;
-  }
-  step_to(corner);
-  step_to(end);
-  before_ = planes_;
-  planes_.clear();
-  return true;
+  return false;
 }
 
 void Proxy::rest(Tick& tick, const PlaneSolution& solution) noexcept {
@@ -236,7 +249,7 @@ void Proxy::rest(Tick& tick, const PlaneSolution& solution) noexcept {
     state_.dragged = -solution.move * (length > most ? most / length : 1.0);
   }
   slipping_ = tick.slipped;
-  const bool touches = planes_.size() > 0 && (solution.count > 0 || !solution.solved);
+  const bool touches = solution.count > 0 || !solution.solved;
   state_.state = !touches                                   ? ContactState::kFree
                  : f.static_friction == 0.0 || tick.slipped ? ContactState::kSlip
                                                             : ContactState::kStick;
@@ -305,7 +318,16 @@ const ProxyState& Proxy::follow(const Vector3d& tool) noexcept {
     planes_.clear();
     before_.clear();
   }
-  rest(tick, planes_.solve(state_.position, wish, tolerance));
+  if (!state_.settled && planes_.size() == 0) {
+    planes_ = before_;  // they lead on: what holds the proxy is not looked for any more
+  }
+  PlaneSolution solution = planes_.solve(state_.position, wish, tolerance);
+  if (!state_.settled && solution.count == 0) {
+    solution.solved = false;
+    solution.move.setZero();
+    solution.residual = -wish;
+  }
+  rest(tick, solution);
   return state_;
 }
 

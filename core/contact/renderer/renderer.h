@@ -29,7 +29,7 @@ struct RendererOptions {
   double stiffness{500.0};    // k > 0 [N/m]
   double damping{0.0};        // b >= 0, along the normal; never pulls [N·s/m]
   double radius{0.0};         // of the tool >= 0; 0: a point [m]
-  Friction friction{};          // of proxies; the others have none
+  Friction friction{};        // of proxies; the others have none
   double crease_angle{-1.0};  // force shading over edges less sharp than this; negative: none [rad]
   int resolution{64};         // of voxel and distance field: cells along the longest side, 4 to 512
 };
