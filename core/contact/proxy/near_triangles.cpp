@@ -19,6 +19,7 @@ NearTriangles::NearTriangles(const ContactSurface& surface, double radius)
       radius_(radius),
       found_(kMostListed),
       listed_(kMostListed),
+      clear_until_(kMostListed),
       reach_(surface.typical_edge()) {}
 
 void NearTriangles::forget() noexcept {
@@ -82,7 +83,7 @@ bool NearTriangles::list_around(const Sweep& sweep, double reach) noexcept {
   path_ = 0.0;
   for (int i = 0; i < count; ++i) {
     Known& known = listed_[i];
-    known.clear_until = found_[i].distance - around;
+    clear_until_[i] = found_[i].distance - around;
     known.slot = found_[i].slot;
     const geometry::Corners& c = surface_->corners(known.slot);
     known.centre = (c[0] + c[1] + c[2]) / 3.0;
@@ -119,13 +120,13 @@ bool is_sooner(const SweepHit& here, const SweepHit& other, double length, doubl
 }  // namespace
 
 /// False only if the proxy cannot meet the triangle on this part of its move.
-bool NearTriangles::can_meet(const Sweep& sweep, Known& known, double end,
-                             double length) const noexcept {
+bool NearTriangles::can_meet(const Sweep& sweep, int i, double end, double length) noexcept {
+  const Known& known = listed_[i];
   const double rest = 2.0 * sweep.skin.rest();
   const Eigen::Vector3d from = sweep.from - known.centre;
   const double apart = from.norm() - known.ball - radius_ - rest;
   if (apart > end * length) {
-    known.clear_until = path_ + apart;
+    clear_until_[i] = path_ + apart;
     return false;
   }
   const double at = known.normal.dot(from), then = at + end * known.normal.dot(sweep.move);
@@ -138,17 +139,17 @@ bool NearTriangles::first_listed(const Sweep& sweep, double end, double length,
   bool met = false;
   double until = path_ + end * length;
   for (int i = 0; i < count_; ++i) {
-    Known& known = listed_[i];
-    if (known.clear_until > until || !can_meet(sweep, known, end, length)) {
+    if (clear_until_[i] > until || !can_meet(sweep, i, end, length)) {
       continue;
     }
+    const Known& known = listed_[i];
     SweepHit here;
     bool meets_it = false;
     if (radius_ > 0.0) {
       double distance = 0.0;
       meets_it = sweep_sphere(sweep, surface_->corners(known.slot), surface_->normal(known.slot),
                               known.slot, end, here, distance);
-      known.clear_until = path_ + distance - radius_ - 2.0 * sweep.skin.rest();
+      clear_until_[i] = path_ + distance - radius_ - 2.0 * sweep.skin.rest();
     } else {
       meets_it = sweep_point(sweep, surface_->corners(known.slot), surface_->normal(known.slot),
                              known.slot, end, here);

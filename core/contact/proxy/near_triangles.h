@@ -33,7 +33,6 @@ class NearTriangles {
 
  private:
   struct Known {
-    double clear_until;  // the path at which the proxy may first touch the triangle [m]
     std::int32_t slot;
     double ball;             // the triangle lies in a ball of this radius [m]
     Eigen::Vector3d centre;  // around this point [m]
@@ -44,7 +43,7 @@ class NearTriangles {
   bool is_clear(const Sweep& sweep, double length) noexcept;
   bool collect(const Sweep& sweep, double length) noexcept;
   bool list_around(const Sweep& sweep, double reach) noexcept;
-  bool can_meet(const Sweep& sweep, Known& known, double end, double length) const noexcept;
+  bool can_meet(const Sweep& sweep, int i, double end, double length) noexcept;
   bool first_listed(const Sweep& sweep, double end, double length, SweepHit& hit) noexcept;
   bool first_of_all(const Sweep& sweep, SweepHit& hit) const noexcept;
 
@@ -52,6 +51,7 @@ class NearTriangles {
   double radius_;
   std::vector<NearTriangle> found_;  // as long as what is listed may be
   std::vector<Known> listed_;
+  std::vector<double> clear_until_;  // of each: the path at which the proxy may first touch it [m]
   int count_{0};
   Eigen::Vector3d centre_{Eigen::Vector3d::Zero()};        // of the ball that the list covers [m]
   double covered_{-1.0};                                   // its radius; negative: no list [m]

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStiffness = 1000.0;  // [N/m]
+constexpr double kSpring = 1000.0;  // [N/m]
 
 /// A force divided by the normal of the plane z = 0.
 struct OnPlane {
@@ -20,7 +20,7 @@ struct OnPlane {
 };
 
 OnPlane force_on_plane(const ProxyState& state, const Vector3d& tool) {
-  const Vector3d force = kStiffness * (state.position - tool);
+  const Vector3d force = kSpring * (state.position - tool);
   return {force.z(), force.x(), force.y()};
 }
 
@@ -39,10 +39,10 @@ TEST(FrictionTest, IsCoulombsOnAPlane) {
     const Vector3d tool(x, 0.0, -depth);
     const ProxyState& state = proxy.follow(tool);
     const OnPlane force = force_on_plane(state, tool);
-    ASSERT_NEAR(force.normal, kStiffness * depth, 1e-9);
+    ASSERT_NEAR(force.normal, kSpring * depth, 1e-9);
     ASSERT_NEAR(force.across, 0.0, 1e-9);
     if (slips == 0 && state.state == ContactState::kStick) {
-      ASSERT_NEAR(force.along, -kStiffness * x, 1e-9);
+      ASSERT_NEAR(force.along, -kSpring * x, 1e-9);
       ASSERT_LE(x, friction.static_friction * depth + 1e-12);
     } else {
       ++slips;
@@ -80,9 +80,8 @@ TEST(FrictionTest, AGrooveHoldsByTheSumOfItsSides) {
     const Vector3d tool(x, 0.0, -depth);
     const ProxyState& state = proxy.follow(tool);
     const OnPlane force = force_on_plane(state, tool);
-    ASSERT_NEAR(force.normal, kStiffness * depth, 1e-9);
-    ASSERT_NEAR(force.along, -std::min(kStiffness * x, 0.5 * std::sqrt(2.0) * kStiffness * depth),
-                1e-8)
+    ASSERT_NEAR(force.normal, kSpring * depth, 1e-9);
+    ASSERT_NEAR(force.along, -std::min(kSpring * x, 0.5 * std::sqrt(2.0) * kSpring * depth), 1e-8)
         << x;
   }
 }
@@ -108,12 +107,12 @@ TEST(FrictionTest, TheConeIsNeverExceeded) {
         ++touching;
         const double most = state.state == ContactState::kStick ? friction.static_friction
                                                                 : friction.dynamic_friction;
-        ASSERT_LE(kStiffness * state.dragged.norm(),
-                  most * kStiffness * state.pressure * (1.0 + 1e-12) + 1e-9)
+        ASSERT_LE(kSpring * state.dragged.norm(),
+                  most * kSpring * state.pressure * (1.0 + 1e-12) + 1e-9)
             << i;
         if (state.planes == 1 && state.settled) {
           // The whole force, seen from the surface alone.
-          const Vector3d force = kStiffness * (state.position - tool);
+          const Vector3d force = kSpring * (state.position - tool);
           const double normal = force.dot(state.normals[0]);
           ASSERT_LE((force - normal * state.normals[0]).norm(),
                     friction.static_friction * normal + 1e-9)
