@@ -192,5 +192,44 @@ TEST(NeverThroughTest, PointAndSphereOnScannedMeshes) {
   }
 }
 
+TEST(NeverThroughTest, ExactlyThroughAnEdgeOrACorner) {
+  // Straight at points that two or more triangles share, from places where the middle is exact.
+  for (const Mesh& mesh :
+       {make_box(Vector3d::Constant(-0.5), Vector3d::Constant(0.5)),
+        with_slivers(make_box(Vector3d::Constant(-0.5), Vector3d::Constant(0.5)), 30, 9)}) {
+    const ContactSurface surface(mesh, 1);
+    Proxy proxy(surface, {});
+    int aimed = 0;
+    for (const geometry::Triangle& t : mesh.triangles) {
+      for (int k = 0; k < 3; ++k) {
+        const Vector3d &a = mesh.vertices[t[k]], &b = mesh.vertices[t[(k + 1) % 3]];
+        for (const Vector3d& target : {Vector3d((a + b) / 2.0), a}) {
+          proxy.start(2.0 * target);
+          proxy.follow(Vector3d::Zero());
+          ASSERT_FALSE(holds(mesh, proxy.state().position)) << target.transpose();
+          ASSERT_NE(proxy.state().state, ContactState::kFree);
+          ++aimed;
+        }
+      }
+    }
+    EXPECT_GE(aimed, 72);
+  }
+}
+
+TEST(NeverThroughTest, ASphereDoesNotEnterACrackNarrowerThanItself) {
+  const Mesh whole = make_box(Vector3d::Constant(-0.5), Vector3d::Constant(0.5));
+  for (const double gap : {1e-6, 1e-3}) {
+    const Mesh mesh = with_crack(whole, gap);
+    const ContactSurface surface(mesh, 1);
+    Proxy proxy(surface, {.radius = 0.01});
+    WildHand hand(mesh, 1.0, Vector3d::Zero(), 77);
+    proxy.start({1.0, 1.0, 1.0});
+    for (int i = 0; i < 5000; ++i) {
+      proxy.follow(hand.next(proxy.state().position));
+      ASSERT_FALSE(holds(whole, proxy.state().position)) << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace haptrial::contact
