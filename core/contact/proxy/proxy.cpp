@@ -39,6 +39,8 @@ struct Proxy::Tick {
   bool slipped{false};   // along a surface
   bool repeated{false};  // the last hit was a plane that is known: rounding is all that is left
   bool lifted{false};
+
+  double tolerance() const { return 0.25 * skin.thickness; }  // of a plane [m]
 };
 
 Proxy::Proxy(const ContactSurface& surface, const ProxyOptions& options)
@@ -255,6 +257,64 @@ void Proxy::rest(Tick& tick, const PlaneSolution& solution) noexcept {
                                                             : ContactState::kStick;
 }
 
+/// One step of a tick. @returns whether it was the last.
+bool Proxy::advance(Tick& tick) noexcept {
+  const Vector3d wish = tick.goal - state_.position;
+  const PlaneSolution solution = planes_.solve(state_.position, wish, tick.tolerance());
+  bool sticks = false;
+  const Vector3d move = allowed_by_friction(solution, sticks);
+  if (move.norm() <= tick.least || tick.repeated) {
+    if (tick.repeated && !tick.lifted) {
+      lift(tick);
+      return false;
+    }
+    if (!sticks && options_.ways_out && planes_.size() > 1 && find_way_out(tick)) {
+      tick.slipped = slipping_ = true;
+      tick.repeated = false;
+      before_ = planes_;
+      planes_.clear();
+      return false;
+    }
+    state_.settled = true;
+    rest(tick, solution);
+    return true;
+  }
+  if (solution.count > 0) {
+    tick.slipped = slipping_ = true;
+  }
+  const bool arc = options_.arcs && options_.radius > 0.0 && solution.count == 1 &&
+                   options_.friction.static_friction == 0.0 && planes_[solution.active[0]].curved;
+  if ((arc && go_round(tick, solution)) || go(tick, move)) {
+    return false;
+  }
+  if (solution.count > 0) {
+    before_ = planes_;
+    planes_.clear();
+    return false;
+  }
+  state_.position = way_[way_length_ - 1] = tick.goal;
+  state_.settled = true;
+  planes_.clear();
+  before_.clear();
+  rest(tick, planes_.solve(state_.position, Vector3d::Zero(), tick.tolerance()));
+  return true;
+}
+
+/// The steps are used up: what held the proxy last is taken to hold it.
+void Proxy::break_off(Tick& tick) noexcept {
+  if (planes_.size() == 0) {
+    planes_ = before_;
+  }
+  const Vector3d wish = tick.goal - state_.position;
+  PlaneSolution solution = planes_.solve(state_.position, wish, tick.tolerance());
+  if (solution.count == 0) {
+    solution.solved = false;
+    solution.move.setZero();
+    solution.residual = -wish;
+  }
+  rest(tick, solution);
+}
+
 const ProxyState& Proxy::follow(const Vector3d& tool) noexcept {
   if (!tool.allFinite()) {
     return state_;
@@ -270,64 +330,12 @@ const ProxyState& Proxy::follow(const Vector3d& tool) noexcept {
   }
   planes_.clear();
   state_.settled = false;
-  const double tolerance = 0.25 * tick.skin.thickness;
   for (int step = 0; step < options_.most_steps; ++step) {
-    const PlaneSolution solution =
-        planes_.solve(state_.position, tool - state_.position, tolerance);
-    bool sticks = false;
-    const Vector3d move = allowed_by_friction(solution, sticks);
-    const bool arrived = move.norm() <= tick.least;
-    if (arrived || tick.repeated) {
-      if (tick.repeated && !tick.lifted) {
-        lift(tick);
-        continue;
-      }
-      if (!sticks && options_.ways_out && planes_.size() > 1 && find_way_out(tick)) {
-        tick.slipped = slipping_ = true;
-        tick.repeated = false;
-        before_ = planes_;
-        planes_.clear();
-        continue;
-      }
-      state_.settled = true;
-      rest(tick, solution);
+    if (advance(tick)) {
       return state_;
     }
-    if (solution.count > 0) {
-      tick.slipped = slipping_ = true;
-    }
-    if (options_.arcs && options_.radius > 0.0 && solution.count == 1 &&
-        options_.friction.static_friction == 0.0 && planes_[solution.active[0]].curved &&
-        go_round(tick, solution)) {
-      continue;
-    }
-    if (go(tick, move)) {
-      continue;
-    }
-    if (solution.count == 0) {
-      state_.position = tool;
-      way_[way_length_ - 1] = tool;
-      break;
-    }
-    before_ = planes_;
-    planes_.clear();
   }
-  const Vector3d wish = tool - state_.position;
-  state_.settled = wish.isZero(0.0);
-  if (state_.settled) {
-    planes_.clear();
-    before_.clear();
-  }
-  if (!state_.settled && planes_.size() == 0) {
-    planes_ = before_;  // they lead on: what holds the proxy is not looked for any more
-  }
-  PlaneSolution solution = planes_.solve(state_.position, wish, tolerance);
-  if (!state_.settled && solution.count == 0) {
-    solution.solved = false;
-    solution.move.setZero();
-    solution.residual = -wish;
-  }
-  rest(tick, solution);
+  break_off(tick);
   return state_;
 }
 

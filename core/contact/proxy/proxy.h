@@ -81,6 +81,8 @@ class Proxy {
 
  private:
   struct Tick;
+  bool advance(Tick& tick) noexcept;
+  void break_off(Tick& tick) noexcept;
   bool go(Tick& tick, const Eigen::Vector3d& move) noexcept;
   bool still_there(Tick& tick) noexcept;
   void lift(Tick& tick) noexcept;
