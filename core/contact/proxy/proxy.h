@@ -56,7 +56,7 @@ struct ProxyOptions {
 /// stop it lead on: the next goal is the point nearest to the tool that all of them allow, and once
 /// it is reached they are forgotten and found anew. Each step brings the proxy nearer to the tool.
 /// Sources: Zilles and Salisbury 1995; Ruspini et al. 1997; Harwin and Melder 2002 (friction);
-/// docs/algorithms/contact.md.
+/// Morris 2006, §7.4.2 (friction); docs/algorithms/contact.md.
 class Proxy {
  public:
   /// @throws std::invalid_argument naming the option that breaks its bound.

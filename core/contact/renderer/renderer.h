@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <string_view>
 
 #include "core/contact/proxy/proxy.h"
@@ -60,12 +59,5 @@ class Renderer {
   /// @param period  since the tick before > 0 [s]
   virtual const Contact& tick(const Eigen::Vector3d& tool, double period) noexcept = 0;
 };
-
-/// The mesh is read, not kept; `surface` must outlive the renderer, and may serve several.
-/// @throws std::invalid_argument naming the option that breaks its bound, or "radius" for a kind
-///         without a radius (penalty, voxel, distance field) or in need of one (ruspini).
-std::unique_ptr<Renderer> make_renderer(RendererKind kind, const geometry::Mesh& mesh,
-                                        const ContactSurface& surface,
-                                        const RendererOptions& options);
 
 }  // namespace haptrial::contact

@@ -14,7 +14,7 @@ namespace haptrial::contact {
 /// the normals of the triangles around its vertex that are joined to it over edges less sharp than
 /// the crease angle. Across a crease the corners keep to their own side, so the normal never turns
 /// over there.
-/// Sources: Morgenbesser and Srinivasan 1996; Ruspini et al. 1997.
+/// Sources: Morris 2006, §7.4.4; Morgenbesser and Srinivasan 1996; Ruspini et al. 1997.
 class Shading {
  public:
   /// @param crease_angle  between the normals of two triangles, 0 to pi / 2 [rad]

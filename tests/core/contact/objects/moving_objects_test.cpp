@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "core/contact/renderer/make_renderer.h"
 #include "core/geometry/mesh/procedural.h"
 #include "tests/core/contact/hard_meshes.h"
 #include "tests/support/allocation_guard.h"
