@@ -107,9 +107,12 @@ bool sweep_point(const Sweep& sweep, const geometry::Corners& c, const Vector3d&
     clip.stop(h, hit);
     return true;
   }
-  // It began inside of the prism, where only a start can put it: it may leave it on its side.
+  // It began inside of the prism: a start put it there, or the skin has grown with the path. It may
+  // go on if it is clearly on one side and stays there, or if it goes straight away.
   const double side = at >= 0.5 * (low + high) ? 1.0 : -1.0;
-  if (side * rate >= 0.0) {
+  const double off = side > 0.0 ? at - high : low - at;
+  const double leaving = side * rate;
+  if ((leaving >= 0.0 && off > h / 32.0) || leaving > 0.25 * sweep.move.norm()) {
     return false;
   }
   hit.t = 0.0;

@@ -216,6 +216,26 @@ TEST(NeverThroughTest, ExactlyThroughAnEdgeOrACorner) {
   }
 }
 
+TEST(NeverThroughTest, ASkinThatGrowsWithThePathLetsNothingThrough) {
+  // The proxy lies in the plane of a side, just below it, and the tool far up in that plane.
+  const Mesh mesh = make_box(Vector3d::Constant(-0.5), Vector3d::Constant(0.5));
+  const ContactSurface surface(mesh, 1);
+  const ExactCrossing crossing(mesh);
+  for (const double far : {0.9, 2.0, 30.0, 1e4}) {
+    for (const double below : {1e-13, 1.7053e-13, 1e-12, 1e-9}) {
+      Proxy proxy(surface, {});
+      proxy.start({-0.5, 0.0, -0.5 - below});
+      for (int i = 0; i < 3; ++i) {
+        proxy.follow({-0.5, -0.2 * far, far});
+        const auto way = proxy.way();
+        for (std::size_t k = 1; k < way.size(); ++k) {
+          ASSERT_EQ(crossing(way[k - 1], way[k]), -1) << far << ", " << below;
+        }
+      }
+    }
+  }
+}
+
 TEST(NeverThroughTest, ASphereDoesNotEnterACrackNarrowerThanItself) {
   const Mesh whole = make_box(Vector3d::Constant(-0.5), Vector3d::Constant(0.5));
   for (const double gap : {1e-6, 1e-3}) {
