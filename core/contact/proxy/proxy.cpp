@@ -1,0 +1,342 @@
+#include "core/contact/proxy/proxy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/geometry/triangle/triangle_distance.h"
+
+namespace haptrial::contact {
+namespace {
+
+using Eigen::Vector3d;
+using geometry::TrianglePart;
+
+const ProxyOptions& checked(const ProxyOptions& options) {
+  const Friction& f = options.friction;
+  if (!(options.radius >= 0.0) || !std::isfinite(options.radius)) {
+    throw std::invalid_argument("radius: allowed: finite, 0 or more");
+  }
+  if (!(f.dynamic_friction >= 0.0) || !std::isfinite(f.static_friction)) {
+    throw std::invalid_argument("dynamic_friction: allowed: finite, 0 or more");
+  }
+  if (!(f.static_friction >= f.dynamic_friction)) {
+    throw std::invalid_argument("static_friction: allowed: at least dynamic_friction");
+  }
+  if (options.most_steps < 1 || options.most_steps > 48) {
+    throw std::invalid_argument("most_steps: allowed: 1 to 48");
+  }
+  return options;
+}
+
+}  // namespace
+
+/// What holds for one tick.
+struct Proxy::Tick {
+  Vector3d goal;
+  Skin skin;
+  double least;          // moves shorter than this are none [m]
+  bool slipped{false};   // along a surface
+  bool repeated{false};  // the last hit was a plane that is known: rounding is all that is left
+  bool lifted{false};
+
+  double tolerance() const { return 0.25 * skin.thickness; }  // of a plane [m]
+};
+
+Proxy::Proxy(const ContactSurface& surface, const ProxyOptions& options)
+    : surface_(&surface), options_(checked(options)), near_(surface, options.radius) {}
+
+void Proxy::start(const Vector3d& at) noexcept {
+  near_.forget();
+  planes_.clear();
+  before_.clear();
+  slipping_ = false;
+  state_ = {};
+  if (at.allFinite()) {
+    state_.position = at;
+  }
+  way_[0] = state_.position;
+  way_length_ = 1;
+}
+
+void Proxy::step_to(const Vector3d& at) noexcept {
+  near_.moved((at - state_.position).norm());
+  state_.position = at;
+  way_[way_length_++] = at;
+}
+
+/// Moves until something is met, which becomes a plane, or as far as was looked.
+/// @returns false at the end of the move.
+bool Proxy::go(Tick& tick, const Vector3d& move) noexcept {
+  const Sweep sweep{state_.position, move, options_.radius, tick.skin};
+  SweepHit hit;
+  bool met = false;
+  const double length = move.norm();
+  for (int i = 0; i < before_.size() && !met; ++i) {
+    // What held the proxy a moment ago most often still does; then it is not moved at all.
+    met = near_.meets(sweep, before_[i].slot, hit) && hit.t * length <= 2.0 * tick.least &&
+          !hit.plane.curved;
+    hit.t = 0.0;
+  }
+  double seen = 1.0;
+  if (!met) {
+    met = near_.first_hit(sweep, hit, seen);
+  }
+  if (!met) {
+    step_to(state_.position + seen * move);
+    return seen < 1.0;  // the same planes lead on
+  }
+  if (hit.t > 0.0) {
+    step_to(state_.position + hit.t * move);
+  }
+  tick.repeated = !planes_.add(hit.plane);
+  return true;
+}
+
+/// The part of a move along surfaces that friction leaves.
+Vector3d Proxy::allowed_by_friction(const PlaneSolution& solution, bool& sticks) const noexcept {
+  const Friction& f = options_.friction;
+  sticks = false;
+  if (solution.count == 0 || f.static_friction == 0.0) {
+    return solution.move;
+  }
+  const double length = solution.move.norm();
+  const double pressure = std::max(solution.pressure(), 0.0);
+  if (length <= (slipping_ ? f.dynamic_friction : f.static_friction) * pressure) {
+    sticks = true;
+    return Vector3d::Zero();
+  }
+  return solution.move * std::max(0.0, 1.0 - f.dynamic_friction * pressure / length);
+}
+
+/// A proxy at the very limit of its skin is set off from what is around it.
+void Proxy::lift(Tick& tick) noexcept {
+  Vector3d away = Vector3d::Zero();
+  for (int i = 0; i < planes_.size(); ++i) {
+    away += planes_[i].normal;
+  }
+  const double length = away.norm();
+  tick.repeated = false;
+  tick.lifted = true;
+  planes_.clear();
+  if (length > 0.1) {
+    go(tick, tick.skin.thickness / length * away);
+    planes_.clear();
+    tick.repeated = false;
+  }
+}
+
+/// Planes reach beyond their triangles: where they stop the proxy, one or two of them alone may let
+/// it pass beside the others.
+bool Proxy::find_way_out(Tick& tick) noexcept {
+  const Vector3d wish = tick.goal - state_.position;
+  const double enough = 4.0 * tick.least;
+  constexpr int kMostTried = 8;
+  const int known = planes_.size();
+  const auto try_on = [&](std::span<const int> which) {
+    const PlaneSolution solution = planes_.solve_on(which, state_.position, wish);
+    bool sticks = false;
+    const Vector3d move = allowed_by_friction(solution, sticks);
+    const double length = move.norm();
+    if (!solution.solved || !(length > enough) || !(solution.residual.norm() < wish.norm())) {
+      return false;
+    }
+    const Sweep sweep{state_.position, move, options_.radius, tick.skin};
+    SweepHit hit;
+    for (int i = 0; i < planes_.size(); ++i) {
+      if (near_.meets(sweep, planes_[i].slot, hit) && hit.t * length <= enough) {
+        return false;
+      }
+    }
+    double seen = 1.0;
+    const bool met = near_.first_hit(sweep, hit, seen);
+    const double free = met ? hit.t : seen;
+    if (free * length <= enough) {
+      if (met && planes_.size() < kMostTried) {
+        planes_.add(hit.plane);  // the way may go along this one
+      }
+      return false;
+    }
+    step_to(state_.position + free * move);
+    return true;
+  };
+  for (int j = 0; j < planes_.size(); ++j) {
+    if (try_on(std::array{j})) {
+      return true;
+    }
+    for (int i = 0; i < j && planes_.size() > 2; ++i) {
+      if (try_on(std::array{i, j})) {
+        return true;
+      }
+    }
+  }
+  planes_.keep_first(known);
+  return false;
+}
+
+/// A sphere that touches one edge or corner goes to where the goal is straight behind it: along two
+/// tangents of the arc, which stay outside of it.
+bool Proxy::go_round(Tick& tick, const PlaneSolution& solution) noexcept {
+  const ContactPlane plane = planes_[solution.active[0]];
+  const geometry::Corners& c = surface_->corners(plane.slot);
+  const geometry::ClosestPoint nearest =
+      geometry::closest_on_triangle(state_.position, c[0], c[1], c[2]);
+  Vector3d to_goal = tick.goal - nearest.point, along = Vector3d::Zero();
+  if (nearest.part == TrianglePart::kFace ||
+      std::sqrt(nearest.distance_squared) > plane.level + 2.0 * tick.least) {
+    return false;
+  }
+  if (nearest.part <= TrianglePart::kEdge2) {
+    const int k = static_cast<int>(nearest.part) - static_cast<int>(TrianglePart::kEdge0);
+    const Vector3d edge = (c[(k + 1) % 3] - c[k]).stableNormalized();
+    along = edge * edge.dot(to_goal);
+    to_goal -= along;
+  }
+  const double depth = to_goal.norm();
+  if (!(depth > tick.least) || !(plane.normal.dot(to_goal) > 0.05 * depth)) {
+    return false;  // the goal is on the edge or behind it
+  }
+  const Vector3d wanted = to_goal / depth;
+  Vector3d normal = wanted;
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    const Vector3d corner =
+        nearest.point + 0.5 * along +
+        plane.level / (1.0 + plane.normal.dot(normal)) * (plane.normal + normal);
+    const Vector3d end = nearest.point + along + plane.level * normal;
+    const Vector3d first = corner - state_.position;
+    SweepHit hit;
+    double seen = 1.0;
+    bool met = near_.first_hit({state_.position, first, options_.radius, tick.skin}, hit, seen);
+    if (!met && seen == 1.0) {
+      near_.moved(first.norm());
+      met = near_.first_hit({corner, end - corner, options_.radius, tick.skin}, hit, seen);
+    }
+    if (!met && seen == 1.0) {
+      step_to(corner);
+      step_to(end);
+      before_ = planes_;
+      planes_.clear();
+      return true;
+    }
+    // The arc ends where the face beside the edge begins.
+    normal = met ? hit.plane.normal : plane.normal;
+    const double length = along.norm();
+    if (length > 0.0) {
+      normal -= along * (along.dot(normal) / (length * length));
+    }
+    normal.normalize();
+    if (!(normal.dot(wanted) > plane.normal.dot(wanted) + 1e-12)) {
+      return false;
+    }
+  }
+  return false;
+}
+
+void Proxy::rest(Tick& tick, const PlaneSolution& solution) noexcept {
+  const Friction& f = options_.friction;
+  state_.pushed = solution.residual;
+  state_.planes = 0;
+  state_.pressure = solution.solved ? std::max(solution.pressure(), 0.0) : solution.residual.norm();
+  for (int i = 0; i < solution.count; ++i) {
+    const ContactPlane& plane = planes_[solution.active[i]];
+    state_.triangles[state_.planes] = surface_->triangle(plane.slot);
+    state_.push[state_.planes] = solution.push[i];
+    state_.normals[state_.planes] = plane.normal;
+    ++state_.planes;
+  }
+  state_.dragged.setZero();
+  if (f.static_friction > 0.0 && solution.count > 0) {
+    const double most = (tick.slipped ? f.dynamic_friction : f.static_friction) * state_.pressure;
+    const double length = solution.move.norm();
+    state_.dragged = -solution.move * (length > most ? most / length : 1.0);
+  }
+  slipping_ = tick.slipped;
+  const bool touches = solution.count > 0 || !solution.solved;
+  state_.state = !touches                                   ? ContactState::kFree
+                 : f.static_friction == 0.0 || tick.slipped ? ContactState::kSlip
+                                                            : ContactState::kStick;
+}
+
+/// One step of a tick. @returns whether it was the last.
+bool Proxy::advance(Tick& tick) noexcept {
+  const Vector3d wish = tick.goal - state_.position;
+  const PlaneSolution solution = planes_.solve(state_.position, wish, tick.tolerance());
+  bool sticks = false;
+  const Vector3d move = allowed_by_friction(solution, sticks);
+  if (move.norm() <= tick.least || tick.repeated) {
+    if (tick.repeated && !tick.lifted) {
+      lift(tick);
+      return false;
+    }
+    if (!sticks && options_.ways_out && planes_.size() > 1 && find_way_out(tick)) {
+      tick.slipped = slipping_ = true;
+      tick.repeated = false;
+      before_ = planes_;
+      planes_.clear();
+      return false;
+    }
+    state_.settled = true;
+    rest(tick, solution);
+    return true;
+  }
+  if (solution.count > 0) {
+    tick.slipped = slipping_ = true;
+  }
+  const bool arc = options_.arcs && options_.radius > 0.0 && solution.count == 1 &&
+                   options_.friction.static_friction == 0.0 && planes_[solution.active[0]].curved;
+  if ((arc && go_round(tick, solution)) || go(tick, move)) {
+    return false;
+  }
+  if (solution.count > 0) {
+    before_ = planes_;
+    planes_.clear();
+    return false;
+  }
+  state_.position = way_[way_length_ - 1] = tick.goal;
+  state_.settled = true;
+  planes_.clear();
+  before_.clear();
+  rest(tick, planes_.solve(state_.position, Vector3d::Zero(), tick.tolerance()));
+  return true;
+}
+
+/// The steps are used up: what held the proxy last is taken to hold it.
+void Proxy::break_off(Tick& tick) noexcept {
+  if (planes_.size() == 0) {
+    planes_ = before_;
+  }
+  const Vector3d wish = tick.goal - state_.position;
+  PlaneSolution solution = planes_.solve(state_.position, wish, tick.tolerance());
+  if (solution.count == 0) {
+    solution.solved = false;
+    solution.move.setZero();
+    solution.residual = -wish;
+  }
+  rest(tick, solution);
+}
+
+const ProxyState& Proxy::follow(const Vector3d& tool) noexcept {
+  if (!tool.allFinite()) {
+    return state_;
+  }
+  const double magnitude =
+      std::max({surface_->magnitude(), options_.radius, tool.cwiseAbs().maxCoeff(),
+                state_.position.cwiseAbs().maxCoeff()});
+  Tick tick{tool, Skin::of(magnitude), Skin::of(magnitude).rest()};
+  way_[0] = state_.position;
+  way_length_ = 1;
+  if (planes_.size() > 0) {
+    before_ = planes_;
+  }
+  planes_.clear();
+  state_.settled = false;
+  for (int step = 0; step < options_.most_steps; ++step) {
+    if (advance(tick)) {
+      return state_;
+    }
+  }
+  break_off(tick);
+  return state_;
+}
+
+}  // namespace haptrial::contact

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/contact/proxy/near_triangles.h"
+#include "core/contact/proxy/plane_set.h"
+#include "core/contact/proxy/sweep.h"
+#include "core/contact/surface/contact_surface.h"
+
+namespace haptrial::contact {
+
+/// Coulomb friction: while it sticks, the tangential force may be up to static_friction times the
+/// normal force; once it slips, it is dynamic_friction times it.
+struct Friction {
+  double static_friction{0.0};   // mu_s >= mu_d
+  double dynamic_friction{0.0};  // mu_d >= 0
+};
+
+enum class ContactState : std::uint8_t { kFree, kStick, kSlip };  // without friction: free or slip
+
+/// Where the proxy ended on a tick and what holds it there.
+struct ProxyState {
+  Eigen::Vector3d position{Eigen::Vector3d::Zero()};  // of the proxy, object frame [m]
+  /// From the tool along the surfaces' normals: what the surfaces push with, over the stiffness.
+  Eigen::Vector3d pushed{Eigen::Vector3d::Zero()};  // [m]
+  /// From there to the proxy: what friction pulls with, over the stiffness.
+  Eigen::Vector3d dragged{Eigen::Vector3d::Zero()};  // [m]
+  /// The sum of what each surface pushes with: what friction is measured by. The length of `pushed`
+  /// where one surface pushes, more in a groove.
+  double pressure{0.0};  // [m]
+  ContactState state{ContactState::kFree};
+  int planes{0};                             // that push, 0 to 3
+  std::array<std::int32_t, 3> triangles{};   // of these planes
+  std::array<double, 3> push{};              // of each, along its normal [m]
+  std::array<Eigen::Vector3d, 3> normals{};  // of each
+  bool settled{true};  // false: the tick's steps were used up, the way goes on on the next tick
+};
+
+struct ProxyOptions {
+  double radius{0.0};  // >= 0; 0: a point [m]
+  Friction friction{};
+  int most_steps{16};  // a tick, 1 to 48
+  /// Ruspini's method is without the two: ways out of places where the planes stop the proxy and
+  /// the triangles do not; paths round the arcs of a sphere.
+  bool ways_out{true};
+  bool arcs{true};
+};
+
+/// The god object of a mesh: a point, or a sphere, that follows the tool as near as the surface
+/// lets it and never passes through a triangle.
+///
+/// Every motion is a straight sweep against all triangles; it stops at the first. The planes that
+/// stop it lead on: the next goal is the point nearest to the tool that all of them allow, and once
+/// it is reached they are forgotten and found anew. Each step brings the proxy nearer to the tool.
+/// Sources: Zilles and Salisbury 1995; Ruspini et al. 1997; Harwin and Melder 2002 (friction);
+/// Morris 2006, §7.4.2 (friction); docs/algorithms/contact.md.
+class Proxy {
+ public:
+  /// @throws std::invalid_argument naming the option that breaks its bound.
+  Proxy(const ContactSurface& surface, const ProxyOptions& options);
+
+  // Servo thread, all of the following: no allocation, lock, I/O or throw.
+
+  /// Puts the proxy to a point, free. The point is beside the surface, or, for a sphere, nearer
+  /// than the radius; then it is pushed out.
+  void start(const Eigen::Vector3d& at) noexcept;
+  /// One tick. @param tool  position in the object's frame [m]; not finite: nothing changes.
+  const ProxyState& follow(const Eigen::Vector3d& tool) noexcept;
+  const ProxyState& state() const noexcept { return state_; }
+
+  /// The corners of the last tick's way, from where the tick before ended; between them it was
+  /// straight [m].
+  std::span<const Eigen::Vector3d> way() const noexcept {
+    return std::span(way_).first(static_cast<std::size_t>(way_length_));
+  }
+  const ContactSurface& surface() const noexcept { return *surface_; }
+  const ProxyOptions& options() const noexcept { return options_; }
+
+ private:
+  struct Tick;
+  bool advance(Tick& tick) noexcept;
+  void break_off(Tick& tick) noexcept;
+  bool go(Tick& tick, const Eigen::Vector3d& move) noexcept;
+  bool still_there(Tick& tick) noexcept;
+  void lift(Tick& tick) noexcept;
+  bool find_way_out(Tick& tick) noexcept;
+  bool go_round(Tick& tick, const PlaneSolution& solution) noexcept;
+  Eigen::Vector3d allowed_by_friction(const PlaneSolution& solution, bool& sticks) const noexcept;
+  void rest(Tick& tick, const PlaneSolution& solution) noexcept;
+  void step_to(const Eigen::Vector3d& at) noexcept;
+
+  const ContactSurface* surface_;
+  ProxyOptions options_;
+  NearTriangles near_;
+  PlaneSet planes_;
+  PlaneSet before_;  // what was met before the planes were forgotten
+  ProxyState state_;
+  bool slipping_{false};
+  std::array<Eigen::Vector3d, 2 * 48 + 3> way_;
+  int way_length_{0};
+};
+
+}  // namespace haptrial::contact

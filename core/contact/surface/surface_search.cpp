@@ -1,0 +1,204 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "core/contact/surface/contact_surface.h"
+#include "core/geometry/bvh/search/bvh_data.h"
+#include "core/geometry/triangle/four.h"
+
+namespace haptrial::contact {
+namespace {
+
+using geometry::all_four;
+using geometry::Boxes;
+using geometry::BvhData;
+using geometry::Four;
+using geometry::kWidth;
+using geometry::larger;
+using Lanes = std::array<float, kWidth>;
+
+/// Boxes and queries are rounded to single precision: by less than this part of their coordinates.
+constexpr double kRounded = 1e-6;
+
+Four load(const float* from) {
+  Four x;
+  std::memcpy(&x, from, sizeof x);
+  return x;
+}
+
+void store(float* to, Four x) { std::memcpy(to, &x, sizeof x); }
+
+Four absolute(Four x) { return larger(x, -x); }
+
+/// Squared distances from a point to the boxes of a node; infinite for empty places.
+void squared_distances(const Boxes& boxes, const Four (&q)[3], Lanes& out) {
+  for (int i = 0; i < kWidth; i += 4) {
+    Four sum = all_four(0.0f);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Four below = load(boxes.low[axis] + i) - q[axis];
+      const Four above = q[axis] - load(boxes.high[axis] + i);
+      const Four apart = larger(larger(below, above), all_four(0.0f));
+      sum += apart * apart;
+    }
+    store(out.data() + i, sum);
+  }
+}
+
+/// A segment for boxes, in the frame of the hierarchy.
+struct Rod {
+  Four middle[3], half[3], reach[3];  // reach: |half|
+  Four widen;
+
+  Rod(const Eigen::Vector3d& from, const Eigen::Vector3d& move, double end, double radius) {
+    const Eigen::Vector3d half_move = 0.5 * end * move;
+    const Eigen::Vector3d at = from + half_move;
+    for (int axis = 0; axis < 3; ++axis) {
+      middle[axis] = all_four(static_cast<float>(at[axis]));
+      half[axis] = all_four(static_cast<float>(half_move[axis]));
+      reach[axis] = absolute(half[axis]);
+    }
+    const double largest =
+        std::max(from.cwiseAbs().maxCoeff(), (from + end * move).cwiseAbs().maxCoeff());
+    widen = all_four(static_cast<float>(radius + kRounded * (1.0 + radius + largest)));
+  }
+
+  /// Not above zero for boxes that the widened segment may meet: by separating axes.
+  void apart(const Boxes& boxes, Lanes& out) const {
+    for (int i = 0; i < kWidth; i += 4) {
+      Four d[3], e[3], most = all_four(-1.0f);
+      for (int axis = 0; axis < 3; ++axis) {
+        const Four low = load(boxes.low[axis] + i), high = load(boxes.high[axis] + i);
+        d[axis] = all_four(0.5f) * (low + high) - middle[axis];
+        e[axis] = all_four(0.5f) * (high - low) + widen;
+        most = larger(absolute(d[axis]) - e[axis] - reach[axis], most);
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        const int y = (axis + 1) % 3, z = (axis + 2) % 3;
+        const Four across = absolute(d[y] * half[z] - d[z] * half[y]);
+        most = larger(across - e[y] * reach[z] - e[z] * reach[y], most);
+      }
+      store(out.data() + i, most);
+    }
+  }
+};
+
+int full_places(const Boxes& boxes) {
+  int count = 0;
+  while (count < kWidth && !std::isinf(boxes.low[0][count])) {
+    ++count;
+  }
+  return count;
+}
+
+/// Asks for the boxes of a node that will be looked at soon: they come from far, several at once.
+void fetch_early(const BvhData& data, std::int32_t node) {
+  const Boxes& boxes = node < 0 ? data.leaf_boxes[~node] : data.nodes[node].boxes;
+  for (int axis = 0; axis < 3; ++axis) {
+    __builtin_prefetch(boxes.low[axis]);
+    __builtin_prefetch(boxes.high[axis]);
+  }
+}
+
+struct Child {
+  float entry;  // about how far along the segment it begins
+  std::int32_t place;
+};
+
+}  // namespace
+
+int ContactSurface::gather(const Eigen::Vector3d& centre, double reach,
+                           std::span<NearTriangle> found) const noexcept {
+  const BvhData& data = bvh_.data();
+  if (data.nodes.empty() || !centre.allFinite()) {
+    return 0;
+  }
+  const Eigen::Vector3d at = data.frame.to_frame(centre);
+  const double rounded = kRounded * (1.0 + at.cwiseAbs().maxCoeff());
+  const double within = reach * data.frame.scale + rounded;
+  const auto limit = static_cast<float>(std::min(within * within * 1.0001, 1e38));
+  const Four q[3] = {all_four(static_cast<float>(at.x())), all_four(static_cast<float>(at.y())),
+                     all_four(static_cast<float>(at.z()))};
+  std::array<std::int32_t, geometry::kMaxDepth * kWidth> stack;
+  int top = 0;
+  std::size_t count = 0;
+  stack[top++] = 0;
+  Lanes squares;
+  while (top > 0) {
+    const std::int32_t node = stack[--top];
+    squared_distances(node < 0 ? data.leaf_boxes[~node] : data.nodes[node].boxes, q, squares);
+    for (int i = 0; i < kWidth; ++i) {
+      if (!(squares[i] <= limit)) {
+        continue;
+      }
+      if (node >= 0) {
+        stack[top++] = data.nodes[node].child[i];
+        fetch_early(data, stack[top - 1]);
+        continue;
+      }
+      if (count == found.size()) {
+        return -1;
+      }
+      const double apart = std::sqrt(static_cast<double>(squares[i])) * (1.0 - kRounded) - rounded;
+      const std::int32_t slot = ~node * kWidth + i;
+      found[count++] = {std::max(apart, 0.0) / data.frame.scale, slot};
+      __builtin_prefetch(&corners_[slot]);
+      __builtin_prefetch(&corners_[slot][2].z());
+      __builtin_prefetch(&normals_[slot]);
+    }
+  }
+  return static_cast<int>(count);
+}
+
+void ContactSurface::along(const Eigen::Vector3d& from, const Eigen::Vector3d& move, double radius,
+                           Visit visit, void* context) const noexcept {
+  const BvhData& data = bvh_.data();
+  if (data.nodes.empty() || !from.allFinite() || !move.allFinite()) {
+    return;
+  }
+  const Eigen::Vector3d start = data.frame.to_frame(from), way = move * data.frame.scale;
+  const double width = radius * data.frame.scale;
+  double end = 1.0;
+  Rod rod(start, way, end, width);
+  const Eigen::Vector3f direction = way.stableNormalized().cast<float>();
+  std::array<std::int32_t, geometry::kMaxDepth * kWidth> stack;
+  int top = 0;
+  stack[top++] = 0;
+  Lanes apart;
+  while (top > 0) {
+    const std::int32_t node = stack[--top];
+    const Boxes& boxes = node < 0 ? data.leaf_boxes[~node] : data.nodes[node].boxes;
+    rod.apart(boxes, apart);
+    std::array<Child, kWidth> children;
+    int count = 0;
+    const int places = full_places(boxes);
+    for (int i = 0; i < places; ++i) {
+      if (apart[i] > 0.0f) {
+        continue;
+      }
+      float entry = 0.0f;
+      for (int axis = 0; axis < 3; ++axis) {
+        entry +=
+            direction[axis] * (direction[axis] > 0.0f ? boxes.low[axis][i] : boxes.high[axis][i]);
+      }
+      children[count++] = {entry, i};
+    }
+    std::sort(children.begin(), children.begin() + count, [&](const Child& a, const Child& b) {
+      return node < 0 ? a.entry < b.entry : a.entry > b.entry;  // the stack turns the order round
+    });
+    for (int i = 0; i < count; ++i) {
+      if (node >= 0) {
+        stack[top++] = data.nodes[node].child[children[i].place];
+        fetch_early(data, stack[top - 1]);
+        continue;
+      }
+      const double left = visit(context, ~node * kWidth + children[i].place);
+      if (left < end) {
+        end = left;
+        rod = Rod(start, way, end, width);
+      }
+    }
+  }
+}
+
+}  // namespace haptrial::contact
