@@ -59,7 +59,7 @@ TEST_P(ContourTest, ThePathLiesOnTheBody) {
   std::cout << GetParam() << ": fitted median " << 1e3 * found.median << " mm, p95 "
             << 1e3 * found.p95 << ", worst " << 1e3 * found.worst << "; tested median "
             << 1e3 * median << "\n";
-  EXPECT_LT(median, 0.002);  // accuracy of the tracker, which the authors state as millimetres
+  EXPECT_LT(median, 0.002);
 }
 
 TEST_P(ContourTest, TheLagIsFound) {
