@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <variant>
+#include <vector>
+
+namespace haptrial::evaluation {
+
+/// Bodies whose contact with a point is known exactly, each in a frame of its own. All lengths are
+/// above 0 [m], angles inside (0, π/2) [rad].
+struct TruePlane {};  // solid where y < 0
+struct TrueSphere {
+  double radius;  // about the origin
+};
+struct TrueCylinder {
+  double radius;  // around z, endless
+};
+struct TrueTorus {
+  double radius, tube_radius;  // around z; tube_radius < radius
+};
+/// A convex edge along z at the origin: faces fall from it by `flank` below the horizontal, solid
+/// below both.
+struct TrueWedge {
+  double flank;
+};
+/// A concave edge along z at the origin: faces rise from it by `flank`, solid below either.
+struct TrueConcaveEdge {
+  double flank;
+};
+/// Solid where y < height sin(2π x / length).
+struct TrueWavyPlate {
+  double height, length;
+};
+/// Solid where |x| < width / 2 and |y| < thickness / 2; endless along z.
+struct TrueThinPlate {
+  double width, thickness;
+};
+using TrueBody = std::variant<TruePlane, TrueSphere, TrueCylinder, TrueTorus, TrueWedge,
+                              TrueConcaveEdge, TrueWavyPlate, TrueThinPlate>;
+
+struct TrueContact {
+  bool touching{false};
+  Eigen::Vector3d proxy;  // the tool itself in the air [m]
+  Eigen::Vector3d force;  // on the tool: k (proxy - tool) [N]
+};
+
+/// The god object without friction: on the surface it is the place of least distance to the tool
+/// that the one before reaches without the distance ever growing (Zilles and Salisbury 1995); it
+/// leaves the surface when the tool comes to the outside of it. On edges it holds on to its face,
+/// though another one may be nearer.
+///
+/// @param tool  (n) positions, small steps apart; the first one is in the air. On the wavy plate
+///   and the edges a step must not jump over a crest or an edge that the straight way would meet.
+/// @throws std::invalid_argument for a body or stiffness that breaks its bound, a position that is
+/// not finite, or a first one inside.
+std::vector<TrueContact> true_contacts(const TrueBody& body, std::span<const Eigen::Vector3d> tool,
+                                       double stiffness);
+
+/// The same on a plane or a sphere with Coulomb friction of coefficient `friction` >= 0, static and
+/// dynamic alike: the proxy stays while the force lies in the friction cone, else slides straight
+/// (on the sphere along a great circle) towards the tool until the force lies on the cone (Harwin
+/// and Melder 2002). It first touches where the straight way from the last position in the air
+/// meets the surface.
+std::vector<TrueContact> true_contacts(const TruePlane& body, std::span<const Eigen::Vector3d> tool,
+                                       double stiffness, double friction);
+std::vector<TrueContact> true_contacts(const TrueSphere& body,
+                                       std::span<const Eigen::Vector3d> tool, double stiffness,
+                                       double friction);
+
+}  // namespace haptrial::evaluation

@@ -1,0 +1,84 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/contact/recording/stream_lag.h"
+#include "analysis/contact/registration/in_trajectory.h"
+#include "analysis/contact/registration/registration.h"
+#include "core/geometry/files/mesh_io.h"
+#include "tests/analysis/contact/contour_data.h"
+
+namespace haptrial::evaluation {
+namespace {
+
+std::optional<geometry::Mesh> contour_body() {
+  const auto file = haptrial::test::shared_data("haptic/contour/contour.stl");
+  if (!file) {
+    return std::nullopt;
+  }
+  geometry::Mesh mesh = geometry::read_mesh(*file);
+  for (auto& v : mesh.vertices) {
+    v *= 1e-3;  // the file is in mm
+  }
+  return mesh;
+}
+
+class ContourTest : public testing::TestWithParam<char> {};
+
+constexpr const char* kAbsent =
+    "neither HAPTRIAL_DATA nor ../shared/data holds haptic/contour: real contact is not tried";
+
+/// Even samples of a recording fix the pose; the odd ones, which took no part, must lie as close.
+TEST_P(ContourTest, ThePathLiesOnTheBody) {
+  const auto file = test::contour_file(GetParam());
+  const auto mesh = contour_body();
+  if (!file || !mesh) {
+    GTEST_SKIP() << kAbsent;
+  }
+  const geometry::Bvh bvh(*mesh);
+  std::vector<Eigen::Vector3d> fitted, tested;
+  const auto path = test::contour_path(test::read_contour(*file).pose, GetParam());
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    (i % 2 == 0 ? fitted : tested).push_back(path[i]);
+  }
+  const Registration found = register_path(bvh, *mesh, fitted);
+  auto rest = surface_residuals(bvh, *mesh, found.body_from_world, tested, 0.0);
+  for (double& r : rest) {
+    r = std::abs(r);
+  }
+  std::sort(rest.begin(), rest.end());
+  const double median = rest[rest.size() / 2];
+  RecordProperty("fitted_median_um", static_cast<int>(1e6 * found.median));
+  RecordProperty("tested_median_um", static_cast<int>(1e6 * median));
+  RecordProperty("tested_p95_um", static_cast<int>(1e6 * rest[rest.size() * 95 / 100]));
+  for (const auto& sentence : found.unfixed) {
+    std::cout << sentence << "\n";
+  }
+  std::cout << GetParam() << ": fitted median " << 1e3 * found.median << " mm, p95 "
+            << 1e3 * found.p95 << ", worst " << 1e3 * found.worst << "; tested median "
+            << 1e3 * median << "\n";
+  EXPECT_LT(median, 0.002);
+}
+
+TEST_P(ContourTest, TheLagIsFound) {
+  const auto file = test::contour_file(GetParam());
+  if (!file) {
+    GTEST_SKIP() << kAbsent;
+  }
+  const ContactRecording recording = test::read_contour(*file);
+  const ForceStream force =
+      contact_forces(recording, test::contour_tool(GetParam()).mount, test::contour_load());
+  const LagFit fit = estimate_lag(recording.pose, force, {0.2, 0.005, 0.5});
+  std::cout << GetParam() << ": lag " << fit.lag << " [" << fit.low << ", " << fit.high << "] "
+            << fit.explained << " " << fit.doubt << "\n";
+  EXPECT_LE(fit.low, fit.lag);
+  EXPECT_LE(std::abs(fit.lag), 0.2);
+}
+
+INSTANTIATE_TEST_SUITE_P(SetUps, ContourTest, testing::Values('a', 'b', 'c', 'd', 'e', 'f'),
+                         [](const auto& set_up) { return std::string(1, set_up.param); });
+
+}  // namespace
+}  // namespace haptrial::evaluation
