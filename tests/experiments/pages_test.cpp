@@ -248,6 +248,7 @@ TEST(SessionPagesTest, WhatWasAnsweredIsNotAskedAgainAfterAResume) {
 
 TEST(SessionPagesTest, ThePictureOfAPageReachesTheConsole) {
   const test::TemporaryFolder folder;
+  fs::copy_file(HAPTRIAL_SOURCE_DIR "/docs/algorithms/drilled-floor.png", folder / "grip.png");
   const Experiment experiment = load_experiment(write_definition(folder.path(), R"(
 [pages]
 before = ["welcome"]
@@ -255,7 +256,6 @@ before = ["welcome"]
 text = "Hold it like this."
 picture = "grip.png"
 )"));
-  fs::copy_file(HAPTRIAL_SOURCE_DIR "/docs/algorithms/drilled-floor.png", folder / "grip.png");
   SessionControl control;
   const SessionRequest request = live_request(experiment, folder / "S01.h5", control);
   AskedItem asked;
