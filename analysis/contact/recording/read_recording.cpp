@@ -39,8 +39,7 @@ FoundColumn find_column(const CsvTable& table, const std::string& stem,
     }
     if (found.place != table.columns().size()) {
       throw InputError(
-          fmt::format("{}: columns '{}' and '{}' say the same in two units; allowed: "
-                      "one of them",
+          fmt::format("{}: columns '{}' and '{}' say the same in two units; leave one of them out",
                       table.name(), table.columns()[found.place], name));
     }
     found = {table.column(name), unit.factor};

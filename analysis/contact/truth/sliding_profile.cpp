@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kLong = 1e3;  // of the sides of an endless wedge [m]
+constexpr double kLongest = 1e3;  // of the sides of an endless wedge [m]
 
 double turn_of(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -81,7 +81,7 @@ std::optional<Vector2d> ConvexProfile::next(const Vector2d& tool) {
 }
 
 ConvexProfile wedge_profile(double flank) {
-  const Vector2d down(kLong * std::cos(flank), -kLong * std::sin(flank));
+  const Vector2d down(kLongest * std::cos(flank), -kLongest * std::sin(flank));
   return ConvexProfile({down, Vector2d::Zero(), Vector2d(-down.x(), down.y())}, false);
 }
 

@@ -14,7 +14,9 @@
 /// Recordings of a hand that follows a known body with a tool on bearings (KU Leuven; folder
 /// haptic/contour of the data from outside): columns time, position, quaternion (w first), force,
 /// torque, a row for every event.
-namespace haptrial::evaluation::test {
+namespace haptrial::test {
+
+using namespace evaluation;
 
 inline ContactRecording read_contour(const std::filesystem::path& file) {
   std::ifstream in(file);
@@ -89,4 +91,4 @@ inline std::optional<std::filesystem::path> contour_file(char set_up) {
   return haptrial::test::shared_data(std::string("haptic/contour/demo_") + set_up + "_1.dat");
 }
 
-}  // namespace haptrial::evaluation::test
+}  // namespace haptrial::test

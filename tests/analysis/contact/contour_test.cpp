@@ -53,13 +53,8 @@ TEST_P(ContourTest, ThePathLiesOnTheBody) {
   RecordProperty("fitted_median_um", static_cast<int>(1e6 * found.median));
   RecordProperty("tested_median_um", static_cast<int>(1e6 * median));
   RecordProperty("tested_p95_um", static_cast<int>(1e6 * rest[rest.size() * 95 / 100]));
-  for (const auto& sentence : found.unfixed) {
-    std::cout << sentence << "\n";
-  }
-  std::cout << GetParam() << ": fitted median " << 1e3 * found.median << " mm, p95 "
-            << 1e3 * found.p95 << ", worst " << 1e3 * found.worst << "; tested median "
-            << 1e3 * median << "\n";
-  EXPECT_LT(median, 0.002);
+  EXPECT_LT(median, 0.0005) << "poses are good to half a millimetre";
+  EXPECT_FALSE(found.unfixed.empty()) << "a path along one edge leaves movements free";
 }
 
 TEST_P(ContourTest, TheLagIsFound) {
@@ -71,10 +66,16 @@ TEST_P(ContourTest, TheLagIsFound) {
   const ForceStream force =
       contact_forces(recording, test::contour_tool(GetParam()).mount, test::contour_load());
   const LagFit fit = estimate_lag(recording.pose, force, {0.2, 0.005, 0.5});
-  std::cout << GetParam() << ": lag " << fit.lag << " [" << fit.low << ", " << fit.high << "] "
-            << fit.explained << " " << fit.doubt << "\n";
-  EXPECT_LE(fit.low, fit.lag);
-  EXPECT_LE(std::abs(fit.lag), 0.2);
+  RecordProperty("lag_us", static_cast<int>(1e6 * fit.lag));
+  RecordProperty("half_width_us", static_cast<int>(0.5e6 * (fit.high - fit.low)));
+  RecordProperty("doubt", fit.doubt);
+  // One clock stamped both streams, so that a lag is that of the sensors alone: less than the 33 ms
+  // from pose to pose.
+  if (fit.doubt.empty()) {
+    EXPECT_LT(std::abs(fit.lag), 0.033);
+    EXPECT_LT(fit.low, 0.0);
+    EXPECT_GT(fit.high, 0.0);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(SetUps, ContourTest, testing::Values('a', 'b', 'c', 'd', 'e', 'f'),

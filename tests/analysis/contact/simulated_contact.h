@@ -8,7 +8,9 @@
 #include "core/base/random.h"
 
 /// A hand that rubs and taps a plane y = 0 with a probe whose sensor has weight and offset.
-namespace haptrial::evaluation::test {
+namespace haptrial::test {
+
+using namespace evaluation;
 
 struct SimulatedContact {
   double seconds{20.0};
@@ -65,4 +67,4 @@ inline ContactRecording simulate(const SimulatedContact& s) {
   return recording;
 }
 
-}  // namespace haptrial::evaluation::test
+}  // namespace haptrial::test
