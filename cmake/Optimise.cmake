@@ -1,5 +1,6 @@
 # haptrial_optimise(TARGET FOLDER): a release build optimises most what computes, and compiles faster
 # what waits: for the disk, for a person, for another program. Results do not depend on the level.
+# The columns of the session file and the loop of a session compute on every tick.
 # At -O1 and -O2 GCC 12 sees overlaps and overflows in strings that cannot be.
 function(haptrial_optimise target folder)
   if(HAPTRIAL_SANITIZER)
@@ -7,6 +8,8 @@ function(haptrial_optimise target folder)
   endif()
   if(folder MATCHES "^tests|^experiments/(command|console|stud)")
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1> -Wno-restrict -Wno-array-bounds -Wno-stringop-overread)
+  elseif(folder MATCHES "^core/record/table|^experiments/loop")
+    return()
   elseif(folder MATCHES "^core/(record|stream|network)|^core/base/definition|^experiments" OR
          (folder MATCHES "^analysis" AND NOT folder MATCHES "^analysis/(alignment|psychometric)"))
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O2> -Wno-restrict -Wno-array-bounds -Wno-stringop-overread)
