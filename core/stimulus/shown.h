@@ -20,11 +20,20 @@ class Shown {
   /// Nothing but where the tool is: between passes.
   Shown() noexcept = default;
   explicit Shown(const Eigen::Vector3d& where) noexcept : tool(where) {}
+  Shown(const Shown& other) noexcept { *this = other; }
+  Shown& operator=(const Shown& other) noexcept {
+    tool = other.tool;
+    type_ = other.type_;
+    size_ = other.size_;
+    engaged_ = other.engaged_;
+    std::memmove(room_.data(), other.room_.data(), size_);
+    return *this;
+  }
   template <class View>
   requires(!std::is_same_v<View, Shown> && !std::is_convertible_v<View, Eigen::Vector3d>)
       Shown(const View& view)
   noexcept  // implicit: a view is shown as it is
-      : type_(&kType<View>), engaged_(view.engaged()) {
+      : type_(&kType<View>), size_(sizeof(View)), engaged_(view.engaged()) {
     static_assert(sizeof(View) <= kRoom && alignof(View) <= kAlignment);
     static_assert(std::is_trivially_destructible_v<View>, "a view is plain data");
     std::memcpy(room_.data(), static_cast<const void*>(&view), sizeof(View));
@@ -47,8 +56,10 @@ class Shown {
   static constexpr char kType = 0;
   static constexpr std::size_t kAlignment = 16;
 
-  alignas(kAlignment) std::array<std::byte, kRoom> room_{};
+  // Copied and filled many times a tick: no more of it than the view takes is ever touched.
+  alignas(kAlignment) std::array<std::byte, kRoom> room_;
   const char* type_{nullptr};
+  std::size_t size_{0};  // of the view
   bool engaged_{false};
 };
 

@@ -339,7 +339,7 @@ void Console::Implementation::send_page(httplib::Response& response) {
   response.set_content(console_page(nonce), "text/html; charset=utf-8");
 }
 
-/// Of what a page asks at the moment.
+/// Sends the picture of the page that is asked at the moment.
 void Console::Implementation::send_picture(httplib::Response& response) {
   const auto picture = control_.status().asked.picture;
   if (!picture) {

@@ -46,7 +46,9 @@ bool SessionTask::tick(const realtime::Tick& tick) noexcept {
   take_requests(tick.index);
 
   devices_.read(keys_ != nullptr ? keys_->load(std::memory_order_relaxed) : 0);
-  const PassOutput out = ask_pass(tick.dt);
+  const bool runs = pass_ != nullptr && !broken_off_ && devices_.fault() == device::Fault::kNone;
+  const PassOutput out = runs ? pass_->tick(devices_.readings(), tick.dt) : nothing();
+  note_damping(out);
   note_onsets(tick, out);  // before anybody sees what begins
   devices_.limit(out, pass_ != nullptr ? pass_->others() : std::span<const Drive>{}, tick.dt);
   if (take_stop()) {  // it came during the tick, which a slow device may draw out
@@ -178,18 +180,17 @@ void SessionTask::begin(std::uint64_t sequence) noexcept {
   devices_.engage();
 }
 
-PassOutput SessionTask::ask_pass(double dt) noexcept {
-  if (pass_ != nullptr && !broken_off_ && devices_.fault() == device::Fault::kNone) {
-    const PassOutput out = pass_->tick(devices_.readings(), dt);
-    if (out.stage == record::Stage::kRun && out.damping_share < 1.0) {
-      result_.least_damping = std::min(result_.least_damping, out.damping_share);
-      ++result_.reduced_ticks;
-    }
-    return out;
+PassOutput SessionTask::nothing() const noexcept {
+  PassOutput out;
+  out.shown.tool = devices_.readings()[0].tool.position;
+  return out;
+}
+
+void SessionTask::note_damping(const PassOutput& out) noexcept {
+  if (out.stage == record::Stage::kRun && out.damping_share < 1.0) {
+    result_.least_damping = std::min(result_.least_damping, out.damping_share);
+    ++result_.reduced_ticks;
   }
-  PassOutput nothing;
-  nothing.shown.tool = devices_.readings()[0].tool.position;
-  return nothing;
 }
 
 bool SessionTask::end_if_over(std::uint64_t sequence) noexcept {

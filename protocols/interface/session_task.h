@@ -100,7 +100,8 @@ class SessionTask final : public realtime::ServoTask {
   void begin(std::uint64_t sequence) noexcept;
   bool end_if_over(std::uint64_t sequence) noexcept;
   void record(const realtime::Tick& tick, const PassOutput& out) noexcept;
-  PassOutput ask_pass(double dt) noexcept;
+  PassOutput nothing() const noexcept;
+  void note_damping(const PassOutput& out) noexcept;
   void note_onsets(const realtime::Tick& tick, const PassOutput& out) noexcept;
   void put_onset(const realtime::Tick& tick, const markers::Onset& onset, bool over) noexcept;
 

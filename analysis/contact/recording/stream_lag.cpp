@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
 
+#include "analysis/statistics/base/decomposition.h"
+#include "analysis/statistics/base/descriptive.h"
 #include "analysis/statistics/base/distributions.h"
 
 namespace haptrial::evaluation {
@@ -74,8 +75,8 @@ double explained_share(const BlockSums& s) {
   for (int i = 0; i < kFeatures; ++i) {
     xx(i, i) += 1e-9 * xx(i, i) + 1e-300;  // features may repeat each other
   }
-  const Eigen::Matrix<double, kFeatures, 3> c = xx.ldlt().solve(s.xy);
-  return s.yy > 0.0 ? (c.array() * s.xy.array()).sum() / s.yy : 0.0;
+  const auto c = analysis::solve_positive(xx, s.xy);
+  return c && s.yy > 0.0 ? (c->array() * s.xy.array()).sum() / s.yy : 0.0;
 }
 
 /// The lag of the highest share, between the tried ones by a parabola.
@@ -201,10 +202,7 @@ LagFit estimate_lag(const PoseStream& pose, const ForceStream& force, const LagO
   const double half = analysis::t_quantile(0.975, kBlocks - 1.0) * error;
   fit.low = fit.lag - half;
   fit.high = fit.lag + half;
-  std::vector<double> sorted = shares;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
-                   sorted.end());
-  const double gain = peak.share - sorted[sorted.size() / 2];
+  const double gain = peak.share - analysis::quantile(shares, 0.5).value();
   if (peak.at_end) {
     fit.doubt = fmt::format("The best lag is the largest that was tried, {:.3g} s.", fit.lag);
   } else if (gain < kLeastGain) {

@@ -4,18 +4,20 @@
 #include <span>
 #include <vector>
 
-#include "core/geometry/bvh/bvh.h"
-#include "core/geometry/mesh/mesh.h"
+#include "core/contact/surface/contact_surface.h"
+#include "core/contact/surface/shading.h"
 
 namespace haptrial::evaluation {
 
-/// Unit normals of a mesh's surface along a path over it: interpolated between the corners' normals
-/// (weighted by angle), then averaged along the path with Gaussian weights of its length.
+/// Unit normals of a mesh's surface along a path over it: those of its shading, then averaged along
+/// the path with Gaussian weights of its length.
+/// @param shading    of the same surface: its crease angle says which edges stay sharp
 /// @param path       (n) in the mesh's frame [m]; each point takes the normal of the nearest one of
 ///                   the surface
 /// @param smoothing  standard deviation of the weights along the path, >= 0 [m]; 0: no averaging
 /// @throws std::invalid_argument for a bad argument or a mesh without triangles.
-std::vector<Eigen::Vector3d> path_normals(const geometry::Bvh& bvh, const geometry::Mesh& mesh,
+std::vector<Eigen::Vector3d> path_normals(const contact::ContactSurface& surface,
+                                          const contact::Shading& shading,
                                           std::span<const Eigen::Vector3d> path, double smoothing);
 
 /// The path that a tool has to take for a rendering's contact point to follow the recorded one:

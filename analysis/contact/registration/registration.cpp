@@ -2,16 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
-#include "analysis/contact/registration/surface_point.h"
+#include "analysis/statistics/base/decomposition.h"
+#include "analysis/statistics/base/descriptive.h"
 #include "core/base/random.h"
-#include "core/geometry/mesh/mesh_bounds.h"
+#include "core/contact/surface/signed_distance.h"
 
 namespace haptrial::evaluation {
 namespace {
@@ -26,17 +26,10 @@ constexpr std::size_t kSubset = 150;    // contacts that decide between starts
 constexpr double kBadlyFixed = 0.01;    // of the path's size
 constexpr double kHidden = 1.5;         // times the mean square: no clear difference
 
-double quantile_of(std::vector<double> values, double share) {
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
-
 class PathFit {
  public:
-  PathFit(const geometry::Bvh& bvh, const geometry::Mesh& mesh, Points contacts, double radius,
-          double trimmed)
-      : bvh_(bvh), mesh_(mesh), contacts_(std::move(contacts)), radius_(radius), trimmed_(trimmed) {
+  PathFit(const contact::SignedDistance& distance, Points contacts, double radius, double trimmed)
+      : distance_(distance), contacts_(std::move(contacts)), radius_(radius), trimmed_(trimmed) {
     centre_ = Eigen::Vector3d::Zero();
     for (const auto& c : contacts_) {
       centre_ += c / static_cast<double>(contacts_.size());
@@ -60,8 +53,7 @@ class PathFit {
   double equations(const Eigen::Isometry3d& pose, Matrix6& h, Vector6& g) const;
 
  private:
-  const geometry::Bvh& bvh_;
-  const geometry::Mesh& mesh_;
+  const contact::SignedDistance& distance_;
   Points contacts_;
   double radius_, trimmed_;
   Eigen::Vector3d centre_;
@@ -69,14 +61,15 @@ class PathFit {
 };
 
 double PathFit::equations(const Eigen::Isometry3d& pose, Matrix6& h, Vector6& g) const {
-  std::vector<SurfacePoint> nearest;
+  std::vector<contact::SurfacePoint> nearest;
   std::vector<double> sizes;
   for (const auto& c : contacts_) {
-    nearest.push_back(nearest_surface(bvh_, mesh_, pose * c));
+    nearest.push_back(distance_(pose * c));
     sizes.push_back(std::abs(nearest.back().distance - radius_));
   }
-  const double limit = quantile_of(sizes, 1.0 - trimmed_);
-  const double scale = std::max(kTukey * kSigmaOfMad * quantile_of(sizes, 0.5), 1e-12 * size_);
+  const double limit = analysis::quantile(sizes, 1.0 - trimmed_).value();
+  const double scale =
+      std::max(kTukey * kSigmaOfMad * analysis::quantile(sizes, 0.5).value(), 1e-12 * size_);
   h.setZero();
   g.setZero();
   double squares = 0.0, count = 0.0;
@@ -118,7 +111,12 @@ double PathFit::refine(Eigen::Isometry3d& pose, int steps) const {
   for (int step = 0; step < steps; ++step) {
     Matrix6 damped = h;
     damped.diagonal().array() += damping * h.trace() + 1e-300;
-    const Vector6 move = -damped.ldlt().solve(g);
+    const std::optional<Eigen::MatrixXd> way = analysis::solve_positive(damped, -g);
+    if (!way) {
+      damping *= 10.0;
+      continue;
+    }
+    const Vector6 move = *way;
     const Eigen::Isometry3d next = moved(pose, move);
     Matrix6 next_h;
     Vector6 next_g;
@@ -158,18 +156,28 @@ Points subset(std::span<const Eigen::Vector3d> contacts, RandomStream& random) {
   return few;
 }
 
+Eigen::Vector3d middle_of(const contact::ContactSurface& surface) {
+  Eigen::AlignedBox3d box;
+  for (std::size_t slot = 0; slot < surface.triangles(); ++slot) {
+    for (const auto& corner : surface.corners(static_cast<std::int32_t>(slot))) {
+      box.extend(corner);
+    }
+  }
+  return box.center();
+}
+
 /// The best of many orientations, the path's centre on the box's; each is refined a little, the
 /// five best ones more.
-Eigen::Isometry3d best_start(const geometry::Bvh& bvh, const geometry::Mesh& mesh,
+Eigen::Isometry3d best_start(const contact::SignedDistance& distance,
                              std::span<const Eigen::Vector3d> contacts,
                              const RegistrationOptions& options) {
   if (options.starts == 0) {
     return options.guess;
   }
   RandomStream random(options.seed, "registration");
-  const PathFit few(bvh, mesh, subset(contacts, random), options.radius, options.trimmed);
+  const PathFit few(distance, subset(contacts, random), options.radius, options.trimmed);
+  const Eigen::Vector3d middle = middle_of(distance.surface());
   std::vector<std::pair<double, Eigen::Isometry3d>> tried;
-  const Eigen::Vector3d middle = geometry::bounds(mesh).center();
   for (int s = 0; s < options.starts; ++s) {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     pose.translate(middle);
@@ -203,10 +211,10 @@ std::vector<std::string> unfixed_directions(const PathFit& fit, const Eigen::Iso
   Vector6 g, moved_g;
   const double before = fit.equations(pose, h, g);
   const double distance = kBadlyFixed * fit.size(), rounding = 1e-6 * fit.size();
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(h);
+  const analysis::SymmetricEigen of_h = analysis::symmetric_eigen(h);
   std::vector<std::string> sentences;
   for (int d = 0; d < 6; ++d) {
-    const Vector6 direction = solver.eigenvectors().col(d);
+    const Vector6 direction = of_h.vectors.col(d);
     double after = std::numeric_limits<double>::infinity();
     for (const double way : {-1.0, 1.0}) {
       const Eigen::Isometry3d there = fit.moved(pose, way * distance * direction);
@@ -221,20 +229,20 @@ std::vector<std::string> unfixed_directions(const PathFit& fit, const Eigen::Iso
 
 }  // namespace
 
-std::vector<double> surface_residuals(const geometry::Bvh& bvh, const geometry::Mesh& mesh,
+std::vector<double> surface_residuals(const contact::SignedDistance& distance,
                                       const Eigen::Isometry3d& body_from_world,
                                       std::span<const Eigen::Vector3d> contacts, double radius) {
   std::vector<double> residuals;
   for (const auto& c : contacts) {
-    residuals.push_back(nearest_surface(bvh, mesh, body_from_world * c).distance - radius);
+    residuals.push_back(distance(body_from_world * c).distance - radius);
   }
   return residuals;
 }
 
-Registration register_path(const geometry::Bvh& bvh, const geometry::Mesh& mesh,
+Registration register_path(const contact::SignedDistance& distance,
                            std::span<const Eigen::Vector3d> contacts,
                            const RegistrationOptions& options) {
-  if (contacts.size() < 12 || mesh.triangles.empty()) {
+  if (contacts.size() < 12 || distance.surface().triangles() == 0) {
     throw std::invalid_argument("a registration needs 12 contacts and a mesh with triangles");
   }
   if (!(options.trimmed >= 0.0 && options.trimmed <= 0.5) || options.starts < 0 ||
@@ -247,17 +255,17 @@ Registration register_path(const geometry::Bvh& bvh, const geometry::Mesh& mesh,
     }
   }
   Registration result;
-  result.body_from_world = best_start(bvh, mesh, contacts, options);
-  const PathFit fit(bvh, mesh, Points(contacts.begin(), contacts.end()), options.radius,
+  result.body_from_world = best_start(distance, contacts, options);
+  const PathFit fit(distance, Points(contacts.begin(), contacts.end()), options.radius,
                     options.trimmed);
   result.rms = std::sqrt(fit.refine(result.body_from_world, 100));
-  result.residuals = surface_residuals(bvh, mesh, result.body_from_world, contacts, options.radius);
+  result.residuals = surface_residuals(distance, result.body_from_world, contacts, options.radius);
   std::vector<double> sizes;
   for (const double r : result.residuals) {
     sizes.push_back(std::abs(r));
   }
-  result.median = quantile_of(sizes, 0.5);
-  result.p95 = quantile_of(sizes, 0.95);
+  result.median = analysis::quantile(sizes, 0.5).value();
+  result.p95 = analysis::quantile(sizes, 0.95).value();
   result.worst = *std::max_element(sizes.begin(), sizes.end());
   result.unfixed = unfixed_directions(fit, result.body_from_world);
   return result;

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/bvh/bvh.h"
-#include "core/geometry/mesh/mesh.h"
+#include "core/contact/surface/signed_distance.h"
 
 namespace haptrial::evaluation {
 
@@ -34,20 +33,20 @@ struct Registration {
 /// distance (Chetverikov et al. 2005), with Tukey's weights on those that are kept. The starting
 /// orientations are spread at random; the best one on a subset of the contacts is refined on all.
 ///
-/// A direction of movement (an eigenvector of the last equations) is unfixed when moving along it by
-/// a hundredth of the path's size, one way or the other, leaves the mean square below 1.5 times what
-/// it was. A sentence describes each: a shift, or a turn about an axis, in the mesh's frame.
+/// A direction of movement (an eigenvector of the last equations) is unfixed when moving along it
+/// by a hundredth of the path's size, one way or the other, leaves the mean square below 1.5 times
+/// what it was. A sentence describes each: a shift, or a turn about an axis, in the mesh's frame.
 ///
-/// @param bvh, mesh  of the body, the same; triangles face outwards where signs matter
-/// @param contacts   (n >= 12) in W [m]
+/// @param distance  from the body, whose triangles face outwards
+/// @param contacts  (n >= 12) in W [m]
 /// @throws std::invalid_argument for fewer contacts, one that is not finite, an empty mesh or an
 /// option that breaks its bound.
-Registration register_path(const geometry::Bvh& bvh, const geometry::Mesh& mesh,
+Registration register_path(const contact::SignedDistance& distance,
                            std::span<const Eigen::Vector3d> contacts,
                            const RegistrationOptions& options = {});
 
 /// The same residuals for contacts that were not fitted: a test of a registration, or of a body.
-std::vector<double> surface_residuals(const geometry::Bvh& bvh, const geometry::Mesh& mesh,
+std::vector<double> surface_residuals(const contact::SignedDistance& distance,
                                       const Eigen::Isometry3d& body_from_world,
                                       std::span<const Eigen::Vector3d> contacts, double radius);
 

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
+#include "analysis/statistics/base/decomposition.h"
 #include "analysis/statistics/base/distributions.h"
 
 namespace haptrial::evaluation {
@@ -22,14 +22,14 @@ struct Sums {
 
 /// Solves xx c = xy in the directions that are fixed.
 Eigen::VectorXd solve_fixed(const Sums& sums) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(sums.xx);
-  Eigen::VectorXd along = solver.eigenvectors().transpose() * sums.xy;
-  const double least = kNotFixed * solver.eigenvalues().maxCoeff();
+  const analysis::SymmetricEigen eigen = analysis::symmetric_eigen(sums.xx);
+  Eigen::VectorXd along = eigen.vectors.transpose() * sums.xy;
+  const double least = kNotFixed * eigen.values.maxCoeff();
   for (Eigen::Index i = 0; i < along.size(); ++i) {
-    const double eigenvalue = solver.eigenvalues()[i];
+    const double eigenvalue = eigen.values[i];
     along[i] = eigenvalue > least ? along[i] / eigenvalue : 0.0;
   }
-  return solver.eigenvectors() * along;
+  return eigen.vectors * along;
 }
 
 void check_regression(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
@@ -53,15 +53,15 @@ void check_regression(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
 /// Names the coefficients that lie along directions that are not fixed. @returns which they are
 std::vector<bool> name_not_fixed(const Eigen::MatrixXd& xx, const std::vector<std::string>& names,
                                  std::vector<std::string>& sentences) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(xx);
+  const analysis::SymmetricEigen eigen = analysis::symmetric_eigen(xx);
   std::vector<bool> not_fixed(names.size(), false);
   for (Eigen::Index d = 0; d < xx.cols(); ++d) {
-    if (solver.eigenvalues()[d] > kNotFixed * solver.eigenvalues().maxCoeff()) {
+    if (eigen.values[d] > kNotFixed * eigen.values.maxCoeff()) {
       continue;
     }
     std::string list;
     for (std::size_t i = 0; i < names.size(); ++i) {
-      if (std::abs(solver.eigenvectors()(static_cast<Eigen::Index>(i), d)) > 1e-3) {
+      if (std::abs(eigen.vectors(static_cast<Eigen::Index>(i), d)) > 1e-3) {
         not_fixed[i] = true;
         list += (list.empty() ? "" : ", ") + names[i];
       }

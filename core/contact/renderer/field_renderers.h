@@ -4,7 +4,7 @@
 
 #include "core/contact/renderer/normal_spring.h"
 #include "core/contact/renderer/renderer.h"
-#include "core/contact/renderer/signed_distance.h"
+#include "core/contact/surface/signed_distance.h"
 
 namespace haptrial::contact {
 

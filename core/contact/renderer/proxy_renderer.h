@@ -4,7 +4,7 @@
 
 #include "core/contact/renderer/normal_spring.h"
 #include "core/contact/renderer/renderer.h"
-#include "core/contact/renderer/shading.h"
+#include "core/contact/surface/shading.h"
 
 namespace haptrial::contact {
 

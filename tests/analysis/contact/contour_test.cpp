@@ -37,14 +37,15 @@ TEST_P(ContourTest, ThePathLiesOnTheBody) {
   if (!file || !mesh) {
     GTEST_SKIP() << kAbsent;
   }
-  const geometry::Bvh bvh(*mesh);
+  const contact::ContactSurface surface(*mesh);
+  const contact::SignedDistance distance(*mesh, surface);
   std::vector<Eigen::Vector3d> fitted, tested;
   const auto path = test::contour_path(test::read_contour(*file).pose, GetParam());
   for (std::size_t i = 0; i < path.size(); ++i) {
     (i % 2 == 0 ? fitted : tested).push_back(path[i]);
   }
-  const Registration found = register_path(bvh, *mesh, fitted);
-  auto rest = surface_residuals(bvh, *mesh, found.body_from_world, tested, 0.0);
+  const Registration found = register_path(distance, fitted);
+  auto rest = surface_residuals(distance, found.body_from_world, tested, 0.0);
   for (double& r : rest) {
     r = std::abs(r);
   }

@@ -23,6 +23,12 @@ Eigen::Isometry3d a_pose() {
   return pose;
 }
 
+struct Body {
+  geometry::Mesh mesh;
+  contact::ContactSurface surface{mesh};
+  contact::SignedDistance distance{mesh, surface};
+};
+
 /// A path wound over a body that every ray from its centre leaves once, seen from elsewhere.
 Points path_over(const geometry::Bvh& bvh, std::size_t n, double radius) {
   Points path;
@@ -43,25 +49,23 @@ double pose_error(const Eigen::Isometry3d& found, double size) {
 }
 
 TEST(RegistrationTest, AnExactPathIsFoundFromNowhere) {
-  const geometry::Mesh mesh = geometry::make_rough_solid(0.1, 30, 3);
-  const geometry::Bvh bvh(mesh);
-  const Registration found = register_path(bvh, mesh, path_over(bvh, 600, 0.0));
+  const Body body{geometry::make_rough_solid(0.1, 30, 3)};
+  const Registration found = register_path(body.distance, path_over(body.surface.bvh(), 600, 0.0));
   EXPECT_LT(pose_error(found.body_from_world, 0.05), 1e-7);
   EXPECT_LT(found.worst, 1e-7);
   EXPECT_THAT(found.unfixed, testing::IsEmpty());
 }
 
 TEST(RegistrationTest, NoiseAndStrayContactsAreBorne) {
-  const geometry::Mesh mesh = geometry::make_rough_solid(0.1, 30, 3);
-  const geometry::Bvh bvh(mesh);
-  Points path = path_over(bvh, 1000, 0.0);
+  const Body body{geometry::make_rough_solid(0.1, 30, 3)};
+  Points path = path_over(body.surface.bvh(), 1000, 0.0);
   RandomStream random(8, "stray");
   for (std::size_t i = 0; i < path.size(); ++i) {
     const double noise = i % 12 == 0 ? 0.02 : 0.0005;  // 8 % are 20 mm off
     const Eigen::Vector3d one(random.normal(), random.normal(), random.normal());
     path[i] += noise * one;
   }
-  const Registration found = register_path(bvh, mesh, path);
+  const Registration found = register_path(body.distance, path);
   // Better than any single contact.
   EXPECT_LT(pose_error(found.body_from_world, 0.05), 5e-4);
   EXPECT_NEAR(found.median, 0.6745 * 0.0005, 1e-4);
@@ -69,14 +73,13 @@ TEST(RegistrationTest, NoiseAndStrayContactsAreBorne) {
 }
 
 TEST(RegistrationTest, ASphereLeavesItsTurnsOpen) {
-  const geometry::Mesh mesh = geometry::make_sphere(0.05, 30);
-  const geometry::Bvh bvh(mesh);
+  const Body body{geometry::make_sphere(0.05, 30)};
   const double radius = 0.002;
   Points path;  // of a true sphere: the mesh's own facets would fix its turns
-  for (const auto& p : path_over(bvh, 400, 0.0)) {
+  for (const auto& p : path_over(body.surface.bvh(), 400, 0.0)) {
     path.emplace_back(a_pose().inverse() * ((0.05 + radius) * (a_pose() * p).normalized()));
   }
-  const Registration found = register_path(bvh, mesh, path, {.radius = radius, .starts = 5});
+  const Registration found = register_path(body.distance, path, {.radius = radius, .starts = 5});
   EXPECT_LT(found.worst, 1e-4);
   ASSERT_EQ(found.unfixed.size(), 3u);
   for (const auto& sentence : found.unfixed) {
@@ -85,24 +88,21 @@ TEST(RegistrationTest, ASphereLeavesItsTurnsOpen) {
 }
 
 TEST(RegistrationTest, APlaneLeavesTwoShiftsAndATurnOpen) {
-  const geometry::Mesh mesh{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}},
-                            {{0, 1, 2}, {0, 2, 3}}};
-  const geometry::Bvh bvh(mesh);
+  const Body body{{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}}};
   Points path;
   for (int i = 0; i < 100; ++i) {
     path.emplace_back(0.1 * std::cos(0.3 * i), 0.1 * std::sin(0.5 * i), 0.0);
   }
-  const Registration found = register_path(bvh, mesh, path, {.starts = 0});
+  const Registration found = register_path(body.distance, path, {.starts = 0});
   ASSERT_EQ(found.unfixed.size(), 3u);
 }
 
 TEST(RegistrationTest, BadArgumentsAreRefused) {
-  const geometry::Mesh mesh = geometry::make_sphere(1.0, 3);
-  const geometry::Bvh bvh(mesh);
-  EXPECT_THROW(register_path(bvh, mesh, Points(5)), std::invalid_argument);
-  EXPECT_THROW(register_path(bvh, mesh, Points(20, Eigen::Vector3d::Zero()), {.trimmed = 0.6}),
+  const Body body{geometry::make_sphere(1.0, 3)};
+  EXPECT_THROW(register_path(body.distance, Points(5)), std::invalid_argument);
+  EXPECT_THROW(register_path(body.distance, Points(20, Eigen::Vector3d::Zero()), {.trimmed = 0.6}),
                std::invalid_argument);
-  EXPECT_THROW(register_path(bvh, mesh, Points(20, Eigen::Vector3d::Constant(NAN))),
+  EXPECT_THROW(register_path(body.distance, Points(20, Eigen::Vector3d::Constant(NAN))),
                std::invalid_argument);
 }
 
@@ -125,8 +125,7 @@ TEST(InTrajectoryTest, DepthIsForceOverStiffness) {
 }
 
 TEST(InTrajectoryTest, NormalsOfASphereAreRadialAndSmoothingCalmsThem) {
-  const geometry::Mesh mesh = geometry::make_sphere(0.05, 12);
-  const geometry::Bvh bvh(mesh);
+  const Body body{geometry::make_sphere(0.05, 12)};
   RandomStream random(6, "sphere");
   Points path;
   double direct = 0.0, smooth = 0.0;
@@ -135,8 +134,9 @@ TEST(InTrajectoryTest, NormalsOfASphereAreRadialAndSmoothingCalmsThem) {
     const Eigen::Vector3d one(random.normal(), random.normal(), random.normal());
     path.emplace_back(0.05 * Eigen::Vector3d(std::cos(a), std::sin(a), 0.0) + 0.0005 * one);
   }
-  const Points normals = path_normals(bvh, mesh, path, 0.0);
-  const Points calm = path_normals(bvh, mesh, path, 0.003);
+  const contact::Shading shading(body.mesh, body.surface, std::numbers::pi / 2.0);
+  const Points normals = path_normals(body.surface, shading, path, 0.0);
+  const Points calm = path_normals(body.surface, shading, path, 0.003);
   for (int i = 0; i < 400; ++i) {
     const Eigen::Vector3d truth(std::cos(0.01 * i), std::sin(0.01 * i), 0.0);
     const auto k = static_cast<std::size_t>(i);

@@ -1,4 +1,4 @@
-#include "core/contact/renderer/shading.h"
+#include "core/contact/surface/shading.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

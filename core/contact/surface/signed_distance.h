@@ -22,7 +22,10 @@ struct SurfacePoint {
 /// Source: Baerentzen and Aanaes 2005.
 class SignedDistance {
  public:
+  /// @param surface  of the same mesh; it must outlive this
   SignedDistance(const geometry::Mesh& mesh, const ContactSurface& surface);
+
+  const ContactSurface& surface() const noexcept { return *surface_; }
 
   /// Servo thread. @param hint  a triangle that may be near; -1: none
   SurfacePoint operator()(const Eigen::Vector3d& point, std::int32_t hint = -1) const noexcept;

@@ -1,4 +1,4 @@
-#include "core/contact/renderer/signed_distance.h"
+#include "core/contact/surface/signed_distance.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
