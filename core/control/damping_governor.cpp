@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/base/longer.h"
+
 namespace haptrial::control {
 namespace {
 
@@ -23,6 +25,11 @@ constexpr double kBelowTooMuch = 0.7;   // of the share at which the handle bega
 
 double filter_gain(double frequency, double period) {
   return 1.0 - std::exp(-2.0 * std::numbers::pi * frequency * period);
+}
+
+/// The larger of both lengths.
+double fading_peak(double faded, const Eigen::Vector3d& now) {
+  return longer(now, faded) ? now.norm() : faded;
 }
 
 }  // namespace
@@ -67,13 +74,13 @@ void DampingGovernor::watch(const Eigen::Vector3d& velocity) noexcept {
   if (!std::exchange(begun_, true)) {
     slow_[0] = rest;  // a hand that moves already is no step of velocity
   }
-  speed_amplitude_ = std::max(rest.norm(), speed_fade_ * speed_amplitude_);
+  speed_amplitude_ = fading_peak(speed_fade_ * speed_amplitude_, rest);
   for (Eigen::Vector3d& slow : slow_) {
     slow += high_gain_ * (rest - slow);
     rest -= slow;
   }
   band_ += low_gain_ * (rest - band_);
-  band_amplitude_ = std::max(band_.norm(), band_fade_ * band_amplitude_);
+  band_amplitude_ = fading_peak(band_fade_ * band_amplitude_, band_);
 }
 
 }  // namespace haptrial::control

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "core/base/definition/table.h"
+#include "core/base/longer.h"
 
 namespace haptrial::control {
 
@@ -37,8 +38,7 @@ double PdController::stored(double stretch, double limit) const noexcept {
 }
 
 Eigen::Vector3d saturate(const Eigen::Vector3d& force, double limit) noexcept {
-  const double length = force.norm();
-  return length > limit ? Eigen::Vector3d(force * (limit / length)) : force;
+  return longer(force, limit) ? Eigen::Vector3d(force * (limit / force.norm())) : force;
 }
 
 }  // namespace haptrial::control

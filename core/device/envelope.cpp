@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/definition/table.h"
+#include "core/base/longer.h"
 
 namespace haptrial::device {
 namespace {
@@ -65,11 +66,11 @@ Fault Envelope::check(bool read_ok, const DeviceReading& reading) noexcept {
   if (!reading.forces_on && !last_force_.isZero(0.0)) {
     trip(Fault::kForcesOff);
   }
-  if (has_position_ && (p - last_position_).norm() > limits_.max_jump) {
+  if (has_position_ && longer(p - last_position_, limits_.max_jump)) {
     trip(Fault::kJump);
-  } else if (reading.tool.velocity.norm() > limits_.max_speed) {
+  } else if (longer(reading.tool.velocity, limits_.max_speed)) {
     trip(Fault::kSpeed);
-  } else if (p.norm() > limits_.workspace_radius) {
+  } else if (longer(p, limits_.workspace_radius)) {
     trip(Fault::kWorkspace);
   }
   last_position_ = p;
@@ -85,7 +86,7 @@ Eigen::Vector3d Envelope::limit(const Eigen::Vector3d& wanted, double dt,
   constexpr double kRounding = 1.0 + 1e-9;
   if (!wanted.allFinite() || !(dt > 0.0)) {
     trip(Fault::kForceNotFinite);
-  } else if (wanted.norm() > limits_.max_force * kRounding) {
+  } else if (longer(wanted, limits_.max_force * kRounding)) {
     trip(Fault::kForceTooLarge);
   }
   if (fault_ == Fault::kNone) {
@@ -104,9 +105,9 @@ Eigen::Vector3d Envelope::limit(const Eigen::Vector3d& wanted, double dt,
 /// Towards the goal, no faster than max_force_rate.
 Eigen::Vector3d Envelope::approach(const Eigen::Vector3d& goal, double dt) const noexcept {
   const Eigen::Vector3d change = goal - last_force_;
-  const double step = change.norm();
   const double allowed = limits_.max_force_rate * dt;
-  return step > allowed ? Eigen::Vector3d(last_force_ + change * (allowed / step)) : goal;
+  return longer(change, allowed) ? Eigen::Vector3d(last_force_ + change * (allowed / change.norm()))
+                                 : goal;
 }
 
 void Envelope::watch_readings(double dt) noexcept {
@@ -157,9 +158,8 @@ Eigen::Vector3d Envelope::target(const Eigen::Vector3d& wanted, double dt) noexc
   since_start_ += dt;
   const double share = limits_.ramp_in > 0.0 ? std::min(1.0, since_start_ / limits_.ramp_in) : 1.0;
   const Eigen::Vector3d grown = share * wanted;
-  const double length = grown.norm();
   const double most = bounded_ ? std::min(bound_, limits_.max_force) : limits_.max_force;
-  return length > most ? Eigen::Vector3d(grown * (most / length)) : grown;
+  return longer(grown, most) ? Eigen::Vector3d(grown * (most / grown.norm())) : grown;
 }
 
 void Envelope::trip(Fault fault) noexcept {

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "core/base/definition/table.h"
+#include "core/base/longer.h"
 
 namespace haptrial::device {
 
@@ -43,7 +44,7 @@ VirtualDevice::VirtualDevice(const VirtualDeviceParameters& parameters, HandlePh
 
 void VirtualDevice::sense(const Eigen::Vector3d& position) noexcept {
   const double q = parameters_.position_quantum;
-  newest_ = (newest_ + 1) % parameters_.velocity_window;
+  newest_ = newest_ + 1 < parameters_.velocity_window ? newest_ + 1 : 0;
   for (int axis = 0; axis < 3; ++axis) {
     history_[newest_][axis] = q > 0.0 ? q * std::nearbyint(position[axis] / q) : position[axis];
   }
@@ -52,8 +53,10 @@ void VirtualDevice::sense(const Eigen::Vector3d& position) noexcept {
 bool VirtualDevice::read(DeviceReading& reading) noexcept {
   const int n = parameters_.velocity_window;
   Eigen::Vector3d slope = Eigen::Vector3d::Zero();
+  int at = newest_;
   for (int age = 0; age < n; ++age) {
-    slope += (0.5 * (n - 1) - age) * history_[(newest_ - age + n) % n];
+    slope += (0.5 * (n - 1) - age) * history_[at];
+    at = at > 0 ? at - 1 : n - 1;
   }
   reading.tool.position = history_[newest_];
   reading.tool.velocity = slope_gain_ * slope;
@@ -65,13 +68,12 @@ bool VirtualDevice::read(DeviceReading& reading) noexcept {
 
 bool VirtualDevice::write(const Eigen::Vector3d& force) noexcept {
   Eigen::Vector3d& arrived = pending_[static_cast<std::size_t>(oldest_)];
-  const double length = arrived.norm();
-  if (length > parameters_.max_force) {
-    arrived *= parameters_.max_force / length;
+  if (longer(arrived, parameters_.max_force)) {
+    arrived *= parameters_.max_force / arrived.norm();
   }
   sense(physics_.step(arrived, period_).position);
   arrived = force;
-  oldest_ = (oldest_ + 1) % parameters_.force_delay;
+  oldest_ = oldest_ + 1 < parameters_.force_delay ? oldest_ + 1 : 0;
   return true;
 }
 

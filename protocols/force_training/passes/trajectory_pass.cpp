@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/definition/table.h"
+#include "core/base/longer.h"
 
 namespace haptrial::protocols {
 
@@ -170,7 +171,7 @@ PassOutput TrajectoryPass::output(const PointState& tool, const PointState& targ
   out.damping_share = pushes ? along : std::min(along, across);
   out.force = control::saturate(wanted, parameters_.force_limit);
   out.intent = intent(target, tool, out.force, pushes);
-  out.saturated = wanted.norm() > parameters_.force_limit;
+  out.saturated = longer(wanted, parameters_.force_limit);
   out.applied_force = out.force.y();
 
   PassMoment moment{tool.position,     stage_,       along_, out.target_force,
