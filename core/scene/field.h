@@ -12,6 +12,7 @@
 #include "core/scene/field/path.h"
 #include "core/scene/field/push.h"
 #include "core/scene/field/relief.h"
+#include "core/scene/field/solid.h"
 #include "core/scene/field/surface.h"
 #include "core/scene/field/vibration.h"
 #include "core/scene/field/viscous.h"
@@ -25,7 +26,7 @@ using FieldKind =
                  GratingParameters, TextureParameters, ViscousParameters, MatrixViscousParameters,
                  InertiaParameters, FrictionParameters, SineVibrationParameters,
                  NoiseVibrationParameters, TapParameters, DetentParameters, ClickParameters,
-                 MoverParameters, PathParameters>;
+                 MoverParameters, PathParameters, SolidParameters>;
 
 /// One field of force as a definition states it: plain data that may change between trials.
 struct Field {
@@ -40,7 +41,8 @@ struct Field {
 const std::string& surface_of(const Field& field) noexcept;
 
 inline bool is_surface(const Field& field) noexcept {
-  return std::holds_alternative<SurfaceParameters>(field.kind);
+  return std::holds_alternative<SurfaceParameters>(field.kind) ||
+         std::holds_alternative<SolidParameters>(field.kind);
 }
 /// A relief shapes the force of the surface that it lies on and has none of its own.
 inline bool is_relief(const Field& field) noexcept {

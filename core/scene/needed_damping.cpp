@@ -23,8 +23,9 @@ Steepness of_matrix(const MatrixViscousParameters& p) {
 
 /// phi(e) with e = depth + h: its second derivative is at most k |g|² along g, and phi' <= limit
 /// where h curves. A surface that closes in around the hand adds k at most.
-Steepness of_surface(const std::vector<Field>& fields, const Field& field) {
-  const auto& p = std::get<SurfaceParameters>(field.kind);
+/// @param closes_in  a surface may lie around the hand
+Steepness of_surface(const std::vector<Field>& fields, const Field& field,
+                     const control::PdGains& gains, bool closes_in) {
   double slope = 0.0;
   double curvature = 0.0;
   for (const Field& other : fields) {
@@ -41,10 +42,24 @@ Steepness of_surface(const std::vector<Field>& fields, const Field& field) {
     }
   }
   const double lean = (1.0 + slope) * (1.0 + slope);
+  const double around = closes_in && slope > 0.0 ? gains.stiffness : 0.0;
+  return {true, gains.stiffness * lean + around + field.limit * curvature, gains.damping * lean};
+}
+
+Steepness of_surface(const std::vector<Field>& fields, const Field& field,
+                     const SurfaceParameters& p) {
   const bool closes_in = p.felt_from_inside && !std::holds_alternative<HalfSpace>(p.shape);
-  const double around = closes_in && slope > 0.0 ? p.gains.stiffness : 0.0;
-  return {true, p.gains.stiffness * lean + around + field.limit * curvature,
-          p.gains.damping * lean};
+  return of_surface(fields, field, p.gains, closes_in);
+}
+
+/// The proxy moves only to come nearer to the tool: the spring between them gives back at most what
+/// it was given, and turns against the hand by k at most, also where friction holds the proxy.
+/// Shading turns the force away from that way, and renderers without a proxy jump: of them nothing
+/// is proven.
+Steepness of_solid(const std::vector<Field>& fields, const Field& field, const SolidParameters& p) {
+  Steepness found = of_surface(fields, field, p.gains, true);
+  found.passive = p.renderer == contact::RendererKind::kProxy && p.crease_angle < 0.0;
+  return found;
 }
 
 struct SteepnessOf {
@@ -58,7 +73,8 @@ struct SteepnessOf {
   Steepness operator()(const LineChannelParameters& p) const { return of_gains(p.gains); }
   Steepness operator()(const AxisChannelParameters& p) const { return of_gains(p.gains); }
   Steepness operator()(const PlaneParameters& p) const { return of_gains(p.gains); }
-  Steepness operator()(const SurfaceParameters&) const { return of_surface(fields, field); }
+  Steepness operator()(const SurfaceParameters& p) const { return of_surface(fields, field, p); }
+  Steepness operator()(const SolidParameters& p) const { return of_solid(fields, field, p); }
   Steepness operator()(const GratingParameters&) const { return {true, 0.0, 0.0}; }
   Steepness operator()(const TextureParameters&) const { return {true, 0.0, 0.0}; }
   Steepness operator()(const ViscousParameters& p) const { return {true, 0.0, p.damping}; }

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 using Law =
     std::variant<Constant, Ramp, Pulse, Hold, Surface, Grating, Texture, Viscous, Inertia, Friction,
-                 SineVibration, NoiseVibration, Tap, Detent, Click, Mover, PathGuide>;
+                 SineVibration, NoiseVibration, Tap, Detent, Click, Mover, PathGuide, Solid>;
 
 template <class Parameters>
 struct LawOf;
@@ -47,7 +47,36 @@ HAPTRIAL_LAW(DetentParameters, Detent);
 HAPTRIAL_LAW(ClickParameters, Click);
 HAPTRIAL_LAW(MoverParameters, Mover);
 HAPTRIAL_LAW(PathParameters, PathGuide);
+HAPTRIAL_LAW(SolidParameters, Solid);
 #undef HAPTRIAL_LAW
+
+template <class Each>
+concept SurfaceLaw = requires(Each& law) {
+  law.lay(ReliefHere{});
+};
+
+void lay_on(Law& law, const ReliefHere& relief) noexcept {
+  std::visit(
+      [&](auto& each) {
+        if constexpr (SurfaceLaw<std::decay_t<decltype(each)>>) {
+          each.lay(relief);
+        }
+      },
+      law);
+}
+
+/// Of a law that is no surface: nothing is touched.
+SurfaceTouch touch_of(const Law& law) noexcept {
+  return std::visit(
+      [](const auto& each) -> SurfaceTouch {
+        if constexpr (SurfaceLaw<std::decay_t<decltype(each)>>) {
+          return each.touch();
+        } else {
+          return {};
+        }
+      },
+      law);
+}
 
 Law law_of(const Field& field, const Setting& setting) {
   return std::visit(
@@ -201,7 +230,7 @@ void Scene::lay_reliefs(const Vector3d& p) noexcept {
     }
   }
   for (const std::size_t i : surfaces_) {
-    std::get_if<Surface>(&parts_[i].law)->lay(parts_[i].relief);
+    lay_on(parts_[i].law, parts_[i].relief);
   }
 }
 
@@ -211,7 +240,7 @@ void Scene::feel(Part& part, const PointState& hand) noexcept {
   if (part.on != kFreeSpace) {
     const Part& surface = parts_[part.on];
     if (surface.acts()) {
-      touch = std::get_if<Surface>(&surface.law)->touch();
+      touch = touch_of(surface.law);
       touch.pressing *= surface.fade.weight();
     }
     felt.surface = &touch;
@@ -229,7 +258,7 @@ void Scene::feel(Part& part, const PointState& hand) noexcept {
       part.law);
   const double size = force.norm();
   state.limited = state.limited || size > part.limit;
-  if (!std::holds_alternative<Surface>(part.law)) {
+  if (!std::holds_alternative<Surface>(part.law) && !std::holds_alternative<Solid>(part.law)) {
     state.contact = size > 0.0;
   }
   state.force = part.fade.weight() * control::saturate(force, part.limit);

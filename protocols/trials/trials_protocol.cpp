@@ -25,8 +25,9 @@ class TrialsProtocol final : public Protocol {
         read_observer(root, definition->questions, definition->stages, definition->hands);
     return definition;
   }
-  void load(Definition& definition, const std::filesystem::path&) const override {
-    const auto& d = dynamic_cast<const TrialsDefinition&>(definition);
+  void load(Definition& definition, const std::filesystem::path& folder) const override {
+    auto& d = dynamic_cast<TrialsDefinition&>(definition);
+    load_objects(d.objects, folder);
     check_every_value(d);
     for (const sound::Cue& cue : d.cues.cues) {
       sound::rendered(cue, 0);  // a file that cannot be played is a mistake of the definition

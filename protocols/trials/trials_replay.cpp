@@ -182,7 +182,7 @@ class TrialReplay {
     view.question = static_cast<std::uint8_t>(std::min(answered + 1, questions));
     if (view.question > 0) {
       const StageSight& sight = trials_.pass().question_sight(view.question - 1U);
-      view.show(sight.marks, sight.hand, false, {});
+      view.show(sight.marks, sight.objects, sight.hand, false, {});
     }
     return view;
   }
@@ -211,7 +211,7 @@ class TrialReplay {
     const StageSight& sight = trials_.pass().sight(interval, stage);
     view.interval = static_cast<std::uint8_t>(row.interval);
     view.stage = static_cast<std::uint8_t>(stage);
-    view.show(sight.marks, sight.hand, sight.interval_number, sight.dots);
+    view.show(sight.marks, sight.objects, sight.hand, sight.interval_number, sight.dots);
   }
 
   const Protocol& protocol_;

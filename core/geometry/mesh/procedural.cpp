@@ -186,6 +186,51 @@ Mesh make_sphere(double radius, int frequency) {
   return mesh;
 }
 
+Mesh make_box(const Eigen::Vector3d& size) {
+  require(is_positive(size.minCoeff()) && size.allFinite(), "make_box: sizes must be above 0");
+  Mesh mesh;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d side(corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5,
+                               corner & 4 ? 0.5 : -0.5);
+    mesh.vertices.emplace_back(side.cwiseProduct(size));
+  }
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
+Mesh make_frustum(double radius, double top_radius, double length, int around) {
+  require(
+      is_positive(radius) && is_positive(length) && top_radius >= 0.0 && std::isfinite(top_radius),
+      "make_frustum: radius and length must be above 0, top_radius at least 0");
+  require(around >= 3, "make_frustum: around must be at least 3");
+  const bool pointed = top_radius == 0.0;
+  Mesh mesh;
+  mesh.vertices = {{0.0, 0.0, -0.5 * length}, {0.0, 0.0, 0.5 * length}};
+  const auto ring = [&](double r, double z) {
+    for (int i = 0; i < around; ++i) {
+      const double angle = 2.0 * kPi * i / around;
+      mesh.vertices.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+    }
+  };
+  ring(radius, -0.5 * length);
+  if (!pointed) {
+    ring(top_radius, 0.5 * length);
+  }
+  for (int i = 0; i < around; ++i) {
+    const std::int32_t a = 2 + i, b = 2 + (i + 1) % around;
+    mesh.triangles.push_back({0, b, a});
+    if (pointed) {
+      mesh.triangles.push_back({1, a, b});
+      continue;
+    }
+    mesh.triangles.push_back({1, a + around, b + around});
+    mesh.triangles.push_back({a, b, b + around});
+    mesh.triangles.push_back({a, b + around, a + around});
+  }
+  return mesh;
+}
+
 Mesh make_torus(double radius, double tube_radius, int around, int across) {
   require(is_positive(tube_radius) && std::isfinite(radius) && tube_radius < radius,
           "make_torus: the tube's radius must be above 0 and below the torus's");

@@ -14,6 +14,15 @@ namespace haptrial::geometry {
 /// @param frequency  1 .. 5,000: the mesh has 20 frequency² triangles.
 Mesh make_sphere(double radius, int frequency);
 
+/// A cuboid of 12 triangles. @param size  of its sides along x, y and z, each > 0 [m]
+Mesh make_box(const Eigen::Vector3d& size);
+
+/// A cylinder along z, or a cone if `top_radius` is 0, or what lies between.
+/// @param radius  of the end at -length / 2 [m]  @param top_radius  of the other one, >= 0 [m]
+/// @param length  > 0 [m]
+/// @param around  >= 3: the mesh has 4 around triangles, a cone 2 around.
+Mesh make_frustum(double radius, double top_radius, double length, int around);
+
 /// A torus around z.
 /// @param radius  of the circle in its middle [m]
 /// @param tube_radius  < radius [m]

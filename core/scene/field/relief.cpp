@@ -14,11 +14,17 @@ using Eigen::Vector3d;
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
-void lay_on(double height, const Vector3d& slope, double weight, double steepest,
+/// Of a whole relief: bounds that hold anywhere.
+struct Bound {
+  double height, steepest;
+};
+
+void lay_on(double height, const Vector3d& slope, double weight, const Bound& bound,
             ReliefHere& relief, FieldState& state) noexcept {
   relief.height += weight * height;
   relief.slope += weight * slope;
-  relief.steepest += weight * steepest;
+  relief.steepest += weight * bound.steepest;
+  relief.highest += weight * bound.height;
   state.depth = weight * height;
 }
 
@@ -48,7 +54,8 @@ void Grating::add(const Vector3d& p, double weight, ReliefHere& relief,
     slope *= scale * kRoundedSharpness * (1.0 - t * t);
     height = scale * t;
   }
-  lay_on(amplitude_ * height, amplitude_ * slope * wave_, weight, steepest(), relief, state);
+  lay_on(amplitude_ * height, amplitude_ * slope * wave_, weight, {amplitude_, steepest()}, relief,
+         state);
 }
 
 double Grating::steepest() const noexcept {
@@ -97,7 +104,8 @@ void Texture::add(const Vector3d& p, double weight, ReliefHere& relief,
     height += std::sin(angle);
     slope += std::cos(angle) * waves_[i];
   }
-  lay_on(amplitude_ * height, amplitude_ * slope, weight, steepest_, relief, state);
+  lay_on(amplitude_ * height, amplitude_ * slope, weight,
+         {amplitude_ * static_cast<double>(kWaves), steepest_}, relief, state);
 }
 
 }  // namespace haptrial::scene

@@ -19,6 +19,7 @@ struct ReliefHere {
   double height{0.0};                              // h [m]
   Eigen::Vector3d slope{Eigen::Vector3d::Zero()};  // its gradient in W
   double steepest{0.0};                            // bound of the gradient's length anywhere
+  double highest{0.0};                             // bound of the height anywhere [m]
 };
 
 /// A wall, box, sphere or cylinder that pushes the hand out along its normal n, with relief h:

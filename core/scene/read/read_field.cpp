@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "core/base/random.h"
 #include "core/scene/read/field_reader_internal.h"
@@ -328,25 +329,25 @@ Field read_field(Table& table, std::string name, double rate, const NumberSource
   return field;
 }
 
-std::vector<Field> read_fields(Table& fields, double rate, const NumberSource& source) {
+std::vector<Field> read_fields(Table& fields, double rate, const NumberSource& source,
+                               const std::vector<Field>& objects) {
   std::vector<Field> found;
   std::vector<Table> tables;
   for (const std::string& name : fields.keys()) {
     tables.push_back(fields.table(name));
     found.push_back(read_field(tables.back(), name, rate, source));
   }
-  std::string surfaces;
-  for (const Field& field : found) {
-    if (is_surface(field)) {
-      surfaces += (surfaces.empty() ? "" : ", ") + field.name;
+  std::vector<std::string> surfaces;
+  for (const std::vector<Field>* some : {&std::as_const(found), &objects}) {
+    for (const Field& field : *some) {
+      if (is_surface(field)) {
+        surfaces.push_back(field.name);
+      }
     }
   }
   for (std::size_t i = 0; i < found.size(); ++i) {
     const std::string& on = surface_of(found[i]);
-    const bool there = std::any_of(found.begin(), found.end(), [&](const Field& other) {
-      return other.name == on && is_surface(other);
-    });
-    if (on.empty() || there) {
+    if (on.empty() || std::find(surfaces.begin(), surfaces.end(), on) != surfaces.end()) {
       continue;
     }
     if (surfaces.empty()) {
@@ -354,7 +355,8 @@ std::vector<Field> read_fields(Table& fields, double rate, const NumberSource& s
                                          "or cylinder; add one",
                                          on));
     } else {
-      tables[i].reject("on", fmt::format("\"{}\"", on), surfaces);
+      tables[i].reject("on", fmt::format("\"{}\"", on),
+                       fmt::format("{}", fmt::join(surfaces, ", ")));
     }
   }
   return found;

@@ -42,7 +42,8 @@ namespace haptrial::scene {
 Field read_field(Table& table, std::string name, double rate, const NumberSource& source = {});
 
 /// Every table of [fields], and whether what lies `on` something lies on a wall, box, sphere or
-/// cylinder of them.
-std::vector<Field> read_fields(Table& fields, double rate, const NumberSource& source = {});
+/// cylinder of them, or on one of `objects`.
+std::vector<Field> read_fields(Table& fields, double rate, const NumberSource& source = {},
+                               const std::vector<Field>& objects = {});
 
 }  // namespace haptrial::scene

@@ -1,5 +1,6 @@
 #include "core/subject/perceiver/encounters.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,8 @@ namespace {
 constexpr double kSlowTime = 0.05;     // of the slow part of a force [s]
 constexpr double kFreeAtLeast = 0.05;  // between two contacts [s]
 constexpr double kLeastWay = 1e-4;     // sd of a deflection that has a slope [m]
+constexpr double kUnit = 0.01;         // of what a sphere is fitted to: sums near 1 [m]
+constexpr double kLeastFixed = 1e-6;   // of squares in it: 10 µm
 
 }  // namespace
 
@@ -30,6 +33,29 @@ double Encounters::Line::slope(double least_variance) const noexcept {
     return (xy - x * y / weight) / weight / variance;
   }
   return xx > 0.0 ? xy / xx : 0.0;
+}
+
+void Encounters::Ball::add(const Eigen::Vector3d& p, double way) noexcept {
+  const Eigen::Vector4d row(p.x() / kUnit, p.y() / kUnit, p.z() / kUnit, 1.0);
+  const double square = p.squaredNorm() / (kUnit * kUnit);
+  weight += way;
+  squares += way * square * square;
+  right += way * square * row;
+  left += way * row * row.transpose();
+}
+
+/// A plane way fixes no centre across it; there the centre stays at the start.
+double Encounters::unevenness() const noexcept {
+  if (!(ball_.weight > 0.0)) {
+    return 0.0;
+  }
+  Eigen::Matrix4d left = ball_.left / ball_.weight;
+  left.diagonal().head<3>().array() += kLeastFixed;
+  const Eigen::Vector4d right = ball_.right / ball_.weight;
+  const Eigen::Vector4d fit = left.ldlt().solve(right);
+  const double error = ball_.squares / ball_.weight - fit.dot(right);  // of |p|², squared
+  const double radius = std::sqrt(std::max(0.0, fit[3] + 0.25 * fit.head<3>().squaredNorm()));
+  return radius > 0.0 ? 0.5 * kUnit * std::sqrt(std::max(0.0, error)) / radius : 0.0;
 }
 
 Encounters::Encounters(const SenseParameters& senses) noexcept
@@ -55,6 +81,7 @@ void Encounters::feel(const Eigen::Vector3d& force, const PointState& hand, doub
   follow(hand.position, touching, dt);
   if (touching) {
     touch(force, hand.position - start_, dt);
+    ball_.add(hand.position - start_, hand.velocity.norm() * dt);
   }
   move(force, hand.velocity, touching, dt);
 }
@@ -165,6 +192,8 @@ Encounter Encounters::met(Quantity quantity) const noexcept {
       return {roughness(), roughness()};
     case Quantity::kExtent:
       return {extent(), 0.0};
+    case Quantity::kUnevenness:
+      return {unevenness(), 0.0};
   }
   return {};
 }

@@ -13,12 +13,14 @@ namespace haptrial::subject {
 /// moving_speed.
 ///
 ///     force       mean of |f| over the greater half of the time in contact (upper_mean.h)
-///     stiffness   -slope of n·f over n·p in the longest contact, n the axis along which f acts most
-///     viscosity   slope over |v| of the force r = -f·v/|v| that resists, while moving
+///     stiffness   -slope of n·f over n·p in the longest contact, n the axis along which f acts
+///     most viscosity   slope over |v| of the force r = -f·v/|v| that resists, while moving
 ///     friction    ∫ r |v| dt / ∫ |v| dt, while moving: what springs give back does not count
 ///     roughness   root mean square of f less its slow part (first order, 50 ms), moving in contact
 ///     extent      greatest way between the places where contacts began, after the first; with one
 ///                 contact the way to it; without any the greatest way from the start
+///     unevenness  root mean square, over the way in contact, of the distance from the sphere that
+///                 fits the touched places best (algebraic fit, Kåsa 1976); 0 without a way
 ///
 /// Slopes are least-squares lines with an offset. Servo thread: no allocation, lock, I/O or throw.
 class Encounters {
@@ -35,6 +37,7 @@ class Encounters {
   double friction() const noexcept;                        // >= 0 [N]
   double roughness() const noexcept;                       // [N]
   double extent() const noexcept;                          // [m]
+  double unevenness() const noexcept;                      // [m]
   double resistance() const noexcept;                      // mean r while moving [N]
   Encounter met(Quantity quantity) const noexcept;
 
@@ -52,6 +55,13 @@ class Encounters {
     Eigen::Matrix3d pp{Eigen::Matrix3d::Zero()}, pf{Eigen::Matrix3d::Zero()},
         ff{Eigen::Matrix3d::Zero()};
   };
+  /// Sums for the sphere |p|² = 2 c·p + (r² - |c|²), weighted by the way.
+  struct Ball {
+    void add(const Eigen::Vector3d& p, double way) noexcept;
+    double weight{0.0}, squares{0.0};                // of |p|²
+    Eigen::Vector4d right{Eigen::Vector4d::Zero()};  // Σ (p, 1) |p|²
+    Eigen::Matrix4d left{Eigen::Matrix4d::Zero()};   // Σ (p, 1)(p, 1)'
+  };
   void touch(const Eigen::Vector3d& force, const Eigen::Vector3d& p, double dt) noexcept;
   void move(const Eigen::Vector3d& force, const Eigen::Vector3d& v, bool touching,
             double dt) noexcept;
@@ -62,6 +72,7 @@ class Encounters {
   UpperMean upper_;
   Cloud cloud_;    // of the present contact
   Cloud longest_;  // of those before it
+  Ball ball_;
   Line line_;
   double lost_{0.0}, way_{0.0};                    // ∫ r |v| dt [J], ∫ |v| dt [m]
   Eigen::Vector3d slow_{Eigen::Vector3d::Zero()};  // [N]

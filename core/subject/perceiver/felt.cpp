@@ -45,7 +45,7 @@ double felt(const SenseParameters& s, Quantity quantity, const Encounter& met,
       quantity == Quantity::kRoughness) {
     return met.amount * gain + s.force_floor * n.floor;
   }
-  if (quantity == Quantity::kExtent) {
+  if (quantity == Quantity::kExtent || quantity == Quantity::kUnevenness) {
     return met.amount * std::exp(s.extent_weber * n.extent);
   }
   // The force of a stiffness or a viscosity, relative to what it was; never a pull.

@@ -44,6 +44,7 @@ Encounter LevelObserver::met(double level) const noexcept {
     case Quantity::kFriction:
     case Quantity::kRoughness:
     case Quantity::kExtent:
+    case Quantity::kUnevenness:
       break;
   }
   return {level, level};
@@ -78,7 +79,7 @@ Decision LevelObserver::yes_no(int trial, double level) noexcept {
 
 double LevelObserver::weber(double level) const noexcept {
   const auto root = [](double a, double b, double c) { return std::sqrt(a * a + b * b + c * c); };
-  if (quantity_ == Quantity::kExtent) {
+  if (quantity_ == Quantity::kExtent || quantity_ == Quantity::kUnevenness) {
     return senses_.extent_weber;
   }
   const double force = met(level).force;

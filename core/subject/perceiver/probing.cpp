@@ -70,6 +70,18 @@ struct Checker {
     }
     require_above(p.duration, 0.0, false, "reach: duration");
   }
+  void operator()(const Contour& p) const {
+    require_direction(p.towards, "follow: towards");
+    for (const Eigen::Vector3d& axis : p.around) {
+      require_direction(axis, "follow: around");
+    }
+    if (p.towards.normalized().cross(p.around[0].normalized()).norm() < 1e-3) {
+      throw std::invalid_argument("follow: around must not be along towards");
+    }
+    require_above(p.turn_after, 0.0, false, "follow: turn_after");
+    require_above(p.speed, 0.0, false, "follow: speed");
+    require_above(p.force, 0.0, false, "follow: force");
+  }
 };
 
 constexpr double kLetGo = 0.1;  // after a reaction time people no longer resist what has gone [s]
@@ -86,26 +98,29 @@ void Prober::begin(const Probe& probe, const PointState& hand) noexcept {
   integral_.setZero();
   desired_ = {hand.position, Eigen::Vector3d::Zero()};
   time_ = 0.0;
+  if (const auto* contour = std::get_if<Contour>(&probe)) {
+    follower_.begin(*contour, hand.position);
+  }
 }
 
-Prober::Aim Prober::aim(const Rest&, const PointState&) noexcept { return {}; }
+Prober::Aim Prober::aim(const Rest&, const Now&) noexcept { return {}; }
 
-Prober::Aim Prober::aim(const Hold&, const PointState&) noexcept {
+Prober::Aim Prober::aim(const Hold&, const Now&) noexcept {
   Aim aim;
   aim.keeps_place = true;
   return aim;
 }
 
-Prober::Aim Prober::aim(const Press& press, const PointState& hand) noexcept {
+Prober::Aim Prober::aim(const Press& press, const Now& now) noexcept {
   Aim aim;
   aim.free = press.direction.normalized();
-  const double beyond = (hand.position - start_).dot(aim.free) - press.travel;
+  const double beyond = (now.hand.position - start_).dot(aim.free) - press.travel;
   const double force = press.force * smooth_step(time_ / press.rise).s;
   aim.push = (force - kHoldBack * std::max(0.0, beyond)) * aim.free;
   return aim;
 }
 
-Prober::Aim Prober::aim(const Stroke& stroke, const PointState&) noexcept {
+Prober::Aim Prober::aim(const Stroke& stroke, const Now&) noexcept {
   Aim aim;
   Eigen::Vector3d u = stroke.direction.normalized();
   if (stroke.force > 0.0) {
@@ -128,7 +143,7 @@ Prober::Aim Prober::aim(const Stroke& stroke, const PointState&) noexcept {
   return aim;
 }
 
-Prober::Aim Prober::aim(const Reach& reach, const PointState&) noexcept {
+Prober::Aim Prober::aim(const Reach& reach, const Now&) noexcept {
   Aim aim;
   const Eigen::Vector3d way = reach.to - start_;
   const Smooth s = smooth_step(time_ / reach.duration);
@@ -136,6 +151,17 @@ Prober::Aim Prober::aim(const Reach& reach, const PointState&) noexcept {
   desired_.velocity = s.rate / reach.duration * way;
   aim.acceleration = s.second / (reach.duration * reach.duration) * way;
   aim.keeps_place = time_ >= reach.duration;
+  return aim;
+}
+
+/// The hand goes on from wherever it is, but keeps to the plane of its loop.
+Prober::Aim Prober::aim(const Contour&, const Now& now) noexcept {
+  Aim aim;
+  const ContourFollower::Step step = follower_.step(time_, now.hand, now.felt, now.dt);
+  desired_.position = now.hand.position + step.off_loop;
+  desired_.velocity = step.velocity;
+  posture_ = now.hand.position;
+  aim.push = step.push;
   return aim;
 }
 
@@ -155,9 +181,11 @@ Eigen::Vector3d Prober::track(const Aim& aim, const PointState& hand, double dt)
   return force - force.dot(aim.free) * aim.free;
 }
 
-HandCommand Prober::command(const PointState& hand, double dt) noexcept {
+HandCommand Prober::command(const PointState& hand, double dt,
+                            const Eigen::Vector3d& felt) noexcept {
   time_ += dt;
-  const Aim wanted = std::visit([&](const auto& probe) { return aim(probe, hand); }, probe_);
+  const Now now{hand, felt, dt};
+  const Aim wanted = std::visit([&](const auto& probe) { return aim(probe, now); }, probe_);
   HandCommand command;
   carried_ *= std::exp(-dt / kLetGo);
   if (!std::holds_alternative<Rest>(probe_)) {

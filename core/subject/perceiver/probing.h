@@ -8,6 +8,7 @@
 #include "core/subject/hand_model.h"
 #include "core/subject/hand_parameters.h"
 #include "core/subject/motor_noise.h"
+#include "core/subject/perceiver/contour.h"
 
 namespace haptrial::subject {
 
@@ -43,7 +44,7 @@ struct Reach {
 };
 
 /// How the hand explores during a stage.
-using Probe = std::variant<Rest, Hold, Press, Stroke, Reach>;
+using Probe = std::variant<Rest, Hold, Press, Stroke, Reach, Contour>;
 
 /// @throws std::invalid_argument naming the parameter that breaks its bound.
 void check(const Probe& probe);
@@ -66,7 +67,9 @@ class Prober {
   /// Begins where the hand is. @param probe  passes check()
   void begin(const Probe& probe, const PointState& hand) noexcept;
   /// One tick later. @param hand  as the device reads it, in W; @param dt  > 0 [s]
-  HandCommand command(const PointState& hand, double dt) noexcept;
+  /// @param felt  force on the hand in W, which a contour is followed by [N]
+  HandCommand command(const PointState& hand, double dt,
+                      const Eigen::Vector3d& felt = Eigen::Vector3d::Zero()) noexcept;
 
   /// Where the arm means the hand to be; for a press the place where it began. In W.
   const PointState& desired() const noexcept { return desired_; }
@@ -79,16 +82,24 @@ class Prober {
     Eigen::Vector3d free{Eigen::Vector3d::Zero()};          // no feedback along it; unit or zero
     bool keeps_place{false};
   };
-  Aim aim(const Rest&, const PointState& hand) noexcept;
-  Aim aim(const Hold&, const PointState& hand) noexcept;
-  Aim aim(const Press& press, const PointState& hand) noexcept;
-  Aim aim(const Stroke& stroke, const PointState& hand) noexcept;
-  Aim aim(const Reach& reach, const PointState& hand) noexcept;
+  /// What the hand senses on a tick.
+  struct Now {
+    const PointState& hand;
+    const Eigen::Vector3d& felt;  // [N]
+    double dt;                    // [s]
+  };
+  Aim aim(const Rest&, const Now& now) noexcept;
+  Aim aim(const Hold&, const Now& now) noexcept;
+  Aim aim(const Press& press, const Now& now) noexcept;
+  Aim aim(const Stroke& stroke, const Now& now) noexcept;
+  Aim aim(const Reach& reach, const Now& now) noexcept;
+  Aim aim(const Contour& contour, const Now& now) noexcept;
   Eigen::Vector3d track(const Aim& aim, const PointState& hand, double dt) noexcept;
 
   HandParameters hand_;
   std::optional<MotorNoise> noise_;
   Probe probe_{Rest{}};
+  ContourFollower follower_;
   PointState desired_;
   Eigen::Vector3d start_{Eigen::Vector3d::Zero()};     // where it began [m]
   Eigen::Vector3d posture_{Eigen::Vector3d::Zero()};   // e_d [m]

@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/scene/needed_damping.h"
 #include "core/scene/read/read_field.h"
+#include "core/scene/read/read_solid.h"
 #include "core/sound/cues/read_cues.h"
 #include "protocols/definition/handle_loop.h"
 #include "protocols/trials/definition/defaults.h"
@@ -251,8 +252,9 @@ void note_restless(const std::vector<scene::Field>& fields, TrialsDefinition& d)
     const double needed = scene::needed_damping_below(0.0, steepness, d.rate);
     if (steepness.passive && needed > d.hand.damping) {
       d.restless.push_back(fmt::format(
-          "fields.{} turns by {:.0f} N/m: at {:g} Hz it stays calm with {:.3g} N·s/m of damping, "
+          "{}.{} turns by {:.0f} N/m: at {:g} Hz it stays calm with {:.3g} N·s/m of damping, "
           "and the hand of [hand] has {:g}",
+          std::holds_alternative<scene::SolidParameters>(fields[i].kind) ? "objects" : "fields",
           fields[i].name, steepness.stiffness, d.rate, needed, d.hand.damping));
     }
   }
@@ -301,22 +303,57 @@ std::unique_ptr<Names> read_names(Table& root, const TrialsDefinition& d) {
   return names;
 }
 
-Presented read_presented(Table& root, const Names& names, const TrialsDefinition& d,
-                         RandomStream* random) {
-  Presented presented;
-  std::vector<std::string> fields, regions;
-  std::vector<std::string> sights{"hand", "interval_number"};
+namespace {
+
+/// Fields, and behind them the objects, which are felt as fields.
+void read_what_is_felt(Table& root, const Names& names, const TrialsDefinition& d,
+                       Presented& presented) {
+  DeviceOf devices;
+  std::vector<scene::Field> objects;
+  if (root.has("objects")) {
+    Table table = root.table("objects");
+    devices = devices_of(table, d.hands);
+    for (const TrialObject& object : d.objects) {
+      Table own = table.table(object.name);
+      objects.push_back(scene::read_solid(own, object.name, object.body, names));
+    }
+  }
   if (root.has("fields")) {
     Table table = root.table("fields");
-    const DeviceOf devices = devices_of(table, d.hands);
-    presented.fields = scene::read_fields(table, d.rate, names);
+    devices.merge(devices_of(table, d.hands));
+    presented.fields = scene::read_fields(table, d.rate, names, objects);
     for (scene::Field& field : presented.fields) {
       if (auto* path = std::get_if<scene::PathParameters>(&field.kind)) {
         path->loop = handle_loop(d);
       }
     }
-    presented.felt = felt_by(presented.fields, devices, d.hands);
   }
+  presented.fields.insert(presented.fields.end(), objects.begin(), objects.end());
+  presented.felt = felt_by(presented.fields, devices, d.hands);
+}
+
+/// A stage names fields, regions, looks and objects: each name stands for one thing.
+void check_object_names(Table& root, const TrialsDefinition& d) {
+  for (const TrialObject& object : d.objects) {
+    for (const char* other : {"fields", "regions", "looks"}) {
+      if (root.has(other) && root.table(other).has(object.name)) {
+        root.table("objects").reject(object.name,
+                                     fmt::format("is the name of a table of [{}] as well; give one "
+                                                 "of the two another name",
+                                                 other));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Presented read_presented(Table& root, const Names& names, const TrialsDefinition& d,
+                         RandomStream* random) {
+  Presented presented;
+  std::vector<std::string> fields, regions;
+  std::vector<std::string> sights{"hand", "interval_number"};
+  read_what_is_felt(root, names, d, presented);
   presented.felt.resize(static_cast<std::size_t>(d.devices()), 0);
   if (root.has("regions")) {
     Table table = root.table("regions");
@@ -340,6 +377,9 @@ Presented read_presented(Table& root, const Names& names, const TrialsDefinition
   }
   for (const Look& look : presented.looks) {
     sights.push_back(look.name);
+  }
+  for (const TrialObject& object : d.objects) {
+    sights.push_back(object.name);
   }
   const std::vector<std::string> places = names.places();
   sights.insert(sights.end(), places.begin(), places.end());
@@ -381,6 +421,11 @@ void read_trials_definition(Table& root, std::string_view file_name, TrialsDefin
   d.hands = read_devices(root);
   read_sounds(root, d);
   d.groups = study_groups(root.source(), file_name);
+  if (root.has("objects")) {
+    Table table = root.table("objects");
+    d.objects = read_objects(table);
+    check_object_names(root, d);
+  }
   d.questions = read_questions(root, d.keys);
   d.tracks = read_tracks(root);
   d.order = read_trial_design(root, !d.tracks.empty());

@@ -12,6 +12,7 @@
 #include "protocols/trials/definition/track.h"
 #include "protocols/trials/definition/trial_devices.h"
 #include "protocols/trials/looks/look.h"
+#include "protocols/trials/objects/trial_object.h"
 
 namespace haptrial::protocols {
 
@@ -45,6 +46,7 @@ struct TrialsDefinition : Definition {
   std::vector<int> stage_markers;   // the code of each; 0: the one of its place
   std::vector<StudyGroup> groups;
   std::vector<TrialDevice> hands;  // in the order of the session's devices; empty: one, unnamed
+  std::vector<TrialObject> objects;
   TrialsView view;
   std::string feedback_right, feedback_wrong;
   double feedback_time{0.5};  // [s]

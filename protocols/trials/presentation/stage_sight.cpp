@@ -27,6 +27,27 @@ Mark mark_of(const scene::Shape& shape) {
   return mark_at(std::get<scene::HalfSpace>(shape).point, 0.0);
 }
 
+SeenObject seen_object(const scene::SolidParameters& solid, std::size_t object) {
+  const Eigen::Vector3f p = solid.pose.position.cast<float>();
+  const Eigen::Quaternionf q = solid.pose.orientation.cast<float>();
+  return {{p.x(), p.y(), p.z()},
+          {q.w(), q.x(), q.y(), q.z()},
+          static_cast<float>(solid.scale),
+          static_cast<std::int32_t>(object)};
+}
+
+/// The objects among the fields come last, in the order of the definition's.
+void show_object(const Presented& presented, const std::string& name, StageSight& sight) {
+  std::size_t object = 0;
+  for (const scene::Field& field : presented.fields) {
+    const auto* solid = std::get_if<scene::SolidParameters>(&field.kind);
+    if (solid != nullptr && field.name == name) {
+      sight.objects.push_back(seen_object(*solid, object));
+    }
+    object += solid != nullptr ? 1 : 0;
+  }
+}
+
 }  // namespace
 
 Mark mark_to_touch(const scene::Shape& shape, std::size_t device) {
@@ -58,6 +79,8 @@ StageSight sight_of(const NamedStage& stage, const Presented& presented, const N
       sight.dots = {look->dots, seed, true};
     } else if (names.has_place(name)) {
       sight.marks.push_back(mark_at(names.place(name), 0.0));
+    } else {
+      show_object(presented, name, sight);
     }
   }
   return sight;

@@ -9,6 +9,7 @@
 #include "core/render/flat/painter.h"
 #include "core/render/flat/text.h"
 #include "core/render/flat/text_screen.h"
+#include "protocols/trials/objects/outline.h"
 #include "protocols/trials/presentation/trial_view.h"
 
 namespace haptrial::protocols {
@@ -152,6 +153,7 @@ class TrialDrawing final : public Drawing {
       if (view.dots.shown) {
         draw_dots(view.dots, i);
       }
+      draw_objects(view, parts_[i]);
       draw_marks(view, parts_[i]);
     }
     painter_.end();
@@ -180,6 +182,26 @@ class TrialDrawing final : public Drawing {
       const Eigen::Vector2d from_middle = scale_ * dot;
       if (std::abs(from_middle.x()) < half_.x() - radius) {  // none reaches the other eye
         painter_.disc(parts_[part].middle + from_middle, radius, d_.display.marker_colour);
+      }
+    }
+  }
+
+  /// As lines, found anew when an object is another one or elsewhere. An object whose mesh was a
+  /// file that is not at hand is not drawn.
+  void draw_objects(const TrialView& view, const Part& part) {
+    constexpr double kLine = 2.0;  // [px]
+    const Eigen::Vector3d along =
+        d_.view.from_above ? -Eigen::Vector3d::UnitY() : Eigen::Vector3d(-Eigen::Vector3d::UnitZ());
+    for (std::size_t i = 0; i < view.objects.size(); ++i) {
+      const SeenObject& seen = view.objects[i];
+      if (!(seen == outlined_[i])) {
+        outlined_[i] = seen;
+        const auto at = static_cast<std::size_t>(seen.object);
+        const bool known = seen.object >= 0 && at < d_.objects.size() && d_.objects[at].body;
+        outlines_[i] = known ? outline_of(d_.objects[at].body->mesh, seen, along) : Outline{};
+      }
+      for (const auto& [from, to] : outlines_[i]) {
+        painter_.line(pixel_of(from, part), pixel_of(to, part), kLine, d_.display.target_colour);
       }
     }
   }
@@ -227,6 +249,8 @@ class TrialDrawing final : public Drawing {
   std::vector<Part> parts_;
   std::vector<std::vector<EyeDot>> dots_;  // (parts)
   std::optional<std::uint64_t> laid_;      // seed of them
+  std::array<SeenObject, TrialView::kMostObjects> outlined_{};
+  std::array<Outline, TrialView::kMostObjects> outlines_{};
 };
 
 }  // namespace

@@ -128,7 +128,7 @@ void TrialPass::present(const Readings& readings, double dt, PassOutput& out) no
   }
   view_.stage = static_cast<std::uint8_t>(stage);
   const StageSight& sight = run.sights[stage];
-  view_.show(sight.marks, sight.hand, sight.interval_number, sight.dots);
+  view_.show(sight.marks, sight.objects, sight.hand, sight.interval_number, sight.dots);
   run.machine.tick(readings.all().first(devices), run.scenes, dt);
   if (run.machine.state() == StageMachine::State::kAborted) {
     const StageEnd how = run.machine.times()[run.machine.stage()].how;
@@ -163,7 +163,7 @@ void TrialPass::ask() noexcept {
   view_.verdict = Verdict::kNone;
   view_.pace = Pace::kInTime;
   const StageSight& sight = setup_.questions[question_].sight;
-  view_.show(sight.marks, sight.hand, false, {});
+  view_.show(sight.marks, sight.objects, sight.hand, false, {});
   dwells_ = {};
   pedal_up_ = pedal_;
   view_.typed = {};

@@ -19,6 +19,7 @@ namespace haptrial::protocols {
 /// What is seen during a stage.
 struct StageSight {
   std::vector<Mark> marks;
+  std::vector<SeenObject> objects;
   DotsShown dots;
   bool hand{false};
   bool interval_number{false};

@@ -10,6 +10,7 @@
 #include "protocols/interface/pass.h"
 #include "protocols/trials/definition/question.h"
 #include "protocols/trials/looks/look.h"
+#include "protocols/trials/objects/trial_object.h"
 
 namespace haptrial::protocols {
 
@@ -33,6 +34,7 @@ enum class Verdict : std::uint8_t { kNone, kRight, kWrong };
 /// it from here.
 struct TrialView {
   static constexpr std::size_t kMostMarks = 8;
+  static constexpr std::size_t kMostObjects = 2;
   static constexpr std::size_t kTyped = 16;
   static_assert(kMostTouched <= kMostMarks);
 
@@ -40,8 +42,9 @@ struct TrialView {
   std::array<std::array<float, 3>, kMostDevices - 1> others{};  // tools of the others [m]
   DotsShown dots;
   std::array<Mark, kMostMarks> marks{};
-  std::array<char, kTyped> typed{};  // of a number, ended by 0
-  std::int32_t trial{0};             // of the presentation: changes from trial to trial
+  std::array<SeenObject, kMostObjects> objects{};  // those that are seen come first
+  std::array<char, kTyped> typed{};                // of a number, ended by 0
+  std::int32_t trial{0};  // of the presentation: changes from trial to trial
   std::uint8_t other_count{0};
   std::uint8_t mark_count{0};
   std::uint8_t interval{0};  // from 1; 0: none
@@ -55,12 +58,15 @@ struct TrialView {
   bool engaged() const noexcept { return interval > 0 || question > 0; }
   bool told() const noexcept { return verdict != Verdict::kNone || pace != Pace::kInTime; }
   /// What a stage shows; at most kMostMarks marks. Servo thread: no allocation or throw.
-  void show(std::span<const Mark> seen, bool hand, bool number, const DotsShown& bar) noexcept {
+  void show(std::span<const Mark> seen, std::span<const SeenObject> bodies, bool hand, bool number,
+            const DotsShown& bar) noexcept {
     hand_shown = hand;
     number_shown = number;
     dots = bar;
     mark_count = static_cast<std::uint8_t>(std::min(seen.size(), kMostMarks));
     std::copy_n(seen.begin(), mark_count, marks.begin());
+    objects = {};
+    std::copy_n(bodies.begin(), std::min(bodies.size(), kMostObjects), objects.begin());
   }
 };
 

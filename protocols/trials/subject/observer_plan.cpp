@@ -19,14 +19,15 @@ namespace {
 
 using subject::Quantity;
 
-constexpr std::array<std::pair<const char*, Quantity>, 7> kQuantities{
+constexpr std::array<std::pair<const char*, Quantity>, 8> kQuantities{
     {{"force", Quantity::kForce},
      {"stiffness", Quantity::kStiffness},
      {"compliance", Quantity::kCompliance},
      {"viscosity", Quantity::kViscosity},
      {"friction", Quantity::kFriction},
      {"roughness", Quantity::kRoughness},
-     {"extent", Quantity::kExtent}}};
+     {"extent", Quantity::kExtent},
+     {"unevenness", Quantity::kUnevenness}}};
 
 void check_stage(Table& table, const char* key, const std::string& name,
                  const std::vector<std::string>& stages) {
@@ -65,10 +66,28 @@ subject::Probe read_stroke(Table& table) {
   return stroke;
 }
 
+subject::Probe read_contour(Table& table) {
+  subject::Contour contour;
+  if (table.has("towards")) {
+    contour.towards = read_direction(table, "towards");
+  }
+  if (table.has("around")) {
+    contour.around[0] = read_direction(table, "around");
+  }
+  if (table.has("then_around")) {
+    contour.around[1] = read_direction(table, "then_around");
+  }
+  contour.turn_after = table.number_or("turn_after", contour.turn_after, {0.1, 600.0}, "s");
+  contour.speed = table.number_or("speed", contour.speed, {0.001, 1.0}, "m/s");
+  contour.force = table.number_or("force", contour.force, {0.1, 50.0}, "N");
+  return contour;
+}
+
 StageAction read_action(Table& table, const std::string& stage) {
   StageAction action;
   action.stage = stage;
-  const std::string what = table.choice("do", {"rest", "hold", "press", "stroke", "reach"});
+  const std::string what =
+      table.choice("do", {"rest", "hold", "press", "stroke", "reach", "follow"});
   if (what == "press") {
     action.probe = read_press(table);
   } else if (what == "stroke") {
@@ -77,6 +96,8 @@ StageAction read_action(Table& table, const std::string& stage) {
     action.probe =
         subject::Reach{Eigen::Vector3d::Zero(), table.number("duration", {0.05, 60.0}, "s")};
     action.to_mark = true;
+  } else if (what == "follow") {
+    action.probe = read_contour(table);
   } else if (what == "hold") {
     action.probe = subject::Hold{};
   }

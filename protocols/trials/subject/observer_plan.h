@@ -58,7 +58,7 @@ struct ObserverPlan {
 /// optional.
 ///
 ///     [senses]      "force", "stiffness", "compliance", "viscosity", "friction", "roughness",
-///                   "extent"
+///                   "extent", "unevenness"
 ///     [in_stage]    in which it is felt
 ///     [decides]     "largest", "smallest", "yes", "magnitude" or "adjust": the last interval until
 ///                   it feels as the first one, or as `wanted`
@@ -68,6 +68,8 @@ struct ObserverPlan {
 ///     [reaction]    [s]
 ///     [actions]     stage = { do = "press", force, [rise], [direction], [travel] },
 ///                   { do = "stroke", direction, half_length, frequency, [force], [normal] },
+///                   { do = "follow", [towards], [around], [then_around], [turn_after], [speed],
+///                   [force] }: round an object (core/subject/perceiver/contour.h),
 ///                   { do = "reach", duration }: to the first mark that the stage shows,
 ///                   { do = "hold" } or { do = "rest" }, as in stages without one;
 ///                   with [devices] stage = { NAME = { do = … }, … }, or the same for all of them

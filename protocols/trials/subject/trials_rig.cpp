@@ -97,7 +97,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
     follow(*view);
     feel(*view, forces, dt);
     answer(*view, dt);
-    act(dt);
+    act(forces, dt);
     note_learnt();
   }
 
@@ -269,9 +269,11 @@ class TrialsRig::Participant final : public stimulus::Observer {
                : Eigen::Vector3d(Eigen::Vector3d::Zero());
   }
 
-  void act(double dt) noexcept {
+  void act(const stimulus::Forces& forces, double dt) noexcept {
     for (std::size_t i = 0; i < limbs_.size(); ++i) {
-      subject::HandCommand command = limbs_[i].prober.command(limbs_[i].state, dt);
+      const Eigen::Vector3d felt =
+          i < forces.size() ? forces[i] : Eigen::Vector3d(Eigen::Vector3d::Zero());
+      subject::HandCommand command = limbs_[i].prober.command(limbs_[i].state, dt, felt);
       if (i == 0) {
         command.force += compensation();
       }

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+
+#include "core/contact/surface/contact_surface.h"
+#include "core/contact/surface/signed_distance.h"
+#include "core/geometry/mesh/mesh.h"
+
+namespace haptrial::contact {
+
+/// A mesh with all that is asked of it while it is felt: prepared once, shared by any number of
+/// renderers and threads.
+struct FeltBody {
+  /// @throws InputError as ContactSurface does
+  explicit FeltBody(geometry::Mesh shape);
+  FeltBody(const FeltBody&) = delete;
+  FeltBody& operator=(const FeltBody&) = delete;
+
+  geometry::Mesh mesh;
+  ContactSurface surface;
+  SignedDistance distance;
+  bool closed{false};  // every side of a triangle has one other on it: there is an inside
+};
+
+using SharedBody = std::shared_ptr<const FeltBody>;
+
+/// Where a tool that is to be free at `p` is put: there, or, inside a closed body, just outside of
+/// it. Servo thread. @param p  in the body's frame [m]  @param radius  of the tool [m]
+Eigen::Vector3d free_place(const FeltBody& body, const Eigen::Vector3d& p, double radius) noexcept;
+
+}  // namespace haptrial::contact

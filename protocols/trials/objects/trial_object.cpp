@@ -1,0 +1,124 @@
+#include "protocols/trials/objects/trial_object.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "core/base/definition/table.h"
+#include "core/base/definition/table_vector.h"
+#include "core/base/error.h"
+#include "core/geometry/files/mesh_io.h"
+#include "core/geometry/mesh/procedural.h"
+
+namespace haptrial::protocols {
+namespace {
+
+constexpr Bounds kSide{0.0, 1.0, true};  // [m]
+constexpr int kSphereFrequency = 32;     // 20,480 triangles: 3 µm off at a radius of 25 mm
+constexpr int kAround = 256;             // 2 µm off at a radius of 25 mm
+constexpr int kAcross = 96;              // of a torus's tube
+
+double side(Table& table, const char* key) { return table.number(key, kSide, "m"); }
+
+Eigen::Vector3d sides(Table& table) {
+  return read_vector(table, "size", kSide, "m", Eigen::Vector3d::Constant(0.01));
+}
+
+geometry::Mesh read_ellipsoid(Table& table) {
+  geometry::Mesh mesh = geometry::make_sphere(0.5, kSphereFrequency);
+  const Eigen::Vector3d size = sides(table);
+  for (Eigen::Vector3d& vertex : mesh.vertices) {
+    vertex = vertex.cwiseProduct(size).eval();
+  }
+  return mesh;
+}
+
+geometry::Mesh read_torus(Table& table) {
+  const double radius = side(table, "radius");
+  double tube = side(table, "tube");
+  if (tube >= radius) {
+    table.reject("tube", fmt::format("{} m", tube),
+                 fmt::format("a number below radius, {} m", radius));
+    tube = 0.5 * radius;
+  }
+  return geometry::make_torus(radius, tube, kAround, kAcross);
+}
+
+struct KindOfShape {
+  const char* word;
+  geometry::Mesh (*read)(Table&);
+};
+
+constexpr KindOfShape kShapes[] = {
+    {"sphere", [](Table& t) { return geometry::make_sphere(side(t, "radius"), kSphereFrequency); }},
+    {"ellipsoid", read_ellipsoid},
+    {"box", [](Table& t) { return geometry::make_box(sides(t)); }},
+    {"cylinder",
+     [](Table& t) {
+       const double radius = side(t, "radius");
+       return geometry::make_frustum(radius, radius, side(t, "length"), kAround);
+     }},
+    {"cone",
+     [](Table& t) {
+       const double radius = side(t, "radius");
+       return geometry::make_frustum(radius, 0.0, side(t, "length"), kAround);
+     }},
+    {"torus", read_torus},
+};
+
+contact::SharedBody read_shape(Table& table) {
+  std::vector<std::string> words;
+  for (const KindOfShape& shape : kShapes) {
+    words.emplace_back(shape.word);
+  }
+  const std::string word = table.choice("shape", words);
+  if (table.whole_text("shape") != word) {
+    for (const std::string& key : table.keys()) {
+      table.leave(key);
+    }
+    return nullptr;
+  }
+  for (const KindOfShape& shape : kShapes) {
+    if (word == shape.word) {
+      return std::make_shared<const contact::FeltBody>(shape.read(table));
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::vector<TrialObject> read_objects(Table& objects) {
+  std::vector<TrialObject> found;
+  for (const std::string& name : objects.keys()) {
+    Table table = objects.table(name);
+    TrialObject object{name, {}, nullptr};
+    if (table.has("mesh") && table.has("shape")) {
+      table.reject("shape", "stands beside mesh; keep one of the two");
+      table.leave("shape");
+    }
+    if (table.has("mesh")) {
+      object.file = table.text("mesh");
+    } else {
+      object.body = read_shape(table);
+    }
+    found.push_back(std::move(object));
+  }
+  return found;
+}
+
+void load_objects(std::vector<TrialObject>& objects, const std::filesystem::path& folder) {
+  for (TrialObject& object : objects) {
+    if (object.file.empty()) {
+      continue;
+    }
+    const auto file = object.file.is_relative() ? folder / object.file : object.file;
+    try {
+      object.body = std::make_shared<const contact::FeltBody>(geometry::read_mesh(file));
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("objects.{}: {}", object.name, error.what()));
+    }
+  }
+}
+
+}  // namespace haptrial::protocols

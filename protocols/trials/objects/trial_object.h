@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/contact/objects/felt_body.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::protocols {
+
+/// The shape of a table [objects.NAME]: the same in every trial.
+struct TrialObject {
+  std::string name;
+  std::filesystem::path file;  // of a mesh; empty: a shape that the definition describes
+  contact::SharedBody body;    // of a file: null until it is loaded
+};
+
+/// Reads the shapes of [objects], in the order of their names. Problems are noted.
+///
+///     mesh            a file, .obj, .ply, .stl or .off, beside the definition
+///     shape           "sphere"     radius
+///                     "ellipsoid"  size
+///                     "box"        size, [x, y, z]
+///                     "cylinder"   radius, length along z
+///                     "cone"       radius, length along z; it points to +z
+///                     "torus"      radius, tube: around z
+///
+/// Lengths are in metres, numbers alone: what changes between trials is the object's scale, centre
+/// and turn, which read_solid() reads with all else.
+std::vector<TrialObject> read_objects(Table& objects);
+
+/// Reads the meshes that are files. @param folder  of the definition
+/// @throws InputError as read_mesh() and FeltBody do, naming the object
+void load_objects(std::vector<TrialObject>& objects, const std::filesystem::path& folder);
+
+/// An object that a stage shows, where it is. Plain data, for the screen.
+struct SeenObject {
+  std::array<float, 3> centre{};          // in W [m]
+  std::array<float, 4> turn{1, 0, 0, 0};  // w, x, y, z
+  float scale{1.0F};
+  std::int32_t object{-1};  // of the definition's, from 0
+
+  bool operator==(const SeenObject&) const = default;
+};
+
+}  // namespace haptrial::protocols
