@@ -160,7 +160,6 @@ Prober::Aim Prober::aim(const Contour&, const Now& now) noexcept {
   const ContourFollower::Step step = follower_.step(time_, now.hand, now.felt, now.dt);
   desired_.position = now.hand.position + step.off_loop;
   desired_.velocity = step.velocity;
-  posture_ = now.hand.position;
   aim.push = step.push;
   return aim;
 }

@@ -95,9 +95,10 @@ std::vector<TrialObject> read_objects(Table& objects) {
     TrialObject object{name, {}, nullptr};
     if (table.has("mesh") && table.has("shape")) {
       table.reject("shape", "stands beside mesh; keep one of the two");
-      table.leave("shape");
-    }
-    if (table.has("mesh")) {
+      for (const std::string& key : table.keys()) {
+        table.leave(key);
+      }
+    } else if (table.has("mesh")) {
       object.file = table.text("mesh");
     } else {
       object.body = read_shape(table);

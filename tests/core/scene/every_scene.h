@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/mesh/procedural.h"
 #include "core/scene/field.h"
 
 namespace haptrial::scene::test {
@@ -21,6 +22,21 @@ inline Field field(std::string name, FieldKind kind, double limit = 10.0) {
 
 inline Field surface(Shape shape, bool inside = false, double damping = 2.0) {
   return field("floor", SurfaceParameters{shape, inside, {800.0, damping}});
+}
+
+/// A torus that lies askew, of 1,536 triangles.
+inline Field solid(const contact::Friction& friction = {}, double tool_radius = 0.0) {
+  static const auto body =
+      std::make_shared<const contact::FeltBody>(geometry::make_torus(0.01, 0.004, 48, 16));
+  SolidParameters p;
+  p.body = body;
+  p.pose = {Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 0).normalized())),
+            {0.002, 0.0, -0.001}};
+  p.scale = 1.2;
+  p.gains = {800.0, 2.0};
+  p.friction = friction;
+  p.tool_radius = tool_radius;
+  return field("floor", std::move(p));
 }
 
 /// Fields whose force at rest is minus the gradient of an energy.
@@ -83,6 +99,11 @@ inline std::vector<Example> passive_scenes() {
       {"rubbing ridges", {rubbing, ridges, surface(floor)}},
       {"rubbing ball", {surface(Sphere{kOrigin, 0.02}, true), rubbing}},
       {"rubbing block", {surface(Box{kOrigin, {0.04, 0.03, 0.05}}), rubbing}},
+      {"torus", {solid()}},
+      {"torus felt by a ball", {solid({}, 0.002)}},
+      {"sticky torus", {solid({0.5, 0.3})}},
+      {"ridged torus", {solid(), ridges}},
+      {"rubbing torus", {solid(), rubbing}},
   };
   all.insert(all.end(), others.begin(), others.end());
   return all;

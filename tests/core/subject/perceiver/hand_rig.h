@@ -56,7 +56,7 @@ class HandRig {
     for (int i = 0; i < static_cast<int>(seconds / kStep + 0.5); ++i) {
       const PointState tool = read();
       const Vector3d force = scene.force(tool);
-      HandCommand command = prober.command(tool, kStep);
+      HandCommand command = prober.command(tool, kStep, force);
       command.force += extra;
       hand.command(command);
       if (tick) {

@@ -1,0 +1,145 @@
+#include "protocols/trials/objects/trial_object.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <string>
+
+#include "core/base/definition/table.h"
+#include "core/base/error.h"
+#include "core/geometry/files/mesh_io.h"
+#include "core/geometry/mesh/procedural.h"
+#include "protocols/trials/objects/outline.h"
+#include "tests/protocols/trials/definition/small_definition.h"
+#include "tests/support/message_of.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::protocols {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr double kPi = std::numbers::pi;
+
+std::vector<TrialObject> read(const std::string& text) {
+  Table document = Table::parse("[objects]\n" + text + "\n", "x.toml");
+  Table table = document.table("objects");
+  std::vector<TrialObject> objects = read_objects(table);
+  document.finish();
+  return objects;
+}
+
+/// By the divergence theorem.
+double signed_volume(const geometry::Mesh& mesh) {
+  double sum = 0.0;
+  for (const geometry::Triangle& t : mesh.triangles) {
+    const auto at = [&](std::size_t k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
+    sum += at(0).dot(at(1).cross(at(2))) / 6.0;
+  }
+  return sum;
+}
+
+double volume(const std::string& text) {
+  const std::vector<TrialObject> objects = read("thing = { " + text + " }");
+  EXPECT_TRUE(objects.at(0).body->closed) << text;
+  return signed_volume(objects.at(0).body->mesh);
+}
+
+/// Volumes of the smooth shapes, which the meshes fall short of by their facets.
+TEST(TrialObjectTest, EveryShapeIsClosedAndHasItsVolume) {
+  const auto close = [](double found, double exact) {
+    EXPECT_LT(found, exact * (1.0 + 1e-12));
+    EXPECT_GT(found, exact * (1.0 - 2e-3));
+  };
+  close(volume("shape = \"sphere\", radius = 0.02"), 4.0 / 3.0 * kPi * 8e-6);
+  close(volume("shape = \"ellipsoid\", size = [0.02, 0.04, 0.06]"), 4.0 / 3.0 * kPi * 6e-6);
+  close(volume("shape = \"box\", size = [0.02, 0.04, 0.06]"), 48e-6);
+  close(volume("shape = \"cylinder\", radius = 0.02, length = 0.05"), kPi * 20e-6);
+  close(volume("shape = \"cone\", radius = 0.02, length = 0.06"), kPi * 8e-6);
+  close(volume("shape = \"torus\", radius = 0.03, tube = 0.01"), 2.0 * kPi * kPi * 3e-6);
+}
+
+TEST(TrialObjectTest, MistakesOfShapes) {
+  const auto told = [](const std::string& text) {
+    return test::message_of([&] { read("thing = { " + text + " }"); });
+  };
+  EXPECT_THAT(told("shape = \"sfere\", radius = 0.02"),
+              HasSubstr("objects.thing.shape is 'sfere'"));
+  EXPECT_THAT(told("shape = \"sphere\""), HasSubstr("objects.thing.radius is missing"));
+  EXPECT_THAT(told("shape = \"torus\", radius = 0.01, tube = 0.02"),
+              HasSubstr("tube is 0.02 m; allowed: a number below radius, 0.01 m"));
+  EXPECT_THAT(told("shape = \"sphere\", radius = 0.02, mesh = \"x.stl\""),
+              HasSubstr("stands beside mesh; keep one of the two"));
+}
+
+TEST(TrialObjectTest, AMeshIsReadFromBesideTheDefinition) {
+  const test::TemporaryFolder folder;
+  geometry::write_mesh(folder.path() / "block.ply", geometry::make_box({0.02, 0.03, 0.04}));
+  std::vector<TrialObject> objects = read("thing = { mesh = \"block.ply\" }");
+  EXPECT_EQ(objects.at(0).body, nullptr);
+  load_objects(objects, folder.path());
+  EXPECT_NEAR(signed_volume(objects.at(0).body->mesh), 24e-6, 1e-12);
+  objects = read("thing = { mesh = \"absent.ply\" }");
+  EXPECT_THAT(test::message_of([&] { load_objects(objects, folder.path()); }),
+              AllOf(HasSubstr("objects.thing: "), HasSubstr("absent.ply")));
+}
+
+const std::string kObject =
+    "[objects.ball]\nshape = \"sphere\"\nradius = 0.02\nstiffness = 600\ndamping = 1\n";
+
+TEST(TrialObjectTest, ADefinitionNamesItsObjectsLikeFields) {
+  EXPECT_THAT(problems_of_trials(small_trials(kSmallStaircase, kObject)), IsEmpty());
+  EXPECT_THAT(problems_of_trials(small_trials(
+                  kSmallStaircase,
+                  kObject + "[fields.rub]\ntype = \"friction\"\non = \"ball\"\nstatic = 0.5\n"
+                            "dynamic = 0.4\n")),
+              IsEmpty());
+  EXPECT_THAT(problems_of_trials(small_trials(
+                  kSmallStaircase, kObject + "[regions.ball]\ntype = \"sphere\"\ncentre = [0, 0, "
+                                             "0]\nradius = 0.01\n")),
+              Contains(HasSubstr("objects.ball is the name of a table of [regions] as well")));
+}
+
+/// A box from the front shows its four sides; turned by 45 degrees about the view's vertical, two
+/// more edges.
+TEST(OutlineTest, ABoxHasItsEdges) {
+  const geometry::Mesh box = geometry::make_box({0.02, 0.04, 0.06});
+  SeenObject seen;
+  seen.scale = 2.0F;
+  const Outline front = outline_of(box, seen, {0.0, 0.0, -1.0});
+  double length = 0.0;
+  for (const auto& [from, to] : front) {
+    length += (to - from).norm();
+    EXPECT_NEAR(std::abs(from.x()), 0.02, 1e-9);
+    EXPECT_NEAR(std::abs(from.y()), 0.04, 1e-9);
+  }
+  EXPECT_NEAR(length, 2.0 * (0.04 + 0.08), 1e-9);
+  const float half = static_cast<float>(kPi / 8.0);
+  seen.turn = {std::cos(half), 0.0F, std::sin(half), 0.0F};
+  double turned = 0.0;
+  for (const auto& [from, to] : outline_of(box, seen, {0.0, 0.0, -1.0})) {
+    turned += (to - from).norm();
+  }
+  // Seen are two faces of 0.04 by 0.08 and 0.12 by 0.08 that share an edge.
+  EXPECT_NEAR(turned, 3.0 * 0.08 + 2.0 * 0.04 + 2.0 * 0.12, 1e-6);
+}
+
+/// A sphere's outline lies on its great circle across the view.
+TEST(OutlineTest, ASphereHasItsCircle) {
+  const geometry::Mesh sphere = geometry::make_sphere(0.02, 32);
+  double length = 0.0;
+  for (const auto& [from, to] : outline_of(sphere, {}, {0.0, -1.0, 0.0})) {
+    length += (to - from).norm();
+    EXPECT_LT(std::abs(from.y()), 0.002);
+    EXPECT_NEAR(std::hypot(from.x(), from.z()), 0.02, 0.0002);
+  }
+  EXPECT_GT(length, 2.0 * kPi * 0.02);
+  EXPECT_LT(length, 1.6 * 2.0 * kPi * 0.02);  // in zigzag along the facets
+}
+
+}  // namespace
+}  // namespace haptrial::protocols
