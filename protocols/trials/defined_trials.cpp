@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/trials/contact_row.h"
 #include "core/record/trials/trial_rows.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/trials/definition/defaults.h"
@@ -49,6 +50,21 @@ std::uint64_t pushing(const std::vector<scene::Field>& fields) {
   return mask;
 }
 
+bool records_contacts(const TrialsDefinition& d) {
+  return std::ranges::any_of(d.objects, &TrialObject::recorded);
+}
+
+/// Objects come behind all other fields, in the order of the definition's.
+std::vector<RecordedObject> recorded_of(const TrialsDefinition& d, std::size_t fields) {
+  std::vector<RecordedObject> recorded;
+  for (std::size_t i = 0; i < d.objects.size(); ++i) {
+    if (d.objects[i].recorded) {
+      recorded.push_back({fields - d.objects.size() + i, static_cast<std::int32_t>(i)});
+    }
+  }
+  return recorded;
+}
+
 record::StageEnding ending_of(StageEnd how) {
   return how == StageEnd::kReached     ? record::StageEnding::kReached
          : how == StageEnd::kLate      ? record::StageEnding::kLate
@@ -72,7 +88,11 @@ DefinedTrials::DefinedTrials(const StudiedDefinition& definition, const SessionP
       place_(place),
       root_(parsed(definition)),
       names_(read_names(root_, definition)),
-      sequence_(definition, taker_of(definition, place)) {}
+      sequence_(definition, taker_of(definition, place)) {
+  if (records_contacts(d_)) {
+    contacts_ = std::make_unique<ContactLog>();
+  }
+}
 
 Extent DefinedTrials::extent(int most) const {
   const int trials = d_.most_trials(place_.session);
@@ -98,6 +118,9 @@ record::TableList DefinedTrials::tables() const {
   }
   if (std::ranges::any_of(d_.questions, &Question::has_limits)) {
     tables.push_back(&record::table_of<record::OutOfTimeRow>());
+  }
+  if (contacts_) {
+    tables.push_back(&record::table_of<record::ContactRow>());
   }
   return tables;
 }
@@ -186,6 +209,7 @@ Pass& DefinedTrials::make_pass(PlannedTrial&, const record::Phase&) {
   setup.most_repeats = d_.most_repeats;
   setup.max_force = d_.envelope.max_force;
   setup.said = said_.get();
+  setup.contacts = contacts_.get();
   setup.sound_right = d_.sound_right;
   setup.sound_wrong = d_.sound_wrong;
   variables_.clear();
@@ -231,8 +255,10 @@ IntervalRun DefinedTrials::make_interval(std::size_t place, RandomStream& random
   return {
       std::move(scenes),
       StageMachine(std::move(stages), std::move(regions), presented.fields.size(), presented.felt),
-      std::move(sights), pushing(presented.fields),
-      d_.intervals.size() > 1 ? static_cast<int>(current_.values.intervals[place]) : -1};
+      std::move(sights),
+      pushing(presented.fields),
+      d_.intervals.size() > 1 ? static_cast<int>(current_.values.intervals[place]) : -1,
+      recorded_of(d_, presented.fields.size())};
 }
 
 std::vector<Asked> DefinedTrials::make_questions() {
@@ -396,6 +422,12 @@ void DefinedTrials::keep_stages(SessionFile& file, std::int32_t row) const {
     }
   }
   file.add(std::span<const record::StageRow>(rows));
+}
+
+void DefinedTrials::empty_logs(SessionFile& file) {
+  if (contacts_) {
+    contacts_->flush([&file](std::span<const record::ContactRow> rows) { file.add(rows); });
+  }
 }
 
 const char* DefinedTrials::why_aborted() const { return pass_->why_aborted(); }

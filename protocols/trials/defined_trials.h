@@ -34,6 +34,8 @@ class DefinedTrials final : public Trials {
   Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) override;
   std::vector<record::ResponseRow> responses() override;
   void close_pass(SessionFile& file, std::int32_t row) override;
+  void empty_logs(SessionFile& file) override;
+  std::uint64_t dropped() const override { return contacts_ ? contacts_->dropped() : 0; }
   const char* why_aborted() const override;
 
   /// The pass that make_pass() made last, and names of the stages of its intervals.
@@ -62,6 +64,7 @@ class DefinedTrials final : public Trials {
 
   mutable std::unique_ptr<SaidAnswer> said_;  // of a virtual participant
   mutable TrialsRig* rig_{nullptr};           // likewise; the runner's
+  std::unique_ptr<ContactLog> contacts_;      // null: none are recorded
   std::unique_ptr<TrialPass> pass_;
   std::vector<std::vector<NamedStage>> stages_;  // of each interval of the pass
   std::vector<scene::Region> regions_;           // of the last interval

@@ -1,6 +1,7 @@
 #include "protocols/trials/trials_protocol.h"
 
 #include "core/record/rows/response.h"
+#include "core/record/trials/contact_row.h"
 #include "core/record/trials/trial_rows.h"
 #include "protocols/trials/defined_trials.h"
 #include "protocols/trials/definition/every_value.h"
@@ -41,6 +42,7 @@ class TrialsProtocol final : public Protocol {
     tables.push_back(&record::responses_table());
     tables.push_back(&record::table_of<record::AdaptationRow>());
     tables.push_back(&record::table_of<record::OutOfTimeRow>());
+    tables.push_back(&record::table_of<record::ContactRow>());
     return tables;
   }
   std::unique_ptr<Trials> trials(const Definition& definition,

@@ -35,7 +35,8 @@ struct FieldState {
   /// Mover: the way still to go; path: to the point that travels it. Grating, texture: the height
   /// under the hand. Friction: the bristle's deflection. [m]
   double depth{0.0};
-  double weight{0.0};   // of the fade, 0 to 1
+  Eigen::Vector3d proxy{Eigen::Vector3d::Zero()};  // of a solid, in W [m]
+  double weight{0.0};                              // of the fade, 0 to 1
   bool contact{false};  // touches the surface; of other fields: gives a force
   bool limited{false};  // the limit cut the force of this tick
   bool sliding{false};  // friction: slides rather than sticks

@@ -96,6 +96,7 @@ Vector3d Solid::force(const Felt& felt, FieldState& state) noexcept {
   const contact::Contact& contact = renderer_->tick(to_body(felt.hand.position), period_);
   proxy_ = parameters_.pose.orientation * (parameters_.scale * contact.proxy) +
            parameters_.pose.position;
+  state.proxy = proxy_;
   if (!(contact.depth > 0.0)) {
     return Vector3d::Zero();
   }

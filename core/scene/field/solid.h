@@ -44,8 +44,6 @@ class Solid {
   void lay(const ReliefHere& relief) noexcept { relief_ = relief; }  // before force()
   Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
   const SurfaceTouch& touch() const noexcept { return touch_; }
-  /// Of the last tick, in W [m].
-  const Eigen::Vector3d& proxy() const noexcept { return proxy_; }
 
  private:
   Eigen::Vector3d to_body(const Eigen::Vector3d& p) const noexcept;
@@ -59,7 +57,7 @@ class Solid {
   double limit_;
   ReliefHere relief_;
   SurfaceTouch touch_;
-  Eigen::Vector3d proxy_{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d proxy_{Eigen::Vector3d::Zero()};  // of the last tick, in W [m]
 };
 
 }  // namespace haptrial::scene

@@ -103,6 +103,7 @@ std::vector<TrialObject> read_objects(Table& objects) {
     } else {
       object.body = read_shape(table);
     }
+    object.recorded = table.has("record") && table.boolean("record");
     found.push_back(std::move(object));
   }
   return found;

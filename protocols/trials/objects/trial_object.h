@@ -19,6 +19,7 @@ struct TrialObject {
   std::string name;
   std::filesystem::path file;  // of a mesh; empty: a shape that the definition describes
   contact::SharedBody body;    // of a file: null until it is loaded
+  bool recorded{false};        // its contacts, tick by tick, in /contacts
 };
 
 /// Reads the shapes of [objects], in the order of their names. Problems are noted.
@@ -30,6 +31,8 @@ struct TrialObject {
 ///                     "cylinder"   radius, length along z
 ///                     "cone"       radius, length along z; it points to +z
 ///                     "torus"      radius, tube: around z
+///
+///     [record]        true: every tick of contact is a row of /contacts
 ///
 /// Lengths are in metres, numbers alone: what changes between trials is the object's scale, centre
 /// and turn, which read_solid() reads with all else.

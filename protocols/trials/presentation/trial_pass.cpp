@@ -101,6 +101,16 @@ Drive TrialPass::drive(const IntervalRun& run, std::size_t device,
   return drive;
 }
 
+void TrialPass::log_contacts(const IntervalRun& run, std::size_t device) noexcept {
+  for (const RecordedObject& each : run.recorded) {
+    const scene::FieldState& state = run.scenes[device].state(each.field);
+    if (state.contact && setup_.contacts != nullptr) {
+      setup_.contacts->push({sequence_, static_cast<std::int32_t>(device), each.object,
+                             state.sliding, state.depth, state.proxy, state.force, state.work});
+    }
+  }
+}
+
 /// On the first tick of a stage, which /stages names, too.
 void TrialPass::note_stage(const IntervalRun& run, PassOutput& out) noexcept {
   const std::size_t stage = run.machine.stage();
@@ -125,6 +135,7 @@ void TrialPass::present(const Readings& readings, double dt, PassOutput& out) no
   const std::size_t devices = std::min(device_count_, run.scenes.size());
   for (std::size_t device = 0; device < devices; ++device) {
     drives_[device] = drive(run, device, run.scenes[device].force(readings[device].tool));
+    log_contacts(run, device);
   }
   view_.stage = static_cast<std::uint8_t>(stage);
   const StageSight& sight = run.sights[stage];
@@ -149,6 +160,7 @@ void TrialPass::end_interval() noexcept {
   }
   view_.interval = 0;
   view_.mark_count = 0;
+  view_.objects = {};
   view_.hand_shown = view_.number_shown = view_.dots.shown = false;
   ask();
 }

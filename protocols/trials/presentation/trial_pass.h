@@ -6,7 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "core/realtime/block_log.h"
 #include "core/record/rows/response.h"
+#include "core/record/trials/contact_row.h"
 #include "core/scene/scene.h"
 #include "core/scene/shape/shape.h"
 #include "protocols/interface/pass.h"
@@ -15,6 +17,15 @@
 #include "protocols/trials/stages/stage_machine.h"
 
 namespace haptrial::protocols {
+
+/// Where the servo thread leaves the contacts that are recorded.
+using ContactLog = realtime::BlockLog<record::ContactRow>;
+
+/// A field of a scene that is an object of the definition, both from 0.
+struct RecordedObject {
+  std::size_t field{0};
+  std::int32_t object{0};
+};
 
 /// What is seen during a stage.
 struct StageSight {
@@ -33,6 +44,7 @@ struct IntervalRun {
   std::vector<StageSight> sights;  // (stages)
   std::uint64_t pushing{0};        // fields that are to work on the hand, a bit each
   int marker{-1};                  // index of its onset's marker; -1: it has none
+  std::vector<RecordedObject> recorded{};
 };
 
 /// A place that gives a choice when the tip of the tool is moved into it.
@@ -76,8 +88,9 @@ class TrialPass final : public Pass {
     std::vector<Asked> questions;
     double feedback_time{0.0};  // [s]
     int most_repeats{5};
-    double max_force{8.0};      // the sum of a device's fields is scaled to at most this [N]
-    SaidAnswer* said{nullptr};  // null: a person answers
+    double max_force{8.0};          // the sum of a device's fields is scaled to at most this [N]
+    SaidAnswer* said{nullptr};      // null: a person answers
+    ContactLog* contacts{nullptr};  // of recorded objects; null if there are none
     int sound_right{-1}, sound_wrong{-1};  // with the feedback; -1: none
   };
   explicit TrialPass(Setup setup);
@@ -117,6 +130,7 @@ class TrialPass final : public Pass {
   void note_stage(const IntervalRun& run, PassOutput& out) noexcept;
   int sound_of(const Asked& asked, const Answer& answer) const noexcept;
   void present(const Readings& readings, double dt, PassOutput& out) noexcept;
+  void log_contacts(const IntervalRun& run, std::size_t device) noexcept;
   Drive drive(const IntervalRun& run, std::size_t device, const Eigen::Vector3d& force) noexcept;
   void end_interval() noexcept;
   void ask() noexcept;

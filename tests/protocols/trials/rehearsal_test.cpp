@@ -1,5 +1,6 @@
 // Whole sessions of virtual participants without a runner: a hand goes to a place or presses the
-// pedal, answers out of time come again, QUEST+ of two dimensions finds what is felt.
+// pedal, answers out of time come again, QUEST+ of two dimensions finds what is felt, contacts with
+// an object are recorded.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/psychometric/procedure/procedure.h"
+#include "core/record/trials/contact_row.h"
 #include "core/record/trials/trial_rows.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/interface/session_task.h"
@@ -36,6 +38,7 @@ class Rows final : public SessionFile {
   std::vector<record::LevelRow> levels;
   std::vector<record::OutOfTimeRow> late;
   std::vector<record::StageRow> stages;
+  std::vector<record::ContactRow> contacts;
 
   void keep_stimulus(std::int32_t, std::span<const record::StimulusRow>) override {}
   bool holds_stimulus(std::int32_t) const override { return true; }
@@ -53,6 +56,7 @@ class Rows final : public SessionFile {
     add(levels);
     add(late);
     add(stages);
+    add(contacts);
   }
 
  private:
@@ -83,6 +87,7 @@ class RehearsalTest : public testing::Test {
         task.tick({index, static_cast<std::int64_t>(index) * 1'000'000, 1e-3});
       }
       ASSERT_EQ(task.result().state, PassState::kCompleted) << trials.why_aborted();
+      trials.empty_logs(rows_);
       trials.close_pass(rows_, row);
       outcomes_.push_back({*trial, TrialEnd::kCompleted, trials.responses()});
       for (record::ResponseRow& response : outcomes_.back().responses) {
@@ -262,6 +267,54 @@ feel = { do = "hold" }
   ASSERT_FALSE(found.empty());
   EXPECT_NEAR(found.front().value, 0.8, 3.0 * *found.front().deviation);
   EXPECT_LT(*found.front().deviation, 0.1);
+}
+
+constexpr const char* kRoundACube = R"(
+[experiment]
+protocol = "trials"
+name = "round_a_cube"
+[design]
+participants = 1
+[objects.cube]
+shape = "box"
+size = [0.04, 0.04, 0.04]
+centre = [0.0, -0.03, 0.0]
+stiffness = 600.0
+damping = 0.0
+friction = { static = 0.3, dynamic = 0.2 }
+fade_in = 0.0
+record = true
+[[stages]]
+name = "explore"
+fields = ["cube"]
+until = { time = 6.0 }
+[[blocks]]
+name = "only"
+trials = 1
+[observer]
+[observer.actions]
+explore = { do = "follow", turn_after = 10.0 }
+[texts]
+instructions = "Go round it."
+)";
+
+TEST_F(RehearsalTest, ContactsWithAnObjectAreRecorded) {
+  ASSERT_NO_FATAL_FAILURE(rehearse(kRoundACube));
+  ASSERT_GT(rows_.contacts.size(), 3000u);
+  bool left = false, under = false;
+  for (const record::ContactRow& row : rows_.contacts) {
+    // The proxy lies on the cube, the spring pulls the tool to it within the cone of friction.
+    const Eigen::Vector3d p = row.proxy - Eigen::Vector3d(0.0, -0.03, 0.0);
+    ASSERT_NEAR(p.cwiseAbs().maxCoeff(), 0.02, 1e-9);
+    const double size = row.force.norm(), normal = 600.0 * row.depth;
+    ASSERT_GE(size, normal * (1.0 - 1e-9) - 1e-12);
+    ASSERT_LE(size, normal * std::hypot(1.0, 0.3) * (1.0 + 1e-9) + 1e-9);
+    ASSERT_LT(row.work, 1e-4);
+    left = left || p.x() < -0.0199;
+    under = under || p.y() < -0.0199;
+  }
+  EXPECT_TRUE(left && under) << "it went round anticlockwise";
+  EXPECT_LT(rows_.contacts.back().work, -1e-3) << "friction takes energy";
 }
 
 }  // namespace
