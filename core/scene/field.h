@@ -11,11 +11,11 @@
 #include "core/scene/field/mover.h"
 #include "core/scene/field/path.h"
 #include "core/scene/field/push.h"
-#include "core/scene/field/relief.h"
-#include "core/scene/field/solid.h"
-#include "core/scene/field/surface.h"
 #include "core/scene/field/vibration.h"
 #include "core/scene/field/viscous.h"
+#include "core/scene/surface/relief.h"
+#include "core/scene/surface/solid.h"
+#include "core/scene/surface/surface.h"
 
 namespace haptrial::scene {
 

@@ -8,7 +8,7 @@
 
 namespace haptrial::scene {
 
-/// Reads how one table [objects.NAME] is felt, as a field (core/scene/field/solid.h). Keys in
+/// Reads how one table [objects.NAME] is felt, as a field (core/scene/surface/solid.h). Keys in
 /// brackets are optional; all numbers may be formulas. Problems are noted in the table.
 ///
 ///     stiffness [N/m], damping [N·s/m]

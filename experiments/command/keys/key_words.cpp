@@ -191,7 +191,7 @@ intervals.order | as stated | whether they are shuffled in every trial
 intervals.NAME.NAME | | what a name is worth in the interval
 stages[].name | | unlike every other stage's
 stages[].fields | none | fields that act; "$name" is the field that the name stands for
-stages[].show | nothing | hand, interval_number, regions, looks and places
+stages[].show | nothing | hand, interval_number, regions, looks, objects and places
 stages[].until.time | no such condition | the stage ends after this time
 stages[].until.inside | no such condition | the hand is in this region
 stages[].until.contact | no such condition | the hand touches this field
@@ -380,6 +380,27 @@ regions.NAME.size | | edges of the box
 regions.NAME.turn | not turned | rotation vector of the box
 regions.NAME.axis | | direction of the cylinder
 regions.NAME.length | | of the cylinder
+objects.NAME.record | false | whether every tick of contact is a row of /contacts
+objects.NAME.device | every device | whose tool feels it
+objects.NAME.limit | | its force is scaled to at most this
+objects.NAME.fade_in | | after it is switched on
+objects.NAME.fade_out | | after it is switched off
+objects.NAME.centre | 0, 0, 0 | of the body's origin
+objects.NAME.turn | not turned | of its axes: axis times angle
+objects.NAME.scale | | of its size
+objects.NAME.stiffness | | of its surface
+objects.NAME.damping | | of its surface
+objects.NAME.tool_radius | | of the ball that stands for the hand; 0: a point
+objects.NAME.shading | none | edges less sharp than this angle feel round
+objects.NAME.renderer | proxy | how contact is rendered
+objects.NAME.shape | needed, or mesh | of the body
+objects.NAME.radius | | of the body, of a torus that of the circle in its middle
+objects.NAME.mesh | needed, or shape | file beside the definition: .obj, .ply, .stl or .off
+objects.NAME.size | | along x, y and z
+objects.NAME.length | | along z
+objects.NAME.tube | | radius of a torus's tube
+objects.NAME.friction.static | | coefficient of what holds the tool where it rests
+objects.NAME.friction.dynamic | | coefficient of what resists the tool that slides
 looks.NAME.type | | what can be seen: a bar of random dots
 looks.NAME.width | | of the bar
 looks.NAME.height | | of the bar
@@ -398,7 +419,7 @@ observer.done | the third choice | value of the choice that ends the adjustment
 observer.wanted | 1 | percept that is adjusted to where the trial shows none before
 observer.reaction | 0.6 | median time from question to answer
 observer.actions.NAME.do | needed, or a table for each device | what the hand does in the stage NAME
-observer.actions.NAME.force | 0 of a stroke, needed of a press | with which it presses
+observer.actions.NAME.force | 0 of a stroke, 1 of a contour, needed of a press | with which it presses
 observer.actions.NAME.rise | 0.5 | time over which it grows
 observer.actions.NAME.travel | 0.05 | after which it presses no further
 observer.actions.NAME.direction | down of a press, needed of a stroke | of pressing or stroking
@@ -406,8 +427,13 @@ observer.actions.NAME.half_length | | of a stroke
 observer.actions.NAME.frequency | | of strokes
 observer.actions.NAME.normal | down | direction in which a stroke presses
 observer.actions.NAME.duration | | of the reach
+observer.actions.NAME.towards | down | to the object that is followed
+observer.actions.NAME.around | 0, 0, 1 | axis of the first loop
+observer.actions.NAME.then_around | 1, 0, 0 | axis of the second loop
+observer.actions.NAME.turn_after | | when the second loop begins
+observer.actions.NAME.speed | | along the surface
 observer.actions.NAME.NAME.do | | what the hand at the device of the second name does
-observer.actions.NAME.NAME.force | 0 of a stroke, needed of a press | with which it presses
+observer.actions.NAME.NAME.force | 0 of a stroke, 1 of a contour, needed of a press | with which it presses
 observer.actions.NAME.NAME.rise | 0.5 | time over which it grows
 observer.actions.NAME.NAME.travel | 0.05 | after which it presses no further
 observer.actions.NAME.NAME.direction | down of a press, needed of a stroke | of pressing or stroking
@@ -415,6 +441,11 @@ observer.actions.NAME.NAME.half_length | | of a stroke
 observer.actions.NAME.NAME.frequency | | of strokes
 observer.actions.NAME.NAME.normal | down | direction in which a stroke presses
 observer.actions.NAME.NAME.duration | | of the reach
+observer.actions.NAME.NAME.towards | down | to the object that is followed
+observer.actions.NAME.NAME.around | 0, 0, 1 | axis of the first loop
+observer.actions.NAME.NAME.then_around | 1, 0, 0 | axis of the second loop
+observer.actions.NAME.NAME.turn_after | | when the second loop begins
+observer.actions.NAME.NAME.speed | | along the surface
 observer.adaptation.stage | | of the reach that is learnt from
 observer.adaptation.matrix | | B of the field that is learnt
 observer.adaptation.fast.retention | | of the fast process from trial to trial; without the table 0.59

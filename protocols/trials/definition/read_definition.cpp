@@ -212,6 +212,19 @@ void check_variables(Table& root) {
   }
 }
 
+void check_seen_objects(Table& root, const TrialsDefinition& d,
+                        const std::vector<NamedStage>& stages) {
+  for (const NamedStage& stage : stages) {
+    const auto seen = std::ranges::count_if(stage.show, [&](const std::string& name) {
+      return std::ranges::find(d.objects, name, &TrialObject::name) != d.objects.end();
+    });
+    if (seen > static_cast<std::ptrdiff_t>(kMostSeenObjects)) {
+      root.reject("stages", fmt::format("show {} objects in the stage \"{}\"; show at most {}",
+                                        seen, stage.name, kMostSeenObjects));
+    }
+  }
+}
+
 void check_questions(Table& root, const TrialsDefinition& d,
                      const std::vector<NamedStage>& stages) {
   for (const Question& question : d.questions) {
@@ -290,6 +303,7 @@ void read_first_trial(Table& root, TrialsDefinition& d) {
     d.stage_time +=
         std::max(until.time, until.hold) + (std::isfinite(stage.stage.timeout) ? 1.0 : 0.0);
   }
+  check_seen_objects(root, d, stages);
   check_questions(root, d, stages);
   check_masking(root, d);
 }
@@ -313,9 +327,11 @@ void read_what_is_felt(Table& root, const Names& names, const TrialsDefinition& 
   if (root.has("objects")) {
     Table table = root.table("objects");
     devices = devices_of(table, d.hands);
-    for (const TrialObject& object : d.objects) {
-      Table own = table.table(object.name);
-      objects.push_back(scene::read_solid(own, object.name, object.body, names));
+    for (const std::string& name : table.keys()) {
+      const auto object = std::ranges::find(d.objects, name, &TrialObject::name);
+      Table own = table.table(name);
+      objects.push_back(
+          scene::read_solid(own, name, object != d.objects.end() ? object->body : nullptr, names));
     }
   }
   if (root.has("fields")) {
@@ -333,14 +349,16 @@ void read_what_is_felt(Table& root, const Names& names, const TrialsDefinition& 
 }
 
 /// A stage names fields, regions, looks and objects: each name stands for one thing.
-void check_object_names(Table& root, const TrialsDefinition& d) {
-  for (const TrialObject& object : d.objects) {
-    for (const char* other : {"fields", "regions", "looks"}) {
-      if (root.has(other) && root.table(other).has(object.name)) {
-        root.table("objects").reject(object.name,
-                                     fmt::format("is the name of a table of [{}] as well; give one "
-                                                 "of the two another name",
-                                                 other));
+void check_object_names(Table& root) {
+  Table objects = root.table("objects");
+  for (const char* other : {"fields", "regions", "looks"}) {
+    const std::vector<std::string> taken =
+        root.has(other) ? root.table(other).keys() : std::vector<std::string>{};
+    for (const std::string& name : objects.keys_as_written()) {
+      if (std::ranges::find(taken, name) != taken.end()) {
+        objects.reject(name, fmt::format("is the name of a table of [{}] as well; give one of the "
+                                         "two another name",
+                                         other));
       }
     }
   }
@@ -424,7 +442,7 @@ void read_trials_definition(Table& root, std::string_view file_name, TrialsDefin
   if (root.has("objects")) {
     Table table = root.table("objects");
     d.objects = read_objects(table);
-    check_object_names(root, d);
+    check_object_names(root);
   }
   d.questions = read_questions(root, d.keys);
   d.tracks = read_tracks(root);

@@ -95,7 +95,7 @@ std::vector<TrialObject> read_objects(Table& objects) {
     TrialObject object{name, {}, nullptr};
     if (table.has("mesh") && table.has("shape")) {
       table.reject("shape", "stands beside mesh; keep one of the two");
-      for (const std::string& key : table.keys()) {
+      for (const char* key : {"shape", "mesh", "radius", "size", "length", "tube"}) {
         table.leave(key);
       }
     } else if (table.has("mesh")) {

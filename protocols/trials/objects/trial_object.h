@@ -42,6 +42,8 @@ std::vector<TrialObject> read_objects(Table& objects);
 /// @throws InputError as read_mesh() and FeltBody do, naming the object
 void load_objects(std::vector<TrialObject>& objects, const std::filesystem::path& folder);
 
+inline constexpr std::size_t kMostSeenObjects = 2;  // in a stage
+
 /// An object that a stage shows, where it is. Plain data, for the screen.
 struct SeenObject {
   std::array<float, 3> centre{};          // in W [m]

@@ -249,8 +249,8 @@ class TrialDrawing final : public Drawing {
   std::vector<Part> parts_;
   std::vector<std::vector<EyeDot>> dots_;  // (parts)
   std::optional<std::uint64_t> laid_;      // seed of them
-  std::array<SeenObject, TrialView::kMostObjects> outlined_{};
-  std::array<Outline, TrialView::kMostObjects> outlines_{};
+  std::array<SeenObject, kMostSeenObjects> outlined_{};
+  std::array<Outline, kMostSeenObjects> outlines_{};
 };
 
 }  // namespace

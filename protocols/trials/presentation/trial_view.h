@@ -34,7 +34,6 @@ enum class Verdict : std::uint8_t { kNone, kRight, kWrong };
 /// it from here.
 struct TrialView {
   static constexpr std::size_t kMostMarks = 8;
-  static constexpr std::size_t kMostObjects = 2;
   static constexpr std::size_t kTyped = 16;
   static_assert(kMostTouched <= kMostMarks);
 
@@ -42,8 +41,8 @@ struct TrialView {
   std::array<std::array<float, 3>, kMostDevices - 1> others{};  // tools of the others [m]
   DotsShown dots;
   std::array<Mark, kMostMarks> marks{};
-  std::array<SeenObject, kMostObjects> objects{};  // those that are seen come first
-  std::array<char, kTyped> typed{};                // of a number, ended by 0
+  std::array<SeenObject, kMostSeenObjects> objects{};  // those that are seen come first
+  std::array<char, kTyped> typed{};                    // of a number, ended by 0
   std::int32_t trial{0};  // of the presentation: changes from trial to trial
   std::uint8_t other_count{0};
   std::uint8_t mark_count{0};
@@ -66,7 +65,7 @@ struct TrialView {
     mark_count = static_cast<std::uint8_t>(std::min(seen.size(), kMostMarks));
     std::copy_n(seen.begin(), mark_count, marks.begin());
     objects = {};
-    std::copy_n(bodies.begin(), std::min(bodies.size(), kMostObjects), objects.begin());
+    std::copy_n(bodies.begin(), std::min(bodies.size(), kMostSeenObjects), objects.begin());
   }
 };
 

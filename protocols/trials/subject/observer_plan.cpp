@@ -79,7 +79,9 @@ subject::Probe read_contour(Table& table) {
   }
   contour.turn_after = table.number_or("turn_after", contour.turn_after, {0.1, 600.0}, "s");
   contour.speed = table.number_or("speed", contour.speed, {0.001, 1.0}, "m/s");
-  contour.force = table.number_or("force", contour.force, {0.1, 50.0}, "N");
+  if (table.has("force")) {
+    contour.force = table.number("force", {0.0, 50.0}, "N");
+  }
   return contour;
 }
 

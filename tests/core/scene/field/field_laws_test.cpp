@@ -18,8 +18,8 @@
 #include "core/scene/field/mover.h"
 #include "core/scene/field/path.h"
 #include "core/scene/field/push.h"
-#include "core/scene/field/relief.h"
 #include "core/scene/field/vibration.h"
+#include "core/scene/surface/relief.h"
 #include "tests/support/message_of.h"
 
 namespace haptrial::scene {

@@ -104,6 +104,22 @@ TEST(TrialObjectTest, ADefinitionNamesItsObjectsLikeFields) {
               Contains(HasSubstr("objects.ball is the name of a table of [regions] as well")));
 }
 
+std::string three_objects(const std::string& shown) {
+  std::string text = small_trials(kSmallStaircase, kObject);
+  for (const char* name : {"a", "b"}) {
+    text += "[objects." + std::string(name) +
+            "]\nshape = \"sphere\"\nradius = 0.02\nstiffness = 600\ndamping = 1\n";
+  }
+  const std::string stage = "[[stages]]\n";
+  return text.replace(text.find(stage), stage.size(), stage + "show = [" + shown + "]\n");
+}
+
+TEST(TrialObjectTest, AStageShowsTwoObjectsAtMost) {
+  EXPECT_THAT(problems_of_trials(three_objects("\"ball\", \"a\"")), IsEmpty());
+  EXPECT_THAT(problems_of_trials(three_objects("\"ball\", \"a\", \"b\"")),
+              Contains(HasSubstr("show 3 objects in the stage")));
+}
+
 /// A box from the front shows its four sides; turned by 45 degrees about the view's vertical, two
 /// more edges.
 TEST(OutlineTest, ABoxHasItsEdges) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "core/geometry/mesh/procedural.h"
 #include "core/render/gl/image.h"
 #include "core/render/gl/offscreen.h"
 #include "protocols/trials/presentation/trial_view.h"
@@ -55,6 +56,26 @@ TEST_F(TrialDrawingTest, ShowsWhatAStageNamesAndNothingElse) {
   view.mark_count = 1;
   view.number_shown = true;
   EXPECT_GT(ink(picture_of(view, "interval")), hand + 100);
+}
+
+/// The outline of a ball of 2 cm is a circle of lines, 2 px wide: more where facets make it zigzag.
+TEST_F(TrialDrawingTest, AnObjectIsSeenAsItsOutline) {
+  definition_.objects.push_back(
+      {"ball",
+       {},
+       std::make_shared<const contact::FeltBody>(geometry::make_sphere(0.02, 16)),
+       false});
+  TrialView view;
+  view.interval = 1;
+  view.objects[0].object = 0;
+  const double circle = 2.0 * 3.14159 * 0.02 / 0.16 * kWidth;
+  const auto outline = static_cast<double>(ink(picture_of(view, "object")));
+  EXPECT_GT(outline, 1.5 * circle);
+  EXPECT_LT(outline, 5.0 * circle);
+  view.objects[0].scale = 2.0F;
+  EXPECT_GT(static_cast<double>(ink(picture_of(view, "larger object"))), 1.6 * outline);
+  view.objects[0].object = 7;  // of another definition
+  EXPECT_EQ(ink(picture_of(view, "no object")), 0);
 }
 
 TEST_F(TrialDrawingTest, AsksAndTellsWhetherItWasRight) {

@@ -1,4 +1,4 @@
-#include "core/scene/field/relief.h"
+#include "core/scene/surface/relief.h"
 
 #include <Eigen/Geometry>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/scene/field/field_state.h"
-#include "core/scene/field/surface.h"
+#include "core/scene/surface/surface.h"
 
 namespace haptrial::scene {
 

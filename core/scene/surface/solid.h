@@ -8,7 +8,7 @@
 #include "core/contact/renderer/renderer.h"
 #include "core/control/pd_controller.h"
 #include "core/scene/field/field_state.h"
-#include "core/scene/field/surface.h"
+#include "core/scene/surface/surface.h"
 
 namespace haptrial::scene {
 

@@ -1,4 +1,4 @@
-#include "core/scene/field/solid.h"
+#include "core/scene/surface/solid.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "core/scene/field/surface.h"
+#include "core/scene/surface/surface.h"
 
 #include <algorithm>
 #include <cmath>
