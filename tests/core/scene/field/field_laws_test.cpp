@@ -19,7 +19,7 @@
 #include "core/scene/field/path.h"
 #include "core/scene/field/push.h"
 #include "core/scene/field/vibration.h"
-#include "core/scene/surface/relief.h"
+#include "tests/core/scene/field/spectrum.h"
 #include "tests/support/message_of.h"
 
 namespace haptrial::scene {
@@ -28,6 +28,7 @@ namespace {
 using Eigen::Vector3d;
 
 const Vector3d kOrigin = Vector3d::Zero();
+using haptrial::test::spectrum;
 using testing::HasSubstr;
 
 constexpr double kRate = 1000.0;
@@ -354,23 +355,6 @@ TEST(FrictionTest, OnASurfaceItIsTangentAndInProportionToThePressing) {
 
 // --- vibration --------------------------------------------------------------------------------
 
-/// Amplitudes of `signal` at whole hertz up to half the rate, of one second under a Hann window.
-std::vector<double> spectrum(const std::vector<double>& signal) {
-  const std::size_t n = signal.size();
-  std::vector<double> amplitude(n / 2);
-  for (std::size_t k = 0; k < n / 2; ++k) {
-    std::complex<double> sum;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double turn = 2.0 * kPi * static_cast<double>(k * i % n) / static_cast<double>(n);
-      const double window =
-          1.0 - std::cos(2.0 * kPi * static_cast<double>(i) / static_cast<double>(n));
-      sum += window * signal[i] * std::polar(1.0, -turn);
-    }
-    amplitude[k] = 2.0 * std::abs(sum) / static_cast<double>(n);
-  }
-  return amplitude;
-}
-
 template <class Vibration>
 std::vector<double> heard(Vibration& vibration, std::size_t ticks, const Vector3d& along) {
   std::vector<double> signal(ticks);
@@ -445,7 +429,7 @@ TEST(VibrationTest, ATapOnASurfaceGrowsWithTheSpeedOfTheImpact) {
   EXPECT_NEAR(strength(0.2), 2.0 * strength(0.1), 1e-12);
 }
 
-// --- detent, click, mover, reliefs ------------------------------------------------------------
+// --- detent, click, mover ---------------------------------------------------------------------
 
 TEST(DetentTest, RestsAtItsPlacesAndPullsBetweenThem) {
   Detent detent({{0.01, 0.0, 0.0}, {2.0, 0.0, 0.0}, 0.004, 1.5, 3}, kSetting);
@@ -542,66 +526,6 @@ TEST(PathGuideTest, LeadsAHandAlongThePath) {
   }
   EXPECT_LT((hand.position - kCorner.back()).norm(), 2e-4);
   EXPECT_LT(worst, 0.002);
-}
-
-TEST(ReliefTest, BoundsOfSlopeAndCurvatureHoldAndAreNearlyReached) {
-  const Grating sine({"floor", Vector3d::UnitX(), 2e-4, 0.003}, kSetting);
-  GratingParameters soft{"floor", Vector3d::UnitX(), 2e-4, 0.003};
-  soft.profile = GratingParameters::Profile::kRounded;
-  const Grating rounded(soft, kSetting);
-  for (const Grating* grating : {&sine, &rounded}) {
-    double steepest = 0.0;
-    double most_curved = 0.0;
-    double before = 0.0;
-    for (int i = 0; i < 30000; ++i) {
-      ReliefHere relief;
-      FieldState state;
-      grating->add({1e-7 * i, 0.0, 0.0}, 1.0, relief, state);
-      steepest = std::max(steepest, std::abs(relief.slope.x()));
-      most_curved =
-          std::max(most_curved, i == 0 ? 0.0 : std::abs(relief.slope.x() - before) / 1e-7);
-      before = relief.slope.x();
-      ASSERT_LE(std::abs(relief.height), 2e-4 * (1.0 + 1e-12));
-    }
-    EXPECT_LE(steepest, grating->steepest() * (1.0 + 1e-9));
-    EXPECT_GE(steepest, 0.99 * grating->steepest());
-    EXPECT_LE(most_curved, grating->most_curved() * (1.0 + 1e-6));
-    EXPECT_GE(most_curved, 0.5 * grating->most_curved());
-  }
-}
-
-TEST(ReliefTest, ATextureHasItsRoughnessAndBand) {
-  // Along a line in the plane a wave of spatial frequency f is met with at most f.
-  const Texture texture({"floor", Vector3d::UnitY(), 1e-4, 100.0, 400.0, 5}, kSetting);
-  double squares = 0.0;
-  constexpr int kPlaces = 40000;
-  RandomStream random(1, "places");
-  for (int i = 0; i < kPlaces; ++i) {
-    ReliefHere relief;
-    FieldState state;
-    texture.add({random.uniform(-0.5, 0.5), random.uniform(), random.uniform(-0.5, 0.5)}, 1.0,
-                relief, state);
-    squares += relief.height * relief.height;
-    ASSERT_LE(relief.slope.norm(), texture.steepest());
-    ASSERT_NEAR(relief.slope.y(), 0.0, 1e-12) << "waves run across the normal";
-  }
-  EXPECT_NEAR(std::sqrt(squares / kPlaces), 1e-4, 2e-6);
-  std::vector<double> line(2000);
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    ReliefHere relief;
-    FieldState state;
-    texture.add({static_cast<double>(i) * 5e-4, 0.0, 0.0}, 1.0, relief,
-                state);  // a metre: bins of 1/m
-    line[i] = relief.height;
-  }
-  const std::vector<double> amplitude = spectrum(line);
-  double above = 0.0;
-  double all = 0.0;
-  for (std::size_t k = 0; k < amplitude.size(); ++k) {
-    all += amplitude[k] * amplitude[k];
-    above += k > 405 ? amplitude[k] * amplitude[k] : 0.0;
-  }
-  EXPECT_LT(above, 1e-4 * all);
 }
 
 TEST(FieldTest, BadParametersAreNamed) {
