@@ -14,6 +14,7 @@ constexpr double kFeltAtLeast = 0.1;  // less is no contact [N]
 constexpr double kNormalTime = 0.02;  // over which the felt normal is averaged [s]
 constexpr double kTurning = 12.0;     // behind an edge [rad/s]
 constexpr double kReaction = 0.15;    // what is felt before is from before [s]
+constexpr double kFarthest = 0.1;     // from where it began, if nothing is there [m]
 constexpr double kAlong = 0.9;        // cosine from which an axis comes out of the surface
 constexpr double kLost = 0.5;         // without contact: it goes back to where it last was [s]
 
@@ -29,6 +30,7 @@ void ContourFollower::begin(const Contour& contour, const Vector3d& at) noexcept
   contour_ = contour;
   touched_ = false;
   without_ = 0.0;
+  start_ = at;
   outward_ = -contour.towards.normalized();
   turn_to(0, at);
 }
@@ -63,7 +65,9 @@ ContourFollower::Step ContourFollower::step(double time, const PointState& hand,
   }
   step.off_loop = (plane_ - hand.position).dot(axis_) * axis_;
   if (!touched_) {
-    step.velocity = contour_.speed * contour_.towards.normalized();
+    const bool gives_up = (hand.position - start_).norm() > kFarthest;
+    step.velocity = gives_up ? Vector3d(Vector3d::Zero())
+                             : Vector3d(contour_.speed * contour_.towards.normalized());
     step.off_loop.setZero();
     plane_ = hand.position;
     return step;

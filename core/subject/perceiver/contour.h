@@ -42,6 +42,7 @@ class ContourFollower {
   Eigen::Vector3d axis_{Eigen::Vector3d::UnitZ()};
   Eigen::Vector3d outward_{Eigen::Vector3d::UnitY()};  // the normal as it is taken to be
   Eigen::Vector3d plane_{Eigen::Vector3d::Zero()};     // a place in the loop's plane [m]
+  Eigen::Vector3d start_{Eigen::Vector3d::Zero()};     // [m]
   Eigen::Vector3d last_{Eigen::Vector3d::Zero()};      // contact [m]
   double without_{0.0};                                // since then [s]
   std::size_t turned_{0};

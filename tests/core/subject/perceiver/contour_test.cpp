@@ -106,10 +106,12 @@ TEST(ContourTest, UnevennessIsTheRadialDeviation) {
   EXPECT_NEAR(waves, 0.001 / std::numbers::sqrt2, 0.03 * 0.001);
 }
 
-TEST(ContourTest, AHandThatFindsNothingGoesOnTowardsIt) {
+TEST(ContourTest, AHandThatFindsNothingGoesOnForTenCentimetres) {
   HandRig rig({}, {0.0, 0.045, 0.0});
   rig.run(about_z(), 1.0);
   EXPECT_NEAR(rig.read().position.y(), 0.045 - 0.05, 0.01);
+  rig.go_on(4.0);
+  EXPECT_NEAR(rig.read().position.y(), 0.045 - 0.1, 0.01);
 }
 
 TEST(ContourTest, ATickAllocatesNothing) {
