@@ -202,7 +202,7 @@ LagFit estimate_lag(const PoseStream& pose, const ForceStream& force, const LagO
   const double half = analysis::t_quantile(0.975, kBlocks - 1.0) * error;
   fit.low = fit.lag - half;
   fit.high = fit.lag + half;
-  const double gain = peak.share - analysis::quantile(shares, 0.5).value();
+  const double gain = peak.share - *analysis::quantile(shares, 0.5);
   if (peak.at_end) {
     fit.doubt = fmt::format("The best lag is the largest that was tried, {:.3g} s.", fit.lag);
   } else if (gain < kLeastGain) {

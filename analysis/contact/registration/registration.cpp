@@ -67,9 +67,9 @@ double PathFit::equations(const Eigen::Isometry3d& pose, Matrix6& h, Vector6& g)
     nearest.push_back(distance_(pose * c));
     sizes.push_back(std::abs(nearest.back().distance - radius_));
   }
-  const double limit = analysis::quantile(sizes, 1.0 - trimmed_).value();
+  const double limit = *analysis::quantile(sizes, 1.0 - trimmed_);
   const double scale =
-      std::max(kTukey * kSigmaOfMad * analysis::quantile(sizes, 0.5).value(), 1e-12 * size_);
+      std::max(kTukey * kSigmaOfMad * *analysis::quantile(sizes, 0.5), 1e-12 * size_);
   h.setZero();
   g.setZero();
   double squares = 0.0, count = 0.0;
@@ -264,8 +264,8 @@ Registration register_path(const contact::SignedDistance& distance,
   for (const double r : result.residuals) {
     sizes.push_back(std::abs(r));
   }
-  result.median = analysis::quantile(sizes, 0.5).value();
-  result.p95 = analysis::quantile(sizes, 0.95).value();
+  result.median = *analysis::quantile(sizes, 0.5);
+  result.p95 = *analysis::quantile(sizes, 0.95);
   result.worst = *std::max_element(sizes.begin(), sizes.end());
   result.unfixed = unfixed_directions(fit, result.body_from_world);
   return result;

@@ -1,0 +1,204 @@
+#include "analysis/contact/identification/identify_contact.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "analysis/contact/identification/stick_phases.h"
+#include "analysis/statistics/base/descriptive.h"
+#include "analysis/statistics/base/distributions.h"
+
+namespace haptrial::evaluation {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr std::size_t kPerBlock = 10;  // fewest samples of a block
+constexpr std::size_t kFewestPhases = 3;
+constexpr double kAboveNoise = 5.0;  // a velocity's direction is then right to 0.2 rad
+constexpr double kStickAboveNoise = 3.0;
+
+const char* const kStiffnessName = "compliance (1/stiffness)";
+const char* const kFrictionName = "dynamic friction";
+
+void check_options(const IdentificationOptions& o) {
+  const bool good = o.least_force > 0.0 && o.slow > 0.0 && o.fast > o.slow &&
+                    o.shortest_stick >= 0.0 && o.velocity_noise >= 0.0 && o.blocks >= 4 &&
+                    o.level > 0.0 && o.level < 1.0;
+  if (!good) {
+    throw std::invalid_argument(
+        "identification needs least_force > 0, 0 < slow < fast, 4 blocks or more and a level "
+        "inside (0, 1)");
+  }
+  if (o.texture &&
+      !(o.texture->wavelength > 0.0 && std::abs(o.texture->axis.norm() - 1.0) < 1e-6)) {
+    throw std::invalid_argument("a texture needs a wavelength above 0 and an axis of unit length");
+  }
+}
+
+/// The sentences that name one of what is asked for; those about offsets alone concern nobody.
+void keep_sentences(const BlockFit& fit, std::initializer_list<const char*> names,
+                    std::vector<std::string>& to) {
+  for (const std::string& sentence : fit.confounded) {
+    if (std::any_of(names.begin(), names.end(),
+                    [&](const char* name) { return sentence.find(name) != std::string::npos; })) {
+      to.push_back(sentence);
+    }
+  }
+}
+
+/// |c| of two terms whose covariance is known.
+Interval amplitude_of(const Eigen::Vector2d& terms, const Eigen::Matrix2d& covariance,
+                      const IdentificationOptions& o) {
+  const double size = terms.norm();
+  if (!covariance.allFinite() || !(covariance.trace() > 0.0)) {
+    return {size, size, size};
+  }
+  const double freedom = o.blocks - 1.0;
+  // Hotelling's T² of two terms: F(2, m) has a quantile without a table.
+  const double m = freedom - 1.0;
+  const double f = 0.5 * m * (std::pow(1.0 - o.level, -2.0 / m) - 1.0);
+  const double limit = 2.0 * freedom / m * f;
+  const Eigen::Matrix2d adjugate{{covariance(1, 1), -covariance(0, 1)},
+                                 {-covariance(1, 0), covariance(0, 0)}};
+  const double determinant =
+      covariance(0, 0) * covariance(1, 1) - covariance(0, 1) * covariance(1, 0);
+  const bool told = terms.dot(adjugate * terms) > limit * determinant;
+  const double along =
+      size > 0.0 ? terms.dot(covariance * terms) / (size * size) : 0.5 * covariance.trace();
+  const double half = analysis::t_quantile(0.5 + 0.5 * o.level, freedom) * std::sqrt(along);
+  // Noise alone makes an amplitude: its mean square is the trace.
+  const double value = std::sqrt(std::max(0.0, size * size - covariance.trace()));
+  return {value, told ? std::max(0.0, size - half) : 0.0, size + half};
+}
+
+void find_stiffness(const ContactSamples& s, const std::vector<std::size_t>& touching,
+                    const IdentificationOptions& o, IdentifiedContact& found) {
+  std::vector<std::string> names{kStiffnessName, "offset", "shift x", "shift y", "shift z"};
+  if (o.texture) {
+    names.insert(names.end(), {"texture (sine)", "texture (cosine)"});
+  }
+  const auto rows = static_cast<Index>(touching.size());
+  Eigen::MatrixXd x(rows, static_cast<Index>(names.size()));
+  Eigen::VectorXd y(rows);
+  for (Index r = 0; r < rows; ++r) {
+    const std::size_t i = touching[static_cast<std::size_t>(r)];
+    x.row(r).head<5>() << s.force[i].dot(s.normal[i]), 1.0, s.normal[i].transpose();
+    if (o.texture) {
+      const double phase =
+          2.0 * std::numbers::pi * s.position[i].dot(o.texture->axis) / o.texture->wavelength;
+      x.row(r).tail<2>() << -std::sin(phase), -std::cos(phase);
+    }
+    y[r] = s.depth[i];
+  }
+  const BlockFit fit = fit_blocks(x, y, names, {o.blocks, o.level});
+  found.compliance = fit.intervals[0];
+  const auto inverse = [](double c) { return c > 0.0 ? 1.0 / c : kInfinite; };
+  found.stiffness = {inverse(found.compliance.value), inverse(found.compliance.high),
+                     inverse(found.compliance.low)};
+  keep_sentences(fit, {kStiffnessName, "texture"}, found.confounded);
+  if (found.compliance.high <= 0.0) {
+    found.confounded.push_back(
+        "The probe lies less deep the harder it presses: the registration or the sensor's load is "
+        "off, and the stiffness means nothing.");
+  } else if (found.compliance.low <= 0.0) {
+    found.confounded.push_back(fmt::format(
+        "The depth does not grow beyond its noise with the force: the stiffness has no upper "
+        "bound, it is at least {:.4g} N/m.",
+        found.stiffness.low));
+  }
+  if (o.texture) {
+    const bool fixed = std::isfinite(fit.intervals[5].high) && std::isfinite(fit.intervals[6].high);
+    found.texture =
+        fixed ? amplitude_of(fit.coefficients.segment<2>(5), fit.covariance.block<2, 2>(5, 5), o)
+              : Interval{fit.coefficients.segment<2>(5).norm(), 0.0, kInfinite};
+  }
+}
+
+void find_dynamic_friction(const ContactSamples& s, const std::vector<std::size_t>& slipping,
+                           const IdentificationOptions& o, IdentifiedContact& found) {
+  found.slip_samples = slipping.size();
+  if (slipping.size() < kPerBlock * static_cast<std::size_t>(o.blocks)) {
+    found.confounded.push_back(
+        fmt::format("Dynamic friction is not identifiable: {} samples slip; {} are needed.",
+                    slipping.size(), kPerBlock * static_cast<std::size_t>(o.blocks)));
+    return;
+  }
+  const auto rows = static_cast<Index>(3 * slipping.size());
+  Eigen::MatrixXd x(rows, 4);
+  Eigen::VectorXd y(rows);
+  for (std::size_t k = 0; k < slipping.size(); ++k) {
+    const std::size_t i = slipping[k];
+    const auto r = static_cast<Index>(3 * k);
+    const Eigen::Matrix3d along =
+        Eigen::Matrix3d::Identity() - s.normal[i] * s.normal[i].transpose();
+    x.block<3, 1>(r, 0) =
+        -s.force[i].dot(s.normal[i]) * Vector3d((along * s.velocity[i]).normalized());
+    x.block<3, 3>(r, 1) = along;
+    y.segment<3>(r) = along * s.force[i];
+  }
+  const BlockFit fit =
+      fit_blocks(x, y, {kFrictionName, "force x", "force y", "force z"}, {o.blocks, o.level});
+  found.dynamic_friction = fit.intervals[0];
+  keep_sentences(fit, {kFrictionName}, found.confounded);
+}
+
+void find_static_friction(const ContactSamples& s, const IdentificationOptions& o,
+                          IdentifiedContact& found) {
+  if (kStickAboveNoise * o.velocity_noise > o.slow) {
+    found.confounded.push_back(fmt::format(
+        "Static friction is not identifiable: velocities are good to {:.2g} mm/s, so that sticking "
+        "cannot be told from slow slip; it is no less than the dynamic one.",
+        1e3 * o.velocity_noise));
+    return;
+  }
+  const std::vector<double> ratios = break_away_ratios(s, o);
+  found.stick_phases = ratios.size();
+  if (ratios.size() < kFewestPhases) {
+    found.confounded.push_back(fmt::format(
+        "Static friction is not identifiable: {} phases of sticking end in slip; {} are needed. It "
+        "is no less than the dynamic one.",
+        ratios.size(), kFewestPhases));
+    return;
+  }
+  const auto mean = analysis::mean_interval(ratios, o.level);
+  found.static_friction = Interval{mean->mean, mean->low, mean->high};
+}
+
+}  // namespace
+
+IdentifiedContact identify_contact(const ContactSamples& samples,
+                                   const IdentificationOptions& options) {
+  check(samples);
+  check_options(options);
+  std::vector<std::size_t> touching, slipping;
+  const double fast = std::max(options.fast, kAboveNoise * options.velocity_noise);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Vector3d& n = samples.normal[i];
+    if (samples.force[i].dot(n) > options.least_force) {
+      touching.push_back(i);
+      if ((samples.velocity[i] - samples.velocity[i].dot(n) * n).norm() > fast) {
+        slipping.push_back(i);
+      }
+    }
+  }
+  if (touching.size() < kPerBlock * static_cast<std::size_t>(options.blocks)) {
+    throw std::invalid_argument(fmt::format(
+        "{} samples are in contact; {} or more are needed for {} blocks", touching.size(),
+        kPerBlock * static_cast<std::size_t>(options.blocks), options.blocks));
+  }
+  IdentifiedContact found;
+  found.contact_samples = touching.size();
+  find_stiffness(samples, touching, options, found);
+  find_dynamic_friction(samples, slipping, options, found);
+  find_static_friction(samples, options, found);
+  return found;
+}
+
+}  // namespace haptrial::evaluation

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/contact/identification/contact_samples.h"
+#include "analysis/contact/regression/block_regression.h"
+
+namespace haptrial::evaluation {
+
+/// A grating: height A sin(2π x·axis / wavelength + phase) over the mesh.
+struct TextureGrid {
+  Eigen::Vector3d axis{Eigen::Vector3d::UnitX()};  // body's frame, unit length
+  double wavelength{0.0};                          // > 0 [m]
+};
+
+struct IdentificationOptions {
+  double least_force{0.2};      // normal force of a contact > 0 [N]
+  double slow{0.002};           // below it the contact may stick [m/s]
+  double fast{0.010};           // above it the contact slips, > slow [m/s]
+  double shortest_stick{0.01};  // [s]
+  double velocity_noise{0.0};   // of a component; raises `fast` to five times of it [m/s]
+  std::optional<TextureGrid> texture{};
+  int blocks{20};
+  double level{0.95};  // of all intervals
+};
+
+/// What a contact is made of. An interval without bound says that the data do not fix the value.
+struct IdentifiedContact {
+  std::size_t contact_samples{0};
+  std::size_t slip_samples{0};
+  std::size_t stick_phases{0};               // that end in slip
+  Interval compliance;                       // 1/k [m/N]
+  Interval stiffness;                        // k; infinite where the compliance may be 0 [N/m]
+  std::optional<Interval> dynamic_friction;  // absent without slip
+  std::optional<Interval> static_friction;   // absent without phases of sticking
+  std::optional<Interval> texture;           // amplitude A; absent unless asked for [m]
+  std::vector<std::string> confounded;       // sentences
+};
+
+/// Stiffness, friction and texture of a recorded contact, with intervals from blocks.
+///
+///     depth = F_n / k + c + s·n + A-terms      contact samples, F_n = F·n > least_force
+///     F_t   = -mu_d F_n v/|v| + (I - n n') b   samples that slip
+///
+/// The depth is regressed on the force and not the other way round, since poses are noisy and
+/// forces are not: k is the inverse of an interval of 1/k. The offset c and the shift s stand for
+/// what a registration leaves, b for what is left of the sensor's offset. Static friction is the
+/// mean, with Student's t over phases of sticking, of -F_t·v/|v| / F_n at their ends, v being that
+/// of the slip that follows, half a sample after the last one that sticks. Friction is signed: a
+/// contact without it gives an interval around 0. The amplitude's interval begins at 0 where
+/// Hotelling's test of its two terms does not tell them from 0.
+///
+/// @throws std::invalid_argument as check(), for an option that breaks its bound or when fewer
+/// than 10 samples for each block are in contact.
+IdentifiedContact identify_contact(const ContactSamples& samples,
+                                   const IdentificationOptions& options = {});
+
+}  // namespace haptrial::evaluation
