@@ -47,8 +47,9 @@ struct IdentifiedContact {
 /// The depth is regressed on the force and not the other way round, since poses are noisy and
 /// forces are not: k is the inverse of an interval of 1/k. The offset c and the shift s stand for
 /// what a registration leaves, b for what is left of the sensor's offset. Static friction is the
-/// mean, with Student's t over phases of sticking, of -F_t·v/|v| / F_n at their ends, v being that
-/// of the slip that follows, half a sample after the last one that sticks. Friction is signed: a
+/// mean, with Student's t over phases of sticking, of |F_t| / F_n at their ends
+/// (break_away_ratios()); slip slower than `slow` counts as sticking and pulls it towards the
+/// dynamic one. Friction is signed, negative where it pushes along the motion: a
 /// contact without it gives an interval around 0. The amplitude's interval begins at 0 where
 /// Hotelling's test of its two terms does not tell them from 0.
 ///

@@ -1,6 +1,7 @@
 #include "analysis/contact/identification/stick_phases.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace haptrial::evaluation {
@@ -15,18 +16,23 @@ Vector3d along_surface(const Vector3d& v, const Vector3d& normal) {
   return v - v.dot(normal) * normal;
 }
 
-/// The straight line through values at 0, 1, …, half a step beyond the last.
-double extrapolated(const std::vector<double>& values) {
+/// The parabola through values at 0, 1, …, half a step beyond the last: a hand that starts to move
+/// speeds up.
+Vector3d extrapolated(const std::vector<Vector3d>& values) {
   const auto n = static_cast<double>(values.size());
-  const double middle = 0.5 * (n - 1.0);
-  double mean = 0.0, slope = 0.0, spread = 0.0;
+  const double middle = 0.5 * (n - 1.0), mean_square = (n * n - 1.0) / 12.0;
+  Vector3d mean = Vector3d::Zero(), slope = Vector3d::Zero(), bend = Vector3d::Zero();
+  double slopes = 0.0, bends = 0.0;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const double u = static_cast<double>(i) - middle;
+    const double u = static_cast<double>(i) - middle, v = u * u - mean_square;
     mean += values[i] / n;
     slope += u * values[i];
-    spread += u * u;
+    bend += v * values[i];
+    slopes += u * u;
+    bends += v * v;
   }
-  return mean + slope / spread * (n - 0.5 - middle);
+  const double end = n - 0.5 - middle;
+  return mean + slope / slopes * end + bend / bends * (end * end - mean_square);
 }
 
 class PhaseSearch {
@@ -49,13 +55,13 @@ class PhaseSearch {
   }
 
   double ratio_at_end(std::size_t first, std::size_t last, std::size_t slip) const {
-    const Vector3d way = along_surface(s_.velocity[slip], s_.normal[slip]).normalized();
-    std::vector<double> ratios;
+    std::vector<Vector3d> ratios;
     for (std::size_t i = std::max(first, last + 1 - std::min(last + 1, kLast)); i <= last; ++i) {
       const Vector3d& n = s_.normal[i];
-      ratios.push_back(-along_surface(s_.force[i], n).dot(way) / s_.force[i].dot(n));
+      ratios.push_back(-along_surface(s_.force[i], n) / s_.force[i].dot(n));
     }
-    return extrapolated(ratios);
+    const Vector3d ratio = extrapolated(ratios);
+    return std::copysign(ratio.norm(), ratio.dot(s_.velocity[slip]));
   }
 
  private:
