@@ -8,6 +8,7 @@
 
 #include "analysis/contact/evaluation/surface_lag.h"
 #include "analysis/contact/registration/in_trajectory.h"
+#include "analysis/statistics/base/descriptive.h"
 #include "core/geometry/mesh/mesh_bounds.h"
 
 namespace haptrial::evaluation {
@@ -21,8 +22,9 @@ constexpr double kPeriodsOfVelocity = 5.0;    // of poses that a velocity is tak
 constexpr double kLeastVelocityWidth = 0.02;  // [s]
 constexpr std::size_t kFewestForLag = 100;    // poses
 constexpr int kLagRounds = 6;
-constexpr double kSameLag = 2e-4;  // [s]
-constexpr double kInwards = 0.2;   // share of contacts pulled inwards that is doubted
+constexpr double kSameLag = 2e-4;      // [s]
+constexpr double kMuchFriction = 0.6;  // rare between dry solids
+constexpr double kInwards = 0.2;       // share of contacts pulled inwards that is doubted
 
 void require_prepared(bool good, const char* sentence) {
   if (!good) {
@@ -238,6 +240,24 @@ PoseStream overlapping(const PoseStream& path, const ForceStream& force) {
   return result;
 }
 
+/// Forces that friction does not explain.
+void remark_on_lean(const Touch& touch, PreparedContact& result) {
+  std::vector<double> lean;
+  for (std::size_t i = 0; i < touch.force.size(); ++i) {
+    if (touch.touching[i]) {
+      const double normal = touch.force[i].dot(touch.normal[i]);
+      lean.push_back((touch.force[i] - normal * touch.normal[i]).norm() / normal);
+    }
+  }
+  const double median = lean.empty() ? 0.0 : *analysis::quantile(lean, 0.5);
+  if (median > kMuchFriction) {
+    result.remarks.push_back(fmt::format(
+        "The force along the surface is {:.2f} times the normal one (median): more than friction "
+        "explains. Either the body is registered wrongly, or the probe touches in several places.",
+        median));
+  }
+}
+
 }  // namespace
 
 EvaluatedBody::EvaluatedBody(geometry::Mesh mesh_of_body)
@@ -272,6 +292,7 @@ PreparedContact prepare_contact(const ContactRecording& recording, const Evaluat
   result.contact_share =
       static_cast<double>(std::count(touch.touching.begin(), touch.touching.end(), true)) /
       static_cast<double>(touch.touching.size());
+  remark_on_lean(touch, result);
   if (touch.inwards > kInwards) {
     result.remarks.push_back(fmt::format(
         "{:.0f} % of the forces pull into the body: perhaps the sensor says what acts on the body.",

@@ -20,6 +20,7 @@ using Eigen::Vector3d;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t kPerBlock = 10;  // fewest samples of a block
+constexpr std::size_t kFewestBlocks = 8;
 constexpr std::size_t kFewestPhases = 3;
 constexpr double kAboveNoise = 5.0;  // a velocity's direction is then right to 0.2 rad
 constexpr double kStickAboveNoise = 3.0;
@@ -29,17 +30,21 @@ const char* const kFrictionName = "dynamic friction";
 
 void check_options(const IdentificationOptions& o) {
   const bool good = o.least_force > 0.0 && o.slow > 0.0 && o.fast > o.slow &&
-                    o.shortest_stick >= 0.0 && o.velocity_noise >= 0.0 && o.blocks >= 4 &&
-                    o.level > 0.0 && o.level < 1.0;
+                    o.shortest_stick >= 0.0 && o.velocity_noise >= 0.0 &&
+                    o.blocks >= static_cast<int>(kFewestBlocks) && o.level > 0.0 && o.level < 1.0;
   if (!good) {
     throw std::invalid_argument(
-        "identification needs least_force > 0, 0 < slow < fast, 4 blocks or more and a level "
+        "identification needs least_force > 0, 0 < slow < fast, 8 blocks or more and a level "
         "inside (0, 1)");
   }
   if (o.texture &&
       !(o.texture->wavelength > 0.0 && std::abs(o.texture->axis.norm() - 1.0) < 1e-6)) {
     throw std::invalid_argument("a texture needs a wavelength above 0 and an axis of unit length");
   }
+}
+
+int blocks_for(std::size_t samples, const IdentificationOptions& o) {
+  return std::min(o.blocks, static_cast<int>(samples / kPerBlock));
 }
 
 /// The sentences that name one of what is asked for; those about offsets alone concern nobody.
@@ -54,16 +59,16 @@ void keep_sentences(const BlockFit& fit, std::initializer_list<const char*> name
 }
 
 /// |c| of two terms whose covariance is known.
-Interval amplitude_of(const Eigen::Vector2d& terms, const Eigen::Matrix2d& covariance,
-                      const IdentificationOptions& o) {
+Interval amplitude_of(const Eigen::Vector2d& terms, const Eigen::Matrix2d& covariance, int blocks,
+                      double level) {
   const double size = terms.norm();
   if (!covariance.allFinite() || !(covariance.trace() > 0.0)) {
     return {size, size, size};
   }
-  const double freedom = o.blocks - 1.0;
+  const double freedom = blocks - 1.0;
   // Hotelling's T² of two terms: F(2, m) has a quantile without a table.
   const double m = freedom - 1.0;
-  const double f = 0.5 * m * (std::pow(1.0 - o.level, -2.0 / m) - 1.0);
+  const double f = 0.5 * m * (std::pow(1.0 - level, -2.0 / m) - 1.0);
   const double limit = 2.0 * freedom / m * f;
   const Eigen::Matrix2d adjugate{{covariance(1, 1), -covariance(0, 1)},
                                  {-covariance(1, 0), covariance(0, 0)}};
@@ -72,7 +77,7 @@ Interval amplitude_of(const Eigen::Vector2d& terms, const Eigen::Matrix2d& covar
   const bool told = terms.dot(adjugate * terms) > limit * determinant;
   const double along =
       size > 0.0 ? terms.dot(covariance * terms) / (size * size) : 0.5 * covariance.trace();
-  const double half = analysis::t_quantile(0.5 + 0.5 * o.level, freedom) * std::sqrt(along);
+  const double half = analysis::t_quantile(0.5 + 0.5 * level, freedom) * std::sqrt(along);
   // Noise alone makes an amplitude: its mean square is the trace.
   const double value = std::sqrt(std::max(0.0, size * size - covariance.trace()));
   return {value, told ? std::max(0.0, size - half) : 0.0, size + half};
@@ -97,7 +102,8 @@ void find_stiffness(const ContactSamples& s, const std::vector<std::size_t>& tou
     }
     y[r] = s.depth[i];
   }
-  const BlockFit fit = fit_blocks(x, y, names, {o.blocks, o.level});
+  const int blocks = blocks_for(touching.size(), o);
+  const BlockFit fit = fit_blocks(x, y, names, {blocks, o.level});
   found.compliance = fit.intervals[0];
   const auto inverse = [](double c) { return c > 0.0 ? 1.0 / c : kInfinite; };
   found.stiffness = {inverse(found.compliance.value), inverse(found.compliance.high),
@@ -115,36 +121,33 @@ void find_stiffness(const ContactSamples& s, const std::vector<std::size_t>& tou
   }
   if (o.texture) {
     const bool fixed = std::isfinite(fit.intervals[5].high) && std::isfinite(fit.intervals[6].high);
-    found.texture =
-        fixed ? amplitude_of(fit.coefficients.segment<2>(5), fit.covariance.block<2, 2>(5, 5), o)
-              : Interval{fit.coefficients.segment<2>(5).norm(), 0.0, kInfinite};
+    found.texture = fixed ? amplitude_of(fit.coefficients.segment<2>(5),
+                                         fit.covariance.block<2, 2>(5, 5), blocks, o.level)
+                          : Interval{fit.coefficients.segment<2>(5).norm(), 0.0, kInfinite};
   }
 }
 
 void find_dynamic_friction(const ContactSamples& s, const std::vector<std::size_t>& slipping,
                            const IdentificationOptions& o, IdentifiedContact& found) {
   found.slip_samples = slipping.size();
-  if (slipping.size() < kPerBlock * static_cast<std::size_t>(o.blocks)) {
+  if (slipping.size() < kPerBlock * kFewestBlocks) {
     found.confounded.push_back(
         fmt::format("Dynamic friction is not identifiable: {} samples slip; {} are needed.",
-                    slipping.size(), kPerBlock * static_cast<std::size_t>(o.blocks)));
+                    slipping.size(), kPerBlock * kFewestBlocks));
     return;
   }
-  const auto rows = static_cast<Index>(3 * slipping.size());
+  const auto rows = static_cast<Index>(slipping.size());
   Eigen::MatrixXd x(rows, 4);
   Eigen::VectorXd y(rows);
-  for (std::size_t k = 0; k < slipping.size(); ++k) {
-    const std::size_t i = slipping[k];
-    const auto r = static_cast<Index>(3 * k);
-    const Eigen::Matrix3d along =
-        Eigen::Matrix3d::Identity() - s.normal[i] * s.normal[i].transpose();
-    x.block<3, 1>(r, 0) =
-        -s.force[i].dot(s.normal[i]) * Vector3d((along * s.velocity[i]).normalized());
-    x.block<3, 3>(r, 1) = along;
-    y.segment<3>(r) = along * s.force[i];
+  for (Index r = 0; r < rows; ++r) {
+    const std::size_t i = slipping[static_cast<std::size_t>(r)];
+    const Vector3d& n = s.normal[i];
+    const Vector3d way = (s.velocity[i] - s.velocity[i].dot(n) * n).normalized();
+    x.row(r) << -s.force[i].dot(n), way.transpose();
+    y[r] = s.force[i].dot(way);
   }
-  const BlockFit fit =
-      fit_blocks(x, y, {kFrictionName, "force x", "force y", "force z"}, {o.blocks, o.level});
+  const BlockFit fit = fit_blocks(x, y, {kFrictionName, "force x", "force y", "force z"},
+                                  {blocks_for(slipping.size(), o), o.level});
   found.dynamic_friction = fit.intervals[0];
   keep_sentences(fit, {kFrictionName}, found.confounded);
 }
@@ -188,10 +191,9 @@ IdentifiedContact identify_contact(const ContactSamples& samples,
       }
     }
   }
-  if (touching.size() < kPerBlock * static_cast<std::size_t>(options.blocks)) {
-    throw std::invalid_argument(fmt::format(
-        "{} samples are in contact; {} or more are needed for {} blocks", touching.size(),
-        kPerBlock * static_cast<std::size_t>(options.blocks), options.blocks));
+  if (touching.size() < kPerBlock * kFewestBlocks) {
+    throw std::invalid_argument(fmt::format("{} samples are in contact; {} or more are needed",
+                                            touching.size(), kPerBlock * kFewestBlocks));
   }
   IdentifiedContact found;
   found.contact_samples = touching.size();

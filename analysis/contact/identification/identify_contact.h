@@ -22,7 +22,7 @@ struct IdentificationOptions {
   double shortest_stick{0.01};  // [s]
   double velocity_noise{0.0};   // of a component; raises `fast` to five times of it [m/s]
   std::optional<TextureGrid> texture{};
-  int blocks{20};
+  int blocks{20};      // >= 8; fewer where they would hold less than ten samples
   double level{0.95};  // of all intervals
 };
 
@@ -42,7 +42,7 @@ struct IdentifiedContact {
 /// Stiffness, friction and texture of a recorded contact, with intervals from blocks.
 ///
 ///     depth = F_n / k + c + s·n + A-terms      contact samples, F_n = F·n > least_force
-///     F_t   = -mu_d F_n v/|v| + (I - n n') b   samples that slip
+///     F·u   = -mu_d F_n + u·b                  samples that slip, u = v/|v| along the surface
 ///
 /// The depth is regressed on the force and not the other way round, since poses are noisy and
 /// forces are not: k is the inverse of an interval of 1/k. The offset c and the shift s stand for
@@ -54,7 +54,7 @@ struct IdentifiedContact {
 /// Hotelling's test of its two terms does not tell them from 0.
 ///
 /// @throws std::invalid_argument as check(), for an option that breaks its bound or when fewer
-/// than 10 samples for each block are in contact.
+/// than 80 samples are in contact.
 IdentifiedContact identify_contact(const ContactSamples& samples,
                                    const IdentificationOptions& options = {});
 

@@ -1,7 +1,5 @@
 #include "analysis/contact/simulation/duck.h"
 
-#include <meshoptimizer.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -102,39 +100,14 @@ geometry::Mesh scanned_mesh(const RadialBody& body, const ScanOptions& options) 
   return mesh;
 }
 
-geometry::Mesh decimated(const geometry::Mesh& mesh, std::size_t triangles) {
-  if (triangles < 4) {
-    throw std::invalid_argument("a closed mesh has four triangles or more");
-  }
-  std::vector<float> positions;
-  for (const Vector3d& v : mesh.vertices) {
-    for (int axis = 0; axis < 3; ++axis) {
-      positions.push_back(static_cast<float>(v[axis]));
+RadialBody radius_of(const geometry::Bvh& mesh) {
+  return [&mesh](const Vector3d& direction) {
+    const auto hit = mesh.nearest_hit({Vector3d::Zero(), direction.normalized()});
+    if (!hit) {
+      throw std::invalid_argument("every ray from the origin must leave the body");
     }
-  }
-  std::vector<unsigned int> corners;
-  for (const geometry::Triangle& t : mesh.triangles) {
-    corners.insert(corners.end(), {static_cast<unsigned int>(t[0]), static_cast<unsigned int>(t[1]),
-                                   static_cast<unsigned int>(t[2])});
-  }
-  std::vector<unsigned int> kept(corners.size());
-  constexpr float kAnyError = 1e9F;  // the number of triangles alone decides
-  kept.resize(meshopt_simplify(kept.data(), corners.data(), corners.size(), positions.data(),
-                               mesh.vertices.size(), 3 * sizeof(float), 3 * triangles, kAnyError));
-  geometry::Mesh result;
-  std::vector<std::int32_t> number(mesh.vertices.size(), -1);
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    std::int32_t& n = number[kept[i]];
-    if (n < 0) {
-      n = static_cast<std::int32_t>(result.vertices.size());
-      result.vertices.push_back(mesh.vertices[kept[i]]);
-    }
-    if (i % 3 == 0) {
-      result.triangles.emplace_back();
-    }
-    result.triangles.back()[i % 3] = n;
-  }
-  return result;
+    return hit->t;
+  };
 }
 
 }  // namespace haptrial::evaluation

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "core/geometry/bvh/bvh.h"
 #include "core/geometry/mesh/mesh.h"
 
 namespace haptrial::evaluation {
@@ -33,9 +34,9 @@ struct ScanOptions {
 /// A watertight mesh from noisy points.
 geometry::Mesh scanned_mesh(const RadialBody& body, const ScanOptions& options = {});
 
-/// A mesh with about that many triangles, by collapsing edges whose loss is least (meshoptimizer;
-/// Garland and Heckbert 1997). Closed meshes stay closed.
-/// @throws std::invalid_argument for fewer than four triangles.
-geometry::Mesh decimated(const geometry::Mesh& mesh, std::size_t triangles);
+/// The radius of a mesh around the origin, for meshes of it with fewer triangles.
+/// @param mesh  must outlive the result, which throws std::invalid_argument where a ray hits
+/// nothing
+RadialBody radius_of(const geometry::Bvh& mesh);
 
 }  // namespace haptrial::evaluation
