@@ -32,7 +32,7 @@ contact::RendererOptions options_for(RendererKind kind, const EvaluatedBody& bod
 
 void identify(const EvaluationOptions& o, Evaluation& result) {
   IdentificationOptions options;
-  options.least_force = o.prepare.least_force;
+  options.stick.least_force = o.prepare.least_force;
   options.velocity_noise = result.contact.velocity_noise;
   options.texture = o.texture;
   try {
@@ -80,7 +80,7 @@ EvaluatedRendering measured_rendering(const PreparedContact& contact, const Eval
 Evaluation evaluate_rendering(const ContactRecording& recording, const EvaluatedBody& body,
                               const EvaluationOptions& options) {
   if (options.renderers.empty()) {
-    throw std::invalid_argument("renderers: allowed: one or more");
+    throw std::invalid_argument("an evaluation needs a renderer");
   }
   Evaluation result;
   result.contact = prepare_contact(recording, body, options.prepare);

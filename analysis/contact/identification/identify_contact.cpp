@@ -8,7 +8,6 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "analysis/contact/identification/stick_phases.h"
 #include "analysis/statistics/base/descriptive.h"
 #include "analysis/statistics/base/distributions.h"
 
@@ -29,9 +28,10 @@ const char* const kStiffnessName = "compliance (1/stiffness)";
 const char* const kFrictionName = "dynamic friction";
 
 void check_options(const IdentificationOptions& o) {
-  const bool good = o.least_force > 0.0 && o.slow > 0.0 && o.fast > o.slow &&
-                    o.shortest_stick >= 0.0 && o.velocity_noise >= 0.0 &&
-                    o.blocks >= static_cast<int>(kFewestBlocks) && o.level > 0.0 && o.level < 1.0;
+  const bool good = o.stick.least_force > 0.0 && o.stick.slow > 0.0 &&
+                    o.stick.fast > o.stick.slow && o.stick.shortest_stick >= 0.0 &&
+                    o.velocity_noise >= 0.0 && o.blocks >= static_cast<int>(kFewestBlocks) &&
+                    o.level > 0.0 && o.level < 1.0;
   if (!good) {
     throw std::invalid_argument(
         "identification needs least_force > 0, 0 < slow < fast, 8 blocks or more and a level "
@@ -154,14 +154,14 @@ void find_dynamic_friction(const ContactSamples& s, const std::vector<std::size_
 
 void find_static_friction(const ContactSamples& s, const IdentificationOptions& o,
                           IdentifiedContact& found) {
-  if (kStickAboveNoise * o.velocity_noise > o.slow) {
+  if (kStickAboveNoise * o.velocity_noise > o.stick.slow) {
     found.confounded.push_back(fmt::format(
         "Static friction is not identifiable: velocities are good to {:.2g} mm/s, so that sticking "
         "cannot be told from slow slip; it is no less than the dynamic one.",
         1e3 * o.velocity_noise));
     return;
   }
-  const std::vector<double> ratios = break_away_ratios(s, o);
+  const std::vector<double> ratios = break_away_ratios(s, o.stick);
   found.stick_phases = ratios.size();
   if (ratios.size() < kFewestPhases) {
     found.confounded.push_back(fmt::format(
@@ -181,10 +181,10 @@ IdentifiedContact identify_contact(const ContactSamples& samples,
   check(samples);
   check_options(options);
   std::vector<std::size_t> touching, slipping;
-  const double fast = std::max(options.fast, kAboveNoise * options.velocity_noise);
+  const double fast = std::max(options.stick.fast, kAboveNoise * options.velocity_noise);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Vector3d& n = samples.normal[i];
-    if (samples.force[i].dot(n) > options.least_force) {
+    if (samples.force[i].dot(n) > options.stick.least_force) {
       touching.push_back(i);
       if ((samples.velocity[i] - samples.velocity[i].dot(n) * n).norm() > fast) {
         slipping.push_back(i);

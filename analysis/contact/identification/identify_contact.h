@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/contact/identification/contact_samples.h"
+#include "analysis/contact/identification/stick_phases.h"
 #include "analysis/contact/regression/block_regression.h"
 
 namespace haptrial::evaluation {
@@ -16,11 +16,8 @@ struct TextureGrid {
 };
 
 struct IdentificationOptions {
-  double least_force{0.2};      // normal force of a contact > 0 [N]
-  double slow{0.002};           // below it the contact may stick [m/s]
-  double fast{0.010};           // above it the contact slips, > slow [m/s]
-  double shortest_stick{0.01};  // [s]
-  double velocity_noise{0.0};   // of a component; raises `fast` to five times of it [m/s]
+  StickOptions stick{};
+  double velocity_noise{0.0};  // of a component; raises `stick.fast` to five times of it [m/s]
   std::optional<TextureGrid> texture{};
   int blocks{20};      // >= 8; fewer where they would hold less than ten samples
   double level{0.95};  // of all intervals
@@ -41,14 +38,14 @@ struct IdentifiedContact {
 
 /// Stiffness, friction and texture of a recorded contact, with intervals from blocks.
 ///
-///     depth = F_n / k + c + s·n + A-terms      contact samples, F_n = F·n > least_force
+///     depth = F_n / k + c + s·n + A-terms      contact samples, F_n = F·n > least force
 ///     F·u   = -mu_d F_n + u·b                  samples that slip, u = v/|v| along the surface
 ///
 /// The depth is regressed on the force and not the other way round, since poses are noisy and
 /// forces are not: k is the inverse of an interval of 1/k. The offset c and the shift s stand for
 /// what a registration leaves, b for what is left of the sensor's offset. Static friction is the
 /// mean, with Student's t over phases of sticking, of |F_t| / F_n at their ends
-/// (break_away_ratios()); slip slower than `slow` counts as sticking and pulls it towards the
+/// (break_away_ratios()); slip slower than `stick.slow` counts as sticking and pulls it towards the
 /// dynamic one. Friction is signed, negative where it pushes along the motion: a
 /// contact without it gives an interval around 0. The amplitude's interval begins at 0 where
 /// Hotelling's test of its two terms does not tell them from 0.

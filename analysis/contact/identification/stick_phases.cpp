@@ -37,7 +37,7 @@ Vector3d extrapolated(const std::vector<Vector3d>& values) {
 
 class PhaseSearch {
  public:
-  PhaseSearch(const ContactSamples& samples, const IdentificationOptions& options)
+  PhaseSearch(const ContactSamples& samples, const StickOptions& options)
       : s_(samples), o_(options) {}
 
   bool touches(std::size_t i) const { return s_.force[i].dot(s_.normal[i]) > o_.least_force; }
@@ -66,13 +66,12 @@ class PhaseSearch {
 
  private:
   const ContactSamples& s_;
-  const IdentificationOptions& o_;
+  const StickOptions& o_;
 };
 
 }  // namespace
 
-std::vector<double> break_away_ratios(const ContactSamples& samples,
-                                      const IdentificationOptions& options) {
+std::vector<double> break_away_ratios(const ContactSamples& samples, const StickOptions& options) {
   const PhaseSearch search(samples, options);
   std::vector<double> ratios;
   for (std::size_t i = 0; i < samples.size(); ++i) {

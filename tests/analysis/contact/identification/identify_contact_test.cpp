@@ -156,7 +156,7 @@ TEST(IdentifyContactTest, StaticAndDynamicFrictionAreToldApart) {
     force.emplace_back(kStiffness * (state.position - p));
   }
   IdentificationOptions options;
-  options.slow = 1e-5;  // the proxy sticks without any motion; slower slip is no sticking
+  options.stick.slow = 1e-5;  // the proxy sticks without any motion; slower slip is no sticking
   const auto found =
       identify_contact(recorded(tool, contact, force, false, {0.0, 0.0, 0.0}, random), options);
   ASSERT_TRUE(found.static_friction && found.dynamic_friction);
@@ -258,10 +258,10 @@ TEST(IdentifyContactTest, NoisyVelocitiesCannotTellSticking) {
 TEST(IdentifyContactTest, RefusesWhatIsNoContact) {
   ContactSamples s = rubbed(0.3, false, 1);
   IdentificationOptions options;
-  options.slow = 0.02;
+  options.stick.slow = 0.02;
   EXPECT_THROW(identify_contact(s, options), std::invalid_argument);
   options = {};
-  options.least_force = 100.0;
+  options.stick.least_force = 100.0;
   EXPECT_THROW(identify_contact(s, options), std::invalid_argument) << "nothing touches";
   s.depth.pop_back();
   EXPECT_THROW(identify_contact(s), std::invalid_argument);
