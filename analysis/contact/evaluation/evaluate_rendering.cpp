@@ -45,9 +45,9 @@ void identify(const EvaluationOptions& o, Evaluation& result) {
 void remark(Evaluation& result) {
   for (const EvaluatedRendering& r : result.renderings) {
     if (r.rendered.unsettled > 0) {
-      result.remarks.push_back(
-          fmt::format("{} of {} ticks of {} ended before its proxy was at rest.",
-                      r.rendered.unsettled, r.rendered.force.size(), contact::name_of(r.kind)));
+      result.remarks.push_back(fmt::format(
+          "{} of {} ticks of {} with friction {:.3f} ended before its proxy was at rest.",
+          r.rendered.unsettled, r.rendered.force.size(), contact::name_of(r.kind), r.friction));
     }
   }
   result.remarks.push_back(

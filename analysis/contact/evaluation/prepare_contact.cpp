@@ -270,6 +270,7 @@ PreparedContact prepare_contact(const ContactRecording& recording, const Evaluat
                                 const PrepareOptions& options) {
   check_options(options);
   PreparedContact result;
+  result.least_force = options.least_force;
   result.rate = options.rate;
   result.stiffness = options.stiffness;
   const PoseStream whole = tip_path(recording.pose, options.tip);

@@ -50,6 +50,7 @@ struct PreparedContact {
   double lag_used{0.0};         // [s]
   std::optional<LoadFit> load;  // estimated
   std::optional<Registration> registration;
+  double least_force{0.0};              // of a contact [N]
   double rate{0.0};                     // [Hz]
   double stiffness{0.0};                // [N/m]
   double contact_share{0.0};            // of the samples

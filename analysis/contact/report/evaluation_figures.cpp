@@ -134,7 +134,7 @@ Figure residual_figure(const Evaluation& e) {
   std::vector<double> distance;  // of recorded contacts outside the mesh [mm]
   const ContactSamples& s = e.contact.samples;
   for (std::size_t i = 0; i < s.size(); ++i) {
-    if (s.force[i].dot(s.normal[i]) > 0.0) {
+    if (s.force[i].dot(s.normal[i]) > e.contact.least_force) {
       distance.push_back(-1e3 * s.depth[i]);
     }
   }
