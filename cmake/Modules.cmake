@@ -198,7 +198,7 @@ function(haptrial_test_needs)
   target_link_libraries(test_record PRIVATE haptrial_bone_record haptrial_record_trials)  # tables to try
   target_link_libraries(test_drilling_analysis PRIVATE haptrial_bone_data)
   target_link_libraries(test_exchange PRIVATE haptrial_force_score)
-  target_link_libraries(test_contact_analysis PRIVATE haptrial_geometry_files)
+  target_link_libraries(test_contact_analysis PRIVATE haptrial_geometry_files haptrial_geometry_repair)
   target_link_libraries(test_subject_perceiver PRIVATE haptrial_scene)
   target_link_libraries(test_psychometric_fit PRIVATE nlohmann_json::nlohmann_json PkgConfig::gsl
                                                       haptrial_psychometric)  # virtual sessions

@@ -4,12 +4,38 @@
 #   results/regenerate.sh force_training [SEED]
 # A variant, force_training_..., is also compared with force_training. A study of drillings is rated by
 # simulated raters; of an experiment that its definition states whole a few participants are kept.
+# contact_evaluation is no study: haptrial evaluate --duck makes it.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 study=${1:?which study? a definition in experiments/, without .toml}
 seed=${2:-1}
 definition=experiments/$study.toml
 cd "$root"
+sum() { sha256sum "$1" | cut -d' ' -f1; }
+
+if [ "$study" = contact_evaluation ]; then  # no participants: a simulated recording of a contact
+  out=$(mktemp -d)/duck
+  trap 'rm -rf "$(dirname "$out")"' EXIT
+  build/haptrial evaluate --duck --seed "$seed" --out "$out"
+  rm -rf "results/$study"
+  mkdir -p "results/$study"
+  cp "$out"/*.csv "$out"/report.html "$out"/*.svg "results/$study/"
+  cat >"results/$study/manifest.json" <<EOF
+{
+  "study": "$study",
+  "simulated": true,
+  "commands": [
+    "haptrial evaluate --duck --seed $seed --out OUT"
+  ],
+  "seed": $seed,
+  "program": "$(build/haptrial --version)",
+  "table_4_sha256": "$(sum "results/$study/table-4.csv")",
+  "table_5_sha256": "$(sum "results/$study/table-5.csv")",
+  "table_6_sha256": "$(sum "results/$study/table-6.csv")"
+}
+EOF
+  exit
+fi
 [ -f "$definition" ] || { echo "regenerate.sh: no $definition" >&2; exit 2; }
 
 out=$(mktemp -d)/sessions
@@ -37,7 +63,6 @@ if [[ $study == force_training_* ]]; then
     "haptrial compare results/force_training OUT --out OUT"'
 fi
 
-sum() { sha256sum "$1" | cut -d' ' -f1; }
 rm -rf "results/$study"
 mkdir -p "results/$study"
 [ -z "$compare" ] || cp "$out"/comparison.html "$out"/comparison.json "results/$study/"

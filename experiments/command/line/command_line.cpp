@@ -28,6 +28,7 @@ void declare_subcommands(CLI::App& app, int& status) {
   add_analyze(app, status);
   add_export(app, status);
   add_align(app, status);
+  add_evaluate(app, status);
   add_compare(app, status);
   add_statistics(app, status);
   add_info(app, status);

@@ -27,6 +27,7 @@ void add_device_test(CLI::App& app, int& status);
 void add_analyze(CLI::App& app, int& status);
 void add_export(CLI::App& app, int& status);
 void add_align(CLI::App& app, int& status);
+void add_evaluate(CLI::App& app, int& status);
 void add_compare(CLI::App& app, int& status);
 void add_statistics(CLI::App& app, int& status);
 void add_power(CLI::App& app, int& status);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/contact/evaluation/evaluate_rendering.h"
 #include "analysis/contact/recording/stream_lag.h"
 #include "analysis/contact/registration/in_trajectory.h"
 #include "analysis/contact/registration/registration.h"
@@ -77,6 +78,36 @@ TEST_P(ContourTest, TheLagIsFound) {
     EXPECT_LT(fit.low, 0.0);
     EXPECT_GT(fit.high, 0.0);
   }
+}
+
+/// The tool rolls on bearings: the friction that is found must be none, within its interval.
+TEST_P(ContourTest, ARollingToolHasNoFriction) {
+  const auto file = test::contour_file(GetParam());
+  auto mesh = contour_body();
+  if (!file || !mesh) {
+    GTEST_SKIP() << kAbsent;
+  }
+  const EvaluatedBody body(*std::move(mesh));
+  EvaluationOptions options;
+  options.renderers = {contact::RendererKind::kPenalty};
+  options.prepare.tip = test::contour_tool(GetParam()).point;
+  options.prepare.mount = test::contour_tool(GetParam()).mount;
+  options.prepare.load = test::contour_load();
+  options.prepare.stiffness = 2e4;  // N/m: 20 N press by a millimetre
+  const Evaluation e = evaluate_rendering(test::read_contour(*file), body, options);
+  ASSERT_TRUE(e.identified && e.identified->dynamic_friction);
+  const Interval friction = *e.identified->dynamic_friction;
+  RecordProperty("friction_low_1000", static_cast<int>(1e3 * friction.low));
+  RecordProperty("friction_high_1000", static_cast<int>(1e3 * friction.high));
+  RecordProperty("stiffness_low", static_cast<int>(e.identified->stiffness.low));
+  RecordProperty("force_error_mN", static_cast<int>(1e3 * e.renderings[0].force.root_mean_square));
+  RecordProperty("mean_force_mN", static_cast<int>(1e3 * e.renderings[0].force.mean_force));
+  for (const std::string& remark : e.remarks) {
+    RecordProperty("remark", remark);
+  }
+  EXPECT_TRUE(friction.holds(0.0)) << friction.low << " to " << friction.high;
+  EXPECT_LT(friction.high, 0.2) << "an interval that tells it from a sliding tool's";
+  EXPECT_GT(e.identified->stiffness.low, 2000.0) << "the body is rigid";
 }
 
 INSTANTIATE_TEST_SUITE_P(SetUps, ContourTest, testing::Values('a', 'b', 'c', 'd', 'e', 'f'),

@@ -1,0 +1,181 @@
+#include "analysis/contact/duck/duck_report.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <span>
+
+#include "analysis/contact/report/evaluation_tables.h"
+#include "analysis/document/document.h"
+#include "analysis/document/figure_gnuplot.h"
+#include "analysis/document/palette.h"
+#include "analysis/files/new_folder.h"
+#include "core/base/files/file_text.h"
+
+namespace haptrial::evaluation {
+namespace {
+
+namespace palette = analysis::palette;
+
+// Morris 2006, Tables 4 to 6, "RMS force error" [N].
+constexpr std::array kSourceTable4{0.136, 0.130, 0.129};
+constexpr std::array kSourceTable5{0.132, 0.067};
+constexpr std::array kSourceTable6{0.085, 0.031, 0.031, 0.022, 0.022, 0.015, 0.013, 0.009};
+
+TextTable errors(const std::vector<DuckRow>& rows, std::span<const double> source) {
+  TextTable table{
+      {"renderer", "triangles", "friction", "error (N)", "of the normal force (N)", "source (N)"},
+      {}};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const DuckRow& r = rows[i];
+    table.rows.push_back({r.renderer, fmt::format("{}", r.triangles),
+                          fmt::format("{:.4f}", r.friction), fmt::format("{:.4f}", r.error),
+                          fmt::format("{:.4f}", r.normal_error), fmt::format("{:.3f}", source[i])});
+  }
+  return table;
+}
+
+TextTable table4(const DuckTables& t) { return errors(t.table4, kSourceTable4); }
+TextTable table5(const DuckTables& t) { return errors(t.table5, kSourceTable5); }
+TextTable table6(const DuckTables& t) {
+  TextTable table = errors(t.table6, kSourceTable6);
+  table.heading.insert(table.heading.end() - 1, {"shaded (N)", "of the normal force, shaded (N)"});
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    auto& row = table.rows[i];
+    row.insert(row.end() - 1, {fmt::format("{:.4f}", t.shaded[i].error),
+                               fmt::format("{:.4f}", t.shaded[i].normal_error)});
+  }
+  return table;
+}
+
+TextTable costs(const DuckTables& t) {
+  TextTable table{
+      {"renderer", "triangles", "friction", "tick (us)", "preparation (s)", "memory (MB)"}, {}};
+  for (const auto* rows : {&t.table4, &t.table5, &t.table6}) {
+    for (const DuckRow& r : *rows) {
+      table.rows.push_back({r.renderer, fmt::format("{}", r.triangles),
+                            fmt::format("{:.4f}", r.friction), fmt::format("{:.2f}", 1e6 * r.tick),
+                            fmt::format("{:.3f}", r.preparation),
+                            fmt::format("{:.2f}", 1e-6 * r.memory)});
+    }
+  }
+  return table;
+}
+
+std::string csv_of(const TextTable& table) {
+  std::string text;
+  const auto add = [&](const std::vector<std::string>& row) {
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      // "voxel, 32^3" holds a comma.
+      const bool quoted = row[c].find(',') != std::string::npos;
+      fmt::format_to(std::back_inserter(text), "{}{}{}{}", c == 0 ? "" : ",", quoted ? "\"" : "",
+                     row[c], quoted ? "\"" : "");
+    }
+    text += '\n';
+  };
+  add(table.heading);
+  for (const auto& row : table.rows) {
+    add(row);
+  }
+  return text;
+}
+
+std::vector<std::string> facts(const DuckTables& t) {
+  const Registration& r = *t.contact.registration;
+  return {
+      fmt::format("Seed {}; {:.0f} s of a probe that presses with {:.2f} N in the mean on a "
+                  "duck with a friction of {:.2f}; in-trajectory of {:.0f} N/m.",
+                  t.options.seed, t.options.seconds, t.mean_force, t.options.friction,
+                  t.options.stiffness),
+      fmt::format("The scan lies {:.3f} mm from the duck (root mean square).", 1e3 * t.scan_error),
+      fmt::format("Found: lag {:.2f} ms of 40 ms; load {:.3f} N of 0.4 N; the path lies {:.3f} "
+                  "mm from the scan (median).",
+                  1e3 * t.contact.lag_used, t.contact.load->load.weight.norm(), 1e3 * r.median),
+      fmt::format("Best friction {:.4f}: error {:.4f} N in place of {:.4f} N.", t.friction.friction,
+                  t.friction.with, t.friction.without)};
+}
+
+analysis::Series curve(const std::string& label, const analysis::Look& look,
+                       const std::vector<DuckRow>& rows) {
+  analysis::Series series{label, analysis::Mark::kLine, look};
+  for (const DuckRow& r : rows) {
+    series.x.push_back(std::log10(static_cast<double>(r.triangles)));
+    series.y.push_back(r.normal_error);
+  }
+  return series;
+}
+
+}  // namespace
+
+std::vector<std::string> duck_lines(const DuckTables& t) {
+  std::vector<std::string> lines{"SIMULATED RECORDING"};
+  const auto append = [&](const std::vector<std::string>& more) {
+    lines.insert(lines.end(), more.begin(), more.end());
+  };
+  append(facts(t));
+  for (const TextTable& table : {table4(t), table5(t), table6(t), costs(t)}) {
+    lines.emplace_back();
+    append(text_lines(table));
+  }
+  return lines;
+}
+
+analysis::Figure resolution_figure(const DuckTables& t) {
+  analysis::Figure figure;
+  figure.name = "figure-64";
+  figure.title = "Force error over the size of the mesh";
+  figure.x_label = "triangles";
+  figure.y_label = "error of the normal force (N)";
+  for (const DuckRow& r : t.table6) {
+    figure.x_names.emplace_back(std::log10(static_cast<double>(r.triangles)),
+                                fmt::format("{:.3g}k", 1e-3 * static_cast<double>(r.triangles)));
+  }
+  figure.series = {
+      curve("plain", {palette::kBlue, palette::kSolid, 7, 2.2, 1.0}, t.table6),
+      curve("force shading", {palette::kOrange, palette::kLong, 5, 2.2, 1.0}, t.shaded)};
+  analysis::Series source{
+      "source, plain", analysis::Mark::kPoints, {palette::kBlack, palette::kSolid, 6, 1.6, 1.2}};
+  source.x = figure.series[0].x;
+  source.y.assign(kSourceTable6.begin(), kSourceTable6.end());
+  figure.series.push_back(source);
+  figure.height = 0.5;
+  figure.simulated = true;
+  figure.caption =
+      "Root mean square of what the rendered force misses of the recorded normal "
+      "force, for the proxy without friction.";
+  figure.alt = "Error falls with the number of triangles, sooner with force shading.";
+  return figure;
+}
+
+void write_duck(const DuckTables& t, const std::filesystem::path& folder) {
+  exchange::NewFolder out(folder);
+  analysis::Document document;
+  document.title = "Rendered beside simulated contact: the source's duck made anew";
+  document.simulated = true;
+  document.alarm("SIMULATED RECORDING: no hand touched a body.");
+  document.points(facts(t));
+  const auto add = [&](const char* heading, const char* name, const TextTable& table) {
+    document.heading(heading);
+    document.table(table.heading, table.rows);
+    out.write(name, csv_of(table));
+  };
+  add("Table 4: proxy and voxels", "table-4.csv", table4(t));
+  add("Table 5: friction", "table-5.csv", table5(t));
+  add("Table 6: size of the mesh", "table-6.csv", table6(t));
+  const analysis::Figure figure = resolution_figure(t);
+  const std::filesystem::path place = out.place("report.html").parent_path();
+  analysis::draw_figures({figure}, place);
+  const analysis::Drawing drawing{figure, file_text(place / (figure.name + ".svg"))};
+  document.picture(drawing);
+  add("Costs on this computer", "costs.csv", costs(t));
+  document.heading("Remarks");
+  for (const std::string& remark : t.contact.remarks) {
+    document.paragraph(remark);
+  }
+  out.write("report.html", analysis::to_html(document));
+  out.publish();
+}
+
+}  // namespace haptrial::evaluation

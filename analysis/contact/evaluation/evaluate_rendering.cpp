@@ -1,0 +1,116 @@
+#include "analysis/contact/evaluation/evaluate_rendering.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace haptrial::evaluation {
+namespace {
+
+using contact::RendererKind;
+
+constexpr double kSmallSphere = 0.01;  // of the body's size, where the probe has no radius
+
+bool has_friction(RendererKind kind) {
+  return kind == RendererKind::kProxy || kind == RendererKind::kRuspini;
+}
+
+contact::RendererOptions options_for(RendererKind kind, const EvaluatedBody& body,
+                                     const EvaluationOptions& o) {
+  contact::RendererOptions options;
+  options.resolution = o.resolution;
+  if (has_friction(kind)) {
+    options.crease_angle = o.crease_angle;
+    options.radius = o.prepare.radius;
+  }
+  if (kind == RendererKind::kRuspini && options.radius == 0.0) {
+    options.radius = kSmallSphere * body.size;
+  }
+  return options;
+}
+
+void identify(const EvaluationOptions& o, Evaluation& result) {
+  IdentificationOptions options;
+  options.stick.least_force = o.prepare.least_force;
+  options.velocity_noise = result.contact.velocity_noise;
+  options.texture = o.texture;
+  try {
+    result.identified = identify_contact(result.contact.samples, options);
+  } catch (const std::invalid_argument& error) {
+    result.remarks.push_back(fmt::format("Nothing is identified: {}.", error.what()));
+  }
+}
+
+void remark(Evaluation& result) {
+  for (const EvaluatedRendering& r : result.renderings) {
+    if (r.rendered.unsettled > 0) {
+      result.remarks.push_back(fmt::format(
+          "{} of {} ticks of {} with friction {:.3f} ended before its proxy was at rest.",
+          r.rendered.unsettled, r.rendered.force.size(), contact::name_of(r.kind), r.friction));
+    }
+  }
+  result.remarks.push_back(
+      "Operations are not counted: the renderers do not offer it. Times are those of this "
+      "computer.");
+}
+
+}  // namespace
+
+EvaluatedRendering measured_rendering(const PreparedContact& contact, const EvaluatedBody& body,
+                                      RendererKind kind, const contact::RendererOptions& options,
+                                      double threshold) {
+  EvaluatedRendering r{kind,
+                       options.friction.dynamic_friction,
+                       options.radius,
+                       render_contact(contact, body, kind, options),
+                       {},
+                       {},
+                       {},
+                       {},
+                       {}};
+  r.force = force_error(contact.force, r.rendered.force);
+  r.bands = band_error(contact.force, r.rendered.force, contact.rate);
+  r.position = position_error(contact.out, r.rendered.place, threshold);
+  r.noticeable = noticeable_error(contact.force, r.rendered.force);
+  r.ticks = tick_times(r.rendered.tick_seconds);
+  return r;
+}
+
+Evaluation evaluate_rendering(const ContactRecording& recording, const EvaluatedBody& body,
+                              const EvaluationOptions& options) {
+  if (options.renderers.empty()) {
+    throw std::invalid_argument("an evaluation needs a renderer");
+  }
+  Evaluation result;
+  result.contact = prepare_contact(recording, body, options.prepare);
+  result.triangles = body.mesh.triangles.size();
+  result.remarks = result.contact.remarks;
+  const auto measure = [&](RendererKind kind, const contact::RendererOptions& o) {
+    result.renderings.push_back(
+        measured_rendering(result.contact, body, kind, o, options.threshold));
+  };
+  for (const RendererKind kind : options.renderers) {
+    measure(kind, options_for(kind, body, options));
+  }
+  double friction = options.friction.value_or(0.0);
+  for (const RendererKind kind : options.renderers) {
+    if (!has_friction(kind)) {
+      continue;
+    }
+    contact::RendererOptions with = options_for(kind, body, options);
+    if (!options.friction && !result.friction) {
+      result.friction = fit_friction(result.contact, body, kind, with);
+      friction = result.friction->friction;
+    }
+    if (friction > 0.0) {
+      with.friction = {friction, friction};
+      measure(kind, with);
+    }
+  }
+  identify(options, result);
+  remark(result);
+  return result;
+}
+
+}  // namespace haptrial::evaluation

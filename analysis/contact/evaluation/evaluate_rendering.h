@@ -1,0 +1,60 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/contact/evaluation/render_contact.h"
+#include "analysis/contact/identification/identify_contact.h"
+
+namespace haptrial::evaluation {
+
+struct EvaluationOptions {
+  PrepareOptions prepare{};
+  std::vector<contact::RendererKind> renderers{contact::kRendererKinds.begin(),
+                                               contact::kRendererKinds.end()};
+  int resolution{64};              // of voxel and distance field
+  double crease_angle{-1.0};       // force shading of proxies; negative: none [rad]
+  std::optional<double> friction;  // of proxies; default: the one that fits best
+  double threshold{0.001};         // position errors beyond it are places [m]
+  std::optional<TextureGrid> texture{};
+};
+
+/// One rendering beside the recording.
+struct EvaluatedRendering {
+  contact::RendererKind kind;
+  double friction{0.0};  // static and dynamic
+  double radius{0.0};    // of the tool [m]
+  RenderedContact rendered;
+  ForceError force;
+  BandError bands;
+  PositionError position;  // samples of the trajectory
+  NoticeableError noticeable;
+  TickTimes ticks;  // [s]
+};
+
+/// How far renderings are from a recorded contact.
+struct Evaluation {
+  PreparedContact contact;
+  std::size_t triangles{0};
+  std::optional<FrictionFit> friction;         // absent where it was given, or no proxy renders
+  std::vector<EvaluatedRendering> renderings;  // without friction, then with
+  std::optional<IdentifiedContact> identified;
+  std::vector<std::string> remarks;  // sentences: what is doubtful, what was not measured
+};
+
+/// The whole chain: recording and mesh to lag, load, registration, in-trajectory, renderings,
+/// their errors and costs, and what the contact is made of. Every renderer has the same stiffness.
+/// Proxies render twice, without friction and with. "ruspini" needs a radius: the probe's, or, for
+/// a point, a hundredth of the body's size.
+/// @throws std::invalid_argument as prepare_contact() and make_renderer(), or without a renderer.
+/// Source: Morris 2006, §7.3 and §7.4.
+Evaluation evaluate_rendering(const ContactRecording& recording, const EvaluatedBody& body,
+                              const EvaluationOptions& options);
+
+/// The metrics of one rendering. @param threshold  see EvaluationOptions
+EvaluatedRendering measured_rendering(const PreparedContact& contact, const EvaluatedBody& body,
+                                      contact::RendererKind kind,
+                                      const contact::RendererOptions& options, double threshold);
+
+}  // namespace haptrial::evaluation

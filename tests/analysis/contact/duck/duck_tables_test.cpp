@@ -1,0 +1,90 @@
+#include "analysis/contact/duck/duck_tables.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "analysis/contact/duck/duck_report.h"
+#include "core/base/files/file_text.h"
+#include "core/geometry/bvh/bvh.h"
+#include "core/geometry/repair/mesh_check.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::evaluation {
+namespace {
+
+using Eigen::Vector3d;
+using testing::HasSubstr;
+
+/// The normal of the gradient is that of a fine mesh.
+TEST(DuckTest, NormalsAreThoseOfItsMesh) {
+  const geometry::Mesh mesh = radial_mesh(duck_radius, 60);
+  double worst = 0.0;
+  for (const geometry::Triangle& t : mesh.triangles) {
+    const Vector3d a = mesh.vertices[t[0]], b = mesh.vertices[t[1]], c = mesh.vertices[t[2]];
+    const Vector3d normal = (b - a).cross(c - a).normalized();
+    worst = std::max(worst, (radial_normal(duck_radius, (a + b + c).normalized()) - normal).norm());
+  }
+  EXPECT_LT(worst, 0.05) << "edges of 1 mm on curvatures of up to 100 per metre";
+}
+
+TEST(DuckTest, ScanAndCoarserMeshesAreClosed) {
+  const geometry::Mesh scan = scanned_mesh(duck_radius, {.frequency = 40});
+  const geometry::Bvh bvh(scan);
+  const RadialBody scanned = radius_of(bvh);
+  for (const int frequency : {3, 7, 21}) {
+    const geometry::Mesh mesh = radial_mesh(scanned, frequency);
+    EXPECT_EQ(mesh.triangles.size(), 20u * frequency * frequency);
+    EXPECT_TRUE(geometry::check_mesh(mesh).closed) << frequency;
+    for (const Vector3d& v : mesh.vertices) {
+      ASSERT_LT(std::sqrt(bvh.closest(v).distance_squared), 1e-9) << "corners lie on the scan";
+    }
+  }
+  double squares = 0.0;
+  for (const Vector3d& v : scan.vertices) {
+    const double off = v.norm() - duck_radius(v.normalized());
+    squares += off * off / static_cast<double>(scan.vertices.size());
+  }
+  EXPECT_LT(std::sqrt(squares), 0.0004) << "smoothing leaves less than half of 1 mm";
+  EXPECT_GT(std::sqrt(squares), 0.00005);
+}
+
+/// The trends of the source's tables, on a small scan.
+TEST(DuckTest, TablesHaveTheSourcesTrends) {
+  DuckOptions options;
+  options.frequency = 60;  // 72,000 triangles
+  options.seconds = 12.0;
+  const DuckTables t = make_duck_tables(options);
+  ASSERT_EQ(t.table4.size(), 3u);
+  EXPECT_GT(t.table4[0].normal_error, t.table4[1].normal_error) << "finer voxels err less";
+  EXPECT_LT(t.table4[2].normal_error, t.table4[1].normal_error) << "the proxy errs least";
+  EXPECT_LT(t.friction.with, 0.6 * t.friction.without);
+  EXPECT_NEAR(t.friction.friction, options.friction, 0.05);
+  ASSERT_EQ(t.table6.size(), 8u);
+  EXPECT_GT(t.table6[0].normal_error, 4.0 * t.table6.back().normal_error);
+  EXPECT_LT(t.shaded[2].normal_error, t.table6[2].normal_error) << "shading helps a coarse mesh";
+}
+
+TEST(DuckTest, IsWrittenWithTheSourcesNumbers) {
+  DuckTables t;
+  t.contact.registration = Registration{};
+  t.contact.load = LoadFit{};
+  t.table4.assign(3, {"proxy", 140'000, 0.0, 0.12, 0.01, 1e-6, 0.0, 0.0});
+  t.table5.assign(2, t.table4[0]);
+  t.table6.assign(8, t.table4[0]);
+  for (std::size_t i = 0; i < 8; ++i) {
+    t.table6[i].triangles = 200 << i;
+  }
+  t.shaded = t.table6;
+  const test::TemporaryFolder folder;
+  write_duck(t, folder / "out");
+  EXPECT_THAT(file_text(folder / "out/table-5.csv"), HasSubstr("0.067"));
+  EXPECT_THAT(file_text(folder / "out/table-6.csv"), HasSubstr("0.085"));
+  EXPECT_THAT(file_text(folder / "out/report.html"), HasSubstr("SIMULATED RECORDING"));
+  EXPECT_THAT(duck_lines(t).front(), "SIMULATED RECORDING");
+}
+
+}  // namespace
+}  // namespace haptrial::evaluation

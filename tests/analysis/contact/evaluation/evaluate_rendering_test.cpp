@@ -1,0 +1,182 @@
+#include "analysis/contact/evaluation/evaluate_rendering.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analysis/contact/simulation/simulated_probe.h"
+#include "analysis/contact/truth/true_contact.h"
+#include "core/geometry/mesh/procedural.h"
+
+namespace haptrial::evaluation {
+namespace {
+
+using contact::RendererKind;
+using Eigen::Vector3d;
+using testing::HasSubstr;
+
+constexpr double kRadius = 0.05, kStiffness = 800.0, kFriction = 0.3;
+
+/// A recording of the exact contact with a sphere: the probe is where the proxy is, in the body's
+/// frame.
+ContactRecording rubbed_sphere(double friction) {
+  std::vector<Vector3d> tool;
+  for (int i = 0; i < 6000; ++i) {
+    const double t = i * 0.001;
+    const double out = kRadius + 0.001 - (0.003 + 0.0008 * std::sin(7.3 * t)) * std::min(1.0, t);
+    tool.emplace_back(
+        out * Vector3d(0.4 * std::sin(2.1 * t), 1.0, 0.3 * std::sin(1.3 * t + 0.4)).normalized());
+  }
+  const auto truth = true_contacts(TrueSphere{kRadius}, tool, kStiffness, friction);
+  ContactRecording recording;
+  for (std::size_t i = 0; i < tool.size(); ++i) {
+    recording.pose.time.push_back(0.001 * static_cast<double>(i));
+    recording.pose.position.push_back(truth[i].proxy);
+    recording.pose.orientation.push_back(Eigen::Quaterniond::Identity());
+    recording.force.force.push_back(truth[i].force);
+  }
+  recording.force.time = recording.pose.time;
+  return recording;
+}
+
+const EvaluatedBody& sphere() {
+  static const EvaluatedBody body(geometry::make_sphere(kRadius, 60));
+  return body;
+}
+
+EvaluationOptions known_frame() {
+  EvaluationOptions options;
+  options.prepare.registered = true;
+  options.prepare.lag = 0.0;
+  options.prepare.stiffness = kStiffness;
+  return options;
+}
+
+const EvaluatedRendering& rendering(const Evaluation& e, RendererKind kind, bool friction) {
+  for (const EvaluatedRendering& r : e.renderings) {
+    if (r.kind == kind && (r.friction > 0.0) == friction) {
+      return r;
+    }
+  }
+  throw std::invalid_argument("no such rendering");
+}
+
+/// All that a frictionless renderer misses is friction: mu F_n on every sample of slip.
+TEST(EvaluateRenderingTest, FrictionIsWhatAFrictionlessRenderingMisses) {
+  const Evaluation e = evaluate_rendering(rubbed_sphere(kFriction), sphere(), known_frame());
+  double squares = 0.0;
+  for (std::size_t i = 0; i < e.contact.force.size(); ++i) {
+    const double normal = e.contact.force[i].dot(e.contact.normal[i]);
+    squares += (e.contact.force[i] - normal * e.contact.normal[i]).squaredNorm();
+  }
+  const double missed = std::sqrt(squares / static_cast<double>(e.contact.force.size()));
+  ASSERT_TRUE(e.friction);
+  EXPECT_NEAR(e.friction->friction, kFriction, 0.1 * kFriction) << "less: it lags at turns";
+  for (const RendererKind kind : contact::kRendererKinds) {
+    const EvaluatedRendering& r = rendering(e, kind, false);
+    EXPECT_NEAR(r.force.root_mean_square, missed, 0.02 * missed) << contact::name_of(kind);
+    const BandError& b = r.bands;
+    EXPECT_NEAR(b.slow * b.slow + b.middle * b.middle + b.fast * b.fast, b.total * b.total,
+                1e-9 * b.total * b.total);
+  }
+  EXPECT_LT(rendering(e, RendererKind::kProxy, true).force.root_mean_square, 0.3 * missed);
+  EXPECT_LT(rendering(e, RendererKind::kRuspini, true).force.root_mean_square, 0.3 * missed);
+}
+
+TEST(EvaluateRenderingTest, WithoutFrictionTheRenderingIsRight) {
+  const Evaluation e = evaluate_rendering(rubbed_sphere(0.0), sphere(), known_frame());
+  const EvaluatedRendering& proxy = rendering(e, RendererKind::kProxy, false);
+  EXPECT_LT(proxy.force.root_mean_square, 0.02 * proxy.force.mean_force)
+      << "facets of 72,000 triangles turn normals by less than a hundredth";
+  EXPECT_LT(proxy.position.worst, 1e-4);
+  EXPECT_TRUE(proxy.position.places.empty());
+  ASSERT_TRUE(e.friction);
+  EXPECT_LT(e.friction->friction, 0.01);
+  ASSERT_TRUE(e.identified && e.identified->dynamic_friction);
+  EXPECT_TRUE(e.identified->dynamic_friction->holds(0.0));
+}
+
+TEST(EvaluateRenderingTest, CostsAreMeasured) {
+  EvaluationOptions options = known_frame();
+  options.friction = 0.2;
+  options.renderers = {RendererKind::kVoxel, RendererKind::kProxy};
+  options.resolution = 64;
+  const Evaluation coarse = evaluate_rendering(rubbed_sphere(0.0), sphere(), options);
+  options.resolution = 128;
+  const Evaluation fine = evaluate_rendering(rubbed_sphere(0.0), sphere(), options);
+  EXPECT_FALSE(coarse.friction) << "it was given";
+  const double memory = rendering(coarse, RendererKind::kVoxel, false).rendered.memory;
+  const double more = rendering(fine, RendererKind::kVoxel, false).rendered.memory;
+  if (memory > 0.0) {  // sanitizers have a heap of their own
+    // Two cells more on every side, a triangle's number of 4 bytes in each.
+    EXPECT_NEAR(more - memory, 4.0 * (std::pow(132.0, 3.0) - std::pow(68.0, 3.0)), 0.1 * more);
+  }
+  const EvaluatedRendering& proxy = rendering(fine, RendererKind::kProxy, true);
+  EXPECT_EQ(proxy.friction, 0.2);
+  EXPECT_GT(proxy.ticks.median, 0.0);
+  EXPECT_LE(proxy.ticks.median, proxy.ticks.p999);
+  EXPECT_LE(proxy.ticks.p999, proxy.ticks.worst);
+  EXPECT_GT(rendering(fine, RendererKind::kVoxel, false).rendered.preparation,
+            proxy.rendered.preparation);
+}
+
+/// Everything at once: a probe with a load on its sensor rubs a duck that lies anywhere, with a lag
+/// between its clocks, the source's noise, and friction.
+TEST(EvaluateRenderingTest, TheWholeChainFindsWhatWasPutIn) {
+  const EvaluatedBody body(radial_mesh(duck_radius, 40));
+  SimulatedProbe probe;
+  probe.lag = 0.04;
+  probe.friction = 0.25;
+  probe.world_from_body = Eigen::Translation3d(0.3, -0.2, 0.8) *
+                          Eigen::AngleAxisd(2.0, Vector3d(1.0, 2.0, -0.5).normalized());
+  EvaluationOptions options;
+  options.renderers = {RendererKind::kProxy};
+  options.prepare.free = {{0.0, probe.free_seconds - 0.5}};
+  const Evaluation e = evaluate_rendering(simulate_probe(duck_radius, probe), body, options);
+  ASSERT_TRUE(e.contact.load && e.contact.lag && e.contact.registration && e.friction);
+  RecordProperty("lag_us", static_cast<int>(1e6 * e.contact.lag_used));
+  EXPECT_NEAR(e.contact.lag_used, probe.lag, 0.008);
+  EXPECT_LT((e.contact.load->load.weight - probe.load.weight).norm(), 0.02);
+  EXPECT_LT(e.contact.registration->median, 2.0 * probe.pose_noise);
+  const Eigen::Isometry3d off = e.contact.registration->body_from_world * probe.world_from_body;
+  EXPECT_LT(off.translation().norm(), 5e-4);
+  EXPECT_NEAR(e.friction->friction, probe.friction, 0.05);
+  EXPECT_LT(e.friction->with, 0.5 * e.friction->without);
+  ASSERT_TRUE(e.identified && e.identified->dynamic_friction);
+  EXPECT_NEAR(e.identified->dynamic_friction->value, probe.friction, 0.01)
+      << "the interval is that of the noise; the registration is off by more";
+  EXPECT_TRUE(std::isinf(e.identified->stiffness.high)) << "the body is rigid";
+  EXPECT_THAT(e.remarks, testing::Contains(HasSubstr("Operations are not counted")));
+}
+
+TEST(EvaluateRenderingTest, ForcesOnTheBodyAreDoubted) {
+  ContactRecording recording = rubbed_sphere(0.0);
+  for (Vector3d& f : recording.force.force) {
+    f = -f;
+  }
+  EvaluationOptions options = known_frame();
+  options.renderers = {RendererKind::kPenalty};
+  const Evaluation doubted = evaluate_rendering(recording, sphere(), options);
+  EXPECT_THAT(doubted.remarks, testing::Contains(HasSubstr("pull into the body")));
+  EXPECT_FALSE(doubted.identified);
+  options.prepare.force_on_body = true;
+  const Evaluation turned = evaluate_rendering(recording, sphere(), options);
+  EXPECT_LT(turned.renderings[0].force.root_mean_square,
+            0.02 * turned.renderings[0].force.mean_force);
+}
+
+TEST(EvaluateRenderingTest, RefusesBadOptions) {
+  EvaluationOptions options = known_frame();
+  options.renderers.clear();
+  EXPECT_THROW(evaluate_rendering(rubbed_sphere(0.0), sphere(), options), std::invalid_argument);
+  options = known_frame();
+  options.prepare.rate = 1.0;
+  EXPECT_THROW(evaluate_rendering(rubbed_sphere(0.0), sphere(), options), std::invalid_argument);
+  options = known_frame();
+  options.resolution = 1;
+  EXPECT_THROW(evaluate_rendering(rubbed_sphere(0.0), sphere(), options), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace haptrial::evaluation

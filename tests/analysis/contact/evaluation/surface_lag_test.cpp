@@ -1,0 +1,80 @@
+#include "analysis/contact/evaluation/surface_lag.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analysis/contact/identification/contact_samples.h"
+#include "analysis/contact/simulation/simulated_probe.h"
+
+namespace haptrial::evaluation {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A probe without a load rubs the duck in the duck's own frame; normals are exact.
+struct Rubbed {
+  SurfaceWay way;
+  ForceStream force;
+};
+Rubbed rubbed(double lag, double friction, std::uint64_t seed) {
+  SimulatedProbe probe;
+  probe.seconds = 12.0;
+  probe.free_seconds = 0.5;
+  probe.lag = lag;
+  probe.friction = friction;
+  probe.force_rate = 500.0;
+  probe.load = {};
+  probe.seed = seed;
+  ContactRecording recording = simulate_probe(duck_radius, probe);
+  const std::vector<double> clock = recording.force.time;
+  for (double& t : recording.force.time) {
+    t -= lag;  // the sensor is turned into W as it was when it felt
+  }
+  Rubbed result{{recording.pose.time, {}, {}}, contact_forces(recording, {}, {})};
+  result.force.time = clock;
+  for (const Vector3d& p : recording.pose.position) {
+    result.way.normal.push_back(radial_normal(duck_radius, p.normalized()));
+  }
+  result.way.velocity = path_velocity(recording.pose.time, recording.pose.position, 0.085).velocity;
+  return result;
+}
+
+TEST(SurfaceLagTest, IsFoundWithAndWithoutFriction) {
+  for (const double friction : {0.0, 0.3}) {
+    int held = 0;
+    double worst = 0.0;
+    const int trials = 30;
+    for (int i = 0; i < trials; ++i) {
+      const double lag = -0.1 + 0.2 * i / (trials - 1.0);
+      const Rubbed r = rubbed(lag, friction, static_cast<std::uint64_t>(i));
+      const LagFit fit = estimate_surface_lag(r.way, r.force, 0.2);
+      ASSERT_TRUE(fit.doubt.empty()) << fit.doubt;
+      worst = std::max(worst, std::abs(fit.lag - lag));
+      held += fit.low <= lag && lag <= fit.high;
+    }
+    const std::string name = friction > 0.0 ? "with_friction" : "without";
+    RecordProperty("worst_us_" + name, static_cast<int>(1e6 * worst));
+    RecordProperty("held_" + name, held);
+    EXPECT_LT(worst, 0.004);
+    EXPECT_GE(held, 25) << "fewer than 25 of 30 intervals of 95 % hold once in 3,000 times";
+  }
+}
+
+TEST(SurfaceLagTest, UnrelatedForcesAreDoubted) {
+  Rubbed r = rubbed(0.0, 0.0, 1);
+  for (Vector3d& f : r.force.force) {
+    f = {0.0, 1.0, 0.0};  // always the same
+  }
+  EXPECT_FALSE(estimate_surface_lag(r.way, r.force, 0.2).doubt.empty());
+}
+
+TEST(SurfaceLagTest, RefusesTooFewForces) {
+  const Rubbed r = rubbed(0.0, 0.0, 1);
+  EXPECT_THROW(estimate_surface_lag(r.way, r.force, 100.0), std::invalid_argument);
+  EXPECT_THROW(estimate_surface_lag(r.way, r.force, 0.2, {0.2, 0.1, 0.5}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace haptrial::evaluation

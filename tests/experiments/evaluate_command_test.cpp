@@ -1,0 +1,142 @@
+// haptrial evaluate, as it is called from a shell.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/experiments/command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+using testing::HasSubstr;
+
+constexpr double kRadius = 50.0;    // of the sphere that mesh make gives [mm]
+constexpr double kFriction = 0.25;  // Coulomb
+
+class EvaluateCommandTest : public testing::Test {
+ protected:
+  EvaluateCommandTest() {
+    fs::create_directory(folder_ / "rubbed");
+    std::ofstream poses(folder_ / "rubbed/poses.csv"), forces(folder_ / "rubbed/forces.csv");
+    poses << "time_ms,x_mm,y_mm,z_mm\n";
+    forces << "time_s,force_x_N,force_y_N,force_z_N\n";
+    for (int i = 0; i < 5000; ++i) {
+      const double t = 0.002 * i;
+      const Vector3d n = normal(t);
+      if (i % 5 == 0) {
+        poses << 1e3 * t << ',' << kRadius * n.x() << ',' << kRadius * n.y() << ','
+              << kRadius * n.z() << '\n';
+      }
+      const Vector3d way = (normal(t + 1e-4) - normal(t - 1e-4)).normalized();
+      const Vector3d force = (1.0 + 0.4 * std::sin(5.0 * t)) * (n - kFriction * way);
+      forces << t << ',' << force.x() << ',' << force.y() << ',' << force.z() << '\n';
+    }
+    poses.close();
+    forces.close();
+    EXPECT_EQ(run("haptrial mesh make sphere body.obj").status, 0);
+  }
+
+  static Vector3d normal(double t) {
+    return Vector3d(0.7 * std::sin(2.1 * t), 1.0, 0.6 * std::cos(1.3 * t)).normalized();
+  }
+  test::CommandResult run(const std::string& line) {
+    return test::run_command("cd '" + folder_.path().string() + "'\n" + line);
+  }
+  nlohmann::json numbers(const char* folder) {
+    return nlohmann::json::parse(test::read_text(folder_ / folder / "evaluation.json"));
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(EvaluateCommandTest, WritesReportAndNumbers) {
+  const auto result =
+      run("haptrial evaluate rubbed --mesh body.obj --registered --lag 0 --renderer proxy,voxel "
+          "--resolution 32 --grating 4 1 0 0 --simulated --out out");
+  ASSERT_EQ(result.status, 0) << result.errors;
+  EXPECT_THAT(result.output, testing::StartsWith("SIMULATED RECORDING\n"));
+  EXPECT_THAT(result.output, HasSubstr("best friction   0.2"));
+  EXPECT_THAT(result.output, HasSubstr("report: out/report.html"));
+  const std::string page = test::read_text(folder_ / "out/report.html");
+  EXPECT_THAT(page, HasSubstr("SIMULATED RECORDING"));
+  EXPECT_THAT(page, HasSubstr("<svg"));
+  for (const char* picture : {"force-normal", "force-along-surface", "error-by-band", "residual"}) {
+    EXPECT_GT(fs::file_size(folder_ / "out" / (std::string(picture) + ".png")), 1000U) << picture;
+  }
+  const auto json = numbers("out");
+  EXPECT_TRUE(json["simulated"]);
+  ASSERT_EQ(json["renderings"].size(), 3U) << "the proxy without friction and with, voxels without";
+  EXPECT_NEAR(json["best_friction"]["friction"].get<double>(), kFriction, 0.05);
+  const double missed = json["renderings"][0]["force_error"]["root_mean_square_N"];
+  // The root mean square of mu N: what a rendering without friction must miss.
+  EXPECT_NEAR(missed, kFriction * std::sqrt(1.0 + 0.5 * 0.4 * 0.4), 0.03);
+  const auto& friction = json["identified"]["dynamic_friction"];
+  EXPECT_NEAR(friction["value"].get<double>(), kFriction, 0.02);
+  EXPECT_LT(friction["low_95"].get<double>(), friction["high_95"].get<double>());
+  EXPECT_TRUE(json["identified"]["stiffness_N_per_m"]["high_95"].is_null()) << "a rigid body";
+}
+
+/// The order of the two tables and the unit of the mesh are nobody's business but the command's.
+TEST_F(EvaluateCommandTest, TablesComeInAnyOrder) {
+  ASSERT_EQ(run("haptrial mesh repair body.obj body_mm.obj --scale 1000").status, 0);
+  const std::string rest = " --registered --lag 0 --renderer proxy --friction 0.2 --out ";
+  ASSERT_EQ(
+      run("haptrial evaluate rubbed/forces.csv rubbed/poses.csv --mesh body.obj" + rest + "one")
+          .status,
+      0);
+  ASSERT_EQ(run("haptrial evaluate rubbed/poses.csv rubbed/forces.csv --mesh body_mm.obj "
+                "--units mm" +
+                rest + "two")
+                .status,
+            0);
+  const auto one = numbers("one"), two = numbers("two");
+  ASSERT_EQ(one["renderings"].size(), 2U);
+  EXPECT_EQ(one["renderings"][1]["friction"], 0.2);
+  EXPECT_TRUE(one["best_friction"].is_null());
+  for (int i = 0; i < 2; ++i) {
+    const double error = one["renderings"][i]["force_error"]["root_mean_square_N"];
+    EXPECT_NEAR(two["renderings"][i]["force_error"]["root_mean_square_N"], error, 1e-6);
+  }
+}
+
+TEST_F(EvaluateCommandTest, BadInputGetsASentence) {
+  const auto refused = [&](const std::string& line, const std::string& why) {
+    const auto result = run("haptrial evaluate " + line);
+    EXPECT_EQ(result.status, 2) << line;
+    EXPECT_THAT(result.errors, HasSubstr(why)) << line;
+  };
+  const std::string good = "rubbed --mesh body.obj --registered ";
+  refused("absent.csv --mesh body.obj", "absent.csv");
+  refused("rubbed --mesh absent.obj", "absent.obj");
+  refused(good + "--units inch", "--units is 'inch'; allowed: m, cm, mm");
+  refused(good + "--renderer proxi", "--renderer is 'proxi'");
+  refused(good + "--stiffness 0", "--stiffness");
+  refused(good + "--rate 1", "--rate");
+  refused(good + "--friction -0.1", "--friction");
+  refused(good + "--sensor 1 1 0 0", "--sensor has the length 1.414");
+  refused(good + "--free 2 1", "--free is from 2 to 1 s");
+  refused(good + "--free 1 2 3", "--free has 3 times");
+  refused(good + "--grating 4 0 0 0", "--grating: the axis has no length");
+  refused(good + "--lag 90000", "--lag");
+  refused(good + "--lag 0 --free 0.0 0.01", "40 samples");
+  refused("rubbed/poses.csv --mesh body.obj", "force_x");
+  refused("", "evaluate needs RECORDING and --mesh, or --duck");
+  refused("rubbed", "evaluate needs RECORDING and --mesh, or --duck");
+  refused("rubbed --duck", "--duck is given with a recording");
+  refused("--duck --seed one", "--seed");
+  run("mkdir empty; mkdir out; touch out/file");
+  refused("empty --mesh body.obj", "empty: holds 0 tables");
+  refused(good + "--lag 0 --renderer proxy --out out", "out");
+}
+
+}  // namespace
+}  // namespace haptrial
