@@ -30,7 +30,7 @@ class DuckRenderings {
   explicit DuckRenderings(const PreparedContact& contact)
       : contact_(contact), normal_(normal_part(contact)) {}
 
-  DuckRow row(const EvaluatedBody& body, RendererKind kind,
+  DuckRow row(const contact::FeltBody& body, RendererKind kind,
               const contact::RendererOptions& options) const {
     const RenderedContact r = render_contact(contact_, body, kind, options);
     return {std::string(contact::name_of(kind)),
@@ -48,7 +48,7 @@ class DuckRenderings {
   std::vector<Vector3d> normal_;
 };
 
-PreparedContact recorded_duck(const EvaluatedBody& scan, const DuckOptions& o) {
+PreparedContact recorded_duck(const contact::FeltBody& scan, const DuckOptions& o) {
   SimulatedProbe probe;
   probe.seconds = o.seconds;
   probe.press = o.press;
@@ -82,7 +82,8 @@ DuckTables make_duck_tables(const DuckOptions& o,
     }
   };
   say("scanning the duck");
-  const EvaluatedBody scan(scanned_mesh(duck_radius, {.frequency = o.frequency, .seed = o.seed}));
+  const contact::FeltBody scan(
+      scanned_mesh(duck_radius, {.frequency = o.frequency, .seed = o.seed}));
   DuckTables t;
   t.options = o;
   t.scan_error = scan_error(scan.mesh);
@@ -103,7 +104,7 @@ DuckTables make_duck_tables(const DuckOptions& o,
   with.friction = {t.friction.friction, t.friction.friction};
   t.table5 = {proxy, renderings.row(scan, RendererKind::kProxy, with)};
   for (const int frequency : kFrequencies) {
-    const EvaluatedBody coarse(radial_mesh(radius_of(scan.surface.bvh()), frequency));
+    const contact::FeltBody coarse(radial_mesh(radius_of(scan.surface.bvh()), frequency));
     say(fmt::format("{} triangles", coarse.mesh.triangles.size()));
     t.table6.push_back(renderings.row(coarse, RendererKind::kProxy, {}));
     t.shaded.push_back(

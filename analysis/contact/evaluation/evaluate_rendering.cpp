@@ -16,7 +16,7 @@ bool has_friction(RendererKind kind) {
   return kind == RendererKind::kProxy || kind == RendererKind::kRuspini;
 }
 
-contact::RendererOptions options_for(RendererKind kind, const EvaluatedBody& body,
+contact::RendererOptions options_for(RendererKind kind, const contact::FeltBody& body,
                                      const EvaluationOptions& o) {
   contact::RendererOptions options;
   options.resolution = o.resolution;
@@ -57,7 +57,7 @@ void remark(Evaluation& result) {
 
 }  // namespace
 
-EvaluatedRendering measured_rendering(const PreparedContact& contact, const EvaluatedBody& body,
+EvaluatedRendering measured_rendering(const PreparedContact& contact, const contact::FeltBody& body,
                                       RendererKind kind, const contact::RendererOptions& options,
                                       double threshold) {
   EvaluatedRendering r{kind,
@@ -77,7 +77,7 @@ EvaluatedRendering measured_rendering(const PreparedContact& contact, const Eval
   return r;
 }
 
-Evaluation evaluate_rendering(const ContactRecording& recording, const EvaluatedBody& body,
+Evaluation evaluate_rendering(const ContactRecording& recording, const contact::FeltBody& body,
                               const EvaluationOptions& options) {
   if (options.renderers.empty()) {
     throw std::invalid_argument("an evaluation needs a renderer");

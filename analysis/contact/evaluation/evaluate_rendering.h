@@ -49,11 +49,11 @@ struct Evaluation {
 /// a point, a hundredth of the body's size.
 /// @throws std::invalid_argument as prepare_contact() and make_renderer(), or without a renderer.
 /// Source: Morris 2006, §7.3 and §7.4.
-Evaluation evaluate_rendering(const ContactRecording& recording, const EvaluatedBody& body,
+Evaluation evaluate_rendering(const ContactRecording& recording, const contact::FeltBody& body,
                               const EvaluationOptions& options);
 
 /// The metrics of one rendering. @param threshold  see EvaluationOptions
-EvaluatedRendering measured_rendering(const PreparedContact& contact, const EvaluatedBody& body,
+EvaluatedRendering measured_rendering(const PreparedContact& contact, const contact::FeltBody& body,
                                       contact::RendererKind kind,
                                       const contact::RendererOptions& options, double threshold);
 

@@ -9,7 +9,6 @@
 #include "analysis/contact/evaluation/surface_lag.h"
 #include "analysis/contact/registration/in_trajectory.h"
 #include "analysis/statistics/base/descriptive.h"
-#include "core/geometry/mesh/mesh_bounds.h"
 
 namespace haptrial::evaluation {
 namespace {
@@ -108,7 +107,7 @@ void remark_on_load(const PrepareOptions& o, PreparedContact& result) {
 }
 
 Eigen::Isometry3d body_from_world(const PoseStream& path, const ForceStream& at_poses,
-                                  const EvaluatedBody& body, const PrepareOptions& o,
+                                  const contact::FeltBody& body, const PrepareOptions& o,
                                   PreparedContact& result) {
   if (o.registered) {
     return Eigen::Isometry3d::Identity();
@@ -143,7 +142,7 @@ struct Touch {
 };
 
 Touch touch_body(const PoseStream& path, const ForceStream& force, const Eigen::Isometry3d& T_BW,
-                 const EvaluatedBody& body, const contact::Shading& shading,
+                 const contact::FeltBody& body, const contact::Shading& shading,
                  const PrepareOptions& o) {
   Touch t;
   std::vector<contact::SurfacePoint> nearest;
@@ -192,7 +191,7 @@ ContactSamples samples_at_poses(const PoseStream& path, const Touch& touch,
 /// Each lag turns the sensor into W anew, hence the rounds.
 ForceStream refined_forces(const ContactRecording& recording, const PoseStream& path,
                            ForceStream forces, const Eigen::Isometry3d& T_BW,
-                           const EvaluatedBody& body, const contact::Shading& shading,
+                           const contact::FeltBody& body, const contact::Shading& shading,
                            const PrepareOptions& o, PreparedContact& result) {
   if (o.lag || path.size() < kFewestForLag) {
     return forces;
@@ -260,13 +259,7 @@ void remark_on_lean(const Touch& touch, PreparedContact& result) {
 
 }  // namespace
 
-EvaluatedBody::EvaluatedBody(geometry::Mesh mesh_of_body)
-    : mesh(std::move(mesh_of_body)),
-      surface(mesh),
-      distance(mesh, surface),
-      size(geometry::bounds(mesh).diagonal().norm()) {}
-
-PreparedContact prepare_contact(const ContactRecording& recording, const EvaluatedBody& body,
+PreparedContact prepare_contact(const ContactRecording& recording, const contact::FeltBody& body,
                                 const PrepareOptions& options) {
   check_options(options);
   PreparedContact result;

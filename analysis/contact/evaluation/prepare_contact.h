@@ -9,21 +9,9 @@
 #include "analysis/contact/recording/sensor_load.h"
 #include "analysis/contact/recording/stream_lag.h"
 #include "analysis/contact/registration/registration.h"
-#include "core/contact/surface/signed_distance.h"
+#include "core/contact/surface/felt_body.h"
 
 namespace haptrial::evaluation {
-
-/// A body ready to be compared with: its mesh, in metres, and what is searched.
-struct EvaluatedBody {
-  geometry::Mesh mesh;
-  contact::ContactSurface surface;
-  contact::SignedDistance distance;
-  double size;  // the diagonal of its box [m]
-
-  explicit EvaluatedBody(geometry::Mesh mesh_of_body);
-  EvaluatedBody(const EvaluatedBody&) = delete;
-  EvaluatedBody& operator=(const EvaluatedBody&) = delete;
-};
 
 struct PrepareOptions {
   SensorMount mount{};                           // of the force sensor on the probe
@@ -73,7 +61,7 @@ struct PreparedContact {
 /// registration's residual. In the air only points that noise put inside are moved.
 /// @throws std::invalid_argument for an option that breaks its bound, streams that do not overlap
 /// or fewer than 12 contacts. Source: Morris 2006, §7.2 to §7.3.1.
-PreparedContact prepare_contact(const ContactRecording& recording, const EvaluatedBody& body,
+PreparedContact prepare_contact(const ContactRecording& recording, const contact::FeltBody& body,
                                 const PrepareOptions& options);
 
 }  // namespace haptrial::evaluation

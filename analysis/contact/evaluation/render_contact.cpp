@@ -31,7 +31,7 @@ double heap_in_use() {
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
 
-double error_with(const PreparedContact& contact, const EvaluatedBody& body,
+double error_with(const PreparedContact& contact, const contact::FeltBody& body,
                   contact::RendererKind kind, contact::RendererOptions options, double friction) {
   options.friction = {friction, friction};
   return force_error(contact.force, render_contact(contact, body, kind, options).force)
@@ -40,7 +40,7 @@ double error_with(const PreparedContact& contact, const EvaluatedBody& body,
 
 }  // namespace
 
-RenderedContact render_contact(const PreparedContact& contact, const EvaluatedBody& body,
+RenderedContact render_contact(const PreparedContact& contact, const contact::FeltBody& body,
                                contact::RendererKind kind,
                                const contact::RendererOptions& options) {
   contact::RendererOptions used = options;
@@ -75,7 +75,7 @@ RenderedContact render_contact(const PreparedContact& contact, const EvaluatedBo
   return result;
 }
 
-FrictionFit fit_friction(const PreparedContact& contact, const EvaluatedBody& body,
+FrictionFit fit_friction(const PreparedContact& contact, const contact::FeltBody& body,
                          contact::RendererKind kind, contact::RendererOptions options) {
   const auto error = [&](double friction) {
     return error_with(contact, body, kind, options, friction);

@@ -24,7 +24,7 @@ struct RenderedContact {
 /// @param options  its stiffness is replaced by that of the in-trajectory. A tool with a radius is
 ///                 led that far outside of the in-trajectory, along the normals.
 /// @throws std::invalid_argument as make_renderer().
-RenderedContact render_contact(const PreparedContact& contact, const EvaluatedBody& body,
+RenderedContact render_contact(const PreparedContact& contact, const contact::FeltBody& body,
                                contact::RendererKind kind, const contact::RendererOptions& options);
 
 struct FrictionFit {
@@ -36,7 +36,7 @@ struct FrictionFit {
 /// The friction that makes the root mean square of the force error least, by rendering again and
 /// again: 16 values, then a golden section between the neighbours of the best, to 1e-4.
 /// @param kind  proxy or ruspini. Source: Morris 2006, §7.4.2.
-FrictionFit fit_friction(const PreparedContact& contact, const EvaluatedBody& body,
+FrictionFit fit_friction(const PreparedContact& contact, const contact::FeltBody& body,
                          contact::RendererKind kind, contact::RendererOptions options);
 
 }  // namespace haptrial::evaluation

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/contact/objects/felt_body.h"
+#include "core/contact/surface/felt_body.h"
 #include "core/scene/field.h"
 #include "core/scene/read/number_source.h"
 

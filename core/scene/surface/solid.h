@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <memory>
 
-#include "core/contact/objects/felt_body.h"
 #include "core/contact/objects/moving_objects.h"
 #include "core/contact/renderer/renderer.h"
+#include "core/contact/surface/felt_body.h"
 #include "core/control/pd_controller.h"
 #include "core/scene/field/field_state.h"
 #include "core/scene/surface/surface.h"

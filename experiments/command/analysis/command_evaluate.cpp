@@ -178,7 +178,7 @@ int evaluate(const EvaluateOptions& options) {
   const evaluation::EvaluationOptions chain = evaluation_options(options);
   const double unit = unit_of(options.units);
   const evaluation::ContactRecording recording = read_contact(options.recording);
-  const evaluation::EvaluatedBody body(load_mesh({options.mesh, unit, {}}, MemoryBudget({})));
+  const contact::FeltBody body(load_mesh({options.mesh, unit, {}}, MemoryBudget({})));
   evaluation::Evaluation found;
   try {
     found = evaluation::evaluate_rendering(recording, body, chain);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/contact/objects/felt_body.h"
+#include "core/contact/surface/felt_body.h"
 
 namespace haptrial {
 class Table;

@@ -87,7 +87,7 @@ TEST_P(ContourTest, ARollingToolHasNoFriction) {
   if (!file || !mesh) {
     GTEST_SKIP() << kAbsent;
   }
-  const EvaluatedBody body(*std::move(mesh));
+  const contact::FeltBody body(*std::move(mesh));
   EvaluationOptions options;
   options.renderers = {contact::RendererKind::kPenalty};
   options.prepare.tip = test::contour_tool(GetParam()).point;

@@ -40,8 +40,8 @@ ContactRecording rubbed_sphere(double friction) {
   return recording;
 }
 
-const EvaluatedBody& sphere() {
-  static const EvaluatedBody body(geometry::make_sphere(kRadius, 60));
+const contact::FeltBody& sphere() {
+  static const contact::FeltBody body(geometry::make_sphere(kRadius, 60));
   return body;
 }
 
@@ -124,7 +124,7 @@ TEST(EvaluateRenderingTest, CostsAreMeasured) {
 /// Everything at once: a probe with a load on its sensor rubs a duck that lies anywhere, with a lag
 /// between its clocks, the source's noise, and friction.
 TEST(EvaluateRenderingTest, TheWholeChainFindsWhatWasPutIn) {
-  const EvaluatedBody body(radial_mesh(duck_radius, 40));
+  const contact::FeltBody body(radial_mesh(duck_radius, 40));
   SimulatedProbe probe;
   probe.lag = 0.04;
   probe.friction = 0.25;

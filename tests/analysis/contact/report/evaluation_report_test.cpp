@@ -15,7 +15,7 @@ using testing::HasSubstr;
 
 const Evaluation& rubbed_duck() {
   static const Evaluation evaluation = [] {
-    const EvaluatedBody body(radial_mesh(duck_radius, 30));
+    const contact::FeltBody body(radial_mesh(duck_radius, 30));
     SimulatedProbe probe;
     probe.seconds = 10.0;
     probe.force_rate = 500.0;

@@ -1,7 +1,9 @@
-#include "core/contact/objects/felt_body.h"
+#include "core/contact/surface/felt_body.h"
 
 #include <map>
 #include <utility>
+
+#include "core/geometry/mesh/mesh_bounds.h"
 
 namespace haptrial::contact {
 namespace {
@@ -26,7 +28,11 @@ bool is_closed(const geometry::Mesh& mesh) {
 }  // namespace
 
 FeltBody::FeltBody(geometry::Mesh shape)
-    : mesh(std::move(shape)), surface(mesh), distance(mesh, surface), closed(is_closed(mesh)) {}
+    : mesh(std::move(shape)),
+      surface(mesh),
+      distance(mesh, surface),
+      size(geometry::bounds(mesh).diagonal().norm()),
+      closed(is_closed(mesh)) {}
 
 Eigen::Vector3d free_place(const FeltBody& body, const Eigen::Vector3d& p, double radius) noexcept {
   constexpr double kBeside = 1e-9;  // of the largest coordinate: more than its rounding

@@ -8,8 +8,8 @@
 
 namespace haptrial::contact {
 
-/// A mesh with all that is asked of it while it is felt: prepared once, shared by any number of
-/// renderers and threads.
+/// A mesh with all that is asked of it while it is felt or compared with a recording: prepared
+/// once, shared by any number of renderers and threads.
 struct FeltBody {
   /// @throws InputError as ContactSurface does
   explicit FeltBody(geometry::Mesh shape);
@@ -19,6 +19,7 @@ struct FeltBody {
   geometry::Mesh mesh;
   ContactSurface surface;
   SignedDistance distance;
+  double size{0.0};    // the diagonal of its box [m]
   bool closed{false};  // every side of a triangle has one other on it: there is an inside
 };
 
