@@ -31,7 +31,8 @@ if [ "$study" = contact_evaluation ]; then  # no participants: a simulated recor
   "program": "$(build/haptrial --version)",
   "table_4_sha256": "$(sum "results/$study/table-4.csv")",
   "table_5_sha256": "$(sum "results/$study/table-5.csv")",
-  "table_6_sha256": "$(sum "results/$study/table-6.csv")"
+  "table_6_sha256": "$(sum "results/$study/table-6.csv")",
+  "failures_sha256": "$(sum "results/$study/failures.csv")"
 }
 EOF
   exit

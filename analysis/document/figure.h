@@ -48,11 +48,12 @@ struct Figure {
   std::vector<std::pair<double, std::string>> x_names;  // names in place of numbers on x
   std::optional<Range> x_range;                         // automatic when absent
   std::optional<Range> y_range;
-  double height{0.6};       // height / width of the whole picture
-  bool equal_scale{false};  // a unit is as long on x as on y
-  bool simulated{false};    // carries the mark of simulated participants
-  std::string caption;      // a sentence or two for the report
-  std::string alt;          // what one sees, for those who cannot see it
+  double height{0.6};               // height / width of the whole picture
+  bool equal_scale{false};          // a unit is as long on x as on y
+  bool simulated{false};            // carries the mark of what is simulated
+  std::string who{"PARTICIPANTS"};  // is simulated
+  std::string caption;              // a sentence or two for the report
+  std::string alt;                  // what one sees, for those who cannot see it
 };
 
 }  // namespace haptrial::analysis

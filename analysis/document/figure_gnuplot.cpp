@@ -138,9 +138,10 @@ std::string headings(const Figure& figure) {
       fmt::format("set label 1 {} at graph 0, graph 1 offset 0,1.2 left font ',16' noenhanced\n",
                   quoted(figure.title));
   if (figure.simulated) {
-    text +=
-        "set label 2 'SIMULATED PARTICIPANTS' at graph 1, graph 1 offset 0,1.2 right "
-        "font ',12' textcolor rgb '#b00020' noenhanced\n";
+    text += fmt::format(
+        "set label 2 {} at graph 1, graph 1 offset 0,1.2 right font ',12' textcolor rgb '#b00020' "
+        "noenhanced\n",
+        quoted("SIMULATED " + figure.who));
   }
   return text;
 }

@@ -64,6 +64,20 @@ TextTable costs(const DuckTables& t) {
   return table;
 }
 
+TextTable failures(const std::vector<FailureMap>& maps) {
+  TextTable table{{"ridge under"}, {}};
+  for (const RidgeOutcome outcome : kRidgeOutcomes) {
+    table.heading.emplace_back(name_of(outcome));
+  }
+  for (const FailureMap& map : maps) {
+    table.rows.push_back({name_of(map)});
+    for (const RidgeOutcome outcome : kRidgeOutcomes) {
+      table.rows.back().push_back(fmt::format("{}", map.count(outcome)));
+    }
+  }
+  return table;
+}
+
 std::string csv_of(const TextTable& table) {
   std::string text;
   const auto add = [&](const std::vector<std::string>& row) {
@@ -109,13 +123,13 @@ analysis::Series curve(const std::string& label, const analysis::Look& look,
 
 }  // namespace
 
-std::vector<std::string> duck_lines(const DuckTables& t) {
+std::vector<std::string> duck_lines(const DuckTables& t, const std::vector<FailureMap>& maps) {
   std::vector<std::string> lines{"SIMULATED RECORDING"};
   const auto append = [&](const std::vector<std::string>& more) {
     lines.insert(lines.end(), more.begin(), more.end());
   };
   append(facts(t));
-  for (const TextTable& table : {table4(t), table5(t), table6(t), costs(t)}) {
+  for (const TextTable& table : {table4(t), table5(t), table6(t), failures(maps), costs(t)}) {
     lines.emplace_back();
     append(text_lines(table));
   }
@@ -142,6 +156,7 @@ analysis::Figure resolution_figure(const DuckTables& t) {
   figure.series.push_back(source);
   figure.height = 0.5;
   figure.simulated = true;
+  figure.who = "RECORDING";
   figure.caption =
       "Root mean square of what the rendered force misses of the recorded normal "
       "force, for the proxy without friction.";
@@ -149,7 +164,8 @@ analysis::Figure resolution_figure(const DuckTables& t) {
   return figure;
 }
 
-void write_duck(const DuckTables& t, const std::filesystem::path& folder) {
+void write_duck(const DuckTables& t, const std::vector<FailureMap>& maps,
+                const std::filesystem::path& folder) {
   exchange::NewFolder out(folder);
   analysis::Document document;
   document.title = "Rendered beside simulated contact: the source's duck made anew";
@@ -164,11 +180,24 @@ void write_duck(const DuckTables& t, const std::filesystem::path& folder) {
   add("Table 4: proxy and voxels", "table-4.csv", table4(t));
   add("Table 5: friction", "table-5.csv", table5(t));
   add("Table 6: size of the mesh", "table-6.csv", table6(t));
-  const analysis::Figure figure = resolution_figure(t);
+  std::vector<analysis::Figure> figures{resolution_figure(t)};
+  for (const FailureMap& map : maps) {
+    figures.push_back(failure_figure(map));
+  }
   const std::filesystem::path place = out.place("report.html").parent_path();
-  analysis::draw_figures({figure}, place);
-  const analysis::Drawing drawing{figure, file_text(place / (figure.name + ".svg"))};
-  document.picture(drawing);
+  analysis::draw_figures(figures, place);
+  std::vector<analysis::Drawing> drawings;  // the document keeps where they are
+  for (const analysis::Figure& figure : figures) {
+    drawings.push_back({figure, file_text(place / (figure.name + ".svg"))});
+  }
+  document.picture(drawings.front());
+  document.heading("Figure 65: a ridge, where each algorithm fails");
+  const TextTable counts = failures(maps);
+  document.table(counts.heading, counts.rows);
+  out.write("failures.csv", failure_csv(maps));
+  for (std::size_t i = 1; i < drawings.size(); ++i) {
+    document.picture(drawings[i]);
+  }
   add("Costs on this computer", "costs.csv", costs(t));
   document.heading("Remarks");
   for (const std::string& remark : t.contact.remarks) {

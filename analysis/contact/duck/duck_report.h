@@ -5,19 +5,22 @@
 #include <vector>
 
 #include "analysis/contact/duck/duck_tables.h"
+#include "analysis/contact/failure/failure_map.h"
 #include "analysis/document/figure.h"
 
 namespace haptrial::evaluation {
 
-/// The tables beside the source's numbers, as lines for a terminal.
-std::vector<std::string> duck_lines(const DuckTables& tables);
+/// The tables beside the source's numbers, and how many cells of each map end how, as lines for a
+/// terminal.
+std::vector<std::string> duck_lines(const DuckTables& tables, const std::vector<FailureMap>& maps);
 
 /// The source's Figure 64: error over the size of the mesh, with and without force shading.
 analysis::Figure resolution_figure(const DuckTables& tables);
 
 /// table-4.csv, table-5.csv, table-6.csv (a function of the seed), costs.csv (of this computer),
-/// figure-64 (.svg, .png) and report.html, all of them or none.
+/// figure-64, figure-65-RENDERER (.svg, .png), failures.csv and report.html, all of them or none.
 /// @throws InputError when `folder` holds anything or cannot be made; RunError as draw_figures().
-void write_duck(const DuckTables& tables, const std::filesystem::path& folder);
+void write_duck(const DuckTables& tables, const std::vector<FailureMap>& maps,
+                const std::filesystem::path& folder);
 
 }  // namespace haptrial::evaluation

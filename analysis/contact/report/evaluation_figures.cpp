@@ -172,6 +172,7 @@ std::vector<Figure> evaluation_figures(const Evaluation& e, const EvaluationName
                               residual_figure(e)};
   for (Figure& figure : figures) {
     figure.simulated = names.simulated;
+    figure.who = "RECORDING";
   }
   return figures;
 }

@@ -157,10 +157,11 @@ int evaluate_duck(const EvaluateOptions& o) {
   evaluation::DuckOptions duck;
   duck.seed = checked_seed(o.seed);
   const evaluation::DuckTables tables = evaluation::make_duck_tables(duck);
+  const std::vector<evaluation::FailureMap> maps = evaluation::failure_maps();
   if (!o.out.empty()) {
-    evaluation::write_duck(tables, o.out);
+    evaluation::write_duck(tables, maps, o.out);
   }
-  for (const std::string& line : evaluation::duck_lines(tables)) {
+  for (const std::string& line : evaluation::duck_lines(tables, maps)) {
     fmt::print("{}\n", line);
   }
   return 0;

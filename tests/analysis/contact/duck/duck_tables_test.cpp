@@ -79,11 +79,11 @@ TEST(DuckTest, IsWrittenWithTheSourcesNumbers) {
   }
   t.shaded = t.table6;
   const test::TemporaryFolder folder;
-  write_duck(t, folder / "out");
+  write_duck(t, {}, folder / "out");
   EXPECT_THAT(file_text(folder / "out/table-5.csv"), HasSubstr("0.067"));
   EXPECT_THAT(file_text(folder / "out/table-6.csv"), HasSubstr("0.085"));
   EXPECT_THAT(file_text(folder / "out/report.html"), HasSubstr("SIMULATED RECORDING"));
-  EXPECT_THAT(duck_lines(t).front(), "SIMULATED RECORDING");
+  EXPECT_THAT(duck_lines(t, {}).front(), "SIMULATED RECORDING");
 }
 
 }  // namespace
