@@ -5,7 +5,7 @@
 namespace haptrial::evaluation {
 namespace {
 
-constexpr double kOnTop = 0.7;     // of the height
+constexpr double kOnTop = 0.95;    // of the height
 constexpr double kOffFoot = 0.05;  // of the height
 constexpr double kTurn = 1e-4;     // a way back that counts [m]
 constexpr int kChatter = 4;        // ways back
@@ -88,14 +88,16 @@ RidgeResult drag_over(const Ridge& ridge, const RidgeDrag& drag, contact::Render
   }
   const RidgeLaw law = ridge_law(ridge, drag);
   const bool climbs = law.on_top && *law.on_top < drag.reach - kMargin;
+  // A sphere at the upper edge goes over it within a tick, from where the flank ends.
+  const double top = kOnTop * ridge.height - drag.radius * (1.0 - std::cos(ridge.flank));
   const bool may_climb = law.on_top && *law.on_top < drag.reach + kMargin;
   if (watch.lost()) {
     result.outcome = RidgeOutcome::kPopsThrough;
   } else if (watch.chatters()) {
     result.outcome = RidgeOutcome::kChatters;
-  } else if (climbs && result.highest < kOnTop * ridge.height) {
+  } else if (climbs && result.highest < top) {
     result.outcome = watch.x() > -ridge.foot() ? RidgeOutcome::kPassesUnder : RidgeOutcome::kSticks;
-  } else if (watch.x() > -ridge.foot() && (!may_climb || result.highest < kOnTop * ridge.height)) {
+  } else if (watch.x() > -ridge.foot() && (!may_climb || result.highest < top)) {
     result.outcome = RidgeOutcome::kPassesUnder;
   }
   return result;

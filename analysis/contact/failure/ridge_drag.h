@@ -47,7 +47,7 @@ RidgeLaw ridge_law(const Ridge& ridge, const RidgeDrag& drag);
 struct RidgeResult {
   RidgeOutcome outcome{RidgeOutcome::kRight};
   std::optional<double> left_foot;  // the tool's x when the contact was 5 % of the way up [m]
-  double highest{0.0};              // of the contact over the plate [m]
+  double highest{0.0};              // of the contact over the plate, at ticks [m]
 };
 
 /// @param renderer  of ridge_mesh(ridge), with the drag's friction and radius
