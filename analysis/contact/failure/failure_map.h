@@ -26,9 +26,8 @@ struct FailureMap {
 };
 
 /// A ridge of 2 mm under every renderer of make_renderer(): flanks of 5 to 85 degrees, depths of
-/// 0.25 to 8 mm; the proxy with three frictions, and as a sphere of 0.5 mm beside Ruspini's. Figure
-/// 65 of the source as a map.
-/// Takes a few seconds.
+/// 0.25 to 8 mm; the proxy with three frictions, and as a sphere of 0.5 mm beside Ruspini's. Takes
+/// a few seconds. Source: Morris 2006, §7.5 (Figure 65), as a map.
 std::vector<FailureMap> failure_maps();
 
 /// Its name, such as "proxy, friction 0.3" or "ruspini, sphere".
