@@ -15,6 +15,7 @@ namespace haptrial::protocols {
 namespace {
 
 constexpr std::size_t kMostCombinations = 256;
+constexpr double kLeastObject = 0.0005, kLargestObject = 2.0;  // the diagonal of its box [m]
 
 std::string words_of(const TrialsDefinition& d, const TrialValues& values) {
   std::string words = fmt::format("block {}", d.order.blocks[values.block].name);
@@ -52,6 +53,20 @@ void check_forces(const TrialsDefinition& d, const std::vector<scene::Field>& fi
   }
 }
 
+/// A mesh in millimetres that is taken for one in metres is as large as a house.
+void check_objects(const TrialsDefinition& d, const std::vector<scene::Field>& fields) {
+  for (const scene::Field& field : fields) {
+    const auto* solid = std::get_if<scene::SolidParameters>(&field.kind);
+    const double size = solid != nullptr && solid->body ? solid->scale * solid->body->size : 0.0;
+    if (size > 0.0 && !(size >= kLeastObject && size <= kLargestObject)) {
+      throw InputError(fmt::format(
+          "{}: objects.{} is {:.3g} m large; allowed: {:g} to {:g} [m]; scale = 0.001 takes a mesh "
+          "in millimetres",
+          d.file_name, field.name, size, kLeastObject, kLargestObject));
+    }
+  }
+}
+
 void present_once(const TrialsDefinition& d, const TrialValues& values) {
   Table root = Table::parse(d.text, d.file_name);
   root.fill_in(trials_defaults());
@@ -64,6 +79,7 @@ void present_once(const TrialsDefinition& d, const TrialValues& values) {
       root.check();
       scene::Scene(presented.fields, d.rate);
       check_forces(d, presented.fields);
+      check_objects(d, presented.fields);
     }
     give(*names, d, values);
     for (const Question& question : d.questions) {

@@ -104,6 +104,14 @@ TEST(TrialObjectTest, ADefinitionNamesItsObjectsLikeFields) {
               Contains(HasSubstr("objects.ball is the name of a table of [regions] as well")));
 }
 
+TEST(TrialObjectTest, AMeshInMillimetresIsNoticed) {
+  EXPECT_THAT(problems_of_trials(small_trials(kSmallStaircase, kObject + "scale = 60\n")),
+              Contains(AllOf(HasSubstr("objects.ball is 4.16 m large; allowed: 0.0005 to 2 [m]"),
+                             HasSubstr("scale = 0.001"))));
+  EXPECT_THAT(problems_of_trials(small_trials(kSmallStaircase, kObject + "scale = 0.001\n")),
+              Contains(HasSubstr("objects.ball is 6.93e-05 m large")));
+}
+
 std::string three_objects(const std::string& shown) {
   std::string text = small_trials(kSmallStaircase, kObject);
   for (const char* name : {"a", "b"}) {
