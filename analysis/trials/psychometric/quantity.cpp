@@ -1,5 +1,6 @@
 #include "analysis/trials/psychometric/quantity.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -41,6 +42,17 @@ Quantity quantity(std::string name, std::string title, std::string unit,
     result.tests = design_tests(result.table, plan.plan, resampling);
   }
   return result;
+}
+
+void keep_within(Quantity& quantity, double low, double high) {
+  for (Defined<MeanInterval>& mean : quantity.means) {
+    if (mean) {
+      MeanInterval cut = *mean;
+      cut.low = std::max(cut.low, low);
+      cut.high = std::min(cut.high, high);
+      mean = cut;
+    }
+  }
 }
 
 }  // namespace haptrial::analysis::trials

@@ -34,4 +34,8 @@ struct Quantity {
 Quantity quantity(std::string name, std::string title, std::string unit,
                   const std::vector<QuantityValue>& values, const TrialsPlan& plan);
 
+/// Ends intervals of means where values do: an area under a curve is nowhere above 1. No true value
+/// is lost by it.
+void keep_within(Quantity& quantity, double low, double high);
+
 }  // namespace haptrial::analysis::trials

@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -106,8 +107,10 @@ void add_detection(TrialsResult& result) {
   result.quantities.push_back(quantity("d_prime", "sensitivity d'", "", d_prime, result.plan));
   result.quantities.push_back(quantity("criterion", "criterion c", "", criterion, result.plan));
   if (!area.empty()) {
-    result.quantities.push_back(
-        quantity("roc_area", "area under the ROC curve of ratings", "", area, result.plan));
+    Quantity areas =
+        quantity("roc_area", "area under the ROC curve of ratings", "", area, result.plan);
+    keep_within(areas, 0.0, 1.0);
+    result.quantities.push_back(std::move(areas));
   }
 }
 
