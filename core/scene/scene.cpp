@@ -65,7 +65,7 @@ void lay_on(Law& law, const ReliefHere& relief) noexcept {
       law);
 }
 
-/// Of a law that is no surface: nothing is touched.
+/// A law that is no surface is touched nowhere.
 SurfaceTouch touch_of(const Law& law) noexcept {
   return std::visit(
       [](const auto& each) -> SurfaceTouch {

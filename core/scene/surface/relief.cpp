@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
-/// Of a whole relief: bounds that hold anywhere.
+/// Bounds of a relief that hold anywhere on it.
 struct Bound {
   double height, steepest;
 };

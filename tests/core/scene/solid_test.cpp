@@ -33,7 +33,7 @@ SolidParameters box_of(const Vector3d& size) {
   return p;
 }
 
-/// Of a scene with one solid, the tool led from `from` to `to` in steps of a tick.
+/// The last force of a scene with one solid when the tool is led from `from` to `to` in steps of a tick.
 Vector3d led(const Field& field, const Vector3d& from, const Vector3d& to, int ticks = 400) {
   Scene scene({field}, kRate);
   scene.switch_to(Scene::kAll);
