@@ -1,5 +1,6 @@
 #include "protocols/trials/trials_protocol.h"
 
+#include "core/base/error.h"
 #include "core/record/rows/response.h"
 #include "core/record/trials/contact_row.h"
 #include "core/record/trials/trial_rows.h"
@@ -28,7 +29,11 @@ class TrialsProtocol final : public Protocol {
   }
   void load(Definition& definition, const std::filesystem::path& folder) const override {
     auto& d = dynamic_cast<TrialsDefinition&>(definition);
-    load_objects(d.objects, folder);
+    try {
+      load_objects(d.objects, folder);
+    } catch (const InputError& error) {
+      throw InputError(d.file_name + ": " + error.what());
+    }
     check_every_value(d);
     for (const sound::Cue& cue : d.cues.cues) {
       sound::rendered(cue, 0);  // a file that cannot be played is a mistake of the definition

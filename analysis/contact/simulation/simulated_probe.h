@@ -25,8 +25,8 @@ struct SimulatedProbe {
   std::uint64_t seed{1};
 };
 
-/// The force on the probe in contact is F = N (n - mu v/|v|), N changing as a hand's does; nothing
-/// of it comes from a renderer or a mesh.
+/// The force on the probe in contact is F = N (n - mu v/|v|), N changing as a hand's does. No
+/// renderer and no mesh has part in it.
 ContactRecording simulate_probe(const RadialBody& body, const SimulatedProbe& probe);
 
 /// The same without sensors: where the probe is in the body's frame and the force that acts on it.
