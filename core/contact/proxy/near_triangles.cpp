@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace haptrial::contact {
 namespace {
 
 constexpr std::size_t kMostListed = 1024;
+constexpr int kBlock = 8;  // entries of the list that are passed over together
 // A list of few may reach farther next time, one of many less far. A sphere looks at most of its
 // list but once.
 constexpr int kFew = 12, kMany = 48;
@@ -19,20 +21,21 @@ NearTriangles::NearTriangles(const ContactSurface& surface, double radius)
       radius_(radius),
       found_(kMostListed),
       listed_(kMostListed),
-      clear_until_(kMostListed),
+      clear_until_(kMostListed + kBlock),
       reach_(surface.typical_edge()) {}
 
 void NearTriangles::forget() noexcept {
   count_ = 0;
   covered_ = -1.0;
   clear_ = -1.0;
+  reach_ = surface_->typical_edge();  // a start is the same whatever came before
 }
 
 bool NearTriangles::meets(const Sweep& sweep, std::int32_t slot, SweepHit& hit) const noexcept {
   if (radius_ > 0.0) {
-    double distance = 0.0;
+    SphereGap gap;
     return sweep_sphere(sweep, surface_->corners(slot), surface_->normal(slot), slot, 1.0, hit,
-                        distance);
+                        gap);
   }
   return sweep_point(sweep, surface_->corners(slot), surface_->normal(slot), slot, 1.0, hit);
 }
@@ -42,17 +45,10 @@ bool NearTriangles::is_clear(const Sweep& sweep, double length) noexcept {
          (sweep.from - clear_centre_).norm() + length < clear_ - radius_ - 2.0 * sweep.skin.rest();
 }
 
-/// Makes a list that covers the move or, for a sphere, its beginning, if one of sensible length
-/// can.
+/// Makes a list that covers the move, or its beginning.
 bool NearTriangles::collect(const Sweep& sweep, double length) noexcept {
   const double apart = (sweep.from - centre_).norm();
-  if (covered_ > 0.0 && apart + length < covered_) {
-    return true;
-  }
-  if (radius_ == 0.0) {
-    return length < 8.0 * reach_ && list_around(sweep, std::max(reach_, 2.0 * length));
-  }
-  if (covered_ > 0.0 && apart < 0.5 * covered_) {
+  if (covered_ > 0.0 && (apart + length < covered_ || apart < 0.5 * covered_)) {
     return true;
   }
   for (int attempt = 0; attempt < 8; ++attempt) {
@@ -98,7 +94,10 @@ bool NearTriangles::list_around(const Sweep& sweep, double reach) noexcept {
       known.high = std::max(known.high, height);
     }
     known.ball = std::sqrt(square);
+    known.axis.setZero();
+    known.level = std::numeric_limits<double>::infinity();
   }
+  std::fill_n(clear_until_.begin() + count, kBlock, std::numeric_limits<double>::infinity());
   if (count == 0) {
     clear_centre_ = sweep.from;
     clear_ = std::sqrt(surface_->bvh().closest(sweep.from).distance_squared);
@@ -123,6 +122,12 @@ bool is_sooner(const SweepHit& here, const SweepHit& other, double length, doubl
 bool NearTriangles::can_meet(const Sweep& sweep, int i, double end, double length) noexcept {
   const Known& known = listed_[i];
   const double rest = 2.0 * sweep.skin.rest();
+  if (radius_ > 0.0) {
+    const double height = known.axis.dot(sweep.from) - known.level;
+    if (std::min(height, height + end * known.axis.dot(sweep.move)) > radius_ + rest) {
+      return false;
+    }
+  }
   const Eigen::Vector3d from = sweep.from - known.centre;
   const double apart = from.norm() - known.ball - radius_ - rest;
   if (apart > end * length) {
@@ -134,27 +139,38 @@ bool NearTriangles::can_meet(const Sweep& sweep, int i, double end, double lengt
   return !(std::min(at, then) > known.high + off || std::max(at, then) < known.low - off);
 }
 
+bool NearTriangles::meets_listed(const Sweep& sweep, int i, double end, SweepHit& hit) noexcept {
+  Known& known = listed_[i];
+  const geometry::Corners& corners = surface_->corners(known.slot);
+  if (radius_ == 0.0) {
+    return sweep_point(sweep, corners, surface_->normal(known.slot), known.slot, end, hit);
+  }
+  SphereGap gap;
+  const bool met =
+      sweep_sphere(sweep, corners, surface_->normal(known.slot), known.slot, end, hit, gap);
+  clear_until_[i] = path_ + gap.distance - radius_ - 2.0 * sweep.skin.rest();
+  known.axis = gap.away;
+  known.level = std::max({gap.away.dot(corners[0]), gap.away.dot(corners[1]),  //
+                          gap.away.dot(corners[2])});
+  return met;
+}
+
 bool NearTriangles::first_listed(const Sweep& sweep, double end, double length,
                                  SweepHit& hit) noexcept {
   bool met = false;
   double until = path_ + end * length;
-  for (int i = 0; i < count_; ++i) {
-    if (clear_until_[i] > until || !can_meet(sweep, i, end, length)) {
-      continue;
+  for (int first = 0; first < count_; first += kBlock) {
+    bool any = false;
+    for (int i = first; i < first + kBlock; ++i) {
+      any |= clear_until_[i] <= until;
     }
-    const Known& known = listed_[i];
-    SweepHit here;
-    bool meets_it = false;
-    if (radius_ > 0.0) {
-      double distance = 0.0;
-      meets_it = sweep_sphere(sweep, surface_->corners(known.slot), surface_->normal(known.slot),
-                              known.slot, end, here, distance);
-      clear_until_[i] = path_ + distance - radius_ - 2.0 * sweep.skin.rest();
-    } else {
-      meets_it = sweep_point(sweep, surface_->corners(known.slot), surface_->normal(known.slot),
-                             known.slot, end, here);
-    }
-    if (meets_it && (!met || is_sooner(here, hit, length, sweep.skin.thickness))) {
+    for (int i = first; any && i < std::min(first + kBlock, count_); ++i) {
+      SweepHit here;
+      if (clear_until_[i] > until || !can_meet(sweep, i, end, length) ||
+          !meets_listed(sweep, i, end, here) ||
+          (met && !is_sooner(here, hit, length, sweep.skin.thickness))) {
+        continue;
+      }
       const double t = met ? std::min(hit.t, here.t) : here.t;
       hit = here;
       hit.t = t;

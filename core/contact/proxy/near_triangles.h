@@ -38,12 +38,17 @@ class NearTriangles {
     Eigen::Vector3d centre;  // around this point [m]
     Eigen::Vector3d normal;  // and between two planes across this direction,
     double low, high;        // so high [m]
+    // The same for a sphere: all of the triangle lies where axis · x <= level. An axis that
+    // kept the sphere off once most often still does.
+    Eigen::Vector3d axis;
+    double level;  // [m]
   };
 
   bool is_clear(const Sweep& sweep, double length) noexcept;
   bool collect(const Sweep& sweep, double length) noexcept;
   bool list_around(const Sweep& sweep, double reach) noexcept;
   bool can_meet(const Sweep& sweep, int i, double end, double length) noexcept;
+  bool meets_listed(const Sweep& sweep, int i, double end, SweepHit& hit) noexcept;
   bool first_listed(const Sweep& sweep, double end, double length, SweepHit& hit) noexcept;
   bool first_of_all(const Sweep& sweep, SweepHit& hit) const noexcept;
 
@@ -51,7 +56,8 @@ class NearTriangles {
   double radius_;
   std::vector<NearTriangle> found_;  // as long as what is listed may be
   std::vector<Known> listed_;
-  std::vector<double> clear_until_;  // of each: the path at which the proxy may first touch it [m]
+  std::vector<double> clear_until_;  // of each: the path at which the proxy may first touch it
+                                     // [m]; infinite beyond the list
   int count_{0};
   Eigen::Vector3d centre_{Eigen::Vector3d::Zero()};        // of the ball that the list covers [m]
   double covered_{-1.0};                                   // its radius; negative: no list [m]

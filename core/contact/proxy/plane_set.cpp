@@ -16,13 +16,14 @@ constexpr double kFlat = 0x1p-30;
 
 }  // namespace
 
+bool PlaneSet::has(const ContactPlane& plane) const noexcept {
+  return std::any_of(planes_.begin(), planes_.begin() + count_, [&](const ContactPlane& known) {
+    return known.slot == plane.slot && known.normal == plane.normal;
+  });
+}
+
 bool PlaneSet::add(const ContactPlane& plane) noexcept {
-  for (int i = 0; i < count_; ++i) {
-    if (planes_[i].slot == plane.slot && planes_[i].normal == plane.normal) {
-      return false;
-    }
-  }
-  if (count_ == kMost) {
+  if (count_ == kMost || has(plane)) {
     return false;
   }
   planes_[count_++] = plane;

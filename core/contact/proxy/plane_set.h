@@ -49,8 +49,9 @@ class PlaneSet {
   void keep_first(int count) noexcept { count_ = std::min(count, count_); }
   int size() const noexcept { return count_; }
   const ContactPlane& operator[](int i) const noexcept { return planes_[i]; }
-  /// False if a plane of the same triangle with the same normal is there already, or no room is
-  /// left.
+  /// Whether a plane of the same triangle with the same normal is there.
+  bool has(const ContactPlane& plane) const noexcept;
+  /// False if has() or no room is left.
   bool add(const ContactPlane& plane) noexcept;
 
   /// The point nearest to the goal on the right side of every plane: of the points nearest to it on

@@ -73,6 +73,9 @@ bool Proxy::go(Tick& tick, const Vector3d& move) noexcept {
   bool met = false;
   const double length = move.norm();
   for (int i = 0; i < before_.size() && !met; ++i) {
+    if (planes_.has(before_[i])) {
+      continue;  // the move heeds it
+    }
     // What held the proxy a moment ago most often still does; then it is not moved at all.
     met = near_.meets(sweep, before_[i].slot, hit) && hit.t * length <= 2.0 * tick.least &&
           !hit.plane.curved;

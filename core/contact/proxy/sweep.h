@@ -42,11 +42,17 @@ bool sweep_point(const Sweep& sweep, const geometry::Corners& corners,
                  const Eigen::Vector3d& normal, std::int32_t slot, double end,
                  SweepHit& hit) noexcept;
 
+/// Where a sphere's centre is to a triangle before it moves.
+struct SphereGap {
+  double distance;       // [m]
+  Eigen::Vector3d away;  // from the triangle's nearest point, a unit vector
+};
+
 /// The same for a sphere: the distance from its centre to a triangle is a convex function of t, so
 /// Newton's steps from the left never pass its first crossing of r + h.
-/// @param distance  receives how far the centre is from the triangle at the start [m]
+/// @param gap  receives where the sphere is at the start
 bool sweep_sphere(const Sweep& sweep, const geometry::Corners& corners,
                   const Eigen::Vector3d& normal, std::int32_t slot, double end, SweepHit& hit,
-                  double& distance) noexcept;
+                  SphereGap& gap) noexcept;
 
 }  // namespace haptrial::contact

@@ -44,29 +44,29 @@ Away away_from(const geometry::Corners& c, const Vector3d& normal, const Vector3
 }  // namespace
 
 bool sweep_sphere(const Sweep& sweep, const geometry::Corners& c, const Vector3d& normal,
-                  std::int32_t slot, double end, SweepHit& hit, double& distance) noexcept {
+                  std::int32_t slot, double end, SweepHit& hit, SphereGap& gap) noexcept {
   const double h = sweep.skin.thickness;
   const double limit = sweep.radius + h;
   const double rest = sweep.radius + sweep.skin.rest();
   constexpr int kMostSteps = 40;
   double t = 0.0;
   Away away = away_from(c, normal, sweep.from);
-  distance = away.distance;
+  gap = {away.distance, away.normal};
   for (int step = 0;; ++step) {
     const double rate = away.normal.dot(sweep.move);
     if (rate >= 0.0) {
       return false;  // convex: it only recedes from here on
     }
-    const double gap = away.distance - limit;
-    if (gap <= 0.25 * h && away.distance + rate * (end - t) >= sweep.radius + 0.5 * h) {
+    const double left = away.distance - limit;
+    if (left <= 0.25 * h && away.distance + rate * (end - t) >= sweep.radius + 0.5 * h) {
       return false;  // along the surface, to rounding
     }
-    if (gap <= 0.25 * h || step == kMostSteps) {
+    if (left <= 0.25 * h || step == kMostSteps) {
       hit.t = std::clamp(t - (rest - away.distance) / -rate, 0.0, t);
       hit.plane = {away.normal, away.point, rest, slot, away.curved};
       return true;
     }
-    t += gap / -rate;
+    t += left / -rate;
     if (t >= end) {
       return false;
     }
