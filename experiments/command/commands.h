@@ -140,7 +140,9 @@ int align(const AlignOptions& options);
 struct EvaluateOptions {
   bool duck{false};       // the source's tables on a simulated duck, in place of it all
   std::string seed{"1"};  // of the duck
-  std::vector<std::string> recording;  // one or two tables (.csv), or their folder
+  std::vector<std::string> recording;  // one or two tables (.csv), their folder, a session file
+  std::optional<std::string> object;   // of a session file
+  std::optional<int> trial;            // likewise
   std::string mesh;
   std::string units{"m"};              // of the mesh: m, cm, mm
   std::vector<std::string> renderers;  // default: all

@@ -108,6 +108,70 @@ TEST_F(EvaluateCommandTest, TablesComeInAnyOrder) {
   }
 }
 
+/// A ball that a virtual participant strokes in the first of two trials, 3 cm below the origin.
+constexpr const char* kBallStudy = R"(
+[experiment]
+protocol = "trials"
+name = "round_a_ball"
+[design]
+participants = 1
+[objects.ball]
+mesh = "ball.obj"
+centre = [0.0, -0.03, 0.0]
+stiffness = 600.0
+damping = 0.0
+friction = { static = 0.2, dynamic = 0.2 }
+fade_in = 0.0
+record = true
+[objects.other]
+shape = "box"
+size = [0.02, 0.02, 0.02]
+centre = [0.0, 0.08, 0.0]
+stiffness = 600.0
+damping = 0.0
+[[stages]]
+name = "explore"
+fields = ["ball"]
+until = { time = 4.0 }
+[[blocks]]
+name = "only"
+trials = 1
+[observer]
+[observer.actions]
+explore = { do = "follow", turn_after = 2.0 }
+[texts]
+instructions = "Go round it."
+)";
+
+/// What a session rendered comes out again, though the chain must find where the ball was.
+TEST_F(EvaluateCommandTest, ASessionIsARecordingOfItsContacts) {
+  test::write_text(folder_ / "ball.toml", kBallStudy);
+  ASSERT_EQ(run("haptrial mesh repair body.obj ball.obj --scale 0.5").status, 0);
+  const auto rehearsed = run("haptrial dry-run ball.toml --out study");
+  ASSERT_EQ(rehearsed.status, 0) << rehearsed.errors;
+  const std::string line = "haptrial evaluate study/S01.h5 --mesh ball.obj --renderer proxy ";
+  const auto result = run(line + "--stiffness 600 --friction 0.2 --out out");
+  ASSERT_EQ(result.status, 0) << result.errors;
+  EXPECT_THAT(result.output, testing::StartsWith("SIMULATED RECORDING\n"));
+  const auto json = numbers("out");
+  EXPECT_EQ(json["recording"], "S01.h5, ball in trial 1");
+  const double without = json["renderings"][0]["force_error"]["root_mean_square_N"];
+  const double with = json["renderings"][1]["force_error"]["root_mean_square_N"];
+  EXPECT_LT(with, 0.3 * without) << "the session had friction";
+  const auto& friction = json["identified"]["dynamic_friction"];
+  EXPECT_NEAR(friction["value"].get<double>(), 0.2, 0.02);
+  const auto& stiffness = json["identified"]["stiffness_N_per_m"];
+  EXPECT_NEAR(stiffness["value"].get<double>(), 600.0, 3.0);
+
+  const auto refused = [&](const std::string& options, const std::string& why) {
+    const auto bad = run(line + options);
+    EXPECT_EQ(bad.status, 2) << options;
+    EXPECT_THAT(bad.errors, HasSubstr(why)) << options;
+  };
+  refused("--object other", "--object is 'other'; contacts are recorded with: ball");
+  refused("--trial 2", "--trial is 2; the object was touched in the trials 1");
+}
+
 TEST_F(EvaluateCommandTest, BadInputGetsASentence) {
   const auto refused = [&](const std::string& line, const std::string& why) {
     const auto result = run("haptrial evaluate " + line);
@@ -129,6 +193,8 @@ TEST_F(EvaluateCommandTest, BadInputGetsASentence) {
   refused(good + "--lag 90000", "--lag");
   refused(good + "--lag 0 --free 0.0 0.01", "40 samples");
   refused("rubbed/poses.csv --mesh body.obj", "force_x");
+  refused(good + "--trial 1", "--object and --trial are for a session file (.h5)");
+  refused("absent.h5 --mesh body.obj", "absent.h5");
   refused("", "evaluate needs RECORDING and --mesh, or --duck");
   refused("rubbed", "evaluate needs RECORDING and --mesh, or --duck");
   refused("rubbed --duck", "--duck is given with a recording");

@@ -239,6 +239,18 @@ PoseStream overlapping(const PoseStream& path, const ForceStream& force) {
   return result;
 }
 
+/// What the recorder knew of the depth, at the samples' times, which are poses' times.
+void take_known_depth(const ContactRecording& recording, ContactSamples& samples) {
+  if (recording.depth.empty()) {
+    return;
+  }
+  const std::vector<double>& times = recording.pose.time;
+  for (std::size_t i = 0; i < samples.time.size(); ++i) {
+    const auto at = std::lower_bound(times.begin(), times.end(), samples.time[i]);
+    samples.depth[i] = recording.depth[static_cast<std::size_t>(at - times.begin())];
+  }
+}
+
 /// Forces that friction does not explain.
 void remark_on_lean(const Touch& touch, PreparedContact& result) {
   std::vector<double> lean;
@@ -277,6 +289,7 @@ PreparedContact prepare_contact(const ContactRecording& recording, const contact
   const ForceStream at_poses = resampled(force, path.time, mean_period(path));
   result.samples = samples_at_poses(path, touch_body(path, at_poses, T_BW, body, shading, options),
                                     T_BW, result.velocity_noise);
+  take_known_depth(recording, result.samples);
 
   result.time = even_times(path.time.front(), path.time.back(), 1.0 / options.rate);
   Touch touch =

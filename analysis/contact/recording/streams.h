@@ -28,6 +28,9 @@ struct ForceStream {
 struct ContactRecording {
   PoseStream pose;
   ForceStream force;
+  /// (n, as pose) how far the tool was behind its pose, where poses are places on the surface; or
+  /// none, where they are the tool's [m].
+  std::vector<double> depth;
 };
 
 /// @throws std::invalid_argument naming what is wrong: lengths that differ, fewer than two samples,

@@ -8,10 +8,12 @@
 
 #include "analysis/contact/duck/duck_report.h"
 #include "analysis/contact/recording/read_recording.h"
+#include "analysis/contact/recording/session_contact.h"
 #include "analysis/contact/report/write_evaluation.h"
 #include "analysis/files/csv.h"
 #include "core/base/error.h"
 #include "core/base/text/nearest.h"
+#include "core/record/read/session_reader.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/commands.h"
 
@@ -139,7 +141,7 @@ std::vector<fs::path> tables_of(const std::vector<std::string>& given) {
   return tables;
 }
 
-evaluation::ContactRecording read_contact(const std::vector<std::string>& given) {
+evaluation::ContactRecording read_tables(const std::vector<std::string>& given) {
   std::vector<fs::path> tables = tables_of(given);
   if (tables.size() == 2) {
     const analysis::CsvTable first = analysis::CsvTable::load(tables[0]);
@@ -148,6 +150,34 @@ evaluation::ContactRecording read_contact(const std::vector<std::string>& given)
     }
   }
   return evaluation::read_recording(tables.front(), tables.back());
+}
+
+/// A recording and what it is called.
+struct GivenRecording {
+  evaluation::ContactRecording recording;
+  evaluation::EvaluationNames names;
+};
+
+/// What a session file keeps has one clock and no load.
+GivenRecording read_given(const EvaluateOptions& o, evaluation::PrepareOptions& prepare) {
+  const fs::path first(o.recording.front());
+  evaluation::EvaluationNames names{first.filename().string(), fs::path(o.mesh).filename().string(),
+                                    o.simulated};
+  if (o.recording.size() > 1 || first.extension() != ".h5") {
+    if (o.object || o.trial) {
+      throw InputError("--object and --trial are for a session file (.h5)");
+    }
+    return {read_tables(o.recording), names};
+  }
+  evaluation::SessionContact contact =
+      evaluation::read_session_contact(record::SessionReader(first), {o.object, o.trial});
+  prepare.lag = prepare.lag.value_or(0.0);
+  if (prepare.free.empty()) {
+    prepare.load = evaluation::SensorLoad{};
+  }
+  names.recording += fmt::format(", {} in trial {}", contact.object, contact.trial);
+  names.simulated = names.simulated || contact.simulated;
+  return {std::move(contact.recording), names};
 }
 
 int evaluate_duck(const EvaluateOptions& o) {
@@ -176,9 +206,9 @@ int evaluate(const EvaluateOptions& options) {
   if (options.recording.empty() || options.mesh.empty()) {
     throw InputError("evaluate needs RECORDING and --mesh, or --duck");
   }
-  const evaluation::EvaluationOptions chain = evaluation_options(options);
+  evaluation::EvaluationOptions chain = evaluation_options(options);
   const double unit = unit_of(options.units);
-  const evaluation::ContactRecording recording = read_contact(options.recording);
+  const auto [recording, names] = read_given(options, chain.prepare);
   const contact::FeltBody body(load_mesh({options.mesh, unit, {}}, MemoryBudget({})));
   evaluation::Evaluation found;
   try {
@@ -186,12 +216,10 @@ int evaluate(const EvaluateOptions& options) {
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", options.recording.front(), error.what()));
   }
-  evaluation::EvaluationNames names{fs::path(options.recording.front()).filename().string(),
-                                    fs::path(options.mesh).filename().string(), options.simulated};
   if (!options.out.empty()) {
     evaluation::write_evaluation(found, names, options.out);
   }
-  if (options.simulated) {
+  if (names.simulated) {
     fmt::print("SIMULATED RECORDING\n");
   }
   for (const std::string& line : evaluation::evaluation_lines(found)) {

@@ -55,9 +55,13 @@ void add_evaluate(CLI::App& app, int& status) {
                   "algorithms/contact-evaluation.md"});
   auto& o = options_of<EvaluateOptions>(*sub, status, evaluate);
   sub->add_option("RECORDING", o.recording,
-                  "Table of poses and forces (.csv), one table of each, or a folder that holds "
-                  "nothing else")
+                  "Table of poses and forces (.csv), one table of each, a folder that holds "
+                  "nothing else, or a session file (.h5) with recorded contacts")
       ->expected(1, 2);
+  sub->add_option("--object", o.object,
+                  "Object of a session file (default: the only one that was touched)");
+  sub->add_option("--trial", o.trial,
+                  "Trial of a session file (default: the first one in which it was touched)");
   sub->add_option("--mesh", o.mesh, "Mesh of the body (.obj, .ply, .stl, .off)");
   sub->add_option("--units", o.units, "Unit of the mesh: m, cm or mm (default: m)");
   take_contact_renderings(*sub, o);

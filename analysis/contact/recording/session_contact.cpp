@@ -1,0 +1,118 @@
+#include "analysis/contact/recording/session_contact.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+
+#include "core/base/definition/table.h"
+#include "core/base/error.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/trials/contact_row.h"
+
+namespace haptrial::evaluation {
+namespace {
+
+using record::ContactRow;
+using record::PassRow;
+
+constexpr double kAir = 0.5;  // before the first and after the last contact [s]
+constexpr double kNanoseconds = 1e-9;
+
+/// The objects of the definition in the order of their names, as /contacts numbers them.
+std::vector<std::string> objects_of(const record::SessionReader& session) {
+  Table root = Table::parse(session.info().definition, session.info().definition_name);
+  return root.has("objects") ? root.table("objects").keys() : std::vector<std::string>();
+}
+
+std::vector<ContactRow> contacts_of(const record::SessionReader& session) {
+  std::vector<ContactRow> contacts = session.rows<ContactRow>();
+  std::erase_if(contacts, [](const ContactRow& row) { return row.device != 0; });
+  if (contacts.empty()) {
+    throw InputError(
+        fmt::format("{}: no contact is recorded; an object's contacts are if it says record = true",
+                    session.path().string()));
+  }
+  return contacts;
+}
+
+/// Leaves the contacts with one object. @returns its name
+std::string choose_object(const record::SessionReader& session, const SessionChoice& choice,
+                          std::vector<ContactRow>& contacts) {
+  const std::vector<std::string> names = objects_of(session);
+  std::set<std::string> touched;
+  const auto name_of = [&](const ContactRow& row) {
+    return names.at(static_cast<std::size_t>(row.object));
+  };
+  for (const ContactRow& row : contacts) touched.insert(name_of(row));
+  const bool one = touched.size() == 1;
+  if ((!choice.object && !one) || (choice.object && !touched.contains(*choice.object))) {
+    throw InputError(fmt::format(
+        "{}: --object is {}; contacts are recorded with: {}", session.path().string(),
+        choice.object ? "'" + *choice.object + "'" : "missing", fmt::join(touched, ", ")));
+  }
+  const std::string name = choice.object ? *choice.object : *touched.begin();
+  std::erase_if(contacts, [&](const ContactRow& row) { return name_of(row) != name; });
+  return name;
+}
+
+bool holds(const PassRow& pass, const ContactRow& row) {
+  return row.sequence >= pass.first_sample && row.sequence <= pass.last_sample;
+}
+
+/// Leaves the contacts of one trial. @returns its pass
+PassRow choose_trial(const record::SessionReader& session, const SessionChoice& choice,
+                     std::vector<ContactRow>& contacts) {
+  std::set<int> touched;
+  std::optional<PassRow> chosen;
+  for (const PassRow& pass : session.passes()) {
+    if (std::none_of(contacts.begin(), contacts.end(),
+                     [&](const ContactRow& row) { return holds(pass, row); })) {
+      continue;
+    }
+    touched.insert(pass.trial);
+    if (!chosen && (!choice.trial || *choice.trial == pass.trial)) chosen = pass;
+  }
+  if (!chosen) {
+    throw InputError(fmt::format("{}: --trial is {}; the object was touched in the trials {}",
+                                 session.path().string(), choice.trial.value_or(0),
+                                 fmt::join(touched, ", ")));
+  }
+  std::erase_if(contacts, [&](const ContactRow& row) { return !holds(*chosen, row); });
+  return *chosen;
+}
+
+}  // namespace
+
+SessionContact read_session_contact(const record::SessionReader& session,
+                                    const SessionChoice& choice) {
+  std::vector<ContactRow> contacts = contacts_of(session);
+  SessionContact result;
+  result.object = choose_object(session, choice, contacts);
+  const PassRow pass = choose_trial(session, choice, contacts);
+  result.trial = pass.trial;
+  result.simulated = session.info().simulated;
+
+  const auto air = static_cast<std::uint64_t>(kAir * session.info().rate);
+  const std::uint64_t begin = contacts.front().sequence, end = contacts.back().sequence;
+  const std::uint64_t first = std::max(pass.first_sample, begin - std::min(begin, air));
+  const std::uint64_t last = std::min(pass.last_sample, end + air);
+  const record::SampleColumns samples = session.columns(first, last - first + 1);
+  auto contact = contacts.begin();
+  for (std::size_t i = 0; i < samples.time_ns.size(); ++i) {
+    const bool touching = contact != contacts.end() && contact->sequence == first + i;
+    const double time = kNanoseconds * static_cast<double>(samples.time_ns[i]);
+    result.recording.pose.time.push_back(time);
+    result.recording.pose.position.emplace_back(
+        touching ? contact->proxy : samples.position.col(static_cast<Eigen::Index>(i)));
+    result.recording.pose.orientation.push_back(Eigen::Quaterniond::Identity());
+    result.recording.depth.push_back(touching ? contact->depth : 0.0);
+    result.recording.force.time.push_back(time);
+    result.recording.force.force.emplace_back(touching ? contact->force : Eigen::Vector3d::Zero());
+    if (touching) ++contact;
+  }
+  return result;
+}
+
+}  // namespace haptrial::evaluation

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "analysis/contact/recording/streams.h"
+
+namespace haptrial::record {
+class SessionReader;
+}
+
+namespace haptrial::evaluation {
+
+/// Which contacts of a session are taken.
+struct SessionChoice {
+  std::optional<std::string> object;  // [objects.NAME]; default: the only one that was touched
+  std::optional<int> trial;           // from 1; default: the first one in which it was touched
+};
+
+/// The contacts of one trial with one object, as a recording that needs neither load nor lag.
+struct SessionContact {
+  std::string object;
+  int trial{0};
+  bool simulated{false};
+  ContactRecording recording;  // in the world's frame; half a second of air before and after
+};
+
+/// Reads the contacts that `record = true` of an object keeps (/contacts): the pose is that of the
+/// proxy, or of the tool in the air, the force is the object's alone. First device.
+/// @throws InputError where the session recorded no such contact, naming what there is.
+SessionContact read_session_contact(const record::SessionReader& session,
+                                    const SessionChoice& choice);
+
+}  // namespace haptrial::evaluation
