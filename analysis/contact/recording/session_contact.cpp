@@ -45,7 +45,9 @@ std::string choose_object(const record::SessionReader& session, const SessionCho
   const auto name_of = [&](const ContactRow& row) {
     return names.at(static_cast<std::size_t>(row.object));
   };
-  for (const ContactRow& row : contacts) touched.insert(name_of(row));
+  for (const ContactRow& row : contacts) {
+    touched.insert(name_of(row));
+  }
   const bool one = touched.size() == 1;
   if ((!choice.object && !one) || (choice.object && !touched.contains(*choice.object))) {
     throw InputError(fmt::format(
@@ -72,7 +74,9 @@ PassRow choose_trial(const record::SessionReader& session, const SessionChoice& 
       continue;
     }
     touched.insert(pass.trial);
-    if (!chosen && (!choice.trial || *choice.trial == pass.trial)) chosen = pass;
+    if (!chosen && (!choice.trial || *choice.trial == pass.trial)) {
+      chosen = pass;
+    }
   }
   if (!chosen) {
     throw InputError(fmt::format("{}: --trial is {}; the object was touched in the trials {}",
@@ -110,7 +114,9 @@ SessionContact read_session_contact(const record::SessionReader& session,
     result.recording.depth.push_back(touching ? contact->depth : 0.0);
     result.recording.force.time.push_back(time);
     result.recording.force.force.emplace_back(touching ? contact->force : Eigen::Vector3d::Zero());
-    if (touching) ++contact;
+    if (touching) {
+      ++contact;
+    }
   }
   return result;
 }

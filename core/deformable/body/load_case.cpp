@@ -63,7 +63,9 @@ void check_corners(const TetMesh& body, const std::string& name) {
 /// far apart.
 bool span_a_plane(const std::vector<Vector3d>& points) {
   constexpr double kOff = 1e-9;  // of the line's length
-  if (points.size() < 3) return false;
+  if (points.size() < 3) {
+    return false;
+  }
   const Vector3d& a = points.front();
   const Vector3d b = *std::max_element(
       points.begin(), points.end(),
@@ -82,7 +84,9 @@ void check_vertex(const TetMesh& body, const LoadCase& load, std::int32_t vertex
 }
 
 void check_finite(const LoadCase& load, const char* what, std::int32_t vertex, const Vector3d& v) {
-  if (v.allFinite()) return;
+  if (v.allFinite()) {
+    return;
+  }
   throw InputError(
       fmt::format("load '{}': the {} of vertex {} is not finite", load.name, what, vertex));
 }
@@ -112,13 +116,17 @@ void check_values(const TetMesh& body, const LoadCase& load) {
 }  // namespace
 
 void check_body(const TetMesh& body, const std::string& name) {
-  if (body.tetrahedra.empty()) throw InputError(fmt::format("{}: there is no tetrahedron", name));
+  if (body.tetrahedra.empty()) {
+    throw InputError(fmt::format("{}: there is no tetrahedron", name));
+  }
   check_corners(body, name);
   for (std::size_t i = 0; i < body.tetrahedra.size(); ++i) {
     const Tetrahedron& t = body.tetrahedra[i];
     const double volume = six_volumes(body, t);
     const double longest = longest_edge(body, t);
-    if (volume > kFlat * longest * longest * longest) continue;
+    if (volume > kFlat * longest * longest * longest) {
+      continue;
+    }
     const bool inverted = volume < -kFlat * longest * longest * longest;
     throw InputError(fmt::format("{}: tetrahedron {} (vertices {}, {}, {}, {}) is {}", name, i,
                                  t[0], t[1], t[2], t[3], inverted ? "inverted" : "flat"));
@@ -135,7 +143,9 @@ void check_load(const TetMesh& body, const LoadCase& load) {
     held[static_cast<std::size_t>(part[vertex])].push_back(body.vertices[vertex]);
   }
   for (std::size_t i = 0; i < held.size(); ++i) {
-    if (span_a_plane(held[i])) continue;
+    if (span_a_plane(held[i])) {
+      continue;
+    }
     const auto first = std::find(part.begin(), part.end(), static_cast<std::int32_t>(i));
     throw InputError(fmt::format(
         "load '{}': nothing holds the part of the body with vertex {}: {} of its vertices are held "

@@ -74,7 +74,9 @@ MeshParts mesh_parts(std::span<const Tetrahedron> tetrahedra) {
   parts.edges = edges_of(tetrahedra);
   const std::vector<Side> sides = sides_of(tetrahedra);
   for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
-    while (last < sides.size() && sides[last].sorted == sides[first].sorted) ++last;
+    while (last < sides.size() && sides[last].sorted == sides[first].sorted) {
+      ++last;
+    }
     if (last - first > 2) {
       const Face& face = sides[first].sorted;
       throw InputError(
@@ -83,7 +85,9 @@ MeshParts mesh_parts(std::span<const Tetrahedron> tetrahedra) {
     }
     const bool outer = last - first == 1;
     parts.faces.push_back(outer ? sides[first].outward : sides[first].sorted);
-    if (outer) parts.surface.push_back(sides[first].outward);
+    if (outer) {
+      parts.surface.push_back(sides[first].outward);
+    }
   }
   return parts;
 }

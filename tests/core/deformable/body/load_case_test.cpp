@@ -16,8 +16,9 @@ using geometry::TetMesh;
 LoadCase push_on(const TetMesh& body) {
   LoadCase load{"push", {}, {}};
   for (std::size_t v = 0; v < body.vertices.size(); ++v) {
-    if (body.vertices[v].z() < 1e-9)
+    if (body.vertices[v].z() < 1e-9) {
       load.holds.push_back({static_cast<std::int32_t>(v), {0, 0, 0}});
+    }
   }
   load.forces.push_back({static_cast<std::int32_t>(body.vertices.size() - 1), {0, 0, -1}});
   return load;
@@ -86,7 +87,9 @@ TEST_F(BodyCheckTest, AnInvertedTetrahedronIsNamed) {
 }
 
 TEST_F(BodyCheckTest, AFlatTetrahedronIsNamed) {
-  for (auto& vertex : body_.vertices) vertex.z() *= 1e-7;
+  for (auto& vertex : body_.vertices) {
+    vertex.z() *= 1e-7;
+  }
   EXPECT_NE(refused().find("is flat"), std::string::npos) << refused();
 }
 

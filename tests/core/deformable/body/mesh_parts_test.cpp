@@ -52,8 +52,9 @@ TEST(MeshPartsTest, ObeyEulerAndTheDivergenceTheorem) {
 TEST(MeshPartsTest, OuterFacesHaveTheVerticesOnTheSurface) {
   const TetMesh body = test::solid_block({3, 3, 3}, 0.01);
   std::set<std::int32_t> seen;
-  for (const Face& face : mesh_parts(body.tetrahedra).surface)
+  for (const Face& face : mesh_parts(body.tetrahedra).surface) {
     seen.insert(face.begin(), face.end());
+  }
   for (std::size_t v = 0; v < body.vertices.size(); ++v) {
     EXPECT_EQ(seen.contains(static_cast<std::int32_t>(v)), body.on_surface[v] == 1) << v;
   }
