@@ -15,7 +15,7 @@
 #include "experiments/devices/devices.h"
 #include "experiments/study/study_files.h"
 #include "protocols/definition/definition.h"
-#include "protocols/definition/study_rules.h"
+#include "protocols/interface/study_rules.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
@@ -154,12 +154,12 @@ void check_session_file(const RunOptions& options, const fs::path& file) {
   }
 }
 
-std::string check_study(const RunOptions& options, const protocols::Definition& setup,
-                        const fs::path& own) {
+std::string check_study(const RunOptions& options, const protocols::Protocol& protocol,
+                        const protocols::Definition& setup, const fs::path& own) {
   std::string changed;
   for (const auto& [file, info] : earlier_sessions(options, own)) {
     const DefinitionChanges changes =
-        protocols::study_changes(info, setup.text, options.devices.front());
+        protocols::study_changes(protocol, info, setup.text, options.devices.front());
     if (!changes.same_study()) {
       throw InputError(fmt::format(
           "{}: was recorded with another definition: {}; record each study into a folder of its "
@@ -175,7 +175,8 @@ std::string check_study(const RunOptions& options, const protocols::Definition& 
   return changed;
 }
 
-void check_recording(const RunOptions& options, const protocols::Definition& setup) {
+void check_recording(const RunOptions& options, const protocols::Protocol& protocol,
+                     const protocols::Definition& setup) {
   if (options.devices.size() > static_cast<std::size_t>(setup.devices())) {
     throw InputError(fmt::format("--device is given {} times; {} drives {}", options.devices.size(),
                                  setup.file_name, counted(setup.devices(), "device", "devices")));
@@ -195,7 +196,7 @@ void check_recording(const RunOptions& options, const protocols::Definition& set
   }
   // The recording stands in for the virtual hand, whose tables are not used.
   const DefinitionChanges changes = definition_changes(
-      info.definition, setup.text, protocols::study_rules(protocols::Hand::kPerson));
+      info.definition, setup.text, protocols::study_rules(protocol, protocols::Hand::kPerson));
   if (!changes.same_study()) {
     throw InputError(
         fmt::format("{}: was recorded with another definition: {}; replay it with the same one",

@@ -7,7 +7,8 @@
 
 namespace haptrial::protocols {
 struct Definition;
-}
+class Protocol;
+}  // namespace haptrial::protocols
 
 namespace haptrial::experiments {
 
@@ -23,11 +24,12 @@ void check_session_file(const RunOptions& options, const std::filesystem::path& 
 /// pilots and others with others. @returns a sentence about keys that differ and may; empty if none
 /// @throws InputError if they are of another study; names the keys.
 /// @param own  file of the session that is to be recorded
-std::string check_study(const RunOptions& options, const protocols::Definition& setup,
-                        const std::filesystem::path& own);
+std::string check_study(const RunOptions& options, const protocols::Protocol& protocol,
+                        const protocols::Definition& setup, const std::filesystem::path& own);
 
 /// @throws InputError where a recording drives the session (--device replay:FILE) and is of another
 /// subject, seed or definition, or more devices are named than the definition drives.
-void check_recording(const RunOptions& options, const protocols::Definition& setup);
+void check_recording(const RunOptions& options, const protocols::Protocol& protocol,
+                     const protocols::Definition& setup);
 
 }  // namespace haptrial::experiments

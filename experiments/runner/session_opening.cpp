@@ -16,12 +16,13 @@
 #include "core/record/rows/trial_facts.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/runner/version.h"
-#include "protocols/definition/study_rules.h"
+#include "protocols/interface/study_rules.h"
 
 namespace haptrial::experiments {
 
 DefinitionChanges changes_since(const SessionRequest& request, const record::SessionInfo& before) {
-  return protocols::study_changes(before, request.definition->text, request.device.name);
+  return protocols::study_changes(*request.protocol, before, request.definition->text,
+                                  request.device.name);
 }
 
 namespace {

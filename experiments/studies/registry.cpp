@@ -90,4 +90,8 @@ const Study& study_of(const record::SessionInfo& session) {
   return study_of(root);
 }
 
+const protocols::Protocol& protocol_of(const record::SessionInfo& session) {
+  return study_of(session).protocol();
+}
+
 }  // namespace haptrial::experiments

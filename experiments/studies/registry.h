@@ -30,5 +30,6 @@ std::vector<std::pair<std::string, std::string>> known_phases();
 const Study& study_of(Table& root);
 /// The same from the definition that a session file keeps.
 const Study& study_of(const record::SessionInfo& session);
+const protocols::Protocol& protocol_of(const record::SessionInfo& session);
 
 }  // namespace haptrial::experiments

@@ -13,7 +13,7 @@
 #include "core/record/read/trial_progress.h"
 #include "experiments/study/session_name.h"
 #include "protocols/definition/groups.h"
-#include "protocols/definition/study_rules.h"
+#include "protocols/interface/study_rules.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -129,7 +129,7 @@ class RosterMaker {
 
   void check_study(const FoundFile& found) {
     const DefinitionChanges changes =
-        protocols::study_changes(found.info, d_.text, found.info.device);
+        protocols::study_changes(*request_.protocol, found.info, d_.text, found.info.device);
     if (!changes.same_study()) {
       throw InputError(
           fmt::format("{}: was recorded with another definition than {}: {}; give the "

@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/record/read/definition_versions.h"
 #include "core/record/read/session_reader.h"
-#include "protocols/definition/study_rules.h"
+#include "protocols/interface/study_rules.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -41,7 +41,8 @@ void refuse_other(const DefinitionChanges& changes, const fs::path& file, const 
 
 }  // namespace
 
-std::vector<std::string> definition_remarks(const std::vector<fs::path>& files) {
+std::vector<std::string> definition_remarks(const protocols::Protocol& protocol,
+                                            const std::vector<fs::path>& files) {
   const record::SessionInfo first = record::SessionReader(files.front()).info();
   std::map<std::string, std::vector<std::string>> recorded;  // what differs, the files
   std::vector<std::string> resumed;
@@ -53,15 +54,15 @@ std::vector<std::string> definition_remarks(const std::vector<fs::path>& files) 
     for (const DefinitionVersion& version : versions) {
       record::SessionInfo info = reader.info();
       info.definition = version.text;
-      const DefinitionChanges of_study = protocols::study_changes(first, info);
+      const DefinitionChanges of_study = protocols::study_changes(protocol, first, info);
       refuse_other(of_study, file, files.front());
       if (before == nullptr && !of_study.same_text) {
         recorded[words(of_study)].push_back(name);
       } else if (before != nullptr) {
         info.definition = *before;
-        resumed.push_back(
-            fmt::format("{} was resumed with a changed definition{}: {}.", name, since(version),
-                        words(protocols::study_changes(info, version.text, info.device))));
+        resumed.push_back(fmt::format(
+            "{} was resumed with a changed definition{}: {}.", name, since(version),
+            words(protocols::study_changes(protocol, info, version.text, info.device))));
       }
       before = &version.text;
     }

@@ -100,7 +100,7 @@ std::vector<fs::path> files_of(const fs::path& folder, Pilots pilots) {
   return taken(sorted_files(folder), folder, pilots);
 }
 
-StudyFiles study_files(const fs::path& folder, Pilots pilots) {
+StudyFiles study_files(const fs::path& folder, Pilots pilots, const ProtocolOf& protocol_of) {
   const Sorted sorted = sorted_files(folder);
   StudyFiles study;
   study.files = taken(sorted, folder, pilots);
@@ -112,7 +112,8 @@ StudyFiles study_files(const fs::path& folder, Pilots pilots) {
     study.remarks.push_back(fmt::format(
         "Not analysed, because the participant did not consent: {}.", names_of(sorted.declined)));
   }
-  const std::vector<std::string> changed = definition_remarks(study.files);
+  const std::vector<std::string> changed =
+      definition_remarks(protocol_of(study.first), study.files);
   study.remarks.insert(study.remarks.end(), changed.begin(), changed.end());
   return study;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,10 @@
 
 namespace haptrial::record {
 class SessionReader;
+}
+
+namespace haptrial::protocols {
+class Protocol;
 }
 
 namespace haptrial::experiments {
@@ -32,7 +37,11 @@ struct StudyFiles {
   std::vector<std::string> remarks;  // sentences for the report
 };
 
+/// The protocol of a session, which the registry of studies knows.
+using ProtocolOf = std::function<const protocols::Protocol&(const record::SessionInfo&)>;
+
 /// @throws InputError as files_of() and definition_remarks() do.
-StudyFiles study_files(const std::filesystem::path& folder, Pilots pilots);
+StudyFiles study_files(const std::filesystem::path& folder, Pilots pilots,
+                       const ProtocolOf& protocol_of);
 
 }  // namespace haptrial::experiments

@@ -90,6 +90,9 @@ void tell_verdict(const ReplayRequest& request, const ReplayVerdict& verdict) {
 class BoneDrilling final : public Protocol {
  public:
   std::string_view name() const override { return kBoneDrilling; }
+  std::vector<std::string> virtual_tables() const override {
+    return {"drilling_hand", "virtual_surgeons"};
+  }
   std::unique_ptr<Definition> read(Table& root, std::string_view file_name,
                                    const std::filesystem::path* folder) const override {
     return std::make_unique<BoneDefinition>(read_bone_definition(root, file_name, folder));

@@ -9,7 +9,6 @@
 
 #include "core/base/error.h"
 #include "core/base/text/nearest.h"
-#include "protocols/definition/study_rules.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -74,6 +73,12 @@ std::string without_mark(std::string text) {
 }
 
 }  // namespace
+
+const std::vector<std::string>& machine_tables() {
+  static const std::vector<std::string> kTables{"device", "force_dimension", "mouse",
+                                                "open_haptics", "screen"};
+  return kTables;
+}
 
 Table load_with_lab(const fs::path& definition) {
   Table root = Table::load(definition);

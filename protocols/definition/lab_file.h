@@ -3,10 +3,15 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/definition/table.h"
 
 namespace haptrial::protocols {
+
+/// The tables of a definition that describe machines and not the study: devices and the screen. A
+/// lab file may hold these and no others.
+const std::vector<std::string>& machine_tables();
 
 /// Loads a definition, and the lab file that it may name, which holds the tables of a laboratory's
 /// machines (machine_tables()) and nothing of the study:

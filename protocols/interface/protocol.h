@@ -32,6 +32,8 @@ class Protocol {
   }
   /// What the passes of a trial can be for, each with its meaning: the words of /trials.
   virtual std::vector<std::pair<record::Phase, std::string>> phases() const = 0;
+  /// The tables of a definition that only virtual participants use.
+  virtual std::vector<std::string> virtual_tables() const { return {}; }
   /// Every table of its own that a session of it may record.
   virtual record::TableList tables() const { return {}; }
   /// The trials of one session. @param definition  of this protocol; it and the place outlive them

@@ -30,7 +30,7 @@ void print_report(const std::vector<std::string>& lines, const fs::path& out) {
 int analyze_sessions(const AnalyzeOptions& options, Pilots pilots, int threads) {
   AnalysisRequest request;
   request.folder = options.folder;
-  request.files = study_files(options.folder, pilots);
+  request.files = study_files(options.folder, pilots, protocol_of);
   request.out = report_folder(options.folder, pilots);
   request.pilots = pilots;
   request.threads = threads;

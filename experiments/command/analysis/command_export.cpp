@@ -16,7 +16,7 @@
 #include "experiments/studies/registry.h"
 #include "experiments/study/study_files.h"
 #include "experiments/study/study_run.h"
-#include "protocols/definition/study_rules.h"
+#include "protocols/interface/study_rules.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
@@ -47,7 +47,8 @@ void export_as_bids(const ExportOptions& options, const std::vector<fs::path>& f
                                    known_phases(),
                                    jobs,
                                    [](const auto& first, const auto& second) {
-                                     return protocols::study_changes(first, second);
+                                     return protocols::study_changes(protocol_of(first), first,
+                                                                     second);
                                    }};
   const auto done = exchange::export_bids(files, options.bids, bids,
                                           [&](std::uint64_t samples) { watch(samples); });

@@ -7,8 +7,9 @@
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/command/commands.h"
+#include "experiments/studies/registry.h"
 #include "experiments/study/study_files.h"
-#include "protocols/definition/study_rules.h"
+#include "protocols/interface/study_rules.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
@@ -28,8 +29,9 @@ std::optional<record::SessionInfo> session_in(const fs::path& folder) {
 std::vector<std::string> remarks_on_definitions(const fs::path& first, const fs::path& second) {
   const auto one = session_in(first);
   const auto other = session_in(second);
-  const DefinitionChanges changes =
-      one && other ? protocols::study_changes(*one, *other) : DefinitionChanges{};
+  const DefinitionChanges changes = one && other
+                                        ? protocols::study_changes(protocol_of(*one), *one, *other)
+                                        : DefinitionChanges{};
   if (!changes.same_study()) {
     return {fmt::format("The definitions differ in what was presented, recorded or scored: {}.",
                         sentence_of(changes.binding))};

@@ -105,7 +105,8 @@ void export_curves(const ExportOptions& options, const std::vector<fs::path>& gi
   const CurveAnalysis analysis = analysis_of_curves(given);
   const std::vector<fs::path> files = without_pilots(given);
   ExportWatch watch(files);
-  definition_remarks(files);  // one definition says how all of them are scored
+  // One definition says how all of them are scored.
+  definition_remarks(protocol_of(record::SessionReader(files.front()).info()), files);
   const auto done = exchange::export_curves(files, options.curves, analysis.scoring, jobs,
                                             [&](std::uint64_t samples) { watch(samples); });
   fmt::print("{} of {}\ncurves: {}\n", counted(done.trials, "scored trial"),

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "experiments/command/keys/key_list.h"
-#include "protocols/definition/study_rules.h"
+#include "protocols/definition/lab_file.h"
 
 namespace haptrial::experiments {
 namespace {

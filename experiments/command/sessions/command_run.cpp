@@ -119,7 +119,7 @@ int run(const RunOptions& asked) {
     fmt::print("{}\n", chosen);
     std::fflush(stdout);
   }
-  check_recording(options, setup);
+  check_recording(options, experiment.study->protocol(), setup);
   check_pages(options, setup);
   for (const std::string& sentence : experiment.untranslated) {
     fmt::print("{}\n", sentence);
@@ -150,7 +150,9 @@ int run(const RunOptions& asked) {
       fs::path(options.out) / session_file_name(options.subject, request.session, setup.sessions());
   check_session_file(options, request.file);
   if (!options.resume) {
-    if (const std::string changed = check_study(options, setup, request.file); !changed.empty()) {
+    if (const std::string changed =
+            check_study(options, experiment.study->protocol(), setup, request.file);
+        !changed.empty()) {
       fmt::print("{}\n", changed);
     }
   }

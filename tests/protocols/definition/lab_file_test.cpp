@@ -12,7 +12,8 @@
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/experiment.h"
-#include "protocols/definition/study_rules.h"
+#include "protocols/force_training/force_protocol.h"
+#include "protocols/interface/study_rules.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
@@ -77,7 +78,7 @@ TEST_F(LabFileTest, MeansTheSameAsOneFile) {
   record::SessionInfo whole;
   whole.definition = test::shipped_text();
   const DefinitionChanges changes =
-      protocols::study_changes(whole, two.definition->text, "virtual");
+      protocols::study_changes(protocols::force_training(), whole, two.definition->text, "virtual");
   EXPECT_TRUE(changes.same_study());
   EXPECT_EQ(sentence_of(changes.free), "lab.use was absent, is \"room/lab.toml\"");
   EXPECT_EQ(protocols::lab_of(two.definition->text), "room/lab.toml");

@@ -1,4 +1,4 @@
-#include "protocols/definition/study_rules.h"
+#include "protocols/interface/study_rules.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,6 +7,8 @@
 
 #include "core/base/definition/table.h"
 #include "protocols/force_training/force_definition.h"
+#include "protocols/force_training/force_protocol.h"
+#include "protocols/trials/trials_protocol.h"
 #include "tests/experiments/shipped.h"
 
 namespace haptrial::protocols {
@@ -24,13 +26,14 @@ std::vector<std::string> keys(const std::vector<DefinitionChange>& changes) {
 }
 
 DefinitionChanges between(const std::string& before, const std::string& after,
-                          const std::string& device = "force-dimension") {
+                          const std::string& device = "force-dimension",
+                          const Protocol& protocol = force_training()) {
   record::SessionInfo first;
   first.definition = before;
   first.device = device;
   record::SessionInfo second = first;
   second.definition = after;
-  return study_changes(first, second);
+  return study_changes(protocol, first, second);
 }
 
 TEST(StudyRulesTest, TextsScreenDevicesAndPlansMayChange) {
@@ -51,6 +54,19 @@ TEST(StudyRulesTest, TheVirtualHandCountsIfItWasUsed) {
   EXPECT_TRUE(between(before, after).same_study());
   EXPECT_THAT(keys(between(before, after, "virtual").binding),
               ElementsAre("device.position_quantum", "hand.hand_mass"));
+}
+
+/// Each protocol says what only its virtual participants use; another's tables are not free.
+TEST(StudyRulesTest, VirtualParticipantsCountIfOneWasAsked) {
+  const std::string before = "[observer]\ncriterion = 0.4\n[subject]\nlag = 0.1\n";
+  const std::string after = "[observer]\ncriterion = 0.5\n[subject]\nlag = 0.2\n";
+  const std::string person = "force-dimension";
+  const Protocol& trials = trials_protocol();
+  EXPECT_THAT(keys(between(before, after, person, trials).binding), ElementsAre("subject.lag"));
+  EXPECT_THAT(keys(between(before, after, "virtual", trials).binding),
+              ElementsAre("observer.criterion", "subject.lag"));
+  EXPECT_THAT(keys(between(before, after, person, force_training()).binding),
+              ElementsAre("observer.criterion"));
 }
 
 /// What a person feels follows from these keys whatever the device (compare the loop that the

@@ -1,4 +1,6 @@
-#include "protocols/definition/study_rules.h"
+#include "protocols/interface/study_rules.h"
+
+#include "protocols/interface/protocol.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -27,13 +29,15 @@ DefinitionRules of_every_study() {
 }
 
 /// What a person's session leaves unused: the virtual device, its hand and virtual participants.
-DefinitionRules of_people() {
-  return {.free = {"device", "hand", "subject", "pace", "drilling_hand", "virtual_surgeons"}};
+DefinitionRules of_people(const Protocol& protocol) {
+  DefinitionRules rules{.free = {"device", "hand"}};
+  const std::vector<std::string> tables = protocol.virtual_tables();
+  rules.free.insert(rules.free.end(), tables.begin(), tables.end());
+  return rules;
 }
 
-/// What every device's guidance reckons with: the damping that is felt (handle_loop() of
-/// protocols/force_training/force_definition.cpp) and the envelope's holding force (read_common())
-/// follow from it.
+/// What every device's guidance reckons with: the damping that is felt and the envelope's holding
+/// force (read_common()) follow from it.
 std::vector<BoundKey> felt_with_every_device() {
   return {{"device.velocity_window"},
           {"device.force_delay", "1"},
@@ -44,31 +48,25 @@ std::vector<BoundKey> felt_with_every_device() {
 
 }  // namespace
 
-const std::vector<std::string>& machine_tables() {
-  static const std::vector<std::string> kTables{"device", "force_dimension", "mouse",
-                                                "open_haptics", "screen"};
-  return kTables;
-}
-
-DefinitionRules study_rules(Hand hand) {
+DefinitionRules study_rules(const Protocol& protocol, Hand hand) {
   DefinitionRules rules = of_every_study();
   if (hand == Hand::kPerson) {
-    rules.add(of_people());
+    rules.add(of_people(protocol));
   }
   rules.bound = felt_with_every_device();
   return rules;
 }
 
-DefinitionChanges study_changes(const record::SessionInfo& before, std::string_view definition,
-                                std::string_view device) {
+DefinitionChanges study_changes(const Protocol& protocol, const record::SessionInfo& before,
+                                std::string_view definition, std::string_view device) {
   const bool virtual_hand = before.device == kVirtualDevice || device == kVirtualDevice;
   return definition_changes(before.definition, definition,
-                            study_rules(virtual_hand ? Hand::kVirtual : Hand::kPerson));
+                            study_rules(protocol, virtual_hand ? Hand::kVirtual : Hand::kPerson));
 }
 
-DefinitionChanges study_changes(const record::SessionInfo& before,
+DefinitionChanges study_changes(const Protocol& protocol, const record::SessionInfo& before,
                                 const record::SessionInfo& after) {
-  return study_changes(before, after.definition, after.device);
+  return study_changes(protocol, before, after.definition, after.device);
 }
 
 }  // namespace haptrial::protocols
