@@ -57,15 +57,15 @@ struct TrueContact {
 std::vector<TrueContact> true_contacts(const TrueBody& body, std::span<const Eigen::Vector3d> tool,
                                        double stiffness);
 
-/// The same on a plane or a sphere with Coulomb friction of coefficient `friction` >= 0, static and
-/// dynamic alike: the proxy stays while the force lies in the friction cone, else slides straight
-/// (on the sphere along a great circle) towards the tool until the force lies on the cone (Harwin
-/// and Melder 2002). It first touches where the straight way from the last position in the air
-/// meets the surface.
-std::vector<TrueContact> true_contacts(const TruePlane& body, std::span<const Eigen::Vector3d> tool,
+/// The same with Coulomb friction of coefficient `friction` >= 0, static and dynamic alike,
+/// quasi-static: the proxy stays while the force lies in the friction cone (Harwin and Melder
+/// 2002), else slides along the surface against the force's part along it, the tool at rest, until
+/// the force lies on the cone. In a valley of two faces the faces' pushes are added. The proxy
+/// first touches where the straight way from the last position in the air meets the surface.
+///
+/// Exact on plane faces (rubbed_profile.h) and, to rounding, on sphere and cylinder; on torus and
+/// wavy plate the sliding way is integrated with the fourth order, to 1e-12 m (rubbed_surface.h).
+std::vector<TrueContact> true_contacts(const TrueBody& body, std::span<const Eigen::Vector3d> tool,
                                        double stiffness, double friction);
-std::vector<TrueContact> true_contacts(const TrueSphere& body,
-                                       std::span<const Eigen::Vector3d> tool, double stiffness,
-                                       double friction);
 
 }  // namespace haptrial::evaluation

@@ -1,0 +1,147 @@
+#include "analysis/contact/truth/rubbed_profile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace haptrial::evaluation {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kEndless = std::numeric_limits<double>::infinity();
+constexpr double kRounding = 1e-12;  // of where a way meets a face: more than it, nothing felt [m]
+
+double cross_of(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+}  // namespace
+
+RubbedProfile::RubbedProfile(std::vector<ProfileFace> faces, bool closed, double friction)
+    : faces_(std::move(faces)), closed_(closed), friction_(friction) {}
+
+Vector3d RubbedProfile::place(const Spot& spot) const {
+  const ProfileFace& face = faces_[spot.face];
+  const Vector2d on = face.start + spot.along * face.along;
+  return {on.x(), on.y(), spot.z};
+}
+
+/// @returns false if the proxy leaves the surface; `left` says over what
+bool RubbedProfile::slide(Spot& at, const Vector3d& tool, Left& left) const {
+  left = {at.face, at.face};
+  for (std::size_t turns = 0; turns <= 2 * faces_.size(); ++turns) {
+    const ProfileFace& face = faces_[at.face];
+    const Vector2d to = tool.head<2>() - face.start;
+    const double push = -face.normal().dot(to);
+    if (!(push > 0.0)) {
+      return false;
+    }
+    const Vector2d foot(face.along.dot(to), tool.z()), here(at.along, at.z);  // on the face
+    const double far = (here - foot).norm(), reach = friction_ * push;
+    if (far <= reach) {
+      return true;
+    }
+    const Vector2d goal = foot + reach / far * (here - foot);
+    const bool forward = goal.x() > face.high;
+    if (!forward && !(goal.x() < face.low)) {
+      at = {at.face, goal.x(), goal.y()};
+      return true;
+    }
+    const double end = forward ? face.high : face.low;
+    const std::size_t other = (at.face + (forward ? 1 : faces_.size() - 1)) % faces_.size();
+    const ProfileFace& next = faces_[other];
+    const double begin = forward ? next.low : next.high;
+    at.along = end;
+    at.z += (end - here.x()) / (goal.x() - here.x()) * (goal.y() - here.y());
+    const double pulled =
+        (next.along.dot(tool.head<2>() - next.start) - begin) * (forward ? 1.0 : -1.0);
+    const double turn = cross_of(face.along, next.along) * (forward ? 1.0 : -1.0);
+    if (turn < 0.0 && pulled < 0.0) {
+      rest_in_valley(at, other, tool);
+      return true;
+    }
+    left = {at.face, other};
+    at = {other, begin, at.z};
+  }
+  return true;
+}
+
+/// Both faces push: what each pushes with adds up to the force across the valley.
+void RubbedProfile::rest_in_valley(Spot& at, std::size_t other, const Vector3d& tool) const {
+  const Vector2d force = (place(at) - tool).head<2>();
+  const Vector2d a = faces_[at.face].normal(), b = faces_[other].normal();
+  const double pressure = (cross_of(force, b) + cross_of(a, force)) / cross_of(a, b);
+  const double far = at.z - tool.z(), reach = friction_ * pressure;
+  at.z = tool.z() + std::clamp(far, -reach, reach);
+}
+
+/// Where a straight way first enters the solid, over none of the faces that it leaves.
+std::optional<RubbedProfile::Spot> RubbedProfile::meet(const Vector3d& from, const Vector3d& to,
+                                                       const std::optional<Left>& left) const {
+  std::optional<Spot> first;
+  double soonest = kEndless;
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    const ProfileFace& face = faces_[f];
+    const double before = face.normal().dot(from.head<2>() - face.start);
+    const double after = face.normal().dot(to.head<2>() - face.start);
+    const bool leaves = left && (f == left->face || f == left->other);
+    if (leaves || !(after < 0.0) || before < -kRounding || !(before > after)) {
+      continue;
+    }
+    const double t = std::max(0.0, before / (before - after));
+    const Vector3d at = from + t * (to - from);
+    const double along = face.along.dot(at.head<2>() - face.start);
+    if (t < soonest && along >= face.low - kRounding && along <= face.high + kRounding) {
+      soonest = t;
+      first = Spot{f, std::clamp(along, face.low, face.high), at.z()};
+    }
+  }
+  return first;
+}
+
+std::optional<Vector3d> RubbedProfile::next(const Vector3d& tool) {
+  if (!spot_) {
+    spot_ = free_ ? meet(*free_, tool, {}) : std::nullopt;
+  }
+  // A flight may land on another face, once on each.
+  for (std::size_t flight = 0; spot_ && flight <= faces_.size(); ++flight) {
+    Left left{};
+    if (slide(*spot_, tool, left)) {
+      return place(*spot_);
+    }
+    spot_ = meet(place(*spot_), tool, left);
+  }
+  spot_.reset();
+  free_ = tool;
+  return std::nullopt;
+}
+
+RubbedProfile rubbed_profile(const TruePlane&, double friction) {
+  return RubbedProfile({{Vector2d::Zero(), -Vector2d::UnitX(), -kEndless, kEndless}}, false,
+                       friction);
+}
+
+RubbedProfile rubbed_profile(const TrueWedge& body, double friction) {
+  const double c = std::cos(body.flank), s = std::sin(body.flank);
+  return RubbedProfile(
+      {{Vector2d::Zero(), {-c, s}, -kEndless, 0.0}, {Vector2d::Zero(), {-c, -s}, 0.0, kEndless}},
+      false, friction);
+}
+
+RubbedProfile rubbed_profile(const TrueConcaveEdge& body, double friction) {
+  const double c = std::cos(body.flank), s = std::sin(body.flank);
+  return RubbedProfile(
+      {{Vector2d::Zero(), {-c, -s}, -kEndless, 0.0}, {Vector2d::Zero(), {-c, s}, 0.0, kEndless}},
+      false, friction);
+}
+
+RubbedProfile rubbed_profile(const TrueThinPlate& body, double friction) {
+  const double x = 0.5 * body.width, y = 0.5 * body.thickness;
+  return RubbedProfile({{{-x, -y}, Vector2d::UnitX(), 0.0, body.width},
+                        {{x, -y}, Vector2d::UnitY(), 0.0, body.thickness},
+                        {{x, y}, -Vector2d::UnitX(), 0.0, body.width},
+                        {{-x, y}, -Vector2d::UnitY(), 0.0, body.thickness}},
+                       true, friction);
+}
+
+}  // namespace haptrial::evaluation

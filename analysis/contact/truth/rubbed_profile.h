@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "analysis/contact/truth/true_contact.h"
+
+namespace haptrial::evaluation {
+
+/// A plane face along z: the points start + s along, low <= s <= high. The solid is on the left.
+struct ProfileFace {
+  Eigen::Vector2d start, along;  // along has unit length
+  double low, high;              // may be infinite [m]
+
+  Eigen::Vector2d normal() const { return {along.y(), -along.x()}; }  // out of the solid
+};
+
+/// The god object with Coulomb friction on plane faces along z, exactly; it remembers its place.
+///
+/// On a face it stays while the force lies in the friction cone, else goes straight towards the
+/// tool's foot until the force lies on the cone. Over a convex edge it goes on, on the next face.
+/// In a valley where both faces push, friction acts along the valley alone, by the sum of what the
+/// two push with: a V-block. Elsewhere in a valley the face decides along which the tool pulls.
+class RubbedProfile {
+ public:
+  /// @param faces     in order, the high end of each joined to the low end of the next
+  /// @param closed    the last is joined to the first
+  /// @param friction  of Coulomb, static and dynamic alike, >= 0
+  RubbedProfile(std::vector<ProfileFace> faces, bool closed, double friction);
+
+  /// The proxy for the next place of the tool; nothing in the air.
+  std::optional<Eigen::Vector3d> next(const Eigen::Vector3d& tool);
+
+ private:
+  struct Spot {
+    std::size_t face;
+    double along, z;  // [m]
+  };
+  struct Left {
+    std::size_t face, other;  // the same, or both that make an edge
+  };
+  Eigen::Vector3d place(const Spot& spot) const;
+  bool slide(Spot& at, const Eigen::Vector3d& tool, Left& left) const;
+  void rest_in_valley(Spot& at, std::size_t other, const Eigen::Vector3d& tool) const;
+  std::optional<Spot> meet(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                           const std::optional<Left>& left) const;
+
+  std::vector<ProfileFace> faces_;
+  bool closed_;
+  double friction_;
+  std::optional<Eigen::Vector3d> free_;  // the tool in the air
+  std::optional<Spot> spot_;             // of the proxy on a face
+};
+
+RubbedProfile rubbed_profile(const TruePlane& body, double friction);
+RubbedProfile rubbed_profile(const TrueWedge& body, double friction);
+RubbedProfile rubbed_profile(const TrueConcaveEdge& body, double friction);
+RubbedProfile rubbed_profile(const TrueThinPlate& body, double friction);
+
+}  // namespace haptrial::evaluation

@@ -1,0 +1,178 @@
+// The proxy that is rendered on meshes, beside the truth with friction on the bodies themselves.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "analysis/contact/truth/true_contact.h"
+#include "core/contact/renderer/make_renderer.h"
+#include "core/geometry/mesh/procedural.h"
+#include "tests/analysis/contact/truth/truth_cases.h"
+
+namespace haptrial::evaluation {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using geometry::Mesh;
+using Points = std::vector<Vector3d>;
+
+constexpr double kRubbed = 0.3;
+
+/// A strip of faces along z through the corners of a profile.
+Mesh extruded(const std::vector<Vector2d>& corners, bool closed) {
+  constexpr double kHalf = 0.1;  // [m]
+  Mesh mesh;
+  const auto count = static_cast<std::int32_t>(corners.size());
+  for (const Vector2d& c : corners) {
+    mesh.vertices.emplace_back(c.x(), c.y(), -kHalf);
+    mesh.vertices.emplace_back(c.x(), c.y(), kHalf);
+  }
+  for (std::int32_t i = 0; i + (closed ? 0 : 1) < count; ++i) {
+    const std::int32_t a = 2 * i, b = 2 * ((i + 1) % count);
+    mesh.triangles.push_back({a, b, b + 1});
+    mesh.triangles.push_back({a, b + 1, a + 1});
+  }
+  return mesh;
+}
+
+/// @param fine  edges of 1 / fine of the coarsest; plane bodies take none
+Mesh mesh_of(const TruePlane&, int) { return extruded({{-0.1, 0.0}, {0.1, 0.0}}, false); }
+Mesh mesh_of(const TrueSphere& b, int fine) { return geometry::make_sphere(b.radius, 10 * fine); }
+Mesh mesh_of(const TrueCylinder& b, int fine) {
+  std::vector<Vector2d> corners;
+  const int count = 60 * fine;
+  for (int i = 0; i < count; ++i) {
+    const double a = 2.0 * std::numbers::pi * i / count;
+    corners.emplace_back(b.radius * std::cos(a), b.radius * std::sin(a));
+  }
+  return extruded(corners, true);
+}
+Mesh mesh_of(const TrueTorus& b, int fine) {
+  return geometry::make_torus(b.radius, b.tube_radius, 80 * fine, 40 * fine);
+}
+Mesh mesh_of(const TrueWedge& b, int) {
+  const double c = 0.1 * std::cos(b.flank), s = 0.1 * std::sin(b.flank);
+  return extruded({{-c, -s}, {0.0, 0.0}, {c, -s}}, false);
+}
+Mesh mesh_of(const TrueConcaveEdge& b, int) {
+  const double c = 0.1 * std::cos(b.flank), s = 0.1 * std::sin(b.flank);
+  return extruded({{-c, s}, {0.0, 0.0}, {c, s}}, false);
+}
+Mesh mesh_of(const TrueWavyPlate& b, int fine) {
+  std::vector<Vector2d> corners;
+  const int count = 120 * fine;
+  for (int i = 0; i <= count; ++i) {
+    const double x = 0.12 * i / count - 0.06;
+    corners.emplace_back(x, b.height * std::sin(2.0 * std::numbers::pi * x / b.length));
+  }
+  return extruded(corners, false);
+}
+Mesh mesh_of(const TrueThinPlate& b, int) {
+  const double x = 0.5 * b.width, y = 0.5 * b.thickness;
+  return extruded({{-x, -y}, {x, -y}, {x, y}, {-x, y}}, true);
+}
+
+bool is_curved(const test::TruthCase& one) {
+  return std::holds_alternative<TrueSphere>(one.body) ||
+         std::holds_alternative<TrueCylinder>(one.body) ||
+         std::holds_alternative<TrueTorus>(one.body) ||
+         std::holds_alternative<TrueWavyPlate>(one.body);
+}
+
+struct Beside {
+  double worst{0.0}, square{0.0};  // force error: largest, root mean square [N]
+  double mean{0.0};                // of the size of the force [N]
+  int touching{0}, alone{0};       // ticks: both touch; only one of the two does
+};
+
+Beside beside(const test::TruthCase& one, const Points& tool, int fine, double friction) {
+  const Mesh mesh = std::visit([&](const auto& body) { return mesh_of(body, fine); }, one.body);
+  const contact::ContactSurface surface(mesh);
+  const auto renderer = contact::make_renderer(
+      contact::RendererKind::kProxy, mesh, surface,
+      {.stiffness = test::kTruthStiffness, .friction = {friction, friction}});
+  const auto truth = true_contacts(one.body, tool, test::kTruthStiffness, friction);
+  renderer->start(tool.front());
+  Beside result;
+  for (std::size_t i = 0; i < tool.size(); ++i) {
+    const contact::Contact& contact = renderer->tick(tool[i], 1e-3);
+    const bool touches = contact.depth > 0.0;
+    if (touches != truth[i].touching) {
+      ++result.alone;
+    } else if (touches) {
+      const double error = (contact.force - truth[i].force).norm();
+      result.worst = std::max(result.worst, error);
+      result.square += error * error;
+      result.mean += contact.force.norm() - truth[i].force.norm();
+      ++result.touching;
+    }
+  }
+  result.square = std::sqrt(result.square / result.touching);
+  result.mean = std::abs(result.mean) / result.touching;
+  return result;
+}
+
+/// Plane faces are the same on mesh and body: the answer is exact.
+TEST(TrueRenderingTest, TheProxyIsExactOnPlaneFaces) {
+  for (const test::TruthCase& one : test::truth_cases()) {
+    if (is_curved(one) || std::holds_alternative<TrueWedge>(one.body)) {
+      continue;
+    }
+    const Beside b = beside(one, one.there_and_back(), 1, kRubbed);
+    EXPECT_LT(b.worst, 1e-9) << one.name << " [N]";
+    EXPECT_EQ(b.alone, 0) << one.name;
+    EXPECT_GT(b.touching, 1500) << one.name;
+  }
+}
+
+/// A face has one normal, wrong by up to half of what it turns from its neighbour: the force errs
+/// with the first order of the edges, in direction and, as friction does not stand square to the
+/// face, in size. Its mean size is better.
+TEST(TrueRenderingTest, TheProxyConvergesOnCurvedBodies) {
+  for (const test::TruthCase& one : test::truth_cases()) {
+    if (!is_curved(one)) {
+      continue;
+    }
+    const Points tool = one.there_and_back();
+    const Beside coarse = beside(one, tool, 2, kRubbed), fine = beside(one, tool, 8, kRubbed);
+    std::printf("%s: %.4f N with edges four times as long, %.4f N; of the mean size %.5f, %.5f N\n",
+                one.name, coarse.square, fine.square, coarse.mean, fine.mean);
+    EXPECT_GT(coarse.square / fine.square, 3.4) << one.name;
+    EXPECT_LT(fine.mean, 0.1 * fine.square) << one.name;
+    EXPECT_LT(fine.square, 0.012) << one.name << " [N], of forces up to 3.7 N";
+    EXPECT_LT(fine.alone, 3) << one.name;
+    EXPECT_GT(fine.touching, 1500) << one.name;
+  }
+}
+
+/// Over a convex edge a tick's step leads a little beyond the face, along its plane, before it
+/// falls onto the next one. If friction drags the proxy aslant it lands beside where the body's own
+/// edge would have led it: by the first order of the step, until it turns.
+TEST(TrueRenderingTest, AslantOverAnEdgeTheProxyErrsByAPartOfItsStep) {
+  const test::TruthCase wedge = test::truth_cases()[4];
+  ASSERT_TRUE(std::holds_alternative<TrueWedge>(wedge.body));
+  double before = 0.0;
+  for (const int ticks : {4000, 40000, 400000}) {
+    Points tool;
+    for (int i = 0; i <= ticks; ++i) {
+      tool.push_back(wedge.tool(4.0 * i / ticks));
+    }
+    const Beside b = beside(wedge, tool, 1, kRubbed);
+    double longest = 0.0;  // step
+    for (std::size_t i = 1; i < tool.size(); ++i) {
+      longest = std::max(longest, (tool[i] - tool[i - 1]).norm());
+    }
+    std::printf("wedge: steps up to %.1e m, worst %.2e N\n", longest, b.worst);
+    EXPECT_LT(b.worst, 0.1 * test::kTruthStiffness * longest);
+    EXPECT_TRUE(before == 0.0 || before / b.worst > 4.0);
+    EXPECT_LT(beside(wedge, tool, 1, 0.0).worst, 1e-9) << "without friction it is exact";
+    before = b.worst;
+  }
+}
+
+}  // namespace
+}  // namespace haptrial::evaluation
