@@ -32,6 +32,7 @@ if [ "$study" = contact_evaluation ]; then  # no participants: a simulated recor
   "table_4_sha256": "$(sum "results/$study/table-4.csv")",
   "table_5_sha256": "$(sum "results/$study/table-5.csv")",
   "table_6_sha256": "$(sum "results/$study/table-6.csv")",
+  "operations_sha256": "$(sum "results/$study/operations.csv")",
   "failures_sha256": "$(sum "results/$study/failures.csv")"
 }
 EOF

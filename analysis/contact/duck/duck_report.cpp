@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
@@ -59,6 +60,33 @@ TextTable costs(const DuckTables& t) {
                             fmt::format("{:.4f}", r.friction), fmt::format("{:.2f}", 1e6 * r.tick),
                             fmt::format("{:.3f}", r.preparation),
                             fmt::format("{:.2f}", 1e-6 * r.memory)});
+    }
+  }
+  return table;
+}
+
+TextTable operations(const DuckTables& t) {
+  TextTable table{{"renderer", "triangles", "friction"}, {}};
+  std::vector<DuckRow> rows;
+  for (const auto* more : {&t.table4, &t.table5, &t.table6}) {
+    rows.insert(rows.end(), more->begin(), more->end());
+  }
+  std::vector<contact::Operations> all;
+  for (const DuckRow& r : rows) {
+    all.push_back(r.operations);
+  }
+  const auto counts = counted(all);
+  for (const contact::OperationCount& c : counts) {
+    table.heading.push_back(fmt::format("{}, mean", c.name));
+    table.heading.push_back(fmt::format("{}, most", c.name));
+  }
+  for (const DuckRow& r : rows) {
+    auto& row = table.rows.emplace_back();
+    row = {r.renderer, fmt::format("{}", r.triangles), fmt::format("{:.4f}", r.friction)};
+    const double ticks = std::max(1.0, static_cast<double>(r.operations.ticks));
+    for (const contact::OperationCount& c : counts) {
+      row.push_back(fmt::format("{:.3f}", static_cast<double>(r.operations.*c.count) / ticks));
+      row.push_back(fmt::format("{}", r.most.*c.count));
     }
   }
   return table;
@@ -198,6 +226,7 @@ void write_duck(const DuckTables& t, const std::vector<FailureMap>& maps,
   for (std::size_t i = 1; i < drawings.size(); ++i) {
     document.picture(drawings[i]);
   }
+  add("Operations a tick", "operations.csv", operations(t));
   add("Costs on this computer", "costs.csv", costs(t));
   document.heading("Remarks");
   for (const std::string& remark : t.contact.remarks) {

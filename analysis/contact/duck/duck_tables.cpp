@@ -40,7 +40,9 @@ class DuckRenderings {
             force_error(normal_, r.force).root_mean_square,
             tick_times(r.tick_seconds).median,
             r.preparation,
-            r.memory};
+            r.memory,
+            r.operations,
+            r.most};
   }
 
  private:

@@ -27,11 +27,13 @@ struct DuckRow {
   std::string renderer;
   std::size_t triangles{0};
   double friction{0.0};
-  double error{0.0};         // root mean square against the recorded force [N]
-  double normal_error{0.0};  // against its normal part alone: what the geometry does [N]
-  double tick{0.0};          // median [s]
-  double preparation{0.0};   // [s]
-  double memory{0.0};        // [bytes]
+  double error{0.0};                 // root mean square against the recorded force [N]
+  double normal_error{0.0};          // against its normal part alone: what the geometry does [N]
+  double tick{0.0};                  // median [s]
+  double preparation{0.0};           // [s]
+  double memory{0.0};                // [bytes]
+  contact::Operations operations{};  // of all ticks
+  contact::Operations most{};        // of each kind, in one tick
 };
 
 struct DuckTables {

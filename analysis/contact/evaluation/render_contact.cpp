@@ -31,6 +31,15 @@ double heap_in_use() {
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
 
+/// Raises `most` to what the last tick took.
+void add_most(const contact::Operations& now, const contact::Operations& before,
+              contact::Operations& most) {
+  most.ticks = 1;
+  for (const contact::OperationCount& c : contact::kOperationCounts) {
+    most.*c.count = std::max(most.*c.count, now.*c.count - before.*c.count);
+  }
+}
+
 double error_with(const PreparedContact& contact, const contact::FeltBody& body,
                   contact::RendererKind kind, contact::RendererOptions options, double friction) {
   options.friction = {friction, friction};
@@ -58,6 +67,7 @@ RenderedContact render_contact(const PreparedContact& contact, const contact::Fe
   result.tick_seconds.reserve(n);
   const double period = 1.0 / contact.rate;
   const double lift = kLift * body.size;
+  contact::Operations before_tick;
   for (std::size_t i = 0; i < n; ++i) {
     const Vector3d tool = contact.in[i] + used.radius * contact.normal[i];
     if (i == 0) {
@@ -66,12 +76,15 @@ RenderedContact render_contact(const PreparedContact& contact, const contact::Fe
     const Clock::time_point tick = Clock::now();
     const contact::Contact& felt = renderer->tick(tool, period);
     result.tick_seconds.push_back(seconds_since(tick));
+    add_most(renderer->operations(), before_tick, result.most);
+    before_tick = renderer->operations();
     const bool free = felt.state == contact::ContactState::kFree;
     result.force.push_back(felt.force);
     result.place.push_back(free ? contact.out[i]
                                 : Vector3d(felt.proxy - used.radius * felt.normal));
     result.unsettled += felt.settled ? 0 : 1;
   }
+  result.operations = before_tick;
   return result;
 }
 

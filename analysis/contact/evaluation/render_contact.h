@@ -18,6 +18,8 @@ struct RenderedContact {
   double preparation{0.0};             // of the renderer from the mesh and its hierarchy [s]
   double memory{0.0};                  // that it holds beside them [bytes]
   std::size_t unsettled{0};            // ticks that ended before the proxy was at rest
+  contact::Operations operations;      // of all ticks
+  contact::Operations most;            // of each kind, in one tick
 };
 
 /// @param body     the mesh that is felt; it may be another one than the contact was prepared with

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -47,6 +48,16 @@ Json contact_json(const PreparedContact& c) {
   return json;
 }
 
+Json operations_json(const RenderedContact& r) {
+  const double ticks = std::max(1.0, static_cast<double>(r.operations.ticks));
+  Json json{{"ticks", r.operations.ticks}};
+  for (const contact::OperationCount& c : contact::kOperationCounts) {
+    json[std::string(c.name)] = {{"mean", static_cast<double>(r.operations.*c.count) / ticks},
+                                 {"most", r.most.*c.count}};
+  }
+  return json;
+}
+
 Json to_json(const EvaluatedRendering& r, const PreparedContact& c) {
   Json places = Json::array();
   for (const ProblemPlace& place : r.position.places) {
@@ -78,6 +89,7 @@ Json to_json(const EvaluatedRendering& r, const PreparedContact& c) {
         {"samples", r.noticeable.samples},
         {"verdict", r.noticeable.verdict}}},
       {"tick_s", {{"median", r.ticks.median}, {"p999", r.ticks.p999}, {"worst", r.ticks.worst}}},
+      {"operations_per_tick", operations_json(r.rendered)},
       {"preparation_s", r.rendered.preparation},
       {"memory_bytes", r.rendered.memory},
       {"unsettled_ticks", r.rendered.unsettled}};

@@ -65,6 +65,8 @@ Document evaluation_report(const Evaluation& e, const EvaluationNames& names,
   }
   document.heading("Cost");
   document.table(costs.heading, costs.rows);
+  const TextTable operations = operation_table(e);
+  document.table(operations.heading, operations.rows);
   if (e.identified) {
     add_identified(*e.identified, document);
   }

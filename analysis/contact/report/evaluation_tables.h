@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,10 @@ struct TextTable {
 
 TextTable error_table(const Evaluation& evaluation);
 TextTable cost_table(const Evaluation& evaluation);
+/// Operations a tick, of what any of them did: the mean, and the most in one tick.
+TextTable operation_table(const Evaluation& evaluation);
+/// The counts that are not zero in all.
+std::vector<contact::OperationCount> counted(std::span<const contact::Operations> all);
 /// Columns under each other, the first one to the left.
 std::vector<std::string> text_lines(const TextTable& table);
 

@@ -97,6 +97,38 @@ TextTable cost_table(const Evaluation& e) {
   return table;
 }
 
+std::vector<contact::OperationCount> counted(std::span<const contact::Operations> all) {
+  std::vector<contact::OperationCount> counts;
+  for (const contact::OperationCount& c : contact::kOperationCounts) {
+    if (std::any_of(all.begin(), all.end(), [&](const auto& one) { return one.*c.count > 0; })) {
+      counts.push_back(c);
+    }
+  }
+  return counts;
+}
+
+TextTable operation_table(const Evaluation& e) {
+  std::vector<contact::Operations> all;
+  for (const EvaluatedRendering& r : e.renderings) {
+    all.push_back(r.rendered.operations);
+  }
+  const auto counts = counted(all);
+  TextTable table{{"operations a tick: mean, most"}, {}};
+  for (const contact::OperationCount& c : counts) {
+    table.heading.emplace_back(c.name);
+  }
+  for (const EvaluatedRendering& r : e.renderings) {
+    table.rows.push_back({name_of(r)});
+    const contact::Operations& done = r.rendered.operations;
+    const double ticks = std::max(1.0, static_cast<double>(done.ticks));
+    for (const contact::OperationCount& c : counts) {
+      const double mean = static_cast<double>(done.*c.count) / ticks;
+      table.rows.back().push_back(fmt::format("{:.2f}, {}", mean, r.rendered.most.*c.count));
+    }
+  }
+  return table;
+}
+
 std::vector<std::string> text_lines(const TextTable& table) {
   std::vector<std::size_t> width;
   for (std::size_t c = 0; c < table.heading.size(); ++c) {
@@ -135,6 +167,8 @@ std::vector<std::string> evaluation_lines(const Evaluation& e) {
   append(text_lines(error_table(e)));
   lines.emplace_back();
   append(text_lines(cost_table(e)));
+  lines.emplace_back();
+  append(text_lines(operation_table(e)));
   lines.emplace_back();
   for (const EvaluatedRendering& r : e.renderings) {
     lines.push_back(fmt::format("{}: {} {} places with an error beyond the threshold.", name_of(r),

@@ -29,9 +29,11 @@ void NearTriangles::forget() noexcept {
   covered_ = -1.0;
   clear_ = -1.0;
   reach_ = surface_->typical_edge();  // a start is the same whatever came before
+  operations_ = {};
 }
 
-bool NearTriangles::meets(const Sweep& sweep, std::int32_t slot, SweepHit& hit) const noexcept {
+bool NearTriangles::meets(const Sweep& sweep, std::int32_t slot, SweepHit& hit) noexcept {
+  ++operations_.triangles_tested;
   if (radius_ > 0.0) {
     SphereGap gap;
     return sweep_sphere(sweep, surface_->corners(slot), surface_->normal(slot), slot, 1.0, hit,
@@ -61,6 +63,7 @@ bool NearTriangles::collect(const Sweep& sweep, double length) noexcept {
 
 bool NearTriangles::list_around(const Sweep& sweep, double reach) noexcept {
   const double around = radius_ + 2.0 * sweep.skin.rest();
+  ++operations_.lists;
   const int count = surface_->gather(sweep.from, around + reach, found_);
   const bool point = radius_ == 0.0;
   if (count < 0 || count > (point ? kMany : kManyOfSphere)) {
@@ -100,6 +103,7 @@ bool NearTriangles::list_around(const Sweep& sweep, double reach) noexcept {
   std::fill_n(clear_until_.begin() + count, kBlock, std::numeric_limits<double>::infinity());
   if (count == 0) {
     clear_centre_ = sweep.from;
+    ++operations_.nearest_searches;
     clear_ = std::sqrt(surface_->bvh().closest(sweep.from).distance_squared);
   }
   return true;
@@ -158,6 +162,7 @@ bool NearTriangles::meets_listed(const Sweep& sweep, int i, double end, SweepHit
 bool NearTriangles::first_listed(const Sweep& sweep, double end, double length,
                                  SweepHit& hit) noexcept {
   bool met = false;
+  int tested = 0;
   double until = path_ + end * length;
   for (int first = 0; first < count_; first += kBlock) {
     bool any = false;
@@ -165,9 +170,12 @@ bool NearTriangles::first_listed(const Sweep& sweep, double end, double length,
       any |= clear_until_[i] <= until;
     }
     for (int i = first; any && i < std::min(first + kBlock, count_); ++i) {
+      if (clear_until_[i] > until || !can_meet(sweep, i, end, length)) {
+        continue;
+      }
       SweepHit here;
-      if (clear_until_[i] > until || !can_meet(sweep, i, end, length) ||
-          !meets_listed(sweep, i, end, here) ||
+      ++tested;
+      if (!meets_listed(sweep, i, end, here) ||
           (met && !is_sooner(here, hit, length, sweep.skin.thickness))) {
         continue;
       }
@@ -180,13 +188,15 @@ bool NearTriangles::first_listed(const Sweep& sweep, double end, double length,
       end = std::min(end, t + sweep.skin.rest() / length);
     }
   }
+  operations_.triangles_tested += tested;
+  operations_.triangles_passed += count_ - tested;
   return met;
 }
 
 namespace {
 
 struct Search {
-  const NearTriangles* near;
+  NearTriangles* near;
   const Sweep* sweep;
   SweepHit hit;
   bool met;
@@ -204,7 +214,8 @@ double look_at(void* context, std::int32_t slot) {
 
 }  // namespace
 
-bool NearTriangles::first_of_all(const Sweep& sweep, SweepHit& hit) const noexcept {
+bool NearTriangles::first_of_all(const Sweep& sweep, SweepHit& hit) noexcept {
+  ++operations_.long_sweeps;
   Search search{this, &sweep, {}, false};
   surface_->along(sweep.from, sweep.move, radius_ + 2.0 * sweep.skin.rest(), look_at, &search);
   hit = search.hit;
@@ -214,6 +225,7 @@ bool NearTriangles::first_of_all(const Sweep& sweep, SweepHit& hit) const noexce
 bool NearTriangles::first_hit(const Sweep& sweep, SweepHit& hit, double& seen) noexcept {
   const double length = sweep.move.norm();
   seen = 1.0;
+  ++operations_.sweeps;
   if (is_clear(sweep, length)) {
     return false;
   }

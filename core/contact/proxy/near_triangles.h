@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/contact/proxy/operations.h"
 #include "core/contact/proxy/sweep.h"
 #include "core/contact/surface/contact_surface.h"
 
@@ -29,7 +30,11 @@ class NearTriangles {
   bool first_hit(const Sweep& sweep, SweepHit& hit, double& seen) noexcept;
 
   /// Whether one triangle is met. Does not look at others.
-  bool meets(const Sweep& sweep, std::int32_t slot, SweepHit& hit) const noexcept;
+  bool meets(const Sweep& sweep, std::int32_t slot, SweepHit& hit) noexcept;
+
+  /// Since forget(). The proxy adds its own.
+  Operations& operations() noexcept { return operations_; }
+  const Operations& operations() const noexcept { return operations_; }
 
  private:
   struct Known {
@@ -50,7 +55,7 @@ class NearTriangles {
   bool can_meet(const Sweep& sweep, int i, double end, double length) noexcept;
   bool meets_listed(const Sweep& sweep, int i, double end, SweepHit& hit) noexcept;
   bool first_listed(const Sweep& sweep, double end, double length, SweepHit& hit) noexcept;
-  bool first_of_all(const Sweep& sweep, SweepHit& hit) const noexcept;
+  bool first_of_all(const Sweep& sweep, SweepHit& hit) noexcept;
 
   const ContactSurface* surface_;
   double radius_;
@@ -65,6 +70,7 @@ class NearTriangles {
   Eigen::Vector3d clear_centre_{Eigen::Vector3d::Zero()};  // of a ball without triangles [m]
   double clear_{-1.0};                                     // its radius [m]
   double path_{0.0};                                       // of the proxy since the last list [m]
+  Operations operations_;
 };
 
 }  // namespace haptrial::contact

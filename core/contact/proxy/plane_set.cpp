@@ -81,6 +81,7 @@ PlaneSolution PlaneSet::solve_on(std::span<const int> which, const Vector3d& pro
 PlaneSolution PlaneSet::solve(const Vector3d& proxy, const Vector3d& wish,
                               double tolerance) const noexcept {
   PlaneSolution best;
+  best.tried = 0;
   best.move = wish;
   best.residual.setZero();
   double least = 0.0;
@@ -103,8 +104,10 @@ PlaneSolution PlaneSet::solve(const Vector3d& proxy, const Vector3d& wish,
   const double farthest = wish.norm() + 8.0 * tolerance;  // staying where it is is as good
   least = farthest * farthest;
   bool sure = false;  // no plane pulls: then no point is nearer
+  int tried = 0;
   const auto consider = [&](std::span<const int> which) {
     const PlaneSolution s = solve_on(which, proxy, wish);
+    ++tried;
     const double square = s.residual.squaredNorm();
     if (s.solved && square < least && allowed(s.move)) {
       best = s;
@@ -132,6 +135,7 @@ PlaneSolution PlaneSet::solve(const Vector3d& proxy, const Vector3d& wish,
     best.residual = -wish;
     best.count = 0;
   }
+  best.tried = tried;
   return best;
 }
 

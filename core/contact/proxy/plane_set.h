@@ -26,6 +26,7 @@ struct PlaneSolution {
   std::array<int, 3> active{-1, -1, -1};  // the planes that it ends on
   std::array<double, 3> push{};           // of each: the residual is the sum of push · normal [m]
   int count{0};
+  int tried{1};       // points that were computed
   bool solved{true};  // false: no point was found, the move is zero
 
   /// The sum of the pushes of the planes, each of its own normal force over the stiffness [m].

@@ -59,6 +59,12 @@ void Proxy::start(const Vector3d& at) noexcept {
   way_length_ = 1;
 }
 
+PlaneSolution Proxy::solve(const Tick& tick, const Vector3d& wish) noexcept {
+  const PlaneSolution solution = planes_.solve(state_.position, wish, tick.tolerance());
+  near_.operations().plane_solutions += solution.tried;
+  return solution;
+}
+
 void Proxy::step_to(const Vector3d& at) noexcept {
   near_.moved((at - state_.position).norm());
   state_.position = at;
@@ -138,6 +144,7 @@ bool Proxy::find_way_out(Tick& tick) noexcept {
   const int known = planes_.size();
   const auto try_on = [&](std::span<const int> which) {
     const PlaneSolution solution = planes_.solve_on(which, state_.position, wish);
+    near_.operations().plane_solutions += 1;
     bool sticks = false;
     const Vector3d move = allowed_by_friction(solution, sticks);
     const double length = move.norm();
@@ -263,7 +270,7 @@ void Proxy::rest(Tick& tick, const PlaneSolution& solution) noexcept {
 /// One step of a tick. @returns whether it was the last.
 bool Proxy::advance(Tick& tick) noexcept {
   const Vector3d wish = tick.goal - state_.position;
-  const PlaneSolution solution = planes_.solve(state_.position, wish, tick.tolerance());
+  const PlaneSolution solution = solve(tick, wish);
   bool sticks = false;
   const Vector3d move = allowed_by_friction(solution, sticks);
   if (move.norm() <= tick.least || tick.repeated) {
@@ -299,7 +306,7 @@ bool Proxy::advance(Tick& tick) noexcept {
   state_.settled = true;
   planes_.clear();
   before_.clear();
-  rest(tick, planes_.solve(state_.position, Vector3d::Zero(), tick.tolerance()));
+  rest(tick, solve(tick, Vector3d::Zero()));
   return true;
 }
 
@@ -309,7 +316,7 @@ void Proxy::break_off(Tick& tick) noexcept {
     planes_ = before_;
   }
   const Vector3d wish = tick.goal - state_.position;
-  PlaneSolution solution = planes_.solve(state_.position, wish, tick.tolerance());
+  PlaneSolution solution = solve(tick, wish);
   if (solution.count == 0) {
     solution.solved = false;
     solution.move.setZero();
@@ -326,6 +333,7 @@ const ProxyState& Proxy::follow(const Vector3d& tool) noexcept {
       std::max({surface_->magnitude(), options_.radius, tool.cwiseAbs().maxCoeff(),
                 state_.position.cwiseAbs().maxCoeff()});
   Tick tick{tool, Skin::of(magnitude), Skin::of(magnitude).rest()};
+  ++near_.operations().ticks;
   way_[0] = state_.position;
   way_length_ = 1;
   if (planes_.size() > 0) {

@@ -70,6 +70,8 @@ class Proxy {
   /// One tick. @param tool  position in the object's frame [m]; not finite: nothing changes.
   const ProxyState& follow(const Eigen::Vector3d& tool) noexcept;
   const ProxyState& state() const noexcept { return state_; }
+  /// Since start().
+  const Operations& operations() const noexcept { return near_.operations(); }
 
   /// The corners of the last tick's way, from where the tick before ended; between them it was
   /// straight [m].
@@ -81,6 +83,7 @@ class Proxy {
 
  private:
   struct Tick;
+  PlaneSolution solve(const Tick& tick, const Eigen::Vector3d& wish) noexcept;
   bool advance(Tick& tick) noexcept;
   void break_off(Tick& tick) noexcept;
   bool go(Tick& tick, const Eigen::Vector3d& move) noexcept;

@@ -24,8 +24,9 @@ void press(const Vector3d& tool, double distance, const Vector3d& normal, double
   contact.proxy = tool + depth * contact.normal;
 }
 
-void begin(const Vector3d& tool, NormalSpring& spring, Contact& contact) {
+void begin(const Vector3d& tool, NormalSpring& spring, Contact& contact, Operations& operations) {
   spring.start();
+  operations = {};
   contact = {};
   if (tool.allFinite()) {
     contact.proxy = tool;
@@ -46,12 +47,16 @@ PenaltyRenderer::PenaltyRenderer(const geometry::Mesh& mesh, const ContactSurfac
                                  const RendererOptions& options)
     : distance_(mesh, surface), spring_(options) {}
 
-void PenaltyRenderer::start(const Vector3d& tool) noexcept { begin(tool, spring_, contact_); }
+void PenaltyRenderer::start(const Vector3d& tool) noexcept {
+  begin(tool, spring_, contact_, operations_);
+}
 
 const Contact& PenaltyRenderer::tick(const Vector3d& tool, double period) noexcept {
   if (refused(tool, contact_)) {
     return contact_;
   }
+  ++operations_.ticks;
+  ++operations_.nearest_searches;
   const SurfacePoint nearest = distance_(tool, hint_);
   hint_ = nearest.triangle;
   press(tool, nearest.distance, nearest.normal, period, spring_, contact_);
@@ -85,20 +90,25 @@ VoxelRenderer::VoxelRenderer(const geometry::Mesh& mesh, const ContactSurface& s
   });
 }
 
-void VoxelRenderer::start(const Vector3d& tool) noexcept { begin(tool, spring_, contact_); }
+void VoxelRenderer::start(const Vector3d& tool) noexcept {
+  begin(tool, spring_, contact_, operations_);
+}
 
 const Contact& VoxelRenderer::tick(const Vector3d& tool, double period) noexcept {
   if (refused(tool, contact_)) {
     return contact_;
   }
+  ++operations_.ticks;
   const Eigen::Array3d at = (tool - grid_.origin).array() / grid_.side;
   SurfacePoint below;
   if ((at >= 0.0).all() && (at < grid_.count.cast<double>()).all()) {
+    ++operations_.cells;
     const Eigen::Array3i cell = at.cast<int>();
     const std::int32_t triangle =
         nearest_[(static_cast<std::size_t>(cell[2]) * grid_.count[1] + cell[1]) * grid_.count[0] +
                  cell[0]];
     if (triangle >= 0) {
+      ++operations_.triangles_tested;
       below = distance_.of_plane(tool, triangle);
     }
   }
@@ -126,16 +136,20 @@ DistanceFieldRenderer::DistanceFieldRenderer(const geometry::Mesh& mesh,
   });
 }
 
-void DistanceFieldRenderer::start(const Vector3d& tool) noexcept { begin(tool, spring_, contact_); }
+void DistanceFieldRenderer::start(const Vector3d& tool) noexcept {
+  begin(tool, spring_, contact_, operations_);
+}
 
 const Contact& DistanceFieldRenderer::tick(const Vector3d& tool, double period) noexcept {
   if (refused(tool, contact_)) {
     return contact_;
   }
+  ++operations_.ticks;
   const Eigen::Array3d at = (tool - grid_.origin).array() / grid_.side;
   double distance = 0.0;
   Vector3d slope = Vector3d::Zero();
   if ((at >= 0.0).all() && (at < grid_.count.cast<double>()).all()) {
+    ++operations_.cells;
     const Eigen::Array3i cell = at.cast<int>(), n = grid_.count + 1;
     const Eigen::Array3d u = at - cell.cast<double>();
     for (int corner = 0; corner < 8; ++corner) {

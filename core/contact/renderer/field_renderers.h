@@ -17,12 +17,14 @@ class PenaltyRenderer final : public Renderer {
                   const RendererOptions& options);
   void start(const Eigen::Vector3d& tool) noexcept override;
   const Contact& tick(const Eigen::Vector3d& tool, double period) noexcept override;
+  const Operations& operations() const noexcept override { return operations_; }
 
  private:
   SignedDistance distance_;
   NormalSpring spring_;
   std::int32_t hint_{-1};
   Contact contact_;
+  Operations operations_;
 };
 
 /// The cells of a cubic grid around a mesh.
@@ -45,6 +47,7 @@ class VoxelRenderer final : public Renderer {
                 const RendererOptions& options);
   void start(const Eigen::Vector3d& tool) noexcept override;
   const Contact& tick(const Eigen::Vector3d& tool, double period) noexcept override;
+  const Operations& operations() const noexcept override { return operations_; }
 
  private:
   SignedDistance distance_;
@@ -52,6 +55,7 @@ class VoxelRenderer final : public Renderer {
   std::vector<std::int32_t> nearest_;  // by cell, x fastest
   NormalSpring spring_;
   Contact contact_;
+  Operations operations_;
 };
 
 /// Signed distances on a grid, interpolated trilinearly. The force is minus the gradient of
@@ -65,12 +69,14 @@ class DistanceFieldRenderer final : public Renderer {
                         const RendererOptions& options);
   void start(const Eigen::Vector3d& tool) noexcept override;
   const Contact& tick(const Eigen::Vector3d& tool, double period) noexcept override;
+  const Operations& operations() const noexcept override { return operations_; }
 
  private:
   CellGrid grid_;
   std::vector<double> distance_;  // by corner of cells, x fastest [m]
   NormalSpring spring_;
   Contact contact_;
+  Operations operations_;
 };
 
 }  // namespace haptrial::contact

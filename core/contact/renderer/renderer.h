@@ -58,6 +58,8 @@ class Renderer {
   /// One tick. @param tool  [m]; not finite: zero force
   /// @param period  since the tick before > 0 [s]
   virtual const Contact& tick(const Eigen::Vector3d& tool, double period) noexcept = 0;
+  /// What the ticks since the last start() took; those of a tool that is not finite take nothing.
+  virtual const Operations& operations() const noexcept = 0;
 };
 
 }  // namespace haptrial::contact

@@ -70,5 +70,30 @@ TEST(EvaluationReportTest, LinesNameEveryRendering) {
   EXPECT_THAT(name_of(rubbed_duck().renderings.back()), testing::StartsWith("proxy with friction"));
 }
 
+/// What renderers count stands in the lines, the report and the file, by the same names.
+TEST(EvaluationReportTest, OperationsAreToldByTheirNames) {
+  const std::string page = analysis::to_html(evaluation_report(rubbed_duck(), {}, {}));
+  const std::string file = evaluation_json(rubbed_duck(), {});
+  for (const EvaluatedRendering& r : rubbed_duck().renderings) {
+    const contact::Operations& done = r.rendered.operations;
+    EXPECT_EQ(done.ticks, rubbed_duck().contact.in.size());
+    for (const contact::OperationCount& c : contact::kOperationCounts) {
+      EXPECT_LE(done.*c.count, done.ticks * (r.rendered.most.*c.count)) << c.name;
+      if (done.*c.count > 0) {
+        EXPECT_THAT(page, HasSubstr(std::string(c.name)));
+        EXPECT_THAT(evaluation_lines(rubbed_duck()),
+                    testing::Contains(HasSubstr(std::string(c.name))));
+      }
+      EXPECT_THAT(file, HasSubstr("\"" + std::string(c.name) + "\""));
+    }
+    if (r.kind == contact::RendererKind::kVoxel) {
+      EXPECT_EQ(r.rendered.most,
+                (contact::Operations{.ticks = 1, .triangles_tested = 1, .cells = 1}));
+    } else {
+      EXPECT_GT(done.sweeps, done.ticks / 10);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace haptrial::evaluation
