@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "analysis/contact/truth/true_contact.h"
+#include "analysis/contact/truth/true_bodies.h"
 
 namespace haptrial::evaluation {
 

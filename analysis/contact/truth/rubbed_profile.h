@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "analysis/contact/truth/true_contact.h"
+#include "analysis/contact/truth/true_bodies.h"
 
 namespace haptrial::evaluation {
 

@@ -8,7 +8,8 @@
 #include <sstream>
 #include <string>
 
-#include "analysis/contact/recording/sensor_load.h"
+#include "analysis/contact/evaluation/prepare_contact.h"
+#include "core/geometry/files/mesh_io.h"
 #include "tests/support/shared_data.h"
 
 /// Recordings of a hand that follows a known body with a tool on bearings (KU Leuven; folder
@@ -85,6 +86,27 @@ inline std::vector<Eigen::Vector3d> contour_path(const PoseStream& pose, char se
     path.emplace_back(pose.position[i] + pose.orientation[i] * contour_tool(set_up).point);
   }
   return path;
+}
+
+inline std::optional<geometry::Mesh> contour_body() {
+  const auto file = haptrial::test::shared_data("haptic/contour/contour.stl");
+  if (!file) {
+    return std::nullopt;
+  }
+  geometry::Mesh mesh = geometry::read_mesh(*file);
+  for (auto& v : mesh.vertices) {
+    v *= 1e-3;  // the file is in mm
+  }
+  return mesh;
+}
+
+inline PrepareOptions contour_options(char set_up) {
+  PrepareOptions options;
+  options.tip = contour_tool(set_up).point;
+  options.mount = contour_tool(set_up).mount;
+  options.load = contour_load();
+  options.stiffness = 2e4;  // N/m: 20 N press by a millimetre
+  return options;
 }
 
 inline std::optional<std::filesystem::path> contour_file(char set_up) {

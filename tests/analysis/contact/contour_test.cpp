@@ -8,23 +8,10 @@
 #include "analysis/contact/recording/stream_lag.h"
 #include "analysis/contact/registration/in_trajectory.h"
 #include "analysis/contact/registration/registration.h"
-#include "core/geometry/files/mesh_io.h"
 #include "tests/analysis/contact/contour_data.h"
 
 namespace haptrial::evaluation {
 namespace {
-
-std::optional<geometry::Mesh> contour_body() {
-  const auto file = haptrial::test::shared_data("haptic/contour/contour.stl");
-  if (!file) {
-    return std::nullopt;
-  }
-  geometry::Mesh mesh = geometry::read_mesh(*file);
-  for (auto& v : mesh.vertices) {
-    v *= 1e-3;  // the file is in mm
-  }
-  return mesh;
-}
 
 class ContourTest : public testing::TestWithParam<char> {};
 
@@ -34,7 +21,7 @@ constexpr const char* kAbsent =
 /// Even samples of a recording fix the pose; the odd ones, which took no part, must lie as close.
 TEST_P(ContourTest, ThePathLiesOnTheBody) {
   const auto file = test::contour_file(GetParam());
-  const auto mesh = contour_body();
+  const auto mesh = test::contour_body();
   if (!file || !mesh) {
     GTEST_SKIP() << kAbsent;
   }
@@ -83,17 +70,14 @@ TEST_P(ContourTest, TheLagIsFound) {
 /// The tool rolls on bearings: the friction that is found must be none, within its interval.
 TEST_P(ContourTest, ARollingToolHasNoFriction) {
   const auto file = test::contour_file(GetParam());
-  auto mesh = contour_body();
+  auto mesh = test::contour_body();
   if (!file || !mesh) {
     GTEST_SKIP() << kAbsent;
   }
   const contact::FeltBody body(*std::move(mesh));
   EvaluationOptions options;
   options.renderers = {contact::RendererKind::kPenalty};
-  options.prepare.tip = test::contour_tool(GetParam()).point;
-  options.prepare.mount = test::contour_tool(GetParam()).mount;
-  options.prepare.load = test::contour_load();
-  options.prepare.stiffness = 2e4;  // N/m: 20 N press by a millimetre
+  options.prepare = test::contour_options(GetParam());
   const Evaluation e = evaluate_rendering(test::read_contour(*file), body, options);
   ASSERT_TRUE(e.identified && e.identified->dynamic_friction);
   const Interval friction = *e.identified->dynamic_friction;
