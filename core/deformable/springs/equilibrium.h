@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "core/deformable/body/load_case.h"
+#include "core/deformable/springs/law/spring_body.h"
+#include "core/deformable/springs/settle.h"
+
+namespace haptrial::deformable {
+
+struct NewtonSettings {
+  double residual{1e-10};  // of the largest force that acts: where the search ends
+  int iterations{200};     // at most
+};
+
+struct Equilibrium {
+  Settling outcome{Settling::kNotInTime};
+  std::vector<Eigen::Vector3d> positions;  // (vertices) [m]; a result only where settled
+  int iterations{};
+  double residual{};       // largest force that nothing balances [N]
+  std::size_t inverted{};  // tetrahedra whose volume is not above 0
+};
+
+/// Where springs balance a load: a minimum of their energy less the forces' work, by Newton's
+/// method on the exact Hessian (CHOLMOD, supernodal), damped where that is not positive
+/// definite, with a line search. kSettled only where the Hessian at the end is positive definite;
+/// kUnstable where it is not or where the search leaves the numbers; kNotInTime after the
+/// iterations. Source: Morris 2006, §5.3.2 ("elastic forces precisely negate the applied forces").
+/// @param start  where the search begins, held vertices aside (vertices); empty: at rest
+/// @throws InputError for what check_load() refuses.
+Equilibrium equilibrium(const SpringBody& body, const LoadCase& load,
+                        const NewtonSettings& settings = {},
+                        std::vector<Eigen::Vector3d> start = {});
+
+}  // namespace haptrial::deformable

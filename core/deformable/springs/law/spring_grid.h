@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/deformable/springs/law/spring_body.h"
+
+namespace haptrial::deformable {
+
+/// Constants on a coarse grid over the box of the rest vertices, which trilinear interpolation
+/// takes to the vertices; an edge, face or tetrahedron has the mean over its vertices. An axis with
+/// one node has the same value along it.
+/// Source: Morris 2006, §5.3.5.
+class SpringGrid {
+ public:
+  /// @param nodes  along x, y and z, each at least 1
+  /// @throws InputError for a grid without a node.
+  SpringGrid(const SpringBody& body, const std::array<int, 3>& nodes);
+
+  /// Nodes that some vertex depends on, in ascending order of x + nodes_x (y + nodes_y z). The
+  /// others have no influence and no place in the lists of values below.
+  const std::vector<std::int32_t>& used() const { return used_; }
+  Eigen::Vector3d place(std::size_t used) const;  // of a used node [m]
+
+  /// @param length, area, volume  by used node, >= 0 [J]
+  /// @throws InputError for a list of another length, or a value below 0 or not finite.
+  SpringConstants constants(const SpringBody& body, std::span<const double> length,
+                            std::span<const double> area, std::span<const double> volume) const;
+
+  /// Values of used nodes, taken to every vertex.
+  std::vector<double> at_vertices(std::span<const double> values) const;
+
+ private:
+  std::array<int, 3> nodes_;
+  Eigen::Vector3d low_, size_;
+  std::vector<std::int32_t> used_;
+  std::vector<std::array<std::int32_t, 8>> node_;  // by vertex: places in the list of used nodes
+  std::vector<std::array<double, 8>> weight_;      // by vertex; they sum to 1
+};
+
+}  // namespace haptrial::deformable

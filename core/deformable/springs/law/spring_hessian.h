@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/deformable/springs/law/spring_body.h"
+
+namespace haptrial::deformable {
+
+/// The second derivatives of the energy of all springs, exact: 3 x 3 blocks [N/m] of each vertex
+/// with itself and of the two ends of each edge (vertices without a common edge have none).
+class SpringHessian {
+ public:
+  /// Finds which edges each face and tetrahedron has.
+  explicit SpringHessian(const SpringBody& body);
+
+  /// Computes the blocks with vertices at `positions` [m]. `body` may have other constants than the
+  /// constructor's.
+  void assemble(const SpringBody& body, std::span<const Eigen::Vector3d> positions);
+
+  /// The force that resists small displacements: the Hessian times `displacements` [m], in [N].
+  std::vector<Eigen::Vector3d> times(std::span<const Eigen::Vector3d> displacements) const;
+
+  const std::vector<Eigen::Matrix3d>& diagonal() const { return diagonal_; }  // (vertices)
+  const std::vector<Eigen::Matrix3d>& mixed() const { return mixed_; }        // (edges) low by high
+  const std::vector<Edge>& edges() const { return edges_; }
+
+ private:
+  template <std::size_t n>
+  void add(const std::array<std::int32_t, n>& vertices,
+           const std::array<std::array<Eigen::Matrix3d, n>, n>& blocks,
+           std::span<const std::int32_t> edges);
+
+  std::vector<Edge> edges_;
+  std::vector<std::array<std::int32_t, 3>> face_edges_;         // 01, 02, 12
+  std::vector<std::array<std::int32_t, 6>> tetrahedron_edges_;  // 01, 02, 03, 12, 13, 23
+  std::vector<Eigen::Matrix3d> diagonal_, mixed_;
+};
+
+/// The blocks of one spring: [i][j] derives the energy by point i and by point j [N/m].
+std::array<std::array<Eigen::Matrix3d, 2>, 2> length_hessian(const Spring& spring,
+                                                             const Points2& points);
+std::array<std::array<Eigen::Matrix3d, 3>, 3> area_hessian(const Spring& spring,
+                                                           const Points3& points);
+std::array<std::array<Eigen::Matrix3d, 4>, 4> volume_hessian(const Spring& spring,
+                                                             const Points4& points);
+
+}  // namespace haptrial::deformable

@@ -1,0 +1,180 @@
+#include "core/deformable/springs/spring_motion.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstring>
+
+#include "core/base/error.h"
+#include "core/deformable/springs/stable_step.h"
+
+namespace haptrial::deformable {
+namespace {
+
+using Eigen::Vector3d;
+
+void check_settings(const SpringBody& body, const MotionSettings& settings,
+                    std::span<const std::int32_t> held) {
+  if (!std::isfinite(settings.step) || settings.step <= 0) {
+    throw InputError(fmt::format("springs: the step is {} s; above 0 is allowed", settings.step));
+  }
+  if (!std::isfinite(settings.damping) || settings.damping < 0) {
+    throw InputError(
+        fmt::format("springs: the damping is {} N·s/m; at least 0 is allowed", settings.damping));
+  }
+  for (const std::int32_t vertex : held) {
+    if (vertex < 0 || static_cast<std::size_t>(vertex) >= body.rest.size()) {
+      throw InputError(fmt::format("springs: the held vertex {} is not one of 0 to {}", vertex,
+                                   body.rest.size() - 1));
+    }
+  }
+  if (settings.beyond_stability) {
+    return;
+  }
+  const double most = stable_step(body, held);
+  if (settings.step > most) {
+    throw InputError(
+        fmt::format("springs: a step of {:.4g} s is unstable for this body; at most {:.4g} s is "
+                    "allowed, or softer constants, or more mass",
+                    settings.step, most));
+  }
+}
+
+}  // namespace
+
+SpringMotion::SpringMotion(const SpringBody& body, const MotionSettings& settings,
+                           std::span<const std::int32_t> held)
+    : settings_((check_settings(body, settings, held), settings)),
+      springs_(body, settings.instructions),
+      masses_(body.masses),
+      positions_(springs_.points()),
+      velocities_(positions_.size()),
+      forces_(positions_.size()),
+      external_(positions_.size()) {
+  for (std::size_t v = 0; v < masses_.size(); ++v) {
+    const double drag = 0.5 * settings.damping * settings.step;
+    keep_.push_back((masses_[v] - drag) / (masses_[v] + drag));
+    kick_.push_back(settings.step / (masses_[v] + drag));
+    positions_[v] = body.rest[v];
+  }
+  for (const std::int32_t vertex : held) {
+    keep_[static_cast<std::size_t>(vertex)] = 0;
+    kick_[static_cast<std::size_t>(vertex)] = 0;
+  }
+}
+
+void SpringMotion::step() noexcept {
+  std::memcpy(forces_.data(), external_.data(), 4 * sizeof(double) * external_.size());
+  inverted_ = springs_.add(positions_, forces_);
+  if (inverted_ > 0) {
+    ++inverted_steps_;
+  }
+  double* x = positions_.data();
+  double* v = velocities_.data();
+  const double* f = forces_.data();
+  for (std::size_t i = 0; i < masses_.size(); ++i) {
+    const double keep = keep_[i];
+    const double kick = kick_[i];
+    for (std::size_t axis = 4 * i; axis < 4 * i + 4; ++axis) {
+      v[axis] = keep * v[axis] + kick * f[axis];
+      x[axis] += settings_.step * v[axis];
+    }
+  }
+  ++steps_;
+}
+
+void SpringMotion::set_force(std::size_t vertex, const Vector3d& force) noexcept {
+  external_[vertex] = force;
+}
+
+void SpringMotion::place(std::size_t vertex, const Vector3d& position) noexcept {
+  positions_[vertex] = position;
+}
+
+void SpringMotion::set_velocity(std::size_t vertex, const Vector3d& velocity) noexcept {
+  if (!held(vertex)) {
+    velocities_[vertex] = velocity;
+  }
+}
+
+void SpringMotion::stop() noexcept {
+  for (std::size_t v = 0; v < masses_.size(); ++v) {
+    velocities_[v].setZero();
+  }
+}
+
+Activity SpringMotion::activity() const noexcept {
+  Activity activity;
+  std::size_t free = 0;
+  for (std::size_t v = 0; v < masses_.size(); ++v) {
+    if (held(v)) {
+      continue;
+    }
+    ++free;
+    const Vector3d drag = settings_.damping * velocities_[v];
+    const double speed = velocities_[v].norm();
+    const double acceleration = (forces_[v] - drag).norm() / masses_[v];
+    activity.max_speed = std::max(activity.max_speed, speed);
+    activity.max_acceleration = std::max(activity.max_acceleration, acceleration);
+    activity.mean_speed += speed;
+    activity.mean_acceleration += acceleration;
+  }
+  if (free == 0) {
+    return {};
+  }
+  activity.mean_speed /= static_cast<double>(free);
+  activity.mean_acceleration /= static_cast<double>(free);
+  // A maximum passes over what is not a number; a mean does not.
+  if (!std::isfinite(activity.mean_speed)) {
+    activity.max_speed = activity.mean_speed;
+  }
+  if (!std::isfinite(activity.mean_acceleration)) {
+    activity.max_acceleration = activity.mean_acceleration;
+  }
+  return activity;
+}
+
+std::vector<Vector3d> SpringMotion::positions() const {
+  std::vector<Vector3d> positions(masses_.size());
+  copy_positions(positions);
+  return positions;
+}
+
+void SpringMotion::copy_positions(std::span<Vector3d> to) const noexcept {
+  for (std::size_t v = 0; v < masses_.size(); ++v) {
+    to[v] = positions_[v];
+  }
+}
+
+Vector3d SpringMotion::momentum() const {
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t v = 0; v < masses_.size(); ++v) {
+    sum += masses_[v] * velocities_[v];
+  }
+  return sum;
+}
+
+Vector3d SpringMotion::angular_momentum() const {
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t v = 0; v < masses_.size(); ++v) {
+    sum += masses_[v] * Vector3d(positions_[v]).cross(Vector3d(velocities_[v]));
+  }
+  return sum;
+}
+
+double SpringMotion::kinetic_energy() const {
+  PaddedPoints forces = external_;
+  springs_.add(positions_, forces);
+  double energy = 0;
+  for (std::size_t v = 0; v < masses_.size(); ++v) {
+    if (held(v)) {
+      continue;
+    }
+    const Vector3d after = keep_[v] * velocities_[v] + kick_[v] * forces[v];
+    energy += 0.5 * masses_[v] * (0.5 * (velocities_[v] + after)).squaredNorm();
+  }
+  return energy;
+}
+
+}  // namespace haptrial::deformable
