@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/deformable/calibration/calibration_problem.h"
+#include "core/deformable/calibration/spring_parameters.h"
+#include "core/deformable/search/annealing.h"
+
+namespace haptrial::deformable {
+
+/// kAnnealing: the source's way, which knows costs alone. kDescent: starting_constants(), then
+/// gradients through the statics (NLopt, L-BFGS).
+enum class CalibrationMethod { kAnnealing, kDescent };
+std::string_view name_of(CalibrationMethod method);
+
+/// One evaluation of the error.
+struct CalibrationStep {
+  std::vector<double> logarithms;
+  double error{std::numeric_limits<double>::infinity()};  // infinite: unstable [m]
+  std::string unstable;                                   // why, in words
+};
+
+struct CalibrationSettings {
+  CalibrationMethod method{CalibrationMethod::kDescent};
+  std::vector<SearchRange> ranges;  // of each parameter's common logarithm
+  long evaluations{1000};           // at most; a descent ends before
+  double enough{0.0};               // ends at this error [m]
+  std::uint64_t seed{1};            // of the annealing
+  AnnealingOptions annealing{};
+  int threads{1};  // for a batch of the annealing; the result is the same for any number
+  /// Evaluations of an earlier run with the same settings, which are taken and not done again.
+  std::vector<CalibrationStep> known{};
+  /// Is told of every new evaluation, in order.
+  std::function<void(const CalibrationStep&)> tell{};
+};
+
+struct CalibrationResult {
+  std::vector<double> logarithms;  // the best; empty: nothing stable was found
+  double error{std::numeric_limits<double>::infinity()};  // [m]
+  std::vector<CalibrationStep> steps;                     // in order (Figure 36)
+};
+
+/// Finds the constants with which springs follow the reference best.
+/// Source: Morris 2006, §5.3.2, §5.3.3; docs/algorithms/deformable-calibration.md.
+/// @throws InputError for ranges that are not one for each parameter, or fewer than 1 evaluation;
+/// std::invalid_argument as Annealing.
+CalibrationResult calibrate(const CalibrationProblem& problem, const SpringParameters& parameters,
+                            const CalibrationSettings& settings);
+
+}  // namespace haptrial::deformable

@@ -1,0 +1,218 @@
+// Constants of springs found again from what they did, and from bodies that no springs are.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/base/random.h"
+#include "core/deformable/calibration/calibrate.h"
+#include "core/deformable/calibration/starting_constants.h"
+#include "core/deformable/springs/equilibrium.h"
+#include "core/deformable/springs/law/spring_grid.h"
+#include "tests/support/message_of.h"
+#include "tests/support/solid_block.h"
+
+namespace haptrial::deformable {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kEdge = 0.01;  // [m]
+constexpr double kDensity = 1000.0;
+
+/// A block that stands on its bottom; `force` acts on its top [N].
+LoadCase pressed(const SpringBody& body, const Vector3d& force) {
+  LoadCase load{"press", {}, {}};
+  double top = 0.0;
+  for (const Vector3d& p : body.rest) {
+    top = std::max(top, p.z());
+  }
+  std::vector<std::int32_t> upper;
+  for (std::size_t v = 0; v < body.rest.size(); ++v) {
+    if (body.rest[v].z() < 1e-9) {
+      load.holds.push_back({static_cast<std::int32_t>(v), Vector3d::Zero()});
+    } else if (body.rest[v].z() > top - 1e-9) {
+      upper.push_back(static_cast<std::int32_t>(v));
+    }
+  }
+  for (const std::int32_t v : upper) {
+    load.forces.push_back({v, force / static_cast<double>(upper.size())});
+  }
+  return load;
+}
+
+class CalibrationTest : public testing::Test {
+ protected:
+  /// What springs with these constants do is the reference.
+  CalibrationProblem problem_of(const SpringConstants& truth,
+                                const std::vector<Vector3d>& forces) const {
+    SpringBody body = body_;
+    body.constants = truth;
+    std::vector<CalibrationLoad> loads;
+    for (const Vector3d& force : forces) {
+      const LoadCase load = pressed(body, force);
+      const Equilibrium found = equilibrium(body, load);
+      EXPECT_EQ(found.outcome, Settling::kSettled);
+      loads.push_back({load, found.positions});
+    }
+    return {body_, loads};
+  }
+  SpringBody body_ = spring_body(test::solid_block({3, 3, 4}, kEdge), kDensity,  //
+                                 UniformConstants{0.01, 0.01, 0.01});
+  const std::vector<Vector3d> press_{{0.05, 0.0, -0.1}};
+};
+
+TEST_F(CalibrationTest, UniformAndGridSayTheSameConstants) {
+  const std::vector<double> three{-2.0, -3.0, -1.5};
+  const auto uniform = SpringParameters::uniform(body_).constants(three);
+  const auto grid = SpringParameters::on_grid(body_, {2, 3, 2});
+  std::vector<double> logarithms;
+  for (const double x : three) {
+    logarithms.insert(logarithms.end(), grid.size() / 3, x);
+  }
+  const auto same = grid.constants(logarithms);
+  for (std::size_t i = 0; i < uniform.area.size(); ++i) {
+    ASSERT_NEAR(same.area[i], uniform.area[i], 1e-15);
+  }
+  EXPECT_NEAR(uniform.length[0], 1e-2, 1e-15);
+  EXPECT_NEAR(uniform.volume[0], std::pow(10.0, -1.5), 1e-15);
+  EXPECT_EQ(uniform.length.size(), body_.parts.edges.size());
+}
+
+TEST_F(CalibrationTest, AGridInterpolatesAsSpringGridDoes) {
+  const SpringGrid grid(body_, {3, 2, 2});
+  const auto parameters = SpringParameters::on_grid(body_, {3, 2, 2});
+  RandomStream random(4, "grid");
+  std::vector<double> logarithms;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    logarithms.push_back(random.uniform(-3.0, -1.0));
+  }
+  std::vector<double> values(logarithms.size());
+  std::transform(logarithms.begin(), logarithms.end(), values.begin(),
+                 [](double x) { return std::pow(10.0, x); });
+  const std::span<const double> all(values);
+  const std::size_t n = grid.used().size();
+  const auto expected =
+      grid.constants(body_, all.first(n), all.subspan(n, n), all.subspan(2 * n, n));
+  const auto found = parameters.constants(logarithms);
+  for (std::size_t i = 0; i < expected.volume.size(); ++i) {
+    ASSERT_NEAR(found.volume[i], expected.volume[i], 1e-15);
+  }
+  for (std::size_t i = 0; i < expected.length.size(); ++i) {
+    ASSERT_NEAR(found.length[i], expected.length[i], 1e-15);
+  }
+}
+
+/// The adjoint against central differences, for two loads and a grid.
+TEST_F(CalibrationTest, TheGradientIsThatOfTheError) {
+  const auto parameters = SpringParameters::on_grid(body_, {2, 1, 2});
+  std::vector<double> truth(parameters.size(), -2.0);
+  const CalibrationProblem problem =
+      problem_of(parameters.constants(truth), {{0.05, 0.0, -0.1}, {0.0, 0.1, 0.05}});
+  RandomStream random(5, "place");
+  std::vector<double> at;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    at.push_back(random.uniform(-2.3, -1.7));
+  }
+  const CalibrationError here = problem.error(parameters.constants(at), true);
+  ASSERT_TRUE(std::isfinite(here.mean)) << here.unstable;
+  const std::vector<double> gradient = parameters.gradient(at, here.gradient);
+  constexpr double kStep = 1e-4;
+  double largest = 0.0;
+  for (const double g : gradient) {
+    largest = std::max(largest, std::abs(g));
+  }
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const auto error_at = [&](double shift) {
+      std::vector<double> shifted = at;
+      shifted[i] += shift;
+      return problem.error(parameters.constants(shifted), false).mean;
+    };
+    EXPECT_NEAR(gradient[i], (error_at(kStep) - error_at(-kStep)) / (2 * kStep), 1e-5 * largest);
+  }
+}
+
+/// Balanced forces name the constants at once, since the reference is what springs do.
+TEST_F(CalibrationTest, TheStartIsTheTruthIfSpringsMadeTheReference) {
+  const auto parameters = SpringParameters::uniform(body_);
+  const std::vector<double> truth{-2.2, -1.9, -1.4};
+  const CalibrationProblem problem = problem_of(parameters.constants(truth), press_);
+  const std::vector<SearchRange> ranges(3, {-5.0, 1.0});
+  const std::vector<double> start = starting_constants(problem, parameters, ranges);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(start[i], truth[i], 1e-4);
+  }
+}
+
+TEST_F(CalibrationTest, DescentAndAnnealingFindWhatMadeTheReference) {
+  const auto parameters = SpringParameters::uniform(body_);
+  const std::vector<double> truth{-2.2, -1.9, -1.4};
+  const CalibrationProblem problem = problem_of(parameters.constants(truth), press_);
+  const double moved = distance_error(problem.loads()[0].reference, body_.rest);
+  CalibrationSettings settings;
+  settings.ranges.assign(3, {-4.0, 0.0});
+  settings.enough = 1e-3 * moved;
+  const CalibrationResult descent = calibrate(problem, parameters, settings);
+  EXPECT_LE(descent.error, settings.enough);
+  EXPECT_LE(descent.steps.size(), 10u);
+  settings.method = CalibrationMethod::kAnnealing;
+  settings.enough = 0.02 * moved;
+  settings.evaluations = 1500;
+  settings.threads = 2;
+  const CalibrationResult annealed = calibrate(problem, parameters, settings);
+  EXPECT_LE(annealed.error, settings.enough);
+  EXPECT_GT(annealed.steps.size(), 100u);
+}
+
+/// What was recorded is not done again, and the search goes on as it would have.
+TEST_F(CalibrationTest, AnInterruptedAnnealingGoesOn) {
+  const auto parameters = SpringParameters::uniform(body_);
+  const CalibrationProblem problem =
+      problem_of(parameters.constants(std::vector<double>{-2.2, -1.9, -1.4}), press_);
+  CalibrationSettings settings;
+  settings.method = CalibrationMethod::kAnnealing;
+  settings.ranges.assign(3, {-4.0, 0.0});
+  settings.annealing.samples = 20;
+  settings.evaluations = 60;
+  const CalibrationResult whole = calibrate(problem, parameters, settings);
+  settings.known.assign(whole.steps.begin(), whole.steps.begin() + 37);
+  std::size_t done = 0;
+  settings.tell = [&](const CalibrationStep&) { ++done; };
+  settings.threads = 2;
+  const CalibrationResult resumed = calibrate(problem, parameters, settings);
+  EXPECT_EQ(done, whole.steps.size() - 37);
+  ASSERT_EQ(resumed.steps.size(), whole.steps.size());
+  for (std::size_t i = 0; i < whole.steps.size(); ++i) {
+    EXPECT_EQ(resumed.steps[i].logarithms, whole.steps[i].logarithms);
+    EXPECT_EQ(resumed.steps[i].error, whole.steps[i].error);
+  }
+}
+
+/// A pull that such soft springs cannot hold is named and not averaged in.
+TEST_F(CalibrationTest, UnstableConstantsAreNamed) {
+  const auto parameters = SpringParameters::uniform(body_);
+  const CalibrationProblem problem =
+      problem_of(parameters.constants(std::vector<double>{-2.0, -2.0, -2.0}), press_);
+  const CalibrationError soft =
+      problem.error(parameters.constants(std::vector<double>{-9.0, -9.0, -2.0}), true);
+  EXPECT_TRUE(std::isinf(soft.mean));
+  EXPECT_NE(soft.unstable.find("load 'press'"), std::string::npos);
+}
+
+TEST_F(CalibrationTest, BadInputGetsASentence) {
+  EXPECT_EQ(test::message_of([&] { CalibrationProblem(body_, {}); }),
+            "calibration: there is no load");
+  const LoadCase load = pressed(body_, {0.0, 0.0, -0.1});
+  EXPECT_EQ(test::message_of([&] {
+              CalibrationProblem(body_, {{load, {}}});
+            }),
+            "load 'press': the reference has 0 vertices; the body has 80");
+  const CalibrationProblem problem(body_, {{load, body_.rest}});
+  CalibrationSettings settings;
+  EXPECT_EQ(
+      test::message_of([&] { calibrate(problem, SpringParameters::uniform(body_), settings); }),
+      "calibration: 0 ranges are given for 3 parameters");
+}
+
+}  // namespace
+}  // namespace haptrial::deformable
