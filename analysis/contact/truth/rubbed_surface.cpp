@@ -42,6 +42,10 @@ RubbedSurface::Hold RubbedSurface::hold(const Vector3d& at, const Vector3d& tool
 /// @returns false if the proxy leaves the surface
 bool RubbedSurface::slide(Vector3d& at, const Vector3d& tool) const {
   Hold now = hold(at, tool);
+  if (const auto rest = now == Hold::kSlides ? surface_->cone(at, tool, friction_) : std::nullopt) {
+    at = *rest;
+    return true;
+  }
   for (int i = 0; i < kMostFlows && now == Hold::kSlides; ++i) {
     Vector3d there = surface_->flow(at, tool, kFlowTime);
     now = hold(there, tool);

@@ -67,6 +67,20 @@ class Sphere final : public SmoothSurface {
     const Vector2d on = flow_on_circle({radius_, 0.0}, {tool.dot(x), length}, time);
     return on.x() * x + on.y() * y;
   }
+  /// In the triangle of centre, tool and proxy the angle at the proxy is that of the cone, φ:
+  /// sin(angle at the tool) / R = sin φ / |g|, so that the proxy is asin(R sin φ / |g|) - φ from
+  /// the tool's direction.
+  std::optional<Vector3d> cone(const Vector3d& from, const Vector3d& tool,
+                               double friction) const override {
+    const double open = std::atan(friction), ratio = radius_ * std::sin(open) / tool.norm();
+    if (!(ratio < 1.0)) {
+      return from;  // near the centre the cone of every place holds the tool
+    }
+    const double reach = std::asin(ratio) - open;
+    const Vector3d along = tool.normalized();
+    const Vector3d across = (from - from.dot(along) * along).normalized();
+    return Vector3d(radius_ * (std::cos(reach) * along + std::sin(reach) * across));
+  }
 
  private:
   double radius_;
@@ -133,6 +147,10 @@ class WavyPlate final : public SmoothSurface {
 
 Vector3d SmoothSurface::flow(const Vector3d& from, const Vector3d& tool, double time) const {
   return stepped_flow(*this, from, tool, time);
+}
+
+std::optional<Vector3d> SmoothSurface::cone(const Vector3d&, const Vector3d&, double) const {
+  return std::nullopt;
 }
 
 Vector3d stepped_flow(const SmoothSurface& surface, const Vector3d& from, const Vector3d& tool,

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 
 #include "analysis/contact/truth/true_bodies.h"
 
@@ -26,6 +27,9 @@ class SmoothSurface {
   /// Exact where a body has a closed form, else stepped_flow().
   virtual Eigen::Vector3d flow(const Eigen::Vector3d& from, const Eigen::Vector3d& tool,
                                double time) const;
+  /// Where that way first comes to the friction cone, if there is a formula: from outside of it.
+  virtual std::optional<Eigen::Vector3d> cone(const Eigen::Vector3d& from,
+                                              const Eigen::Vector3d& tool, double friction) const;
 };
 
 /// The same by Runge and Kutta's method of the fourth order on any surface. Steps are halved until
