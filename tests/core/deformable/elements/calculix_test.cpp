@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "core/deformable/elements/static_solver.h"
 #include "core/geometry/mesh/procedural.h"

@@ -6,7 +6,7 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "tests/support/message_of.h"
 #include "tests/support/solid_block.h"

@@ -6,7 +6,7 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "core/deformable/elements/static_solver.h"
 #include "tests/support/jittered_block.h"

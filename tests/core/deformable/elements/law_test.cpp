@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include "core/deformable/elements/elastic_body.h"
 #include "tests/support/jittered_block.h"

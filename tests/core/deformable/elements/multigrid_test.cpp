@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "core/deformable/elements/lattice_levels.h"
 #include "core/deformable/elements/static_solver.h"

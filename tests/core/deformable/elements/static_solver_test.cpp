@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include "tests/support/jittered_block.h"
 #include "tests/support/message_of.h"

@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
+#include <Eigen/QR>
 
 #include "core/deformable/elements/static_solver.h"
 #include "tests/support/mapped_block.h"
@@ -31,6 +32,11 @@ Eigen::VectorXd terms(double x, double y, int degree) {
   return Eigen::Map<Eigen::VectorXd>(found.data(), static_cast<Eigen::Index>(found.size()));
 }
 
+/// The x of least |a x - b|; Eigen's templates of it compile slowly, hence once.
+Eigen::MatrixXd least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return a.colPivHouseholderQr().solve(b);
+}
+
 /// A polynomial through what one layer of beads shows, by least squares.
 class LayerFit {
  public:
@@ -51,7 +57,7 @@ class LayerFit {
       a.row(static_cast<Eigen::Index>(i)) = rows[i];
       b.row(static_cast<Eigen::Index>(i)) = values[i];
     }
-    factors_ = a.colPivHouseholderQr().solve(b);
+    factors_ = least_squares(a, b);
   }
 
   Vector3d operator()(double x, double y) const {
@@ -154,7 +160,7 @@ double affine_error(const TruthCube& cube, std::size_t state) {
     a.row(i) << bead.rest.transpose(), 1;
     b.row(i) = bead.moved[state].transpose();
   }
-  const Eigen::MatrixXd left = b - a * a.colPivHouseholderQr().solve(b);
+  const Eigen::MatrixXd left = b - a * least_squares(a, b);
   return 1e3 * std::sqrt(left.squaredNorm() / static_cast<double>(n));
 }
 
