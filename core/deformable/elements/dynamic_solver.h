@@ -42,7 +42,7 @@ class DynamicSolver {
   DynamicSolver(DynamicSolver&&) noexcept;
 
   const Motion& motion() const;
-  /// Of the free vertices; held ones stay.
+  /// Places and velocities of the free vertices; held ones stay where they are.
   void set_motion(const Motion& motion);
 
   /// One step under a constant force on each vertex [N].

@@ -28,7 +28,7 @@ class LatticeNumbers {
                    static_cast<std::size_t>(p[0] + 1)];
   }
 
-  /// Numbers the points of this size that are there, and lists them.
+  /// Numbers the points of this size that the body has, and lists them.
   std::vector<LatticePoint> count(const LatticePoint& size) {
     std::vector<LatticePoint> points;
     for (std::int32_t k = 0; k < size[2]; ++k) {

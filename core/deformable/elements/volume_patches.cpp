@@ -28,7 +28,7 @@ bool are_a_cube(std::span<const Tetrahedron> five) {
     std::copy(five[i].begin(), five[i].end(), corners.begin() + static_cast<long>(4 * i));
   }
   std::sort(corners.begin(), corners.end());
-  std::array<int, 5> shared{};  // vertices that so many corners share
+  std::array<int, 5> shared{};  // [k]: vertices that k corners name
   for (auto at = corners.begin(); at != corners.end();) {
     const auto next = std::upper_bound(at, corners.end(), *at);
     if (next - at > 4) {

@@ -34,7 +34,7 @@ struct PatchLayout {
   std::vector<std::int32_t> tets;          // tetrahedra, patch after patch
   std::vector<std::int32_t> first_vertex;  // patches + 1: into `vertices`
   std::vector<std::int32_t> vertices;      // ascending in each patch
-  /// Of each of `tets`: its corners as places among the patch's vertices, ascending.
+  /// The corners of each tetrahedron in `tets`, as places among the patch's vertices, ascending.
   std::vector<std::array<std::uint8_t, 4>> corners;
 
   std::size_t patches() const { return first_tet.size() - 1; }

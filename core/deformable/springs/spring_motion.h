@@ -54,7 +54,7 @@ class SpringMotion {
   /// Steps so far with such a tetrahedron.
   std::uint64_t inverted_steps() const noexcept { return inverted_steps_; }
   std::uint64_t steps() const noexcept { return steps_; }
-  /// Of the last step.
+  /// Speeds and accelerations of the last step.
   Activity activity() const noexcept;
   double time() const noexcept { return static_cast<double>(steps_) * settings_.step; }  // [s]
 

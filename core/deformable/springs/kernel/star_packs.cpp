@@ -15,7 +15,7 @@ using geometry::Tetrahedron;
 constexpr std::size_t kStarCorners = 8;
 constexpr std::size_t kSingleCorners = 4;
 constexpr std::size_t kPerVoxel = 5;    // tetrahedra that tetrahedralize() makes in a row
-constexpr std::size_t kOpenPacks = 16;  // so many are looked at before another is begun
+constexpr std::size_t kOpenPacks = 16;  // packs that are tried before another is begun
 constexpr std::int32_t kNoTetrahedron = -1;
 
 /// Corners of the face opposite each corner, so that it makes a tetrahedron of positive volume with

@@ -36,7 +36,7 @@ Operations added(Renderer& renderer, const Vector3d& tool) {
   return more;
 }
 
-/// Of each what its method says, and nothing else.
+/// Each renderer counts what its method does, and nothing else.
 TEST(OperationsTest, RenderersWithoutAProxyDoOneThingATick) {
   const FeltBox box;
   const Vector3d inside(0.01, 0.02, 0.049), outside(0.0, 0.0, 0.3);

@@ -12,7 +12,7 @@ namespace {
 
 using Cost = std::function<double(const std::vector<double>&)>;
 
-/// Searches until so many costs are known. @returns every point asked for
+/// Searches until `evaluations` costs are known. @returns every point that was asked for
 std::vector<std::vector<double>> search(Annealing& annealing, const Cost& cost, long evaluations) {
   std::vector<std::vector<double>> asked;
   while (annealing.evaluations() < evaluations) {
