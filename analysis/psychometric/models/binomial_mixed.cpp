@@ -97,7 +97,7 @@ struct Lowest {
 /// Newton's method, damped where the function is not convex or a step leads up (Levenberg).
 std::optional<Lowest> descended(const Marginalised& f, VectorXd p) {
   constexpr int kMost = 100;
-  constexpr double kDone = 1e-10;
+  constexpr double kDone = 1e-10, kLeastDamping = 1e-9;
   double value = f(p), damping = 1e-3;
   if (!std::isfinite(value)) {
     return std::nullopt;
@@ -110,7 +110,9 @@ std::optional<Lowest> descended(const Marginalised& f, VectorXd p) {
     const double scale = std::max(1.0, c.hessian.diagonal().cwiseAbs().maxCoeff());
     bool moved = false;
     double promise = 0.0;
-    for (; !moved && damping < 1e6; damping *= moved ? 1.0 : 10.0) {
+    // Newton's own step, without damping, may fail too: from 0 it rises again.
+    for (; !moved && damping < 1e6;
+         damping = moved ? damping : std::max(10.0 * damping, kLeastDamping)) {
       const auto change = solve_positive(
           c.hessian + damping * 1e-3 * scale * MatrixXd::Identity(p.size(), p.size()), -c.slope);
       if (!change) {

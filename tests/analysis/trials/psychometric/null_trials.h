@@ -17,4 +17,7 @@ const char* name_of(SimulatedTask task);
 std::vector<NullLevel> null_trials(SimulatedTask task, std::size_t replications, std::uint64_t seed,
                                    int threads, std::size_t permutations = 0);
 
+/// One of these studies alone. @param number  from 0
+std::vector<NullLevel> null_study(SimulatedTask task, std::uint64_t seed, std::size_t number);
+
 }  // namespace haptrial::test

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace haptrial::test {
 namespace {
 
@@ -20,6 +22,15 @@ TEST_P(NullTrials, EveryTestKeepsItsLevel) {
     EXPECT_LE(level.found, band.high) << level.test;
     EXPECT_GE(level.replications, studies / 2) << level.test;
   }
+}
+
+/// Newton's own step fails in the mixed model's search after it has gone without damping: the
+/// search must damp anew, not try the same step for ever.
+TEST(NullTrialsTest, ASearchThatMustDampAnewEnds) {
+  const auto levels = null_study(SimulatedTask::kComparison, 1, 96);
+  EXPECT_TRUE(std::any_of(levels.begin(), levels.end(), [](const NullLevel& level) {
+    return level.test == "probit mixed model: conditions" && level.replications == 1;
+  }));
 }
 
 INSTANTIATE_TEST_SUITE_P(Tasks, NullTrials,
