@@ -12,7 +12,7 @@ namespace {
 class NullTrials : public testing::TestWithParam<SimulatedTask> {};
 
 TEST_P(NullTrials, EveryTestKeepsItsLevel) {
-  // A mixed model takes a second or two.
+  // A mixed model takes half a second.
   const std::size_t studies = GetParam() == SimulatedTask::kComparison ? 15 : 100;
   // A test with a level of 0.05 leaves the band once in ten million studies.
   const auto band = binomial_band(studies, 1.0 - 1e-7);
