@@ -32,8 +32,8 @@ using TetGradients = Eigen::Matrix<double, 3, 4>;  // of the four shape function
 ///
 /// Members: theta; inverted (no force is defined); volume_gradient = d theta / dF; energy(mu) and
 /// stress(mu) of the form part, [J/m³] and first Piola [Pa]; set_blocks() sets the stiffness of
-/// form plus `pressure` d² theta / dF², times the rest volume; what else the volume part gives is
-/// of the patch.
+/// form plus `pressure` d² theta / dF², times the rest volume. The patch adds the rest of the
+/// volume part.
 template <Law law>
 class TetLaw;
 

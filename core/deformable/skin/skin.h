@@ -12,9 +12,9 @@
 
 namespace haptrial::deformable {
 
-/// A surface of many triangles that follows a coarse body. Each of its vertices r is placed by the
-/// frames F of the nearest vertices s of the body's surface, by weights that fall with the square
-/// of the distance at rest:
+/// A surface of many triangles that follows a coarse body. The nearest vertices s of the body's
+/// surface, each with its frame F, place each vertex r of the fine one. Their weights fall with the
+/// squared distance at rest:
 ///
 ///     p(r) = Σ w_s (p(s) + F_s offset_rs),   w_s ∝ 1 / |r - s|²,   Σ w_s = 1
 ///
