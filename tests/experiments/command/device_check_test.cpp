@@ -148,7 +148,7 @@ std::string failures(const std::string& output) {
 
 const std::string kLibraries = HAPTRIAL_BINARY_DIR;
 
-TEST(DeviceTestCommandTest, FitDevicesPassWithFigures) {
+TEST(TimedDeviceTest, FitDevicesPassWithFigures) {
   const std::string hand = "STAND_IN_HAND_TICKS=2000 ";
   for (const std::string& line :
        {std::string("haptrial device-test virtual --seconds 2"),
