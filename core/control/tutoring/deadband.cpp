@@ -1,0 +1,37 @@
+#include "core/control/tutoring/deadband.h"
+
+#include <algorithm>
+
+#include "core/base/longer.h"
+
+namespace haptrial::control {
+
+Partner expected(const Partner& sent, double since, double most) noexcept {
+  Partner now = sent;
+  now.tool.position += std::min(since, most) * sent.tool.velocity;
+  if (since > most) {
+    now.tool.velocity.setZero();
+  }
+  return now;
+}
+
+bool Deadband::wrong(const Partner& now) const noexcept {
+  const Partner heard = held();
+  const double most = std::max(p_.force_fraction * now.force.norm(), p_.least_force);
+  return longer(now.force - heard.force, most) ||
+         longer(now.tool.position - heard.tool.position, p_.place);
+}
+
+bool Deadband::due(const Partner& now, double dt) noexcept {
+  since_ += dt;
+  const bool first = ticks_++ == 0;
+  if (!first && since_ < p_.keepalive && !wrong(now)) {
+    return false;
+  }
+  sent_ = now;
+  since_ = 0.0;
+  ++messages_;
+  return true;
+}
+
+}  // namespace haptrial::control

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace haptrial::network {
+
+/// How the partner's clock runs beside the own one, from the times of messages that were answered:
+/// offset as in NTP (RFC 5905, section 8), from the answer of each second that was under way for
+/// the shortest time, since there queues had the least part; drift by a line through those of the
+/// last minute. A way that is longer than the way back by d makes the offset wrong by d / 2, which
+/// no method can see. Servo thread.
+class ClockOffset {
+ public:
+  /// An answer that has come. All in [ns].
+  /// @param sent      own clock, when the own message left
+  /// @param heard     partner's clock, when it came
+  /// @param answered  partner's clock, when the answer left
+  /// @param now       own clock
+  void add(std::int64_t sent, std::int64_t heard, std::int64_t answered, std::int64_t now) noexcept;
+
+  bool known() const noexcept { return count_ > 0 || best_.round_trip >= 0; }
+  /// Partner's clock less the own one at an own time [ns].
+  std::int64_t offset(std::int64_t now) const noexcept;
+  /// Of the partner's clock beside the own one [1]; 0 before two seconds are over.
+  double drift() const noexcept { return drift_; }
+  std::int64_t round_trip() const noexcept { return last_round_trip_; }  // of the last answer
+  std::int64_t least_round_trip() const noexcept { return least_round_trip_; }  // of all
+
+ private:
+  static constexpr std::size_t kSeconds = 60;
+  struct Answer {
+    std::int64_t time{0};  // own clock
+    std::int64_t offset{0};
+    std::int64_t round_trip{-1};  // none yet
+  };
+  void fit() noexcept;
+
+  std::array<Answer, kSeconds> kept_{};  // the best of each second, a ring
+  std::size_t count_{0};                 // kept in all
+  Answer best_;                          // of the present second
+  std::int64_t second_ends_{0};
+  std::int64_t mean_time_{0};  // of the line
+  double mean_offset_{0.0};    // of the line, beside the first kept
+  std::int64_t base_{0};
+  double drift_{0.0};
+  std::int64_t last_round_trip_{-1};
+  std::int64_t least_round_trip_{-1};
+};
+
+}  // namespace haptrial::network

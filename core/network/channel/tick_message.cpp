@@ -1,0 +1,64 @@
+#include "core/network/channel/tick_message.h"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+namespace haptrial::network {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "messages are little-endian");
+
+/// Every member in turn, for both ways.
+template <class Message, class Field>
+void each_field(Message& m, Field field) {
+  field(m.sequence);
+  field(m.sent_ns);
+  field(m.echo_ns);
+  field(m.held_ns);
+  for (auto* vector : {&m.position, &m.velocity, &m.force, &m.wave}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      field((*vector)[axis]);
+    }
+  }
+  field(m.energy);
+  field(m.lead);
+  field(m.world);
+  field(m.buttons);
+  field(m.flags);
+}
+
+constexpr std::uint32_t kKnownFlags = kEngaged | kStop | kFault;
+
+bool makes_sense(const TickMessage& m) noexcept {
+  return m.position.allFinite() && m.velocity.allFinite() && m.force.allFinite() &&
+         m.wave.allFinite() && std::isfinite(m.energy) && m.lead >= 0.0 && m.lead <= 1.0 &&
+         (m.flags & ~kKnownFlags) == 0;
+}
+
+}  // namespace
+
+TickBytes encode(const TickMessage& message) noexcept {
+  TickBytes bytes;
+  std::size_t at = 0;
+  each_field(message, [&](const auto& value) {
+    std::memcpy(bytes.data() + at, &value, sizeof(value));
+    at += sizeof(value);
+  });
+  return bytes;
+}
+
+std::optional<TickMessage> decode(std::span<const std::byte> bytes) noexcept {
+  if (bytes.size() != kTickBytes) {
+    return std::nullopt;
+  }
+  TickMessage message;
+  std::size_t at = 0;
+  each_field(message, [&](auto& value) {
+    std::memcpy(&value, bytes.data() + at, sizeof(value));
+    at += sizeof(value);
+  });
+  return makes_sense(message) ? std::optional(message) : std::nullopt;
+}
+
+}  // namespace haptrial::network

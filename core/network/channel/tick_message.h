@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace haptrial::network {
+
+/// What one side of a shared session tells the other of a tick.
+struct TickMessage {
+  std::uint64_t sequence{0};  // from 1, one more each message
+  std::int64_t sent_ns{0};    // clock of the sender
+  std::int64_t echo_ns{0};    // sent_ns of the newest message that the sender had heard; 0: none
+  std::int64_t held_ns{0};    // since it heard that
+  Eigen::Vector3d position{Eigen::Vector3d::Zero()};  // of the tool, in W [m]
+  Eigen::Vector3d velocity{Eigen::Vector3d::Zero()};  // [m/s]
+  Eigen::Vector3d force{Eigen::Vector3d::Zero()};     // of its world on its tool, in W [N]
+  Eigen::Vector3d wave{Eigen::Vector3d::Zero()};      // WavePort::outgoing() [sqrt(W)]
+  double energy{0.0};                                 // EnergyTank::sent() [J]
+  double lead{0.0};                                   // the sender's authority, 0 to 1
+  std::uint64_t world{0};                             // checksum of what both work on; 0: none
+  std::uint32_t buttons{0};
+  std::uint32_t flags{0};  // TickFlag
+
+  bool operator==(const TickMessage&) const = default;
+};
+
+enum TickFlag : std::uint32_t {
+  kEngaged = 1,  // the sender's coupling is on
+  kStop = 2,     // stop, both of you
+  kFault = 4,    // the sender's device has one
+};
+
+inline constexpr std::size_t kTickBytes = 4 * 8 + 4 * 3 * 8 + 3 * 8 + 2 * 4;
+using TickBytes = std::array<std::byte, kTickBytes>;
+
+/// Little-endian, in the order of the members, without gaps. Servo thread.
+TickBytes encode(const TickMessage& message) noexcept;
+/// @returns nothing for another length, a number that is not finite or a flag that is not known.
+/// Servo thread.
+std::optional<TickMessage> decode(std::span<const std::byte> bytes) noexcept;
+
+}  // namespace haptrial::network

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "core/control/tutoring/deadband.h"
+#include "core/control/tutoring/energy_tank.h"
+#include "core/control/tutoring/tutoring_law.h"
+#include "core/control/tutoring/wave_port.h"
+#include "core/network/channel/clock_offset.h"
+#include "core/network/channel/jitter_buffer.h"
+#include "core/network/channel/sequence_window.h"
+#include "core/network/channel/tick_message.h"
+
+namespace haptrial::network {
+
+/// What keeps a coupling over a delay from swinging up.
+enum class Passivity : std::uint8_t {
+  kNone,   // nothing: right where only one side feels the other
+  kTank,   // control::EnergyTank
+  kWaves,  // control::WavePort; the partner's own force is not played beside them
+};
+
+struct SideParameters {
+  control::TutoringGains gains;
+  Passivity passivity{Passivity::kTank};
+  control::TankParameters tank;
+  control::WaveParameters waves;
+  bool sparse{false};  // only the messages that Deadband asks for; not with waves
+  control::DeadbandParameters deadband;
+  bool even{false};            // partner's ticks as evenly as they were sent; costs delay
+  double late{0.01};           // share of messages that may be too late for that
+  double longest_buffer{0.1};  // [s]
+  double deadline{0.1};        // silence after which the link counts as lost > 0 [s]
+  double ramp{0.5};            // from no force to all of it, also after a loss > 0 [s]
+};
+
+/// One side of a coupling over a link: what it hears, what it feels, what it tells. The same on a
+/// simulated and on a real link. Servo thread: no allocation, lock, I/O or throw after the
+/// constructor.
+class CoupledSide {
+ public:
+  /// @param start  of the own tool, in W [m]
+  /// @throws std::invalid_argument as WavePort does; where messages are to be sparse with waves
+  explicit CoupledSide(const SideParameters& parameters,
+                       const Eigen::Vector3d& start = Eigen::Vector3d::Zero());
+
+  /// A message that has arrived; one that came before is dropped. @param now_ns  own clock
+  void hear(const TickMessage& message, std::int64_t now_ns) noexcept;
+
+  struct Own {
+    PointState tool;                                 // in W
+    Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // of the own world on the tool, in W [N]
+    double lead{0.0};                                // own authority, 0 to 1
+    double felt_back{0.0};                           // of the coupling, where this side leads
+    std::uint32_t buttons{0};
+    std::uint32_t flags{0};
+    std::uint64_t world{0};
+  };
+  struct Output {
+    Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // on the own tool, in W [N]
+    std::optional<TickMessage> message;              // to send
+  };
+  /// A tick, after what arrived before it was heard. Without a link the force is zero.
+  Output step(const Own& own, std::int64_t now_ns, double dt) noexcept;
+
+  /// Whether the partner was heard within the deadline.
+  bool linked() const noexcept { return linked_; }
+  std::uint64_t losses() const noexcept { return losses_; }              // of the link
+  bool stop_asked() const noexcept { return stop_asked_; }               // by the partner; stays
+  const control::Partner& partner() const noexcept { return partner_; }  // as this side takes it
+  const TickMessage& newest() const noexcept { return newest_; }
+  const SequenceWindow& sequence() const noexcept { return window_; }
+  const ClockOffset& clock() const noexcept { return clock_; }
+  const JitterBuffer& buffer() const noexcept { return *buffer_; }
+  const control::EnergyTank& tank() const noexcept { return tank_; }
+  std::uint64_t messages() const noexcept { return sent_; }
+
+ private:
+  void look_at_link(std::int64_t now_ns, double dt) noexcept;
+  void look_at_partner(std::int64_t now_ns, double dt) noexcept;
+  Eigen::Vector3d felt(const Own& own, double dt) noexcept;
+  Eigen::Vector3d felt_by_waves(const PointState& own, double dt) noexcept;
+  std::optional<TickMessage> told(const Own& own, std::int64_t now_ns, double dt) noexcept;
+
+  SideParameters p_;
+  SequenceWindow window_;
+  ClockOffset clock_;
+  std::unique_ptr<JitterBuffer> buffer_;  // large
+  control::EnergyTank tank_;
+  control::WavePort waves_;
+  control::Deadband deadband_;
+
+  TickMessage newest_;        // by sequence number
+  TickMessage used_;          // that the partner's state is from
+  double used_for_{0.0};      // [s]
+  std::int64_t heard_ns_{0};  // when the newest came
+  double energy_heard_{0.0};  // highest total
+  control::Partner partner_;
+  Eigen::Vector3d last_place_;  // of the own tool
+  bool stepped_{false};
+  bool linked_{false};
+  bool stop_asked_{false};
+  double strength_{0.0};  // of the ramp, 0 to 1
+  std::uint64_t losses_{0};
+  std::uint64_t wave_used_{0};  // sequence number: each wave counts once
+  std::uint64_t sent_{0};
+};
+
+}  // namespace haptrial::network
