@@ -12,7 +12,7 @@ find_dependency(PkgConfig)
 foreach(library hdf5:hdf5-serial gsl:gsl osmesa:osmesa freetype:freetype2 glfw:glfw3
                 libdeflate:libdeflate tomlplusplus:tomlplusplus httplib:cpp-httplib
                 sndfile:sndfile alsa:alsa muparser:muparser pangoft2:pangoft2
-                nlopt:nlopt)
+                nlopt:nlopt sodium:libsodium)
   string(REPLACE ":" ";" library ${library})
   list(GET library 0 name)
   list(GET library 1 package)

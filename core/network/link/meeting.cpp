@@ -1,0 +1,91 @@
+#include "core/network/link/meeting.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/base/error.h"
+
+namespace haptrial::network {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::seconds kForEach(2);  // message of a handshake
+
+Patience patience_for_one(const MeetingRequest& request, Clock::time_point end) {
+  return {std::min(end, Clock::now() + kForEach), request.pulse};
+}
+
+void check_study(const LinkTerms& theirs, const MeetingRequest& request) {
+  if (theirs.study != request.study) {
+    throw InputError(
+        "the other side was started with another definition; both must have the same one");
+  }
+}
+
+Met host(const Secret& secret, const MeetingRequest& request, Clock::time_point end) {
+  const Socket listener = listening(request.port);
+  Socket datagrams = datagram_socket(request.port);
+  Handshake handshake(secret, {port_of(datagrams), request.study});
+  while (true) {
+    Address other;
+    const Socket guest = accepted(listener, {end, request.pulse}, &other);
+    if (guest.get() < 0) {
+      throw RunError(fmt::format("nobody came to port {} within {} s", request.port,
+                                 request.patience.count()));
+    }
+    Handshake::Answer answer;
+    const bool told = send_all(guest, handshake.opening(), patience_for_one(request, end)) &&
+                      receive_all(guest, answer, patience_for_one(request, end));
+    const auto closing = told ? handshake.closing(answer) : std::nullopt;
+    if (!closing) {
+      if (request.notice) {
+        request.notice(told ? "a guest without the secret was turned away"
+                            : "a guest that did not speak was turned away");
+      }
+      continue;
+    }
+    if (!send_all(guest, *closing, patience_for_one(request, end))) {
+      continue;
+    }
+    check_study(handshake.their_terms(), request);
+    other.set_port(handshake.their_terms().port);
+    return {std::move(datagrams), other, handshake.keys()};
+  }
+}
+
+Met guest(const Secret& secret, const MeetingRequest& request, Clock::time_point end) {
+  Address other = address_of(request.guest_of);
+  Socket datagrams = datagram_socket(0);
+  Handshake handshake(secret, {port_of(datagrams), request.study});
+  const Socket socket = connected(other, {end, request.pulse});
+  Handshake::Opening opening;
+  if (!receive_all(socket, opening, patience_for_one(request, end))) {
+    throw RunError("the other side did not answer as a host does");
+  }
+  const auto answer = handshake.answer(opening);
+  if (!answer) {
+    throw RunError("the other side speaks another version of the link");
+  }
+  Handshake::Closing closing;
+  if (!send_all(socket, *answer, patience_for_one(request, end)) ||
+      !receive_all(socket, closing, patience_for_one(request, end))) {
+    throw RunError("the other side turned this one away: the secrets differ");
+  }
+  if (!handshake.finish(closing)) {
+    throw RunError("the other side does not know the secret");
+  }
+  check_study(handshake.their_terms(), request);
+  other.set_port(handshake.their_terms().port);
+  return {std::move(datagrams), other, handshake.keys()};
+}
+
+}  // namespace
+
+Met meet(const Secret& secret, const MeetingRequest& request) {
+  const Clock::time_point end = Clock::now() + request.patience;
+  return request.guest_of.empty() ? host(secret, request, end) : guest(secret, request, end);
+}
+
+}  // namespace haptrial::network

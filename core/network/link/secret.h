@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string_view>
+
+namespace haptrial::network {
+
+/// What both sides of a link know and nobody else: the text of a small file that each keeps for
+/// itself. It never goes into a file of results, a log or a message. Its memory is wiped.
+class Secret {
+ public:
+  static constexpr std::size_t kLeast = 16;  // characters
+
+  /// Of a file, without the white space at its ends.
+  /// @throws InputError where it cannot be read, is shorter than kLeast or longer than 1024
+  ///         characters, or may be read by other users of the machine
+  static Secret read(const std::filesystem::path& file);
+  /// @throws InputError for a text that is too short or too long. @param where  for the message
+  Secret(std::string_view text, std::string_view where);
+  Secret(const Secret&) = default;
+  Secret& operator=(const Secret&) = default;
+  ~Secret();
+
+  using Salt = std::array<unsigned char, 16>;
+  using Key = std::array<unsigned char, 32>;
+  /// Slow on purpose (about a tenth of a second, 64 MB), so that a short secret is not soon
+  /// guessed.
+  /// @throws RunError without that memory
+  Key key(const Salt& salt) const;
+
+ private:
+  std::array<char, 1024> text_{};
+  std::size_t size_{0};
+};
+
+}  // namespace haptrial::network
