@@ -5,6 +5,7 @@
 # results/force_training. Other pictures:
 #   docs/algorithms/bone-look.sh, docs/drilling-session.sh   bones and drillings, from a labelled ear
 #   docs/algorithms/alignment-options.sh                     paths of the alignment
+#   docs/algorithms/tutoring.sh                              a led hand beside its tutor's
 #   docs/images/folders.py                                   folders.svg, from CMakeLists.txt
 #   tests/benchmarks/stops.py, every_hand.gp                 stops.svg, every-hand.svg
 #   HAPTRIAL_KEEP_PICTURES=FOLDER build/test_drilling_analysis  drilling-visibility.png

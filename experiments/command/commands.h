@@ -21,6 +21,7 @@ struct DryRunOptions {
   int frames{0};
   std::optional<int> trials;   // default: all
   std::optional<int> session;  // of each subject; default: all, in their order
+  std::string tutor;           // FILE, FILE:TRIAL or FILE:TRIAL@SECONDS; empty: none
   std::string language;        // of what participants read; default: the definition's own
 };
 int dry_run(const DryRunOptions& options);
@@ -35,6 +36,7 @@ struct RunOptions {
   std::optional<int> session;      // default: the first that the subject has left
   std::string out{"out/sessions"};
   std::optional<int> trials;  // default: all
+  std::string tutor;          // FILE, FILE:TRIAL or FILE:TRIAL@SECONDS; empty: none
   bool console{false};
   bool keyboard{false};
   std::optional<std::string> address;  // of the console; default: the loopback's

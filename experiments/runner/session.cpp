@@ -12,9 +12,9 @@
 #include "experiments/control/last_stop.h"
 #include "experiments/control/progress.h"
 #include "experiments/control/session_desk.h"
+#include "experiments/devices/devices.h"
 #include "experiments/loop/servo_thread.h"
 #include "experiments/runner/aborted_pass.h"
-#include "experiments/devices/devices.h"
 #include "experiments/runner/earlier_run.h"
 #include "experiments/runner/next_trial.h"
 #include "experiments/runner/session_notices.h"
@@ -24,6 +24,7 @@
 #include "experiments/runner/session_record.h"
 #include "protocols/interface/session_task.h"
 #include "protocols/interface/trials.h"
+#include "protocols/tutoring/tutored_trials.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -91,6 +92,14 @@ class Session {
   std::optional<WatchedStop> watched_;  // on a real clock
 };
 
+std::unique_ptr<protocols::Trials> trials_of(const SessionRequest& request,
+                                             const protocols::SessionPlace& place) {
+  auto trials = request.protocol->trials(*request.definition, place);
+  return request.tutor
+             ? protocols::tutored(std::move(trials), request.definition->tutoring, *request.tutor)
+             : std::move(trials);
+}
+
 protocols::SessionPlace Session::place() {
   protocols::SessionPlace place;
   place.subject = request_.subject;
@@ -119,7 +128,7 @@ Session::Session(const SessionRequest& request)
       real_(request.clock == ClockKind::kReal),
       loop_(request.clock, d_.rate),
       place_(place()),
-      trials_(request.protocol->trials(d_, place_)),
+      trials_(trials_of(request, place_)),
       rig_(make_rig(choices_of(request), d_, [this] { return trials_->virtual_rig(); })),
       screen_(open_screen(request, rig_->mouse(), &held_keys_, &begin_pressed_, &page_keys_)),
       live_(open_live(request)),
@@ -225,6 +234,10 @@ SessionSummary Session::run() {
 
 void Session::run_trials() {
   note_language();
+  if (request_.tutor) {
+    record_.event("tutor", fmt::format("{} trial {} from {} s", request_.tutor->file.string(),
+                                       request_.tutor->trial.value_or(0), request_.tutor->from));
+  }
   if (!pages_.before()) {
     left_ = !pages_.declined();
     if (pages_.declined()) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "experiments/control/session_control.h"
 #include "experiments/devices/devices.h"
 #include "protocols/interface/protocol.h"
+#include "protocols/tutoring/model_motion.h"
 
 namespace haptrial::experiments {
 
@@ -33,6 +35,7 @@ struct SessionRequest {
   std::filesystem::path definition_folder;  // of the pictures of pages
   int frames_per_pass{0};                   // pictures of what was shown, into frames_folder
   std::filesystem::path frames_folder;
+  std::optional<protocols::TutorChoice> tutor;  // a recorded run that leads the hand
   int max_trials{0};                           // of the study proper; 0: all
   std::atomic<std::uint64_t>* ticks{nullptr};  // counts what is done, for a progress line
   const std::atomic<bool>* cancel{nullptr};  // set from outside to end early, as an interrupt does

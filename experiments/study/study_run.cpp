@@ -111,6 +111,7 @@ class Crew {
     r.frames_per_pass = dry_run_.frames_per_pass;
     r.frames_folder = dry_run_.folder / "frames";
     r.max_trials = dry_run_.max_trials;
+    r.tutor = dry_run_.tutor;
     r.ticks = &ticks_;
     r.cancel = &cancel_;
     return r;

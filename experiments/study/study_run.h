@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 
 #include "protocols/interface/protocol.h"
+#include "protocols/tutoring/model_motion.h"
 
 namespace haptrial::experiments {
 
@@ -13,9 +15,10 @@ struct DryRun {
   std::uint64_t seed{1};
   int jobs{1};
   int frames_per_pass{0};
-  int max_trials{0};             // of each session; 0: all
-  int session{0};                // of each participant; 0: all of the definition, in their order
-  std::filesystem::path folder;  // created; one session file per participant
+  int max_trials{0};  // of each session; 0: all
+  int session{0};     // of each participant; 0: all of the definition, in their order
+  std::optional<protocols::TutorChoice> tutor;  // see SessionRequest
+  std::filesystem::path folder;                 // created; one session file per participant
 };
 
 struct DryRunSummary {

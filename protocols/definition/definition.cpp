@@ -60,6 +60,10 @@ void read_common(Table& root, std::string_view file_name, Definition& definition
     Table markers = root.table("markers");
     definition.markers = markers::read_marker_options(markers);
   }
+  if (root.has("tutoring")) {
+    Table tutoring = root.table("tutoring");
+    definition.tutoring = read_tutoring_options(tutoring);
+  }
   if (definition.screen.photodiode == Photodiode::kOnset) {
     definition.markers.used = true;
   }

@@ -16,6 +16,7 @@
 #include "core/subject/hand_parameters.h"
 #include "protocols/definition/schedule.h"
 #include "protocols/definition/screen_options.h"
+#include "protocols/definition/tutoring_options.h"
 
 namespace haptrial {
 class Table;
@@ -57,6 +58,7 @@ struct Definition {
   device::OpenHapticsParameters open_haptics{};
   device::MouseParameters mouse{};
   markers::MarkerOptions markers{};
+  TutoringOptions tutoring{};
 
   /// How many sessions each participant comes to, on days of their own; at least 1.
   virtual int sessions() const { return 1; }

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/record/rows/even_rows.h"
+#include "core/record/read/even_rows.h"
 #include "protocols/force_training/passes/recorded_pass.h"
 
 namespace haptrial::protocols {

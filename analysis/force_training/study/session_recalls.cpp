@@ -14,8 +14,8 @@
 #include "analysis/quality/session_quality.h"
 #include "core/base/error.h"
 #include "core/record/read/check_phases.h"
+#include "core/record/read/even_rows.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/even_rows.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -42,6 +42,11 @@ mouse.max_press | | greatest pressing force
 mouse.first_press | | pressing force when the left button goes down
 mouse.press_step | | change of it for each step of the wheel
 mouse.stop_button | | button for emergency stops; -1: none
+tutoring.stiffness | | of the spring from the hand to the tutor's, with --tutor
+tutoring.damping | | beside it
+tutoring.force_share | | of the tutor's forces that is played
+tutoring.ramp | | time over which the tutor takes the lead, and gives it back
+tutoring.speed | | of a recorded run, beside its own
 hand.integrator | | exact solution of the virtual hand, or CVODE's
 hand.handle_mass | | of the handle, which moves with the hand
 hand.coulomb_friction | | of the handle

@@ -21,6 +21,8 @@ void add_dry_run(CLI::App& app, int& status) {
                   "Number of the one session of each subject to run (default: all, in their order)");
   sub->add_option("--language", o.language,
                   "Language of what participants read, such as de (default: the definition's)");
+  sub->add_option("--tutor", o.tutor,
+                  "Recorded run that leads the hand: FILE, FILE:TRIAL or FILE:TRIAL@SECONDS");
   sub->add_option("--frames", o.frames,
                   "Number of pictures to write of each pass, as the subject saw it (default: 0)");
 }
@@ -43,6 +45,8 @@ void add_run(CLI::App& app, int& status) {
       ->allow_extra_args(false);
   sub->add_option("--library", o.library,
                   "Path of the vendor's library (default: found by the system)");
+  sub->add_option("--tutor", o.tutor,
+                  "Recorded run that leads the hand: FILE, FILE:TRIAL or FILE:TRIAL@SECONDS");
   sub->add_flag("--window", o.window, "Show the participant's screen");
   sub->add_flag("--keyboard", o.keyboard, "Control the session with this terminal's keys");
   sub->add_flag("--console", o.console, "Serve the experimenter's page on the loopback address");

@@ -44,6 +44,10 @@ int dry_run(const DryRunOptions& options) {
   dry.max_trials =
       options.trials ? checked_number("--trials", *options.trials, 1, setup.design.trials) : 0;
   dry.session = options.session ? checked_session(*options.session, setup) : 0;
+  if (!options.tutor.empty()) {
+    dry.tutor = protocols::read_tutor_choice(options.tutor);
+    protocols::read_model(*dry.tutor);  // before a folder is made
+  }
   const int sessions = dry.participants * (dry.session > 0 ? 1 : setup.sessions());
   if (interrupted()) {  // while the definition was read, which makes its bones
     throw RunError("interrupted");

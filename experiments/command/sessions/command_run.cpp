@@ -146,6 +146,10 @@ int run(const RunOptions& asked) {
   request.max_trials =
       options.trials ? checked_number("--trials", *options.trials, 1, setup.design.trials) : 0;
   request.session = options.session.value_or(1);
+  if (!options.tutor.empty()) {
+    request.tutor = protocols::read_tutor_choice(options.tutor);
+    protocols::read_model(*request.tutor);  // before a folder is made
+  }
   request.file =
       fs::path(options.out) / session_file_name(options.subject, request.session, setup.sessions());
   check_session_file(options, request.file);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <string>
 
 #include "core/network/channel/simulated_channel.h"
 #include "tests/support/allocation_guard.h"
@@ -131,6 +132,7 @@ void shake(Pair& pair, double seconds) {
 TEST(CoupledSideTest, WithoutPassivityADelaySwingsTheHandsUp) {
   Pair pair(stiff(Passivity::kNone), bad(0.05));
   shake(pair, 60.0);
+  RecordProperty("seconds_to_ten_metres", std::to_string(kDt * static_cast<double>(pair.ticks)));
   EXPECT_GT(pair.farthest, 1.0);
   EXPECT_LT(pair.least_absorbed, -1.0);
 }
@@ -141,6 +143,9 @@ TEST_P(EveryDelayTest, HandsGetNoMoreThanHandsGave) {
   const auto [passivity, delay] = GetParam();
   Pair pair(stiff(passivity), bad(delay));
   shake(pair, 600.0);
+  RecordProperty("least_absorbed_mJ", std::to_string(1e3 * pair.least_absorbed));
+  RecordProperty("exchanged_J", std::to_string(pair.exchanged));
+  RecordProperty("most_force_N", std::to_string(pair.most_force));
   EXPECT_EQ(pair.ticks, 600'000u) << "swung up";
   EXPECT_LT(pair.farthest, 0.1);
   EXPECT_GT(pair.least_absorbed, -1e-3);
@@ -194,6 +199,8 @@ TEST(CoupledSideTest, TheSecondHandFollowsTheFirst) {
         size += pair.a.state.position.squaredNorm();
       }
     }
+    RecordProperty("off_" + std::to_string(static_cast<int>(passivity)),
+                   std::to_string(std::sqrt(off / size)));
     EXPECT_LT(std::sqrt(off / size), 0.35) << static_cast<int>(passivity);
   }
 }

@@ -1,0 +1,52 @@
+#include "protocols/tutoring/tutored_pass.h"
+
+namespace haptrial::protocols {
+
+TutoredPass::TutoredPass(Pass& inner, const TutoringOptions& options, const ModelMotion& motion,
+                         double from, TutoringLog& log) noexcept
+    : inner_(&inner),
+      options_(&options),
+      playback_(motion, options.speed, from),
+      log_(&log),
+      handover_(options.ramp) {}
+
+void TutoredPass::begin(std::uint64_t sequence) noexcept {
+  sequence_ = sequence;
+  inner_->begin(sequence);
+}
+
+bool TutoredPass::wants_attention() noexcept {
+  return inner_->wants_attention() || log_->size() > log_->capacity() / 2;
+}
+
+PassOutput TutoredPass::tick(const Readings& readings, double dt) noexcept {
+  PassOutput out = inner_->tick(readings, dt);
+  const bool runs = out.stage == record::Stage::kRun && !playback_.over();
+  handover_.ask(runs ? 1.0 : 0.0);
+  handover_.step(dt);
+  if (runs || handover_.share() > 0.0) {
+    lead(out, readings[0].tool);
+  }
+  if (runs) {
+    playback_.step(dt);
+  }
+  ++sequence_;
+  return out;
+}
+
+/// A tutor works on the hand: of his force only the spring has to be passive about his motion.
+void TutoredPass::lead(PassOutput& out, const PointState& own) noexcept {
+  const control::Partner tutor = playback_.now();
+  const double share = handover_.share();
+  const control::TutoringGains& gains = options_->gains;
+  const Eigen::Vector3d own_force = out.force;
+  out.force = control::tutoring_force(gains, {share, 0.0}, tutor, own, own_force);
+  const Eigen::Vector3d stretch = tutor.tool.position - own.position;
+  out.intent.push = out.force - share * control::coupling_force(gains, tutor.tool, own);
+  out.intent.drive = tutor.tool.velocity;
+  out.intent.stored = 0.5 * share * gains.stiffness * stretch.squaredNorm();
+  log_->push({sequence_, playback_.time(), share, tutor.tool.position, tutor.force,
+              out.force - (1.0 - share) * own_force});
+}
+
+}  // namespace haptrial::protocols

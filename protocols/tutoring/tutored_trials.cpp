@@ -1,0 +1,92 @@
+#include "protocols/tutoring/tutored_trials.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <utility>
+
+#include "core/record/rows/tutoring_row.h"
+#include "protocols/interface/session_file.h"
+#include "protocols/tutoring/tutored_pass.h"
+
+namespace haptrial::protocols {
+namespace {
+
+/// Everything is the protocol's own but the passes of its first phase.
+class TutoredTrials final : public Trials {
+ public:
+  TutoredTrials(std::unique_ptr<Trials> inner, const TutoringOptions& options,
+                const TutorChoice& tutor)
+      : inner_(std::move(inner)),
+        options_(options),
+        from_(tutor.from),
+        file_(tutor.file.filename().string()),
+        motion_(read_model(tutor)) {}
+
+  Extent extent(int most) const override { return inner_->extent(most); }
+  std::optional<PlannedTrial> next(const Outcome* last) override { return inner_->next(last); }
+  bool presents_aborted_again() const override { return inner_->presents_aborted_again(); }
+  std::span<const record::Phase> phases() const override { return inner_->phases(); }
+  std::unique_ptr<Rig> virtual_rig() const override { return inner_->virtual_rig(); }
+  std::vector<stimulus::Observer*> observers() override { return inner_->observers(); }
+  TickLog* tick_log() override { return inner_->tick_log(); }
+  void empty_logs(SessionFile& file) override {
+    inner_->empty_logs(file);
+    log_.flush([&file](std::span<const record::TutoringRow> rows) { file.add(rows); });
+  }
+  std::uint64_t dropped() const override { return inner_->dropped() + log_.dropped(); }
+  record::TableList tables() const override {
+    record::TableList tables = inner_->tables();
+    tables.push_back(&record::table_of<record::TutoringRow>());
+    return tables;
+  }
+  std::vector<record::Rows> first_rows() const override { return inner_->first_rows(); }
+  void check_resumed(const record::SessionReader& file) const override {
+    inner_->check_resumed(file);
+  }
+  void prepare(const PlannedTrial& trial, SessionFile& file) override {
+    inner_->prepare(trial, file);
+  }
+  void begin_attempt(const PlannedTrial& trial, bool anew) override {
+    inner_->begin_attempt(trial, anew);
+  }
+  MakeDrawing drawing() override { return inner_->drawing(); }
+  Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) override {
+    Pass& pass = inner_->make_pass(trial, phase);
+    if (!(phase == phases().front())) {
+      return pass;
+    }
+    pass_.emplace(pass, options_, motion_, from_, log_);
+    return *pass_;
+  }
+  std::vector<record::ResponseRow> responses() override { return inner_->responses(); }
+  void close_pass(SessionFile& file, std::int32_t row) override { inner_->close_pass(file, row); }
+  void draw_pictures(const PlannedTrial& trial, const record::Phase& phase) override {
+    inner_->draw_pictures(trial, phase);
+  }
+  const char* why_aborted() const override { return inner_->why_aborted(); }
+  std::vector<std::string> notices() const override {
+    std::vector<std::string> all = inner_->notices();
+    all.push_back(fmt::format("led by trial {} of {} ({}), {:.1f} s", motion_.trial,
+                              motion_.subject, file_, motion_.duration() - from_));
+    return all;
+  }
+
+ private:
+  std::unique_ptr<Trials> inner_;
+  TutoringOptions options_;
+  double from_;
+  std::string file_;
+  ModelMotion motion_;
+  TutoringLog log_;
+  std::optional<TutoredPass> pass_;
+};
+
+}  // namespace
+
+std::unique_ptr<Trials> tutored(std::unique_ptr<Trials> trials, const TutoringOptions& options,
+                                const TutorChoice& tutor) {
+  return std::make_unique<TutoredTrials>(std::move(trials), options, tutor);
+}
+
+}  // namespace haptrial::protocols
