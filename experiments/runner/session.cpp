@@ -13,6 +13,7 @@
 #include "experiments/control/progress.h"
 #include "experiments/control/session_desk.h"
 #include "experiments/devices/devices.h"
+#include "experiments/devices/session_pedal.h"
 #include "experiments/loop/servo_thread.h"
 #include "experiments/runner/aborted_pass.h"
 #include "experiments/runner/earlier_run.h"
@@ -46,6 +47,7 @@ class Session {
   SessionDesk::Actions desk_actions();
 
   void watch_flashes();
+  void hear_pedal();
   void show_trial();
   void run_trials();
   void note_language();
@@ -74,6 +76,7 @@ class Session {
   protocols::SessionPlace place_;
   std::unique_ptr<protocols::Trials> trials_;
   std::unique_ptr<protocols::Rig> rig_;
+  SessionPedal pedal_;
   std::atomic<std::uint32_t> held_keys_{0};  // functions, from the screen's thread
   std::atomic<bool> begin_pressed_{false};   // likewise, without an experimenter
   PageKeys page_keys_;                       // likewise
@@ -130,6 +133,7 @@ Session::Session(const SessionRequest& request)
       place_(place()),
       trials_(trials_of(request, place_)),
       rig_(make_rig(choices_of(request), d_, [this] { return trials_->virtual_rig(); })),
+      pedal_(choices_of(request).front(), d_, real_),
       screen_(open_screen(request, rig_->mouse(), &held_keys_, &begin_pressed_, &page_keys_)),
       live_(open_live(request)),
       record_(request, rig_->device().info(), loop_, *trials_, onsets_, live_.get()),
@@ -140,12 +144,13 @@ Session::Session(const SessionRequest& request)
              .tick_log = trials_->tick_log(),
              .observers = observers(),
              .keys = &held_keys_,
+             .pedal = pedal_.pedal(),
              .onsets = d_.markers.used ? &onsets_ : nullptr},
             real_ ? protocols::SessionTask::Leave::kNever
                   : protocols::SessionTask::Leave::kAfterPassOrSlice,
             record_.origin()),
       pace_({request, loop_, record_, desk_, task_, rig_->felt(), screen_.get(), &begin_pressed_,
-             live_.get()}),
+             live_.get(), [this] { hear_pedal(); }}),
       pages_({request, record_, desk_, pace_, page_keys_, screen_.get(), place_.session_seed}),
       next_({request, *trials_, record_, pages_}),
       notices_({request, loop_, record_, desk_, summary_}),
@@ -178,6 +183,13 @@ void Session::watch_flashes() {
       }
       return flashes;
     });
+  }
+}
+
+void Session::hear_pedal() {
+  for (const SessionPedal::News& news : pedal_.take_news()) {
+    record_.event(news.event, news.text);
+    notices_.note(news.notice);
   }
 }
 
@@ -217,6 +229,7 @@ SessionSummary Session::run() {
     }
     notices_.note(record_.notice());
     notices_.note(record_.markers().notice());
+    notices_.note(pedal_.notice());
     for (const std::string& notice : trials_->notices()) {
       notices_.note(notice);
     }
@@ -394,6 +407,8 @@ void Session::finish() {
   if (screen_) {
     record_.keep_frames(screen_->take_frames());
   }
+  hear_pedal();
+  notices_.note(pedal_.losses());
   notices_.note_troubles(live_.get(), screen_.get());
   const Wishes& wishes = desk_.wishes();
   summary_.stopped = left_ && wishes.abort && !wishes.for_good;

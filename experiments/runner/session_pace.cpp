@@ -65,6 +65,9 @@ void SessionPace::collect() {
     p_.record.keep_frames(p_.screen->take_frames());
   }
   p_.desk.take_messages();
+  if (p_.hear) {
+    p_.hear();
+  }
   if (real_ && stall_.stalled()) {
     end_early(DeviceHangs().what());
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <string>
 
 #include "core/realtime/servo_loop.h"
@@ -31,6 +32,7 @@ class SessionPace {
     Screen* screen{nullptr};
     std::atomic<bool>* begin_pressed{nullptr};  // Enter or space, in the participant's window
     const record::LiveFigures* live{nullptr};
+    std::function<void()> hear{};  // what else may have happened, asked often
   };
   explicit SessionPace(const Parts& parts);
 

@@ -7,6 +7,7 @@
 
 #include "core/device/envelope.h"
 #include "core/device/mouse.h"
+#include "core/device/pedal/pedal.h"
 #include "core/device/vendor/force_dimension.h"
 #include "core/device/vendor/open_haptics.h"
 #include "core/device/virtual_device.h"
@@ -29,6 +30,10 @@ struct CueSet;
 namespace haptrial::protocols {
 
 enum class Integrator { kExact, kCvode };
+
+/// What an analog pedal is for: nothing; something that keys or buttons do as well; something that
+/// nothing else does.
+enum class PedalUse : std::uint8_t { kNone, kBeside, kOnly };
 
 /// What a definition file states, read and valid as a whole: here what every protocol's does, loop,
 /// plan, devices, hand, screen. A protocol derives its own, and answers what is asked of it.
@@ -57,6 +62,7 @@ struct Definition {
   device::ForceDimensionParameters force_dimension{};
   device::OpenHapticsParameters open_haptics{};
   device::MouseParameters mouse{};
+  device::PedalParameters pedal{};  // beside any of them
   markers::MarkerOptions markers{};
   TutoringOptions tutoring{};
 
@@ -64,6 +70,7 @@ struct Definition {
   virtual int sessions() const { return 1; }
   /// How many devices a session drives, 1 to kMostDevices.
   virtual int devices() const { return 1; }
+  virtual PedalUse pedal_use() const { return PedalUse::kNone; }
   /// Lines that say what the definition asks for.
   virtual std::vector<std::string> description() const = 0;
   /// Lines on how firmly the loop lets the devices be held, for a check of a device.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,7 +30,8 @@ class DeviceSet {
   device::Device& device(std::size_t arm) noexcept { return *devices_[arm]; }
 
   /// Reads every device and judges what it said. @param keys  of the window; all devices get them
-  void read(std::uint32_t keys) noexcept;
+  /// @param pedal  how far the session's pedal is down; nothing if it has none
+  void read(std::uint32_t keys, std::optional<double> pedal = std::nullopt) noexcept;
   Readings readings() const noexcept { return Readings(readings_); }
 
   /// The forces of this tick, from what a pass wants of each device.

@@ -11,6 +11,7 @@ SessionTask::SessionTask(const Parts& parts, Leave leave, Origin origin)
       device_log_(parts.device_log),
       tick_log_(parts.tick_log),
       keys_(parts.keys),
+      pedal_(parts.pedal),
       onsets_(parts.onsets),
       observers_(parts.observers),
       leave_(leave),
@@ -45,7 +46,8 @@ bool SessionTask::stopped() const noexcept {
 bool SessionTask::tick(const realtime::Tick& tick) noexcept {
   take_requests(tick.index);
 
-  devices_.read(keys_ != nullptr ? keys_->load(std::memory_order_relaxed) : 0);
+  devices_.read(keys_ != nullptr ? keys_->load(std::memory_order_relaxed) : 0,
+                pedal_ != nullptr ? std::optional(pedal_->depth()) : std::nullopt);
   const bool runs = pass_ != nullptr && !broken_off_ && devices_.fault() == device::Fault::kNone;
   const PassOutput out = runs ? pass_->tick(devices_.readings(), tick.dt) : nothing();
   note_damping(out);

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/device/pedal/pedal.h"
 #include "core/markers/onset_log.h"
 #include "core/realtime/block_log.h"
 #include "core/realtime/servo_loop.h"
@@ -59,6 +60,7 @@ class SessionTask final : public realtime::ServoTask {
     TickLog* tick_log{nullptr};      // the protocol's own
     std::vector<stimulus::Observer*> observers{};
     const std::atomic<std::uint32_t>* keys{nullptr};  // DeviceReading::keys, of the window
+    device::Pedal* pedal{nullptr};                    // of all devices; null: as each says
     markers::OnsetLog* onsets{nullptr};               // null: nobody is told what begins when
   };
   explicit SessionTask(const Parts& parts, Leave leave, Origin origin = Origin{});
@@ -110,6 +112,7 @@ class SessionTask final : public realtime::ServoTask {
   DeviceLog* device_log_;
   TickLog* tick_log_;
   const std::atomic<std::uint32_t>* keys_;
+  device::Pedal* pedal_;
   markers::OnsetLog* onsets_;
   std::vector<stimulus::Observer*> observers_;
   Leave leave_;

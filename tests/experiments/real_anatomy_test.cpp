@@ -8,6 +8,7 @@
 
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/drilling_study.h"
+#include "experiments/studies/registry.h"
 #include "experiments/studies/simulated_rater.h"
 #include "experiments/study/study_run.h"
 #include "protocols/bone_drilling/bone_protocol.h"

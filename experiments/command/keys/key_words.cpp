@@ -47,6 +47,11 @@ tutoring.damping | | beside it
 tutoring.force_share | | of the tutor's forces that is played
 tutoring.ramp | | time over which the tutor takes the lead, and gives it back
 tutoring.speed | | of a recorded run, beside its own
+pedal.input | | file of the input device of an analog pedal: /dev/input/by-id/…-event-joystick, /dev/input/eventN, or a named pipe
+pedal.axis | | its axis, by the kernel's name
+pedal.released | lower end of the axis, as the device states it | axis value of a pedal that nobody presses
+pedal.pressed | upper end of the axis, as the device states it | axis value of a pedal that is down
+pedal.dead_zone | | share of the way that still counts as up
 hand.integrator | | exact solution of the virtual hand, or CVODE's
 hand.handle_mass | | of the handle, which moves with the hand
 hand.coulomb_friction | | of the handle

@@ -73,6 +73,7 @@ struct BoneDefinition : Definition {
   /// @throws InputError as bone::load_bone does
   void load_bones(const std::filesystem::path& folder);
 
+  PedalUse pedal_use() const override;
   std::vector<std::string> description() const override;
   std::vector<std::string> warnings() const override;
   std::vector<std::string> left_out_of_dry_runs() const override;

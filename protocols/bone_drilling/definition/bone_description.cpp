@@ -69,6 +69,10 @@ std::vector<std::string> BoneDefinition::warnings() const {
   return warnings;
 }
 
+PedalUse BoneDefinition::pedal_use() const {
+  return drilling.controls.analog_power ? PedalUse::kBeside : PedalUse::kNone;
+}
+
 std::vector<std::string> BoneDefinition::description() const {
   std::vector<std::string> lines{
       fmt::format("{}: {}, {} of at most {:.0f} s{}, {} Hz", name,

@@ -160,6 +160,19 @@ std::vector<std::string> TrialsDefinition::warnings() const {
   return all;
 }
 
+PedalUse TrialsDefinition::pedal_use() const {
+  PedalUse use = PedalUse::kNone;
+  for (const Question& question : questions) {
+    for (const Choice& choice : question.choices) {
+      if (choice.pedal > 0.0) {
+        const bool alone = choice.keys == 0 && choice.buttons == 0 && choice.touch.empty();
+        use = std::max(use, alone ? PedalUse::kOnly : PedalUse::kBeside);
+      }
+    }
+  }
+  return use;
+}
+
 double TrialsDefinition::longest(int trials) const {
   constexpr double kAnswer = 2.0;  // [s]
   return trials * (stage_time * static_cast<double>(intervals.size()) +

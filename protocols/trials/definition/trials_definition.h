@@ -56,6 +56,7 @@ struct TrialsDefinition : Definition {
   std::vector<std::string> restless;     // sentences on fields that a light hand would make shake
   int most_repeats{5};  // of an interval whose stage asks for it; then the trial is aborted
 
+  PedalUse pedal_use() const override;
   int devices() const override { return hands.empty() ? 1 : static_cast<int>(hands.size()); }
   bool has_target() const override { return false; }
   std::vector<std::string> description() const override;

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/device/pedal/pedal.h"
+#include "experiments/devices/devices.h"
+
+namespace haptrial::experiments {
+
+/// The analog pedal of a session, if a person takes part and the definition has a use for one; and
+/// what becomes of it while the session runs. Session's thread.
+class SessionPedal {
+ public:
+  /// What is to be recorded, and what an experimenter has to know of it.
+  struct News {
+    std::string event;   // "pedal_lost" or "pedal_back"
+    std::string text;    // of the event
+    std::string notice;  // empty: none
+  };
+
+  /// @param device  the session's first one: a virtual hand or a recording has no foot
+  /// @param real    whether the session is on the real clock
+  /// @throws InputError as device::Pedal does, and if the definition has an answer that only a
+  /// pedal gives and no table [pedal]
+  SessionPedal(const DeviceChoice& device, const protocols::Definition& definition, bool real);
+
+  /// Null: there is none, and readings keep what the device says.
+  device::Pedal* pedal() { return pedal_.get(); }
+  /// At the beginning: that a pedal would be used, and that none is named. Empty: all is well.
+  const std::string& notice() const { return notice_; }
+  /// What happened since the last call.
+  std::vector<News> take_news();
+  /// At the end: how often it was lost; empty if at most once, which take_news() has said.
+  std::string losses() const;
+
+ private:
+  std::unique_ptr<device::Pedal> pedal_;
+  std::string notice_;
+  int losses_{0};
+};
+
+}  // namespace haptrial::experiments
