@@ -115,7 +115,7 @@ void MarkerThread::write_code(const TimedOnset& onset) {
     const std::lock_guard lock(mutex_);
     trouble_ = fmt::format(
         "serial line {}: {}; the session goes on, and counts the markers that the line does not "
-        "take",
+        "take; it is opened again when it is back",
         ways_.serial->device(), std::strerror(ways_.serial->error()));
   }
 }

@@ -52,16 +52,20 @@ bool make_raw(int file, speed_t rate) {
   return tcsetattr(file, TCSANOW, &settings) == 0;
 }
 
+int open_line(const std::string& device) noexcept {
+  return open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+}
+
 }  // namespace
 
 bool SerialLine::has_rate(int baud) noexcept { return rate_of(baud) != nullptr; }
 
-SerialLine::SerialLine(std::string device, int baud) : device_(std::move(device)) {
+SerialLine::SerialLine(std::string device, int baud) : device_(std::move(device)), baud_(baud) {
   const auto* rate = rate_of(baud);
   if (rate == nullptr) {
     throw std::invalid_argument("SerialLine: baud is none of the common rates");
   }
-  file_ = open(device_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  file_ = open_line(device_);
   if (file_ < 0) {
     refuse(device_, std::strerror(errno));
   }
@@ -72,17 +76,52 @@ SerialLine::SerialLine(std::string device, int baud) : device_(std::move(device)
   }
 }
 
-SerialLine::~SerialLine() { close(file_); }
+SerialLine::~SerialLine() {
+  if (file_ >= 0) {
+    close(file_);
+  }
+}
 
 bool SerialLine::write(std::uint8_t byte) noexcept {
+  if (file_ < 0) {
+    reopen();
+  }
+  if (file_ < 0) {
+    return false;
+  }
   ssize_t count = -1;
   do {
     count = ::write(file_, &byte, 1);
   } while (count < 0 && errno == EINTR);
-  if (count != 1) {
-    error_ = count < 0 ? errno : EIO;
+  if (count == 1) {
+    return true;
   }
-  return count == 1;
+  error_ = count < 0 ? errno : EIO;
+  if (error_ != EAGAIN) {  // a full line is still there
+    close(file_);
+    file_ = -1;
+    tried_ = std::chrono::steady_clock::now();
+  }
+  return false;
+}
+
+/// A device that was plugged in again has its name back after a while.
+void SerialLine::reopen() noexcept {
+  constexpr std::chrono::milliseconds kBetween{500};
+  const auto now = std::chrono::steady_clock::now();
+  if (now - tried_ < kBetween) {
+    return;
+  }
+  tried_ = now;
+  const int file = open_line(device_);
+  if (file < 0 || !make_raw(file, rate_of(baud_)->second)) {
+    if (file >= 0) {
+      close(file);
+    }
+    return;
+  }
+  file_ = file;
+  ++reopened_;
 }
 
 }  // namespace haptrial::markers

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 
@@ -21,16 +22,24 @@ class SerialLine {
 
   static bool has_rate(int baud) noexcept;
 
-  /// Does not wait: a line that takes nothing has failed. @returns whether the system took the byte
+  /// Does not wait: a line that takes nothing has failed. A line that has failed is opened anew
+  /// before the next byte, at most twice a second. @returns whether the system took the byte
   bool write(std::uint8_t byte) noexcept;
+  /// How often the line was opened anew.
+  int reopened() const noexcept { return reopened_; }
   /// errno of the last write() that failed; 0 if all went well.
   int error() const noexcept { return error_; }
   const std::string& device() const { return device_; }
 
  private:
+  void reopen() noexcept;
+
   std::string device_;
-  int file_{-1};
+  int baud_;
+  int file_{-1};  // -1: it has failed
   int error_{0};
+  int reopened_{0};
+  std::chrono::steady_clock::time_point tried_{};
 };
 
 }  // namespace haptrial::markers

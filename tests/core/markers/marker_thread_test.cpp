@@ -8,10 +8,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <thread>
 
 #include "core/base/error.h"
 #include "tests/support/pseudo_terminal.h"
+#include "tests/support/temporary_folder.h"
 
 namespace haptrial::markers {
 namespace {
@@ -151,6 +153,33 @@ TEST_F(MarkerThreadTest, ALineThatDisappearsIsCountedAndSaid) {
   for (std::size_t i = 1; i < 6; ++i) {
     EXPECT_EQ(sent[i].written_ns, -1);
   }
+}
+
+TEST_F(MarkerThreadTest, ALineThatComesBackIsOpenedAgain) {
+  const test::TemporaryFolder folder;
+  const std::string name = (folder / "line").string();
+  std::filesystem::create_symlink(terminal_.name(), name);
+  SerialLine line(name, options_.baud);
+  options_.pulse = 0.0;
+  MarkerThread thread(log_, options_, meanings(), {.serial = &line, .stream = {}, .other = {}},
+                      PseudoTerminal::now_ns);
+  log_.put(onset(MarkerOf::kStage, 0, 1));
+  ASSERT_THAT(heard(1), ElementsAre(21));
+  terminal_.unplug();
+  log_.put(onset(MarkerOf::kStage, 0, 2));
+  ASSERT_TRUE(thread.wait_until_sent(milliseconds(2000)));
+  EXPECT_EQ(thread.lost(), 1u);
+  const PseudoTerminal again;
+  std::filesystem::remove(name);
+  std::filesystem::create_symlink(again.name(), name);
+  std::this_thread::sleep_for(milliseconds(600));  // it is tried twice a second
+  log_.put(onset(MarkerOf::kStage, 1, 3));
+  for (int i = 0; i < 200 && again.bytes().empty(); ++i) {
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  EXPECT_THAT(again.bytes(), ElementsAre(200));
+  EXPECT_EQ(thread.lost(), 1u);
+  EXPECT_EQ(line.reopened(), 1);
 }
 
 TEST_F(MarkerThreadTest, NoCodeStaysOnTheLineAtTheEnd) {
