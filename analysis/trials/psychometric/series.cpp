@@ -7,6 +7,8 @@
 #include <cmath>
 #include <map>
 
+#include "analysis/trials/surface/surface_study.h"
+
 namespace haptrial::analysis::trials {
 namespace {
 
@@ -88,6 +90,9 @@ std::vector<AnsweredSeries> series_of(const TrialsData& data, const TrialsPlan& 
   std::map<std::string, std::vector<AnsweredSeries>> people;
   for (std::size_t i = 0; i < data.trials.size(); ++i) {
     const StudyTrial& trial = data.trials[i];
+    if (plan.level.empty() && has_surface(trial)) {
+      continue;  // a function of one variable would leave the others out
+    }
     const double level = level_of(trial, plan);
     const int outcome = outcome_of(trial, plan);
     if (!trial.counts() || !std::isfinite(level) || outcome < 0) {

@@ -37,8 +37,10 @@ int outcome_of(const StudyTrial& trial, const TrialsPlan& plan);
 std::vector<std::string> factors_of(const TrialsData& data, const StudyTrial& trial,
                                     const TrialsPlan& plan);
 
-/// Trials that count and have a level and an outcome, ordered by participant and first occurrence
-/// of the combination. Trials of all sessions of a participant stand together.
+/// Trials that count and have a level of one dimension and an outcome (of a level with several
+/// dimensions the one that the plan names; without a name see surface_study.h), ordered by
+/// participant and first occurrence of the combination. Trials of all sessions of a participant
+/// stand together.
 std::vector<AnsweredSeries> series_of(const TrialsData& data, const TrialsPlan& plan);
 
 /// Answers by level. Levels that agree in nine digits are one, since the arithmetic of a procedure

@@ -14,6 +14,7 @@
 #include "analysis/trials/psychometric/serial.h"
 #include "analysis/trials/psychometric/track_estimate.h"
 #include "analysis/trials/reaching/reaching_study.h"
+#include "analysis/trials/surface/surface_study.h"
 
 namespace haptrial::analysis::trials {
 
@@ -43,6 +44,7 @@ struct TrialsResult {
   std::vector<ParticipantTrials> participants;  // by name
   std::vector<AnsweredSeries> series;           // whose functions are fitted
   std::vector<FunctionFit> fits;                // (series)
+  std::vector<SurfaceCondition> surfaces;       // functions of several variables
   std::vector<TrackEstimate> tracks;
   std::vector<SerialEffects> serial;
   Defined<TTest> drift{Undefined{"nothing was fitted"}};  // mean over participants against 0

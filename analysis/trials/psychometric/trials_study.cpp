@@ -64,6 +64,9 @@ std::vector<QuantityValue> values_of(const std::vector<FunctionFit>& fits, Value
 void add_functions(TrialsResult& result, int threads) {
   const TrialsPlan& plan = result.plan;
   result.series = series_of(result.data, plan);
+  if (result.series.empty() && !result.surfaces.empty()) {
+    return;
+  }
   result.fits.resize(result.series.size());
   in_groups(result.series.size(), 1, threads, [&] {
     return
@@ -206,6 +209,9 @@ TrialsResult analyze(TrialsData data, const TrialsPlan& plan, const ProcedureOf&
     add_detection(result);
   }
   if (plan.functions) {
+    if (plan.level.empty()) {
+      result.surfaces = surface_conditions(result.data, plan.by, plan.threshold_at, procedure_of);
+    }
     add_functions(result, threads);
   }
   if (plan.kind == AnalysisKind::kMagnitude) {

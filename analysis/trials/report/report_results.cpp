@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "analysis/statistics/words/wording.h"
+#include "analysis/trials/report/surface/report_surfaces.h"
 #include "analysis/trials/report/trials_report.h"
 #include "analysis/trials/report/trials_words.h"
 
@@ -223,7 +224,11 @@ void add_results(Document& document, const TrialsResult& result,
   if (result.cues) {
     add_cues(document, result, drawings);
   }
-  if (result.plan.functions) {
+  if (!result.surfaces.empty()) {
+    add_section(document, result, "Functions of several variables");
+    add_surfaces(document, result, drawings);
+  }
+  if (result.plan.functions && (result.surfaces.empty() || !result.series.empty())) {
     add_functions(document, result, drawings);
   }
   if (result.plan.kind == AnalysisKind::kMagnitude) {

@@ -11,6 +11,7 @@
 
 #include "analysis/document/palette.h"
 #include "analysis/statistics/words/wording.h"
+#include "analysis/trials/report/surface/report_surfaces.h"
 #include "analysis/trials/report/trials_words.h"
 
 namespace haptrial::analysis::trials {
@@ -262,8 +263,9 @@ std::vector<Figure> reaction_figures(const TrialsResult& result) {
 
 std::vector<Figure> trials_figures(const TrialsResult& result) {
   std::vector<Figure> all;
-  for (auto make : {cue_figures, quantity_figures, function_figures, magnitude_figures, roc_figures,
-                    track_figures, reaction_figures, reaching_pictures}) {
+  for (auto make :
+       {cue_figures, quantity_figures, surface_figures, function_figures, magnitude_figures,
+        roc_figures, track_figures, reaction_figures, reaching_pictures}) {
     std::vector<Figure> some = make(result);
     std::move(some.begin(), some.end(), std::back_inserter(all));
   }

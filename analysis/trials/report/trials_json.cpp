@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/statistics/words/result_json_internal.h"
+#include "analysis/trials/report/surface/report_surfaces.h"
 
 namespace haptrial::analysis::trials {
 namespace {
@@ -285,6 +286,9 @@ std::string results_json(const TrialsResult& result) {
   root["tracks"] = list_of(result.tracks);
   root["detection"] = list_of(result.detected);
   root["magnitudes"] = list_of(result.magnitudes);
+  if (!result.surfaces.empty()) {
+    root["surfaces"] = Json::parse(surfaces_json(result));
+  }
   if (result.reaching) {
     root["reaching"] = Json::parse(reaching_json(*result.reaching));
   }

@@ -80,7 +80,7 @@ std::string function_words(const TrialsPlan& plan) {
 void add_methods(Document& document, const TrialsResult& result) {
   document.heading("Methods");
   const TrialsPlan& plan = result.plan;
-  if (plan.functions) {
+  if (plan.functions && (result.surfaces.empty() || !result.series.empty())) {
     document.paragraph(function_words(plan));
     document.paragraph(fmt::format(
         "Functions are fitted to each participant by maximum likelihood. Intervals of threshold, "

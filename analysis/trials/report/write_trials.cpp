@@ -5,6 +5,7 @@
 #include "analysis/trials/data/trials_csv.h"
 #include "analysis/trials/report/estimates_csv.h"
 #include "analysis/trials/report/reaches_csv.h"
+#include "analysis/trials/report/surface/report_surfaces.h"
 #include "analysis/trials/report/trials_figures.h"
 #include "analysis/trials/report/trials_json.h"
 #include "analysis/trials/report/trials_report.h"
@@ -17,6 +18,9 @@ void write_trials(const TrialsResult& result, const std::filesystem::path& folde
   staging.write("trials.csv", trials_csv(result.data));
   staging.write("estimates.csv", estimates_csv(result));
   staging.write("results.json", results_json(result));
+  if (!result.surfaces.empty()) {
+    staging.write("surfaces.csv", surfaces_csv(result));
+  }
   if (result.reaching) {
     staging.write("reaches.csv", reaches_csv(result));
   }

@@ -35,6 +35,7 @@ class QuestPlus final : public Procedure {
   std::vector<double> marginal(std::size_t parameter) const;
   double entropy() const;  // of the posterior [nat]
   int trials() const noexcept { return trials_; }
+  const QuestTables& tables() const noexcept { return *tables_; }
   /// Stimuli that the last choice compared in double precision.
   std::size_t compared() const noexcept { return selection_.compared(); }
 

@@ -1,0 +1,118 @@
+// A QUEST+ over two variables from its definition to the report, with virtual participants who
+// feel the size of a force in the plane.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/base/files/file_text.h"
+#include "tests/experiments/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::surface_report_test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kPlane = R"toml([experiment]
+protocol = "trials"
+name = "plane"
+[design]
+participants = 3
+[fields.pull]
+type = "constant"
+force = ["$x", "-$y", 0.0]
+[[stages]]
+name = "feel"
+fields = ["pull"]
+until = { time = 0.4 }
+[response]
+question = "Did it pull?"
+choices = [{ value = "yes" }, { value = "no" }]
+[procedure]
+kind = "quest_plus"
+probability = "normcdf((sqrt($x ^ 2 + $y ^ 2) - $threshold) / $spread)"
+counts = "$answer == 1"
+stop = { trials = 60 }
+[procedure.stimulus]
+x = { from = 0.0, to = 2.0, count = 9, resolution = 0.1 }
+y = { from = 0.0, to = 2.0, count = 9 }
+[procedure.parameters]
+threshold = { from = 0.2, to = 1.8, count = 33 }
+spread = [0.05, 0.1, 0.2, 0.4]
+[observer]
+decides = "yes"
+criterion = 0.8
+force_floor = 0.1
+force_weber = 0.05
+lapse = 0.0
+[observer.actions]
+feel = { do = "hold" }
+)toml";
+
+class SurfaceReportTest : public testing::Test {
+ protected:
+  nlohmann::json report_of(const std::string& definition) {
+    write_text(folder_ / "study.toml", definition);
+    const std::string at = "'" + folder_.path().string() + "/";
+    const auto ran = test::run_command("set -e; haptrial dry-run " + at + "study.toml' --out " +
+                                       at + "out'; haptrial analyze " + at + "out'");
+    EXPECT_EQ(ran.status, 0) << ran.errors;
+    return nlohmann::json::parse(file_text(folder_ / "out/results.json"));
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(SurfaceReportTest, TheFunctionIsFittedOverBothVariables) {
+  const nlohmann::json results = report_of(kPlane);
+  ASSERT_EQ(results["surfaces"].size(), 3u);
+  for (const nlohmann::json& one : results["surfaces"]) {
+    const nlohmann::json& threshold = one["parameters"][0];
+    EXPECT_EQ(threshold["name"], "threshold");
+    const double mean = threshold["mean"], deviation = threshold["standard_deviation"];
+    EXPECT_NEAR(mean, 0.8, 3.5 * deviation) << "the criterion of the virtual participants";
+    EXPECT_LT(deviation, 0.1);
+    // The contour of this formula is a circle.
+    for (const nlohmann::json& point : one["threshold"]) {
+      const double x = point["first"];
+      if (x < 0.9 * mean) {
+        ASSERT_EQ(point["second"].size(), 1u);
+        EXPECT_NEAR(std::hypot(x, point["second"][0].get<double>()), mean, 0.02);
+        EXPECT_LT(point["low_95"].get<double>(), point["second"][0].get<double>());
+        EXPECT_GT(point["high_95"].get<double>(), point["second"][0].get<double>());
+      }
+    }
+  }
+  const std::string report = file_text(folder_ / "out/report.md");
+  EXPECT_THAT(report, HasSubstr("Functions of several variables (simulated)"));
+  EXPECT_THAT(report, HasSubstr("The threshold over both variables"));
+  EXPECT_THAT(report, HasSubstr("surface-S01-"));
+  EXPECT_THAT(report, Not(HasSubstr("Every participant's function\n")))
+      << "a function of x alone would be of trials with every y";
+  EXPECT_THAT(file_text(folder_ / "out/surfaces.csv"), HasSubstr("\nS01,"));
+}
+
+TEST_F(SurfaceReportTest, WithoutAContourTheReportSaysWhy) {
+  std::string text = kPlane;
+  const auto put = [&text](const std::string& what, const std::string& with) {
+    text.replace(text.find(what), what.size(), with);
+  };
+  put("participants = 3", "participants = 1");
+  put("force = [\"$x\", \"-$y\", 0.0]", "force = [\"$x\", \"-$y\", \"$z\"]");
+  put("y = { from = 0.0, to = 2.0, count = 9 }",
+      "y = { from = 0.0, to = 2.0, count = 5 }\nz = [0.0, 1.0]");
+  put("sqrt($x ^ 2 + $y ^ 2)", "sqrt($x ^ 2 + $y ^ 2 + $z ^ 2)");
+  const nlohmann::json results = report_of(text);
+  EXPECT_EQ(results["surfaces"][0]["no_contour_because"],
+            "it is drawn over two variables, and the stimulus has 3");
+  EXPECT_EQ(results["surfaces"][0]["parameters"].size(), 2u);
+  EXPECT_THAT(file_text(folder_ / "out/report.md"),
+              HasSubstr("there is no threshold contour, because it is drawn over two variables"));
+}
+
+}  // namespace
+}  // namespace haptrial::surface_report_test
