@@ -5,9 +5,12 @@
 
 #include <cmath>
 #include <exception>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "core/record/read/session_reader.h"
+#include "core/record/trials/trial_rows.h"
 
 namespace haptrial::experiments {
 
@@ -22,11 +25,28 @@ void LiveTrials::add_resumed(const std::filesystem::path& file) {
   try {
     const record::SessionReader reader(file);
     const auto passes = reader.passes();
+    std::set<std::int32_t> out;  // passes whose answers do not count
+    std::map<int, std::int32_t> last;
+    for (std::size_t i = 0; i < passes.size(); ++i) {
+      if (passes[i].practice) {
+        out.insert(static_cast<std::int32_t>(i));
+      } else if (const auto [at, fresh] =
+                     last.try_emplace(passes[i].trial, static_cast<std::int32_t>(i));
+                 !fresh) {
+        out.insert(std::exchange(at->second, static_cast<std::int32_t>(i)));
+      }
+    }
+    for (const record::OutOfTimeRow& row : reader.rows<record::OutOfTimeRow>()) {
+      if (row.again) {
+        out.insert(row.pass);
+      }
+    }
     for (const record::ResponseRow& row : reader.responses()) {
       const auto at = static_cast<std::size_t>(row.pass);
-      if (row.correct >= 0 && row.pass >= 0 && at < passes.size() && !passes[at].practice) {
-        right_ += row.correct;
-        ++judged_;
+      if (row.correct >= 0 && row.pass >= 0 && at < passes.size() && !out.contains(row.pass)) {
+        Judged& own = judged_[passes[at].trial];
+        own.right += row.correct;
+        ++own.answers;
       }
     }
   } catch (const std::exception& error) {  // nothing that a session should end for
@@ -38,7 +58,10 @@ void LiveTrials::add_resumed(const std::filesystem::path& file) {
 void LiveTrials::begin_pass(const record::PassRow& pass, std::int32_t row) {
   const std::lock_guard lock(mutex_);
   present_ = row;
-  trials_[row] = {pass.trial, pass.practice, false, "", {}, false};
+  trials_[row] = {pass.trial, pass.practice, false, "", {}, false, false};
+  if (!pass.practice) {
+    judged_.erase(pass.trial);
+  }
 }
 
 void LiveTrials::end_pass(const record::PassRow&) {
@@ -56,6 +79,13 @@ void LiveTrials::rows(const record::Rows& rows) {
                                       row.applied, unit_.empty() ? "" : " " + unit_);
     }
   }
+  for (const record::OutOfTimeRow& row : rows.as<record::OutOfTimeRow>()) {
+    const auto at = trials_.find(row.pass);
+    if (row.again && at != trials_.end() && !at->second.practice) {
+      at->second.again = true;
+      judged_.erase(at->second.number);
+    }
+  }
   for (const record::ResponseRow& row : rows.as<record::ResponseRow>()) {
     add(row);
   }
@@ -71,9 +101,10 @@ void LiveTrials::add(const record::ResponseRow& row) {
   if (row.correct >= 0) {
     answer += row.correct == 1 ? " (right)" : " (wrong)";
     trial.wrong = trial.wrong || row.correct == 0;
-    if (!trial.practice) {
-      right_ += row.correct;
-      ++judged_;
+    if (!trial.practice && !trial.again) {
+      Judged& own = judged_[trial.number];
+      own.right += row.correct;
+      ++own.answers;
     }
   }
   trial.answers.push_back(std::move(answer));
@@ -92,9 +123,14 @@ record::LiveState LiveTrials::state_of(const Trial& trial) const {
   state.line = state.title;
   state.line += trial.level.empty() ? "" : ": level " + trial.level;
   state.line += trial.answers.empty() ? "" : ", answer " + answer;
-  if (judged_ > 0) {
-    const std::string right = fmt::format("{} of {} ({:.0f} %)", right_, judged_,
-                                          100.0 * right_ / static_cast<double>(judged_));
+  Judged all;
+  for (const auto& [number, own] : judged_) {
+    all.right += own.right;
+    all.answers += own.answers;
+  }
+  if (all.answers > 0) {
+    const std::string right = fmt::format("{} of {} ({:.0f} %)", all.right, all.answers,
+                                          100.0 * all.right / static_cast<double>(all.answers));
     state.figures.push_back({"Right so far", right, false});
     state.line += ", right so far " + right;
   }

@@ -13,7 +13,9 @@
 
 namespace haptrial::experiments {
 
-/// The trials of a running session: level, answer, and how many answers were right so far.
+/// The trials of a running session: level, answer, and how many answers were right so far. A trial
+/// that was presented again counts as it was answered the last time; one that comes again because
+/// its answer was out of time counts when it comes.
 class LiveTrials final : public record::LiveFigures {
  public:
   /// @param unit     of the levels, for people
@@ -35,6 +37,10 @@ class LiveTrials final : public record::LiveFigures {
     std::string level;
     std::vector<std::string> answers;
     bool wrong{false};
+    bool again{false};  // it comes again, and this answer does not count
+  };
+  struct Judged {
+    int right{0}, answers{0};
   };
   record::LiveState state_of(const Trial& trial) const;
   void add(const record::ResponseRow& row);
@@ -44,7 +50,7 @@ class LiveTrials final : public record::LiveFigures {
   std::string unit_;
   std::map<std::int32_t, Trial> trials_;  // by row of /trials
   std::int32_t present_{-1};
-  int right_{0}, judged_{0};
+  std::map<int, Judged> judged_;  // by number of the trial
   std::string trouble_;
 };
 
