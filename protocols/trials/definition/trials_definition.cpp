@@ -156,6 +156,13 @@ std::vector<std::string> TrialsDefinition::warnings() const {
           "that nothing is shown",
           question.name));
     }
+    if (question.again && order.most_in_a_row > 0) {
+      all.push_back(fmt::format(
+          "trials with an answer to \"{}\" that is out of time come again at the end of their "
+          "block, in whatever order they come, so that more than design.most_in_a_row = {} trials "
+          "of one combination of factors may follow each other there",
+          question.name, order.most_in_a_row));
+    }
   }
   return all;
 }
