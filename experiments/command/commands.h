@@ -59,6 +59,8 @@ struct RosterOptions {
   std::optional<std::string> seed;  // of new participants; default: that of the sessions, or 1
   std::string json;                 // file for the same; empty: none
   std::string csv;                  // likewise, a row for each session
+  std::string exclude;              // participant to be taken out before; empty: nobody
+  std::string because;              // why
 };
 int roster(const RosterOptions& options);
 

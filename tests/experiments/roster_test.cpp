@@ -169,6 +169,32 @@ TEST_F(RosterTest, TheNumberOfAnExcludedParticipantIsFreeAgain) {
   EXPECT_EQ(now.next.front().number, 1);
 }
 
+TEST_F(RosterTest, WhoIsExcludedIsReplacedByTheNextOne) {
+  record("P01", 1);
+  record("P01", 2);
+  record("P03", 1);
+  const std::string command = "roster " + quoted(definition_) + " " + quoted(sessions_);
+  const auto unknown = haptrial(command + " --exclude P02 --because 'no time'");
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_THAT(unknown.errors, HasSubstr("--exclude is P02, who has no session of the study"));
+  EXPECT_NE(haptrial(command + " --exclude P01").status, 0) << "there has to be a reason";
+  const auto done = haptrial(command + " --exclude P01 --because 'left early, ill'");
+  ASSERT_EQ(done.status, 0) << done.errors;
+  EXPECT_THAT(done.output, HasSubstr("next: Pb01 (group left), session 1 of 2"));
+  EXPECT_FALSE(fs::exists(sessions_ / "P01-session-1.h5"));
+  EXPECT_TRUE(fs::exists(sessions_ / "excluded/P01-session-2.h5"));
+  EXPECT_EQ(test::read_text(sessions_ / "excluded/reasons.csv"),
+            "participant,reason\nP01,\"left early, ill\"\n");
+  const Roster now = roster();
+  EXPECT_EQ(now.groups[0].begun, 0);
+  EXPECT_EQ(now.groups[1].begun, 1);
+  EXPECT_EQ(haptrial(command + " --exclude P01 --because again").status, 2);
+  record("Pb01", 1);
+  ASSERT_EQ(haptrial(command + " --exclude Pb01 --because 'too old'").status, 0);
+  EXPECT_THAT(test::read_text(sessions_ / "excluded/reasons.csv"), HasSubstr("\nPb01,too old\n"));
+  EXPECT_EQ(roster().next.front().subject, "Pc01");
+}
+
 TEST_F(RosterTest, WhatIsWrongIsSaid) {
   record("P01", 1);
   record("Q01", 1);

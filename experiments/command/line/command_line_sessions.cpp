@@ -90,6 +90,12 @@ void add_roster(CLI::App& app, int& status) {
                   "Seed of the study, for orders (default: that of the sessions; 1 if there are none)");
   sub->add_option("--json", o.json, "New file for the roster as JSON");
   sub->add_option("--csv", o.csv, "New file for the roster as a table, a row for each session");
+  auto* exclude = sub->add_option("--exclude", o.exclude,
+                                  "Participant whose files are moved into the folder excluded; the "
+                                  "next new participant gets the place");
+  auto* because = sub->add_option("--because", o.because, "Why, for excluded/reasons.csv");
+  exclude->needs(because);
+  because->needs(exclude);
 }
 
 void add_info(CLI::App& app, int& status) {

@@ -11,6 +11,7 @@
 #include "core/base/text/counted.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/commands.h"
+#include "experiments/command/sessions/exclude.h"
 #include "experiments/command/sessions/next_session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/roster.h"
@@ -179,6 +180,9 @@ int roster(const RosterOptions& options) {
   }
   if (fs::exists(options.folder) && !fs::is_directory(options.folder)) {
     throw InputError(options.folder + ": not a folder; give the folder of the session files");
+  }
+  if (!options.exclude.empty()) {
+    exclude(make_roster(request), options.folder, options.exclude, options.because);
   }
   const Roster roster = make_roster(request);
   print_roster(roster);
