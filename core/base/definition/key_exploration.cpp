@@ -33,10 +33,42 @@ void join(std::string& all, const std::string& another) {
 void KeyExploration::begin(Plan plan) {
   plan_ = std::move(plan);
   taken_.clear();
+  keep_chosen();
   chosen_.clear();
 }
 
+void KeyExploration::keep_chosen() {
+  for (const auto& [table, choices] : chosen_) {
+    read_[table].insert(choices);
+  }
+}
+
+/// Whether a key goes with some words of a choice alone: it is asked for after the choice always,
+/// with some words only, and a reading that agrees in every other such choice took another word
+/// and did not ask. Without that reading the word may only be the one that came along.
+bool KeyExploration::bound_by(const Known& known, const std::string& choice) const {
+  const auto words = words_.find(known.key.table);
+  const auto limits = [&](const std::string& name) {
+    return known.with.at(name).size() < words->second.at(name).size() &&
+           known.with_count.at(name) == known.askings;
+  };
+  if (!limits(choice)) {
+    return false;
+  }
+  const auto agrees = [&](const Choices& reading) {
+    return std::all_of(known.with.begin(), known.with.end(), [&](const auto& other) {
+      const auto word = reading.find(other.first);
+      const bool in = word != reading.end() && other.second.contains(word->second);
+      return other.first == choice ? word != reading.end() && !in : in || !limits(other.first);
+    });
+  };
+  const auto readings = read_.find(known.key.table);
+  return readings != read_.end() &&
+         std::any_of(readings->second.begin(), readings->second.end(), agrees);
+}
+
 std::vector<KeyExploration::Plan> KeyExploration::further() {
+  keep_chosen();
   std::vector<Plan> plans;
   for (const auto& [name, ways] : taken_) {
     for (std::size_t way = 1; way < ways; ++way) {
@@ -157,8 +189,7 @@ std::vector<KnownKey> KeyExploration::keys() const {
     const auto choices = words_.find(key.table);
     for (const auto& [choice, with] : known->with) {
       const std::vector<std::string>& words = choices->second.at(choice);
-      // Where it is asked for with some words of a choice alone, and never before the choice.
-      if (with.size() < words.size() && known->with_count.at(choice) == known->askings) {
+      if (bound_by(*known, choice)) {
         std::vector<std::string> own;
         std::copy_if(words.begin(), words.end(), std::back_inserter(own),
                      [&](const std::string& word) { return with.contains(word); });

@@ -53,11 +53,13 @@ class KeyExploration {
  private:
   using Choices = std::map<std::string, std::string>;  // word by key
   std::size_t take(const std::string& name, std::size_t ways);
+  void keep_chosen();
 
   Plan plan_;
   std::vector<std::pair<std::string, std::size_t>> taken_;  // of this reading: name, ways
   std::set<std::pair<std::string, std::size_t>> seen_;
-  std::map<std::string, Choices> chosen_;  // of this reading, by table
+  std::map<std::string, Choices> chosen_;          // of this reading, by table
+  std::map<std::string, std::set<Choices>> read_;  // what readings chose, by table
   struct Known {
     KnownKey key;
     std::size_t order{0};
@@ -65,6 +67,7 @@ class KeyExploration {
     std::map<std::string, std::set<std::string>> with;  // words by key, of the same table
     std::map<std::string, std::size_t> with_count;
   };
+  bool bound_by(const Known& known, const std::string& choice) const;
   std::map<std::string, Known> known_;                                            // by path
   std::map<std::string, std::map<std::string, std::vector<std::string>>> words_;  // table, key
   std::set<std::string> optional_, texts_;

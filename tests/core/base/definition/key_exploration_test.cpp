@@ -67,6 +67,25 @@ TEST(KeyExplorationTest, FindsEveryKeyOnEveryWay) {
                           "fields[].type", "loop.name", "loop.number", "loop.rate", "names.NAME"));
 }
 
+/// Each choice is varied alone: that a key was never seen with another scale does not make it one
+/// of that scale.
+TEST(KeyExplorationTest, AChoiceThatNobodyVariedBindsNothing) {
+  const auto reader = [](Table& root) {
+    Table track = root.table("track");
+    const std::string scale = track.choice("scale", {"linear", "log"});
+    const std::string kind = track.choice("kind", {"steps", "pest"});
+    if (kind == "pest") {
+      track.number("target", kPositive, "");
+    }
+    if (scale == "log") {
+      track.number("origin", {}, "");
+    }
+  };
+  const auto keys = known_keys("", reader);
+  EXPECT_THAT(found(keys, "track.target").when, ElementsAre("kind: pest"));
+  EXPECT_THAT(found(keys, "track.origin").when, ElementsAre("scale: log"));
+}
+
 TEST(KeyExplorationTest, SaysWhatTheReaderSays) {
   const auto keys = known_keys("[loop]\nrate = 1000.0\n", read);
   const KnownKey rate = found(keys, "loop.rate");
