@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 
 #include "analysis/trials/data/read_trials.h"
 #include "analysis/trials/psychometric/trials_study.h"
+#include "analysis/trials/reaching/quantities/reach_quantities.h"
 #include "analysis/trials/report/trials_words.h"
 #include "analysis/trials/report/write_trials.h"
 #include "core/base/definition/table.h"
@@ -55,6 +57,18 @@ void take_planned(const AnalysisRequest& request, trials::TrialsPlan& plan,
   if (!request.planned.empty()) {
     plan.plan = analysis::parse_analysis_plan(request.planned, "", "--planned");
     remarks.emplace_back("The planned tests were given to analyze, not stated in the definition.");
+  }
+}
+
+/// Names in planned tests are of the quantity with most conditions: force compensation has none where
+/// no channel came.
+void check_planned(const trials::TrialsResult& result) {
+  const auto most = std::max_element(result.quantities.begin(), result.quantities.end(),
+                                     [](const trials::Quantity& a, const trials::Quantity& b) {
+                                       return a.table.cells.size() < b.table.cells.size();
+                                     });
+  if (most != result.quantities.end() && most->compared) {
+    analysis::check_plan(most->table, result.plan.plan);
   }
 }
 
@@ -150,11 +164,6 @@ std::vector<std::string> TrialsStudy::analyze(const AnalysisRequest& request) co
   add_missing(request, definition, data, remarks);
   trials::TrialsResult result =
       trials::analyze(std::move(data), plan, procedures_of(definition), request.threads);
-  for (const trials::Quantity& q : result.quantities) {
-    if (q.compared) {
-      analysis::check_plan(q.table, plan.plan);
-    }
-  }
   if (plan.kind == trials::AnalysisKind::kReaching) {
     const auto ways = reach_ways(definition, result.data, plan.reaching);
     result.reaching = trials::reaching_study(
@@ -162,7 +171,9 @@ std::vector<std::string> TrialsStudy::analyze(const AnalysisRequest& request) co
         trials::study_reaches(result.data, request.files.files, ways, plan.reaching.stage,
                               plan.reaching.clamp, request.threads),
         plan.reaching, request.threads);
+    result.quantities = trials::reach_quantities(result.data, *result.reaching, plan);
   }
+  check_planned(result);
   result.page_scores = trials::page_scores(request.files.files, definition.pages, group_of);
   result.title = definition.name;
   result.remarks = std::move(remarks);

@@ -33,8 +33,9 @@ foreach(source ${benchmarks})
                    PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/trials/simulated_trials.cpp
                            ${CMAKE_SOURCE_DIR}/tests/analysis/trials/psychometric/null_cues.cpp
                            ${CMAKE_SOURCE_DIR}/tests/analysis/trials/psychometric/null_trials.cpp
-                           ${CMAKE_SOURCE_DIR}/tests/analysis/trials/psychometric/simulated_cues.cpp)
-    target_link_libraries(bench_null_trials PRIVATE haptrial_trials_psychometric haptrial_record_write
+                           ${CMAKE_SOURCE_DIR}/tests/analysis/trials/psychometric/simulated_cues.cpp
+                           ${CMAKE_SOURCE_DIR}/tests/analysis/trials/reaching/quantities/simulated_reaches.cpp)
+    target_link_libraries(bench_null_trials PRIVATE haptrial_trials_reach_quantities haptrial_record_write
                                                     PkgConfig::gsl)
     continue()
   endif()

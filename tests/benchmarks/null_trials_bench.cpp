@@ -1,13 +1,14 @@
 // How often each test of a report on trials is below 0.05 when conditions do not differ and nobody
 // drifts or repeats answers: studies of 12 people at the level of answers. Prints the table of
 // docs/algorithms/trials-analysis.md.
-//   bench_null_trials [STUDIES] [SEED] [THREADS] [PERMUTATIONS] [TASK 0 to 5; all if left out]
+//   bench_null_trials [STUDIES] [SEED] [THREADS] [PERMUTATIONS] [TASK 0 to 6; all if left out]
 #include <fmt/format.h>
 
 #include <cstdlib>
 
 #include "tests/analysis/trials/psychometric/null_cues.h"
 #include "tests/analysis/trials/psychometric/null_trials.h"
+#include "tests/analysis/trials/reaching/quantities/simulated_reaches.h"
 
 namespace {
 
@@ -49,6 +50,18 @@ int main(int argc, char** argv) {
       print(name_of(task), level.test, level.found, level.replications);
     }
     std::fflush(stdout);
+  }
+  if (only < 0 || only == 6) {
+    for (const std::vector<std::string>& by :
+         {std::vector<std::string>{"group"}, {"block"}, {"group", "block"}}) {
+      for (const auto& level : haptrial::test::null_reaches(by, studies, seed, threads)) {
+        print(by.size() > 1      ? "reaches, groups and blocks"
+              : by[0] == "group" ? "reaches, groups"
+                                 : "reaches, blocks",
+              level.test, level.found, level.replications);
+      }
+      std::fflush(stdout);
+    }
   }
   if (only < 0 || only == 5) {
     print_cues(studies, seed, threads);

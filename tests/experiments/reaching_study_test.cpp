@@ -34,12 +34,13 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
 /// Analysed sessions of six participants, three in the field of each direction.
 class ReachingStudyTest : public testing::Test {
  protected:
-  void run(bool field) {
+  void run(bool field, const std::string& more = "") {
     std::string text = file_text(HAPTRIAL_SOURCE_DIR "/experiments/curl_field.toml");
     replace_all(text, "participants = 16", "participants = 6");
     replace_all(text, "clockwise = 8", "clockwise = 3");
     replace_all(text, "trials = 64", "trials = 32");
     replace_all(text, "trials = 192", "trials = 96");
+    text += more;
     if (!field) {
       replace_all(text, "field = \"curl\"", "field = \"none\"");
     }
@@ -117,6 +118,25 @@ TEST_F(ReachingStudyTest, AdaptationIsFoundAndItsAftereffectHasTheOppositeSign) 
       0.0);
   EXPECT_THAT(said_, HasSubstr("washout: first cycle against 0"));
   expect_report();
+}
+
+TEST_F(ReachingStudyTest, PlannedTestsOfTheDefinitionStandInTheReport) {
+  ASSERT_NO_FATAL_FAILURE(
+      run(true,
+          "\nby = [\"group\", \"block\"]\ntests = [\"washout < adaptation\", \"clockwise != "
+          "counterclockwise\"]\nquantities = [\"error\", \"force_compensation\"]\n"
+          "cycles = \"first\"\n"));
+  const json results = json::parse(file_text(report("results.json")));
+  const json& error = results.at("quantities").at(0);
+  EXPECT_EQ(error.at("name"), "error");
+  EXPECT_EQ(error.at("conditions").size(), 6u) << "two groups, three blocks";
+  const std::string tests = error.at("tests").dump();
+  EXPECT_THAT(tests, HasSubstr("washout"));
+  const std::string text = file_text(report("report.md"));
+  EXPECT_THAT(text, HasSubstr("Reaches by condition (simulated)"));
+  EXPECT_THAT(text, HasSubstr("| washout &lt; adaptation | 6 pairs |"));
+  EXPECT_THAT(text, HasSubstr("| clockwise and counterclockwise | 3 and 3 |"));
+  EXPECT_THAT(text, HasSubstr("over its reaches without a probe in the first cycle"));
 }
 
 TEST_F(ReachingStudyTest, WithoutAFieldNothingIsFound) {

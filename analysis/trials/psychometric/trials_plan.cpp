@@ -50,7 +50,8 @@ std::string text_or(Table& table, const char* key) {
 }
 
 void read_by(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
-  plan.by = plan.kind == AnalysisKind::kDetection ? std::vector<std::string>{} : defaults.factors;
+  const bool stated = plan.kind == AnalysisKind::kDetection || plan.kind == AnalysisKind::kReaching;
+  plan.by = stated ? std::vector<std::string>{} : defaults.factors;
   if (!table.has("by")) {
     return;
   }
@@ -183,9 +184,10 @@ TrialsPlan read_trials_plan(Table& root, const PlanDefaults& defaults) {
   Table table = root.table("analysis");
   plan.kind = chosen(table, "kind", kKinds, defaults.kind);
   if (plan.kind == AnalysisKind::kReaching) {
-    plan.by.clear();
     plan.functions = false;
     plan.reaching = read_reaching_plan(table, defaults.reaching);
+    read_by(table, defaults, plan);
+    read_tests(table, plan);
     return plan;
   }
   read_by(table, defaults, plan);

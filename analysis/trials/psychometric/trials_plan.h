@@ -73,7 +73,8 @@ struct TrialsPlan {
 ///
 ///     kind          "psychometric", "detection", "magnitude", "adjustment", "reaching" or "none"
 ///     by            factors: each combination has a function, d' or exponent of its own; left out:
-///                   all of them, of detection none, as they may say where the signal is
+///                   all of them; of detection none, as they may say where the signal is, and of
+///                   reaching none, as they make cycles
 ///     tests         planned: "a < b", "a > b" or "a != b" of levels of these factors
 ///     question, yes, level   as TrialsPlan
 ///     function      a sigmoid by its name; "weibull", "log_normal" on a logarithmic axis

@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "core/base/definition/table.h"
 
@@ -36,6 +38,44 @@ std::string named(Table& table, const char* key, const std::string& otherwise,
   return name;
 }
 
+constexpr std::array<std::pair<const char*, ReachQuantity>, 6> kQuantities{
+    {{"error", ReachQuantity::kError},
+     {"movement_time", ReachQuantity::kMovementTime},
+     {"peak_speed", ReachQuantity::kPeakSpeed},
+     {"direction", ReachQuantity::kDirection},
+     {"area", ReachQuantity::kArea},
+     {"force_compensation", ReachQuantity::kForceCompensation}}};
+
+void read_comparison(Table& table, ReachingPlan& plan) {
+  if (table.has("quantities")) {
+    plan.quantities.clear();
+    std::vector<std::string> known;
+    for (const auto& [name, quantity] : kQuantities) {
+      known.emplace_back(name);
+    }
+    for (const std::string& name : table.texts("quantities")) {
+      const auto at = std::find(known.begin(), known.end(), name);
+      if (at == known.end()) {
+        table.reject("quantities", fmt::format("a list with \"{}\"", name),
+                     fmt::format("{}", fmt::join(known, ", ")));
+        continue;
+      }
+      const ReachQuantity quantity =
+          kQuantities[static_cast<std::size_t>(at - known.begin())].second;
+      if (std::find(plan.quantities.begin(), plan.quantities.end(), quantity) ==
+          plan.quantities.end()) {
+        plan.quantities.push_back(quantity);
+      }
+    }
+  }
+  if (table.has("cycles")) {
+    const std::string word = table.choice("cycles", {"all", "first", "last"});
+    plan.cycles = word == "first"  ? ReachCycles::kFirst
+                  : word == "last" ? ReachCycles::kLast
+                                   : ReachCycles::kAll;
+  }
+}
+
 }  // namespace
 
 ReachingPlan read_reaching_plan(Table& table, const ReachingNames& names) {
@@ -61,6 +101,7 @@ ReachingPlan read_reaching_plan(Table& table, const ReachingNames& names) {
   if (table.has("resamples")) {
     plan.resamples = static_cast<std::size_t>(table.integer("resamples", 0, kMostResamples));
   }
+  read_comparison(table, plan);
   return plan;
 }
 

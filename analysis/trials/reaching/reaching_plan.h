@@ -19,6 +19,19 @@ struct ReachingNames {
   std::size_t combinations{8};      // of the factors: as many trials as make a cycle
 };
 
+/// A number of a reach that conditions may be compared in.
+enum class ReachQuantity : std::uint8_t {
+  kError,              // that learning is about, turned [m]
+  kMovementTime,       // [s]
+  kPeakSpeed,          // [m/s]
+  kDirection,          // at 150 ms, turned [rad]
+  kArea,               // turned [m²]
+  kForceCompensation,  // of reaches in a channel
+};
+
+/// Which cycles of a block such a comparison takes.
+enum class ReachCycles : std::uint8_t { kAll, kFirst, kLast };
+
 /// What [analysis] of kind "reaching" states.
 struct ReachingPlan {
   std::string stage{"reach"};
@@ -29,6 +42,8 @@ struct ReachingPlan {
   std::size_t cycle{8};          // trials
   bool at_150_ms{false};         // the error that is learnt from; else the largest
   std::size_t resamples{1999};   // of participants
+  std::vector<ReachQuantity> quantities{ReachQuantity::kError};  // compared between conditions
+  ReachCycles cycles{ReachCycles::kAll};                         // of each block, for that
   std::uint64_t seed{1};
 };
 
@@ -41,6 +56,13 @@ struct ReachingPlan {
 ///     cycle          trials of a cycle: as many as the factors have combinations
 ///     error          "maximum" (largest perpendicular error) or "at_150_ms"
 ///     resamples      of the intervals of fits, 0 to 100,000
+///     quantities     compared between the conditions that TrialsPlan::by makes: "error" (as if
+///     left
+///                    out), "movement_time", "peak_speed", "direction", "area",
+///                    "force_compensation"
+///     cycles         of each block that such a comparison takes: "all" (as if left out), "first"
+///     or
+///                    "last"
 ReachingPlan read_reaching_plan(Table& table, const ReachingNames& names);
 
 }  // namespace haptrial::analysis::trials

@@ -177,11 +177,18 @@ ParticipantResampling resampling_of(const ReachingPlan& plan, const char* stream
   return how;
 }
 
-/// What the field does before anything is learnt: mean error of the first cycle in it [m].
-double disturbance(const ReachingResult& result) {
+/// The error of the model of two rates, which knows no feedback: at 150 ms it has hardly acted,
+/// while the largest error is what feedback has left of it.
+std::optional<double> early_error(const StudyReach& reach) {
+  return reach.kind == ReachKind::kPlain ? reach.turned(reach.error_at_150_ms) : std::nullopt;
+}
+
+/// What the field does before anything is learnt: mean early error of the first cycle in it [m].
+double disturbance(const ReachingResult& result, const ReachCurve& early) {
   for (const ReachBlock& block : result.blocks) {
-    if (std::abs(block.perturbation) > kSamePerturbation) {
-      return result.plain.points[block.first_cycle].mean / block.perturbation;
+    if (std::abs(block.perturbation) > kSamePerturbation &&
+        block.first_cycle < early.points.size()) {
+      return early.points[block.first_cycle].mean / block.perturbation;
     }
   }
   return 0.0;
@@ -201,7 +208,7 @@ Defined<TwoRateLearning> two_rate_of(const std::vector<Standing>& standings,
     trial.error_clamp = reach.kind == ReachKind::kClamp;
     if (trial.error_clamp) {
       trial.measured = reach.compensation ? reach.compensation->slope : kNotKnown;
-    } else if (const auto error = result.error(reach)) {
+    } else if (const auto error = reach.turned(reach.error_at_150_ms)) {
       trial.measured = *error / result.two_rate_unit;
     }
     sequences[standings[i].participant].push_back(trial);
@@ -319,7 +326,7 @@ ReachingResult reaching_study(const TrialsData& data, std::vector<StudyReach> re
   add_plain_contrasts(result);
   add_probe_contrasts(result);
   adjust(result);
-  result.two_rate_unit = disturbance(result);
+  result.two_rate_unit = disturbance(result, curve_of(all, result, early_error));
   result.two_rate = two_rate_of(all, result, threads);
   result.quality = quality_of(all, result);
   return result;

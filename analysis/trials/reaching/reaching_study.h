@@ -74,7 +74,7 @@ struct ReachingResult {
   ReachCurve clamps;              // force compensation
   std::vector<ReachContrast> contrasts;
   Defined<TwoRateLearning> two_rate{Undefined{"nothing was fitted"}};
-  double two_rate_unit{0.0};          // error of one perturbation in the first cycle [m]
+  double two_rate_unit{0.0};          // at 150 ms, of one perturbation in the first cycle [m]
   std::vector<ReachQuality> quality;  // by participant
 
   /// The error of a reach that learning is about, turned [m].

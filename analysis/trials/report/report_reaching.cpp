@@ -116,8 +116,8 @@ void add_two_rate(Document& document, const ReachingResult& reaching) {
                    interval_word(m.slow.learning, t.slow_learning, 1.0)}});
   document.paragraph(fmt::format(
       "One model for all trials of all participants, {} measured values. Without adaptation the "
-      "field makes an error of {} mm. Errors are taken as proportional to what is not compensated; "
-      "breaks are not modelled.",
+      "field makes an error of {} mm at 150 ms. Errors at 150 ms, before feedback has acted much, "
+      "are taken as proportional to what is not compensated; breaks are not modelled.",
       t.fit.count, number(kMillimetres * m.error_scale * reaching.two_rate_unit)));
 }
 

@@ -239,6 +239,11 @@ void add_results(Document& document, const TrialsResult& result,
   }
   if (result.reaching) {
     add_reaching(document, result, drawings);
+    if (!result.quantities.empty()) {
+      add_section(document, result, "Reaches by condition");
+      add_means(document, result);
+      add_pictures(document, drawings, "by-condition-", kMostPictures);
+    }
   }
 }
 

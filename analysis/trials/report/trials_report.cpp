@@ -112,6 +112,15 @@ void add_methods(Document& document, const TrialsResult& result) {
   }
   if (plan.kind == AnalysisKind::kReaching) {
     add_reaching_methods(document, plan.reaching);
+    if (!result.quantities.empty()) {
+      document.paragraph(fmt::format(
+          "Conditions are compared in one value of each participant under each condition, the mean "
+          "over its reaches without a probe in {} of each block; force compensation is that of "
+          "reaches in a channel. p values of a family are adjusted together by Holm's method.",
+          plan.reaching.cycles == ReachCycles::kAll     ? "all cycles"
+          : plan.reaching.cycles == ReachCycles::kFirst ? "the first cycle"
+                                                        : "the last cycle"));
+    }
     document.heading("Definition");
     document.source(result.definition_name, result.definition);
     return;

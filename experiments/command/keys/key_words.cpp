@@ -485,7 +485,7 @@ observer.modulus | | magnitude of a percept of 1
 observer.magnitude_noise | | spread of the logarithm of a magnitude
 observer.tolerance | | of an adjustment
 trials:analysis.kind | as the procedure is | what is computed
-trials:analysis.by | all factors, of detection none | factors whose levels are told apart
+trials:analysis.by | all factors; of detection and of reaching none | factors whose levels are told apart
 trials:analysis.tests | none | planned: "a < b", "a > b" or "a != b" of levels
 trials:analysis.question | the first | whose answer counts
 trials:analysis.yes | what the procedure learnt, else the right one | the answer that counts 1
@@ -517,6 +517,8 @@ trials:analysis.field | the first of type matrix_viscous | field that is learnt
 trials:analysis.clamp | clamp | probe whose reaches a channel holds
 trials:analysis.cycle | combinations of the factors | trials of a cycle
 trials:analysis.error | maximum | error of a reach that is learnt from
+trials:analysis.quantities | ["error"] | of reaches, compared between the conditions of `by`: error, movement_time, peak_speed, direction, area, force_compensation
+trials:analysis.cycles | all | cycles of each block that such a comparison takes
 analysis.planned | none | planned tests: "a < b", "a > b" or "a != b" of conditions
 analysis.reference | the first | condition that the others are compared with
 trajectory.from | generated curves | file with the curve to follow
