@@ -81,7 +81,7 @@ TEST(KeyExplorationTest, AChoiceThatNobodyVariedBindsNothing) {
       track.number("origin", {}, "");
     }
   };
-  const auto keys = known_keys("", reader);
+  const auto keys = known_keys("[other]\n", reader);
   EXPECT_THAT(found(keys, "track.target").when, ElementsAre("kind: pest"));
   EXPECT_THAT(found(keys, "track.origin").when, ElementsAre("scale: log"));
 }
