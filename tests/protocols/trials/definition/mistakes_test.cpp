@@ -118,6 +118,20 @@ TEST(TrialMistakesTest, LimitsOfReactionTimes) {
               Contains(HasSubstr("response.too_slow is 3 s; allowed: below timeout, 2 s")));
 }
 
+TEST(TrialMistakesTest, RepeatedTrialsThatMayBreakTheOrderGetAWarning) {
+  const std::string rule = "[design]\nmost_in_a_row = 2\n";
+  TrialsDefinition goes_on, repeats, free;
+  read_small(with(with(kSmall, "[design]\n", rule), "correct =", "too_slow = 2.0\ncorrect ="),
+             goes_on);
+  EXPECT_THAT(goes_on.warnings(), IsEmpty());
+  const std::string again = "too_slow = 2.0\nout_of_time = \"repeat\"\ncorrect =";
+  read_small(with(with(kSmall, "[design]\n", rule), "correct =", again), repeats);
+  EXPECT_THAT(repeats.warnings(),
+              ElementsAre(HasSubstr("more than design.most_in_a_row = 2 trials")));
+  read_small(with(kSmall, "correct =", again), free);
+  EXPECT_THAT(free.warnings(), IsEmpty());
+}
+
 TEST(TrialMistakesTest, FeedbackForNoTimeGetsAWarning) {
   const std::string no_time = "[display]\nfeedback_time = 0.0\n";
   TrialsDefinition silent, told, late;
