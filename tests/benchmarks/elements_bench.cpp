@@ -78,7 +78,7 @@ void time_assembly(int rounds, const TetMesh& mesh, const Elasticity& elasticity
     };
     const ElasticBody body(mesh, elasticity);
     lap(body_s);
-    BlockMatrix matrix(body.patches(), mesh.vertices.size());
+    BlockMatrix matrix(body.patches().groups(), mesh.vertices.size());
     lap(pattern_s);
     Vectors u(mesh.vertices.size(), Eigen::Vector3d::Zero()), forces, product(u.size());
     at = now();

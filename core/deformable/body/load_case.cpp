@@ -115,6 +115,14 @@ void check_values(const TetMesh& body, const LoadCase& load) {
 
 }  // namespace
 
+std::vector<std::uint8_t> held_flags(std::size_t vertices, std::span<const Hold> holds) {
+  std::vector<std::uint8_t> held(vertices, 0);
+  for (const Hold& hold : holds) {
+    held[static_cast<std::size_t>(hold.vertex)] = 1;
+  }
+  return held;
+}
+
 void check_body(const TetMesh& body, const std::string& name) {
   if (body.tetrahedra.empty()) {
     throw InputError(fmt::format("{}: there is no tetrahedron", name));

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,9 @@ struct LoadCase {
   std::vector<Hold> holds;         // each vertex at most once
   std::vector<NodalForce> forces;  // several on one vertex are summed
 };
+
+/// 1 for each vertex that a load holds.
+std::vector<std::uint8_t> held_flags(std::size_t vertices, std::span<const Hold> holds);
 
 /// @param name  of the body, as a message calls it
 /// @throws InputError for a vertex that is not finite or that no tetrahedron has, a corner without

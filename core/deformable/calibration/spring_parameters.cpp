@@ -8,78 +8,102 @@
 
 namespace haptrial::deformable {
 
+const std::vector<double>& list_of(const SpringConstants& constants, SpringKind kind) {
+  switch (kind) {
+    case SpringKind::kLength:
+      return constants.length;
+    case SpringKind::kArea:
+      return constants.area;
+    case SpringKind::kVolume:
+      break;
+  }
+  return constants.volume;
+}
+
+std::vector<double>& list_of(SpringConstants& constants, SpringKind kind) {
+  return const_cast<std::vector<double>&>(list_of(std::as_const(constants), kind));
+}
+
 template <std::size_t n>
-SpringParameters::Rows SpringParameters::rows_of(
-    const std::vector<std::array<std::int32_t, n>>& springs,
-    const std::vector<std::vector<Share>>& at_vertex) {
-  Rows rows;
+void SpringParameters::set_rows(SpringKind kind,
+                                const std::vector<std::array<std::int32_t, n>>& springs,
+                                const std::vector<std::vector<ParameterShare>>& at_vertex) {
+  Rows& rows = rows_[static_cast<std::size_t>(kind)];
   for (const auto& vertices : springs) {
     std::map<std::int32_t, double> sum;
     for (const std::int32_t v : vertices) {
-      for (const Share& share : at_vertex[static_cast<std::size_t>(v)]) {
-        sum[share.node] += share.weight / static_cast<double>(n);
+      for (const auto& [node, weight] : at_vertex[static_cast<std::size_t>(v)]) {
+        sum[node] += weight / static_cast<double>(n);
       }
     }
     for (const auto& [node, weight] : sum) {
-      rows.share.push_back({node, weight});
+      rows.share.push_back({node + static_cast<std::int32_t>(first(kind)), weight});
     }
     rows.start.push_back(rows.share.size());
   }
-  return rows;
 }
 
 SpringParameters::SpringParameters(const SpringBody& body, std::size_t nodes,
-                                   const std::vector<std::vector<Share>>& at_vertex)
-    : nodes_(nodes),
-      rows_{rows_of(body.parts.edges, at_vertex), rows_of(body.parts.faces, at_vertex),
-            rows_of(body.tetrahedra, at_vertex)} {}
+                                   const std::vector<std::vector<ParameterShare>>& at_vertex)
+    : first_{0, nodes, 2 * nodes, 3 * nodes} {
+  set_rows(SpringKind::kLength, body.parts.edges, at_vertex);
+  set_rows(SpringKind::kArea, body.parts.faces, at_vertex);
+  set_rows(SpringKind::kVolume, body.tetrahedra, at_vertex);
+}
 
 SpringParameters SpringParameters::uniform(const SpringBody& body) {
-  return {body, 1, std::vector<std::vector<Share>>(body.rest.size(), {{0, 1.0}})};
+  return {body, 1, std::vector<std::vector<ParameterShare>>(body.rest.size(), {{0, 1.0}})};
 }
 
 SpringParameters SpringParameters::on_grid(const SpringBody& body,
                                            const std::array<int, 3>& nodes) {
   const SpringGrid grid(body, nodes);
-  const std::size_t used = grid.used().size();
-  std::vector<std::vector<Share>> at_vertex(body.rest.size());
-  std::vector<double> values(used, 0.0);
-  for (std::size_t node = 0; node < used; ++node) {
-    values[node] = 1.0;
-    const std::vector<double> weights = grid.at_vertices(values);
-    values[node] = 0.0;
-    for (std::size_t v = 0; v < weights.size(); ++v) {
-      if (weights[v] > 0.0) {
-        at_vertex[v].push_back({static_cast<std::int32_t>(node), weights[v]});
+  std::vector<std::vector<ParameterShare>> at_vertex;
+  for (std::size_t v = 0; v < body.rest.size(); ++v) {
+    std::vector<ParameterShare>& shares = at_vertex.emplace_back();
+    for (const auto& [node, weight] : grid.shares(v)) {
+      if (weight > 0.0) {
+        shares.push_back({node, weight});
       }
     }
   }
-  return {body, used, at_vertex};
+  return {body, grid.used().size(), at_vertex};
 }
 
-namespace {
-
-/// The lists of a kind: 0 lengths, 1 areas, 2 volumes.
-auto& list_of(auto& constants, std::size_t kind) {
-  return kind == 0 ? constants.length : kind == 1 ? constants.area : constants.volume;
+SpringParameters SpringParameters::by_element(const SpringBody& body) {
+  SpringParameters parameters;
+  std::int32_t parameter = 0;
+  for (const SpringKind kind : kSpringKinds) {
+    Rows& rows = parameters.rows_[static_cast<std::size_t>(kind)];
+    for (std::size_t i = 0; i < list_of(body.constants, kind).size(); ++i) {
+      rows.share.push_back({parameter++, 1.0});
+      rows.start.push_back(rows.share.size());
+    }
+    parameters.first_[static_cast<std::size_t>(kind) + 1] = static_cast<std::size_t>(parameter);
+  }
+  return parameters;
 }
 
-}  // namespace
+std::span<const ParameterShare> SpringParameters::shares(SpringKind kind,
+                                                         std::size_t spring) const {
+  const Rows& rows = rows_[static_cast<std::size_t>(kind)];
+  return std::span(rows.share)
+      .subspan(rows.start[spring], rows.start[spring + 1] - rows.start[spring]);
+}
 
 SpringConstants SpringParameters::constants(std::span<const double> logarithms) const {
+  std::vector<double> values;
+  for (const double x : logarithms) {
+    values.push_back(std::pow(10.0, x));
+  }
   SpringConstants constants;
-  for (std::size_t kind = 0; kind < rows_.size(); ++kind) {
-    std::vector<double> values;
-    for (const double x : logarithms.subspan(kind * nodes_, nodes_)) {
-      values.push_back(std::pow(10.0, x));
-    }
-    const Rows& rows = rows_[kind];
-    for (std::size_t spring = 0; spring + 1 < rows.start.size(); ++spring) {
-      double sum = 0.0;
-      for (std::size_t i = rows.start[spring]; i < rows.start[spring + 1]; ++i) {
-        sum += rows.share[i].weight * values[static_cast<std::size_t>(rows.share[i].node)];
+  for (const SpringKind kind : kSpringKinds) {
+    std::vector<double>& list = list_of(constants, kind);
+    list.assign(rows_[static_cast<std::size_t>(kind)].start.size() - 1, 0.0);
+    for (std::size_t spring = 0; spring < list.size(); ++spring) {
+      for (const auto& [parameter, weight] : shares(kind, spring)) {
+        list[spring] += weight * values[static_cast<std::size_t>(parameter)];
       }
-      list_of(constants, kind).push_back(sum);
     }
   }
   return constants;
@@ -88,34 +112,16 @@ SpringConstants SpringParameters::constants(std::span<const double> logarithms) 
 std::vector<double> SpringParameters::gradient(std::span<const double> logarithms,
                                                const SpringConstants& by_constant) const {
   std::vector<double> result(size(), 0.0);
-  for (std::size_t kind = 0; kind < rows_.size(); ++kind) {
-    const Rows& rows = rows_[kind];
+  for (const SpringKind kind : kSpringKinds) {
     const std::vector<double>& by_spring = list_of(by_constant, kind);
     for (std::size_t spring = 0; spring < by_spring.size(); ++spring) {
-      for (std::size_t i = rows.start[spring]; i < rows.start[spring + 1]; ++i) {
-        result[kind * nodes_ + static_cast<std::size_t>(rows.share[i].node)] +=
-            rows.share[i].weight * by_spring[spring];
+      for (const auto& [parameter, weight] : shares(kind, spring)) {
+        result[static_cast<std::size_t>(parameter)] += weight * by_spring[spring];
       }
     }
   }
   for (std::size_t i = 0; i < result.size(); ++i) {
     result[i] *= std::numbers::ln10 * std::pow(10.0, logarithms[i]);
-  }
-  return result;
-}
-
-SpringConstants SpringParameters::shares(std::size_t parameter) const {
-  SpringConstants result;
-  for (std::size_t kind = 0; kind < rows_.size(); ++kind) {
-    const Rows& rows = rows_[kind];
-    std::vector<double>& list = list_of(result, kind);
-    list.assign(rows.start.size() - 1, 0.0);
-    for (std::size_t spring = 0; spring < list.size() && parameter / nodes_ == kind; ++spring) {
-      for (std::size_t i = rows.start[spring]; i < rows.start[spring + 1]; ++i) {
-        const bool own = static_cast<std::size_t>(rows.share[i].node) == parameter % nodes_;
-        list[spring] += own ? rows.share[i].weight : 0.0;
-      }
-    }
   }
   return result;
 }

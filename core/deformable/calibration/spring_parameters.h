@@ -10,7 +10,17 @@
 
 namespace haptrial::deformable {
 
-/// Few numbers that say every constant of a body of springs: the common logarithms of the constants
+enum class SpringKind { kLength, kArea, kVolume };
+inline constexpr std::array kSpringKinds{SpringKind::kLength, SpringKind::kArea,
+                                         SpringKind::kVolume};
+
+/// What a parameter has in a spring's constant.
+struct ParameterShare {
+  std::int32_t parameter;
+  double weight;
+};
+
+/// Numbers that say every constant of a body of springs: the common logarithms of the constants
 /// [J] that calibration varies. Lengths first, then areas, then volumes.
 /// Source: Morris 2006, §5.3.3 (homogeneous), §5.3.5 (on a grid).
 class SpringParameters {
@@ -20,34 +30,39 @@ class SpringParameters {
   /// Three for every node of a SpringGrid that has influence.
   /// @throws InputError as SpringGrid.
   static SpringParameters on_grid(const SpringBody& body, const std::array<int, 3>& nodes);
+  /// One for every edge, face and tetrahedron.
+  static SpringParameters by_element(const SpringBody& body);
 
-  std::size_t size() const { return 3 * nodes_; }
+  std::size_t size() const { return first_[kSpringKinds.size()]; }
+  /// The number of the first parameter of a kind, which are together.
+  std::size_t first(SpringKind kind) const { return first_[static_cast<std::size_t>(kind)]; }
   /// @param logarithms  size() of them
   SpringConstants constants(std::span<const double> logarithms) const;
   /// By the logarithms what `by_constant` is by the springs' constants.
   std::vector<double> gradient(std::span<const double> logarithms,
                                const SpringConstants& by_constant) const;
-  /// The share that a parameter has in each spring's constant.
-  SpringConstants shares(std::size_t parameter) const;
+  /// What the parameters have in the constant of one spring.
+  std::span<const ParameterShare> shares(SpringKind kind, std::size_t spring) const;
 
  private:
-  struct Share {
-    std::int32_t node;
-    double weight;
-  };
   /// Shares of each spring of one kind, in compressed rows.
   struct Rows {
     std::vector<std::size_t> start{0};
-    std::vector<Share> share;
+    std::vector<ParameterShare> share;
   };
   template <std::size_t n>
-  static Rows rows_of(const std::vector<std::array<std::int32_t, n>>& springs,
-                      const std::vector<std::vector<Share>>& at_vertex);
+  void set_rows(SpringKind kind, const std::vector<std::array<std::int32_t, n>>& springs,
+                const std::vector<std::vector<ParameterShare>>& at_vertex);
+  SpringParameters() = default;
   SpringParameters(const SpringBody& body, std::size_t nodes,
-                   const std::vector<std::vector<Share>>& at_vertex);
+                   const std::vector<std::vector<ParameterShare>>& at_vertex);
 
-  std::size_t nodes_;
-  std::array<Rows, 3> rows_;  // lengths, areas, volumes
+  std::array<std::size_t, kSpringKinds.size() + 1> first_{};  // parameters of each kind
+  std::array<Rows, kSpringKinds.size()> rows_;
 };
+
+/// The list of a kind.
+const std::vector<double>& list_of(const SpringConstants& constants, SpringKind kind);
+std::vector<double>& list_of(SpringConstants& constants, SpringKind kind);
 
 }  // namespace haptrial::deformable

@@ -3,60 +3,128 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/deformable/body/load_case.h"
+
 namespace haptrial::deformable {
 namespace {
 
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+/// One parameter's part in one coordinate's force.
+struct Entry {
+  std::size_t row;  // of all loads' coordinates
+  double value;
+};
+/// The forces on the free vertices with one parameter 1 and the others 0, by parameter.
+using Columns = std::vector<std::vector<Entry>>;
 
-/// Forces on the free vertices with one parameter 1 and the others 0, column by column.
-MatrixXd forces_of_parameters(const CalibrationProblem& problem, const SpringParameters& parameters,
-                              const CalibrationLoad& load) {
-  SpringBody body = problem.body();
-  MatrixXd columns(3 * static_cast<Eigen::Index>(body.rest.size()),
-                   static_cast<Eigen::Index>(parameters.size()));
-  for (std::size_t j = 0; j < parameters.size(); ++j) {
-    body.constants = parameters.shares(j);
-    const std::vector<Eigen::Vector3d> forces = spring_forces(body, load.reference);
-    for (std::size_t v = 0; v < forces.size(); ++v) {
-      columns.block<3, 1>(3 * static_cast<Eigen::Index>(v), static_cast<Eigen::Index>(j)) =
-          forces[v];
+/// What acts from outside on the vertices that are free, load after load.
+std::vector<double> acting_forces(const CalibrationProblem& problem) {
+  std::vector<double> all;
+  for (const CalibrationLoad& load : problem.loads()) {
+    std::vector<Eigen::Vector3d> acting(load.reference.size(), Eigen::Vector3d::Zero());
+    for (const NodalForce& nodal : load.load.forces) {
+      acting[static_cast<std::size_t>(nodal.vertex)] += nodal.force;
+    }
+    for (const Hold& hold : load.load.holds) {
+      acting[static_cast<std::size_t>(hold.vertex)].setZero();
+    }
+    for (const Eigen::Vector3d& f : acting) {
+      all.insert(all.end(), f.begin(), f.end());
     }
   }
-  for (const Hold& hold : load.load.holds) {
-    columns.middleRows(3 * Eigen::Index{hold.vertex}, 3).setZero();
-  }
-  return columns;
+  return all;
 }
 
-VectorXd acting_forces(const CalibrationLoad& load, Eigen::Index rows) {
-  VectorXd acting = VectorXd::Zero(rows);
-  for (const NodalForce& nodal : load.load.forces) {
-    acting.segment<3>(3 * Eigen::Index{nodal.vertex}) += nodal.force;
+class ForceColumns {
+ public:
+  ForceColumns(const CalibrationProblem& problem, const SpringParameters& parameters)
+      : parameters_(parameters), columns_(parameters.size()) {
+    const SpringBody& body = problem.body();
+    for (const CalibrationLoad& load : problem.loads()) {
+      held_ = held_flags(body.rest.size(), load.load.holds);
+      add(SpringKind::kLength, body.parts.edges, body.lengths, load,
+          [](const Spring& s, const Points2& p) { return length_forces(s, p); });
+      add(SpringKind::kArea, body.parts.faces, body.areas, load,
+          [](const Spring& s, const Points3& p) { return area_forces(s, p, ForceForm::kExact); });
+      add(SpringKind::kVolume, body.tetrahedra, body.volumes, load,
+          [](const Spring& s, const Points4& p) { return volume_forces(s, p, ForceForm::kExact); });
+      begin_ += 3 * body.rest.size();
+    }
+    for (auto& column : columns_) {
+      sum_rows(column);
+    }
   }
-  for (const Hold& hold : load.load.holds) {
-    acting.segment<3>(3 * Eigen::Index{hold.vertex}).setZero();
-  }
-  return acting;
-}
+  Columns take() { return std::move(columns_); }
 
-/// min |A x - b|² with x >= 0, by A^T A and A^T b: one unknown after another, each to its best.
-VectorXd non_negative(const MatrixXd& normal, const VectorXd& right) {
-  constexpr int kRounds = 20000;
+ private:
+  template <std::size_t n, class Forces>
+  void add(SpringKind kind, const std::vector<std::array<std::int32_t, n>>& springs,
+           const std::vector<double>& rest, const CalibrationLoad& load, Forces forces) {
+    for (std::size_t s = 0; s < springs.size(); ++s) {
+      const auto force = forces(Spring{1.0, rest[s]}, points_of<n>(load.reference, springs[s]));
+      for (const auto& [parameter, weight] : parameters_.shares(kind, s)) {
+        auto& column = columns_[static_cast<std::size_t>(parameter)];
+        for (std::size_t i = 0; i < n; ++i) {
+          const auto v = static_cast<std::size_t>(springs[s][i]);
+          for (int axis = 0; held_[v] == 0 && axis < 3; ++axis) {
+            column.push_back(
+                {begin_ + 3 * v + static_cast<std::size_t>(axis), weight * force[i][axis]});
+          }
+        }
+      }
+    }
+  }
+
+  /// One entry a row.
+  static void sum_rows(std::vector<Entry>& column) {
+    std::sort(column.begin(), column.end(),
+              [](const Entry& a, const Entry& b) { return a.row < b.row; });
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < column.size(); ++i) {
+      if (kept > 0 && column[kept - 1].row == column[i].row) {
+        column[kept - 1].value += column[i].value;
+      } else {
+        column[kept++] = column[i];
+      }
+    }
+    column.resize(kept);
+  }
+
+  const SpringParameters& parameters_;
+  Columns columns_;
+  std::vector<std::uint8_t> held_;
+  std::size_t begin_{0};
+};
+
+/// min |A x + b|² with x >= 0, one unknown after another, each to its best.
+std::vector<double> non_negative(const Columns& a, std::vector<double> left_over) {
+  constexpr double kMostWork = 4e9;  // products: some seconds
   constexpr double kSame = 1e-12;
-  VectorXd x = VectorXd::Zero(right.size());
-  for (int round = 0; round < kRounds; ++round) {
+  std::vector<double> x(a.size(), 0.0), squares(a.size(), 0.0);
+  double work = 1.0;
+  for (std::size_t j = 0; j < a.size(); ++j) {
+    for (const Entry& entry : a[j]) {
+      squares[j] += entry.value * entry.value;
+    }
+    work += static_cast<double>(a[j].size());
+  }
+  for (double done = 0.0; done < kMostWork; done += work) {
     double change = 0.0;
-    for (Eigen::Index j = 0; j < x.size(); ++j) {
-      if (!(normal(j, j) > 0.0)) {
+    for (std::size_t j = 0; j < x.size(); ++j) {
+      if (!(squares[j] > 0.0)) {
         continue;
       }
-      const double slope = right[j] - normal.row(j).dot(x);
-      const double next = std::max(0.0, x[j] + slope / normal(j, j));
-      change = std::max(change, std::abs(next - x[j]));
-      x[j] = next;
+      double slope = 0.0;
+      for (const Entry& entry : a[j]) {
+        slope -= entry.value * left_over[entry.row];
+      }
+      const double step = std::max(-x[j], slope / squares[j]);
+      for (const Entry& entry : a[j]) {
+        left_over[entry.row] += step * entry.value;
+      }
+      change = std::max(change, std::abs(step));
+      x[j] += step;
     }
-    if (change <= kSame * x.maxCoeff()) {
+    if (change <= kSame * *std::max_element(x.begin(), x.end())) {
       break;
     }
   }
@@ -68,20 +136,12 @@ VectorXd non_negative(const MatrixXd& normal, const VectorXd& right) {
 std::vector<double> starting_constants(const CalibrationProblem& problem,
                                        const SpringParameters& parameters,
                                        std::span<const SearchRange> ranges) {
-  const auto size = static_cast<Eigen::Index>(parameters.size());
-  MatrixXd normal = MatrixXd::Zero(size, size);
-  VectorXd right = VectorXd::Zero(size);
-  for (const CalibrationLoad& load : problem.loads()) {
-    const MatrixXd a = forces_of_parameters(problem, parameters, load);
-    normal += a.transpose() * a;
-    right -= a.transpose() * acting_forces(load, a.rows());
-  }
-  const VectorXd x = non_negative(normal, right);
+  const std::vector<double> x =
+      non_negative(ForceColumns(problem, parameters).take(), acting_forces(problem));
   std::vector<double> logarithms;
-  for (Eigen::Index j = 0; j < size; ++j) {
-    const SearchRange& range = ranges[static_cast<std::size_t>(j)];
-    const double logarithm = x[j] > 0.0 ? std::log10(x[j]) : range.low;
-    logarithms.push_back(std::clamp(logarithm, range.low, range.high));
+  for (std::size_t j = 0; j < x.size(); ++j) {
+    const double logarithm = x[j] > 0.0 ? std::log10(x[j]) : ranges[j].low;
+    logarithms.push_back(std::clamp(logarithm, ranges[j].low, ranges[j].high));
   }
   return logarithms;
 }

@@ -11,7 +11,7 @@ namespace haptrial::deformable {
 
 /// Constants with which the springs balance the loads best if the vertices are where the reference
 /// has them: forces are linear in the constants, so that this is linear least squares with
-/// non-negative unknowns (by projected coordinate descent), and needs no statics.
+/// non-negative unknowns (by projected coordinate descent on sparse columns), and needs no statics.
 /// @param ranges  of the logarithms; constants are cut to them
 /// @returns logarithms
 std::vector<double> starting_constants(const CalibrationProblem& problem,

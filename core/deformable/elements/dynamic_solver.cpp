@@ -80,7 +80,7 @@ struct DynamicSolver::Impl {
       : body(b),
         options(o),
         share(o.rule == TimeRule::kMidpoint ? 0.5 : 1),
-        matrix(b.patches(), b.mesh().vertices.size()),
+        matrix(b.patches().groups(), b.mesh().vertices.size()),
         damping(matrix) {}
 
   bool damps() const { return options.stiffness_damping > 0; }

@@ -4,7 +4,7 @@
 
 #include "core/deformable/body/load_case.h"
 #include "core/deformable/elements/elastic_body.h"
-#include "core/deformable/elements/linear_system.h"
+#include "core/deformable/linear/linear_system.h"
 
 namespace haptrial::deformable {
 

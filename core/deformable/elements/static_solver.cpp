@@ -77,7 +77,7 @@ struct StaticSolver::Impl {
   StaticResult result;
 
   Impl(const ElasticBody& b, const StaticOptions& o)
-      : body(b), options(o), matrix(b.patches(), b.mesh().vertices.size()) {}
+      : body(b), options(o), matrix(b.patches().groups(), b.mesh().vertices.size()) {}
 
   void begin(const LoadCase& load);
   void balance(double share);
@@ -250,8 +250,8 @@ void StaticSolver::Impl::tell_failure(const LoadCase& load, double step) const {
 
 double static_memory(std::size_t vertices, std::size_t tetrahedra, LinearSolver solver) {
   constexpr double kByTet = 200;      // rest shape, layout, places of blocks
-  constexpr double kByVertex = 1400;  // 14 blocks, and the vectors
-  constexpr double kFill = 100;       // numbers of the factors, by vertices^(4/3)
+  constexpr double kByVertex = 1800;  // 14 blocks, and the vectors
+  constexpr double kFill = 130;       // numbers of the factors, by vertices^(4/3)
   const auto n = static_cast<double>(vertices);
   const double factors =
       solver == LinearSolver::kConjugateGradients ? 0 : 8 * kFill * std::pow(n, 4.0 / 3);

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/deformable/linear/block_matrix.h"
 #include "core/geometry/volume/tetrahedralize.h"
 
 namespace haptrial::deformable {
@@ -38,6 +39,7 @@ struct PatchLayout {
   std::vector<std::array<std::uint8_t, 4>> corners;
 
   std::size_t patches() const { return first_tet.size() - 1; }
+  CoupledGroups groups() const { return {first_vertex, vertices}; }  // for a stiffness
 };
 
 PatchLayout patch_layout(std::span<const geometry::Tetrahedron> tetrahedra,

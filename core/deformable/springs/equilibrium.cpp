@@ -1,39 +1,34 @@
 #include "core/deformable/springs/equilibrium.h"
 
-#include <Eigen/CholmodSupport>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/base/random.h"
-#include "core/deformable/springs/free_hessian.h"
+#include "core/deformable/springs/spring_tangent.h"
 
 namespace haptrial::deformable {
 namespace {
 
 using Eigen::Vector3d;
-using Eigen::VectorXd;
-using Positions = std::vector<Vector3d>;
-using Matrix = Eigen::SparseMatrix<double>;
 
-constexpr double kEnough = 1e-4;      // of the fall that the slope promises (Armijo)
-constexpr int kHalvings = 30;         // of a step of the line search
-constexpr double kFirstShift = 1e-4;  // of the mean of the Hessian's diagonal
-constexpr double kMoreShift = 10.0;
-constexpr int kShifts = 12;
+constexpr double kEnough = 1e-4;  // of the fall that the slope promises (Armijo)
+constexpr int kHalvings = 30;     // of a step of the line search
+constexpr double kLeft = 1e-3;    // of the forces, by a step far from the end
 
-/// Energy, forces and Hessian by the coordinates of free vertices.
-class FreeProblem {
+/// Energy and forces; held vertices stay where they are put.
+class HeldProblem {
  public:
-  FreeProblem(const SpringBody& body, const LoadCase& load)
-      : body_(body), hessian_(body, load.holds) {
+  HeldProblem(const SpringBody& body, const LoadCase& load)
+      : body_(body), held_(held_flags(body.rest.size(), load.holds)) {
     external_.assign(body.rest.size(), Vector3d::Zero());
     for (const NodalForce& nodal : load.forces) {
       external_[static_cast<std::size_t>(nodal.vertex)] += nodal.force;
     }
   }
-  Eigen::Index size() const { return hessian_.size(); }
+  const std::vector<std::uint8_t>& held() const { return held_; }
 
-  double energy(const Positions& x) const {
+  double energy(const Vectors& x) const {
     double energy = spring_energy(body_, x);
     for (std::size_t v = 0; v < x.size(); ++v) {
       energy -= external_[v].dot(x[v] - body_.rest[v]);
@@ -41,87 +36,73 @@ class FreeProblem {
     return energy;
   }
 
-  /// The forces that nothing balances; `largest` receives the largest that acts anywhere.
-  VectorXd unbalanced(const Positions& x, double& largest) const {
-    const Positions inner = spring_forces(body_, x);
-    VectorXd r(size());
+  /// The forces that nothing balances, 0 on held vertices; `largest` receives the largest that acts
+  /// anywhere.
+  Vectors unbalanced(const Vectors& x, double& largest) const {
+    Vectors r = spring_forces(body_, x);
     largest = 0;
     for (std::size_t v = 0; v < x.size(); ++v) {
-      if (!hessian_.is_free(v)) {
-        largest = std::max(largest, inner[v].norm());
+      if (held_[v] != 0) {
+        largest = std::max(largest, r[v].norm());
+        r[v].setZero();
         continue;
       }
       largest = std::max(largest, external_[v].norm());
-      r.segment<3>(hessian_.first_of(v)) = inner[v] + external_[v];
+      r[v] += external_[v];
     }
     return r;
   }
 
-  Positions moved(const Positions& x, const VectorXd& by, double share) const {
-    Positions next = x;
-    for (std::size_t v = 0; v < x.size(); ++v) {
-      if (hessian_.is_free(v)) {
-        next[v] += share * by.segment<3>(hessian_.first_of(v));
-      }
-    }
-    return next;
-  }
-
-  Matrix matrix(const Positions& x) { return hessian_.lower(body_, x); }
-
  private:
   const SpringBody& body_;
-  FreeHessian hessian_;
-  Positions external_;
+  std::vector<std::uint8_t> held_;
+  Vectors external_;
 };
 
-/// Directions that lower the energy.
-class Descent {
- public:
-  Descent() { solver_.cholmod().print = 0; }  // what is not positive definite is no fault here
-  /// @returns false where no shift makes the matrix positive definite.
-  bool factorize(const Matrix& matrix) {
-    if (!analyzed_) {
-      solver_.analyzePattern(matrix);
-      analyzed_ = true;
-    }
-    const double mean = matrix.diagonal().cwiseAbs().mean();
-    double shift = 0;
-    for (int i = 0; i < kShifts; ++i) {
-      solver_.setShift(shift);
-      solver_.factorize(matrix);
-      if (solver_.info() == Eigen::Success) {
-        definite_ = shift == 0;
-        return true;
-      }
-      shift = shift == 0 ? kFirstShift * mean : kMoreShift * shift;
-    }
-    return false;
+double dot(const Vectors& a, const Vectors& b) {
+  double sum = 0;
+  for (std::size_t v = 0; v < a.size(); ++v) {
+    sum += a[v].dot(b[v]);
   }
-  VectorXd direction(const VectorXd& force) const { return solver_.solve(force); }
-  bool definite() const { return definite_; }  // without a shift
+  return sum;
+}
 
- private:
-  Eigen::CholmodSupernodalLLT<Matrix> solver_;
-  bool analyzed_{false};
-  bool definite_{false};
-};
+double norm(const Vectors& a) { return std::sqrt(dot(a, a)); }
+
+double largest_coordinate(const Vectors& a) {
+  double largest = 0;
+  for (const Vector3d& v : a) {
+    if (!v.allFinite()) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+    largest = std::max(largest, v.cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+Vectors moved(const Vectors& x, const Vectors& by, double share) {
+  Vectors next = x;
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    next[v] += share * by[v];
+  }
+  return next;
+}
 
 /// @returns whether `x` has moved to where the energy is lower, or, where energies cannot tell any
 /// more, to where less is unbalanced.
-bool search_line(const FreeProblem& problem, const VectorXd& direction, const VectorXd& force,
-                 bool definite, Positions& x) {
+bool search_line(const HeldProblem& problem, const Vectors& direction, const Vectors& force,
+                 bool definite, Vectors& x) {
   const double before = problem.energy(x);
-  const double slope = force.dot(direction);
+  const double slope = dot(force, direction);
   const double rounding = 1e-14 * std::abs(before) + 1e-300;
   double share = 1;
   for (int i = 0; i < kHalvings; ++i, share *= 0.5) {
-    Positions next = problem.moved(x, direction, share);
+    Vectors next = moved(x, direction, share);
     const double fall = before - problem.energy(next);
     double unused = 0;
     const bool lower = fall >= kEnough * share * slope && slope * share > 10 * rounding;
     const bool calmer = !lower && definite && std::abs(fall) <= 1e3 * rounding &&
-                        problem.unbalanced(next, unused).norm() < force.norm();
+                        norm(problem.unbalanced(next, unused)) < norm(force);
     if (!lower && !calmer) {
       continue;
     }
@@ -131,25 +112,27 @@ bool search_line(const FreeProblem& problem, const VectorXd& direction, const Ve
   return false;
 }
 
-/// From a saddle along its most falling direction, by inverse iteration with the shifted matrix.
-/// @returns whether the energy has fallen.
-bool leave_saddle(const FreeProblem& problem, const Descent& descent, const VectorXd& force,
-                  double extent, Positions& x) {
+/// From a saddle along its most falling direction, by inverse iteration with the raised Hessian,
+/// which is factorized then. @returns whether the energy has fallen.
+bool leave_saddle(const HeldProblem& problem, SpringTangent& tangent, const Vectors& force,
+                  double extent, Vectors& x) {
   constexpr int kInverseIterations = 10;
   RandomStream random(0, "saddle");
-  VectorXd direction(problem.size());
-  for (double& d : direction) {
-    d = random.normal();
+  Vectors direction(x.size(), Vector3d::Zero());
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    if (problem.held()[v] == 0) {
+      direction[v] = {random.normal(), random.normal(), random.normal()};
+    }
   }
   for (int i = 0; i < kInverseIterations; ++i) {
-    direction = descent.direction(direction.normalized());
+    const Vectors last = moved(Vectors(x.size(), Vector3d::Zero()), direction, 1 / norm(direction));
+    tangent.solve(last, 0.0, direction);
   }
-  direction *= (direction.dot(force) < 0 ? -1 : 1) / direction.cwiseAbs().maxCoeff();
   const double before = problem.energy(x);
-  double way = 0.1 * extent;
+  double way = 0.1 * extent * (dot(direction, force) < 0 ? -1 : 1) / largest_coordinate(direction);
   for (int i = 0; i < kHalvings; ++i, way *= 0.5) {
     for (const double side : {way, -way}) {
-      Positions next = problem.moved(x, direction, side);
+      Vectors next = moved(x, direction, side);
       if (problem.energy(next) >= before - 1e-12 * std::abs(before)) {
         continue;
       }
@@ -167,7 +150,7 @@ void check_free_load(const SpringBody& body, const LoadCase& load) {
   check_load(mesh, load);
 }
 
-double extent_of(const Positions& x) {
+double extent_of(const Vectors& x) {
   Vector3d low = x.front();
   Vector3d high = x.front();
   for (const Vector3d& p : x) {
@@ -180,7 +163,7 @@ double extent_of(const Positions& x) {
 }  // namespace
 
 Equilibrium equilibrium(const SpringBody& body, const LoadCase& load,
-                        const NewtonSettings& settings, Positions start) {
+                        const NewtonSettings& settings, Vectors start) {
   check_free_load(body, load);
   Equilibrium found;
   found.positions = start.empty() ? body.rest : std::move(start);
@@ -188,31 +171,37 @@ Equilibrium equilibrium(const SpringBody& body, const LoadCase& load,
     const auto v = static_cast<std::size_t>(hold.vertex);
     found.positions[v] = body.rest[v] + hold.displacement;
   }
-  FreeProblem problem(body, load);
+  const HeldProblem problem(body, load);
   const double extent = extent_of(body.rest);
-  Descent descent;
+  SpringTangent tangent(body, problem.held());
   for (; found.iterations <= settings.iterations; ++found.iterations) {
     double largest = 0;
-    const VectorXd force = problem.unbalanced(found.positions, largest);
-    found.residual = force.size() > 0 ? force.cwiseAbs().maxCoeff() : 0;
+    const Vectors force = problem.unbalanced(found.positions, largest);
+    found.residual = largest_coordinate(force);
     found.inverted = inverted_tetrahedra(body, found.positions);
-    const bool balanced = found.residual <= settings.residual * largest;
-    if (!std::isfinite(found.residual) || !descent.factorize(problem.matrix(found.positions))) {
+    const double enough = settings.residual * largest;
+    const bool balanced = found.residual <= enough;
+    if (!std::isfinite(found.residual) || !tangent.set(found.positions)) {
       found.outcome = Settling::kUnstable;
       return found;
     }
-    if (balanced && descent.definite()) {
+    if (balanced && tangent.is_definite()) {
       found.outcome = Settling::kSettled;
       return found;
     }
-    const VectorXd direction = descent.direction(force);
-    if (!balanced && search_line(problem, direction, force, descent.definite(), found.positions)) {
+    Vectors direction;
+    if (!tangent.solve(force, std::max(kLeft * norm(force), 0.3 * enough), direction)) {
+      found.outcome = Settling::kUnstable;
+      return found;
+    }
+    if (!balanced &&
+        search_line(problem, direction, force, tangent.seems_definite(), found.positions)) {
       continue;
     }
-    if (descent.definite()) {
+    if (tangent.is_definite()) {
       break;
     }
-    if (!leave_saddle(problem, descent, force, extent, found.positions)) {
+    if (!leave_saddle(problem, tangent, force, extent, found.positions)) {
       found.outcome = Settling::kUnstable;
       return found;
     }

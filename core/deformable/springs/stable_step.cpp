@@ -38,7 +38,8 @@ class Scaled {
     for (std::size_t v = 0; v < scale_.size(); ++v) {
       moved[v] = scale_[v] * part(x, v);
     }
-    const std::vector<Vector3d> forces = hessian_.times(moved);
+    Vectors forces(moved.size());
+    hessian_.matrix().multiply(moved, forces);
     VectorXd y(x.size());
     for (std::size_t v = 0; v < scale_.size(); ++v) {
       y.segment<3>(3 * static_cast<Eigen::Index>(v)) = scale_[v] * forces[v];

@@ -52,21 +52,6 @@ Corners corners_at(const Vector3d& share, const std::array<int, 3>& nodes) {
   return corners;
 }
 
-template <std::size_t n>
-std::vector<double> means(const std::vector<std::array<std::int32_t, n>>& elements,
-                          const std::vector<double>& at_vertex) {
-  std::vector<double> values;
-  values.reserve(elements.size());
-  for (const auto& vertices : elements) {
-    double sum = 0;
-    for (const std::int32_t v : vertices) {
-      sum += at_vertex[static_cast<std::size_t>(v)];
-    }
-    values.push_back(sum / static_cast<double>(n));
-  }
-  return values;
-}
-
 }  // namespace
 
 SpringGrid::SpringGrid(const SpringBody& body, const std::array<int, 3>& nodes) : nodes_(nodes) {
@@ -117,28 +102,12 @@ Vector3d SpringGrid::place(std::size_t used) const {
   return place;
 }
 
-std::vector<double> SpringGrid::at_vertices(std::span<const double> values) const {
-  if (values.size() != used_.size()) {
-    throw InputError(fmt::format("grid of constants: {} values are given for {} nodes",
-                                 values.size(), used_.size()));
+std::array<NodeShare, 8> SpringGrid::shares(std::size_t vertex) const {
+  std::array<NodeShare, 8> shares{};
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    shares[corner] = {node_[vertex][corner], weight_[vertex][corner]};
   }
-  std::vector<double> at(node_.size());
-  for (std::size_t v = 0; v < at.size(); ++v) {
-    for (std::size_t corner = 0; corner < 8; ++corner) {
-      at[v] += weight_[v][corner] * values[static_cast<std::size_t>(node_[v][corner])];
-    }
-  }
-  return at;
-}
-
-SpringConstants SpringGrid::constants(const SpringBody& body, std::span<const double> length,
-                                      std::span<const double> area,
-                                      std::span<const double> volume) const {
-  SpringConstants constants{means(body.parts.edges, at_vertices(length)),
-                            means(body.parts.faces, at_vertices(area)),
-                            means(body.tetrahedra, at_vertices(volume))};
-  check_constants(body, constants);
-  return constants;
+  return shares;
 }
 
 }  // namespace haptrial::deformable

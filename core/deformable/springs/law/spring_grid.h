@@ -4,16 +4,20 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "core/deformable/springs/law/spring_body.h"
 
 namespace haptrial::deformable {
 
-/// Constants on a coarse grid over the box of the rest vertices, which trilinear interpolation
-/// takes to the vertices; an edge, face or tetrahedron has the mean over its vertices. An axis with
-/// one node has the same value along it.
+/// What a node has in the value of a vertex.
+struct NodeShare {
+  std::int32_t used;  // place of the node in SpringGrid::used()
+  double weight;
+};
+
+/// A coarse grid over the box of the rest vertices, whose values trilinear interpolation takes to
+/// the vertices. An axis with one node has the same value along it.
 /// Source: Morris 2006, §5.3.5.
 class SpringGrid {
  public:
@@ -26,13 +30,8 @@ class SpringGrid {
   const std::vector<std::int32_t>& used() const { return used_; }
   Eigen::Vector3d place(std::size_t used) const;  // of a used node [m]
 
-  /// @param length, area, volume  by used node, >= 0 [J]
-  /// @throws InputError for a list of another length, or a value below 0 or not finite.
-  SpringConstants constants(const SpringBody& body, std::span<const double> length,
-                            std::span<const double> area, std::span<const double> volume) const;
-
-  /// Values of used nodes, taken to every vertex.
-  std::vector<double> at_vertices(std::span<const double> values) const;
+  /// What the used nodes have in the value of a vertex; the weights sum to 1, and some may be 0.
+  std::array<NodeShare, 8> shares(std::size_t vertex) const;
 
  private:
   std::array<int, 3> nodes_;

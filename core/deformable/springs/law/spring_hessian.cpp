@@ -13,6 +13,23 @@ using Eigen::Vector3d;
 template <std::size_t n>
 using Blocks = std::array<std::array<Matrix3d, n>, n>;
 
+using Block = Eigen::Map<Matrix3d>;
+
+/// Edges ascend by their lower vertices, as the rows do: each row has its diagonal block first.
+BlockMatrix pattern_of(std::span<const Edge> edges, std::size_t vertices) {
+  std::vector<std::int32_t> start, column;
+  std::size_t next = 0;
+  for (std::size_t v = 0; v < vertices; ++v) {
+    start.push_back(static_cast<std::int32_t>(column.size()));
+    column.push_back(static_cast<std::int32_t>(v));
+    for (; next < edges.size() && edges[next][0] == static_cast<std::int32_t>(v); ++next) {
+      column.push_back(edges[next][1]);
+    }
+  }
+  start.push_back(static_cast<std::int32_t>(column.size()));
+  return {std::move(start), std::move(column)};
+}
+
 /// cross_with(a) b = a x b
 Matrix3d cross_with(const Vector3d& a) {
   Matrix3d m;
@@ -120,7 +137,10 @@ Blocks<4> volume_hessian(const Spring& spring, const Points4& points) {
 }
 
 SpringHessian::SpringHessian(const SpringBody& body)
-    : edges_(body.parts.edges), diagonal_(body.rest.size()), mixed_(edges_.size()) {
+    : matrix_(pattern_of(body.parts.edges, body.rest.size())) {
+  for (std::size_t e = 0; e < body.parts.edges.size(); ++e) {
+    edge_block_.push_back(static_cast<std::int32_t>(e) + body.parts.edges[e][0] + 1);
+  }
   const PartIndex index(body.parts);
   for (const Face& f : body.parts.faces) {
     face_edges_.push_back({index.edge(f[0], f[1]), index.edge(f[0], f[2]), index.edge(f[1], f[2])});
@@ -137,17 +157,17 @@ void SpringHessian::add(const std::array<std::int32_t, n>& vertices, const Block
                         std::span<const std::int32_t> edges) {
   std::size_t next = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    diagonal_[static_cast<std::size_t>(vertices[i])] += blocks[i][i];
+    Block(matrix_.block(matrix_.row_start(static_cast<std::size_t>(vertices[i])))) += blocks[i][i];
     for (std::size_t j = i + 1; j < n; ++j) {
       const bool ascending = vertices[i] < vertices[j];
-      mixed_[static_cast<std::size_t>(edges[next++])] += ascending ? blocks[i][j] : blocks[j][i];
+      Block(matrix_.block(edge_block_[static_cast<std::size_t>(edges[next++])])) +=
+          ascending ? blocks[i][j] : blocks[j][i];
     }
   }
 }
 
 void SpringHessian::assemble(const SpringBody& body, std::span<const Vector3d> positions) {
-  std::fill(diagonal_.begin(), diagonal_.end(), Matrix3d::Zero());
-  std::fill(mixed_.begin(), mixed_.end(), Matrix3d::Zero());
+  matrix_.set_zero();
   for (std::size_t i = 0; i < body.lengths.size(); ++i) {
     const Edge& edge = body.parts.edges[i];
     const std::array<std::int32_t, 1> self{static_cast<std::int32_t>(i)};
@@ -165,20 +185,6 @@ void SpringHessian::assemble(const SpringBody& body, std::span<const Vector3d> p
     add(t, volume_hessian({body.constants.volume[i], body.volumes[i]}, points_of(positions, t)),
         tetrahedron_edges_[i]);
   }
-}
-
-std::vector<Vector3d> SpringHessian::times(std::span<const Vector3d> displacements) const {
-  std::vector<Vector3d> forces(diagonal_.size());
-  for (std::size_t v = 0; v < diagonal_.size(); ++v) {
-    forces[v] = diagonal_[v] * displacements[v];
-  }
-  for (std::size_t e = 0; e < edges_.size(); ++e) {
-    const auto a = static_cast<std::size_t>(edges_[e][0]);
-    const auto b = static_cast<std::size_t>(edges_[e][1]);
-    forces[a] += mixed_[e] * displacements[b];
-    forces[b] += mixed_[e].transpose() * displacements[a];
-  }
-  return forces;
 }
 
 }  // namespace haptrial::deformable

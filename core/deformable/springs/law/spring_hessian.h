@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/deformable/linear/block_matrix.h"
 #include "core/deformable/springs/law/spring_body.h"
 
 namespace haptrial::deformable {
@@ -21,23 +22,20 @@ class SpringHessian {
   /// constructor's.
   void assemble(const SpringBody& body, std::span<const Eigen::Vector3d> positions);
 
-  /// The force that resists small displacements: the Hessian times `displacements` [m], in [N].
-  std::vector<Eigen::Vector3d> times(std::span<const Eigen::Vector3d> displacements) const;
-
-  const std::vector<Eigen::Matrix3d>& diagonal() const { return diagonal_; }  // (vertices)
-  const std::vector<Eigen::Matrix3d>& mixed() const { return mixed_; }        // (edges) low by high
-  const std::vector<Edge>& edges() const { return edges_; }
+  /// A row of blocks for each vertex.
+  BlockMatrix& matrix() { return matrix_; }
+  const BlockMatrix& matrix() const { return matrix_; }
 
  private:
   template <std::size_t n>
   void add(const std::array<std::int32_t, n>& vertices,
            const std::array<std::array<Eigen::Matrix3d, n>, n>& blocks,
-           std::span<const std::int32_t> edges);
+           std::span<const std::int32_t> edges);  // numbers of the edges between them
 
-  std::vector<Edge> edges_;
+  BlockMatrix matrix_;
+  std::vector<std::int32_t> edge_block_;                        // by edge: its place in the matrix
   std::vector<std::array<std::int32_t, 3>> face_edges_;         // 01, 02, 12
   std::vector<std::array<std::int32_t, 6>> tetrahedron_edges_;  // 01, 02, 03, 12, 13, 23
-  std::vector<Eigen::Matrix3d> diagonal_, mixed_;
 };
 
 /// The blocks of one spring: [i][j] derives the energy by point i and by point j [N/m].

@@ -79,28 +79,49 @@ TEST_F(CalibrationTest, UniformAndGridSayTheSameConstants) {
   EXPECT_EQ(uniform.length.size(), body_.parts.edges.size());
 }
 
-TEST_F(CalibrationTest, AGridInterpolatesAsSpringGridDoes) {
-  const SpringGrid grid(body_, {3, 2, 2});
-  const auto parameters = SpringParameters::on_grid(body_, {3, 2, 2});
-  RandomStream random(4, "grid");
+/// Each kind by a field of its own that the grid holds exactly, and its mean over the vertices.
+TEST_F(CalibrationTest, AGridGivesAnElementTheMeanOfItsVertices) {
+  const std::array<int, 3> nodes{3, 2, 2};
+  const SpringGrid grid(body_, nodes);
+  const auto parameters = SpringParameters::on_grid(body_, nodes);
+  const auto field = [](double scale, const Vector3d& p) {
+    return scale * (1.0 + 20.0 * p.x() + 5.0 * p.y() + 7.0 * p.z());
+  };
   std::vector<double> logarithms;
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    logarithms.push_back(random.uniform(-3.0, -1.0));
+  for (const double scale : {0.01, 0.03, 0.002}) {
+    for (std::size_t i = 0; i < grid.used().size(); ++i) {
+      logarithms.push_back(std::log10(field(scale, grid.place(i))));
+    }
   }
-  std::vector<double> values(logarithms.size());
-  std::transform(logarithms.begin(), logarithms.end(), values.begin(),
-                 [](double x) { return std::pow(10.0, x); });
-  const std::span<const double> all(values);
-  const std::size_t n = grid.used().size();
-  const auto expected =
-      grid.constants(body_, all.first(n), all.subspan(n, n), all.subspan(2 * n, n));
   const auto found = parameters.constants(logarithms);
-  for (std::size_t i = 0; i < expected.volume.size(); ++i) {
-    ASSERT_NEAR(found.volume[i], expected.volume[i], 1e-15);
+  const auto mean = [&](double scale, const auto& vertices) {
+    double sum = 0.0;
+    for (const std::int32_t v : vertices) {
+      sum += field(scale, body_.rest[static_cast<std::size_t>(v)]);
+    }
+    return sum / static_cast<double>(vertices.size());
+  };
+  for (std::size_t i = 0; i < found.length.size(); ++i) {
+    ASSERT_NEAR(found.length[i], mean(0.01, body_.parts.edges[i]), 1e-15);
   }
-  for (std::size_t i = 0; i < expected.length.size(); ++i) {
-    ASSERT_NEAR(found.length[i], expected.length[i], 1e-15);
+  for (std::size_t i = 0; i < found.area.size(); ++i) {
+    ASSERT_NEAR(found.area[i], mean(0.03, body_.parts.faces[i]), 1e-15);
   }
+  for (std::size_t i = 0; i < found.volume.size(); ++i) {
+    ASSERT_NEAR(found.volume[i], mean(0.002, body_.tetrahedra[i]), 1e-15);
+  }
+}
+
+TEST_F(CalibrationTest, EveryElementMayHaveItsOwnConstant) {
+  const auto parameters = SpringParameters::by_element(body_);
+  const SpringBody& b = body_;
+  ASSERT_EQ(parameters.size(), b.lengths.size() + b.areas.size() + b.volumes.size());
+  std::vector<double> logarithms(parameters.size(), -2.0);
+  logarithms[b.lengths.size() + 3] = -1.0;
+  const auto constants = parameters.constants(logarithms);
+  EXPECT_NEAR(constants.area[3], 0.1, 1e-15);
+  EXPECT_NEAR(constants.area[4], 0.01, 1e-15);
+  EXPECT_NEAR(constants.volume.back(), 0.01, 1e-15);
 }
 
 /// The adjoint against central differences, for two loads and a grid.

@@ -85,7 +85,7 @@ class LawTest : public testing::TestWithParam<Case> {
     };
     law_.stiffness = [this](const VectorXd& u) {
       Vectors forces;
-      BlockMatrix matrix(body_.patches(), body_.mesh().vertices.size());
+      BlockMatrix matrix(body_.patches().groups(), body_.mesh().vertices.size());
       body_.stiffness(vectors_of(u), forces, matrix);
       return dense(matrix);
     };
@@ -143,7 +143,7 @@ TEST_P(LawTest, RestHasNoEnergyAndTheStiffnessOfTheLinearLaw) {
   linear.law = Law::kLinear;
   const ElasticBody other(body_.mesh(), linear);
   Vectors forces;
-  BlockMatrix expected(other.patches(), other.mesh().vertices.size());
+  BlockMatrix expected(other.patches().groups(), other.mesh().vertices.size());
   other.stiffness(vectors_of(none), forces, expected);
   EXPECT_LE((stiffness - dense(expected)).norm(), 1e-13 * stiffness.norm());
 }

@@ -183,6 +183,25 @@ TEST(EquilibriumTest, AColumnBeyondItsBucklingLoadLeavesTheStraightShape) {
   EXPECT_GT(aside(0.1), 0.03);
 }
 
+// So many vertices that conjugate gradients are taken where they may be.
+TEST(EquilibriumTest, ALargeBodyRestsWhereItsForcesAreBalanced) {
+  const Case c = pushed_block({13, 13, 13}, {0.02, 0.005, -0.03});
+  const Equilibrium found = equilibrium(c.body, c.load);
+  ASSERT_EQ(found.outcome, Settling::kSettled);
+  EXPECT_GT(largest_way(found.positions, c.body.rest), 1e-3);
+  SpringBody body = c.body;
+  std::vector<Vector3d> left = spring_forces(body, found.positions);
+  for (const NodalForce& nodal : c.load.forces) {
+    left[static_cast<std::size_t>(nodal.vertex)] += nodal.force;
+  }
+  for (const Hold& hold : c.load.holds) {
+    left[static_cast<std::size_t>(hold.vertex)].setZero();
+  }
+  for (const Vector3d& force : left) {
+    ASSERT_LT(force.norm(), 1e-11);
+  }
+}
+
 TEST(EquilibriumTest, TooFewIterationsAreNotInTime) {
   const Case c = pushed_block({3, 3, 4}, {0.02, 0, -0.03});
   EXPECT_EQ(equilibrium(c.body, c.load, {1e-10, 1}).outcome, Settling::kNotInTime);

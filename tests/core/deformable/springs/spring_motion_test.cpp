@@ -42,7 +42,8 @@ double largest_eigenvalue(const SpringBody& body) {
   for (Eigen::Index column = 0; column < 3 * n; ++column) {
     std::vector<Vector3d> unit(body.rest.size(), Vector3d::Zero());
     unit[static_cast<std::size_t>(column / 3)][column % 3] = 1;
-    const std::vector<Vector3d> forces = hessian.times(unit);
+    Vectors forces(unit.size());
+    hessian.matrix().multiply(unit, forces);
     for (Eigen::Index row = 0; row < 3 * n; ++row) {
       const auto v = static_cast<std::size_t>(row / 3);
       dense(row, column) =
@@ -208,7 +209,7 @@ TEST(SpringMotionTest, OneFreeVertexSwingsAsVerletsMethodSays) {
   }
   SpringHessian hessian(body);
   hessian.assemble(body, body.rest);
-  const double k = hessian.diagonal()[middle](0, 0);
+  const double k = *hessian.matrix().block(hessian.matrix().row_start(middle));
   const double h = 0.5 * stable_step(body, held);
   const double c = 0.2 * std::sqrt(k * body.masses[middle]);
   SpringMotion motion(body, {h, c}, held);

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
-#include "core/deformable/elements/block_matrix.h"
+#include "core/deformable/linear/block_matrix.h"
 
 namespace haptrial::deformable {
 
@@ -19,6 +20,11 @@ class Cholesky {
   /// @param a  of the same pattern
   /// @returns false if `a` is not positive definite.
   bool factorize(const BlockMatrix& a);
+
+  /// Factors of `a`, or where it is not positive definite of `a` with a growing diagonal until it
+  /// is. @returns what was added to the diagonal, 0 for nothing; nothing at all where even
+  /// 10^6 times the mean diagonal does not help, as where `a` is not finite.
+  std::optional<double> factorize_raised(BlockMatrix& a);
 
   /// x = A^-1 b, and 0 on the held vertices. After a factorize() that succeeded.
   void solve(const Vectors& b, Vectors& x);

@@ -1,4 +1,4 @@
-#include "core/deformable/elements/conjugate_gradients.h"
+#include "core/deformable/linear/conjugate_gradients.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -1,7 +1,8 @@
-#include "core/deformable/elements/cholesky.h"
+#include "core/deformable/linear/cholesky.h"
 
 #include <Eigen/CholmodSupport>
 #include <Eigen/SparseCore>
+#include <cmath>
 
 namespace haptrial::deformable {
 
@@ -70,6 +71,29 @@ bool Cholesky::factorize(const BlockMatrix& a) {
   impl_->for_each(a, [&](int, int, double v) { *value++ = v; });
   impl_->factors.factorize(impl_->matrix);
   return impl_->factors.info() == Eigen::Success;
+}
+
+std::optional<double> Cholesky::factorize_raised(BlockMatrix& a) {
+  constexpr double kFirst = 1e-4;  // of the mean diagonal
+  constexpr int kMost = 17;
+  if (factorize(a)) {
+    return 0.0;
+  }
+  double mean = 0;
+  for (std::size_t row = 0; row < a.rows(); ++row) {
+    const double* d = a.block(a.row_start(row));
+    mean += (std::abs(d[0]) + std::abs(d[4]) + std::abs(d[8])) / 3;
+  }
+  double more = kFirst * mean / static_cast<double>(a.rows());
+  double raised = 0;
+  for (int i = 0; i < kMost && std::isfinite(mean); ++i, more *= 4) {
+    a.scale_and_add(1, std::vector<double>(a.rows(), more));
+    raised += more;
+    if (factorize(a)) {
+      return raised;
+    }
+  }
+  return std::nullopt;
 }
 
 void Cholesky::solve(const Vectors& b, Vectors& x) {

@@ -1,9 +1,9 @@
-#include "core/deformable/elements/multigrid.h"
+#include "core/deformable/linear/multigrid.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "core/deformable/elements/lattice_levels.h"
+#include "core/deformable/linear/lattice_levels.h"
 
 namespace haptrial::deformable {
 namespace {

@@ -1,11 +1,11 @@
-#include "core/deformable/elements/multigrid.h"
+#include "core/deformable/linear/multigrid.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
 
-#include "core/deformable/elements/lattice_levels.h"
 #include "core/deformable/elements/static_solver.h"
+#include "core/deformable/linear/lattice_levels.h"
 #include "tests/support/jittered_block.h"
 
 namespace haptrial::deformable {
@@ -46,7 +46,7 @@ class MultigridTest : public testing::Test {
   }
 
   ElasticBody body_{test::solid_block({7, 6, 5}, 0.01), Elasticity{{{1e4, 0.3, 1000}}}};
-  BlockMatrix matrix_{body_.patches(), size()};
+  BlockMatrix matrix_{body_.patches().groups(), size()};
   std::vector<std::uint8_t> held_ = std::vector<std::uint8_t>(size(), 0);
 };
 
@@ -105,7 +105,7 @@ TEST_F(MultigridTest, IterationsDoNotGrowWithTheMesh) {
 TEST_F(MultigridTest, AMeshThatIsNoLatticeIsToldApart) {
   const auto mesh = test::jittered_block({3, 3, 3}, 0.01, 0.05);
   const ElasticBody body(mesh, Elasticity{{{1e4, 0.3, 1000}}});
-  const BlockMatrix matrix(body.patches(), mesh.vertices.size());
+  const BlockMatrix matrix(body.patches().groups(), mesh.vertices.size());
   EXPECT_FALSE(lattice_points(mesh.vertices, matrix));
 }
 

@@ -1,4 +1,4 @@
-#include "core/deformable/elements/lattice_levels.h"
+#include "core/deformable/linear/lattice_levels.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <functional>
 #include <span>
 
-#include "core/deformable/elements/block_matrix.h"
+#include "core/deformable/linear/block_matrix.h"
 
 namespace haptrial::deformable {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/deformable/elements/block_matrix.h"
+#include "core/deformable/linear/block_matrix.h"
 
 namespace haptrial::deformable {
 

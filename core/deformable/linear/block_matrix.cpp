@@ -1,69 +1,67 @@
-#include "core/deformable/elements/block_matrix.h"
+#include "core/deformable/linear/block_matrix.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace haptrial::deformable {
-namespace {
 
-/// The patches that have each vertex, and which of the patch's vertices it is.
-struct PatchesOfVertex {
-  std::vector<std::int32_t> first;  // vertices + 1
-  std::vector<PatchVertex> entries;
+struct BlockMatrix::Member {
+  std::int32_t group;
+  std::int32_t local;
 };
 
-PatchesOfVertex patches_of_vertex(const PatchLayout& layout, std::size_t vertices) {
-  PatchesOfVertex found;
-  found.first.assign(vertices + 1, 0);
-  for (const std::int32_t v : layout.vertices) {
-    ++found.first[static_cast<std::size_t>(v) + 1];
+/// The groups that have each vertex, and which of the group's vertices it is.
+/// @param first  receives vertices + 1 places in the result
+std::vector<BlockMatrix::Member> BlockMatrix::members_by_vertex(const CoupledGroups& groups,
+                                                                std::vector<std::int32_t>& first) {
+  std::fill(first.begin(), first.end(), 0);
+  for (const std::int32_t v : groups.vertices) {
+    ++first[static_cast<std::size_t>(v) + 1];
   }
-  for (std::size_t v = 0; v < vertices; ++v) {
-    found.first[v + 1] += found.first[v];
+  for (std::size_t v = 0; v + 1 < first.size(); ++v) {
+    first[v + 1] += first[v];
   }
-  found.entries.resize(layout.vertices.size());
-  std::vector<std::int32_t> at(found.first.begin(), found.first.end() - 1);
-  for (std::size_t p = 0; p < layout.patches(); ++p) {
-    const std::int32_t first = layout.first_vertex[p];
-    for (std::int32_t i = first; i < layout.first_vertex[p + 1]; ++i) {
-      const auto v = static_cast<std::size_t>(layout.vertices[static_cast<std::size_t>(i)]);
-      found.entries[static_cast<std::size_t>(at[v]++)] = {static_cast<std::int32_t>(p), i - first};
+  std::vector<Member> members(groups.vertices.size());
+  std::vector<std::int32_t> at(first.begin(), first.end() - 1);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const std::int32_t begin = groups.first[g];
+    for (std::int32_t i = begin; i < groups.first[g + 1]; ++i) {
+      const auto v = static_cast<std::size_t>(groups.vertices[static_cast<std::size_t>(i)]);
+      members[static_cast<std::size_t>(at[v]++)] = {static_cast<std::int32_t>(g), i - begin};
     }
   }
-  return found;
+  return members;
 }
 
-}  // namespace
-
-BlockMatrix::BlockMatrix(const PatchLayout& layout, std::size_t vertices) {
+BlockMatrix::BlockMatrix(const CoupledGroups& groups, std::size_t vertices) {
   first_place_.push_back(0);
-  for (std::size_t p = 0; p < layout.patches(); ++p) {
-    const std::int32_t n = layout.first_vertex[p + 1] - layout.first_vertex[p];
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const std::int32_t n = groups.first[g + 1] - groups.first[g];
     first_place_.push_back(first_place_.back() + n * (n + 1) / 2);
   }
   places_.resize(static_cast<std::size_t>(first_place_.back()));
   start_.assign(1, 0);
-  const PatchesOfVertex around = patches_of_vertex(layout, vertices);
+  std::vector<std::int32_t> first(vertices + 1);
+  const std::vector<Member> members = members_by_vertex(groups, first);
   std::vector<std::int32_t> place(vertices, -1);  // of the row's column, if from the row's start on
   for (std::size_t row = 0; row < vertices; ++row) {
-    const auto patches =
-        std::span(around.entries)
-            .subspan(static_cast<std::size_t>(around.first[row]),
-                     static_cast<std::size_t>(around.first[row + 1] - around.first[row]));
-    add_row(layout, patches, place);
+    add_row(groups,
+            std::span(members).subspan(static_cast<std::size_t>(first[row]),
+                                       static_cast<std::size_t>(first[row + 1] - first[row])),
+            place);
   }
   values_.resize(9 * column_.size());
   set_zero();
 }
 
-/// @param patches  that have the row's vertex
-void BlockMatrix::add_row(const PatchLayout& layout, std::span<const PatchVertex> patches,
+/// @param members  the row's vertex in its groups
+void BlockMatrix::add_row(const CoupledGroups& groups, std::span<const Member> members,
                           std::vector<std::int32_t>& place) {
   const std::int32_t row_begin = start_.back();
-  for (const auto& [patch, local] : patches) {
-    const auto p = static_cast<std::size_t>(patch);
-    for (auto i = layout.first_vertex[p] + local; i < layout.first_vertex[p + 1]; ++i) {
-      const std::int32_t v = layout.vertices[static_cast<std::size_t>(i)];
+  for (const auto& [group, local] : members) {
+    const auto g = static_cast<std::size_t>(group);
+    for (auto i = groups.first[g] + local; i < groups.first[g + 1]; ++i) {
+      const std::int32_t v = groups.vertices[static_cast<std::size_t>(i)];
       std::int32_t& at = place[static_cast<std::size_t>(v)];
       if (at < row_begin) {
         at = static_cast<std::int32_t>(column_.size());
@@ -76,12 +74,12 @@ void BlockMatrix::add_row(const PatchLayout& layout, std::span<const PatchVertex
     place[static_cast<std::size_t>(column_[i])] = static_cast<std::int32_t>(i);
   }
   start_.push_back(static_cast<std::int32_t>(column_.size()));
-  for (const auto& [patch, local] : patches) {
-    const auto p = static_cast<std::size_t>(patch);
-    const std::int32_t n = layout.first_vertex[p + 1] - layout.first_vertex[p];
-    std::int32_t* to = places_.data() + first_place_[p] + local * n - local * (local - 1) / 2;
-    for (auto i = layout.first_vertex[p] + local; i < layout.first_vertex[p + 1]; ++i) {
-      const auto v = static_cast<std::size_t>(layout.vertices[static_cast<std::size_t>(i)]);
+  for (const auto& [group, local] : members) {
+    const auto g = static_cast<std::size_t>(group);
+    const std::int32_t n = groups.first[g + 1] - groups.first[g];
+    std::int32_t* to = places_.data() + first_place_[g] + local * n - local * (local - 1) / 2;
+    for (auto i = groups.first[g] + local; i < groups.first[g + 1]; ++i) {
+      const auto v = static_cast<std::size_t>(groups.vertices[static_cast<std::size_t>(i)]);
       *to++ = place[v];
     }
   }
@@ -93,10 +91,10 @@ BlockMatrix::BlockMatrix(std::vector<std::int32_t> start, std::vector<std::int32
   set_zero();
 }
 
-std::span<const std::int32_t> BlockMatrix::places(std::size_t patch) const {
+std::span<const std::int32_t> BlockMatrix::places(std::size_t group) const {
   return std::span(places_).subspan(
-      static_cast<std::size_t>(first_place_[patch]),
-      static_cast<std::size_t>(first_place_[patch + 1] - first_place_[patch]));
+      static_cast<std::size_t>(first_place_[group]),
+      static_cast<std::size_t>(first_place_[group + 1] - first_place_[group]));
 }
 
 void BlockMatrix::set_zero() { std::fill(values_.begin(), values_.end(), 0.0); }

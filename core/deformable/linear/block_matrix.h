@@ -6,16 +6,16 @@
 #include <vector>
 
 #include "core/base/big_array.h"
-#include "core/deformable/elements/volume_patches.h"
 
 namespace haptrial::deformable {
 
 using Vectors = std::vector<Eigen::Vector3d>;  // one for each vertex
 
-/// Which vertex of which patch.
-struct PatchVertex {
-  std::int32_t patch;
-  std::int32_t local;
+/// Groups of vertices that are coupled, each with every other: elements, or patches of them.
+struct CoupledGroups {
+  std::span<const std::int32_t> first;     // groups + 1: into `vertices`
+  std::span<const std::int32_t> vertices;  // ascending in each group
+  std::size_t size() const { return first.size() - 1; }
 };
 
 /// A symmetric matrix of 3 x 3 blocks, one row of blocks a vertex. Only blocks on and above the
@@ -23,9 +23,8 @@ struct PatchVertex {
 /// The pattern is computed once for a mesh; the values are set as often as the body moves.
 class BlockMatrix {
  public:
-  /// Every vertex of a patch is coupled with every other of it.
   /// @param vertices  of the mesh: rows of blocks
-  BlockMatrix(const PatchLayout& layout, std::size_t vertices);
+  BlockMatrix(const CoupledGroups& groups, std::size_t vertices);
 
   /// @param start  rows + 1: where each row's blocks begin  @param column  of each block
   BlockMatrix(std::vector<std::int32_t> start, std::vector<std::int32_t> column);
@@ -39,9 +38,9 @@ class BlockMatrix {
   const double* block(std::int32_t at) const {
     return values_.data() + 9 * static_cast<std::size_t>(at);
   }
-  /// Where the blocks of a patch with n vertices are stored: n (n + 1) / 2 places, those of (0, 0),
-  /// (0, 1) .. (1, 1) .. in the patch's numbers.
-  std::span<const std::int32_t> places(std::size_t patch) const;
+  /// Where the blocks of a group with n vertices are stored: n (n + 1) / 2 places, those of (0, 0),
+  /// (0, 1) .. (1, 1) .. in the group's numbers.
+  std::span<const std::int32_t> places(std::size_t group) const;
 
   void set_zero();
   /// this = scale this + a diagonal that is the same for the three axes of a vertex.
@@ -52,14 +51,17 @@ class BlockMatrix {
   void multiply(const Vectors& x, Vectors& y) const;
 
  private:
-  void add_row(const PatchLayout& layout, std::span<const PatchVertex> patches,
+  struct Member;  // which vertex of which group
+  static std::vector<Member> members_by_vertex(const CoupledGroups& groups,
+                                               std::vector<std::int32_t>& first);
+  void add_row(const CoupledGroups& groups, std::span<const Member> members,
                std::vector<std::int32_t>& place);
 
   std::vector<std::int32_t> start_;   // rows + 1
   std::vector<std::int32_t> column_;  // by block
   BigArray<double> values_;           // 9 by block
   std::vector<std::int32_t> places_;
-  std::vector<std::int32_t> first_place_;  // patches + 1
+  std::vector<std::int32_t> first_place_;  // groups + 1
 };
 
 }  // namespace haptrial::deformable

@@ -1,11 +1,11 @@
-#include "core/deformable/elements/linear_system.h"
+#include "core/deformable/linear/linear_system.h"
 
 #include <optional>
 
 #include "core/base/error.h"
-#include "core/deformable/elements/cholesky.h"
-#include "core/deformable/elements/conjugate_gradients.h"
-#include "core/deformable/elements/multigrid.h"
+#include "core/deformable/linear/cholesky.h"
+#include "core/deformable/linear/conjugate_gradients.h"
+#include "core/deformable/linear/multigrid.h"
 
 namespace haptrial::deformable {
 
@@ -39,8 +39,6 @@ LinearSystem::~LinearSystem() = default;
 LinearSystem::LinearSystem(LinearSystem&&) noexcept = default;
 
 void LinearSystem::set(BlockMatrix& a) {
-  constexpr double kFirst = 1e-4;  // of the mean diagonal
-  constexpr int kMost = 12;
   impl_->matrix = &a;
   if (!impl_->cholesky) {
     Multigrid& grid = *impl_->multigrid;
@@ -51,22 +49,9 @@ void LinearSystem::set(BlockMatrix& a) {
     }
     return;
   }
-  if (impl_->cholesky->factorize(a)) {
-    return;
+  if (!impl_->cholesky->factorize_raised(a)) {
+    throw RunError("the stiffness could not be factorized");
   }
-  double mean = 0;
-  for (std::size_t row = 0; row < a.rows(); ++row) {
-    const double* d = a.block(a.row_start(row));
-    mean += (std::abs(d[0]) + std::abs(d[4]) + std::abs(d[8])) / 3;
-  }
-  double shift = kFirst * mean / static_cast<double>(a.rows());
-  for (int i = 0; i < kMost; ++i, shift *= 4) {
-    a.scale_and_add(1, std::vector<double>(a.rows(), shift));
-    if (impl_->cholesky->factorize(a)) {
-      return;
-    }
-  }
-  throw RunError("the stiffness could not be factorized");
 }
 
 int LinearSystem::solve(const Vectors& b, double residual, Vectors& x) {

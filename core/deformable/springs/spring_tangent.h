@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "core/deformable/linear/block_matrix.h"
+#include "core/deformable/springs/law/spring_body.h"
+
+namespace haptrial::deformable {
+
+/// The exact Hessian K of a body of springs without the held vertices, and directions that lower
+/// the energy. K may be indefinite. A large body on a lattice is solved by conjugate gradients with
+/// multigrid as long as they meet no negative curvature and converge soon, and by CHOLMOD
+/// otherwise, with a raised diagonal where K is not positive definite.
+class SpringTangent {
+ public:
+  /// @param body  must outlive this  @param held  by vertex
+  SpringTangent(const SpringBody& body, std::vector<std::uint8_t> held);
+  ~SpringTangent();
+
+  /// Takes K at `positions`. @returns false where no raised diagonal makes K positive definite.
+  bool set(std::span<const Eigen::Vector3d> positions);
+
+  /// Sets the direction (K + raise)^-1 force, 0 on held vertices. After a set() that returned true.
+  /// @param residual  the norm of what may be left of the force [N]; CHOLMOD's is at rounding
+  /// @returns as set()
+  bool solve(const Vectors& force, double residual, Vectors& direction);
+
+  /// No negative curvature was met since set(), which is no proof.
+  bool seems_definite() const;
+
+  /// Whether K is positive definite: by its factors, or by conjugate gradients on a random force.
+  /// With only positive curvature their residual's share along a direction of negative curvature
+  /// never shrinks, so that convergence to a millionth shows that there is none.
+  bool is_definite();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace haptrial::deformable
