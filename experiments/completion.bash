@@ -5,11 +5,11 @@ _haptrial() {
   names=$(haptrial --help 2>/dev/null | sed -n '/^Subcommands:/,/^$/s/^  \([a-z-]*\) .*/\1/p')
   if [ "$COMP_CWORD" -eq 1 ]; then
     mapfile -t COMPREPLY < <(compgen -W "$names --help --version" -- "$word")
-  elif [ "$COMP_CWORD" -eq 2 ] && [[ $sub =~ ^(mesh|bone|rate)$ ]]; then
+  elif [ "$COMP_CWORD" -eq 2 ] && [[ $sub =~ ^(mesh|bone|deform|rate)$ ]]; then
     names=$(haptrial "$sub" --help 2>/dev/null | sed -n '/^Subcommands:/,/^$/s/^  \([a-z-]*\) .*/\1/p')
     mapfile -t COMPREPLY < <(compgen -W "$names --help" -- "$word")
   elif [[ $word == -* ]]; then
-    [[ $sub =~ ^(mesh|bone|rate)$ ]] && part=${COMP_WORDS[2]}
+    [[ $sub =~ ^(mesh|bone|deform|rate)$ ]] && part=${COMP_WORDS[2]}
     words=$(haptrial "$sub" ${part:+"$part"} --help 2>/dev/null | grep -o -- '--[a-z-]*' | sort -u)
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
   else

@@ -32,6 +32,13 @@ class Account {
     const bool same = at < settings_.known.size() && settings_.known[at].logarithms == logarithms;
     return same ? &settings_.known[at] : nullptr;
   }
+  /// Takes all recorded evaluations, in place of doing them.
+  void take_known() {
+    for (const CalibrationStep& step : settings_.known) {
+      add(step);
+    }
+  }
+  int threads() const { return settings_.threads; }
   void add(CalibrationStep step) {
     if (step.error < result_.error) {
       result_.error = step.error;
@@ -87,8 +94,8 @@ double evaluate_descent(unsigned size, const double* x, double* gradient, void* 
   auto& call = *static_cast<DescentCall*>(data);
   try {
     std::vector<double> logarithms(x, x + size);
-    const CalibrationError found =
-        call.problem.error(call.parameters.constants(logarithms), gradient != nullptr);
+    const CalibrationError found = call.problem.error(call.parameters.constants(logarithms),
+                                                      gradient != nullptr, call.account.threads());
     if (gradient != nullptr) {
       const std::vector<double> slope = std::isfinite(found.mean)
                                             ? call.parameters.gradient(logarithms, found.gradient)
@@ -119,8 +126,7 @@ double size_of(const SpringBody& body) {
 
 CalibrationStep evaluated(const CalibrationProblem& problem, const SpringParameters& parameters,
                           const Account& account, const std::vector<double>& at) {
-  const CalibrationStep* known = account.known(at);
-  return known != nullptr ? *known : step_of(at, problem.error(parameters.constants(at), false));
+  return step_of(at, problem.error(parameters.constants(at), false, account.threads()));
 }
 
 /// Balanced forces may leave kinds of springs out, and a body without them may have no rest: then
@@ -156,7 +162,11 @@ std::vector<double> stable_start(const CalibrationProblem& problem,
 void descend(const CalibrationProblem& problem, const SpringParameters& parameters,
              const CalibrationSettings& settings, Account& account) {
   constexpr double kSameError = 1e-6, kSamePlace = 1e-6;  // relative; absolute, of logarithms
-  std::vector<double> x = stable_start(problem, parameters, settings, account);
+  account.take_known();
+  std::vector<double> x = account.best();
+  if (x.empty() && !account.over()) {
+    x = stable_start(problem, parameters, settings, account);
+  }
   if (x.empty() || account.over()) {
     return;
   }

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/deformable/springs/compliance.h"
 #include "core/deformable/springs/equilibrium.h"
 
@@ -51,19 +53,34 @@ void add_to(std::vector<double>& sum, const std::vector<double>& more, double sc
   }
 }
 
+/// The gradient of a load's error by the vertices' places.
+Positions by_place(const CalibrationLoad& load, const Positions& at, double error) {
+  Positions gradient(at.size(), Vector3d::Zero());
+  if (load.markers.empty()) {
+    const double scale = 1.0 / (error * static_cast<double>(at.size()));
+    for (std::size_t v = 0; v < at.size(); ++v) {
+      gradient[v] = scale * (at[v] - load.reference[v]);
+    }
+    return gradient;
+  }
+  const double scale = 1.0 / (error * static_cast<double>(load.markers.size()));
+  for (const Marker& marker : load.markers) {
+    const Vector3d pull = scale * (place_of(marker, at) - marker.moved);
+    for (std::size_t i = 0; i < marker.vertices.size(); ++i) {
+      gradient[static_cast<std::size_t>(marker.vertices[i])] +=
+          marker.weights[static_cast<Eigen::Index>(i)] * pull;
+    }
+  }
+  return gradient;
+}
+
 /// Adds the gradient of one load's error. At rest f(x, k) + f_ext = 0 with df/dx = -K, so that
 /// dx/dk = K^-1 df/dk and de/dk = λ · df/dk with K λ = de/dx.
 bool add_gradient(const SpringBody& body, const CalibrationLoad& load, const Positions& at,
                   double error, double share, SpringConstants& gradient) {
-  if (error == 0.0) {
-    return true;
-  }
-  Positions by_place(at.size());
-  const double scale = 1.0 / (error * static_cast<double>(at.size()));
-  for (std::size_t v = 0; v < at.size(); ++v) {
-    by_place[v] = scale * (at[v] - load.reference[v]);
-  }
-  const auto lambda = small_displacements(body, load.load.holds, at, by_place);
+  const auto lambda =
+      error == 0.0 ? std::optional(Positions(at.size(), Vector3d::Zero()))
+                   : small_displacements(body, load.load.holds, at, by_place(load, at, error));
   if (!lambda) {
     return false;
   }
@@ -103,6 +120,17 @@ double distance_error(const Positions& a, const Positions& b) {
   return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
+double load_error(const CalibrationLoad& load, const Positions& positions) {
+  if (load.markers.empty()) {
+    return distance_error(positions, load.reference);
+  }
+  double sum = 0.0;
+  for (const Marker& marker : load.markers) {
+    sum += (place_of(marker, positions) - marker.moved).squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(load.markers.size()));
+}
+
 CalibrationProblem::CalibrationProblem(SpringBody body, std::vector<CalibrationLoad> loads)
     : body_(std::move(body)), loads_(std::move(loads)) {
   if (loads_.empty()) {
@@ -117,28 +145,55 @@ CalibrationProblem::CalibrationProblem(SpringBody body, std::vector<CalibrationL
   }
 }
 
-CalibrationError CalibrationProblem::error(const SpringConstants& constants,
-                                           bool with_gradient) const {
+namespace {
+
+/// What one load adds.
+struct LoadAnswer {
+  double error{};
+  SpringConstants gradient;
+  std::string unstable;
+};
+
+LoadAnswer answer_of(const SpringBody& body, const CalibrationLoad& load, bool with_gradient,
+                     double share) {
+  LoadAnswer answer;
+  const Equilibrium found = equilibrium(body, load.load, {}, load.reference);
+  if (found.outcome != Settling::kSettled || found.inverted > 0) {
+    answer.unstable = why_unstable(load.load, found);
+    return answer;
+  }
+  answer.error = load_error(load, found.positions);
+  if (with_gradient &&
+      !add_gradient(body, load, found.positions, answer.error, share, answer.gradient)) {
+    answer.unstable = fmt::format("load '{}' is not stable", load.load.name);
+  }
+  return answer;
+}
+
+}  // namespace
+
+CalibrationError CalibrationProblem::error(const SpringConstants& constants, bool with_gradient,
+                                           int threads) const {
   SpringBody body = body_;
   check_constants(body, constants);
   body.constants = constants;
-  CalibrationError result;
   const double share = 1.0 / static_cast<double>(loads_.size());
+  std::vector<LoadAnswer> answers(loads_.size());
+  parallel_for(loads_.size(), std::max(threads, 1), [&](std::size_t i) {
+    answers[i] = answer_of(body, loads_[i], with_gradient, share);
+  });
+  CalibrationError result;
   double sum = 0.0;
-  for (const CalibrationLoad& load : loads_) {
-    const Equilibrium found = equilibrium(body, load.load, {}, load.reference);
-    if (found.outcome != Settling::kSettled || found.inverted > 0) {
-      result.by_load.clear();
-      result.gradient = {};
-      result.unstable = why_unstable(load.load, found);
-      return result;
+  for (const LoadAnswer& answer : answers) {
+    if (!answer.unstable.empty()) {
+      return {.by_load = {}, .unstable = answer.unstable, .gradient = {}};
     }
-    result.by_load.push_back(distance_error(found.positions, load.reference));
-    sum += share * result.by_load.back();
-    if (with_gradient &&
-        !add_gradient(body, load, found.positions, result.by_load.back(), share, result.gradient)) {
-      result.unstable = fmt::format("load '{}' is not stable", load.load.name);
-      return result;
+    result.by_load.push_back(answer.error);
+    sum += share * answer.error;
+    if (with_gradient) {
+      add_to(result.gradient.length, answer.gradient.length, 1.0);
+      add_to(result.gradient.area, answer.gradient.area, 1.0);
+      add_to(result.gradient.volume, answer.gradient.volume, 1.0);
     }
   }
   result.mean = sum;

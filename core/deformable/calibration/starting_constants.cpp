@@ -136,9 +136,15 @@ std::vector<double> non_negative(const Columns& a, std::vector<double> left_over
 std::vector<double> starting_constants(const CalibrationProblem& problem,
                                        const SpringParameters& parameters,
                                        std::span<const SearchRange> ranges) {
-  const std::vector<double> x =
-      non_negative(ForceColumns(problem, parameters).take(), acting_forces(problem));
+  const std::vector<double> acting = acting_forces(problem);
   std::vector<double> logarithms;
+  if (std::all_of(acting.begin(), acting.end(), [](double f) { return f == 0.0; })) {
+    for (const SearchRange& range : ranges) {
+      logarithms.push_back(0.5 * (range.low + range.high));
+    }
+    return logarithms;
+  }
+  const std::vector<double> x = non_negative(ForceColumns(problem, parameters).take(), acting);
   for (std::size_t j = 0; j < x.size(); ++j) {
     const double logarithm = x[j] > 0.0 ? std::log10(x[j]) : ranges[j].low;
     logarithms.push_back(std::clamp(logarithm, ranges[j].low, ranges[j].high));

@@ -8,9 +8,8 @@
 
 namespace haptrial::deformable {
 
-/// An upper bound of the fastest vibration ω of small motions about `positions` [1/s]: the square
-/// root of the largest eigenvalue of M⁻¹ K, by Lanczos' method, with what it may still lack and 0.2
-/// % added. K is the exact Hessian there (spring_hessian.h), without the held vertices.
+/// linear/fastest_vibration.h of small motions about `positions` [1/s], with the exact Hessian
+/// there (spring_hessian.h).
 double fastest_vibration(const SpringBody& body, std::span<const Eigen::Vector3d> positions,
                          std::span<const std::int32_t> held = {});
 

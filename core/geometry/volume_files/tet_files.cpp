@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <stdexcept>
 #include <vector>
 
 #include "core/base/error.h"
@@ -87,7 +88,27 @@ void append(WholeFile& out, std::span<const T> values) {
   out.write_all(values);
 }
 
-std::string vtu_head(std::uint64_t points, std::uint64_t cells) {
+using Fields = std::vector<TetField>;
+
+void check_fields(const Fields& fields, std::size_t count) {
+  for (const TetField& field : fields) {
+    if (field.values.size() != count * static_cast<std::size_t>(field.components)) {
+      throw std::invalid_argument("a field has another length than the mesh");
+    }
+  }
+}
+
+std::string describe_fields(VtuArrays& arrays, const Fields& fields) {
+  std::string lines;
+  for (const TetField& field : fields) {
+    lines += arrays.describe("Float64", field.name.c_str(), field.components,
+                             sizeof(double) * field.values.size());
+  }
+  return lines;
+}
+
+std::string vtu_head(std::uint64_t points, std::uint64_t cells, const Fields& of_vertices,
+                     const Fields& of_tetrahedra) {
   VtuArrays arrays;
   std::string head = fmt::format(
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
@@ -95,40 +116,18 @@ std::string vtu_head(std::uint64_t points, std::uint64_t cells) {
       "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData Scalars=\"on_surface\">\n",
       points, cells);
   head += arrays.describe("UInt8", "on_surface", 1, points);
-  head += "</PointData>\n<Points>\n";
+  head += describe_fields(arrays, of_vertices);
+  head += "</PointData>\n";
+  if (!of_tetrahedra.empty()) {
+    head += "<CellData>\n" + describe_fields(arrays, of_tetrahedra) + "</CellData>\n";
+  }
+  head += "<Points>\n";
   head += arrays.describe("Float64", "Points", 3, 24 * points);
   head += "</Points>\n<Cells>\n";
   head += arrays.describe("Int32", "connectivity", 1, 16 * cells);
   head += arrays.describe("Int64", "offsets", 1, 8 * cells);
   head += arrays.describe("UInt8", "types", 1, cells);
   return head + "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
-}
-
-void write_vtu(const fs::path& file, const TetMesh& mesh, bool overwrite,
-               const WorkReport& report) {
-  constexpr std::uint8_t kTetrahedron = 10;  // VTK_TETRA
-  const std::uint64_t cells = mesh.tetrahedra.size();
-  WholeFile out(file, overwrite);
-  out.write(vtu_head(mesh.vertices.size(), cells));
-  append(out, std::span<const std::uint8_t>(mesh.on_surface));
-  append(out, std::span<const Eigen::Vector3d>(mesh.vertices));
-  report_share(report, 0.3);
-  append(out, std::span<const Tetrahedron>(mesh.tetrahedra));
-  report_share(report, 0.7);
-  const std::uint64_t offset_bytes = sizeof(std::int64_t) * cells;
-  out.write_all(std::span<const std::uint64_t>(&offset_bytes, 1));
-  std::vector<std::int64_t> ends;
-  in_batches(cells, report, 0.7, 1.0, [&](std::size_t first, std::size_t last) {
-    ends.clear();
-    for (std::size_t i = first; i < last; ++i) {
-      ends.push_back(4 * static_cast<std::int64_t>(i + 1));
-    }
-    out.write_all(std::span<const std::int64_t>(ends));
-  });
-  const std::vector<std::uint8_t> types(cells, kTetrahedron);
-  append(out, std::span<const std::uint8_t>(types));
-  out.write("\n</AppendedData>\n</VTKFile>\n");
-  out.finish();
 }
 
 void write_gmsh(const fs::path& file, const TetMesh& mesh, bool overwrite,
@@ -193,6 +192,40 @@ void write_tet_hdf5(const fs::path& file, const TetMesh& mesh, bool overwrite,
 
 }  // namespace
 
+void write_vtu(const fs::path& file, const TetMesh& mesh, const Fields& of_vertices,
+               const Fields& of_tetrahedra, bool overwrite, const WorkReport& report) {
+  constexpr std::uint8_t kTetrahedron = 10;  // VTK_TETRA
+  check_fields(of_vertices, mesh.vertices.size());
+  check_fields(of_tetrahedra, mesh.tetrahedra.size());
+  const std::uint64_t cells = mesh.tetrahedra.size();
+  WholeFile out(file, overwrite);
+  out.write(vtu_head(mesh.vertices.size(), cells, of_vertices, of_tetrahedra));
+  append(out, std::span<const std::uint8_t>(mesh.on_surface));
+  for (const Fields* fields : {&of_vertices, &of_tetrahedra}) {
+    for (const TetField& field : *fields) {
+      append(out, std::span<const double>(field.values));
+    }
+  }
+  append(out, std::span<const Eigen::Vector3d>(mesh.vertices));
+  report_share(report, 0.3);
+  append(out, std::span<const Tetrahedron>(mesh.tetrahedra));
+  report_share(report, 0.7);
+  const std::uint64_t offset_bytes = sizeof(std::int64_t) * cells;
+  out.write_all(std::span<const std::uint64_t>(&offset_bytes, 1));
+  std::vector<std::int64_t> ends;
+  in_batches(cells, report, 0.7, 1.0, [&](std::size_t first, std::size_t last) {
+    ends.clear();
+    for (std::size_t i = first; i < last; ++i) {
+      ends.push_back(4 * static_cast<std::int64_t>(i + 1));
+    }
+    out.write_all(std::span<const std::int64_t>(ends));
+  });
+  const std::vector<std::uint8_t> types(cells, kTetrahedron);
+  append(out, std::span<const std::uint8_t>(types));
+  out.write("\n</AppendedData>\n</VTKFile>\n");
+  out.finish();
+}
+
 void check_tet_ending(const fs::path& file) {
   const std::string ending = file.extension().string();
   for (const char* known : {".node", ".ele", ".vtu", ".msh", ".h5"}) {
@@ -209,7 +242,7 @@ void write_tet_mesh(const fs::path& file, const TetMesh& mesh, bool overwrite,
   check_tet_ending(file);
   const std::string ending = file.extension().string();
   if (ending == ".vtu") {
-    write_vtu(file, mesh, overwrite, report);
+    write_vtu(file, mesh, {}, {}, overwrite, report);
   } else if (ending == ".msh") {
     write_gmsh(file, mesh, overwrite, report);
   } else if (ending == ".h5") {

@@ -41,6 +41,7 @@ void declare_subcommands(CLI::App& app, int& status) {
   add_device_test(app, status);
   add_mesh(app, status);
   add_bone(app, status);
+  add_deform(app, status);
   add_spectrum(app, status);
   add_rate(app, status);
 }

@@ -34,6 +34,7 @@ void add_power(CLI::App& app, int& status);
 
 void add_mesh(CLI::App& app, int& status);      // command_line_mesh.cpp
 void add_bone(CLI::App& app, int& status);      // command_line_bone.cpp
+void add_deform(CLI::App& app, int& status);    // command_line_deform.cpp
 void add_spectrum(CLI::App& app, int& status);  // command_line_sound.cpp
 void add_rate(CLI::App& app, int& status);      // command_line_rating.cpp
 

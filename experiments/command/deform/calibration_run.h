@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/deformable/calibration/calibrate.h"
+#include "experiments/command/deform/deform_body.h"
+
+namespace haptrial::experiments {
+
+/// What a calibration is judged by under one load.
+struct JudgedLoad {
+  std::string name;
+  bool unseen{false};
+  std::string reference;  // who said where the body is: "elements", or a file
+  bool markers{false};    // compared at measured places instead of vertices
+  double moved{};         // root mean square of the reference's displacements [m]
+  double hand{};          // error of the constants set by hand; infinite: unstable [m]
+  double found{};         // error of those found [m]
+  std::string unstable;   // why those found are not, if so
+  std::vector<Eigen::Vector3d> at_reference, at_hand, at_found;  // vertices; empty: no rest
+};
+
+/// A calibration and what it was made of.
+struct CalibrationRun {
+  std::string method, constants;  // as the options say
+  std::array<double, 3> hand{};   // set by hand [J]
+  deformable::SearchRange range;  // of the common logarithms
+  std::uint64_t seed{};
+  deformable::CalibrationResult result;
+  deformable::SpringConstants springs;  // found
+  double seconds{};                     // of the search in this run
+  std::size_t earlier{};                // evaluations of a run before
+  double tighter{};                     // change of the error by a tenfold tighter rest [m]
+  std::vector<JudgedLoad> loads;
+  bool simulated{false};
+};
+
+/// The errors before and after, over the loads that calibration saw [m]; infinite: unstable.
+double seen_error(const CalibrationRun& run, bool by_hand);
+
+/// Writes report.html, calibration.json, constants.csv, evaluations.csv and the pictures into a new
+/// folder, whole or not at all.
+void write_calibration(const DeformBody& body, const deformable::SpringBody& springs,
+                       const CalibrationRun& run, const std::string& folder);
+
+/// The lines for the terminal.
+std::vector<std::string> calibration_lines(const CalibrationRun& run);
+
+}  // namespace haptrial::experiments

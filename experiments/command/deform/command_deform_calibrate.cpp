@@ -1,0 +1,273 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/base/fnv.h"
+#include "core/base/parallel.h"
+#include "core/base/text/nearest.h"
+#include "core/deformable/springs/equilibrium.h"
+#include "experiments/command/arguments.h"
+#include "experiments/command/deform/calibration_journal.h"
+#include "experiments/command/deform/calibration_run.h"
+#include "experiments/command/deform/deform_files.h"
+#include "experiments/control/signals.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using deformable::CalibrationLoad;
+using deformable::CalibrationProblem;
+using deformable::SpringBody;
+using deformable::SpringParameters;
+using Eigen::Vector3d;
+
+/// The energy of a cube of the material as large as an edge: what constants are measured by.
+double log_of_material(const DeformBody& body, const SpringBody& springs) {
+  double length = 0.0;
+  for (const double l : springs.lengths) {
+    length += l / static_cast<double>(springs.lengths.size());
+  }
+  return std::log10(body.elasticity.materials[0].young * std::pow(length, 3));
+}
+
+deformable::SearchRange range_of(const DeformCalibrateOptions& o, double material) {
+  constexpr double kBelow = 5.0, kAbove = 3.0;  // orders of magnitude
+  if (o.range.empty()) {
+    return {material - kBelow, material + kAbove};
+  }
+  constexpr double kMost = 30.0;
+  const deformable::SearchRange range{checked_real("--range", o.range[0], -kMost, kMost),
+                                      checked_real("--range", o.range[1], -kMost, kMost)};
+  if (!(range.low < range.high)) {
+    throw InputError(fmt::format("--range is from {} to {}; allowed: an end above its beginning",
+                                 range.low, range.high));
+  }
+  return range;
+}
+
+SpringParameters parameters_of(const DeformCalibrateOptions& o, const SpringBody& springs) {
+  if (o.constants == "homogeneous") {
+    return SpringParameters::uniform(springs);
+  }
+  if (o.constants == "grid") {
+    return SpringParameters::on_grid(springs, {o.grid[0], o.grid[1], o.grid[2]});
+  }
+  if (o.constants == "elements") {
+    return SpringParameters::by_element(springs);
+  }
+  throw InputError(not_allowed("--constants", fmt::format("'{}'", o.constants),
+                               {"homogeneous", "grid", "elements"}));
+}
+
+deformable::CalibrationMethod method_of(const std::string& name) {
+  for (const auto method :
+       {deformable::CalibrationMethod::kAnnealing, deformable::CalibrationMethod::kDescent}) {
+    if (name == name_of(method)) {
+      return method;
+    }
+  }
+  throw InputError(not_allowed("--method", fmt::format("'{}'", name), {"annealing", "descent"}));
+}
+
+/// Where the body is under each load, by elements or by a file.
+std::vector<CalibrationLoad> answered(const DeformBody& body, const std::vector<NamedLoad>& loads,
+                                      const MemoryBudget& budget) {
+  const deformable::ElasticBody elastic(body.mesh, body.elasticity);
+  std::optional<deformable::StaticSolver> solver;
+  std::vector<CalibrationLoad> answers;
+  Progress progress("reference", static_cast<double>(loads.size()));
+  for (const NamedLoad& load : loads) {
+    const auto file = body.setup.path_of(load.setup.reference);
+    const bool given = !load.setup.reference.empty();
+    CalibrationLoad answer{load.load, {}, {}};
+    if (given && has_markers(file)) {
+      answer.markers = read_markers(file, body.mesh);
+    } else if (given) {
+      answer.reference = moved_by(body.mesh, read_displacements(file, body.mesh));
+    }
+    if (answer.reference.empty()) {
+      if (!solver) {
+        solver.emplace(static_solver(body, elastic, budget));
+      }
+      answer.reference = moved_by(body.mesh, solver->solve(load.load).displacement);
+    }
+    answers.push_back(std::move(answer));
+    progress.update(static_cast<double>(answers.size()), load.load.name, 0.0);
+    check_interrupt();
+  }
+  return answers;
+}
+
+std::vector<CalibrationLoad> seen_of(const std::vector<NamedLoad>& loads,
+                                     const std::vector<CalibrationLoad>& answers) {
+  std::vector<CalibrationLoad> seen;
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    if (!loads[i].setup.unseen) {
+      seen.push_back(answers[i]);
+    }
+  }
+  if (seen.empty()) {
+    throw InputError("calibration: every load is unseen; one at least must be seen");
+  }
+  return seen;
+}
+
+/// Another number for another body, reference or search; evaluations at most may grow.
+std::uint64_t fingerprint(const DeformCalibrateOptions& o, const DeformBody& body,
+                          const CalibrationRun& run, const std::vector<CalibrationLoad>& seen) {
+  Fnv1a hash;
+  hash.add(body.setup.text).add(o.method).add(o.constants).add(run.seed);
+  for (const int n : {o.grid[0], o.grid[1], o.grid[2], o.samples, o.batch}) {
+    hash.add(static_cast<std::uint64_t>(n));
+  }
+  const auto add = [&](std::span<const double> values) {
+    hash.add(std::string_view(reinterpret_cast<const char*>(values.data()), values.size_bytes()));
+  };
+  add(std::array{run.range.low, run.range.high});
+  for (const CalibrationLoad& load : seen) {
+    add({load.reference[0].data(), 3 * load.reference.size()});
+    for (const auto& marker : load.markers) {
+      add({marker.moved.data(), 3});
+    }
+  }
+  return hash.value();
+}
+
+void search(const DeformCalibrateOptions& o, const CalibrationProblem& problem,
+            const SpringParameters& parameters, CalibrationJournal& journal, CalibrationRun& run) {
+  constexpr int kAnnealing = 1000, kDescent = 200, kMost = 10000000;
+  constexpr double kMilli = 1e-3;
+  deformable::CalibrationSettings settings;
+  settings.method = method_of(o.method);
+  const bool annealing = settings.method == deformable::CalibrationMethod::kAnnealing;
+  settings.ranges.assign(parameters.size(), run.range);
+  settings.evaluations = checked_number(
+      "--evaluations", o.evaluations.value_or(annealing ? kAnnealing : kDescent), 1, kMost);
+  settings.annealing.samples = checked_number("--samples", o.samples, 1, kMost);
+  settings.annealing.batch = checked_number("--batch", o.batch, 1, 1000);
+  settings.enough = kMilli * checked_real("--enough", o.enough, 0.0, 1e9);
+  settings.seed = run.seed;
+  settings.threads = checked_jobs(o.jobs);
+  settings.known = journal.known();
+  run.earlier = settings.known.size();
+  Progress progress("calibrating", static_cast<double>(settings.evaluations - run.earlier));
+  double done = 0.0, best = INFINITY;
+  for (const auto& step : settings.known) {
+    best = std::min(best, step.error);
+  }
+  settings.tell = [&](const deformable::CalibrationStep& step) {
+    journal.add(step);
+    best = std::min(best, step.error);
+    progress.update(++done, fmt::format("{:.4g} mm", best / kMilli), 0.0);
+    check_interrupt();
+  };
+  const auto start = std::chrono::steady_clock::now();
+  run.result = calibrate(problem, parameters, settings);
+  run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The errors of all loads with the constants set by hand and those found.
+void judge(const std::vector<NamedLoad>& loads, const std::vector<CalibrationLoad>& answers,
+           const SpringBody& springs, const deformable::SpringConstants& hand, int threads,
+           CalibrationRun& run) {
+  run.loads.resize(loads.size());
+  parallel_for(loads.size(), threads, [&](std::size_t i) {
+    const CalibrationProblem alone(springs, {answers[i]});
+    JudgedLoad& load = run.loads[i];
+    load.name = loads[i].load.name;
+    load.unseen = loads[i].setup.unseen;
+    load.reference = loads[i].setup.reference.empty() ? "elements" : loads[i].setup.reference;
+    load.markers = !answers[i].markers.empty();
+    load.moved = load_error(answers[i], springs.rest);
+    load.at_reference = answers[i].reference;
+    load.hand = alone.error(hand, false).mean;
+    load.at_hand = alone.rest(hand, 0);
+    const auto found = alone.error(run.springs, false);
+    load.found = found.mean;
+    load.unstable = found.unstable;
+    load.at_found = alone.rest(run.springs, 0);
+  });
+}
+
+/// How far the error changes if rest is asked for a hundred times tighter.
+double tighter_change(const SpringBody& springs, const deformable::SpringConstants& constants,
+                      const std::vector<CalibrationLoad>& seen) {
+  constexpr double kTighter = 1e-12;  // of the largest force; calibration: 1e-10
+  SpringBody body = springs;
+  body.constants = constants;
+  double most = 0.0;
+  for (const CalibrationLoad& load : seen) {
+    const auto first = equilibrium(body, load.load, {}, load.reference);
+    const auto second = equilibrium(body, load.load, {kTighter, 200}, first.positions);
+    most = std::max(
+        most, std::abs(load_error(load, first.positions) - load_error(load, second.positions)));
+  }
+  return most;
+}
+
+std::array<double, 3> hand_of(const DeformCalibrateOptions& o, double material) {
+  if (o.hand.empty()) {
+    const double all = std::pow(10.0, std::floor(material));
+    return {all, all, all};
+  }
+  constexpr double kMost = 1e30;
+  return {checked_real("--hand", o.hand[0], 0.0, kMost),
+          checked_real("--hand", o.hand[1], 0.0, kMost),
+          checked_real("--hand", o.hand[2], 0.0, kMost)};
+}
+
+}  // namespace
+
+int deform_calibrate(const DeformCalibrateOptions& options) {
+  const MemoryBudget budget(options.input.max_memory);
+  const DeformBody body = load_deform_body(options.input);
+  if (!options.out.empty() && fs::exists(options.out) && !fs::is_empty(options.out)) {
+    throw InputError(fmt::format("{}: holds files; choose a new folder", options.out));
+  }
+  watch_for_interrupt();
+  const std::vector<NamedLoad> loads = loads_of(body);
+  const std::vector<CalibrationLoad> answers = answered(body, loads, budget);
+  const std::vector<CalibrationLoad> seen = seen_of(loads, answers);
+  const SpringBody springs =
+      deformable::spring_body(body.mesh, body.elasticity.materials[0].density, {1.0, 1.0, 1.0});
+  const double material = log_of_material(body, springs);
+  CalibrationRun run;
+  run.method = options.method;
+  run.constants = options.constants;
+  run.hand = hand_of(options, material);
+  run.range = range_of(options, material);
+  run.seed = checked_seed(options.seed);
+  for (const NamedLoad& load : loads) {
+    run.simulated = run.simulated || load.simulated;
+  }
+  const SpringParameters parameters = parameters_of(options, springs);
+  const CalibrationProblem problem(springs, seen);
+  const std::string out = fs::path(options.out).lexically_normal().string();
+  CalibrationJournal journal(
+      (out.ends_with('/') ? out.substr(0, out.size() - 1) : out) + ".evaluations",
+      fingerprint(options, body, run, seen), parameters.size());
+  search(options, problem, parameters, journal, run);
+  if (run.result.logarithms.empty()) {
+    throw InputError(
+        fmt::format("no constants of {} rest under every load; the last: {}; raise "
+                    "--evaluations or change --range",
+                    run.result.steps.size(), run.result.steps.back().unstable));
+  }
+  run.springs = parameters.constants(run.result.logarithms);
+  run.tighter = tighter_change(springs, run.springs, seen);
+  judge(loads, answers, springs, spread(springs, {run.hand[0], run.hand[1], run.hand[2]}),
+        checked_jobs(options.jobs), run);
+  write_calibration(body, springs, run, options.out);
+  journal.remove();
+  for (const std::string& line : calibration_lines(run)) {
+    fmt::print("{}\n", line);
+  }
+  fmt::print("report: {}\n", (fs::path(options.out) / "report.html").string());
+  return 0;
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,145 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "analysis/document/document.h"
+#include "analysis/files/new_folder.h"
+#include "core/base/error.h"
+#include "core/base/text/nearest.h"
+#include "core/deformable/elements/dynamic_solver.h"
+#include "experiments/command/arguments.h"
+#include "experiments/command/deform/deform_body.h"
+#include "experiments/command/deform/deform_files.h"
+#include "experiments/control/signals.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using Eigen::Vector3d;
+using Json = nlohmann::ordered_json;
+
+/// What one load gave.
+struct Answer {
+  std::string load;
+  std::vector<Vector3d> displacement;
+  Json numbers;
+};
+
+double largest(const std::vector<Vector3d>& vectors) {
+  double most = 0.0;
+  for (const Vector3d& v : vectors) {
+    most = std::max(most, v.norm());
+  }
+  return most;
+}
+
+Answer statics(deformable::StaticSolver& solver, const NamedLoad& load) {
+  const deformable::StaticResult found = solver.solve(load.load);
+  return {load.load.name,
+          found.displacement,
+          {{"energy_J", found.energy},
+           {"residual", found.residual},
+           {"load_steps", found.load_steps},
+           {"newton_steps", found.newton_steps}}};
+}
+
+Answer dynamics(const DeformBody& body, const deformable::ElasticBody& elastic,
+                const NamedLoad& load, const DeformReferenceOptions& o, Progress& progress,
+                double done) {
+  deformable::DynamicOptions options;
+  options.step = checked_real("--step", o.step, 1e-9, 10.0);
+  options.mass_damping = checked_real("--damping", o.damping, 0.0, 1e6);
+  deformable::DynamicSolver solver(elastic, load.load.holds, options);
+  std::vector<Vector3d> force(body.mesh.vertices.size(), Vector3d::Zero());
+  for (const auto& nodal : load.load.forces) {
+    force[static_cast<std::size_t>(nodal.vertex)] += nodal.force;
+  }
+  const double seconds = checked_real("--seconds", o.seconds, options.step, 1e6);
+  while (solver.time() < seconds - 0.5 * options.step) {
+    solver.step(force);
+    progress.update(done + solver.time() / seconds, load.load.name, 0.0);
+    check_interrupt();
+  }
+  return {load.load.name,
+          solver.motion().displacement,
+          {{"time_s", solver.time()}, {"energy_J", solver.energy()}}};
+}
+
+std::string report_of(const DeformBody& body, const std::vector<Answer>& answers, bool simulated) {
+  analysis::Document page;
+  page.title = "Elements under loads";
+  page.subtitle = body.setup.file.filename().string();
+  page.simulated = simulated;
+  page.paragraph(fmt::format("{} tetrahedra, {} vertices; {} law.", body.mesh.tetrahedra.size(),
+                             body.mesh.vertices.size(), name_of(body.elasticity.law)));
+  std::vector<std::vector<std::string>> rows;
+  for (const Answer& answer : answers) {
+    rows.push_back({answer.load, fmt::format("{:.6g}", 1e3 * root_mean_square(answer.displacement)),
+                    fmt::format("{:.6g}", 1e3 * largest(answer.displacement)),
+                    fmt::format("{:.6g}", answer.numbers["energy_J"].get<double>())});
+  }
+  page.table({"load", "root mean square of the vertices [mm]", "largest [mm]", "energy [J]"}, rows);
+  page.source(body.setup.file.filename().string(), body.setup.text);
+  return analysis::to_html(page);
+}
+
+std::string json_of(const DeformBody& body, const std::vector<Answer>& answers) {
+  Json all{{"body", body.setup.file.filename().string()},
+           {"tetrahedra", body.mesh.tetrahedra.size()},
+           {"vertices", body.mesh.vertices.size()},
+           {"law", std::string(name_of(body.elasticity.law))},
+           {"loads", Json::array()}};
+  for (const Answer& answer : answers) {
+    Json load{{"name", answer.load},
+              {"rms_m", root_mean_square(answer.displacement)},
+              {"largest_m", largest(answer.displacement)}};
+    load.update(answer.numbers);
+    all["loads"].push_back(load);
+  }
+  return all.dump(2) + "\n";
+}
+
+}  // namespace
+
+int deform_reference(const DeformReferenceOptions& options) {
+  if (options.model != "static" && options.model != "dynamic") {
+    throw InputError(
+        not_allowed("--model", fmt::format("'{}'", options.model), {"static", "dynamic"}));
+  }
+  const MemoryBudget budget(options.input.max_memory);
+  const DeformBody body = load_deform_body(options.input);
+  const auto loads = loads_of(body, options.loads);
+  exchange::NewFolder out(options.out);
+  const deformable::ElasticBody elastic(body.mesh, body.elasticity);
+  deformable::StaticSolver solver = static_solver(body, elastic, budget);
+  std::vector<Answer> answers;
+  bool simulated = false;
+  {
+    Progress progress("elements", static_cast<double>(loads.size()));
+    watch_for_interrupt();
+    for (const NamedLoad& load : loads) {
+      const auto done = static_cast<double>(answers.size());
+      answers.push_back(options.model == "static"
+                            ? statics(solver, load)
+                            : dynamics(body, elastic, load, options, progress, done));
+      simulated = simulated || load.simulated;
+      const auto& u = answers.back().displacement;
+      out.write(load.load.name + ".csv", displacements_csv(body.mesh, u));
+      write_state(out.place(load.load.name + ".vtu"), body.mesh, u, elastic.states(u));
+      progress.update(done + 1.0, load.load.name, 0.0);
+      check_interrupt();
+    }
+  }
+  out.write("reference.json", json_of(body, answers));
+  out.write("report.html", report_of(body, answers, simulated));
+  out.publish();
+  for (const Answer& answer : answers) {
+    fmt::print("{}: {:.6g} mm (root mean square), {:.6g} mm at most\n", answer.load,
+               1e3 * root_mean_square(answer.displacement), 1e3 * largest(answer.displacement));
+  }
+  fmt::print("wrote       {}\n", options.out);
+  return 0;
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,208 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "analysis/files/new_folder.h"
+#include "core/base/error.h"
+#include "core/base/text/nearest.h"
+#include "core/deformable/elements/dynamic_solver.h"
+#include "core/deformable/springs/settle.h"
+#include "core/deformable/springs/stable_step.h"
+#include "experiments/command/arguments.h"
+#include "experiments/command/deform/deform_body.h"
+#include "experiments/command/deform/deform_files.h"
+#include "experiments/control/signals.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using Eigen::Vector3d;
+using Places = std::vector<Vector3d>;
+
+/// A body in time, whatever moves it.
+class Stepper {
+ public:
+  virtual ~Stepper() = default;
+  virtual void step() = 0;
+  virtual double time() const = 0;
+  virtual double fastest() const = 0;  // vertex [m/s]
+  virtual Places displacement() const = 0;
+  virtual std::vector<deformable::TetState> states() const = 0;
+  virtual std::size_t inverted() const = 0;
+};
+
+class SpringStepper : public Stepper {
+ public:
+  SpringStepper(deformable::SpringBody body, const deformable::LoadCase& load, double step,
+                double damping)
+      : body_(std::move(body)), motion_(body_, {step, damping}, deformable::held_vertices(load)) {
+    apply(load, body_, motion_);
+  }
+  void step() override { motion_.step(); }
+  double time() const override { return motion_.time(); }
+  double fastest() const override { return motion_.activity().max_speed; }
+  Places displacement() const override {
+    Places u = motion_.positions();
+    for (std::size_t v = 0; v < u.size(); ++v) {
+      u[v] -= body_.rest[v];
+    }
+    return u;
+  }
+  std::vector<deformable::TetState> states() const override { return {}; }
+  std::size_t inverted() const override { return motion_.inverted(); }
+
+ private:
+  deformable::SpringBody body_;
+  deformable::SpringMotion motion_;
+};
+
+class ElementStepper : public Stepper {
+ public:
+  ElementStepper(const DeformBody& body, const deformable::LoadCase& load, double step,
+                 double damping)
+      : elastic_(body.mesh, body.elasticity),
+        solver_(elastic_, load.holds, {.step = step, .mass_damping = damping}),
+        force_(body.mesh.vertices.size(), Vector3d::Zero()) {
+    for (const auto& nodal : load.forces) {
+      force_[static_cast<std::size_t>(nodal.vertex)] += nodal.force;
+    }
+  }
+  void step() override { solver_.step(force_); }
+  double time() const override { return solver_.time(); }
+  double fastest() const override {
+    double most = 0.0;
+    for (const Vector3d& v : solver_.motion().velocity) {
+      most = std::max(most, v.norm());
+    }
+    return most;
+  }
+  Places displacement() const override { return solver_.motion().displacement; }
+  std::vector<deformable::TetState> states() const override {
+    return elastic_.states(solver_.motion().displacement);
+  }
+  std::size_t inverted() const override { return 0; }  // the solver refuses it
+
+ private:
+  deformable::ElasticBody elastic_;
+  deformable::DynamicSolver solver_;
+  Places force_;
+};
+
+deformable::SpringBody springs_of(const DeformBody& body, const DeformSimulateOptions& o) {
+  if (o.constants.empty() == o.three.empty()) {
+    throw InputError(
+        "springs need --constants FILE of a calibration, or --springs with three "
+        "numbers");
+  }
+  const double density = body.elasticity.materials[0].density;
+  if (!o.three.empty()) {
+    return deformable::spring_body(body.mesh, density, {o.three[0], o.three[1], o.three[2]});
+  }
+  auto springs = deformable::spring_body(body.mesh, density, {1.0, 1.0, 1.0});
+  springs.constants = read_constants(o.constants, springs);
+  return springs;
+}
+
+std::unique_ptr<Stepper> stepper_of(const DeformBody& body, const deformable::LoadCase& load,
+                                    const DeformSimulateOptions& o) {
+  constexpr double kElementStep = 1e-3, kOfStable = 0.5;
+  const double damping = checked_real("--damping", o.damping, 0.0, 1e6);
+  const auto step_or = [&](double otherwise) {
+    return o.step ? checked_real("--step", *o.step, 1e-12, 10.0) : otherwise;
+  };
+  if (o.model == "elements") {
+    return std::make_unique<ElementStepper>(body, load, step_or(kElementStep), damping);
+  }
+  if (o.model != "springs") {
+    throw InputError(not_allowed("--model", fmt::format("'{}'", o.model), {"springs", "elements"}));
+  }
+  deformable::SpringBody springs = springs_of(body, o);
+  double mass = 0.0;
+  for (const double m : springs.masses) {
+    mass += m / static_cast<double>(springs.masses.size());
+  }
+  const double step =
+      step_or(kOfStable * deformable::stable_step(springs, deformable::held_vertices(load)));
+  return std::make_unique<SpringStepper>(std::move(springs), load, step, damping * mass);
+}
+
+/// The series that ParaView plays.
+std::string series_of(const std::vector<double>& times) {
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    fmt::format_to(std::back_inserter(text),
+                   "<DataSet timestep=\"{}\" file=\"frame-{:04}.vtu\"/>\n", times[i], i);
+  }
+  return text + "</Collection>\n</VTKFile>\n";
+}
+
+void check_finite(const Places& u, double time) {
+  for (const Vector3d& v : u) {
+    if (!v.allFinite()) {
+      throw InputError(
+          fmt::format("the body flies apart by {:.4g} s; take a smaller --step or "
+                      "larger constants",
+                      time));
+    }
+  }
+}
+
+}  // namespace
+
+int deform_simulate(const DeformSimulateOptions& options) {
+  constexpr int kMostFrames = 100000;
+  const DeformBody body = load_deform_body(options.input);
+  const auto loads =
+      loads_of(body, options.load.empty() ? std::vector<std::string>() : std::vector{options.load});
+  const auto stepper = stepper_of(body, loads[0].load, options);
+  const double seconds = checked_real("--seconds", options.seconds, 1e-9, 1e6);
+  const int frames = checked_number("--frames", options.frames, 1, kMostFrames);
+  exchange::NewFolder out(options.out);
+  Progress progress("simulating", seconds);
+  watch_for_interrupt();
+  std::vector<double> times;
+  const auto write = [&] {
+    const Places u = stepper->displacement();
+    check_finite(u, stepper->time());
+    write_state(out.place(fmt::format("frame-{:04}.vtu", times.size())), body.mesh, u,
+                stepper->states());
+    out.write(fmt::format("frame-{:04}.csv", times.size()), displacements_csv(body.mesh, u));
+    times.push_back(stepper->time());
+  };
+  const deformable::RestCriterion criterion;
+  double quiet_since = 0.0;
+  bool rests = false;
+  std::size_t inverted = 0;
+  write();
+  while (stepper->time() < seconds && !rests) {
+    stepper->step();
+    inverted = std::max(inverted, stepper->inverted());
+    if (!(stepper->fastest() < criterion.below.max_speed)) {
+      quiet_since = stepper->time();
+    }
+    rests = options.to_rest && stepper->time() - quiet_since >= criterion.lasting;
+    if (stepper->time() >= seconds * static_cast<double>(times.size()) / frames) {
+      write();
+    }
+    progress.update(stepper->time(), "", 1.0);
+    check_interrupt();
+  }
+  if (rests) {
+    write();
+  }
+  out.write("series.pvd", series_of(times));
+  out.publish();
+  fmt::print("load '{}': {} frames until {:.6g} s{}\n", loads[0].load.name, times.size(),
+             times.back(), options.to_rest ? rests ? ", at rest" : ", not at rest yet" : "");
+  fmt::print("moved       {:.6g} mm (root mean square)\n",
+             1e3 * root_mean_square(stepper->displacement()));
+  if (inverted > 0) {
+    fmt::print("inverted    up to {} tetrahedra\n", inverted);
+  }
+  fmt::print("wrote       {}\n", options.out);
+  return 0;
+}
+
+}  // namespace haptrial::experiments

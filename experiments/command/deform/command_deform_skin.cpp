@@ -1,0 +1,52 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "analysis/files/new_folder.h"
+#include "core/base/error.h"
+#include "core/deformable/skin/skin.h"
+#include "core/geometry/files/mesh_io.h"
+#include "experiments/command/arguments.h"
+#include "experiments/command/deform/deform_body.h"
+#include "experiments/command/deform/deform_files.h"
+#include "experiments/control/signals.h"
+
+namespace haptrial::experiments {
+
+int deform_skin(const DeformSkinOptions& options) {
+  namespace fs = std::filesystem;
+  geometry::mesh_format("x." + options.format);
+  const int neighbours = checked_number("--neighbours", options.neighbours, 1, 100);
+  const DeformBody body = load_deform_body(options.input);
+  geometry::Mesh surface = load_mesh({options.surface, options.scale, options.input.max_memory},
+                                     MemoryBudget(options.input.max_memory));
+  const auto parts = deformable::mesh_parts(body.mesh.tetrahedra);
+  deformable::Skin skin(body.mesh.vertices, parts.surface, surface.vertices, neighbours);
+  exchange::NewFolder out(options.out);
+  Progress progress("skin", static_cast<double>(options.states.size()));
+  watch_for_interrupt();
+  double done = 0.0;
+  std::size_t lost = 0;
+  for (const std::string& state : options.states) {
+    const auto moved = moved_by(body.mesh, read_displacements(state, body.mesh));
+    std::vector<Eigen::Vector3d> places(surface.vertices.size());
+    skin.update(moved, places);
+    lost = std::max(lost, skin.lost_frames());
+    geometry::Mesh posed = surface;
+    posed.vertices.assign(places.begin(), places.end());
+    const auto name = fs::path(state).stem().string() + "." + options.format;
+    geometry::write_mesh(out.place(name), posed);
+    progress.update(++done, name, 0.0);
+    check_interrupt();
+  }
+  out.publish();
+  fmt::print("skin        {} vertices by {} neighbours each, {} states\n", skin.vertices(),
+             skin.neighbours(), options.states.size());
+  if (lost > 0) {
+    fmt::print("frames      up to {} had no direction and stayed as they were\n", lost);
+  }
+  fmt::print("wrote       {}\n", options.out);
+  return 0;
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/deformable/elements/static_solver.h"
+#include "core/deformable/setup/setup_body.h"
+#include "experiments/command/deform/deform_commands.h"
+#include "experiments/command/mesh_command.h"
+
+namespace haptrial::experiments {
+
+/// What a file states, made.
+struct DeformBody {
+  deformable::DeformSetup setup;
+  geometry::TetMesh mesh;
+  deformable::Elasticity elasticity;
+};
+
+/// @throws InputError for a file that is not good, elements that are inverted or flat, and memory
+/// that there is not.
+DeformBody load_deform_body(const DeformInput& input);
+
+/// A load with its name, ready for any model.
+struct NamedLoad {
+  deformable::SetupLoad setup;
+  deformable::LoadCase load;
+  bool simulated{false};  // from a session that was
+};
+
+/// All loads of the file, or those named. A recorded session gives one load for each touch.
+/// @throws InputError for a name that the file has not, and as load_case_of() and check_load().
+std::vector<NamedLoad> loads_of(const DeformBody& body, const std::vector<std::string>& names = {});
+
+/// Statics by elements, asked for memory before.
+deformable::StaticSolver static_solver(const DeformBody& body,
+                                       const deformable::ElasticBody& elastic,
+                                       const MemoryBudget& budget);
+
+/// The rest vertices moved.
+std::vector<Eigen::Vector3d> moved_by(const geometry::TetMesh& mesh,
+                                      const std::vector<Eigen::Vector3d>& displacement);
+
+/// @throws geometry::Cancelled when the program was asked to stop.
+void check_interrupt();
+
+double root_mean_square(const std::vector<Eigen::Vector3d>& vectors);
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,82 @@
+#include "experiments/command/deform/session_loads.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/contact/recording/session_contact.h"
+#include "core/base/error.h"
+#include "core/record/read/session_reader.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kFelt = 0.05;  // of the largest force: the tool touches
+
+std::int32_t nearest_outside(const geometry::TetMesh& mesh, const Vector3d& place) {
+  std::int32_t best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const double way = (mesh.vertices[v] - place).norm();
+    if (mesh.on_surface[v] != 0 && way < least) {
+      least = way;
+      best = static_cast<std::int32_t>(v);
+    }
+  }
+  return best;
+}
+
+/// Samples in which the tool is felt, evenly over them.
+std::vector<std::size_t> moments(const evaluation::ForceStream& force, int count) {
+  double most = 0.0;
+  for (const Vector3d& f : force.force) {
+    most = std::max(most, f.norm());
+  }
+  std::vector<std::size_t> felt;
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    if (most > 0.0 && force.force[i].norm() >= kFelt * most) {
+      felt.push_back(i);
+    }
+  }
+  std::vector<std::size_t> chosen;
+  const std::size_t wanted = std::min(felt.size(), static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < wanted; ++i) {
+    chosen.push_back(felt[(2 * i + 1) * felt.size() / (2 * wanted)]);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+std::vector<NamedLoad> touches_of(const DeformBody& body, const deformable::SetupLoad& load,
+                                  const deformable::LoadCase& fixed) {
+  const auto file = body.setup.path_of(load.session);
+  evaluation::SessionChoice choice;
+  if (!load.object.empty()) {
+    choice.object = load.object;
+  }
+  if (load.trial > 0) {
+    choice.trial = load.trial;
+  }
+  const auto contact = evaluation::read_session_contact(record::SessionReader(file), choice);
+  const auto& force = contact.recording.force;
+  const auto poses = evaluation::resampled(contact.recording.pose, force.time);
+  std::vector<NamedLoad> touches;
+  for (const std::size_t i : moments(force, load.touches)) {
+    NamedLoad touch{load, fixed, contact.simulated};
+    touch.setup.name = touch.load.name = fmt::format("{} {}", load.name, touches.size() + 1);
+    // What the object does to the tool the tool does to the object.
+    touch.load.forces.push_back(
+        {nearest_outside(body.mesh, poses.position[i]), Vector3d(-force.force[i])});
+    touches.push_back(std::move(touch));
+  }
+  if (touches.empty()) {
+    throw InputError(fmt::format("{}: the contact with '{}' in trial {} has no force",
+                                 file.string(), contact.object, contact.trial));
+  }
+  return touches;
+}
+
+}  // namespace haptrial::experiments
