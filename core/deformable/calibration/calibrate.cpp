@@ -59,22 +59,38 @@ CalibrationStep step_of(std::vector<double> logarithms, const CalibrationError& 
   return {std::move(logarithms), found.mean, found.unstable};
 }
 
+/// The next of the points that are asked for, few enough that a run that is killed loses little.
+/// @param first  of them
+std::vector<CalibrationStep> evaluated_next(const CalibrationProblem& problem,
+                                            const SpringParameters& parameters,
+                                            const CalibrationSettings& settings,
+                                            const Account& account,
+                                            const std::vector<std::vector<double>>& points,
+                                            std::size_t first) {
+  constexpr std::size_t kEach = 2;  // for a thread
+  const std::size_t most = kEach * static_cast<std::size_t>(std::max(settings.threads, 1));
+  std::vector<CalibrationStep> steps(std::min(most, points.size() - first));
+  parallel_for(steps.size(), settings.threads, [&](std::size_t i) {
+    const auto& point = points[first + i];
+    const CalibrationStep* known = account.known(point, i);
+    steps[i] = known != nullptr ? *known
+                                : step_of(point, problem.error(parameters.constants(point), false));
+  });
+  return steps;
+}
+
 void anneal(const CalibrationProblem& problem, const SpringParameters& parameters,
             const CalibrationSettings& settings, Account& account) {
   Annealing annealing(settings.ranges, settings.seed, settings.annealing);
   while (!account.over()) {
     const auto& points = annealing.ask();
-    std::vector<CalibrationStep> steps(points.size());
-    parallel_for(points.size(), settings.threads, [&](std::size_t i) {
-      const CalibrationStep* known = account.known(points[i], i);
-      steps[i] = known != nullptr
-                     ? *known
-                     : step_of(points[i], problem.error(parameters.constants(points[i]), false));
-    });
     std::vector<double> costs;
-    for (CalibrationStep& step : steps) {
-      costs.push_back(step.error);
-      account.add(std::move(step));
+    while (costs.size() < points.size()) {
+      for (CalibrationStep& step :
+           evaluated_next(problem, parameters, settings, account, points, costs.size())) {
+        costs.push_back(step.error);
+        account.add(std::move(step));
+      }
     }
     annealing.tell(costs);
   }

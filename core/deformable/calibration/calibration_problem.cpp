@@ -17,6 +17,8 @@ namespace {
 using Eigen::Vector3d;
 using Positions = std::vector<Vector3d>;
 
+constexpr int kIterations = 60;  // of Newton's method: what rests takes fewer than 30
+
 void check_reference(const SpringBody& body, const CalibrationLoad& load) {
   if (load.reference.size() != body.rest.size()) {
     throw InputError(fmt::format("load '{}': the reference has {} vertices; the body has {}",
@@ -157,7 +159,8 @@ struct LoadAnswer {
 LoadAnswer answer_of(const SpringBody& body, const CalibrationLoad& load, bool with_gradient,
                      double share) {
   LoadAnswer answer;
-  const Equilibrium found = equilibrium(body, load.load, {}, load.reference);
+  const Equilibrium found =
+      equilibrium(body, load.load, {.iterations = kIterations}, load.reference);
   if (found.outcome != Settling::kSettled || found.inverted > 0) {
     answer.unstable = why_unstable(load.load, found);
     return answer;
@@ -204,7 +207,8 @@ Positions CalibrationProblem::rest(const SpringConstants& constants, std::size_t
   SpringBody body = body_;
   check_constants(body, constants);
   body.constants = constants;
-  const Equilibrium found = equilibrium(body, loads_.at(load).load, {}, loads_[load].reference);
+  const Equilibrium found =
+      equilibrium(body, loads_.at(load).load, {.iterations = kIterations}, loads_[load].reference);
   return found.outcome == Settling::kSettled ? found.positions : Positions();
 }
 
