@@ -4,7 +4,8 @@
 #   results/regenerate.sh force_training [SEED]
 # A variant, force_training_..., is also compared with force_training. A study of drillings is rated by
 # simulated raters; of an experiment that its definition states whole a few participants are kept.
-# contact_evaluation is no study: haptrial evaluate --duck makes it.
+# contact_evaluation and calibration are no studies: haptrial evaluate --duck and haptrial deform
+# calibrate make them.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 study=${1:?which study? a definition in experiments/, without .toml}
@@ -36,6 +37,30 @@ if [ "$study" = contact_evaluation ]; then  # no participants: a simulated recor
   "failures_sha256": "$(sum "results/$study/failures.csv")"
 }
 EOF
+  exit
+fi
+if [ "$study" = calibration ]; then  # springs that follow elements, and a real cube
+  folder=results/calibration
+  out=$(mktemp -d)
+  trap 'rm -rf "$out"' EXIT
+  build/haptrial mesh make gear "$folder/gear.ply" --overwrite
+  python3 "$folder/runs.py" list | {
+    while read -r name arguments; do
+      # shellcheck disable=SC2086
+      build/haptrial deform calibrate "$folder"/$arguments --out "$out/$name"
+      cp "$out/$name/calibration.json" "$folder/$name.json"
+      cp "$out/$name/evaluations.csv" "$folder/$name.csv"
+      for report in gear-descent gear-grid-descent cube-grid-descent; do
+        [ "$name" != "$report" ] || cp "$out/$name/report.html" "$folder/$name.html"
+      done
+    done
+  }
+  if [ -d "${HAPTRIAL_DATA:-../shared/data}/deformable" ]; then
+    HAPTRIAL_WRITE_RESULTS=1 build/test_deformable --gtest_filter='TruthCubeSpringsTest.TheTable*'
+  else
+    echo "regenerate.sh: no data of the real cube; $folder/truth_cube.csv stays as it is" >&2
+  fi
+  python3 "$folder/runs.py" tables "$(build/haptrial --version)"
   exit
 fi
 [ -f "$definition" ] || { echo "regenerate.sh: no $definition" >&2; exit 2; }

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
@@ -129,6 +130,34 @@ TEST_P(ContactResults, Reproduce) {
 
 INSTANTIATE_TEST_SUITE_P(Shipped, ContactResults, testing::ValuesIn(results_with("table-6.csv")),
                          study_of);
+
+/// Springs calibrated to elements: the first evaluations of the shortest search.
+TEST(CalibrationResults, BeginAsTheyAreShipped) {
+  constexpr std::size_t kRows = 12;
+  constexpr double kSame = 1e-3;  // relative: libraries round in their own ways
+  const test::TemporaryFolder out;
+  const std::string folder = (out / "run").string();
+  const auto run = test::run_command("cd '" + kSource.string() +
+                                     "'\nhaptrial deform calibrate results/calibration/gear.toml "
+                                     "--evaluations 12 --out '" +
+                                     folder + "'");
+  ASSERT_EQ(run.status, 0) << run.errors;
+  std::istringstream found(test::read_text(folder + "/evaluations.csv"));
+  std::istringstream shipped(test::read_text(kSource / "results/calibration/gear-descent.csv"));
+  std::string a, b;
+  for (std::size_t row = 0; row <= kRows; ++row) {
+    ASSERT_TRUE(std::getline(found, a) && std::getline(shipped, b)) << row;
+    if (row > 0) {  // evaluation, error, ...
+      const double expected = std::stod(b.substr(b.find(',') + 1));
+      EXPECT_NEAR(std::stod(a.substr(a.find(',') + 1)), expected, kSame * expected) << row;
+    }
+  }
+  const auto manifest =
+      nlohmann::json::parse(test::read_text(kSource / "results/calibration/manifest.json"));
+  for (const char* name : {"gear.toml", "cube.toml", "gear.ply", "summary.csv"}) {
+    EXPECT_EQ(sum_of(kSource / "results/calibration" / name), manifest["sha256"][name]) << name;
+  }
+}
 
 TEST(ResultsTest, EveryStudyIsThere) {
   EXPECT_EQ(results_with("table-6.csv").size(), 1u);

@@ -25,6 +25,9 @@ BodySource read_source(Table table) {
   if (!source.block) {
     source.scale = table.number_or("scale", 1.0, kPositive, "m");
   }
+  if (table.has("shift")) {
+    source.shift = read_vector(table, "shift", {}, "m");
+  }
   if (source.tetrahedra.empty()) {
     source.resolution = table.integer_or("resolution", 20, 1, 1000);
   }

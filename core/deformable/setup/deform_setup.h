@@ -16,11 +16,12 @@ namespace haptrial::deformable {
 
 /// What a body is made from: exactly one of mesh, tetrahedra and block.
 struct BodySource {
-  std::filesystem::path mesh;            // surface, to be filled with voxels; empty: none
-  std::filesystem::path tetrahedra;      // TetGen's .node with .ele; empty: none
-  std::optional<Eigen::Vector3d> block;  // sides [m]
-  double scale{1.0};                     // metres to the file's unit
-  int resolution{20};                    // cubes along the longest axis
+  std::filesystem::path mesh;                      // surface, to be filled with voxels; empty: none
+  std::filesystem::path tetrahedra;                // TetGen's .node with .ele; empty: none
+  std::optional<Eigen::Vector3d> block;            // sides [m]
+  double scale{1.0};                               // metres to the file's unit
+  Eigen::Vector3d shift{Eigen::Vector3d::Zero()};  // added to every vertex [m]
+  int resolution{20};                              // cubes along the longest axis
 };
 
 struct NamedMaterial {

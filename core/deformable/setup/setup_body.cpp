@@ -207,7 +207,9 @@ TetMesh block_body(const Vector3d& size, int resolution) {
   return geometry::tetrahedralize(solid);
 }
 
-TetMesh body_of(const DeformSetup& setup, const MemoryCheck& check) {
+namespace {
+
+TetMesh unmoved_body(const DeformSetup& setup, const MemoryCheck& check) {
   const BodySource& source = setup.source;
   if (source.block) {
     constexpr double kByCube = 1000;  // five tetrahedra, a vertex and their surface
@@ -228,6 +230,16 @@ TetMesh body_of(const DeformSetup& setup, const MemoryCheck& check) {
     return read_tetgen(file, source.scale);
   }
   return filled(source, setup.path_of(source.mesh), check);
+}
+
+}  // namespace
+
+TetMesh body_of(const DeformSetup& setup, const MemoryCheck& check) {
+  TetMesh body = unmoved_body(setup, check);
+  for (Vector3d& p : body.vertices) {
+    p += setup.source.shift;
+  }
+  return body;
 }
 
 }  // namespace haptrial::deformable

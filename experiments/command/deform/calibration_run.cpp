@@ -29,6 +29,10 @@ std::string millimetres(double metres) {
   return std::isfinite(metres) ? fmt::format("{:.4g}", kMillimetres * metres) : "unstable";
 }
 
+std::string with_unit(double metres) {
+  return std::isfinite(metres) ? millimetres(metres) + " mm" : millimetres(metres);
+}
+
 Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
 std::size_t unstable_steps(const CalibrationRun& run) {
@@ -209,14 +213,12 @@ std::vector<std::string> calibration_lines(const CalibrationRun& run) {
   if (run.earlier > 0) {
     lines.push_back(fmt::format("{} evaluations were done before", run.earlier));
   }
-  lines.push_back(fmt::format("error {} mm set by hand, {} mm calibrated",
-                              millimetres(seen_error(run, true)),
-                              millimetres(seen_error(run, false))));
+  lines.push_back(fmt::format("error {} set by hand, {} calibrated",
+                              with_unit(seen_error(run, true)), with_unit(seen_error(run, false))));
   for (const JudgedLoad& load : run.loads) {
-    lines.push_back(
-        fmt::format("load '{}'{}: moved {} mm, error {} mm set by hand, {} mm calibrated",
-                    load.name, load.unseen ? ", unseen" : "", millimetres(load.moved),
-                    millimetres(load.hand), millimetres(load.found)));
+    lines.push_back(fmt::format("load '{}'{}: moved {}, error {} set by hand, {} calibrated",
+                                load.name, load.unseen ? ", unseen" : "", with_unit(load.moved),
+                                with_unit(load.hand), with_unit(load.found)));
   }
   return lines;
 }
