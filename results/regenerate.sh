@@ -50,7 +50,7 @@ if [ "$study" = calibration ]; then  # springs that follow elements, and a real 
       build/haptrial deform calibrate "$folder"/$arguments --out "$out/$name"
       cp "$out/$name/calibration.json" "$folder/$name.json"
       cp "$out/$name/evaluations.csv" "$folder/$name.csv"
-      for report in gear-descent gear-grid-descent cube-grid-descent; do
+      for report in gear-grid-descent cube-grid-descent; do
         [ "$name" != "$report" ] || cp "$out/$name/report.html" "$folder/$name.html"
       done
     done

@@ -94,7 +94,7 @@ TEST_F(DeformCommandTest, CalibrateFindsWhatFollowsTheReference) {
   const auto found = run("haptrial deform calibrate bar.toml --evaluations 60 --out cal");
   ASSERT_EQ(found.status, 0) << found.errors;
   const auto numbers = json("cal/calibration.json");
-  EXPECT_LT(numbers["error_m"].get<double>(), 0.15 * numbers["loads"][0]["moved_m"].get<double>());
+  EXPECT_LT(numbers["error_m"].get<double>(), 0.2 * numbers["loads"][0]["moved_m"].get<double>());
   EXPECT_LT(numbers["error_m"].get<double>(), numbers["hand_error_m"].get<double>());
   EXPECT_LT(numbers["change_by_tighter_rest_m"].get<double>(),
             1e-6 * numbers["loads"][0]["moved_m"].get<double>());
@@ -157,7 +157,7 @@ TEST_F(DeformCommandTest, SpringsComeToRestAndSkinsFollow) {
 }
 
 /// A ball that a virtual participant strokes, 3 cm below the origin.
-constexpr const char* kBallStudy = R"(
+constexpr const char* kStrokedBall = R"(
 [experiment]
 protocol = "trials"
 name = "round_a_ball"
@@ -184,7 +184,7 @@ explore = { do = "follow", turn_after = 2.0 }
 instructions = "Go round it."
 )";
 
-constexpr const char* kBall = R"([body]
+constexpr const char* kSoftBall = R"([body]
 mesh = "ball.obj"
 shift = [0.0, -0.03, 0.0]
 resolution = 6
@@ -192,16 +192,16 @@ resolution = 6
 young = 30e3
 poisson = 0.4
 [regions]
-below = { low = [-1.0, -1.0, -1.0], high = [1.0, -0.045, 1.0] }
+core = { low = [-0.009, -0.039, -0.009], high = [0.009, -0.021, 0.009] }
 [loads.stroke]
-held = ["below"]
+held = ["core"]
 session = "study/S01.h5"
 touches = 3
 )";
 
 TEST_F(DeformCommandTest, TouchesOfASessionAreLoads) {
-  test::write_text(folder_ / "ball.toml", kBallStudy);
-  test::write_text(folder_ / "soft.toml", kBall);
+  test::write_text(folder_ / "ball.toml", kStrokedBall);
+  test::write_text(folder_ / "soft.toml", kSoftBall);
   ASSERT_EQ(run("haptrial mesh make sphere body.obj\nhaptrial mesh repair body.obj ball.obj "
                 "--scale 0.5")
                 .status,

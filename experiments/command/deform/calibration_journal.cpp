@@ -95,7 +95,7 @@ void CalibrationJournal::remove() {
 }
 
 std::string evaluations_csv(const std::vector<CalibrationStep>& steps) {
-  constexpr std::size_t kMostColumns = 300;  // more parameters stay out
+  constexpr std::size_t kMostColumns = 30;  // more parameters stay out
   constexpr double kMilli = 1e3;
   const bool wide = !steps.empty() && steps[0].logarithms.size() <= kMostColumns;
   std::string text = "evaluation,error_mm,best_mm,unstable";

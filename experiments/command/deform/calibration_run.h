@@ -5,8 +5,6 @@
 #include <vector>
 
 #include "core/deformable/calibration/calibrate.h"
-#include "experiments/command/deform/deform_body.h"
-
 namespace haptrial::experiments {
 
 /// What a calibration is judged by under one load.
@@ -39,13 +37,5 @@ struct CalibrationRun {
 
 /// The errors before and after, over the loads that calibration saw [m]; infinite: unstable.
 double seen_error(const CalibrationRun& run, bool by_hand);
-
-/// Writes report.html, calibration.json, constants.csv, evaluations.csv and the pictures into a new
-/// folder, whole or not at all.
-void write_calibration(const DeformBody& body, const deformable::SpringBody& springs,
-                       const CalibrationRun& run, const std::string& folder);
-
-/// The lines for the terminal.
-std::vector<std::string> calibration_lines(const CalibrationRun& run);
 
 }  // namespace haptrial::experiments

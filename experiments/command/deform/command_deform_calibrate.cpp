@@ -11,8 +11,9 @@
 #include "core/deformable/springs/equilibrium.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/deform/calibration_journal.h"
-#include "experiments/command/deform/calibration_run.h"
+#include "experiments/command/deform/calibration_report.h"
 #include "experiments/command/deform/deform_files.h"
+#include "experiments/command/deform/deform_loads.h"
 #include "experiments/control/signals.h"
 
 namespace haptrial::experiments {

@@ -11,6 +11,7 @@
 #include "experiments/command/arguments.h"
 #include "experiments/command/deform/deform_body.h"
 #include "experiments/command/deform/deform_files.h"
+#include "experiments/command/deform/deform_loads.h"
 #include "experiments/control/signals.h"
 
 namespace haptrial::experiments {
@@ -66,7 +67,8 @@ Answer dynamics(const DeformBody& body, const deformable::ElasticBody& elastic,
           {{"time_s", solver.time()}, {"energy_J", solver.energy()}}};
 }
 
-std::string report_of(const DeformBody& body, const std::vector<Answer>& answers, bool simulated) {
+std::string reference_report(const DeformBody& body, const std::vector<Answer>& answers,
+                             bool simulated) {
   analysis::Document page;
   page.title = "Elements under loads";
   page.subtitle = body.setup.file.filename().string();
@@ -84,7 +86,7 @@ std::string report_of(const DeformBody& body, const std::vector<Answer>& answers
   return analysis::to_html(page);
 }
 
-std::string json_of(const DeformBody& body, const std::vector<Answer>& answers) {
+std::string reference_json(const DeformBody& body, const std::vector<Answer>& answers) {
   Json all{{"body", body.setup.file.filename().string()},
            {"tetrahedra", body.mesh.tetrahedra.size()},
            {"vertices", body.mesh.vertices.size()},
@@ -131,8 +133,8 @@ int deform_reference(const DeformReferenceOptions& options) {
       check_interrupt();
     }
   }
-  out.write("reference.json", json_of(body, answers));
-  out.write("report.html", report_of(body, answers, simulated));
+  out.write("reference.json", reference_json(body, answers));
+  out.write("report.html", reference_report(body, answers, simulated));
   out.publish();
   for (const Answer& answer : answers) {
     fmt::print("{}: {:.6g} mm (root mean square), {:.6g} mm at most\n", answer.load,

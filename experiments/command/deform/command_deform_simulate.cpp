@@ -12,6 +12,7 @@
 #include "experiments/command/arguments.h"
 #include "experiments/command/deform/deform_body.h"
 #include "experiments/command/deform/deform_files.h"
+#include "experiments/command/deform/deform_loads.h"
 #include "experiments/control/signals.h"
 
 namespace haptrial::experiments {

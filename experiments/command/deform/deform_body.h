@@ -28,10 +28,6 @@ struct NamedLoad {
   bool simulated{false};  // from a session that was
 };
 
-/// All loads of the file, or those named. A recorded session gives one load for each touch.
-/// @throws InputError for a name that the file has not, and as load_case_of() and check_load().
-std::vector<NamedLoad> loads_of(const DeformBody& body, const std::vector<std::string>& names = {});
-
 /// Statics by elements, asked for memory before.
 deformable::StaticSolver static_solver(const DeformBody& body,
                                        const deformable::ElasticBody& elastic,

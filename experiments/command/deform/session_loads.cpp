@@ -67,9 +67,14 @@ std::vector<NamedLoad> touches_of(const DeformBody& body, const deformable::Setu
   for (const std::size_t i : moments(force, load.touches)) {
     NamedLoad touch{load, fixed, contact.simulated};
     touch.setup.name = touch.load.name = fmt::format("{} {}", load.name, touches.size() + 1);
+    const std::int32_t vertex = nearest_outside(body.mesh, poses.position[i]);
+    if (std::any_of(fixed.holds.begin(), fixed.holds.end(),
+                    [&](const deformable::Hold& hold) { return hold.vertex == vertex; })) {
+      throw InputError(fmt::format("load '{}': the tool touches vertex {}, which is held",
+                                   touch.load.name, vertex));
+    }
     // What the object does to the tool the tool does to the object.
-    touch.load.forces.push_back(
-        {nearest_outside(body.mesh, poses.position[i]), Vector3d(-force.force[i])});
+    touch.load.forces.push_back({vertex, Vector3d(-force.force[i])});
     touches.push_back(std::move(touch));
   }
   if (touches.empty()) {

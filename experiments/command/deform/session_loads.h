@@ -11,7 +11,8 @@ namespace haptrial::experiments {
 /// The session must have recorded the contact (record = true of the object), and the body must
 /// stand in the file where it stood in the world.
 /// @param fixed  what holds the body beside the touch
-/// @throws InputError as read_session_contact(), and for contacts without a force.
+/// @throws InputError as read_session_contact(), for contacts without a force and for a touch of a
+/// vertex that is held.
 /// Source: Morris 2006, §5.3.2 ("acquired using a haptic simulation environment").
 std::vector<NamedLoad> touches_of(const DeformBody& body, const deformable::SetupLoad& load,
                                   const deformable::LoadCase& fixed);

@@ -8,8 +8,8 @@ namespace {
 
 constexpr const char* kPage = "guide-deformable.md";
 
-void take_input(CLI::App& sub, DeformInput& input,
-                const char* what = "Definition of a body and its loads (.toml)") {
+void take_deform_input(CLI::App& sub, DeformInput& input,
+                       const char* what = "Definition of a body and its loads (.toml)") {
   sub.add_option("BODY", input.file, what)->required();
   sub.add_option("--max-memory", input.max_memory,
                  "Limit of memory [GB]; a larger body is refused (default: the free memory)");
@@ -19,8 +19,9 @@ void add_deform_info(CLI::App& deform, int& status) {
   CLI::App* sub = subcommand(deform, "info", "Describe a body: shapes, volume, mass, step, memory",
                              "haptrial deform info gear.toml", {"", kPage});
   auto& o = options_of<DeformInfoOptions>(*sub, status, deform_info);
-  take_input(*sub, o.input,
-             "Definition of a body (.toml), mesh (.obj, .ply, .stl, .off) or tetrahedra (.node)");
+  take_deform_input(
+      *sub, o.input,
+      "Definition of a body (.toml), mesh (.obj, .ply, .stl, .off) or tetrahedra (.node)");
   sub->add_option("--resolution", o.resolution,
                   "Number of cubes along the longest axis of a mesh (default: 20)");
   sub->add_option("--scale", o.scale, "Length of one unit of a mesh [m] (default: 1)");
@@ -36,7 +37,7 @@ void add_deform_reference(CLI::App& deform, int& status) {
       "haptrial deform reference gear.toml --out out/reference",
       {"displacements (.csv, .vtu), reference.json and report.html in the folder of --out", kPage});
   auto& o = options_of<DeformReferenceOptions>(*sub, status, deform_reference);
-  take_input(*sub, o.input);
+  take_deform_input(*sub, o.input);
   sub->add_option("--out", o.out, "New folder")->required();
   sub->add_option("--load", o.loads, "Name of a load; may be repeated (default: all)")
       ->allow_extra_args(false);
@@ -54,7 +55,7 @@ void add_deform_calibrate(CLI::App& deform, int& status) {
        "A run that was killed goes on from OUT.evaluations",
        kPage});
   auto& o = options_of<DeformCalibrateOptions>(*sub, status, deform_calibrate);
-  take_input(*sub, o.input);
+  take_deform_input(*sub, o.input);
   sub->add_option("--out", o.out, "New folder")->required();
   sub->add_option("--constants", o.constants,
                   "Constants to find: homogeneous, grid or elements (default: homogeneous)");
@@ -86,7 +87,7 @@ void add_deform_simulate(CLI::App& deform, int& status) {
                  "haptrial deform simulate gear.toml --springs 100 100 100 --out out/motion",
                  {"frames (.vtu, .csv) and series.pvd in the folder of --out", kPage});
   auto& o = options_of<DeformSimulateOptions>(*sub, status, deform_simulate);
-  take_input(*sub, o.input);
+  take_deform_input(*sub, o.input);
   sub->add_option("--out", o.out, "New folder")->required();
   sub->add_option("--load", o.load, "Name of the load (default: the first)");
   sub->add_option("--model", o.model, "Model: springs or elements (default: springs)");
@@ -103,11 +104,11 @@ void add_deform_simulate(CLI::App& deform, int& status) {
 
 void add_deform_skin(CLI::App& deform, int& status) {
   CLI::App* sub =
-      subcommand(deform, "skin", "Let a fine surface follow a body",
+      subcommand(deform, "skin", "Move a fine surface with a body",
                  "haptrial deform skin gear.toml gear.ply out/reference/twist.csv --out out/skin",
                  {"a mesh for each state in the folder of --out", kPage});
   auto& o = options_of<DeformSkinOptions>(*sub, status, deform_skin);
-  take_input(*sub, o.input);
+  take_deform_input(*sub, o.input);
   sub->add_option("SURFACE", o.surface, "Surface (.obj, .ply, .stl, .off)")->required();
   sub->add_option("STATES", o.states, "Displacements of the body's vertices (.csv)")->required();
   sub->add_option("--out", o.out, "New folder")->required();

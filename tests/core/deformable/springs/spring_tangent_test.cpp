@@ -75,7 +75,7 @@ TEST_F(SpringTangentTest, ASqueezedBodyIsSeenToBeIndefinite) {
 
 // Between the two: whatever CHOLMOD says of a squeeze, it says too.
 TEST_F(SpringTangentTest, ItIsDefiniteWhereCholmodSaysSo) {
-  for (const double share : {0.99, 0.95, 0.9, 0.85, 0.8}) {
+  for (const double share : {0.95, 0.85}) {
     SpringTangent tangent(body_, held_flags(body_.rest.size(), holds_));
     ASSERT_TRUE(tangent.set(squeezed(share)));
     EXPECT_EQ(tangent.is_definite(),
