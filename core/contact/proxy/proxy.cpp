@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
-#include "core/geometry/triangle/triangle_distance.h"
+#include "core/contact/proxy/arc.h"
 
 namespace haptrial::contact {
 namespace {
 
 using Eigen::Vector3d;
-using geometry::TrianglePart;
 
 const ProxyOptions& checked(const ProxyOptions& options) {
   const Friction& f = options.friction;
@@ -69,6 +69,15 @@ void Proxy::step_to(const Vector3d& at) noexcept {
   near_.moved((at - state_.position).norm());
   state_.position = at;
   way_[way_length_++] = at;
+}
+
+/// From the last corner of the way to the one before: this way was tried and is not taken.
+void Proxy::step_back(const Vector3d& to) noexcept {
+  if (state_.position != to) {
+    near_.moved((to - state_.position).norm());
+    state_.position = to;
+    --way_length_;
+  }
 }
 
 /// Moves until something is met, which becomes a plane, or as far as was looked.
@@ -184,60 +193,46 @@ bool Proxy::find_way_out(Tick& tick) noexcept {
   return false;
 }
 
-/// A sphere that touches one edge or corner goes to where the goal is straight behind it: along two
-/// tangents of the arc, which stay outside of it.
-bool Proxy::go_round(Tick& tick, const PlaneSolution& solution) noexcept {
-  const ContactPlane plane = planes_[solution.active[0]];
-  const geometry::Corners& c = surface_->corners(plane.slot);
-  const geometry::ClosestPoint nearest =
-      geometry::closest_on_triangle(state_.position, c[0], c[1], c[2]);
-  Vector3d to_goal = tick.goal - nearest.point, along = Vector3d::Zero();
-  if (nearest.part == TrianglePart::kFace ||
-      std::sqrt(nearest.distance_squared) > plane.level + 2.0 * tick.least) {
-    return false;
-  }
-  if (nearest.part <= TrianglePart::kEdge2) {
-    const int k = static_cast<int>(nearest.part) - static_cast<int>(TrianglePart::kEdge0);
-    const Vector3d edge = (c[(k + 1) % 3] - c[k]).stableNormalized();
-    along = edge * edge.dot(to_goal);
-    to_goal -= along;
-  }
-  const double depth = to_goal.norm();
-  if (!(depth > tick.least) || !(plane.normal.dot(to_goal) > 0.05 * depth)) {
-    return false;  // the goal is on the edge or behind it
-  }
-  const Vector3d wanted = to_goal / depth;
-  Vector3d normal = wanted;
-  for (int attempt = 0; attempt < 2; ++attempt) {
-    const Vector3d corner =
-        nearest.point + 0.5 * along +
-        plane.level / (1.0 + plane.normal.dot(normal)) * (plane.normal + normal);
-    const Vector3d end = nearest.point + along + plane.level * normal;
-    const Vector3d first = corner - state_.position;
+/// @returns whether nothing was in the way of the two tangents; else `blocked` receives the normal
+/// of what was.
+bool Proxy::take_tangents(const Tick& tick, const Arc& arc, const Vector3d& to,
+                          Vector3d& blocked) noexcept {
+  const Vector3d start = state_.position;
+  blocked = arc.from;
+  for (const Vector3d& place : {arc.corner(to), arc.end(to)}) {
     SweepHit hit;
     double seen = 1.0;
-    bool met = near_.first_hit({state_.position, first, options_.radius, tick.skin}, hit, seen);
-    if (!met && seen == 1.0) {
-      near_.moved(first.norm());
-      met = near_.first_hit({corner, end - corner, options_.radius, tick.skin}, hit, seen);
+    const Vector3d move = place - state_.position;
+    const bool met =
+        near_.first_hit({state_.position, move, options_.radius, tick.skin}, hit, seen);
+    if (met || seen < 1.0) {
+      if (met) {
+        blocked = hit.plane.normal;
+      }
+      step_back(start);
+      return false;
     }
-    if (!met && seen == 1.0) {
-      step_to(corner);
-      step_to(end);
+    step_to(place);
+  }
+  return true;
+}
+
+/// A sphere that touches one edge or corner goes to where the goal is straight behind it.
+bool Proxy::go_round(Tick& tick, const PlaneSolution& solution) noexcept {
+  const std::optional<Arc> arc = arc_round(*surface_, planes_[solution.active[0]],
+                                           state_.position, tick.goal, tick.least);
+  if (!arc) {
+    return false;
+  }
+  constexpr int kMostTried = 4;
+  Vector3d to = arc->first, blocked;
+  for (int tried = 0; tried < kMostTried && arc->leads_on(to); ++tried) {
+    if (take_tangents(tick, *arc, to, blocked)) {
       before_ = planes_;
       planes_.clear();
       return true;
     }
-    // The arc ends where the face beside the edge begins.
-    normal = met ? hit.plane.normal : plane.normal;
-    const double length = along.norm();
-    if (length > 0.0) {
-      normal -= along * (along.dot(normal) / (length * length));
-    }
-    normal.normalize();
-    if (!(normal.dot(wanted) > plane.normal.dot(wanted) + 1e-12)) {
-      return false;
-    }
+    to = arc->across(blocked);  // the arc ends where the face beside the edge begins
   }
   return false;
 }

@@ -12,6 +12,8 @@
 
 namespace haptrial::contact {
 
+struct Arc;
+
 /// Coulomb friction: while it sticks, the tangential force may be up to static_friction times the
 /// normal force; once it slips, it is dynamic_friction times it.
 struct Friction {
@@ -90,10 +92,13 @@ class Proxy {
   bool still_there(Tick& tick) noexcept;
   void lift(Tick& tick) noexcept;
   bool find_way_out(Tick& tick) noexcept;
+  bool take_tangents(const Tick& tick, const Arc& arc, const Eigen::Vector3d& to,
+                     Eigen::Vector3d& blocked) noexcept;
   bool go_round(Tick& tick, const PlaneSolution& solution) noexcept;
   Eigen::Vector3d allowed_by_friction(const PlaneSolution& solution, bool& sticks) const noexcept;
   void rest(Tick& tick, const PlaneSolution& solution) noexcept;
   void step_to(const Eigen::Vector3d& at) noexcept;
+  void step_back(const Eigen::Vector3d& to) noexcept;
 
   const ContactSurface* surface_;
   ProxyOptions options_;
