@@ -11,14 +11,13 @@ namespace {
 using Eigen::Vector3d;
 using geometry::TrianglePart;
 
-/// On the way from one direction across an edge to another, the face of the edge's own triangle may
-/// begin first.
-Vector3d face_or(const Vector3d& wanted, const Vector3d& from, const Vector3d& normal,
-                 const Vector3d& edge) {
-  const Vector3d face = normal.dot(from) >= 0.0 ? normal : -normal;
-  const double turn = edge.dot(from.cross(wanted)), to_face = edge.dot(from.cross(face));
-  const bool same_way = (turn > 0.0) == (to_face > 0.0);
-  return same_way && face.dot(from) > wanted.dot(from) ? face : wanted;
+/// A direction, or where the face of a triangle beside the edge begins if that is before it.
+Vector3d before_face(const Vector3d& wanted, const Vector3d& from, const Vector3d& normal,
+                     const Vector3d& to_middle) {
+  if (!(wanted.dot(to_middle) > 0.0)) {
+    return wanted;
+  }
+  return normal.dot(from) >= 0.0 ? normal : -normal;
 }
 
 }  // namespace
@@ -53,8 +52,14 @@ std::optional<Arc> arc_round(const ContactSurface& surface, const ContactPlane& 
     return std::nullopt;
   }
   const Vector3d wanted = to_goal / depth;
-  const Vector3d first =
-      round_edge ? face_or(wanted, plane.normal, surface.normal(plane.slot), edge) : wanted;
+  Vector3d first = wanted;
+  for (const std::int32_t slot : {plane.slot, plane.beside}) {
+    if (round_edge && slot >= 0) {
+      const geometry::Corners& beside = surface.corners(slot);
+      const Vector3d out = (beside[0] + beside[1] + beside[2]) / 3.0 - nearest.point;
+      first = before_face(first, plane.normal, surface.normal(slot), out - edge * edge.dot(out));
+    }
+  }
   return Arc{nearest.point, along, plane.normal, wanted, first, plane.level};
 }
 

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "core/geometry/triangle/triangle_distance.h"
 
 namespace haptrial::contact {
 namespace {
 
 constexpr std::size_t kMostListed = 1024;
-constexpr int kBlock = 8;  // entries of the list that are passed over together
-// A list of few may reach farther next time, one of many less far. A sphere looks at most of its
-// list but once.
+// A list of few may reach farther next time, one of many less far.
 constexpr int kFew = 12, kMany = 48;
 constexpr int kFewOfSphere = 60, kManyOfSphere = 200;
 
@@ -21,11 +20,10 @@ NearTriangles::NearTriangles(const ContactSurface& surface, double radius)
       radius_(radius),
       found_(kMostListed),
       listed_(kMostListed),
-      clear_until_(kMostListed + kBlock),
+      candidates_(kMostListed),
       reach_(surface.typical_edge()) {}
 
 void NearTriangles::forget() noexcept {
-  count_ = 0;
   covered_ = -1.0;
   clear_ = -1.0;
   reach_ = surface_->typical_edge();  // a start is the same whatever came before
@@ -42,26 +40,27 @@ bool NearTriangles::meets(const Sweep& sweep, std::int32_t slot, SweepHit& hit) 
   return sweep_point(sweep, surface_->corners(slot), surface_->normal(slot), slot, 1.0, hit);
 }
 
-bool NearTriangles::is_clear(const Sweep& sweep, double length) noexcept {
+bool NearTriangles::is_clear(const Sweep& sweep, double length) const noexcept {
   return clear_ > 0.0 &&
          (sweep.from - clear_centre_).norm() + length < clear_ - radius_ - 2.0 * sweep.skin.rest();
 }
 
-/// Makes a list that covers the move, or its beginning.
-bool NearTriangles::collect(const Sweep& sweep, double length) noexcept {
-  const double apart = (sweep.from - centre_).norm();
-  if (covered_ > 0.0 && (apart + length < covered_ || apart < 0.5 * covered_)) {
-    return true;
-  }
-  for (int attempt = 0; attempt < 8; ++attempt) {
-    if (list_around(sweep, reach_)) {
+/// How far the proxy may go until something may be met that the list does not have.
+double NearTriangles::left(const Sweep& sweep) const noexcept {
+  return covered_ - radius_ - 2.0 * sweep.skin.rest() - (sweep.from - centre_).norm();
+}
+
+bool NearTriangles::list_around(const Sweep& sweep) noexcept {
+  constexpr int kMostTried = 8;
+  for (int tried = 0; tried < kMostTried; ++tried) {
+    if (gather(sweep, reach_)) {
       return true;
     }
   }
   return false;
 }
 
-bool NearTriangles::list_around(const Sweep& sweep, double reach) noexcept {
+bool NearTriangles::gather(const Sweep& sweep, double reach) noexcept {
   const double around = radius_ + 2.0 * sweep.skin.rest();
   ++operations_.lists;
   const int count = surface_->gather(sweep.from, around + reach, found_);
@@ -77,30 +76,12 @@ bool NearTriangles::list_around(const Sweep& sweep, double reach) noexcept {
     return false;
   }
   centre_ = sweep.from;
-  covered_ = reach;
-  count_ = count;
-  path_ = 0.0;
+  covered_ = around + reach;
+  listed_reach_ = reach;
+  listed_.clear(centre_, covered_);
   for (int i = 0; i < count; ++i) {
-    Known& known = listed_[i];
-    clear_until_[i] = found_[i].distance - around;
-    known.slot = found_[i].slot;
-    const geometry::Corners& c = surface_->corners(known.slot);
-    known.centre = (c[0] + c[1] + c[2]) / 3.0;
-    known.normal = surface_->normal(known.slot);
-    double square = 0.0;
-    known.low = known.high = 0.0;
-    for (const Eigen::Vector3d& corner : c) {
-      const Eigen::Vector3d out = corner - known.centre;
-      const double height = known.normal.dot(out);
-      square = std::max(square, out.squaredNorm());
-      known.low = std::min(known.low, height);
-      known.high = std::max(known.high, height);
-    }
-    known.ball = std::sqrt(square);
-    known.axis.setZero();
-    known.level = std::numeric_limits<double>::infinity();
+    listed_.add(found_[i].slot, surface_->corners(found_[i].slot), sweep.from);
   }
-  std::fill_n(clear_until_.begin() + count, kBlock, std::numeric_limits<double>::infinity());
   if (count == 0) {
     clear_centre_ = sweep.from;
     ++operations_.nearest_searches;
@@ -111,85 +92,82 @@ bool NearTriangles::list_around(const Sweep& sweep, double reach) noexcept {
 
 namespace {
 
-/// Of two hits at the same place, to rounding, a face is the better one: the edge of a triangle
-/// that lies in the same plane has a normal that is tilted towards it.
-bool is_sooner(const SweepHit& here, const SweepHit& other, double length, double same) {
-  if (std::abs(here.t - other.t) * length <= same && here.plane.curved != other.plane.curved) {
-    return other.plane.curved;
+/// The sooner of two hits. Of two at the same place, to rounding, a face is the better one: the
+/// edge of a triangle that lies in the same plane has a normal that is tilted towards it.
+SweepHit sooner(const SweepHit& a, const SweepHit& b, double length, double same) {
+  const bool together = std::abs(a.t - b.t) * length <= same;
+  SweepHit first = together && a.plane.curved != b.plane.curved ? (a.plane.curved ? b : a)
+                   : b.t < a.t                                  ? b
+                                                                : a;
+  constexpr double kOneDirection = 1.0 - 1e-12;
+  if (together && a.plane.curved && b.plane.curved &&
+      a.plane.normal.dot(b.plane.normal) > kOneDirection) {
+    first.plane.beside = first.plane.slot == a.plane.slot ? b.plane.slot : a.plane.slot;
   }
-  return here.t < other.t;
+  first.t = std::min(a.t, b.t);
+  return first;
 }
 
 }  // namespace
 
-/// False only if the proxy cannot meet the triangle on this part of its move.
-bool NearTriangles::can_meet(const Sweep& sweep, int i, double end, double length) noexcept {
-  const Known& known = listed_[i];
-  const double rest = 2.0 * sweep.skin.rest();
+bool NearTriangles::meets_listed(const Sweep& sweep, int i, double end, SweepHit& hit) noexcept {
+  const std::int32_t slot = listed_.slot(i);
+  const geometry::Corners& c = surface_->corners(slot);
   if (radius_ > 0.0) {
-    const double height = known.axis.dot(sweep.from) - known.level;
-    if (std::min(height, height + end * known.axis.dot(sweep.move)) > radius_ + rest) {
-      return false;
+    SphereGap gap;
+    const bool met = sweep_sphere(sweep, c, surface_->normal(slot), slot, end, hit, gap);
+    listed_.part(i, c, gap.away);
+    return met;
+  }
+  const bool met = sweep_point(sweep, c, surface_->normal(slot), slot, end, hit);
+  if (!met) {
+    const geometry::ClosestPoint nearest =
+        geometry::closest_on_triangle(sweep.from, c[0], c[1], c[2]);
+    if (nearest.part == geometry::TrianglePart::kFace) {
+      const Eigen::Vector3d& n = surface_->normal(slot);
+      listed_.part(i, c, n.dot(sweep.from - c[0]) >= 0.0 ? n : Eigen::Vector3d(-n));
+    } else if (nearest.distance_squared > 0.0) {
+      listed_.part(i, c, (sweep.from - nearest.point) / std::sqrt(nearest.distance_squared));
     }
   }
-  const Eigen::Vector3d from = sweep.from - known.centre;
-  const double apart = from.norm() - known.ball - radius_ - rest;
-  if (apart > end * length) {
-    clear_until_[i] = path_ + apart;
-    return false;
-  }
-  const double at = known.normal.dot(from), then = at + end * known.normal.dot(sweep.move);
-  const double off = radius_ + (radius_ > 0.0 ? sweep.skin.rest() : 1.25 * sweep.skin.thickness);
-  return !(std::min(at, then) > known.high + off || std::max(at, then) < known.low - off);
-}
-
-bool NearTriangles::meets_listed(const Sweep& sweep, int i, double end, SweepHit& hit) noexcept {
-  Known& known = listed_[i];
-  const geometry::Corners& corners = surface_->corners(known.slot);
-  if (radius_ == 0.0) {
-    return sweep_point(sweep, corners, surface_->normal(known.slot), known.slot, end, hit);
-  }
-  SphereGap gap;
-  const bool met =
-      sweep_sphere(sweep, corners, surface_->normal(known.slot), known.slot, end, hit, gap);
-  clear_until_[i] = path_ + gap.distance - radius_ - 2.0 * sweep.skin.rest();
-  known.axis = gap.away;
-  known.level = std::max({gap.away.dot(corners[0]), gap.away.dot(corners[1]),  //
-                          gap.away.dot(corners[2])});
   return met;
 }
 
 bool NearTriangles::first_listed(const Sweep& sweep, double end, double length,
                                  SweepHit& hit) noexcept {
+  // A little more than the hull that is never entered.
+  const double off = radius_ + 1.25 * sweep.skin.thickness;
+  const int count = listed_.within(sweep.from, end * sweep.move, off, candidates_);
   bool met = false;
   int tested = 0;
-  double until = path_ + end * length;
-  for (int first = 0; first < count_; first += kBlock) {
-    bool any = false;
-    for (int i = first; i < first + kBlock; ++i) {
-      any |= clear_until_[i] <= until;
+  double limit = end;
+  const auto test = [&](const PartedTriangles::Candidate& candidate) {
+    SweepHit here;
+    ++tested;
+    if (!meets_listed(sweep, candidate.i, limit, here)) {
+      return;
     }
-    for (int i = first; any && i < std::min(first + kBlock, count_); ++i) {
-      if (clear_until_[i] > until || !can_meet(sweep, i, end, length)) {
-        continue;
-      }
-      SweepHit here;
-      ++tested;
-      if (!meets_listed(sweep, i, end, here) ||
-          (met && !is_sooner(here, hit, length, sweep.skin.thickness))) {
-        continue;
-      }
-      const double t = met ? std::min(hit.t, here.t) : here.t;
-      hit = here;
-      hit.t = t;
-      met = true;
-      // What is farther away stops it no sooner.
-      until = path_ + t * length + sweep.skin.rest();
-      end = std::min(end, t + sweep.skin.rest() / length);
+    hit = met ? sooner(hit, here, length, sweep.skin.thickness) : here;
+    met = true;
+    // What is farther away stops it no sooner.
+    limit = std::min(limit, hit.t + sweep.skin.rest() / length);
+  };
+  // The soonest first: most often it stops the proxy, and the others need not be looked at.
+  constexpr int kPicked = 4;
+  int next = 0;
+  for (; next < std::min(kPicked, count) && !met; ++next) {
+    const auto soonest = std::min_element(candidates_.begin() + next, candidates_.begin() + count,
+                                          [](const auto& a, const auto& b) { return a.t < b.t; });
+    std::swap(candidates_[next], *soonest);
+    test(candidates_[next]);
+  }
+  for (; next < count; ++next) {
+    if (end * candidates_[next].t <= limit) {
+      test(candidates_[next]);
     }
   }
   operations_.triangles_tested += tested;
-  operations_.triangles_passed += count_ - tested;
+  operations_.triangles_passed += listed_.size() - tested;
   return met;
 }
 
@@ -229,21 +207,31 @@ bool NearTriangles::first_hit(const Sweep& sweep, SweepHit& hit, double& seen) n
   if (is_clear(sweep, length)) {
     return false;
   }
-  const bool listed = collect(sweep, length);
-  const double left = covered_ - (sweep.from - centre_).norm();
-  if (listed && length < left) {
-    return first_listed(sweep, 1.0, length, hit);
+  double ahead = left(sweep);
+  const auto listed = [&] { return covered_ > 0.0 && ahead > 0.0; };
+  if (listed()) {
+    const double part = std::min(1.0, ahead / length);
+    if (first_listed(sweep, part, length, hit)) {
+      return true;
+    }
+    if (part == 1.0) {
+      return false;
+    }
   }
-  // A long move most often meets something near.
-  const double part = left / length;
-  if (part > 0.0 && part < 1.0 &&
-      (first_listed(sweep, 0.1 * part, length, hit) || first_listed(sweep, part, length, hit))) {
-    return true;
+  if (ahead < 0.5 * listed_reach_ || covered_ < 0.0) {
+    list_around(sweep);
+    ahead = left(sweep);
+    if (listed() && first_listed(sweep, std::min(1.0, ahead / length), length, hit)) {
+      return true;
+    }
   }
-  if (radius_ > 0.0 && listed) {
+  if (listed() && ahead >= length) {
+    return false;
+  }
+  if (radius_ > 0.0 && listed()) {
     const double clear =
         clear_ - radius_ - 2.0 * sweep.skin.rest() - (sweep.from - clear_centre_).norm();
-    seen = std::clamp(std::max(left, clear) / length, 0.0, 1.0);
+    seen = std::clamp(std::max(ahead, clear) / length, 0.0, 1.0);
     return false;
   }
   return first_of_all(sweep, hit);

@@ -10,11 +10,12 @@ namespace haptrial::contact {
 
 /// What holds the proxy: it stays where normal · (x - point) >= level.
 struct ContactPlane {
-  Eigen::Vector3d normal;  // a unit vector, towards the proxy
-  Eigen::Vector3d point;   // on the triangle [m]
-  double level;            // [m]
-  std::int32_t slot;       // of the triangle
-  bool curved;             // tangent of a sphere's contact with an edge or a corner
+  Eigen::Vector3d normal;   // a unit vector, towards the proxy
+  Eigen::Vector3d point;    // on the triangle [m]
+  double level;             // [m]
+  std::int32_t slot;        // of the triangle
+  bool curved;              // tangent of a sphere's contact with an edge or a corner
+  std::int32_t beside{-1};  // then: the slot of another triangle that is touched there; -1: unknown
 
   double height(const Eigen::Vector3d& x) const noexcept { return normal.dot(x - point) - level; }
 };

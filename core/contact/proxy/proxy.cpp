@@ -66,7 +66,6 @@ PlaneSolution Proxy::solve(const Tick& tick, const Vector3d& wish) noexcept {
 }
 
 void Proxy::step_to(const Vector3d& at) noexcept {
-  near_.moved((at - state_.position).norm());
   state_.position = at;
   way_[way_length_++] = at;
 }
@@ -74,7 +73,6 @@ void Proxy::step_to(const Vector3d& at) noexcept {
 /// From the last corner of the way to the one before: this way was tried and is not taken.
 void Proxy::step_back(const Vector3d& to) noexcept {
   if (state_.position != to) {
-    near_.moved((to - state_.position).norm());
     state_.position = to;
     --way_length_;
   }
@@ -193,12 +191,10 @@ bool Proxy::find_way_out(Tick& tick) noexcept {
   return false;
 }
 
-/// @returns whether nothing was in the way of the two tangents; else `blocked` receives the normal
-/// of what was.
-bool Proxy::take_tangents(const Tick& tick, const Arc& arc, const Vector3d& to,
-                          Vector3d& blocked) noexcept {
+/// @returns whether nothing was in the way of the two tangents to a direction; else that becomes
+/// one that is to be tried next.
+bool Proxy::take_tangents(const Tick& tick, const Arc& arc, Vector3d& to) noexcept {
   const Vector3d start = state_.position;
-  blocked = arc.from;
   for (const Vector3d& place : {arc.corner(to), arc.end(to)}) {
     SweepHit hit;
     double seen = 1.0;
@@ -206,9 +202,8 @@ bool Proxy::take_tangents(const Tick& tick, const Arc& arc, const Vector3d& to,
     const bool met =
         near_.first_hit({state_.position, move, options_.radius, tick.skin}, hit, seen);
     if (met || seen < 1.0) {
-      if (met) {
-        blocked = hit.plane.normal;
-      }
+      // The arc ends where the face beside the edge begins.
+      to = met ? arc.across(hit.plane.normal) : (arc.from + to).normalized();
       step_back(start);
       return false;
     }
@@ -219,20 +214,19 @@ bool Proxy::take_tangents(const Tick& tick, const Arc& arc, const Vector3d& to,
 
 /// A sphere that touches one edge or corner goes to where the goal is straight behind it.
 bool Proxy::go_round(Tick& tick, const PlaneSolution& solution) noexcept {
-  const std::optional<Arc> arc = arc_round(*surface_, planes_[solution.active[0]],
-                                           state_.position, tick.goal, tick.least);
+  const std::optional<Arc> arc =
+      arc_round(*surface_, planes_[solution.active[0]], state_.position, tick.goal, tick.least);
   if (!arc) {
     return false;
   }
   constexpr int kMostTried = 4;
-  Vector3d to = arc->first, blocked;
+  Vector3d to = arc->first;
   for (int tried = 0; tried < kMostTried && arc->leads_on(to); ++tried) {
-    if (take_tangents(tick, *arc, to, blocked)) {
+    if (take_tangents(tick, *arc, to)) {
       before_ = planes_;
       planes_.clear();
       return true;
     }
-    to = arc->across(blocked);  // the arc ends where the face beside the edge begins
   }
   return false;
 }

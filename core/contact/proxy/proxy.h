@@ -92,8 +92,7 @@ class Proxy {
   bool still_there(Tick& tick) noexcept;
   void lift(Tick& tick) noexcept;
   bool find_way_out(Tick& tick) noexcept;
-  bool take_tangents(const Tick& tick, const Arc& arc, const Eigen::Vector3d& to,
-                     Eigen::Vector3d& blocked) noexcept;
+  bool take_tangents(const Tick& tick, const Arc& arc, Eigen::Vector3d& to) noexcept;
   bool go_round(Tick& tick, const PlaneSolution& solution) noexcept;
   Eigen::Vector3d allowed_by_friction(const PlaneSolution& solution, bool& sticks) const noexcept;
   void rest(Tick& tick, const PlaneSolution& solution) noexcept;
