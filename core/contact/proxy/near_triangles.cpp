@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kMostListed = 1024;
 // A list of few may reach farther next time, one of many less far.
 constexpr int kFew = 12, kMany = 48;
-constexpr int kFewOfSphere = 60, kManyOfSphere = 200;
+constexpr int kFewOfSphere = 30, kManyOfSphere = 100;
 
 }  // namespace
 

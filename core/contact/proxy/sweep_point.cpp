@@ -30,8 +30,8 @@ class Clip {
         point_ = point;
         level_ = level;
       }
-    } else if (rate > 0.0) {
-      leave_ = std::min(leave_, -above / rate);
+    } else if (-above < leave_ * rate) {
+      leave_ = -above / rate;
     }
     return enter_ <= leave_;
   }
