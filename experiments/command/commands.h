@@ -147,6 +147,7 @@ struct EvaluateOptions {
   std::vector<std::string> recording;  // one or two tables (.csv), their folder, a session file
   std::optional<std::string> object;   // of a session file
   std::optional<int> trial;            // likewise
+  std::vector<std::string> tested_on;  // other recordings of the body, as `recording`
   std::string mesh;
   std::string units{"m"};              // of the mesh: m, cm, mm
   std::vector<std::string> renderers;  // default: all

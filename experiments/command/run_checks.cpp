@@ -15,6 +15,7 @@
 #include "experiments/devices/devices.h"
 #include "experiments/study/study_files.h"
 #include "protocols/definition/definition.h"
+#include "protocols/interface/protocol.h"
 #include "protocols/interface/study_rules.h"
 
 namespace haptrial::experiments {
@@ -185,7 +186,8 @@ void check_recording(const RunOptions& options, const protocols::Protocol& proto
   if (!file) {
     return;
   }
-  const record::SessionInfo info = record::SessionReader(*file).info();
+  const record::SessionReader reader(*file);
+  const record::SessionInfo& info = reader.info();
   if (info.subject != options.subject) {
     throw InputError(fmt::format("{}: was recorded with subject {}; replay it with --subject {}",
                                  *file, info.subject, info.subject));
@@ -202,6 +204,7 @@ void check_recording(const RunOptions& options, const protocols::Protocol& proto
         fmt::format("{}: was recorded with another definition: {}; replay it with the same one",
                     *file, sentence_of(changes.binding)));
   }
+  protocol.check_replayed(setup, reader);
 }
 
 }  // namespace haptrial::experiments

@@ -141,6 +141,9 @@ PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
   add_names(d, defaults);
   defaults.reaching = reaching_names(d);
   defaults.cues = cue_names(d);
+  if (!d.questions.empty() && !d.questions.front().types()) {
+    defaults.choices = d.questions.front().answers();
+  }
   for (std::size_t i = 1; i < d.questions.size() && defaults.rating.empty(); ++i) {
     defaults.rating = d.questions[i].correct.empty() ? d.questions[i].name : std::string();
   }

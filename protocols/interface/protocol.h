@@ -47,6 +47,13 @@ class Protocol {
     static_cast<void>(place);
     return {};
   }
+  /// Whether a recording can be presented again with this definition, loaded.
+  /// @throws InputError if a file that the definition names is another than it was recorded with
+  virtual void check_replayed(const Definition& definition,
+                              const record::SessionReader& file) const {
+    static_cast<void>(definition);
+    static_cast<void>(file);
+  }
   /// Goes through recorded trials again, and says what came of it.
   /// @throws InputError for what the file does not hold; RunError if it differs from the recording
   virtual void replay(const ReplayRequest& request) const = 0;

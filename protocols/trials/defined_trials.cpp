@@ -14,6 +14,7 @@
 #include "core/record/trials/trial_rows.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/trials/definition/defaults.h"
+#include "protocols/trials/objects/object_files.h"
 #include "protocols/trials/presentation/stage_sight.h"
 #include "protocols/trials/presentation/trial_drawing.h"
 #include "protocols/trials/subject/trials_rig.h"
@@ -88,7 +89,8 @@ DefinedTrials::DefinedTrials(const StudiedDefinition& definition, const SessionP
       place_(place),
       root_(parsed(definition)),
       names_(read_names(root_, definition)),
-      sequence_(definition, taker_of(definition, place)) {
+      sequence_(definition, taker_of(definition, place)),
+      object_files_(object_files(definition.objects)) {
   if (records_contacts(d_)) {
     contacts_ = std::make_unique<ContactLog>();
   }
@@ -122,11 +124,21 @@ record::TableList DefinedTrials::tables() const {
   if (contacts_) {
     tables.push_back(&record::table_of<record::ContactRow>());
   }
+  if (!object_files_.empty()) {
+    tables.push_back(&record::table_of<record::ObjectFileRow>());
+  }
   return tables;
+}
+
+std::vector<record::Rows> DefinedTrials::first_rows() const {
+  return object_files_.empty()
+             ? std::vector<record::Rows>{}
+             : std::vector{record::Rows(std::span<const record::ObjectFileRow>(object_files_))};
 }
 
 /// A virtual participant goes on as if the session had not been interrupted.
 void DefinedTrials::check_resumed(const record::SessionReader& file) const {
+  check_object_files(file, d_.objects, "resume");
   if (rig_ == nullptr) {
     return;
   }

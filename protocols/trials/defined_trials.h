@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/definition/table.h"
+#include "core/record/trials/object_file_row.h"
 #include "core/record/trials/trial_rows.h"
 #include "protocols/interface/trials.h"
 #include "protocols/trials/presentation/trial_pass.h"
@@ -28,6 +29,7 @@ class DefinedTrials final : public Trials {
   std::span<const record::Phase> phases() const override;
   std::unique_ptr<Rig> virtual_rig() const override;
   record::TableList tables() const override;
+  std::vector<record::Rows> first_rows() const override;
   void check_resumed(const record::SessionReader& file) const override;
   void prepare(const PlannedTrial&, SessionFile&) override {}
   MakeDrawing drawing() override;
@@ -65,6 +67,7 @@ class DefinedTrials final : public Trials {
   mutable std::unique_ptr<SaidAnswer> said_;  // of a virtual participant
   mutable TrialsRig* rig_{nullptr};           // likewise; the runner's
   std::unique_ptr<ContactLog> contacts_;      // null: none are recorded
+  std::vector<record::ObjectFileRow> object_files_;
   std::unique_ptr<TrialPass> pass_;
   std::vector<std::vector<NamedStage>> stages_;  // of each interval of the pass
   std::vector<scene::Region> regions_;           // of the last interval

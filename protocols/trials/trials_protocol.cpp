@@ -3,9 +3,11 @@
 #include "core/base/error.h"
 #include "core/record/rows/response.h"
 #include "core/record/trials/contact_row.h"
+#include "core/record/trials/object_file_row.h"
 #include "core/record/trials/trial_rows.h"
 #include "protocols/trials/defined_trials.h"
 #include "protocols/trials/definition/every_value.h"
+#include "protocols/trials/objects/object_files.h"
 #include "protocols/trials/trials_replay.h"
 
 namespace haptrial::protocols {
@@ -49,6 +51,7 @@ class TrialsProtocol final : public Protocol {
     tables.push_back(&record::table_of<record::AdaptationRow>());
     tables.push_back(&record::table_of<record::OutOfTimeRow>());
     tables.push_back(&record::table_of<record::ContactRow>());
+    tables.push_back(&record::table_of<record::ObjectFileRow>());
     return tables;
   }
   std::unique_ptr<Trials> trials(const Definition& definition,
@@ -59,6 +62,10 @@ class TrialsProtocol final : public Protocol {
   std::vector<std::string> blocks(const Definition& definition,
                                   const SessionPlace& place) const override {
     return blocks_of(dynamic_cast<const TrialsDefinition&>(definition), place);
+  }
+  void check_replayed(const Definition& definition,
+                      const record::SessionReader& file) const override {
+    check_object_files(file, dynamic_cast<const TrialsDefinition&>(definition).objects, "replay");
   }
   void replay(const ReplayRequest& request) const override { replay_trials(*this, request); }
 };

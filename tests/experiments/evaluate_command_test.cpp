@@ -1,5 +1,6 @@
 // haptrial evaluate, as it is called from a shell.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,8 +10,13 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "core/base/fnv.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/trials/object_file_row.h"
+#include "protocols/trials/objects/object_files.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
+#include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial {
@@ -26,24 +32,27 @@ constexpr double kFriction = 0.25;  // Coulomb
 class EvaluateCommandTest : public testing::Test {
  protected:
   EvaluateCommandTest() {
-    fs::create_directory(folder_ / "rubbed");
-    std::ofstream poses(folder_ / "rubbed/poses.csv"), forces(folder_ / "rubbed/forces.csv");
+    rub("rubbed", 0.0, kFriction);
+    EXPECT_EQ(run("haptrial mesh make sphere body.obj").status, 0);
+  }
+
+  /// @param start  of the way [s]
+  void rub(const char* folder, double start, double coefficient) {
+    fs::create_directory(folder_ / folder);
+    std::ofstream poses(folder_ / folder / "poses.csv"), forces(folder_ / folder / "forces.csv");
     poses << "time_ms,x_mm,y_mm,z_mm\n";
     forces << "time_s,force_x_N,force_y_N,force_z_N\n";
     for (int i = 0; i < 5000; ++i) {
       const double t = 0.002 * i;
-      const Vector3d n = normal(t);
+      const Vector3d n = normal(start + t);
       if (i % 5 == 0) {
         poses << 1e3 * t << ',' << kRadius * n.x() << ',' << kRadius * n.y() << ','
               << kRadius * n.z() << '\n';
       }
-      const Vector3d way = (normal(t + 1e-4) - normal(t - 1e-4)).normalized();
-      const Vector3d force = (1.0 + 0.4 * std::sin(5.0 * t)) * (n - kFriction * way);
+      const Vector3d way = (normal(start + t + 1e-4) - normal(start + t - 1e-4)).normalized();
+      const Vector3d force = (1.0 + 0.4 * std::sin(5.0 * t)) * (n - coefficient * way);
       forces << t << ',' << force.x() << ',' << force.y() << ',' << force.z() << '\n';
     }
-    poses.close();
-    forces.close();
-    EXPECT_EQ(run("haptrial mesh make sphere body.obj").status, 0);
   }
 
   static Vector3d normal(double t) {
@@ -83,6 +92,41 @@ TEST_F(EvaluateCommandTest, WritesReportAndNumbers) {
   EXPECT_NEAR(friction["value"].get<double>(), kFriction, 0.02);
   EXPECT_LT(friction["low_95"].get<double>(), friction["high_95"].get<double>());
   EXPECT_TRUE(json["identified"]["stiffness_N_per_m"]["high_95"].is_null()) << "a rigid body";
+}
+
+/// Another hand on the same body, less than half as rough: its friction is not the first one's.
+TEST_F(EvaluateCommandTest, WhatIsFittedOnOneRecordingIsTestedOnAnother) {
+  rub("again", 11.3, kFriction);
+  rub("smooth", 5.1, 0.1);
+  const std::string line =
+      "haptrial evaluate rubbed --mesh body.obj --registered --lag 0 --renderer proxy --simulated ";
+  const auto result = run(line + "--test-on again --test-on smooth --out out");
+  ASSERT_EQ(result.status, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("on again"));
+  EXPECT_THAT(test::read_text(folder_ / "out/report.html"),
+              HasSubstr("Fitted on one recording, tested on another"));
+  const auto cross = numbers("out")["cross_fit"];
+  EXPECT_EQ(cross["recordings"], (nlohmann::json{"rubbed", "again", "smooth"}));
+  const auto friction = [&](int i) { return cross["friction"][i].get<double>(); };
+  EXPECT_NEAR(friction(0), kFriction, 0.05);
+  EXPECT_NEAR(friction(1), friction(0), 0.02);
+  EXPECT_LT(friction(2), 0.15);
+  EXPECT_GT(cross["kept"][0][1].get<double>(), 0.95) << "as good as its own";
+  EXPECT_LT(cross["kept"][0][2].get<double>(), 0.5) << "too rough for the smooth one";
+  EXPECT_NEAR(cross["root_mean_square_N"][0][0].get<double>(),
+              numbers("out")["best_friction"]["root_mean_square_with_N"].get<double>(), 1e-12);
+  const auto refused = [&](const std::string& options, const std::string& why) {
+    const auto bad = run(line + options);
+    EXPECT_EQ(bad.status, 2) << options;
+    EXPECT_THAT(bad.errors, HasSubstr(why)) << options;
+  };
+  refused("--test-on absent.csv", "absent.csv");
+  const auto bad =
+      run("haptrial evaluate rubbed --mesh body.obj --registered --lag 0 --renderer "
+          "voxel --test-on again");
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_THAT(bad.errors, HasSubstr("needs a renderer with friction"));
+  EXPECT_EQ(run("haptrial evaluate --duck --test-on rubbed").status, 2);
 }
 
 /// The order of the two tables and the unit of the mesh are nobody's business but the command's.
@@ -170,6 +214,44 @@ TEST_F(EvaluateCommandTest, ASessionIsARecordingOfItsContacts) {
   };
   refused("--object other", "--object is 'other'; contacts are recorded with: ball");
   refused("--trial 2", "--trial is 2; the object was touched in the trials 1");
+}
+
+/// The file keeps the checksum of the mesh: the same recording is no recording of another body.
+TEST_F(EvaluateCommandTest, ARecordingIsNotReplayedWithAnotherMesh) {
+  test::write_text(folder_ / "ball.toml", kBallStudy);
+  ASSERT_EQ(run("haptrial mesh repair body.obj ball.obj --scale 0.5").status, 0);
+  ASSERT_EQ(run("haptrial dry-run ball.toml --out study").status, 0);
+  const auto rows = record::SessionReader(folder_ / "study/S01.h5").rows<record::ObjectFileRow>();
+  ASSERT_EQ(rows.size(), 1U);
+  const std::string bytes = test::read_text(folder_ / "ball.obj");
+  EXPECT_EQ(rows[0].name, "ball");
+  EXPECT_EQ(rows[0].file, "ball.obj");
+  EXPECT_EQ(rows[0].bytes, bytes.size());
+  EXPECT_EQ(rows[0].checksum, fnv1a(bytes));
+  const std::string again =
+      "haptrial run ball.toml --subject S01 --device replay:study/S01.h5 --out again";
+  ASSERT_EQ(run(again).status, 0);
+
+  ASSERT_EQ(run("haptrial mesh repair body.obj ball.obj --scale 0.6 --overwrite").status, 0);
+  const std::string other = fmt::format("{:016x}", fnv1a(test::read_text(folder_ / "ball.obj")));
+  const auto refused = run(again + "_2");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.errors,
+              HasSubstr("was recorded with another mesh of objects.ball: 'ball.obj' has the "
+                        "checksum " +
+                        other + ", the recording " + fmt::format("{:016x}", rows[0].checksum) +
+                        "; replay it with the same file"));
+  // The same for a session that is gone on with.
+  std::vector<protocols::TrialObject> objects(1);
+  objects[0].name = "ball";
+  objects[0].file = "ball.obj";
+  protocols::load_objects(objects, folder_.path());
+  const record::SessionReader recorded(folder_ / "study/S01.h5");
+  EXPECT_THAT(test::message_of([&] { check_object_files(recorded, objects, "resume"); }),
+              HasSubstr("; resume it with the same file"));
+  test::write_text(folder_ / "ball.obj", bytes);
+  protocols::load_objects(objects, folder_.path());
+  EXPECT_NO_THROW(check_object_files(recorded, objects, "resume"));
 }
 
 TEST_F(EvaluateCommandTest, BadInputGetsASentence) {

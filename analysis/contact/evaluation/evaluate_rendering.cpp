@@ -112,4 +112,24 @@ Evaluation evaluate_rendering(const ContactRecording& recording, const contact::
   return result;
 }
 
+void add_cross_fit(Evaluation& evaluation, const std::string& name,
+                   const std::vector<NamedRecording>& others, const contact::FeltBody& body,
+                   const EvaluationOptions& options) {
+  const auto kind = std::find_if(options.renderers.begin(), options.renderers.end(), has_friction);
+  if (kind == options.renderers.end()) {
+    throw std::invalid_argument("a test on other recordings needs a renderer with friction");
+  }
+  NamedCrossFit cross{{name}, {}};
+  std::vector<PreparedContact> prepared;
+  prepared.reserve(others.size());
+  std::vector<FeltContact> contacts{{&evaluation.contact, &body}};
+  for (const NamedRecording& other : others) {
+    cross.names.push_back(other.name);
+    prepared.push_back(prepare_contact(other.recording, body, options.prepare));
+    contacts.push_back({&prepared.back(), &body});
+  }
+  cross.fit = cross_fit(contacts, *kind, options_for(*kind, body, options));
+  evaluation.cross = std::move(cross);
+}
+
 }  // namespace haptrial::evaluation

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/contact/evaluation/cross_fit.h"
 #include "analysis/contact/evaluation/render_contact.h"
 #include "analysis/contact/identification/identify_contact.h"
 
@@ -33,6 +34,18 @@ struct EvaluatedRendering {
   TickTimes ticks;  // [s]
 };
 
+/// Another recording of the same body.
+struct NamedRecording {
+  std::string name;
+  ContactRecording recording;
+};
+
+/// Friction that was fitted on each of several recordings, tested on all of them.
+struct NamedCrossFit {
+  std::vector<std::string> names;
+  CrossFit fit;
+};
+
 /// How far renderings are from a recorded contact.
 struct Evaluation {
   PreparedContact contact;
@@ -40,7 +53,8 @@ struct Evaluation {
   std::optional<FrictionFit> friction;         // absent where it was given, or no proxy renders
   std::vector<EvaluatedRendering> renderings;  // without friction, then with
   std::optional<IdentifiedContact> identified;
-  std::vector<std::string> remarks;  // sentences: what is doubtful, what was not measured
+  std::optional<NamedCrossFit> cross;  // with other recordings, the first is this one
+  std::vector<std::string> remarks;    // sentences: what is doubtful, what was not measured
 };
 
 /// The whole chain: recording and mesh to lag, load, registration, in-trajectory, renderings,
@@ -51,6 +65,14 @@ struct Evaluation {
 /// Source: Morris 2006, §7.3 and §7.4.
 Evaluation evaluate_rendering(const ContactRecording& recording, const contact::FeltBody& body,
                               const EvaluationOptions& options);
+
+/// Tests on other recordings of the body the friction that fits this one best, and the other way
+/// round, by the first of the renderers that has friction.
+/// @param name  of the evaluated recording  @param others  prepared with the same options
+/// @throws std::invalid_argument without such a renderer, and as prepare_contact().
+void add_cross_fit(Evaluation& evaluation, const std::string& name,
+                   const std::vector<NamedRecording>& others, const contact::FeltBody& body,
+                   const EvaluationOptions& options);
 
 /// The metrics of one rendering. @param threshold  see EvaluationOptions
 EvaluatedRendering measured_rendering(const PreparedContact& contact, const contact::FeltBody& body,

@@ -111,6 +111,20 @@ Json to_json(const IdentifiedContact& found) {
   return json;
 }
 
+Json to_json(const NamedCrossFit& cross) {
+  Json json{{"recordings", cross.names}, {"root_mean_square_N", cross.fit.error}};
+  for (std::size_t i = 0; i < cross.names.size(); ++i) {
+    const FrictionFit& own = cross.fit.own[i];
+    json["friction"].push_back(own.friction);
+    json["root_mean_square_without_N"].push_back(own.without);
+    Json& kept = json["kept"].emplace_back(Json::array());
+    for (std::size_t tested = 0; tested < cross.names.size(); ++tested) {
+      kept.push_back(cross.fit.kept(i, tested));
+    }
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string evaluation_json(const Evaluation& e, const EvaluationNames& names) {
@@ -128,6 +142,7 @@ std::string evaluation_json(const Evaluation& e, const EvaluationNames& names) {
     root["renderings"].push_back(to_json(r, e.contact));
   }
   root["identified"] = e.identified ? to_json(*e.identified) : Json(nullptr);
+  root["cross_fit"] = e.cross ? to_json(*e.cross) : Json(nullptr);
   root["remarks"] = e.remarks;
   return root.dump(2) + "\n";
 }

@@ -60,6 +60,11 @@ Document evaluation_report(const Evaluation& e, const EvaluationNames& names,
     document.paragraph(fmt::format("{}: {}", name_of(r), r.noticeable.verdict));
   }
   add_places(e, document);
+  if (e.cross) {
+    const TextTable cross = cross_table(*e.cross);
+    document.heading("Fitted on one recording, tested on another");
+    document.table(cross.heading, cross.rows);
+  }
   for (const analysis::Drawing& drawing : drawings) {
     document.picture(drawing);
   }

@@ -16,6 +16,9 @@ struct TextTable {
 
 TextTable error_table(const Evaluation& evaluation);
 TextTable cost_table(const Evaluation& evaluation);
+/// Root mean square of the force error on each recording (column) with the friction that was fitted
+/// on each (row). @param cross  of Evaluation
+TextTable cross_table(const NamedCrossFit& cross);
 /// Operations a tick, of what any of them did: the mean, and the most in one tick.
 TextTable operation_table(const Evaluation& evaluation);
 /// The counts that are not zero in all.

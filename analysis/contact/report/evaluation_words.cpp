@@ -97,6 +97,24 @@ TextTable cost_table(const Evaluation& e) {
   return table;
 }
 
+TextTable cross_table(const NamedCrossFit& cross) {
+  TextTable table{{"error (N), friction fitted on", "friction"}, {}};
+  std::vector<std::string> without{"none", "0"};
+  for (std::size_t i = 0; i < cross.names.size(); ++i) {
+    table.heading.push_back("on " + cross.names[i]);
+    without.push_back(fmt::format("{:.4f}", cross.fit.own[i].without));
+  }
+  table.rows.push_back(std::move(without));
+  for (std::size_t fitted = 0; fitted < cross.names.size(); ++fitted) {
+    auto& row = table.rows.emplace_back();
+    row = {cross.names[fitted], fmt::format("{:.4f}", cross.fit.own[fitted].friction)};
+    for (const double error : cross.fit.error[fitted]) {
+      row.push_back(fmt::format("{:.4f}", error));
+    }
+  }
+  return table;
+}
+
 std::vector<contact::OperationCount> counted(std::span<const contact::Operations> all) {
   std::vector<contact::OperationCount> counts;
   for (const contact::OperationCount& c : contact::kOperationCounts) {
@@ -173,6 +191,10 @@ std::vector<std::string> evaluation_lines(const Evaluation& e) {
   for (const EvaluatedRendering& r : e.renderings) {
     lines.push_back(fmt::format("{}: {} {} places with an error beyond the threshold.", name_of(r),
                                 r.noticeable.verdict, r.position.places.size()));
+  }
+  if (e.cross) {
+    lines.emplace_back();
+    append(text_lines(cross_table(*e.cross)));
   }
   if (e.identified) {
     lines.emplace_back();

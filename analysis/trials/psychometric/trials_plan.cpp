@@ -16,9 +16,10 @@ namespace {
 
 using psychometric::Scale;
 
-constexpr std::array<std::pair<AnalysisKind, const char*>, 6> kKinds{
+constexpr std::array<std::pair<AnalysisKind, const char*>, 7> kKinds{
     {{AnalysisKind::kPsychometric, "psychometric"},
      {AnalysisKind::kDetection, "detection"},
+     {AnalysisKind::kIdentification, "identification"},
      {AnalysisKind::kMagnitude, "magnitude"},
      {AnalysisKind::kAdjustment, "adjustment"},
      {AnalysisKind::kReaching, "reaching"},
@@ -50,7 +51,9 @@ std::string text_or(Table& table, const char* key) {
 }
 
 void read_by(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
-  const bool stated = plan.kind == AnalysisKind::kDetection || plan.kind == AnalysisKind::kReaching;
+  const bool stated = plan.kind == AnalysisKind::kDetection ||
+                      plan.kind == AnalysisKind::kIdentification ||
+                      plan.kind == AnalysisKind::kReaching;
   plan.by = stated ? std::vector<std::string>{} : defaults.factors;
   if (!table.has("by")) {
     return;
@@ -63,6 +66,25 @@ void read_by(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
       table.reject("by", fmt::format("an array with \"{}\"", name),
                    fmt::format("{}", fmt::join(known, ", ")));
     }
+  }
+}
+
+void read_stimulus(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
+  plan.choices = defaults.choices;
+  plan.stimulus = defaults.factors.empty() ? "" : defaults.factors.front();
+  if (table.has("stimulus")) {
+    plan.stimulus = table.text("stimulus");
+  }
+  const bool known = std::find(defaults.factors.begin(), defaults.factors.end(), plan.stimulus) !=
+                         defaults.factors.end() ||
+                     std::find(defaults.names.begin(), defaults.names.end(), plan.stimulus) !=
+                         defaults.names.end();
+  if (!known) {
+    table.reject("stimulus", fmt::format("\"{}\"", plan.stimulus),
+                 "the factor that says what was presented");
+  }
+  if (plan.choices.empty()) {
+    table.reject("kind", "\"identification\"", "another kind where the response has no choices");
   }
 }
 
@@ -196,8 +218,11 @@ TrialsPlan read_trials_plan(Table& root, const PlanDefaults& defaults) {
   plan.yes = text_or(table, "yes");
   plan.level = text_or(table, "level");
   plan.rating = "";
-  if (plan.kind == AnalysisKind::kDetection) {
+  if (plan.kind == AnalysisKind::kDetection || plan.kind == AnalysisKind::kIdentification) {
     plan.rating = table.has("rating") ? table.text("rating") : defaults.rating;
+  }
+  if (plan.kind == AnalysisKind::kIdentification) {
+    read_stimulus(table, defaults, plan);
   }
   plan.functions = plan.kind == AnalysisKind::kPsychometric ||
                    (plan.kind == AnalysisKind::kDetection && table.has("function"));

@@ -19,12 +19,13 @@ namespace haptrial::analysis::trials {
 
 /// What is computed from the answers.
 enum class AnalysisKind {
-  kNone,          // trials, reaction times and quality alone
-  kPsychometric,  // functions of the level: thresholds, slopes, Weber fractions
-  kDetection,     // signal and noise: d', criterion, ROC of ratings
-  kMagnitude,     // numbers in proportion to what was felt: exponents
-  kAdjustment,    // levels that participants set: means
-  kReaching,      // movements, which have an analysis of their own
+  kNone,            // trials, reaction times and quality alone
+  kPsychometric,    // functions of the level: thresholds, slopes, Weber fractions
+  kDetection,       // signal and noise: d', criterion, ROC of ratings
+  kIdentification,  // one of several: confusions, share of right answers, d' of m alternatives
+  kMagnitude,       // numbers in proportion to what was felt: exponents
+  kAdjustment,      // levels that participants set: means
+  kReaching,        // movements, which have an analysis of their own
 };
 
 /// What the rest of a definition says where [analysis] says nothing.
@@ -32,6 +33,7 @@ struct PlanDefaults {
   AnalysisKind kind{AnalysisKind::kNone};
   std::vector<std::string> factors;  // that [factors] varies, and "group" of several groups
   std::string rating;                // question of how sure somebody is; empty: none
+  std::vector<std::string> choices;  // of the first question; none: a number
   std::vector<std::string> names;    // that `by` may name besides
   psychometric::Axis axis;           // of the procedure, with its unit
   std::optional<double> guess;       // 1 / choices where an answer is right; else free
@@ -49,7 +51,9 @@ struct TrialsPlan {
                                 // the right one
   std::string level;            // variable for the level; empty: the one that the procedure set
   std::string rating;           // question with a number: how sure; empty: none
-  bool functions{false};        // whether functions are fitted
+  std::string stimulus;         // factor that says what was presented, of an identification
+  std::vector<std::string> choices;  // of the question, likewise
+  bool functions{false};             // whether functions are fitted
   std::string function_name{"norm"};
   psychometric::PsychometricParameters function{.guess = 0.5};
   bool guess_free{false};
@@ -71,10 +75,11 @@ struct TrialsPlan {
 
 /// Reads the table [analysis], all of whose keys may be left out. Problems are noted.
 ///
-///     kind          "psychometric", "detection", "magnitude", "adjustment", "reaching" or "none"
+///     kind          "psychometric", "detection", "identification", "magnitude", "adjustment",
+///                   "reaching" or "none"
 ///     by            factors: each combination has a function, d' or exponent of its own; left out:
-///                   all of them; of detection none, as they may say where the signal is, and of
-///                   reaching none, as they make cycles
+///                   all of them; of detection and identification none, as they may say where the
+///                   signal is, and of reaching none, as they make cycles
 ///     tests         planned: "a < b", "a > b" or "a != b" of levels of these factors
 ///     question, yes, level   as TrialsPlan
 ///     function      a sigmoid by its name; "weibull", "log_normal" on a logarithmic axis
@@ -88,6 +93,8 @@ struct TrialsPlan {
 ///     resamples     of the bootstrap, 0 to 100,000
 ///     cue_combination   as read_cue_plan()
 ///     rating        question of how sure the participant was
+///     stimulus      of "identification": the factor that says what was presented; the first one if
+///                   left out
 ///
 /// Keys from function to cue_combination are those of functions; detection fits them if it states
 /// one. Those of "reaching" are its own (read_reaching_plan).

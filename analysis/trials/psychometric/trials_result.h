@@ -8,6 +8,7 @@
 #include "analysis/trials/psychometric/cue_study.h"
 #include "analysis/trials/psychometric/detected.h"
 #include "analysis/trials/psychometric/function_fit.h"
+#include "analysis/trials/psychometric/identified.h"
 #include "analysis/trials/psychometric/magnitudes.h"
 #include "analysis/trials/psychometric/population.h"
 #include "analysis/trials/psychometric/quantity.h"
@@ -51,6 +52,7 @@ struct TrialsResult {
   Defined<TTest> repetition{Undefined{"nothing was fitted"}};
   Defined<PopulationModel> population{Undefined{"nothing was fitted"}};
   std::vector<DetectedCondition> detected;
+  std::vector<IdentifiedCondition> identified;
   std::vector<MagnitudeCondition> magnitudes;
   std::vector<Quantity> quantities;  // what is compared over participants
   std::optional<CueStudy> cues;      // if the plan asks for them

@@ -117,6 +117,30 @@ void add_detection(TrialsResult& result) {
   }
 }
 
+void add_identification(TrialsResult& result) {
+  result.identified = identified(result.data, result.plan);
+  std::vector<QuantityValue> share, d_prime, area;
+  for (const IdentifiedCondition& one : result.identified) {
+    share.push_back({one.participant, one.levels, one.share});
+    if (one.d_prime) {
+      d_prime.push_back({one.participant, one.levels, *one.d_prime});
+    }
+    if (one.sureness) {
+      area.push_back({one.participant, one.levels, one.sureness->area});
+    }
+  }
+  result.quantities.push_back(
+      quantity("share_right", "share of right answers", "", share, result.plan));
+  keep_within(result.quantities.back(), 0.0, 1.0);
+  result.quantities.push_back(quantity("d_prime", "sensitivity d'", "", d_prime, result.plan));
+  if (!area.empty()) {
+    result.quantities.push_back(quantity("rating_area",
+                                         "area under the ROC curve of ratings, right against wrong",
+                                         "", area, result.plan));
+    keep_within(result.quantities.back(), 0.0, 1.0);
+  }
+}
+
 void add_magnitudes(TrialsResult& result) {
   result.magnitudes = magnitudes(result.data, result.plan);
   std::vector<QuantityValue> exponents;
@@ -207,6 +231,9 @@ TrialsResult analyze(TrialsData data, const TrialsPlan& plan, const ProcedureOf&
   result.tracks = track_estimates(result.data, procedure_of);
   if (plan.kind == AnalysisKind::kDetection) {
     add_detection(result);
+  }
+  if (plan.kind == AnalysisKind::kIdentification) {
+    add_identification(result);
   }
   if (plan.functions) {
     if (plan.level.empty()) {

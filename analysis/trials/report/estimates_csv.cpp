@@ -129,6 +129,18 @@ std::string estimates_csv(const TrialsResult& result) {
   for (const DetectedCondition& one : result.detected) {
     add_detection(one, rows);
   }
+  for (const IdentifiedCondition& one : result.identified) {
+    const auto add = [&](const char* name, const Estimated& e) {
+      rows.add(one.participant, one.levels, "", "identification", name, e, "");
+    };
+    add("share_right", {one.share, one.low, one.high});
+    if (one.d_prime) {
+      add("d_prime", {*one.d_prime, one.d_low, one.d_high});
+    }
+    if (one.sureness) {
+      add("rating_area", {one.sureness->area});
+    }
+  }
   for (const MagnitudeCondition& one : result.magnitudes) {
     for (std::size_t i = 0; one.law && i < one.law->participants.size(); ++i) {
       rows.add(one.participants[one.law->participants[i]], one.levels, "", "magnitude", "exponent",

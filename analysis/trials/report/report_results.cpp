@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <numeric>
+
 #include "analysis/statistics/words/wording.h"
 #include "analysis/trials/report/surface/report_surfaces.h"
 #include "analysis/trials/report/trials_report.h"
@@ -163,6 +166,58 @@ void add_detections(Document& document, const TrialsResult& result,
                  rows, "Every participant's detection");
 }
 
+/// The share of each answer to each stimulus, over all participants.
+void add_confusions(Document& document, const TrialsResult& result) {
+  for (const auto& [condition, confusions] : pooled_confusions(result.identified)) {
+    std::vector<std::string> heading{"presented", "trials"};
+    for (const std::string& choice : result.plan.choices) {
+      heading.push_back("“" + choice + "”");
+    }
+    Rows rows;
+    for (std::size_t i = 0; i < confusions.stimuli.size(); ++i) {
+      const std::vector<int>& answers = confusions.answers[i];
+      const int trials = std::accumulate(answers.begin(), answers.end(), 0);
+      auto& row = rows.emplace_back();
+      row = {confusions.stimuli[i], std::to_string(trials)};
+      for (const int count : answers) {
+        row.push_back(fmt::format("{:.2f}", static_cast<double>(count) / std::max(trials, 1)));
+      }
+    }
+    document.table(heading, rows,
+                   "Shares of the answers to each stimulus, all participants" +
+                       (condition.empty() ? "" : ": " + condition));
+  }
+}
+
+void add_identification(Document& document, const TrialsResult& result,
+                        const std::vector<Drawing>& drawings) {
+  add_section(document, result, "Identification");
+  add_means(document, result);
+  add_pictures(document, drawings, "by-condition-", kMostPictures);
+  add_confusions(document, result);
+  const auto mean = [](const Defined<double>& x) {
+    return x ? fmt::format("{:.2f}", *x) : std::string("–");
+  };
+  Rows rows;
+  for (const IdentifiedCondition& one : result.identified) {
+    rows.push_back({series_name(one.participant, one.condition),
+                    fmt::format("{} of {}", one.right, one.trials),
+                    estimate_word({one.share, one.low, one.high}),
+                    one.d_prime ? estimate_word({*one.d_prime, one.d_low, one.d_high})
+                                : "not defined, because " + one.d_prime.because(),
+                    mean(one.sure_right), mean(one.sure_wrong),
+                    one.sureness ? fmt::format("{:.3f}", one.sureness->area) : "–"});
+  }
+  document.table({"participant", "right", "share [95 %]", "d' [95 %]", "rating where right",
+                  "rating where wrong", "ROC area of ratings"},
+                 rows, "Every participant's identification");
+  document.paragraph(
+      fmt::format("d' is that of an observer without bias to whom {} alternatives are equally "
+                  "alike; the shares above show where this does not hold. Chance is {:.3f}.",
+                  result.plan.choices.size(),
+                  1.0 / static_cast<double>(std::max<std::size_t>(result.plan.choices.size(), 1))));
+}
+
 void add_laws(Document& document, const TrialsResult& result,
               const std::vector<Drawing>& drawings) {
   add_section(document, result, "Magnitudes");
@@ -220,6 +275,9 @@ void add_results(Document& document, const TrialsResult& result,
                  const std::vector<Drawing>& drawings) {
   if (result.plan.kind == AnalysisKind::kDetection) {
     add_detections(document, result, drawings);
+  }
+  if (result.plan.kind == AnalysisKind::kIdentification) {
+    add_identification(document, result, drawings);
   }
   if (result.cues) {
     add_cues(document, result, drawings);

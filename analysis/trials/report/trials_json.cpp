@@ -151,6 +151,24 @@ Json to_json(const DetectedCondition& one) {
           {"binormal_roc", to_json(one.binormal)}};
 }
 
+Json to_json(const IdentifiedCondition& one) {
+  return {{"participant", one.participant},
+          {"condition", one.condition},
+          {"stimuli", one.confusions.stimuli},
+          {"answers", one.confusions.answers},
+          {"trials", one.trials},
+          {"right", one.right},
+          {"share", one.share},
+          {"share_low_95", one.low},
+          {"share_high_95", one.high},
+          {"d_prime", to_json(one.d_prime)},
+          {"d_prime_low_95", to_json(one.d_low)},
+          {"d_prime_high_95", to_json(one.d_high)},
+          {"mean_rating_right", to_json(one.sure_right)},
+          {"mean_rating_wrong", to_json(one.sure_wrong)},
+          {"roc_of_ratings", to_json(one.sureness)}};
+}
+
 Json to_json(const PowerLaw& law) {
   Json levels = Json::array();
   for (const MagnitudeLevel& l : law.levels) {
@@ -285,6 +303,10 @@ std::string results_json(const TrialsResult& result) {
   root["quantities"] = list_of(result.quantities);
   root["tracks"] = list_of(result.tracks);
   root["detection"] = list_of(result.detected);
+  if (plan.kind == AnalysisKind::kIdentification) {
+    root["choices"] = plan.choices;
+    root["identification"] = list_of(result.identified);
+  }
   root["magnitudes"] = list_of(result.magnitudes);
   if (!result.surfaces.empty()) {
     root["surfaces"] = Json::parse(surfaces_json(result));

@@ -116,6 +116,31 @@ Decision Judge::yes_no(double percept) noexcept {
   return decision;
 }
 
+Decision Judge::nearest(double percept, std::span<const double> prototypes) noexcept {
+  const int count = static_cast<int>(std::min(prototypes.size(), kMostIntervals));
+  if (count == 0) {
+    return {};
+  }
+  Decision decision = lapse(count);
+  const double e = evidence(percept) + parameters_.noise * random_.normal();
+  if (decision.lapsed || count == 1) {
+    return decision;
+  }
+  std::array<double, kMostIntervals> apart{};
+  for (int i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    apart[at] = std::abs(e - evidence(prototypes[at]));
+    if (previous_ >= 0) {
+      apart[at] -= i == previous_ ? parameters_.repetition : -parameters_.repetition;
+    }
+  }
+  const auto end = apart.begin() + count;
+  decision.answer = static_cast<int>(std::min_element(apart.begin(), end) - apart.begin());
+  std::partial_sort(apart.begin(), apart.begin() + 2, end);
+  decision.evidence = std::isfinite(apart[1]) ? 0.5 * (apart[1] - apart[0]) : 0.0;
+  return decision;
+}
+
 double Judge::magnitude(double percept) noexcept {
   return magnitude(percept, 1.0, parameters_.modulus);
 }

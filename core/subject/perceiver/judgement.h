@@ -54,6 +54,9 @@ class Judge {
   Decision between(std::span<const double> percepts, Extreme extreme) noexcept;
   /// Whether the percept is above the criterion.
   Decision yes_no(double percept) noexcept;
+  /// Which of several prototypes the percept is nearest to; the evidence is how far it lies from
+  /// where the next best would be as near. @param prototypes  percepts, at most 16
+  Decision nearest(double percept, std::span<const double> prototypes) noexcept;
 
   /// Number of a percept: modulus · percept^exponent with log-normal noise.
   double magnitude(double percept) noexcept;

@@ -180,9 +180,30 @@ GivenRecording read_given(const EvaluateOptions& o, evaluation::PrepareOptions& 
   return {std::move(contact.recording), names};
 }
 
+/// Recordings of --test-on. What the first recording's session file says of itself holds only
+/// there.
+std::vector<evaluation::NamedRecording> read_others(const EvaluateOptions& o) {
+  std::vector<evaluation::NamedRecording> others;
+  for (const std::string& path : o.tested_on) {
+    EvaluateOptions other = o;
+    other.recording = {path};
+    other.trial.reset();
+    if (fs::path(path).extension() != ".h5") {
+      other.object.reset();
+    }
+    evaluation::PrepareOptions ignored;
+    auto [recording, names] = read_given(other, ignored);
+    others.push_back({names.recording, std::move(recording)});
+  }
+  return others;
+}
+
 int evaluate_duck(const EvaluateOptions& o) {
   if (!o.recording.empty() || !o.mesh.empty()) {
     throw InputError("--duck is given with a recording or a mesh; it makes its own");
+  }
+  if (!o.tested_on.empty()) {
+    throw InputError("--test-on needs RECORDING; --duck makes its own");
   }
   evaluation::DuckOptions duck;
   duck.seed = checked_seed(o.seed);
@@ -209,10 +230,14 @@ int evaluate(const EvaluateOptions& options) {
   evaluation::EvaluationOptions chain = evaluation_options(options);
   const double unit = unit_of(options.units);
   const auto [recording, names] = read_given(options, chain.prepare);
+  const std::vector<evaluation::NamedRecording> others = read_others(options);
   const contact::FeltBody body(load_mesh({options.mesh, unit, {}}, MemoryBudget({})));
   evaluation::Evaluation found;
   try {
     found = evaluation::evaluate_rendering(recording, body, chain);
+    if (!others.empty()) {
+      evaluation::add_cross_fit(found, names.recording, others, body, chain);
+    }
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", options.recording.front(), error.what()));
   }

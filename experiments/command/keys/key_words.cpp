@@ -422,6 +422,7 @@ looks.NAME.dots | 2500 | number of dots on the screen
 observer.senses | force | what the virtual participant feels
 observer.in_stage | throughout the interval | stage in which it is felt
 observer.decides | largest | how what is felt becomes an answer
+observer.prototypes | needed of "nearest" | a percept for each choice, of which the nearest is answered
 observer.yes | the first choice | value of the choice that means yes
 observer.raise | the first choice | value of the choice that raises an adjusted level
 observer.lower | the second choice | value of the choice that lowers it
@@ -485,12 +486,13 @@ observer.modulus | | magnitude of a percept of 1
 observer.magnitude_noise | | spread of the logarithm of a magnitude
 observer.tolerance | | of an adjustment
 trials:analysis.kind | as the procedure is | what is computed
-trials:analysis.by | all factors; of detection and of reaching none | factors whose levels are told apart
+trials:analysis.by | all factors; of detection, identification and reaching none | factors whose levels are told apart
 trials:analysis.tests | none | planned: "a < b", "a > b" or "a != b" of levels
 trials:analysis.question | the first | whose answer counts
 trials:analysis.yes | what the procedure learnt, else the right one | the answer that counts 1
 trials:analysis.level | the one that the procedure set | variable for the level
 trials:analysis.rating | the second question | question of how sure the participant was
+trials:analysis.stimulus | the first factor | factor that says what was presented, of an identification
 trials:analysis.function | norm | sigmoid that is fitted
 trials:analysis.scale | of the procedure | of the axis
 trials:analysis.origin | of the procedure | of the axis

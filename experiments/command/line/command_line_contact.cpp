@@ -62,6 +62,11 @@ void add_evaluate(CLI::App& app, int& status) {
                   "Object of a session file (default: the only one that was touched)");
   sub->add_option("--trial", o.trial,
                   "Trial of a session file (default: the first one in which it was touched)");
+  sub->add_option(
+         "--test-on", o.tested_on,
+         "Another recording of the body, a table, a folder or a session file, on which the "
+         "friction is tested that fits RECORDING, and the other way round; may be repeated")
+      ->allow_extra_args(false);
   sub->add_option("--mesh", o.mesh, "Mesh of the body (.obj, .ply, .stl, .off)");
   sub->add_option("--units", o.units, "Unit of the mesh: m, cm or mm (default: m)");
   take_contact_renderings(*sub, o);

@@ -7,6 +7,8 @@
 #include "core/base/definition/table.h"
 #include "core/base/definition/table_vector.h"
 #include "core/base/error.h"
+#include "core/base/files/file_text.h"
+#include "core/base/fnv.h"
 #include "core/geometry/files/mesh_io.h"
 #include "core/geometry/mesh/procedural.h"
 
@@ -92,7 +94,8 @@ std::vector<TrialObject> read_objects(Table& objects) {
   std::vector<TrialObject> found;
   for (const std::string& name : objects.keys()) {
     Table table = objects.table(name);
-    TrialObject object{name, {}, nullptr};
+    TrialObject object;
+    object.name = name;
     if (table.has("mesh") && table.has("shape")) {
       table.reject("shape", "stands beside mesh; keep one of the two");
       for (const char* key : {"shape", "mesh", "radius", "size", "length", "tube"}) {
@@ -116,7 +119,11 @@ void load_objects(std::vector<TrialObject>& objects, const std::filesystem::path
     }
     const auto file = object.file.is_relative() ? folder / object.file : object.file;
     try {
-      object.body = std::make_shared<const contact::FeltBody>(geometry::read_mesh(file));
+      const std::string bytes = file_text(file);
+      object.body = std::make_shared<const contact::FeltBody>(
+          geometry::parse_mesh(bytes, geometry::mesh_format(file), file.string()));
+      object.file_bytes = bytes.size();
+      object.file_checksum = fnv1a(bytes);
     } catch (const InputError& error) {
       throw InputError(fmt::format("objects.{}: {}", object.name, error.what()));
     }

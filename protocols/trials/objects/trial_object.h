@@ -19,7 +19,8 @@ struct TrialObject {
   std::string name;
   std::filesystem::path file;  // of a mesh; empty: a shape that the definition describes
   contact::SharedBody body;    // of a file: null until it is loaded
-  bool recorded{false};        // its contacts, tick by tick, in /contacts
+  std::uint64_t file_bytes{0}, file_checksum{0};  // likewise; the checksum is FNV-1a
+  bool recorded{false};                           // its contacts, tick by tick, in /contacts
 };
 
 /// Reads the shapes of [objects], in the order of their names. Problems are noted.

@@ -182,17 +182,32 @@ int read_choice(Table& table, const char* key, const std::vector<Question>& ques
   return static_cast<int>(found - choices.begin());
 }
 
+/// A percept for each choice of the first question.
+std::vector<double> read_prototypes(Table& table, const std::vector<Question>& questions) {
+  const std::size_t choices = questions.empty() ? 0 : questions.front().choices.size();
+  std::vector<double> prototypes = table.numbers("prototypes", kNonNegative, "");
+  if (prototypes.size() != choices) {
+    table.reject("prototypes", fmt::format("a list of {}", prototypes.size()),
+                 fmt::format("{} numbers, one for each choice of the response", choices));
+  }
+  return prototypes;
+}
+
 void read_decision(Table& table, const std::vector<Question>& questions, ObserverPlan& plan) {
   if (table.has("decides")) {
     const std::string how =
-        table.choice("decides", {"largest", "smallest", "yes", "magnitude", "adjust"});
+        table.choice("decides", {"largest", "smallest", "yes", "nearest", "magnitude", "adjust"});
     plan.decides = how == "smallest"    ? Decides::kSmallest
                    : how == "yes"       ? Decides::kYes
+                   : how == "nearest"   ? Decides::kNearest
                    : how == "magnitude" ? Decides::kMagnitude
                    : how == "adjust"    ? Decides::kAdjust
                                         : Decides::kLargest;
   }
   plan.yes = read_choice(table, "yes", questions, plan.yes);
+  if (plan.decides == Decides::kNearest) {
+    plan.prototypes = read_prototypes(table, questions);
+  }
   if (plan.decides == Decides::kAdjust) {
     plan.raise = read_choice(table, "raise", questions, plan.raise);
     plan.lower = read_choice(table, "lower", questions, plan.lower);
@@ -245,7 +260,8 @@ ObserverPlan read_observer(Table& root, const std::vector<Question>& questions,
     plan.sight = read_sight(sight);
   }
   subject::JudgementParameters judge;
-  judge.logarithmic = plan.decides != Decides::kYes;  // nothing at all has no logarithm
+  // Nothing at all has no logarithm.
+  judge.logarithmic = plan.decides != Decides::kYes && plan.decides != Decides::kNearest;
   plan.people.emplace(table, judge);
   return plan;
 }

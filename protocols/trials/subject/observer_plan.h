@@ -22,7 +22,7 @@ struct Question;
 struct TrialDevice;
 
 /// How virtual participants of trials take what they feel for an answer.
-enum class Decides : std::uint8_t { kLargest, kSmallest, kYes, kMagnitude, kAdjust };
+enum class Decides : std::uint8_t { kLargest, kSmallest, kYes, kNearest, kMagnitude, kAdjust };
 
 /// What a hand does in a stage.
 struct StageAction {
@@ -45,6 +45,7 @@ struct ObserverPlan {
   std::string stage;  // in which it is felt; empty: throughout the interval
   Decides decides{Decides::kLargest};
   int yes{0};                       // choice that means yes, from 0
+  std::vector<double> prototypes;   // (choices) percepts that the choices stand for, of kNearest
   int raise{0}, lower{1}, done{2};  // choices of an adjustment, from 0
   double wanted{1.0};    // percept that is adjusted to, if the trial shows none before [its unit]
   double reaction{0.6};  // median time from question to answer > 0 [s]
@@ -60,8 +61,10 @@ struct ObserverPlan {
 ///     [senses]      "force", "stiffness", "compliance", "viscosity", "friction", "roughness",
 ///                   "extent", "unevenness"
 ///     [in_stage]    in which it is felt
-///     [decides]     "largest", "smallest", "yes", "magnitude" or "adjust": the last interval until
-///                   it feels as the first one, or as `wanted`
+///     [decides]     "largest", "smallest", "yes", "nearest": the choice whose prototype is nearest
+///                   to what was felt; "magnitude" or "adjust": the last interval until it feels as
+///                   the first one, or as `wanted`
+///     [prototypes]  of "nearest": a percept for each choice of the first question
 ///     [raise], [lower], [done]  values of the choices of an adjustment; the first three in this
 ///                   order if left out. [wanted] a percept
 ///     [yes]         value of the choice that means yes; the first one if left out

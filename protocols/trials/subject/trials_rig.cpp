@@ -365,6 +365,9 @@ class TrialsRig::Participant final : public stimulus::Observer {
     if (plan_.decides == Decides::kYes) {
       return judge_.yes_no(percepts_[0]);
     }
+    if (plan_.decides == Decides::kNearest) {
+      return judge_.nearest(percepts_[0], plan_.prototypes);
+    }
     const auto extreme = plan_.decides == Decides::kSmallest ? subject::Extreme::kSmallest
                                                              : subject::Extreme::kLargest;
     return judge_.between(std::span(percepts_.data(), intervals_), extreme);

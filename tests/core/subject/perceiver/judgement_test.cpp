@@ -126,6 +126,44 @@ TEST(JudgeTest, AYesNeedsMoreThanTheCriterionThatDrifts) {
   EXPECT_NEAR(share(0.05, 100, 0), phi(-0.5), bound(0.3));
 }
 
+/// Of three prototypes each is answered as often as noise leaves the percept between its borders.
+TEST(JudgeTest, TheNearestPrototypeIsAnswered) {
+  JudgementParameters p;
+  p.logarithmic = false;
+  p.noise = 0.4;
+  Judge judge(p, 5);
+  const std::array prototypes{0.0, 1.0, 3.0};
+  std::array<int, 3> answers{};
+  double surest = 0.0;
+  constexpr int kMany = 20000;
+  for (int trial = 0; trial < kMany; ++trial) {
+    judge.begin_trial(trial);
+    const Decision decision = judge.nearest(0.8, prototypes);
+    ++answers[static_cast<std::size_t>(decision.answer)];
+    surest = std::max(surest, decision.evidence);
+    EXPECT_GE(decision.evidence, 0.0);
+  }
+  const double first = phi((0.5 - 0.8) / 0.4), third = 1.0 - phi((2.0 - 0.8) / 0.4);
+  const auto near = [&](int count, double share) {
+    EXPECT_NEAR(count / double(kMany), share, 4.0 * std::sqrt(share * (1.0 - share) / kMany));
+  };
+  near(answers[0], first);
+  near(answers[1], 1.0 - first - third);
+  near(answers[2], third);
+  p.noise = 0.0;
+  Judge sure(p, 5);
+  sure.begin_trial(0);
+  EXPECT_NEAR(sure.nearest(0.8, prototypes).evidence, 0.3, 1e-12) << "to the border at 0.5";
+  p.lapse = 1.0;
+  Judge guesses(p, 5);
+  std::array<int, 3> guessed{};
+  for (int trial = 0; trial < kMany; ++trial) {
+    guesses.begin_trial(trial);
+    ++guessed[static_cast<std::size_t>(guesses.nearest(0.8, prototypes).answer)];
+  }
+  near(guessed[2], 1.0 / 3.0);
+}
+
 TEST(JudgeTest, ATrialHasItsNoiseWhateverCameBefore) {
   JudgementParameters p;
   p.noise = 0.1;
