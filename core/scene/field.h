@@ -16,6 +16,7 @@
 #include "core/scene/surface/relief.h"
 #include "core/scene/surface/solid.h"
 #include "core/scene/surface/surface.h"
+#include "core/scene/surface/yielding.h"
 
 namespace haptrial::scene {
 
@@ -26,7 +27,7 @@ using FieldKind =
                  GratingParameters, TextureParameters, ViscousParameters, MatrixViscousParameters,
                  InertiaParameters, FrictionParameters, SineVibrationParameters,
                  NoiseVibrationParameters, TapParameters, DetentParameters, ClickParameters,
-                 MoverParameters, PathParameters, SolidParameters>;
+                 MoverParameters, PathParameters, SolidParameters, YieldingParameters>;
 
 /// One field of force as a definition states it: plain data that may change between trials.
 struct Field {
@@ -43,6 +44,11 @@ const std::string& surface_of(const Field& field) noexcept;
 inline bool is_surface(const Field& field) noexcept {
   return std::holds_alternative<SurfaceParameters>(field.kind) ||
          std::holds_alternative<SolidParameters>(field.kind);
+}
+/// One of [objects], not of [fields].
+inline bool is_object(const Field& field) noexcept {
+  return std::holds_alternative<SolidParameters>(field.kind) ||
+         std::holds_alternative<YieldingParameters>(field.kind);
 }
 /// A relief shapes the force of the surface that it lies on and has none of its own.
 inline bool is_relief(const Field& field) noexcept {

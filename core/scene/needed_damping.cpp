@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace haptrial::scene {
@@ -62,6 +63,15 @@ Steepness of_solid(const std::vector<Field>& fields, const Field& field, const S
   return found;
 }
 
+/// The spring between hand and ball and the body behind it, along each other; friction bends a
+/// bristle that is no stiffer. Of a body that is not prepared the spring alone is known.
+Steepness of_yielding(const YieldingParameters& p) {
+  const double body = p.body ? p.body->stiffest(p.tool.radius)
+                             : std::numeric_limits<double>::infinity();
+  const double both = 1.0 / (1.0 / p.tool.stiffness + 1.0 / body);
+  return {true, p.tool.friction.static_friction > 0.0 ? 2.0 * both : both, 0.0};
+}
+
 struct SteepnessOf {
   const std::vector<Field>& fields;
   const Field& field;
@@ -75,6 +85,7 @@ struct SteepnessOf {
   Steepness operator()(const PlaneParameters& p) const { return of_gains(p.gains); }
   Steepness operator()(const SurfaceParameters& p) const { return of_surface(fields, field, p); }
   Steepness operator()(const SolidParameters& p) const { return of_solid(fields, field, p); }
+  Steepness operator()(const YieldingParameters& p) const { return of_yielding(p); }
   Steepness operator()(const GratingParameters&) const { return {true, 0.0, 0.0}; }
   Steepness operator()(const TextureParameters&) const { return {true, 0.0, 0.0}; }
   Steepness operator()(const ViscousParameters& p) const { return {true, 0.0, p.damping}; }

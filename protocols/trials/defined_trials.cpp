@@ -15,6 +15,7 @@
 #include "protocols/interface/session_file.h"
 #include "protocols/trials/definition/defaults.h"
 #include "protocols/trials/objects/object_files.h"
+#include "protocols/trials/objects/yielding_bodies.h"
 #include "protocols/trials/presentation/stage_sight.h"
 #include "protocols/trials/presentation/trial_drawing.h"
 #include "protocols/trials/subject/trials_rig.h"
@@ -44,7 +45,7 @@ std::uint64_t pushing(const std::vector<scene::Field>& fields) {
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const auto& kind = fields[i].kind;
     const bool yields = scene::is_surface(fields[i]) || scene::is_relief(fields[i]) ||
-                        std::holds_alternative<scene::ViscousParameters>(kind) ||
+                        scene::is_object(fields[i]) || std::holds_alternative<scene::ViscousParameters>(kind) ||
                         std::holds_alternative<scene::FrictionParameters>(kind);
     mask |= yields ? 0 : std::uint64_t{1} << i;
   }
@@ -244,6 +245,7 @@ IntervalRun DefinedTrials::make_interval(std::size_t place, RandomStream& random
   note_variables(place + 1, variables_);
   Presented presented = read_presented(root_, *names_, d_, &random);
   root_.check();
+  prepare_bodies(presented.fields);
   const std::uint64_t seed =
       derived_seed(current_.plan.stimulus_seed, fmt::format("dots {}", place));
   std::vector<Stage> stages;

@@ -130,6 +130,9 @@ void Encounters::follow(const Eigen::Vector3d& p, bool touching, double dt) noex
   } else if (free_for_ >= kFreeAtLeast) {
     ++contacts_;
     longest_ = cloud_.weight > longest_.weight ? cloud_ : longest_;
+    if (const double k = stiffness_of(cloud_); k > 0.0 && stiffness_count_ < stiffnesses_.size()) {
+      stiffnesses_[stiffness_count_++] = k;
+    }
     cloud_ = {};
     apart_ = std::max(apart_, (p - first_).norm());
   }
@@ -137,7 +140,26 @@ void Encounters::follow(const Eigen::Vector3d& p, bool touching, double dt) noex
 }
 
 double Encounters::stiffness() const noexcept {
-  const Cloud& cloud = longest_.weight > cloud_.weight ? longest_ : cloud_;
+  return stiffness_of(longest_.weight > cloud_.weight ? longest_ : cloud_);
+}
+
+double Encounters::contrast() const noexcept {
+  std::array<double, 17> all{};
+  std::copy_n(stiffnesses_.begin(), stiffness_count_, all.begin());
+  std::size_t count = stiffness_count_;
+  if (const double k = stiffness_of(cloud_); k > 0.0) {
+    all[count++] = k;
+  }
+  if (count < 2) {
+    return 1.0;
+  }
+  const auto end = all.begin() + static_cast<std::ptrdiff_t>(count);
+  std::sort(all.begin(), end);
+  const double median = 0.5 * (all[(count - 1) / 2] + all[count / 2]);
+  return all[count - 1] / median;
+}
+
+double Encounters::stiffness_of(const Cloud& cloud) const noexcept {
   if (!(cloud.weight > 0.0)) {
     return 0.0;
   }
@@ -194,6 +216,8 @@ Encounter Encounters::met(Quantity quantity) const noexcept {
       return {extent(), 0.0};
     case Quantity::kUnevenness:
       return {unevenness(), 0.0};
+    case Quantity::kContrast:
+      return {contrast(), force()};
   }
   return {};
 }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 
 #include "core/base/point_state.h"
 #include "core/subject/perceiver/felt.h"
@@ -21,6 +23,8 @@ namespace haptrial::subject {
 ///                 contact the way to it; without any the greatest way from the start
 ///     unevenness  root mean square, over the way in contact, of the distance from the sphere that
 ///                 fits the touched places best (algebraic fit, Kåsa 1976); 0 without a way
+///     contrast    greatest stiffness of the contacts (the first 16 with a slope) over their median;
+///                 1 with fewer than two
 ///
 /// Slopes are least-squares lines with an offset. Servo thread: no allocation, lock, I/O or throw.
 class Encounters {
@@ -38,6 +42,7 @@ class Encounters {
   double roughness() const noexcept;                       // [N]
   double extent() const noexcept;                          // [m]
   double unevenness() const noexcept;                      // [m]
+  double contrast() const noexcept;                        // >= 1
   double resistance() const noexcept;                      // mean r while moving [N]
   Encounter met(Quantity quantity) const noexcept;
 
@@ -62,6 +67,7 @@ class Encounters {
     Eigen::Vector4d right{Eigen::Vector4d::Zero()};  // Σ (p, 1) |p|²
     Eigen::Matrix4d left{Eigen::Matrix4d::Zero()};   // Σ (p, 1)(p, 1)'
   };
+  double stiffness_of(const Cloud& cloud) const noexcept;
   void touch(const Eigen::Vector3d& force, const Eigen::Vector3d& p, double dt) noexcept;
   void move(const Eigen::Vector3d& force, const Eigen::Vector3d& v, bool touching,
             double dt) noexcept;
@@ -72,6 +78,8 @@ class Encounters {
   UpperMean upper_;
   Cloud cloud_;    // of the present contact
   Cloud longest_;  // of those before it
+  std::array<double, 16> stiffnesses_{};  // of those before it [N/m]
+  std::size_t stiffness_count_{0};
   Ball ball_;
   Line line_;
   double lost_{0.0}, way_{0.0};                    // ∫ r |v| dt [J], ∫ |v| dt [m]

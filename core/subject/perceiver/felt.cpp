@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -47,6 +48,10 @@ double felt(const SenseParameters& s, Quantity quantity, const Encounter& met,
   }
   if (quantity == Quantity::kExtent || quantity == Quantity::kUnevenness) {
     return met.amount * std::exp(s.extent_weber * n.extent);
+  }
+  if (quantity == Quantity::kContrast) {
+    return met.amount *
+           std::exp(std::numbers::sqrt2 * s.force_weber * n.force / (1.0 - s.displacement_bias));
   }
   // The force of a stiffness or a viscosity, relative to what it was; never a pull.
   const double floor = met.force > 0.0 ? s.force_floor * n.floor / met.force : 0.0;

@@ -13,7 +13,8 @@ enum class Quantity {
   kFriction,    // resisting force while moving [N]
   kRoughness,   // root mean square of the force's fluctuation [N]
   kExtent,      // way between contacts [m]
-  kUnevenness   // how far what was touched lies from a sphere [m]
+  kUnevenness,  // how far what was touched lies from a sphere [m]
+  kContrast     // the greatest stiffness of several contacts over their median
 };
 
 /// The senses of a hand. Sources of the values: docs/algorithms/virtual-perceiver.md.
@@ -51,7 +52,8 @@ FeltNoise draw_noise(RandomStream& random) noexcept;
 ///     n3) compliance                   D^ / F^ viscosity                    F^ / (v
 ///     exp(speed_weber n4)) extent                       L exp(extent_weber n5)
 ///
-/// with D = F / K; unevenness as extent. Changes of a deflection are felt too small by beta (Fu,
+/// with D = F / K; unevenness as extent; a contrast as the stiffnesses of two presses with the same
+/// force, contrast exp(sqrt(2) force_weber n1 / (1 - beta)). Changes of a deflection are felt too small by beta (Fu,
 /// van Paassen and Mulder 2017): pressed with the same force, springs differ to the senses by K^(1
 /// - beta), so that their Weber fraction is force_weber / (1 - beta); pushed to the same place, by
 /// K, and the fraction is force_weber. Servo thread: no allocation, lock, I/O or throw.

@@ -45,6 +45,7 @@ Encounter LevelObserver::met(double level) const noexcept {
     case Quantity::kRoughness:
     case Quantity::kExtent:
     case Quantity::kUnevenness:
+    case Quantity::kContrast:
       break;
   }
   return {level, level};
@@ -84,6 +85,9 @@ double LevelObserver::weber(double level) const noexcept {
   }
   const double force = met(level).force;
   const double floor = force > 0.0 ? senses_.force_floor / force : 0.0;
+  if (quantity_ == Quantity::kContrast) {
+    return std::numbers::sqrt2 * senses_.force_weber / (1.0 - senses_.displacement_bias);
+  }
   if (quantity_ == Quantity::kStiffness || quantity_ == Quantity::kCompliance) {
     const double all = root(senses_.force_weber, floor, senses_.displacement_weber);
     return exploration_.depth > 0.0 ? all : all / (1.0 - senses_.displacement_bias);

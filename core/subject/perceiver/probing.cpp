@@ -82,6 +82,7 @@ struct Checker {
     require_above(p.speed, 0.0, false, "follow: speed");
     require_above(p.force, 0.0, false, "follow: force");
   }
+  void operator()(const Palpate& p) const { subject::check(p); }
 };
 
 constexpr double kLetGo = 0.1;  // after a reaction time people no longer resist what has gone [s]
@@ -161,6 +162,23 @@ Prober::Aim Prober::aim(const Contour&, const Now& now) noexcept {
   desired_.position = now.hand.position + step.off_loop;
   desired_.velocity = step.velocity;
   aim.push = step.push;
+  return aim;
+}
+
+/// From place to place as in a reach; at a place it keeps to the line along which it presses.
+Prober::Aim Prober::aim(const Palpate& palpate, const Now&) noexcept {
+  Aim aim;
+  const PalpationStep step = palpation_at(palpate, time_);
+  const Eigen::Vector3d& from = step.place == 0 ? start_ : palpate.places[step.place - 1];
+  const Eigen::Vector3d way = palpate.places[step.place] - from;
+  const Smooth s = smooth_step(step.moved);
+  desired_.position = from + s.s * way;
+  desired_.velocity = s.rate / palpate.move * way;
+  aim.acceleration = s.second / (palpate.move * palpate.move) * way;
+  if (step.pressing) {
+    aim.free = palpate.direction.normalized();
+    aim.push = palpate.force * smooth_step(step.pressed).s * aim.free;
+  }
   return aim;
 }
 

@@ -8,6 +8,7 @@
 #include "core/subject/hand_model.h"
 #include "core/subject/hand_parameters.h"
 #include "core/subject/motor_noise.h"
+#include "core/subject/palpation/palpation.h"
 #include "core/subject/perceiver/contour.h"
 
 namespace haptrial::subject {
@@ -44,7 +45,7 @@ struct Reach {
 };
 
 /// How the hand explores during a stage.
-using Probe = std::variant<Rest, Hold, Press, Stroke, Reach, Contour>;
+using Probe = std::variant<Rest, Hold, Press, Stroke, Reach, Contour, Palpate>;
 
 /// @throws std::invalid_argument naming the parameter that breaks its bound.
 void check(const Probe& probe);
@@ -94,6 +95,7 @@ class Prober {
   Aim aim(const Stroke& stroke, const Now& now) noexcept;
   Aim aim(const Reach& reach, const Now& now) noexcept;
   Aim aim(const Contour& contour, const Now& now) noexcept;
+  Aim aim(const Palpate& palpate, const Now& now) noexcept;
   Eigen::Vector3d track(const Aim& aim, const PointState& hand, double dt) noexcept;
 
   HandParameters hand_;

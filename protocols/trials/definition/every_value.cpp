@@ -10,6 +10,7 @@
 #include "protocols/trials/definition/defaults.h"
 #include "protocols/trials/definition/read_definition.h"
 #include "protocols/trials/definition/trial_values.h"
+#include "protocols/trials/objects/yielding_bodies.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -67,7 +68,10 @@ void check_objects(const TrialsDefinition& d, const std::vector<scene::Field>& f
   }
 }
 
-void present_once(const TrialsDefinition& d, const TrialValues& values) {
+/// @returns what is said of bodies that give way, if asked for
+std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValues& values,
+                                      bool with_bodies) {
+  std::vector<std::string> bodies;
   Table root = Table::parse(d.text, d.file_name);
   root.fill_in(trials_defaults());
   const std::unique_ptr<Names> names = read_names(root, d);
@@ -75,11 +79,15 @@ void present_once(const TrialsDefinition& d, const TrialValues& values) {
     for (std::size_t place = 0; place < d.intervals.size(); ++place) {
       give(*names, d, values);
       give_interval(*names, d.intervals[values.intervals[place]], place);
-      const Presented presented = read_presented(root, *names, d, nullptr);
+      Presented presented = read_presented(root, *names, d, nullptr);
       root.check();
       scene::Scene(presented.fields, d.rate);
       check_forces(d, presented.fields);
       check_objects(d, presented.fields);
+      if (with_bodies && place == 0) {
+        prepare_bodies(presented.fields);
+        bodies = words_of_bodies(presented.fields, d.rate, d.hand.damping);
+      }
     }
     give(*names, d, values);
     for (const Question& question : d.questions) {
@@ -90,11 +98,13 @@ void present_once(const TrialsDefinition& d, const TrialValues& values) {
   } catch (const std::exception& error) {
     throw InputError(fmt::format("{}\n(with {})", error.what(), words_of(d, values)));
   }
+  return bodies;
 }
 
 }  // namespace
 
-void check_every_value(const TrialsDefinition& d) {
+std::vector<std::string> check_every_value(const TrialsDefinition& d) {
+  std::vector<std::string> bodies;
   for (std::size_t block = 0; block < d.order.blocks.size(); ++block) {
     const std::vector<const Factor*> varied = d.varied_in(d.order.blocks[block]);
     std::size_t combinations = 1;
@@ -119,10 +129,13 @@ void check_every_value(const TrialsDefinition& d) {
         }
         const Block& given = d.order.blocks[block];
         values.values.insert(values.values.end(), given.values.begin(), given.values.end());
-        present_once(d, values);
+        const bool first = block == 0 && c == 0 && !high;
+        const std::vector<std::string> said = present_once(d, values, first);
+        bodies.insert(bodies.end(), said.begin(), said.end());
       }
     }
   }
+  return bodies;
 }
 
 }  // namespace haptrial::protocols

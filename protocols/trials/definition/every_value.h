@@ -1,12 +1,16 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 namespace haptrial::protocols {
 
 struct TrialsDefinition;
 
 /// Reads what would be presented at the ends of every track's range, in every block and, up to a
 /// few hundred, in every combination of factors.
+/// @returns what there is to say of bodies that give way, as they are presented first
 /// @throws InputError with the sentences of the first that cannot be presented, and its values
-void check_every_value(const TrialsDefinition& definition);
+std::vector<std::string> check_every_value(const TrialsDefinition& definition);
 
 }  // namespace haptrial::protocols

@@ -12,6 +12,7 @@
 #include "core/scene/needed_damping.h"
 #include "core/scene/read/read_field.h"
 #include "core/scene/read/read_solid.h"
+#include "core/scene/read/read_yielding.h"
 #include "core/sound/cues/read_cues.h"
 #include "protocols/definition/handle_loop.h"
 #include "protocols/trials/definition/defaults.h"
@@ -261,13 +262,16 @@ TrialValues sample_values(const TrialsDefinition& d, std::size_t block) {
 /// the damping of device and hand must take up (needed_damping.h).
 void note_restless(const std::vector<scene::Field>& fields, TrialsDefinition& d) {
   for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (std::holds_alternative<scene::YieldingParameters>(fields[i].kind)) {
+      continue;  // that is told of the body itself
+    }
     const scene::Steepness steepness = scene::steepness(fields, i);
     const double needed = scene::needed_damping_below(0.0, steepness, d.rate);
     if (steepness.passive && needed > d.hand.damping) {
       d.restless.push_back(fmt::format(
           "{}.{} turns by {:.0f} N/m: at {:g} Hz it stays calm with {:.3g} N·s/m of damping, "
           "and the hand of [hand] has {:g}",
-          std::holds_alternative<scene::SolidParameters>(fields[i].kind) ? "objects" : "fields",
+          scene::is_object(fields[i]) ? "objects" : "fields",
           fields[i].name, steepness.stiffness, d.rate, needed, d.hand.damping));
     }
   }
@@ -330,8 +334,11 @@ void read_what_is_felt(Table& root, const Names& names, const TrialsDefinition& 
     for (const std::string& name : table.keys()) {
       const auto object = std::ranges::find(d.objects, name, &TrialObject::name);
       Table own = table.table(name);
+      const bool known = object != d.objects.end();
       objects.push_back(
-          scene::read_solid(own, name, object != d.objects.end() ? object->body : nullptr, names));
+          known && object->yields
+              ? scene::read_yielding(own, name, object->felt, names)
+              : scene::read_solid(own, name, known ? object->body : nullptr, names));
     }
   }
   if (root.has("fields")) {

@@ -114,6 +114,7 @@ std::vector<std::string> TrialsDefinition::description() const {
       lines.push_back(*prediction);
     }
   }
+  lines.insert(lines.end(), bodies.begin(), bodies.end());
   if (markers.used) {
     lines.push_back("markers: " + markers::words_of(marker_meanings()));
   }

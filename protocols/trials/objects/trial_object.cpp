@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <memory>
 
 #include "core/base/definition/table.h"
@@ -88,6 +90,48 @@ contact::SharedBody read_shape(Table& table) {
   return nullptr;
 }
 
+std::vector<deformable::BodySide> read_sides(Table& table, const char* key) {
+  constexpr std::array kSides{deformable::BodySide::kLeft,   deformable::BodySide::kRight,
+                              deformable::BodySide::kBottom, deformable::BodySide::kTop,
+                              deformable::BodySide::kBack,   deformable::BodySide::kFront};
+  std::vector<deformable::BodySide> sides;
+  for (const std::string& word : table.texts(key)) {
+    const auto found = std::ranges::find(kSides, word, [](auto side) { return name_of(side); });
+    if (found == kSides.end()) {
+      table.reject(key, fmt::format("\"{}\"", word), "left, right, bottom, top, back, front");
+    } else {
+      sides.push_back(*found);
+    }
+  }
+  return sides;
+}
+
+/// The keys of a body that gives way; its block, unless it is a file.
+void read_yielding_shape(Table& table, TrialObject& object) {
+  object.yields = true;
+  object.cells =
+      table.integer_or("cells", object.cells, 2, deformable::kMostFeltCells);
+  if (table.has("fixed")) {
+    object.sides.fixed = read_sides(table, "fixed");
+  }
+  if (table.has("felt")) {
+    object.sides.felt = read_sides(table, "felt");
+  }
+  if (table.has("mesh")) {
+    object.file = table.text("mesh");
+    return;
+  }
+  table.choice("shape", {"box"});
+  const Eigen::Vector3d size = sides(table);
+  try {
+    object.felt = std::make_shared<const deformable::FeltMesh>(
+        deformable::felt_block(size, object.cells, object.sides, "objects." + object.name));
+    object.body = std::make_shared<const contact::FeltBody>(geometry::make_box(size));
+  } catch (const InputError& error) {
+    table.reject("size", fmt::format("cannot be used: {}", error.what()));
+  }
+}
+
 }  // namespace
 
 std::vector<TrialObject> read_objects(Table& objects) {
@@ -96,7 +140,9 @@ std::vector<TrialObject> read_objects(Table& objects) {
     Table table = objects.table(name);
     TrialObject object;
     object.name = name;
-    if (table.has("mesh") && table.has("shape")) {
+    if (table.has("kind") && table.choice("kind", {"rigid", "deformable"}) == "deformable") {
+      read_yielding_shape(table, object);
+    } else if (table.has("mesh") && table.has("shape")) {
       table.reject("shape", "stands beside mesh; keep one of the two");
       for (const char* key : {"shape", "mesh", "radius", "size", "length", "tube"}) {
         table.leave(key);
@@ -124,6 +170,10 @@ void load_objects(std::vector<TrialObject>& objects, const std::filesystem::path
           geometry::parse_mesh(bytes, geometry::mesh_format(file), file.string()));
       object.file_bytes = bytes.size();
       object.file_checksum = fnv1a(bytes);
+      if (object.yields) {
+        object.felt = std::make_shared<const deformable::FeltMesh>(deformable::felt_solid(
+            object.body->mesh, object.cells, object.sides, "objects." + object.name));
+      }
     } catch (const InputError& error) {
       throw InputError(fmt::format("objects.{}: {}", object.name, error.what()));
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/contact/surface/felt_body.h"
+#include "core/deformable/touch/felt_mesh.h"
 
 namespace haptrial {
 class Table;
@@ -21,6 +22,10 @@ struct TrialObject {
   contact::SharedBody body;    // of a file: null until it is loaded
   std::uint64_t file_bytes{0}, file_checksum{0};  // likewise; the checksum is FNV-1a
   bool recorded{false};                           // its contacts, tick by tick, in /contacts
+  bool yields{false};                             // gives way to the hand
+  int cells{16};                                  // then: along its longest side
+  deformable::FeltSides sides;
+  deformable::SharedFeltMesh felt;  // of a file: null until it is loaded
 };
 
 /// Reads the shapes of [objects], in the order of their names. Problems are noted.
@@ -35,8 +40,14 @@ struct TrialObject {
 ///
 ///     [record]        true: every tick of contact is a row of /contacts
 ///
+///     [kind]          "deformable": a body that gives way, of a mesh or the shape "box"; then
+///     [cells]         along its longest side, 16 if left out
+///     [fixed]         its sides that do not move, of "left", "right", "bottom", "top", "back",
+///                     "front" (-x, +x, -y, +y, -z, +z); the bottom if left out
+///     [felt]          its sides that can be touched; all that are not fixed if left out
+///
 /// Lengths are in metres, numbers alone: what changes between trials is the object's scale, centre
-/// and turn, which read_solid() reads with all else.
+/// and turn, which read_solid() or read_yielding() reads with all else.
 std::vector<TrialObject> read_objects(Table& objects);
 
 /// Reads the meshes that are files. @param folder  of the definition

@@ -27,12 +27,12 @@ Mark mark_of(const scene::Shape& shape) {
   return mark_at(std::get<scene::HalfSpace>(shape).point, 0.0);
 }
 
-SeenObject seen_object(const scene::SolidParameters& solid, std::size_t object) {
-  const Eigen::Vector3f p = solid.pose.position.cast<float>();
-  const Eigen::Quaternionf q = solid.pose.orientation.cast<float>();
+SeenObject seen_object(const contact::ObjectPose& pose, double scale, std::size_t object) {
+  const Eigen::Vector3f p = pose.position.cast<float>();
+  const Eigen::Quaternionf q = pose.orientation.cast<float>();
   return {{p.x(), p.y(), p.z()},
           {q.w(), q.x(), q.y(), q.z()},
-          static_cast<float>(solid.scale),
+          static_cast<float>(scale),
           static_cast<std::int32_t>(object)};
 }
 
@@ -40,11 +40,15 @@ SeenObject seen_object(const scene::SolidParameters& solid, std::size_t object) 
 void show_object(const Presented& presented, const std::string& name, StageSight& sight) {
   std::size_t object = 0;
   for (const scene::Field& field : presented.fields) {
-    const auto* solid = std::get_if<scene::SolidParameters>(&field.kind);
-    if (solid != nullptr && field.name == name) {
-      sight.objects.push_back(seen_object(*solid, object));
+    if (const auto* solid = std::get_if<scene::SolidParameters>(&field.kind);
+        solid != nullptr && field.name == name) {
+      sight.objects.push_back(seen_object(solid->pose, solid->scale, object));
     }
-    object += solid != nullptr ? 1 : 0;
+    if (const auto* body = std::get_if<scene::YieldingParameters>(&field.kind);
+        body != nullptr && field.name == name) {
+      sight.objects.push_back(seen_object(body->pose, 1.0, object));
+    }
+    object += scene::is_object(field) ? 1 : 0;
   }
 }
 

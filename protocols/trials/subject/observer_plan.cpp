@@ -19,7 +19,7 @@ namespace {
 
 using subject::Quantity;
 
-constexpr std::array<std::pair<const char*, Quantity>, 8> kQuantities{
+constexpr std::array<std::pair<const char*, Quantity>, 9> kQuantities{
     {{"force", Quantity::kForce},
      {"stiffness", Quantity::kStiffness},
      {"compliance", Quantity::kCompliance},
@@ -27,7 +27,8 @@ constexpr std::array<std::pair<const char*, Quantity>, 8> kQuantities{
      {"friction", Quantity::kFriction},
      {"roughness", Quantity::kRoughness},
      {"extent", Quantity::kExtent},
-     {"unevenness", Quantity::kUnevenness}}};
+     {"unevenness", Quantity::kUnevenness},
+     {"contrast", Quantity::kContrast}}};
 
 void check_stage(Table& table, const char* key, const std::string& name,
                  const std::vector<std::string>& stages) {
@@ -85,11 +86,27 @@ subject::Probe read_contour(Table& table) {
   return contour;
 }
 
+subject::Probe read_palpation(Table& table) {
+  subject::Palpate palpate;
+  const std::vector<Eigen::Vector3d> places =
+      scene::NumberSource{}.vectors(table, "at", {-1.0, 1.0}, "m");
+  palpate.count = places.size();
+  std::copy_n(places.begin(), std::min(places.size(), subject::Palpate::kMost),
+              palpate.places.begin());
+  palpate.force = table.number("force", {0.0, 50.0}, "N");
+  if (table.has("direction")) {
+    palpate.direction = read_direction(table, "direction");
+  }
+  palpate.move = table.number_or("move", palpate.move, {0.05, 60.0}, "s");
+  palpate.press = table.number_or("press", palpate.press, {0.05, 60.0}, "s");
+  return palpate;
+}
+
 StageAction read_action(Table& table, const std::string& stage) {
   StageAction action;
   action.stage = stage;
   const std::string what =
-      table.choice("do", {"rest", "hold", "press", "stroke", "reach", "follow"});
+      table.choice("do", {"rest", "hold", "press", "stroke", "reach", "follow", "palpate"});
   if (what == "press") {
     action.probe = read_press(table);
   } else if (what == "stroke") {
@@ -100,6 +117,8 @@ StageAction read_action(Table& table, const std::string& stage) {
     action.to_mark = true;
   } else if (what == "follow") {
     action.probe = read_contour(table);
+  } else if (what == "palpate") {
+    action.probe = read_palpation(table);
   } else if (what == "hold") {
     action.probe = subject::Hold{};
   }

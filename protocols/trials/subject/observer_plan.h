@@ -59,7 +59,7 @@ struct ObserverPlan {
 /// optional.
 ///
 ///     [senses]      "force", "stiffness", "compliance", "viscosity", "friction", "roughness",
-///                   "extent", "unevenness"
+///                   "extent", "unevenness", "contrast"
 ///     [in_stage]    in which it is felt
 ///     [decides]     "largest", "smallest", "yes", "nearest": the choice whose prototype is nearest
 ///                   to what was felt; "magnitude" or "adjust": the last interval until it feels as
@@ -73,6 +73,8 @@ struct ObserverPlan {
 ///                   { do = "stroke", direction, half_length, frequency, [force], [normal] },
 ///                   { do = "follow", [towards], [around], [then_around], [turn_after], [speed],
 ///                   [force] }: round an object (core/subject/perceiver/contour.h),
+///                   { do = "palpate", at, force, [direction], [move], [press] }: presses at places
+///                   one after the other (core/subject/palpation/palpation.h),
 ///                   { do = "reach", duration }: to the first mark that the stage shows,
 ///                   { do = "hold" } or { do = "rest" }, as in stages without one;
 ///                   with [devices] stage = { NAME = { do = … }, … }, or the same for all of them

@@ -1,0 +1,24 @@
+#include "core/deformable/touch/body_touch.h"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace haptrial::deformable {
+
+void check(const TouchOptions& options) {
+  const auto require = [](bool good, const char* sentence) {
+    if (!good) {
+      throw std::invalid_argument(sentence);
+    }
+  };
+  require(std::isfinite(options.radius) && options.radius >= 0.0,
+          "radius must be finite and at least 0");
+  require(std::isfinite(options.stiffness) && options.stiffness > 0.0,
+          "stiffness must be finite and above 0");
+  const contact::Friction& friction = options.friction;
+  require(std::isfinite(friction.static_friction) && friction.dynamic_friction >= 0.0 &&
+              friction.static_friction >= friction.dynamic_friction,
+          "friction: static must be at least dynamic, and dynamic at least 0");
+}
+
+}  // namespace haptrial::deformable

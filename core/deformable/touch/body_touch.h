@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+
+#include "core/contact/proxy/proxy.h"
+#include "core/contact/renderer/renderer.h"
+
+namespace haptrial::deformable {
+
+/// The tool that a body is touched by: a ball on a spring.
+struct TouchOptions {
+  double radius{0.005};         // 0: a point [m]
+  double stiffness{5000.0};     // k > 0 of the spring between tool and ball [N/m]
+  contact::Friction friction{};
+};
+
+/// @throws std::invalid_argument naming the option that breaks its bound.
+void check(const TouchOptions& options);
+
+/// A force on one vertex of a body.
+struct VertexForce {
+  std::int32_t vertex{};  // of the FeltMesh
+  Eigen::Vector3f force{Eigen::Vector3f::Zero()};  // [N]
+};
+
+/// What did not go as it should since the start, in ticks.
+struct TouchCounts {
+  std::uint64_t contact{};    // in contact
+  std::uint64_t inverted{};   // a tetrahedron would be inside out: the force stays below that
+  std::uint64_t unsettled{};  // the places of contact were not found to rounding
+  std::uint64_t crowded{};    // more places than fit: the deepest were taken
+
+  bool operator==(const TouchCounts&) const = default;
+};
+
+/// A body that gives way to a tool, in the body's frame.
+///
+/// What is felt is what the body gets: the force on the tool is minus the sum of forces().
+class BodyTouch {
+ public:
+  virtual ~BodyTouch() = default;
+
+  // Servo thread, all of the following: no allocation, lock, I/O or throw.
+
+  /// Puts the tool to a point, and the body to rest.
+  virtual void start(const Eigen::Vector3d& tool) noexcept = 0;
+  /// One tick. @param tool  [m]; not finite: zero force  @param period  > 0 [s]
+  virtual const contact::Contact& tick(const Eigen::Vector3d& tool, double period) noexcept = 0;
+  /// On the body, on the last tick.
+  virtual std::span<const VertexForce> forces() const noexcept = 0;
+  virtual const TouchCounts& counts() const noexcept = 0;
+};
+
+}  // namespace haptrial::deformable

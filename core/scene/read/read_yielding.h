@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "core/deformable/touch/felt_mesh.h"
+#include "core/scene/field.h"
+#include "core/scene/read/number_source.h"
+
+namespace haptrial::scene {
+
+/// Reads what a table [objects.NAME] of kind "deformable" is made of and how it is felt
+/// (core/scene/surface/yielding.h). Keys in brackets are optional; all numbers may be formulas.
+/// Problems are noted in the table.
+///
+///     young [Pa], poisson
+///     [inclusions.NAME]  centre, in the body's frame [m]; radius [m]; young [Pa]: balls
+///     [centre], [turn]   of the body in W, as of other objects
+///     [tool_radius]      of the ball that stands for the hand, 0.005 if left out [m]
+///     [stiffness]        of the spring between hand and ball, 5000 if left out [N/m]
+///     [friction]         { static, dynamic }
+///     [limit], [fade_in], [fade_out]  as of every field
+///
+/// @param mesh  null: it is not known yet, nothing is felt
+Field read_yielding(Table& table, std::string name, const deformable::SharedFeltMesh& mesh,
+                    const NumberSource& source = {});
+
+}  // namespace haptrial::scene

@@ -1,0 +1,54 @@
+#include "core/scene/surface/yielding.h"
+
+namespace haptrial::scene {
+
+using Eigen::Vector3d;
+
+Yielding::Yielding(const YieldingParameters& parameters, const Setting& setting)
+    : parameters_(parameters), period_(1.0 / setting.rate) {
+  if (parameters.body) {
+    touch_ = std::make_unique<deformable::BallTouch>(parameters.body, parameters.tool);
+  } else {
+    deformable::check(parameters.tool);
+  }
+}
+
+Vector3d Yielding::to_body(const Vector3d& p) const noexcept {
+  return parameters_.pose.orientation.conjugate() * (p - parameters_.pose.position);
+}
+
+void Yielding::start(const PointState& hand) noexcept {
+  hand_ = hand.position;
+  if (touch_) {
+    touch_->start(to_body(hand.position));
+  }
+}
+
+/// The body begins at rest under the hand: only what friction held is forgotten.
+void Yielding::adopt(const Yielding& before) noexcept {
+  hand_ = before.hand_;
+  if (touch_) {
+    touch_->start(to_body(hand_));
+  }
+}
+
+Vector3d Yielding::force(const Felt& felt, FieldState& state) noexcept {
+  hand_ = felt.hand.position;
+  state.sliding = false;
+  state.depth = 0.0;
+  if (!touch_) {
+    return Vector3d::Zero();
+  }
+  const contact::Contact& contact = touch_->tick(to_body(hand_), period_);
+  const auto& q = parameters_.pose.orientation;
+  state.proxy = q * contact.proxy + parameters_.pose.position;
+  if (!(contact.depth > 0.0)) {
+    return Vector3d::Zero();
+  }
+  state.depth = contact.depth;
+  state.sliding = contact.state == contact::ContactState::kSlip;
+  state.normal = q * contact.normal;
+  return q * contact.force;
+}
+
+}  // namespace haptrial::scene

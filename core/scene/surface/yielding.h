@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "core/contact/objects/moving_objects.h"
+#include "core/deformable/touch/ball_touch.h"
+#include "core/scene/field/field_state.h"
+
+namespace haptrial::scene {
+
+/// An object that gives way to the hand.
+struct YieldingParameters {
+  deformable::SharedFeltMesh mesh;  // null: nothing is felt
+  deformable::Tissue tissue;
+  contact::ObjectPose pose;  // of the body's frame in W
+  deformable::TouchOptions tool;
+  deformable::SharedCompliance body;  // of mesh and tissue; null until it is prepared
+};
+
+/// A body of linear elements that a ball presses (core/deformable/touch), in W. `depth` is how far
+/// the ball is in the body as it would be at rest, `proxy` the ball's centre.
+class Yielding {
+ public:
+  Yielding(const YieldingParameters& parameters, const Setting& setting);
+
+  void start(const PointState& hand) noexcept;
+  void adopt(const Yielding& before) noexcept;
+  Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
+  /// Null: nothing is felt.
+  const deformable::BodyTouch* touch() const noexcept { return touch_.get(); }
+
+ private:
+  Eigen::Vector3d to_body(const Eigen::Vector3d& p) const noexcept;
+
+  YieldingParameters parameters_;
+  std::unique_ptr<deformable::BodyTouch> touch_;
+  double period_;
+  Eigen::Vector3d hand_{Eigen::Vector3d::Zero()};  // of the last tick, in W [m]
+};
+
+}  // namespace haptrial::scene
