@@ -15,9 +15,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-using Law =
-    std::variant<Constant, Ramp, Pulse, Hold, Surface, Grating, Texture, Viscous, Inertia, Friction,
-                 SineVibration, NoiseVibration, Tap, Detent, Click, Mover, PathGuide, Solid, Yielding>;
+using Law = std::variant<Constant, Ramp, Pulse, Hold, Surface, Grating, Texture, Viscous, Inertia,
+                         Friction, SineVibration, NoiseVibration, Tap, Detent, Click, Mover,
+                         PathGuide, Solid, Yielding>;
 
 template <class Parameters>
 struct LawOf;

@@ -45,7 +45,8 @@ std::uint64_t pushing(const std::vector<scene::Field>& fields) {
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const auto& kind = fields[i].kind;
     const bool yields = scene::is_surface(fields[i]) || scene::is_relief(fields[i]) ||
-                        scene::is_object(fields[i]) || std::holds_alternative<scene::ViscousParameters>(kind) ||
+                        scene::is_object(fields[i]) ||
+                        std::holds_alternative<scene::ViscousParameters>(kind) ||
                         std::holds_alternative<scene::FrictionParameters>(kind);
     mask |= yields ? 0 : std::uint64_t{1} << i;
   }

@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedTrialsTest,
                          testing::Values("stiffness_discrimination", "force_discrimination",
                                          "wall_detection", "grating_discrimination",
                                          "viscosity_magnitude", "shape_recognition", "curl_field",
-                                         "size_by_eye_and_hand"),
+                                         "size_by_eye_and_hand", "lump_search"),
                          [](const auto& tested) { return std::string(tested.param); });
 
 TEST(TrialsSessionTest, WhatWasPresentedIsWhatIsRecorded) {
@@ -380,6 +380,7 @@ INSTANTIATE_TEST_SUITE_P(
         AtTheWindow{
             "viscosity_magnitude", {' ', '7', test::VirtualDisplay::kEnter}, nullptr, 7.0, true},
         AtTheWindow{"shape_recognition", {' ', '2'}, nullptr, 2.0},
+        AtTheWindow{"lump_search", {' ', '2'}, nullptr, 2.0},
         AtTheWindow{"curl_field", {' '}, nullptr, kNotAsked},
         AtTheWindow{"size_by_eye_and_hand", {' ', '2'}, "second", 2.0, true}),
     [](const auto& tested) { return std::string(tested.param.name); });

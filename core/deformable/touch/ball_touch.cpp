@@ -16,11 +16,11 @@ using Eigen::Vector3f;
 namespace {
 
 constexpr int kMostRounds = 6;           // of places and forces on a tick
-constexpr double kSettled = 1e-4;        // of the force from one round to the next
+constexpr double kSettled = 1e-3;        // of the force from one round to the next
 constexpr double kLeastForce = 1e-6;     // [N]
 constexpr double kAhead = 0.03;          // of a cell: places that are that near may be pressed
 constexpr double kOnSurface = 1e-3;      // of a cell: nearer the face's own normal is taken
-constexpr double kSampled = 0.3;         // of the radius: how far samples are apart, about
+constexpr double kSampled = 0.2;         // of the radius: how far samples are apart, about
 constexpr double kOwnCompliance = 1e-6;  // added to each place's: two places may be one
 constexpr double kInside = 1e-9;         // of a cell's volume: less is inside out
 
@@ -172,8 +172,8 @@ bool BallTouch::settle(const Vector3d& tool) noexcept {
     respond();
     const Vector3d before = normal_force_;
     const bool solved = press_places(tool);
-    settled = solved && (normal_force_ - before).norm() <=
-                            kSettled * normal_force_.norm() + kLeastForce;
+    settled =
+        solved && (normal_force_ - before).norm() <= kSettled * normal_force_.norm() + kLeastForce;
   }
   contact_.settled = settled;
   counts_.unsettled += settled ? 0 : 1;
@@ -260,9 +260,9 @@ void BallTouch::add_place(const Place& place) noexcept {
     return;
   }
   ++counts_.crowded;
-  const auto farthest = std::max_element(
-      places_.begin(), places_.end(),
-      [](const Place& a, const Place& b) { return a.distance < b.distance; });
+  const auto farthest =
+      std::max_element(places_.begin(), places_.end(),
+                       [](const Place& a, const Place& b) { return a.distance < b.distance; });
   if (place.distance < farthest->distance) {
     *farthest = place;
   }
@@ -393,8 +393,7 @@ void BallTouch::keep_forces() noexcept {
     farthest_ = std::max(farthest_, moved_[v].norm());
     if (share_[v] > 0.0) {
       loaded_[loaded_count_++] = {near_[v], near_force_[v].cast<float>()};
-      forces_[force_count_++] = {near_[v],
-                                 (near_force_[v] + share_[v] * friction_).cast<float>()};
+      forces_[force_count_++] = {near_[v], (near_force_[v] + share_[v] * friction_).cast<float>()};
     }
   }
 }

@@ -100,8 +100,8 @@ class BallTouch final : public BodyTouch {
   std::vector<VertexForce> loaded_;  // by normal forces: of places of the body
   std::vector<VertexForce> forces_;
   std::size_t loaded_count_{0}, force_count_{0};
-  std::vector<Eigen::Vector3f> deep_;   // by place: u by all forces [m]
-  std::vector<std::uint64_t> deep_at_;  // by place: on which tick it was found
+  std::vector<Eigen::Vector3f> deep_;              // by place: u by all forces [m]
+  std::vector<std::uint64_t> deep_at_;             // by place: on which tick it was found
   Eigen::Vector3d tool_{Eigen::Vector3d::Zero()};  // a tick ago [m]
   double way_{0.0};                                // since then [m]
   double farthest_{0.0};                           // of the displacements near the ball [m]

@@ -11,8 +11,8 @@ namespace haptrial::deformable {
 
 /// The tool that a body is touched by: a ball on a spring.
 struct TouchOptions {
-  double radius{0.005};         // 0: a point [m]
-  double stiffness{5000.0};     // k > 0 of the spring between tool and ball [N/m]
+  double radius{0.005};      // 0: a point [m]
+  double stiffness{5000.0};  // k > 0 of the spring between tool and ball [N/m]
   contact::Friction friction{};
 };
 
@@ -21,7 +21,7 @@ void check(const TouchOptions& options);
 
 /// A force on one vertex of a body.
 struct VertexForce {
-  std::int32_t vertex{};  // of the FeltMesh
+  std::int32_t vertex{};                           // of the FeltMesh
   Eigen::Vector3f force{Eigen::Vector3f::Zero()};  // [N]
 };
 

@@ -28,8 +28,7 @@ struct Numbers {
   std::vector<std::int32_t> vertices;  // by place
   std::size_t touched{0};
 
-  Numbers(const FeltMesh& mesh, const PatchLayout& layout)
-      : place(mesh.tets.vertices.size(), -1) {
+  Numbers(const FeltMesh& mesh, const PatchLayout& layout) : place(mesh.tets.vertices.size(), -1) {
     for (const Face& face : mesh.felt) {
       std::ranges::for_each(face, [&](std::int32_t v) { take(v); });
     }
@@ -111,7 +110,7 @@ void Compliance::invert(const ElasticBody& body) {
   Vectors none(mesh_->tets.vertices.size(), Vector3d::Zero());
   Vectors forces;
   body.stiffness(none, forces, stiffness);
-  std::vector<std::int32_t> outer, below;  // vertices that are not held
+  std::vector<std::int32_t> outer, below;          // vertices that are not held
   std::vector<std::int32_t> column(places(), -1);  // of the inverse; by place, each from 0
   for (std::size_t p = 0; p < places(); ++p) {
     if (mesh_->held[index(vertices_[p])] == 0) {
@@ -129,9 +128,8 @@ void Compliance::invert(const ElasticBody& body) {
       Block& block = blocks_[row * touched_ + col];
       block = {};
       for (std::size_t k = 0; k < 9 && column[row] >= 0 && column[col] >= 0; ++k) {
-        block[k % 3 + 4 * (k / 3)] =
-            part(3 * column[row] + static_cast<Eigen::Index>(k % 3),
-                 3 * column[col] + static_cast<Eigen::Index>(k / 3));
+        block[k % 3 + 4 * (k / 3)] = part(3 * column[row] + static_cast<Eigen::Index>(k % 3),
+                                          3 * column[col] + static_cast<Eigen::Index>(k / 3));
       }
     }
   }
@@ -163,8 +161,8 @@ double Compliance::stiffest_at(std::int32_t centre, double radius) const {
       }
     }
   }
-  const Eigen::Matrix3d k = together.transpose() * all.selfadjointView<Eigen::Lower>().ldlt().solve(
-                                                       together);
+  const Eigen::Matrix3d k =
+      together.transpose() * all.selfadjointView<Eigen::Lower>().ldlt().solve(together);
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(k).eigenvalues().maxCoeff();
 }
 

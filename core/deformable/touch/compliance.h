@@ -27,7 +27,7 @@ class Compliance {
   Compliance(SharedFeltMesh mesh, const Tissue& tissue);
 
   const FeltMesh& mesh() const noexcept { return *mesh_; }
-  std::size_t touched() const noexcept { return touched_; }      // columns
+  std::size_t touched() const noexcept { return touched_; }         // columns
   std::size_t places() const noexcept { return vertices_.size(); }  // rows
   std::int32_t vertex(std::int32_t place) const noexcept {
     return vertices_[static_cast<std::size_t>(place)];
@@ -40,9 +40,9 @@ class Compliance {
   Eigen::Vector3f response(std::int32_t place, std::int32_t touched,
                            const Eigen::Vector3f& force) const noexcept {
     using Column = Eigen::Map<const Eigen::Vector4f, Eigen::Aligned16>;
-    const float* block = blocks_[static_cast<std::size_t>(place) * touched_ +
-                                 static_cast<std::size_t>(touched)]
-                             .data();
+    const float* block =
+        blocks_[static_cast<std::size_t>(place) * touched_ + static_cast<std::size_t>(touched)]
+            .data();
     const Eigen::Vector4f u =
         force[0] * Column(block) + force[1] * Column(block + 4) + force[2] * Column(block + 8);
     return u.head<3>();

@@ -93,8 +93,8 @@ class Condenser {
       const Index i = place_[to_size(part.vertices[a])];
       for (std::size_t b = 0; b <= a; ++b) {
         const Index j = place_[to_size(part.vertices[b])];
-        const auto block = part.stiffness.block<3, 3>(3 * static_cast<Index>(a),
-                                                      3 * static_cast<Index>(b));
+        const auto block =
+            part.stiffness.block<3, 3>(3 * static_cast<Index>(a), 3 * static_cast<Index>(b));
         if (i > j) {
           to.block<3, 3>(3 * i, 3 * j) += block;
         } else if (i < j) {

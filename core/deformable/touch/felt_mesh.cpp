@@ -75,20 +75,18 @@ void finish(FeltMesh& mesh, const FeltSides& sides) {
   check_held(mesh);
   const auto all_of = [](const Face& face, auto&& test) { return std::ranges::all_of(face, test); };
   for (const Face& face : mesh_parts(mesh.tets.tetrahedra).surface) {
-    const bool held = all_of(face, [&](std::int32_t v) {
-      return mesh.held[static_cast<std::size_t>(v)] != 0;
-    });
+    const bool held =
+        all_of(face, [&](std::int32_t v) { return mesh.held[static_cast<std::size_t>(v)] != 0; });
     const bool asked = sides.felt.empty() || std::ranges::any_of(sides.felt, [&](BodySide side) {
-      return all_of(face, [&](std::int32_t v) { return is_on(mesh, v, side); });
-    });
+                         return all_of(face, [&](std::int32_t v) { return is_on(mesh, v, side); });
+                       });
     if (!held && asked) {
       mesh.felt.push_back(face);
     }
   }
   if (mesh.felt.empty()) {
-    throw InputError(
-        fmt::format("{}: no face can be touched; name a side in `felt` that is not fixed",
-                    mesh.name));
+    throw InputError(fmt::format(
+        "{}: no face can be touched; name a side in `felt` that is not fixed", mesh.name));
   }
 }
 

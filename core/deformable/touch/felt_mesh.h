@@ -14,7 +14,14 @@
 namespace haptrial::deformable {
 
 /// A side of a body's box, along its own axes.
-enum class BodySide : std::uint8_t { kLeft, kRight, kBottom, kTop, kBack, kFront };  // -x +x … -z +z
+enum class BodySide : std::uint8_t {
+  kLeft,
+  kRight,
+  kBottom,
+  kTop,
+  kBack,
+  kFront
+};  // -x +x … -z +z
 std::string_view name_of(BodySide side);
 
 /// Which vertices do not move, and where a tool may touch.

@@ -7,7 +7,7 @@ namespace haptrial::deformable {
 namespace {
 
 constexpr int kMostPivots = 60;
-constexpr int kTries = 3;               // pivots of many places without progress
+constexpr int kTries = 3;                // pivots of many places without progress
 constexpr double kForceRounding = 1e-9;  // [N]
 constexpr double kGapRounding = 1e-12;   // [m]
 

@@ -134,8 +134,8 @@ Elasticity elasticity_of(const FeltMesh& mesh, const Tissue& tissue) {
     const auto [at, is_new] =
         known.try_emplace(value, static_cast<std::uint8_t>(elasticity.materials.size()));
     if (is_new && elasticity.materials.size() > 255) {
-      throw InputError(fmt::format("{}: its inclusions overlap in too many ways; let them lie apart",
-                                   mesh.name));
+      throw InputError(fmt::format(
+          "{}: its inclusions overlap in too many ways; let them lie apart", mesh.name));
     }
     if (is_new) {
       elasticity.materials.push_back({std::exp(value), tissue.poisson, tissue.density});

@@ -21,9 +21,9 @@ struct Inclusion {
 
 /// What a body is made of.
 struct Tissue {
-  double young{};           // E > 0 [Pa]
-  double poisson{};         // 0 <= nu <= kMostPoisson
-  double density{1000.0};   // > 0; of springs [kg/m³]
+  double young{};          // E > 0 [Pa]
+  double poisson{};        // 0 <= nu <= kMostPoisson
+  double density{1000.0};  // > 0; of springs [kg/m³]
   std::vector<Inclusion> inclusions;
 
   bool operator==(const Tissue&) const = default;

@@ -23,7 +23,8 @@ namespace haptrial::subject {
 ///                 contact the way to it; without any the greatest way from the start
 ///     unevenness  root mean square, over the way in contact, of the distance from the sphere that
 ///                 fits the touched places best (algebraic fit, Kåsa 1976); 0 without a way
-///     contrast    greatest stiffness of the contacts (the first 16 with a slope) over their median;
+///     contrast    greatest stiffness of the contacts (the first 16 with a slope) over their
+///     median;
 ///                 1 with fewer than two
 ///
 /// Slopes are least-squares lines with an offset. Servo thread: no allocation, lock, I/O or throw.
@@ -76,8 +77,8 @@ class Encounters {
   double contact_force_;
   double moving_speed_;
   UpperMean upper_;
-  Cloud cloud_;    // of the present contact
-  Cloud longest_;  // of those before it
+  Cloud cloud_;                           // of the present contact
+  Cloud longest_;                         // of those before it
   std::array<double, 16> stiffnesses_{};  // of those before it [N/m]
   std::size_t stiffness_count_{0};
   Ball ball_;

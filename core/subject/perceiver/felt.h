@@ -53,8 +53,9 @@ FeltNoise draw_noise(RandomStream& random) noexcept;
 ///     exp(speed_weber n4)) extent                       L exp(extent_weber n5)
 ///
 /// with D = F / K; unevenness as extent; a contrast as the stiffnesses of two presses with the same
-/// force, contrast exp(sqrt(2) force_weber n1 / (1 - beta)). Changes of a deflection are felt too small by beta (Fu,
-/// van Paassen and Mulder 2017): pressed with the same force, springs differ to the senses by K^(1
+/// force, contrast exp(sqrt(2) force_weber n1 / (1 - beta)). Changes of a deflection are felt too
+/// small by beta (Fu, van Paassen and Mulder 2017): pressed with the same force, springs differ to
+/// the senses by K^(1
 /// - beta), so that their Weber fraction is force_weber / (1 - beta); pushed to the same place, by
 /// K, and the fraction is force_weber. Servo thread: no allocation, lock, I/O or throw.
 double felt(const SenseParameters& senses, Quantity quantity, const Encounter& met,

@@ -390,6 +390,15 @@ regions.NAME.size | | edges of the box
 regions.NAME.turn | not turned | rotation vector of the box
 regions.NAME.axis | | direction of the cylinder
 regions.NAME.length | | of the cylinder
+objects.NAME.kind | rigid | whether it gives way to the hand
+objects.NAME.cells | 16 | of a body that gives way: along its longest side
+objects.NAME.fixed | bottom | its sides that do not move
+objects.NAME.felt | all that are not fixed | its sides that can be touched
+objects.NAME.young | | Young's modulus
+objects.NAME.poisson | | Poisson's ratio
+objects.NAME.inclusions.NAME.centre | | of a ball of another stiffness, from the body's origin
+objects.NAME.inclusions.NAME.radius | | of the ball; 0: it is not there
+objects.NAME.inclusions.NAME.young | | Young's modulus of the ball
 objects.NAME.record | false | whether every tick of contact is a row of /contacts
 objects.NAME.device | every device | whose tool feels it
 objects.NAME.limit | | its force is scaled to at most this

@@ -271,8 +271,8 @@ void note_restless(const std::vector<scene::Field>& fields, TrialsDefinition& d)
       d.restless.push_back(fmt::format(
           "{}.{} turns by {:.0f} N/m: at {:g} Hz it stays calm with {:.3g} N·s/m of damping, "
           "and the hand of [hand] has {:g}",
-          scene::is_object(fields[i]) ? "objects" : "fields",
-          fields[i].name, steepness.stiffness, d.rate, needed, d.hand.damping));
+          scene::is_object(fields[i]) ? "objects" : "fields", fields[i].name, steepness.stiffness,
+          d.rate, needed, d.hand.damping));
     }
   }
 }
@@ -335,10 +335,9 @@ void read_what_is_felt(Table& root, const Names& names, const TrialsDefinition& 
       const auto object = std::ranges::find(d.objects, name, &TrialObject::name);
       Table own = table.table(name);
       const bool known = object != d.objects.end();
-      objects.push_back(
-          known && object->yields
-              ? scene::read_yielding(own, name, object->felt, names)
-              : scene::read_solid(own, name, known ? object->body : nullptr, names));
+      objects.push_back(known && object->yields
+                            ? scene::read_yielding(own, name, object->felt, names)
+                            : scene::read_solid(own, name, known ? object->body : nullptr, names));
     }
   }
   if (root.has("fields")) {

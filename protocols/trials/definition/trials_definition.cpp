@@ -152,10 +152,11 @@ std::vector<std::string> TrialsDefinition::warnings() const {
   for (const Question& question : questions) {
     const bool tells = question.has_limits() || question.feedback != Feedback::kNever;
     if (tells && feedback_time == 0.0) {
-      all.push_back(fmt::format(
-          "the participant is to be told of answers to \"{}\", but display.feedback_time is 0 s, so "
-          "that nothing is shown",
-          question.name));
+      all.push_back(
+          fmt::format("the participant is to be told of answers to \"{}\", but "
+                      "display.feedback_time is 0 s, so "
+                      "that nothing is shown",
+                      question.name));
     }
     if (question.again && order.most_in_a_row > 0) {
       all.push_back(fmt::format(

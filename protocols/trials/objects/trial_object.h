@@ -24,8 +24,8 @@ struct TrialObject {
   bool recorded{false};                           // its contacts, tick by tick, in /contacts
   bool yields{false};                             // gives way to the hand
   int cells{16};                                  // then: along its longest side
-  deformable::FeltSides sides;
-  deformable::SharedFeltMesh felt;  // of a file: null until it is loaded
+  deformable::FeltSides sides{};
+  deformable::SharedFeltMesh felt{};  // of a file: null until it is loaded
 };
 
 /// Reads the shapes of [objects], in the order of their names. Problems are noted.

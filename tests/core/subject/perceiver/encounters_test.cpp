@@ -56,6 +56,27 @@ TEST(UpperMeanTest, OfARampItIsThreeQuarters) {
   EXPECT_NEAR(mean.mean(), 6.0, 0.005 * 6.0) << "uniform on 0 to 8: the mean of 4 to 8";
 }
 
+/// Three presses on springs, one after the other.
+TEST(EncountersTest, ContrastIsTheStiffestOverTheMedian) {
+  Encounters met(SenseParameters{});
+  EXPECT_EQ(met.contrast(), 1.0);
+  const auto press = [&](double stiffness) {
+    for (int i = 0; i < 400; ++i) {
+      const double depth = i < 300 ? 0.005 * std::sin(std::numbers::pi * i / 300.0) : 0.0;
+      PointState hand;
+      hand.position = {0.0, -depth, 0.0};
+      met.feel({0.0, stiffness * depth, 0.0}, hand, kStep);
+    }
+  };
+  press(200.0);
+  EXPECT_EQ(met.contrast(), 1.0);
+  press(100.0);
+  EXPECT_NEAR(met.contrast(), 200.0 / 150.0, 1e-6);
+  press(100.0);
+  EXPECT_NEAR(met.contrast(), 2.0, 1e-6);
+  EXPECT_EQ(met.met(Quantity::kContrast).amount, met.contrast());
+}
+
 TEST(EncountersTest, AWallHasItsStiffnessAndTheForceOfThePress) {
   for (const double stiffness : {150.0, 300.0, 600.0}) {
     const Encounters met =

@@ -112,6 +112,34 @@ TEST(TrialObjectTest, AMeshInMillimetresIsNoticed) {
               Contains(HasSubstr("objects.ball is 6.93e-05 m large")));
 }
 
+const std::string kTissue =
+    "[objects.tissue]\nkind = \"deformable\"\nshape = \"box\"\nsize = [0.04, 0.02, 0.04]\n"
+    "cells = 6\nfelt = [\"top\"]\npoisson = 0.45\n";
+const std::string kLump = "[objects.tissue.inclusions.lump]\nradius = 0.004\nyoung = 1e5\n";
+
+std::vector<std::string> problems_of_tissue(const std::string& text) {
+  return problems_of_trials(small_trials(kSmallStaircase, kTissue + text));
+}
+
+TEST(TrialObjectTest, ABodyThatGivesWayIsReadAndItsMistakesAreToldInASentenceEach) {
+  EXPECT_THAT(problems_of_tissue("young = 1e4\n" + kLump + "centre = [0, 0, 0]\n"), IsEmpty());
+  EXPECT_THAT(problems_of_tissue("young = \"100 * $level\"\n"), IsEmpty());
+  EXPECT_THAT(problems_of_tissue("young = 0\n"),
+              Contains(HasSubstr("objects.tissue.young is 0 Pa; allowed: a number above 0")));
+  EXPECT_THAT(problems_of_tissue("young = 1e4\n" + kLump + "centre = [0, 0.008, 0]\n"),
+              Contains(HasSubstr("the inclusion lump at (0, 0.008, 0) m with a radius of 0.004 m "
+                                 "does not lie within the body")));
+  std::string text = kTissue + "young = 1e4\n";
+  text.replace(text.find("0.45"), 4, "0.5");
+  EXPECT_THAT(
+      problems_of_trials(small_trials(kSmallStaircase, text)),
+      Contains(HasSubstr("objects.tissue.poisson is 0.5; allowed: a number from 0 to 0.499")));
+  EXPECT_THAT(problems_of_tissue("young = 1e4\nfixed = []\n"),
+              Contains(HasSubstr("nothing holds the body; name a side in `fixed`")));
+  EXPECT_THAT(problems_of_tissue("young = 1e4\nfixed = [\"down\"]\n"),
+              Contains(HasSubstr("left, right, bottom, top, back, front")));
+}
+
 std::string three_objects(const std::string& shown) {
   std::string text = small_trials(kSmallStaircase, kObject);
   for (const char* name : {"a", "b"}) {
