@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core/deformable/touch/prepared.h"
+
 namespace haptrial::scene {
 namespace {
 
@@ -66,8 +68,8 @@ Steepness of_solid(const std::vector<Field>& fields, const Field& field, const S
 /// The spring between hand and ball and the body behind it, along each other; friction bends a
 /// bristle that is no stiffer. Of a body that is not prepared the spring alone is known.
 Steepness of_yielding(const YieldingParameters& p) {
-  const double body =
-      p.body ? p.body->stiffest(p.tool.radius) : std::numeric_limits<double>::infinity();
+  const double body = p.body ? deformable::stiffest_touch(*p.body, p.tool.radius)
+                             : std::numeric_limits<double>::infinity();
   const double both = 1.0 / (1.0 / p.tool.stiffness + 1.0 / body);
   return {true, p.tool.friction.static_friction > 0.0 ? 2.0 * both : both, 0.0};
 }

@@ -8,9 +8,11 @@
 #include <future>
 #include <list>
 #include <mutex>
+#include <numbers>
 #include <string>
 
 #include "core/base/error.h"
+#include "core/deformable/touch/ball_touch.h"
 
 namespace haptrial::deformable {
 namespace {
@@ -63,6 +65,13 @@ void check_memory(const FeltMesh& mesh) {
                     "the machine has {:.3g} GB free; lower `cells`, or name fewer sides in `felt`",
                     mesh.name, mesh.tets.vertices.size(), 1e-9 * needed, 1e-9 * free));
   }
+}
+
+double stiffest_touch(const Compliance& body, double radius) {
+  // From a sampled vertex to the ball's axis is half a cell's diagonal at most, from what it
+  // presses to the corners of the face a diagonal.
+  const double diagonal = std::numbers::sqrt2 * body.mesh().spacing;
+  return body.stiffest(std::max(radius, smallest_ball(body.mesh())) + 1.5 * diagonal);
 }
 
 std::shared_ptr<const Compliance> prepared(const SharedFeltMesh& mesh, const Tissue& tissue) {

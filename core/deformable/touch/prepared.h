@@ -18,4 +18,8 @@ inline constexpr std::size_t kMostPrepared = 128;
 /// @throws InputError naming the body if the machine has not the memory that it takes.
 void check_memory(const FeltMesh& mesh);
 
+/// A bound on how stiff a ball of this radius can be on the body, wherever it is: as
+/// Compliance::stiffest(), with the corners of all faces that it could press [N/m].
+double stiffest_touch(const Compliance& body, double radius);
+
 }  // namespace haptrial::deformable

@@ -46,7 +46,7 @@ Field read_yielding(Table& table, std::string name, const deformable::SharedFelt
   p.pose = read_pose(read);
   p.tool.radius = read.number_or(p.tool.radius, "tool_radius", {0.0, 0.05}, "m");
   p.tool.stiffness =
-      read.number_or(p.tool.stiffness, "stiffness", {0.0, kStiffnessBounds.high, true}, "N/m");
+      read.number_or(p.tool.stiffness, "spring", {0.0, kStiffnessBounds.high, true}, "N/m");
   p.tool.friction = read_contact_friction(read);
   if (mesh && p.tissue.young > 0.0) {
     try {

@@ -16,7 +16,7 @@ namespace haptrial::scene {
 ///     [inclusions.NAME]  centre, in the body's frame [m]; radius [m]; young [Pa]: balls
 ///     [centre], [turn]   of the body in W, as of other objects
 ///     [tool_radius]      of the ball that stands for the hand, 0.005 if left out [m]
-///     [stiffness]        of the spring between hand and ball, 5000 if left out [N/m]
+///     [spring]           between hand and ball, 5000 if left out [N/m]
 ///     [friction]         { static, dynamic }
 ///     [limit], [fade_in], [fade_out]  as of every field
 ///

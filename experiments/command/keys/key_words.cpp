@@ -395,6 +395,7 @@ objects.NAME.cells | 16 | of a body that gives way: along its longest side
 objects.NAME.fixed | bottom | its sides that do not move
 objects.NAME.felt | all that are not fixed | its sides that can be touched
 objects.NAME.young | | Young's modulus
+objects.NAME.spring | | between the hand and the ball that presses
 objects.NAME.poisson | | Poisson's ratio
 objects.NAME.inclusions.NAME.centre | | of a ball of another stiffness, from the body's origin
 objects.NAME.inclusions.NAME.radius | | of the ball; 0: it is not there
@@ -440,6 +441,9 @@ observer.wanted | 1 | percept that is adjusted to where the trial shows none bef
 observer.reaction | 0.6 | median time from question to answer
 observer.actions.NAME.do | needed, or a table for each device | what the hand does in the stage NAME
 observer.actions.NAME.force | 0 of a stroke, 1 of a contour, needed of a press | with which it presses
+observer.actions.NAME.at | | places at which presses begin, one after the other
+observer.actions.NAME.move | | how long the way to each place takes
+observer.actions.NAME.press | | how long each press takes
 observer.actions.NAME.rise | 0.5 | time over which it grows
 observer.actions.NAME.travel | 0.05 | after which it presses no further
 observer.actions.NAME.direction | down of a press, needed of a stroke | of pressing or stroking
@@ -454,6 +458,9 @@ observer.actions.NAME.turn_after | | when the second loop begins
 observer.actions.NAME.speed | | along the surface
 observer.actions.NAME.NAME.do | | what the hand at the device of the second name does
 observer.actions.NAME.NAME.force | 0 of a stroke, 1 of a contour, needed of a press | with which it presses
+observer.actions.NAME.NAME.at | | places at which presses begin, one after the other
+observer.actions.NAME.NAME.move | | how long the way to each place takes
+observer.actions.NAME.NAME.press | | how long each press takes
 observer.actions.NAME.NAME.rise | 0.5 | time over which it grows
 observer.actions.NAME.NAME.travel | 0.05 | after which it presses no further
 observer.actions.NAME.NAME.direction | down of a press, needed of a stroke | of pressing or stroking

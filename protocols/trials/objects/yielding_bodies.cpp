@@ -26,15 +26,18 @@ std::vector<std::string> words_of_bodies(const std::vector<scene::Field>& fields
     }
     const scene::Steepness steepness = scene::steepness(fields, i);
     const double needed = scene::needed_damping_below(0.0, steepness, rate);
-    const double body = p->body->stiffest(p->tool.radius);
+    const double most = deformable::stiffest_touch(*p->body, p->tool.radius);
+    const double under = p->body->stiffest(p->tool.radius);
     const deformable::ComplianceMemory memory = deformable::compliance_memory(*p->mesh);
     lines.push_back(fmt::format(
         "objects.{}: {} vertices of which {} can be touched, {:.0f} MB, at most {:.0f} MB while it "
-        "is prepared; at most {:.0f} N/m, {:.1f} % softer than its elements by the spring of the "
-        "hand; stays calm with {:.2g} N·s/m of damping, and the hand of [hand] has {:g}",
+        "is prepared; at most {:.0f} N/m; the spring of the hand makes it softer than its "
+        "elements, "
+        "by about {:.1f} % where the whole ball presses; stays calm with {:.2g} N·s/m of damping, "
+        "and the hand of [hand] has {:g}",
         fields[i].name, p->mesh->tets.vertices.size(), p->body->touched(), 1e-6 * memory.kept,
-        1e-6 * memory.most, 1.0 / (1.0 / body + 1.0 / p->tool.stiffness),
-        100.0 * body / (body + p->tool.stiffness), needed, damping));
+        1e-6 * memory.most, 1.0 / (1.0 / most + 1.0 / p->tool.stiffness),
+        100.0 * under / (under + p->tool.stiffness), needed, damping));
     if (p->tool.radius < deformable::smallest_ball(*p->mesh)) {
       lines.push_back(fmt::format(
           "objects.{}: a ball of {:g} m is smaller than half a cell and is felt as one of {:.3g} m",
