@@ -106,7 +106,7 @@ std::span<const std::int32_t> Compliance::tets_at(std::int32_t place) const noex
 }
 
 void Compliance::invert(const ElasticBody& body) {
-  BlockMatrix stiffness(body.patches(), mesh_->tets.vertices.size());
+  BlockMatrix stiffness(body.patches().groups(), mesh_->tets.vertices.size());
   Vectors none(mesh_->tets.vertices.size(), Vector3d::Zero());
   Vectors forces;
   body.stiffness(none, forces, stiffness);
