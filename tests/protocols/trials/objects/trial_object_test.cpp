@@ -125,7 +125,7 @@ TEST(TrialObjectTest, ABodyThatGivesWayIsReadAndItsMistakesAreToldInASentenceEac
   EXPECT_THAT(problems_of_tissue("young = 1e4\n" + kLump + "centre = [0, 0, 0]\n"), IsEmpty());
   EXPECT_THAT(problems_of_tissue("young = \"100 * $level\"\n"), IsEmpty());
   EXPECT_THAT(problems_of_tissue("young = 0\n"),
-              Contains(HasSubstr("objects.tissue.young is 0 Pa; allowed: a number above 0")));
+              Contains(HasSubstr("objects.tissue.young is 0; allowed: a number above 0")));
   EXPECT_THAT(problems_of_tissue("young = 1e4\n" + kLump + "centre = [0, 0.008, 0]\n"),
               Contains(HasSubstr("the inclusion lump at (0, 0.008, 0) m with a radius of 0.004 m "
                                  "does not lie within the body")));
@@ -133,9 +133,11 @@ TEST(TrialObjectTest, ABodyThatGivesWayIsReadAndItsMistakesAreToldInASentenceEac
   text.replace(text.find("0.45"), 4, "0.5");
   EXPECT_THAT(
       problems_of_trials(small_trials(kSmallStaircase, text)),
-      Contains(HasSubstr("objects.tissue.poisson is 0.5; allowed: a number from 0 to 0.499")));
-  EXPECT_THAT(problems_of_tissue("young = 1e4\nfixed = []\n"),
-              Contains(HasSubstr("nothing holds the body; name a side in `fixed`")));
+      Contains(HasSubstr(
+          "objects.tissue.poisson is 0.5; allowed: a number of at least 0 and at most 0.499")));
+  EXPECT_THAT(
+      problems_of_tissue("young = 1e4\nfixed = [\"top\"]\n"),
+      Contains(HasSubstr("no face can be touched; name a side in `felt` that is not fixed")));
   EXPECT_THAT(problems_of_tissue("young = 1e4\nfixed = [\"down\"]\n"),
               Contains(HasSubstr("left, right, bottom, top, back, front")));
 }
