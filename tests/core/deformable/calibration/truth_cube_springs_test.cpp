@@ -91,7 +91,7 @@ std::vector<double> errors_of_elements(const SpringBody& springs,
 // The inner beads have no part in the calibration.
 TEST_F(TruthCubeSpringsTest, ThreeConstantsCalibratedToElementsFindTheInnerBeads) {
   constexpr std::array<double, TruthCube::kStates> kAllowed{0.345, 0.40, 0.49};  // [mm]
-  prepare(6);
+  prepare(8);
   const auto parameters = SpringParameters::uniform(springs_);
   const CalibrationResult result = found(by_elements_, parameters, 20);
   const auto errors = bead_errors(parameters.constants(result.logarithms));
@@ -103,7 +103,7 @@ TEST_F(TruthCubeSpringsTest, ThreeConstantsCalibratedToElementsFindTheInnerBeads
 }
 
 TEST_F(TruthCubeSpringsTest, AGridOfConstantsComesNearerToTheLargestStrain) {
-  prepare(6);
+  prepare(8);
   const auto parameters = SpringParameters::on_grid(springs_, {3, 3, 3});
   const CalibrationResult result = found(by_elements_, parameters, 40);
   EXPECT_LT(bead_errors(parameters.constants(result.logarithms))[2], 0.45);
