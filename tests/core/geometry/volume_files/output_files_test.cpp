@@ -91,6 +91,37 @@ say(mesh.points, mesh.cells_dict['tetra'], int(mesh.point_data[names[0]].sum()) 
 
 INSTANTIATE_TEST_SUITE_P(Formats, TetFilesTest, ::testing::Values("node", "ele", "vtu", "msh"));
 
+TEST(TetFieldsTest, MeshioReadsThem) {
+  if (!runs("/usr/bin/python3 -c 'import meshio'")) {
+    GTEST_SKIP() << "needs Debian's package python3-meshio";
+  }
+  const test::TemporaryFolder folder;
+  const TetMesh mesh = tetrahedralize(torus());
+  TetField way{"way", 3, {}};
+  TetField stress{"stress", 6, {}};
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    for (int axis = 0; axis < 3; ++axis) {
+      way.values.push_back(2.0 * mesh.vertices[v][axis]);
+    }
+  }
+  for (std::size_t t = 0; t < 6 * mesh.tetrahedra.size(); ++t) {
+    stress.values.push_back(static_cast<double>(t));
+  }
+  write_vtu(folder / "a.vtu", mesh, {way}, {stress});
+  std::ofstream(folder / "read.py") << R"(
+import meshio, sys
+mesh = meshio.read(sys.argv[1])
+stress = mesh.cell_data['stress'][0]
+print(abs(mesh.point_data['way'] - 2 * mesh.points).max(), stress.shape[1],
+      int(stress[-1, 5]) + 1 == stress.size)
+)";
+  const std::string command = fmt::format(
+      "/usr/bin/python3 '{}' '{}'", (folder / "read.py").string(), (folder / "a.vtu").string());
+  EXPECT_THAT(output(command, folder), EndsWith("0.0 6 True\n"));
+  stress.values.pop_back();
+  EXPECT_THROW(write_vtu(folder / "b.vtu", mesh, {way}, {stress}), std::invalid_argument);
+}
+
 TEST(TetFilesHdf5Test, H5pyReadsIt) {
   if (!runs("/usr/bin/python3 -c 'import h5py'")) {
     GTEST_SKIP() << "needs Debian's package python3-h5py";
