@@ -8,7 +8,6 @@
 #include "analysis/trials/psychometric/cue_study.h"
 #include "analysis/trials/psychometric/detected.h"
 #include "analysis/trials/psychometric/function_fit.h"
-#include "analysis/trials/psychometric/identified.h"
 #include "analysis/trials/psychometric/magnitudes.h"
 #include "analysis/trials/psychometric/population.h"
 #include "analysis/trials/psychometric/quantity.h"

@@ -432,7 +432,7 @@ looks.NAME.dots | 2500 | number of dots on the screen
 observer.senses | force | what the virtual participant feels
 observer.in_stage | throughout the interval | stage in which it is felt
 observer.decides | largest | how what is felt becomes an answer
-observer.prototypes | needed of "nearest" | a percept for each choice, of which the nearest is answered
+observer.prototypes | | a percept for each choice, of which the nearest is answered
 observer.yes | the first choice | value of the choice that means yes
 observer.raise | the first choice | value of the choice that raises an adjusted level
 observer.lower | the second choice | value of the choice that lowers it

@@ -1,4 +1,4 @@
-#include "analysis/trials/psychometric/identified.h"
+#include "analysis/trials/psychometric/detected.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
