@@ -391,7 +391,7 @@ regions.NAME.turn | not turned | rotation vector of the box
 regions.NAME.axis | | direction of the cylinder
 regions.NAME.length | | of the cylinder
 objects.NAME.kind | rigid | whether it gives way to the hand
-objects.NAME.cells | 16 | of a body that gives way: along its longest side
+objects.NAME.cells | | of a body that gives way: along its longest side
 objects.NAME.fixed | bottom | its sides that do not move
 objects.NAME.felt | all that are not fixed | its sides that can be touched
 objects.NAME.young | | Young's modulus
