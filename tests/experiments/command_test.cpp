@@ -112,13 +112,16 @@ TEST_F(CommandTest, BashCompletesSubcommandsAndOptions) {
   const std::string source = "source '" HAPTRIAL_SOURCE_DIR "/experiments/completion.bash'\n";
   const CommandResult names =
       run_command(source + "COMP_WORDS=(haptrial d) COMP_CWORD=1; _haptrial; echo ${COMPREPLY[@]}");
-  EXPECT_EQ(names.output, "dry-run devices device-test\n");
+  EXPECT_EQ(names.output, "dry-run devices device-test deform\n");
   const CommandResult options = run_command(
       source + "COMP_WORDS=(haptrial dry-run --se) COMP_CWORD=2; _haptrial; echo ${COMPREPLY[@]}");
   EXPECT_EQ(options.output, "--seed --session\n");
   const CommandResult nested = run_command(
       source + "COMP_WORDS=(haptrial rate i) COMP_CWORD=2; _haptrial; echo ${COMPREPLY[@]}");
   EXPECT_EQ(nested.output, "import\n");
+  const CommandResult deform = run_command(
+      source + "COMP_WORDS=(haptrial deform s) COMP_CWORD=2; _haptrial; echo ${COMPREPLY[@]}");
+  EXPECT_EQ(deform.output, "simulate skin\n");
   const CommandResult nested_options = run_command(
       source +
       "COMP_WORDS=(haptrial rate import --st) COMP_CWORD=3; _haptrial; echo ${COMPREPLY[@]}");
