@@ -100,7 +100,7 @@ TEST(TouchedBodySessionTest, TheRecordedReadingsGiveTheRecordedForces) {
     const std::vector<Vector3d> forces = felt_again(file, stage, d.objects.front());
     for (const record::ContactRow& row : contacts) {
       constexpr std::uint64_t kFadedIn = 100;  // [ticks]
-      constexpr double kRounded = 0.01;  // most where friction slips a tick earlier [N]
+      constexpr double kRounded = 0.01;        // most where friction slips a tick earlier [N]
       if (row.sequence >= stage.first_sample + kFadedIn && row.sequence <= stage.last_sample) {
         const Vector3d again = forces.at(row.sequence - stage.first_sample);
         EXPECT_LT((again - row.force).norm(), kRounded) << row.sequence;
