@@ -20,6 +20,16 @@ Name name_of(const Face& face, const std::array<int, 3>& steps) {
   return name;
 }
 
+/// A corner without weight stands for one that has some: the other faces of an edge lack it.
+Face corners_of(const Face& face, const std::array<int, 3>& steps) {
+  const auto most = static_cast<std::size_t>(std::ranges::max_element(steps) - steps.begin());
+  Face corners = face;
+  for (std::size_t k = 0; k < 3; ++k) {
+    corners[k] = steps[k] > 0 ? face[k] : face[most];
+  }
+  return corners;
+}
+
 }  // namespace
 
 SurfaceSamples::SurfaceSamples(const Compliance& body, int steps) {
@@ -34,8 +44,9 @@ SurfaceSamples::SurfaceSamples(const Compliance& body, int steps) {
         const auto [at, is_new] =
             known.try_emplace(name_of(face, counts), static_cast<std::int32_t>(samples.size()));
         if (is_new) {
-          samples.push_back(
-              {face, Eigen::Vector3d(counts[0], counts[1], counts[2]) / steps, {0.0, 0.0, 0.0}});
+          samples.push_back({corners_of(face, counts),
+                             Eigen::Vector3d(counts[0], counts[1], counts[2]) / steps,
+                             {0.0, 0.0, 0.0}});
         }
         samples[static_cast<std::size_t>(at->second)].outward += outward;
         of_face.push_back(at->second);

@@ -14,7 +14,7 @@ namespace haptrial::deformable {
 /// between them in equal steps. Those on an edge or corner are there once.
 struct SurfaceSamples {
   struct Sample {
-    std::array<std::int32_t, 3> corners{};  // places of the body
+    std::array<std::int32_t, 3> corners{};  // places of the body; all of them on each of its faces
     Eigen::Vector3d weight{Eigen::Vector3d::Zero()};
     Eigen::Vector3d outward{Eigen::Vector3d::Zero()};  // at rest: the mean over its faces
   };
