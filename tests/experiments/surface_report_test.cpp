@@ -96,6 +96,24 @@ TEST_F(SurfaceReportTest, TheFunctionIsFittedOverBothVariables) {
   EXPECT_THAT(file_text(folder_ / "out/surfaces.csv"), HasSubstr("\nS01,"));
 }
 
+/// Whoever looks for a lump says yes or no: d' over all trials, and which lumps are found.
+TEST_F(SurfaceReportTest, ADetectionHasItToo) {
+  const std::string definition = std::string(HAPTRIAL_SOURCE_DIR) + "/experiments/lump_search.toml";
+  const std::string out = (folder_ / "lumps").string();
+  ASSERT_EQ(
+      test::run_command("haptrial dry-run " + definition + " --subjects 1 --trials 15 --out " + out)
+          .status,
+      0);
+  ASSERT_EQ(test::run_command("haptrial analyze " + out).status, 0);
+  const auto results = nlohmann::json::parse(file_text(out + "/results.json"));
+  const nlohmann::json& surface = results["surfaces"][0];
+  EXPECT_EQ(surface["parameters"][0]["name"], "smallest");
+  EXPECT_FALSE(surface.contains("no_contour_because"));
+  const std::string report = file_text(out + "/report.md");
+  EXPECT_THAT(report, HasSubstr("Sensitivity d'"));
+  EXPECT_THAT(report, HasSubstr("surface-S01-"));
+}
+
 TEST_F(SurfaceReportTest, WithoutAContourTheReportSaysWhy) {
   std::string text = kPlane;
   const auto put = [&text](const std::string& what, const std::string& with) {

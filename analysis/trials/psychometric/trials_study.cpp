@@ -235,10 +235,10 @@ TrialsResult analyze(TrialsData data, const TrialsPlan& plan, const ProcedureOf&
   if (plan.kind == AnalysisKind::kIdentification) {
     add_identification(result);
   }
+  if (plan.level.empty() && (plan.functions || plan.kind == AnalysisKind::kDetection)) {
+    result.surfaces = surface_conditions(result.data, plan.by, plan.threshold_at, procedure_of);
+  }
   if (plan.functions) {
-    if (plan.level.empty()) {
-      result.surfaces = surface_conditions(result.data, plan.by, plan.threshold_at, procedure_of);
-    }
     add_functions(result, threads);
   }
   if (plan.kind == AnalysisKind::kMagnitude) {
