@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/deformable/elements/static_solver.h"
+#include "tests/support/sanitizer.h"
 #include "tests/support/solid_block.h"
 
 namespace haptrial::deformable {
@@ -34,6 +35,9 @@ double most_resident_bytes() {
 class StaticMemoryTest : public testing::TestWithParam<LinearSolver> {};
 
 TEST_P(StaticMemoryTest, IsWhatTheProcessGrowsByOrSomewhatMore) {
+  if (test::kAddressSanitizer || test::kThreadSanitizer) {
+    GTEST_SKIP() << "a sanitizer takes memory of its own";
+  }
   const geometry::TetMesh mesh = test::solid_block({15, 15, 15}, 0.01);
   LoadCase load{"push", {}, {{static_cast<std::int32_t>(mesh.vertices.size()) - 1, {1, 0, 0}}}};
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
