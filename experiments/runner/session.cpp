@@ -248,8 +248,7 @@ SessionSummary Session::run() {
 void Session::run_trials() {
   note_language();
   if (request_.tutor) {
-    record_.event("tutor", fmt::format("{} trial {} from {} s", request_.tutor->file.string(),
-                                       request_.tutor->trial.value_or(0), request_.tutor->from));
+    record_.event("tutor", tutor_text(request_));
   }
   if (!pages_.before()) {
     left_ = !pages_.declined();

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/files/file_text.h"
+#include "core/base/fnv.h"
 #include "core/device/mouse.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/common_tables.h"
@@ -26,6 +28,23 @@ DefinitionChanges changes_since(const SessionRequest& request, const record::Ses
 }
 
 namespace {
+
+/// A session that was led goes on with the same tutor, and no other begins to be led.
+void check_same_tutor(const SessionRequest& request, const record::SessionReader& before) {
+  std::string was;
+  for (const record::EventRow& event : before.events()) {
+    was = event.kind == "tutor" ? event.text : was;
+  }
+  const std::string is = tutor_text(request);
+  const bool nothing_yet = was.empty() && before.begun().empty() && before.passes().empty();
+  if (was != is && !nothing_yet) {
+    throw InputError(fmt::format("{}: was recorded {}; resume it {}, not {}",
+                                 before.path().string(),
+                                 was.empty() ? "without a tutor" : "with the tutor " + was,
+                                 was.empty() ? "without --tutor" : "with the same --tutor",
+                                 is.empty() ? "without one" : "with " + is));
+  }
+}
 
 /// What a resumed session must have in common with the one that is gone on with.
 void check_same_session(const SessionRequest& request, const record::SessionInfo& before) {
@@ -76,6 +95,15 @@ record::SessionInfo session_info(const SessionRequest& request, const device::De
   return info;
 }
 
+std::string tutor_text(const SessionRequest& request) {
+  if (!request.tutor) {
+    return "";
+  }
+  const protocols::TutorChoice& tutor = *request.tutor;
+  return fmt::format("{} trial {} from {} s, checksum {:016x}", tutor.file.filename().string(),
+                     tutor.trial.value_or(0), tutor.from, fnv1a(file_text(tutor.file)));
+}
+
 /// Those of the protocol, what may become of trials, those of further devices and of markers.
 static record::TableList tables_of(const SessionRequest& request, const protocols::Trials& trials) {
   record::TableList tables = trials.tables();
@@ -109,6 +137,7 @@ record::SessionWriter open_writer(const SessionRequest& request, const device::D
       request.file, before, possible_tables(request), tables_of(request, trials));
   check_same_session(request, before.info);
   const record::SessionReader file(request.file.string() + ".partial");
+  check_same_tutor(request, file);
   trials.check_resumed(file);
   return writer;
 }

@@ -30,6 +30,10 @@ record::SessionInfo session_info(const SessionRequest& request, const device::De
 /// What the definition of a resumed session differs in from the one that `before` has.
 DefinitionChanges changes_since(const SessionRequest& request, const record::SessionInfo& before);
 
+/// Which run leads the hand, for the session's event "tutor": file, trial, mark and the file's
+/// checksum; empty: none.
+std::string tutor_text(const SessionRequest& request);
+
 /// A new session file, or the one that is gone on with; `before` says what that one holds.
 /// @throws InputError as SessionWriter does, and where the file is of another study, seed or kind,
 /// or cannot be gone on with for a reason of the protocol.

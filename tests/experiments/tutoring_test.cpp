@@ -122,6 +122,24 @@ TEST(TutoringTest, TheSameAgainIsTheSameToTheByte) {
   }
 }
 
+TEST(TutoringTest, ASessionGoesOnWithTheSameTutorOnly) {
+  const test::TemporaryFolder folder;
+  const std::string tutor = (folder / "tutor").string();
+  const std::string out = (folder / "out").string();
+  ASSERT_EQ(
+      run_command("haptrial dry-run " + kDefinition + " --subjects 1 --trials 2 --out " + tutor)
+          .status,
+      0);
+  const std::string run = " run " + kDefinition + " --subject P01 --trials 1 --out " + out;
+  run_command("timeout -s INT 4 \"$HAPTRIAL\"" + run + " --tutor " + tutor + "/S01.h5:1");
+  ASSERT_TRUE(std::filesystem::exists(out + "/P01.h5.partial"));
+  for (const std::string& other : {std::string(), " --tutor " + tutor + "/S01.h5:2"}) {
+    const test::CommandResult r = run_command("haptrial" + run + " --resume" + other);
+    EXPECT_EQ(r.status, 2) << other;
+    EXPECT_THAT(r.errors, HasSubstr("was recorded with the tutor S01.h5 trial 1 from 0 s"));
+  }
+}
+
 TEST(TutoringTest, WhatCannotLeadIsSaidBeforeAFolderIsMade) {
   const test::TemporaryFolder folder;
   const std::string out = (folder / "out").string();

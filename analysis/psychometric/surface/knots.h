@@ -15,7 +15,7 @@ class Knots {
   double last() const noexcept { return static_cast<double>(values_.size() - 1); }
   /// @param place  0 to last()
   double value(double place) const noexcept { return between(values_, place); }
-  /// Of the prior, for equal steps of the place.
+  /// The prior's weight there, for equal steps of the place.
   double weight(double place) const noexcept { return between(weights_, place); }
 
  private:

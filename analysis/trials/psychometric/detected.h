@@ -43,8 +43,8 @@ struct IdentifiedCondition {
   Confusions confusions;
   int trials{0}, right{0};
   double share{0.0}, low{0.0}, high{0.0};  // of right answers, with Wilson's 95 % interval
-  /// Of m alternatives, from the share and the ends of its interval; a share of 0 or 1 is taken
-  /// for half an answer more or less (Macmillan and Kaplan 1985). Low and high may be infinite.
+  /// d' for m alternatives, computed from the share and the ends of its interval. A share of 0 or 1
+  /// is moved by half an answer (Macmillan and Kaplan 1985). Low and high may be infinite.
   Defined<double> d_prime{Undefined{"nothing was counted"}};
   double d_low{0.0}, d_high{0.0};
   Defined<double> sure_right{Undefined{"there are no ratings"}};  // mean rating of right answers

@@ -253,7 +253,7 @@ void BallTouch::take_samples(const Vector3d& centre) noexcept {
   }
 }
 
-/// Of too many the farthest is left out.
+/// Where there is no room for another place, the farthest one gives way.
 void BallTouch::add_place(const Place& place) noexcept {
   if (count_ < kMostPlaces) {
     places_[static_cast<std::size_t>(count_++)] = place;

@@ -14,8 +14,8 @@
 namespace haptrial::deformable {
 
 /// How a linear body gives way at its surface: what a force on one vertex that can be touched does
-/// to the others, and to those one element deeper. So a body at rest answers on every tick what all
-/// of its elements would, in microseconds.
+/// to the others, and to those one element deeper. With it a tick takes microseconds and gives the
+/// answer of all the elements at rest.
 ///
 /// Vertices are known by places: first those that can be touched, then the deeper ones.
 /// Source: Morris 2006, §5.3.2 (quasi-static elements); James and Pai 1999 (ArtDefo).

@@ -44,7 +44,7 @@ void check_inclusion(const FeltMesh& mesh, const Inclusion& ball) {
   }
 }
 
-/// Of n(n+1)(n+2)/6 points, each at the centre of a part that is as large as the others.
+/// Counted on n(n+1)(n+2)/6 points, the centres of equal parts of the tetrahedron.
 double share_in_ball(const std::array<Vector3d, 4>& p, const Vector3d& centre, double radius) {
   int inside = 0;
   int points = 0;

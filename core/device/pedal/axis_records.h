@@ -10,8 +10,8 @@
 namespace haptrial::device {
 
 /// What an input device's records (struct input_event, as the kernel or a pipe delivers them) say
-/// of one absolute axis. The value counts from the end of the report that it stands in. If the
-/// kernel had to drop records, those up to the end of the report are void, too.
+/// about one absolute axis. A value counts once its report has ended. If the kernel had to drop
+/// records, the rest of that report is ignored, too.
 class AxisRecords {
  public:
   explicit AxisRecords(int axis) noexcept : axis_(axis) {}

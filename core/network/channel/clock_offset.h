@@ -23,7 +23,8 @@ class ClockOffset {
   bool known() const noexcept { return count_ > 0 || best_.round_trip >= 0; }
   /// Partner's clock less the own one at an own time [ns].
   std::int64_t offset(std::int64_t now) const noexcept;
-  /// Of the partner's clock beside the own one [1]; 0 before two seconds are over.
+  /// How much faster the partner's clock runs, as a share of the own rate [1]; 0 for the first two
+  /// seconds.
   double drift() const noexcept { return drift_; }
   std::int64_t round_trip() const noexcept { return last_round_trip_; }  // of the last answer
   std::int64_t least_round_trip() const noexcept { return least_round_trip_; }  // of all

@@ -35,7 +35,7 @@ bool is_version(Bytes bytes) {
   return std::memcmp(bytes.data(), kVersion.data(), kVersion.size()) == 0;
 }
 
-/// Of everything said so far, in a role.
+/// A keyed checksum over all messages so far and the role of who sends it.
 std::array<unsigned char, kProofBytes> proof(const Secret::Key& key, char role, Bytes opening,
                                              Bytes answer, Bytes closing) {
   std::array<unsigned char, 1 + Handshake::kOpeningBytes + Handshake::kAnswerBytes + kTermBytes>

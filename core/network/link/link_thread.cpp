@@ -36,7 +36,7 @@ void LinkThread::run() noexcept {
   publish();
 }
 
-/// At most so many at a time that a flood does not keep the own messages from leaving.
+/// A limited number at a time: a flood must not keep own messages from leaving.
 void LinkThread::take_in() noexcept {
   constexpr int kAtOnce = 256;
   std::array<unsigned char, kSealedBytes + 1> buffer;  // one more shows what is too long

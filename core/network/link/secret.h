@@ -12,7 +12,7 @@ class Secret {
  public:
   static constexpr std::size_t kLeast = 16;  // characters
 
-  /// Of a file, without the white space at its ends.
+  /// The text of a file, without white space at its ends.
   /// @throws InputError where it cannot be read, is shorter than kLeast or longer than 1024
   ///         characters, or may be read by other users of the machine
   static Secret read(const std::filesystem::path& file);

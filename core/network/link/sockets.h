@@ -10,7 +10,7 @@
 
 namespace haptrial::network {
 
-/// A descriptor that is closed.
+/// A file descriptor that closes itself.
 class Socket {
  public:
   Socket() = default;
