@@ -45,4 +45,23 @@ struct TimedOnset {
   bool over{false};           // no onset: the pass has ended
 };
 
+/// What begins on one tick, to be handed over at once. Servo thread: no allocation, lock or throw.
+class TickOnsets {
+ public:
+  static constexpr std::size_t kMost = Onsets::kMost + 2;  // and the trial, and its first stage
+
+  /// One too many is left out.
+  void add(const TimedOnset& onset) noexcept {
+    if (count_ < kMost) {
+      all_[count_++] = onset;
+    }
+  }
+  std::span<TimedOnset> all() noexcept { return {all_.data(), count_}; }
+  std::span<const TimedOnset> all() const noexcept { return {all_.data(), count_}; }
+
+ private:
+  std::array<TimedOnset, kMost> all_{};
+  std::size_t count_{0};
+};
+
 }  // namespace haptrial::markers

@@ -7,14 +7,16 @@ namespace haptrial::markers {
 OnsetLog::OnsetLog() { sem_init(&wake_, 0, 0); }
 OnsetLog::~OnsetLog() { sem_destroy(&wake_); }
 
-void OnsetLog::put(TimedOnset onset) noexcept {
-  if (!onset.over) {
-    onset.number = count_.load(std::memory_order_relaxed) + 1;
+void OnsetLog::put(TickOnsets onsets) noexcept {
+  if (onsets.all().empty()) {
+    return;
   }
-  log_.push(onset);
-  if (!onset.over) {
-    count_.store(onset.number, std::memory_order_release);
+  std::uint64_t count = count_.load(std::memory_order_relaxed);
+  for (TimedOnset& onset : onsets.all()) {
+    onset.number = onset.over ? 0 : ++count;
   }
+  log_.push(onsets);
+  count_.store(count, std::memory_order_release);
   sem_post(&wake_);
 }
 

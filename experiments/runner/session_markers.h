@@ -47,6 +47,8 @@ class SessionMarkers {
   /// @param last  nothing more will come: what is not there has not gone
   std::vector<record::MarkerRow> take_rows(bool last = false);
 
+  /// Ticks whose onsets the servo thread found no room for. Any thread.
+  std::uint64_t dropped() const { return log_.dropped(); }
   /// Sentences on what went wrong so far: a lost serial line, sounds that were too loud.
   std::vector<std::string> troubles() const;
   /// How soon the markers had gone, a line each way.

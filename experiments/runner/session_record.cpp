@@ -118,7 +118,7 @@ bool SessionRecord::was_cut_short(const PlannedTrial& trial) const {
 }
 
 std::uint64_t SessionRecord::dropped() const {
-  return log_.dropped() + device_log_.dropped() + trials_.dropped();
+  return log_.dropped() + device_log_.dropped() + trials_.dropped() + markers_.dropped();
 }
 
 void SessionRecord::note_damping(double least, double seconds) {

@@ -65,18 +65,17 @@ bool SessionTask::tick(const realtime::Tick& tick) noexcept {
 
   const bool attention = pass_ != nullptr && pass_->wants_attention();
   const bool ended = end_if_over(tick.index);
-  if (ended && onsets_ != nullptr) {
-    put_onset(tick, {}, true);
+  if (ended) {
+    note_end(tick);
   }
   const std::uint64_t next = tick.index + 1;
   return leave_ == Leave::kNever ||
          !(ended || attention || next % kSlice == 0 || next == leave_before_);
 }
 
-void SessionTask::put_onset(const realtime::Tick& tick, const markers::Onset& onset,
-                            bool over) noexcept {
-  onsets_->put(
-      {onset, 0, origin_.sequence + tick.index, origin_.time_ns + tick.time_ns, row_, over});
+markers::TimedOnset SessionTask::timed(const realtime::Tick& tick,
+                                       const markers::Onset& onset) const noexcept {
+  return {onset, 0, origin_.sequence + tick.index, origin_.time_ns + tick.time_ns, row_, false};
 }
 
 /// A pass begins with its trial; then its own onsets, or its stages.
@@ -84,21 +83,37 @@ void SessionTask::note_onsets(const realtime::Tick& tick, const PassOutput& out)
   if (onsets_ == nullptr || pass_ == nullptr) {
     return;
   }
-  if (std::exchange(begins_, false)) {
-    put_onset(tick, {}, false);
-    told_stage_ = record::Stage::kIdle;
+  const bool begins = std::exchange(begins_, false);
+  const bool has_stages = !pass_->names_onsets();
+  const bool next_stage = has_stages && (begins || out.stage != told_stage_);
+  if (!begins && !next_stage && out.onsets.all().empty()) {
+    return;
+  }
+  markers::TickOnsets begun;
+  if (begins) {
+    begun.add(timed(tick, {}));
   }
   for (const markers::Onset& onset : out.onsets.all()) {
-    put_onset(tick, onset, false);
+    begun.add(timed(tick, onset));
   }
-  if (!pass_->names_onsets() && out.stage != told_stage_) {
-    told_stage_ = out.stage;
-    if (out.stage != record::Stage::kIdle) {
-      markers::Onset onset{record::MarkerOf::kStage};
-      onset.index = static_cast<std::int16_t>(static_cast<int>(out.stage) - 1);
-      put_onset(tick, onset, false);
-    }
+  told_stage_ = out.stage;
+  if (next_stage && out.stage != record::Stage::kIdle) {
+    markers::Onset onset{record::MarkerOf::kStage};
+    onset.index = static_cast<std::int16_t>(static_cast<int>(out.stage) - 1);
+    begun.add(timed(tick, onset));
   }
+  onsets_->put(begun);
+}
+
+void SessionTask::note_end(const realtime::Tick& tick) noexcept {
+  if (onsets_ == nullptr) {
+    return;
+  }
+  markers::TimedOnset end = timed(tick, {});
+  end.over = true;
+  markers::TickOnsets ended;
+  ended.add(end);
+  onsets_->put(ended);
 }
 
 void SessionTask::record(const realtime::Tick& tick, const PassOutput& out) noexcept {

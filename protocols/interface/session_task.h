@@ -105,7 +105,8 @@ class SessionTask final : public realtime::ServoTask {
   PassOutput nothing() const noexcept;
   void note_damping(const PassOutput& out) noexcept;
   void note_onsets(const realtime::Tick& tick, const PassOutput& out) noexcept;
-  void put_onset(const realtime::Tick& tick, const markers::Onset& onset, bool over) noexcept;
+  void note_end(const realtime::Tick& tick) noexcept;
+  markers::TimedOnset timed(const realtime::Tick& tick, const markers::Onset& onset) const noexcept;
 
   DeviceSet devices_;
   Log& log_;

@@ -39,6 +39,14 @@ TimedOnset onset(MarkerOf what, int index, std::uint64_t sequence) {
   return {which, 0, sequence, PseudoTerminal::now_ns(), 0, false};
 }
 
+TickOnsets tick(std::initializer_list<TimedOnset> onsets) {
+  TickOnsets all;
+  for (const TimedOnset& each : onsets) {
+    all.add(each);
+  }
+  return all;
+}
+
 class MarkerThreadTest : public testing::Test {
  protected:
   MarkerThread& open(double pulse) {
@@ -50,6 +58,7 @@ class MarkerThreadTest : public testing::Test {
                                              PseudoTerminal::now_ns);
     return *thread_;
   }
+  void put(const TimedOnset& onset) { log_.put(tick({onset})); }
   std::vector<int> heard(std::size_t count) const {
     for (int i = 0; i < 500 && terminal_.bytes().size() < count; ++i) {
       std::this_thread::sleep_for(milliseconds(10));
@@ -66,9 +75,8 @@ class MarkerThreadTest : public testing::Test {
 
 TEST_F(MarkerThreadTest, CodesOfOneTickFollowInTheOrderOfSend) {
   MarkerThread& thread = open(0.004);
-  log_.put(onset(MarkerOf::kTrial, 0, 5));
-  log_.put(onset(MarkerOf::kInterval, 0, 5));
-  log_.put(onset(MarkerOf::kStage, 0, 5));
+  log_.put(tick({onset(MarkerOf::kTrial, 0, 5), onset(MarkerOf::kInterval, 0, 5),
+                 onset(MarkerOf::kStage, 0, 5)}));
   EXPECT_THAT(heard(6), ElementsAre(21, 0, 11, 0, 1, 0));
   EXPECT_TRUE(thread.wait_until_sent(milliseconds(1000)));
   const auto sent = thread.take_sent();
@@ -85,19 +93,18 @@ TEST_F(MarkerThreadTest, CodesOfOneTickFollowInTheOrderOfSend) {
 
 TEST_F(MarkerThreadTest, TicksStayInTheirOrder) {
   open(0.0);
-  log_.put(onset(MarkerOf::kStage, 0, 5));
-  log_.put(onset(MarkerOf::kTrial, 0, 6));
-  log_.put(onset(MarkerOf::kStage, 1, 7));
-  log_.put(onset(MarkerOf::kResponse, 0, 8));
+  put(onset(MarkerOf::kStage, 0, 5));
+  put(onset(MarkerOf::kTrial, 0, 6));
+  put(onset(MarkerOf::kStage, 1, 7));
+  put(onset(MarkerOf::kResponse, 0, 8));
   EXPECT_THAT(heard(4), ElementsAre(21, 1, 200, 101)) << "a code of 200 is one byte";
 }
 
 TEST_F(MarkerThreadTest, SendsOnlyWhatIsAskedFor) {
   options_.send = {MarkerOf::kResponse};
   MarkerThread& thread = open(0.0);
-  log_.put(onset(MarkerOf::kTrial, 0, 5));
-  log_.put(onset(MarkerOf::kStage, 0, 5));
-  log_.put(onset(MarkerOf::kResponse, 0, 9));
+  log_.put(tick({onset(MarkerOf::kTrial, 0, 5), onset(MarkerOf::kStage, 0, 5)}));
+  put(onset(MarkerOf::kResponse, 0, 9));
   ASSERT_TRUE(thread.wait_until_sent(milliseconds(1000)));
   EXPECT_THAT(heard(1), ElementsAre(101));
   EXPECT_EQ(thread.take_sent().size(), 1u);
@@ -108,10 +115,10 @@ TEST_F(MarkerThreadTest, SendsOnlyWhatIsAskedFor) {
 TEST_F(MarkerThreadTest, WritesWithinMillisecondsOfTheTick) {
   constexpr int kCount = 400;
   MarkerThread& thread = open(0.0);
-  std::vector<TimedOnset> put;
+  std::vector<TimedOnset> onsets;
   for (int i = 0; i < kCount; ++i) {
-    put.push_back(onset(MarkerOf::kStage, i % 2, static_cast<std::uint64_t>(i)));
-    log_.put(put.back());
+    onsets.push_back(onset(MarkerOf::kStage, i % 2, static_cast<std::uint64_t>(i)));
+    put(onsets.back());
     std::this_thread::sleep_for(milliseconds(3));
   }
   ASSERT_TRUE(thread.wait_until_sent(milliseconds(2000)));
@@ -124,8 +131,8 @@ TEST_F(MarkerThreadTest, WritesWithinMillisecondsOfTheTick) {
   for (std::size_t i = 0; i < sent.size(); ++i) {
     EXPECT_EQ(bytes[i], i % 2 == 0 ? 21 : 200);
     EXPECT_EQ(sent[i].onset.sequence, i);
-    EXPECT_GE(arrived[i].time_ns, put[i].time_ns);
-    latencies.push_back(1e-6 * static_cast<double>(sent[i].written_ns - put[i].time_ns));
+    EXPECT_GE(arrived[i].time_ns, onsets[i].time_ns);
+    latencies.push_back(1e-6 * static_cast<double>(sent[i].written_ns - onsets[i].time_ns));
   }
   std::ranges::sort(latencies);
   std::printf("tick to write: median %.3f ms, 99 %% %.3f ms, largest %.3f ms\n",
@@ -136,12 +143,12 @@ TEST_F(MarkerThreadTest, WritesWithinMillisecondsOfTheTick) {
 
 TEST_F(MarkerThreadTest, ALineThatDisappearsIsCountedAndSaid) {
   MarkerThread& thread = open(0.0);
-  log_.put(onset(MarkerOf::kStage, 0, 1));
+  put(onset(MarkerOf::kStage, 0, 1));
   ASSERT_THAT(heard(1), ElementsAre(21));
   EXPECT_EQ(thread.trouble(), "");
   terminal_.unplug();
   for (std::uint64_t i = 2; i < 7; ++i) {
-    log_.put(onset(MarkerOf::kStage, 0, i));
+    put(onset(MarkerOf::kStage, 0, i));
   }
   ASSERT_TRUE(thread.wait_until_sent(milliseconds(2000)));
   EXPECT_EQ(thread.lost(), 5u);
@@ -163,17 +170,17 @@ TEST_F(MarkerThreadTest, ALineThatComesBackIsOpenedAgain) {
   options_.pulse = 0.0;
   MarkerThread thread(log_, options_, meanings(), {.serial = &line, .stream = {}, .other = {}},
                       PseudoTerminal::now_ns);
-  log_.put(onset(MarkerOf::kStage, 0, 1));
+  put(onset(MarkerOf::kStage, 0, 1));
   ASSERT_THAT(heard(1), ElementsAre(21));
   terminal_.unplug();
-  log_.put(onset(MarkerOf::kStage, 0, 2));
+  put(onset(MarkerOf::kStage, 0, 2));
   ASSERT_TRUE(thread.wait_until_sent(milliseconds(2000)));
   EXPECT_EQ(thread.lost(), 1u);
   const PseudoTerminal again;
   std::filesystem::remove(name);
   std::filesystem::create_symlink(again.name(), name);
   std::this_thread::sleep_for(milliseconds(600));  // it is tried twice a second
-  log_.put(onset(MarkerOf::kStage, 1, 3));
+  put(onset(MarkerOf::kStage, 1, 3));
   for (int i = 0; i < 200 && again.bytes().empty(); ++i) {
     std::this_thread::sleep_for(milliseconds(10));
   }
@@ -184,7 +191,7 @@ TEST_F(MarkerThreadTest, ALineThatComesBackIsOpenedAgain) {
 
 TEST_F(MarkerThreadTest, NoCodeStaysOnTheLineAtTheEnd) {
   open(0.05);
-  log_.put(onset(MarkerOf::kStage, 0, 1));
+  put(onset(MarkerOf::kStage, 0, 1));
   ASSERT_THAT(heard(1), ElementsAre(21));
   thread_.reset();
   EXPECT_THAT(heard(2), ElementsAre(21, 0));

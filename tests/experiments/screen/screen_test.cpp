@@ -199,7 +199,9 @@ TEST_F(ScreenTest, ThePhotodiodesSquareFlashesWithAnOnset) {
   const Eigen::Vector3d white = Eigen::Vector3d::Constant(255.0);
   EXPECT_TRUE(eventually([&] { return corner() == Eigen::Vector3d::Zero(); }));
   EXPECT_TRUE(screen.take_flashes().empty());
-  log.put({});
+  markers::TickOnsets begun;
+  begun.add({});
+  log.put(begun);
   EXPECT_TRUE(eventually([&] { return corner() == white; }));
   EXPECT_TRUE(eventually([&] { return corner() == Eigen::Vector3d::Zero(); }))
       << "half a second on";
