@@ -55,8 +55,9 @@ class Protocol {
     static_cast<void>(file);
   }
   /// Goes through recorded trials again, and says what came of it.
-  /// @throws InputError for what the file does not hold; RunError if it differs from the recording
-  virtual void replay(const ReplayRequest& request) const = 0;
+  /// @throws InputError for what the file does not hold, or if the protocol cannot; RunError if it
+  ///         differs from the recording
+  virtual void replay(const ReplayRequest& request) const;
 };
 
 }  // namespace haptrial::protocols

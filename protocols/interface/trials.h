@@ -105,7 +105,10 @@ class Trials {
   virtual void check_resumed(const record::SessionReader& file) const { static_cast<void>(file); }
 
   /// Before the first attempt at a trial.
-  virtual void prepare(const PlannedTrial& trial, SessionFile& file) = 0;
+  virtual void prepare(const PlannedTrial& trial, SessionFile& file) {
+    static_cast<void>(trial);
+    static_cast<void>(file);
+  }
   /// Before each attempt. @param anew  from the beginning; else where it was broken off, if the
   /// protocol can
   virtual void begin_attempt(const PlannedTrial& trial, bool anew) {

@@ -150,7 +150,7 @@ TEST(OwnProtocolTest, LiveFiguresGoAlong) {
   over = true;
   experimenter.join();
   ASSERT_EQ(summary.figures.size(), static_cast<std::size_t>(kTrials));
-  EXPECT_EQ(summary.figures.front().line, "Comparison 1: 150 N/m");
+  EXPECT_EQ(summary.figures.front().line, "Trial 1: Difference 150 N/m");
 }
 
 /// Short comparisons on the real clock, where a kill loses a moment and not the session.

@@ -1,18 +1,19 @@
 #include "springs.h"
 
 #include <algorithm>
-#include <mutex>
+#include <cmath>
 #include <numeric>
 
 #include "core/base/definition/table.h"
-#include "core/base/error.h"
 #include "core/base/random.h"
+#include "core/psychometric/procedure/staircase.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/response.h"
-#include "core/render/flat/text_screen.h"
-#include "core/subject/hand.h"
+#include "core/record/rows/row_figures.h"
+#include "presser.h"
 #include "protocols/definition/definition.h"
 #include "protocols/interface/session_file.h"
+#include "protocols/interface/text_drawing.h"
 #include "spring_pass.h"
 
 using namespace haptrial;
@@ -21,19 +22,6 @@ using namespace haptrial::protocols;
 // ---- what its definition states
 
 namespace {
-
-struct SpringsDefinition final : Definition {
-  double standard{0.0};    // stiffness of the one spring [N/m]
-  double difference{0.0};  // of the other, at first [N/m]
-  double factor{0.0};      // of a step of the staircase
-  double interval{0.0};    // [s]
-
-  bool has_target() const override { return false; }
-  std::vector<std::string> description() const override {
-    return {"two springs, one after the other; a button says which was stiffer"};
-  }
-  double longest(int trials) const override { return trials * (2.0 * interval + 2.0); }
-};
 
 std::unique_ptr<Definition> read_springs(Table& root, std::string_view file_name) {
   auto d = std::make_unique<SpringsDefinition>();
@@ -68,76 +56,37 @@ const record::Table<SpringRow>& record::table_of<SpringRow>() {
 
 namespace {
 
-// ---- the virtual participant: presses with 3 N, remembers how stiff each felt, answers
-
-class Presser final : public Rig, public stimulus::Observer {
- public:
-  Presser(const SpringsDefinition& d, std::uint64_t seed)
-      : hand_(d.hand, 1.0 / d.rate, Eigen::Vector3d::Zero()), device_(d.device, hand_, d.rate) {
-    constexpr double kWeber = 0.08;
-    for (int trial = 1; trial <= d.design.trials; ++trial) {  // the same whenever it comes
-      RandomStream random(seed, "judgement " + std::to_string(trial));
-      noise_.push_back(kWeber * d.standard * std::sqrt(2.0) * random.normal());
-    }
-  }
-  device::Device& device() override { return device_; }
-  stimulus::Observer* subject() override { return this; }
-
-  void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
-               double) noexcept override {
-    const SpringView* view = shown.as<SpringView>();
-    const int interval = view != nullptr ? view->interval : 0;
-    subject::HandCommand command;
-    command.press = interval > 0 ? 3.0 : 0.0;
-    hand_.command(command);
-    constexpr double kDeepEnough = 0.002;  // [m]
-    if (interval > 0 && shown.tool.y() < -kDeepEnough) {
-      felt_[interval - 1] = forces[0].y() / -shown.tool.y();
-    }
-    std::uint32_t button = 0;
-    if (view != nullptr && view->asked) {
-      const double noise = noise_[static_cast<std::size_t>(view->trial - 1)];
-      button = felt_[0] + noise > felt_[1] ? 1u : 2u;
-    }
-    device_.hold(button, 0.0, Eigen::Quaterniond::Identity());
-  }
-
- private:
-  subject::Hand hand_;
-  device::VirtualDevice device_;
-  std::vector<double> noise_;
-  std::array<double, 2> felt_{};
-};
-
 // ---- what the participant sees
 
-class SpringDrawing final : public Drawing {
- public:
-  SpringDrawing(const render::Gl& gl, int width, int height)
-      : screen_(gl, width, height, kBlack, kWhite, kWhite) {}
-  void draw(const stimulus::Shown& shown) override {
-    const SpringView* view = shown.as<SpringView>();
-    render::TextPage page;
-    if (view != nullptr && view->asked) {
-      page = {"Which was stiffer?", "Left button: the first. Right button: the second.", "", {}};
-    } else if (view != nullptr && view->interval > 0) {
-      page.title = "Spring " + std::to_string(view->interval);
-    }
-    screen_.draw(page);
+render::TextPage page_of(const stimulus::Shown& shown) {
+  const SpringView* view = shown.as<SpringView>();
+  render::TextPage page;
+  if (view != nullptr && view->asked) {
+    page.title = "Which was stiffer?";
+    page.body = "Left button: the first. Right button: the second.";
+  } else if (view != nullptr && view->interval > 0) {
+    page.title = "Spring " + std::to_string(view->interval);
   }
+  return page;
+}
 
- private:
-  static constexpr render::Colour kBlack{0.0, 0.0, 0.0, 1.0};
-  static constexpr render::Colour kWhite{1.0, 1.0, 1.0, 1.0};
-  render::TextScreen screen_;
-};
+// ---- its trials: two right answers make the next difference smaller, a wrong one larger
 
-// ---- its trials
+psychometric::StaircaseParameters staircase_of(const SpringsDefinition& d) {
+  psychometric::StaircaseParameters p;
+  p.axis = {psychometric::Scale::kNaturalLog, 0.0, "N/m"};
+  p.start = d.difference;
+  p.low = 1.0;
+  p.high = 1000.0;
+  p.steps = {{std::log(d.factor), std::log(d.factor)}};
+  p.stop_trials = d.design.trials;
+  return p;
+}
 
 class SpringTrials final : public Trials {
  public:
   SpringTrials(const SpringsDefinition& d, const SessionPlace& place)
-      : d_(d), place_(place), difference_(d.difference) {}
+      : d_(d), place_(place), staircase_(staircase_of(d)) {}
 
   Extent extent(int most) const override {
     const int trials = most > 0 ? std::min(most, d_.design.trials) : d_.design.trials;
@@ -145,7 +94,7 @@ class SpringTrials final : public Trials {
   }
   std::optional<PlannedTrial> next(const Outcome* last) override {
     if (last != nullptr && last->end == TrialEnd::kCompleted && !last->responses.empty()) {
-      step(last->responses.back().correct == 1);
+      staircase_.report(last->responses.back().correct, staircase_.next());
     }
     if (++trial_ > d_.design.trials) {
       return std::nullopt;
@@ -162,17 +111,12 @@ class SpringTrials final : public Trials {
   std::unique_ptr<Rig> virtual_rig() const override {
     return std::make_unique<Presser>(d_, place_.session_seed);
   }
-  void prepare(const PlannedTrial&, SessionFile&) override {}
-  MakeDrawing drawing() override {
-    return [](const render::Gl& gl, int width, int height) {
-      return std::make_unique<SpringDrawing>(gl, width, height);
-    };
-  }
+  MakeDrawing drawing() override { return text_drawing(page_of); }
   Pass& make_pass(PlannedTrial& trial, const record::Phase&) override {
     RandomStream random(place_.session_seed, "order " + std::to_string(trial.trial));
     stiffer_ = 1 + static_cast<int>(random.below(2));
-    row_ = {0, difference_, {d_.standard, d_.standard}};
-    row_.stiffness[static_cast<std::size_t>(stiffer_ - 1)] += difference_;
+    row_ = {0, staircase_.next().front(), {d_.standard, d_.standard}};
+    row_.stiffness[static_cast<std::size_t>(stiffer_ - 1)] += row_.difference;
     pass_ = std::make_unique<SpringPass>(trial.trial, row_.stiffness, d_.interval);
     return *pass_;
   }
@@ -197,57 +141,13 @@ class SpringTrials final : public Trials {
   const char* why_aborted() const override { return "no button was pressed"; }
 
  private:
-  void step(bool right) {
-    right_ = right ? right_ + 1 : 0;
-    if (!right || right_ == 2) {
-      difference_ *= right ? 1.0 / d_.factor : d_.factor;
-      right_ = 0;
-    }
-  }
-
   const SpringsDefinition& d_;
   const SessionPlace& place_;
-  double difference_;
-  int right_{0};  // answers in a row
+  psychometric::Staircase staircase_;
   int trial_{0};
   int stiffer_{1};
   SpringRow row_;
   std::unique_ptr<SpringPass> pass_;
-};
-
-// ---- what the experimenter sees while it runs
-
-class SpringFigures final : public record::LiveFigures {
- public:
-  void begin_pass(const record::PassRow& pass, std::int32_t) override {
-    const std::lock_guard lock(mutex_);
-    trial_ = pass.trial;
-  }
-  void rows(const record::Rows& rows) override {
-    const std::lock_guard lock(mutex_);
-    for (const SpringRow& row : rows.as<SpringRow>()) {
-      const std::string value = std::to_string(std::lround(row.difference)) + " N/m";
-      record::LiveState state;
-      state.trial = trial_;
-      state.title = "Comparison " + std::to_string(trial_);
-      state.figures = {{"Difference", value}};
-      state.line = state.title + ": " + value;
-      done_.push_back(state);
-    }
-  }
-  std::optional<record::LiveState> now() const override {
-    const std::lock_guard lock(mutex_);
-    return done_.empty() ? std::nullopt : std::optional(done_.back());
-  }
-  std::vector<record::LiveState> done() const override {
-    const std::lock_guard lock(mutex_);
-    return done_;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  int trial_{0};
-  std::vector<record::LiveState> done_;
 };
 
 // ---- all of it together, with its analysis
@@ -266,9 +166,6 @@ class Springs final : public Protocol {
   std::unique_ptr<Trials> trials(const Definition& d, const SessionPlace& place) const override {
     return std::make_unique<SpringTrials>(dynamic_cast<const SpringsDefinition&>(d), place);
   }
-  void replay(const ReplayRequest& request) const override {
-    throw InputError(request.file.string() + ": sessions of springs cannot be replayed");
-  }
 };
 
 class SpringsStudy final : public experiments::Study {
@@ -279,7 +176,10 @@ class SpringsStudy final : public experiments::Study {
   }
   std::unique_ptr<record::LiveFigures> live_figures(const Definition&,
                                                     const std::filesystem::path&) const override {
-    return std::make_unique<SpringFigures>();
+    return std::make_unique<record::RowFigures<SpringRow>>([](const SpringRow& row) {
+      const std::string value = std::to_string(std::lround(row.difference)) + " N/m";
+      return std::vector<record::LiveState::Figure>{{"Difference", value}};
+    });
   }
   std::vector<std::string> analyze(const experiments::AnalysisRequest& request) const override {
     std::vector<std::string> lines;
