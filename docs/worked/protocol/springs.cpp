@@ -9,9 +9,9 @@
 #include "core/psychometric/procedure/staircase.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/response.h"
-#include "core/record/rows/row_figures.h"
 #include "presser.h"
 #include "protocols/definition/definition.h"
+#include "protocols/interface/row_figures.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/interface/text_drawing.h"
 #include "spring_pass.h"
@@ -176,7 +176,7 @@ class SpringsStudy final : public experiments::Study {
   }
   std::unique_ptr<record::LiveFigures> live_figures(const Definition&,
                                                     const std::filesystem::path&) const override {
-    return std::make_unique<record::RowFigures<SpringRow>>([](const SpringRow& row) {
+    return std::make_unique<RowFigures<SpringRow>>([](const SpringRow& row) {
       const std::string value = std::to_string(std::lround(row.difference)) + " N/m";
       return std::vector<record::LiveState::Figure>{{"Difference", value}};
     });

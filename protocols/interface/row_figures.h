@@ -7,43 +7,43 @@
 
 #include "core/record/rows/live_figures.h"
 
-namespace haptrial::record {
+namespace haptrial::protocols {
 
 /// Live figures that follow from one row a pass, of the protocol's own table.
 template <class Row>
-class RowFigures final : public LiveFigures {
+class RowFigures final : public record::LiveFigures {
  public:
   /// @param figures  of one row. Session's thread
-  explicit RowFigures(std::function<std::vector<LiveState::Figure>(const Row&)> figures)
+  explicit RowFigures(std::function<std::vector<record::LiveState::Figure>(const Row&)> figures)
       : figures_(std::move(figures)) {}
 
-  void begin_pass(const PassRow& pass, std::int32_t) override {
+  void begin_pass(const record::PassRow& pass, std::int32_t) override {
     trial_ = pass.practice ? 0 : pass.trial;
   }
-  void rows(const Rows& rows) override {
+  void rows(const record::Rows& rows) override {
     for (const Row& row : rows.as<Row>()) {
       add(figures_(row));
     }
   }
-  std::optional<LiveState> now() const override {
+  std::optional<record::LiveState> now() const override {
     const std::lock_guard lock(mutex_);
     return states_.empty() ? std::nullopt : std::optional(states_.back());
   }
-  std::vector<LiveState> done() const override {
+  std::vector<record::LiveState> done() const override {
     const std::lock_guard lock(mutex_);
-    std::vector<LiveState> done = states_;
-    std::erase_if(done, [](const LiveState& state) { return state.practice; });
+    std::vector<record::LiveState> done = states_;
+    std::erase_if(done, [](const record::LiveState& state) { return state.practice; });
     return done;
   }
 
  private:
-  void add(std::vector<LiveState::Figure> figures) {
-    LiveState state;
+  void add(std::vector<record::LiveState::Figure> figures) {
+    record::LiveState state;
     state.trial = trial_;
     state.practice = trial_ == 0;
     state.title = state.practice ? "Practice" : "Trial " + std::to_string(trial_);
     state.line = state.title;
-    for (const LiveState::Figure& figure : figures) {
+    for (const record::LiveState::Figure& figure : figures) {
       state.line += (&figure == figures.data() ? ": " : ", ") + figure.name + " " + figure.value;
     }
     state.figures = std::move(figures);
@@ -51,10 +51,10 @@ class RowFigures final : public LiveFigures {
     states_.push_back(std::move(state));
   }
 
-  std::function<std::vector<LiveState::Figure>(const Row&)> figures_;
+  std::function<std::vector<record::LiveState::Figure>(const Row&)> figures_;
   int trial_{0};  // session's thread
   mutable std::mutex mutex_;
-  std::vector<LiveState> states_;
+  std::vector<record::LiveState> states_;
 };
 
-}  // namespace haptrial::record
+}  // namespace haptrial::protocols
