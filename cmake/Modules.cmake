@@ -100,6 +100,21 @@ function(haptrial_console_page)
   target_sources(haptrial_console PRIVATE ${CMAKE_BINARY_DIR}/console_page.cpp)
 endfunction()
 
+# So are the shipped definitions, which a new one may begin from.
+function(haptrial_examples)
+  file(GLOB files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/experiments/*.toml)
+  list(FILTER files EXCLUDE REGEX "[.]texts[.]")
+  set(HAPTRIAL_EXAMPLES "")
+  foreach(file ${files})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+    cmake_path(GET file STEM name)
+    file(READ ${file} text)
+    string(APPEND HAPTRIAL_EXAMPLES "      Example{\"${name}\", R\"toml(${text})toml\"},\n")
+  endforeach()
+  configure_file(${CMAKE_SOURCE_DIR}/cmake/examples.cpp.in ${CMAKE_BINARY_DIR}/examples.cpp @ONLY)
+  target_sources(haptrial_command_start PRIVATE ${CMAKE_BINARY_DIR}/examples.cpp)
+endfunction()
+
 # haptrial_test(NAME LINK SOURCE...): test_NAME, which the test runner finds.
 function(haptrial_test name link)
   add_executable(test_${name} ${ARGN})

@@ -12,6 +12,19 @@ namespace haptrial::experiments {
 /// The subcommands of haptrial: each prints to standard output and returns an exit status. Bad
 /// input and failures come as InputError and RunError.
 
+/// The shipped definitions.
+int list_examples();
+
+struct NewOptions {
+  std::string file;
+  std::string from{"first_experiment"};  // of the shipped definitions
+};
+int new_definition(const NewOptions& options);
+
+/// What this machine can do. @param folder  where session files are to go
+/// @returns 0 if sessions can run, else 1
+int doctor(const std::string& folder);
+
 struct DryRunOptions {
   std::string definition;
   std::optional<int> subjects;  // default: as the definition says

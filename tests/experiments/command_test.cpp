@@ -51,8 +51,8 @@ class CommandTest : public testing::Test {
 };
 
 TEST_F(CommandTest, HelpShowsAnExampleOfEverySubcommand) {
-  for (const char* name :
-       {"dry-run", "run", "analyze", "export", "info", "validate", "devices", "device-test"}) {
+  for (const char* name : {"examples", "new", "doctor", "dry-run", "run", "analyze", "export",
+                           "info", "validate", "devices", "device-test"}) {
     const CommandResult help = run_command(std::string("haptrial ") + name + " --help");
     EXPECT_EQ(help.status, 0);
     EXPECT_THAT(help.output, HasSubstr(std::string("Example:\n  haptrial ") + name));
@@ -112,7 +112,7 @@ TEST_F(CommandTest, BashCompletesSubcommandsAndOptions) {
   const std::string source = "source '" HAPTRIAL_SOURCE_DIR "/experiments/completion.bash'\n";
   const CommandResult names =
       run_command(source + "COMP_WORDS=(haptrial d) COMP_CWORD=1; _haptrial; echo ${COMPREPLY[@]}");
-  EXPECT_EQ(names.output, "dry-run devices device-test deform\n");
+  EXPECT_EQ(names.output, "doctor dry-run devices device-test deform\n");
   const CommandResult options = run_command(
       source + "COMP_WORDS=(haptrial dry-run --se) COMP_CWORD=2; _haptrial; echo ${COMPREPLY[@]}");
   EXPECT_EQ(options.output, "--seed --session\n");

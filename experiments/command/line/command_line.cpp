@@ -22,6 +22,9 @@ CLI::App* subcommand(CLI::App& app, const char* name, const char* what, const ch
 }
 
 void declare_subcommands(CLI::App& app, int& status) {
+  add_examples(app, status);
+  add_new(app, status);
+  add_doctor(app, status);
   add_dry_run(app, status);
   add_run(app, status);
   add_roster(app, status);

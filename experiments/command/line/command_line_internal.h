@@ -11,6 +11,11 @@ namespace haptrial::experiments {
 // What only the files command_line*.cpp share: who adds which subcommand, and how. `status` is that
 // of declare_subcommands().
 
+// command_line_start.cpp: before the first session
+void add_examples(CLI::App& app, int& status);
+void add_new(CLI::App& app, int& status);
+void add_doctor(CLI::App& app, int& status);
+
 // command_line_sessions.cpp: to run sessions, look into them, mend and show them
 void add_dry_run(CLI::App& app, int& status);
 void add_run(CLI::App& app, int& status);

@@ -141,7 +141,7 @@ TEST(CommandLineTest, AMistypedWordNamesTheNearestOne) {
                  "-jobs is not an option of haptrial analyze; did you mean --jobs? ");
   expect_refused("haptrial anlayze x",
                  "'anlayze' is not a subcommand of haptrial; did you mean "
-                 "analyze? allowed: dry-run, run, roster, analyze, ");
+                 "analyze? allowed: examples, new, doctor, dry-run, run, roster, analyze, ");
   expect_refused("haptrial mesh voxelise a b",
                  "'voxelise' is not a subcommand of haptrial mesh; "
                  "did you mean voxelize? allowed: ");

@@ -1,0 +1,60 @@
+#include "experiments/command/start/examples.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/text/nearest.h"
+
+namespace haptrial::experiments {
+namespace {
+
+/// What follows the comment's sign; the line is one of a comment.
+std::string_view words_of(std::string_view line) {
+  const std::size_t first = line.find_first_not_of("# ");
+  return first == std::string_view::npos ? std::string_view() : line.substr(first);
+}
+
+/// Without its stop; a question keeps its mark.
+std::string first_sentence(const std::string& text) {
+  const std::size_t question = text.find("? ");
+  const std::size_t stop = std::min(text.find(". "), text.size() - (text.ends_with('.') ? 1 : 0));
+  return text.substr(0, question < stop ? question + 1 : stop);
+}
+
+}  // namespace
+
+const Example& example_named(std::string_view name) {
+  const auto all = examples();
+  const auto found = std::ranges::find(all, name, &Example::name);
+  if (found != all.end()) {
+    return *found;
+  }
+  std::vector<std::string> names;
+  for (const Example& example : all) {
+    names.emplace_back(example.name);
+  }
+  throw InputError(not_allowed("--from", fmt::format("'{}'", name), names));
+}
+
+std::string what_of(const Example& example) {
+  std::string comment;
+  std::string_view rest = example.text;
+  while (rest.starts_with('#')) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size() - 1);
+    comment += (comment.empty() ? "" : " ") + std::string(words_of(rest.substr(0, end)));
+    rest.remove_prefix(end + 1);
+  }
+  return first_sentence(comment);
+}
+
+std::string renamed(const Example& example, std::string_view name) {
+  std::string text(example.text);
+  const std::string key = "\nname = \"";
+  const std::size_t first = text.find(key, text.find("[experiment]")) + key.size();
+  return text.replace(first, text.find('"', first) - first, name);
+}
+
+}  // namespace haptrial::experiments

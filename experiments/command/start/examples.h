@@ -1,0 +1,27 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace haptrial::experiments {
+
+/// A shipped definition: experiments/NAME.toml, which is built into the command.
+struct Example {
+  std::string_view name;
+  std::string_view text;
+};
+
+/// All of them, by name.
+std::span<const Example> examples();
+
+/// @throws InputError for a name that is none of them; names them, and the nearest one.
+const Example& example_named(std::string_view name);
+
+/// The first sentence of its first comment: what it is.
+std::string what_of(const Example& example);
+
+/// Its text with another name of the experiment, all else as it stands.
+std::string renamed(const Example& example, std::string_view name);
+
+}  // namespace haptrial::experiments

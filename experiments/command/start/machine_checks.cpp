@@ -1,0 +1,136 @@
+#include "experiments/command/start/machine_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <system_error>
+#include <thread>
+
+#include "core/base/error.h"
+#include "core/base/files/child_process.h"
+#include "core/base/files/whole_file.h"
+#include "core/device/vendor/catalog.h"
+#include "core/realtime/servo_loop.h"
+#include "core/render/gl/offscreen.h"
+#include "core/render/gl/window.h"
+#include "core/sound/card_player.h"
+#include "core/stream/lsl_outlet.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using State = MachineCheck::State;
+
+constexpr double kRate = 1000.0;  // [Hz], as most definitions have it
+
+class CountedTicks final : public realtime::ServoTask {
+ public:
+  explicit CountedTicks(double seconds) : left_(static_cast<int>(seconds * kRate)) {}
+  bool tick(const realtime::Tick&) noexcept override { return --left_ > 0; }
+
+ private:
+  int left_;
+};
+
+/// @returns the sentence of what `check` throws; empty if it does not
+template <class Check>
+std::string refusal_of(Check&& check) {
+  try {
+    check();
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+MachineCheck ready_unless(const char* what, const std::string& refusal, State otherwise,
+                          const char* ready) {
+  return refusal.empty() ? MachineCheck{what, State::kReady, ready}
+                         : MachineCheck{what, otherwise, refusal};
+}
+
+}  // namespace
+
+MachineCheck check_clock(double seconds) {
+  realtime::ServoLoop loop(realtime::ClockKind::kReal, kRate);
+  CountedTicks task(seconds);
+  loop.run(task);
+  const realtime::LoopTiming& timing = loop.timing();
+  const bool good = loop.overruns() == 0;
+  return {
+      "clock", good ? State::kReady : State::kLimited,
+      fmt::format("{} ticks at 1 kHz on {} processors: 99.9 % at most {:.0f} µs late, the latest "
+                  "{:.0f} µs, {} overruns{}",
+                  loop.ticks(), std::thread::hardware_concurrency(),
+                  1e-3 * timing.lateness.percentile(99.9), 1e-3 * timing.lateness.max(),
+                  loop.overruns(), good ? "" : "; close other programs and try again")};
+}
+
+MachineCheck check_real_time() {
+  const realtime::RealTimeScope scope;
+  const realtime::RealTimeStatus& status = scope.status();
+  return status.notice.empty()
+             ? MachineCheck{"real time", State::kReady, "granted, and memory stays in place"}
+             : MachineCheck{"real time", State::kLimited, status.notice};
+}
+
+MachineCheck check_off_screen() {
+  const std::string refusal = refusal_of([] { render::OffscreenContext(64, 64).read(); });
+  return ready_unless("pictures", refusal, State::kBroken, "drawn off screen, by the processor");
+}
+
+MachineCheck check_window() {
+  const std::string refusal = refusal_of([] { render::Window({.width = 64, .height = 64}); });
+  return ready_unless("window", refusal, State::kLimited, "opens, with OpenGL 3.3");
+}
+
+MachineCheck check_sound() {
+  const std::string refusal = refusal_of([] {
+    const sound::CardPlayer player("default",
+                                   [](std::span<float> part) { std::ranges::fill(part, 0.0F); });
+  });
+  return ready_unless("sound", refusal, State::kLimited, "ALSA's card 'default' opens");
+}
+
+MachineCheck check_video() {
+  const bool found = std::system("command -v ffmpeg >/dev/null 2>&1") == 0;
+  return found ? MachineCheck{"video", State::kReady, "ffmpeg is there"}
+               : MachineCheck{"video", State::kLimited,
+                              "ffmpeg is not installed, so replay writes no video; install "
+                              "Debian's package ffmpeg"};
+}
+
+MachineCheck check_stream() {
+  const std::string refusal = refusal_of([] { stream::LslOutlet::check_library(); });
+  return ready_unless("stream", refusal, State::kLimited, "the Lab Streaming Layer is there");
+}
+
+std::vector<MachineCheck> check_devices() {
+  std::vector<MachineCheck> checks;
+  for (const device::DeviceListing& listing : device::list_devices()) {
+    checks.push_back(
+        {listing.name, listing.available ? State::kReady : State::kLimited, listing.what});
+  }
+  return checks;
+}
+
+MachineCheck check_disk(const std::filesystem::path& folder) {
+  constexpr double kGigabyte = 1e9;
+  constexpr double kLittle = 1.0;  // [GB]: a session of an hour needs some hundred MB
+  const std::filesystem::path probe = folder / ".haptrial-doctor";
+  const std::string refusal = refusal_of([&] { write_whole(probe, "x"); });
+  std::error_code error;
+  std::filesystem::remove(probe, error);
+  if (!refusal.empty()) {
+    return {"disk", State::kBroken, refusal};
+  }
+  const auto space = std::filesystem::space(folder, error);
+  const double free = error ? 0.0 : static_cast<double>(space.available) / kGigabyte;
+  return {"disk", free < kLittle ? State::kLimited : State::kReady,
+          fmt::format("{} can be written; {:.1f} GB are free",
+                      std::filesystem::weakly_canonical(folder).string(), free)};
+}
+
+}  // namespace haptrial::experiments

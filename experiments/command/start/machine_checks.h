@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace haptrial::experiments {
+
+/// Something that a session needs, or that it can do without.
+struct MachineCheck {
+  enum class State {
+    kReady,
+    kLimited,  // sessions run, with less: the sentence says what to do
+    kBroken    // they do not
+  };
+  std::string what;  // "real time"
+  State state{State::kReady};
+  std::string found;  // a sentence
+};
+
+/// A second of the servo loop, by an otherwise idle program: how late its ticks are.
+MachineCheck check_clock(double seconds);
+MachineCheck check_real_time();
+MachineCheck check_off_screen();
+MachineCheck check_window();
+MachineCheck check_sound();
+MachineCheck check_video();
+MachineCheck check_stream();
+/// Of every device that is driven by a vendor's library.
+std::vector<MachineCheck> check_devices();
+/// Whether files can be written, and how much there is room for. @param folder  that is there
+MachineCheck check_disk(const std::filesystem::path& folder);
+
+}  // namespace haptrial::experiments

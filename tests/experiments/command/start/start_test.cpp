@@ -1,0 +1,87 @@
+// What a newcomer types first: examples, new, doctor.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "experiments/command/start/examples.h"
+#include "experiments/command/start/machine_checks.h"
+#include "experiments/studies/experiment.h"
+#include "tests/experiments/command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using test::run_command;
+using testing::HasSubstr;
+
+TEST(ExamplesTest, AreTheShippedDefinitions) {
+  std::size_t files = 0;
+  for (const auto& entry : fs::directory_iterator(HAPTRIAL_SOURCE_DIR "/experiments")) {
+    const std::string name = entry.path().filename().string();
+    if (name.ends_with(".toml") && name.find(".texts.") == std::string::npos) {
+      ++files;
+      EXPECT_EQ(example_named(entry.path().stem().string()).text, test::read_text(entry.path()));
+    }
+  }
+  EXPECT_EQ(examples().size(), files);
+}
+
+/// A copy differs from its example in its name and in nothing else that is read.
+TEST(ExamplesTest, UnderAnotherNameEachIsADefinition) {
+  for (const Example& example : examples()) {
+    const std::string text = renamed(example, "mine");
+    EXPECT_EQ(text.size() + example.name.size(), example.text.size() + 4) << example.name;
+    EXPECT_EQ(parse_experiment(text, "mine.toml").definition->name, "mine") << example.name;
+    EXPECT_FALSE(what_of(example).empty()) << example.name;
+  }
+  EXPECT_EQ(what_of(example_named("wall_detection")),
+            "Detection of a virtual wall: was there anything?");
+}
+
+TEST(StartTest, ANewDefinitionIsReadyToRehearse) {
+  const test::TemporaryFolder folder;
+  const std::string in_folder = "cd '" + folder.path().string() + "'; ";
+  const auto made = run_command(in_folder + "haptrial new mine --from wall_detection");
+  ASSERT_EQ(made.status, 0) << made.errors;
+  EXPECT_THAT(made.output, HasSubstr("haptrial dry-run mine.toml --subjects 2"));
+  const auto dry = run_command(in_folder + "haptrial dry-run mine.toml --subjects 1 --trials 2");
+  EXPECT_EQ(dry.status, 0) << dry.errors;
+  EXPECT_TRUE(fs::exists(folder / "out/mine-001/S01.h5"));
+
+  const auto refused = [&](const std::string& line, const std::string& sentence) {
+    const auto result = run_command(in_folder + line);
+    EXPECT_EQ(result.status, 2) << line;
+    EXPECT_THAT(result.errors, HasSubstr(sentence)) << line;
+  };
+  refused("haptrial new mine.toml", "mine.toml: exists already");
+  refused("haptrial new other --from wall_detecton", "did you mean wall_detection?");
+  refused("haptrial new 'two words'", "allowed: letters, digits");
+  refused("haptrial new mine.txt", "allowed: a name that ends in .toml");
+  EXPECT_FALSE(fs::exists(folder / "other.toml"));
+}
+
+TEST(StartTest, TheDoctorSaysWhatSessionsCanUse) {
+  const test::TemporaryFolder folder;
+  const auto found = run_command("haptrial doctor '" + folder.path().string() + "'");
+  EXPECT_EQ(found.status, 0) << found.output;
+  for (const char* what : {"clock", "real time", "pictures", "window", "sound", "disk", "mouse"}) {
+    EXPECT_THAT("\n" + found.output, HasSubstr(std::string("\n") + what)) << what;
+  }
+  const auto nowhere = run_command("haptrial doctor '" + (folder / "none").string() + "'");
+  EXPECT_EQ(nowhere.status, 1);
+  EXPECT_THAT(nowhere.output, HasSubstr("BROKEN"));
+  EXPECT_TRUE(fs::is_empty(folder.path())) << "it leaves nothing behind";
+}
+
+/// Half a second has 500 ticks of 1 ms, however late each is.
+TEST(StartTest, TheClocksTicksAreCounted) {
+  EXPECT_THAT(check_clock(0.5).found, testing::StartsWith("500 ticks at 1 kHz"));
+}
+
+}  // namespace
+}  // namespace haptrial::experiments
