@@ -9,22 +9,41 @@ function(haptrial_install)
     get_property(folder GLOBAL PROPERTY HAPTRIAL_FOLDER_${name})
     set_target_properties(haptrial_${name} PROPERTIES EXPORT_NAME ${name})
     install(TARGETS haptrial_${name} EXPORT haptrial-targets
-            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/haptrial)
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/haptrial COMPONENT development)
     file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${folder}/*.h)
-    install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/haptrial/${folder})
+    install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/haptrial/${folder}
+            COMPONENT development)
   endforeach()
   get_property(groups GLOBAL PROPERTY HAPTRIAL_GROUPS)
   foreach(name ${groups})
     set_target_properties(haptrial_${name} PROPERTIES EXPORT_NAME ${name})
-    install(TARGETS haptrial_${name} EXPORT haptrial-targets)
+    install(TARGETS haptrial_${name} EXPORT haptrial-targets COMPONENT development)
   endforeach()
   set(package ${CMAKE_INSTALL_LIBDIR}/cmake/haptrial)
-  install(EXPORT haptrial-targets NAMESPACE haptrial:: DESTINATION ${package})
+  install(EXPORT haptrial-targets NAMESPACE haptrial:: DESTINATION ${package}
+          COMPONENT development)
   write_basic_package_version_file(${CMAKE_BINARY_DIR}/haptrial-config-version.cmake
                                    COMPATIBILITY SameMinorVersion)
   install(FILES ${CMAKE_SOURCE_DIR}/cmake/haptrial-config.cmake
                 ${CMAKE_BINARY_DIR}/haptrial-config-version.cmake
-          DESTINATION ${package})
-  install(CODE "set(CMAKE_INSTALL_DO_STRIP TRUE)")  # the command without its symbols
-  install(TARGETS haptrial RUNTIME)
+          DESTINATION ${package} COMPONENT development)
+  haptrial_install_command()
+endfunction()
+
+# The command without its symbols, what is typed with it, and what is read about it. The manual is
+# there once make-package.sh has written it.
+function(haptrial_install_command)
+  set(documents ${CMAKE_INSTALL_DOCDIR})
+  install(CODE "set(CMAKE_INSTALL_DO_STRIP TRUE)" COMPONENT command)
+  install(TARGETS haptrial RUNTIME COMPONENT command)
+  file(GLOB definitions CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/experiments/*.toml)
+  install(FILES ${definitions} DESTINATION ${documents}/experiments COMPONENT command)
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs DESTINATION ${documents} COMPONENT command)
+  install(FILES ${CMAKE_SOURCE_DIR}/README.md DESTINATION ${documents} COMPONENT command)
+  install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION ${documents} COMPONENT command
+          RENAME copyright)
+  install(FILES ${CMAKE_SOURCE_DIR}/experiments/completion.bash COMPONENT command
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME haptrial)
+  install(FILES ${CMAKE_BINARY_DIR}/haptrial.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
+          COMPONENT command OPTIONAL)
 endfunction()

@@ -97,5 +97,41 @@ TEST_F(InstallTest, AnotherProjectFindsLinksAndRunsTheLibraries) {
   EXPECT_EQ(sections.output.find(" .debug_"), std::string::npos) << "the command is not stripped";
 }
 
+/// The Debian package of the command, unpacked beside the system: what it has runs, and it says
+/// what it needs.
+TEST_F(InstallTest, APackageHoldsTheCommandWithManualAndDefinitions) {
+  std::string line = "set -e; cd '";
+  line += root_;
+  line += "'\ncpack --config '" HAPTRIAL_BINARY_DIR
+          "/CPackConfig.cmake' -B made -D CPACK_COMPONENTS_ALL=command\n"
+          "dpkg-deb -x made/haptrial_*.deb unpacked\n"
+          "dpkg-deb -f made/haptrial_*.deb Depends\n";
+  const test::CommandResult made = test::run_command(line);
+  ASSERT_EQ(made.status, 0) << made.output << made.errors;
+  for (const char* needed : {"libhdf5", "libgsl", "libosmesa6", "gnuplot-nox"}) {
+    EXPECT_NE(made.output.find(needed), std::string::npos) << needed << " in " << made.output;
+  }
+  const auto unpacked = folder_ / "unpacked/usr";
+  EXPECT_TRUE(std::filesystem::exists(unpacked / "share/doc/haptrial/docs/keys.md"));
+  EXPECT_TRUE(std::filesystem::exists(unpacked / "share/bash-completion/completions/haptrial"));
+  const std::string definition =
+      (unpacked / "share/doc/haptrial/experiments/first_experiment.toml").string();
+  const std::string command = (unpacked / "bin/haptrial").string();
+  const test::CommandResult ran = test::run_command(command + " validate " + definition);
+  EXPECT_EQ(ran.status, 0) << ran.errors;
+}
+
+TEST_F(InstallTest, TheManualHasEverySubcommand) {
+  const std::string page = root_ + "/haptrial.1.gz";
+  const test::CommandResult written = test::run_command(
+      HAPTRIAL_SOURCE_DIR "/cmake/man-page.sh " HAPTRIAL_BINARY_DIR "/haptrial '" + page + "'");
+  ASSERT_EQ(written.status, 0) << written.errors;
+  const test::CommandResult text = test::run_command("gzip -dc '" + page + "'");
+  for (const char* heading : {"haptrial dry-run", "haptrial doctor", "haptrial bone import"}) {
+    EXPECT_NE(text.output.find(".SH \"" + std::string(heading) + "\""), std::string::npos)
+        << heading;
+  }
+}
+
 }  // namespace
 }  // namespace haptrial

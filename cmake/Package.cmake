@@ -1,0 +1,29 @@
+# make-package.sh: Debian packages of what Install.cmake installs, the command apart from the
+# libraries. Dependencies are found from what the command links.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_VENDOR "the haptrial authors")
+set(CPACK_PACKAGE_CONTACT "the haptrial authors <haptrial@localhost>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES TRUE)
+set(CPACK_COMPONENTS_ALL command development)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_DEB_COMPONENT_INSTALL TRUE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME haptrial)
+set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS TRUE)
+set(CPACK_DEBIAN_COMMAND_PACKAGE_DEPENDS "gnuplot-nox | gnuplot, fonts-dejavu-core, fonts-noto-core")
+set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS ffmpeg)
+set(CPACK_COMPONENT_COMMAND_DESCRIPTION "Psychophysics experiments on a
+haptic device or with virtual participants, from a definition file: sessions,
+a recording of every tick, and the analysis.")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libhaptrial-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Headers, static libraries and CMake
+files, for protocols and programs of one's own.")
+
+# The libraries that an exported target names, as packages.txt lists them for the build.
+file(STRINGS ${CMAKE_SOURCE_DIR}/cmake/packages.txt lines REGEX "^build +[a-z0-9.+-]+-dev ")
+list(TRANSFORM lines REPLACE "^build +([a-z0-9.+-]+) .*" "\\1")
+list(JOIN lines ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
+include(CPack)
