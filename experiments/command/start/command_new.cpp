@@ -29,12 +29,12 @@ int new_definition(const NewOptions& options) {
   const std::filesystem::path file = definition_file(options.file);
   const Example& example = example_named(options.from);
   const std::string text = renamed(example, file.stem().string());
-  static_cast<void>(parse_experiment(text, file.string()));  // the name may be none
+  const Experiment experiment = parse_experiment(text, file.string());  // the name may be none
   WholeFile out(file);
   out.write(text);
   out.finish();
-  fmt::print("{}: a copy of {}, to be changed; docs/keys.md has every key\n", file.string(),
-             example.name);
+  fmt::print("{}: a copy of {}, to be changed; haptrial keys {} lists every key\n", file.string(),
+             example.name, experiment.study->protocol().name());
   fmt::print("next: haptrial validate {0}\n      haptrial dry-run {0} --subjects 2\n",
              file.string());
   return 0;
