@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/contact/proxy/arc.h"
+#include "core/contact/proxy/face_end.h"
 
 namespace haptrial::contact {
 namespace {
@@ -39,6 +40,7 @@ struct Proxy::Tick {
   bool slipped{false};   // along a surface
   bool repeated{false};  // the last hit was a plane that is known: rounding is all that is left
   bool lifted{false};
+  int faces_ended{0};  // at which a move was cut
 
   double tolerance() const { return 0.25 * skin.thickness; }  // of a plane [m]
 };
@@ -123,6 +125,23 @@ Vector3d Proxy::allowed_by_friction(const PlaneSolution& solution, bool& sticks)
     return Vector3d::Zero();
   }
   return solution.move * std::max(0.0, 1.0 - f.dynamic_friction * pressure / length);
+}
+
+/// A plane reaches beyond its triangle. With friction it matters where the proxy leaves the face,
+/// as the way on the next one depends on it; without, every way leads to the same place.
+Vector3d Proxy::until_face_ends(Tick& tick, const PlaneSolution& solution,
+                                const Vector3d& move) const noexcept {
+  constexpr int kMostCut = 4;  // a tick; each takes two steps
+  if (options_.friction.static_friction == 0.0 || solution.count != 1 ||
+      tick.faces_ended == kMostCut || planes_[solution.active[0]].curved) {
+    return move;
+  }
+  const std::int32_t slot = planes_[solution.active[0]].slot;
+  const double beyond = 2.0 * tick.skin.rest();  // of the hull around the face, which is wider
+  const double part =
+      face_end(surface_->corners(slot), surface_->normal(slot), state_.position, move, beyond);
+  tick.faces_ended += part < 1.0;
+  return part * move;
 }
 
 /// A proxy at the very limit of its skin is set off from what is around it.
@@ -215,7 +234,8 @@ bool Proxy::take_tangents(const Tick& tick, const Arc& arc, Vector3d& to) noexce
 /// A sphere that touches one edge or corner goes to where the goal is straight behind it.
 bool Proxy::go_round(Tick& tick, const PlaneSolution& solution) noexcept {
   const std::optional<Arc> arc =
-      arc_round(*surface_, planes_[solution.active[0]], state_.position, tick.goal, tick.least);
+      arc_round(*surface_, planes_[solution.active[0]], state_.position, tick.goal,
+                options_.friction.dynamic_friction, tick.least);
   if (!arc) {
     return false;
   }
@@ -282,8 +302,8 @@ bool Proxy::advance(Tick& tick) noexcept {
     tick.slipped = slipping_ = true;
   }
   const bool arc = options_.arcs && options_.radius > 0.0 && solution.count == 1 &&
-                   options_.friction.static_friction == 0.0 && planes_[solution.active[0]].curved;
-  if ((arc && go_round(tick, solution)) || go(tick, move)) {
+                   planes_[solution.active[0]].curved;
+  if ((arc && go_round(tick, solution)) || go(tick, until_face_ends(tick, solution, move))) {
     return false;
   }
   if (solution.count > 0) {

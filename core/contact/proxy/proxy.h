@@ -95,6 +95,8 @@ class Proxy {
   bool take_tangents(const Tick& tick, const Arc& arc, Eigen::Vector3d& to) noexcept;
   bool go_round(Tick& tick, const PlaneSolution& solution) noexcept;
   Eigen::Vector3d allowed_by_friction(const PlaneSolution& solution, bool& sticks) const noexcept;
+  Eigen::Vector3d until_face_ends(Tick& tick, const PlaneSolution& solution,
+                                  const Eigen::Vector3d& move) const noexcept;
   void rest(Tick& tick, const PlaneSolution& solution) noexcept;
   void step_to(const Eigen::Vector3d& at) noexcept;
   void step_back(const Eigen::Vector3d& to) noexcept;

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "analysis/contact/truth/rubbed_profile.h"
 #include "analysis/contact/truth/true_contact.h"
 #include "core/contact/renderer/make_renderer.h"
 #include "core/geometry/mesh/procedural.h"
@@ -119,13 +120,15 @@ Beside beside(const test::TruthCase& one, const Points& tool, int fine, double f
 /// Plane faces are the same on mesh and body: the answer is exact.
 TEST(TrueRenderingTest, TheProxyIsExactOnPlaneFaces) {
   for (const test::TruthCase& one : test::truth_cases()) {
-    if (is_curved(one) || std::holds_alternative<TrueWedge>(one.body)) {
+    if (is_curved(one)) {
       continue;
     }
-    const Beside b = beside(one, one.there_and_back(), 1, kRubbed);
-    EXPECT_LT(b.worst, 1e-9) << one.name << " [N]";
-    EXPECT_EQ(b.alone, 0) << one.name;
-    EXPECT_GT(b.touching, 1500) << one.name;
+    for (const double friction : {0.0, kRubbed}) {
+      const Beside b = beside(one, one.there_and_back(), 1, friction);
+      EXPECT_LT(b.worst, 1e-9) << one.name << " [N]";
+      EXPECT_EQ(b.alone, 0) << one.name;
+      EXPECT_GT(b.touching, 1500) << one.name;
+    }
   }
 }
 
@@ -149,28 +152,75 @@ TEST(TrueRenderingTest, TheProxyConvergesOnCurvedBodies) {
   }
 }
 
-/// Over a convex edge a tick's step leads a little beyond the face, along its plane, before it
-/// falls onto the next one. If friction drags the proxy aslant it lands beside where the body's own
-/// edge would have led it: by the first order of the step, until it turns.
-TEST(TrueRenderingTest, AslantOverAnEdgeTheProxyErrsByAPartOfItsStep) {
+Points rubbed_wedge(const test::TruthCase& wedge, int ticks, double above) {
+  Points tool;
+  for (int i = 0; i <= ticks; ++i) {
+    tool.push_back(wedge.tool(4.0 * i / ticks) + Vector3d(0.0, above, 0.0));
+  }
+  return tool;
+}
+
+/// Over a convex edge that it crosses aslant the proxy leaves the face where the face ends: the
+/// length of a tick's step does not matter.
+TEST(TrueRenderingTest, AslantOverAnEdgeAPointIsExactAtAnySpeed) {
   const test::TruthCase wedge = test::truth_cases()[4];
   ASSERT_TRUE(std::holds_alternative<TrueWedge>(wedge.body));
-  double before = 0.0;
-  for (const int ticks : {4000, 40000, 400000}) {
-    Points tool;
-    for (int i = 0; i <= ticks; ++i) {
-      tool.push_back(wedge.tool(4.0 * i / ticks));
+  for (const int ticks : {400, 4000, 40000}) {  // steps up to 0.5 mm, 47 and 4.7 micrometres
+    for (const double friction : {0.05, kRubbed, 0.8}) {
+      const Beside b = beside(wedge, rubbed_wedge(wedge, ticks, 0.0), 1, friction);
+      EXPECT_LT(b.worst, 1e-9) << ticks << " ticks, friction " << friction;
+      EXPECT_EQ(b.alone, 0);
     }
-    const Beside b = beside(wedge, tool, 1, kRubbed);
-    double longest = 0.0;  // step
-    for (std::size_t i = 1; i < tool.size(); ++i) {
-      longest = std::max(longest, (tool[i] - tool[i - 1]).norm());
+  }
+}
+
+/// Where a sphere's centre may be beside a wedge: outside of two faces and an arc of `facets`.
+RubbedProfile rounded_wedge(double flank, double radius, int facets, double friction) {
+  const auto at = [&](double a) { return Vector2d(radius * std::sin(a), radius * std::cos(a)); };
+  const Vector2d down(std::cos(flank), -std::sin(flank));
+  constexpr double kLong = 1e3;  // [m]
+  std::vector<ProfileFace> faces{{at(flank), -down, -kLong, 0.0}};
+  for (int i = 0; i < facets; ++i) {
+    const Vector2d from = at(flank * (1.0 - 2.0 * i / facets));
+    const Vector2d way = at(flank * (1.0 - 2.0 * (i + 1) / facets)) - from;
+    faces.push_back({from, way.normalized(), 0.0, way.norm()});
+  }
+  faces.push_back({at(-flank), Vector2d(-down.x(), down.y()), 0.0, kLong});
+  return RubbedProfile(faces, false, friction);
+}
+
+/// The largest error of the force of a sphere that is rubbed over a wedge [N].
+double worst_of_sphere(double radius, int ticks, int facets, double friction) {
+  const test::TruthCase wedge = test::truth_cases()[4];
+  const auto& body = std::get<TrueWedge>(wedge.body);
+  const contact::ContactSurface surface(mesh_of(body, 1));
+  contact::Proxy proxy(surface, {.radius = radius, .friction = {friction, friction}});
+  RubbedProfile truth = rounded_wedge(body.flank, radius, facets, friction);
+  double worst = 0.0;
+  const Points tool = rubbed_wedge(wedge, ticks, radius);
+  proxy.start(tool.front());
+  for (const Vector3d& p : tool) {
+    const contact::ProxyState& state = proxy.follow(p);
+    const auto there = truth.next(p);
+    EXPECT_EQ(there.has_value(), state.state != contact::ContactState::kFree);
+    EXPECT_TRUE(state.settled);
+    worst = std::max(worst, test::kTruthStiffness * (state.position - there.value_or(p)).norm());
+  }
+  return worst;
+}
+
+/// The truth has an arc of facets: its own error falls with them, the sphere is exact.
+TEST(TrueRenderingTest, AslantOverAnEdgeASphereIsExactAtAnySpeed) {
+  for (const int ticks : {1000, 10000}) {  // steps up to 0.19 mm and 19 micrometres
+    for (const double friction : {0.0, 0.05, kRubbed, 0.8}) {
+      SCOPED_TRACE(std::to_string(ticks) + " ticks, friction " + std::to_string(friction));
+      // Of 1 mm: the tool is so deep that the sphere hardly rests on the edge.
+      EXPECT_LT(worst_of_sphere(0.001, ticks, 4000, friction), 1e-8);
+      const double coarse = worst_of_sphere(0.005, ticks, 400, friction);
+      const double fine = worst_of_sphere(0.005, ticks, 4000, friction);
+      EXPECT_LT(fine, 2e-3);
+      EXPECT_LT(fine, 0.2 * coarse);
     }
-    std::printf("wedge: steps up to %.1e m, worst %.2e N\n", longest, b.worst);
-    EXPECT_LT(b.worst, 0.1 * test::kTruthStiffness * longest);
-    EXPECT_TRUE(before == 0.0 || before / b.worst > 4.0);
-    EXPECT_LT(beside(wedge, tool, 1, 0.0).worst, 1e-9) << "without friction it is exact";
-    before = b.worst;
   }
 }
 

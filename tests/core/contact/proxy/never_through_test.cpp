@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <iomanip>
 #include <limits>
@@ -25,6 +26,16 @@ using geometry::Mesh;
 double steps_wanted() {
   const char* named = std::getenv("HAPTRIAL_CONTACT_STEPS");
   return named != nullptr ? std::atof(named) : 6e5;
+}
+
+/// Of a long run: what is behind it.
+void say_how_far(const HardMesh& hard, std::int64_t steps) {
+  static double behind = 0.0;
+  behind += static_cast<double>(steps);
+  if (std::getenv("HAPTRIAL_CONTACT_STEPS") != nullptr) {
+    std::printf("%.0f steps, %s\n", behind, hard.name.c_str());
+    std::fflush(stdout);
+  }
 }
 
 Mesh scaled(Mesh mesh, double scale, const Vector3d& by) {
@@ -145,6 +156,7 @@ void try_to_get_through(const HardMesh& hard, const Place& place, double radius,
       ASSERT_FALSE(holds(mesh, state.position)) << "step " << i;
     }
   }
+  say_how_far(hard, steps);
 }
 
 const Place kPlaces[] = {{1.0, {0, 0, 0}},
