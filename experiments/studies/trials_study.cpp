@@ -60,8 +60,8 @@ void take_planned(const AnalysisRequest& request, trials::TrialsPlan& plan,
   }
 }
 
-/// Names in planned tests are of the quantity with most conditions: force compensation has none where
-/// no channel came.
+/// Names in planned tests are of the quantity with most conditions: force compensation has none
+/// where no channel came.
 void check_planned(const trials::TrialsResult& result) {
   const auto most = std::max_element(result.quantities.begin(), result.quantities.end(),
                                      [](const trials::Quantity& a, const trials::Quantity& b) {
@@ -162,6 +162,7 @@ std::vector<std::string> TrialsStudy::analyze(const AnalysisRequest& request) co
   };
   trials::TrialsData data = trials::read_trials(request.files.files, group_of, request.threads);
   add_missing(request, definition, data, remarks);
+  std::ranges::move(trials::unlike_meshes(data.sessions), std::back_inserter(remarks));
   trials::TrialsResult result =
       trials::analyze(std::move(data), plan, procedures_of(definition), request.threads);
   if (plan.kind == trials::AnalysisKind::kReaching) {

@@ -25,6 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr double kRadius = 50.0;    // of the sphere that mesh make gives [mm]
 constexpr double kFriction = 0.25;  // Coulomb
@@ -241,6 +242,20 @@ TEST_F(EvaluateCommandTest, ARecordingIsNotReplayedWithAnotherMesh) {
                         "checksum " +
                         other + ", the recording " + fmt::format("{:016x}", rows[0].checksum) +
                         "; replay it with the same file"));
+  // Sessions of one study that felt different meshes are told apart.
+  ASSERT_EQ(run("haptrial dry-run ball.toml --out other").status, 0);
+  std::filesystem::copy_file(folder_ / "other/S01.h5", folder_ / "study/S02.h5");
+  const auto analysed = run("haptrial analyze study");
+  EXPECT_EQ(analysed.status, 0) << analysed.errors;
+  const std::string sentence = fmt::format(
+      "objects.ball was not the same mesh in all sessions, which are analysed together "
+      "all the same: 'ball.obj' with the checksum {:016x} in S01.h5; 'ball.obj' with "
+      "the checksum {} in S02.h5.",
+      rows[0].checksum, other);
+  EXPECT_THAT(analysed.output, HasSubstr(sentence));
+  EXPECT_THAT(test::read_text(folder_ / "study/report.md"), HasSubstr("not the same mesh"));
+  EXPECT_THAT(run("haptrial analyze other").output, Not(HasSubstr("not the same mesh")));
+
   // The same for a session that is gone on with.
   std::vector<protocols::TrialObject> objects(1);
   objects[0].name = "ball";

@@ -15,6 +15,7 @@ using Vectors = std::span<const Eigen::Vector3d>;
 
 constexpr double kSlowBelow = 10.0, kFastFrom = 100.0;         // [Hz]
 constexpr double kLowThreshold = 0.07, kHighThreshold = 0.10;  // of the force
+constexpr double kLeastJudged = 2.5, kLargestJudged = 10.0;    // of a force [N]
 
 void check_pair(Vectors a, Vectors b) {
   if (a.size() != b.size() || a.empty()) {
@@ -63,10 +64,16 @@ std::string verdict(const NoticeableError& e) {
   const char* said = e.beyond_low <= 0.05   ? "would rarely be noticed"
                      : e.beyond_high >= 0.5 ? "would be noticed most of the time"
                                             : "would be noticed now and then";
-  return fmt::format(
+  std::string sentences = fmt::format(
       "The error {}: it is beyond 7 % of the force in {:.1f} % of the samples and beyond 10 % in "
       "{:.1f} %.",
       said, 100.0 * e.beyond_low, 100.0 * e.beyond_high);
+  if (e.outside > 0.0) {
+    sentences += fmt::format(
+        " These thresholds were measured from {} to {} N; {:.0f} % of the samples lie outside.",
+        kLeastJudged, kLargestJudged, 100.0 * e.outside);
+  }
+  return sentences;
 }
 
 }  // namespace
@@ -137,10 +144,12 @@ NoticeableError noticeable_error(Vectors measured, Vectors rendered, double leas
   }
   NoticeableError error;
   std::vector<double> thresholds;
+  std::size_t outside = 0;
   for (std::size_t i = 0; i < measured.size(); ++i) {
     const double force = measured[i].norm();
     if (force > least_force) {
       thresholds.push_back((measured[i] - rendered[i]).norm() / (kLowThreshold * force));
+      outside += force < kLeastJudged || force > kLargestJudged;
     }
   }
   error.samples = thresholds.size();
@@ -153,6 +162,7 @@ NoticeableError noticeable_error(Vectors measured, Vectors rendered, double leas
     error.beyond_low = share_beyond(1.0);
     error.beyond_high = share_beyond(kHighThreshold / kLowThreshold);
     error.median = by_rank(thresholds, 0.5);
+    error.outside = static_cast<double>(outside) / static_cast<double>(thresholds.size());
   }
   error.verdict = verdict(error);
   return error;

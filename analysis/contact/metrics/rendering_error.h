@@ -57,14 +57,17 @@ struct PositionError {
 PositionError position_error(std::span<const Eigen::Vector3d> recorded,
                              std::span<const Eigen::Vector3d> rendered, double threshold);
 
-/// The force error beside what a hand can tell. The just noticeable difference of a force is 7 % of
-/// it (Jones 1989, Perception 18, 681) to 10 % (upper end of 5 to 10 %: Pang, Tan and Durlach 1991,
-/// Percept. Psychophys. 49, 531), for forces above about 1 N; both are for magnitudes that are
-/// compared one after the other, so that the verdict is a yardstick and not a prediction.
+/// The force error beside what a hand can tell. The just noticeable difference of a force between
+/// thumb and forefinger is 7 % of it from 2.5 to 10 N (Pang, Tan and Durlach 1991, Perception &
+/// Psychophysics 49, 531), 7 % as well for the forces of an arm (Jones 1989, Perception 18, 681);
+/// 10 % is the upper end of the 5 to 10 % that studies report. All are for magnitudes that are
+/// compared one after the other, not for directions or changes while the hand moves, so that the
+/// verdict is a yardstick and not a prediction. The source has no such figure.
 struct NoticeableError {
   double median{0.0};       // of |F - R| / (0.07 |F|) over the samples of contact
   double beyond_low{0.0};   // share of the samples with |F - R| > 0.07 |F|
   double beyond_high{0.0};  // share with |F - R| > 0.10 |F|
+  double outside{0.0};      // share with |F| outside of the 2.5 to 10 N that were measured
   std::size_t samples{0};   // with |F| above `least_force`
   std::string verdict;      // a sentence
 };

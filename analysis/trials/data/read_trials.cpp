@@ -151,7 +151,8 @@ TrialsData read_trials(const std::vector<std::filesystem::path>& files, const Gr
                               info.clock,
                               info.simulated,
                               info.pilot,
-                              static_cast<int>(info.session)};
+                              static_cast<int>(info.session),
+                              reader.rows<record::ObjectFileRow>()};
       by_file[first] = SessionTrials(reader).take();
       const std::vector<record::MarkerRow> rows = reader.rows<record::MarkerRow>();
       markers[first].add(rows);

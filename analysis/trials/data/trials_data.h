@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/markers/marker_times.h"
+#include "core/record/trials/object_file_row.h"
 
 namespace haptrial::analysis::trials {
 
@@ -19,7 +20,8 @@ struct StudySession {
   std::string clock;  // "real" or "simulated"
   bool simulated{false};
   bool pilot{false};
-  int session{1};  // of the participant, from 1
+  int session{1};                               // of the participant, from 1
+  std::vector<record::ObjectFileRow> meshes{};  // files of the objects, as they were then
 };
 
 /// An answer to one question of a trial.

@@ -14,6 +14,7 @@ namespace {
 
 using Vectors = std::vector<Eigen::Vector3d>;
 using testing::HasSubstr;
+using testing::Not;
 
 Vectors random_forces(std::size_t n, const char* name) {
   RandomStream random(4, name);
@@ -93,6 +94,16 @@ TEST(RenderingErrorTest, TheVerdictCountsInThresholds) {
   EXPECT_NEAR(error.beyond_high, 0.25, 1e-12);
   EXPECT_THAT(error.verdict, HasSubstr("now and then"));
   EXPECT_THAT(noticeable_error(measured, rendered, 1e9).verdict, HasSubstr("No sample"));
+}
+
+// Pang, Tan and Durlach 1991: 7 % was found from 2.5 to 10 N.
+TEST(RenderingErrorTest, TheVerdictSaysWhereItsThresholdsWereMeasured) {
+  const Vectors forces{{1.0, 0, 0}, {0, 2.6, 0}, {0, 0, 9.9}, {10.1, 0, 0}};
+  const NoticeableError all = noticeable_error(forces, forces);
+  EXPECT_EQ(all.outside, 0.5);
+  EXPECT_THAT(all.verdict, HasSubstr("from 2.5 to 10 N; 50 % of the samples lie outside."));
+  const Vectors inside{forces[1], forces[2]};
+  EXPECT_THAT(noticeable_error(inside, inside).verdict, Not(HasSubstr("outside")));
 }
 
 TEST(RenderingErrorTest, TicksAreRanked) {

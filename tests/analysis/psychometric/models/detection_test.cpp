@@ -1,6 +1,8 @@
 #include "analysis/psychometric/models/detection.h"
 
 #include <gsl/gsl_cdf.h>
+#include <gsl/gsl_integration.h>
+#include <gsl/gsl_randist.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -105,8 +107,7 @@ TEST(Detection, OfAForcedChoice) {
     EXPECT_NEAR(*forced_choice_d_prime(1.0 / m, m), 0.0, 1e-10);
     EXPECT_NEAR(forced_choice_share(*forced_choice_d_prime(0.7, m), m), 0.7, 1e-12);
   }
-  // Hacker and Ratcliff 1979, table: 4 alternatives, share 0.70 has d' 1.55 or so to two digits;
-  // simulated here.
+  // Drawn, not integrated.
   RandomStream random(8, "forced choice");
   const double d_prime = *forced_choice_d_prime(0.7, 4);
   int right = 0;
@@ -122,6 +123,46 @@ TEST(Detection, OfAForcedChoice) {
   EXPECT_NEAR(right / double(kTrials), 0.7, 4.0 * std::sqrt(0.21 / kTrials));
   EXPECT_FALSE(forced_choice_d_prime(1.0, 2));
   EXPECT_THROW(forced_choice_share(1.0, 1), std::invalid_argument);
+}
+
+/// The same share another way round: the signal beats the largest of the m - 1 others, whose
+/// density is (m - 1) phi(y) Phi(y)^(m - 2).
+double share_over_the_largest(double d_prime, int m) {
+  struct Choice {
+    double d_prime;
+    int m;
+  } choice{d_prime, m};
+  gsl_function function{[](double y, void* c) {
+                          const auto& at = *static_cast<const Choice*>(c);
+                          return (at.m - 1) * gsl_ran_ugaussian_pdf(y) *
+                                 std::pow(gsl_cdf_ugaussian_P(y), at.m - 2) *
+                                 gsl_cdf_ugaussian_P(at.d_prime - y);
+                        },
+                        &choice};
+  gsl_integration_workspace* space = gsl_integration_workspace_alloc(1000);
+  double share = 0.0, error = 0.0;
+  gsl_integration_qagi(&function, 0.0, 1e-13, 1000, space, &share, &error);
+  gsl_integration_workspace_free(space);
+  return share;
+}
+
+TEST(Detection, OfAForcedChoiceIsThatOfThePublishedTable) {
+  struct Row {
+    int alternatives;
+    double share, d_prime;
+  };
+  // Values of Hacker and Ratcliff 1979 to two digits; the integral confirms each here.
+  const Row rows[] = {{2, 0.76, 1.00}, {3, 0.75, 1.43}, {4, 0.75, 1.68}};
+  for (const Row& row : rows) {
+    const double d_prime = *forced_choice_d_prime(row.share, row.alternatives);
+    EXPECT_NEAR(d_prime, row.d_prime, 0.006) << row.alternatives;
+    EXPECT_NEAR(share_over_the_largest(row.d_prime, row.alternatives), row.share, 0.002);
+  }
+  for (const int m : {2, 3, 4, 8, 32, 1000}) {
+    for (const double d : {-1.0, 0.3, 1.0, 2.5, 5.0}) {
+      EXPECT_NEAR(forced_choice_share(d, m), share_over_the_largest(d, m), 1e-11) << m << ", " << d;
+    }
+  }
 }
 
 // The trapezoids under a curve of five ratings, worked by hand from the cumulative shares.
