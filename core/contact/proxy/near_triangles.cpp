@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kMostListed = 1024;
 // A list of few may reach farther next time, one of many less far.
 constexpr int kFew = 12, kMany = 48;
-constexpr int kFewOfSphere = 30, kManyOfSphere = 100;
+constexpr int kFewOfSphere = 24, kManyOfSphere = 70;
 
 }  // namespace
 
@@ -218,7 +218,10 @@ bool NearTriangles::first_hit(const Sweep& sweep, SweepHit& hit, double& seen) n
       return false;
     }
   }
-  if (ahead < 0.5 * listed_reach_ || covered_ < 0.0) {
+  // A point that goes far looks through the hierarchy anyway.
+  constexpr double kFar = 3.0;  // of the next list's reach
+  const bool leaves = radius_ == 0.0 && length > kFar * reach_;
+  if (!leaves && (ahead < 0.5 * listed_reach_ || covered_ < 0.0)) {
     list_around(sweep);
     ahead = left(sweep);
     if (listed() && first_listed(sweep, std::min(1.0, ahead / length), length, hit)) {
