@@ -4,9 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 
+#include "analysis/trials/data/felt_meshes.h"
 #include "analysis/trials/data/read_trials.h"
 #include "analysis/trials/psychometric/trials_study.h"
 #include "analysis/trials/reaching/quantities/reach_quantities.h"

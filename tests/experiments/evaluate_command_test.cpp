@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/fnv.h"
+#include "core/geometry/files/mesh_io.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/trials/object_file_row.h"
 #include "protocols/trials/objects/object_files.h"
@@ -54,6 +55,15 @@ class EvaluateCommandTest : public testing::Test {
       const Vector3d force = (1.0 + 0.4 * std::sin(5.0 * t)) * (n - coefficient * way);
       forces << t << ',' << force.x() << ',' << force.y() << ',' << force.z() << '\n';
     }
+  }
+
+  /// A mesh whose faces look the other way.
+  void turn_faces(const char* from, const char* to) {
+    geometry::Mesh mesh = geometry::read_mesh(folder_ / from);
+    for (geometry::Triangle& t : mesh.triangles) {
+      std::swap(t[0], t[1]);
+    }
+    geometry::write_mesh(mesh, folder_ / to);
   }
 
   static Vector3d normal(double t) {
@@ -296,6 +306,17 @@ TEST_F(EvaluateCommandTest, BadInputGetsASentence) {
   refused("rubbed", "evaluate needs RECORDING and --mesh, or --duck");
   refused("rubbed --duck", "--duck is given with a recording");
   refused("--duck --seed one", "--seed");
+  refused(good + "--seed 2", "--seed is for --duck");
+  // A mesh in another unit, an inside-out one, a recording without contact or against its forces.
+  refused("rubbed --mesh body.obj --units mm", "the contacts span 0.0");
+  run("haptrial mesh repair body.obj large.obj --scale 1000");
+  refused("rubbed --mesh large.obj", "--units must be the unit of the mesh: m, cm or mm");
+  turn_faces("body.obj", "inwards.obj");
+  refused("rubbed --mesh inwards.obj --registered", "inwards.obj: its faces look inwards");
+  refused(good + "--lag 0 --on-body", "do the forces act on the body (--on-body)");
+  run("mkdir air; cp rubbed/poses.csv air; sed '2,$ s/,.*/,0.001,0.0,0.0/' rubbed/forces.csv > "
+      "air/forces.csv");
+  refused("air --mesh body.obj --lag 0", "0 of 1000 poses are in contact");
   run("mkdir empty; mkdir out; touch out/file");
   refused("empty --mesh body.obj", "empty: holds 0 tables");
   refused(good + "--lag 0 --renderer proxy --out out", "out");

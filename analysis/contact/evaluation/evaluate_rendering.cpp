@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "analysis/contact/evaluation/check_body.h"
+
 namespace haptrial::evaluation {
 namespace {
 
@@ -85,6 +87,8 @@ Evaluation evaluate_rendering(const ContactRecording& recording, const contact::
   result.contact = prepare_contact(recording, body, options.prepare);
   result.triangles = body.mesh.triangles.size();
   result.remarks = result.contact.remarks;
+  const std::vector<std::string> of_body = body_remarks(body);
+  result.remarks.insert(result.remarks.end(), of_body.begin(), of_body.end());
   const auto measure = [&](RendererKind kind, const contact::RendererOptions& o) {
     result.renderings.push_back(
         measured_rendering(result.contact, body, kind, o, options.threshold));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "analysis/contact/evaluation/check_body.h"
 #include "analysis/contact/evaluation/surface_lag.h"
 #include "analysis/contact/registration/in_trajectory.h"
 #include "analysis/statistics/base/descriptive.h"
@@ -24,6 +25,7 @@ constexpr int kLagRounds = 6;
 constexpr double kSameLag = 2e-4;      // [s]
 constexpr double kMuchFriction = 0.6;  // rare between dry solids
 constexpr double kInwards = 0.2;       // share of contacts pulled inwards that is doubted
+constexpr double kOffBody = 0.05;      // of the path's size: a median residual that is doubted
 
 void require_prepared(bool good, const char* sentence) {
   if (!good) {
@@ -118,8 +120,13 @@ Eigen::Isometry3d body_from_world(const PoseStream& path, const ForceStream& at_
       contacts.push_back(path.position[i]);
     }
   }
-  require_prepared(contacts.size() >= kFewestContacts,
-                   "a recording needs 12 poses in contact or more to be registered");
+  if (contacts.size() < kFewestContacts) {
+    throw std::invalid_argument(
+        fmt::format("{} of {} poses are in contact (with a force above {:g} N); a registration "
+                    "needs {} or more",
+                    contacts.size(), path.size(), o.least_force, kFewestContacts));
+  }
+  check_size(body, contacts);
   const std::size_t step = (contacts.size() + kMostFitted - 1) / kMostFitted;
   std::vector<Vector3d> fitted;
   for (std::size_t i = 0; i < contacts.size(); i += step) {
@@ -130,6 +137,12 @@ Eigen::Isometry3d body_from_world(const PoseStream& path, const ForceStream& at_
   result.registration = register_path(body.distance, fitted, options);
   result.remarks.insert(result.remarks.end(), result.registration->unfixed.begin(),
                         result.registration->unfixed.end());
+  if (result.registration->median > kOffBody * path_size(contacts)) {
+    result.remarks.push_back(fmt::format(
+        "The path does not lie on the body: half of the contacts are more than {:.2g} mm "
+        "off. The mesh may be another body, or in another unit.",
+        1e3 * result.registration->median));
+  }
   return result.registration->body_from_world;
 }
 
@@ -269,6 +282,21 @@ void remark_on_lean(const Touch& touch, PreparedContact& result) {
   }
 }
 
+/// @throws std::invalid_argument if nothing touches
+void judge_touch(const Touch& touch, PreparedContact& result) {
+  require_prepared(
+      result.contact_share > 0.0,
+      "no force points out of the body where the probe is; is the mesh another body or "
+      "in another unit (--units), do the forces act on the body (--on-body), or is the "
+      "lag another one (--lag)?");
+  remark_on_lean(touch, result);
+  if (touch.inwards > kInwards) {
+    result.remarks.push_back(fmt::format(
+        "{:.0f} % of the forces pull into the body: perhaps the sensor says what acts on the body.",
+        100.0 * touch.inwards));
+  }
+}
+
 }  // namespace
 
 PreparedContact prepare_contact(const ContactRecording& recording, const contact::FeltBody& body,
@@ -299,12 +327,7 @@ PreparedContact prepare_contact(const ContactRecording& recording, const contact
   result.contact_share =
       static_cast<double>(std::count(touch.touching.begin(), touch.touching.end(), true)) /
       static_cast<double>(touch.touching.size());
-  remark_on_lean(touch, result);
-  if (touch.inwards > kInwards) {
-    result.remarks.push_back(fmt::format(
-        "{:.0f} % of the forces pull into the body: perhaps the sensor says what acts on the body.",
-        100.0 * touch.inwards));
-  }
+  judge_touch(touch, result);
   result.touching = std::move(touch.touching);
   result.out = std::move(touch.out);
   result.normal = std::move(touch.normal);

@@ -83,6 +83,19 @@ Interval amplitude_of(const Eigen::Vector2d& terms, const Eigen::Matrix2d& covar
   return {value, told ? std::max(0.0, size - half) : 0.0, size + half};
 }
 
+void doubt_stiffness(IdentifiedContact& found) {
+  if (found.compliance.high <= 0.0) {
+    found.confounded.push_back(
+        "The probe lies less deep the harder it presses: the registration or the sensor's load is "
+        "off, and the stiffness means nothing.");
+  } else if (found.compliance.low <= 0.0) {
+    found.confounded.push_back(fmt::format(
+        "The depth does not grow beyond its noise with the force: the stiffness has no upper "
+        "bound, it is at least {:.4g} N/m.",
+        found.stiffness.low));
+  }
+}
+
 void find_stiffness(const ContactSamples& s, const std::vector<std::size_t>& touching,
                     const IdentificationOptions& o, IdentifiedContact& found) {
   std::vector<std::string> names{kStiffnessName, "offset", "shift x", "shift y", "shift z"};
@@ -109,16 +122,7 @@ void find_stiffness(const ContactSamples& s, const std::vector<std::size_t>& tou
   found.stiffness = {inverse(found.compliance.value), inverse(found.compliance.high),
                      inverse(found.compliance.low)};
   keep_sentences(fit, {kStiffnessName, "texture"}, found.confounded);
-  if (found.compliance.high <= 0.0) {
-    found.confounded.push_back(
-        "The probe lies less deep the harder it presses: the registration or the sensor's load is "
-        "off, and the stiffness means nothing.");
-  } else if (found.compliance.low <= 0.0) {
-    found.confounded.push_back(fmt::format(
-        "The depth does not grow beyond its noise with the force: the stiffness has no upper "
-        "bound, it is at least {:.4g} N/m.",
-        found.stiffness.low));
-  }
+  doubt_stiffness(found);
   if (o.texture) {
     const bool fixed = std::isfinite(fit.intervals[5].high) && std::isfinite(fit.intervals[6].high);
     found.texture = fixed ? amplitude_of(fit.coefficients.segment<2>(5),

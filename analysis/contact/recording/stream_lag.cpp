@@ -63,18 +63,15 @@ Rows pose_features(const PoseStream& pose, const std::vector<double>& times, dou
   return features;
 }
 
+using Squares = Eigen::Matrix<double, kFeatures, kFeatures>;
+
 /// Sums of one block at one lag.
 struct BlockSums {
-  Eigen::Matrix<double, kFeatures, kFeatures> xx;
   Eigen::Matrix<double, kFeatures, 3> xy;
   double yy;
 };
 
-double explained_share(const BlockSums& s) {
-  Eigen::Matrix<double, kFeatures, kFeatures> xx = s.xx;
-  for (int i = 0; i < kFeatures; ++i) {
-    xx(i, i) += 1e-9 * xx(i, i) + 1e-300;  // features may repeat each other
-  }
+double explained_share(const Squares& xx, const BlockSums& s) {
   const auto c = analysis::solve_positive(xx, s.xy);
   return c && s.yy > 0.0 ? (c->array() * s.xy.array()).sum() / s.yy : 0.0;
 }
@@ -103,6 +100,9 @@ class LagSearch {
   std::vector<double> shares(int without) const;
 
  private:
+  Squares squares_of_poses(int without) const;
+
+  std::array<Squares, kBlocks> squares_;              // of the poses: the same at every lag
   std::vector<std::array<BlockSums, kBlocks>> sums_;  // by lag
 };
 
@@ -117,6 +117,14 @@ LagSearch::LagSearch(const PoseStream& pose, const ForceStream& force, const Lag
   const std::vector<double> times = even_times(first, last, clock);
   const auto width = static_cast<Eigen::Index>(options.slowest / clock);
   const Rows x = quick(pose_features(pose, times, poses), width);
+  const auto rows_of = [&](const Rows& values, std::size_t block) {
+    const auto b = static_cast<Eigen::Index>(block);
+    const Eigen::Index begin = x.rows() * b / kBlocks;
+    return values.middleRows(begin, x.rows() * (b + 1) / kBlocks - begin);
+  };
+  for (std::size_t b = 0; b < kBlocks; ++b) {
+    squares_[b] = rows_of(x, b).transpose() * rows_of(x, b);
+  }
   const auto lags = static_cast<int>(std::round(options.largest / options.step));
   for (int l = -lags; l <= lags; ++l) {
     std::vector<double> shifted = times;
@@ -130,32 +138,39 @@ LagSearch::LagSearch(const PoseStream& pose, const ForceStream& force, const Lag
     }
     y = quick(y, width);
     auto& blocks = sums_.emplace_back();
-    for (int b = 0; b < kBlocks; ++b) {
-      const Eigen::Index begin = x.rows() * b / kBlocks;
-      const Eigen::Index count = x.rows() * (b + 1) / kBlocks - begin;
-      const auto xb = x.middleRows(begin, count);
-      const auto yb = y.middleRows(begin, count);
-      blocks[static_cast<std::size_t>(b)] = {xb.transpose() * xb, xb.transpose() * yb,
-                                             yb.squaredNorm()};
+    for (std::size_t b = 0; b < kBlocks; ++b) {
+      blocks[b] = {rows_of(x, b).transpose() * rows_of(y, b), rows_of(y, b).squaredNorm()};
     }
   }
 }
 
+Squares LagSearch::squares_of_poses(int without) const {
+  Squares sum = Squares::Zero();
+  for (int b = 0; b < kBlocks; ++b) {
+    if (b != without) {
+      sum += squares_[static_cast<std::size_t>(b)];
+    }
+  }
+  for (int i = 0; i < kFeatures; ++i) {
+    sum(i, i) += 1e-9 * sum(i, i) + 1e-300;  // features may repeat each other
+  }
+  return sum;
+}
+
 std::vector<double> LagSearch::shares(int without) const {
+  const Squares xx = squares_of_poses(without);
   std::vector<double> shares;
   for (const auto& blocks : sums_) {
     BlockSums all{};
-    all.xx.setZero();
     all.xy.setZero();
     all.yy = 0.0;
     for (int b = 0; b < kBlocks; ++b) {
       if (b != without) {
-        all.xx += blocks[static_cast<std::size_t>(b)].xx;
         all.xy += blocks[static_cast<std::size_t>(b)].xy;
         all.yy += blocks[static_cast<std::size_t>(b)].yy;
       }
     }
-    shares.push_back(explained_share(all));
+    shares.push_back(explained_share(xx, all));
   }
   return shares;
 }

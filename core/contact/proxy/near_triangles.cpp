@@ -133,42 +133,51 @@ bool NearTriangles::meets_listed(const Sweep& sweep, int i, double end, SweepHit
   return met;
 }
 
+/// What is met first of the candidates that are tested one after the other.
+struct NearTriangles::FirstMet {
+  const Sweep& sweep;
+  double length;  // of the move [m]
+  double limit;   // the part of the move that is still of interest
+  SweepHit& hit;
+  bool met{false};
+  int tested{0};
+};
+
+void NearTriangles::test(const PartedTriangles::Candidate& candidate, FirstMet& first) noexcept {
+  SweepHit here;
+  ++first.tested;
+  if (!meets_listed(first.sweep, candidate.i, first.limit, here)) {
+    return;
+  }
+  first.hit = first.met ? sooner(first.hit, here, first.length, first.sweep.skin.thickness) : here;
+  first.met = true;
+  // What is farther away stops it no sooner.
+  first.limit = std::min(first.limit, first.hit.t + first.sweep.skin.rest() / first.length);
+}
+
 bool NearTriangles::first_listed(const Sweep& sweep, double end, double length,
                                  SweepHit& hit) noexcept {
   // A little more than the hull that is never entered.
   const double off = radius_ + 1.25 * sweep.skin.thickness;
   const int count = listed_.within(sweep.from, end * sweep.move, off, candidates_);
-  bool met = false;
-  int tested = 0;
-  double limit = end;
-  const auto test = [&](const PartedTriangles::Candidate& candidate) {
-    SweepHit here;
-    ++tested;
-    if (!meets_listed(sweep, candidate.i, limit, here)) {
-      return;
-    }
-    hit = met ? sooner(hit, here, length, sweep.skin.thickness) : here;
-    met = true;
-    // What is farther away stops it no sooner.
-    limit = std::min(limit, hit.t + sweep.skin.rest() / length);
-  };
+  FirstMet first{sweep, length, end, hit};
   // The soonest first: most often it stops the proxy, and the others need not be looked at.
   constexpr int kPicked = 4;
   int next = 0;
-  for (; next < std::min(kPicked, count) && !met; ++next) {
+  for (; next < std::min(kPicked, count) && !first.met; ++next) {
     const auto soonest = std::min_element(candidates_.begin() + next, candidates_.begin() + count,
                                           [](const auto& a, const auto& b) { return a.t < b.t; });
     std::swap(candidates_[next], *soonest);
-    test(candidates_[next]);
+    test(candidates_[next], first);
   }
   for (; next < count; ++next) {
-    if (end * candidates_[next].t <= limit) {
-      test(candidates_[next]);
+    if (end * candidates_[next].t <= first.limit) {
+      test(candidates_[next], first);
     }
   }
-  operations_.triangles_tested += tested;
-  operations_.triangles_passed += listed_.size() - tested;
-  return met;
+  operations_.triangles_tested += first.tested;
+  operations_.triangles_passed += listed_.size() - first.tested;
+  return first.met;
 }
 
 namespace {

@@ -41,6 +41,8 @@ class NearTriangles {
   bool list_around(const Sweep& sweep) noexcept;
   bool gather(const Sweep& sweep, double reach) noexcept;
   bool meets_listed(const Sweep& sweep, int i, double end, SweepHit& hit) noexcept;
+  struct FirstMet;
+  void test(const PartedTriangles::Candidate& candidate, FirstMet& first) noexcept;
   bool first_listed(const Sweep& sweep, double end, double length, SweepHit& hit) noexcept;
   bool first_of_all(const Sweep& sweep, SweepHit& hit) noexcept;
 

@@ -30,61 +30,93 @@ bool PlaneSet::add(const ContactPlane& plane) noexcept {
   return true;
 }
 
+namespace {
+
+/// A plane's normal and what the proxy lacks of its height.
+struct Side {
+  Vector3d normal;
+  double lack;
+};
+
+void solve_one(const Side& a, const Vector3d& wish, PlaneSolution& s) {
+  s.push[0] = a.lack - a.normal.dot(wish);
+  s.move = wish + s.push[0] * a.normal;
+  // The same once more: what rounding left along the normal.
+  s.move += (a.lack - a.normal.dot(s.move)) * a.normal;
+  s.residual = s.move - wish;
+}
+
+void solve_two(const Side& a, const Side& b, const Vector3d& wish, PlaneSolution& s) {
+  const Vector3d along = a.normal.cross(b.normal);
+  const double square = along.squaredNorm(), c = a.normal.dot(b.normal);
+  s.solved = square > kParallel;
+  s.move = along * (along.dot(wish) / square) +
+           ((a.lack - c * b.lack) * a.normal + (b.lack - c * a.lack) * b.normal) / square;
+  s.residual = s.move - wish;
+  const double r0 = s.residual.dot(a.normal), r1 = s.residual.dot(b.normal);
+  s.push = {(r0 - c * r1) / square, (r1 - c * r0) / square, 0.0};
+}
+
+void solve_three(const Side& a, const Side& b, const Side& c, const Vector3d& wish,
+                 PlaneSolution& s) {
+  const Vector3d c0 = b.normal.cross(c.normal), c1 = c.normal.cross(a.normal);
+  const Vector3d c2 = a.normal.cross(b.normal);
+  const double volume = a.normal.dot(c0);
+  s.solved = std::abs(volume) > kFlat;
+  s.move = (a.lack * c0 + b.lack * c1 + c.lack * c2) / volume;
+  s.residual = s.move - wish;
+  s.push = {s.residual.dot(c0) / volume, s.residual.dot(c1) / volume, s.residual.dot(c2) / volume};
+}
+
+/// Visits every one, every two and every three of `count`, until it is sure.
+template <class Visit>
+void each_of_up_to_three(int count, const bool& sure, Visit visit) {
+  for (int i = 0; i < count && !sure; ++i) {
+    visit(std::array{i});
+  }
+  for (int i = 0; i < count && !sure; ++i) {
+    for (int j = i + 1; j < count && !sure; ++j) {
+      visit(std::array{i, j});
+    }
+  }
+  for (int i = 0; i < count && !sure; ++i) {
+    for (int j = i + 1; j < count && !sure; ++j) {
+      for (int k = j + 1; k < count && !sure; ++k) {
+        visit(std::array{i, j, k});
+      }
+    }
+  }
+}
+
+}  // namespace
+
 PlaneSolution PlaneSet::solve_on(std::span<const int> which, const Vector3d& proxy,
                                  const Vector3d& wish) const noexcept {
   PlaneSolution s;
   s.count = static_cast<int>(which.size());
-  for (int i = 0; i < s.count; ++i) {
-    s.active[i] = which[i];
-  }
+  std::copy(which.begin(), which.end(), s.active.begin());
   // A proxy that is too near is lifted by one plane. Two that are nearly parallel would lift it far
   // aside, so they and three leave it where it is.
-  const auto deficit = [&](int i) {
-    const double below = -planes_[which[i]].height(proxy);
-    return s.count == 1 ? below : std::min(below, 0.0);
+  const auto side = [&](int i) {
+    const ContactPlane& plane = planes_[which[i]];
+    const double below = -plane.height(proxy);
+    return Side{plane.normal, s.count == 1 ? below : std::min(below, 0.0)};
   };
-  const Vector3d& n0 = planes_[which[0]].normal;
-  const double b0 = deficit(0);
-  if (s.count == 1) {
-    s.push[0] = b0 - n0.dot(wish);
-    s.move = wish + s.push[0] * n0;
-    // The same once more: what rounding left along the normal.
-    s.move += (b0 - n0.dot(s.move)) * n0;
-    s.residual = s.move - wish;
-    return s;
+  switch (s.count) {
+    case 1:
+      solve_one(side(0), wish, s);
+      break;
+    case 2:
+      solve_two(side(0), side(1), wish, s);
+      break;
+    default:
+      solve_three(side(0), side(1), side(2), wish, s);
   }
-  const Vector3d& n1 = planes_[which[1]].normal;
-  const double b1 = deficit(1);
-  if (s.count == 2) {
-    const Vector3d along = n0.cross(n1);
-    const double square = along.squaredNorm();
-    s.solved = square > kParallel;
-    const double c = n0.dot(n1);
-    s.move =
-        along * (along.dot(wish) / square) + ((b0 - c * b1) * n0 + (b1 - c * b0) * n1) / square;
-    s.residual = s.move - wish;
-    const double r0 = s.residual.dot(n0), r1 = s.residual.dot(n1);
-    s.push = {(r0 - c * r1) / square, (r1 - c * r0) / square, 0.0};
-    return s;
-  }
-  const Vector3d& n2 = planes_[which[2]].normal;
-  const double b2 = deficit(2);
-  const Vector3d c0 = n1.cross(n2), c1 = n2.cross(n0), c2 = n0.cross(n1);
-  const double volume = n0.dot(c0);
-  s.solved = std::abs(volume) > kFlat;
-  s.move = (b0 * c0 + b1 * c1 + b2 * c2) / volume;
-  s.residual = s.move - wish;
-  s.push = {s.residual.dot(c0) / volume, s.residual.dot(c1) / volume, s.residual.dot(c2) / volume};
   return s;
 }
 
 PlaneSolution PlaneSet::solve(const Vector3d& proxy, const Vector3d& wish,
                               double tolerance) const noexcept {
-  PlaneSolution best;
-  best.tried = 0;
-  best.move = wish;
-  best.residual.setZero();
-  double least = 0.0;
   std::array<double, kMost> most;  // what a move may lose of each plane's height
   for (int i = 0; i < count_; ++i) {
     most[i] = -std::max(planes_[i].height(proxy), 0.0) - tolerance;
@@ -97,15 +129,21 @@ PlaneSolution PlaneSet::solve(const Vector3d& proxy, const Vector3d& wish,
     }
     return true;
   };
+  PlaneSolution best;
+  best.tried = 0;
+  best.move = wish;
+  best.residual.setZero();
   if (allowed(wish)) {
     return best;
   }
+  best.move.setZero();  // staying where it is is as good as what is no nearer
+  best.residual = -wish;
   best.solved = false;
-  const double farthest = wish.norm() + 8.0 * tolerance;  // staying where it is is as good
-  least = farthest * farthest;
+  const double farthest = wish.norm() + 8.0 * tolerance;
+  double least = farthest * farthest;
   bool sure = false;  // no plane pulls: then no point is nearer
   int tried = 0;
-  const auto consider = [&](std::span<const int> which) {
+  each_of_up_to_three(count_, sure, [&](std::span<const int> which) {
     const PlaneSolution s = solve_on(which, proxy, wish);
     ++tried;
     const double square = s.residual.squaredNorm();
@@ -114,27 +152,7 @@ PlaneSolution PlaneSet::solve(const Vector3d& proxy, const Vector3d& wish,
       least = square;
       sure = s.push[0] >= 0.0 && s.push[1] >= 0.0 && s.push[2] >= 0.0;
     }
-  };
-  for (int i = 0; i < count_ && !sure; ++i) {
-    consider(std::array{i});
-  }
-  for (int i = 0; i < count_ && !sure; ++i) {
-    for (int j = i + 1; j < count_ && !sure; ++j) {
-      consider(std::array{i, j});
-    }
-  }
-  for (int i = 0; i < count_ && !sure; ++i) {
-    for (int j = i + 1; j < count_ && !sure; ++j) {
-      for (int k = j + 1; k < count_ && !sure; ++k) {
-        consider(std::array{i, j, k});
-      }
-    }
-  }
-  if (!best.solved) {
-    best.move.setZero();
-    best.residual = -wish;
-    best.count = 0;
-  }
+  });
   best.tried = tried;
   return best;
 }

@@ -161,47 +161,59 @@ void Proxy::lift(Tick& tick) noexcept {
   }
 }
 
-/// Planes reach beyond their triangles: where they stop the proxy, one or two of them alone may let
-/// it pass beside the others.
-bool Proxy::find_way_out(Tick& tick) noexcept {
+/// Whether one of the known triangles stops a sweep at once.
+bool Proxy::blocked_at_once(const Sweep& sweep, double enough) noexcept {
+  const double length = sweep.move.norm();
+  SweepHit hit;
+  for (int i = 0; i < planes_.size(); ++i) {
+    if (near_.meets(sweep, planes_[i].slot, hit) && hit.t * length <= enough) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Goes as if only some of the planes were there, if that leads anywhere.
+bool Proxy::leave_on(const Tick& tick, std::span<const int> which) noexcept {
+  constexpr int kMostTried = 8;
   const Vector3d wish = tick.goal - state_.position;
   const double enough = 4.0 * tick.least;
-  constexpr int kMostTried = 8;
-  const int known = planes_.size();
-  const auto try_on = [&](std::span<const int> which) {
-    const PlaneSolution solution = planes_.solve_on(which, state_.position, wish);
-    near_.operations().plane_solutions += 1;
-    bool sticks = false;
-    const Vector3d move = allowed_by_friction(solution, sticks);
-    const double length = move.norm();
-    if (!solution.solved || !(length > enough) || !(solution.residual.norm() < wish.norm())) {
-      return false;
-    }
-    const Sweep sweep{state_.position, move, options_.radius, tick.skin};
-    SweepHit hit;
-    for (int i = 0; i < planes_.size(); ++i) {
-      if (near_.meets(sweep, planes_[i].slot, hit) && hit.t * length <= enough) {
-        return false;
-      }
-    }
-    double seen = 1.0;
-    const bool met = near_.first_hit(sweep, hit, seen);
-    const double free = met ? hit.t : seen;
-    if (free * length <= enough) {
-      if (met && planes_.size() < kMostTried) {
-        planes_.add(hit.plane);  // the way may go along this one
-      }
-      return false;
-    }
+  const PlaneSolution solution = planes_.solve_on(which, state_.position, wish);
+  near_.operations().plane_solutions += 1;
+  bool sticks = false;
+  const Vector3d move = allowed_by_friction(solution, sticks);
+  const double length = move.norm();
+  if (!solution.solved || !(length > enough) || !(solution.residual.norm() < wish.norm())) {
+    return false;
+  }
+  const Sweep sweep{state_.position, move, options_.radius, tick.skin};
+  if (blocked_at_once(sweep, enough)) {
+    return false;
+  }
+  SweepHit hit;
+  double seen = 1.0;
+  const bool met = near_.first_hit(sweep, hit, seen);
+  const double free = met ? hit.t : seen;
+  if (free * length > enough) {
     step_to(state_.position + free * move);
     return true;
-  };
+  }
+  if (met && planes_.size() < kMostTried) {
+    planes_.add(hit.plane);  // the way may go along this one
+  }
+  return false;
+}
+
+/// Planes reach beyond their triangles: where they stop the proxy, one or two of them alone may let
+/// it pass beside the others.
+bool Proxy::find_way_out(const Tick& tick) noexcept {
+  const int known = planes_.size();
   for (int j = 0; j < planes_.size(); ++j) {
-    if (try_on(std::array{j})) {
+    if (leave_on(tick, std::array{j})) {
       return true;
     }
     for (int i = 0; i < j && planes_.size() > 2; ++i) {
-      if (try_on(std::array{i, j})) {
+      if (leave_on(tick, std::array{i, j})) {
         return true;
       }
     }
@@ -243,8 +255,7 @@ bool Proxy::go_round(Tick& tick, const PlaneSolution& solution) noexcept {
   Vector3d to = arc->first;
   for (int tried = 0; tried < kMostTried && arc->leads_on(to); ++tried) {
     if (take_tangents(tick, *arc, to)) {
-      before_ = planes_;
-      planes_.clear();
+      forget_planes();
       return true;
     }
   }
@@ -276,6 +287,29 @@ void Proxy::rest(Tick& tick, const PlaneSolution& solution) noexcept {
                                                             : ContactState::kStick;
 }
 
+/// The planes were left behind: what was met on the way is found anew.
+void Proxy::forget_planes() noexcept {
+  before_ = planes_;
+  planes_.clear();
+}
+
+/// Nothing moves any more. @returns whether that is so to the end.
+bool Proxy::come_to_rest(Tick& tick, const PlaneSolution& solution, bool sticks) noexcept {
+  if (tick.repeated && !tick.lifted) {
+    lift(tick);
+    return false;
+  }
+  if (!sticks && options_.ways_out && planes_.size() > 1 && find_way_out(tick)) {
+    tick.slipped = slipping_ = true;
+    tick.repeated = false;
+    forget_planes();
+    return false;
+  }
+  state_.settled = true;
+  rest(tick, solution);
+  return true;
+}
+
 /// One step of a tick. @returns whether it was the last.
 bool Proxy::advance(Tick& tick) noexcept {
   const Vector3d wish = tick.goal - state_.position;
@@ -283,20 +317,7 @@ bool Proxy::advance(Tick& tick) noexcept {
   bool sticks = false;
   const Vector3d move = allowed_by_friction(solution, sticks);
   if (move.norm() <= tick.least || tick.repeated) {
-    if (tick.repeated && !tick.lifted) {
-      lift(tick);
-      return false;
-    }
-    if (!sticks && options_.ways_out && planes_.size() > 1 && find_way_out(tick)) {
-      tick.slipped = slipping_ = true;
-      tick.repeated = false;
-      before_ = planes_;
-      planes_.clear();
-      return false;
-    }
-    state_.settled = true;
-    rest(tick, solution);
-    return true;
+    return come_to_rest(tick, solution, sticks);
   }
   if (solution.count > 0) {
     tick.slipped = slipping_ = true;
@@ -307,8 +328,7 @@ bool Proxy::advance(Tick& tick) noexcept {
     return false;
   }
   if (solution.count > 0) {
-    before_ = planes_;
-    planes_.clear();
+    forget_planes();
     return false;
   }
   state_.position = way_[way_length_ - 1] = tick.goal;

@@ -91,7 +91,11 @@ class Proxy {
   bool go(Tick& tick, const Eigen::Vector3d& move) noexcept;
   bool still_there(Tick& tick) noexcept;
   void lift(Tick& tick) noexcept;
-  bool find_way_out(Tick& tick) noexcept;
+  bool blocked_at_once(const Sweep& sweep, double enough) noexcept;
+  bool leave_on(const Tick& tick, std::span<const int> which) noexcept;
+  bool find_way_out(const Tick& tick) noexcept;
+  void forget_planes() noexcept;
+  bool come_to_rest(Tick& tick, const PlaneSolution& solution, bool sticks) noexcept;
   bool take_tangents(const Tick& tick, const Arc& arc, Eigen::Vector3d& to) noexcept;
   bool go_round(Tick& tick, const PlaneSolution& solution) noexcept;
   Eigen::Vector3d allowed_by_friction(const PlaneSolution& solution, bool& sticks) const noexcept;

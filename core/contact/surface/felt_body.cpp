@@ -1,28 +1,25 @@
 #include "core/contact/surface/felt_body.h"
 
-#include <map>
+#include <array>
+#include <mutex>
 #include <utility>
 
 #include "core/geometry/mesh/mesh_bounds.h"
+#include "core/geometry/mesh/mesh_edges.h"
 
 namespace haptrial::contact {
 namespace {
 
-/// Every side runs from a to b as often as from b to a, once each.
+/// On every edge lie two sides, one each way.
 bool is_closed(const geometry::Mesh& mesh) {
-  std::map<std::pair<std::int32_t, std::int32_t>, int> sides;
-  for (const geometry::Triangle& t : mesh.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      ++sides[{t[k], t[(k + 1) % 3]}];
-    }
-  }
-  for (const auto& [side, count] : sides) {
-    const auto back = sides.find({side.second, side.first});
-    if (count != 1 || back == sides.end()) {
+  const geometry::EdgeTable edges(mesh);
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const auto sides = edges.sides(e);
+    if (sides.size() != 2 || start_of(mesh, sides[0]) != end_of(mesh, sides[1])) {
       return false;
     }
   }
-  return !mesh.triangles.empty();
+  return edges.size() > 0;
 }
 
 }  // namespace
@@ -33,6 +30,21 @@ FeltBody::FeltBody(geometry::Mesh shape)
       distance(mesh, surface),
       size(geometry::bounds(mesh).diagonal().norm()),
       closed(is_closed(mesh)) {}
+
+SharedBody felt_body(geometry::Mesh mesh) {
+  constexpr std::size_t kKept = 4;
+  static std::mutex mutex;
+  static std::array<SharedBody, kKept> kept;
+  static std::size_t next = 0;
+  const std::scoped_lock lock(mutex);
+  for (const SharedBody& body : kept) {
+    if (body && body->mesh.triangles == mesh.triangles && body->mesh.vertices == mesh.vertices) {
+      return body;
+    }
+  }
+  kept[next] = std::make_shared<const FeltBody>(std::move(mesh));
+  return kept[std::exchange(next, (next + 1) % kKept)];
+}
 
 Eigen::Vector3d free_place(const FeltBody& body, const Eigen::Vector3d& p, double radius) noexcept {
   constexpr double kBeside = 1e-9;  // of the largest coordinate: more than its rounding

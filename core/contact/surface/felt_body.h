@@ -25,6 +25,10 @@ struct FeltBody {
 
 using SharedBody = std::shared_ptr<const FeltBody>;
 
+/// The body of a mesh; one of the last few if it is of the same mesh, as a definition is read many
+/// times. Any thread. @throws InputError as ContactSurface does
+SharedBody felt_body(geometry::Mesh mesh);
+
 /// Where a tool that is to be free at `p` is put: there, or, inside a closed body, just outside of
 /// it. Servo thread. @param p  in the body's frame [m]  @param radius  of the tool [m]
 Eigen::Vector3d free_place(const FeltBody& body, const Eigen::Vector3d& p, double radius) noexcept;

@@ -2,8 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <map>
-#include <utility>
+
+#include "core/geometry/mesh/mesh_edges.h"
 
 namespace haptrial::contact {
 
@@ -15,23 +15,31 @@ SignedDistance::SignedDistance(const geometry::Mesh& mesh, const ContactSurface&
       triangles_(mesh.triangles),
       corner_normals_(mesh.vertices.size(), Vector3d::Zero()),
       edge_normals_(mesh.triangles.size()) {
-  std::map<std::pair<std::int32_t, std::int32_t>, Vector3d> edges;
-  const auto edge_of = [&](std::size_t t, int k) {
-    return std::pair(std::minmax(triangles_[t][k], triangles_[t][(k + 1) % 3]));
+  const auto normal = [&](std::size_t t) -> const Vector3d& {
+    return surface.normal(surface.slot(static_cast<std::int32_t>(t)));
   };
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    const Vector3d& n = surface.normal(surface.slot(static_cast<std::int32_t>(t)));
     for (int k = 0; k < 3; ++k) {
       const Vector3d& at = mesh.vertices[triangles_[t][k]];
       const Vector3d a = mesh.vertices[triangles_[t][(k + 1) % 3]] - at;
       const Vector3d b = mesh.vertices[triangles_[t][(k + 2) % 3]] - at;
-      corner_normals_[triangles_[t][k]] += std::atan2(a.cross(b).norm(), a.dot(b)) * n;
-      edges.try_emplace(edge_of(t, k), Vector3d::Zero()).first->second += n;
+      corner_normals_[triangles_[t][k]] += std::atan2(a.cross(b).norm(), a.dot(b)) * normal(t);
     }
   }
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      edge_normals_[t][k] = edges.at(edge_of(t, k));
+    for (int k = 0; k < 3; ++k) {  // what stays of triangles that repeat a corner
+      edge_normals_[t][k] =
+          corner_normals_[triangles_[t][k]] + corner_normals_[triangles_[t][(k + 1) % 3]];
+    }
+  }
+  const geometry::EdgeTable edges(mesh);
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    Vector3d sum = Vector3d::Zero();
+    for (const geometry::Side side : edges.sides(e)) {
+      sum += normal(geometry::triangle_of(side));
+    }
+    for (const geometry::Side side : edges.sides(e)) {
+      edge_normals_[geometry::triangle_of(side)][side % 3] = sum;
     }
   }
 }

@@ -105,6 +105,47 @@ struct Child {
   std::int32_t place;
 };
 
+/// The children of a node that the widened segment may meet.
+int met_children(const Rod& rod, const Boxes& boxes, const Eigen::Vector3f& direction,
+                 std::array<Child, kWidth>& children) {
+  Lanes apart;
+  rod.apart(boxes, apart);
+  const int places = full_places(boxes);
+  int count = 0;
+  for (int i = 0; i < places; ++i) {
+    if (apart[i] > 0.0f) {
+      continue;
+    }
+    float entry = 0.0f;
+    for (int axis = 0; axis < 3; ++axis) {
+      entry +=
+          direction[axis] * (direction[axis] > 0.0f ? boxes.low[axis][i] : boxes.high[axis][i]);
+    }
+    children[count++] = {entry, i};
+  }
+  return count;
+}
+
+/// A point and a reach for boxes, in the frame of the hierarchy.
+struct Ball {
+  Four centre[3];
+  double rounded;  // off by less
+  float limit;     // of squared distances
+
+  Ball(const Eigen::Vector3d& at, double reach)
+      : centre{all_four(static_cast<float>(at.x())), all_four(static_cast<float>(at.y())),
+               all_four(static_cast<float>(at.z()))},
+        rounded(kRounded * (1.0 + at.cwiseAbs().maxCoeff())) {
+    const double within = reach + rounded;
+    limit = static_cast<float>(std::min(within * within * 1.0001, 1e38));
+  }
+  /// No part of what is in a box is nearer.
+  double apart(float square) const {
+    const double distance = std::sqrt(static_cast<double>(square)) * (1.0 - kRounded) - rounded;
+    return std::max(distance, 0.0);
+  }
+};
+
 }  // namespace
 
 int ContactSurface::gather(const Eigen::Vector3d& centre, double reach,
@@ -113,12 +154,7 @@ int ContactSurface::gather(const Eigen::Vector3d& centre, double reach,
   if (data.nodes.empty() || !centre.allFinite()) {
     return 0;
   }
-  const Eigen::Vector3d at = data.frame.to_frame(centre);
-  const double rounded = kRounded * (1.0 + at.cwiseAbs().maxCoeff());
-  const double within = reach * data.frame.scale + rounded;
-  const auto limit = static_cast<float>(std::min(within * within * 1.0001, 1e38));
-  const Four q[3] = {all_four(static_cast<float>(at.x())), all_four(static_cast<float>(at.y())),
-                     all_four(static_cast<float>(at.z()))};
+  const Ball ball(data.frame.to_frame(centre), reach * data.frame.scale);
   std::array<std::int32_t, geometry::kMaxDepth * kWidth> stack;
   int top = 0;
   std::size_t count = 0;
@@ -126,9 +162,10 @@ int ContactSurface::gather(const Eigen::Vector3d& centre, double reach,
   Lanes squares;
   while (top > 0) {
     const std::int32_t node = stack[--top];
-    squared_distances(node < 0 ? data.leaf_boxes[~node] : data.nodes[node].boxes, q, squares);
+    squared_distances(node < 0 ? data.leaf_boxes[~node] : data.nodes[node].boxes, ball.centre,
+                      squares);
     for (int i = 0; i < kWidth; ++i) {
-      if (!(squares[i] <= limit)) {
+      if (!(squares[i] <= ball.limit)) {
         continue;
       }
       if (node >= 0) {
@@ -139,9 +176,8 @@ int ContactSurface::gather(const Eigen::Vector3d& centre, double reach,
       if (count == found.size()) {
         return -1;
       }
-      const double apart = std::sqrt(static_cast<double>(squares[i])) * (1.0 - kRounded) - rounded;
       const std::int32_t slot = ~node * kWidth + i;
-      found[count++] = {std::max(apart, 0.0) / data.frame.scale, slot};
+      found[count++] = {ball.apart(squares[i]) / data.frame.scale, slot};
       __builtin_prefetch(&corners_[slot]);
       __builtin_prefetch(&corners_[slot][2].z());
       __builtin_prefetch(&normals_[slot]);
@@ -164,25 +200,11 @@ void ContactSurface::along(const Eigen::Vector3d& from, const Eigen::Vector3d& m
   std::array<std::int32_t, geometry::kMaxDepth * kWidth> stack;
   int top = 0;
   stack[top++] = 0;
-  Lanes apart;
+  std::array<Child, kWidth> children;
   while (top > 0) {
     const std::int32_t node = stack[--top];
     const Boxes& boxes = node < 0 ? data.leaf_boxes[~node] : data.nodes[node].boxes;
-    rod.apart(boxes, apart);
-    std::array<Child, kWidth> children;
-    int count = 0;
-    const int places = full_places(boxes);
-    for (int i = 0; i < places; ++i) {
-      if (apart[i] > 0.0f) {
-        continue;
-      }
-      float entry = 0.0f;
-      for (int axis = 0; axis < 3; ++axis) {
-        entry +=
-            direction[axis] * (direction[axis] > 0.0f ? boxes.low[axis][i] : boxes.high[axis][i]);
-      }
-      children[count++] = {entry, i};
-    }
+    const int count = met_children(rod, boxes, direction, children);
     std::sort(children.begin(), children.begin() + count, [&](const Child& a, const Child& b) {
       return node < 0 ? a.entry < b.entry : a.entry > b.entry;  // the stack turns the order round
     });

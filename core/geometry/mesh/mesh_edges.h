@@ -8,7 +8,7 @@
 
 #include "core/geometry/mesh/mesh.h"
 
-/// What check and repair share. Inside core/geometry only.
+/// What works with the edges of a mesh shares.
 namespace haptrial::geometry {
 
 /// A side of a triangle: 3 triangle + c runs from its corner c to the next.

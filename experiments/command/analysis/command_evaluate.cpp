@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "analysis/contact/duck/duck_report.h"
+#include "analysis/contact/evaluation/check_body.h"
 #include "analysis/contact/recording/read_recording.h"
 #include "analysis/contact/recording/session_contact.h"
 #include "analysis/contact/report/write_evaluation.h"
@@ -224,6 +225,9 @@ int evaluate(const EvaluateOptions& options) {
   if (options.duck) {
     return evaluate_duck(options);
   }
+  if (options.seed != EvaluateOptions{}.seed) {
+    throw InputError("--seed is for --duck; a recording has no random numbers");
+  }
   if (options.recording.empty() || options.mesh.empty()) {
     throw InputError("evaluate needs RECORDING and --mesh, or --duck");
   }
@@ -232,6 +236,11 @@ int evaluate(const EvaluateOptions& options) {
   const auto [recording, names] = read_given(options, chain.prepare);
   const std::vector<evaluation::NamedRecording> others = read_others(options);
   const contact::FeltBody body(load_mesh({options.mesh, unit, {}}, MemoryBudget({})));
+  try {
+    evaluation::check_body(body);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: {}", options.mesh, error.what()));
+  }
   evaluation::Evaluation found;
   try {
     found = evaluation::evaluate_rendering(recording, body, chain);

@@ -84,7 +84,7 @@ contact::SharedBody read_shape(Table& table) {
   }
   for (const KindOfShape& shape : kShapes) {
     if (word == shape.word) {
-      return std::make_shared<const contact::FeltBody>(shape.read(table));
+      return contact::felt_body(shape.read(table));
     }
   }
   return nullptr;
@@ -125,7 +125,7 @@ void read_yielding_shape(Table& table, TrialObject& object) {
   try {
     object.felt = std::make_shared<const deformable::FeltMesh>(
         deformable::felt_block(size, object.cells, object.sides, "objects." + object.name));
-    object.body = std::make_shared<const contact::FeltBody>(geometry::make_box(size));
+    object.body = contact::felt_body(geometry::make_box(size));
   } catch (const InputError& error) {
     table.reject("size", fmt::format("cannot be used: {}", error.what()));
   }
@@ -165,7 +165,7 @@ void load_objects(std::vector<TrialObject>& objects, const std::filesystem::path
     const auto file = object.file.is_relative() ? folder / object.file : object.file;
     try {
       const std::string bytes = file_text(file);
-      object.body = std::make_shared<const contact::FeltBody>(
+      object.body = contact::felt_body(
           geometry::parse_mesh(bytes, geometry::mesh_format(file), file.string()));
       object.file_bytes = bytes.size();
       object.file_checksum = fnv1a(bytes);
