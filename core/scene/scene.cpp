@@ -318,6 +318,11 @@ std::uint64_t Scene::mask() const noexcept {
 
 const FieldState& Scene::state(std::size_t field) const noexcept { return parts_[field].state; }
 
+const deformable::BodyTouch* Scene::touch(std::size_t field) const noexcept {
+  const auto* body = std::get_if<Yielding>(&parts_[field].law);
+  return body != nullptr ? body->touch() : nullptr;
+}
+
 double Scene::energy(const Vector3d& p) noexcept {
   lay_reliefs(p);
   double sum = 0.0;

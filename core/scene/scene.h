@@ -53,6 +53,8 @@ class Scene {
   std::uint64_t mask() const noexcept;  // what is switched on
   /// After the last tick. @param field  below size()
   const FieldState& state(std::size_t field) const noexcept;
+  /// How a body that gives way is touched; null for any other field. @param field  below size()
+  const deformable::BodyTouch* touch(std::size_t field) const noexcept;
 
   /// What the conservative fields that act store if the hand is at p, with their weights of the
   /// last tick [J]. Not for a scene with a field whose force is not minus a gradient.

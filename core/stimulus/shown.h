@@ -15,7 +15,7 @@ namespace haptrial::stimulus {
 /// has something to do. Servo thread: copying neither allocates nor throws.
 class Shown {
  public:
-  static constexpr std::size_t kRoom = 512;
+  static constexpr std::size_t kRoom = 2048;
 
   /// Nothing but where the tool is: between passes.
   Shown() noexcept = default;

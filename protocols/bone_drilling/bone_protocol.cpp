@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/text/counted.h"
 #include "core/bone/record/drilling_tables.h"
+#include "core/bone/record/tear_row.h"
 #include "core/sound/wav.h"
 #include "protocols/bone_drilling/bone_replay.h"
 #include "protocols/bone_drilling/bone_trials.h"
@@ -82,8 +83,9 @@ void tell_verdict(const ReplayRequest& request, const ReplayVerdict& verdict) {
                                request.file.string(), verdict.trial, verdict.difference));
   }
   request.tell(fmt::format(
-      "trial {}: the same bone, {} ticks in {}, {} voxels emptied, checksum {:016x}{}",
+      "trial {}: the same bone, {} ticks in {}, {} voxels emptied, {}checksum {:016x}{}",
       verdict.trial, verdict.ticks, counted(verdict.passes, "pass", "passes"), verdict.emptied,
+      verdict.tears > 0 ? counted(verdict.tears, "tear", "tears") + " of soft tissue, " : "",
       verdict.checksum, verdict.whole ? "" : "; an unfinished pass has no checksum"));
 }
 
@@ -103,7 +105,11 @@ class BoneDrilling final : public Protocol {
   std::vector<std::pair<record::Phase, std::string>> phases() const override {
     return {{record::kDrillingPhase, "bone is drilled"}};
   }
-  record::TableList tables() const override { return record::drilling_tables(); }
+  record::TableList tables() const override {
+    record::TableList tables = record::drilling_tables();
+    tables.push_back(&record::table_of<record::TearRow>());
+    return tables;
+  }
   std::unique_ptr<Trials> trials(const Definition& definition,
                                  const SessionPlace& place) const override {
     return std::make_unique<BoneTrials>(dynamic_cast<const BoneDefinition&>(definition), place);

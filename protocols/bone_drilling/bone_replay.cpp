@@ -102,6 +102,21 @@ std::string difference(std::uint64_t sequence, std::span<const record::RemovalRo
   return "";
 }
 
+/// Empty where what tore on a tick is what tore in the record, to the bit.
+std::string difference(std::uint64_t sequence, std::span<const record::TearRow> recorded,
+                       std::span<const bone::Tear> torn) {
+  const auto same = [](const record::TearRow& a, const bone::Tear& b) {
+    return a.label == b.label && a.by_suction == b.by_suction && a.force == b.force &&
+           a.depth == b.depth && a.place == b.place_B;
+  };
+  return std::equal(recorded.begin(), recorded.end(), torn.begin(), torn.end(), same)
+             ? ""
+             : fmt::format(
+                   "on tick {} the record has {} tears of soft tissue, and the simulation "
+                   "{}, or others",
+                   sequence, recorded.size(), torn.size());
+}
+
 }  // namespace
 
 BoneReplay::BoneReplay(const std::filesystem::path& session)
@@ -110,7 +125,8 @@ BoneReplay::BoneReplay(const std::filesystem::path& session)
       passes_(reader_.passes()),
       procedures_(reader_.rows<record::ProcedureRow>()),
       removals_(reader_.rows<record::RemovalRow>()),
-      splits_(reader_.rows<record::SplitRow>()) {
+      splits_(reader_.rows<record::SplitRow>()),
+      tears_(reader_.rows<record::TearRow>()) {
   for (const record::BoneRecord& bone : record::recorded_bones(reader_)) {
     bones_.push_back(std::make_shared<const bone::BoneModel>(bone::model_of(bone)));
   }
@@ -207,6 +223,7 @@ void BoneReplay::run_pass(std::int32_t row, const record::PassRow& pass,
   bone::Simulator& simulator = *stage->simulator;
   Cursor<record::RemovalRow> removals(removals_, pass.first_sample);
   Cursor<record::SplitRow> splits(splits_, pass.first_sample);
+  Cursor<record::TearRow> tears(tears_, pass.first_sample);
   const std::uint64_t offset = reader_.samples(0, 1).front().sequence;
   const std::uint64_t first = pass.first_sample - offset;
   const std::uint64_t end = pass.last_sample - offset + 1;
@@ -227,6 +244,10 @@ void BoneReplay::run_pass(std::int32_t row, const record::PassRow& pass,
       simulator.tick(now, splits_of(splits.take(sequence)));
       verdict.difference = difference(sequence, removals.take(sequence), simulator.emptied());
       verdict.emptied += simulator.emptied().size();
+      if (verdict.difference.empty()) {
+        verdict.difference = difference(sequence, tears.take(sequence), simulator.tears());
+      }
+      verdict.tears += simulator.tears().size();
       if (!verdict.difference.empty()) {
         return;
       }

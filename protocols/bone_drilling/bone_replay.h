@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/bone/record/drilling_types.h"
+#include "core/bone/record/tear_row.h"
 #include "core/record/read/session_reader.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_stage.h"
@@ -21,6 +22,7 @@ struct ReplayVerdict {
   int passes{0};
   std::uint64_t ticks{0};
   std::uint64_t emptied{0};   // voxels
+  std::uint64_t tears{0};     // of soft tissue
   std::uint64_t checksum{0};  // of the last pass
   bool whole{true};           // each pass has a checksum: the session came to the end of each
   std::string difference;  // the first one from the record, a sentence; empty where there is none
@@ -76,6 +78,7 @@ class BoneReplay {
   std::vector<record::ProcedureRow> procedures_;
   std::vector<record::RemovalRow> removals_;
   std::vector<record::SplitRow> splits_;
+  std::vector<record::TearRow> tears_;
   std::vector<std::shared_ptr<const bone::BoneModel>> bones_;
 };
 

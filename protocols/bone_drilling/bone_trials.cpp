@@ -79,7 +79,15 @@ std::vector<stimulus::Observer*> BoneTrials::observers() {
 }
 
 std::vector<std::string> BoneTrials::notices() const {
-  return notice_.empty() ? std::vector<std::string>{} : std::vector{notice_};
+  std::vector<std::string> notices;
+  if (!notice_.empty()) {
+    notices.push_back(notice_);
+  }
+  if (tears_ > 0) {
+    notices.push_back(fmt::format("soft tissue was torn {} (/tears)",
+                                  tears_ == 1 ? "once" : fmt::format("{} times", tears_)));
+  }
+  return notices;
 }
 
 std::span<const record::Phase> BoneTrials::phases() const {
@@ -87,7 +95,13 @@ std::span<const record::Phase> BoneTrials::phases() const {
   return kPhases;
 }
 
-record::TableList BoneTrials::tables() const { return record::drilling_tables(); }
+record::TableList BoneTrials::tables() const {
+  record::TableList tables = record::drilling_tables();
+  if (!d_.simulator.soft_tissue.empty()) {
+    tables.push_back(&record::table_of<record::TearRow>());
+  }
+  return tables;
+}
 
 std::vector<record::Rows> BoneTrials::first_rows() const { return record::rows_of(records_); }
 
@@ -101,6 +115,27 @@ void BoneTrials::empty_logs(SessionFile& file) {
   empty(logs_.removals);
   empty(logs_.camera);
   empty(logs_.splits);
+  if (!d_.simulator.soft_tissue.empty()) {
+    logs_.tears.flush([&](std::span<const record::TearRow> rows) { tell_tears(file, rows); });
+  }
+}
+
+/// An event each, too: somebody at the console is to know at once.
+void BoneTrials::tell_tears(SessionFile& file, std::span<const record::TearRow> rows) {
+  file.add(rows);
+  for (const record::TearRow& row : rows) {
+    constexpr double kMillimetres = 1000.0;
+    const bone::BoneModel& model = *d_.bones[bone_];
+    const Eigen::Vector3d p = kMillimetres * (pose_of(d_.placement, model.grid) * row.place).eval();
+    file.event("injury",
+               fmt::format("{} torn by {}{} at {:.2f} N, {:.1f} mm deep, at ({:.1f}, {:.1f}, "
+                           "{:.1f}) mm in the world, on tick {}",
+                           model.structures[row.label].name,
+                           d_.simulator.tools[static_cast<std::size_t>(row.tool)].name,
+                           row.by_suction ? ", which sucks," : "", row.force,
+                           kMillimetres * row.depth, p.x(), p.y(), p.z(), row.sequence));
+    ++tears_;
+  }
 }
 
 /// A bone's file beside the definition may have changed since: what follows would be of another.

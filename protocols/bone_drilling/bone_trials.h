@@ -41,6 +41,7 @@ class BoneTrials final : public Trials {
   const char* why_aborted() const override { return "the procedure was broken off"; }
 
  private:
+  void tell_tears(SessionFile& file, std::span<const record::TearRow> rows);
   void restore(const PlannedTrial& trial, SessionFile& file);
   void set_up(std::shared_ptr<BoneStage> stage, const PlannedTrial& trial);
 
@@ -59,6 +60,7 @@ class BoneTrials final : public Trials {
   std::optional<sound::DrillVibration> vibration_;
   std::unique_ptr<BoneSound> sound_;
   std::string notice_;
+  std::uint64_t tears_{0};  // of soft tissue, in this run
   std::unique_ptr<DrillingPass> pass_;
 };
 

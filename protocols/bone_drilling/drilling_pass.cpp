@@ -180,6 +180,10 @@ void DrillingPass::log(const bone::SimulatorOutput& out, double speed) noexcept 
     row.speed = speed;
     logs_.removals.push(row);
   }
+  for (const bone::Tear& tear : simulator_.tears()) {
+    logs_.tears.push(
+        {sequence_, tear.label, out.tool, tear.by_suction, tear.force, tear.depth, tear.place_B});
+  }
   for (const bone::WorldEvent& event : simulator_.separations()) {
     using Kind = bone::WorldEvent::Kind;
     if (event.kind == Kind::kBorn) {

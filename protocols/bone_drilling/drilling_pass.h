@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/bone/record/drilling_types.h"
+#include "core/bone/record/tear_row.h"
 #include "core/bone/simulator/companions.h"
 #include "core/bone/simulator/drilling_view.h"
 #include "core/bone/simulator/simulator.h"
@@ -23,6 +24,7 @@ class DrillingLogs final : public TickLog {
   realtime::BlockLog<record::RemovalRow> removals{1024, 256};
   realtime::BlockLog<record::CameraRow> camera{256, 64};
   realtime::BlockLog<record::SplitRow> splits{1024, 16};
+  realtime::BlockLog<record::TearRow> tears{64, 16};
 
   /// What the present tick says of the tool in hand; taken by record(). Servo thread.
   void set_tool(const record::ToolRow& row) noexcept { row_ = row; }
@@ -31,7 +33,8 @@ class DrillingLogs final : public TickLog {
   void record(std::uint64_t sequence, const Readings& readings) noexcept override;
 
   std::uint64_t dropped() const noexcept {
-    return tool.dropped() + removals.dropped() + camera.dropped() + splits.dropped();
+    return tool.dropped() + removals.dropped() + camera.dropped() + splits.dropped() +
+           tears.dropped();
   }
 
  private:

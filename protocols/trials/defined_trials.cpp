@@ -11,6 +11,7 @@
 #include "core/base/random.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/trials/contact_row.h"
+#include "core/record/trials/touched_body_row.h"
 #include "core/record/trials/trial_rows.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/trials/definition/defaults.h"
@@ -55,6 +56,10 @@ std::uint64_t pushing(const std::vector<scene::Field>& fields) {
 
 bool records_contacts(const TrialsDefinition& d) {
   return std::ranges::any_of(d.objects, &TrialObject::recorded);
+}
+
+bool has_yielding(const TrialsDefinition& d) {
+  return std::ranges::any_of(d.objects, &TrialObject::yields);
 }
 
 /// Objects come behind all other fields, in the order of the definition's.
@@ -125,6 +130,9 @@ record::TableList DefinedTrials::tables() const {
   }
   if (contacts_) {
     tables.push_back(&record::table_of<record::ContactRow>());
+  }
+  if (has_yielding(d_)) {
+    tables.push_back(&record::table_of<record::TouchedBodyRow>());
   }
   if (!object_files_.empty()) {
     tables.push_back(&record::table_of<record::ObjectFileRow>());
@@ -213,7 +221,7 @@ double DefinedTrials::outcome_of(const std::vector<record::ResponseRow>& respons
   return names_->value(track.counts);
 }
 
-MakeDrawing DefinedTrials::drawing() { return trial_drawing(d_); }
+MakeDrawing DefinedTrials::drawing() { return trial_drawing(d_, bodies_); }
 
 Pass& DefinedTrials::make_pass(PlannedTrial&, const record::Phase&) {
   const bool practice = current_.plan.practice;
@@ -240,6 +248,21 @@ Pass& DefinedTrials::make_pass(PlannedTrial&, const record::Phase&) {
   return *pass_;
 }
 
+/// So that the screen knows how what it shows gives way.
+void DefinedTrials::number_bodies(const std::vector<scene::Field>& fields,
+                                  std::vector<StageSight>& sights) {
+  for (StageSight& sight : sights) {
+    for (SeenObject& seen : sight.objects) {
+      const auto object = static_cast<std::size_t>(seen.object);
+      const scene::Field& field = fields[fields.size() - d_.objects.size() + object];
+      const auto* body = std::get_if<scene::YieldingParameters>(&field.kind);
+      if (body != nullptr && body->body && d_.objects[object].seen_yielding) {
+        seen.body = bodies_->number_of(body->body);
+      }
+    }
+  }
+}
+
 IntervalRun DefinedTrials::make_interval(std::size_t place, RandomStream& random) {
   give(*names_, d_, current_.values);
   give_interval(*names_, d_.intervals[current_.values.intervals[place]], place);
@@ -255,6 +278,7 @@ IntervalRun DefinedTrials::make_interval(std::size_t place, RandomStream& random
     stages.push_back(stage.stage);
     sights.push_back(sight_of(stage, presented, *names_, seed));
   }
+  number_bodies(presented.fields, sights);
   regions_ = presented.regions;
   region_devices_ = presented.region_devices;
   std::vector<StageRegion> regions;
@@ -273,7 +297,8 @@ IntervalRun DefinedTrials::make_interval(std::size_t place, RandomStream& random
       std::move(sights),
       pushing(presented.fields),
       d_.intervals.size() > 1 ? static_cast<int>(current_.values.intervals[place]) : -1,
-      recorded_of(d_, presented.fields.size())};
+      recorded_of(d_, presented.fields.size()),
+      presented.fields.size() - d_.objects.size()};
 }
 
 std::vector<Asked> DefinedTrials::make_questions() {
@@ -372,6 +397,54 @@ void DefinedTrials::close_pass(SessionFile& file, std::int32_t row) {
   keep_stages(file, row);
   keep_adaptation(file, row);
   keep_out_of_time(file, row);
+  if (has_yielding(d_)) {
+    keep_touched_bodies(file, row);
+  }
+}
+
+/// The contacts of all intervals with each body; what was kept from turning inside out is told at
+/// once, too.
+void DefinedTrials::keep_touched_bodies(SessionFile& file, std::int32_t row) {
+  std::vector<record::TouchedBodyRow> rows;
+  std::uint64_t inverted = 0;
+  const std::size_t devices = pass_->scenes(0).size();
+  for (std::size_t device = 0; device < devices; ++device) {
+    for (std::size_t object = 0; object < d_.objects.size(); ++object) {
+      record::TouchedBodyRow sum{row, static_cast<std::int32_t>(device), d_.objects[object].name};
+      for (std::size_t i = 0; i < pass_->intervals_begun(); ++i) {
+        const scene::Scene& scene = pass_->scenes(i)[device];
+        const auto* touch = scene.touch(scene.size() - d_.objects.size() + object);
+        const deformable::TouchCounts counts = touch ? touch->counts() : deformable::TouchCounts{};
+        sum.contact += counts.contact;
+        sum.inverted += counts.inverted;
+        sum.unsettled += counts.unsettled;
+        sum.crowded += counts.crowded;
+      }
+      inverted += sum.inverted;
+      if (d_.objects[object].yields) {
+        rows.push_back(std::move(sum));
+      }
+    }
+  }
+  file.add(std::span<const record::TouchedBodyRow>(rows));
+  if (inverted > 0) {
+    inverted_ticks_ += inverted;
+    ++inverted_passes_;
+    file.event("inside_out", fmt::format("trial {}: on {} ticks a tetrahedron would have been "
+                                         "turned inside out; the force stayed below that",
+                                         pass_->trial() % kPracticeNumbers, inverted));
+  }
+}
+
+std::vector<std::string> DefinedTrials::notices() const {
+  if (inverted_ticks_ == 0) {
+    return {};
+  }
+  return {fmt::format(
+      "{} a body that gives way was pressed so far that a tetrahedron would have been turned "
+      "inside out, on {} ticks together: there the force stayed below that (/touched_bodies)",
+      inverted_passes_ == 1 ? "in 1 pass" : fmt::format("in {} passes", inverted_passes_),
+      inverted_ticks_)};
 }
 
 void DefinedTrials::keep_out_of_time(SessionFile& file, std::int32_t row) const {

@@ -39,12 +39,14 @@ class DefinedTrials final : public Trials {
   void empty_logs(SessionFile& file) override;
   std::uint64_t dropped() const override { return contacts_ ? contacts_->dropped() : 0; }
   const char* why_aborted() const override;
+  std::vector<std::string> notices() const override;
 
   /// The pass that make_pass() made last, and names of the stages of its intervals.
   const TrialPass& pass() const { return *pass_; }
   const std::vector<std::vector<NamedStage>>& stages() const { return stages_; }
 
  private:
+  void number_bodies(const std::vector<scene::Field>& fields, std::vector<StageSight>& sights);
   IntervalRun make_interval(std::size_t place, RandomStream& random);
   std::vector<Asked> make_questions();
   void note_variables(std::size_t interval, std::vector<record::VariableRow>& rows) const;
@@ -54,6 +56,7 @@ class DefinedTrials final : public Trials {
   void keep_out_of_time(SessionFile& file, std::int32_t row) const;
   void keep_level(SessionFile& file, std::int32_t row);
   void keep_stages(SessionFile& file, std::int32_t row) const;
+  void keep_touched_bodies(SessionFile& file, std::int32_t row);
 
   const StudiedDefinition& d_;
   SessionPlace place_;
@@ -64,9 +67,10 @@ class DefinedTrials final : public Trials {
   void keep_adaptation(SessionFile& file, std::int32_t row) const;
   bool adapts() const { return rig_ != nullptr && d_.observer.adaptation.has_value(); }
 
-  mutable std::unique_ptr<SaidAnswer> said_;  // of a virtual participant
-  mutable TrialsRig* rig_{nullptr};           // likewise; the runner's
-  std::unique_ptr<ContactLog> contacts_;      // null: none are recorded
+  mutable std::unique_ptr<SaidAnswer> said_;                            // of a virtual participant
+  mutable TrialsRig* rig_{nullptr};                                     // likewise; the runner's
+  std::unique_ptr<ContactLog> contacts_;                                // null: none are recorded
+  std::shared_ptr<SeenBodies> bodies_{std::make_shared<SeenBodies>()};  // for the screen
   std::vector<record::ObjectFileRow> object_files_;
   std::unique_ptr<TrialPass> pass_;
   std::vector<std::vector<NamedStage>> stages_;  // of each interval of the pass
@@ -74,6 +78,8 @@ class DefinedTrials final : public Trials {
   std::vector<std::size_t> region_devices_;      // likewise
   std::vector<record::VariableRow> variables_;   // of the pass
   std::vector<int> right_;                       // choice of each question; -1: none
+  std::uint64_t inverted_ticks_{0};              // of the session, see TouchedBodyRow
+  std::uint64_t inverted_passes_{0};
 };
 
 }  // namespace haptrial::protocols

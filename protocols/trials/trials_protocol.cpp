@@ -4,6 +4,7 @@
 #include "core/record/rows/response.h"
 #include "core/record/trials/contact_row.h"
 #include "core/record/trials/object_file_row.h"
+#include "core/record/trials/touched_body_row.h"
 #include "core/record/trials/trial_rows.h"
 #include "protocols/trials/defined_trials.h"
 #include "protocols/trials/definition/every_value.h"
@@ -51,6 +52,7 @@ class TrialsProtocol final : public Protocol {
     tables.push_back(&record::table_of<record::AdaptationRow>());
     tables.push_back(&record::table_of<record::OutOfTimeRow>());
     tables.push_back(&record::table_of<record::ContactRow>());
+    tables.push_back(&record::table_of<record::TouchedBodyRow>());
     tables.push_back(&record::table_of<record::ObjectFileRow>());
     return tables;
   }

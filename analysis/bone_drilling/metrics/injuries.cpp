@@ -116,6 +116,28 @@ std::uint64_t InjuryMeter::voxels() const noexcept {
   return sum;
 }
 
+void add_tears(const Procedure& procedure, std::vector<Injury>& injuries) {
+  for (const Torn& tear : procedure.tears) {
+    auto injury = std::find_if(injuries.begin(), injuries.end(),
+                               [&](const Injury& each) { return each.label == tear.label; });
+    if (injury == injuries.end()) {  // soft, but not vital
+      Injury more;
+      more.structure = procedure.bone->structures.at(tear.label).name;
+      more.label = tear.label;
+      injury = injuries.insert(injuries.end(), std::move(more));
+    }
+    ++injury->tears;
+    if (!injury->first_tear) {
+      const auto until = std::upper_bound(
+          procedure.ticks.begin(), procedure.ticks.end(), tear.sequence,
+          [](std::uint64_t value, const ToolTick& tick) { return value < tick.sequence; });
+      const auto ticks = static_cast<double>(until - procedure.ticks.begin());
+      injury->first_tear =
+          FirstTear{ticks / procedure.rate, tear.force, tear.by_suction, tear.place};
+    }
+  }
+}
+
 std::vector<Injury> injuries(const Procedure& procedure, StudyBones& bones) {
   struct Visitor {
     const Procedure& procedure;
@@ -143,7 +165,9 @@ std::vector<Injury> injuries(const Procedure& procedure, StudyBones& bones) {
   Visitor visitor{procedure, InjuryMeter(procedure.bone, procedure.pose_WB, procedure.tools, bones),
                   StandingBone(procedure.bone)};
   visit_in_order(procedure, visitor);
-  return visitor.meter.injuries();
+  std::vector<Injury> all = visitor.meter.injuries();
+  add_tears(procedure, all);
+  return all;
 }
 
 }  // namespace haptrial::analysis::drilling

@@ -13,6 +13,16 @@ namespace haptrial::analysis::drilling {
 
 class StudyBones;
 
+/// How a soft structure tore first.
+struct FirstTear {
+  double time{0.0};   // [s of the procedure]
+  double force{0.0};  // [N]
+  bool by_suction{false};
+  Eigen::Vector3d place{Eigen::Vector3d::Zero()};  // in W [m]
+
+  bool operator==(const FirstTear&) const = default;
+};
+
 /// What happened to a vital structure.
 struct Injury {
   std::string structure;
@@ -21,9 +31,14 @@ struct Injury {
   std::uint64_t crumbled{0};            // that went with parts that turned to dust
   std::optional<double> first_contact;  // a burr that turns reached it [s of the procedure]
   std::optional<double> first_removal;  // [s of the procedure]
+  std::uint64_t tears{0};               // of a soft structure
+  std::optional<FirstTear> first_tear{};
 
   bool operator==(const Injury&) const = default;
 };
+
+/// Adds what tore. @param procedure  with its ticks
+void add_tears(const Procedure& procedure, std::vector<Injury>& injuries);
 
 /// Goes along with a drilling. Contact is exact: the burr's sphere reaches into the cube of a voxel
 /// of the structure as it was at first. One thread, not the servo thread.

@@ -233,6 +233,7 @@ ProcedureSummary summarize(const Procedure& procedure, const MetricOptions& opti
   summary.visibility = meter.visibility();
   sort_removed(procedure, summary);
   summary.injuries = meter.injuries().injuries();
+  add_tears(procedure, summary.injuries);
   summary.usage = meter.usage();
   summary.strokes = stroke_figures(procedure, options.strokes);
   const NearRemovals near = measure_near(procedure, options, bones, summary.near);

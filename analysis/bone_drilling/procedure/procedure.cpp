@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/recorded_bone.h"
+#include "core/bone/record/tear_row.h"
 #include "core/record/read/check_phases.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/table/rounding.h"
@@ -84,6 +85,7 @@ class Loader {
         removals_(file),
         views_(file),
         splits_(file),
+        tears_(file),
         ends_(file.rows<record::ProcedureRow>()) {
     for (const record::BoneRecord& record : record::recorded_bones(file)) {
       models_.push_back(keep(record));
@@ -163,6 +165,10 @@ class Loader {
     for (const record::CameraRow& row : views_.of(pass)) {
       procedure.views.push_back(view_of(row));
     }
+    for (const record::TearRow& row : tears_.of(pass)) {
+      procedure.tears.push_back(
+          {row.sequence, row.label, row.by_suction, row.force, procedure.pose_WB * row.place});
+    }
     for (const record::SplitRow& row : splits_.of(pass)) {
       if (row.to < 0) {
         procedure.crumbs.push_back({row.sequence, {row.voxel[0], row.voxel[1], row.voxel[2]}});
@@ -177,6 +183,7 @@ class Loader {
   Rows<record::RemovalRow> removals_;
   Rows<record::CameraRow> views_;
   Rows<record::SplitRow> splits_;
+  Rows<record::TearRow> tears_;
   std::vector<record::ProcedureRow> ends_;
 };
 

@@ -73,6 +73,15 @@ struct Crumb {
   bone::Voxel voxel{bone::Voxel::Zero()};
 };
 
+/// Soft tissue that was torn.
+struct Torn {
+  std::uint64_t sequence{0};
+  std::uint8_t label{0};
+  bool by_suction{false};
+  double force{0.0};                               // [N]
+  Eigen::Vector3d place{Eigen::Vector3d::Zero()};  // in W [m]
+};
+
 /// One drilling of one participant: everything that metrics are made from. Rows of every list are
 /// in ascending order of their sequence numbers, and of one tick a crumb went before the removals
 /// and these before the cuts.
@@ -94,6 +103,7 @@ struct Procedure {
   std::vector<Removal> cuts;      // by the cut plane, which has no force
   std::vector<View> views;
   std::vector<Crumb> crumbs;
+  std::vector<Torn> tears;
 
   /// The radius of a tool's burr; 0 for a tool that is none, or out of range [m].
   double burr_radius(std::int32_t tool) const noexcept;

@@ -63,6 +63,7 @@ class Report {
     add_forces();
     add_regions();
     add_combined();
+    add_tears();
     add_quality();
     add_published();
     add_methods();
@@ -99,6 +100,7 @@ class Report {
   void add_forces();
   void add_regions();
   void add_combined();
+  void add_tears();
   void add_quality();
   void add_published();
   void add_methods();
@@ -277,6 +279,31 @@ void Report::add_combined() {
     document_.paragraph(fmt::format(
         "Left out, because a rated procedure lacks a value or all values are equal: {}.",
         fmt::join(c.left_out, ", ")));
+  }
+}
+
+/// Soft tissue that tore; nothing where none did.
+void Report::add_tears() {
+  std::vector<Row> rows;
+  for (const ProcedureSummary& p : result_.procedures) {
+    for (const Injury& injury : p.injuries) {
+      if (injury.first_tear) {
+        constexpr double kMillimetres = 1000.0;
+        const FirstTear& first = *injury.first_tear;
+        const Eigen::Vector3d place = kMillimetres * first.place;
+        rows.push_back({p.participant, fmt::format("{}", p.number), injury.structure,
+                        fmt::format("{}", injury.tears), fmt::format("{:.1f}", first.time),
+                        fmt::format("{:.2f}{}", first.force, first.by_suction ? " (suction)" : ""),
+                        fmt::format("({:.1f}, {:.1f}, {:.1f})", place.x(), place.y(), place.z())});
+      }
+    }
+  }
+  if (!rows.empty()) {
+    section("Soft tissue that was torn");
+    document_.paragraph("An injury each; time, force and place are of the first tear.");
+    document_.table({"participant", "procedure", "structure", "tears", "time (s)", "force (N)",
+                     "place in the world (mm)"},
+                    rows);
   }
 }
 

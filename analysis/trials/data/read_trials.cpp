@@ -5,6 +5,7 @@
 #include "core/base/parallel.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/session_tables.h"
+#include "core/record/trials/touched_body_row.h"
 #include "core/record/trials/trial_rows.h"
 
 namespace haptrial::analysis::trials {
@@ -51,6 +52,11 @@ class SessionTrials {
     }
     for (const record::OutOfTimeRow& row : reader.rows<record::OutOfTimeRow>()) {
       add(row);
+    }
+    for (const record::TouchedBodyRow& row : reader.rows<record::TouchedBodyRow>()) {
+      if (StudyTrial* trial = of(row.pass)) {
+        trial->touched.push_back({row.object, row.contact, row.inverted});
+      }
     }
   }
 

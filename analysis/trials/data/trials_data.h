@@ -61,6 +61,13 @@ struct StageTime {
   std::uint64_t first_sample{0}, last_sample{0};  // both inclusive, in /samples of the session
 };
 
+/// How a tool touched a body that gives way, in ticks.
+struct TouchedBody {
+  std::string object;
+  std::uint64_t contact{0};
+  std::uint64_t inverted{0};  // a tetrahedron would have been inside out: the force was cut
+};
+
 /// One pass of a trial, with everything that the session file says of it.
 struct StudyTrial {
   std::size_t session{0};  // in TrialsData::sessions
@@ -79,6 +86,7 @@ struct StudyTrial {
   std::vector<GivenAnswer> answers;
   std::vector<GivenVariable> variables;
   std::vector<StageTime> stages;
+  std::vector<TouchedBody> touched;
 
   /// Whether it is part of the study: completed, not presented again, and no practice.
   bool counts() const { return completed && !again && !practice; }

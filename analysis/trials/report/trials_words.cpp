@@ -117,6 +117,30 @@ std::string estimate_word(const Estimated& e) {
                   : number(e.value);
 }
 
+namespace {
+
+/// Forces on a body that gives way which were cut.
+void add_inverted(const TrialsData& data, std::vector<std::string>& lines) {
+  std::uint64_t ticks = 0, contact = 0;
+  std::size_t trials = 0;
+  for (const StudyTrial& trial : data.trials) {
+    const std::uint64_t before = ticks;
+    for (const TouchedBody& body : trial.touched) {
+      ticks += body.inverted;
+      contact += body.contact;
+    }
+    trials += ticks > before ? 1 : 0;
+  }
+  if (ticks > 0) {
+    lines.push_back(fmt::format(
+        "in {} a body that gives way was pressed so far that a tetrahedron would have been turned "
+        "inside out, on {} of {} ticks in contact: there the force stayed below that",
+        counted(trials, "trial"), ticks, contact));
+  }
+}
+
+}  // namespace
+
 std::string percent(double share) { return fmt::format("{:.3g} %", 100.0 * share); }
 
 std::string series_name(const std::string& participant, const std::string& condition) {
@@ -170,6 +194,7 @@ std::vector<std::string> summary_lines(const TrialsResult& result) {
     lines.push_back(fmt::format("{} of {} could not be determined from the answers", count,
                                 counted(result.fits.size(), "function")));
   }
+  add_inverted(result.data, lines);
   return lines;
 }
 

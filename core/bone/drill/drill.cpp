@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -64,10 +65,13 @@ Contact together(const Contact& a, const Contact& b) noexcept {
   return sum;
 }
 
-Drill::Drill(const BurrParameters& burr, std::span<const Structure> structures, InstructionSet set)
+Drill::Drill(const BurrParameters& burr, std::span<const Structure> structures, InstructionSet set,
+             const std::array<bool, 256>& soft)
     : burr_(burr),
       touch_(choose(set, kernel::touch_burr_baseline, HAPTRIAL_X86(kernel::touch_burr_avx2),
                     HAPTRIAL_X86(kernel::touch_burr_avx512))),
+      soft_(soft),
+      any_soft_(std::find(soft.begin(), soft.end(), true) != soft.end()),
       // One more: the kernel writes the next place before it knows whether it is kept.
       hits_(static_cast<std::size_t>(burr_.samples()) * kBonesAtOnce + 1),
       emptied_(static_cast<std::size_t>(burr_.samples()) * kBonesAtOnce) {
@@ -104,6 +108,9 @@ Contact Drill::touch(const BoneVolume& volume, const Eigen::Vector3d& tip_B,
   const auto room = static_cast<std::int32_t>(hits_.size()) - 1 - kept_;
   kernel::Sums sums;
   contact.kept = touch_(cloud, at, bricks, hits_.data() + kept_, room, sums);
+  if (any_soft_) {
+    leave_soft(volume, contact, sums);
+  }
   kept_ += contact.kept;
   if (sums.count == 0) {
     return contact;
@@ -121,6 +128,29 @@ Contact Drill::touch(const BoneVolume& volume, const Eigen::Vector3d& tip_B,
   contact.turn = turn * (each * Eigen::Vector3d(position_T.y(), -position_T.x(), 0.0));
   contact.centroid = tip_B + turn * (position_T / static_cast<double>(sums.count));
   return contact;
+}
+
+/// Takes hits in soft structures out of list and sums; the sums are whole numbers, so that nothing
+/// of them stays.
+void Drill::leave_soft(const BoneVolume& volume, Contact& contact, kernel::Sums& sums) noexcept {
+  const Burr::Arrays burr = burr_.arrays();
+  kernel::Hit* hits = hits_.data() + contact.first;
+  std::int32_t kept = 0;
+  for (std::int32_t n = 0; n < contact.kept; ++n) {
+    if (!soft_[volume.label(hits[n].address)]) {
+      hits[kept++] = hits[n];
+      continue;
+    }
+    const std::int32_t i = hits[n].sample;
+    --sums.count;
+    sums.direction[0] -= burr.dx[i];
+    sums.direction[1] -= burr.dy[i];
+    sums.direction[2] -= burr.dz[i];
+    sums.position[0] -= burr.x[i];
+    sums.position[1] -= burr.y[i];
+    sums.position[2] -= burr.z[i];
+  }
+  contact.kept = kept;
 }
 
 Removal Drill::remove(BoneVolume& volume, const Contact& contact, double force, double power,

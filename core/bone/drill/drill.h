@@ -63,9 +63,10 @@ class Drill {
   static constexpr std::int32_t kBonesAtOnce = 4;
 
   /// @param structures  by label: how hard they are; labels beyond are as hard as bone
+  /// @param soft  by label: what the burr neither feels nor removes here (tools/soft_tissue.h)
   /// @throws std::invalid_argument when a hardness is not above 0 or the machine lacks `set`.
   Drill(const BurrParameters& burr, std::span<const Structure> structures,
-        InstructionSet set = best_instruction_set());
+        InstructionSet set = best_instruction_set(), const std::array<bool, 256>& soft = {});
 
   const Burr& burr() const noexcept { return burr_; }
 
@@ -95,8 +96,12 @@ class Drill {
                  double dt) noexcept;
 
  private:
+  void leave_soft(const BoneVolume& volume, Contact& contact, kernel::Sums& sums) noexcept;
+
   Burr burr_;
   kernel::TouchBurr touch_;
+  std::array<bool, 256> soft_;
+  bool any_soft_;
   std::array<float, 256> softness_;  // 1 / hardness, by label
   std::int32_t kept_{0};
   std::vector<kernel::Hit> hits_;  // kept_ of them in use

@@ -29,6 +29,23 @@ std::vector<ToolSpec> checked(std::vector<ToolSpec> tools) {
   return tools;
 }
 
+/// Of the burrs and tubes among them [m].
+double largest_radius(std::span<const ToolSpec> tools) noexcept {
+  double largest = 0.0;
+  for (const ToolSpec& tool : tools) {
+    const auto* burr = tool.as<BurrTool>();
+    const auto* tube = tool.as<SuctionTool>();
+    largest = std::max({largest, burr ? burr->radius() : 0.0, tube ? tube->radius : 0.0});
+  }
+  return largest;
+}
+
+/// Voxels whose centres a ball can reach, at most.
+std::size_t most_in_ball(double radius, double spacing) noexcept {
+  const double wide = 2.0 * std::ceil(radius / spacing) + 1.0;
+  return static_cast<std::size_t>(wide * wide * wide);
+}
+
 /// Finalizer of SplitMix64: every bit of the input moves every bit of the output.
 std::uint64_t mixed(std::uint64_t x) noexcept {
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
@@ -54,13 +71,16 @@ Simulator::Simulator(const BoneModel& model, const SimulatorParameters& paramete
       camera_parameters_(parameters.camera),
       structures_(model.structures),
       world_(model, parameters.pose_WB, parameters.world),
+      soft_(model, parameters.soft_tissue, largest_radius(tools_)),
       camera_(parameters.camera.start),
       start_(world_.volume(0).amount()) {
   std::size_t most = 1;
   for (const ToolSpec& tool : tools_) {
     const BurrTool* burr = tool.as<BurrTool>();
     const PlateTool* plate = tool.as<PlateTool>();
-    drills_.push_back(burr ? std::make_unique<Drill>(burr->burr, structures_) : nullptr);
+    drills_.push_back(burr ? std::make_unique<Drill>(burr->burr, structures_,
+                                                     best_instruction_set(), soft_.soft())
+                           : nullptr);
     plates_.push_back(plate ? std::make_unique<PlateModel>(make_plate_model(tool.name, *plate))
                             : nullptr);
     if (burr != nullptr) {
@@ -68,7 +88,9 @@ Simulator::Simulator(const BoneModel& model, const SimulatorParameters& paramete
       most = std::max(most, static_cast<std::size_t>(drills_.back()->burr().samples()));
     }
   }
-  emptied_.reserve(most * Drill::kBonesAtOnce + CutPlaneTool::kMostEmptied);
+  const std::size_t torn =
+      soft_.empty() ? 0 : most_in_ball(largest_radius(tools_), model.grid.spacing);
+  emptied_.reserve(most * Drill::kBonesAtOnce + torn + CutPlaneTool::kMostEmptied);
   deposits_.reserve(128);
 }
 
@@ -76,12 +98,14 @@ void Simulator::begin(std::uint32_t functions_held) noexcept {
   functions_ = functions_held;
   hand_known_ = false;
   waits_until_free_ = true;
+  soft_.forget();
 }
 
 const SimulatorOutput& Simulator::tick(const SimulatorInput& input,
                                        std::span<const RecordedSplit> recorded) {
   emptied_.clear();
   deposits_.clear();
+  soft_.begin_tick();
   const int tool = output_.tool;
   output_ = {};
   output_.tool = tool;
@@ -99,6 +123,7 @@ const SimulatorOutput& Simulator::tick(const SimulatorInput& input,
     work(input, pressed);
   } else {
     waits_until_free_ = true;
+    soft_.forget();
   }
   if (cutter_.busy()) {
     go_on_cutting();
@@ -136,6 +161,7 @@ void Simulator::change_tool(int by) noexcept {
   if (by != 0 && count > 1) {
     output_.tool = (output_.tool + by + count) % count;
     waits_until_free_ = true;
+    soft_.forget();
   }
 }
 
@@ -196,8 +222,10 @@ void Simulator::work(const SimulatorInput& input, std::uint32_t pressed) noexcep
   const ToolSpec& tool = tools_[in_hand()];
   if (const auto* burr = tool.as<BurrTool>()) {
     drill(*burr, input);
-  } else if (tool.as<SuctionTool>() != nullptr) {
+    yield(burr->radius(), input);
+  } else if (const auto* tube = tool.as<SuctionTool>()) {
     output_.power = input.power;
+    yield(tube->radius, input);
   } else if (tool.as<PlateTool>() != nullptr) {
     hold_plate(input, apply);
   } else if (const auto* plane = tool.as<CutPlane>(); plane != nullptr && apply) {
@@ -283,6 +311,49 @@ void Simulator::drill(const BurrTool& tool, const SimulatorInput& input) noexcep
   }
   if (output_.removed > 0.0) {
     deposits_.push_back({input.tool.tip.position, drill.burr().radius(), output_.removed});
+  }
+}
+
+/// Soft tissue is part of the bone itself, not of pieces that come off it. It is torn open where it
+/// tears, and then wherever a burr turns in a hole.
+void Simulator::yield(double radius, const SimulatorInput& input) noexcept {
+  if (soft_.empty()) {
+    return;
+  }
+  const Eigen::Isometry3d& pose = world_.pose(0);
+  const Eigen::Vector3d tip_B = pose.inverse(Eigen::Isometry) * input.tool.tip.position;
+  const bool is_tube = tools_[in_hand()].as<SuctionTool>() != nullptr;
+  const Eigen::Vector3d force = soft_.tick(tip_B, radius, is_tube && input.power > 0.0);
+  output_.yields = !force.isZero(0.0);
+  output_.force += pose.linear() * force;
+  const bool turns = !is_tube && input.power > 0.0;
+  if (!soft_.tears().empty() || (turns && soft_.in_hole())) {
+    empty_soft(tip_B, radius);
+  }
+}
+
+/// Voxels of soft structures whose centres are in a ball.
+void Simulator::empty_soft(const Eigen::Vector3d& tip_B, double radius) noexcept {
+  BoneVolume& volume = world_.volume(0);
+  const geometry::VoxelGrid& grid = volume.grid();
+  const Eigen::Array3d middle = (tip_B - grid.origin).array() / grid.spacing;
+  const double wide = radius / grid.spacing;
+  const Eigen::Array3i last(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1);
+  const Eigen::Array3i low = (middle - wide).ceil().cast<int>().cwiseMax(0);
+  const Eigen::Array3i high = (middle + wide).floor().cast<int>().cwiseMin(last);
+  for (int k = low[2]; k <= high[2]; ++k) {
+    for (int j = low[1]; j <= high[1]; ++j) {
+      for (int i = low[0]; i <= high[0]; ++i) {
+        const std::int32_t address = volume.address({i, j, k});
+        const std::uint8_t label = volume.label(address);
+        const bool in_ball =
+            (Eigen::Array3d(i, j, k) - middle).matrix().squaredNorm() <= wide * wide;
+        if (address > 0 && in_ball && soft_.is_soft(label) && volume.density(address) > 0.0F) {
+          output_.removed += static_cast<double>(volume.take(address, 1.0F));
+          emptied_.push_back({world_.known_as(0), {i, j, k}, label, false});
+        }
+      }
+    }
   }
 }
 

@@ -15,6 +15,7 @@
 #include "core/bone/tools/cut_plane.h"
 #include "core/bone/tools/microscope.h"
 #include "core/bone/tools/simulator_tools.h"
+#include "core/bone/tools/soft_tissue.h"
 
 namespace haptrial::bone {
 
@@ -45,6 +46,7 @@ struct SimulatorParameters {
   WorldParameters world;
   Eigen::Isometry3d pose_WB{Eigen::Isometry3d::Identity()};  // of the bone
   MicroscopeParameters camera;
+  std::vector<SoftTissueParameters> soft_tissue{};  // the bone's structures that are soft
 };
 
 /// What happens on one tick. All in W.
@@ -68,6 +70,7 @@ struct SimulatorOutput {
   int immersed{0};      // samples of the tool in bone
   double removed{0.0};  // sum of densities that the burr took [voxels]
   double cut{0.0};      // that the cut plane took [voxels]
+  bool yields{false};   // soft tissue gives way to the tool
   bool camera_changed{false};
   bool finished{false};  // kFinish went down
 };
@@ -104,6 +107,9 @@ class Simulator {
 
   /// What the last tick emptied: first by the burr, then by the cut plane.
   std::span<const EmptiedIn> emptied() const noexcept { return emptied_; }
+  /// Soft tissue that was torn on the last tick, in the bone's frame.
+  std::span<const Tear> tears() const noexcept { return soft_.tears(); }
+  const SoftTissue& soft_tissue() const noexcept { return soft_; }
   std::span<const WorldEvent> separations() const noexcept { return world_.events(); }
   std::span<const DustDeposit> deposits() const noexcept { return deposits_; }
   const DustTools& dust_tools() const noexcept { return dust_tools_; }
@@ -148,6 +154,8 @@ class Simulator {
   void carry(const SimulatorInput& input) noexcept;
   void work(const SimulatorInput& input, std::uint32_t pressed) noexcept;
   void drill(const BurrTool& tool, const SimulatorInput& input) noexcept;
+  void yield(double radius, const SimulatorInput& input) noexcept;
+  void empty_soft(const Eigen::Vector3d& tip_B, double radius) noexcept;
   void begin_cut(CutPlane plane, const SimulatorInput& input) noexcept;
   void go_on_cutting() noexcept;
   void hold_plate(const SimulatorInput& input, bool fixes) noexcept;
@@ -158,6 +166,7 @@ class Simulator {
   MicroscopeParameters camera_parameters_;
   std::vector<Structure> structures_;
   BoneWorld world_;
+  SoftTissue soft_;
   std::vector<std::unique_ptr<Drill>> drills_;       // by tool; null where it is no burr
   std::vector<std::unique_ptr<PlateModel>> plates_;  // likewise
   CutPlaneTool cutter_;

@@ -56,6 +56,14 @@ std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
+std::vector<double> densities(const Elasticity& elasticity, std::size_t tetrahedra) {
+  std::vector<double> all(tetrahedra, elasticity.materials.at(0).density);
+  for (std::size_t t = 0; t < elasticity.material_of.size() && t < tetrahedra; ++t) {
+    all[t] = elasticity.materials.at(elasticity.material_of[t]).density;
+  }
+  return all;
+}
+
 struct ElasticBody::Impl {
   geometry::TetMesh mesh;
   Elasticity elasticity;

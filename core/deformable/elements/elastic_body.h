@@ -21,6 +21,9 @@ struct Elasticity {
   VolumeForm volume{VolumeForm::kPatches};
 };
 
+/// Of the material of each tetrahedron [kg/m³].
+std::vector<double> densities(const Elasticity& elasticity, std::size_t tetrahedra);
+
 /// What one tetrahedron bears.
 struct TetState {
   Eigen::Matrix3d gradient;  // F

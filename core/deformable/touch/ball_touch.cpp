@@ -76,8 +76,7 @@ BallTouch::BallTouch(SharedCompliance body, const TouchOptions& options)
 }
 
 void BallTouch::start(const Vector3d& tool) noexcept {
-  counts_ = {};
-  tick_ = 1;
+  tick_ += 2;  // nothing was pressed on the tick before
   release(tool);
 }
 

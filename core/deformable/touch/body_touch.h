@@ -25,7 +25,7 @@ struct VertexForce {
   Eigen::Vector3f force{Eigen::Vector3f::Zero()};  // [N]
 };
 
-/// What did not go as it should since the start, in ticks.
+/// What did not go as it should since the body was made, in ticks.
 struct TouchCounts {
   std::uint64_t contact{};    // in contact
   std::uint64_t inverted{};   // a tetrahedron would be inside out: the force stays below that

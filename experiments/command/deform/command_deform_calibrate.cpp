@@ -233,8 +233,7 @@ int deform_calibrate(const DeformCalibrateOptions& options) {
   const std::vector<NamedLoad> loads = loads_of(body);
   const std::vector<CalibrationLoad> answers = answered(body, loads, budget);
   const std::vector<CalibrationLoad> seen = seen_of(loads, answers);
-  const SpringBody springs =
-      deformable::spring_body(body.mesh, body.elasticity.materials[0].density, {1.0, 1.0, 1.0});
+  const SpringBody springs = springs_of(body, {1.0, 1.0, 1.0});
   const double material = log_of_material(body, springs);
   CalibrationRun run;
   run.method = options.method;

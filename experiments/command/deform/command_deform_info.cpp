@@ -132,9 +132,8 @@ void print_material(const DeformBody& body) {
              2.0 / deformable::fastest_vibration(stiffness, elastic.masses()));
 }
 
-void print_springs(const TetMesh& mesh, double density, const std::vector<double>& constants) {
-  const auto springs =
-      deformable::spring_body(mesh, density, {constants[0], constants[1], constants[2]});
+void print_springs(const DeformBody& body, const std::vector<double>& constants) {
+  const auto springs = springs_of(body, {constants[0], constants[1], constants[2]});
   fmt::print("step        {:.3g} s at most for springs of {:g}, {:g} and {:g} J\n",
              deformable::stable_step(springs), constants[0], constants[1], constants[2]);
 }
@@ -170,14 +169,12 @@ int deform_info(const DeformInfoOptions& options) {
   if (!good) {
     deformable::check_body(body.mesh, options.input.file);
   }
-  double density = deformable::Material{}.density;
   if (stated) {
     body.elasticity = deformable::elasticity_of(body.setup, body.mesh);
     print_material(body);
-    density = body.elasticity.materials[0].density;
   }
   if (!options.constants.empty()) {
-    print_springs(body.mesh, density, options.constants);
+    print_springs(body, options.constants);
   }
   return 0;
 }

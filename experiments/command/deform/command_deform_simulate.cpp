@@ -90,17 +90,16 @@ class ElementStepper : public Stepper {
   Places force_;
 };
 
-deformable::SpringBody springs_of(const DeformBody& body, const DeformSimulateOptions& o) {
+deformable::SpringBody springs_asked_for(const DeformBody& body, const DeformSimulateOptions& o) {
   if (o.constants.empty() == o.three.empty()) {
     throw InputError(
         "springs need --constants FILE of a calibration, or --springs with three "
         "numbers");
   }
-  const double density = body.elasticity.materials[0].density;
   if (!o.three.empty()) {
-    return deformable::spring_body(body.mesh, density, {o.three[0], o.three[1], o.three[2]});
+    return springs_of(body, {o.three[0], o.three[1], o.three[2]});
   }
-  auto springs = deformable::spring_body(body.mesh, density, {1.0, 1.0, 1.0});
+  auto springs = springs_of(body, {1.0, 1.0, 1.0});
   springs.constants = read_constants(o.constants, springs);
   return springs;
 }
@@ -118,7 +117,7 @@ std::unique_ptr<Stepper> stepper_of(const DeformBody& body, const deformable::Lo
   if (o.model != "springs") {
     throw InputError(not_allowed("--model", fmt::format("'{}'", o.model), {"springs", "elements"}));
   }
-  deformable::SpringBody springs = springs_of(body, o);
+  deformable::SpringBody springs = springs_asked_for(body, o);
   double mass = 0.0;
   for (const double m : springs.masses) {
     mass += m / static_cast<double>(springs.masses.size());

@@ -22,6 +22,12 @@ DeformBody load_deform_body(const DeformInput& input) {
   return body;
 }
 
+deformable::SpringBody springs_of(const DeformBody& body,
+                                  const deformable::UniformConstants& constants) {
+  return deformable::spring_body(
+      body.mesh, deformable::densities(body.elasticity, body.mesh.tetrahedra.size()), constants);
+}
+
 deformable::StaticSolver static_solver(const DeformBody& body,
                                        const deformable::ElasticBody& elastic,
                                        const MemoryBudget& budget) {

@@ -5,6 +5,7 @@
 
 #include "core/deformable/elements/static_solver.h"
 #include "core/deformable/setup/setup_body.h"
+#include "core/deformable/springs/law/spring_body.h"
 #include "experiments/command/deform/deform_commands.h"
 #include "experiments/command/mesh_command.h"
 
@@ -20,6 +21,10 @@ struct DeformBody {
 /// @throws InputError for a file that is not good, elements that are inverted or flat, and memory
 /// that there is not.
 DeformBody load_deform_body(const DeformInput& input);
+
+/// Of length, area and volume, with the masses of the body's materials.
+deformable::SpringBody springs_of(const DeformBody& body,
+                                  const deformable::UniformConstants& constants);
 
 /// A load with its name, ready for any model.
 struct NamedLoad {

@@ -186,6 +186,14 @@ void check_together(Table& root, const BoneDefinition& d) {
     drilling.reject("force_limit", fmt::format("{}", d.drilling.force_limit),
                     fmt::format("at most envelope.max_force, {} [N]", d.envelope.max_force));
   }
+  for (const bone::SoftTissueParameters& soft : d.simulator.soft_tissue) {
+    if (soft.tears_at > d.drilling.force_limit) {
+      root.reject("soft_tissue",
+                  fmt::format("has '{}' tear at {} N, which the hand would not feel; allowed: at "
+                              "most drilling.force_limit, {} [N]",
+                              soft.structure, soft.tears_at, d.drilling.force_limit));
+    }
+  }
   if (root.has("drilling_hand")) {
     const double reach =
         d.hand_plan.start.norm() + 0.5 * std::hypot(d.hand_plan.width, d.hand_plan.height);
@@ -258,6 +266,10 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
     Table pieces = root.table("pieces");
     d.simulator.world = bone::read_world_parameters(pieces);
   }
+  if (root.has("soft_tissue")) {
+    Table soft = root.table("soft_tissue");
+    d.simulator.soft_tissue = bone::read_soft_tissue(soft);
+  }
   d.companions.dusty = root.has("dust");
   if (d.companions.dusty) {
     Table dust = root.table("dust");
@@ -293,6 +305,11 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
 void BoneDefinition::load_bones(const fs::path& folder) {
   for (const std::string& source : sources) {
     bones.push_back(std::make_shared<const bone::BoneModel>(load_source(source, *this, folder)));
+    try {
+      bone::check_soft_tissue(*bones.back(), simulator.soft_tissue);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: {}", file_name, error.what()));
+    }
     if (cavity) {
       const bone::BoneModel& model = *bones.back();
       charts.push_back(std::make_shared<const subject::DrillingChart>(

@@ -116,6 +116,9 @@ void read_yielding_shape(Table& table, TrialObject& object) {
   if (table.has("felt")) {
     object.sides.felt = read_sides(table, "felt");
   }
+  if (table.has("seen")) {
+    object.seen_yielding = table.choice("seen", {"yielding", "rest"}) != "rest";
+  }
   if (table.has("mesh")) {
     object.file = table.text("mesh");
     return;

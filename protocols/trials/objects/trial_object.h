@@ -26,6 +26,7 @@ struct TrialObject {
   int cells{16};                                  // then: along its longest side
   deformable::FeltSides sides{};
   deformable::SharedFeltMesh felt{};  // of a file: null until it is loaded
+  bool seen_yielding{true};           // else it is seen at its resting shape
 };
 
 /// Reads the shapes of [objects], in the order of their names. Problems are noted.
@@ -45,6 +46,7 @@ struct TrialObject {
 ///     [fixed]         its sides that do not move, of "left", "right", "bottom", "top", "back",
 ///                     "front" (-x, +x, -y, +y, -z, +z); the bottom if left out
 ///     [felt]          its sides that can be touched; all that are not fixed if left out
+///     [seen]          "yielding", as the hand presses it, if left out; "rest": its resting outline
 ///
 /// Lengths are in metres, numbers alone: what changes between trials is the object's scale, centre
 /// and turn, which read_solid() or read_yielding() reads with all else.
@@ -62,6 +64,7 @@ struct SeenObject {
   std::array<float, 4> turn{1, 0, 0, 0};  // w, x, y, z
   float scale{1.0F};
   std::int32_t object{-1};  // of the definition's, from 0
+  std::int32_t body{-1};    // number in SeenBodies; -1: it is seen at its resting shape
 
   bool operator==(const SeenObject&) const = default;
 };

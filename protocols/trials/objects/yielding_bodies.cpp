@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/deformable/touch/prepared.h"
+#include "core/deformable/touch/touch_cost.h"
 #include "core/scene/needed_damping.h"
 
 namespace haptrial::protocols {
@@ -38,6 +39,13 @@ std::vector<std::string> words_of_bodies(const std::vector<scene::Field>& fields
         fields[i].name, p->mesh->tets.vertices.size(), p->body->touched(), 1e-6 * memory.kept,
         1e-6 * memory.most, 1.0 / (1.0 / most + 1.0 / p->tool.stiffness),
         100.0 * under / (under + p->tool.stiffness), needed, damping));
+    const deformable::TouchCost cost = deformable::measured_cost(p->body, p->tool);
+    constexpr double kMicroseconds = 1e6;
+    lines.push_back(fmt::format(
+        "objects.{}: a tick in contact takes {:.0f} µs in the median and less than {:.0f} µs in 99 "
+        "of 100 (measured now, on this machine), of {:.0f} µs at {:g} Hz",
+        fields[i].name, kMicroseconds * cost.median, kMicroseconds * cost.most,
+        kMicroseconds / rate, rate));
     if (p->tool.radius < deformable::smallest_ball(*p->mesh)) {
       lines.push_back(fmt::format(
           "objects.{}: a ball of {:g} m is smaller than half a cell and is felt as one of {:.3g} m",

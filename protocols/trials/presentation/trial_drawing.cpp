@@ -4,12 +4,15 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/render/flat/painter.h"
+#include "core/render/flat/shaded_surface.h"
 #include "core/render/flat/text.h"
 #include "core/render/flat/text_screen.h"
 #include "protocols/trials/objects/outline.h"
+#include "protocols/trials/objects/yielding_sight.h"
 #include "protocols/trials/presentation/trial_view.h"
 
 namespace haptrial::protocols {
@@ -38,9 +41,12 @@ struct Part {
 
 class TrialDrawing final : public Drawing {
  public:
-  TrialDrawing(const render::Gl& gl, int width, int height, const TrialsDefinition& d)
+  TrialDrawing(const render::Gl& gl, int width, int height, const TrialsDefinition& d,
+               std::shared_ptr<const SeenBodies> bodies)
       : d_(d),
+        bodies_(std::move(bodies)),
         painter_(gl, width, height),
+        surface_(gl, width, height),
         text_(gl, width, height),
         page_(gl, width, height, d.display.background, d.display.marker_colour,
               d.display.target_colour),
@@ -194,6 +200,10 @@ class TrialDrawing final : public Drawing {
         d_.view.from_above ? -Eigen::Vector3d::UnitY() : Eigen::Vector3d(-Eigen::Vector3d::UnitZ());
     for (std::size_t i = 0; i < view.objects.size(); ++i) {
       const SeenObject& seen = view.objects[i];
+      if (YieldingSight* body = sight_of(seen, i)) {
+        draw_body(*body, seen, view.pressed.on(i), part);
+        continue;
+      }
       if (!(seen == outlined_[i])) {
         outlined_[i] = seen;
         const auto at = static_cast<std::size_t>(seen.object);
@@ -203,6 +213,54 @@ class TrialDrawing final : public Drawing {
       for (const auto& [from, to] : outlines_[i]) {
         painter_.line(pixel_of(from, part), pixel_of(to, part), kLine, d_.display.target_colour);
       }
+    }
+  }
+
+  /// Null for an object that is seen at rest.
+  YieldingSight* sight_of(const SeenObject& seen, std::size_t i) {
+    if (seen.body < 0 || !bodies_) {
+      return nullptr;
+    }
+    if (seen.body != sighted_[i] || !sights_[i]) {
+      sighted_[i] = seen.body;
+      const deformable::SharedCompliance body = bodies_->body(seen.body);
+      const TrialObject& object = d_.objects[static_cast<std::size_t>(seen.object)];
+      sights_[i] =
+          body ? std::make_unique<YieldingSight>(body, object.file.empty() ? nullptr : object.body)
+               : nullptr;
+    }
+    return sights_[i].get();
+  }
+
+  /// Its surface, and over it the sides of its cells, so that what is pressed in shows from the
+  /// front, too.
+  void draw_body(YieldingSight& body, const SeenObject& seen,
+                 std::span<const SeenForces::Force> pressed, const Part& part) {
+    constexpr double kThin = 1.0;  // [px]
+    constexpr double kPale = 0.3;  // share of the colour in the surface's
+    body.press(pressed);
+    const Eigen::Quaterniond turn(seen.turn[0], seen.turn[1], seen.turn[2], seen.turn[3]);
+    const Eigen::Vector3d centre = place_of(seen.centre);
+    pixels_.clear();
+    for (const Eigen::Vector3d& vertex : body.vertices()) {
+      const Eigen::Vector3d p = centre + turn * vertex;
+      const Eigen::Vector2d pixel = pixel_of(p, part);
+      const double near = scale_ * (d_.view.from_above ? p.y() : p.z());
+      pixels_.emplace_back(Eigen::Vector3d(pixel.x(), pixel.y(), near).cast<float>());
+    }
+    const render::Colour& line = d_.display.target_colour;
+    const render::Colour& back = d_.display.background;
+    const auto mixed = [&](double a, double b) { return kPale * a + (1.0 - kPale) * b; };
+    painter_.end();
+    surface_.draw(
+        pixels_, body.triangles(),
+        {mixed(line.red, back.red), mixed(line.green, back.green), mixed(line.blue, back.blue)});
+    painter_.begin_over();
+    for (const deformable::Edge& side : body.grid()) {
+      const auto end = [&](std::int32_t v) -> Eigen::Vector2d {
+        return pixels_[static_cast<std::size_t>(v)].head<2>().cast<double>();
+      };
+      painter_.line(end(side[0]), end(side[1]), kThin, line);
     }
   }
 
@@ -241,7 +299,9 @@ class TrialDrawing final : public Drawing {
   }
 
   const TrialsDefinition& d_;
+  std::shared_ptr<const SeenBodies> bodies_;
   render::Painter painter_;
+  render::ShadedSurface surface_;
   render::TextPainter text_;
   render::TextScreen page_;
   Eigen::Vector2d half_;  // of a part [px]
@@ -251,13 +311,17 @@ class TrialDrawing final : public Drawing {
   std::optional<std::uint64_t> laid_;      // seed of them
   std::array<SeenObject, kMostSeenObjects> outlined_{};
   std::array<Outline, kMostSeenObjects> outlines_{};
+  std::array<std::int32_t, kMostSeenObjects> sighted_{-1, -1};  // numbers of the bodies
+  std::array<std::unique_ptr<YieldingSight>, kMostSeenObjects> sights_{};
+  std::vector<Eigen::Vector3f> pixels_;  // of a body's vertices, and towards the eye [px]
 };
 
 }  // namespace
 
-MakeDrawing trial_drawing(const TrialsDefinition& definition) {
-  return [&definition](const render::Gl& gl, int width, int height) {
-    return std::make_unique<TrialDrawing>(gl, width, height, definition);
+MakeDrawing trial_drawing(const TrialsDefinition& definition,
+                          std::shared_ptr<const SeenBodies> bodies) {
+  return [&definition, bodies = std::move(bodies)](const render::Gl& gl, int width, int height) {
+    return std::make_unique<TrialDrawing>(gl, width, height, definition, bodies);
   };
 }
 

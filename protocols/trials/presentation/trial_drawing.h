@@ -1,12 +1,17 @@
 #pragma once
 
+#include <memory>
+
 #include "protocols/interface/drawing.h"
 #include "protocols/trials/definition/trials_definition.h"
+#include "protocols/trials/objects/seen_bodies.h"
 
 namespace haptrial::protocols {
 
 /// What the participant sees of trials: marks and the hand, the number of the interval, questions
 /// with their choices, whether an answer was right. @param definition  outlives the drawing
-MakeDrawing trial_drawing(const TrialsDefinition& definition);
+/// @param bodies  that give way; null: all are seen at rest
+MakeDrawing trial_drawing(const TrialsDefinition& definition,
+                          std::shared_ptr<const SeenBodies> bodies = {});
 
 }  // namespace haptrial::protocols

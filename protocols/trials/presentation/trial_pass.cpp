@@ -111,6 +111,22 @@ void TrialPass::log_contacts(const IntervalRun& run, std::size_t device) noexcep
   }
 }
 
+/// What presses the seen bodies, of all devices together.
+void TrialPass::show_pressed(const IntervalRun& run, const StageSight& sight,
+                             std::size_t devices) noexcept {
+  for (std::size_t i = 0; i < std::min(sight.objects.size(), kMostSeenObjects); ++i) {
+    const SeenObject& seen = sight.objects[i];
+    const std::size_t field = run.first_object + static_cast<std::size_t>(seen.object);
+    for (std::size_t device = 0; seen.body >= 0 && device < devices; ++device) {
+      const scene::Scene& scene = run.scenes[device];
+      const deformable::BodyTouch* touch = scene.touch(field);
+      if (touch != nullptr && scene.state(field).contact) {
+        view_.pressed.add(i, touch->forces());
+      }
+    }
+  }
+}
+
 /// On the first tick of a stage, which /stages names, too.
 void TrialPass::note_stage(const IntervalRun& run, PassOutput& out) noexcept {
   const std::size_t stage = run.machine.stage();
@@ -140,6 +156,7 @@ void TrialPass::present(const Readings& readings, double dt, PassOutput& out) no
   view_.stage = static_cast<std::uint8_t>(stage);
   const StageSight& sight = run.sights[stage];
   view_.show(sight.marks, sight.objects, sight.hand, sight.interval_number, sight.dots);
+  show_pressed(run, sight, devices);
   run.machine.tick(readings.all().first(devices), run.scenes, dt);
   if (run.machine.state() == StageMachine::State::kAborted) {
     const StageEnd how = run.machine.times()[run.machine.stage()].how;
@@ -161,6 +178,7 @@ void TrialPass::end_interval() noexcept {
   view_.interval = 0;
   view_.mark_count = 0;
   view_.objects = {};
+  view_.pressed.counts = {};
   view_.hand_shown = view_.number_shown = view_.dots.shown = false;
   ask();
 }

@@ -45,6 +45,7 @@ struct IntervalRun {
   std::uint64_t pushing{0};        // fields that are to work on the hand, a bit each
   int marker{-1};                  // index of its onset's marker; -1: it has none
   std::vector<RecordedObject> recorded{};
+  std::size_t first_object{0};  // the field that is the definition's first object
 };
 
 /// A place that gives a choice when the tip of the tool is moved into it.
@@ -110,6 +111,10 @@ class TrialPass final : public Pass {
     return setup_.intervals[interval].machine;
   }
   std::size_t intervals_begun() const { return begun_; }
+  /// What a device felt in an interval.
+  std::span<const scene::Scene> scenes(std::size_t interval) const {
+    return setup_.intervals[interval].scenes;
+  }
   const StageSight& sight(std::size_t interval, std::size_t stage) const {
     return setup_.intervals[interval].sights[stage];
   }
@@ -130,6 +135,7 @@ class TrialPass final : public Pass {
   void note_stage(const IntervalRun& run, PassOutput& out) noexcept;
   int sound_of(const Asked& asked, const Answer& answer) const noexcept;
   void present(const Readings& readings, double dt, PassOutput& out) noexcept;
+  void show_pressed(const IntervalRun& run, const StageSight& sight, std::size_t devices) noexcept;
   void log_contacts(const IntervalRun& run, std::size_t device) noexcept;
   Drive drive(const IntervalRun& run, std::size_t device, const Eigen::Vector3d& force) noexcept;
   void end_interval() noexcept;

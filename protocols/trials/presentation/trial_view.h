@@ -10,6 +10,7 @@
 #include "protocols/interface/pass.h"
 #include "protocols/trials/definition/question.h"
 #include "protocols/trials/looks/look.h"
+#include "protocols/trials/objects/seen_bodies.h"
 #include "protocols/trials/objects/trial_object.h"
 
 namespace haptrial::protocols {
@@ -42,6 +43,7 @@ struct TrialView {
   DotsShown dots;
   std::array<Mark, kMostMarks> marks{};
   std::array<SeenObject, kMostSeenObjects> objects{};  // those that are seen come first
+  SeenForces pressed;                                  // on them
   std::array<char, kTyped> typed{};                    // of a number, ended by 0
   std::int32_t trial{0};  // of the presentation: changes from trial to trial
   std::uint8_t other_count{0};
@@ -65,6 +67,7 @@ struct TrialView {
     mark_count = static_cast<std::uint8_t>(std::min(seen.size(), kMostMarks));
     std::copy_n(seen.begin(), mark_count, marks.begin());
     objects = {};
+    pressed.counts = {};
     std::copy_n(bodies.begin(), std::min(bodies.size(), kMostSeenObjects), objects.begin());
   }
 };

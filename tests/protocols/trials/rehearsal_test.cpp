@@ -11,6 +11,7 @@
 #include "core/base/definition/table.h"
 #include "core/psychometric/procedure/procedure.h"
 #include "core/record/trials/contact_row.h"
+#include "core/record/trials/touched_body_row.h"
 #include "core/record/trials/trial_rows.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/interface/session_task.h"
@@ -32,6 +33,28 @@ class Tips final : public stimulus::Observer {
   std::vector<Eigen::Vector3d> at;
 };
 
+/// The forces on the first body that is seen, and the tool, on each tick on which any press it.
+class Presses final : public stimulus::Observer {
+ public:
+  struct Press {
+    std::int32_t body;
+    Eigen::Vector3d on_body;  // in W [N]
+    Eigen::Vector3d tool;
+  };
+  void observe(const stimulus::Shown& shown, const stimulus::Forces&, double) noexcept override {
+    const auto* view = shown.as<TrialView>();
+    if (view == nullptr || view->pressed.on(0).empty()) {
+      return;
+    }
+    Press press{view->objects[0].body, Eigen::Vector3d::Zero(), shown.tool};
+    for (const SeenForces::Force& force : view->pressed.on(0)) {
+      press.on_body += Eigen::Vector3f(force.newtons.data()).cast<double>();
+    }
+    all.push_back(press);
+  }
+  std::vector<Press> all;
+};
+
 /// Keeps rows in memory.
 class Rows final : public SessionFile {
  public:
@@ -39,10 +62,12 @@ class Rows final : public SessionFile {
   std::vector<record::OutOfTimeRow> late;
   std::vector<record::StageRow> stages;
   std::vector<record::ContactRow> contacts;
+  std::vector<record::TouchedBodyRow> touched;
+  std::map<std::string, std::string> events;
 
   void keep_stimulus(std::int32_t, std::span<const record::StimulusRow>) override {}
   bool holds_stimulus(std::int32_t) const override { return true; }
-  void event(const std::string&, const std::string&) override {}
+  void event(const std::string& kind, const std::string& text) override { events[kind] = text; }
   const std::vector<record::PassRow>& earlier_passes() const override { return none_; }
   bool was_cut_short(const PlannedTrial&) const override { return false; }
 
@@ -57,6 +82,7 @@ class Rows final : public SessionFile {
     add(late);
     add(stages);
     add(contacts);
+    add(touched);
   }
 
  private:
@@ -75,7 +101,7 @@ class RehearsalTest : public testing::Test {
     SessionTask::Log log(64, 64);  // nobody reads it
     SessionTask task({.devices = {{&rig->device(), definition_->envelope}},
                       .log = log,
-                      .observers = {rig->subject(), &tips_}},
+                      .observers = {rig->subject(), &tips_, &presses_}},
                      SessionTask::Leave::kNever);
     std::uint64_t index = 0;
     for (auto trial = trials.next(nullptr); trial; trial = trials.next(&outcomes_.back())) {
@@ -95,6 +121,7 @@ class RehearsalTest : public testing::Test {
         responses_.push_back(response);
       }
     }
+    notices_ = trials.notices();
   }
   const StudiedDefinition& studied() const {
     return dynamic_cast<const StudiedDefinition&>(*definition_);
@@ -109,6 +136,8 @@ class RehearsalTest : public testing::Test {
 
   std::unique_ptr<Definition> definition_;
   Tips tips_;
+  Presses presses_;
+  std::vector<std::string> notices_;
   Rows rows_;
   std::vector<Outcome> outcomes_;
   std::vector<record::ResponseRow> responses_;
@@ -315,6 +344,75 @@ TEST_F(RehearsalTest, ContactsWithAnObjectAreRecorded) {
   }
   EXPECT_TRUE(left && under) << "it went round anticlockwise";
   EXPECT_LT(rows_.contacts.back().work, -1e-3) << "friction takes energy";
+}
+
+/// A soft block that a hand presses in its middle with 1 N.
+std::string soft_block(const std::string& ball) {
+  return R"([experiment]
+protocol = "trials"
+name = "press"
+[design]
+participants = 1
+[objects.tissue]
+kind = "deformable"
+shape = "box"
+size = [0.04, 0.02, 0.04]
+cells = 8
+felt = ["top"]
+young = 10000.0
+poisson = 0.45
+centre = [0.0, -0.01, 0.0]
+turn = [0.0, 0.7, 0.0]
+fade_in = 0.0
+record = true
+tool_radius = )" +
+         ball + R"(
+[[stages]]
+name = "palpate"
+fields = ["tissue"]
+show = ["hand", "tissue"]
+until = { time = 2.0 }
+[[blocks]]
+name = "only"
+trials = 1
+[observer]
+[observer.actions]
+palpate = { do = "palpate", at = [[0.0, 0.005, 0.0]], force = 1.0, move = 0.2, press = 1.5 }
+[display]
+seen_from = "front"
+[texts]
+instructions = "Press."
+)";
+}
+
+/// What the screen is told presses the body is what the hand feels, turned around.
+TEST_F(RehearsalTest, WhatIsSeenToPressABodyIsWhatIsFelt) {
+  ASSERT_NO_FATAL_FAILURE(rehearse(soft_block("0.006")));
+  ASSERT_GT(presses_.all.size(), 500u);
+  ASSERT_GE(presses_.all.size() + 1, rows_.contacts.size()) << "nothing is seen on the last tick";
+  const Eigen::Matrix3d turn(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()));
+  for (std::size_t i = 0; i < presses_.all.size(); ++i) {
+    const Eigen::Vector3d felt = rows_.contacts[i].force;
+    ASSERT_LT((turn * presses_.all[i].on_body + felt).norm(), 1e-5 * felt.norm() + 1e-9) << i;
+    ASSERT_GE(presses_.all[i].body, 0);
+  }
+  ASSERT_EQ(rows_.touched.size(), 1u);
+  EXPECT_EQ(rows_.touched[0].object, "tissue");
+  EXPECT_EQ(rows_.touched[0].contact, rows_.contacts.size());
+  EXPECT_EQ(rows_.touched[0].inverted, 0u);
+  EXPECT_EQ(rows_.events.count("inside_out"), 0u);
+  EXPECT_TRUE(notices_.empty());
+}
+
+TEST_F(RehearsalTest, WhatWouldTurnATetrahedronInsideOutIsTold) {
+  ASSERT_NO_FATAL_FAILURE(rehearse(soft_block("0.0025")));
+  ASSERT_EQ(rows_.touched.size(), 1u);
+  EXPECT_GT(rows_.touched[0].inverted, 0u);
+  EXPECT_LE(rows_.touched[0].inverted, rows_.touched[0].contact);
+  EXPECT_THAT(rows_.events["inside_out"],
+              testing::HasSubstr("trial 1: on " + std::to_string(rows_.touched[0].inverted)));
+  ASSERT_EQ(notices_.size(), 1u);
+  EXPECT_THAT(notices_[0], testing::HasSubstr("in 1 pass a body"));
 }
 
 }  // namespace

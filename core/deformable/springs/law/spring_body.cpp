@@ -26,11 +26,11 @@ void measure_rest(SpringBody& body) {
   }
 }
 
-void lump_masses(SpringBody& body, double density) {
+void lump_masses(SpringBody& body, std::span<const double> densities) {
   body.masses.assign(body.rest.size(), 0.0);
   for (std::size_t i = 0; i < body.tetrahedra.size(); ++i) {
     for (const std::int32_t vertex : body.tetrahedra[i]) {
-      body.masses[static_cast<std::size_t>(vertex)] += 0.25 * density * body.volumes[i];
+      body.masses[static_cast<std::size_t>(vertex)] += 0.25 * densities[i] * body.volumes[i];
     }
   }
 }
@@ -61,16 +61,28 @@ void add_forces(const std::array<std::int32_t, n>& vertices, const std::array<Ve
 
 SpringBody spring_body(const geometry::TetMesh& mesh, double density,
                        const UniformConstants& constants, const std::string& name) {
+  return spring_body(mesh, std::vector<double>(mesh.tetrahedra.size(), density), constants, name);
+}
+
+SpringBody spring_body(const geometry::TetMesh& mesh, std::span<const double> densities,
+                       const UniformConstants& constants, const std::string& name) {
   check_body(mesh, name);
-  if (!std::isfinite(density) || density <= 0) {
-    throw InputError(fmt::format("{}: the density is {} kg/m³; above 0 is allowed", name, density));
+  if (densities.size() != mesh.tetrahedra.size()) {
+    throw InputError(fmt::format("{}: {} densities are given for {} tetrahedra", name,
+                                 densities.size(), mesh.tetrahedra.size()));
+  }
+  for (const double density : densities) {
+    if (!std::isfinite(density) || density <= 0) {
+      throw InputError(
+          fmt::format("{}: the density is {} kg/m³; above 0 is allowed", name, density));
+    }
   }
   SpringBody body;
   body.rest.assign(mesh.vertices.begin(), mesh.vertices.end());
   body.tetrahedra.assign(mesh.tetrahedra.begin(), mesh.tetrahedra.end());
   body.parts = mesh_parts(body.tetrahedra);
   measure_rest(body);
-  lump_masses(body, density);
+  lump_masses(body, densities);
   body.constants = spread(body, constants);
   check_constants(body, body.constants);
   return body;

@@ -46,6 +46,9 @@ struct SpringBody {
 /// not allowed.
 SpringBody spring_body(const geometry::TetMesh& mesh, double density,
                        const UniformConstants& constants, const std::string& name = "body");
+/// @param densities  of each tetrahedron: a body of several materials [kg/m³]
+SpringBody spring_body(const geometry::TetMesh& mesh, std::span<const double> densities,
+                       const UniformConstants& constants, const std::string& name = "body");
 
 /// The same constants for every edge, face and tetrahedron of the body.
 SpringConstants spread(const SpringBody& body, const UniformConstants& constants);

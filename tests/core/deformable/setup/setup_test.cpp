@@ -7,6 +7,7 @@
 
 #include "core/base/files/file_text.h"
 #include "core/deformable/setup/setup_body.h"
+#include "core/deformable/springs/law/spring_body.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
 
@@ -87,9 +88,15 @@ TEST_F(SetupTest, AForceIsItsRegionsInSumAndAPressureItsArea) {
 TEST_F(SetupTest, SeveralMaterialsShareTheTetrahedra) {
   const DeformSetup made =
       setup(std::string(kBlock) + kMaterial + kRegions +
-            "[materials.hard]\nyoung = 1e6\npoisson = 0.4\nregion = \"half\"\n");
+            "[materials.hard]\nyoung = 1e6\npoisson = 0.4\ndensity = 2500\nregion = \"half\"\n");
   const auto body = body_of(made);
   const Elasticity elasticity = elasticity_of(made, body);
+  const SpringBody springs =
+      spring_body(body, densities(elasticity, body.tetrahedra.size()), {1, 1, 1});
+  const ElasticBody elements(body, elasticity);
+  for (std::size_t v = 0; v < springs.masses.size(); ++v) {
+    ASSERT_NEAR(springs.masses[v], elements.masses()[v], 1e-12 * springs.masses[v]) << v;
+  }
   ASSERT_EQ(elasticity.materials.size(), 2u);
   EXPECT_EQ(std::count(elasticity.material_of.begin(), elasticity.material_of.end(), 1),
             static_cast<std::ptrdiff_t>(body.tetrahedra.size() / 2));

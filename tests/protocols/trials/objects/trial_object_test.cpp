@@ -140,6 +140,18 @@ TEST(TrialObjectTest, ABodyThatGivesWayIsReadAndItsMistakesAreToldInASentenceEac
       Contains(HasSubstr("no face can be touched; name a side in `felt` that is not fixed")));
   EXPECT_THAT(problems_of_tissue("young = 1e4\nfixed = [\"down\"]\n"),
               Contains(HasSubstr("left, right, bottom, top, back, front")));
+  EXPECT_THAT(problems_of_tissue("young = 1e4\nseen = \"moving\"\n"),
+              Contains(HasSubstr("yielding, rest")));
+}
+
+TEST(TrialObjectTest, ABodyIsSeenAsItIsPressedUnlessItIsToBeSeenAtRest) {
+  for (const auto& [text, yielding] : {std::pair("", true), std::pair("seen = \"rest\"\n", false),
+                                       std::pair("seen = \"yielding\"\n", true)}) {
+    TrialsDefinition d;
+    read_small(small_trials(kSmallStaircase, kTissue + "young = 1e4\n" + text), d);
+    ASSERT_EQ(d.objects.size(), 1u);
+    EXPECT_EQ(d.objects[0].seen_yielding, yielding) << text;
+  }
 }
 
 std::string three_objects(const std::string& shown) {

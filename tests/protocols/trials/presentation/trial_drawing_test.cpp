@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "core/deformable/touch/ball_touch.h"
 #include "core/geometry/mesh/procedural.h"
 #include "core/render/gl/image.h"
 #include "core/render/gl/offscreen.h"
@@ -76,6 +77,69 @@ TEST_F(TrialDrawingTest, AnObjectIsSeenAsItsOutline) {
   EXPECT_GT(static_cast<double>(ink(picture_of(view, "larger object"))), 1.6 * outline);
   view.objects[0].object = 7;  // of another definition
   EXPECT_EQ(ink(picture_of(view, "no object")), 0);
+}
+
+/// Seen from the front, the lowest side of a cell under the ball is where the ball's lowest point
+/// is: the ball rests on the surface there.
+TEST_F(TrialDrawingTest, ABodyThatGivesWayIsSeenAsTheHandPressesIt) {
+  constexpr double kRadius = 0.006, kFinger = 0.005;  // over a corner of cells of 5 mm [m]
+  const double half = 0.01;
+  const auto mesh = std::make_shared<const deformable::FeltMesh>(deformable::felt_block(
+      {0.04, 2.0 * half, 0.04}, 8, {{deformable::BodySide::kBottom}, {deformable::BodySide::kTop}},
+      "tissue"));
+  const auto body = std::make_shared<const deformable::Compliance>(
+      mesh, deformable::Tissue{10e3, 0.45, 1000.0, {}});
+  const auto bodies = std::make_shared<SeenBodies>();
+  TrialObject object;
+  object.name = "tissue";
+  object.yields = true;
+  object.body = std::make_shared<const contact::FeltBody>(geometry::make_box({0.04, 0.02, 0.04}));
+  definition_.objects.push_back(object);
+  definition_.view.from_above = false;
+  drawing_ = trial_drawing(definition_, bodies)(context_.gl(), kWidth, kHeight);
+  TrialView view;
+  view.interval = 1;
+  view.objects[0].object = 0;
+  view.objects[0].body = bodies->number_of(body);
+  const auto row_of = [&](double y) { return 0.5 * kHeight - y / definition_.view.width * kWidth; };
+  const auto lowest_line = [&](const render::Image& image, double x) {
+    const auto column = static_cast<int>(0.5 * kWidth + x / definition_.view.width * kWidth);
+    const render::Colour& line = definition_.display.target_colour;
+    int lowest = -1;
+    for (int row = 0; row < kHeight; ++row) {
+      const auto at = static_cast<std::size_t>(3 * (row * kWidth + column));
+      const bool red = std::abs(image.rgb[at] - 255.0 * line.red) < 60.0;
+      const bool blue = std::abs(image.rgb[at + 2] - 255.0 * line.blue) < 60.0;
+      lowest = red && blue ? row : lowest;
+    }
+    return lowest + 0.5;
+  };
+  const render::Image rest = picture_of(view, "body at rest");
+  EXPECT_NEAR(lowest_line(rest, kFinger), row_of(half), 2.0);
+  deformable::BallTouch touch(body, {.radius = kRadius});
+  touch.start({kFinger, half + kRadius, 0.0});
+  contact::Contact felt;
+  for (int tick = 1; tick <= 400; ++tick) {
+    felt = touch.tick({kFinger, half + kRadius - 1e-5 * tick, 0.0}, 1e-3);
+  }
+  view.pressed.add(0, touch.forces());
+  const render::Image pressed = picture_of(view, "body under the ball");
+  const double bottom = felt.proxy.y() - kRadius;
+  EXPECT_LT(bottom, half - 0.0025);
+  EXPECT_NEAR(lowest_line(pressed, kFinger), row_of(bottom), 2.0);
+  EXPECT_NEAR(lowest_line(pressed, -0.0175), row_of(half), 2.0) << "far from the finger";
+}
+
+TEST_F(TrialDrawingTest, OfTooManyForcesTheStrongestAreSeen) {
+  SeenForces seen;
+  std::vector<deformable::VertexForce> forces;
+  for (int i = 0; i < 100; ++i) {
+    forces.push_back({i, Eigen::Vector3f(0.0F, static_cast<float>((i * 37) % 100), 0.0F)});
+  }
+  seen.add(0, forces);
+  ASSERT_EQ(seen.on(0).size(), SeenForces::kMost);
+  EXPECT_TRUE(std::ranges::all_of(seen.on(0), [](const auto& f) { return f.newtons[1] >= 36.0F; }));
+  EXPECT_TRUE(seen.on(1).empty());
 }
 
 TEST_F(TrialDrawingTest, AsksAndTellsWhetherItWasRight) {

@@ -18,6 +18,35 @@ TEST(SpringBodyTest, MassesSumToThatOfTheBlock) {
   EXPECT_NEAR(mass, 980 * 24e-6, 1e-16);
 }
 
+// A block whose lower half is twice as heavy: its centre of mass lies at 5/12 of its height.
+TEST(SpringBodyTest, EachMaterialHasItsOwnMass) {
+  const geometry::TetMesh mesh = test::solid_block({2, 2, 4}, 0.01);
+  std::vector<double> densities;
+  for (const geometry::Tetrahedron& t : mesh.tetrahedra) {
+    double z = 0.0;
+    for (const std::int32_t v : t) {
+      z += 0.25 * mesh.vertices[static_cast<std::size_t>(v)].z();
+    }
+    densities.push_back(z < 0.02 ? 2000.0 : 1000.0);
+  }
+  const SpringBody body = spring_body(mesh, densities, {1, 1, 1});
+  double mass = 0.0, moment = 0.0;
+  for (std::size_t v = 0; v < body.masses.size(); ++v) {
+    mass += body.masses[v];
+    moment += body.masses[v] * body.rest[v].z();
+  }
+  EXPECT_NEAR(mass, 1500.0 * 16e-6, 1e-15);
+  EXPECT_NEAR(moment / mass, 0.04 * 5.0 / 12.0, 1e-12);
+}
+
+TEST(SpringBodyTest, OneDensityForEachTetrahedron) {
+  const geometry::TetMesh mesh = test::solid_block({1, 1, 1}, 0.01);
+  EXPECT_EQ(test::message_of([&] {
+              spring_body(mesh, std::vector<double>{1000.0, 1.0}, {1, 1, 1}, "liver");
+            }),
+            "liver: 2 densities are given for 5 tetrahedra");
+}
+
 // Every edge, face and tetrahedron stretched alike: the energy is that of the strains alone.
 TEST(SpringBodyTest, TheEnergyOfAUniformStretchIsThatOfItsStrains) {
   const SpringBody body = spring_body(test::solid_block({2, 2, 2}, 0.01), 1000, {0.3, 0.2, 0.1});

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "core/deformable/touch/ball_touch.h"
+
+namespace haptrial::deformable {
+
+/// How long a tick of a ball that presses takes on this machine, now.
+struct TouchCost {
+  double median{};  // [s]
+  double most{};    // of 99 in 100 ticks [s]
+};
+
+/// Presses at up to 12 places, 0.4 of the ball's radius deep and back; takes some 0.1 s.
+/// @throws std::invalid_argument as BallTouch does.
+TouchCost measured_cost(const SharedCompliance& body, const TouchOptions& options);
+
+}  // namespace haptrial::deformable
