@@ -26,7 +26,9 @@ uniform vec4 colour;
 out vec4 result;
 
 void main() {
-  vec3 normal = normalize(cross(dFdx(at), dFdy(at)));
+  vec3 across = cross(dFdx(at), dFdy(at));
+  float size = length(across);  // seen edge-on it is what it may be
+  vec3 normal = size > 0.0 && size < 1e6 ? across / size : vec3(0.0, 0.0, 1.0);
   normal *= normal.z < 0.0 ? -1.0 : 1.0;
   float light = max(0.0, dot(normal, normalize(vec3(-0.5, -0.6, 0.8))));
   result = vec4(colour.rgb * (0.55 + 0.5 * light), 1.0);

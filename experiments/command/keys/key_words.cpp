@@ -394,6 +394,7 @@ objects.NAME.kind | rigid | whether it gives way to the hand
 objects.NAME.cells | | of a body that gives way: along its longest side
 objects.NAME.fixed | bottom | its sides that do not move
 objects.NAME.felt | all that are not fixed | its sides that can be touched
+objects.NAME.seen | yielding | whether it is seen as the hand presses it, or at rest
 objects.NAME.young | | Young's modulus
 objects.NAME.spring | | between the hand and the ball that presses
 objects.NAME.poisson | | Poisson's ratio
@@ -644,6 +645,10 @@ drilling.scale | | size of the device's workspace over that of the scene
 drilling.recovery | | time without force after an aborted pass
 buttons.analog_pedal | false | whether the pedal sets the speed of the burr
 keys.analog_pedal | false | the same as in [buttons]; the value in [keys] counts if both are there
+soft_tissue.NAME.structure | | of the bone, by any of its names, that is soft
+soft_tissue.NAME.stiffness | | of its surface under a burr or a tube
+soft_tissue.NAME.tears_at | | force at which it tears
+soft_tissue.NAME.suction | | pull at which it comes off a tube that sucks
 pieces.capacity | | greatest number of pieces
 pieces.smallest_piece | | in voxels; smaller parts turn to dust
 pieces.moves_per_tick | | voxels that are moved to a new piece per tick, at most

@@ -7,9 +7,11 @@
 
 #include "core/base/files/file_text.h"
 #include "core/bone/record/drilling_tables.h"
+#include "core/bone/record/tear_row.h"
 #include "core/record/rows/common_tables.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/table/table_page.h"
+#include "core/record/trials/touched_body_row.h"
 #include "core/record/trials/trial_rows.h"
 
 namespace haptrial::record::session_page_test {
@@ -50,9 +52,14 @@ TEST(SessionPageTest, TablesOfTrials) {
   TableList tables = trial_tables();
   tables.insert(tables.end(), adaptation_tables().begin(), adaptation_tables().end());
   tables.insert(tables.end(), out_of_time_tables().begin(), out_of_time_tables().end());
+  tables.push_back(&table_of<TouchedBodyRow>());
   expect_described("trials", tables);
 }
-TEST(SessionPageTest, TablesOfDrillings) { expect_described("drilling", drilling_tables()); }
+TEST(SessionPageTest, TablesOfDrillings) {
+  TableList tables = drilling_tables();
+  tables.push_back(&table_of<TearRow>());
+  expect_described("drilling", tables);
+}
 
 }  // namespace
 }  // namespace haptrial::record::session_page_test

@@ -336,6 +336,22 @@ TEST(ValidityTest, CountsWhatThereIsAndListsEveryGroupOnce) {
   EXPECT_THAT(report, Not(testing::ContainsRegex("[^0-9]1 (participants|procedures|metrics)")));
 }
 
+TEST(ValidityTest, SoftTissueThatToreIsListed) {
+  Study study = made(14, 1.0, 0.5);
+  EXPECT_THAT(to_markdown(validity_report(result_of(study), {})),
+              Not(HasSubstr("Soft tissue that was torn")));
+  Injury injury;
+  injury.structure = "sigmoid sinus and dura";
+  injury.tears = 3;
+  injury.first_tear = FirstTear{12.34, 1.52, false, {0.001, 0.0, -0.0025}};
+  study.procedures[4].injuries.push_back(injury);
+  const std::string report = to_markdown(validity_report(result_of(study), {}));
+  EXPECT_THAT(report, HasSubstr("Soft tissue that was torn"));
+  EXPECT_THAT(report, HasSubstr(fmt::format(
+                          "| {} | {} | sigmoid sinus and dura | 3 | 12.3 | 1.52 | (1.0, 0.0, -2.5)",
+                          study.procedures[4].participant, study.procedures[4].number)));
+}
+
 TEST(ValidityTest, CaptionsSayOnlyWhatIsDrawn) {
   Study study = made(15, 1.0, 0.5);
   const auto caption_of = [](const Study& of, const std::string& name) {
