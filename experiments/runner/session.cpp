@@ -409,6 +409,9 @@ void Session::finish() {
   hear_pedal();
   notices_.note(pedal_.losses());
   notices_.note_troubles(live_.get(), screen_.get());
+  for (const std::string& notice : trials_->notices()) {  // what came up meanwhile
+    notices_.note(notice);
+  }
   const Wishes& wishes = desk_.wishes();
   summary_.stopped = left_ && wishes.abort && !wishes.for_good;
   if (summary_.stopped) {

@@ -25,6 +25,11 @@ namespace haptrial::protocols {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* kInsideOut =
+    "a tetrahedron would have been turned inside out; the force stayed below that";
+constexpr const char* kCrowded =
+    "the ball lay on more places of the body than are computed; it was felt softer than its "
+    "elements (use fewer cells or a smaller ball)";
 constexpr int kPracticeNumbers = 1'000'000;  // a trial of practice is no other's
 
 Table parsed(const Definition& d) {
@@ -402,49 +407,63 @@ void DefinedTrials::close_pass(SessionFile& file, std::int32_t row) {
   }
 }
 
-/// The contacts of all intervals with each body; what was kept from turning inside out is told at
-/// once, too.
+/// The contacts of all intervals with each body; what was not felt as it should be is told at once,
+/// too.
 void DefinedTrials::keep_touched_bodies(SessionFile& file, std::int32_t row) {
   std::vector<record::TouchedBodyRow> rows;
-  std::uint64_t inverted = 0;
-  const std::size_t devices = pass_->scenes(0).size();
-  for (std::size_t device = 0; device < devices; ++device) {
+  for (std::size_t device = 0; device < pass_->scenes(0).size(); ++device) {
     for (std::size_t object = 0; object < d_.objects.size(); ++object) {
-      record::TouchedBodyRow sum{row, static_cast<std::int32_t>(device), d_.objects[object].name};
-      for (std::size_t i = 0; i < pass_->intervals_begun(); ++i) {
-        const scene::Scene& scene = pass_->scenes(i)[device];
-        const auto* touch = scene.touch(scene.size() - d_.objects.size() + object);
-        const deformable::TouchCounts counts = touch ? touch->counts() : deformable::TouchCounts{};
-        sum.contact += counts.contact;
-        sum.inverted += counts.inverted;
-        sum.unsettled += counts.unsettled;
-        sum.crowded += counts.crowded;
-      }
-      inverted += sum.inverted;
       if (d_.objects[object].yields) {
-        rows.push_back(std::move(sum));
+        rows.push_back(touched_body(device, object));
+        rows.back().pass = row;
       }
     }
   }
   file.add(std::span<const record::TouchedBodyRow>(rows));
-  if (inverted > 0) {
-    inverted_ticks_ += inverted;
-    ++inverted_passes_;
-    file.event("inside_out", fmt::format("trial {}: on {} ticks a tetrahedron would have been "
-                                         "turned inside out; the force stayed below that",
-                                         pass_->trial() % kPracticeNumbers, inverted));
+  const int trial = pass_->trial() % kPracticeNumbers;
+  for (const record::TouchedBodyRow& body : rows) {
+    if (body.inverted > 0) {
+      inverted_.add(body.inverted);
+      file.event("inside_out", fmt::format("trial {}: {}: on {} ticks {}", trial, body.object,
+                                           body.inverted, kInsideOut));
+    }
+    if (body.crowded > 0) {
+      crowded_.add(body.crowded);
+      file.event("crowded_contact", fmt::format("trial {}: {}: on {} ticks {}", trial, body.object,
+                                                body.crowded, kCrowded));
+    }
   }
 }
 
-std::vector<std::string> DefinedTrials::notices() const {
-  if (inverted_ticks_ == 0) {
-    return {};
+record::TouchedBodyRow DefinedTrials::touched_body(std::size_t device, std::size_t object) const {
+  record::TouchedBodyRow sum;
+  sum.device = static_cast<std::int32_t>(device);
+  sum.object = d_.objects[object].name;
+  for (std::size_t i = 0; i < pass_->intervals_begun(); ++i) {
+    const scene::Scene& scene = pass_->scenes(i)[device];
+    if (const auto* touch = scene.touch(scene.size() - d_.objects.size() + object)) {
+      const deformable::TouchCounts& counts = touch->counts();
+      sum.contact += counts.contact;
+      sum.inverted += counts.inverted;
+      sum.unsettled += counts.unsettled;
+      sum.crowded += counts.crowded;
+    }
   }
-  return {fmt::format(
-      "{} a body that gives way was pressed so far that a tetrahedron would have been turned "
-      "inside out, on {} ticks together: there the force stayed below that (/touched_bodies)",
-      inverted_passes_ == 1 ? "in 1 pass" : fmt::format("in {} passes", inverted_passes_),
-      inverted_ticks_)};
+  return sum;
+}
+
+std::vector<std::string> DefinedTrials::notices() const {
+  std::vector<std::string> lines;
+  const auto say = [&](const TickSum& sum, const char* what) {
+    if (sum.ticks > 0) {
+      lines.push_back(fmt::format("bodies that give way, in {} of {}: on {} ticks {}",
+                                  sum.bodies == 1 ? "1 pass" : fmt::format("{} passes", sum.bodies),
+                                  "/touched_bodies", sum.ticks, what));
+    }
+  };
+  say(inverted_, kInsideOut);
+  say(crowded_, kCrowded);
+  return lines;
 }
 
 void DefinedTrials::keep_out_of_time(SessionFile& file, std::int32_t row) const {

@@ -6,6 +6,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/record/trials/object_file_row.h"
+#include "core/record/trials/touched_body_row.h"
 #include "core/record/trials/trial_rows.h"
 #include "protocols/interface/trials.h"
 #include "protocols/trials/presentation/trial_pass.h"
@@ -57,6 +58,7 @@ class DefinedTrials final : public Trials {
   void keep_level(SessionFile& file, std::int32_t row);
   void keep_stages(SessionFile& file, std::int32_t row) const;
   void keep_touched_bodies(SessionFile& file, std::int32_t row);
+  record::TouchedBodyRow touched_body(std::size_t device, std::size_t object) const;
 
   const StudiedDefinition& d_;
   SessionPlace place_;
@@ -78,8 +80,16 @@ class DefinedTrials final : public Trials {
   std::vector<std::size_t> region_devices_;      // likewise
   std::vector<record::VariableRow> variables_;   // of the pass
   std::vector<int> right_;                       // choice of each question; -1: none
-  std::uint64_t inverted_ticks_{0};              // of the session, see TouchedBodyRow
-  std::uint64_t inverted_passes_{0};
+  /// Ticks of the session, and the rows of /touched_bodies that have them.
+  struct TickSum {
+    std::uint64_t ticks{0};
+    std::uint64_t bodies{0};
+    void add(std::uint64_t more) {
+      ticks += more;
+      ++bodies;
+    }
+  };
+  TickSum inverted_, crowded_;
 };
 
 }  // namespace haptrial::protocols

@@ -55,7 +55,7 @@ class SessionTrials {
     }
     for (const record::TouchedBodyRow& row : reader.rows<record::TouchedBodyRow>()) {
       if (StudyTrial* trial = of(row.pass)) {
-        trial->touched.push_back({row.object, row.contact, row.inverted});
+        trial->touched.push_back({row.object, row.contact, row.inverted, row.crowded});
       }
     }
   }

@@ -66,6 +66,7 @@ struct TouchedBody {
   std::string object;
   std::uint64_t contact{0};
   std::uint64_t inverted{0};  // a tetrahedron would have been inside out: the force was cut
+  std::uint64_t crowded{0};   // more places of contact than are computed: felt softer
 };
 
 /// One pass of a trial, with everything that the session file says of it.

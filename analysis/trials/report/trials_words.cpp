@@ -119,23 +119,23 @@ std::string estimate_word(const Estimated& e) {
 
 namespace {
 
-/// Forces on a body that gives way which were cut.
-void add_inverted(const TrialsData& data, std::vector<std::string>& lines) {
-  std::uint64_t ticks = 0, contact = 0;
+/// Ticks on which bodies that give way were not felt as they should be.
+void add_touched(const TrialsData& data, std::uint64_t TouchedBody::*ticks, const char* what,
+                 std::vector<std::string>& lines) {
+  std::uint64_t sum = 0, contact = 0;
   std::size_t trials = 0;
   for (const StudyTrial& trial : data.trials) {
-    const std::uint64_t before = ticks;
+    const std::uint64_t before = sum;
     for (const TouchedBody& body : trial.touched) {
-      ticks += body.inverted;
+      sum += body.*ticks;
       contact += body.contact;
     }
-    trials += ticks > before ? 1 : 0;
+    trials += sum > before ? 1 : 0;
   }
-  if (ticks > 0) {
-    lines.push_back(fmt::format(
-        "in {} a body that gives way was pressed so far that a tetrahedron would have been turned "
-        "inside out, on {} of {} ticks in contact: there the force stayed below that",
-        counted(trials, "trial"), ticks, contact));
+  if (sum > 0) {
+    lines.push_back(
+        fmt::format("in {}, on {} of {} ticks in contact with a body that gives way, {}",
+                    counted(trials, "trial"), sum, contact, what));
   }
 }
 
@@ -194,7 +194,11 @@ std::vector<std::string> summary_lines(const TrialsResult& result) {
     lines.push_back(fmt::format("{} of {} could not be determined from the answers", count,
                                 counted(result.fits.size(), "function")));
   }
-  add_inverted(result.data, lines);
+  add_touched(result.data, &TouchedBody::inverted,
+              "a tetrahedron would have been turned inside out: the force stayed below that",
+              lines);
+  add_touched(result.data, &TouchedBody::crowded,
+              "the ball lay on more places than are computed: the body was felt softer", lines);
   return lines;
 }
 

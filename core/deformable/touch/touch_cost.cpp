@@ -56,7 +56,7 @@ TouchCost measured_cost(const SharedCompliance& body, const TouchOptions& option
   const auto at = [&](double share) {
     return times[static_cast<std::size_t>(share * static_cast<double>(times.size() - 1))];
   };
-  return {at(0.5), at(0.99)};
+  return {at(0.5), at(0.99), touch.counts().crowded > 0};
 }
 
 }  // namespace haptrial::deformable

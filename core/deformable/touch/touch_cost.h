@@ -8,6 +8,7 @@ namespace haptrial::deformable {
 struct TouchCost {
   double median{};  // [s]
   double most{};    // of 99 in 100 ticks [s]
+  bool crowded{};   // the ball lay on more places than are computed: it is felt softer
 };
 
 /// Presses at up to 12 places, 0.4 of the ball's radius deep and back; takes some 0.1 s.

@@ -410,9 +410,10 @@ TEST_F(RehearsalTest, WhatWouldTurnATetrahedronInsideOutIsTold) {
   EXPECT_GT(rows_.touched[0].inverted, 0u);
   EXPECT_LE(rows_.touched[0].inverted, rows_.touched[0].contact);
   EXPECT_THAT(rows_.events["inside_out"],
-              testing::HasSubstr("trial 1: on " + std::to_string(rows_.touched[0].inverted)));
+              testing::HasSubstr("trial 1: tissue: on " +
+                                 std::to_string(rows_.touched[0].inverted) + " ticks a tetra"));
   ASSERT_EQ(notices_.size(), 1u);
-  EXPECT_THAT(notices_[0], testing::HasSubstr("in 1 pass a body"));
+  EXPECT_THAT(notices_[0], testing::HasSubstr("in 1 pass of /touched_bodies: on "));
 }
 
 }  // namespace

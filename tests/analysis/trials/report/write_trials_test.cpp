@@ -84,6 +84,22 @@ TEST_P(WriteTrials, EverythingIsWrittenAndMarkedAsSimulated) {
   }
 }
 
+TEST(TrialsWords, TicksOnWhichABodyWasNotFeltAsItShouldBeAreTold) {
+  TrialsResult result;
+  StudyTrial trial;
+  trial.touched = {{"liver", 400, 0, 0}};
+  result.data.trials = {trial, trial, trial};
+  const auto quiet = summary_lines(result);
+  result.data.trials[0].touched[0].inverted = 7;
+  result.data.trials[2].touched[0].inverted = 4;
+  result.data.trials[1].touched[0].crowded = 20;
+  const auto lines = summary_lines(result);
+  ASSERT_EQ(lines.size(), quiet.size() + 2);
+  EXPECT_THAT(lines[quiet.size()], HasSubstr("in 2 trials, on 11 of 1200 ticks in contact with a "
+                                             "body that gives way, a tetrahedron would have been"));
+  EXPECT_THAT(lines.back(), HasSubstr("in 1 trial, on 20 of 1200 ticks"));
+}
+
 TEST_P(WriteTrials, EqualInputGivesEqualBytes) {
   written();
   const std::string first = file_text(place() / "results.json") + file_text(place() / "report.md");
