@@ -41,8 +41,9 @@ bone::BoneModel over_dura() {
 }
 
 std::filesystem::path definition_in(const std::filesystem::path& folder, const char* soft) {
-  const auto file = test::write_small_drilling(folder, kSeconds);
-  bone::save_bone(folder / "slabs.nrrd", over_dura());
+  const auto file =
+      test::write_small_drilling(folder, kSeconds, {{"bones", "bones = [\"dura.nrrd\"]"}});
+  bone::save_bone(folder / "dura.nrrd", over_dura());
   std::ofstream(file, std::ios::app) << "\n" << soft;
   return file;
 }
@@ -131,6 +132,13 @@ TEST_F(SoftTissueSessionTest, AReplayTearsTheSame) {
   EXPECT_EQ(verdict.difference, "");
   EXPECT_EQ(verdict.tears, session().rows<record::TearRow>().size());
   EXPECT_TRUE(verdict.whole);
+}
+
+TEST_F(SoftTissueSessionTest, ADefinitionSaysWhatIsSoft) {
+  EXPECT_THAT(
+      definition_->description(),
+      testing::Contains(HasSubstr("soft: dura gives way with 500 N/m, tears at 1.5 N, comes "
+                                  "off a tube at 0.15 N; stays calm with 0.25 N·s/m")));
 }
 
 TEST_F(SoftTissueSessionTest, MistakesAreToldInASentence) {

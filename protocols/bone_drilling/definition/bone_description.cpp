@@ -91,6 +91,14 @@ std::vector<std::string> BoneDefinition::description() const {
     tools.push_back(tool.name);
   }
   lines.push_back(fmt::format("tools: {}", fmt::join(tools, ", ")));
+  for (const bone::SoftTissueParameters& soft : simulator.soft_tissue) {
+    // A held spring gives k T² v² / 2 a tick, which damping takes up above k T / 2.
+    lines.push_back(fmt::format(
+        "soft: {} gives way with {:g} N/m, tears at {:g} N, comes off a tube at {:g} N; stays calm "
+        "with {:.2g} N·s/m of damping, and the hand of [hand] has {:g}",
+        soft.structure, soft.stiffness, soft.tears_at, soft.suction, 0.5 * soft.stiffness / rate,
+        hand.damping));
+  }
   if (const auto margin = contact_margin(*this)) {
     lines.push_back(describe(*margin));
   }
