@@ -28,8 +28,8 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kInsideOut =
     "a tetrahedron would have been turned inside out; the force stayed below that";
 constexpr const char* kCrowded =
-    "the ball lay on more places of the body than are computed; it was felt softer than its "
-    "elements (use fewer cells or a smaller ball)";
+    "the ball lay on more places of the body than are computed; it may have been felt softer than "
+    "its elements (use fewer cells or a smaller ball)";
 constexpr int kPracticeNumbers = 1'000'000;  // a trial of practice is no other's
 
 Table parsed(const Definition& d) {

@@ -198,7 +198,8 @@ std::vector<std::string> summary_lines(const TrialsResult& result) {
               "a tetrahedron would have been turned inside out: the force stayed below that",
               lines);
   add_touched(result.data, &TouchedBody::crowded,
-              "the ball lay on more places than are computed: the body was felt softer", lines);
+              "the ball lay on more places than are computed: the body may have been felt softer",
+              lines);
   return lines;
 }
 

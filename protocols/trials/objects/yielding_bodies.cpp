@@ -54,7 +54,7 @@ std::vector<std::string> words_of_bodies(const std::vector<scene::Field>& fields
     if (cost.crowded) {
       lines.push_back(fmt::format(
           "objects.{}: pressed 0.4 of its radius deep the ball lies on more places than are "
-          "computed and is felt softer than the elements; use fewer cells or a smaller ball",
+          "computed and may be felt softer than the elements; use fewer cells or a smaller ball",
           fields[i].name));
     }
     if (p->tool.radius < deformable::smallest_ball(*p->mesh)) {

@@ -401,7 +401,7 @@ TEST_F(RehearsalTest, WhatIsSeenToPressABodyIsWhatIsFelt) {
   EXPECT_EQ(rows_.touched[0].contact, rows_.contacts.size());
   EXPECT_EQ(rows_.touched[0].inverted, 0u);
   EXPECT_EQ(rows_.events.count("inside_out"), 0u);
-  EXPECT_TRUE(notices_.empty());
+  EXPECT_THAT(notices_, testing::Not(testing::Contains(testing::HasSubstr("inside out"))));
 }
 
 TEST_F(RehearsalTest, WhatWouldTurnATetrahedronInsideOutIsTold) {
@@ -412,8 +412,7 @@ TEST_F(RehearsalTest, WhatWouldTurnATetrahedronInsideOutIsTold) {
   EXPECT_THAT(rows_.events["inside_out"],
               testing::HasSubstr("trial 1: tissue: on " +
                                  std::to_string(rows_.touched[0].inverted) + " ticks a tetra"));
-  ASSERT_EQ(notices_.size(), 1u);
-  EXPECT_THAT(notices_[0], testing::HasSubstr("in 1 pass of /touched_bodies: on "));
+  EXPECT_THAT(notices_, testing::Contains(testing::HasSubstr("in 1 pass of /touched_bodies: on ")));
 }
 
 }  // namespace
