@@ -92,6 +92,7 @@ void BallTouch::release(const Vector3d& tool) noexcept {
 
 const contact::Contact& BallTouch::tick(const Vector3d& tool, double) noexcept {
   ++tick_;
+  crowded_ = false;
   if (!tool.allFinite()) {
     contact_.force.setZero();
     force_count_ = 0;
@@ -103,6 +104,7 @@ const contact::Contact& BallTouch::tick(const Vector3d& tool, double) noexcept {
     return contact_;
   }
   ++counts_.contact;
+  counts_.crowded += crowded_ ? 1 : 0;
   rub(tool);
   keep_forces();
   note(tool);
@@ -127,12 +129,12 @@ void BallTouch::gather(const Vector3d& tool, const Vector3d& centre) noexcept {
                        return a.distance != b.distance ? a.distance < b.distance : a.slot < b.slot;
                      });
     count = static_cast<int>(kMostFaces);
-    ++counts_.crowded;
+    crowded_ = true;
   }
   for (int i = 0; i < count; ++i) {
     const std::int32_t face = body_->surface().triangle(found_[static_cast<std::size_t>(i)].slot);
     if (near_.size() + 3 > kMostNear) {
-      ++counts_.crowded;
+      crowded_ = true;
       break;
     }
     for (const std::int32_t corner : body_->faces()[at(face)]) {
@@ -252,16 +254,18 @@ void BallTouch::take_samples(const Vector3d& centre) noexcept {
   }
 }
 
-/// Where there is no room for another place, the farthest one gives way.
+/// Where there is no room for another place, the farthest one gives way; that is told if the ball
+/// touches it.
 void BallTouch::add_place(const Place& place) noexcept {
   if (count_ < kMostPlaces) {
     places_[static_cast<std::size_t>(count_++)] = place;
     return;
   }
-  ++counts_.crowded;
   const auto farthest =
       std::max_element(places_.begin(), places_.end(),
                        [](const Place& a, const Place& b) { return a.distance < b.distance; });
+  const double left_out = std::max(place.distance, farthest->distance);
+  crowded_ = crowded_ || left_out < options_.radius + kOnSurface * body_->mesh().spacing;
   if (place.distance < farthest->distance) {
     *farthest = place;
   }

@@ -107,6 +107,7 @@ class BallTouch final : public BodyTouch {
   double farthest_{0.0};                           // of the displacements near the ball [m]
   double upright_{0.0};  // the force before a tetrahedron would be inside out [N]
   std::uint64_t tick_{1};
+  bool crowded_{false};  // on this tick
   contact::Contact contact_;
   TouchCounts counts_;
 };

@@ -295,7 +295,7 @@ TEST(BallTouchTest, ACostIsMeasuredAndACrowdedContactTold) {
   FeltSides sides;
   sides.felt = {BodySide::kTop};
   const auto fine =
-      std::make_shared<const FeltMesh>(felt_block({0.010, 0.004, 0.010}, 16, sides, "fine block"));
+      std::make_shared<const FeltMesh>(felt_block({0.006, 0.003, 0.006}, 10, sides, "fine block"));
   EXPECT_TRUE(
       measured_cost(std::make_shared<const Compliance>(fine, soft_tissue()), ball(0.005)).crowded);
 }
