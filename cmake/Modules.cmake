@@ -129,15 +129,38 @@ function(haptrial_test name link)
     LINKER:--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc,--wrap=posix_memalign)
   target_compile_definitions(test_${name} PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}"
                                                   HAPTRIAL_BINARY_DIR="${CMAKE_BINARY_DIR}")
+  get_property(together GLOBAL PROPERTY HAPTRIAL_TOGETHER_${name})
+  haptrial_whole_suites(test_${name} ${together})
+  list(TRANSFORM together APPEND ".*")
+  list(JOIN together ":" together)
   if(name STREQUAL realtime)
     haptrial_discover(test_${name} "*" 2 RUN_SERIAL TRUE)  # these measure time
   elseif(name STREQUAL experiments)
-    haptrial_discover(test_${name} "-*Live*:Timed*" 2)
-    haptrial_discover(test_${name} "*Live*" 1)
+    # They wait for a session on the real clock.
+    set(live "*Live*:KilledTest.*:KilledTrialsTest.*:LostDiskTest.*:ResumedParticipantTest.*")
+    string(APPEND live ":RoundTripTest.ARec*:SessionMarkersTest.*:SessionTest.RealClock*")
+    haptrial_discover(test_${name} "-${live}:Timed*:${together}" 2)
+    haptrial_discover(test_${name} "${live}" 1)
     haptrial_discover(test_${name} "Timed*" 2 RUN_SERIAL TRUE)  # a busy machine is a fault here
   else()
-    haptrial_discover(test_${name} "*" 2)
+    haptrial_discover(test_${name} "-${together}" 2)
   endif()
+endfunction()
+
+# haptrial_together(NAME SUITE...): suites of test_NAME whose cases share a set-up of seconds. The
+# test runner gives every other case a process of its own; such a suite is one entry, so that the
+# set-up is made once. Before the tests.
+function(haptrial_together name)
+  set_property(GLOBAL APPEND PROPERTY HAPTRIAL_TOGETHER_${name} ${ARGN})
+endfunction()
+
+# An entry for each suite; one that the program does not have fails.
+function(haptrial_whole_suites target)
+  foreach(suite ${ARGN})
+    add_test(NAME ${suite} COMMAND ${target} --gtest_filter=${suite}.*)
+    set_tests_properties(${suite} PROPERTIES TIMEOUT 600 PROCESSORS 2
+                                             FAIL_REGULAR_EXPRESSION "Running 0 tests")
+  endforeach()
 endfunction()
 
 # Tests run on twice as many places as there are processors. One that computes takes two; one of a
@@ -239,6 +262,9 @@ function(haptrial_tests)
   add_library(haptrial_test_support STATIC ${support})
   target_include_directories(haptrial_test_support PUBLIC ${CMAKE_SOURCE_DIR})
   haptrial_stand_ins()
+  haptrial_together(bone_anatomy MandibleTest TemporalBoneTest)
+  haptrial_together(experiments BoneSessionTest DesignReportsTest RateTest)
+  haptrial_together(protocols BoneRestoreTest ReplayTest)
   get_property(modules GLOBAL PROPERTY HAPTRIAL_MODULES)
   get_property(groups GLOBAL PROPERTY HAPTRIAL_GROUPS)
   foreach(name ${modules} ${groups})

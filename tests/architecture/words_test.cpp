@@ -14,14 +14,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<const char*> kStumblingBlocks{
-    "allowed: (exactly |only |one of|one or|each |at least one voxel|a new |a folder|the folder)",
-    "allowed: (what |two,|any other|another |from 1 to an hour|a session|a whole file|undamaged )",
-    "allowed: (with |so fast|to resume|whole (files|or)|finite (samples|coordinates))",
-    "is there already|exists; name|, nothing is overwritten",
-    "drills not|that is none|first so many|[Ww]rite so many|those there are|of it drilling|of them in sight",
-    "--resume goes on|no part of the study\\)|fed more energy|is as it was",
-};
+const std::vector<std::regex> kStumblingBlocks = [] {
+  std::vector<std::regex> blocks;
+  for (const char* words :
+       {"allowed: (exactly |only |one of|one or|each |at least one voxel|a new |a folder|the "
+        "folder)",
+        "allowed: (what |two,|any other|another |from 1 to an hour|a session|a whole "
+        "file|undamaged )",
+        "allowed: (with |so fast|to resume|whole (files|or)|finite (samples|coordinates))",
+        "is there already|exists; name|, nothing is overwritten",
+        "drills not|that is none|first so many|[Ww]rite so many|those there are|of it drilling|of "
+        "them in sight",
+        "--resume goes on|no part of the study\\)|fed more energy|is as it was"}) {
+    blocks.emplace_back(words, std::regex::optimize);
+  }
+  return blocks;
+}();
 
 /// A source's text with the parts of each literal joined and its comments left out.
 std::string text_of(const fs::path& file) {
@@ -36,8 +44,8 @@ std::string text_of(const fs::path& file) {
 std::string found_in(const std::string& text) {
   static const std::regex kLiteral("\"([^\"\\\\\n]|\\\\.)*\"");
   for (std::sregex_iterator it(text.begin(), text.end(), kLiteral), end; it != end; ++it) {
-    for (const char* block : kStumblingBlocks) {
-      if (const std::string literal = it->str(); std::regex_search(literal, std::regex(block))) {
+    for (const std::regex& block : kStumblingBlocks) {
+      if (const std::string literal = it->str(); std::regex_search(literal, block)) {
         return literal;
       }
     }

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -23,21 +24,24 @@ using testing::Not;
 class DesignReportsTest : public testing::Test {
  protected:
   /// Curves of six virtual subjects under three conditions.
-  void SetUp() override {
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<test::TemporaryFolder>();
     const CommandResult made = run_command(
         fmt::format("haptrial dry-run '{}' --subjects 6 --trials 18 --out '{}' && "
                     "haptrial export --curves '{}' '{}'",
                     test::shipped_definition().string(), in("study"), in("curves"), in("study")));
     ASSERT_EQ(made.status, 0) << made.errors;
   }
+  static void TearDownTestSuite() { folder_.reset(); }
+  void TearDown() override { std::filesystem::remove_all(in("report")); }
 
-  std::string in(const std::string& name) const { return (folder_ / name).string(); }
+  static std::string in(const std::string& name) { return (*folder_ / name).string(); }
 
   /// conditions.csv with one more column, and only the rows that `more` has a value for.
   std::string table(const std::string& column,
                     const std::function<std::string(int subject, const std::string& condition,
                                                     int repetition)>& more) {
-    std::istringstream text(test::read_text(folder_ / "curves/conditions.csv"));
+    std::istringstream text(test::read_text(*folder_ / "curves/conditions.csv"));
     std::string line;
     std::getline(text, line);
     std::string all = fmt::format("{},{}\n", line, column);
@@ -54,7 +58,7 @@ class DesignReportsTest : public testing::Test {
         all += fmt::format("{},{}\n", line, value);
       }
     }
-    test::write_text(folder_ / "table.csv", all);
+    test::write_text(*folder_ / "table.csv", all);
     return in("table.csv");
   }
 
@@ -64,13 +68,14 @@ class DesignReportsTest : public testing::Test {
         run_command(fmt::format("haptrial analyze --curves '{}' --conditions '{}' --out '{}' {}",
                                 in("curves"), conditions, in("report"), options));
     EXPECT_EQ(run.status, 0) << run.errors;
-    json_ = nlohmann::json::parse(test::read_text(folder_ / "report/statistics.json"));
-    return test::read_text(folder_ / "report/report.md");
+    json_ = nlohmann::json::parse(test::read_text(*folder_ / "report/statistics.json"));
+    return test::read_text(*folder_ / "report/report.md");
   }
 
-  test::TemporaryFolder folder_;
+  static std::unique_ptr<test::TemporaryFolder> folder_;
   nlohmann::json json_;
 };
+std::unique_ptr<test::TemporaryFolder> DesignReportsTest::folder_;
 
 TEST_F(DesignReportsTest, BetweenParticipants) {
   const std::string text =
@@ -142,7 +147,7 @@ TEST_F(DesignReportsTest, APlannedTestOfAnUnknownConditionIsRefused) {
   EXPECT_EQ(run.status, 2);
   EXPECT_THAT(run.errors, HasSubstr("names 'visula', which the data do not have; allowed: "
                                     "'haptic', 'visual', 'visuohaptic'"));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "report"));
+  EXPECT_FALSE(std::filesystem::exists(*folder_ / "report"));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 
 #include "tests/experiments/command.h"
@@ -48,13 +49,18 @@ std::string study_of(const testing::TestParamInfo<fs::path>& folder) {
   return folder.param.filename().string();
 }
 
+bool every_study() { return std::getenv("HAPTRIAL_EVERY_STUDY") != nullptr; }
+
 /// Runs the commands of a manifest again.
 class Results : public testing::TestWithParam<fs::path> {
  protected:
-  void make_again() {
+  /// @param people  so many of the study's first ones, who are who they are whoever comes after
+  ///   them; 0, and with HAPTRIAL_EVERY_STUDY set: all
+  void make_again(int people = 0) {
+    people_ = every_study() ? 0 : people;
     std::string script = "set -e; cd '" + kSource.string() + "'\n";
     for (const std::string command : manifest_["commands"]) {
-      script += replaced(command, " OUT", " '" + (out_ / "study").string() + "'") + "\n";
+      script += replaced(for_few(command), " OUT", " '" + (out_ / "study").string() + "'") + "\n";
     }
     const test::CommandResult result = test::run_command(script);
     ASSERT_EQ(result.status, 0) << result.errors;
@@ -68,10 +74,33 @@ class Results : public testing::TestWithParam<fs::path> {
     EXPECT_EQ(test::read_text(out_ / "study" / name), test::read_text(folder_ / name))
         << name << " is not what the manifest gives; results/regenerate.sh makes it anew";
   }
+  /// A table whose rows begin with a participant: the rows of those who were made again.
+  void expect_the_same_rows(const std::string& name) const {
+    std::istringstream kept(test::read_text(folder_ / name));
+    std::string rows;
+    for (std::string line; std::getline(kept, line);) {
+      const bool head = rows.empty();
+      if (head || people_ == 0 || std::stoi(line.substr(1)) <= people_) {  // S01,...
+        rows += line + "\n";
+      }
+    }
+    EXPECT_EQ(test::read_text(out_ / "study" / name), rows)
+        << name << " is not what the manifest gives; results/regenerate.sh makes it anew";
+  }
   const fs::path folder_ = GetParam();
   const nlohmann::json manifest_ =
       nlohmann::json::parse(test::read_text(folder_ / "manifest.json"));
   const test::TemporaryFolder out_;
+  int people_{0};  // made again; 0: all
+
+ private:
+  std::string for_few(std::string command) const {
+    if (people_ == 0 || !command.starts_with("haptrial dry-run")) {
+      return command;
+    }
+    command = std::regex_replace(command, std::regex(" --subjects [0-9]+"), "");
+    return command + " --subjects " + std::to_string(people_);
+  }
 };
 
 /// Studies of force curves.
@@ -81,13 +110,8 @@ TEST_P(ScoredResults, Reproduce) {
   if (test::kThreadSanitizer) {
     GTEST_SKIP() << "whole studies take too long here; other builds make them anew";
   }
-  ASSERT_NO_FATAL_FAILURE(make_again());
-  expect_the_same("scores.csv");
-  for (const char* name : {"comparison.json", "comparison.html", "comparison.svg"}) {
-    if (fs::exists(folder_ / name)) {
-      expect_the_same(name);
-    }
-  }
+  ASSERT_NO_FATAL_FAILURE(make_again(3));
+  expect_the_same_rows("scores.csv");
   EXPECT_EQ(sum_of(folder_ / "scores.csv"), manifest_["scores_sha256"]);
   EXPECT_TRUE(manifest_["simulated"].get<bool>());
   EXPECT_FALSE(fs::exists(folder_ / "S01.h5")) << "session files stay out";
@@ -95,6 +119,23 @@ TEST_P(ScoredResults, Reproduce) {
 
 INSTANTIATE_TEST_SUITE_P(Shipped, ScoredResults, testing::ValuesIn(results_with("scores.csv")),
                          study_of);
+
+/// What two kept studies have in common, from what is kept of them.
+TEST(ComparedResults, Reproduce) {
+  const std::vector<fs::path> compared = results_with("comparison.json");
+  ASSERT_EQ(compared.size(), 1u);
+  const test::TemporaryFolder out;
+  const auto run = test::run_command(
+      "cd '" + (kSource / "results").string() + "' && haptrial compare force_training " +
+      compared.front().filename().string() + " --out '" + (out / "compared").string() + "'");
+  ASSERT_EQ(run.status, 0) << run.errors;
+  for (const char* name : {"comparison.json", "comparison.html", "comparison.svg"}) {
+    if (fs::exists(compared.front() / name)) {
+      EXPECT_EQ(test::read_text(out / "compared" / name), test::read_text(compared.front() / name))
+          << name;
+    }
+  }
+}
 
 /// Experiments that their definitions state whole: what virtual participants were estimated to be.
 class EstimatedResults : public Results {};
@@ -105,11 +146,16 @@ TEST_P(EstimatedResults, Reproduce) {
   }
   const bool long_one =
       folder_.filename() == "size_by_eye_and_hand" || folder_.filename() == "lump_search";
-  if (long_one && std::getenv("HAPTRIAL_EVERY_STUDY") == nullptr) {
+  if (long_one && !every_study()) {
     GTEST_SKIP() << "its trials take minutes; set HAPTRIAL_EVERY_STUDY=1 to make them anew";
   }
-  ASSERT_NO_FATAL_FAILURE(make_again());
-  expect_the_same("estimates.csv");
+  const std::string estimates = test::read_text(folder_ / "estimates.csv");
+  const bool of_people = std::count(estimates.begin(), estimates.end(), '\n') > 1;
+  ASSERT_NO_FATAL_FAILURE(make_again(of_people ? 2 : 0));
+  expect_the_same_rows("estimates.csv");
+  if (!of_people) {  // reaching movements: all is in the results of the group
+    expect_the_same("results.json");
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Shipped, EstimatedResults,

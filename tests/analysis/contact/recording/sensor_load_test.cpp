@@ -93,11 +93,11 @@ TEST(SensorLoadTest, QuietStretchesAreThoseWithoutAHand) {
 TEST(StreamLagTest, KnownLagsAreFoundAndIntervalsHoldThem) {
   int held = 0;
   double worst = 0.0;
-  constexpr int kRecordings = 40;
+  constexpr int kRecordings = 20;
   for (int i = 0; i < kRecordings; ++i) {
     test::SimulatedContact s;
     s.seed = static_cast<std::uint64_t>(i);
-    s.lag = -0.1 + 0.005 * i;
+    s.lag = -0.1 + 0.01 * i;
     s.pose_noise = 0.0001;
     s.force_noise = 0.05;
     s.force_rate = 500.0;
@@ -111,7 +111,7 @@ TEST(StreamLagTest, KnownLagsAreFoundAndIntervalsHoldThem) {
   RecordProperty("held", held);
   RecordProperty("worst_us", static_cast<int>(1e6 * worst));
   EXPECT_LT(worst, 0.5 / 60.0);  // half a period of the slower stream
-  EXPECT_GE(held, 34);           // 95 % of 40 less three standard errors
+  EXPECT_GE(held, 15);           // fewer than 15 of 20 at 95 %: once in 3,000 times
 }
 
 TEST(StreamLagTest, UnrelatedStreamsAreDoubted) {
