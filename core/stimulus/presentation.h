@@ -14,6 +14,8 @@ enum class Instruction : std::uint8_t {
   kWatch,      // watch the target bar (visual training)
   kMatch,      // make the applied bar as high as the target bar (visuohaptic training)
   kRecall,     // apply the learnt pattern (test)
+  kFollow,     // let the hand be led, and press as the force asks (haptic playback)
+  kReproduce,  // move along the learnt path and apply the learnt pattern (free test)
 };
 
 /// What a participant who follows a path is to see at one instant: a view (shown.h). Written whole

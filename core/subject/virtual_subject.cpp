@@ -18,7 +18,8 @@ constexpr double kSpeedSpan = 0.05;       // over which one's own speed is felt 
 VirtualSubject::VirtualSubject(const SubjectParameters& person,
                                const HandParameters& hand_parameters, HandModel& hand,
                                std::uint64_t seed, double step,
-                               const std::optional<PaceParameters>& pace)
+                               const std::optional<PaceParameters>& pace,
+                               const std::optional<PathParameters>& path)
     : person_(person),
       hand_(hand),
       step_(step),
@@ -28,6 +29,9 @@ VirtualSubject::VirtualSubject(const SubjectParameters& person,
       bar_(person, random_) {
   if (pace) {
     pacer_.emplace(*pace, hand_parameters, RandomStream(seed, "pace"), step);
+  }
+  if (path) {
+    path_.emplace(*path, hand_parameters, RandomStream(seed, "path"));
   }
 }
 
@@ -57,12 +61,17 @@ void VirtualSubject::observe(const stimulus::Shown& shown, const stimulus::Force
 
   HandCommand command;
   command.press = running ? motor_.press(hold_back(intended_press(seen, dt), dt)) : 0.0;
-  command.holds_posture = running && seen.instruction == Instruction::kHoldPlane;
+  const bool led = seen.instruction == Instruction::kFollow;
+  command.holds_posture = running && (led || seen.instruction == Instruction::kHoldPlane);
   command.force = motor_.tremor();
   if (running && seen.self_paced && pacer_) {
     command.force += move_on(seen);
   }
-  if (!seen.show_trajectory) {  // nobody guides the hand: it rests in the middle
+  if (running && seen.instruction == Instruction::kReproduce && path_) {
+    const double shift = (muscle_lag_ + wrong_in_time(seen.progress)) / pass_duration_;
+    command.force += path_->drive(seen.progress + shift, seen.tool);
+  }
+  if (!seen.show_trajectory && !seen.engaged()) {  // nobody guides the hand: it rests in the middle
     command.force -= kHomeStiffness * seen.tool;
   }
   hand_.command(command);
@@ -70,6 +79,9 @@ void VirtualSubject::observe(const stimulus::Shown& shown, const stimulus::Force
 
 void VirtualSubject::begin_pass(const Presentation& seen) noexcept {
   pass_duration_ = seen.pass_duration;
+  if (path_) {
+    path_->begin(pass_duration_, seen.block != block_);
+  }
   if (seen.block != block_) {
     block_ = seen.block;
     memory_.clear();
@@ -92,8 +104,12 @@ void VirtualSubject::begin_pass(const Presentation& seen) noexcept {
 }
 
 void VirtualSubject::gather(const Presentation& seen, const Sensed& now) noexcept {
+  const bool led = seen.instruction == Instruction::kFollow;
   const bool felt_teaches =
-      seen.instruction == Instruction::kHoldPlane || seen.instruction == Instruction::kMatch;
+      led || seen.instruction == Instruction::kHoldPlane || seen.instruction == Instruction::kMatch;
+  if (path_ && seen.instruction != Instruction::kReproduce) {
+    path_->take(seen.progress, seen.tool, seen.show_trajectory, led);
+  }
   if (seen.show_target_bar) {
     exposure_.see(seen.progress, now.height);
   }
@@ -108,15 +124,20 @@ void VirtualSubject::end_pass() noexcept {
         exposure_.perceived(person_, bar_, person_.memory_correlation / pass_duration_, random_));
     exposure_.clear();
   }
+  if (path_) {
+    path_->end();
+  }
 }
 
 double VirtualSubject::intended_press(const Presentation& seen, double dt) noexcept {
   switch (seen.instruction) {
     case Instruction::kHoldPlane:
+    case Instruction::kFollow:
       return oppose();
     case Instruction::kMatch:
       return match_bars(dt);
     case Instruction::kRecall:
+    case Instruction::kReproduce:
       return recall(seen);
     case Instruction::kRest:
     case Instruction::kWatch:
@@ -161,10 +182,14 @@ double VirtualSubject::match_bars(double dt) noexcept {
   return std::max(0.0, gain * ahead + correction_);
 }
 
-double VirtualSubject::recall(const Presentation& seen) const noexcept {
+double VirtualSubject::wrong_in_time(double progress) const noexcept {
   const double u =
-      std::clamp(seen.progress * ForceProfile::kKnots - 0.5, 0.0, ForceProfile::kKnots - 1.0);
-  const double error = warp_[static_cast<int>(u)];
+      std::clamp(progress * ForceProfile::kKnots - 0.5, 0.0, ForceProfile::kKnots - 1.0);
+  return warp_[static_cast<int>(u)];
+}
+
+double VirtualSubject::recall(const Presentation& seen) const noexcept {
+  const double error = wrong_in_time(seen.progress);
   double ahead = (muscle_lag_ + error) / pass_duration_;
   if (seen.self_paced) {
     // How far the hand comes within the muscle's lag follows from its own speed; what is wrong with

@@ -11,6 +11,7 @@
 #include "core/subject/hand_parameters.h"
 #include "core/subject/motor_noise.h"
 #include "core/subject/pacer.h"
+#include "core/subject/path_learner.h"
 #include "core/subject/perception.h"
 
 namespace haptrial::subject {
@@ -23,9 +24,11 @@ class VirtualSubject final : public stimulus::Observer {
   /// @param hand  outlives the subject.
   /// @param step  servo period > 0 [s]
   /// @param pace  how the subject moves where it sets its own pace; without, it waits there
+  /// @param path  how it learns paths; without, it learns none
   VirtualSubject(const SubjectParameters& person, const HandParameters& hand_parameters,
                  HandModel& hand, std::uint64_t seed, double step,
-                 const std::optional<PaceParameters>& pace = std::nullopt);
+                 const std::optional<PaceParameters>& pace = std::nullopt,
+                 const std::optional<PathParameters>& path = std::nullopt);
 
   void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
                double dt) noexcept override;
@@ -45,6 +48,7 @@ class VirtualSubject final : public stimulus::Observer {
   void begin_pass(const stimulus::Presentation& seen) noexcept;
   void gather(const stimulus::Presentation& seen, const Sensed& now) noexcept;
   void end_pass() noexcept;
+  double wrong_in_time(double progress) const noexcept;
   double intended_press(const stimulus::Presentation& seen, double dt) noexcept;
   double match_bars(double dt) noexcept;
   double oppose() const noexcept;
@@ -60,6 +64,7 @@ class VirtualSubject final : public stimulus::Observer {
   RandomStream random_;
   MotorNoise motor_;
   std::optional<Pacer> pacer_;
+  std::optional<PathLearner> path_;
   BarCalibration bar_;
   ForceMemory memory_;
   Exposure exposure_;

@@ -45,6 +45,11 @@ bool follows_curve(Table& root) {
   return guidance.has("kind") && guidance.choice("kind", {"trajectory", "curve"}) == "curve";
 }
 
+bool recalls_path(Table& root) {
+  Table guidance = root.table("guidance");
+  return guidance.has("recall") && guidance.choice("recall", {"guided", "free"}) == "free";
+}
+
 }  // namespace
 
 CurveAnalysis read_curve_analysis(Table& root, bool fresh) {
@@ -52,6 +57,7 @@ CurveAnalysis read_curve_analysis(Table& root, bool fresh) {
   CurveAnalysis found{analysis::read_score_parameters(analysis), {}};
   found.plan = analysis::read_analysis_plan(analysis, nameable(conditions_of(root)));
   found.scoring.over_path = follows_curve(root);
+  found.scoring.free_path = recalls_path(root);
   if (fresh) {
     reject_empty_score(analysis, found.scoring);
   }

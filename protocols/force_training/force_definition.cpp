@@ -63,6 +63,9 @@ void check_together(Table& root, const ForceDefinition& d) {
     guidance.reject("force_limit", fmt::format("{}", d.guidance.force_limit),
                     fmt::format("at most envelope.max_force, {} [N]", d.envelope.max_force));
   }
+  if (d.guidance.kind == Guidance::kCurve && (d.shows_expert() || d.guidance.free_recall)) {
+    guidance.reject("kind", "'curve' with an expert or a free recall", "trajectory");
+  }
   check_path(root, d);
 }
 
@@ -134,6 +137,11 @@ ForceDefinition read_force_definition(Table& root, std::string_view file_name,
     Table pace = root.table("pace");
     d.pace.emplace(pace);
   }
+  if (d.guidance.free_recall) {
+    Table path_memory = root.table("path_memory");
+    d.paths.emplace(path_memory);
+  }
+  d.guidance.tutoring = d.tutoring;
   if (folder != nullptr && !d.trajectory.from.empty()) {
     d.trajectory.points = recorded_path(d.trajectory.from, *folder);
   }
@@ -176,6 +184,10 @@ std::vector<std::string> ForceDefinition::description() const {
     lines.push_back(std::move(line));
   }
   return lines;
+}
+
+bool ForceDefinition::shows_expert() const {
+  return std::any_of(design.conditions.begin(), design.conditions.end(), has_expert);
 }
 
 std::vector<std::string> ForceDefinition::margins() const { return margins_of(guidance); }

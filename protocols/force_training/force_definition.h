@@ -7,6 +7,7 @@
 
 #include "core/stimulus/stimulus.h"
 #include "core/subject/pacer.h"
+#include "core/subject/path_learner.h"
 #include "core/subject/subject_parameters.h"
 #include "protocols/definition/definition.h"
 #include "protocols/force_training/passes/trajectory_pass.h"
@@ -27,8 +28,12 @@ struct ForceDefinition : Definition {
   stimulus::ForcePatternParameters force_pattern;
   GuidanceParameters guidance;
   subject::Population population;
-  std::optional<subject::PaceHabits> pace;  // where participants set their own
-  double stimulus_rate{1000.0};             // [Hz]
+  std::optional<subject::PaceHabits> pace;   // where participants set their own
+  std::optional<subject::PathHabits> paths;  // where the test is free
+  double stimulus_rate{1000.0};              // [Hz]
+
+  /// Whether a condition of training has an expert.
+  bool shows_expert() const;
 
   std::vector<std::string> description() const override;
   std::vector<std::string> margins() const override;

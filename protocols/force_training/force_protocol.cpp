@@ -27,7 +27,9 @@ std::optional<record::Phase> phase_of(const std::string& name) {
 class ForceTraining final : public Protocol {
  public:
   std::string_view name() const override { return kForceTraining; }
-  std::vector<std::string> virtual_tables() const override { return {"subject", "pace"}; }
+  std::vector<std::string> virtual_tables() const override {
+    return {"subject", "pace", "path_memory"};
+  }
   std::unique_ptr<Definition> read(Table& root, std::string_view file_name,
                                    const std::filesystem::path* folder) const override {
     return std::make_unique<ForceDefinition>(read_force_definition(root, file_name, folder));

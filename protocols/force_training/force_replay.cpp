@@ -150,7 +150,14 @@ ForceReplay::Pass ForceReplay::read(const record::SessionReader& reader,
   const stimulus::Stimulus stimulus = stimulus_of(reader, row);
   const auto rules =
       protocols::make_pass(row.condition, row.phase, stimulus, definition_.guidance, row.block);
-  pass.seen = protocols::presentations(*rules, samples, reader.info().rate);
+  std::vector<record::TutoringRow> expert;
+  if (definition_.shows_expert()) {
+    expert = reader.rows<record::TutoringRow>();
+    std::erase_if(expert, [&row](const record::TutoringRow& r) {
+      return r.sequence < row.first_sample || r.sequence > row.last_sample;
+    });
+  }
+  pass.seen = protocols::presentations(*rules, samples, reader.info().rate, expert);
   pass.path = stimulus.path.points();
   render::ForceCurves& curves = pass.curves;
   bool ran = false;

@@ -12,7 +12,8 @@ ForceTrials::ForceTrials(const ForceDefinition& definition, const SessionPlace& 
     : d_(definition),
       place_(place),
       plan_(plan_trials(d_.design, place.participant, place.seed, place.session_seed)),
-      pictures_(d_.display, place) {}
+      pictures_(d_.display, place),
+      expert_(d_.shows_expert() ? std::make_unique<ExpertLog>() : nullptr) {}
 
 std::span<const record::Phase> ForceTrials::phases() const {
   static constexpr std::array kPhases{record::Phase::kTraining, record::Phase::kTest};
@@ -31,6 +32,17 @@ std::vector<stimulus::Observer*> ForceTrials::observers() {
   return all;
 }
 
+record::TableList ForceTrials::tables() const {
+  return expert_ ? record::TableList{&record::table_of<record::TutoringRow>()}
+                 : record::TableList{};
+}
+
+void ForceTrials::empty_logs(SessionFile& file) {
+  if (expert_) {
+    expert_->flush([&file](std::span<const record::TutoringRow> rows) { file.add(rows); });
+  }
+}
+
 void ForceTrials::prepare(const PlannedTrial& trial, SessionFile& file) {
   if (!stimulus_ || stimulus_seed_ != trial.stimulus_seed) {
     stimulus_ = stimulus::make_stimulus(d_.trajectory, d_.force_pattern, trial.stimulus_seed);
@@ -46,6 +58,9 @@ MakeDrawing ForceTrials::drawing() { return path_drawing(d_.display, stimulus_->
 
 Pass& ForceTrials::make_pass(PlannedTrial& trial, const record::Phase& phase) {
   pass_ = protocols::make_pass(trial.condition, phase, *stimulus_, d_.guidance, trial.block);
+  if (expert_) {
+    pass_->record_expert(*expert_);
+  }
   return *pass_;
 }
 

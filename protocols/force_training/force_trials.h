@@ -23,6 +23,10 @@ class ForceTrials final : public Trials {
   std::span<const record::Phase> phases() const override;
   std::unique_ptr<Rig> virtual_rig() const override;
   std::vector<stimulus::Observer*> observers() override;
+  /// What an expert did, if there is one.
+  record::TableList tables() const override;
+  void empty_logs(SessionFile& file) override;
+  std::uint64_t dropped() const override { return expert_ ? expert_->dropped() : 0; }
   void prepare(const PlannedTrial& trial, SessionFile& file) override;
   MakeDrawing drawing() override;
   Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) override;
@@ -40,6 +44,7 @@ class ForceTrials final : public Trials {
   PassPictures pictures_;
   std::optional<stimulus::Stimulus> stimulus_;
   std::uint64_t stimulus_seed_{0};
+  std::unique_ptr<ExpertLog> expert_;  // null without one
   std::unique_ptr<TrajectoryPass> pass_;
 };
 

@@ -27,8 +27,12 @@ VirtualRig::VirtualRig(const ForceDefinition& d, std::uint64_t session_seed)
   if (d.pace) {
     pace = d.pace->draw(seed);
   }
+  std::optional<subject::PathParameters> path;
+  if (d.paths) {
+    path = d.paths->draw(seed);
+  }
   subject_ = std::make_unique<subject::VirtualSubject>(d.population.draw(seed), d.hand, *hand_,
-                                                       seed, 1.0 / d.rate, pace);
+                                                       seed, 1.0 / d.rate, pace, path);
 }
 
 }  // namespace haptrial::protocols

@@ -21,7 +21,13 @@ class TutoredTrials final : public Trials {
         options_(options),
         from_(tutor.from),
         file_(tutor.file.filename().string()),
-        motion_(read_model(tutor)) {}
+        motion_(read_model(tutor)) {
+    for (const record::TableDescription* table : inner_->tables()) {
+      if (table == &record::table_of<record::TutoringRow>()) {
+        throw InputError("--tutor: conditions of the definition have an expert of their own");
+      }
+    }
+  }
 
   Extent extent(int most) const override { return inner_->extent(most); }
   std::optional<PlannedTrial> next(const Outcome* last) override { return inner_->next(last); }

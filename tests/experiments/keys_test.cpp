@@ -50,19 +50,22 @@ TEST(KeysTest, TheCommandPrintsOneProtocolOrAll) {
   EXPECT_THAT(none.errors, HasSubstr("PROTOCOL is 'nothing'; allowed: force_training"));
 }
 
-std::vector<std::string> parts_of(const std::string& path) {
-  std::vector<std::string> parts;
-  std::istringstream in(path);
-  for (std::string part; std::getline(in, part, '.');) {
-    parts.push_back(part);
+const std::vector<std::string>& parts_of(const std::string& path) {
+  static std::map<std::string, std::vector<std::string>> known;  // asked for again and again
+  const auto [found, is_new] = known.try_emplace(path);
+  if (is_new) {
+    std::istringstream in(path);
+    for (std::string part; std::getline(in, part, '.');) {
+      found->second.push_back(part);
+    }
   }
-  return parts;
+  return found->second;
 }
 
 /// Whether a path of a definition is that of a key, or of what a key holds.
 bool is_key(const std::string& path, const KnownKey& key) {
-  const auto found = parts_of(path);
-  const auto known = parts_of(key.path());
+  const auto& found = parts_of(path);
+  const auto& known = parts_of(key.path());
   if (known.size() > found.size()) {
     return false;
   }

@@ -54,6 +54,7 @@ Document study_report(const StudyResult& study, const std::vector<Drawing>& draw
   add_design(document, study);
   add_recall(document, study, drawings);
   add_tests(document, study);
+  add_path(document, study);
   add_learning(document, study, drawings);
   add_alignments(document, study, drawings);
   add_quality(document, study, drawings);

@@ -13,6 +13,12 @@ namespace haptrial::analysis {
 void add_design(Document& document, const StudyResult& study);
 void add_recall(Document& document, const StudyResult& study, const std::vector<Drawing>& drawings);
 void add_tests(Document& document, const StudyResult& study);
+/// Tests with participants as the unit. @param what  was measured, "Recall error"
+void add_participants(Document& document, const StudyStatistics& statistics,
+                      const std::string& what);
+/// How well paths were recalled, and how far led hands kept to the expert's; nothing where none
+/// were.
+void add_path(Document& document, const StudyResult& study);
 void add_mixed(Document& document, const StudyStatistics& statistics);
 void add_learning(Document& document, const StudyResult& study,
                   const std::vector<Drawing>& drawings);

@@ -22,7 +22,7 @@ std::string mean_of(const StudyStatistics& s, const std::string& side) {
 }
 
 /// As journals want a planned test, in one sentence.
-std::string sentence(const StudyStatistics& s, const SideTest& test) {
+std::string sentence(const StudyStatistics& s, const SideTest& test, const std::string& what) {
   constexpr double kAlpha = 0.05;
   const auto& [a, b, tail] = test.sides;
   if (!test.t || !test.holm) {
@@ -32,7 +32,7 @@ std::string sentence(const StudyStatistics& s, const SideTest& test) {
   const char* direction = tail == Tail::kLess      ? "lower"
                           : tail == Tail::kGreater ? "higher"
                                                    : "different";
-  return fmt::format("Recall error was {}significantly {} after {}{} {} after {}{}: {}, {} = {}.",
+  return fmt::format("{} was {}significantly {} after {}{} {} after {}{}: {}, {} = {}.", what,
                      *test.holm < kAlpha ? "" : "not ", direction, a, mean_of(s, a),
                      tail == Tail::kTwoSided ? "and" : "than", b, mean_of(s, b), side_result(test),
                      test.paired ? "d_z" : "d", effect(test.size));
@@ -133,7 +133,9 @@ void add_repeated(Document& document, const StudyStatistics& s) {
       s.generalized_eta ? fmt::format(" Generalized η² = {:.2g}.", *s.generalized_eta) : ""));
 }
 
-void add_participants(Document& document, const StudyStatistics& s) {
+}  // namespace
+
+void add_participants(Document& document, const StudyStatistics& s, const std::string& what) {
   document.subheading("Participants as the unit");
   document.paragraph(
       "Each participant gives one mean for each condition, so that trials of one participant are "
@@ -154,7 +156,7 @@ void add_participants(Document& document, const StudyStatistics& s) {
     document.paragraph("No test was planned.");
   }
   for (const SideTest& test : s.tests.planned.tests) {
-    document.paragraph(sentence(s, test));
+    document.paragraph(sentence(s, test, what));
   }
   add_family(document, s.tests.planned, "Planned test");
   for (const TestFamily& family : s.tests.families) {
@@ -169,6 +171,8 @@ void add_participants(Document& document, const StudyStatistics& s) {
       "are "
       "printed for 30 participants or more: with fewer they are too narrow.");
 }
+
+namespace {
 
 void add_published(Document& document, const StudyStatistics& s) {
   document.subheading("As published (Morris 2006, §4.4): pooled trials");
@@ -198,7 +202,7 @@ void add_published(Document& document, const StudyStatistics& s) {
 
 void add_tests(Document& document, const StudyResult& study) {
   document.heading("Analyses");
-  add_participants(document, study.statistics);
+  add_participants(document, study.statistics, "Recall error");
   add_mixed(document, study.statistics);
   add_published(document, study.statistics);
 }

@@ -311,6 +311,11 @@ std::string statistics_json(const StudyResult& study) {
   root["mixed_model"] = mixed_model(s.mixed);
   root["published"] = published(s);
   root["table_1"] = table_1(s);
+  if (study.path) {  // [mm]
+    root["path"] = {{"conditions", conditions(*study.path)},
+                    {"participants_as_unit", to_json(study.path->tests)},
+                    {"repeated_measures", repeated(*study.path)}};
+  }
   root["learning"] = learning_json(s);
   root["blocks"] = blocks(s);
   root["change_per_block"] = to_json(s.slope);

@@ -17,6 +17,8 @@ struct ScoreParameters {
   /// time: for participants who set their own pace. Not a key: it follows from the guidance of the
   /// definition.
   bool over_path{false};
+  /// The test leaves the hand free, so that the path is a part of what is recalled. Not a key.
+  bool free_path{false};
   int samples{1000};         // of the common time base, 2 to 10,000
   double filter_width{0.1};  // box filter on the applied force, 0 to 10 [s]
   AlignmentOptions alignment;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -27,6 +28,18 @@ const std::string& quality_heading() {
     return names + ",flags";
   }();
   return heading;
+}
+
+/// Of recalls of a path, which other studies do not have.
+constexpr std::string_view kPath = ",path_error,kept";
+
+bool has_paths(std::span<const TrialScore> scores) {
+  return std::any_of(scores.begin(), scores.end(),
+                     [](const TrialScore& s) { return s.path_error || s.kept; });
+}
+
+std::string cell(const std::optional<double>& value) {
+  return value ? fmt::format(",{}", *value) : std::string(",");
 }
 
 bool has_columns(std::span<const std::string> factors) { return factors.size() > 1; }
@@ -73,6 +86,11 @@ class Reader {
       rest_.remove_prefix(quality_heading().size());
       columns_ += quality_columns().size() + 1;
     }
+    has_path_ = has_quality_ && rest_.starts_with(kPath);
+    if (has_path_) {
+      rest_.remove_prefix(kPath.size());
+      columns_ += 2;
+    }
     if (!rest_.starts_with('\n')) {
       fail(kNoHeading);
     }
@@ -101,7 +119,11 @@ class Reader {
       for (const QualityColumn& column : quality_columns()) {
         column.field(s.quality) = optional_number(',');
       }
-      text('\n');  // the flags follow from the numbers
+      text(has_path_ ? ',' : '\n');  // the flags follow from the numbers
+    }
+    if (has_path_) {
+      s.path_error = optional_number(',');
+      s.kept = optional_number('\n');
     }
     return s;
   }
@@ -165,6 +187,7 @@ class Reader {
   std::size_t columns_{kFixedColumns};
   std::size_t levels_{0};
   bool has_quality_{false};
+  bool has_path_{false};
 };
 
 }  // namespace
@@ -186,7 +209,8 @@ std::string scores_csv(std::span<const TrialScore> scores, std::span<const std::
     text += field(factor) + ",";
   }
   text += kScore;
-  text += quality_heading() + "\n";
+  const bool paths = has_paths(scores);
+  text += quality_heading() + std::string(paths ? kPath : "") + "\n";
   for (const auto& s : scores) {
     text += fmt::format("{},{},{},{},{},", field(s.subject), s.trial, s.block, s.repetition,
                         field(s.condition));
@@ -196,10 +220,10 @@ std::string scores_csv(std::span<const TrialScore> scores, std::span<const std::
     text += fmt::format("{},{},{},{},{}", s.score, s.alignment_cost, s.rms_force, s.rms_slope,
                         s.rms_unaligned);
     for (const QualityColumn& column : quality_columns()) {
-      const std::optional<double>& value = column.of(s.quality);
-      text += value ? fmt::format(",{}", *value) : std::string(",");
+      text += cell(column.of(s.quality));
     }
-    text += fmt::format(",{}\n", field(flag_names(s.quality)));
+    text += "," + field(flag_names(s.quality));
+    text += (paths ? cell(s.path_error) + cell(s.kept) : "") + "\n";
   }
   return text;
 }

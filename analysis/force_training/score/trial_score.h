@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,11 @@ struct TrialScore {
   std::vector<std::string> levels{};
 
   TrialQuality quality{};  // how it was recorded
+
+  // Where an expert showed a path that was recalled without guidance; root mean squares over the
+  // run of distances in the plane at equal times.
+  std::optional<double> path_error{};  // of the recall from the path [m]
+  std::optional<double> kept{};        // of the led hand from the expert's, in training [m]
 };
 
 }  // namespace haptrial::analysis

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -16,6 +18,7 @@
 #include "core/record/read/check_phases.h"
 #include "core/record/read/even_rows.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/rows/tutoring_row.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -71,6 +74,8 @@ PassTracking tracking_at_own_pace(const std::vector<Sample>& run, const PathPlac
   }
   return result;
 }
+
+double in_plane(const Eigen::Vector3d& way) { return way.x() * way.x() + way.z() * way.z(); }
 
 PassTracking tracking_of(const std::vector<Sample>& run, const IdealPath& ideal, double rate) {
   std::vector<double> times;
@@ -134,6 +139,9 @@ class Extraction {
     result_.summary.info = reader.info();
     paths_ = ideal_paths(reader, result_.stimulus);
     counted_ = counted_passes(passes_);
+    if (parameters.free_path && reader.has(record::table_of<record::TutoringRow>())) {
+      expert_ = reader.rows<record::TutoringRow>();
+    }
   }
 
   SessionRecalls run(int jobs) {
@@ -162,10 +170,13 @@ class Extraction {
     }
     const auto samples = run_samples(reader_, pass);
     if (samples) {
-      track(pass, *samples);
+      if (is_guided(pass)) {
+        track(pass, *samples);
+      }
       quality_.add(pass, *samples);
     }
     if (!test) {
+      kept_[pass.trial] = kept_to(pass);
       return;
     }
     if (counted_.at(pass.trial) != i) {
@@ -183,7 +194,11 @@ class Extraction {
       return;
     }
     result_.scored.push_back({trial_of(pass), i});
-    describe_path(pass, result_.scored.back().score.quality);
+    if (parameters_.free_path) {
+      add_path(pass, *samples, result_.scored.back().score);
+    } else {
+      describe_path(pass, result_.scored.back().score.quality);
+    }
     curves_.push_back(*curves);
   }
 
@@ -199,6 +214,58 @@ class Extraction {
       }
     }
     return !tried;
+  }
+
+  std::span<const record::TutoringRow> expert_in(const PassRow& pass) const {
+    const auto at = [this](std::uint64_t sequence) {
+      return std::ranges::lower_bound(expert_, sequence, {}, &record::TutoringRow::sequence) -
+             expert_.begin();
+    };
+    const auto first = at(pass.first_sample);
+    return std::span(expert_).subspan(static_cast<std::size_t>(first),
+                                      static_cast<std::size_t>(at(pass.last_sample + 1) - first));
+  }
+
+  /// Whether the device led the hand along the path.
+  bool is_guided(const PassRow& pass) const {
+    return !parameters_.free_path || (pass.phase != Phase::kTest && expert_in(pass).empty());
+  }
+
+  /// How far the led hand was from the expert's; nothing where it was not led.
+  std::optional<double> kept_to(const PassRow& pass) const {
+    constexpr double kLed = 0.99;  // of the authority: not while it is handed over
+    double squares = 0.0;
+    std::size_t count = 0;
+    const auto rows = expert_in(pass);
+    if (rows.empty()) {
+      return std::nullopt;
+    }
+    const auto samples = pass_samples(reader_, rows.front().sequence,
+                                      rows.back().sequence - rows.front().sequence + 1);
+    auto sample = samples.begin();
+    for (const record::TutoringRow& row : rows) {
+      sample = std::find_if(sample, samples.end(),
+                            [&](const Sample& s) { return s.sequence >= row.sequence; });
+      if (sample == samples.end()) {
+        break;
+      }
+      if (row.lead >= kLed && sample->sequence == row.sequence) {
+        squares += in_plane(sample->position - row.position);
+        ++count;
+      }
+    }
+    return count > 0 ? std::optional(std::sqrt(squares / static_cast<double>(count)))
+                     : std::nullopt;
+  }
+
+  void add_path(const PassRow& pass, const std::vector<Sample>& run, TrialScore& score) const {
+    if (const auto path = paths_.find(pass.block); path != paths_.end()) {
+      const PassTracking found = tracking_of(run, path->second, reader_.info().rate);
+      score.path_error = std::sqrt(found.squares_in_plane / static_cast<double>(found.samples));
+    }
+    if (const auto kept = kept_.find(pass.trial); kept != kept_.end()) {
+      score.kept = kept->second;
+    }
   }
 
   void track(const PassRow& pass, const std::vector<Sample>& samples) {
@@ -294,6 +361,8 @@ class Extraction {
   std::map<std::int32_t, std::unique_ptr<PathPlaces>> places_;  // by block
   std::map<std::int32_t, IdealPath> paths_;                     // by block
   std::map<std::int32_t, std::size_t> counted_;                 // row of the test pass, by trial
+  std::vector<record::TutoringRow> expert_;                     // ticks with an expert, in order
+  std::map<std::int32_t, std::optional<double>> kept_;          // by trial
   SessionQuality quality_;
   std::vector<RecallCurves> curves_;  // one for each of result_.scored
   SessionRecalls result_;

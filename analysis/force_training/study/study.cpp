@@ -8,6 +8,7 @@
 
 #include "analysis/force_training/score/path_places.h"
 #include "analysis/force_training/score/score.h"
+#include "analysis/force_training/statistics/path_statistics.h"
 #include "analysis/force_training/study/quality_summary.h"
 #include "analysis/force_training/study/recall_picture.h"
 #include "analysis/force_training/study/session_recalls.h"
@@ -112,6 +113,7 @@ StudyResult analyze_study(const std::vector<fs::path>& session_files,
     tracking.insert(tracking.end(), recalls.tracking.begin(), recalls.tracking.end());
   }
   study.statistics = study_statistics(study.scores, questions_of(study.factors, plan, jobs));
+  study.path = path_statistics(study.scores, questions_of(study.factors, plan, jobs));
   study.tracking = summarize_tracking("all participants", tracking);
   study.recalls = pictures(sessions, study.scores, parameters);
   study.stimulus = sessions.front().recalls.stimulus;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,8 @@ struct StudyResult {
   std::vector<std::string> factors{"condition"};  // names; each score has a level of each
   std::vector<Exclusion> exclusions;              // by subject, then trial
   StudyStatistics statistics;
+  /// Of path_error [mm] in place of the score, where the path was recalled, too.
+  std::optional<StudyStatistics> path{};
   TrackingSummary tracking;                                     // over all participants
   std::vector<RecallPicture> recalls;                           // best, median, worst
   std::vector<record::StimulusRow> stimulus;                    // first block of the first session

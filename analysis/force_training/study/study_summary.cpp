@@ -28,6 +28,16 @@ std::vector<std::string> summary_lines(const StudyResult& study) {
   for (const auto& more : {effect_lines(statistics.tests), planned_lines(statistics.tests)}) {
     lines.insert(lines.end(), more.begin(), more.end());
   }
+  if (study.path) {
+    for (const ConditionSummary& s : study.path->summaries) {
+      lines.push_back(fmt::format(
+          "{}: mean path error {} mm", capitalized(s.condition),
+          s.participants ? mean_with_interval(s.participants) : quantity(s.mean, 1.0, "")));
+    }
+    for (const std::string& line : planned_lines(study.path->tests)) {
+      lines.push_back("Path error, " + line);
+    }
+  }
   return lines;
 }
 

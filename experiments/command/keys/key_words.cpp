@@ -562,6 +562,8 @@ guidance.settle_distance | | the hand has arrived when it is this near the start
 guidance.wait | | time that the hand must stay there
 guidance.wait_timeout | | the pass is aborted after this time
 guidance.recovery | | time without force after an aborted pass
+guidance.recall | guided | whether the hand is led in the test, or finds path and force itself
+guidance.pause_beyond | | a playback waits for a hand that is farther from the expert's
 guidance.run_timeout | | longest duration of a run at one's own pace
 guidance.trajectory.stiffness | | of the spring to the trajectory
 guidance.trajectory.damping | | along it
@@ -571,6 +573,10 @@ guidance.curve.step | | between neighbouring points of the curve
 guidance.curve.reach | | within which the next point is looked for
 guidance.curve.margin | | by which another branch must be nearer
 recording.stimulus_rate | | samples of the stored target curves
+path_memory.visual_noise | needed | of a place that was seen
+path_memory.haptic_noise | needed | of a place to which the hand was led
+path_memory.forgetting | needed | drift between passes
+path_memory.correlation | needed | time over which errors are alike
 pace.pace | needed | along a path of the reference curvature
 pace.variability | needed | spread of the intended speed within a pass
 pace.correlation | needed | time over which it is alike

@@ -1,5 +1,6 @@
 #include "protocols/force_training/passes/recorded_pass.h"
 
+#include "protocols/force_training/passes/free_recall.h"
 #include "protocols/force_training/passes/recall.h"
 #include "protocols/force_training/passes/training_pass.h"
 
@@ -9,6 +10,9 @@ std::unique_ptr<TrajectoryPass> make_pass(const std::string& condition, record::
                                           const stimulus::Stimulus& stimulus,
                                           const GuidanceParameters& parameters,
                                           std::int32_t block) {
+  if (phase == record::Phase::kTest && parameters.free_recall) {
+    return std::make_unique<FreeRecall>(stimulus, parameters, block);
+  }
   if (phase == record::Phase::kTest) {
     return std::make_unique<RecallTest>(stimulus, parameters, block);
   }
@@ -17,7 +21,8 @@ std::unique_ptr<TrajectoryPass> make_pass(const std::string& condition, record::
 
 std::vector<stimulus::Presentation> presentations(const TrajectoryPass& pass,
                                                   std::span<const record::Sample> samples,
-                                                  double rate) {
+                                                  double rate,
+                                                  std::span<const record::TutoringRow> expert) {
   std::vector<stimulus::Presentation> seen;
   seen.reserve(samples.size());
   double along = 0.0;
@@ -27,6 +32,12 @@ std::vector<stimulus::Presentation> presentations(const TrajectoryPass& pass,
     const bool runs = s.stage == record::Stage::kRun;
     along = runs && running ? along + 1.0 / rate : 0.0;  // the run's first tick is its time 0
     running = runs;
+    while (!expert.empty() && expert.front().sequence < s.sequence) {
+      expert = expert.subspan(1);
+    }
+    if (!expert.empty() && expert.front().sequence == s.sequence) {
+      along = expert.front().time;
+    }
     PassMoment moment{s.position, s.stage, along, s.target_force, s.applied_force, s.saturated};
     if (runs && guide) {
       guide->follow({s.position, s.velocity});

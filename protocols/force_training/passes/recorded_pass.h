@@ -17,8 +17,10 @@ std::unique_ptr<TrajectoryPass> make_pass(const std::string& condition, record::
 /// What was presented at each sample of a recorded pass, by the rules of the pass itself.
 /// @param samples  of this pass, in order, none missing.
 /// @param rate     of the servo loop [Hz]
+/// @param expert   the rows of these samples where there was an expert
 std::vector<stimulus::Presentation> presentations(const TrajectoryPass& pass,
                                                   std::span<const record::Sample> samples,
-                                                  double rate);
+                                                  double rate,
+                                                  std::span<const record::TutoringRow> expert = {});
 
 }  // namespace haptrial::protocols

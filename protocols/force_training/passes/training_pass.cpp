@@ -3,14 +3,21 @@
 #include <stdexcept>
 
 #include "protocols/force_training/passes/haptic_training.h"
+#include "protocols/force_training/passes/playback_training.h"
 #include "protocols/force_training/passes/visual_training.h"
 #include "protocols/force_training/passes/visuohaptic_training.h"
+#include "protocols/force_training/passes/watching_training.h"
 
 namespace haptrial::protocols {
 
 const std::vector<std::string>& training_conditions() {
-  static const std::vector<std::string> conditions{"haptic", "visual", "visuohaptic"};
+  static const std::vector<std::string> conditions{"haptic",  "visual",  "visuohaptic",
+                                                   kWatching, kPlayback, kWatchedPlayback};
   return conditions;
+}
+
+bool has_expert(const std::string& condition) {
+  return condition == kWatching || condition == kPlayback || condition == kWatchedPlayback;
 }
 
 std::unique_ptr<TrajectoryPass> make_training_pass(const std::string& condition,
@@ -25,6 +32,13 @@ std::unique_ptr<TrajectoryPass> make_training_pass(const std::string& condition,
   }
   if (condition == "visuohaptic") {
     return std::make_unique<VisuohapticTraining>(stimulus, parameters, block);
+  }
+  if (condition == kWatching) {
+    return std::make_unique<WatchingTraining>(stimulus, parameters, block);
+  }
+  if (has_expert(condition)) {
+    return std::make_unique<PlaybackTraining>(stimulus, parameters, block,
+                                              condition == kWatchedPlayback);
   }
   throw std::invalid_argument("no training condition '" + condition + "'");
 }

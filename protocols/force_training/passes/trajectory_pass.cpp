@@ -33,6 +33,8 @@ GuidanceParameters read_guidance_parameters(Table& table) {
   p.wait = table.number("wait", {0.0, 60.0}, "s");
   p.wait_timeout = table.number("wait_timeout", {p.wait, 600.0, true}, "s");
   p.recovery = table.number("recovery", {0.0, 600.0}, "s");
+  p.free_recall = table.has("recall") && table.choice("recall", {"guided", "free"}) == "free";
+  p.pause_beyond = table.number_or("pause_beyond", p.pause_beyond, {0.001, 1.0}, "m");
   if (curve) {
     p.kind = Guidance::kCurve;
     p.run_timeout = table.number("run_timeout", {0.0, 3600.0, true}, "s");
@@ -51,7 +53,8 @@ TrajectoryPass::TrajectoryPass(const stimulus::Stimulus& stimulus,
       trajectory_damping_(parameters.trajectory.damping, parameters.loop),
       plane_damping_(parameters.plane.damping, parameters.loop),
       block_(block),
-      guide_(curve_guide()) {}
+      guide_(curve_guide()),
+      handover_(parameters.tutoring.ramp) {}
 
 std::optional<CurveGuide> TrajectoryPass::curve_guide() const {
   if (parameters_.kind != Guidance::kCurve) {
@@ -69,8 +72,12 @@ void TrajectoryPass::enter(Stage stage) noexcept {
     const double gentle = 15.0 / 8.0 * (start - target_).norm() / kShortestMove;
     move_ = control::MinimumJerkMove(target_, start,
                                      std::clamp(gentle, 1e-9, parameters_.approach_speed));
-  } else if (stage == Stage::kRun && guide_) {
-    guide_->start();
+  } else if (stage == Stage::kRun) {
+    along_ = 0.0;
+    handover_ = control::Handover(parameters_.tutoring.ramp);
+    if (guide_) {
+      guide_->start();
+    }
   }
 }
 
@@ -119,15 +126,24 @@ void TrajectoryPass::settle(const PointState& tool, double dt) noexcept {
 }
 
 void TrajectoryPass::end_run_if_over() noexcept {
-  const bool over = guide_ ? guide_->at_end() : time_ >= stimulus_.path.duration();
+  const double come = shows_expert() ? along_ : time_;
+  const bool over = guide_ ? guide_->at_end() : come >= stimulus_.path.duration();
   if (over) {
     enter(Stage::kReturn);
-  } else if (guide_ && time_ >= parameters_.run_timeout) {
+  } else if ((guide_ || shows_expert()) && time_ >= longest_run()) {
     state_ = PassState::kAborted;
   }
 }
 
 PointState TrajectoryPass::run_target(const PointState& tool) noexcept {
+  if (run_lead() != RunLead::kGuided) {
+    if (!shows_expert()) {
+      along_ = time_;
+    } else if (time_ > 0.0 && !paused_) {
+      along_ += parameters_.tutoring.speed * dt_;
+    }
+    return released(tool);
+  }
   if (!guide_) {
     along_ = time_;
     PointState target = stimulus_.path.at(time_);
@@ -142,13 +158,87 @@ PointState TrajectoryPass::run_target(const PointState& tool) noexcept {
 
 PassOutput TrajectoryPass::tick(const Readings& readings, double dt) noexcept {
   const PointState& tool = readings[0].tool;
+  dt_ = dt;
+  paused_ = waits_for_hand(readings[0]);
   const PointState target = guide_target(tool, dt);
-  const PassOutput out = output(tool, target);
+  PassOutput out = output(tool, target);
   target_ = target.position;
+  if (stage_ == Stage::kRun && shows_expert()) {
+    play(out, tool);
+  }
+  if (stage_ == Stage::kRun && (run_lead() == RunLead::kPlayed || run_lead() == RunLead::kFree)) {
+    target_ = tool.position;  // the way back starts where the hand is
+  }
+  ++sequence_;
   if (stage_ == Stage::kRun && !plane_holds()) {
     target_.y() = tool.position.y();  // the return starts where the hand is
   }
   return out;
+}
+
+Eigen::Vector3d TrajectoryPass::expert_place(double progress) const noexcept {
+  return stimulus_.path.at(progress * stimulus_.path.duration()).position;
+}
+
+/// What the expert does: presses as hard as the pattern asks, so that the world pushes back.
+control::Partner TrajectoryPass::expert() const noexcept {
+  control::Partner expert;
+  expert.tool = stimulus_.path.at(along_);
+  expert.tool.velocity *= paused_ ? 0.0 : parameters_.tutoring.speed;
+  expert.force.y() = stimulus_.force.at(along_);
+  return expert;
+}
+
+/// A playback waits while a button of the handle is pressed, and for a hand that was left behind.
+bool TrajectoryPass::waits_for_hand(const device::DeviceReading& reading) const noexcept {
+  if (stage_ != Stage::kRun || run_lead() != RunLead::kPlayed) {
+    return false;
+  }
+  const Eigen::Vector3d away = stimulus_.path.at(along_).position - reading.tool.position;
+  return reading.buttons != 0 || std::hypot(away.x(), away.z()) > parameters_.pause_beyond;
+}
+
+double TrajectoryPass::longest_run() const noexcept {
+  const double played = stimulus_.path.duration() / parameters_.tutoring.speed;
+  return (guide_ ? 0.0 : played) + parameters_.run_timeout;
+}
+
+/// What the guide would give is faded out: its target goes over to where the tool is.
+PointState TrajectoryPass::released(const PointState& tool) noexcept {
+  handover_.ask(run_lead() == RunLead::kWatched ? 0.0 : 1.0);
+  const double share = handover_.step(dt_);
+  const Eigen::Vector3d& start = stimulus_.path.points().front();
+  PointState target{(1.0 - share) * start + share * tool.position, share * tool.velocity};
+  target.position.y() = start.y();
+  target.velocity.y() = 0.0;
+  return target;
+}
+
+/// What an expert's hand gives, in place of the push of the target force; a row of it.
+void TrajectoryPass::play(PassOutput& out, const PointState& tool) noexcept {
+  const control::Partner model = expert();
+  const double share = handover_.share();
+  Eigen::Vector3d played = Eigen::Vector3d::Zero();
+  if (run_lead() == RunLead::kPlayed) {
+    const control::TutoringGains& gains = parameters_.tutoring.gains;
+    const Eigen::Vector3d coupling = share * control::coupling_force(gains, model.tool, tool);
+    played = share * gains.force_share * model.force + coupling;
+    Eigen::Vector3d own = out.force;
+    own.y() *= 1.0 - share;
+    out.force = control::saturate(own + played, parameters_.force_limit);
+    out.saturated = longer(own + played, parameters_.force_limit);
+    out.applied_force = out.force.y();
+    const double stretch = (model.tool.position - tool.position).squaredNorm();
+    out.intent.push = out.force - Eigen::Vector3d(own.x(), 0.0, own.z()) - coupling;
+    out.intent.drive = model.tool.velocity;
+    out.intent.stored += 0.5 * share * gains.stiffness * stretch;
+    out.shown = presentation(
+        {tool.position, stage_, along_, out.target_force, out.applied_force, out.saturated});
+  }
+  if (log_ != nullptr) {
+    const double lead = run_lead() == RunLead::kPlayed ? share : 0.0;
+    log_->push({sequence_, along_, lead, model.tool.position, model.force, played});
+  }
 }
 
 /// After a run in which the hand was free along y it may be moving there: the plane's damper then

@@ -5,8 +5,12 @@
 #include "core/control/damping_governor.h"
 #include "core/control/minimum_jerk.h"
 #include "core/control/pd_controller.h"
+#include "core/control/tutoring/tutoring_law.h"
+#include "core/realtime/block_log.h"
+#include "core/record/rows/tutoring_row.h"
 #include "core/stimulus/presentation.h"
 #include "core/stimulus/stimulus.h"
+#include "protocols/definition/tutoring_options.h"
 #include "protocols/force_training/passes/curve_guide.h"
 #include "protocols/interface/pass.h"
 
@@ -33,10 +37,24 @@ struct GuidanceParameters {
   double wait{0.5};                           // at the start, without a break >= 0 [s]
   double wait_timeout{10.0};                  // then the pass is aborted > 0 [s]
   double recovery{3.0};                       // without force after an abort >= 0 [s]
-  double run_timeout{120.0};                  // at one's own pace; then it is aborted > 0 [s]
-  control::CurveFollowing curve{};            // at one's own pace
-  control::HandleLoop loop{};                 // what the damping has to be safe for
+  double run_timeout{120.0};  // at one's own pace, or beside a playback; then it is aborted > 0 [s]
+  control::CurveFollowing curve{};  // at one's own pace
+  control::HandleLoop loop{};       // what the damping has to be safe for
+  bool free_recall{false};          // nothing leads the hand in the test
+  double pause_beyond{0.03};        // a playback waits for a hand so far off > 0 [m]
+  TutoringOptions tutoring{};       // of a playback
 };
+
+/// What leads the hand while the path runs.
+enum class RunLead {
+  kGuided,   // the guide, along the path
+  kWatched,  // nothing: it is held at the start, and an expert is seen
+  kPlayed,   // an expert's hand: a spring of low gain, and the expert's forces
+  kFree,     // nothing
+};
+
+/// What an expert did, tick by tick.
+using ExpertLog = realtime::BlockLog<record::TutoringRow>;
 
 /// Reads a [guidance] table with its inner tables trajectory and plane, and curve where its `kind`
 /// is that; without a `kind` it is "trajectory".
@@ -67,6 +85,13 @@ class TrajectoryPass : public Pass {
   TrajectoryPass(const stimulus::Stimulus& stimulus, const GuidanceParameters& parameters,
                  std::int32_t block);
 
+  /// Where rows of the expert's run go; outlives the pass. Without it they are not kept.
+  void record_expert(ExpertLog& log) noexcept { log_ = &log; }
+
+  void begin(std::uint64_t sequence) noexcept final { sequence_ = sequence; }
+  bool wants_attention() noexcept final {
+    return log_ != nullptr && log_->size() > log_->capacity() / 2;
+  }
   PassOutput tick(const Readings& readings, double dt) noexcept final;
   PassState state() const noexcept final { return state_; }
   /// What the participant sees at an instant: tick() shows it, and a replay shows it again. Before
@@ -79,8 +104,12 @@ class TrajectoryPass : public Pass {
   /// During the run, the plane constraint holds the hand along y; where it does not, the device
   /// pushes the hand up with the target force. Outside the run the plane always holds.
   virtual bool plane_holds() const noexcept { return true; }
+  virtual RunLead run_lead() const noexcept { return RunLead::kGuided; }
   /// Completes what is seen during the run; tool, trajectory and progress are already there.
   virtual void present(stimulus::Presentation& presentation) const noexcept = 0;
+
+  /// Where the expert's tool is on the path. @param progress  0 to 1
+  Eigen::Vector3d expert_place(double progress) const noexcept;
 
  private:
   void enter(record::Stage stage) noexcept;
@@ -89,6 +118,14 @@ class TrajectoryPass : public Pass {
   void end_run_if_over() noexcept;
   PointState run_target(const PointState& tool) noexcept;
   double takes_hold() const noexcept;
+  bool shows_expert() const noexcept {
+    return run_lead() == RunLead::kWatched || run_lead() == RunLead::kPlayed;
+  }
+  bool waits_for_hand(const device::DeviceReading& reading) const noexcept;
+  control::Partner expert() const noexcept;
+  double longest_run() const noexcept;
+  PointState released(const PointState& tool) noexcept;
+  void play(PassOutput& out, const PointState& tool) noexcept;
   PassOutput output(const PointState& tool, const PointState& target) noexcept;
   device::ForceIntent intent(const PointState& target, const PointState& tool,
                              const Eigen::Vector3d& force, bool pushes) const noexcept;
@@ -108,6 +145,11 @@ class TrajectoryPass : public Pass {
   Eigen::Vector3d target_{Eigen::Vector3d::Zero()};  // where the guide was last [m]
   control::MinimumJerkMove move_;
   std::optional<CurveGuide> guide_;  // where the participant sets the pace
+  control::Handover handover_;       // from the guide to what leads the run
+  bool paused_{false};               // the expert waits
+  double dt_{0.0};
+  ExpertLog* log_{nullptr};
+  std::uint64_t sequence_{0};
 };
 
 }  // namespace haptrial::protocols
