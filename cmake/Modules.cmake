@@ -93,8 +93,10 @@ endfunction()
 # The console's page is built into the command.
 function(haptrial_console_page)
   set(html ${CMAKE_SOURCE_DIR}/experiments/console.html)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${html})
+  set(nerves ${CMAKE_SOURCE_DIR}/experiments/nerves.html)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${html} ${nerves})
   file(READ ${html} HAPTRIAL_CONSOLE_HTML)
+  file(READ ${nerves} HAPTRIAL_NERVES_HTML)
   configure_file(${CMAKE_SOURCE_DIR}/cmake/console_page.cpp.in ${CMAKE_BINARY_DIR}/console_page.cpp
                  @ONLY)
   target_sources(haptrial_console PRIVATE ${CMAKE_BINARY_DIR}/console_page.cpp)
@@ -232,11 +234,13 @@ function(haptrial_test_needs)
                                                 haptrial_base_files)  # solvers to compare with
   target_link_libraries(test_bone_anatomy PRIVATE haptrial_bone_data)
   target_link_libraries(test_bone_drill PRIVATE haptrial_test_references)
+  target_link_libraries(test_nerve_beside PRIVATE haptrial_sound)
   pkg_check_modules(harfbuzz REQUIRED IMPORTED_TARGET harfbuzz)
   set_property(TARGET PkgConfig::harfbuzz PROPERTY INTERFACE_COMPILE_OPTIONS "")
   target_link_libraries(test_render_flat PRIVATE PkgConfig::harfbuzz)
   target_link_libraries(test_render_gl PRIVATE haptrial_render_trial)
-  target_link_libraries(test_record PRIVATE haptrial_bone_record haptrial_record_trials)  # tables to try
+  target_link_libraries(test_record PRIVATE haptrial_bone_record haptrial_record_trials  # tables to try
+                                            haptrial_nerve_record)
   target_link_libraries(test_drilling_analysis PRIVATE haptrial_bone_data)
   target_link_libraries(test_exchange PRIVATE haptrial_force_score)
   target_link_libraries(test_contact_analysis PRIVATE haptrial_geometry_files haptrial_geometry_repair)

@@ -87,6 +87,11 @@ std::span<const float> Emg::step(const Artefacts& artefacts, std::size_t count) 
     if (common > 0.0 && i < artefacts.common.size()) {
       value += common * static_cast<double>(artefacts.common[i]);
     }
+    constexpr double kSpikeTime = 2.0;  // samples, over which a spike falls to 1/e
+    if (artefacts.spike != 0.0f) {
+      value +=
+          static_cast<double>(artefacts.spike) * std::exp(-static_cast<double>(i) / kSpikeTime);
+    }
     if (artefacts.stimulus && i < 2) {
       value += i == 0 ? p_.stimulus : -0.6 * p_.stimulus;
     }

@@ -18,12 +18,13 @@ struct EmgParameters {
   double unit{150e-6};      // peak of a discharge of middle strength [V]
   double drilling{20e-6};   // artefact while the burr turns, root mean square [V]
   double suction{8e-6};     // likewise
+  double spike{400e-6};     // artefact where either is switched on or off, peak [V]
   double stimulus{2e-3};    // artefact of a stimulus pulse, peak [V]
 };
 
 /// What was put into a signal: the truth that a detector is held against.
 struct Planted {
-  enum class Kind : std::uint8_t { kBurst, kTrain, kResponse } kind{Kind::kBurst};
+  enum class Kind : std::uint8_t { kBurst, kTrain, kResponse, kArtefact } kind{Kind::kBurst};
   std::uint64_t first{0};  // sample, from 0
   std::uint64_t last{0};
   double amplitude{0.0};  // peak [V]
@@ -50,6 +51,7 @@ class Emg {
     bool drilling{false};
     bool suction{false};
     bool stimulus{false};  // a pulse begins with the tick
+    float spike{0.0f};     // where something is switched: peak, as it reaches this muscle [V]
   };
   /// The samples of a tick [V]. @param count  of them, at most kMostSamples
   std::span<const float> step(const Artefacts& artefacts, std::size_t count) noexcept;

@@ -14,9 +14,13 @@ NerveMonitor::NerveMonitor(const MonitorParameters& parameters, std::size_t chan
   channels_.resize(channels);
   state_.resize(channels);
   for (std::size_t i = 0; i < channels; ++i) {
-    state_[i].threshold = p_.threshold;
+    set_threshold(i, p_.threshold);
     state_[i].frequency = p_.lowest_tone * std::pow(p_.tone_step, static_cast<double>(i));
   }
+}
+
+void NerveMonitor::set_threshold(std::size_t i, double threshold) noexcept {
+  channels_[i].base = state_[i].threshold = threshold;
 }
 
 std::uint64_t NerveMonitor::samples_of(double seconds) const noexcept {
@@ -55,7 +59,7 @@ void NerveMonitor::look_around(std::size_t i) noexcept {
   if (c.peak_at == 0 || at_ + 1 != c.peak_at + near) {
     return;
   }
-  bool everywhere = channels_.size() > 1;
+  bool everywhere = p_.artefact_filter && channels_.size() > 1;
   for (std::size_t other = 0; other < channels_.size(); ++other) {
     const std::uint64_t half = channels_[other].half;
     everywhere = everywhere && half > 0 && at_ + 1 - half <= 2 * near;
@@ -140,10 +144,10 @@ void NerveMonitor::adapt(std::size_t i) noexcept {
   const std::uint64_t quiet = heard ? at_ + 1 - c.crossed : at_;
   s.shown = heard && quiet <= samples_of(p_.shown_for);
   if (s.tone && at_ - c.tone_since >= samples_of(p_.rises_after)) {
-    s.threshold = std::min(p_.highest, 1.5 * s.threshold);
+    s.threshold = std::max(s.threshold, std::min(p_.highest, 1.5 * s.threshold));
     c.tone_since = at_;
   } else if (!c.open && quiet >= samples_of(p_.returns_after)) {
-    s.threshold = p_.threshold;
+    s.threshold = c.base;
   }
 }
 

@@ -22,6 +22,7 @@ struct MonitorParameters {
   double blanked{0.003};       // after a stimulus [s]
   double lowest_tone{400.0};   // of the first channel [Hz]
   double tone_step{1.25};      // from channel to channel, a factor
+  bool artefact_filter{true};  // off: every crossing is an event
 };
 
 /// A stretch above the threshold, or one that was taken for an artefact.
@@ -66,6 +67,9 @@ class NerveMonitor {
   /// One sample of every channel [V]. @param stimulus  a pulse begins with it
   void look(std::span<const float> samples, bool stimulus) noexcept;
 
+  /// From now on an event of the channel begins at this, and to this its threshold returns [V].
+  void set_threshold(std::size_t i, double threshold) noexcept;
+
   const ChannelState& channel(std::size_t i) const noexcept { return state_[i]; }
   std::size_t channels() const noexcept { return state_.size(); }
   std::uint64_t samples() const noexcept { return at_; }
@@ -76,6 +80,7 @@ class NerveMonitor {
  private:
   struct Channel {
     NerveEvent event;
+    double base{0.0};  // threshold in quiet [V]
     bool open{false};
     bool genuine{false};       // a crossing of the event was this channel's alone
     std::uint64_t half{0};     // last sample beyond half the threshold, plus 1

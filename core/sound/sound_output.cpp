@@ -17,8 +17,9 @@ namespace {
 }  // namespace
 
 SoundOutput::SoundOutput(SpectrumTable table, const ThinBone& thin, std::uint64_t seed,
-                         const std::string& device) try
+                         const std::string& device, Mix mix) try
     : sound_(std::move(table), thin, seed),
+      mix_(std::move(mix)),
       player_(device, [this](std::span<float> part) { fill(part); }) {
 } catch (const RunError& error) {
   offer_file(error);
@@ -30,6 +31,9 @@ void SoundOutput::fill(std::span<float> part) noexcept {
   }
   for (float& sample : part) {
     sample = sound_.next();
+  }
+  if (mix_) {
+    mix_(part);
   }
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string>
 
 #include "core/realtime/latest_value.h"
@@ -12,11 +14,15 @@ namespace haptrial::sound {
 /// Plays a drill on the sound card while it runs, from a thread of its own.
 class SoundOutput {
  public:
+  /// Adds to the next samples of the drill; called on the player's thread.
+  using Mix = std::function<void(std::span<float>)>;
+
   /// @param device  a name of ALSA's ("default", "hw:0")
+  /// @param mix     what else is heard; may be empty
   /// @throws RunError with a sentence where there is no such card, as on a server; a session goes
   /// on without, and its sound can be made from its record (SoundTrack). Else as DrillSound does.
   SoundOutput(SpectrumTable table, const ThinBone& thin, std::uint64_t seed,
-              const std::string& device = "default");
+              const std::string& device = "default", Mix mix = {});
   SoundOutput(const SoundOutput&) = delete;
   SoundOutput& operator=(const SoundOutput&) = delete;
 
@@ -32,6 +38,7 @@ class SoundOutput {
   void fill(std::span<float> part) noexcept;
 
   DrillSound sound_;
+  Mix mix_;
   DrillState drill_;  // of the player's thread
   realtime::LatestValue<DrillState> latest_;
   CardPlayer player_;  // last: its thread uses the others

@@ -21,6 +21,7 @@ struct DrillingView {
   Eigen::Vector3d up{Eigen::Vector3d::UnitY()};
   double field_of_view{0.35};    // [rad]
   std::int32_t stills_asked{0};  // how often the next still was asked for
+  bool tone{false};              // the participant hears one of a nerve monitor
   double progress{0.0};          // of the time limit, as a fraction
   double time_limit{0.0};        // [s]
 

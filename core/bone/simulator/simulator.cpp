@@ -226,6 +226,8 @@ void Simulator::work(const SimulatorInput& input, std::uint32_t pressed) noexcep
   } else if (const auto* tube = tool.as<SuctionTool>()) {
     output_.power = input.power;
     yield(tube->radius, input);
+  } else if (tool.as<ProbeTool>() != nullptr) {
+    output_.power = input.power;
   } else if (tool.as<PlateTool>() != nullptr) {
     hold_plate(input, apply);
   } else if (const auto* plane = tool.as<CutPlane>(); plane != nullptr && apply) {

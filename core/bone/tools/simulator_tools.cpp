@@ -42,7 +42,8 @@ PlateTool read_plate(Table& table) {
 ToolSpec read_tool(Table& table, const std::string& name) {
   ToolSpec tool;
   tool.name = name;
-  const std::string type = table.choice("type", {"burr", "suction", "cut_plane", "plate", "grip"});
+  const std::string type =
+      table.choice("type", {"burr", "suction", "cut_plane", "plate", "grip", "probe"});
   optional(table, "handle_radius", tool.handle_radius, {1e-4, 0.05}, "m");
   optional(table, "handle_length", tool.handle_length, {1e-3, 0.5}, "m");
   if (type == "burr") {
@@ -55,6 +56,8 @@ ToolSpec read_tool(Table& table, const std::string& name) {
     tool.kind = read_plate(table);
   } else if (type == "grip") {
     optional(table, "reach", tool.kind.emplace<GripTool>().reach, {1e-4, 0.02}, "m");
+  } else if (type == "probe") {
+    optional(table, "radius", tool.kind.emplace<ProbeTool>().radius, {1e-4, 0.002}, "m");
   }
   return tool;
 }

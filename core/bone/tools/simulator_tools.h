@@ -23,6 +23,10 @@ struct BurrTool {
 struct SuctionTool {
   double radius{1e-3};  // of the tube's opening > 0 [m]
 };
+/// Stimulates nerves (core/nerve) while it has power; bone does not feel it.
+struct ProbeTool {
+  double radius{2.5e-4};  // of its tip > 0 [m]
+};
 struct PlateTool {
   std::string shape{"straight"};  // or "l", "distractor"
   int holes{4};                   // of a straight plate
@@ -36,9 +40,10 @@ struct GripTool {
 /// One of the tools that a participant can take in hand.
 struct ToolSpec {
   std::string name;
-  double handle_radius{2.5e-3};                                               // > 0 [m]
-  double handle_length{0.1};                                                  // > 0 [m]
-  std::variant<BurrTool, SuctionTool, CutPlane, PlateTool, GripTool> kind{};  // plane: in the hand
+  double handle_radius{2.5e-3};  // > 0 [m]
+  double handle_length{0.1};     // > 0 [m]
+  // A cut plane lies in the hand.
+  std::variant<BurrTool, SuctionTool, CutPlane, PlateTool, GripTool, ProbeTool> kind{};
 
   /// The tool as one kind; null if it is another.
   template <class Kind>
@@ -48,7 +53,8 @@ struct ToolSpec {
 };
 
 /// Reads a [tools] table: `in_hand`, the names in their order, and a table for each of them, which
-/// has a `type` ("burr", "suction", "cut_plane", "plate", "grip") and the keys of its kind.
+/// has a `type` ("burr", "suction", "cut_plane", "plate", "grip", "probe") and the keys of its
+/// kind.
 std::vector<ToolSpec> read_tools(Table& table);
 
 /// @throws std::invalid_argument for an unknown shape.

@@ -8,6 +8,7 @@
 #include "core/base/files/file_text.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/tear_row.h"
+#include "core/nerve/record/nerve_rows.h"
 #include "core/record/rows/common_tables.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/table/table_page.h"
@@ -60,6 +61,7 @@ TEST(SessionPageTest, TablesOfDrillings) {
   tables.push_back(&table_of<TearRow>());
   expect_described("drilling", tables);
 }
+TEST(SessionPageTest, TablesOfNerveMonitors) { expect_described("nerves", nerve_tables()); }
 
 }  // namespace
 }  // namespace haptrial::record::session_page_test

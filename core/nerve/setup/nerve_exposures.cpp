@@ -1,0 +1,58 @@
+#include "core/nerve/setup/nerve_exposures.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace haptrial::nerve {
+
+NerveExposures::NerveExposures(const NerveSetup& setup,
+                               std::shared_ptr<const NerveDistances> distances, std::uint64_t seed,
+                               double dt)
+    : distances_(std::move(distances)),
+      heat_(setup.heat),
+      current_(static_cast<float>(setup.current)),
+      dt_(dt),
+      between_pulses_(1.0 / setup.pulses),
+      since_pulse_(between_pulses_) {
+  for (const WatchedNerve& nerve : setup.nerves) {
+    nerves_.emplace_back(setup.exposure, seed, fmt::format("nerve {}", nerve.name));
+  }
+}
+
+NerveTick NerveExposures::step(const ToolAtNerves& tool) noexcept {
+  using Kind = ToolAtNerves::Kind;
+  NerveTick tick;
+  const bool works = tool.power > 0.0;
+  tick.drilling = works && tool.kind == Kind::kBurr;
+  tick.suction = works && tool.kind == Kind::kSuction;
+  since_pulse_ += dt_;
+  if (works && tool.kind == Kind::kProbe && since_pulse_ >= between_pulses_) {
+    since_pulse_ = 0.0;
+    tick.current = current_;
+  }
+  Exposure exposure;
+  exposure.force = tool.force;
+  exposure.speed = tool.speed;
+  exposure.drilling = tick.drilling;
+  exposure.suction = tick.suction;
+  exposure.power = tick.drilling ? heat_ * tool.force * tool.power : 0.0;
+  const NerveDistances::Distances distances = distances_->at(tool.tip_B);
+  for (std::size_t i = 0; i < nerves_.size(); ++i) {
+    // Whatever carries no burr, tube or probe lies nowhere.
+    const bool there = tool.kind != Kind::kOther;
+    NerveTick::OfNerve& nerve = tick.nerves[i];
+    nerve.distance = there && distances[i] < NerveDistances::kFar
+                         ? distances[i] - static_cast<float>(tool.radius)
+                         : NerveDistances::kFar;
+    exposure.distance = static_cast<double>(nerve.distance);
+    const NerveEvents events = nerves_[i].step(exposure, dt_);
+    nerve.burst = events.burst;
+    nerve.train = events.train;
+    nerve.severity = static_cast<float>(events.severity);
+    nerve.warmth = static_cast<float>(nerves_[i].warmth());
+  }
+  return tick;
+}
+
+}  // namespace haptrial::nerve

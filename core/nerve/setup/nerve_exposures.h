@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/nerve/setup/nerve_distances.h"
+#include "core/nerve/setup/nerve_setup.h"
+
+namespace haptrial::nerve {
+
+/// What a tick did to every nerve: goes from the servo thread to where electromyograms are made.
+struct NerveTick {
+  struct OfNerve {
+    float distance{NerveDistances::kFar};  // of the tool's surface [m]
+    float warmth{0.0f};                    // above the body's [K]
+    float severity{0.0f};                  // of what begins, 0 to 1
+    bool burst{false};                     // begins
+    bool train{false};                     // likewise
+  };
+  std::uint64_t sequence{0};  // of the tick
+  std::array<OfNerve, kMostChannels> nerves{};
+  float current{0.0f};  // of a pulse of the probe that begins with the tick [A]; 0: none
+  bool drilling{false};
+  bool suction{false};
+};
+
+/// A tool on the bone, as far as nerves notice it.
+struct ToolAtNerves {
+  enum class Kind : std::uint8_t { kOther, kBurr, kSuction, kProbe } kind{Kind::kOther};
+  Eigen::Vector3d tip_B{Eigen::Vector3d::Zero()};  // in the bone's frame [m]
+  double radius{0.0};                              // of the tool's end [m]
+  double speed{0.0};                               // of the tip [m/s]
+  double force{0.0};                               // on the bone [N]
+  double power{0.0};                               // with which it turns or sucks, 0 to 1
+};
+
+/// The nerves of one bone while a tool works at it. Servo thread: step() neither allocates nor
+/// locks, waits, or throws (NerveExposuresTest.AStepDoesNotAllocate).
+class NerveExposures {
+ public:
+  /// @param distances  of the same nerves as the setup's  @param dt  of a tick [s]
+  NerveExposures(const NerveSetup& setup, std::shared_ptr<const NerveDistances> distances,
+                 std::uint64_t seed, double dt);
+
+  /// @returns without a sequence number
+  NerveTick step(const ToolAtNerves& tool) noexcept;
+
+ private:
+  std::shared_ptr<const NerveDistances> distances_;
+  std::vector<IrritatedNerve> nerves_;
+  double heat_;
+  float current_;
+  double dt_;
+  double between_pulses_;  // [s]
+  double since_pulse_;     // [s]
+};
+
+}  // namespace haptrial::nerve
