@@ -9,6 +9,8 @@
 #include "core/base/text/counted.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/tear_row.h"
+#include "core/nerve/record/nerve_rows.h"
+#include "core/record/rows/common_tables.h"
 #include "core/sound/wav.h"
 #include "protocols/bone_drilling/bone_replay.h"
 #include "protocols/bone_drilling/bone_trials.h"
@@ -106,7 +108,8 @@ class BoneDrilling final : public Protocol {
     return {{record::kDrillingPhase, "bone is drilled"}};
   }
   record::TableList tables() const override {
-    record::TableList tables = record::drilling_tables();
+    record::TableList tables =
+        record::with_tables(record::drilling_tables(), record::nerve_tables());
     tables.push_back(&record::table_of<record::TearRow>());
     return tables;
   }

@@ -10,7 +10,9 @@
 #include "core/base/random.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/recorded_bone.h"
+#include "core/nerve/record/nerve_rows.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/rows/common_tables.h"
 #include "protocols/bone_drilling/bone_restore.h"
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/display/stage_stills.h"
@@ -28,7 +30,10 @@ std::vector<PlannedTrial> plan_of(const BoneDefinition& d, const SessionPlace& p
   }
   for (int trial = 1; trial <= d.design.trials; ++trial) {
     const std::uint64_t seed = derived_seed(place.session_seed, fmt::format("procedure {}", trial));
-    plan.push_back({trial, trial, 1, "drilling", seed, false});
+    const char* condition = !d.nerves                                  ? "drilling"
+                            : d.hears_nerves(trial, place.participant) ? kMonitorOn
+                                                                       : kMonitorOff;
+    plan.push_back({trial, trial, 1, condition, seed, false});
   }
   return plan;
 }
@@ -52,12 +57,9 @@ BoneTrials::BoneTrials(const BoneDefinition& definition, const SessionPlace& pla
   for (const auto& model : d_.bones) {
     records_.push_back(bone::record_of(*model, static_cast<std::int32_t>(records_.size())));
   }
-  if (d_.sound_card && place.real) {
-    try {
-      sound_ = std::make_unique<BoneSound>(d_, derived_seed(place.session_seed, "sound"));
-    } catch (const RunError& error) {
-      notice_ = error.what();
-    }
+  open_sound();
+  if (d_.nerves) {
+    watch_nerves();
   }
   for (const auto& bone : d_.bones) {  // before there is a window: it takes seconds
     stills_.push_back(place.window ? screen_stills(d_, *bone) : nullptr);
@@ -65,6 +67,44 @@ BoneTrials::BoneTrials(const BoneDefinition& definition, const SessionPlace& pla
   if (place.frames_per_pass > 0) {
     pictures_ = std::make_unique<BonePictures>(d_, place.frames_per_pass);
   }
+}
+
+void BoneTrials::open_sound() {
+  if (!d_.sound_card || !place_.real) {
+    return;
+  }
+  sound::SoundOutput::Mix mix;
+  if (d_.nerves) {
+    voice_ = std::make_shared<nerve::NerveVoice>(d_.nerves->monitor.rate);
+    mix = [voice = voice_](std::span<float> part) { voice->mix(part); };
+  }
+  try {
+    sound_ = std::make_unique<BoneSound>(d_, derived_seed(place_.session_seed, "sound"), mix);
+  } catch (const RunError& error) {
+    notice_ = error.what();
+    voice_.reset();
+  }
+}
+
+/// A session that goes on has other noise than before.
+void BoneTrials::watch_nerves() {
+  const std::vector<nerve::Channel> channels = nerve::channels_of(*d_.nerves);
+  for (const nerve::Channel& channel : channels) {
+    channels_.push_back({static_cast<std::int32_t>(channels_.size()), channel.name, channel.nerve,
+                         d_.nerves->monitor.rate});
+  }
+  const auto make = [setup = *d_.nerves, rate = d_.rate,
+                     seed = place_.session_seed](std::uint64_t first) {
+    const std::string name = fmt::format("nerves from tick {}", first);
+    return std::make_unique<nerve::NerveSimulation>(setup, rate, derived_seed(seed, name));
+  };
+  if (place_.real) {
+    const nerve::NerveListeners listeners{place_.nerve_desk, voice_};
+    nerves_ = std::make_unique<nerve::ThreadedNerves>(make, d_.rate, listeners);
+  } else {
+    nerves_ = std::make_unique<nerve::SteppedNerves>(make);
+  }
+  logs_.watch_nerves(nerves_.get());
 }
 
 std::vector<stimulus::Observer*> BoneTrials::observers() {
@@ -96,14 +136,22 @@ std::span<const record::Phase> BoneTrials::phases() const {
 }
 
 record::TableList BoneTrials::tables() const {
-  record::TableList tables = record::drilling_tables();
+  record::TableList tables =
+      d_.nerves ? record::with_tables(record::drilling_tables(), record::nerve_tables())
+                : record::drilling_tables();
   if (!d_.simulator.soft_tissue.empty()) {
     tables.push_back(&record::table_of<record::TearRow>());
   }
   return tables;
 }
 
-std::vector<record::Rows> BoneTrials::first_rows() const { return record::rows_of(records_); }
+std::vector<record::Rows> BoneTrials::first_rows() const {
+  std::vector<record::Rows> rows = record::rows_of(records_);
+  if (!channels_.empty()) {
+    rows.emplace_back(std::span(channels_));
+  }
+  return rows;
+}
 
 std::unique_ptr<Rig> BoneTrials::virtual_rig() const {
   return std::make_unique<DrillingRig>(d_, place_.session_seed, place_.participant);
@@ -117,6 +165,14 @@ void BoneTrials::empty_logs(SessionFile& file) {
   empty(logs_.splits);
   if (!d_.simulator.soft_tissue.empty()) {
     logs_.tears.flush([&](std::span<const record::TearRow> rows) { tell_tears(file, rows); });
+  }
+  if (nerves_) {
+    nerves_->settle();  // rows of a tick come before its sample
+    const record::NerveRows rows = nerves_->take();
+    file.add(std::span(rows.emg));
+    file.add(std::span(rows.events));
+    file.add(std::span(rows.thresholds));
+    file.add(std::span(rows.discharges));
   }
 }
 
@@ -212,6 +268,12 @@ void BoneTrials::set_up(std::shared_ptr<BoneStage> stage, const PlannedTrial& tr
   }
   stage->stills = stills_[bone_];
   stage_ = std::move(stage);
+  if (nerves_) {
+    const std::string name = fmt::format("nerves {} from tick {}", bones_used_, spent_);
+    exposures_ = std::make_unique<nerve::NerveExposures>(*d_.nerves, d_.nerve_distances[bone_],
+                                                         derived_seed(trial.stimulus_seed, name),
+                                                         1.0 / d_.rate);
+  }
   vibration_.reset();
   if (d_.vibration_gain > 0.0) {
     vibration_.emplace(d_.vibration_table, d_.vibration_gain, d_.rate, trial.stimulus_seed);
@@ -228,7 +290,11 @@ Pass& BoneTrials::make_pass(PlannedTrial& trial, const record::Phase&) {
   DrillingParameters drilling = d_.drilling;
   drilling.time_limit = trial.practice ? d_.practice : drilling.time_limit;
   pass_ = std::make_unique<DrillingPass>(*stage_->simulator, *stage_->companions, drilling, logs_,
-                                         d_.rate, spent_, vibration_ ? &*vibration_ : nullptr);
+                                         d_.rate, spent_, vibration_ ? &*vibration_ : nullptr,
+                                         exposures_.get());
+  if (nerves_) {
+    nerves_->let_hear(d_.hears_nerves(trial.trial, place_.participant));
+  }
   if (pictures_) {
     pictures_->watch(stage_);
   }

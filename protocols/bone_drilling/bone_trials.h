@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/nerve/beside/nerve_beside.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_pictures.h"
 #include "protocols/bone_drilling/display/bone_sound.h"
@@ -27,7 +28,9 @@ class BoneTrials final : public Trials {
   std::vector<stimulus::Observer*> observers() override;
   TickLog* tick_log() override { return &logs_; }
   void empty_logs(SessionFile& file) override;
-  std::uint64_t dropped() const override { return logs_.dropped(); }
+  std::uint64_t dropped() const override {
+    return logs_.dropped() + (nerves_ ? nerves_->dropped() : 0);
+  }
   record::TableList tables() const override;
   std::vector<record::Rows> first_rows() const override;
   void check_resumed(const record::SessionReader& file) const override;
@@ -42,6 +45,8 @@ class BoneTrials final : public Trials {
 
  private:
   void tell_tears(SessionFile& file, std::span<const record::TearRow> rows);
+  void open_sound();
+  void watch_nerves();
   void restore(const PlannedTrial& trial, SessionFile& file);
   void set_up(std::shared_ptr<BoneStage> stage, const PlannedTrial& trial);
 
@@ -50,6 +55,10 @@ class BoneTrials final : public Trials {
   FixedPlan plan_;
   DrillingLogs logs_;
   std::vector<record::BoneRecord> records_;  // of the bones
+  std::vector<record::NerveChannelRow> channels_;
+  std::shared_ptr<nerve::NerveVoice> voice_;  // of the sound card
+  std::unique_ptr<nerve::NerveBeside> nerves_;
+  std::unique_ptr<nerve::NerveExposures> exposures_;  // of the present bone
   std::unique_ptr<BonePictures> pictures_;
   std::shared_ptr<BoneStage> stage_;
   std::size_t bone_{0};         // of the definition's

@@ -79,7 +79,8 @@ bone::DrillingView view_of(const bone::Simulator& simulator,
 
 DrillingPass::DrillingPass(bone::Simulator& simulator, bone::Companions& companions,
                            const DrillingParameters& parameters, DrillingLogs& logs, double rate,
-                           std::uint64_t spent, sound::DrillVibration* vibration)
+                           std::uint64_t spent, sound::DrillVibration* vibration,
+                           nerve::NerveExposures* nerves)
     : simulator_(simulator),
       companions_(companions),
       parameters_(parameters),
@@ -87,6 +88,7 @@ DrillingPass::DrillingPass(bone::Simulator& simulator, bone::Companions& compani
       logs_(logs),
       rate_(rate),
       vibration_(vibration),
+      nerves_(nerves),
       time_limit_(static_cast<std::uint64_t>(std::max(1.0, parameters.time_limit * rate))),
       ticks_(spent) {}
 
@@ -104,6 +106,11 @@ void DrillingLogs::record(std::uint64_t sequence, const Readings& readings) noex
   row.keys = readings[0].keys;
   row.pedal = readings[0].pedal;
   tool.push(row);
+  if (beside_ != nullptr) {
+    nerve::NerveTick tick = std::exchange(nerves_, nerve::NerveTick{});
+    tick.sequence = sequence;
+    beside_->after_tick(tick);
+  }
 }
 
 PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
@@ -115,6 +122,9 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   }
   const bone::SimulatorOutput& done = simulator_.tick(input);
   companions_.after_tick(simulator_, dt);
+  if (nerves_ != nullptr) {
+    logs_.set_nerves(nerves_->step(tool_at_nerves(input)));
+  }
   log(done, input.tool.tip.velocity.norm());
   log_camera(done.camera_changed);
   ++ticks_;
@@ -135,6 +145,7 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   bone::DrillingView seen = view_of(simulator_, input);
   seen.progress = static_cast<double>(ticks_) / static_cast<double>(time_limit_);
   seen.time_limit = parameters_.time_limit;
+  seen.tone = logs_.nerve_tone();
   out.shown = seen;
   out.shown.tool = reading.tool.position;
   record::ToolRow tool;
@@ -148,6 +159,33 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   tool.contact = done.force;
   logs_.set_tool(tool);
   return out;
+}
+
+/// Nerves lie in the bone that was there at the beginning, and go with it.
+nerve::ToolAtNerves DrillingPass::tool_at_nerves(const bone::SimulatorInput& input) const noexcept {
+  using Kind = nerve::ToolAtNerves::Kind;
+  const bone::SimulatorOutput& out = simulator_.output();
+  const bone::ToolSpec& tool = simulator_.tool();
+  nerve::ToolAtNerves at;
+  if (out.mode != bone::HandMode::kTool) {
+    return at;
+  }
+  if (const auto* burr = tool.as<bone::BurrTool>()) {
+    at.kind = Kind::kBurr;
+    at.radius = burr->radius();
+  } else if (const auto* suction = tool.as<bone::SuctionTool>()) {
+    at.kind = Kind::kSuction;
+    at.radius = suction->radius;
+  } else if (const auto* probe = tool.as<bone::ProbeTool>()) {
+    at.kind = Kind::kProbe;
+    at.radius = probe->radius;
+  }
+  const Eigen::Isometry3d& X_WB = std::as_const(simulator_).world().pose(0);
+  at.tip_B = X_WB.inverse(Eigen::Isometry) * input.tool.tip.position;
+  at.speed = input.tool.tip.velocity.norm();
+  at.force = out.force.norm();
+  at.power = out.power;
+  return at;
 }
 
 /// Felt, but neither drilled with nor recorded as contact.

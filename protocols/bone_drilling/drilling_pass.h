@@ -9,6 +9,8 @@
 #include "core/bone/simulator/companions.h"
 #include "core/bone/simulator/drilling_view.h"
 #include "core/bone/simulator/simulator.h"
+#include "core/nerve/beside/nerve_beside.h"
+#include "core/nerve/setup/nerve_exposures.h"
 #include "core/realtime/block_log.h"
 #include "core/sound/drill_sound.h"
 #include "protocols/bone_drilling/definition/drilling_parameters.h"
@@ -29,6 +31,11 @@ class DrillingLogs final : public TickLog {
   /// What the present tick says of the tool in hand; taken by record(). Servo thread.
   void set_tool(const record::ToolRow& row) noexcept { row_ = row; }
   const record::ToolRow& tool_now() const noexcept { return row_; }
+  /// What the present tick does to nerves; likewise.
+  void set_nerves(const nerve::NerveTick& tick) noexcept { nerves_ = tick; }
+  /// Gets every tick from the next one on, also between passes; null: nobody watches nerves.
+  void watch_nerves(nerve::NerveBeside* beside) noexcept { beside_ = beside; }
+  bool nerve_tone() const noexcept { return beside_ != nullptr && beside_->tone(); }
   /// A row of /tool for every tick, also between passes.
   void record(std::uint64_t sequence, const Readings& readings) noexcept override;
 
@@ -39,6 +46,8 @@ class DrillingLogs final : public TickLog {
 
  private:
   record::ToolRow row_;
+  nerve::NerveTick nerves_;
+  nerve::NerveBeside* beside_{nullptr};
 };
 
 /// A reading on the grids of the session file: what is simulated from it, is simulated again from
@@ -68,9 +77,11 @@ class DrillingPass final : public Pass {
   /// Everything given outlives the pass.
   /// @param spent      ticks of the time limit that passes before this one have taken
   /// @param vibration  of the burr; null: it does not shake
+  /// @param nerves     of the bone; null: nobody watches them
   DrillingPass(bone::Simulator& simulator, bone::Companions& companions,
                const DrillingParameters& parameters, DrillingLogs& logs, double rate,
-               std::uint64_t spent = 0, sound::DrillVibration* vibration = nullptr);
+               std::uint64_t spent = 0, sound::DrillVibration* vibration = nullptr,
+               nerve::NerveExposures* nerves = nullptr);
 
   void begin(std::uint64_t sequence) noexcept override;
   PassOutput tick(const Readings& readings, double dt) noexcept override;
@@ -81,6 +92,7 @@ class DrillingPass final : public Pass {
   std::uint64_t ticks() const noexcept { return ticks_; }
 
  private:
+  nerve::ToolAtNerves tool_at_nerves(const bone::SimulatorInput& input) const noexcept;
   Eigen::Vector3d shaking(const bone::SimulatorInput& input) noexcept;
   void log(const bone::SimulatorOutput& out, double speed) noexcept;
   void log_camera(bool changed) noexcept;
@@ -92,6 +104,7 @@ class DrillingPass final : public Pass {
   DrillingLogs& logs_;
   double rate_;
   sound::DrillVibration* vibration_;
+  nerve::NerveExposures* nerves_;
   std::uint64_t time_limit_;  // [ticks]
   std::uint64_t ticks_;
   std::uint64_t sequence_{0};

@@ -87,6 +87,10 @@ struct Definition {
   /// What it plays beside what the protocol sounds like itself; null: nothing.
   virtual const sound::CueSet* sounds() const { return nullptr; }
 
+  /// Channels of a nerve monitor, in their order; none: there is no monitor.
+  virtual std::vector<std::string> nerve_channels() const { return {}; }
+  virtual double nerve_rate() const { return 0.0; }  // of their samples [Hz]
+
   /// Whether there is a force that the participant is to follow or to recall.
   virtual bool has_target() const { return true; }
   /// What the participant reads before the first trial.

@@ -23,6 +23,10 @@ namespace haptrial::record {
 class SessionReader;
 }  // namespace haptrial::record
 
+namespace haptrial::nerve {
+class MonitorDesk;
+}
+
 namespace haptrial::protocols {
 
 class SessionFile;
@@ -39,7 +43,8 @@ struct SessionPlace {
   bool window{false};             // the participant has a screen
   int frames_per_pass{0};         // pictures of what was shown, into frames_folder
   std::filesystem::path frames_folder;
-  std::filesystem::path resumed;  // the file of the earlier run; empty: none
+  std::shared_ptr<nerve::MonitorDesk> nerve_desk;  // a technician's; null: nobody looks
+  std::filesystem::path resumed;                   // the file of the earlier run; empty: none
   /// To be called now and then while something takes seconds: what, and the share that is done.
   /// @throws RunError on an interrupt
   std::function<void(const char* what, double share)> pulse;

@@ -35,6 +35,8 @@ constexpr double kSeenWell = 0.06;       // [rad]
 constexpr double kWorthALook = 0.6;      // [rad]
 constexpr double kPatience = 1.0;        // strokes without bone under the burr
 constexpr double kRoughShare = 0.9;      // of the completeness
+constexpr double kWithdrawn = 4e-3;      // after a tone of the nerve monitor [m]
+constexpr double kQuiet = 1.0;           // that it waits then [s]
 constexpr int kSweeps = 6;               // of a bout
 constexpr int kSweepsUnder = 4;
 
@@ -147,6 +149,7 @@ void DrillingSurgeon::observe(const stimulus::Shown& shown, const stimulus::Forc
   if (view.power && (doing_ == Doing::kDescend || doing_ == Doing::kBout) && !bout_.under) {
     now().memory.sweep(place);
   }
+  listen(view, place, dt);
   decide(view, place);
   move_goal(view, dt);
   HandCommand command;
@@ -154,6 +157,22 @@ void DrillingSurgeon::observe(const stimulus::Shown& shown, const stimulus::Forc
   hand_.command(command);
   device_.hold(fingers(view), 0.0, Eigen::Quaterniond::Identity());
   time_ += dt;
+}
+
+/// Off the bone when the monitor has sounded for as long as it takes to react.
+void DrillingSurgeon::listen(const bone::DrillingView& seen, const Eigen::Vector3d& place,
+                             double dt) noexcept {
+  const bool works = doing_ == Doing::kDescend || doing_ == Doing::kBout;
+  heard_ = works && (seen.tone || heard_ > 0.0) ? heard_ + dt : 0.0;
+  if (heard_ < parameters_.reaction) {
+    return;
+  }
+  heard_ = 0.0;
+  if (doing_ == Doing::kBout) {
+    now().memory.end_bout(bout_);
+  }
+  lift_to_ = place.z() - kWithdrawn;
+  begin(Doing::kWithdraw);
 }
 
 bool DrillingSurgeon::wants_to_look(const bone::DrillingView& seen) noexcept {
@@ -251,6 +270,11 @@ void DrillingSurgeon::decide(const bone::DrillingView& seen,
         next_bout(seen);
       }
       break;
+    case Doing::kWithdraw:
+      if (time_ > kQuiet && !seen.tone) {
+        next_bout(seen);
+      }
+      break;
     case Doing::kFinish:
       break;
   }
@@ -301,6 +325,7 @@ void DrillingSurgeon::move_goal(const bone::DrillingView& seen, double dt) noexc
   switch (doing_) {
     case Doing::kLift:
     case Doing::kChange:
+    case Doing::kWithdraw:
     case Doing::kFinish:
       go_to(at(goal_.head<2>(), lift_to_), kTravel, dt);
       break;

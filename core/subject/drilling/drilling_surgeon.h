@@ -27,8 +27,9 @@ struct SurgeonBurr {
 struct SurgeonParameters {
   double skill{0.5};  // of the group, 0 to 1
   SkillSpread spread;
-  SurgeonBurr rough;  // for most of it
-  SurgeonBurr fine;   // for what is near a structure
+  SurgeonBurr rough;     // for most of it
+  SurgeonBurr fine;      // for what is near a structure
+  double reaction{0.6};  // from a tone of the nerve monitor until it lifts the burr > 0 [s]
   int power_button{0};
   int next_button{1};
   int previous_button{2};
@@ -72,12 +73,13 @@ class DrillingSurgeon final : public stimulus::Observer {
     RandomStream random;
     DrillingMemory memory;
   };
-  enum class Doing { kLift, kTravel, kDescend, kBout, kPause, kLook, kChange, kFinish };
+  enum class Doing { kLift, kTravel, kDescend, kBout, kPause, kLook, kChange, kWithdraw, kFinish };
 
   static Procedure plan(const SurgeonParameters& p, std::shared_ptr<const DrillingChart> chart,
                         std::uint64_t seed, int number, double step);
   void begin(Doing doing) noexcept;
   void begin_procedure() noexcept;
+  void listen(const bone::DrillingView& seen, const Eigen::Vector3d& place, double dt) noexcept;
   void next_bout(const bone::DrillingView& seen) noexcept;
   bool wants_to_look(const bone::DrillingView& seen) noexcept;
   void decide(const bone::DrillingView& seen, const Eigen::Vector3d& place) noexcept;
@@ -109,6 +111,7 @@ class DrillingSurgeon final : public stimulus::Observer {
   Bout bout_;
   double bout_depth_{0.0};                          // of the burr's centre where the bout began [m]
   double idle_{0.0};                                // of the bout, without bone under the burr [s]
+  double heard_{0.0};                               // since when a tone goes on [s]
   double lift_to_{0.0};                             // depth of the centre [m]
   bool looks_{false};                               // before the bout
   Eigen::Vector3d look_{Eigen::Vector3d::UnitZ()};  // direction from which it wants to see, in W

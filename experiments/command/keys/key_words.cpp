@@ -633,7 +633,7 @@ tools.NAME.feel.second_gain | | the same deeper
 tools.NAME.feel.threshold | | immersed volume at which the gain changes
 tools.NAME.feel.force_limit | | of the contact
 tools.NAME.feel.least_agreement | | of the pushes of samples, below which the force fades
-tools.NAME.radius | | of the opening of a suction tube
+tools.NAME.radius | | of the opening of a suction tube, or of the tip of a probe
 tools.NAME.width | | of the plane of a cut
 tools.NAME.height | | of the plane of a cut
 tools.NAME.depth | | of a cut
@@ -709,6 +709,25 @@ cavity.slope | | radius by height
 cavity.margin | | to any structure
 cavity.structures | none | structures that have margins of their own
 cavity.margins | none | theirs
+nerve_monitor.threshold | | of an event
+nerve_monitor.highest_threshold | | to which it rises by itself while tones go on
+nerve_monitor.rises_after | | time with a tone after which it rises
+nerve_monitor.returns_after | | quiet after which it is as it was
+nerve_monitor.artefact_filter | true | whether what crosses in every channel at once is left out
+nerve_monitor.muted | false | whether all channels are silent at the beginning
+nerve_monitor.heard_in | all | procedures in which the participant hears the monitor; every other: the first participant from the first on, the second from the second on
+nerve_monitor.stimulus | | current of the probe
+nerve_monitor.stimuli | | pulses of the probe in a second
+nerve_monitor.bursts | | bursts in a second right beside a nerve, without force or speed
+nerve_monitor.reach | | distance over which they fall to 1/e
+nerve_monitor.heat | | power that a newton under a turning burr turns into heat
+nerve_monitor.nerves[].structure | | of the bone, that is watched
+nerve_monitor.nerves[].channels | one, named like the nerve | muscles, a channel each; eight in all at most
+nerve_monitor.curves[].name | | of a nerve that is drawn as a curve
+nerve_monitor.curves[].points_mm | | its points in the bone's frame
+nerve_monitor.curves[].radius_mm | | of the nerve
+nerve_monitor.curves[].channels | one, named like the nerve | muscles, a channel each
+virtual_surgeons.reaction | | time from a tone of the nerve monitor until the burr is lifted
 virtual_surgeons.rough | | burr for most of the bone
 virtual_surgeons.fine | | burr near structures
 virtual_surgeons.between | | spread of skill between surgeons

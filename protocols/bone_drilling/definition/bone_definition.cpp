@@ -135,6 +135,7 @@ void read_surgeons(Table& root, BoneDefinition& d) {
   optional(table, "between", p.spread.between, {0.0, 1.0}, "");
   optional(table, "within", p.spread.within, {0.0, 1.0}, "");
   optional(table, "learning", p.spread.learning, kFraction, "");
+  optional(table, "reaction", p.reaction, {0.05, 10.0}, "s");
   const auto button = [&](const char* key, int& value, long low) {
     value = table.integer_or(key, value, low, 30);
   };
@@ -204,6 +205,19 @@ void check_together(Table& root, const BoneDefinition& d) {
                                        reach, d.envelope.workspace_radius));
     }
   }
+}
+
+void read_nerves(Table& root, BoneDefinition& d) {
+  if (!root.has("nerve_monitor")) {
+    return;
+  }
+  Table table = root.table("nerve_monitor");
+  d.nerves = nerve::read_nerve_setup(table, d.rate);
+  using nerve::HeardIn;
+  d.design.conditions = d.nerves->heard == HeardIn::kAll ? std::vector<std::string>{kMonitorOn}
+                        : d.nerves->heard == HeardIn::kNone
+                            ? std::vector<std::string>{kMonitorOff}
+                            : std::vector<std::string>{kMonitorOn, kMonitorOff};
 }
 
 bone::BoneModel load_source(const std::string& source, const BoneDefinition& d,
@@ -294,6 +308,7 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
   read_surgeons(root, d);
   read_display(display, d);
   read_sound(root, d, folder);
+  read_nerves(root, d);
   check_common(root, d);
   check_together(root, d);
   if (folder != nullptr && root.has("drilling_hand")) {
@@ -315,7 +330,18 @@ void BoneDefinition::load_bones(const fs::path& folder) {
       charts.push_back(std::make_shared<const subject::DrillingChart>(
           make_chart(model, pose_of(placement, model.grid), *cavity)));
     }
+    if (nerves) {
+      nerve_distances.push_back(
+          std::make_shared<const nerve::NerveDistances>(*bones.back(), nerves->nerves));
+    }
   }
+}
+
+bool BoneDefinition::hears_nerves(int trial, int participant) const {
+  if (!nerves || nerves->heard == nerve::HeardIn::kNone) {
+    return false;
+  }
+  return nerves->heard == nerve::HeardIn::kAll || (trial + participant) % 2 == 1;
 }
 
 const ParticipantGroup* group_of(const BoneDefinition& d, int participant) {

@@ -12,6 +12,8 @@
 #include "core/bone/model/bone_model.h"
 #include "core/bone/simulator/companions.h"
 #include "core/bone/simulator/simulator.h"
+#include "core/nerve/setup/nerve_distances.h"
+#include "core/nerve/setup/nerve_setup.h"
 #include "core/sound/drill_sound.h"
 #include "core/subject/drilling/drilling_chart.h"
 #include "core/subject/drilling/drilling_hand.h"
@@ -23,6 +25,9 @@
 namespace haptrial::protocols {
 
 inline constexpr const char* kBoneDrilling = "bone_drilling";  // its name in [experiment]
+// Conditions of procedures in which the nerve monitor is heard, and not.
+inline constexpr const char* kMonitorOn = "monitor on";
+inline constexpr const char* kMonitorOff = "monitor off";
 
 /// How a bone lies in the scene.
 struct BonePlacement {
@@ -64,11 +69,17 @@ struct BoneDefinition : Definition {
   bool stereo{false};
   double eye_distance{0.02};  // between the eyes, in the scene >= 0 [m]
   int stills{0};              // of stages of the cavity, which can be called up; 0: none
+  std::optional<nerve::NerveSetup> nerves;  // that are watched
   /// By source; procedures take them in turn. None where only a text was parsed: a session file has
   /// its bones in it.
   std::vector<std::shared_ptr<const bone::BoneModel>> bones;
   std::vector<std::shared_ptr<const subject::DrillingChart>> charts;  // (bones) with a cavity
 
+  std::vector<std::shared_ptr<const nerve::NerveDistances>> nerve_distances;  // (bones) if watched
+
+  /// Whether a participant hears the nerve monitor in a procedure. @param trial  from 1; practice:
+  /// 0
+  bool hears_nerves(int trial, int participant) const;
   /// Makes or reads the bones, which takes seconds. @param folder  of the file
   /// @throws InputError as bone::load_bone does
   void load_bones(const std::filesystem::path& folder);
@@ -79,6 +90,8 @@ struct BoneDefinition : Definition {
   std::vector<std::string> left_out_of_dry_runs() const override;
   double longest(int trials) const override { return trials * drilling.time_limit; }
   bool has_target() const override { return false; }
+  std::vector<std::string> nerve_channels() const override;
+  double nerve_rate() const override { return nerves ? nerves->monitor.rate : 0.0; }
   std::uint32_t functions_of(const std::vector<int>& held) const override {
     return functions_of_keys(drilling.controls, held);
   }

@@ -58,6 +58,19 @@ void warn_of_devices(const BoneDefinition& d, std::vector<std::string>& warnings
   check("open_haptics", d.open_haptics.max_force);
 }
 
+std::string describe_nerves(const BoneDefinition& d) {
+  std::vector<std::string> names;
+  for (const nerve::WatchedNerve& nerve : d.nerves->nerves) {
+    names.push_back(nerve.name);
+  }
+  const char* heard = d.nerves->heard == nerve::HeardIn::kAll          ? "heard in every procedure"
+                      : d.nerves->heard == nerve::HeardIn::kEveryOther ? "heard in every other one"
+                                                                       : "not heard";
+  return fmt::format("nerve monitor (a model, no clinical claim): {}; {} at {:g} Hz, {}",
+                     fmt::join(names, ", "), counted(d.nerves->channels(), "channel", "channels"),
+                     d.nerves->monitor.rate, heard);
+}
+
 }  // namespace
 
 std::vector<std::string> BoneDefinition::warnings() const {
@@ -99,10 +112,23 @@ std::vector<std::string> BoneDefinition::description() const {
         soft.structure, soft.stiffness, soft.tears_at, soft.suction, 0.5 * soft.stiffness / rate,
         hand.damping));
   }
+  if (nerves) {
+    lines.push_back(describe_nerves(*this));
+  }
   if (const auto margin = contact_margin(*this)) {
     lines.push_back(describe(*margin));
   }
   return lines;
+}
+
+std::vector<std::string> BoneDefinition::nerve_channels() const {
+  std::vector<std::string> names;
+  if (nerves) {
+    for (const nerve::WatchedNerve& nerve : nerves->nerves) {
+      names.insert(names.end(), nerve.channels.begin(), nerve.channels.end());
+    }
+  }
+  return names;
 }
 
 std::vector<std::string> BoneDefinition::left_out_of_dry_runs() const {

@@ -47,8 +47,9 @@ sound::DrillState sound_of(const bone::DrillingView& seen, std::span<const bone:
   return state;
 }
 
-BoneSound::BoneSound(const BoneDefinition& definition, std::uint64_t seed)
-    : output_(definition.sound_table, definition.thin_bone, seed),
+BoneSound::BoneSound(const BoneDefinition& definition, std::uint64_t seed,
+                     sound::SoundOutput::Mix mix)
+    : output_(definition.sound_table, definition.thin_bone, seed, "default", std::move(mix)),
       tools_(definition.simulator.tools),
       thread_([this] { run(); }) {}
 

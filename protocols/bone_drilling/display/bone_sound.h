@@ -37,8 +37,9 @@ sound::DrillState sound_of(const bone::DrillingView& seen, std::span<const bone:
 /// thread the rest; a thread of its own finds the thickness.
 class BoneSound final : public stimulus::Observer {
  public:
+  /// @param mix  what else is heard on the same card; may be empty
   /// @throws RunError where there is no sound card.
-  BoneSound(const BoneDefinition& definition, std::uint64_t seed);
+  BoneSound(const BoneDefinition& definition, std::uint64_t seed, sound::SoundOutput::Mix mix = {});
   ~BoneSound() override;
 
   /// Which bone is drilled from now on.

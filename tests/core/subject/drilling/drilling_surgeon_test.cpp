@@ -76,6 +76,8 @@ class Scene {
     seen.contact = depth > 0.0;
     seen.eye = {0.0, 0.2, 0.0};
     seen.up = {0.0, 0.0, -1.0};
+    seen.tone = tone_;
+    contact_ = seen.contact;
     surgeon_.observe(seen, force, kStep);
   }
 
@@ -89,6 +91,8 @@ class Scene {
   int ticks_{0};
   int powered_{0};
   bool finish_{false};
+  bool tone_{false};  // of a nerve monitor
+  bool contact_{false};
   double deepest_{0.0};
 
  private:
@@ -151,6 +155,30 @@ TEST(DrillingSurgeonTest, OneSeedOneProcedureAnotherSeedAnother) {
   }
   EXPECT_EQ(a.heights_, b.heights_);
   EXPECT_NE(a.heights_, c.heights_);
+}
+
+TEST(DrillingSurgeonTest, AToneIsAnsweredByLiftingTheBurr) {
+  Scene scene(0.7);
+  int n = 0;
+  for (; n < 50000 && !(n > 5000 && scene.contact_); ++n) {
+    scene.tick();
+  }
+  ASSERT_TRUE(scene.contact_);
+  scene.tone_ = true;
+  int until = 0;
+  for (; until < 3000 && (scene.contact_ || until < 10); ++until) {
+    scene.tick();
+  }
+  EXPECT_LE(until, 600 + 300) << "reaction and the way up [ms]";
+  for (int quiet = 0; quiet < 1500; ++quiet) {
+    scene.tick();
+    EXPECT_FALSE(scene.contact_) << "while the tone goes on";
+  }
+  scene.tone_ = false;
+  for (n = 0; n < 20000 && !scene.contact_; ++n) {
+    scene.tick();
+  }
+  EXPECT_TRUE(scene.contact_) << "it goes on when it is quiet";
 }
 
 TEST(DrillingSurgeonTest, ObserveDoesNotAllocate) {
