@@ -94,7 +94,7 @@ struct LslOutlet::Impl {
   Impl(const LslOptions& o, SessionClock clock)
       : options(o), now(std::move(clock)), library(o.library, kLayer), lsl(load(library)) {}
   ~Impl() {
-    for (const Functions::Outlet outlet : {samples, markers}) {
+    for (const Functions::Outlet outlet : {samples, markers, nerves}) {
       if (outlet != nullptr) {
         lsl.destroy_outlet(outlet);
       }
@@ -105,6 +105,7 @@ struct LslOutlet::Impl {
 
   Functions::Outlet open_samples();
   Functions::Outlet open_markers();
+  Functions::Outlet open_nerves();
   Functions::Outlet opened(Functions::Info info, const std::string& name);
   void describe(Functions::Info info);
   void synchronise();
@@ -116,6 +117,7 @@ struct LslOutlet::Impl {
   Functions lsl;
   Functions::Outlet samples{nullptr};
   Functions::Outlet markers{nullptr};
+  Functions::Outlet nerves{nullptr};
   double offset{0.0};                    // of the layer's clock from the session's [s]
   std::optional<std::int64_t> measured;  // when the samples' offset was, on the session's clock
   std::vector<double> values;
@@ -192,6 +194,28 @@ Functions::Outlet LslOutlet::Impl::open_markers() {
   return opened(info, name);
 }
 
+Functions::Outlet LslOutlet::Impl::open_nerves() {
+  const std::string name = "haptrial " + options.subject + " nerves";
+  const Functions::Info info = lsl.create_streaminfo(
+      name.c_str(), "EMG", static_cast<std::int32_t>(options.nerve_channels.size()),
+      options.nerve_rate, kDouble,
+      fmt::format("haptrial-{}-{}-nerves", options.study, options.subject).c_str());
+  if (info == nullptr) {
+    throw RunError(fmt::format("the Lab Streaming Layer takes no description of '{}': {}", name,
+                               lsl.last_error()));
+  }
+  describe(info);
+  lsl.append_child_value(lsl.get_desc(info), "model", "simulated electromyogram");
+  const Functions::Xml list = lsl.append_child(lsl.get_desc(info), "channels");
+  for (const std::string& channel : options.nerve_channels) {
+    const Functions::Xml one = lsl.append_child(list, "channel");
+    lsl.append_child_value(one, "label", channel.c_str());
+    lsl.append_child_value(one, "unit", "V");
+    lsl.append_child_value(one, "type", "EMG");
+  }
+  return opened(info, name);
+}
+
 void LslOutlet::Impl::note(std::int32_t result, std::size_t count) {
   if (result != 0) {
     if (refused == 0) {
@@ -211,6 +235,9 @@ LslOutlet::LslOutlet(const LslOptions& options, SessionClock now)
     : impl_(std::make_unique<Impl>(options, std::move(now))) {
   impl_->samples = impl_->open_samples();
   impl_->markers = impl_->open_markers();
+  if (!impl_->options.nerve_channels.empty()) {
+    impl_->nerves = impl_->open_nerves();
+  }
 }
 
 LslOutlet::~LslOutlet() = default;
@@ -244,6 +271,23 @@ void LslOutlet::push(std::span<const record::Sample> samples) {
   impl_->note(impl_->lsl.push_chunk(impl_->samples, impl_->values.data(), impl_->values.size(),
                                     impl_->timestamps.data()),
               samples.size());
+}
+
+void LslOutlet::push_nerves(std::span<const double> values, std::span<const double> times) {
+  if (times.empty() || impl_->nerves == nullptr) {
+    return;
+  }
+  const std::lock_guard lock(impl_->mutex);
+  if (!impl_->measured) {
+    impl_->synchronise();
+  }
+  impl_->timestamps.clear();
+  for (const double time : times) {
+    impl_->timestamps.push_back(impl_->offset + time);
+  }
+  impl_->note(
+      impl_->lsl.push_chunk(impl_->nerves, values.data(), values.size(), impl_->timestamps.data()),
+      times.size());
 }
 
 bool LslOutlet::mark(const std::string& text, std::int64_t session_ns) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/record/rows/session_types.h"
 
@@ -18,6 +19,8 @@ struct LslOptions {
   std::string device;
   double rate{1000.0};  // of the samples [Hz]
   bool simulated{false};
+  std::vector<std::string> nerve_channels;  // of a nerve monitor; none: no stream of it
+  double nerve_rate{8000.0};                // of their samples [Hz]
 };
 
 /// The session's time now, since its first tick: the clock of record::Sample::time_ns [ns].
@@ -31,7 +34,8 @@ using SessionClock = std::function<std::int64_t()>;
 /// the same time, never to the servo thread.
 ///
 /// Streams: "haptrial SUBJECT" of type Haptics, double precision, one channel a column of
-/// channels(); "haptrial SUBJECT markers" of type Markers, one text a marker.
+/// channels(); "haptrial SUBJECT markers" of type Markers, one text a marker; with a nerve monitor
+/// "haptrial SUBJECT nerves" of type EMG, volts, one channel a muscle.
 class LslOutlet {
  public:
   struct Channel {
@@ -59,6 +63,9 @@ class LslOutlet {
   /// Times are given to the layer on its own clock. How far that is from the session's is measured
   /// at the first push, then every second, and for each marker.
   void push(std::span<const record::Sample> samples);
+  /// Samples of all channels of the nerve monitor. @param values  (samples x channels) [V]
+  /// @param times  of the samples on the session's clock [s]
+  void push_nerves(std::span<const double> values, std::span<const double> times);
   /// @returns whether the library took it
   bool mark(const std::string& text, std::int64_t session_ns);
 

@@ -112,6 +112,7 @@ protocols::SessionPlace Session::place() {
   give_seeds(place);
   place.real = real_;
   place.window = request_.window;
+  place.nerve_desk = request_.nerve_desk;
   place.frames_per_pass = request_.frames_per_pass;
   place.frames_folder = request_.frames_folder;
   place.resumed = resumed_file(request_);

@@ -248,7 +248,9 @@ std::unique_ptr<stream::LslOutlet> open_outlet(const SessionRequest& request, bo
                                    .subject = request.subject,
                                    .device = request.device.name,
                                    .rate = request.definition->rate,
-                                   .simulated = simulated};
+                                   .simulated = simulated,
+                                   .nerve_channels = request.definition->nerve_channels(),
+                                   .nerve_rate = request.definition->nerve_rate()};
   return request.stream_optional ? stream::LslOutlet::open(options, std::move(now), notice)
                                  : std::make_unique<stream::LslOutlet>(options, std::move(now));
 }

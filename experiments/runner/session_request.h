@@ -16,6 +16,10 @@
 #include "protocols/interface/protocol.h"
 #include "protocols/tutoring/model_motion.h"
 
+namespace haptrial::nerve {
+class MonitorDesk;
+}
+
 namespace haptrial::experiments {
 
 /// One participant's session: the unit of work. What it records is a pure function of definition,
@@ -36,19 +40,20 @@ struct SessionRequest {
   int frames_per_pass{0};                   // pictures of what was shown, into frames_folder
   std::filesystem::path frames_folder;
   std::optional<protocols::TutorChoice> tutor;  // a recorded run that leads the hand
-  int max_trials{0};                           // of the study proper; 0: all
-  std::atomic<std::uint64_t>* ticks{nullptr};  // counts what is done, for a progress line
+  int max_trials{0};                            // of the study proper; 0: all
+  std::atomic<std::uint64_t>* ticks{nullptr};   // counts what is done, for a progress line
   const std::atomic<bool>* cancel{nullptr};  // set from outside to end early, as an interrupt does
 
   // Sessions on the real clock.
   DeviceChoice device;
-  std::vector<DeviceChoice> more_devices;  // after the first; empty: as the first
-  SessionControl* control{nullptr};        // of an experimenter at a console or keyboard
-  bool window{false};                      // the participant's screen
-  bool stream{false};                      // to the Lab Streaming Layer
-  bool stream_optional{false};             // go on without where the layer is absent
-  bool resume{false};                      // go on with FILE.partial where there is one
-  bool pilot{false};                       // no part of the study
+  std::vector<DeviceChoice> more_devices;            // after the first; empty: as the first
+  SessionControl* control{nullptr};                  // of an experimenter at a console or keyboard
+  std::shared_ptr<nerve::MonitorDesk> nerve_desk{};  // of who watches nerves; may be null
+  bool window{false};                                // the participant's screen
+  bool stream{false};                                // to the Lab Streaming Layer
+  bool stream_optional{false};                       // go on without where the layer is absent
+  bool resume{false};                                // go on with FILE.partial where there is one
+  bool pilot{false};                                 // no part of the study
   /// Lines for whoever watches the terminal, while the session runs; from the session's thread.
   std::function<void(const std::string&)> tell;
   record::Participant person;

@@ -15,6 +15,7 @@ void StreamSink::samples(std::span<const record::Sample> samples) {
   if (outlet_ != nullptr) {
     outlet_->push(samples);
   }
+  nerves_.follow(samples);
   markers_.follow(samples, pass_);
 }
 

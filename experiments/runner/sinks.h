@@ -4,6 +4,7 @@
 #include "core/record/write/session_writer.h"
 #include "core/stream/lsl_outlet.h"
 #include "experiments/runner/stream_markers.h"
+#include "experiments/runner/stream_nerves.h"
 
 namespace haptrial::experiments {
 
@@ -25,8 +26,11 @@ class FileSink final : public record::Sink {
 class StreamSink final : public record::Sink {
  public:
   /// @param outlet  may be null; outlives the sink
-  explicit StreamSink(stream::LslOutlet* outlet) : outlet_(outlet), markers_(outlet) {}
+  /// @param nerves  channels of a nerve monitor  @param nerve_rate  of their samples [Hz]
+  StreamSink(stream::LslOutlet* outlet, std::size_t nerves, double nerve_rate)
+      : outlet_(outlet), markers_(outlet), nerves_(outlet, nerves, nerve_rate) {}
   void begin_pass(const record::PassRow& pass, std::int32_t) override { pass_ = pass; }
+  void rows(const record::Rows& rows) override { nerves_.add(rows.as<record::EmgRow>()); }
   void samples(std::span<const record::Sample> samples) override;
   void end_pass(const record::PassRow& pass) override { markers_.end_pass(pass); }
   void event(const record::EventRow& event) override;
@@ -34,6 +38,7 @@ class StreamSink final : public record::Sink {
  private:
   stream::LslOutlet* outlet_;
   StreamMarkers markers_;
+  StreamNerves nerves_;
   record::PassRow pass_;
 };
 

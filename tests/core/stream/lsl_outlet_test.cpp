@@ -106,6 +106,31 @@ TEST_F(LslOutletTest, SamplesArriveChannelByChannelOnTheLayersClock) {
   EXPECT_EQ(outlet.refused(), 0u);
 }
 
+TEST_F(LslOutletTest, ANerveMonitorHasAStreamOfItsOwn) {
+  LslOptions watched = options();
+  watched.nerve_channels = {"frontalis", "mentalis"};
+  watched.nerve_rate = 8000.0;
+  LslOutlet outlet(watched, now());
+  record_->clock = 5000.0;
+  now_ns_ = 2'000'000'000;
+  ASSERT_EQ(record_->streams.size(), 3u);
+  const test::LslStream& stream = record_->streams[2];
+  EXPECT_EQ(stream.name, "haptrial P07 nerves");
+  EXPECT_EQ(stream.type, "EMG");
+  EXPECT_EQ(stream.rate, 8000.0);
+  EXPECT_EQ(stream.channels, 2);
+  EXPECT_THAT(stream.description, testing::Contains(Pair("channels/channel/label", "mentalis")));
+  EXPECT_THAT(stream.description, testing::Contains(Pair("channels/channel/unit", "V")));
+  EXPECT_THAT(stream.description, testing::Contains(Pair("model", "simulated electromyogram")));
+  outlet.push_nerves(std::vector{1e-6, 2e-6, 3e-6, 4e-6}, std::vector{2.0, 2.000125});
+  EXPECT_THAT(stream.values, ElementsAre(1e-6, 2e-6, 3e-6, 4e-6));
+  ASSERT_EQ(stream.timestamps.size(), 2u);
+  EXPECT_NEAR(stream.timestamps[1], 5000.000125, 1e-9);
+  LslOutlet plain(options(), now());
+  plain.push_nerves(std::vector{1e-6}, std::vector{2.0});
+  EXPECT_EQ(plain.refused(), 0u) << "nobody watches nerves there";
+}
+
 TEST_F(LslOutletTest, SamplesAreNotTakenForTheMomentInWhichTheyArePushed) {
   LslOutlet outlet(options(), now());
   record_->clock = 100.0;
