@@ -51,6 +51,7 @@ struct RunOptions {
   std::optional<int> trials;  // default: all
   std::string tutor;          // FILE, FILE:TRIAL or FILE:TRIAL@SECONDS; empty: none
   bool console{false};
+  bool nerve_monitor{false};  // its technician's page beside the console
   bool keyboard{false};
   std::optional<std::string> address;  // of the console; default: the loopback's
   std::optional<int> port;             // of the console; default: any that is free

@@ -17,6 +17,7 @@
 #include "experiments/console/console_guard.h"
 #include "experiments/console/console_messages.h"
 #include "experiments/console/console_page.h"
+#include "experiments/console/nerve_page.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -183,7 +184,7 @@ class Console::Implementation {
     set_up_server();
     port_ = bind();
     names_ = console_hosts(options_.address, loopback, port_);
-    gate_.emplace(Gate::Rules{token_, names_, kMaxBody});
+    gate_.emplace(Gate::Rules{token_, names_, kMaxBody, options_.nerve_desk != nullptr});
     constexpr int kForRequests = 4;  // beside the event streams
     ours_.emplace(options_.event_streams + kForRequests, options_.waiting);
     others_.emplace(options_.workers, options_.waiting);
@@ -202,6 +203,9 @@ class Console::Implementation {
   }
 
   std::string url() const { return fmt::format("http://{}/?token={}", names_.front(), token_); }
+  std::string nerve_url() const {
+    return fmt::format("http://{}/nerves?token={}", names_.front(), token_);
+  }
   int port() const { return port_; }
   const std::string& token() const { return token_; }
   const RefusalLog& log() const { return log_; }
@@ -238,8 +242,11 @@ class Console::Implementation {
 
   void set_up_server();
   void answer(const httplib::Request& request, httplib::Response& response);
-  void send_page(httplib::Response& response);
-  void send_events(httplib::Response& response);
+  static void send_page(httplib::Response& response, std::string_view html);
+  using MakeEvent = std::function<std::string()>;
+  void send_events(httplib::Response& response, MakeEvent make);
+  MakeEvent status_events();
+  MakeEvent nerve_events();
   void send_picture(httplib::Response& response);
   static void refuse(httplib::Response& response, int status, const std::string& reason);
 
@@ -292,6 +299,7 @@ void Console::Implementation::set_up_server() {
     answer(request, response);
   };
   server_.Get("/", handler).Get("/events", handler).Post("/ask", handler).Post("/note", handler);
+  server_.Get("/nerves", handler).Get("/nerves/events", handler).Post("/nerves/ask", handler);
   server_.Get("/picture", handler).Post("/answer", handler);
   server_.set_error_handler(httplib::Server::Handler([this](const auto& request, auto& response) {
     if (response.body.empty()) {
@@ -310,10 +318,16 @@ void Console::Implementation::set_up_server() {
 
 void Console::Implementation::answer(const httplib::Request& request, httplib::Response& response) {
   if (request.path == "/") {
-    return send_page(response);
+    return send_page(response, console_page_template());
+  }
+  if (request.path == "/nerves") {
+    return send_page(response, nerve_page_template());
   }
   if (request.path == "/events") {
-    return send_events(response);
+    return send_events(response, status_events());
+  }
+  if (request.path == "/nerves/events") {
+    return send_events(response, nerve_events());
   }
   if (request.path == "/picture") {
     return send_picture(response);
@@ -321,6 +335,8 @@ void Console::Implementation::answer(const httplib::Request& request, httplib::R
   try {
     if (request.path == "/ask") {
       control_.ask(parse_request(request.body));
+    } else if (request.path == "/nerves/ask") {
+      options_.nerve_desk->ask(parse_nerve_order(request.body));
     } else if (request.path == "/answer") {
       auto [number, text] = parse_answer(request.body);
       control_.answer(number, std::move(text));
@@ -333,10 +349,10 @@ void Console::Implementation::answer(const httplib::Request& request, httplib::R
   }
 }
 
-void Console::Implementation::send_page(httplib::Response& response) {
+void Console::Implementation::send_page(httplib::Response& response, std::string_view html) {
   const std::string nonce = make_token();
   response.set_header("Content-Security-Policy", console_page_policy(nonce));
-  response.set_content(console_page(nonce), "text/html; charset=utf-8");
+  response.set_content(console_page(html, nonce), "text/html; charset=utf-8");
 }
 
 /// Sends the picture of the page that is asked at the moment.
@@ -348,7 +364,21 @@ void Console::Implementation::send_picture(httplib::Response& response) {
   response.set_content(*picture, "image/png");
 }
 
-void Console::Implementation::send_events(httplib::Response& response) {
+Console::Implementation::MakeEvent Console::Implementation::status_events() {
+  return [this] { return status_json(control_.status(), log_.count()); };
+}
+
+/// Each page gets what came since its own last event.
+Console::Implementation::MakeEvent Console::Implementation::nerve_events() {
+  return [this, column = std::uint64_t{0}, event = std::uint64_t{0}]() mutable {
+    const nerve::MonitorDesk::View view = options_.nerve_desk->since(column, event);
+    column = view.next_column;
+    event = view.next_event;
+    return nerve_json(view);
+  };
+}
+
+void Console::Implementation::send_events(httplib::Response& response, MakeEvent make) {
   if (streams_.fetch_add(1) >= options_.event_streams) {
     streams_.fetch_sub(1);
     return refuse(response, 503, fmt::format("{} pages are open already", options_.event_streams));
@@ -357,12 +387,13 @@ void Console::Implementation::send_events(httplib::Response& response) {
   const Seconds patience(options_.request_time);
   response.set_chunked_content_provider(
       "text/event-stream",
-      [this, period, patience, first = true](std::size_t, httplib::DataSink& sink) mutable {
+      [period, patience, make = std::move(make), first = true](std::size_t,
+                                                               httplib::DataSink& sink) mutable {
         Connection& connection = t_job->connection;
         const bool last = !first && !connection.wait(period);  // how the session ended, say
         connection.set_deadline(patience);                     // for a page that no longer reads
-        const std::string event = fmt::format("{}data: {}\n\n", first ? "retry: 500\n" : "",
-                                              status_json(control_.status(), log_.count()));
+        const std::string event =
+            fmt::format("{}data: {}\n\n", first ? "retry: 500\n" : "", make());
         first = false;
         return sink.write(event.data(), event.size()) && !last;
       },
@@ -375,6 +406,7 @@ Console::Console(SessionControl& control, ConsoleOptions options)
 Console::~Console() = default;
 
 std::string Console::url() const { return implementation_->url(); }
+std::string Console::nerve_url() const { return implementation_->nerve_url(); }
 int Console::port() const { return implementation_->port(); }
 const std::string& Console::token() const { return implementation_->token(); }
 std::uint64_t Console::refused() const { return implementation_->log().count(); }

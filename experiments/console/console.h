@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/nerve/beside/monitor_desk.h"
 #include "experiments/control/session_control.h"
 
 namespace haptrial::experiments {
@@ -19,6 +20,7 @@ struct ConsoleOptions {
   int workers{8};        // requests at a time of those who have not shown the token, >= 1
   int event_streams{4};  // pages at a time, >= 1
   int waiting{32};       // connections that may wait for a worker
+  std::shared_ptr<nerve::MonitorDesk> nerve_desk{};  // of the nerve monitor's page; null: none
   /// Gets a sentence for each of the first refusals (RefusalLog); on a thread of the console.
   std::function<void(const std::string&)> on_refusal;
 };
@@ -33,6 +35,12 @@ struct ConsoleOptions {
 ///     GET /events?token=T  server-sent events, each a status as JSON
 ///     POST /ask            {"request": "pause"}, with the header X-Haptrial-Token
 ///     POST /note           {"text": "..."}, likewise
+///
+/// With a nerve monitor, for its technician:
+///
+///     GET /nerves?token=T         the page
+///     GET /nerves/events?token=T  server-sent events: traces, events, thresholds as JSON
+///     POST /nerves/ask            {"channel": 0, "muted": true}, with the header
 class Console {
  public:
   /// Serves when it returns. @param control  outlives the console.
@@ -46,6 +54,8 @@ class Console {
 
   /// What the experimenter opens; holds the token.
   std::string url() const;
+  /// What the technician of the nerve monitor opens, if there is one; holds the token.
+  std::string nerve_url() const;
   int port() const;
   const std::string& token() const;
 

@@ -54,8 +54,13 @@ std::optional<Refusal> Gate::judge(const RequestHead& head) const {
   if (auto refusal = judge_sender(head)) {
     return refusal;
   }
-  const bool reads = head.path == "/" || head.path == "/events" || head.path == "/picture";
-  if (!reads && head.path != "/ask" && head.path != "/note" && head.path != "/answer") {
+  const bool reads_nerves = head.path == "/nerves" || head.path == "/nerves/events";
+  const bool nerves = rules_.nerves && (reads_nerves || head.path == "/nerves/ask");
+  const bool reads =
+      head.path == "/" || head.path == "/events" || head.path == "/picture" || reads_nerves;
+  const bool known = head.path == "/" || head.path == "/events" || head.path == "/picture" ||
+                     head.path == "/ask" || head.path == "/note" || head.path == "/answer";
+  if (!known && !nerves) {
     return Refusal{404, "no such page; there are /, /events, /picture, /ask, /note and /answer"};
   }
   if (head.method != (reads ? "GET" : "POST")) {
@@ -77,7 +82,8 @@ std::optional<Refusal> Gate::judge_sender(const RequestHead& head) const {
     return Refusal{403, "the Origin is another page"};
   }
   // A link that is followed to the page itself comes from elsewhere, and that is fine.
-  if (head.path != "/" && !head.fetch_site.empty() && head.fetch_site != "same-origin" &&
+  const bool page = head.path == "/" || head.path == "/nerves";
+  if (!page && !head.fetch_site.empty() && head.fetch_site != "same-origin" &&
       head.fetch_site != "none") {
     return Refusal{403, "the browser says that another site asks"};
   }

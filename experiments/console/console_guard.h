@@ -51,6 +51,7 @@ class Gate {
     std::string token;
     std::vector<std::string> hosts;  // "127.0.0.1:8080"
     std::size_t max_body{4096};      // [bytes]
+    bool nerves{false};              // there is a nerve monitor
   };
   explicit Gate(Rules rules) : rules_(std::move(rules)) {}
 

@@ -4,9 +4,9 @@
 
 namespace haptrial::experiments {
 
-std::string console_page(const std::string& nonce) {
+std::string console_page(std::string_view html, const std::string& nonce) {
   constexpr std::string_view kPlace = "NONCE";
-  std::string page(console_page_template());
+  std::string page(html);
   for (auto at = page.find(kPlace); at != std::string::npos; at = page.find(kPlace, at)) {
     page.replace(at, kPlace.size(), nonce);
   }

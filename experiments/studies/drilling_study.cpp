@@ -120,7 +120,10 @@ std::vector<std::string> analyze_drillings(const fs::path& folder, const StudyFi
   const std::vector<protocols::StudyGroup> groups =
       protocols::study_groups(first.definition, first.definition_name);
   drilling::ValidityStudy study;
-  study.title = "Construct validity of simulated bone surgery";
+  const bool watched =
+      protocols::parse_bone_definition(first.definition, first.definition_name).nerves.has_value();
+  study.title =
+      watched ? "Drilling beside watched nerves" : "Construct validity of simulated bone surgery";
   study.files = files.files;
   study.threads = threads;
   study.ratings = folder / kRatingsFile;

@@ -17,8 +17,9 @@ void add_dry_run(CLI::App& app, int& status) {
   sub->add_option("--out", o.out, "New folder for the session files (default: out/NAME-001)");
   sub->add_option("--trials", o.trials,
                   "Number of trials of each session, from the first (default: all)");
-  sub->add_option("--session", o.session,
-                  "Number of the one session of each subject to run (default: all, in their order)");
+  sub->add_option(
+      "--session", o.session,
+      "Number of the one session of each subject to run (default: all, in their order)");
   sub->add_option("--language", o.language,
                   "Language of what participants read, such as de (default: the definition's)");
   sub->add_option("--tutor", o.tutor,
@@ -50,6 +51,8 @@ void add_run(CLI::App& app, int& status) {
   sub->add_flag("--window", o.window, "Show the participant's screen");
   sub->add_flag("--keyboard", o.keyboard, "Control the session with this terminal's keys");
   sub->add_flag("--console", o.console, "Serve the experimenter's page on the loopback address");
+  sub->add_flag("--nerve-monitor", o.nerve_monitor,
+                "Serve the page of the nerve monitor's technician beside the console");
   sub->add_option("--port", o.port, "Port of the console (default: any free port)");
   sub->add_option("--address", o.address,
                   "Address of the console; needs --remote (default: 127.0.0.1)");
@@ -86,8 +89,9 @@ void add_roster(CLI::App& app, int& status) {
   sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
   sub->add_option("FOLDER", o.folder, "Folder of the session files; need not be there yet")
       ->required();
-  sub->add_option("--seed", o.seed,
-                  "Seed of the study, for orders (default: that of the sessions; 1 if there are none)");
+  sub->add_option(
+      "--seed", o.seed,
+      "Seed of the study, for orders (default: that of the sessions; 1 if there are none)");
   sub->add_option("--json", o.json, "New file for the roster as JSON");
   sub->add_option("--csv", o.csv, "New file for the roster as a table, a row for each session");
   auto* exclude = sub->add_option("--exclude", o.exclude,
@@ -151,8 +155,7 @@ void add_keys(CLI::App& app, int& status) {
   CLI::App* sub = subcommand(app, "keys", "List every key that a definition may have",
                              "haptrial keys trials", {"", "keys.md"});
   auto& protocol = options_of<std::string>(*sub, status, keys);
-  sub->add_option("PROTOCOL", protocol,
-                  "Protocol whose keys are listed (default: every protocol)");
+  sub->add_option("PROTOCOL", protocol, "Protocol whose keys are listed (default: every protocol)");
 }
 
 void add_devices(CLI::App& app, int& status) {

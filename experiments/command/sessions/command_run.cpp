@@ -78,8 +78,15 @@ SessionSummary attended_session(SessionRequest& request, const RunOptions& optio
     console_options.on_refusal = [&control](const std::string& sentence) {
       control.note("console: " + sentence);
     };
+    if (options.nerve_monitor) {
+      request.nerve_desk = std::make_shared<nerve::MonitorDesk>();
+      console_options.nerve_desk = request.nerve_desk;
+    }
     console = std::make_unique<Console>(control, console_options);
     fmt::print("console: {}\n", console->url());
+    if (options.nerve_monitor) {
+      fmt::print("nerve monitor: {}\n", console->nerve_url());
+    }
     std::fflush(stdout);
   }
   const Keyboard keyboard(control);
@@ -106,6 +113,17 @@ void check_pages(const RunOptions& options, const protocols::Definition& definit
   }
 }
 
+void check_nerve_monitor(const RunOptions& options, const protocols::Definition& definition) {
+  if (options.nerve_monitor && definition.nerve_channels().empty()) {
+    throw InputError(
+        fmt::format("--nerve-monitor: {} has no table [nerve_monitor], so there is nothing to show",
+                    options.definition));
+  }
+  if (options.nerve_monitor && !options.console) {
+    throw InputError("--nerve-monitor needs --console, which serves its page");
+  }
+}
+
 }  // namespace
 
 int run(const RunOptions& asked) {
@@ -121,6 +139,7 @@ int run(const RunOptions& asked) {
   }
   check_recording(options, experiment.study->protocol(), setup);
   check_pages(options, setup);
+  check_nerve_monitor(options, setup);
   for (const std::string& sentence : experiment.untranslated) {
     fmt::print("{}\n", sentence);
   }

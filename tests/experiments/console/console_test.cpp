@@ -132,7 +132,7 @@ TEST_F(ConsoleTest, ThePageIsTheSourceWithItsNonceAndLoadsNothingElse) {
   ASSERT_NE(at, std::string::npos);
   const std::string nonce = answer.substr(at + mark.size(), 32);
   const std::string page = answer.substr(answer.find("\r\n\r\n") + 4);
-  EXPECT_EQ(page, console_page(nonce));
+  EXPECT_EQ(page, console_page(console_page_template(), nonce));
   EXPECT_THAT(page, HasSubstr("<script nonce=\"" + nonce));
   EXPECT_THAT(page, Not(HasSubstr(console.token())));
   for (const char* elsewhere : {"http://", "https://", "src=", "@import", "url("}) {

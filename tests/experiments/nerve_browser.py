@@ -1,0 +1,76 @@
+"""Clicks through the page of the nerve monitor's technician in headless Chromium.
+
+    nerve_browser.py URL FOLDER
+
+The session drills beside nerves. Leaves pictures in FOLDER. Exit status 0: all was as it should be;
+77: there is no Chromium that starts.
+"""
+
+import pathlib
+import sys
+
+from browser import Driver, wait
+
+
+def drawn(page, channel):
+    """Pixels of a trace that are not empty."""
+    return page.run(
+        f"const c = document.getElementById('trace_{channel}');"
+        "const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;"
+        "let n = 0; for (let i = 3; i < d.length; i += 4) n += d[i] > 0 ? 1 : 0; return n"
+    )
+
+
+def log(page):
+    return page.run(
+        "return [...document.getElementById('log').rows]"
+        ".map((row) => [...row.cells].map((cell) => cell.textContent))"
+    )
+
+
+def look(page, url, folder):
+    page.call("POST", "/url", {"url": url})
+    wait("connected", lambda: page.text("link") == "connected")
+    wait("the channels", lambda: page.run("return document.querySelectorAll('.channel').length") == 3)
+    assert page.run("return document.querySelector('.mark').textContent") == "SIMULATED"
+    assert page.text("heard") == "heard by the participant"
+    names = page.run("return [...document.querySelectorAll('.name')].map((e) => e.textContent)")
+    assert names == ["oculi", "oris", "drawn <b>"], names
+    wait("traces", lambda: all(drawn(page, channel) > 500 for channel in range(3)))
+    wait("an event in the log", lambda: len(log(page)) >= 2, 20)
+    kinds = {row[2] for row in log(page)}
+    assert kinds <= {"burst", "train", "artefact", "response"}, kinds
+    wait("an event on the screen", lambda: any(page.text(f"event_{i}") for i in range(3)), 20)
+    assert page.run("return document.getElementById('threshold_0').value") == "100"
+
+    page.click("mute_1")
+    wait("muted", lambda: page.run(
+        "return document.getElementById('mute_1').getAttribute('aria-pressed')") == "true")
+    assert page.text("said") == "oris: muted", page.text("said")
+    page.run("document.getElementById('threshold_2').value = ''")
+    page.type("threshold_2", "250\ue007")
+    wait("the threshold", lambda: page.text("said") == "drawn <b>: threshold 250 µV")
+    page.run("document.activeElement.blur()")
+    wait("the threshold of the monitor", lambda: page.run(
+        "return document.getElementById('threshold_2').value") == "250")
+    page.picture(folder / "nerve-monitor.png", height=1000)
+    page.picture(folder / "nerve-monitor-narrow.png", 620, 1300)
+    wide = page.run("return document.documentElement.scrollWidth > window.innerWidth")
+    assert not wide, "the narrow page scrolls sideways"
+
+    print("CLOSE", flush=True)
+    wait("the banner of a lost connection", lambda: not page.hidden("lost"))
+    complaints = [c for c in page.complaints() if "ERR_" not in c]  # of the lost connection
+    assert not complaints, complaints
+
+
+def main():
+    url, folder = sys.argv[1], pathlib.Path(sys.argv[2])
+    page = Driver(folder)
+    try:
+        look(page, url, folder)
+    finally:
+        page.close()
+
+
+main()

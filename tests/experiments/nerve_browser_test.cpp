@@ -1,0 +1,153 @@
+// The page of the nerve monitor's technician in a real browser, and what its server refuses.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+#include "core/base/error.h"
+#include "core/nerve/beside/nerve_beside.h"
+#include "experiments/console/console.h"
+#include "experiments/console/nerve_page.h"
+#include "tests/experiments/console_client.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::experiments::nerve_browser_test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+bool is_installed(const std::string& program) {
+  return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
+}
+
+nerve::NerveSetup setup() {
+  nerve::NerveSetup s;
+  s.nerves = {{"facial nerve", {}, 0.0, {"oculi", "oris"}}, {"drawn", {}, 0.0, {"drawn <b>"}}};
+  return s;
+}
+
+/// A servo loop that drills beside nerves in real time.
+class Drilling {
+ public:
+  explicit Drilling(std::shared_ptr<nerve::MonitorDesk> desk)
+      : beside_(
+            [](std::uint64_t) {
+              return std::make_unique<nerve::NerveSimulation>(setup(), 1000.0, 1);
+            },
+            1000.0, {std::move(desk), nullptr}),
+        thread_([this] { run(); }) {}
+  ~Drilling() {
+    ended_ = true;
+    thread_.join();
+  }
+
+ private:
+  void run() {
+    RandomStream random(3, "plan");
+    nerve::NerveTick tick;
+    auto due = std::chrono::steady_clock::now();
+    for (; !ended_; ++tick.sequence) {
+      tick.drilling = (tick.sequence / 4000) % 2 == 0;
+      for (std::size_t n = 0; n < 2; ++n) {
+        tick.nerves[n].burst = tick.sequence % 1500 == 400 + 600 * n;
+        tick.nerves[n].train = tick.sequence % 6000 == 2500 + 2000 * n;
+        tick.nerves[n].severity = static_cast<float>(random.uniform(0.5, 1.0));
+      }
+      beside_.after_tick(tick);
+      due += std::chrono::milliseconds(1);
+      std::this_thread::sleep_until(due);
+    }
+  }
+
+  nerve::ThreadedNerves beside_;
+  std::atomic<bool> ended_{false};
+  std::thread thread_;
+};
+
+TEST(NerveBrowserTest, ATechnicianWatchesMutesAndSetsAThreshold) {
+  if (!is_installed("chromedriver") || !is_installed("chromium") || !is_installed("python3")) {
+    GTEST_SKIP() << "needs Debian's chromium, chromium-driver and python3";
+  }
+  const test::TemporaryFolder folder;
+  SessionControl control;
+  ConsoleOptions options;
+  options.nerve_desk = std::make_shared<nerve::MonitorDesk>();
+  const Drilling drilling(options.nerve_desk);
+  auto console = std::make_unique<Console>(control, options);
+  const std::string command = "timeout 120 python3 '" HAPTRIAL_SOURCE_DIR
+                              "/tests/experiments/nerve_browser.py' '" +
+                              console->nerve_url() + "' '" + folder.path().string() + "' 2>&1";
+  FILE* script = ::popen(command.c_str(), "r");
+  ASSERT_NE(script, nullptr);
+  std::string output;
+  for (std::array<char, 512> line; std::fgets(line.data(), line.size(), script) != nullptr;) {
+    output += line.data();
+    if (output.ends_with("CLOSE\n")) {
+      console.reset();
+    }
+  }
+  const int status = ::pclose(script);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 77) {
+    GTEST_SKIP() << output;
+  }
+  EXPECT_EQ(status, 0) << output;
+  if (const char* kept = std::getenv("HAPTRIAL_KEEP_PICTURES")) {
+    for (const char* picture : {"nerve-monitor.png", "nerve-monitor-narrow.png"}) {
+      fs::copy_file(folder / picture, fs::path(kept) / picture,
+                    fs::copy_options::overwrite_existing);
+    }
+  }
+}
+
+std::string refusal(const std::string& json) {
+  try {
+    parse_nerve_order(json);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(NervePageTest, OrdersAreReadStrictly) {
+  EXPECT_EQ(refusal(R"({"channel": 0, "muted": true})"), "");
+  const nerve::MonitorOrder order = parse_nerve_order(R"({"channel": 2, "threshold": 150e-6})");
+  EXPECT_EQ(order.channel, 2u);
+  EXPECT_FALSE(order.mutes);
+  EXPECT_DOUBLE_EQ(order.threshold, 150e-6);
+  for (const char* wrong : {"", "[]", "{}", R"({"channel": 0})", R"({"muted": true})",
+                            R"({"channel": -1, "muted": true})", R"({"channel": 9, "muted": true})",
+                            R"({"channel": 0, "muted": 1})", R"({"channel": 0, "threshold": 1})",
+                            R"({"channel": 0, "threshold": 0})",
+                            R"({"channel": 0, "threshold": 1e-4, "muted": true})"}) {
+    EXPECT_THAT(refusal(wrong), HasSubstr("either \"muted\"")) << wrong;
+  }
+}
+
+std::string got(const Console& console, const std::string& target) {
+  test::RawClient client(console.port());
+  client.send("GET " + target + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(console.port()) +
+              "\r\n\r\n");
+  return client.receive(3.0);
+}
+
+TEST(NervePageTest, OnlyAConsoleWithAMonitorServesIt) {
+  SessionControl control;
+  const Console plain(control);
+  EXPECT_EQ(test::status_of(got(plain, "/nerves?token=" + plain.token())), 404);
+  ConsoleOptions options;
+  options.nerve_desk = std::make_shared<nerve::MonitorDesk>();
+  const Console watched(control, options);
+  EXPECT_THAT(got(watched, "/nerves?token=" + watched.token()), HasSubstr("Nerve monitor"));
+  EXPECT_THAT(got(watched, "/nerves"), HasSubstr("the token is missing"));
+}
+
+}  // namespace
+}  // namespace haptrial::experiments::nerve_browser_test

@@ -1,0 +1,258 @@
+// The nerve monitor from a definition through a session to its report. All simulated.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <thread>
+
+#include "analysis/bone_drilling/nerves/nerve_findings.h"
+#include "core/base/error.h"
+#include "core/bone/record/drilling_tables.h"
+#include "core/nerve/beside/monitor_desk.h"
+#include "core/nerve/record/nerve_rows.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
+#include "experiments/runner/session.h"
+#include "experiments/studies/experiment.h"
+#include "protocols/bone_drilling/bone_protocol.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
+#include "tests/experiments/command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/experiments/small_drilling.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::experiments::nerve_session_test {
+namespace {
+
+namespace fs = std::filesystem;
+namespace drilling = analysis::drilling;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// A nerve right under the slab that the virtual hand drills, and the one of the bone.
+const char* const kMonitor = R"(
+[nerve_monitor]
+bursts = 0.5
+[[nerve_monitor.curves]]
+name = "drawn nerve"
+points_mm = [[2.0, 7.0, 10.0], [16.0, 7.0, 10.0], [30.0, 7.0, 10.0]]
+channels = ["first muscle", "second muscle"]
+[[nerve_monitor.nerves]]
+structure = "facial nerve"
+)";
+
+fs::path write_monitored(const fs::path& folder, double seconds,
+                         const std::string& monitor = kMonitor) {
+  const fs::path file = test::write_small_drilling(folder, seconds);
+  test::write_text(file, test::read_text(file) + monitor);
+  return file;
+}
+
+SessionRequest request_of(const protocols::BoneDefinition& definition, const fs::path& file) {
+  SessionRequest request;
+  request.protocol = &protocols::bone_drilling();
+  request.definition = &definition;
+  request.subject = "S01";
+  request.seed = 3;
+  request.file = file;
+  return request;
+}
+
+class NerveSessionTest : public testing::Test {
+ protected:
+  static constexpr double kSeconds = 90.0;
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<test::TemporaryFolder>();
+    definition_ = std::make_unique<protocols::BoneDefinition>(
+        protocols::load_bone_definition(write_monitored(folder_->path(), kSeconds)));
+    std::thread other([] { run_session(request_of(*definition_, *folder_ / "beside.h5")); });
+    run_session(request_of(*definition_, *folder_ / "S01.h5"));
+    other.join();
+  }
+  static void TearDownTestSuite() {
+    definition_.reset();
+    folder_.reset();
+  }
+  static record::SessionReader session(const char* name = "S01.h5") {
+    return record::SessionReader(*folder_ / name);
+  }
+  static std::unique_ptr<test::TemporaryFolder> folder_;
+  static std::unique_ptr<protocols::BoneDefinition> definition_;
+};
+std::unique_ptr<test::TemporaryFolder> NerveSessionTest::folder_;
+std::unique_ptr<protocols::BoneDefinition> NerveSessionTest::definition_;
+
+TEST_F(NerveSessionTest, TheFileHoldsEverySampleOfEveryTick) {
+  const record::SessionReader reader = session();
+  const record::Integrity integrity =
+      record::check_session(reader, protocols::bone_drilling().tables());
+  EXPECT_TRUE(integrity.ok) << integrity.problems.front();
+  const auto channels = reader.rows<record::NerveChannelRow>();
+  ASSERT_EQ(channels.size(), 3u);
+  EXPECT_EQ(channels[0].name, "facial nerve");
+  EXPECT_EQ(channels[2].name, "second muscle");
+  EXPECT_EQ(channels[2].nerve, "drawn nerve");
+  EXPECT_EQ(channels[2].rate, 8000.0);
+  const auto emg = reader.rows<record::EmgRow>();
+  ASSERT_EQ(emg.size(), reader.sample_count() * 8);
+  for (std::size_t i = 0; i < emg.size(); ++i) {
+    ASSERT_EQ(emg[i].sequence, i / 8);
+    ASSERT_EQ(emg[i].sample, i % 8);
+    ASSERT_EQ(emg[i].channels[3], 0.0) << "there are three channels";
+  }
+  EXPECT_EQ(reader.passes().front().condition, "monitor on");
+}
+
+TEST_F(NerveSessionTest, TheSameSeedGivesTheSameSamplesOnAnyThread) {
+  const auto a = session().rows<record::EmgRow>();
+  const auto b = session("beside.h5").rows<record::EmgRow>();
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].channels, b[i].channels) << i;
+  }
+  EXPECT_EQ(session().rows<record::NerveEventRow>().size(),
+            session("beside.h5").rows<record::NerveEventRow>().size());
+}
+
+/// Against a session without a monitor, whose other rows are the same.
+TEST_F(NerveSessionTest, AChannelTakesAtMostThirtyMegabytesAnHour) {
+  const test::TemporaryFolder folder;
+  const protocols::BoneDefinition plain =
+      protocols::load_bone_definition(test::write_small_drilling(folder.path(), kSeconds));
+  run_session(request_of(plain, folder / "S01.h5"));
+  const double more = static_cast<double>(fs::file_size(*folder_ / "S01.h5")) -
+                      static_cast<double>(fs::file_size(folder / "S01.h5"));
+  const double hours =
+      static_cast<double>(session().rows<record::EmgRow>().size()) / 8000.0 / 3600.0;
+  const double each = 1e-6 * more / hours / 3.0;
+  RecordProperty("megabytes_an_hour_and_channel", std::to_string(each));
+  EXPECT_GT(each, 10.0) << "noise does not vanish";
+  EXPECT_LE(each, 30.0);
+}
+
+TEST_F(NerveSessionTest, WhatWasPlantedIsFoundThroughTheFile) {
+  const auto procedures = drilling::load_nerves(session(), "");
+  ASSERT_EQ(procedures.size(), 1u);
+  const drilling::NerveProcedure& p = procedures.front();
+  const drilling::NerveDetection& d = p.detection;
+  RecordProperty("planted", d.planted);
+  RecordProperty("found", d.found);
+  RecordProperty("above_threshold", d.above);
+  RecordProperty("above_found", d.above_found);
+  RecordProperty("false_alarms", d.false_alarms);
+  RecordProperty("artefacts", d.artefacts);
+  RecordProperty("artefacts_passed", d.artefacts_passed);
+  RecordProperty("planted_train", std::to_string(d.planted_train));
+  RecordProperty("found_train", std::to_string(d.found_train));
+  EXPECT_GT(d.planted, 25);
+  EXPECT_GT(d.planted_train, 1.0);
+  EXPECT_GE(d.above_found, 0.95 * d.above);
+  EXPECT_GE(d.found, 0.85 * d.planted) << "some bursts stay below the threshold";
+  EXPECT_LE(d.false_alarms, 1);
+  EXPECT_GT(d.artefacts, 10);
+  EXPECT_LE(d.artefacts_passed, 0.05 * d.artefacts);
+  EXPECT_NEAR(d.found_train / d.planted_train, 1.0, 0.15);
+  ASSERT_EQ(p.nerves.size(), 2u);
+  EXPECT_EQ(p.nerves[1].nerve, "drawn nerve");
+  EXPECT_GT(p.nerves[1].events(), 3 * p.nerves[0].events()) << "the other lies 5 mm deeper";
+  EXPECT_FALSE(p.reactions.empty());
+}
+
+TEST_F(NerveSessionTest, AReportIsMadeAndMarkedAsSimulated) {
+  const fs::path study = *folder_ / "study";
+  fs::create_directories(study);
+  fs::copy_file(*folder_ / "S01.h5", study / "S01.h5");
+  const test::CommandResult made = test::run_command("haptrial analyze '" + study.string() + "'");
+  ASSERT_EQ(made.status, 0) << made.errors;
+  EXPECT_THAT(made.output, HasSubstr("Simulated: monitor on: "));
+  fs::path report;
+  for (const auto& entry : fs::recursive_directory_iterator(study)) {
+    report = entry.path().filename() == "report.md" ? entry.path() : report;
+  }
+  const std::string text = test::read_text(report);
+  EXPECT_THAT(text, AllOf(HasSubstr("Nerve monitor (simulated)"), HasSubstr("drawn nerve"),
+                          HasSubstr("SIMULATED"), HasSubstr("false alarms")));
+  EXPECT_THAT(test::read_text(report.parent_path() / "nerves.csv"),
+              HasSubstr("S01.h5,S01,,1,1,monitor on,"));
+}
+
+std::string refusal(const std::string& monitor) {
+  const test::TemporaryFolder folder;
+  try {
+    protocols::load_bone_definition(write_monitored(folder.path(), 5.0, monitor));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(NerveDefinitionTest, WhatDoesNotFitTheBoneGetsASentence) {
+  EXPECT_THAT(
+      refusal("\n[nerve_monitor]\n[[nerve_monitor.nerves]]\nstructure = \"vagus\"\n"),
+      AllOf(HasSubstr("names \"vagus\", which slabs does not have"), HasSubstr("facial nerve")));
+  EXPECT_THAT(refusal("\n[nerve_monitor]\n[[nerve_monitor.curves]]\nname = \"far\"\n"
+                      "points_mm = [[1, 1, 1], [99, 1, 1]]\n"),
+              HasSubstr("point 2 of \"far\", (99, 1, 1) mm, lies outside slabs"));
+}
+
+TEST(NerveDefinitionTest, EveryOtherProcedureIsHeard) {
+  const test::TemporaryFolder folder;
+  const auto d = protocols::load_bone_definition(
+      write_monitored(folder.path(), 5.0,
+                      "\n[nerve_monitor]\nheard_in = \"every other\"\n[[nerve_monitor.nerves]]\n"
+                      "structure = \"facial nerve\"\n"));
+  EXPECT_TRUE(d.hears_nerves(1, 0));
+  EXPECT_FALSE(d.hears_nerves(2, 0));
+  EXPECT_FALSE(d.hears_nerves(1, 1));
+  EXPECT_TRUE(d.hears_nerves(2, 1));
+}
+
+TEST(NerveTrainingTest, TheShippedDefinitionIsATrainingWithAndWithout) {
+  const Experiment experiment =
+      load_experiment(fs::path(HAPTRIAL_SOURCE_DIR) / "experiments/nerve_training.toml");
+  const auto& d = dynamic_cast<const protocols::BoneDefinition&>(*experiment.definition);
+  EXPECT_EQ(d.nerve_channels().size(), 5u);
+  EXPECT_EQ(d.nerve_distances.size(), 1u);
+  EXPECT_THAT(d.design.conditions, testing::ElementsAre("monitor on", "monitor off"));
+  EXPECT_TRUE(d.surgeon.has_value());
+}
+
+TEST(LiveNerveTest, ATechnicianSeesASessionOnTheRealClock) {
+  const test::TemporaryFolder folder;
+  const protocols::BoneDefinition definition =
+      protocols::load_bone_definition(write_monitored(folder.path(), 2.0));
+  SessionRequest request = request_of(definition, folder / "S01.h5");
+  request.clock = realtime::ClockKind::kReal;
+  request.device.name = "virtual";
+  request.nerve_desk = std::make_shared<nerve::MonitorDesk>();
+  const SessionSummary done = run_session(request);
+  EXPECT_EQ(done.dropped, 0u);
+  const nerve::MonitorDesk::View view = request.nerve_desk->since(0, 0);
+  EXPECT_EQ(view.channels.size(), 3u);
+  EXPECT_GT(view.next_column, 400u);
+  const record::SessionReader reader(folder / "S01.h5");
+  EXPECT_EQ(reader.rows<record::EmgRow>().size(), reader.sample_count() * 8);
+  const record::Integrity integrity =
+      record::check_session(reader, protocols::bone_drilling().tables());
+  EXPECT_TRUE(integrity.ok) << integrity.problems.front();
+}
+
+TEST(NerveCommandTest, TheTechniciansPageNeedsAMonitorAndAConsole) {
+  const test::TemporaryFolder folder;
+  const std::string out = " --out '" + (folder / "out").string() + "'";
+  const fs::path plain = test::write_small_drilling(folder.path(), 1.0);
+  const test::CommandResult none =
+      test::run_command("haptrial run '" + plain.string() + "' --console --nerve-monitor" + out);
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.errors, HasSubstr("has no table [nerve_monitor]"));
+  const fs::path watched = write_monitored(folder.path(), 1.0);
+  const test::CommandResult alone =
+      test::run_command("haptrial run '" + watched.string() + "' --nerve-monitor" + out);
+  EXPECT_EQ(alone.status, 2);
+  EXPECT_THAT(alone.errors, HasSubstr("--nerve-monitor needs --console"));
+}
+
+}  // namespace
+}  // namespace haptrial::experiments::nerve_session_test
