@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "analysis/bone_drilling/report/nerve_section.h"
 #include "analysis/bone_drilling/report/validity_figures.h"
 #include "analysis/bone_drilling/report/validity_summary.h"
 #include "analysis/bone_drilling/report/validity_words.h"
@@ -58,6 +59,7 @@ class Report {
     rehearsal();
     document_.points(summary_lines(result_));
     add_design();
+    add_nerve_section(document_, result_.nerves, v_.simulated);
     add_ratings();
     add_metrics();
     add_forces();

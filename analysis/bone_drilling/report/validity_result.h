@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "analysis/bone_drilling/metrics/metrics.h"
+#include "analysis/bone_drilling/nerves/nerve_findings.h"
 #include "analysis/bone_drilling/validity/validity_findings.h"
 
 namespace haptrial::analysis::drilling {
@@ -25,6 +26,7 @@ struct ValidityResult {
   NearBins bins;
   std::string structure;  // whose force profile is drawn; empty: none
   Validity validity;
+  std::vector<NerveProcedure> nerves;  // of sessions with a nerve monitor
   std::vector<StudyPicture> pictures;
   std::vector<std::string> remarks;  // sentences about the files, for the report
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <utility>
 
 #include "analysis/bone_drilling/report/validity_figures.h"
 #include "analysis/bone_drilling/report/validity_json.h"
@@ -23,20 +24,34 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<ProcedureSummary> summaries_of(const ValidityStudy& study) {
+/// What every session gave, and what its nerve monitor found.
+struct Sessions {
+  std::vector<ProcedureSummary> procedures;
+  std::vector<NerveProcedure> nerves;
+};
+
+template <class T>
+void move_to(std::vector<T>& all, std::vector<T>& some) {
+  std::move(some.begin(), some.end(), std::back_inserter(all));
+}
+
+Sessions sessions_of(const ValidityStudy& study) {
   StudyBones bones;
-  std::vector<std::vector<ProcedureSummary>> by_file(study.files.size());
+  std::vector<Sessions> by_file(study.files.size());
   in_groups(study.files.size(), 1, study.threads, [&] {
     return [&](std::size_t first, std::size_t) {
       const record::SessionReader reader(study.files[first]);
-      for (const Procedure& p : load_procedures(reader, study.setup(reader), &bones)) {
-        by_file[first].push_back(summarize(p, study.metrics, bones));
+      const ProcedureSetup setup = study.setup(reader);
+      for (const Procedure& p : load_procedures(reader, setup, &bones)) {
+        by_file[first].procedures.push_back(summarize(p, study.metrics, bones));
       }
+      by_file[first].nerves = load_nerves(reader, setup.group);
     };
   });
-  std::vector<ProcedureSummary> all;
-  for (auto& file : by_file) {
-    std::move(file.begin(), file.end(), std::back_inserter(all));
+  Sessions all;
+  for (Sessions& file : by_file) {
+    move_to(all.procedures, file.procedures);
+    move_to(all.nerves, file.nerves);
   }
   return all;
 }
@@ -72,7 +87,9 @@ ValidityResult analyze(const ValidityStudy& study) {
   result.title = study.title;
   result.bins = study.metrics.bins;
   result.pictures = study.pictures;
-  result.procedures = summaries_of(study);
+  Sessions sessions = sessions_of(study);
+  result.procedures = std::move(sessions.procedures);
+  result.nerves = std::move(sessions.nerves);
   if (result.procedures.empty()) {
     throw InputError("no session holds a drilling, so there is nothing to analyse");
   }
@@ -92,6 +109,9 @@ void write_validity(const ValidityResult& result, const fs::path& folder) {
   const Staging staging(folder);
   staging.write("metrics.csv", metrics_csv(result.procedures));
   staging.write("statistics.json", validity_json(result.validity, result.procedures));
+  if (!result.nerves.empty()) {
+    staging.write("nerves.csv", nerves_csv(result.nerves));
+  }
   const std::vector<Figure> figures = validity_figures(result);
   draw_figures(figures, staging.path());
   std::vector<Drawing> drawings;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/bone_drilling/report/nerve_section.h"
 #include "analysis/bone_drilling/report/validity_figures.h"
 #include "analysis/bone_drilling/report/validity_words.h"
 #include "analysis/statistics/words/wording.h"
@@ -73,6 +74,9 @@ std::vector<std::string> summary_lines(const ValidityResult& result) {
     lines.push_back(contrast_line(v));
   }
   for (std::string& line : relation_lines(v)) {
+    lines.push_back(std::move(line));
+  }
+  for (std::string& line : nerve_lines(result.nerves)) {
     lines.push_back(std::move(line));
   }
   if (const auto& fit = v.combined.fit; fit && fit->validated.r) {
