@@ -35,6 +35,7 @@ struct DryRunOptions {
   std::optional<int> trials;   // default: all
   std::optional<int> session;  // of each subject; default: all, in their order
   std::string tutor;           // FILE, FILE:TRIAL or FILE:TRIAL@SECONDS; empty: none
+  bool taught{false};          // each subject, by a second one over a simulated network
   std::string language;        // of what participants read; default: the definition's own
 };
 int dry_run(const DryRunOptions& options);
@@ -47,9 +48,12 @@ struct RunOptions {
   std::string seed{"1"};
   std::optional<int> participant;  // default: the number at the end of the subject's identifier
   std::optional<int> session;      // default: the first that the subject has left
-  std::string out{"out/sessions"};
-  std::optional<int> trials;  // default: all
-  std::string tutor;          // FILE, FILE:TRIAL or FILE:TRIAL@SECONDS; empty: none
+  std::string out;                 // default: out/sessions, out/teaching with --teach
+  std::optional<int> trials;       // default: all
+  std::string tutor;               // FILE, FILE:TRIAL or FILE:TRIAL@SECONDS; empty: none
+  std::optional<int> teach;        // port at which the side that learns is awaited
+  std::string learn_from;          // HOST:PORT of the side that teaches; empty: nobody
+  std::string secret;              // file that both sides have
   bool console{false};
   bool nerve_monitor{false};  // its technician's page beside the console
   bool keyboard{false};
@@ -65,6 +69,9 @@ struct RunOptions {
   record::Participant person;
 };
 int run(const RunOptions& options);
+
+/// Makes the file of a secret that two sides of a link share.
+int make_secret(const std::string& file);
 
 /// Who has done what in a study, and who is next.
 struct RosterOptions {

@@ -64,6 +64,24 @@ void check_console(const RunOptions& options) {
   need("--remote", options.remote);
 }
 
+void check_link(const RunOptions& options) {
+  const bool linked = options.teach || !options.learn_from.empty();
+  if (options.teach && !options.learn_from.empty()) {
+    throw InputError("--teach and --learn-from are both given; a session is one side of a pair");
+  }
+  if (linked && options.secret.empty()) {
+    throw InputError(
+        "--teach and --learn-from need --secret FILE, the same on both sides; haptrial secret FILE "
+        "makes one");
+  }
+  if (!linked && !options.secret.empty()) {
+    throw InputError("--secret is given without --teach or --learn-from; leave it out");
+  }
+  if (linked && !options.tutor.empty()) {
+    throw InputError("--tutor is given beside --teach or --learn-from; leave out one of them");
+  }
+}
+
 std::string unfinished_in(const fs::path& folder) {
   constexpr std::size_t kMost = 8;
   std::error_code ignored;
@@ -130,6 +148,7 @@ void check_run_options(const RunOptions& options) {
   }
   check_device(options);
   check_console(options);
+  check_link(options);
   if (options.stream && options.stream_optional) {
     throw InputError(
         "--lsl and --lsl-optional are both given; leave out the one that is not meant");

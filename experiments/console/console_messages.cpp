@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::pair<Request, const char*>, 8> kNames{{
+constexpr std::array<std::pair<Request, const char*>, 10> kNames{{
     {Request::kStart, "start"},
     {Request::kPause, "pause"},
     {Request::kRepeatTrial, "repeat"},
@@ -22,6 +22,8 @@ constexpr std::array<std::pair<Request, const char*>, 8> kNames{{
     {Request::kEnd, "end"},
     {Request::kEmergencyStop, "emergency_stop"},
     {Request::kClear, "clear"},
+    {Request::kTakeLead, "take_lead"},
+    {Request::kHandOver, "hand_over"},
 }};
 
 /// The one string that an object holds.
@@ -67,6 +69,27 @@ json figures_json(const std::optional<record::LiveState>& state) {
           {"practice", state->practice},
           {"title", state->title},
           {"figures", figures}};
+}
+
+/// Null in a session without a partner.
+json partner_json(const std::optional<record::PartnerState>& partner) {
+  if (!partner) {
+    return nullptr;
+  }
+  const record::PartnerState& p = *partner;
+  return {{"heard", p.heard},
+          {"linked", p.linked},
+          {"coupled", p.coupled},
+          {"claims", p.claims},
+          {"other_claims", p.other_claims},
+          {"over", p.over},
+          {"silence", p.silence},
+          {"lead", p.lead},
+          {"round_trip", p.round_trip},
+          {"jitter", p.jitter},
+          {"loss", p.loss},
+          {"losses", p.losses},
+          {"energy", p.energy}};
 }
 
 }  // namespace
@@ -161,6 +184,7 @@ std::string status_json(const SessionStatus& s, std::uint64_t refused) {
       {"refused", refused},
       {"notices", s.notices},
       {"figures", figures_json(s.figures)},
+      {"partner", partner_json(s.partner)},
       {"asked", asked_json(s.asked)},
       {"has_target", s.has_target},
   };

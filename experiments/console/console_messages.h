@@ -13,7 +13,7 @@ namespace haptrial::experiments {
 std::string status_json(const SessionStatus& status, std::uint64_t refused);
 
 /// {"request": "pause"}; the names are start, pause, repeat, skip, abort, end, emergency_stop,
-/// clear.
+/// clear, take_lead, hand_over.
 /// @throws InputError
 Request parse_request(const std::string& json);
 

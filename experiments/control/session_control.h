@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/record/rows/live_figures.h"
+#include "core/record/rows/partner_state.h"
 #include "experiments/control/asked_item.h"
 
 namespace haptrial::experiments {
@@ -27,6 +28,8 @@ enum class Request : std::uint8_t {
   kEnd,            // the same for good: nobody goes on with it
   kEmergencyStop,  // force to zero within a tick; stays until kClear
   kClear,          // the experimenter has seen to the cause
+  kTakeLead,       // of both hands, where a partner's session is linked
+  kHandOver,       // gives it back
 };
 
 /// What a session shows of itself, about 20 times a second.
@@ -59,10 +62,11 @@ struct SessionStatus {
   double lateness_99_us{0.0};
   double lateness_worst_us{0.0};
   int aborted_passes{0};
-  std::vector<std::string> notices;          // sentences that an experimenter has to know
-  AskedItem asked;                           // by a page
-  bool has_target{true};                     // there is a force to follow
-  std::optional<record::LiveState> figures;  // of the present trial, if the study has some
+  std::vector<std::string> notices;             // sentences that an experimenter has to know
+  AskedItem asked;                              // by a page
+  bool has_target{true};                        // there is a force to follow
+  std::optional<record::LiveState> figures;     // of the present trial, if the study has some
+  std::optional<record::PartnerState> partner;  // in a linked session
 };
 
 /// The only way from a person at a console to a session: messages in, a picture of the state out.

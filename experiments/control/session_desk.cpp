@@ -70,6 +70,13 @@ void SessionDesk::heed(Request request, Asker by) {
       actions_.clear_fault();
       actions_.event("clear", who);
       break;
+    case Request::kTakeLead:
+    case Request::kHandOver:
+      if (actions_.lead) {
+        actions_.lead(request == Request::kTakeLead);
+        actions_.event(request == Request::kTakeLead ? "take_lead" : "hand_over", who);
+      }
+      break;
   }
 }
 

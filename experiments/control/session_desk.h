@@ -33,6 +33,7 @@ class SessionDesk {
     std::function<void()> break_off;  // the present pass
     std::function<void()> clear_fault;
     std::function<void(const std::string& kind, const std::string& text)> event;
+    std::function<void(bool take)> lead{};  // of a partner's hand; empty: nobody is linked
   };
   SessionDesk(SessionControl* control, Actions actions);
 

@@ -17,6 +17,8 @@ void AbortedPass::see_to(const protocols::PassResult& result) {
   if ((fault || overloaded) && p_.desk.attended()) {
     p_.desk.status().fault = all;
     p_.desk.wishes().stopped = true;  // a person sees to the cause
+  } else if (result.fault == device::Fault::kEmergencyStop && p_.real && partner_stops()) {
+    p_.pace.recover_when([this] { return !partner_stops(); });  // who stopped sees to the cause
   } else if ((fault || overloaded) && p_.real) {
     // Nobody is at a console or keyboard to see to the cause and say that it may go on.
     p_.pace.let_read(p_.definition.texts.stopped, "stopped");
@@ -24,6 +26,11 @@ void AbortedPass::see_to(const protocols::PassResult& result) {
   } else {
     p_.pace.recover();
   }
+}
+
+bool AbortedPass::partner_stops() const {
+  const auto partner = p_.trials.partner();
+  return partner && partner->stops;
 }
 
 std::string AbortedPass::cause(const protocols::PassResult& result) const {

@@ -33,6 +33,7 @@ class AbortedPass {
  private:
   std::string cause(const protocols::PassResult& result) const;
   std::string why_broken_off() const;
+  bool partner_stops() const;
 
   Parts p_;
 };

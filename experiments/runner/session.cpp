@@ -30,6 +30,7 @@
 namespace haptrial::experiments {
 namespace {
 
+using protocols::AfterAbort;
 using protocols::Outcome;
 using protocols::PlannedTrial;
 using protocols::TrialEnd;
@@ -98,9 +99,12 @@ class Session {
 std::unique_ptr<protocols::Trials> trials_of(const SessionRequest& request,
                                              const protocols::SessionPlace& place) {
   auto trials = request.protocol->trials(*request.definition, place);
-  return request.tutor
-             ? protocols::tutored(std::move(trials), request.definition->tutoring, *request.tutor)
-             : std::move(trials);
+  const protocols::TutoringOptions& options = request.definition->tutoring;
+  if (request.tutor) {
+    return protocols::tutored(std::move(trials), options, *request.tutor);
+  }
+  return request.link ? protocols::linked(std::move(trials), options, *request.link, place)
+                      : std::move(trials);
 }
 
 protocols::SessionPlace Session::place() {
@@ -109,7 +113,8 @@ protocols::SessionPlace Session::place() {
   place.participant = request_.participant;
   place.seed = request_.seed;
   place.session = request_.session;
-  give_seeds(place);
+  const bool teaches = request_.link && request_.link->role == protocols::LinkRole::kTeaches;
+  give_seeds(place, teaches ? "who teaches" : "");
   place.real = real_;
   place.window = request_.window;
   place.nerve_desk = request_.nerve_desk;
@@ -123,6 +128,7 @@ protocols::SessionPlace Session::place() {
     pace_.meanwhile();
     progress_->update(share, "", 0.0);
   };
+  place.stop = [this] { task_.emergency_stop(); };
   return place;
 }
 
@@ -151,7 +157,11 @@ Session::Session(const SessionRequest& request)
                   : protocols::SessionTask::Leave::kAfterPassOrSlice,
             record_.origin()),
       pace_({request, loop_, record_, desk_, task_, rig_->felt(), screen_.get(), &begin_pressed_,
-             live_.get(), [this] { hear_pedal(); }}),
+             live_.get(),
+             [this] {
+               hear_pedal();
+               desk_.status().partner = trials_->partner();
+             }}),
       pages_({request, record_, desk_, pace_, page_keys_, screen_.get(), place_.session_seed}),
       next_({request, *trials_, record_, pages_}),
       notices_({request, loop_, record_, desk_, summary_}),
@@ -203,7 +213,9 @@ Session::~Session() {
 
 SessionDesk::Actions Session::desk_actions() {
   return {[this] { task_.break_off(); }, [this] { task_.clear_fault(); },
-          [this](const std::string& kind, const std::string& text) { record_.event(kind, text); }};
+          [this](const std::string& kind, const std::string& text) { record_.event(kind, text); },
+          request_.link ? [this](bool take) { trials_->take_lead(take); }
+                        : std::function<void(bool)>()};
 }
 
 std::vector<stimulus::Observer*> Session::observers() {
@@ -248,8 +260,8 @@ SessionSummary Session::run() {
 
 void Session::run_trials() {
   note_language();
-  if (request_.tutor) {
-    record_.event("tutor", tutor_text(request_));
+  if (const std::string tutor = tutor_text(request_); !tutor.empty()) {
+    record_.event("tutor", tutor);
   }
   if (!pages_.before()) {
     left_ = !pages_.declined();
@@ -326,7 +338,8 @@ Outcome Session::present(const PlannedTrial& trial) {
     record_.mark_trial("trial_begin", trial, attempt);
     const bool done = run_trial(trial, attempt);
     pace_.pause_where_asked();
-    const bool skipped = wishes.skip && !done;
+    const AfterAbort after = done ? AfterAbort::kAsAsked : trials_->after_abort();
+    const bool skipped = (wishes.skip || after == AfterAbort::kSkip) && !done;
     const char* how = done ? "completed" : skipped ? "skipped" : "aborted";
     record_.mark_trial("trial_end", trial, attempt, how);
     notices_.say_trial(trial, how);
@@ -335,7 +348,8 @@ Outcome Session::present(const PlannedTrial& trial) {
     if (skipped) {
       record_.skip(trial);
     }
-    if ((done && !wishes.repeat) || wishes.skip || !desk_.attended()) {
+    const bool again = desk_.attended() || after == AfterAbort::kAgain;
+    if ((done && !wishes.repeat) || wishes.skip || skipped || !again) {
       break;
     }
   }
@@ -361,7 +375,7 @@ bool Session::run_trial(const PlannedTrial& trial, int attempt) {
       }
     }
     const bool completed = run_pass(trial, phases[i], attempt);
-    if (!completed && desk_.attended()) {
+    if (!completed && (desk_.attended() || trials_->after_abort() != AfterAbort::kAsAsked)) {
       return false;  // the trial is presented again, from its first pass on
     }
     done = done && completed;

@@ -41,7 +41,7 @@ void check_same_tutor(const SessionRequest& request, const record::SessionReader
     throw InputError(fmt::format("{}: was recorded {}; resume it {}, not {}",
                                  before.path().string(),
                                  was.empty() ? "without a tutor" : "with the tutor " + was,
-                                 was.empty() ? "without --tutor" : "with the same --tutor",
+                                 was.empty() ? "without a tutor" : "with the same one",
                                  is.empty() ? "without one" : "with " + is));
   }
 }
@@ -96,6 +96,10 @@ record::SessionInfo session_info(const SessionRequest& request, const device::De
 }
 
 std::string tutor_text(const SessionRequest& request) {
+  if (request.link) {
+    return fmt::format("in another session, which this one {}",
+                       request.link->role == protocols::LinkRole::kTeaches ? "teaches" : "follows");
+  }
   if (!request.tutor) {
     return "";
   }

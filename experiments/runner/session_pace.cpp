@@ -153,6 +153,14 @@ void SessionPace::recover() {
   }
 }
 
+void SessionPace::recover_when(const std::function<bool()>& may) {
+  show_text(d_.texts.stopped, "");
+  while (!may()) {
+    wait_a_little("stopped");
+  }
+  p_.task.clear_fault();
+}
+
 void SessionPace::take_break() {
   const bool until_ready = d_.design.break_until_ready;
   p_.record.event("break", fmt::format("{} s{}", d_.design.break_duration,

@@ -50,6 +50,8 @@ class SessionPace {
   /// all the same. On a simulated clock, which drives virtual hands only, a fault is cleared then:
   /// nobody can be hurt, and a dry run is to go on. On the real clock a person clears it.
   void recover();
+  /// Stopped on the real clock, until the fault may be cleared.
+  void recover_when(const std::function<bool()>& may);
   void take_break();
 
   /// Whether the loop kept its rate in the present pass, or the last one.

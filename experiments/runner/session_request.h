@@ -14,6 +14,7 @@
 #include "experiments/control/session_control.h"
 #include "experiments/devices/devices.h"
 #include "protocols/interface/protocol.h"
+#include "protocols/tutoring/linked_trials.h"
 #include "protocols/tutoring/model_motion.h"
 
 namespace haptrial::nerve {
@@ -40,6 +41,7 @@ struct SessionRequest {
   int frames_per_pass{0};                   // pictures of what was shown, into frames_folder
   std::filesystem::path frames_folder;
   std::optional<protocols::TutorChoice> tutor;  // a recorded run that leads the hand
+  std::optional<protocols::LinkChoice> link;    // to a partner's session
   int max_trials{0};                            // of the study proper; 0: all
   std::atomic<std::uint64_t>* ticks{nullptr};   // counts what is done, for a progress line
   const std::atomic<bool>* cancel{nullptr};  // set from outside to end early, as an interrupt does

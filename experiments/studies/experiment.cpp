@@ -93,6 +93,9 @@ Experiment parse_experiment(std::string_view text, std::string_view file_name) {
 
 std::vector<std::string> warnings_of(const Experiment& experiment) {
   std::vector<std::string> warnings = experiment.definition->warnings();
+  for (std::string& warning : protocols::tutoring_warnings(*experiment.definition)) {
+    warnings.push_back(std::move(warning));
+  }
   for (std::string& warning : experiment.study->analysis_warnings(*experiment.definition)) {
     warnings.push_back(std::move(warning));
   }

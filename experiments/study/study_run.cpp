@@ -13,6 +13,7 @@
 #include "experiments/control/progress.h"
 #include "experiments/runner/session.h"
 #include "experiments/study/session_name.h"
+#include "experiments/study/taught_session.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
@@ -81,7 +82,8 @@ class Crew {
       return;
     }
     try {
-      const SessionSummary done = run_session(request(place));
+      const SessionSummary done = dry_run_.taught ? run_taught_session(request(place), kTeaching)
+                                                  : run_session(request(place));
       const std::lock_guard lock(mutex_);
       summary_.ticks += done.ticks;
       summary_.passes += done.passes;
@@ -147,6 +149,9 @@ DryRunSummary run_dry(const protocols::Protocol& protocol, const protocols::Defi
   first.definition = &definition;
   const int trials = dry_run.max_trials > 0 ? dry_run.max_trials : definition.design.trials;
   OutputFolder folder(dry_run.folder);
+  if (dry_run.taught) {
+    fs::create_directory(dry_run.folder / kTeaching);
+  }
   if (dry_run.frames_per_pass > 0) {
     fs::create_directory(dry_run.folder / "frames");
   }

@@ -18,7 +18,8 @@ struct DryRun {
   int max_trials{0};  // of each session; 0: all
   int session{0};     // of each participant; 0: all of the definition, in their order
   std::optional<protocols::TutorChoice> tutor;  // see SessionRequest
-  std::filesystem::path folder;                 // created; one session file per participant
+  bool taught{false};            // each participant by a second one over a simulated network
+  std::filesystem::path folder;  // created; one session file per participant
 };
 
 struct DryRunSummary {

@@ -154,7 +154,7 @@ std::vector<record::Rows> BoneTrials::first_rows() const {
 }
 
 std::unique_ptr<Rig> BoneTrials::virtual_rig() const {
-  return std::make_unique<DrillingRig>(d_, place_.session_seed, place_.participant);
+  return std::make_unique<DrillingRig>(d_, place_.hand_session_seed, place_.participant);
 }
 
 void BoneTrials::empty_logs(SessionFile& file) {

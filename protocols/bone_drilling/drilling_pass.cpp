@@ -98,7 +98,8 @@ void DrillingPass::begin(std::uint64_t sequence) noexcept {
   camera_due_ = true;
 }
 
-void DrillingLogs::record(std::uint64_t sequence, const Readings& readings) noexcept {
+void DrillingLogs::record(std::uint64_t sequence, const Readings& readings,
+                          device::Fault /*fault*/) noexcept {
   record::ToolRow row = std::exchange(row_, record::ToolRow{});
   row.sequence = sequence;
   row.orientation = readings[0].orientation;

@@ -37,7 +37,8 @@ class DrillingLogs final : public TickLog {
   void watch_nerves(nerve::NerveBeside* beside) noexcept { beside_ = beside; }
   bool nerve_tone() const noexcept { return beside_ != nullptr && beside_->tone(); }
   /// A row of /tool for every tick, also between passes.
-  void record(std::uint64_t sequence, const Readings& readings) noexcept override;
+  void record(std::uint64_t sequence, const Readings& readings,
+              device::Fault fault) noexcept override;
 
   std::uint64_t dropped() const noexcept {
     return tool.dropped() + removals.dropped() + camera.dropped() + splits.dropped() +

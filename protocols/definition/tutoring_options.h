@@ -1,6 +1,11 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "core/control/tutoring/tutoring_law.h"
+#include "core/network/channel/simulated_channel.h"
+#include "core/network/side/side_parameters.h"
 
 namespace haptrial {
 class Table;
@@ -8,13 +13,31 @@ class Table;
 
 namespace haptrial::protocols {
 
-/// How a tutor leads, the table [tutoring] of a definition.
+struct Definition;
+
+/// How a tutor leads, the table [tutoring] of a definition: in a recorded run or over a link.
 struct TutoringOptions {
   control::TutoringGains gains;
   double ramp{0.5};   // from no lead to all of it, and back [s]
   double speed{1.0};  // of a playback, 0.5 to 1 of the original
+
+  // Over a link.
+  double authority{1.0};  // of who teaches over the other hand, 0 to 1
+  double felt_back{1.0};  // of the coupling that is felt by who leads, 0 to 1
+  network::Passivity passivity{network::Passivity::kTank};
+  bool deadband{false};                // only messages that would be missed are sent
+  bool jitter_buffer{false};           // the partner's ticks as evenly as they were sent
+  double deadline{0.1};                // silence after which the force is zero [s]
+  double patience{10.0};               // silence after which the session ends [s]
+  network::ChannelConditions channel;  // of a dry run, each way
 };
 
 TutoringOptions read_tutoring_options(Table& table);
+
+/// What one side of a link is made of.
+network::SideParameters side_parameters(const TutoringOptions& options);
+
+/// Sentences on a coupling that may swing up, or cannot act.
+std::vector<std::string> tutoring_warnings(const Definition& definition);
 
 }  // namespace haptrial::protocols

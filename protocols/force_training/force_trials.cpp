@@ -21,7 +21,7 @@ std::span<const record::Phase> ForceTrials::phases() const {
 }
 
 std::unique_ptr<Rig> ForceTrials::virtual_rig() const {
-  return std::make_unique<VirtualRig>(d_, place_.session_seed);
+  return std::make_unique<VirtualRig>(d_, place_.hand_session_seed);
 }
 
 std::vector<stimulus::Observer*> ForceTrials::observers() {

@@ -7,6 +7,7 @@
 
 #include "core/device/device.h"
 #include "core/device/energy_watch.h"
+#include "core/device/fault.h"
 #include "core/markers/onset.h"
 #include "core/record/rows/session_types.h"
 #include "core/stimulus/shown.h"
@@ -54,6 +55,8 @@ enum class PassState : std::uint8_t { kRunning, kCompleted, kAborted };
 class Pass {
  public:
   virtual ~Pass() = default;
+  /// Whether the pass may begin; asked every tick until it may.
+  virtual bool may_begin() noexcept { return true; }
   /// Before the first tick. @param sequence  of that tick in the session file
   virtual void begin(std::uint64_t sequence) noexcept { static_cast<void>(sequence); }
   /// @param dt  since the previous tick [s]
@@ -72,8 +75,10 @@ class TickLog {
  public:
   virtual ~TickLog() = default;
   /// After the pass's tick, if one runs. @param sequence  of the tick in the session file
+  /// @param fault  of a device; kNone: all are well
   /// Servo thread: no allocation, lock, I/O or throw.
-  virtual void record(std::uint64_t sequence, const Readings& readings) noexcept = 0;
+  virtual void record(std::uint64_t sequence, const Readings& readings,
+                      device::Fault fault) noexcept = 0;
 };
 
 }  // namespace haptrial::protocols

@@ -137,7 +137,7 @@ void SessionTask::record(const realtime::Tick& tick, const PassOutput& out) noex
                        forces[device], static_cast<std::int32_t>(readings[device].buttons)});
   }
   if (tick_log_ != nullptr) {
-    tick_log_->record(sample.sequence, readings);
+    tick_log_->record(sample.sequence, readings, devices_.fault());
   }
 }
 
@@ -158,7 +158,8 @@ void SessionTask::take_requests(std::uint64_t sequence) noexcept {
   if (broken >= 0) {
     break_off_row(broken, sequence);
   }
-  if (waiting_ != nullptr && devices_.may_begin()) {
+  const bool faulty = devices_.fault() != device::Fault::kNone;  // it ends at once, and says so
+  if (waiting_ != nullptr && devices_.may_begin() && (faulty || waiting_->may_begin())) {
     begin(sequence);
   }
 }

@@ -9,11 +9,16 @@
 
 namespace haptrial::protocols {
 
-void give_seeds(SessionPlace& place) {
+static std::uint64_t session_seed_of(const SessionPlace& place, std::uint64_t person) {
+  return place.session > 1 ? derived_seed(person, fmt::format("session {}", place.session))
+                           : person;
+}
+
+void give_seeds(SessionPlace& place, std::string_view hand) {
   place.person_seed = derived_seed(place.seed, "participant " + place.subject);
-  place.session_seed =
-      place.session > 1 ? derived_seed(place.person_seed, fmt::format("session {}", place.session))
-                        : place.person_seed;
+  place.session_seed = session_seed_of(place, place.person_seed);
+  place.hand_person_seed = hand.empty() ? place.person_seed : derived_seed(place.person_seed, hand);
+  place.hand_session_seed = session_seed_of(place, place.hand_person_seed);
 }
 
 FixedPlan::FixedPlan(std::vector<PlannedTrial> plan) : plan_(std::move(plan)) {}

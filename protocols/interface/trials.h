@@ -8,8 +8,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "core/record/rows/partner_state.h"
 #include "core/record/rows/response.h"
 #include "core/record/rows/rows.h"
 #include "core/record/rows/session_types.h"
@@ -39,19 +41,24 @@ struct SessionPlace {
   int session{1};                 // of the participant, from 1
   std::uint64_t person_seed{0};   // of the participant, the same in every session
   std::uint64_t session_seed{0};  // of this session
-  bool real{false};               // on a real clock: a person, or a rehearsal
-  bool window{false};             // the participant has a screen
-  int frames_per_pass{0};         // pictures of what was shown, into frames_folder
+  // A virtual participant's; those of the two above, but where somebody else holds the device.
+  std::uint64_t hand_person_seed{0};
+  std::uint64_t hand_session_seed{0};
+  bool real{false};        // on a real clock: a person, or a rehearsal
+  bool window{false};      // the participant has a screen
+  int frames_per_pass{0};  // pictures of what was shown, into frames_folder
   std::filesystem::path frames_folder;
   std::shared_ptr<nerve::MonitorDesk> nerve_desk;  // a technician's; null: nobody looks
   std::filesystem::path resumed;                   // the file of the earlier run; empty: none
   /// To be called now and then while something takes seconds: what, and the share that is done.
   /// @throws RunError on an interrupt
   std::function<void(const char* what, double share)> pulse;
+  std::function<void()> stop;  // an emergency stop; any thread, also the servo thread
 };
 
 /// Gives a place its seeds. @param place  with subject, session and the study's seed
-void give_seeds(SessionPlace& place);
+/// @param hand  who holds a virtual device, where it is not the participant; else empty
+void give_seeds(SessionPlace& place, std::string_view hand = {});
 
 /// How a trial ended.
 enum class TrialEnd : std::uint8_t { kCompleted, kSkipped, kAborted };
@@ -61,6 +68,13 @@ struct Outcome {
   PlannedTrial trial;
   TrialEnd end{TrialEnd::kCompleted};
   std::vector<record::ResponseRow> responses;  // of its last attempt, in order
+};
+
+/// What is to become of a trial whose pass was aborted.
+enum class AfterAbort : std::uint8_t {
+  kAsAsked,  // what experimenter and runner make of it
+  kAgain,    // it is presented again
+  kSkip,     // it is left
 };
 
 /// How many trials there are to be; at most so many where outcomes decide.
@@ -138,6 +152,12 @@ class Trials {
   }
   /// Why a pass ended as aborted by itself.
   virtual const char* why_aborted() const = 0;
+  /// The same pass: who decides about it may be somebody far away.
+  virtual AfterAbort after_abort() const { return AfterAbort::kAsAsked; }
+  /// A partner in another session, if there is one.
+  virtual std::optional<record::PartnerState> partner() { return std::nullopt; }
+  /// Takes the lead of both hands, or hands it over.
+  virtual void take_lead(bool take) { static_cast<void>(take); }
   /// Sentences for the end of the session.
   virtual std::vector<std::string> notices() const { return {}; }
 };

@@ -175,7 +175,7 @@ std::unique_ptr<Rig> DefinedTrials::virtual_rig() const {
   said_ = std::make_unique<SaidAnswer>();
   auto rig = std::make_unique<TrialsRig>(
       TrialsRig::Briefing{&d_, &d_.observer, &d_.questions, d_.stages, &d_.hands, said_.get()},
-      place_.person_seed, place_.session_seed);
+      place_.hand_person_seed, place_.hand_session_seed);
   rig_ = rig.get();
   return rig;
 }

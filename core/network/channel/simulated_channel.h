@@ -22,6 +22,8 @@ struct ChannelConditions {
   double duplication{0.0};  // share that comes twice, each copy with a jitter of its own
   double reordering{0.0};   // share that does not wait for those before it
   double bandwidth{0.0};    // [bytes/s]; 0: no limit
+
+  bool operator==(const ChannelConditions&) const = default;
 };
 
 /// Reads the keys delay, jitter, loss, duplication, reordering and bandwidth of a table.

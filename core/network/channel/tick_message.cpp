@@ -26,14 +26,20 @@ void each_field(Message& m, Field field) {
   field(m.world);
   field(m.buttons);
   field(m.flags);
+  field(m.turn.pass);
+  field(m.turn.with);
+  field(m.turn.item);
+  field(m.turn.phase);
+  field(m.turn.last_done);
 }
 
-constexpr std::uint32_t kKnownFlags = kEngaged | kStop | kFault;
+constexpr std::uint32_t kKnownFlags = kEngaged | kStop | kFault | kClaim | kOver | kLeft;
 
 bool makes_sense(const TickMessage& m) noexcept {
   return m.position.allFinite() && m.velocity.allFinite() && m.force.allFinite() &&
          m.wave.allFinite() && std::isfinite(m.energy) && m.lead >= 0.0 && m.lead <= 1.0 &&
-         (m.flags & ~kKnownFlags) == 0;
+         (m.flags & ~kKnownFlags) == 0 && m.turn.phase <= TurnPhase::kBroken &&
+         m.turn.last_done <= 1;
 }
 
 }  // namespace

@@ -9,6 +9,26 @@
 
 namespace haptrial::network {
 
+/// How far a side is with its pass.
+enum class TurnPhase : std::uint8_t {
+  kNone,    // it has had none yet
+  kReady,   // waits for the other side
+  kRuns,    //
+  kDone,    // completed; the other side may still be at it
+  kBroken,  // aborted
+};
+
+/// Which pass the sender is at (network::Turns).
+struct TurnState {
+  std::uint32_t pass{0};  // number since the link began, from 1; 0: none yet
+  std::uint32_t with{0};  // the other side's that goes with it; 0: not known yet
+  std::uint32_t item{0};  // what it presents, in ascending order: 16 for each trial, and the phase
+  TurnPhase phase{TurnPhase::kNone};
+  std::uint8_t last_done{0};  // 1: the pass before was completed
+
+  bool operator==(const TurnState&) const = default;
+};
+
 /// What one side of a shared session tells the other of a tick.
 struct TickMessage {
   std::uint64_t sequence{0};  // from 1, one more each message
@@ -24,6 +44,7 @@ struct TickMessage {
   std::uint64_t world{0};                             // checksum of what both work on; 0: none
   std::uint32_t buttons{0};
   std::uint32_t flags{0};  // TickFlag
+  TurnState turn;
 
   bool operator==(const TickMessage&) const = default;
 };
@@ -32,9 +53,12 @@ enum TickFlag : std::uint32_t {
   kEngaged = 1,  // the sender's coupling is on
   kStop = 2,     // stop, both of you
   kFault = 4,    // the sender's device has one
+  kClaim = 8,    // the sender takes the lead, whoever else has it
+  kOver = 16,    // the sender has presented all its trials
+  kLeft = 32,    // the sender's session ends with trials left
 };
 
-inline constexpr std::size_t kTickBytes = 4 * 8 + 4 * 3 * 8 + 3 * 8 + 2 * 4;
+inline constexpr std::size_t kTickBytes = 4 * 8 + 4 * 3 * 8 + 3 * 8 + 2 * 4 + 3 * 4 + 2;
 using TickBytes = std::array<std::byte, kTickBytes>;
 
 /// Little-endian, in the order of the members, without gaps. Servo thread.

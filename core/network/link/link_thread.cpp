@@ -50,8 +50,12 @@ void LinkThread::take_in() noexcept {
     }
     const auto message = opener_.open({buffer.data(), static_cast<std::size_t>(got)});
     if (message) {
-      met_.other = from;
-      in_.push({*message, link_clock_ns()});
+      if (met_.follows) {
+        met_.other = from;
+      }
+      if (heard_.load(std::memory_order_acquire)) {
+        in_.push({*message, link_clock_ns()});
+      }
     }
   }
 }
@@ -78,7 +82,33 @@ void LinkThread::publish() noexcept {
   repeated_.store(c.repeated, std::memory_order_relaxed);
 }
 
-LinkThread::Counts LinkThread::counts() const noexcept {
+std::int64_t LinkThread::tick() noexcept {
+  heard_.store(true, std::memory_order_release);
+  return link_clock_ns();
+}
+
+void LinkThread::receive(Listener& listener) noexcept {
+  in_.flush([&listener](std::span<const Arrived> all) {
+    for (const Arrived& arrived : all) {
+      listener.hear(arrived);
+    }
+  });
+}
+
+/// Several times, since any may be lost on the way.
+void LinkThread::close(const TickMessage& last) noexcept {
+  constexpr int kTimes = 20;
+  constexpr std::chrono::milliseconds kBetween(5);
+  TickMessage message = last;
+  for (int i = 0; i < kTimes; ++i) {
+    message.sent_ns = link_clock_ns();
+    out_.push(message);
+    ++message.sequence;
+    std::this_thread::sleep_for(kBetween);
+  }
+}
+
+WireCounts LinkThread::counts() const noexcept {
   return {sent_.load(std::memory_order_relaxed),
           accepted_.load(std::memory_order_relaxed),
           foreign_.load(std::memory_order_relaxed),

@@ -20,7 +20,8 @@ Patience patience_for_one(const MeetingRequest& request, Clock::time_point end) 
 void check_study(const LinkTerms& theirs, const MeetingRequest& request) {
   if (theirs.study != request.study) {
     throw InputError(
-        "the other side was started with another definition; both must have the same one");
+        "the other side was started with another definition, subject, participant, session, seed "
+        "or number of trials; both must have the same ones");
   }
 }
 
@@ -51,7 +52,7 @@ Met host(const Secret& secret, const MeetingRequest& request, Clock::time_point 
     }
     check_study(handshake.their_terms(), request);
     other.set_port(handshake.their_terms().port);
-    return {std::move(datagrams), other, handshake.keys()};
+    return {std::move(datagrams), other, handshake.keys(), true};
   }
 }
 
@@ -77,8 +78,8 @@ Met guest(const Secret& secret, const MeetingRequest& request, Clock::time_point
     throw RunError("the other side does not know the secret");
   }
   check_study(handshake.their_terms(), request);
-  other.set_port(handshake.their_terms().port);
-  return {std::move(datagrams), other, handshake.keys()};
+  // To the port that was called: a router may hand it on to another number.
+  return {std::move(datagrams), other, handshake.keys(), false};
 }
 
 }  // namespace

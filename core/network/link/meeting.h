@@ -16,6 +16,7 @@ struct Met {
   Socket datagrams;
   Address other;  // where its datagrams go
   LinkKeys keys;
+  bool follows{false};  // the host: a guest behind a router is where its datagrams come from
 };
 
 struct MeetingRequest {

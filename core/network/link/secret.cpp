@@ -1,9 +1,13 @@
 #include "core/network/link/secret.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sodium.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <string>
 
 #include "core/base/error.h"
@@ -37,6 +41,36 @@ Secret Secret::read(const std::filesystem::path& file) {
   Secret secret(trimmed(text), file.string());
   sodium_memzero(text.data(), text.size());
   return secret;
+}
+
+void Secret::make(const std::filesystem::path& file) {
+  if (sodium_init() < 0) {
+    throw RunError("the machine gives no random numbers for a secret");
+  }
+  std::array<unsigned char, 32> bits{};
+  randombytes_buf(bits.data(), bits.size());
+  std::array<char, 2 * 32 + 1> text{};
+  sodium_bin2hex(text.data(), text.size(), bits.data(), bits.size());
+  text.back() = '\n';
+  const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  const int why = errno;
+  const bool kept = fd >= 0 && ::write(fd, text.data(), text.size()) == ssize_t{2 * 32 + 1};
+  if (fd >= 0) {
+    ::close(fd);
+  }
+  sodium_memzero(bits.data(), bits.size());
+  sodium_memzero(text.data(), text.size());
+  if (!kept) {
+    throw InputError(fmt::format("{}: the secret cannot be written ({})", file.string(),
+                                 std::strerror(fd < 0 ? why : ENOSPC)));
+  }
+}
+
+std::array<unsigned char, 32> checksum_of(std::string_view text) {
+  std::array<unsigned char, 32> sum{};
+  crypto_generichash(sum.data(), sum.size(), reinterpret_cast<const unsigned char*>(text.data()),
+                     text.size(), nullptr, 0);
+  return sum;
 }
 
 Secret::Secret(std::string_view text, std::string_view where) : size_(text.size()) {

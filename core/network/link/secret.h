@@ -16,6 +16,9 @@ class Secret {
   /// @throws InputError where it cannot be read, is shorter than kLeast or longer than 1024
   ///         characters, or may be read by other users of the machine
   static Secret read(const std::filesystem::path& file);
+  /// A new file with a secret of 256 random bits, which only its owner may read.
+  /// @throws InputError where the file exists or cannot be made; RunError as Secret::key() does
+  static void make(const std::filesystem::path& file);
   /// @throws InputError for a text that is too short or too long. @param where  for the message
   Secret(std::string_view text, std::string_view where);
   Secret(const Secret&) = default;
@@ -33,5 +36,8 @@ class Secret {
   std::array<char, 1024> text_{};
   std::size_t size_{0};
 };
+
+/// Of what both sides must have alike (BLAKE2b).
+std::array<unsigned char, 32> checksum_of(std::string_view text);
 
 }  // namespace haptrial::network

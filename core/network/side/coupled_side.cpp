@@ -64,8 +64,10 @@ Vector3d CoupledSide::felt(const Own& own, double dt) noexcept {
   last_place_ = own.tool.position;
   stepped_ = true;
   const control::Lead lead{1.0 - own.lead, own.felt_back};
+  const double share =  // of the coupling that is on
+      strength_ * std::clamp(std::max(lead.partner, lead.felt_back), 0.0, 1.0);
   if (p_.passivity == Passivity::kWaves) {
-    return felt_by_waves(own.tool, dt);
+    return felt_by_waves(own.tool, share, dt);
   }
   if (!linked_) {
     tank_.let_go(moved, energy_heard_);
@@ -75,26 +77,34 @@ Vector3d CoupledSide::felt(const Own& own, double dt) noexcept {
       strength_ * control::tutoring_force(p_.gains, lead, partner_, own.tool, Vector3d::Zero());
   return p_.passivity == Passivity::kNone
              ? wanted
-             : tank_.limit(wanted, moved, own.tool.velocity, energy_heard_, dt, strength_);
+             : tank_.limit(wanted, moved, own.tool.velocity, energy_heard_, dt, share);
 }
 
-Vector3d CoupledSide::felt_by_waves(const PointState& own, double dt) noexcept {
-  if (!linked_) {
+Vector3d CoupledSide::felt_by_waves(const PointState& own, double share, double dt) noexcept {
+  if (!linked_ || share <= 0.0) {
     waves_.let_go(own.position);
     return Vector3d::Zero();
   }
   const bool fresh = used_.sequence != wave_used_;
   wave_used_ = used_.sequence;
-  const Vector3d force = waves_.step(fresh ? used_.wave : Vector3d::Zero(), own, dt, strength_);
+  const Vector3d force = waves_.step(fresh ? used_.wave : Vector3d::Zero(), own, dt, share);
   waves_.correct(partner_.tool.position, own.position);
   return force;
 }
 
+/// A word about the session waits for no deadband.
+bool CoupledSide::due(const Own& own, double dt) noexcept {
+  const bool news = own.flags != told_flags_ || own.turn != told_turn_;
+  return !p_.sparse || deadband_.due({own.tool, own.force}, dt) || news;
+}
+
 std::optional<TickMessage> CoupledSide::told(const Own& own, std::int64_t now_ns,
                                              double dt) noexcept {
-  if (p_.sparse && !deadband_.due({own.tool, own.force}, dt)) {
+  if (!due(own, dt)) {
     return std::nullopt;
   }
+  told_flags_ = own.flags;
+  told_turn_ = own.turn;
   TickMessage m;
   m.sequence = ++sent_;
   m.sent_ns = now_ns;
@@ -109,6 +119,7 @@ std::optional<TickMessage> CoupledSide::told(const Own& own, std::int64_t now_ns
   m.world = own.world;
   m.buttons = own.buttons;
   m.flags = own.flags;
+  m.turn = own.turn;
   return m;
 }
 

@@ -4,37 +4,13 @@
 #include <memory>
 #include <optional>
 
-#include "core/control/tutoring/deadband.h"
-#include "core/control/tutoring/energy_tank.h"
-#include "core/control/tutoring/tutoring_law.h"
-#include "core/control/tutoring/wave_port.h"
 #include "core/network/channel/clock_offset.h"
 #include "core/network/channel/jitter_buffer.h"
 #include "core/network/channel/sequence_window.h"
 #include "core/network/channel/tick_message.h"
+#include "core/network/side/side_parameters.h"
 
 namespace haptrial::network {
-
-/// What keeps a coupling over a delay from swinging up.
-enum class Passivity : std::uint8_t {
-  kNone,   // nothing: right where only one side feels the other
-  kTank,   // control::EnergyTank
-  kWaves,  // control::WavePort; the partner's own force is not played beside them
-};
-
-struct SideParameters {
-  control::TutoringGains gains;
-  Passivity passivity{Passivity::kTank};
-  control::TankParameters tank;
-  control::WaveParameters waves;
-  bool sparse{false};  // only the messages that Deadband asks for; not with waves
-  control::DeadbandParameters deadband;
-  bool even{false};            // partner's ticks as evenly as they were sent; costs delay
-  double late{0.01};           // share of messages that may be too late for that
-  double longest_buffer{0.1};  // [s]
-  double deadline{0.1};        // silence after which the link counts as lost > 0 [s]
-  double ramp{0.5};            // from no force to all of it, also after a loss > 0 [s]
-};
 
 /// One side of a coupling over a link: what it hears, what it feels, what it tells. The same on a
 /// simulated and on a real link. Servo thread: no allocation, lock, I/O or throw after the
@@ -57,6 +33,7 @@ class CoupledSide {
     std::uint32_t buttons{0};
     std::uint32_t flags{0};
     std::uint64_t world{0};
+    TurnState turn;
   };
   struct Output {
     Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // on the own tool, in W [N]
@@ -65,12 +42,19 @@ class CoupledSide {
   /// A tick, after what arrived before it was heard. Without a link the force is zero.
   Output step(const Own& own, std::int64_t now_ns, double dt) noexcept;
 
+  /// What of the coupling really acts until the next tick, where something after step() changed it.
+  void acts(const Eigen::Vector3d& force) noexcept { tank_.acts(force); }
+
   /// Whether the partner was heard within the deadline.
   bool linked() const noexcept { return linked_; }
   std::uint64_t losses() const noexcept { return losses_; }              // of the link
   bool stop_asked() const noexcept { return stop_asked_; }               // by the partner; stays
   const control::Partner& partner() const noexcept { return partner_; }  // as this side takes it
   const TickMessage& newest() const noexcept { return newest_; }
+  std::int64_t heard_ns() const noexcept { return heard_ns_; }  // own clock, when that came
+  /// The message that this tick goes by; its number is 0 before the first.
+  const TickMessage& used() const noexcept { return used_; }
+  double energy_heard() const noexcept { return energy_heard_; }  // from the partner in all [J]
   const SequenceWindow& sequence() const noexcept { return window_; }
   const ClockOffset& clock() const noexcept { return clock_; }
   const JitterBuffer& buffer() const noexcept { return *buffer_; }
@@ -81,8 +65,9 @@ class CoupledSide {
   void look_at_link(std::int64_t now_ns, double dt) noexcept;
   void look_at_partner(std::int64_t now_ns, double dt) noexcept;
   Eigen::Vector3d felt(const Own& own, double dt) noexcept;
-  Eigen::Vector3d felt_by_waves(const PointState& own, double dt) noexcept;
+  Eigen::Vector3d felt_by_waves(const PointState& own, double share, double dt) noexcept;
   std::optional<TickMessage> told(const Own& own, std::int64_t now_ns, double dt) noexcept;
+  bool due(const Own& own, double dt) noexcept;
 
   SideParameters p_;
   SequenceWindow window_;
@@ -106,6 +91,8 @@ class CoupledSide {
   std::uint64_t losses_{0};
   std::uint64_t wave_used_{0};  // sequence number: each wave counts once
   std::uint64_t sent_{0};
+  std::uint32_t told_flags_{0};
+  TurnState told_turn_;
 };
 
 }  // namespace haptrial::network

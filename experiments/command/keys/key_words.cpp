@@ -47,6 +47,19 @@ tutoring.damping | | beside it
 tutoring.force_share | | of the tutor's forces that is played
 tutoring.ramp | | time over which the tutor takes the lead, and gives it back
 tutoring.speed | | of a recorded run, beside its own
+tutoring.authority | | over a link: how far the hand that teaches leads the other one
+tutoring.felt_back | | over a link: how much of the coupling the hand that leads feels
+tutoring.passivity | | over a link: what keeps the coupled hands from swinging up
+tutoring.deadband | | over a link: send only what would be missed
+tutoring.jitter_buffer | | over a link: take the other hand as evenly as it was sent, for some delay
+tutoring.deadline | | over a link: silence after which its force is zero
+tutoring.patience | | over a link: silence after which the session ends, to be resumed
+tutoring.channel.delay | | of the simulated network of a dry run, each way
+tutoring.channel.jitter | | beside it, mean
+tutoring.channel.loss | | share of messages that never come
+tutoring.channel.duplication | | share that comes twice
+tutoring.channel.reordering | | share that may overtake others
+tutoring.channel.bandwidth | | of the line; 0: no limit
 pedal.input | | file of the input device of an analog pedal: /dev/input/by-id/…-event-joystick, /dev/input/eventN, or a named pipe
 pedal.axis | | its axis, by the kernel's name
 pedal.released | lower end of the axis, as the device states it | axis value of a pedal that nobody presses

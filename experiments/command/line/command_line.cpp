@@ -27,6 +27,7 @@ void declare_subcommands(CLI::App& app, int& status) {
   add_doctor(app, status);
   add_dry_run(app, status);
   add_run(app, status);
+  add_secret(app, status);
   add_roster(app, status);
   add_analyze(app, status);
   add_export(app, status);

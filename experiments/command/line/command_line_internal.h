@@ -19,6 +19,7 @@ void add_doctor(CLI::App& app, int& status);
 // command_line_sessions.cpp: to run sessions, look into them, mend and show them
 void add_dry_run(CLI::App& app, int& status);
 void add_run(CLI::App& app, int& status);
+void add_secret(CLI::App& app, int& status);
 void add_roster(CLI::App& app, int& status);
 void add_info(CLI::App& app, int& status);
 void add_recover(CLI::App& app, int& status);

@@ -24,6 +24,8 @@ void add_dry_run(CLI::App& app, int& status) {
                   "Language of what participants read, such as de (default: the definition's)");
   sub->add_option("--tutor", o.tutor,
                   "Recorded run that leads the hand: FILE, FILE:TRIAL or FILE:TRIAL@SECONDS");
+  sub->add_flag("--taught", o.taught,
+                "Let a second virtual participant lead each over a simulated network");
   sub->add_option("--frames", o.frames,
                   "Number of pictures to write of each pass, as the subject saw it (default: 0)");
 }
@@ -48,6 +50,12 @@ void add_run(CLI::App& app, int& status) {
                   "Path of the vendor's library (default: found by the system)");
   sub->add_option("--tutor", o.tutor,
                   "Recorded run that leads the hand: FILE, FILE:TRIAL or FILE:TRIAL@SECONDS");
+  sub->add_option("--teach", o.teach,
+                  "Port at which another machine's session is awaited, whose hand is led");
+  sub->add_option("--learn-from", o.learn_from,
+                  "HOST:PORT of the session whose hand leads, started there with --teach");
+  sub->add_option("--secret", o.secret,
+                  "File of the secret that both sides have (haptrial secret FILE)");
   sub->add_flag("--window", o.window, "Show the participant's screen");
   sub->add_flag("--keyboard", o.keyboard, "Control the session with this terminal's keys");
   sub->add_flag("--console", o.console, "Serve the experimenter's page on the loopback address");
@@ -77,7 +85,18 @@ void add_run(CLI::App& app, int& status) {
                   "Participant's number, for the order of conditions (default: the one that ends "
                   "the identifier)");
   sub->add_option("--trials", o.trials, "Number of trials, from the first (default: all)");
-  sub->add_option("--out", o.out, "Folder for the session file (default: out/sessions)");
+  sub->add_option("--out", o.out,
+                  "Folder for the session file (default: out/sessions; with --teach out/teaching)");
+}
+
+void add_secret(CLI::App& app, int& status) {
+  CLI::App* sub =
+      subcommand(app, "secret", "Make the secret that two linked sessions share",
+                 "haptrial secret tutoring.secret",
+                 {"a file that only you may read; copy it to the other machine by a safe way",
+                  "guide-experimenter.md"});
+  auto& file = options_of<std::string>(*sub, status, make_secret);
+  sub->add_option("FILE", file, "New file")->required();
 }
 
 void add_roster(CLI::App& app, int& status) {

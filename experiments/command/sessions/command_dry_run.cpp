@@ -48,6 +48,10 @@ int dry_run(const DryRunOptions& options) {
     dry.tutor = protocols::read_tutor_choice(options.tutor);
     protocols::read_model(*dry.tutor);  // before a folder is made
   }
+  if (options.taught && !options.tutor.empty()) {
+    throw InputError("--tutor and --taught are both given; leave out one of them");
+  }
+  dry.taught = options.taught;
   const int sessions = dry.participants * (dry.session > 0 ? 1 : setup.sessions());
   if (interrupted()) {  // while the definition was read, which makes its bones
     throw RunError("interrupted");

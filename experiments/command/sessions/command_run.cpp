@@ -13,6 +13,7 @@
 #include "core/stream/lsl_outlet.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/run_checks.h"
+#include "experiments/command/sessions/meet_partner.h"
 #include "experiments/command/sessions/next_session.h"
 #include "experiments/console/console.h"
 #include "experiments/control/keyboard.h"
@@ -130,6 +131,9 @@ int run(const RunOptions& asked) {
   watch_for_interrupt();
   watch_fatal_signals();
   RunOptions options = asked;
+  if (options.out.empty()) {
+    options.out = options.teach ? "out/teaching" : "out/sessions";
+  }
   check_run_options(options);
   const Experiment experiment = load_experiment(options.definition, options.language);
   const protocols::Definition& setup = *experiment.definition;
@@ -179,6 +183,7 @@ int run(const RunOptions& asked) {
       fmt::print("{}\n", changed);
     }
   }
+  request.link = meet_partner(options, request, setup);
   std::error_code error;
   fs::create_directories(options.out, error);
   if (error) {

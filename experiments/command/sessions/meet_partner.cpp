@@ -1,0 +1,74 @@
+#include "experiments/command/sessions/meet_partner.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/network/link/link_thread.h"
+#include "core/network/link/meeting.h"
+#include "core/network/link/secret.h"
+#include "experiments/command/arguments.h"
+#include "experiments/control/interrupt.h"
+#include "experiments/runner/version.h"
+
+namespace haptrial::experiments {
+namespace {
+
+/// What both sides present follows from it.
+std::array<unsigned char, 32> study_of(const SessionRequest& request,
+                                       const protocols::Definition& definition) {
+  return network::checksum_of(fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", program_version(),
+                                          request.subject, request.participant, request.session,
+                                          request.seed, request.max_trials, definition.text));
+}
+
+void say(const std::string& line) {
+  fmt::print("{}\n", line);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+std::optional<protocols::LinkChoice> meet_partner(const RunOptions& options,
+                                                  const SessionRequest& request,
+                                                  const protocols::Definition& definition) {
+  if (!options.teach && options.learn_from.empty()) {
+    return std::nullopt;
+  }
+  const network::Secret secret = network::Secret::read(options.secret);
+  network::MeetingRequest meeting;
+  meeting.guest_of = options.learn_from;
+  meeting.study = study_of(request, definition);
+  meeting.pulse = [] {
+    if (interrupted()) {
+      throw RunError("interrupted");
+    }
+  };
+  meeting.notice = say;
+  if (options.teach) {
+    meeting.port =
+        static_cast<std::uint16_t>(checked_number("--teach", *options.teach, 1024, 65535));
+    say(fmt::format("waiting at port {} for the side that learns", meeting.port));
+  }
+  network::Met met = network::meet(secret, meeting);
+  protocols::LinkChoice link;
+  link.role = options.teach ? protocols::LinkRole::kTeaches : protocols::LinkRole::kLearns;
+  link.session = fmt::format("{:016x}", met.keys.session);
+  link.wire = std::make_shared<network::LinkThread>(std::move(met));
+  say(fmt::format("linked: this side {}", protocols::name_of(link.role)));
+  return link;
+}
+
+int make_secret(const std::string& file) {
+  network::Secret::make(file);
+  fmt::print(
+      "{}: a new secret; copy it to the other machine by a way that nobody else can read, and keep "
+      "it out of folders of results\n",
+      file);
+  return 0;
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,68 @@
+#include "experiments/study/taught_session.h"
+
+#include <exception>
+#include <memory>
+#include <thread>
+
+#include "core/base/random.h"
+#include "core/network/channel/simulated_link.h"
+
+namespace haptrial::experiments {
+namespace {
+
+protocols::LinkChoice choice(const std::shared_ptr<network::SimulatedLink>& link,
+                             protocols::LinkRole role) {
+  const bool teaches = role == protocols::LinkRole::kTeaches;
+  return {role, {link, &link->end(teaches ? 0 : 1)}, "simulated"};
+}
+
+/// Closes the end whatever comes, so that the other side does not wait for it.
+SessionSummary run_side(const SessionRequest& request) {
+  const std::shared_ptr<network::Wire> wire = request.link->wire;
+  try {
+    SessionSummary done = run_session(request);
+    wire->close({});
+    return done;
+  } catch (...) {
+    wire->close({});
+    throw;
+  }
+}
+
+}  // namespace
+
+SessionSummary run_taught_session(const SessionRequest& request,
+                                  const std::filesystem::path& folder) {
+  const protocols::Definition& d = *request.definition;
+  const auto link = std::make_shared<network::SimulatedLink>(
+      d.tutoring.channel, derived_seed(request.seed, "link " + request.subject), d.rate);
+  SessionRequest learns = request;
+  SessionRequest teaches = request;
+  learns.link = choice(link, protocols::LinkRole::kLearns);
+  teaches.link = choice(link, protocols::LinkRole::kTeaches);
+  teaches.file = request.file.parent_path() / folder / request.file.filename();
+  teaches.frames_per_pass = 0;
+  teaches.ticks = nullptr;
+  std::exception_ptr failure;
+  std::thread teacher([&] {
+    try {
+      run_side(teaches);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+  });
+  SessionSummary done;
+  std::exception_ptr own;
+  try {
+    done = run_side(learns);
+  } catch (...) {
+    own = std::current_exception();
+  }
+  teacher.join();
+  if (own || failure) {
+    std::rethrow_exception(own ? own : failure);
+  }
+  return done;
+}
+
+}  // namespace haptrial::experiments

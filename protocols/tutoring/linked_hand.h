@@ -1,0 +1,121 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+
+#include "core/control/tutoring/tutoring_law.h"
+#include "core/network/channel/wire.h"
+#include "core/network/side/coupled_side.h"
+#include "core/network/side/turns.h"
+#include "core/realtime/block_log.h"
+#include "core/realtime/latest_value.h"
+#include "core/record/rows/link_row.h"
+#include "core/record/rows/partner_state.h"
+#include "core/stimulus/observer.h"
+#include "protocols/definition/tutoring_options.h"
+#include "protocols/interface/pass.h"
+#include "protocols/tutoring/link_quality.h"
+
+namespace haptrial::protocols {
+
+/// Whose hand leads in the beginning.
+enum class LinkRole : std::uint8_t { kTeaches, kLearns };
+
+/// The first device's hand, coupled to a partner's over a wire: what is heard, felt and told at
+/// each tick of a session, in passes and between them. Servo thread, unless a function says
+/// otherwise: no allocation, lock, I/O or throw; on a real clock nothing waits.
+class LinkedHand final : public TickLog, public stimulus::Observer, private network::Listener {
+ public:
+  struct Parts {
+    const TutoringOptions& options;
+    LinkRole role{LinkRole::kLearns};
+    network::Wire& wire;
+    TickLog* inner{nullptr};     // the protocol's own; null: none
+    std::function<void()> stop;  // an emergency stop of the own session
+  };
+  /// All parts outlive it.
+  explicit LinkedHand(const Parts& parts);
+
+  // One pass, in this order.
+  /// @param item  as Turns has it
+  void await(std::uint32_t item) noexcept;
+  bool decided() const noexcept;  // whether the pass may begin, or is to be aborted
+  void begin_pass() noexcept { begun_ = true; }
+  /// A tick of the pass, first of all. @param own_done  whether the own part is completed
+  /// @param holds  whether the pass then lasts until the other side has completed it too
+  network::Turns::Step begin_tick(bool own_done, bool holds) noexcept;
+  /// The same tick: what the hand feels of both worlds. @param out  of the own world; changed
+  void couple(PassOutput& out, const device::DeviceReading& reading, double dt) noexcept;
+  /// The own part was aborted.
+  void abort() noexcept { turns_.abort(); }
+
+  void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
+               double dt) noexcept override;
+  void record(std::uint64_t sequence, const Readings& readings,
+              device::Fault fault) noexcept override;
+
+  /// Takes the lead of both hands, or hands it over; else it is as the definition says. Any thread.
+  void take_lead(bool take) noexcept { lead_asked_.store(take ? 1 : 0, std::memory_order_relaxed); }
+  /// Whether the partner has stopped this side since the last await(). Any thread.
+  bool stopped_by_partner() const noexcept {
+    return stopped_by_partner_.load(std::memory_order_relaxed);
+  }
+  /// Session's thread.
+  const record::PartnerState& state() noexcept;
+  template <class F>
+  void flush(F&& f) {
+    log_.flush(std::forward<F>(f));
+  }
+  std::uint64_t dropped() const noexcept { return log_.dropped(); }
+  std::size_t waiting_rows() const noexcept { return log_.size(); }
+  std::size_t room() const noexcept { return log_.capacity(); }
+  /// When the loop has ended: what the partner is told last. @param flag  kOver or kLeft
+  network::TickMessage last_words(network::TickFlag flag) const noexcept;
+
+ private:
+  void hear(const network::Arrived& arrived) noexcept override;
+  void listen() noexcept;
+  void heed_partner() noexcept;
+  bool alone() const noexcept;
+  bool claims() const noexcept { return lead_asked_.load(std::memory_order_relaxed) == 1; }
+  void share_lead(bool engaged, double dt) noexcept;
+  void step(const PointState& tool, const Eigen::Vector3d& own_force, std::uint32_t buttons,
+            double dt) noexcept;
+  void tell_state(double dt) noexcept;
+  std::uint32_t flags() const noexcept;
+  void keep_row(std::uint64_t sequence) noexcept;
+
+  Parts p_;
+  network::CoupledSide side_;
+  network::Turns turns_;
+  network::Turns::Step step_{network::Turns::Step::kWait};  // the last one
+  LinkQuality quality_;
+  control::Handover coupled_;  // how much of the coupling is on
+  control::Handover claim_;    // of the lead, by this side
+  control::Handover taught_;   // authority of who teaches, at that side
+  realtime::BlockLog<record::LinkRow> log_{1024, 16};
+  realtime::LatestValue<record::PartnerState> told_;
+  record::PartnerState read_;  // session's thread
+  std::atomic<bool> stopped_by_partner_{false};
+  std::atomic<int> lead_asked_{-1};  // 1: to be taken, 0: to be handed over, -1: neither
+
+  std::int64_t now_{0};        // own clock at this tick [ns]
+  std::int64_t first_now_{0};  // at the first
+  bool listened_{false};       // in this tick
+  bool begun_{false};          // the pass that waited has begun
+  bool runs_{false};           // the own pass is in its run
+  bool stop_seen_{false};      // the partner's stop is known
+  bool ever_over_{false};      // the partner has said that it is over
+  bool ever_left_{false};
+  device::Fault fault_{device::Fault::kNone};
+  network::CoupledSide::Own own_;
+  Eigen::Vector3d coupling_{Eigen::Vector3d::Zero()};  // of this tick, before the envelope [N]
+  Eigen::Vector3d acts_{Eigen::Vector3d::Zero()};      // on the hand until the next tick [N]
+  double dt_{1e-3};
+  std::int32_t arrived_{0};
+  std::int64_t sent_{0};  // number of this tick's message
+  double untold_{0.0};    // since the state was told [s]
+};
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "protocols/interface/pass.h"
+#include "protocols/tutoring/linked_hand.h"
+
+namespace haptrial::protocols {
+
+/// A pass that two sessions have at the same time, whose first device's hands feel each other while
+/// both run it.
+class LinkedPass final : public Pass {
+ public:
+  /// @param item   as network::Turns has it
+  /// @param holds  whether it lasts until the other side has completed it too
+  /// Inner pass and hand outlive it.
+  LinkedPass(Pass& inner, LinkedHand& hand, std::uint32_t item, bool holds) noexcept
+      : inner_(&inner), hand_(&hand), item_(item), holds_(holds) {}
+
+  bool may_begin() noexcept override;
+  void begin(std::uint64_t sequence) noexcept override;
+  PassOutput tick(const Readings& readings, double dt) noexcept override;
+  std::span<const Drive> others() const noexcept override;
+  PassState state() const noexcept override { return state_; }
+  bool names_onsets() const noexcept override { return inner_->names_onsets(); }
+  bool wants_attention() noexcept override;
+
+  /// Why it was aborted, if it was; kRun: for a reason of this side.
+  network::Turns::Step why() const noexcept { return why_; }
+
+ private:
+  PassOutput hold(const Readings& readings) const noexcept;
+
+  Pass* inner_;
+  LinkedHand* hand_;
+  std::uint32_t item_;
+  bool holds_;
+  bool awaited_{false};
+  bool ticked_{false};  // the inner pass, in this tick
+  PassState state_{PassState::kRunning};
+  network::Turns::Step why_{network::Turns::Step::kRun};
+  PassOutput last_;  // of the inner pass
+};
+
+}  // namespace haptrial::protocols
