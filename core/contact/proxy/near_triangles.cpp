@@ -65,7 +65,10 @@ bool NearTriangles::gather(const Sweep& sweep, double reach) noexcept {
   ++operations_.lists;
   const int count = surface_->gather(sweep.from, around + reach, found_);
   const bool point = radius_ == 0.0;
-  if (count < 0 || count > (point ? kMany : kManyOfSphere)) {
+  // Triangles that lie around the proxy as it is are listed however near the reach is.
+  constexpr double kLeastReach = 1.0;  // of the typical edge
+  const bool many = count > (point ? kMany : kManyOfSphere);
+  if (count < 0 || (many && reach_ > kLeastReach * surface_->typical_edge())) {
     reach_ *= 0.6;
   } else if (count < (point ? kFew : kFewOfSphere) &&
              reach_ < 4.0 * surface_->typical_edge() + radius_) {

@@ -249,6 +249,29 @@ TEST(ExactBodiesTest, SecondOrderConvergenceOnTheSphere) {
               fine.tessellation, fine.size);
 }
 
+/// At the middle of a fan more triangles are near than a list should have, however short it is.
+TEST(ExactBodiesTest, AFanOfManyTrianglesIsAPlane) {
+  constexpr int kTriangles = 200;
+  geometry::Mesh fan{{{0, 0, 0}}, {}};
+  for (int i = 0; i < kTriangles; ++i) {
+    const double a = 2.0 * M_PI * i / kTriangles;
+    fan.vertices.push_back({0.5 * std::cos(a), 0.5 * std::sin(a), 0.0});
+    fan.triangles.push_back({0, 1 + i, 1 + (i + 1) % kTriangles});
+  }
+  const ContactSurface surface(fan, 1);
+  for (const double radius : {0.0, 0.03}) {
+    Proxy proxy(surface, {.radius = radius});
+    proxy.start({0.1, 0.0, 0.2});
+    RandomStream random(8, "fan");
+    for (int i = 0; i < 5000; ++i) {
+      const Vector3d tool(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), -0.05);
+      const ProxyState& state = proxy.follow(tool);
+      ASSERT_TRUE(state.settled) << "radius " << radius << ", step " << i;
+      ASSERT_LT((state.position - Vector3d(tool.x(), tool.y(), radius)).norm(), 1e-11) << i;
+    }
+  }
+}
+
 TEST(ProxyTest, FollowDoesNotAllocate) {
   const ContactSurface surface(geometry::make_sphere(0.03, 20));
   for (const double radius : {0.0, 0.002}) {
