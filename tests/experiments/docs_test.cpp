@@ -39,7 +39,8 @@ bool made_by_a_result(const std::string& command) {
     std::set<std::string> made;
     for (const auto& entry : fs::directory_iterator(kSource / "results")) {
       if (const fs::path file = entry.path() / "manifest.json"; fs::exists(file)) {
-        for (const std::string line : nlohmann::json::parse(test::read_text(file))["commands"]) {
+        const auto manifest = nlohmann::json::parse(test::read_text(file));
+        for (const std::string line : manifest["commands"]) {
           made.insert("build/" + line);
         }
       }

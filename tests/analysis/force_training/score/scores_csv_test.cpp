@@ -80,6 +80,20 @@ TEST(ScoresCsv, QualityReadsBackAndItsFlagsAreOneField) {
   EXPECT_EQ(scores_csv(read.scores), text);
 }
 
+TEST(ScoresCsv, RecallsOfAPathHaveTwoColumnsMoreAndReadBack) {
+  TrialScore watched{"P01", "watching", 1, 1, 1};
+  watched.path_error = 0.0075;
+  TrialScore led = watched;
+  led.kept = 0.0047;
+  const std::string text = scores_csv(std::vector{watched, led});
+  EXPECT_NE(text.find(",flags,path_error,kept\n"), std::string::npos);
+  const ScoresTable read = read_scores_csv(text, "scores.csv");
+  ASSERT_EQ(read.scores.size(), 2u);
+  EXPECT_EQ(read.scores[0].path_error, 0.0075);
+  EXPECT_FALSE(read.scores[0].kept);
+  EXPECT_EQ(read.scores[1].kept, 0.0047);
+}
+
 TEST(ScoresCsv, TablesOfOlderVersionsWithoutQualityAreRead) {
   const ScoresTable read = read_scores_csv(
       "subject,trial,block,repetition,condition,score,alignment_cost,rms_force,rms_slope,"

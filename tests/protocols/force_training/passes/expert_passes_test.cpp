@@ -180,8 +180,7 @@ TEST(WatchingTrainingTest, TheHandRestsAndTheMarkerIsTheExpert) {
 TEST(FreeRecallTest, NothingPullsTheHandAlongThePathAndThePlaneCarriesIt) {
   GuidanceParameters p;
   p.free_recall = true;
-  const auto pass =
-      make_pass(kPlayback, record::Phase::kTest, stimulus_of_study(), p, 7);
+  const auto pass = make_pass(kPlayback, record::Phase::kTest, stimulus_of_study(), p, 7);
   int ran = 0;
   const auto moments = run(*pass, [&ran](const Moment& m, Hand& hand) {
     ran += m.out.stage == Stage::kRun ? 1 : 0;
@@ -260,8 +259,8 @@ TEST(ExpertPassesTest, ATickDoesNotAllocate) {
   const auto log = large_log();
   pass->record_expert(*log);
   pass->begin(0);
-  const device::DeviceReading reading{{stimulus_of_study().path.points().front(),
-                                       Vector3d::Zero()}};
+  const device::DeviceReading reading{
+      {stimulus_of_study().path.points().front(), Vector3d::Zero()}};
   const test::AllocationGuard guard;
   for (int i = 0; i < 2000; ++i) {
     pass->tick(reading, kDt);

@@ -342,7 +342,8 @@ TEST(TrajectoryPassTest, AppliedForceIsWhatTheHandPressesDown) {
 }
 
 TEST(TrainingPassTest, EveryConditionHasAPassAndOthersAreRefused) {
-  EXPECT_EQ(training_conditions(), (std::vector<std::string>{"haptic", "visual", "visuohaptic"}));
+  EXPECT_EQ(training_conditions(), (std::vector<std::string>{"haptic", "visual", "visuohaptic",
+                                                             "watching", "playback", "both"}));
   for (const std::string& condition : training_conditions()) {
     EXPECT_NE(make_training_pass(condition, stimulus_of_study(), {}, 1), nullptr);
   }
