@@ -54,8 +54,8 @@ TEST(DuckTest, ScanAndCoarserMeshesAreClosed) {
 /// The trends of the source's tables, on a small scan.
 TEST(DuckTest, TablesHaveTheSourcesTrends) {
   DuckOptions options;
-  options.frequency = 45;  // 40,500 triangles
-  options.seconds = 8.0;
+  options.frequency = 60;  // 72,000 triangles
+  options.seconds = 12.0;
   const DuckTables t = make_duck_tables(options);
   ASSERT_EQ(t.table4.size(), 3u);
   EXPECT_GT(t.table4[0].normal_error, t.table4[1].normal_error) << "finer voxels err less";

@@ -103,7 +103,7 @@ CycleTable people(RandomStream& random, std::size_t count, int cycles) {
 }
 
 TEST(ExponentialFitTest, IntervalsHoldTheTruth) {
-  constexpr int kStudies = 220;  // fewer could not show intervals that are too long
+  constexpr int kStudies = 300;
   std::array<int, 3> held{};
   for (int study = 0; study < kStudies; ++study) {
     RandomStream random(static_cast<std::uint64_t>(study), "people who learn");

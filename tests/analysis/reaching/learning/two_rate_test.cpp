@@ -146,7 +146,7 @@ TEST(TwoRateTest, StandardErrorsAreThoseOfManyFits) {
 }
 
 TEST(TwoRateTest, IntervalsHoldTheTruth) {
-  constexpr int kStudies = 220;  // fewer could not show intervals that are too long
+  constexpr int kStudies = 300;
   constexpr std::size_t kPeople = 12;
   std::array<int, 4> held{};
   for (int study = 0; study < kStudies; ++study) {
