@@ -11,8 +11,9 @@
 namespace haptrial::record {
 
 inline constexpr std::size_t kEmgChannels = 8;
-/// Electromyograms are recorded in multiples of this [V], an eighth of their noise.
-inline constexpr double kEmgResolution = 0x1p-21;
+/// Electromyograms are recorded in multiples of this [V], half of their noise: finer steps would
+/// store noise alone.
+inline constexpr double kEmgResolution = 0x1p-19;
 
 /// A channel of a nerve monitor, a row of /nerve_channels.
 struct NerveChannelRow {
