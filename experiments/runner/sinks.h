@@ -3,8 +3,8 @@
 #include "core/record/rows/sink.h"
 #include "core/record/write/session_writer.h"
 #include "core/stream/lsl_outlet.h"
+#include "core/stream/stream_nerves.h"
 #include "experiments/runner/stream_markers.h"
-#include "experiments/runner/stream_nerves.h"
 
 namespace haptrial::experiments {
 
@@ -38,7 +38,7 @@ class StreamSink final : public record::Sink {
  private:
   stream::LslOutlet* outlet_;
   StreamMarkers markers_;
-  StreamNerves nerves_;
+  stream::StreamNerves nerves_;
   record::PassRow pass_;
 };
 

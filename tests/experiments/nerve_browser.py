@@ -11,6 +11,8 @@ import sys
 
 from browser import Driver, wait
 
+CONTROL, ENTER = "\ue009", "\ue007"
+
 
 def drawn(page, channel):
     """Pixels of a trace that are not empty."""
@@ -47,8 +49,7 @@ def look(page, url, folder):
     wait("muted", lambda: page.run(
         "return document.getElementById('mute_1').getAttribute('aria-pressed')") == "true")
     assert page.text("said") == "oris: muted", page.text("said")
-    page.run("document.getElementById('threshold_2').value = ''")
-    page.type("threshold_2", "250\ue007")
+    page.type("threshold_2", CONTROL + "a" + CONTROL + "250" + ENTER)
     wait("the threshold", lambda: page.text("said") == "drawn <b>: threshold 250 µV")
     page.run("document.activeElement.blur()")
     wait("the threshold of the monitor", lambda: page.run(

@@ -149,7 +149,7 @@ std::optional<double> rate_value(const NerveProcedure& p) {
   return p.drilling > 0.0 ? std::optional(60.0 * p.events() / p.drilling) : std::nullopt;
 }
 
-std::string difference_word(const OnLessOff& c, const char* unit) {
+std::string on_off_word(const OnLessOff& c, const char* unit) {
   return c.test ? fmt::format("{:+.2f} {}, 95 % CI {:.2f} to {:.2f}, paired {} ({} participants)",
                               c.test->difference, unit, c.test->low, c.test->high, t_result(c.test),
                               c.participants)
@@ -222,11 +222,11 @@ void add_nerve_section(Document& document, const std::vector<NerveProcedure>& pr
   if (compares(procedures)) {
     document.table({"monitor on less monitor off, participants' means", "result"},
                    {result_row("events a minute of drilling",
-                               difference_word(on_less_off(procedures, rate_value), "1/min")),
+                               on_off_word(on_less_off(procedures, rate_value), "1/min")),
                     result_row("train time of a procedure",
-                               difference_word(on_less_off(procedures, train_value), "s")),
+                               on_off_word(on_less_off(procedures, train_value), "s")),
                     result_row("median reaction time",
-                               difference_word(on_less_off(procedures, reaction_value), "s"))});
+                               on_off_word(on_less_off(procedures, reaction_value), "s"))});
     document.paragraph("The three results are not adjusted for each other.");
   }
   std::vector<Row> timeline;

@@ -1,6 +1,6 @@
-#include "experiments/runner/stream_nerves.h"
+#include "core/stream/stream_nerves.h"
 
-namespace haptrial::experiments {
+namespace haptrial::stream {
 
 void StreamNerves::add(std::span<const record::EmgRow> rows) {
   if (outlet_ != nullptr && channels_ > 0) {
@@ -36,4 +36,4 @@ void StreamNerves::follow(std::span<const record::Sample> samples) {
   outlet_->push_nerves(values_, times_);
 }
 
-}  // namespace haptrial::experiments
+}  // namespace haptrial::stream

@@ -7,7 +7,7 @@
 #include "core/record/rows/session_types.h"
 #include "core/stream/lsl_outlet.h"
 
-namespace haptrial::experiments {
+namespace haptrial::stream {
 
 /// Electromyograms of a nerve monitor on the stream, each sample at its place between two ticks.
 /// Session's thread.
@@ -15,7 +15,7 @@ class StreamNerves {
  public:
   /// @param outlet    null: nothing is sent; outlives this
   /// @param channels  that are sent  @param rate  of their samples [Hz]
-  StreamNerves(stream::LslOutlet* outlet, std::size_t channels, double rate)
+  StreamNerves(LslOutlet* outlet, std::size_t channels, double rate)
       : outlet_(outlet), channels_(channels), rate_(rate) {}
 
   /// Rows wait for the samples of their ticks, which say when these were.
@@ -23,7 +23,7 @@ class StreamNerves {
   void follow(std::span<const record::Sample> samples);
 
  private:
-  stream::LslOutlet* outlet_;
+  LslOutlet* outlet_;
   std::size_t channels_;
   double rate_;
   std::vector<record::EmgRow> waiting_;
@@ -31,4 +31,4 @@ class StreamNerves {
   std::vector<double> times_;
 };
 
-}  // namespace haptrial::experiments
+}  // namespace haptrial::stream
