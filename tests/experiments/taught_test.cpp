@@ -104,7 +104,7 @@ void expect_passive(const std::vector<LinkRow>& a, const std::vector<LinkRow>& b
 }
 
 TEST_F(TaughtTest, OverABadNetworkNoHandGetsMoreEnergyThanHandsGave) {
-  for (const char* delay : {"0.0", "0.05", "0.2"}) {
+  for (const char* delay : {"0.01", "0.05", "0.2"}) {
     const std::string out =
         taught(std::string("stiffness = 150\n[tutoring.channel]\nloss = 0.05\njitter = 0.02\n") +
                    "duplication = 0.02\nreordering = 0.05\ndelay = " + delay + "\n",

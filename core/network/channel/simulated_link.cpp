@@ -12,7 +12,9 @@ SimulatedLink::SimulatedLink(const ChannelConditions& conditions, std::uint64_t 
 
 SimulatedLink::End::End(const ChannelConditions& conditions, std::uint64_t seed,
                         std::string_view name, double rate)
-    : rate_(rate), out_(conditions, seed, name) {}
+    : rate_(rate),
+      ahead_(static_cast<std::uint64_t>(conditions.delay * rate)),
+      out_(conditions, seed, name) {}
 
 double SimulatedLink::End::seconds(std::uint64_t tick) const noexcept {
   return static_cast<double>(tick) / rate_;
@@ -21,13 +23,14 @@ double SimulatedLink::End::seconds(std::uint64_t tick) const noexcept {
 std::int64_t SimulatedLink::End::tick() noexcept {
   begun_.store(++now_, std::memory_order_release);
   begun_.notify_all();
+  const std::uint64_t needed = now_ > ahead_ ? now_ - ahead_ : 0;
   std::uint64_t others = other_->begun_.load(std::memory_order_acquire);
-  while (others < now_) {
+  while (others < needed) {
     other_->begun_.wait(others, std::memory_order_acquire);
     others = other_->begun_.load(std::memory_order_acquire);
   }
-  // In the tick after its last, however early the other thread was through.
-  other_closed_ = others == kClosed && now_ > other_->ended_at_;
+  // At the same tick, however early the other thread was through.
+  other_closed_ = others == kClosed && needed > other_->ended_at_;
   return std::llround(1e9 * seconds(now_));
 }
 

@@ -11,8 +11,8 @@
 namespace haptrial::network {
 
 /// Two sessions on simulated clocks, each on a thread of its own, joined by a simulated network.
-/// Their ticks go side by side: a tick begins when the other side's tick of the same number has
-/// begun too, so all that was sent before it is known, and nothing depends on the threads.
+/// Their ticks go side by side: a tick begins when all is known that can arrive before it, so that
+/// nothing depends on the threads. By as many ticks as the delay has, one may be ahead.
 class SimulatedLink {
  public:
   /// @param conditions  of either way  @param rate  of both loops [Hz]
@@ -40,6 +40,7 @@ class SimulatedLink {
 
     End* other_{nullptr};
     double rate_;
+    std::uint64_t ahead_;                  // ticks by which this end may be ahead of the other
     std::uint64_t now_{0};                 // the tick that has begun, from 1
     std::uint64_t ended_at_{0};            // the last one, before it was closed
     std::atomic<std::uint64_t> begun_{0};  // the same for the other thread

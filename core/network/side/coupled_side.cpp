@@ -63,6 +63,7 @@ Vector3d CoupledSide::felt(const Own& own, double dt) noexcept {
   const Vector3d moved = stepped_ ? Vector3d(own.tool.position - last_place_) : Vector3d::Zero();
   last_place_ = own.tool.position;
   stepped_ = true;
+  played_.setZero();
   const control::Lead lead{1.0 - own.lead, own.felt_back};
   const double share =  // of the coupling that is on
       strength_ * std::clamp(std::max(lead.partner, lead.felt_back), 0.0, 1.0);
@@ -73,11 +74,13 @@ Vector3d CoupledSide::felt(const Own& own, double dt) noexcept {
     tank_.let_go(moved, energy_heard_);
     return Vector3d::Zero();
   }
-  const Vector3d wanted =
+  const Vector3d whole =
       strength_ * control::tutoring_force(p_.gains, lead, partner_, own.tool, Vector3d::Zero());
+  const Vector3d wanted = share * control::coupling_force(p_.gains, partner_.tool, own.tool);
+  played_ = whole - wanted;
   return p_.passivity == Passivity::kNone
-             ? wanted
-             : tank_.limit(wanted, moved, own.tool.velocity, energy_heard_, dt, share);
+             ? whole
+             : played_ + tank_.limit(wanted, moved, own.tool.velocity, energy_heard_, dt, share);
 }
 
 Vector3d CoupledSide::felt_by_waves(const PointState& own, double share, double dt) noexcept {

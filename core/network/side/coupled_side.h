@@ -13,7 +13,9 @@
 namespace haptrial::network {
 
 /// One side of a coupling over a link: what it hears, what it feels, what it tells. The same on a
-/// simulated and on a real link. Servo thread: no allocation, lock, I/O or throw after the
+/// simulated and on a real link. What keeps it passive watches spring and damper; the forces of the
+/// partner's world are played as those of the own one would be, which works on a hand by intent.
+/// Servo thread: no allocation, lock, I/O or throw after the
 /// constructor.
 class CoupledSide {
  public:
@@ -42,8 +44,9 @@ class CoupledSide {
   /// A tick, after what arrived before it was heard. Without a link the force is zero.
   Output step(const Own& own, std::int64_t now_ns, double dt) noexcept;
 
-  /// What of the coupling really acts until the next tick, where something after step() changed it.
-  void acts(const Eigen::Vector3d& force) noexcept { tank_.acts(force); }
+  /// What the partner's world and the coupling really do until the next tick, where something after
+  /// step() changed it.
+  void acts(const Eigen::Vector3d& force) noexcept { tank_.acts(force - played_); }
 
   /// Whether the partner was heard within the deadline.
   bool linked() const noexcept { return linked_; }
@@ -83,7 +86,8 @@ class CoupledSide {
   std::int64_t heard_ns_{0};  // when the newest came
   double energy_heard_{0.0};  // highest total
   control::Partner partner_;
-  Eigen::Vector3d last_place_;  // of the own tool
+  Eigen::Vector3d last_place_;                       // of the own tool
+  Eigen::Vector3d played_{Eigen::Vector3d::Zero()};  // of the partner's world, in this tick [N]
   bool stepped_{false};
   bool linked_{false};
   bool stop_asked_{false};

@@ -29,11 +29,12 @@ const Table<LinkRow>& table_of<LinkRow>() {
                               "of the partner's tool, in W"),
        T::rounded_elements<3>({"force_x", "force_y", "force_z"}, &R::force, "N",
                               "of the partner's world on the partner's tool, in W"),
-       T::rounded_elements<3>({"coupling_x", "coupling_y", "coupling_z"}, &R::coupling, "N",
-                              "of the link on the own tool, before the envelope, in W"),
+       T::rounded_elements<3>(
+           {"coupling_x", "coupling_y", "coupling_z"}, &R::coupling, "N",
+           "of the partner's world, spring and damper on the own tool, before the envelope, in W"),
        T::rounded("energy", &R::energy, "J", "that may still be given to the hand"),
        T::column("energy_given", &R::energy_given, "J",
-                 "by the link to the hand so far, less what the hand gave"),
+                 "by spring and damper to the hand so far, less what the hand gave"),
        T::column("energy_sent", &R::energy_sent, "J", "to the partner so far"),
        T::column("energy_received", &R::energy_received, "J", "from the partner so far")});
   return table;
