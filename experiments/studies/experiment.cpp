@@ -17,6 +17,7 @@
 #include "experiments/studies/registry.h"
 #include "protocols/definition/lab_file.h"
 #include "protocols/definition/languages.h"
+#include "protocols/definition/tutoring_warnings.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "core/control/tutoring/tutoring_law.h"
 #include "core/network/channel/simulated_channel.h"
 #include "core/network/side/side_parameters.h"
@@ -12,8 +9,6 @@ class Table;
 }
 
 namespace haptrial::protocols {
-
-struct Definition;
 
 /// How a tutor leads, the table [tutoring] of a definition: in a recorded run or over a link.
 struct TutoringOptions {
@@ -36,8 +31,5 @@ TutoringOptions read_tutoring_options(Table& table);
 
 /// What one side of a link is made of.
 network::SideParameters side_parameters(const TutoringOptions& options);
-
-/// Sentences on a coupling that may swing up, or cannot act.
-std::vector<std::string> tutoring_warnings(const Definition& definition);
 
 }  // namespace haptrial::protocols

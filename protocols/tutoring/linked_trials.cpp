@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/record/rows/link_row.h"
+#include "core/record/link/link_row.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/tutoring/linked_pass.h"
 

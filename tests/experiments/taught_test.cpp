@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "core/record/link/link_row.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/link_row.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"

@@ -11,10 +11,21 @@ namespace haptrial::network {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::seconds kForEach(2);  // message of a handshake
+constexpr std::chrono::seconds kForOne(2);   // message of a handshake
+constexpr std::chrono::seconds kForKey(20);  // that the other side makes, on a busy machine
 
 Patience patience_for_one(const MeetingRequest& request, Clock::time_point end) {
-  return {std::min(end, Clock::now() + kForEach), request.pulse};
+  return {std::min(end, Clock::now() + kForOne), request.pulse};
+}
+
+/// The guest makes a key first; one that says nothing holds up others for as long.
+Patience patience_for_answer(const MeetingRequest& request, Clock::time_point end) {
+  constexpr std::chrono::seconds kForAnswer(5);
+  return {std::min(end, Clock::now() + kForAnswer), request.pulse};
+}
+
+Patience patience_for_key(const MeetingRequest& request, Clock::time_point end) {
+  return {std::min(end, Clock::now() + kForKey), request.pulse};
 }
 
 void check_study(const LinkTerms& theirs, const MeetingRequest& request) {
@@ -38,7 +49,7 @@ Met host(const Secret& secret, const MeetingRequest& request, Clock::time_point 
     }
     Handshake::Answer answer;
     const bool told = send_all(guest, handshake.opening(), patience_for_one(request, end)) &&
-                      receive_all(guest, answer, patience_for_one(request, end));
+                      receive_all(guest, answer, patience_for_answer(request, end));
     const auto closing = told ? handshake.closing(answer) : std::nullopt;
     if (!closing) {
       if (request.notice) {
@@ -71,7 +82,7 @@ Met guest(const Secret& secret, const MeetingRequest& request, Clock::time_point
   }
   Handshake::Closing closing;
   if (!send_all(socket, *answer, patience_for_one(request, end)) ||
-      !receive_all(socket, closing, patience_for_one(request, end))) {
+      !receive_all(socket, closing, patience_for_key(request, end))) {
     throw RunError("the other side turned this one away: the secrets differ");
   }
   if (!handshake.finish(closing)) {

@@ -29,7 +29,7 @@ struct MeetingRequest {
 };
 
 /// Waits for the other side, or goes to it. A guest without the secret is turned away, and the next
-/// may try; one that says nothing is left after two seconds.
+/// may try; one that says nothing is left after five seconds.
 /// @throws InputError where the other side has another study, or is told so; RunError where nobody
 ///         came in time, nobody listens, or the host does not know the secret
 Met meet(const Secret& secret, const MeetingRequest& request);

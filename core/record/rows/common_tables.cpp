@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/record/link/link_row.h"
 #include "core/record/rows/device_row.h"
-#include "core/record/rows/link_row.h"
 #include "core/record/rows/marker_row.h"
 #include "core/record/rows/page_answer.h"
 #include "core/record/rows/response.h"

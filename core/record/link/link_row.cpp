@@ -1,4 +1,4 @@
-#include "core/record/rows/link_row.h"
+#include "core/record/link/link_row.h"
 
 namespace haptrial::record {
 
