@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "analysis/contact/simulation/simulated_probe.h"
 #include "analysis/contact/truth/true_contact.h"
 #include "core/geometry/mesh/procedural.h"
+#include "tests/support/message_of.h"
 
 namespace haptrial::evaluation {
 namespace {
@@ -157,9 +159,13 @@ TEST(EvaluateRenderingTest, ForcesOnTheBodyAreDoubted) {
   }
   EvaluationOptions options = known_frame();
   options.renderers = {RendererKind::kPenalty};
-  const Evaluation doubted = evaluate_rendering(recording, sphere(), options);
-  EXPECT_THAT(doubted.remarks, testing::Contains(HasSubstr("pull into the body")));
-  EXPECT_FALSE(doubted.identified);
+  EXPECT_THAT(test::message_of<std::invalid_argument>(
+                  [&] { evaluate_rendering(recording, sphere(), options); }),
+              HasSubstr("do the forces act on the body (--on-body)"));
+  ContactRecording mixed = rubbed_sphere(0.0);
+  std::copy_n(recording.force.force.begin(), 3000, mixed.force.force.begin());
+  EXPECT_THAT(evaluate_rendering(mixed, sphere(), options).remarks,
+              testing::Contains(HasSubstr("pull into the body")));
   options.prepare.force_on_body = true;
   const Evaluation turned = evaluate_rendering(recording, sphere(), options);
   EXPECT_LT(turned.renderings[0].force.root_mean_square,
