@@ -157,7 +157,9 @@ TEST_F(NerveSessionTest, WhatWasPlantedIsFoundThroughTheFile) {
   EXPECT_LE(d.false_alarms, 1);
   EXPECT_GT(d.artefacts, 10);
   EXPECT_LE(d.artefacts_passed, 0.05 * d.artefacts);
-  EXPECT_NEAR(d.found_train / d.planted_train, 1.0, 0.15);
+  // Trains and bursts pile up in two muscles here, and a burst within a train breaks it.
+  EXPECT_GE(d.found_train, 0.75 * d.planted_train);
+  EXPECT_LE(d.found_train, 1.02 * d.planted_train);
   ASSERT_EQ(p.nerves.size(), 2u);
   EXPECT_EQ(p.nerves[1].nerve, "drawn nerve");
   EXPECT_GT(p.nerves[1].events(), 3 * p.nerves[0].events()) << "the other lies 5 mm deeper";
