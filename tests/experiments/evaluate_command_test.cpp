@@ -63,7 +63,7 @@ class EvaluateCommandTest : public testing::Test {
     for (geometry::Triangle& t : mesh.triangles) {
       std::swap(t[0], t[1]);
     }
-    geometry::write_mesh(mesh, folder_ / to);
+    geometry::write_mesh(folder_ / to, mesh);
   }
 
   static Vector3d normal(double t) {

@@ -28,7 +28,7 @@ class LslOutletTest : public testing::Test {
   ~LslOutletTest() override { dlclose(library_); }
 
   static LslOptions options() {
-    return {kStandIn, "force_training", "P07", "omega.3", 1000.0, true};
+    return {kStandIn, "force_training", "P07", "omega.3", 1000.0, true, {}};
   }
   static record::Sample sample(std::uint64_t sequence) {
     record::Sample s;

@@ -70,7 +70,7 @@ Study made(std::uint64_t seed, double effect, double people, int raters = 1) {
 }
 
 ValidityResult result_of(const Study& study) {
-  return {"A study", study.procedures, {}, "", study.validity(), {}, {}};
+  return {"A study", study.procedures, {}, "", study.validity(), {}, {}, {}};
 }
 
 // Each part is the general procedure on the numbers that belong to it, picked out here by hand.
