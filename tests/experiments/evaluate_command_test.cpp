@@ -314,8 +314,8 @@ TEST_F(EvaluateCommandTest, BadInputGetsASentence) {
   turn_faces("body.obj", "inwards.obj");
   refused("rubbed --mesh inwards.obj --registered", "inwards.obj: its faces look inwards");
   refused(good + "--lag 0 --on-body", "do the forces act on the body (--on-body)");
-  run("mkdir air; cp rubbed/poses.csv air; sed '2,$ s/,.*/,0.001,0.0,0.0/' rubbed/forces.csv > "
-      "air/forces.csv");
+  run("mkdir air; cp rubbed/poses.csv air; awk -F, 'NR == 1 { print; next } "
+      "{ printf \"%s,%g,0,0\\n\", $1, 1e-4 * (NR % 7) }' rubbed/forces.csv > air/forces.csv");
   refused("air --mesh body.obj --lag 0", "0 of 1000 poses are in contact");
   run("mkdir empty; mkdir out; touch out/file");
   refused("empty --mesh body.obj", "empty: holds 0 tables");

@@ -309,12 +309,12 @@ TEST_F(LiveLinkTest, AStopOnOneSideStopsBoth) {
   EXPECT_EQ(samples[stop->sequence].force.norm(), 0.0) << "in the tick in which it was heard";
   EXPECT_GT(samples[stop->sequence - 1].force.norm(), 0.0);
   EXPECT_LT(stop->delay, 0.06) << "a way of 20 ms, on a busy machine";
-  // The other side's own force was gone before.
+  // The other side's own force was gone when it said so.
   const record::SessionReader own(file("teaching"));
   const auto there = rows(file("teaching"));
   const auto message = std::ranges::find(there, stop->heard, &LinkRow::sent);
   ASSERT_NE(message, there.end());
-  EXPECT_EQ(own.samples(message->sequence - 1, 1).front().force.norm(), 0.0);
+  EXPECT_EQ(own.samples(message->sequence, 1).front().force.norm(), 0.0);
 }
 
 /// Ten minutes each over the networks of the table in docs/algorithms/tutoring.md, where asked for;

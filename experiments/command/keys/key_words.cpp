@@ -735,11 +735,11 @@ nerve_monitor.bursts | | bursts in a second right beside a nerve, without force 
 nerve_monitor.reach | | distance over which they fall to 1/e
 nerve_monitor.heat | | power that a newton under a turning burr turns into heat
 nerve_monitor.nerves[].structure | | of the bone, that is watched
-nerve_monitor.nerves[].channels | one, named like the nerve | muscles, a channel each; eight in all at most
+nerve_monitor.nerves[].channels | | muscles, a channel each, eight in all at most; without, one named like the nerve
 nerve_monitor.curves[].name | | of a nerve that is drawn as a curve
 nerve_monitor.curves[].points_mm | | its points in the bone's frame
 nerve_monitor.curves[].radius_mm | | of the nerve
-nerve_monitor.curves[].channels | one, named like the nerve | muscles, a channel each
+nerve_monitor.curves[].channels | | muscles, a channel each; without, one named like the nerve
 virtual_surgeons.reaction | | time from a tone of the nerve monitor until the burr is lifted
 virtual_surgeons.rough | | burr for most of the bone
 virtual_surgeons.fine | | burr near structures

@@ -25,7 +25,7 @@ void add_dry_run(CLI::App& app, int& status) {
   sub->add_option("--tutor", o.tutor,
                   "Recorded run that leads the hand: FILE, FILE:TRIAL or FILE:TRIAL@SECONDS");
   sub->add_flag("--taught", o.taught,
-                "Let a second virtual participant lead each over a simulated network");
+                "Lead each participant by a second virtual one, over a simulated network");
   sub->add_option("--frames", o.frames,
                   "Number of pictures to write of each pass, as the subject saw it (default: 0)");
 }

@@ -5,6 +5,9 @@
 #include <fstream>
 
 #include "core/bone/record/drilling_tables.h"
+#include "core/bone/record/tear_row.h"
+#include "core/nerve/record/nerve_rows.h"
+#include "core/record/rows/common_tables.h"
 #include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
@@ -53,9 +56,11 @@ void expect_that_python_reads(bool drills) {
   const test::TemporaryFolder folder;
   const std::vector<Sample> samples = test::hand_motion(9001, 3);
   const std::vector<BoneRecord> bones{test::small_bone()};
-  SessionWriter writer = drills ? SessionWriter(folder / "session.h5", test::example_info(),
-                                                drilling_tables(), rows_of(bones))
-                                : SessionWriter(folder / "session.h5", test::example_info());
+  TableList own = with_tables(drilling_tables(), nerve_tables());
+  own.push_back(&table_of<TearRow>());
+  SessionWriter writer =
+      drills ? SessionWriter(folder / "session.h5", test::example_info(), own, rows_of(bones))
+             : SessionWriter(folder / "session.h5", test::example_info());
   writer.set_planned(36);
   writer.note_counts({0, 0, 0});
   PassRow begun{1, "haptic", Phase::kTraining, 1, 1, ~std::uint64_t{0}};

@@ -113,7 +113,7 @@ TEST(NerveBesideTest, PlantedEventsAreFoundByKind) {
     }
     alarms += right ? 0 : 1;
   }
-  EXPECT_GT(planted, 30);
+  EXPECT_GT(planted, 20);
   EXPECT_GE(found, 0.95 * planted);
   EXPECT_GE(right_kind, 0.9 * planted);
   EXPECT_LE(alarms, 1);
