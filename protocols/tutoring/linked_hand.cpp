@@ -208,7 +208,8 @@ void LinkedHand::tell_state(double dt) noexcept {
   s.claims = claims();
   s.other_claims = (side_.newest().flags & TickFlag::kClaim) != 0;
   s.over = alone();
-  s.left = ever_left_;
+  // Whoever leaves after a pass that both completed has done all that was asked of it.
+  s.left = ever_left_ && turns_.open();
   s.stops = stop_seen_;
   s.silence = 1e-9 * static_cast<double>(now_ - (s.heard ? side_.heard_ns() : first_now_));
   s.lead = own_.lead;
