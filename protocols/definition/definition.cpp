@@ -65,6 +65,7 @@ void read_common(Table& root, std::string_view file_name, Definition& definition
     Table tutoring = root.table("tutoring");
     definition.tutoring = read_tutoring_options(tutoring);
   }
+  definition.tutoring.most_force = definition.envelope.max_force;
   if (definition.screen.photodiode == Photodiode::kOnset) {
     definition.markers.used = true;
   }

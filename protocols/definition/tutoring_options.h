@@ -13,8 +13,9 @@ namespace haptrial::protocols {
 /// How a tutor leads, the table [tutoring] of a definition: in a recorded run or over a link.
 struct TutoringOptions {
   control::TutoringGains gains;
-  double ramp{0.5};   // from no lead to all of it, and back [s]
-  double speed{1.0};  // of a playback, 0.5 to 1 of the original
+  double ramp{0.5};         // from no lead to all of it, and back [s]
+  double speed{1.0};        // of a playback, 0.5 to 1 of the original
+  double most_force{12.0};  // of own world, tutor and coupling together: the envelope's [N]
 
   // Over a link.
   double authority{1.0};  // of who teaches over the other hand, 0 to 1

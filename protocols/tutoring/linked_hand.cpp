@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "core/base/longer.h"
+#include "core/control/pd_controller.h"
+
 namespace haptrial::protocols {
 
 using network::TickFlag;
@@ -117,7 +120,11 @@ void LinkedHand::couple(PassOutput& out, const device::DeviceReading& reading, d
   const bool partner_runs = (side_.newest().flags & TickFlag::kEngaged) != 0;
   share_lead(runs_ && partner_runs && turns_.together() && side_.linked(), dt);
   step(reading.tool, out.force, reading.buttons, dt);
-  out.force = own_.lead * out.force + coupling_;
+  const Eigen::Vector3d own_part = own_.lead * out.force;
+  const Eigen::Vector3d wanted = own_part + coupling_;
+  out.force = control::saturate(wanted, p_.options.most_force);
+  out.saturated = out.saturated || longer(wanted, p_.options.most_force);
+  coupling_ = out.force - own_part;
   // What the link does is watched by the tank; the own world's part as it always is.
   out.intent.push = own_.lead * out.intent.push + coupling_;
   out.intent.stored *= own_.lead;

@@ -1,5 +1,8 @@
 #include "protocols/tutoring/tutored_pass.h"
 
+#include "core/base/longer.h"
+#include "core/control/pd_controller.h"
+
 namespace haptrial::protocols {
 
 TutoredPass::TutoredPass(Pass& inner, const TutoringOptions& options, const ModelMotion& motion,
@@ -40,7 +43,10 @@ void TutoredPass::lead(PassOutput& out, const PointState& own) noexcept {
   const double share = handover_.share();
   const control::TutoringGains& gains = options_->gains;
   const Eigen::Vector3d own_force = out.force;
-  out.force = control::tutoring_force(gains, {share, 0.0}, tutor, own, own_force);
+  const Eigen::Vector3d wanted =
+      control::tutoring_force(gains, {share, 0.0}, tutor, own, own_force);
+  out.force = control::saturate(wanted, options_->most_force);
+  out.saturated = out.saturated || longer(wanted, options_->most_force);
   const Eigen::Vector3d stretch = tutor.tool.position - own.position;
   out.intent.push = out.force - share * control::coupling_force(gains, tutor.tool, own);
   out.intent.drive = tutor.tool.velocity;

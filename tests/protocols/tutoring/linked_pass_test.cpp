@@ -154,6 +154,17 @@ TEST(LinkedPassTest, WhoLearnsFeelsTheLawAndWhoTeachesTheOwnWorld) {
   EXPECT_LT((pair.teaches.force - Vector3d(0.0, 2.0, 0.0)).norm(), 1e-9);
 }
 
+/// More would be a fault of the protocol, and a hand far away is none.
+TEST(LinkedPassTest, WhatIsFeltStaysWithinTheEnvelope) {
+  Pair pair(1000, 1000);
+  pair.teaches.reading.tool.position = {0.0, 0.5, 0.0};  // 40 N of the spring, 2 N played
+  for (int i = 0; i < 900; ++i) {
+    pair.tick();
+    ASSERT_LE(pair.learns.force.norm(), 12.0 * (1.0 + 1e-12));
+  }
+  EXPECT_LT((pair.learns.force - Vector3d(0.0, 12.0, 0.0)).norm(), 1e-9);
+}
+
 TEST(LinkedPassTest, WhoLearnsCanAlwaysTakeTheLead) {
   Pair pair(2000, 2000);
   pair.teaches.reading.tool.position = {0.01, 0.0, 0.0};
