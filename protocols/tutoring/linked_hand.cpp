@@ -120,14 +120,23 @@ void LinkedHand::couple(PassOutput& out, const device::DeviceReading& reading, d
   const bool partner_runs = (side_.newest().flags & TickFlag::kEngaged) != 0;
   share_lead(runs_ && partner_runs && turns_.together() && side_.linked(), dt);
   step(reading.tool, out.force, reading.buttons, dt);
-  const Eigen::Vector3d own_part = own_.lead * out.force;
-  const Eigen::Vector3d wanted = own_part + coupling_;
-  out.force = control::saturate(wanted, p_.options.most_force);
-  out.saturated = out.saturated || longer(wanted, p_.options.most_force);
-  coupling_ = out.force - own_part;
+  keep_within_envelope(out);
   // What the link does is watched by the tank; the own world's part as it always is.
   out.intent.push = own_.lead * out.intent.push + coupling_;
   out.intent.stored *= own_.lead;
+}
+
+/// A partner far away pulls hard, which is no fault of the own protocol. Without coupling the own
+/// force stays as it is.
+void LinkedHand::keep_within_envelope(PassOutput& out) noexcept {
+  const Eigen::Vector3d own_part = own_.lead * out.force;
+  const Eigen::Vector3d wanted = own_part + coupling_;
+  out.force = wanted;
+  if (coupling_ != Eigen::Vector3d::Zero() && longer(wanted, p_.options.most_force)) {
+    out.force = control::saturate(wanted, p_.options.most_force);
+    out.saturated = true;
+    coupling_ = out.force - own_part;
+  }
 }
 
 void LinkedHand::observe(const stimulus::Shown& /*shown*/, const stimulus::Forces& forces,

@@ -78,6 +78,7 @@ class LinkedHand final : public TickLog, public stimulus::Observer, private netw
   void listen() noexcept;
   void heed_partner() noexcept;
   bool alone() const noexcept;
+  void keep_within_envelope(PassOutput& out) noexcept;
   bool claims() const noexcept { return lead_asked_.load(std::memory_order_relaxed) == 1; }
   void share_lead(bool engaged, double dt) noexcept;
   void step(const PointState& tool, const Eigen::Vector3d& own_force, std::uint32_t buttons,
