@@ -30,7 +30,7 @@ const std::string& quality_heading() {
   return heading;
 }
 
-/// Of recalls of a path, which other studies do not have.
+/// Columns of studies that recall a path.
 constexpr std::string_view kPath = ",path_error,kept";
 
 bool has_paths(std::span<const TrialScore> scores) {

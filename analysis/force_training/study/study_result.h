@@ -19,7 +19,7 @@ struct StudyResult {
   std::vector<std::string> factors{"condition"};  // names; each score has a level of each
   std::vector<Exclusion> exclusions;              // by subject, then trial
   StudyStatistics statistics;
-  /// Of path_error [mm] in place of the score, where the path was recalled, too.
+  /// The same tests of path_error [mm], where the path was recalled, too.
   std::optional<StudyStatistics> path{};
   TrackingSummary tracking;                                     // over all participants
   std::vector<RecallPicture> recalls;                           // best, median, worst

@@ -29,7 +29,7 @@ std::vector<ToolSpec> checked(std::vector<ToolSpec> tools) {
   return tools;
 }
 
-/// Of the burrs and tubes among them [m].
+/// The largest burr or tube has this radius [m].
 double largest_radius(std::span<const ToolSpec> tools) noexcept {
   double largest = 0.0;
   for (const ToolSpec& tool : tools) {

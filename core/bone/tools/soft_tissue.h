@@ -96,7 +96,7 @@ class SoftTissue {
   /// @param sucks  the tool is a tube that sucks
   /// @returns the force on the tool, in B [N]; on the tick of a tear that at which it tore
   Eigen::Vector3d tick(const Eigen::Vector3d& c_B, double radius, bool sucks) noexcept;
-  /// Of the last tick.
+  /// What tore on the last tick.
   std::span<const Tear> tears() const noexcept { return {tears_.data(), tear_count_}; }
   /// Whether the ball is in a hole of a structure.
   bool in_hole() const noexcept;

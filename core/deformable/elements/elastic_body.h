@@ -21,7 +21,7 @@ struct Elasticity {
   VolumeForm volume{VolumeForm::kPatches};
 };
 
-/// Of the material of each tetrahedron [kg/m³].
+/// The density of each tetrahedron's material [kg/m³].
 std::vector<double> densities(const Elasticity& elasticity, std::size_t tetrahedra);
 
 /// What one tetrahedron bears.

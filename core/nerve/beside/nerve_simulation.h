@@ -39,7 +39,7 @@ class NerveSimulation {
   const NerveMonitor& monitor() const noexcept { return monitor_; }
   std::span<const Channel> channels() const noexcept { return channels_; }
   bool muted(std::size_t channel) const noexcept { return muted_[channel]; }
-  /// Of the last tick [V].
+  /// The electromyogram of the last tick [V].
   std::span<const float> samples(std::size_t channel) const noexcept { return samples_[channel]; }
   /// What was put in and found since the rows were cleared.
   record::NerveRows& rows() noexcept { return rows_; }

@@ -20,7 +20,7 @@ std::string name_of(const bone::BoneModel& model) {
   return model.name.empty() ? "the bone" : model.name;
 }
 
-/// Of its voxels. @throws InputError
+/// Which labels a structure's voxels have. @throws InputError
 std::vector<bool> labels_of(const bone::BoneModel& model, const std::string& structure) {
   std::vector<bool> there(model.structures.size(), false);
   for (const std::uint8_t label : model.labels) {

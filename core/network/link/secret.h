@@ -37,7 +37,7 @@ class Secret {
   std::size_t size_{0};
 };
 
-/// Of what both sides must have alike (BLAKE2b).
+/// Tells whether both sides have the same text (BLAKE2b).
 std::array<unsigned char, 32> checksum_of(std::string_view text);
 
 }  // namespace haptrial::network

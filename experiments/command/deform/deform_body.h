@@ -22,7 +22,7 @@ struct DeformBody {
 /// that there is not.
 DeformBody load_deform_body(const DeformInput& input);
 
-/// Of length, area and volume, with the masses of the body's materials.
+/// Springs of length, area and volume, with the masses of the body's materials.
 deformable::SpringBody springs_of(const DeformBody& body,
                                   const deformable::UniformConstants& constants);
 

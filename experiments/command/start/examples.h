@@ -15,7 +15,7 @@ struct Example {
 /// All of them, by name.
 std::span<const Example> examples();
 
-/// @throws InputError for a name that is none of them; names them, and the nearest one.
+/// @throws InputError for another name; tells the nearest one, and all of them.
 const Example& example_named(std::string_view name);
 
 /// The first sentence of its first comment: what it is.

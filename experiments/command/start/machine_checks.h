@@ -26,7 +26,7 @@ MachineCheck check_window();
 MachineCheck check_sound();
 MachineCheck check_video();
 MachineCheck check_stream();
-/// Of every device that is driven by a vendor's library.
+/// Every device that the program knows.
 std::vector<MachineCheck> check_devices();
 /// Whether files can be written, and how much there is room for. @param folder  that is there
 MachineCheck check_disk(const std::filesystem::path& folder);

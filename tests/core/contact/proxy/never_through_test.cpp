@@ -28,7 +28,7 @@ double steps_wanted() {
   return named != nullptr ? std::atof(named) : 6e5;
 }
 
-/// Of a long run: what is behind it.
+/// A long run says what is behind it.
 void say_how_far(const HardMesh& hard, std::int64_t steps) {
   static double behind = 0.0;
   behind += static_cast<double>(steps);
