@@ -54,7 +54,8 @@ bool every_study() { return std::getenv("HAPTRIAL_EVERY_STUDY") != nullptr; }
 /// Runs the commands of a manifest again.
 class Results : public testing::TestWithParam<fs::path> {
  protected:
-  /// @param people  so many of the study's first ones, who are who they are whoever comes after
+  /// @param people  how many of the study's first participants; they do not depend on those after
+  /// them
   ///   them; 0, and with HAPTRIAL_EVERY_STUDY set: all
   void make_again(int people = 0) {
     people_ = every_study() ? 0 : people;

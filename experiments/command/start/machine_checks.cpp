@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <system_error>
 #include <thread>
 
 #include "core/base/error.h"
-#include "core/base/files/child_process.h"
 #include "core/base/files/whole_file.h"
 #include "core/device/vendor/catalog.h"
 #include "core/realtime/servo_loop.h"
@@ -17,6 +15,7 @@
 #include "core/render/gl/window.h"
 #include "core/sound/card_player.h"
 #include "core/stream/lsl_outlet.h"
+#include "experiments/screen/video.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -95,11 +94,11 @@ MachineCheck check_sound() {
 }
 
 MachineCheck check_video() {
-  const bool found = std::system("command -v ffmpeg >/dev/null 2>&1") == 0;
-  return found ? MachineCheck{"video", State::kReady, "ffmpeg is there"}
-               : MachineCheck{"video", State::kLimited,
-                              "ffmpeg is not installed, so replay writes no video; install "
-                              "Debian's package ffmpeg"};
+  constexpr int kPicturesASecond = 30;
+  const std::string refusal = refusal_of([] {  // nothing is left of a video without a picture
+    VideoWriter(std::filesystem::temp_directory_path() / "haptrial-doctor.mp4", kPicturesASecond);
+  });
+  return ready_unless("video", refusal, State::kLimited, "ffmpeg is there");
 }
 
 MachineCheck check_stream() {

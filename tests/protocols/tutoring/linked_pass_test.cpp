@@ -43,7 +43,7 @@ class DirectWire final : public network::Wire {
   std::vector<network::TickMessage> inbox_;
 };
 
-/// Runs for so many ticks and pushes with a force.
+/// Pushes with a constant force, for a number of ticks.
 class Push final : public Pass {
  public:
   Push(int ticks, const Vector3d& force) : left_(ticks), force_(force) {}
