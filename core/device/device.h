@@ -51,7 +51,7 @@ class Device {
   /// recording lets each pass begin where it began when it was recorded. Servo thread.
   virtual bool ready() noexcept { return true; }
   /// Why the last read or write failed or the motors went off, in a sentence; "" where all is well.
-  /// A text of static duration. Servo thread.
+  /// A text of static duration. The thread that reads.
   virtual const char* trouble() const noexcept { return ""; }
   /// Calls into the device's library that took longer than a period of the loop. Any thread.
   virtual std::uint64_t slow_calls() const noexcept { return 0; }

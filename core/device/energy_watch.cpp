@@ -12,7 +12,7 @@ constexpr double kForgotten = 0.15;  // [W]
 
 bool EnergyWatch::look(const Eigen::Vector3d& force, const Eigen::Vector3d& moved,
                        const ForceIntent& intent, double dt) noexcept {
-  work_ += (force - intent.push).dot(moved - dt * intent.drive);
+  work_ += (force - intent.push).dot(moved - dt * intent.drive) - intent.added;
   given_ = work_ + intent.stored;
   lowest_ = begun_ ? std::min(given_, lowest_ + kForgotten * dt) : given_;
   begun_ = true;

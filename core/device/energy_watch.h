@@ -11,12 +11,13 @@ struct ForceIntent {
       Eigen::Vector3d::Zero()};                   // velocity of what the force pulls to, in W [m/s]
   Eigen::Vector3d push{Eigen::Vector3d::Zero()};  // the part that is to work on the hand, in W [N]
   double stored{0.0};                             // in springs of the protocol >= 0 [J]
+  double added{0.0};  // of `stored`, by the protocol itself since the tick before [J]
 };
 
 /// A passivity observer: the energy that the device has given to the hand beyond what the protocol
 /// means to give,
 ///
-///     G = sum of (f - push) · (dp - drive dt) + stored
+///     G = sum of (f - push) · (dp - drive dt) - added + stored
 ///
 /// never rises where what is felt is passive. G may rise by 0.15 J over its lowest value, which is
 /// forgotten at 0.15 W: a hold of one tick on a stiff spring and a late force really do generate a
@@ -25,7 +26,7 @@ class EnergyWatch {
  public:
   /// @param force   that acted since the tick before [N]
   /// @param moved   by the tool since the tick before [m]
-  /// @param intent  of that force; `stored` is that of now
+  /// @param intent  of that force; `stored` and `added` are those of now
   /// @returns whether more energy was generated than is allowed.
   bool look(const Eigen::Vector3d& force, const Eigen::Vector3d& moved, const ForceIntent& intent,
             double dt) noexcept;

@@ -131,19 +131,22 @@ void Envelope::watch_force(const Eigen::Vector3d& force, const Eigen::Vector3d& 
   if (odd != Fault::kNone) {
     trip(odd);
   }
+  const double asked = wanted.norm();
+  intent.push *= asked > 0.0 ? std::min(1.0, force.norm() / asked) : 0.0;
+  ForceIntent acted = std::exchange(before_last_intent_, std::exchange(last_intent_, intent));
   if (!fresh_) {
     return;
   }
+  acted.stored = intent.stored;
+  acted.added = intent.added;
   // While the force ramps, what the springs hold is not what the protocol says.
   const bool ramps = released_ || since_start_ < limits_.ramp_in;
-  const double asked = wanted.norm();
-  intent.push *= asked > 0.0 ? std::min(1.0, force.norm() / asked) : 0.0;
   const Eigen::Vector3d moved = last_position_ - watched_position_;
   const bool first = !std::exchange(has_watched_, true);
   watched_position_ = last_position_;
   if (ramps || first) {
     energy_.reset();
-  } else if (energy_.look(before_last_force_, moved, intent, dt)) {
+  } else if (energy_.look(before_last_force_, moved, acted, dt)) {
     trip(Fault::kEnergy);
   }
 }

@@ -94,6 +94,8 @@ class Envelope {
   ForceWatch forces_;
   EnergyWatch energy_;
   Eigen::Vector3d before_last_force_{Eigen::Vector3d::Zero()};  // it acted until this tick
+  ForceIntent last_intent_;                                     // of last_force_
+  ForceIntent before_last_intent_;                              // of before_last_force_
   Eigen::Vector3d watched_position_{Eigen::Vector3d::Zero()};   // at the last limit() [m]
   double bound_{0.0};  // of the force while readings are suspicious [N]
   bool bounded_{false};

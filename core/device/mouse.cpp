@@ -23,11 +23,14 @@ MouseDevice::MouseDevice(const MouseParameters& parameters, double rate)
       info_{"mouse", parameters.electronics.max_force, parameters.electronics.workspace_radius,
             false},
       period_(1.0 / rate),
-      mass_(parameters.coupling),
+      mass_(parameters.coupling, parameters.start),
       electronics_(parameters.electronics, mass_, rate) {
   if (!(parameters.pointer_speed > 0.0 && parameters.max_press > 0.0)) {
     throw std::invalid_argument("MouseDevice: pointer_speed and max_press must be above 0");
   }
+  info_.senses_orientation = parameters.in_space;
+  asked_.hand.position = parameters.start;
+  channel_.write(asked_);
 }
 
 bool MouseDevice::read(DeviceReading& reading) noexcept {
@@ -35,6 +38,7 @@ bool MouseDevice::read(DeviceReading& reading) noexcept {
   if (!electronics_.read(reading)) {
     return false;
   }
+  reading.orientation = orientation_;
   reading.buttons = pointer_.buttons;
   reading.stop_pressed = is_pressed(pointer_.buttons, parameters_.stop_button);
   return true;
@@ -47,24 +51,37 @@ bool MouseDevice::write(const Eigen::Vector3d& force) noexcept {
 
 // A pointer jumps; the hand that it stands for does not.
 void MouseDevice::follow() noexcept {
-  const Eigen::Vector3d way = Eigen::Vector3d(pointer_.x, 0.0, pointer_.z) - mass_.anchor();
+  const Eigen::Vector3d way = pointer_.hand.position - mass_.anchor();
   const double most = parameters_.pointer_speed * period_;
   const double length = way.norm();
   mass_.set_anchor(mass_.anchor() + (length > most ? most / length : 1.0) * way);
   mass_.set_press_force({0.0, -pointer_.press, 0.0});
+  constexpr double kTurning = 6.0;  // at most [rad/s]
+  const double angle = orientation_.angularDistance(pointer_.hand.orientation);
+  const double share = angle > kTurning * period_ ? kTurning * period_ / angle : 1.0;
+  orientation_ = orientation_.slerp(share, pointer_.hand.orientation).normalized();
 }
 
 void MouseDevice::move(double x, double z) noexcept {
-  if (!std::isfinite(x) || !std::isfinite(z)) {
-    return;
+  if (!parameters_.in_space && std::isfinite(x) && std::isfinite(z)) {
+    asked_.hand.position = within({x, 0.0, z});
+    channel_.write(asked_);
   }
-  // The mass swings past a bit: the pointer stays short of the end of the workspace.
+}
+
+void MouseDevice::reach(const HandPose& pose) noexcept {
+  if (pose.position.allFinite() && pose.orientation.coeffs().allFinite() &&
+      pose.orientation.norm() > 0.0) {
+    asked_.hand = {within(pose.position), pose.orientation.normalized()};
+    channel_.write(asked_);
+  }
+}
+
+/// The mass swings past a bit: the hand stays short of the end of the workspace.
+Eigen::Vector3d MouseDevice::within(const Eigen::Vector3d& point) const noexcept {
   const double most = 0.9 * info_.workspace_radius;
-  const double length = std::hypot(x, z);
-  const double share = length > most ? most / length : 1.0;
-  asked_.x = share * x;
-  asked_.z = share * z;
-  channel_.write(asked_);
+  const double length = point.norm();
+  return (length > most ? most / length : 1.0) * point;
 }
 
 void MouseDevice::press(double force) noexcept {

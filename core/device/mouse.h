@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/device/coupled_mass.h"
+#include "core/device/pointer_hand.h"
 #include "core/device/virtual_device.h"
 #include "core/realtime/latest_value.h"
 
@@ -18,6 +19,9 @@ struct MouseParameters {
   double first_press{2.0};    // when the left button goes down >= 0 [N]
   double press_step{0.5};     // more or less for each step of the wheel >= 0 [N]
   int stop_button{1};         // emergency stop, the right one; -1: none
+  // No keys of the table: what a protocol asks for whose hand moves in space.
+  bool in_space{false};                            // reach() moves the hand, move() does not
+  Eigen::Vector3d start{Eigen::Vector3d::Zero()};  // of the hand [m]
 };
 
 /// Reads the keys of a [mouse] table.
@@ -25,7 +29,8 @@ MouseParameters read_mouse_parameters(Table& table);
 
 /// A session on a laptop: the pointer stands for the hand. A simulated mass follows it through a
 /// spring, and the protocol's forces act on that mass, so that guidance is seen but not felt. The
-/// pointer gives x and z; a press gives the force downward (-y).
+/// pointer gives x and z; a press gives the force downward (-y). If the hand moves in space, it is
+/// given whole, and whoever presses against something takes it further there.
 class MouseDevice final : public Device {
  public:
   /// @param rate  of the servo loop > 0 [Hz]
@@ -36,9 +41,10 @@ class MouseDevice final : public Device {
   bool read(DeviceReading& reading) noexcept override;
   bool write(const Eigen::Vector3d& force) noexcept override;
 
-  /// These three belong to one thread, the screen's; they never wait. What is not finite is left
+  /// These four belong to one thread, the screen's; they never wait. What is not finite is left
   /// out, and what is out of bounds is brought to them.
   void move(double x, double z) noexcept;            // pointer [m]
+  void reach(const HandPose& pose) noexcept;         // a hand in space
   void press(double force) noexcept;                 // downward; 0 where no button is held [N]
   void set_buttons(std::uint32_t buttons) noexcept;  // bit i: button i is held
 
@@ -47,12 +53,12 @@ class MouseDevice final : public Device {
 
  private:
   struct Pointer {
-    double x{0.0};      // [m]
-    double z{0.0};      // [m]
+    HandPose hand;
     double press{0.0};  // [N]
     std::uint32_t buttons{0};
   };
   void follow() noexcept;
+  Eigen::Vector3d within(const Eigen::Vector3d& point) const noexcept;
 
   MouseParameters parameters_;
   DeviceInfo info_;
@@ -60,8 +66,9 @@ class MouseDevice final : public Device {
   CoupledMass mass_;
   VirtualDevice electronics_;
   realtime::LatestValue<Pointer> channel_;
-  Pointer asked_;    // screen's thread
-  Pointer pointer_;  // servo thread
+  Pointer asked_;                                                   // screen's thread
+  Pointer pointer_;                                                 // servo thread
+  Eigen::Quaterniond orientation_{Eigen::Quaterniond::Identity()};  // likewise
 };
 
 }  // namespace haptrial::device

@@ -1,6 +1,7 @@
 #include "core/device/reading_watch.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace haptrial::device {
 namespace {
@@ -67,9 +68,22 @@ bool ReadingWatch::stale(bool equal, const Eigen::Vector3d& velocity, double dt)
   return stale_for_ >= kStaleAfter;
 }
 
+/// At the mean speed of the last readings; there and back again adds nothing to it.
+double ReadingWatch::way_in_two_ticks(double dt) noexcept {
+  Place& place = passed_[passes_ % passed_.size()];
+  const Place oldest = passes_ < passed_.size() ? passed_.front() : place;
+  place = {position_, time_};
+  ++passes_;
+  const double tick = std::max(dt, std::exchange(dt_, dt));
+  const double since = time_ - oldest.time;
+  return passes_ > 1 && since > 0.0 ? 2.0 * tick * (position_ - oldest.position).norm() / since
+                                    : 0.0;
+}
+
 bool ReadingWatch::jitters(const Eigen::Vector3d& step, double dt) noexcept {
   odd_for_ = std::max(0.0, odd_for_ - dt);
-  if ((step - step_).norm() <= std::max(kResolution, kAcceleration * dt * dt)) {
+  const double free = std::max(kResolution, kAcceleration * dt * dt) + way_in_two_ticks(dt);
+  if ((step - step_).norm() <= free) {
     return false;
   }
   odd_for_ = kJitterWithin;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 
 #include "core/device/fault.h"
 
@@ -16,7 +17,8 @@ namespace haptrial::device {
 ///   twice the smallest step that was seen.
 /// - Jitter: eight times within 50 ms the velocity between readings changes by more than a hand and
 ///   a device can bring about: 500 m/s², but at least 0.1 mm a tick, which covers the resolution of
-///   encoders. A knock against a stop is one or two such ticks.
+///   encoders. A knock against a stop is one or two such ticks. A device whose clock is its own
+///   gives readings twice and leaves others out: two ticks of the way of the last 16 are left free.
 ///
 /// Servo thread: no allocation, lock, I/O or throw.
 class ReadingWatch {
@@ -43,6 +45,7 @@ class ReadingWatch {
   bool frozen(bool equal, const Eigen::Vector3d& force, double dt) noexcept;
   bool stale(bool equal, const Eigen::Vector3d& velocity, double dt) noexcept;
   bool jitters(const Eigen::Vector3d& step, double dt) noexcept;
+  double way_in_two_ticks(double dt) noexcept;
 
   double holding_force_;
   int seen_{0};
@@ -59,6 +62,14 @@ class ReadingWatch {
   double odd_for_{0.0};                            // left, after an odd step [s]
   std::array<double, kJitterTicks - 1> odd_at_{};  // ring of times [s]
   int odd_{0};
+
+  struct Place {
+    Eigen::Vector3d position{Eigen::Vector3d::Zero()};
+    double time{0.0};  // [s]
+  };
+  std::array<Place, 16> passed_{};  // ring
+  std::size_t passes_{0};
+  double dt_{0.0};  // of the reading before [s]
 };
 
 }  // namespace haptrial::device

@@ -82,6 +82,12 @@ class BlockLog {
   /// Records pushed and not yet delivered. Consumer.
   std::size_t size() const noexcept { return pushed() - delivered_; }
 
+  /// Records whose blocks were not given back: at most a block more than size(). Producer.
+  std::size_t taken() const noexcept {
+    return producer_.pushed.load(std::memory_order_relaxed) -
+           recycled_.load(std::memory_order_acquire);
+  }
+
   /// The i-th oldest record that is not yet delivered; i < size(). Consumer; valid until it is
   /// delivered. at() throws std::out_of_range instead of trusting i.
   const Record& operator[](std::size_t i) const noexcept {

@@ -9,6 +9,7 @@
 #include "core/scene/field/hold.h"
 #include "core/scene/field/inertia.h"
 #include "core/scene/field/mover.h"
+#include "core/scene/field/own.h"
 #include "core/scene/field/path.h"
 #include "core/scene/field/push.h"
 #include "core/scene/field/vibration.h"
@@ -27,7 +28,8 @@ using FieldKind =
                  GratingParameters, TextureParameters, ViscousParameters, MatrixViscousParameters,
                  InertiaParameters, FrictionParameters, SineVibrationParameters,
                  NoiseVibrationParameters, TapParameters, DetentParameters, ClickParameters,
-                 MoverParameters, PathParameters, SolidParameters, YieldingParameters>;
+                 MoverParameters, PathParameters, SolidParameters, YieldingParameters,
+                 OwnParameters>;
 
 /// One field of force as a definition states it: plain data that may change between trials.
 struct Field {

@@ -107,6 +107,7 @@ struct SteepnessOf {
   Steepness operator()(const PathParameters& p) const {
     return {false, p.gains.stiffness, p.gains.damping};
   }
+  Steepness operator()(const OwnParameters&) const { return {}; }
 };
 
 }  // namespace

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 using Law = std::variant<Constant, Ramp, Pulse, Hold, Surface, Grating, Texture, Viscous, Inertia,
                          Friction, SineVibration, NoiseVibration, Tap, Detent, Click, Mover,
-                         PathGuide, Solid, Yielding>;
+                         PathGuide, Solid, Yielding, Own>;
 
 template <class Parameters>
 struct LawOf;
@@ -49,6 +49,7 @@ HAPTRIAL_LAW(MoverParameters, Mover);
 HAPTRIAL_LAW(PathParameters, PathGuide);
 HAPTRIAL_LAW(SolidParameters, Solid);
 HAPTRIAL_LAW(YieldingParameters, Yielding);
+HAPTRIAL_LAW(OwnParameters, Own);
 #undef HAPTRIAL_LAW
 
 template <class Each>

@@ -102,10 +102,11 @@ void WavWriter::finish() {
 }
 
 SoundTrack::SoundTrack(const std::filesystem::path& file, double rate, SpectrumTable table,
-                       const ThinBone& thin, std::uint64_t seed, bool overwrite)
+                       const ThinBone& thin, std::uint64_t seed, bool overwrite, Mix mix)
     : rate_(rate),
       sound_(std::move(table), thin, seed),
-      writer_(file, static_cast<int>(DrillSound::kRate), overwrite) {
+      writer_(file, static_cast<int>(DrillSound::kRate), overwrite),
+      mix_(std::move(mix)) {
   if (!(rate > 0.0 && rate <= DrillSound::kRate)) {
     throw std::invalid_argument("SoundTrack: the rate of the states must be from 0 to 48,000 Hz");
   }
@@ -119,6 +120,9 @@ void SoundTrack::add(const DrillState& drill) {
   buffer_.clear();
   for (; samples_ < end; ++samples_) {
     buffer_.push_back(sound_.next());
+  }
+  if (mix_) {
+    mix_(buffer_);
   }
   writer_.write(buffer_);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -42,10 +43,14 @@ class WavWriter {
 /// states, table and seed give the same bytes.
 class SoundTrack {
  public:
+  /// Adds what else is heard to the next samples.
+  using Mix = std::function<void(std::span<float>)>;
+
   /// @param rate  of the states > 0, at most 48 kHz [Hz]
+  /// @param mix   may be empty
   /// @throws as WavWriter and DrillSound do, and std::invalid_argument for another rate.
   SoundTrack(const std::filesystem::path& file, double rate, SpectrumTable table,
-             const ThinBone& thin, std::uint64_t seed, bool overwrite = false);
+             const ThinBone& thin, std::uint64_t seed, bool overwrite = false, Mix mix = {});
   /// The next state, which lasts 1 / rate seconds.
   void add(const DrillState& drill);
   void finish() { writer_.finish(); }
@@ -54,6 +59,7 @@ class SoundTrack {
   double rate_;
   DrillSound sound_;
   WavWriter writer_;
+  Mix mix_;
   std::uint64_t states_{0};
   std::uint64_t samples_{0};
   std::vector<float> buffer_;

@@ -94,7 +94,9 @@ struct LslOutlet::Impl {
   Impl(const LslOptions& o, SessionClock clock)
       : options(o), now(std::move(clock)), library(o.library, kLayer), lsl(load(library)) {}
   ~Impl() {
-    for (const Functions::Outlet outlet : {samples, markers, nerves}) {
+    std::vector<Functions::Outlet> all{samples, markers};
+    all.insert(all.end(), sides.begin(), sides.end());
+    for (const Functions::Outlet outlet : all) {
       if (outlet != nullptr) {
         lsl.destroy_outlet(outlet);
       }
@@ -105,7 +107,7 @@ struct LslOutlet::Impl {
 
   Functions::Outlet open_samples();
   Functions::Outlet open_markers();
-  Functions::Outlet open_nerves();
+  Functions::Outlet open_side(const SideStream& side);
   Functions::Outlet opened(Functions::Info info, const std::string& name);
   void describe(Functions::Info info);
   void synchronise();
@@ -117,7 +119,7 @@ struct LslOutlet::Impl {
   Functions lsl;
   Functions::Outlet samples{nullptr};
   Functions::Outlet markers{nullptr};
-  Functions::Outlet nerves{nullptr};
+  std::vector<Functions::Outlet> sides;
   double offset{0.0};                    // of the layer's clock from the session's [s]
   std::optional<std::int64_t> measured;  // when the samples' offset was, on the session's clock
   std::vector<double> values;
@@ -194,24 +196,26 @@ Functions::Outlet LslOutlet::Impl::open_markers() {
   return opened(info, name);
 }
 
-Functions::Outlet LslOutlet::Impl::open_nerves() {
-  const std::string name = "haptrial " + options.subject + " nerves";
+Functions::Outlet LslOutlet::Impl::open_side(const SideStream& side) {
+  const std::string name = fmt::format("haptrial {} {}", options.subject, side.name);
   const Functions::Info info = lsl.create_streaminfo(
-      name.c_str(), "EMG", static_cast<std::int32_t>(options.nerve_channels.size()),
-      options.nerve_rate, kDouble,
-      fmt::format("haptrial-{}-{}-nerves", options.study, options.subject).c_str());
+      name.c_str(), side.type.c_str(), static_cast<std::int32_t>(side.channels.size()),
+      side.rate > 0.0 ? side.rate : kIrregular, kDouble,
+      fmt::format("haptrial-{}-{}-{}", options.study, options.subject, side.name).c_str());
   if (info == nullptr) {
     throw RunError(fmt::format("the Lab Streaming Layer takes no description of '{}': {}", name,
                                lsl.last_error()));
   }
   describe(info);
-  lsl.append_child_value(lsl.get_desc(info), "model", "simulated electromyogram");
+  for (const auto& [line, value] : side.about) {
+    lsl.append_child_value(lsl.get_desc(info), line.c_str(), value.c_str());
+  }
   const Functions::Xml list = lsl.append_child(lsl.get_desc(info), "channels");
-  for (const std::string& channel : options.nerve_channels) {
+  for (const std::string& channel : side.channels) {
     const Functions::Xml one = lsl.append_child(list, "channel");
     lsl.append_child_value(one, "label", channel.c_str());
-    lsl.append_child_value(one, "unit", "V");
-    lsl.append_child_value(one, "type", "EMG");
+    lsl.append_child_value(one, "unit", side.unit.c_str());
+    lsl.append_child_value(one, "type", side.type.c_str());
   }
   return opened(info, name);
 }
@@ -235,8 +239,8 @@ LslOutlet::LslOutlet(const LslOptions& options, SessionClock now)
     : impl_(std::make_unique<Impl>(options, std::move(now))) {
   impl_->samples = impl_->open_samples();
   impl_->markers = impl_->open_markers();
-  if (!impl_->options.nerve_channels.empty()) {
-    impl_->nerves = impl_->open_nerves();
+  for (const SideStream& side : impl_->options.sides) {
+    impl_->sides.push_back(impl_->open_side(side));
   }
 }
 
@@ -273,8 +277,9 @@ void LslOutlet::push(std::span<const record::Sample> samples) {
               samples.size());
 }
 
-void LslOutlet::push_nerves(std::span<const double> values, std::span<const double> times) {
-  if (times.empty() || impl_->nerves == nullptr) {
+void LslOutlet::push_side(std::size_t number, std::span<const double> values,
+                          std::span<const double> times) {
+  if (times.empty() || number >= impl_->sides.size()) {
     return;
   }
   const std::lock_guard lock(impl_->mutex);
@@ -285,9 +290,9 @@ void LslOutlet::push_nerves(std::span<const double> values, std::span<const doub
   for (const double time : times) {
     impl_->timestamps.push_back(impl_->offset + time);
   }
-  impl_->note(
-      impl_->lsl.push_chunk(impl_->nerves, values.data(), values.size(), impl_->timestamps.data()),
-      times.size());
+  impl_->note(impl_->lsl.push_chunk(impl_->sides[number], values.data(), values.size(),
+                                    impl_->timestamps.data()),
+              times.size());
 }
 
 bool LslOutlet::mark(const std::string& text, std::int64_t session_ns) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "core/record/rows/session_types.h"
+#include "core/stream/side_stream.h"
 
 namespace haptrial::stream {
 
@@ -19,8 +21,7 @@ struct LslOptions {
   std::string device;
   double rate{1000.0};  // of the samples [Hz]
   bool simulated{false};
-  std::vector<std::string> nerve_channels;  // of a nerve monitor; none: no stream of it
-  double nerve_rate{8000.0};                // of their samples [Hz]
+  std::vector<SideStream> sides{};  // beside the samples; their `read` is not used
 };
 
 /// The session's time now, since its first tick: the clock of record::Sample::time_ns [ns].
@@ -34,8 +35,8 @@ using SessionClock = std::function<std::int64_t()>;
 /// the same time, never to the servo thread.
 ///
 /// Streams: "haptrial SUBJECT" of type Haptics, double precision, one channel a column of
-/// channels(); "haptrial SUBJECT markers" of type Markers, one text a marker; with a nerve monitor
-/// "haptrial SUBJECT nerves" of type EMG, volts, one channel a muscle.
+/// channels(); "haptrial SUBJECT markers" of type Markers, one text a marker; for each side stream
+/// "haptrial SUBJECT NAME" of its type, double precision.
 class LslOutlet {
  public:
   struct Channel {
@@ -63,9 +64,9 @@ class LslOutlet {
   /// Times are given to the layer on its own clock. How far that is from the session's is measured
   /// at the first push, then every second, and for each marker.
   void push(std::span<const record::Sample> samples);
-  /// Samples of all channels of the nerve monitor. @param values  (samples x channels) [V]
-  /// @param times  of the samples on the session's clock [s]
-  void push_nerves(std::span<const double> values, std::span<const double> times);
+  /// Samples of a side stream. @param number  of LslOptions::sides; another one: nothing is sent
+  /// @param values  (samples x channels)  @param times  on the session's clock [s]
+  void push_side(std::size_t number, std::span<const double> values, std::span<const double> times);
   /// @returns whether the library took it
   bool mark(const std::string& text, std::int64_t session_ns);
 

@@ -4,7 +4,11 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <sstream>
 #include <string>
+#include <tuple>
+
+#include "core/base/text/nearest.h"
 
 namespace haptrial::bone {
 namespace {
@@ -128,15 +132,63 @@ std::array<double, 3> colour_of(std::uint8_t label) {
   return colour;
 }
 
-}  // namespace
-
-Structure structure_named(std::string_view name, std::uint8_t label) {
-  const std::string wanted = plain(name);
+const Known* known_by(const std::string& wanted) {
   for (const Known& known : kKnown) {
     if (wanted == known.name ||
         std::string_view(known.others).find('|' + wanted + '|') != std::string_view::npos) {
-      return structure_of(known);
+      return &known;
     }
+  }
+  return nullptr;
+}
+
+/// Its name and its usual names.
+std::vector<std::string> forms_of(const Known& known) {
+  std::vector<std::string> forms{known.name};
+  const std::string_view others = known.others;
+  for (std::size_t at = 1; at < others.size();) {
+    const std::size_t end = others.find('|', at);
+    forms.emplace_back(others.substr(at, end - at));
+    at = end + 1;
+  }
+  return forms;
+}
+
+/// Words of more than three letters that both have.
+int common_words(const std::string& a, const std::string& b) {
+  constexpr std::size_t kShort = 3;
+  int common = 0;
+  std::istringstream words(a);
+  for (std::string word; words >> word;) {
+    common += word.size() > kShort && (" " + b + " ").find(" " + word + " ") != std::string::npos;
+  }
+  return common;
+}
+
+}  // namespace
+
+bool is_known_structure(std::string_view name) { return known_by(plain(name)) != nullptr; }
+
+std::string nearest_structure(std::string_view name) {
+  const std::string wanted = plain(name);
+  std::tuple<int, std::size_t> best{1, 0};
+  const char* found = kKnown.front().name;
+  for (const Known& known : kKnown) {
+    for (const std::string& form : forms_of(known)) {
+      const std::tuple<int, std::size_t> here{-common_words(wanted, form),
+                                              edit_distance(wanted, form)};
+      if (here < best) {
+        best = here;
+        found = known.name;
+      }
+    }
+  }
+  return found;
+}
+
+Structure structure_named(std::string_view name, std::uint8_t label) {
+  if (const Known* known = known_by(plain(name))) {
+    return structure_of(*known);
   }
   return {std::string(name), colour_of(label), 1.0, false};
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -36,6 +37,12 @@ enum class Anatomy : std::uint8_t {
 /// "Facial_Nerve", "CN VII", "sigmoid sinus". Letters' case, "_" and blanks do not matter. A name
 /// that is not known keeps its own, with a colour from the label and the properties of bone.
 Structure structure_named(std::string_view name, std::uint8_t label);
+
+/// Whether a name, or one of its usual forms, is known.
+bool is_known_structure(std::string_view name);
+/// The known name, as it is printed, that is nearest to one that is not: the fewest letters to
+/// change, also in one of the usual names, or one with a word of it.
+std::string nearest_structure(std::string_view name);
 
 /// All of Anatomy, by label; the first stands for nothing.
 std::vector<Structure> known_structures();

@@ -5,28 +5,15 @@
 #include <cmath>
 
 namespace haptrial::bone {
-namespace {
-
-constexpr std::size_t kBins = 512;
-
-/// Counts and places of equal bins between the extremes.
-struct Histogram {
-  std::array<double, kBins> counts{};
-  double low{0.0};
-  double width{1.0};
-
-  explicit Histogram(std::span<const float> values) {
-    const auto [least, most] = std::ranges::minmax(values);
-    low = least;
-    width = std::max((static_cast<double>(most) - low) / kBins, 1e-12);
-    for (const float value : values) {
-      const auto bin = static_cast<std::size_t>((value - low) / width);
-      counts[std::min(bin, kBins - 1)] += 1.0;
-    }
+GreyHistogram::GreyHistogram(std::span<const float> values) {
+  const auto [least, most] = std::ranges::minmax(values);
+  low = least;
+  width = std::max((static_cast<double>(most) - low) / kBins, 1e-12);
+  for (const float value : values) {
+    const auto bin = static_cast<std::size_t>((value - low) / width);
+    counts[std::min(bin, kBins - 1)] += 1.0;
   }
-};
-
-}  // namespace
+}
 
 float density_of(double value, const GreyLevels& levels) {
   if (value < levels.threshold) {
@@ -38,7 +25,11 @@ float density_of(double value, const GreyLevels& levels) {
 }
 
 double find_threshold(std::span<const float> values) {
-  const Histogram histogram(values);
+  return find_threshold(GreyHistogram(values));
+}
+
+double find_threshold(const GreyHistogram& histogram) {
+  constexpr std::size_t kBins = GreyHistogram::kBins;
   std::array<double, kBins + 1> weight{};
   std::array<double, kBins + 1> moment{};
   for (std::size_t i = 0; i < kBins; ++i) {
@@ -61,7 +52,7 @@ double find_threshold(std::span<const float> values) {
       }
     }
   }
-  return histogram.low + histogram.width * static_cast<double>(upper);
+  return histogram.value_of(static_cast<double>(upper));
 }
 
 double quantile_from(std::span<const float> values, double low, double share) {

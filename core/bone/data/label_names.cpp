@@ -40,6 +40,16 @@ void take_properties(const std::string& words, Structure& structure) {
   }
 }
 
+/// "red green blue" of 3D Slicer.
+void take_colour(const std::string& words, Structure& structure) {
+  std::istringstream in(words);
+  std::array<double, 3> colour{};
+  const auto within = [](double part) { return part >= 0.0 && part <= 1.0; };
+  if (in >> colour[0] >> colour[1] >> colour[2] && std::ranges::all_of(colour, within)) {
+    structure.colour = colour;
+  }
+}
+
 Structure read_structure(Table& table, std::size_t label) {
   Structure structure = structure_named(table.text("name"), static_cast<std::uint8_t>(label));
   if (table.has("colour")) {
@@ -73,8 +83,10 @@ std::vector<Structure> structures_in(const std::map<std::string, std::string>& k
       const std::string segment = key.substr(0, key.size() - std::string("_LabelValue").size());
       const auto label = label_in(name);
       if (label) {
-        put(structures, *label,
-            structure_named(value(segment + "_Name"), static_cast<std::uint8_t>(*label)));
+        Structure structure =
+            structure_named(value(segment + "_Name"), static_cast<std::uint8_t>(*label));
+        take_colour(value(segment + "_Color"), structure);
+        put(structures, *label, std::move(structure));
       }
     }
   }
@@ -90,10 +102,21 @@ std::vector<Structure> structures_in(const std::map<std::string, std::string>& k
   return structures;
 }
 
-std::vector<Structure> read_label_table(const std::filesystem::path& file) {
+LabelTable read_label_table(const std::filesystem::path& file) {
   Table table = Table::load(file);
+  LabelTable read{std::vector<Structure>(1), {}};
+  if (table.has("names")) {
+    Table names = table.table("names");
+    for (const std::string& key : names.keys()) {
+      read.names[key] = names.text(key);
+    }
+    if (!table.has("labels")) {
+      table.finish();
+      return read;
+    }
+  }
   Table labels = table.table("labels");
-  std::vector<Structure> structures(1);
+  std::vector<Structure>& structures = read.structures;
   for (const std::string& key : labels.keys()) {
     const auto label = label_in(key);
     Table entry = labels.table(key);
@@ -105,7 +128,7 @@ std::vector<Structure> read_label_table(const std::filesystem::path& file) {
     put(structures, *label, read_structure(entry, *label));
   }
   table.finish();
-  return structures;
+  return read;
 }
 
 std::string one_line(std::string text) {

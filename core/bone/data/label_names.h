@@ -13,16 +13,24 @@ namespace haptrial::bone {
 /// Slicer ("Segment0_LabelValue", "Segment0_Name"). Names that nobody gave stay empty.
 std::vector<Structure> structures_in(const std::map<std::string, std::string>& keys);
 
-/// Structures by label from a table:
+/// What a file of names says of the labels of a volume.
+struct LabelTable {
+  std::vector<Structure> structures;         // by label; names that nobody gave stay empty
+  std::map<std::string, std::string> names;  // from those of the volume to those that are known
+};
+
+/// Structures by label, and other names for those that the volume has, from a table:
 ///
 ///     [labels.7]
 ///     name = "facial nerve"       # known names bring the rest
 ///     colour = [1.0, 0.9, 0.2]    # may be absent, as the following
 ///     hardness = 0.25
 ///     vital = true
+///     [names]
+///     "canalis n. facialis" = "facial nerve"
 ///
 /// @throws InputError
-std::vector<Structure> read_label_table(const std::filesystem::path& file);
+LabelTable read_label_table(const std::filesystem::path& file);
 
 /// A text as it can stand in a NRRD header's line: neither line ends nor backslashes.
 std::string one_line(std::string text);

@@ -12,10 +12,13 @@
 #include "core/base/error.h"
 #include "core/base/text/nearest.h"
 #include "core/bone/anatomy/anatomy.h"
+#include "core/bone/anatomy/ear_side.h"
 #include "core/bone/data/grey_bone.h"
 #include "core/bone/data/label_names.h"
 #include "core/bone/data/resample.h"
+#include "core/bone/data/segments.h"
 #include "core/bone/data/volume_source.h"
+#include "core/bone/model/crop.h"
 
 namespace haptrial::bone {
 namespace fs = std::filesystem;
@@ -91,7 +94,29 @@ struct Plan {
   std::string sentence;
 };
 
-Plan plan_for(const UprightVolume& volume, std::optional<double> spacing) {
+/// @throws InputError where nothing is left.
+void crop_plan(const Import& job, Plan& plan) {
+  if (!job.options.crop) {
+    return;
+  }
+  const geometry::VoxelGrid whole = plan.grid;
+  plan.grid = grid_within(whole, *job.options.crop);
+  if (plan.grid.count() == 0) {
+    const Eigen::Vector3d low = 1e3 * whole.origin;
+    const Eigen::Vector3d high =
+        1e3 * whole.centre(whole.size[0] - 1, whole.size[1] - 1, whole.size[2] - 1);
+    throw InputError(
+        fmt::format("{}: the box to crop holds none of its voxels, which span {:.1f} {:.1f} {:.1f} "
+                    "to {:.1f} {:.1f} {:.1f} mm",
+                    job.name, low.x(), low.y(), low.z(), high.x(), high.y(), high.z()));
+  }
+  if (plan.grid.size != whole.size) {
+    plan.as_it_is = false;
+    plan.sentence += ", cropped";
+  }
+}
+
+Plan plan_for(const Import& job, const UprightVolume& volume, std::optional<double> spacing) {
   const Pose pose = pose_of(volume);
   const double edge = std::cbrt(std::abs(volume.steps.determinant()));
   const double smallest = volume.steps.colwise().norm().minCoeff();
@@ -115,6 +140,7 @@ Plan plan_for(const UprightVolume& volume, std::optional<double> spacing) {
         fmt::format("; turned by {:.2f} degrees, {}", pose.turn / kDegree,
                     plan.own_axes ? "whose axes are kept" : "now along the axes of the patient");
   }
+  crop_plan(job, plan);
   return plan;
 }
 
@@ -134,7 +160,14 @@ std::vector<std::uint8_t> labels_of(const Import& job, std::span<const float> va
 /// Every label that is used gets a structure, named or not.
 void name_labels(const Import& job, std::vector<Structure> structures, BoneModel& model) {
   if (!job.options.label_file.empty()) {
-    std::vector<Structure> named = read_label_table(job.options.label_file);
+    LabelTable table = read_label_table(job.options.label_file);
+    for (std::size_t label = 1; label < structures.size(); ++label) {
+      const auto other = table.names.find(structures[label].name);
+      if (other != table.names.end()) {
+        structures[label] = structure_named(other->second, static_cast<std::uint8_t>(label));
+      }
+    }
+    std::vector<Structure>& named = table.structures;
     structures.resize(std::max(structures.size(), named.size()));
     for (std::size_t label = 1; label < named.size(); ++label) {
       if (!named[label].name.empty()) {
@@ -197,52 +230,8 @@ void leave_out(const Import& job, BoneModel& model) {
   }
 }
 
-/// Only what holds bone, with two empty voxels around it.
-void crop(BoneModel& model) {
-  const geometry::VoxelGrid old = model.grid;
-  std::array<std::int32_t, 3> low = old.size;
-  std::array<std::int32_t, 3> high{-1, -1, -1};
-  for (std::int32_t k = 0; k < old.size[2]; ++k) {
-    for (std::int32_t j = 0; j < old.size[1]; ++j) {
-      for (std::int32_t i = 0; i < old.size[0]; ++i) {
-        if (model.labels[old.index(i, j, k)] == 0) {
-          continue;
-        }
-        const std::array<std::int32_t, 3> voxel{i, j, k};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          low[axis] = std::min(low[axis], voxel[axis]);
-          high[axis] = std::max(high[axis], voxel[axis]);
-        }
-      }
-    }
-  }
-  constexpr std::int32_t kMargin = 2;
-  geometry::VoxelGrid grid = old;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    low[axis] = std::max(0, low[axis] - kMargin);
-    grid.size[axis] = std::min(old.size[axis], high[axis] + kMargin + 1) - low[axis];
-  }
-  grid.origin = old.centre(low[0], low[1], low[2]);
-  BoneModel cropped = model;
-  cropped.grid = grid;
-  cropped.labels.assign(grid.count(), 0);
-  cropped.density.assign(model.density.empty() ? 0 : grid.count(), 0.0F);
-  for (std::int32_t k = 0; k < grid.size[2]; ++k) {
-    for (std::int32_t j = 0; j < grid.size[1]; ++j) {
-      const std::size_t from = old.index(low[0], low[1] + j, low[2] + k);
-      const auto to = static_cast<std::ptrdiff_t>(grid.index(0, j, k));
-      const auto length = static_cast<std::size_t>(grid.size[0]);
-      std::copy_n(model.labels.data() + from, length, cropped.labels.begin() + to);
-      if (!model.density.empty()) {
-        std::copy_n(model.density.data() + from, length, cropped.density.begin() + to);
-      }
-    }
-  }
-  model = std::move(cropped);
-}
-
 BoneModel labelled_bone(const Import& job, const VolumeHead& head, const UprightVolume& volume) {
-  const Plan plan = plan_for(volume, job.options.spacing);
+  const Plan plan = plan_for(job, volume, job.options.spacing);
   check_room(job, plan.grid, 2.0);
   BoneModel model;
   model.grid = plan.grid;
@@ -255,11 +244,20 @@ BoneModel labelled_bone(const Import& job, const VolumeHead& head, const Upright
   return model;
 }
 
+void tell_findings(const Import& job, std::span<const float> values,
+                   const std::optional<GreyLevels>& used) {
+  if (job.options.findings) {
+    const GreyHistogram histogram(values);
+    job.options.findings({histogram, find_threshold(histogram), used});
+  }
+}
+
 GreyLevels levels_of(const Import& job, const VolumeHead& head, std::span<const float> values) {
   const LoadOptions& options = job.options;
   const auto [low, high] = std::ranges::minmax(values);
   const bool hounsfield = head.hounsfield || low <= kAirBelow;
   if (!options.threshold && !options.find_threshold && !hounsfield) {
+    tell_findings(job, values, std::nullopt);
     throw InputError(
         fmt::format("{}: its values run from {:.6g} to {:.6g}, which are not Hounsfield units; "
                     "give a threshold for bone, such as the {:.6g} that 'auto' finds",
@@ -279,6 +277,7 @@ GreyLevels levels_of(const Import& job, const VolumeHead& head, std::span<const 
     throw InputError(fmt::format("dense bone is {:.6g}; allowed: above the threshold, {:.6g}",
                                  levels.dense, levels.threshold));
   }
+  tell_findings(job, values, levels);
   if (!(high >= levels.threshold)) {
     throw InputError(
         fmt::format("{}: holds no bone: its values run from {:.6g} to {:.6g}, all below the "
@@ -290,7 +289,7 @@ GreyLevels levels_of(const Import& job, const VolumeHead& head, std::span<const 
 
 BoneModel grey_bone(const Import& job, const VolumeHead& head, const UprightVolume& volume) {
   const GreyLevels levels = levels_of(job, head, volume.components[0]);
-  const Plan plan = plan_for(volume, job.options.spacing.value_or(kGreySpacing));
+  const Plan plan = plan_for(job, volume, job.options.spacing.value_or(kGreySpacing));
   check_room(job, plan.grid, 4.0 * sizeof(float) + 2.0);
   BoneModel model;
   model.grid = plan.grid;
@@ -343,7 +342,7 @@ BoneModel saved_bone(const Import& job, const VolumeHead& head, const UprightVol
   model.density.assign(model.labels.size(), 0.0F);
   UprightVolume second = volume;
   second.components = {volume.components[1]};
-  const Plan plan = plan_for(volume, job.options.spacing);
+  const Plan plan = plan_for(job, volume, job.options.spacing);
   const BigArray<float> values = plan.as_it_is
                                      ? second.components[0]
                                      : resample_grey(second, plan.grid, plan.own_axes, job.report);
@@ -356,6 +355,44 @@ BoneModel saved_bone(const Import& job, const VolumeHead& head, const UprightVol
   return model;
 }
 
+/// From B to the patient's axes, LPS.
+Eigen::Affine3d patient_frame(const UprightVolume& volume) {
+  const VoxelMap map = map_to(volume, pose_of(volume).turn < kSmallTurn);
+  Eigen::Affine3d X_PB;
+  X_PB.linear() = volume.steps * map.turn;
+  X_PB.translation() = volume.origin + volume.steps * map.offset;
+  return X_PB;
+}
+
+/// What lies beside the scan.
+void add_structures(const Import& job, const Eigen::Affine3d& X_PB, BoneModel& model) {
+  const LabelTable table =
+      job.options.label_file.empty() ? LabelTable{} : read_label_table(job.options.label_file);
+  if (!job.options.segments.empty()) {
+    const std::string name = job.options.segments.string();
+    SourceVolume segments = read_volume(job.options.segments, job.room, job.report);
+    join_layers(name, segments);
+    std::vector<Structure> structures = structures_in(segments.head.keys);
+    if (structures.size() < 2) {
+      throw InputError(fmt::format(
+          "{}: names no segments; choose a segmentation of 3D Slicer (.seg.nrrd)", name));
+    }
+    for (std::size_t label = 1; label < structures.size(); ++label) {
+      const auto other = table.names.find(structures[label].name);
+      if (other != table.names.end()) {
+        structures[label] = structure_named(other->second, static_cast<std::uint8_t>(label));
+      }
+    }
+    labels_of(job, segments.values);
+    add_segments(name, segments, structures, X_PB, model);
+    model.source += fmt::format("; segments of {}", job.options.segments.filename().string());
+  }
+  for (const MeshStructure& one : job.options.meshes) {
+    add_mesh(one, X_PB, model, job.report);
+    model.source += fmt::format("; {} of {}", one.name, one.file.filename().string());
+  }
+}
+
 }  // namespace
 
 BoneModel load_bone(const fs::path& file, const LoadOptions& options,
@@ -364,6 +401,9 @@ BoneModel load_bone(const fs::path& file, const LoadOptions& options,
   const Room room = options.room ? Room(options.room) : Room(check_system_memory);
   const Import job{file.string(), options, room, report};
   SourceVolume source = read_volume(file, room, report);
+  if (!source.head.keys.contains("haptrial_bone") && names_segments(source.head.keys)) {
+    join_layers(job.name, source);
+  }
   const VolumeHead head = source.head;
   const auto saved = head.keys.find("haptrial_bone");
   if (saved == head.keys.end() && head.components > 1) {
@@ -377,13 +417,17 @@ BoneModel load_bone(const fs::path& file, const LoadOptions& options,
                     : kind == VolumeKind::kLabels ? labelled_bone(job, head, volume)
                                                   : grey_bone(job, head, volume);
   model.name = saved != head.keys.end() ? saved->second : file.filename().string();
+  add_structures(job, patient_frame(volume), model);
   leave_out(job, model);
+  if (options.mirror) {
+    model = mirrored(model);
+  }
   if (std::ranges::all_of(model.labels, [](std::uint8_t label) { return label == 0; })) {
     throw InputError(fmt::format(
         "{}: holds no bone; choose a volume with at least one voxel of bone", job.name));
   }
   if (kind == VolumeKind::kGrey) {
-    crop(model);
+    crop_to_bone(model);
   }
   try {
     check(model);

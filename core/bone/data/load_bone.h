@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -7,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "core/bone/data/added_structures.h"
+#include "core/bone/data/grey_bone.h"
 #include "core/bone/model/bone_model.h"
 #include "core/geometry/mesh/work.h"
 
@@ -30,14 +33,19 @@ struct LoadOptions {
   bool find_threshold{false};        // by the histogram (Otsu 1979, three classes)
   std::optional<double> dense;       // the number of bone with density 1 > threshold; 1500 HU
   std::string label_file;            // names of labels (.toml); empty: as the file names them
+  bool mirror{false};                // left and right are exchanged
   std::vector<std::string> without;  // names of structures that are left out
+  std::optional<Eigen::AlignedBox3d> crop;  // only voxels whose centres lie in it, in B [m]
+  std::filesystem::path segments;           // a segmentation of the scan; empty: none
+  std::vector<MeshStructure> meshes;        // structures that are added, in this order
+  std::function<void(const GreyFindings&)> findings;  // of grey volumes; also before a refusal
   /// Asked before memory is taken: what for, and how many bytes; throws InputError to refuse.
   /// Default: refuses what the system does not have.
   std::function<void(const std::string& what, double bytes)> room;
 };
 
-/// Reads a bone: one that save_bone() wrote, or anything import can read: NRRD (.nrrd, .nhdr),
-/// NIfTI (.nii, .nii.gz), or a folder with one DICOM series.
+/// Reads a bone: one that save_bone() wrote, or anything import can read: NRRD (.nrrd, .nhdr;
+/// .seg.nrrd with any number of layers), NIfTI (.nii, .nii.gz), or a folder with one DICOM series.
 ///
 /// The frame B is that of the patient, in metres: x to the left, y to the back, z up (LPS). A
 /// volume that is turned by less than 1 degree against these axes, with voxels that are cubes to

@@ -8,9 +8,12 @@
 
 #include "core/base/error.h"
 #include "core/bone/data/read_volume_internal.h"
+#include "core/bone/data/segments.h"
 
 namespace haptrial::bone {
 namespace {
+
+constexpr std::size_t kMostLayers = 255;  // of a segmentation
 
 struct Forget {
   void operator()(Nrrd* nrrd) const { nrrdNuke(nrrd); }
@@ -92,11 +95,28 @@ void take_places(const std::string& name, const Nrrd& nrrd, unsigned first, Volu
   }
 }
 
+void take_keys(const Nrrd& nrrd, VolumeHead& head) {
+  for (unsigned i = 0; i < nrrdKeyValueSize(&nrrd); ++i) {
+    char* key = nullptr;
+    char* value = nullptr;
+    nrrdKeyValueIndex(&nrrd, &key, &value, i);
+    if (key != nullptr && value != nullptr) {
+      head.keys[key] = value;
+      head.labels = head.labels || std::string(key).starts_with("label_") ||
+                    std::string(key).starts_with("Segment0_");
+    }
+    std::free(key);  // NOLINT: teem takes them from malloc
+    std::free(value);
+  }
+}
+
 VolumeHead head_of(const std::string& name, const Nrrd& nrrd) {
   VolumeHead head;
   head.format = "NRRD";
   const unsigned first = nrrd.dim == 4 ? 1 : 0;
-  if (nrrd.dim < 3 || nrrd.dim > 4 || (first == 1 && nrrd.axis[0].size > 2)) {
+  take_keys(nrrd, head);
+  const std::size_t most = names_segments(head.keys) ? kMostLayers : 2;
+  if (nrrd.dim < 3 || nrrd.dim > 4 || (first == 1 && nrrd.axis[0].size > most)) {
     throw InputError(fmt::format(
         "{}: has {} axes{}; allowed: 3, with one value per voxel", name, nrrd.dim,
         first == 1 ? fmt::format(", {} values along the first", nrrd.axis[0].size) : ""));
@@ -111,18 +131,6 @@ VolumeHead head_of(const std::string& name, const Nrrd& nrrd) {
     head.size[axis] = static_cast<std::int32_t>(std::min<std::size_t>(size, 1U << 30));
   }
   take_places(name, nrrd, first, head);
-  for (unsigned i = 0; i < nrrdKeyValueSize(&nrrd); ++i) {
-    char* key = nullptr;
-    char* value = nullptr;
-    nrrdKeyValueIndex(&nrrd, &key, &value, i);
-    if (key != nullptr && value != nullptr) {
-      head.keys[key] = value;
-      head.labels = head.labels || std::string(key).starts_with("label_") ||
-                    std::string(key).starts_with("Segment0_");
-    }
-    std::free(key);  // NOLINT: teem takes them from malloc
-    std::free(value);
-  }
   return head;
 }
 

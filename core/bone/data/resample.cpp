@@ -281,11 +281,11 @@ geometry::VoxelGrid grid_over(const UprightVolume& volume, double spacing, bool 
   return grid;
 }
 
-VoxelMap map_to(const UprightVolume& volume, const geometry::VoxelGrid& grid, bool own_axes) {
+VoxelMap map_to(const UprightVolume& volume, bool own_axes) {
   if (own_axes) {
     const Eigen::Vector3d edges = volume.steps.colwise().norm();
     const Eigen::Matrix3d turn = edges.cwiseInverse().asDiagonal();
-    return {turn, -(turn * grid.origin)};
+    return {turn, -(turn * volume.origin)};
   }
   const Eigen::Matrix3d turn = volume.steps.inverse();
   return {turn, -(turn * volume.origin)};
@@ -294,7 +294,7 @@ VoxelMap map_to(const UprightVolume& volume, const geometry::VoxelGrid& grid, bo
 BigArray<float> resample_grey(const UprightVolume& volume, const geometry::VoxelGrid& grid,
                               bool own_axes, const geometry::WorkReport& report) {
   const auto [low, high] = std::ranges::minmax(volume.components[0]);
-  const VoxelMap map = map_to(volume, grid, own_axes);
+  const VoxelMap map = map_to(volume, own_axes);
   BigArray<float> values = own_axes ? resample_straight(volume, grid, map, report)
                                     : resample_turned(volume, grid, map, low, report);
   for (float& value : values) {
@@ -307,7 +307,7 @@ std::vector<std::uint8_t> resample_labels(std::span<const std::uint8_t> labels,
                                           const UprightVolume& volume,
                                           const geometry::VoxelGrid& grid, bool own_axes,
                                           const geometry::WorkReport& report) {
-  const VoxelMap map = map_to(volume, grid, own_axes);
+  const VoxelMap map = map_to(volume, own_axes);
   const auto nx = static_cast<std::size_t>(volume.size[0]);
   const auto ny = static_cast<std::size_t>(volume.size[1]);
   const auto nearest = [&](const Eigen::Vector3d& at) -> std::uint8_t {

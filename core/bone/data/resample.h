@@ -31,12 +31,12 @@ Pose pose_of(const UprightVolume& volume);
 /// (`own_axes`), else along the patient's and around all of it.
 geometry::VoxelGrid grid_over(const UprightVolume& volume, double spacing, bool own_axes);
 
-/// From the grid's coordinates to voxels of the volume, as continuous (i, j, k).
+/// From B, as grid_over() has it, to voxels of the volume, as continuous (i, j, k).
 struct VoxelMap {
   Eigen::Matrix3d turn;
   Eigen::Vector3d offset;
 };
-VoxelMap map_to(const UprightVolume& volume, const geometry::VoxelGrid& grid, bool own_axes);
+VoxelMap map_to(const UprightVolume& volume, bool own_axes);
 
 /// Grey values at the centres of a grid: windowed sinc (Lanczos, three lobes), as wide as the
 /// coarser of both, so that what the new voxels cannot hold is filtered out before. Values stay in

@@ -18,8 +18,8 @@ namespace haptrial::bone {
 /// What a file says about the volume in it, in metres and in the frame of the patient (LPS: x to
 /// the left, y to the back, z up).
 struct VolumeHead {
-  std::array<std::int32_t, 3> size{0, 0, 0};           // voxels along i, j, k, i fastest
-  int components{1};                                   // values of a voxel, side by side: 1 or 2
+  std::array<std::int32_t, 3> size{0, 0, 0};  // voxels along i, j, k, i fastest
+  int components{1};  // values of a voxel, side by side: 1, 2, or the layers of a segmentation
   Eigen::Matrix3d steps{Eigen::Matrix3d::Identity()};  // columns: one voxel along i, j, k [m]
   Eigen::Vector3d origin{Eigen::Vector3d::Zero()};     // centre of voxel (0, 0, 0) [m]
   bool labels{false};                                  // the file says that they are

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "core/base/definition/table.h"
 
@@ -72,6 +73,102 @@ std::vector<Eigen::Vector3d> half_of_samples(double cell) {
   return samples;
 }
 
+constexpr std::size_t kFew = 16384;  // samples that are as fast without a tree
+
+/// Cubes of the tree are 16, 8 and 4 cells of a sample wide.
+constexpr std::array<int, 3> kWidths{16, 8, 4};
+
+/// The cube of a level that a place is in, z first, as samples run.
+std::array<int, 3> cube_of(const Eigen::Vector3d& at, double cell, std::size_t level) {
+  const Eigen::Array3d place = (at.array() + 1.0) / (cell * kWidths[2]);
+  const int halvings = static_cast<int>(kWidths.size() - 1 - level);
+  return {static_cast<int>(place.z()) >> halvings, static_cast<int>(place.y()) >> halvings,
+          static_cast<int>(place.x()) >> halvings};
+}
+
+/// Numbers of the cubes of all levels in one, the widest first; the last 3 bits are the leaf's.
+std::uint64_t key_of(const Eigen::Vector3d& at, double cell) {
+  constexpr int kBits = 12;  // of a number
+  std::uint64_t key = 0;
+  for (std::size_t level = 0; level < kWidths.size(); ++level) {
+    for (const int n : cube_of(at, cell, level)) {
+      const auto number = static_cast<std::uint64_t>(n);
+      key = level == 0 ? key << kBits | number : key << 1 | (number & 1U);
+    }
+  }
+  return key;
+}
+
+/// So that those of a cube lie together. @returns their keys
+std::vector<std::uint64_t> sort_by_cell(std::vector<Eigen::Vector3d>& samples, double cell) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+  order.reserve(samples.size());
+  for (const Eigen::Vector3d& at : samples) {
+    order.emplace_back(key_of(at, cell), static_cast<std::uint32_t>(order.size()));
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<Eigen::Vector3d> sorted;
+  std::vector<std::uint64_t> keys;
+  sorted.reserve(samples.size());
+  keys.reserve(samples.size());
+  for (const auto& [key, sample] : order) {
+    sorted.push_back(samples[sample]);
+    keys.push_back(key);
+  }
+  samples = std::move(sorted);
+  return keys;
+}
+
+/// One cube and what is in it.
+Burr::Cell cell_of(const Burr::Arrays& samples, const std::array<int, 3>& cube, double edge,
+                   std::size_t first, std::size_t end) {
+  Burr::Cell made{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    made.centre[axis] = static_cast<std::int32_t>(
+        std::lround(Burr::kRadius * ((cube[2 - axis] + 0.5) * edge - 1.0)));
+  }
+  made.half = static_cast<std::int32_t>(std::ceil(0.5 * edge * Burr::kRadius)) + 2;  // rounded
+  made.first = static_cast<std::int32_t>(first);
+  made.count = static_cast<std::int32_t>(end - first);
+  for (std::size_t s = first; s < end; ++s) {
+    const std::array direction{samples.dx[s], samples.dy[s], samples.dz[s]};
+    const std::array position{samples.x[s], samples.y[s], samples.z[s]};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      made.direction[axis] += direction[axis];
+      made.position[axis] += position[axis];
+    }
+  }
+  return made;
+}
+
+std::vector<Burr::Cell> cells_of(const Burr::Arrays& samples,
+                                 const std::vector<Eigen::Vector3d>& places,
+                                 const std::vector<std::uint64_t>& keys, double cell) {
+  std::vector<Burr::Cell> cells;
+  const auto split = [&](auto&& self, std::size_t level, std::size_t first,
+                         std::size_t end) -> void {
+    constexpr std::size_t kBitsOfLevel = 3;
+    const std::size_t below = kBitsOfLevel * (kWidths.size() - 1 - level);
+    while (first < end) {
+      std::size_t last = first;
+      while (last < end && keys[last] >> below == keys[first] >> below) {
+        ++last;
+      }
+      const std::size_t number = cells.size();
+      cells.push_back(cell_of(samples, cube_of(places[first], cell, level), cell * kWidths[level],
+                              first, last));
+      cells[number].leaf = below == 0;
+      if (below > 0) {
+        self(self, level + 1, first, last);
+      }
+      cells[number].after = static_cast<std::int32_t>(cells.size());
+      first = last;
+    }
+  };
+  split(split, 0, 0, places.size());
+  return cells;
+}
+
 std::int16_t rounded(double value) { return static_cast<std::int16_t>(std::lround(value)); }
 
 }  // namespace
@@ -90,6 +187,16 @@ BurrParameters default_burr(BurrKind kind, double diameter) {
   return p;
 }
 
+BurrParameters for_bone(const BurrParameters& burr, double voxel) {
+  BurrParameters p = burr;
+  if (p.follows_bone) {
+    constexpr double kMostFollowing = 4e5;  // samples that a tick has time for
+    const double finest = p.diameter * std::cbrt(kSphere / kMostFollowing);
+    p.sample_spacing = std::min(p.sample_spacing, std::max(0.5 * voxel, finest));
+  }
+  return p;
+}
+
 BurrParameters read_burr_parameters(Table& table) {
   const BurrKind kind = table.choice("kind", {"diamond", "cutting"}) == "cutting"
                             ? BurrKind::kCutting
@@ -97,27 +204,35 @@ BurrParameters read_burr_parameters(Table& table) {
   BurrParameters p = default_burr(kind, table.number("diameter", kDiameter, "m"));
   const auto optional = [&](const char* key, const Bounds& bounds, const char* unit,
                             double& value) { value = table.number_or(key, value, bounds, unit); };
+  p.follows_bone = !table.has("sample_spacing");
   optional("sample_spacing", {least_spacing(p.diameter), 0.5 * p.diameter}, "m", p.sample_spacing);
   optional("removal_rate", {0.0, 1e6}, "1/(N·s)", p.removal_rate);
   optional("falloff", {0.0, 1e6}, "1/(N·s·rad)", p.falloff);
   optional("tangential_gain", {0.0, 1e15}, "N/m^4", p.tangential_gain);
-  if (table.has("right_handed")) {
-    p.right_handed = table.boolean("right_handed");
+  if (table.has("rotation")) {
+    p.clockwise = table.choice("rotation", {"clockwise", "counterclockwise"}) == "clockwise";
   }
   return p;
 }
 
 Burr::Burr(const BurrParameters& parameters) : parameters_(parameters) {
   check(parameters);
-  const auto half = half_of_samples(parameters.sample_spacing / radius());
+  const double cell = parameters.sample_spacing / radius();
+  const auto half = half_of_samples(cell);
   for (auto& axis : position_) {
     axis.reserve(2 * half.size());
   }
   // Lower half first, so that all samples run row by row.
-  for (std::size_t n = 0; n < 2 * half.size(); ++n) {
-    const bool mirrored = n < half.size();
-    const Eigen::Vector3d at =
-        mirrored ? Eigen::Vector3d(-half[half.size() - 1 - n]) : half[n - half.size()];
+  std::vector<Eigen::Vector3d> all(half.rbegin(), half.rend());
+  for (Eigen::Vector3d& at : all) {
+    at = -at;
+  }
+  all.insert(all.end(), half.begin(), half.end());
+  std::vector<std::uint64_t> keys;
+  if (all.size() > kFew) {
+    keys = sort_by_cell(all, cell);
+  }
+  for (const Eigen::Vector3d& at : all) {
     const Eigen::Vector3d in = -at.normalized();
     for (int axis = 0; axis < 3; ++axis) {
       position_[axis].push_back(rounded(kRadius * at[axis]));
@@ -129,6 +244,9 @@ Burr::Burr(const BurrParameters& parameters) : parameters_(parameters) {
   }
   if (half.empty()) {
     throw std::invalid_argument("Burr: no samples");
+  }
+  if (!keys.empty()) {
+    cells_ = cells_of(arrays(), all, keys, cell);
   }
   sample_volume_ = kSphere * std::pow(parameters.diameter, 3) / static_cast<double>(samples());
 }

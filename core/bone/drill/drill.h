@@ -23,6 +23,9 @@ struct Contact {
   Eigen::Vector3d centroid{Eigen::Vector3d::Zero()};  // of the immersed samples [m]; 0 without
   std::int32_t first{0};                              // of its samples in the drill's list
   std::int32_t kept{0};                               // of them in that list
+  std::int32_t first_cell{0};  // of the burr's cells that lie in bone whole, in the drill's list
+  std::int32_t cells{0};       // of them
+  kernel::Placement at{};      // of the burr in the bone
 
   explicit operator bool() const noexcept { return samples > 0; }
 };
@@ -61,6 +64,9 @@ class Drill {
   /// the burr's samples, which only bones that overlap one another can reach. What does not fit is
   /// felt but not drilled.
   static constexpr std::int32_t kBonesAtOnce = 4;
+  /// The most samples of a burr in cells that remove bone in one tick. Where more lie in bone they
+  /// take turns, each for the ticks it has missed: what is removed in the mean stays.
+  static constexpr std::int32_t kMostTaking = 20'000;
 
   /// @param structures  by label: how hard they are; labels beyond are as hard as bone
   /// @param soft  by label: what the burr neither feels nor removes here (tools/soft_tissue.h)
@@ -69,9 +75,16 @@ class Drill {
         InstructionSet set = best_instruction_set(), const std::array<bool, 256>& soft = {});
 
   const Burr& burr() const noexcept { return burr_; }
+  /// Voxels that remove() empties in a tick at most.
+  std::size_t most_emptied() const noexcept { return emptied_.size(); }
 
   /// Forgets the contacts of the last tick.
-  void begin_tick() noexcept { kept_ = 0; }
+  void begin_tick() noexcept {
+    kept_ = 0;
+    cells_kept_ = 0;
+    emptied_used_ = 0;
+    ++ticks_;
+  }
 
   /// The burr's samples that lie in bone.
   /// @param tip_B           the burr's centre in the bone's frame [m]
@@ -96,16 +109,25 @@ class Drill {
                  double dt) noexcept;
 
  private:
+  std::int32_t touch_cells(const BoneVolume::View& view, const kernel::Placement& at,
+                           kernel::Sums& sums) noexcept;
+  class Taking;
+  void take_cells(Taking& taking, const Contact& contact, std::uint64_t turns) noexcept;
   void leave_soft(const BoneVolume& volume, Contact& contact, kernel::Sums& sums) noexcept;
 
   Burr burr_;
   kernel::TouchBurr touch_;
+  kernel::FindBurr find_;
   std::array<bool, 256> soft_;
   bool any_soft_;
   std::array<float, 256> softness_;  // 1 / hardness, by label
   std::int32_t kept_{0};
   std::vector<kernel::Hit> hits_;  // kept_ of them in use
+  std::int32_t cells_kept_{0};
+  std::vector<std::int32_t> cells_;  // that lie in bone whole; cells_kept_ of them in use
   std::vector<EmptiedVoxel> emptied_;
+  std::size_t emptied_used_{0};
+  std::uint64_t ticks_{0};
 };
 
 }  // namespace haptrial::bone

@@ -47,17 +47,31 @@ struct Sums {
   std::int64_t position[3];
 };
 
-/// @param hits  room for `room` of them; the first ones are kept, in order of sample
-/// @returns how many were kept
-using TouchBurr = std::int32_t (*)(const Cloud&, const Placement&, const Bricks&, Hit* hits,
-                                   std::int32_t room, Sums& sums);
+/// Samples of a cloud, one after the other.
+struct Range {
+  std::int32_t first;
+  std::int32_t count;
+};
 
-std::int32_t touch_burr_baseline(const Cloud&, const Placement&, const Bricks&, Hit*, std::int32_t,
-                                 Sums&);
+/// @param hits  room for `room` of them; the first ones are kept, in order of sample
+/// @param sums  receives those of the range on top of what it has
+/// @returns how many were kept
+using TouchBurr = std::int32_t (*)(const Cloud&, const Range&, const Placement&, const Bricks&,
+                                   Hit* hits, std::int32_t room, Sums& sums);
+/// Where samples lie. @param range  at most kMostFound @param address  theirs, in order
+using FindBurr = void (*)(const Cloud&, const Range&, const Placement&, const Bricks&,
+                          std::int32_t* address);
+constexpr std::int32_t kMostFound = 64;
+
+std::int32_t touch_burr_baseline(const Cloud&, const Range&, const Placement&, const Bricks&, Hit*,
+                                 std::int32_t, Sums&);
+void find_burr_baseline(const Cloud&, const Range&, const Placement&, const Bricks&, std::int32_t*);
 /// These exist where the compiler targets x86-64.
-std::int32_t touch_burr_avx2(const Cloud&, const Placement&, const Bricks&, Hit*, std::int32_t,
-                             Sums&);
-std::int32_t touch_burr_avx512(const Cloud&, const Placement&, const Bricks&, Hit*, std::int32_t,
-                               Sums&);
+std::int32_t touch_burr_avx2(const Cloud&, const Range&, const Placement&, const Bricks&, Hit*,
+                             std::int32_t, Sums&);
+void find_burr_avx2(const Cloud&, const Range&, const Placement&, const Bricks&, std::int32_t*);
+std::int32_t touch_burr_avx512(const Cloud&, const Range&, const Placement&, const Bricks&, Hit*,
+                               std::int32_t, Sums&);
+void find_burr_avx512(const Cloud&, const Range&, const Placement&, const Bricks&, std::int32_t*);
 
 }  // namespace haptrial::bone::kernel

@@ -77,15 +77,15 @@ inline void add_up(const Cloud& cloud, const float* densities, std::int32_t firs
   sums.position[2] += pz;
 }
 
-[[maybe_unused]] inline std::int32_t touch_burr(const Cloud& cloud, const Placement& at,
-                                                const Bricks& bricks, Hit* hits, std::int32_t room,
-                                                Sums& sums) {
+[[maybe_unused]] inline std::int32_t touch_burr(const Cloud& cloud, const Range& range,
+                                                const Placement& at, const Bricks& bricks,
+                                                Hit* hits, std::int32_t room, Sums& sums) {
   alignas(64) std::int32_t address[kBlock];
   alignas(64) std::int32_t immersed[kBlock];
-  sums = {};
   std::int32_t kept = 0;
-  for (std::int32_t first = 0; first < cloud.count; first += kBlock) {
-    const std::int32_t count = cloud.count - first < kBlock ? cloud.count - first : kBlock;
+  const std::int32_t end = range.first + range.count;
+  for (std::int32_t first = range.first; first < end; first += kBlock) {
+    const std::int32_t count = end - first < kBlock ? end - first : kBlock;
     look_up(cloud, at, bricks, first, count, address);
     const std::int64_t before = sums.count;
     add_up(cloud, bricks.densities, first, count, address, immersed, sums);

@@ -76,7 +76,8 @@ Eigen::Vector3d push_force(const Contact& contact, const FeelParameters& p) noex
 
 Eigen::Vector3d drag_force(const Contact& contact, const BurrParameters& burr,
                            double power) noexcept {
-  const double sign = burr.right_handed ? 1.0 : -1.0;
+  // Bone holds the teeth back: the handle is pushed against the way on which they pass it.
+  const double sign = burr.clockwise ? -1.0 : 1.0;
   return contact.turn * (sign * burr.tangential_gain * power);
 }
 

@@ -26,8 +26,28 @@ DustWorker::~DustWorker() {
 
 void DustWorker::deposit(const DustDeposit& deposit) noexcept {
   DustDeposit all = deposit;
-  all.amount += unsent_;
-  unsent_ = deposits_.push(all) ? 0.0 : all.amount;
+  all.amount += unsent_.amount;
+  unsent_ = all;
+  send_rest();
+}
+
+/// @returns whether nothing is left
+bool DustWorker::send_rest() noexcept {
+  if (unsent_.amount > 0.0 && deposits_.push(unsent_)) {
+    unsent_.amount = 0.0;
+  }
+  return unsent_.amount == 0.0;
+}
+
+/// The round that runs may have looked at the channel before.
+void DustWorker::settle() noexcept {
+  for (bool sent = false; !sent;) {
+    sent = send_rest();
+    const std::uint64_t end = rounds_.load(std::memory_order_acquire) + 2;
+    while (rounds_.load(std::memory_order_acquire) < end) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
 }
 
 void DustWorker::place(const DustTools& tools) noexcept { tools_.write(tools); }
@@ -69,6 +89,7 @@ void DustWorker::round(double dt) {
     shown_version_ = dust_.version();
   }
   shown_balance_ = dust_.balance();
+  rounds_.fetch_add(1, std::memory_order_release);
 }
 
 bool DustWorker::quads(std::vector<DustQuad>& quads, std::uint64_t& version) const {

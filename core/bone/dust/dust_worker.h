@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <thread>
@@ -30,6 +31,9 @@ class DustWorker {
   /// is added to the next deposit.
   void deposit(const DustDeposit& deposit) noexcept;
   void place(const DustTools& tools) noexcept;
+  /// Waits until the dust has all that was deposited, however far it is behind: two rounds most
+  /// often. Any other thread, while the servo thread deposits nothing.
+  void settle() noexcept;
 
   /// The quads of the last round, if they changed since `version`, which is brought up to date.
   /// Any other thread. @returns whether they changed.
@@ -40,19 +44,21 @@ class DustWorker {
  private:
   void run();
   void round(double dt);
+  bool send_rest() noexcept;
 
   Dust dust_;
   Bones bones_;
   double period_;
   realtime::BlockLog<DustDeposit> deposits_{1024, 8};
   realtime::LatestValue<DustTools> tools_;
-  double unsent_{0.0};  // servo thread's
+  DustDeposit unsent_;  // servo thread's; settle()'s while it deposits nothing
   std::vector<DustBone> list_;
   std::vector<DustQuad> drawing_;  // the worker's buffer
   mutable std::mutex mutex_;       // never taken by the servo thread
   std::vector<DustQuad> shown_;
   std::uint64_t shown_version_{0};
   DustBalance shown_balance_;
+  std::atomic<std::uint64_t> rounds_{0};
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

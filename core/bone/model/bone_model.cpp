@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace haptrial::bone {
@@ -31,6 +32,12 @@ void check(const BoneModel& model) {
       }
     }
   }
+}
+
+bool has_vital_structures(const BoneModel& model) {
+  return std::any_of(model.labels.begin(), model.labels.end(), [&](std::uint8_t label) {
+    return label < model.structures.size() && model.structures[label].vital;
+  });
 }
 
 }  // namespace haptrial::bone

@@ -17,6 +17,9 @@ struct Structure {
   bool vital{false};     // not to be touched: removing it is an injury
 };
 
+/// The name of bone that is no structure of its own.
+inline constexpr const char* kPlainBone = "bone";
+
 /// A bone as it is imported or made, before anything touches it: a dense volume in the bone frame
 /// B, whose origin and axes are the grid's. Source: Morris 2006, §3.2.1.
 struct BoneModel {
@@ -27,6 +30,9 @@ struct BoneModel {
   std::vector<float> density;         // grid.count(), from 0 to 1; empty: 1 wherever a label is
   std::vector<Structure> structures;  // by label; the first stands for nothing
 };
+
+/// Whether any voxel is of a vital structure; without, nobody knows what was spared.
+bool has_vital_structures(const BoneModel& model);
 
 /// @throws std::invalid_argument naming what does not fit together: sizes, labels without a
 /// structure, densities that are not from 0 to 1, density without a label or a label without.

@@ -61,6 +61,9 @@ BoneVolume::BoneVolume(const BoneModel& model)
     if (model.labels[index] != 0) {
       const std::int32_t at = address(voxel);
       densities_[at] = model.density.empty() ? 1.0F : model.density[index];
+      if (densities_[at] > 0.0F) {
+        flip(at);
+      }
       labels_[static_cast<std::size_t>(at)] = model.labels[index];
     }
   };
@@ -101,6 +104,8 @@ void BoneVolume::make_room() {
   const std::size_t addresses = origins_.size() * kBrickVoxels;
   densities_ = std::make_unique<float[]>(addresses);
   labels_.assign(addresses, 0);
+  filled_.assign(addresses / 64, 0);
+  holding_.assign(origins_.size(), 0);
   versions_ = std::make_unique<std::atomic<std::uint32_t>[]>(origins_.size());
 }
 
@@ -134,7 +139,7 @@ double BoneVolume::amount() const noexcept {
 }
 
 BoneVolume::View BoneVolume::view() const noexcept {
-  return {grid_.size, table_size_, table_.data(), densities_.get()};
+  return {grid_.size, table_size_, table_.data(), densities_.get(), filled_.data(), holding_.data()};
 }
 
 }  // namespace haptrial::bone

@@ -84,14 +84,26 @@ class BoneVolume {
     std::array<std::int32_t, 3> table_size;  // of the table, in bricks
     const std::int32_t* table;               // brick numbers
     const float* densities;
+    const std::uint64_t* filled;   // by brick and layer of z: bit x + 8 y of voxels with density
+    const std::uint16_t* holding;  // by brick: how many of them
   };
   View view() const noexcept;
 
  private:
   void store(std::int32_t address, float density) noexcept {
+    if ((densities_[address] > 0.0F) != (density > 0.0F)) {
+      flip(address);
+    }
     std::atomic_ref<float>(densities_[address]).store(density, std::memory_order_relaxed);
     auto& version = versions_[static_cast<std::size_t>(address / kBrickVoxels)];
     version.store(version.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+  }
+  void flip(std::int32_t address) noexcept {
+    std::uint64_t& layer = filled_[static_cast<std::size_t>(address / 64)];
+    const std::uint64_t bit = std::uint64_t{1} << (address % 64);
+    layer ^= bit;
+    auto& count = holding_[static_cast<std::size_t>(address / kBrickVoxels)];
+    count = static_cast<std::uint16_t>((layer & bit) != 0 ? count + 1 : count - 1);
   }
   std::size_t table_index(const Voxel& voxel) const noexcept;
   void make_room();
@@ -102,6 +114,8 @@ class BoneVolume {
   std::vector<Voxel> origins_;                              // by brick
   std::unique_ptr<float[]> densities_;                      // by address
   std::vector<std::uint8_t> labels_;                        // by address
+  std::vector<std::uint64_t> filled_;                       // by layer; the servo thread's
+  std::vector<std::uint16_t> holding_;                      // by brick; likewise
   std::unique_ptr<std::atomic<std::uint32_t>[]> versions_;  // by brick
 };
 

@@ -4,7 +4,7 @@
 
 namespace haptrial::bone {
 
-void Occupancy::follow(const BoneVolume& volume, std::vector<Voxel>& changed,
+void Occupancy::follow(const BoneVolume& volume, std::vector<Voxel>* changed,
                        std::vector<std::int32_t>* bricks) {
   constexpr int kWords = BoneVolume::kBrickVoxels / 64;
   bits_.resize(static_cast<std::size_t>(volume.bricks()) * kWords, 0);
@@ -28,8 +28,8 @@ void Occupancy::follow(const BoneVolume& volume, std::vector<Voxel>& changed,
         now |= static_cast<std::uint64_t>(volume.density(first + bit) > 0.0F) << bit;
       }
       std::uint64_t& known = bits_[at * kWords + static_cast<std::size_t>(word)];
-      for (std::uint64_t rest = now ^ known; rest != 0; rest &= rest - 1) {
-        changed.push_back(volume.voxel_at(first + std::countr_zero(rest)));
+      for (std::uint64_t rest = changed != nullptr ? now ^ known : 0; rest != 0; rest &= rest - 1) {
+        changed->push_back(volume.voxel_at(first + std::countr_zero(rest)));
       }
       count_ += static_cast<std::size_t>(std::popcount(now));
       count_ -= static_cast<std::size_t>(std::popcount(known));

@@ -19,7 +19,11 @@ class Occupancy {
   /// @param changed  voxels that were filled or emptied are appended, in order of address
   /// @param bricks   bricks in which any density changed are appended; may be null
   void follow(const BoneVolume& volume, std::vector<Voxel>& changed,
-              std::vector<std::int32_t>* bricks = nullptr);
+              std::vector<std::int32_t>* bricks = nullptr) {
+    follow(volume, &changed, bricks);
+  }
+  /// The same without a list of voxels, which for a whole bone takes more memory than the bone.
+  void follow(const BoneVolume& volume) { follow(volume, nullptr, nullptr); }
 
   /// Whether the voxel with this address holds bone, as of the last follow().
   bool holds(std::int32_t address) const noexcept {
@@ -34,6 +38,9 @@ class Occupancy {
   std::size_t count() const noexcept { return count_; }  // of voxels that hold bone
 
  private:
+  void follow(const BoneVolume& volume, std::vector<Voxel>* changed,
+              std::vector<std::int32_t>* bricks);
+
   std::vector<std::uint64_t> bits_;      // by address
   std::vector<std::uint32_t> versions_;  // by brick, as last read
   std::vector<bool> seen_;               // by brick

@@ -124,6 +124,9 @@ class BoneWorld {
   int parent(int piece) const noexcept { return at(piece).parent; }
   /// What a volume's bone is told to belong to: one in the making is its parent's until its birth.
   int known_as(int piece) const noexcept { return is_born(piece) ? piece : parent(piece); }
+  /// Whether a piece is the bone itself, or joined with it: that lies in a holder, and no hand
+  /// carries it.
+  bool is_fixed(int piece) const noexcept { return (joined_with(piece) & PieceSet{1}) != 0; }
   const Eigen::Isometry3d& plate_pose(int plate) const noexcept { return plate_at(plate).pose; }
 
   /// Carries on what search() has offered. Once a tick, before the tick's drilling.

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <map>
+#include <unordered_set>
 #include <utility>
 
 #include "core/bone/pieces/world.h"
@@ -9,14 +10,40 @@ namespace {
 
 constexpr std::size_t kMaxCrumbs = 48;  // in an offer: their events must fit a tick's
 
+/// Addresses of what hangs together with a voxel, in order; nothing where that is more than `most`
+/// voxels. Looks at no other part of the bone, however large that is.
+std::vector<std::int32_t> small_part(const BoneVolume& volume, const Voxel& seed,
+                                     std::size_t most) {
+  std::vector<std::int32_t> part;
+  std::unordered_set<std::int32_t> known;
+  const auto add = [&](const Voxel& voxel) {
+    const std::int32_t address = volume.address(voxel);
+    if (volume.density(address) > 0.0F && known.insert(address).second) {
+      part.push_back(address);
+    }
+  };
+  add(seed);
+  for (std::size_t next = 0; next < part.size() && part.size() <= most; ++next) {
+    const Voxel voxel = volume.voxel_at(part[next]);
+    for (int axis = 0; axis < 3; ++axis) {
+      add(voxel - Voxel::Unit(axis));
+      add(voxel + Voxel::Unit(axis));
+    }
+  }
+  if (part.size() > most) {
+    return {};
+  }
+  std::sort(part.begin(), part.end());
+  return part;
+}
+
 }  // namespace
 
 /// What does not hang together with the bone from the start, as an ossicle that ligaments hold or a
 /// speck of a coarse scan, has not been cut off: it stays with the bone.
 void BoneWorld::note_islands() {
   Piece& bone = at(0);
-  bone.occupancy.follow(*bone.volume, changed_);
-  changed_.clear();
+  bone.occupancy.follow(*bone.volume);
   flood_.look(*bone.volume, bone.occupancy);
   int island = 0;
   for (const Part& part : flood_.loose(*bone.volume)) {
@@ -144,8 +171,7 @@ void BoneWorld::note_seeds() {
   for (std::int32_t brick = 1; brick < volume.bricks(); ++brick) {
     offer_.versions[static_cast<std::size_t>(brick)] = volume.version(brick);
   }
-  changed_.clear();
-  piece.occupancy.follow(volume, changed_);
+  piece.occupancy.follow(volume);
   offer_.voxels = static_cast<std::int64_t>(piece.occupancy.count());
   offer_.amount = volume.amount();
   flood_.look(volume, piece.occupancy);
@@ -160,8 +186,7 @@ bool BoneWorld::split_at(int from, std::span<const Voxel> seeds) {
     return false;
   }
   const BoneVolume& volume = *at(from).volume;
-  changed_.clear();
-  at(from).occupancy.follow(volume, changed_);
+  at(from).occupancy.follow(volume);
   at(from).searched = false;
   flood_.look(volume, at(from).occupancy);
   Part all;
@@ -188,18 +213,19 @@ bool BoneWorld::crumble_at(int number, const Voxel& seed) {
     return false;
   }
   Piece& piece = at(number);
-  changed_.clear();
-  piece.occupancy.follow(*piece.volume, changed_);
   piece.searched = false;
-  flood_.look(*piece.volume, piece.occupancy);
-  const Part part = flood_.part_of(*piece.volume, seed);
-  if (part.empty()) {
-    return false;
-  }
   offer_.from = number;
-  offer_.crumbs.clear();
-  for (const Voxel& voxel : part) {
-    offer_.crumbs.push_back(piece.volume->address(voxel));
+  offer_.crumbs =
+      small_part(*piece.volume, seed, static_cast<std::size_t>(parameters_.moves_per_tick));
+  if (offer_.crumbs.empty()) {
+    piece.occupancy.follow(*piece.volume);
+    flood_.look(*piece.volume, piece.occupancy);
+    for (const Voxel& voxel : flood_.part_of(*piece.volume, seed)) {
+      offer_.crumbs.push_back(piece.volume->address(voxel));
+    }
+  }
+  if (offer_.crumbs.empty()) {
+    return false;
   }
   offer_.crumb_ends.assign(1, offer_.crumbs.size());
   take_crumbs();

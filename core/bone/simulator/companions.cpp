@@ -83,9 +83,9 @@ void SteppedCompanions::settle() {
   }
 }
 
-ThreadedCompanions::ThreadedCompanions(Simulator& simulator, const CompanionParameters& parameters)
+ThreadedCompanions::ThreadedCompanions(Simulator& simulator, const CompanionParameters& parameters,
+                                       bool search)
     : simulator_(simulator),
-      removed_before_(simulator.removed_so_far()),
       search_period_(parameters.search_period) {
   if (parameters.dusty) {
     const auto bones = [&simulator](std::vector<DustBone>& list) {
@@ -93,7 +93,9 @@ ThreadedCompanions::ThreadedCompanions(Simulator& simulator, const CompanionPara
     };
     dust_.emplace(parameters.dust, bones, parameters.dust_period);
   }
-  searcher_ = std::thread([this] { search(); });
+  if (search) {
+    searcher_ = std::thread([this] { this->search(); });
+  }
 }
 
 ThreadedCompanions::~ThreadedCompanions() {
@@ -130,14 +132,8 @@ void ThreadedCompanions::search() {
 }
 
 void ThreadedCompanions::settle() {
-  constexpr double kRounding = 1e-3;  // of the dust's amounts [voxels]
-  constexpr int kMostRounds = 400;
-  for (int i = 0; dust_ && i < kMostRounds; ++i) {
-    const double expected = simulator_.removed_so_far() - removed_before_;
-    if (dust_->balance().deposited + kRounding >= expected) {
-      return;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  if (dust_) {
+    dust_->settle();
   }
 }
 

@@ -68,7 +68,9 @@ class SteppedCompanions final : public Companions {
 /// messages.
 class ThreadedCompanions final : public Companions {
  public:
-  ThreadedCompanions(Simulator& simulator, const CompanionParameters& parameters);
+  /// @param search  false where the simulator is told what was separated
+  ThreadedCompanions(Simulator& simulator, const CompanionParameters& parameters,
+                     bool search = true);
   ~ThreadedCompanions() override;
 
   void after_tick(const Simulator& simulator, double dt) noexcept override;
@@ -82,7 +84,6 @@ class ThreadedCompanions final : public Companions {
   void search();
 
   Simulator& simulator_;
-  double removed_before_;  // dust that others have had [voxels]
   double search_period_;
   std::optional<DustWorker> dust_;
   std::atomic<double> counted_{0.0};  // of dust that is only counted [voxels]

@@ -78,19 +78,20 @@ Simulator::Simulator(const BoneModel& model, const SimulatorParameters& paramete
   for (const ToolSpec& tool : tools_) {
     const BurrTool* burr = tool.as<BurrTool>();
     const PlateTool* plate = tool.as<PlateTool>();
-    drills_.push_back(burr ? std::make_unique<Drill>(burr->burr, structures_,
-                                                     best_instruction_set(), soft_.soft())
+    drills_.push_back(burr ? std::make_unique<Drill>(for_bone(burr->burr, model.grid.spacing),
+                                                     structures_, best_instruction_set(),
+                                                     soft_.soft())
                            : nullptr);
     plates_.push_back(plate ? std::make_unique<PlateModel>(make_plate_model(tool.name, *plate))
                             : nullptr);
     if (burr != nullptr) {
       check(burr->feel);
-      most = std::max(most, static_cast<std::size_t>(drills_.back()->burr().samples()));
+      most = std::max(most, drills_.back()->most_emptied());
     }
   }
   const std::size_t torn =
       soft_.empty() ? 0 : most_in_ball(largest_radius(tools_), model.grid.spacing);
-  emptied_.reserve(most * Drill::kBonesAtOnce + torn + CutPlaneTool::kMostEmptied);
+  emptied_.reserve(most + torn + CutPlaneTool::kMostEmptied);
   deposits_.reserve(128);
 }
 
@@ -209,7 +210,8 @@ void Simulator::carry(const SimulatorInput& input) noexcept {
     const auto* grip = tool.as<GripTool>();
     const double other = grip != nullptr ? grip->reach : GripTool{}.reach;
     const double reach = burr != nullptr ? burr->burr.diameter : other;
-    if (const auto touched = world_.touch(input.tool.tip.position, reach)) {
+    const auto touched = world_.touch(input.tool.tip.position, reach);
+    if (touched && !world_.is_fixed(touched->piece)) {
       world_.grab(*touched, pose);
     }
   } else {

@@ -42,7 +42,7 @@ bool NearStructures::shows(const BoneVolume& volume, const Voxel& voxel) const n
   return depths_ != nullptr && depths_->shows(volume.label(voxel));
 }
 
-void NearStructures::begin(const BoneVolume& volume) {
+void NearStructures::begin(const BoneVolume& volume, const Occupancy& occupancy) {
   if (depths_ == nullptr) {
     return;
   }
@@ -52,13 +52,20 @@ void NearStructures::begin(const BoneVolume& volume) {
     const auto bit = static_cast<std::uint64_t>(depths_->shows(volume.label(at)));
     structures_[static_cast<std::size_t>(at) / 64] |= bit << (at % 64);
   }
+  std::size_t there = 0;
+  for (std::size_t layer = 0; layer < structures_.size(); ++layer) {
+    const auto brick = static_cast<std::int32_t>(layer / BoneVolume::kEdge);
+    const std::uint64_t held = occupancy.layer(brick, static_cast<int>(layer % BoneVolume::kEdge));
+    there += static_cast<std::size_t>(std::popcount(structures_[layer] & held));
+  }
+  whole_ = there == depths_->voxels();
 }
 
 NearStructure NearStructures::at(const BoneVolume& volume, const Occupancy& occupancy,
                                  const Voxel& voxel) const noexcept {
   const NearStructure before = depths_ == nullptr ? NearStructure{} : depths_->at(voxel);
-  if (before.label == 0) {
-    return {};
+  if (before.label == 0 || whole_) {
+    return before;
   }
   const double spacing = volume.grid().spacing;
   const double voxels = before.distance / spacing;

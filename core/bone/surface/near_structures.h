@@ -21,7 +21,10 @@ class NearStructures {
   explicit NearStructures(std::shared_ptr<const StructureDepths> depths);
 
   /// Before the first at(): notes where a volume may hold structures. Always the same volume.
-  void begin(const BoneVolume& volume);
+  /// @param occupancy  of the volume
+  void begin(const BoneVolume& volume, const Occupancy& occupancy);
+  /// Something that shows has gone: from now on at() looks whether the nearest is still there.
+  void lose() noexcept { whole_ = false; }
 
   /// None where nothing is left within reach.
   /// @param occupancy  of the volume
@@ -41,6 +44,7 @@ class NearStructures {
                const Voxel& voxel, Found& found) const noexcept;
 
   std::shared_ptr<const StructureDepths> depths_;
+  bool whole_{false};                      // the volume has all structures that the depths know
   std::vector<std::uint64_t> structures_;  // voxels that show, by brick and layer of z
   struct Around {
     Voxel offset;  // in bricks

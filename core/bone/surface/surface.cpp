@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace haptrial::bone {
 namespace {
@@ -43,16 +44,21 @@ std::uint8_t nearest_corner(unsigned corners, const Eigen::Vector3f& offset) {
 Surface::Surface(std::shared_ptr<const StructureDepths> depths) : near_(std::move(depths)) {}
 
 bool Surface::update(const BoneVolume& volume) {
-  const bool first = bricks_.empty();
-  if (first) {
-    begin(volume);
+  if (!built()) {
+    build(volume);
   }
+  const bool first = !std::exchange(reported_, true);
   changed_voxels_.clear();
   changed_bricks_.clear();
-  forget_changes();
+  if (!first) {
+    forget_changes();
+  }
   occupancy_.follow(volume, changed_voxels_, &changed_bricks_);
   for (const Voxel& voxel : changed_voxels_) {
     mark(voxel);
+    if (near_.shows(volume, voxel)) {
+      near_.lose();
+    }
   }
   for (const std::size_t place : marked_) {
     place_vertices(volume, place);
@@ -84,7 +90,7 @@ bool Surface::update(const BoneVolume& volume) {
     }
   }
   constexpr std::size_t kFew = 4096;  // slots that are not worth packing
-  if (first || free_vertices_.size() > std::max(vertices_.size() / 2, kFew)) {
+  if (free_vertices_.size() > std::max(vertices_.size() / 2, kFew)) {
     order_for_the_vertex_cache();
   }
   return rebuilt_ || !changed_vertices_.empty() || !changed_quads_.empty();
@@ -100,7 +106,7 @@ void Surface::begin(const BoneVolume& volume) {
   }
   bricks_.resize(places);
   marks_.assign(places, 0);
-  near_.begin(volume);
+  near_.begin(volume, occupancy_);
 }
 
 void Surface::forget_changes() {
@@ -190,18 +196,25 @@ void Surface::place_vertices(const BoneVolume& volume, std::size_t place) {
         if (corners == 0 || corners == 255) {
           remove_vertex(*brick, at);
         } else {
-          const Voxel cell = origin + Voxel(i, j, k);
-          Eigen::Vector3f normal;
-          const Eigen::Vector3f offset = field_.place(i, j, k, corners, normal);
-          const std::uint8_t nearest = nearest_corner(corners, offset);
-          const VertexLinks links{
-              cell, {kNone, kNone, kNone}, static_cast<std::uint8_t>(corners), nearest};
-          set_vertex(*brick, at, links,
-                     make_vertex(volume, cell, corners, offset, normal, nearest));
+          const MadeVertex made = vertex_at(volume, origin, Voxel(i, j, k), field_);
+          set_vertex(*brick, at, made.links, made.vertex);
         }
       }
     }
   }
+}
+
+Surface::MadeVertex Surface::vertex_at(const BoneVolume& volume, const Voxel& origin,
+                                       const Voxel& of_brick, const CellField& field) const {
+  const unsigned corners = field.corners(of_brick.x(), of_brick.y(), of_brick.z());
+  const Voxel cell = origin + of_brick;
+  Eigen::Vector3f normal;
+  const Eigen::Vector3f offset =
+      field.place(of_brick.x(), of_brick.y(), of_brick.z(), corners, normal);
+  const std::uint8_t nearest = nearest_corner(corners, offset);
+  return {place_in_brick(of_brick),
+          {cell, {kNone, kNone, kNone}, static_cast<std::uint8_t>(corners), nearest},
+          make_vertex(volume, cell, corners, offset, normal, nearest)};
 }
 
 SurfaceVertex Surface::make_vertex(const BoneVolume& volume, const Voxel& cell, unsigned corners,
@@ -306,7 +319,8 @@ void Surface::place_quads(std::size_t place) {
   });
 }
 
-void Surface::set_quad(std::int32_t vertex, int axis, bool outwards) {
+/// The triangles of a quad.
+std::array<SurfaceTriangle, 2> Surface::halves(std::int32_t vertex, int axis, bool outwards) const {
   const Voxel cell = links_[static_cast<std::size_t>(vertex)].cell;
   const Voxel b = Voxel::Unit((axis + 1) % 3);
   const Voxel c = Voxel::Unit((axis + 2) % 3);
@@ -323,8 +337,12 @@ void Surface::set_quad(std::int32_t vertex, int axis, bool outwards) {
   };
   const bool other_way = (place(1) - place(3)).squaredNorm() < (place(0) - place(2)).squaredNorm();
   const std::size_t first = other_way ? 1 : 0;
-  const SurfaceTriangle one{ring[first], ring[first + 1], ring[first + 2]};
-  const SurfaceTriangle two{ring[first], ring[first + 2], ring[(first + 3) % 4]};
+  return {SurfaceTriangle{ring[first], ring[first + 1], ring[first + 2]},
+          SurfaceTriangle{ring[first], ring[first + 2], ring[(first + 3) % 4]}};
+}
+
+void Surface::set_quad(std::int32_t vertex, int axis, bool outwards) {
+  const auto [one, two] = halves(vertex, axis, outwards);
   std::int32_t& slot =
       links_[static_cast<std::size_t>(vertex)].quads[static_cast<std::size_t>(axis)];
   bool changed = slot == kNone;
@@ -339,9 +357,12 @@ void Surface::set_quad(std::int32_t vertex, int axis, bool outwards) {
     }
   }
   const auto at = 2 * static_cast<std::size_t>(slot);
-  changed = changed || triangles_[at] != one || triangles_[at + 1] != two ||
-            std::any_of(ring.begin(), ring.end(),
-                        [&](std::uint32_t v) { return vertex_touched_[v] != 0; });
+  const auto touched = [&](const SurfaceTriangle& triangle) {
+    return std::any_of(triangle.begin(), triangle.end(),
+                       [&](std::uint32_t v) { return vertex_touched_[v] != 0; });
+  };
+  changed =
+      changed || triangles_[at] != one || triangles_[at + 1] != two || touched(one) || touched(two);
   if (changed) {
     triangles_[at] = one;
     triangles_[at + 1] = two;

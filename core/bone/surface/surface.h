@@ -11,6 +11,7 @@
 #include "core/bone/surface/near_structures.h"
 #include "core/bone/surface/surface_cells.h"
 #include "core/bone/surface/surface_depths.h"
+#include "core/geometry/mesh/work.h"
 
 namespace haptrial::bone {
 
@@ -35,9 +36,16 @@ class Surface {
   /// @param depths  for what shows through; may be null.
   explicit Surface(std::shared_ptr<const StructureDepths> depths = nullptr);
 
+  /// The whole surface, on as many threads as the machine has processors: seconds for a large bone,
+  /// so that it can be built before it is shown. Instead of the first update(), which calls it.
+  /// @param report  on the calling thread. @throws geometry::Cancelled where it asks to stop
+  void build(const BoneVolume& volume, const geometry::WorkReport& report = {});
+  bool built() const noexcept { return !bricks_.empty(); }
+
   /// Follows the volume, always the same one: retessellates around voxels that were filled or
   /// emptied and refreshes densities where any changed. The first call builds the whole and orders
-  /// it for the vertex cache; so does one that leaves most slots dead, which gives them back.
+  /// it for the vertex cache; so does one that leaves most slots dead, which gives them back. The
+  /// first one after build() reports all as changed.
   /// @returns whether anything changed.
   bool update(const BoneVolume& volume);
 
@@ -79,7 +87,24 @@ class Surface {
     int axis;
   };
 
+  struct MadeVertex {
+    std::size_t at;  // in its brick
+    VertexLinks links;
+    SurfaceVertex vertex;
+  };
+  struct MadeQuad {
+    std::int32_t vertex;
+    int axis;
+    std::array<SurfaceTriangle, 2> triangles;
+  };
+
   void begin(const BoneVolume& volume);
+  void begin_places(const BoneVolume& volume);
+  void make_vertices(const BoneVolume& volume, std::size_t place, CellField& field,
+                     std::vector<MadeVertex>& made) const;
+  void keep_vertices(std::size_t place, const std::vector<MadeVertex>& made);
+  void make_quads(std::size_t place, std::vector<MadeQuad>& made) const;
+  std::array<SurfaceTriangle, 2> halves(std::int32_t vertex, int axis, bool outwards) const;
   void forget_changes();
   std::size_t place_of(const Voxel& brick) const noexcept;
   Voxel brick_at(std::size_t place) const noexcept;
@@ -90,6 +115,8 @@ class Surface {
   void mark_near(const BoneVolume& volume, const Voxel& voxel);
 
   void place_vertices(const BoneVolume& volume, std::size_t place);
+  MadeVertex vertex_at(const BoneVolume& volume, const Voxel& origin, const Voxel& of_brick,
+                       const CellField& field) const;
   SurfaceVertex make_vertex(const BoneVolume& volume, const Voxel& cell, unsigned corners,
                             const Eigen::Vector3f& offset, const Eigen::Vector3f& normal,
                             std::uint8_t nearest) const;
@@ -136,6 +163,7 @@ class Surface {
   std::vector<std::int32_t> changed_vertices_;
   std::vector<std::int32_t> changed_quads_;
   bool rebuilt_{false};
+  bool reported_{false};  // an update() has said that all is new
 };
 
 }  // namespace haptrial::bone

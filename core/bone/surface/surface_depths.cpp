@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/base/parallel.h"
+
 namespace haptrial::bone {
 namespace {
 
@@ -54,18 +56,23 @@ class NearestPasses {
   Key& at(const Voxel& voxel) { return keys_[index(voxel)]; }
 
   void run() {
-    for (int k = 0; k < size_.z(); ++k) {
+    const auto in_planes = [](int planes, auto&& work) {
+      in_groups(static_cast<std::size_t>(planes), 1, threads_or_all(0), [&] {
+        return [&, line = std::vector<Key>()](std::size_t plane, std::size_t) mutable {
+          work(static_cast<int>(plane), line);
+        };
+      });
+    };
+    const auto width = static_cast<std::size_t>(size_.x());
+    in_planes(size_.z(), [&](int k, std::vector<Key>& line) {
       for (int j = 0; j < size_.y(); ++j) {
-        along_row(&at({0, j, k}));
+        along_row(&at({0, j, k}), line);
       }
-    }
-    for (int k = 0; k < size_.z(); ++k) {
-      across_rows(&at({0, 0, k}), size_.y(), static_cast<std::size_t>(size_.x()));
-    }
-    for (int j = 0; j < size_.y(); ++j) {
-      across_rows(&at({0, j, 0}), size_.z(),
-                  static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y()));
-    }
+      across_rows(&at({0, 0, k}), size_.y(), width, line);
+    });
+    in_planes(size_.y(), [&](int j, std::vector<Key>& line) {
+      across_rows(&at({0, j, 0}), size_.z(), width * static_cast<std::size_t>(size_.y()), line);
+    });
   }
 
  private:
@@ -77,16 +84,16 @@ class NearestPasses {
   }
 
   /// The nearest on either side lies at the last one that was passed.
-  void along_row(Key* row) {
+  void along_row(Key* row, std::vector<Key>& line) const {
     const auto width = static_cast<std::size_t>(size_.x());
-    line_.assign(row, row + width);
+    line.assign(row, row + width);
     for (const int way : {1, -1}) {
       Key last = kNothing;
       int ago = 0;
       for (int n = 0; n < size_.x(); ++n, ++ago) {
         const auto i = static_cast<std::size_t>(way > 0 ? n : size_.x() - 1 - n);
-        if (line_[i] != kNothing) {
-          last = line_[i];
+        if (line[i] != kNothing) {
+          last = line[i];
           ago = 0;
         }
         if (ago <= reach_) {
@@ -97,18 +104,18 @@ class NearestPasses {
   }
 
   /// Rows of a plane, `stride` apart, each with the nearest of those within reach.
-  void across_rows(Key* plane, int rows, std::size_t stride) {
+  void across_rows(Key* plane, int rows, std::size_t stride, std::vector<Key>& line) const {
     const auto width = static_cast<std::size_t>(size_.x());
-    line_.resize(width * static_cast<std::size_t>(rows));
+    line.resize(width * static_cast<std::size_t>(rows));
     for (int row = 0; row < rows; ++row) {
       std::copy_n(plane + stride * static_cast<std::size_t>(row), width,
-                  line_.data() + width * static_cast<std::size_t>(row));
+                  line.data() + width * static_cast<std::size_t>(row));
     }
     for (int row = 0; row < rows; ++row) {
       Key* to = plane + stride * static_cast<std::size_t>(row);
       for (int other = std::max(row - reach_, 0); other <= std::min(row + reach_, rows - 1);
            ++other) {
-        const Key* from = line_.data() + width * static_cast<std::size_t>(other);
+        const Key* from = line.data() + width * static_cast<std::size_t>(other);
         for (std::size_t i = 0; i < width; ++i) {
           to[i] = std::min(to[i], moved(from[i], other - row));
         }
@@ -119,7 +126,6 @@ class NearestPasses {
   Voxel size_;
   int reach_;
   std::vector<Key> keys_;
-  std::vector<Key> line_;
 };
 
 }  // namespace
@@ -156,29 +162,34 @@ StructureDepths::StructureDepths(const BoneModel& model, const std::vector<bool>
       }
     }
   };
+  std::vector<bool> holds(table_.size(), false);  // by brick: anything
   for_each([&](const Voxel& voxel, Key& key) {
     const std::uint8_t label = model.labels[grid_.index(voxel.x(), voxel.y(), voxel.z())];
+    if (label != 0) {
+      holds[table_index(voxel)] = true;
+    }
     if (label < shows.size() && shows[label]) {
       key = label;
+      ++voxels_;
     }
   });
   passes.run();
   const double farthest = voxels * voxels;
+  const auto is_near = [&](Key key) { return key != kNothing && key / kLabels <= farthest; };
+  std::int32_t bricks = 1;
   for_each([&](const Voxel& voxel, Key key) {
-    if (key != kNothing && key / kLabels <= farthest) {
-      keep(voxel,
-           {static_cast<std::uint8_t>(key % kLabels), static_cast<std::uint16_t>(key / kLabels)});
+    std::int32_t& brick = table_[table_index(voxel)];
+    if (brick == 0 && is_near(key) && holds[table_index(voxel)]) {
+      brick = bricks++;
     }
   });
-}
-
-void StructureDepths::keep(const Voxel& voxel, const Entry& entry) {
-  std::int32_t& brick = table_[table_index(voxel)];
-  if (brick == 0) {
-    brick = static_cast<std::int32_t>(entries_.size() / BoneVolume::kBrickVoxels);
-    entries_.resize(entries_.size() + BoneVolume::kBrickVoxels);
-  }
-  entries_[entry_index(brick, voxel)] = entry;
+  entries_.resize(static_cast<std::size_t>(bricks) * BoneVolume::kBrickVoxels);
+  for_each([&](const Voxel& voxel, Key key) {
+    if (is_near(key)) {
+      entries_[entry_index(table_[table_index(voxel)], voxel)] = {
+          static_cast<std::uint8_t>(key % kLabels), static_cast<std::uint16_t>(key / kLabels)};
+    }
+  });
 }
 
 std::size_t StructureDepths::entry_index(std::int32_t brick, const Voxel& voxel) noexcept {

@@ -27,23 +27,24 @@ class StructureDepths {
   /// @throws std::invalid_argument where the model does not fit together or reach < 0.
   StructureDepths(const BoneModel& model, const std::vector<bool>& shows, double reach = 0.003);
 
-  /// None outside the grid.
+  /// None outside the grid, nor in bricks (BoneVolume) in which the model has nothing.
   NearStructure at(const Voxel& voxel) const noexcept;
   bool shows(std::uint8_t label) const noexcept { return label < shows_.size() && shows_[label]; }
   double reach_in_voxels() const noexcept { return reach_; }
+  std::size_t voxels() const noexcept { return voxels_; }  // of the model that show
 
  private:
   struct Entry {
     std::uint8_t label{0};
     std::uint16_t squared{0};  // distance in voxels
   };
-  void keep(const Voxel& voxel, const Entry& entry);
   std::size_t table_index(const Voxel& voxel) const noexcept;
   static std::size_t entry_index(std::int32_t brick, const Voxel& voxel) noexcept;
 
   geometry::VoxelGrid grid_;
-  std::vector<bool> shows_;                   // by label
-  double reach_{0.0};                         // [voxels]
+  std::vector<bool> shows_;  // by label
+  double reach_{0.0};        // [voxels]
+  std::size_t voxels_{0};
   std::array<std::int32_t, 3> table_size_{};  // in bricks of 8 x 8 x 8 voxels
   std::vector<std::int32_t> table_;           // number of a brick; 0: nothing within reach there
   std::vector<Entry> entries_;                // 512 to a brick

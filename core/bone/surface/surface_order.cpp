@@ -35,6 +35,7 @@ void Surface::order_for_the_vertex_cache() {
     meshopt_optimizeVertexCache(ordered.front().data(), living.front().data(), 3 * living.size(),
                                 vertices_.size());
   }
+  living = {};
   constexpr std::uint32_t kUnseen = 0xFFFFFFFF;
   std::vector<std::uint32_t> new_vertex(vertices_.size(), kUnseen);
   std::vector<SurfaceVertex> vertices;
@@ -51,7 +52,7 @@ void Surface::order_for_the_vertex_cache() {
   };
   std::vector<SurfaceTriangle> triangles;
   triangles.reserve(living.size());
-  std::vector<std::uint8_t> done(quad_touched_.size(), 0);
+  std::vector<std::uint8_t> done(triangles_.size() / 2, 0);
   for (const SurfaceTriangle& triangle : ordered) {
     const auto [owner, axis] = owner_of(triangle);
     const std::int32_t quad =

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "core/device/own_devices.h"
 #include "core/device/vendor/force_dimension.h"
 #include "core/device/vendor/open_haptics.h"
 
@@ -38,11 +39,16 @@ DeviceListing open_haptics(const std::string& library) {
 }  // namespace
 
 std::vector<DeviceListing> list_devices(const VendorLibraries& libraries) {
-  return {{"virtual", true, "simulated 3-DOF impedance device with a virtual subject's hand"},
-          {"replay", true, "the hand of a recorded session, played back"},
-          {"mouse", true, "the pointer stands for the hand; forces are seen, not felt"},
-          force_dimension(libraries.force_dimension),
-          open_haptics(libraries.open_haptics)};
+  std::vector<DeviceListing> list{
+      {"virtual", true, "simulated 3-DOF impedance device with a virtual subject's hand"},
+      {"replay", true, "the hand of a recorded session, played back"},
+      {"mouse", true, "the pointer stands for the hand; forces are seen, not felt"},
+      force_dimension(libraries.force_dimension),
+      open_haptics(libraries.open_haptics)};
+  for (const OwnDevice& device : own_devices()) {
+    list.push_back({device.name, true, device.what});
+  }
+  return list;
 }
 
 }  // namespace haptrial::device

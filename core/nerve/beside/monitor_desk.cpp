@@ -14,8 +14,10 @@ std::size_t begin_of(std::uint64_t count, std::uint64_t all, std::size_t kept) {
 
 }  // namespace
 
-void MonitorDesk::show(std::vector<MonitorChannel> channels, double time, bool heard) {
+void MonitorDesk::show(std::vector<MonitorChannel> channels, const MonitorProbe& probe, double time,
+                       bool heard) {
   const std::lock_guard lock(mutex_);
+  probe_ = probe;
   channels_ = std::move(channels);
   time_ = time;
   heard_ = heard;
@@ -49,6 +51,7 @@ MonitorDesk::View MonitorDesk::since(std::uint64_t column, std::uint64_t event) 
   View view;
   view.time = time_;
   view.heard = heard_;
+  view.probe = probe_;
   view.channels = channels_;
   view.next_column = column_count_;
   view.next_event = event_count_;

@@ -3,17 +3,28 @@
 #include <cstdint>
 #include <deque>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/nerve/stimulus/stimulator.h"
+
 namespace haptrial::nerve {
 
-/// What a technician asks of a channel.
+/// What a technician asks: of a channel, or of the probe.
 struct MonitorOrder {
-  std::size_t channel{0};
-  bool mutes{false};  // sets `muted`; else `threshold`
+  enum class What { kThreshold, kMute, kSearch, kStimulus } what{What::kThreshold};
+  std::size_t channel{0};  // not of kStimulus
   bool muted{false};
-  double threshold{0.0};  // [V]
+  double threshold{0.0};  // of an event [V]
+  double current{0.0};    // of the probe's pulses [A]
+};
+
+/// What a technician sees of the probe.
+struct MonitorProbe {
+  double current{0.0};                   // of the next pulse [A]
+  std::optional<std::size_t> searching;  // the channel
+  std::optional<FoundThreshold> found;   // by the last search
 };
 
 /// What a technician sees of a channel.
@@ -59,6 +70,7 @@ class MonitorDesk {
     double time{0.0};  // of the last column [s]
     bool heard{true};  // by the participant, in this procedure
     bool simulated{true};
+    MonitorProbe probe;
     std::vector<MonitorChannel> channels;
     std::vector<MonitorEvent> events;    // new ones
     std::vector<MonitorColumn> columns;  // (new columns x channels)
@@ -67,7 +79,8 @@ class MonitorDesk {
   };
 
   // The thread that makes electromyograms.
-  void show(std::vector<MonitorChannel> channels, double time, bool heard);
+  void show(std::vector<MonitorChannel> channels, const MonitorProbe& probe, double time,
+            bool heard);
   void add_column(const std::vector<MonitorColumn>& by_channel);
   void add_event(const MonitorEvent& event);
   std::vector<MonitorOrder> take_orders();
@@ -81,6 +94,7 @@ class MonitorDesk {
  private:
   mutable std::mutex mutex_;
   std::vector<MonitorChannel> channels_;
+  MonitorProbe probe_;
   double time_{0.0};
   bool heard_{true};
   std::deque<std::vector<MonitorColumn>> columns_;

@@ -140,7 +140,9 @@ void ThreadedNerves::show(const NerveTick& tick, bool heard) {
                      s.shown, s.frequency, s.train_time, s.events, s.artefacts});
   }
   listeners_.desk->add_column(column_);
-  listeners_.desk->show(std::move(shown), seconds, heard);
+  const Stimulator& probe = simulation_->stimulator();
+  listeners_.desk->show(std::move(shown), {probe.current(), probe.searching(), probe.found()},
+                        seconds, heard);
 }
 
 /// What the technician asked for.
@@ -148,12 +150,16 @@ void ThreadedNerves::obey() {
   if (!listeners_.desk || !simulation_) {
     return;
   }
+  using What = MonitorOrder::What;
   for (const MonitorOrder& order : listeners_.desk->take_orders()) {
-    if (order.channel >= simulation_->channels().size()) {
+    if (order.what == What::kStimulus) {
+      simulation_->stimulator().set(order.current);
+    } else if (order.channel >= simulation_->channels().size()) {
       continue;
-    }
-    if (order.mutes) {
+    } else if (order.what == What::kMute) {
       simulation_->set_muted(order.channel, order.muted);
+    } else if (order.what == What::kSearch) {
+      simulation_->stimulator().search(order.channel);
     } else {
       simulation_->set_threshold(order.channel, order.threshold);
     }

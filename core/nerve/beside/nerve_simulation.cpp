@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace haptrial::nerve {
 namespace {
@@ -40,13 +41,17 @@ std::vector<Channel> channels_of(const NerveSetup& setup) {
   return channels;
 }
 
-NerveSimulation::NerveSimulation(const NerveSetup& setup, double rate, std::uint64_t seed)
+NerveSimulation::NerveSimulation(const NerveSetup& setup, double rate, std::uint64_t seed,
+                                 PulseCurrent pulse)
     : setup_(setup),
       channels_(channels_of(setup)),
       samples_a_tick_(samples_a_tick(rate)),
       common_(seed, "drill at the electrodes"),
       branches_(seed, "branches"),
       monitor_(setup.monitor, channels_.size()),
+      stimulator_(pulse ? std::move(pulse)
+                        : std::make_shared<std::atomic<float>>(static_cast<float>(setup.current)),
+                  rate),
       muted_(channels_.size(), setup.muted),
       settings_(channels_.size()),
       stimulus_(channels_.size(), 0) {
@@ -73,6 +78,7 @@ void NerveSimulation::tick(const NerveTick& tick, bool heard) {
   make(tick);
   look(tick, heard);
   note_settings(tick.sequence);
+  stimulator_.follow(tick.sequence, static_cast<double>(tick.current), ended(), rows_.stimuli);
 }
 
 /// One of the nerve's muscles at random: what irritates a nerve seldom reaches all of its fibres.

@@ -11,6 +11,7 @@
 #include "core/nerve/monitor.h"
 #include "core/nerve/record/nerve_rows.h"
 #include "core/nerve/setup/nerve_exposures.h"
+#include "core/nerve/stimulus/stimulator.h"
 
 namespace haptrial::nerve {
 
@@ -26,8 +27,10 @@ std::vector<Channel> channels_of(const NerveSetup& setup);
 /// of the ticks, the seed and the settings alone. One thread, not the servo's: it allocates rows.
 class NerveSimulation {
  public:
-  /// @param rate  of ticks [Hz]
-  NerveSimulation(const NerveSetup& setup, double rate, std::uint64_t seed);
+  /// @param rate   of ticks [Hz]
+  /// @param pulse  the current that the probe's next pulse has; null: nobody changes it
+  NerveSimulation(const NerveSetup& setup, double rate, std::uint64_t seed,
+                  PulseCurrent pulse = nullptr);
 
   /// @param heard  the participant hears the monitor at this tick
   void tick(const NerveTick& tick, bool heard);
@@ -35,6 +38,7 @@ class NerveSimulation {
   /// From the next tick on. @param channel  one of channels()
   void set_threshold(std::size_t channel, double threshold);
   void set_muted(std::size_t channel, bool muted);
+  Stimulator& stimulator() noexcept { return stimulator_; }
 
   const NerveMonitor& monitor() const noexcept { return monitor_; }
   std::span<const Channel> channels() const noexcept { return channels_; }
@@ -63,6 +67,7 @@ class NerveSimulation {
   CommonNoise common_;
   RandomStream branches_;
   NerveMonitor monitor_;
+  Stimulator stimulator_;
   std::vector<bool> muted_;
   std::vector<record::NerveThresholdRow> settings_;  // by channel, as recorded last
   bool by_technician_{false};

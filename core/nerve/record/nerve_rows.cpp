@@ -22,6 +22,15 @@ Words causes() {
                 {static_cast<std::uint8_t>(Cause::kTechnician), "technician"}});
 }
 
+Words stimulus_kinds() {
+  using Kind = NerveStimulusRow::Kind;
+  return Words({{static_cast<std::uint8_t>(Kind::kSet), "set"},
+                {static_cast<std::uint8_t>(Kind::kPulse), "pulse"},
+                {static_cast<std::uint8_t>(Kind::kSearch), "search"},
+                {static_cast<std::uint8_t>(Kind::kFound), "found"},
+                {static_cast<std::uint8_t>(Kind::kOutOfRange), "out_of_range"}});
+}
+
 template <class Row>
 void join(std::vector<Row>& to, const std::vector<Row>& more) {
   to.insert(to.end(), more.begin(), more.end());
@@ -139,10 +148,31 @@ const Table<NerveDischargeRow>& table_of<NerveDischargeRow>() {
   return table;
 }
 
+template <>
+const Table<NerveStimulusRow>& table_of<NerveStimulusRow>() {
+  using R = NerveStimulusRow;
+  using T = Table<R>;
+  static const T table(
+      {"nerve_stimuli",
+       "how the probe's current was set or searched, and its pulses, a row each",
+       104,
+       RowsOf::kTick,
+       {"sequence"},
+       "nerve_probe",
+       kSince},
+      {T::column("sequence", &R::sequence, "1", "tick number, as in /samples"),
+       T::word("kind", &R::kind, kKind, stimulus_kinds(),
+               "set, pulse, search, found or out_of_range"),
+       T::column("channel", &R::channel, "1",
+                 "of /nerve_channels, whose threshold is searched; -1: none"),
+       T::rounded("current", &R::current, "A", "set, of the pulse, or found within 5 %")});
+  return table;
+}
+
 const TableList& nerve_tables() {
-  static const TableList tables{&table_of<NerveChannelRow>(), &table_of<EmgRow>(),
-                                &table_of<NerveEventRow>(), &table_of<NerveThresholdRow>(),
-                                &table_of<NerveDischargeRow>()};
+  static const TableList tables{&table_of<NerveChannelRow>(),   &table_of<EmgRow>(),
+                                &table_of<NerveEventRow>(),     &table_of<NerveThresholdRow>(),
+                                &table_of<NerveDischargeRow>(), &table_of<NerveStimulusRow>()};
   return tables;
 }
 
@@ -151,6 +181,7 @@ void NerveRows::append(const NerveRows& more) {
   join(events, more.events);
   join(thresholds, more.thresholds);
   join(discharges, more.discharges);
+  join(stimuli, more.stimuli);
 }
 
 void NerveRows::clear() {
@@ -158,6 +189,7 @@ void NerveRows::clear() {
   events.clear();
   thresholds.clear();
   discharges.clear();
+  stimuli.clear();
 }
 
 }  // namespace haptrial::record

@@ -67,6 +67,15 @@ struct NerveDischargeRow {
   double current{0.0};    // of the pulse that it answers to [A]; 0: none
 };
 
+/// What a technician made of the probe, and its pulses, a row of /nerve_stimuli.
+struct NerveStimulusRow {
+  enum class Kind : std::uint8_t { kSet, kPulse, kSearch, kFound, kOutOfRange };
+  std::uint64_t sequence{0};  // of the tick
+  Kind kind{Kind::kSet};
+  std::int32_t channel{-1};  // whose threshold is searched; -1: none
+  double current{0.0};       // [A]
+};
+
 template <>
 const Table<NerveChannelRow>& table_of<NerveChannelRow>();
 template <>
@@ -77,6 +86,8 @@ template <>
 const Table<NerveThresholdRow>& table_of<NerveThresholdRow>();
 template <>
 const Table<NerveDischargeRow>& table_of<NerveDischargeRow>();
+template <>
+const Table<NerveStimulusRow>& table_of<NerveStimulusRow>();
 
 /// The tables of a nerve monitor, in the order in which they are created.
 const TableList& nerve_tables();
@@ -87,6 +98,7 @@ struct NerveRows {
   std::vector<NerveEventRow> events;
   std::vector<NerveThresholdRow> thresholds;
   std::vector<NerveDischargeRow> discharges;
+  std::vector<NerveStimulusRow> stimuli;
 
   void append(const NerveRows& more);
   void clear();

@@ -8,10 +8,11 @@ namespace haptrial::nerve {
 
 NerveExposures::NerveExposures(const NerveSetup& setup,
                                std::shared_ptr<const NerveDistances> distances, std::uint64_t seed,
-                               double dt)
+                               double dt, std::shared_ptr<const std::atomic<float>> current)
     : distances_(std::move(distances)),
       heat_(setup.heat),
-      current_(static_cast<float>(setup.current)),
+      current_(current ? std::move(current)
+                       : std::make_shared<std::atomic<float>>(static_cast<float>(setup.current))),
       dt_(dt),
       between_pulses_(1.0 / setup.pulses),
       since_pulse_(between_pulses_) {
@@ -29,7 +30,7 @@ NerveTick NerveExposures::step(const ToolAtNerves& tool) noexcept {
   since_pulse_ += dt_;
   if (works && tool.kind == Kind::kProbe && since_pulse_ >= between_pulses_) {
     since_pulse_ = 0.0;
-    tick.current = current_;
+    tick.current = current_->load(std::memory_order_relaxed);
   }
   Exposure exposure;
   exposure.force = tool.force;

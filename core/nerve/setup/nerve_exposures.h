@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -42,8 +43,11 @@ struct ToolAtNerves {
 class NerveExposures {
  public:
   /// @param distances  of the same nerves as the setup's  @param dt  of a tick [s]
+  /// @param current    of the probe's next pulse [A], which another thread may change; null: the
+  ///                   setup's
   NerveExposures(const NerveSetup& setup, std::shared_ptr<const NerveDistances> distances,
-                 std::uint64_t seed, double dt);
+                 std::uint64_t seed, double dt,
+                 std::shared_ptr<const std::atomic<float>> current = nullptr);
 
   /// @returns without a sequence number
   NerveTick step(const ToolAtNerves& tool) noexcept;
@@ -52,7 +56,7 @@ class NerveExposures {
   std::shared_ptr<const NerveDistances> distances_;
   std::vector<IrritatedNerve> nerves_;
   double heat_;
-  float current_;
+  std::shared_ptr<const std::atomic<float>> current_;
   double dt_;
   double between_pulses_;  // [s]
   double since_pulse_;     // [s]

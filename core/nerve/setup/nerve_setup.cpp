@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/definition/table.h"
+#include "core/nerve/stimulus/threshold_search.h"
 
 namespace haptrial::nerve {
 namespace {
@@ -133,7 +134,7 @@ NerveSetup read_nerve_setup(Table& table, double rate) {
   m.artefact_filter =
       table.has("artefact_filter") ? table.boolean("artefact_filter") : m.artefact_filter;
   s.muted = table.has("muted") && table.boolean("muted");
-  s.current = table.number_or("stimulus", s.current, {0.05e-3, 3e-3}, "A");
+  s.current = table.number_or("stimulus", s.current, {kLeastStimulus, kMostStimulus}, "A");
   s.pulses = table.number_or("stimuli", s.pulses, {0.5, 5.0}, "1/s");
   if (table.has("heard_in")) {
     const std::string heard = table.choice("heard_in", {"all", "none", "every other"});

@@ -3,20 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/definition/table.h"
-
 namespace haptrial::network {
-
-ChannelConditions read_channel_conditions(Table& table) {
-  ChannelConditions c;
-  c.delay = table.number_or("delay", c.delay, {0.0, 10.0}, "s");
-  c.jitter = table.number_or("jitter", c.jitter, {0.0, 1.0}, "s");
-  c.loss = table.number_or("loss", c.loss, {0.0, 1.0}, "1");
-  c.duplication = table.number_or("duplication", c.duplication, {0.0, 1.0}, "1");
-  c.reordering = table.number_or("reordering", c.reordering, {0.0, 1.0}, "1");
-  c.bandwidth = table.number_or("bandwidth", c.bandwidth, {0.0, 1e10}, "bytes/s");
-  return c;
-}
 
 SimulatedChannel::SimulatedChannel(const ChannelConditions& conditions, std::uint64_t seed,
                                    std::string_view name)
@@ -37,7 +24,7 @@ void SimulatedChannel::send(const TickBytes& message, double now) noexcept {
   double leaves = now;
   if (conditions_.bandwidth > 0.0) {
     leaves = std::max(now, line_free_) +
-             static_cast<double>(kTickBytes + kOverhead) / conditions_.bandwidth;
+             static_cast<double>(message.size() + kOverhead) / conditions_.bandwidth;
     line_free_ = leaves;
   }
   lost_ += put(message, leaves, lost) ? 0 : 1;

@@ -6,28 +6,10 @@
 #include <vector>
 
 #include "core/base/random.h"
+#include "core/network/channel/channel_conditions.h"
 #include "core/network/channel/tick_message.h"
 
-namespace haptrial {
-class Table;
-}
-
 namespace haptrial::network {
-
-/// What a network does to messages on one way.
-struct ChannelConditions {
-  double delay{0.0};        // least [s]
-  double jitter{0.0};       // mean of what comes on top, exponentially distributed [s]
-  double loss{0.0};         // share, 0 to 1
-  double duplication{0.0};  // share that comes twice, each copy with a jitter of its own
-  double reordering{0.0};   // share that does not wait for those before it
-  double bandwidth{0.0};    // [bytes/s]; 0: no limit
-
-  bool operator==(const ChannelConditions&) const = default;
-};
-
-/// Reads the keys delay, jitter, loss, duplication, reordering and bandwidth of a table.
-ChannelConditions read_channel_conditions(Table& table);
 
 /// One way of a network on the simulated clock: what arrives when is a function of what was sent
 /// when, of the conditions and of a named stream, to the bit. Servo thread: no allocation, lock,

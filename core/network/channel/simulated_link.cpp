@@ -4,16 +4,18 @@
 
 namespace haptrial::network {
 
-SimulatedLink::SimulatedLink(const ChannelConditions& conditions, std::uint64_t seed, double rate)
-    : first_(conditions, seed, "there", rate), second_(conditions, seed, "back", rate) {
+SimulatedLink::SimulatedLink(const ChannelConditions& conditions, double least_delay,
+                             std::uint64_t seed, double rate)
+    : first_(conditions, least_delay, seed, "there", rate),
+      second_(conditions, least_delay, seed, "back", rate) {
   first_.other_ = &second_;
   second_.other_ = &first_;
 }
 
-SimulatedLink::End::End(const ChannelConditions& conditions, std::uint64_t seed,
+SimulatedLink::End::End(const ChannelConditions& conditions, double least_delay, std::uint64_t seed,
                         std::string_view name, double rate)
     : rate_(rate),
-      ahead_(static_cast<std::uint64_t>(conditions.delay * rate)),
+      ahead_(static_cast<std::uint64_t>(least_delay * rate)),
       out_(conditions, seed, name) {}
 
 double SimulatedLink::End::seconds(std::uint64_t tick) const noexcept {
@@ -52,7 +54,15 @@ void SimulatedLink::End::send(const TickMessage& message) noexcept {
   out_.send(encode(message), seconds(now_));
 }
 
+void SimulatedLink::End::change(const ChannelConditions& conditions) noexcept {
+  const std::lock_guard lock(mutex_);
+  out_.change(conditions);
+}
+
 void SimulatedLink::End::close(const TickMessage& /*last*/) noexcept {
+  if (begun_.load(std::memory_order_relaxed) == kClosed) {
+    return;  // the other side reads ended_at_ by now
+  }
   ended_at_ = now_;
   begun_.store(kClosed, std::memory_order_release);
   begun_.notify_all();

@@ -15,8 +15,13 @@ namespace haptrial::network {
 /// nothing depends on the threads. By as many ticks as the delay has, one may be ahead.
 class SimulatedLink {
  public:
-  /// @param conditions  of either way  @param rate  of both loops [Hz]
-  SimulatedLink(const ChannelConditions& conditions, std::uint64_t seed, double rate);
+  /// @param conditions   of either way, at first
+  /// @param least_delay  that it ever has [s]
+  /// @param rate         of both loops [Hz]
+  SimulatedLink(const ChannelConditions& conditions, double least_delay, std::uint64_t seed,
+                double rate);
+  SimulatedLink(const ChannelConditions& conditions, std::uint64_t seed, double rate)
+      : SimulatedLink(conditions, conditions.delay, seed, rate) {}
 
   /// @param side  0 or 1; each end belongs to one thread
   Wire& end(int side) noexcept { return side == 0 ? first_ : second_; }
@@ -24,11 +29,12 @@ class SimulatedLink {
  private:
   class End final : public Wire {
    public:
-    End(const ChannelConditions& conditions, std::uint64_t seed, std::string_view name,
-        double rate);
+    End(const ChannelConditions& conditions, double least_delay, std::uint64_t seed,
+        std::string_view name, double rate);
     std::int64_t tick() noexcept override;
     void receive(Listener& listener) noexcept override;
     void send(const TickMessage& message) noexcept override;
+    void change(const ChannelConditions& conditions) noexcept override;
     bool closed() const noexcept override { return other_closed_; }
     void close(const TickMessage& last) noexcept override;
     WireCounts counts() const noexcept override;

@@ -7,6 +7,8 @@
 #include <optional>
 #include <span>
 
+#include "core/network/channel/packet.h"
+
 namespace haptrial::network {
 
 /// How far a side is with its pass.
@@ -29,6 +31,20 @@ struct TurnState {
   bool operator==(const TurnState&) const = default;
 };
 
+/// What a message carries of a stream of which nothing may be lost (network::ReliableStream).
+struct StreamPart {
+  static constexpr std::size_t kMost = 192;     // bytes of a chunk
+  static constexpr std::size_t kBeyond = 1024;  // chunks that may come while one is missing
+
+  std::uint64_t number{0};  // of the chunk, from 1; 0: there is none in the message
+  std::uint64_t heard{0};   // all chunks of the other side up to this one have come
+  std::array<std::uint64_t, kBeyond / 64> beyond{};  // bit i: chunk heard + 1 + i has come, too
+  std::uint16_t size{0};
+  std::array<std::byte, kMost> bytes{};
+
+  bool operator==(const StreamPart&) const = default;
+};
+
 /// What one side of a shared session tells the other of a tick.
 struct TickMessage {
   std::uint64_t sequence{0};  // from 1, one more each message
@@ -45,6 +61,7 @@ struct TickMessage {
   std::uint32_t buttons{0};
   std::uint32_t flags{0};  // TickFlag
   TurnState turn;
+  StreamPart stream;
 
   bool operator==(const TickMessage&) const = default;
 };
@@ -58,10 +75,14 @@ enum TickFlag : std::uint32_t {
   kLeft = 32,    // the sender's session ends with trials left
 };
 
+/// Length of a message without a stream, and with one.
 inline constexpr std::size_t kTickBytes = 4 * 8 + 4 * 3 * 8 + 3 * 8 + 2 * 4 + 3 * 4 + 2;
-using TickBytes = std::array<std::byte, kTickBytes>;
+inline constexpr std::size_t kStreamTickBytes =
+    kTickBytes + 2 * 8 + StreamPart::kBeyond / 8 + 2 + StreamPart::kMost;
+using TickBytes = Packet<std::byte, kStreamTickBytes>;
 
-/// Little-endian, in the order of the members, without gaps. Servo thread.
+/// Little-endian, in the order of the members, without gaps; the stream only where one has begun.
+/// Servo thread.
 TickBytes encode(const TickMessage& message) noexcept;
 /// @returns nothing for another length, a number that is not finite or a flag that is not known.
 /// Servo thread.

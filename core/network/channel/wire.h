@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/network/channel/channel_conditions.h"
 #include "core/network/channel/tick_message.h"
 
 namespace haptrial::network {
@@ -45,6 +46,10 @@ class Wire {
   virtual void send(const TickMessage& message) noexcept = 0;
   /// Whether the other end is known to be closed, so that nothing will come any more.
   virtual bool closed() const noexcept = 0;
+  /// From the next message of this side on, in a simulated network; a real one is as it is.
+  virtual void change(const ChannelConditions& conditions) noexcept {
+    static_cast<void>(conditions);
+  }
   /// Session's thread, when the loop has ended. @param last  said again until it will have come
   virtual void close(const TickMessage& last) noexcept = 0;
   virtual WireCounts counts() const noexcept = 0;  // any thread

@@ -39,7 +39,7 @@ void LinkThread::run() noexcept {
 /// A limited number at a time: a flood must not keep own messages from leaving.
 void LinkThread::take_in() noexcept {
   constexpr int kAtOnce = 256;
-  std::array<unsigned char, kSealedBytes + 1> buffer;  // one more shows what is too long
+  std::array<unsigned char, kMostSealedBytes + 1> buffer;  // one more shows what is too long
   for (int i = 0; i < kAtOnce; ++i) {
     Address from;
     from.size = sizeof(from.storage);

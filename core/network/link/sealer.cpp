@@ -20,10 +20,10 @@ Nonce nonce_of(std::uint64_t sequence) noexcept {
 }  // namespace
 
 SealedBytes Sealer::seal(const TickMessage& message) const noexcept {
-  SealedBytes out;
+  const TickBytes plain = encode(message);
+  SealedBytes out(kSealBytes + plain.size());
   std::memcpy(out.data(), &keys_.session, 8);
   std::memcpy(out.data() + 8, &message.sequence, 8);
-  const TickBytes plain = encode(message);
   crypto_aead_chacha20poly1305_ietf_encrypt(out.data() + kHead, nullptr,
                                             reinterpret_cast<const unsigned char*>(plain.data()),
                                             plain.size(), out.data(), kHead, nullptr,
@@ -32,7 +32,9 @@ SealedBytes Sealer::seal(const TickMessage& message) const noexcept {
 }
 
 std::optional<TickMessage> Opener::open(std::span<const unsigned char> datagram) noexcept {
-  if (datagram.size() != kSealedBytes || std::memcmp(datagram.data(), &keys_.session, 8) != 0) {
+  const bool of_a_length = datagram.size() == kSealBytes + kTickBytes ||
+                           datagram.size() == kSealBytes + kStreamTickBytes;
+  if (!of_a_length || std::memcmp(datagram.data(), &keys_.session, 8) != 0) {
     ++counts_.foreign;
     return std::nullopt;
   }
@@ -42,7 +44,7 @@ std::optional<TickMessage> Opener::open(std::span<const unsigned char> datagram)
     ++counts_.repeated;
     return std::nullopt;
   }
-  TickBytes plain;
+  TickBytes plain(datagram.size() - kSealBytes);
   const int bad = crypto_aead_chacha20poly1305_ietf_decrypt(
       reinterpret_cast<unsigned char*>(plain.data()), nullptr, nullptr, datagram.data() + kHead,
       datagram.size() - kHead, datagram.data(), kHead, nonce_of(sequence).data(),

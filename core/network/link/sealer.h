@@ -13,8 +13,9 @@
 namespace haptrial::network {
 
 /// A datagram: session, sequence number, the message enciphered, and what authenticates all of it.
-inline constexpr std::size_t kSealedBytes = 8 + 8 + kTickBytes + 16;
-using SealedBytes = std::array<unsigned char, kSealedBytes>;
+inline constexpr std::size_t kSealBytes = 8 + 8 + 16;
+inline constexpr std::size_t kMostSealedBytes = kSealBytes + kStreamTickBytes;
+using SealedBytes = Packet<unsigned char, kMostSealedBytes>;
 
 /// Puts messages under ChaCha20-Poly1305 (RFC 8439, by libsodium). The number of a message is its
 /// nonce: never seal two with the same one. One thread.

@@ -9,6 +9,8 @@ namespace haptrial::network {
 using control::Partner;
 using Eigen::Vector3d;
 
+static constexpr double kBackToOwnWorld = 0.05;  // after the link was lost [s]
+
 CoupledSide::CoupledSide(const SideParameters& parameters, const Vector3d& start)
     : p_(parameters),
       buffer_(std::make_unique<JitterBuffer>(parameters.late,
@@ -48,6 +50,7 @@ void CoupledSide::look_at_link(std::int64_t now_ns, double dt) noexcept {
   }
   linked_ = heard;
   strength_ = heard ? std::min(1.0, strength_ + dt / p_.ramp) : 0.0;
+  stead_ = std::min(stead_ + dt / kBackToOwnWorld, 1.0 - strength_);
 }
 
 void CoupledSide::look_at_partner(std::int64_t now_ns, double dt) noexcept {
@@ -97,7 +100,7 @@ Vector3d CoupledSide::felt_by_waves(const PointState& own, double share, double 
 
 /// A word about the session waits for no deadband.
 bool CoupledSide::due(const Own& own, double dt) noexcept {
-  const bool news = own.flags != told_flags_ || own.turn != told_turn_;
+  const bool news = own.flags != told_flags_ || own.turn != told_turn_ || own.news;
   return !p_.sparse || deadband_.due({own.tool, own.force}, dt) || news;
 }
 
@@ -130,7 +133,9 @@ CoupledSide::Output CoupledSide::step(const Own& own, std::int64_t now_ns, doubl
   look_at_link(now_ns, dt);
   look_at_partner(now_ns, dt);
   Output out;
-  out.force = felt(own, dt) + std::clamp(own.lead, 0.0, 1.0) * own.force;
+  const double lead = std::clamp(own.lead, 0.0, 1.0);
+  own_share_ = lead + (1.0 - lead) * stead_;
+  out.force = felt(own, dt) + own_share_ * own.force;
   out.message = told(own, now_ns, dt);
   return out;
 }

@@ -36,6 +36,7 @@ class CoupledSide {
     std::uint32_t flags{0};
     std::uint64_t world{0};
     TurnState turn;
+    bool news{false};  // something else is to go with a message
   };
   struct Output {
     Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // on the own tool, in W [N]
@@ -48,6 +49,10 @@ class CoupledSide {
   /// step() changed it.
   void acts(const Eigen::Vector3d& force) noexcept { tank_.acts(force - played_); }
 
+  /// How much of the own world the hand feels, 0 to 1: the own lead where there is a link. A hand
+  /// that its partner has left has nothing else to rest on, so that the own world is back within 50
+  /// ms, and goes as the partner's comes.
+  double own_share() const noexcept { return own_share_; }
   /// Whether the partner was heard within the deadline.
   bool linked() const noexcept { return linked_; }
   std::uint64_t losses() const noexcept { return losses_; }              // of the link
@@ -92,6 +97,8 @@ class CoupledSide {
   bool linked_{false};
   bool stop_asked_{false};
   double strength_{0.0};  // of the ramp, 0 to 1
+  double stead_{1.0};     // of the own world, for what the partner's does not do, 0 to 1
+  double own_share_{1.0};
   std::uint64_t losses_{0};
   std::uint64_t wave_used_{0};  // sequence number: each wave counts once
   std::uint64_t sent_{0};

@@ -1,13 +1,48 @@
 #include "core/psychometric/procedure/adjusting.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 namespace haptrial::psychometric {
 namespace {
 
 constexpr const char* kAdjusting = "Adjusting";
+
+/// Settings of adjustments that began on one side.
+struct Side {
+  std::vector<double> settings;
+
+  double count() const { return static_cast<double>(settings.size()); }
+  double mean() const { return std::accumulate(settings.begin(), settings.end(), 0.0) / count(); }
+  double squares() const {  // about the mean
+    double sum = 0.0;
+    for (const double setting : settings) {
+      sum += (setting - mean()) * (setting - mean());
+    }
+    return sum;
+  }
+};
+
+/// The mean of the sides' means, with the scatter within sides.
+Estimate estimate_of(const std::vector<Side>& sides, const std::string& name) {
+  double mean = 0.0, squares = 0.0, freedom = 0.0, inverse = 0.0;
+  const auto n = static_cast<double>(sides.size());
+  for (const Side& side : sides) {
+    mean += side.mean() / n;
+    squares += side.squares();
+    freedom += side.count() - 1.0;
+    inverse += 1.0 / side.count();
+  }
+  Estimate estimate{name, mean, {}};
+  if (freedom > 0.0) {
+    estimate.deviation = std::sqrt(squares / freedom * inverse) / n;
+    estimate.freedom = freedom;
+  }
+  return estimate;
+}
 
 }  // namespace
 
@@ -49,6 +84,7 @@ void Adjusting::report(double answer, const Level& applied) {
   ++presentations_;
   if (answer == 0.0) {
     settings_.push_back(level);
+    from_above_.push_back(starts_[at_] > level);
   }
   if (answer == 0.0 || presentations_ >= parameters_.most_presentations) {
     given_up_ += answer == 0.0 ? 0 : 1;
@@ -67,23 +103,18 @@ void Adjusting::report(double answer, const Level& applied) {
 }
 
 std::vector<Estimate> Adjusting::estimates() const {
-  const auto n = static_cast<double>(settings_.size());
   if (settings_.empty()) {
     return {};
   }
-  double mean = 0.0;
-  for (const double setting : settings_) {
-    mean += setting / n;
+  std::array<Side, 2> sides;
+  for (std::size_t i = 0; i < settings_.size(); ++i) {
+    sides[from_above_[i] ? 1 : 0].settings.push_back(settings_[i]);
   }
-  Estimate estimate{"mean of " + std::to_string(settings_.size()) + " settings", mean, {}};
-  if (settings_.size() > 1) {
-    double squares = 0.0;
-    for (const double setting : settings_) {
-      squares += (setting - mean) * (setting - mean);
-    }
-    estimate.deviation = std::sqrt(squares / (n - 1.0) / n);
+  const std::string count = std::to_string(settings_.size());
+  if (sides[0].settings.size() < 2 || sides[1].settings.size() < 2) {
+    return {estimate_of({{settings_}}, "mean of " + count + " settings")};
   }
-  return {estimate};
+  return {estimate_of({sides[0], sides[1]}, "mean of " + count + " settings, both sides alike")};
 }
 
 }  // namespace haptrial::psychometric

@@ -21,7 +21,9 @@ struct AdjustingParameters {
 /// Method of adjustment, and of matching, a presentation at a time: after each the participant says
 /// whether the level is to rise (1), to fall (-1), or is left as it is (0). That one is the
 /// setting, and the next adjustment begins at its own start. At every turn the steps get finer.
-/// Estimate: the mean of the settings, with its standard error.
+/// Estimate: the mean of the settings, with its standard error. Settings from above end higher than
+/// those from below. With two or more of either kind the estimate is the mean of the means of both
+/// sides, and its error has only the scatter within them.
 class Adjusting final : public Procedure {
  public:
   /// @param seed, name  of the stream that shuffles the starts
@@ -42,7 +44,8 @@ class Adjusting final : public Procedure {
   AdjustingParameters parameters_;
   std::vector<double> starts_;
   std::vector<double> settings_;
-  std::size_t at_{0};  // of starts_
+  std::vector<bool> from_above_;  // (settings) whether the start lay above the setting
+  std::size_t at_{0};             // of starts_
   Level level_;
   std::size_t step_{0};  // of the parameters' steps
   int direction_{0};     // of the last step; 0: none yet

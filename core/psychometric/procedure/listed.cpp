@@ -99,7 +99,8 @@ std::vector<Estimate> MagnitudeEstimation::estimates() const {
   Estimate estimate{"exponent of the power law", p.xy / p.xx, {}};
   if (levels.size() > 2) {
     const double residual = std::max(0.0, p.yy - p.xy * p.xy / p.xx);
-    estimate.deviation = std::sqrt(residual / static_cast<double>(levels.size() - 2) / p.xx);
+    estimate.freedom = static_cast<double>(levels.size() - 2);
+    estimate.deviation = std::sqrt(residual / *estimate.freedom / p.xx);
   }
   return {estimate};
 }

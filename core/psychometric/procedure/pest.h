@@ -38,6 +38,7 @@ class Pest final : public Procedure {
   bool finished() const override { return converged_ || trials_ >= parameters_.stop_trials; }
   /// The level that PEST settled on, without a deviation; none before it has.
   std::vector<Estimate> estimates() const override;
+  std::optional<double> target() const override { return parameters_.target; }
 
  private:
   void step(int way);

@@ -17,10 +17,18 @@ struct Outcome {
   Level applied;  // the level that was really presented: quantised, limited by the device
 };
 
+/// From low to high, 95 % [unit of the estimate].
+struct EstimateInterval {
+  double low, high;
+};
+
 struct Estimate {
   std::string name;                 // "threshold, mean of 6 reversals"
   double value;                     // [unit of the level, or of the parameter]
   std::optional<double> deviation;  // its standard deviation as the procedure can tell [same]
+  /// Degrees of freedom of Student's t for an interval from the deviation; nothing: there is none.
+  std::optional<double> freedom{};
+  std::optional<EstimateInterval> interval{};  // as the procedure itself can tell
 };
 
 /// Chooses the next level from the outcomes so far. Its state is a function of its parameters, its
@@ -44,6 +52,9 @@ class Procedure {
   virtual bool finished() const = 0;
   /// Empty while the outcomes do not suffice.
   virtual std::vector<Estimate> estimates() const = 0;
+  /// The probability of an answer 1 at the level that the first estimate is meant for; nothing: the
+  /// procedure seeks no level, or the probability depends on the observer.
+  virtual std::optional<double> target() const { return std::nullopt; }
 };
 
 /// Reports each outcome. @throws as report() does

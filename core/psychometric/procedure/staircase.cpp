@@ -97,6 +97,11 @@ std::vector<double> Staircase::chosen() const {
   return {all.begin() + static_cast<std::ptrdiff_t>(first), all.end()};
 }
 
+std::optional<double> Staircase::target() const {
+  return parameters_.up == 1 ? std::optional(balance_of(parameters_.down, parameters_.steps.back()))
+                             : std::nullopt;
+}
+
 std::vector<Estimate> Staircase::estimates() const {
   const std::vector<double> values = chosen();
   if (values.empty()) {

@@ -21,6 +21,8 @@ class Staircase final : public Procedure {
   void report(double answer, const Level& applied) override;
   bool finished() const override { return stopped(parameters_, state_); }
   std::vector<Estimate> estimates() const override;
+  /// Where the last steps balance, if one wrong answer makes a step.
+  std::optional<double> target() const override;
 
   const StaircaseState& state() const noexcept { return state_; }
   /// Levels of the reversals so far.

@@ -22,6 +22,25 @@ std::size_t place_of(const std::vector<QuestDimension>& dimensions, std::size_t 
   return cell % dimensions[dimension].values.size();
 }
 
+/// Where a posterior's distribution is `share`: each value stands for what lies around it, up to
+/// halfway to its neighbours; nothing lies beyond the first and the last.
+double quantile_of(const std::vector<double>& values, const std::vector<double>& shares,
+                   double share) {
+  const std::size_t last = values.size() - 1;
+  double below = 0.0;
+  for (std::size_t i = 0; i <= last; ++i) {
+    const double before = i > 0 ? values[i] - values[i - 1] : values[1] - values[0];
+    const double after = i < last ? values[i + 1] - values[i] : before;
+    if (below + shares[i] >= share && shares[i] > 0.0) {
+      const double at =
+          values[i] - 0.5 * before + 0.5 * (before + after) * (share - below) / shares[i];
+      return std::clamp(at, values[0], values[last]);
+    }
+    below += shares[i];
+  }
+  return values[last];
+}
+
 }  // namespace
 
 QuestPlus::QuestPlus(std::shared_ptr<const QuestTables> tables, const QuestStop& stop)
@@ -111,7 +130,11 @@ std::vector<Estimate> QuestPlus::estimates() const {
     for (std::size_t i = 0; i < values.size(); ++i) {
       square += shares[i] * (values[i] - mean) * (values[i] - mean);
     }
-    means.push_back({dimensions[d].name + ", mean of the posterior", mean, std::sqrt(square)});
+    constexpr double kTail = 0.025;
+    const EstimateInterval interval{quantile_of(values, shares, kTail),
+                                    quantile_of(values, shares, 1.0 - kTail)};
+    means.push_back({dimensions[d].name + ", mean of the posterior", mean, std::sqrt(square),
+                     std::nullopt, interval});
     modes.push_back({dimensions[d].name + ", mode of the posterior", mode[d], std::nullopt});
   }
   means.insert(means.end(), modes.begin(), modes.end());

@@ -27,7 +27,7 @@ class QuestPlus final : public Procedure {
   void report(double answer, const Level& applied) override;
   bool finished() const override;
   /// For each parameter with more than one value: the mean of its posterior with its standard
-  /// deviation; then the values at the mode of the joint posterior, without one.
+  /// deviation and central 95 %; then the values at the mode of the joint posterior, without one.
   std::vector<Estimate> estimates() const override;
 
   const std::vector<double>& posterior() const noexcept { return posterior_; }  // (cells)

@@ -32,6 +32,15 @@ void put_raw(const Id& object, const char* name, hid_t type, const void* data, s
   check(H5Awrite(attribute.get(), type, data), what);
 }
 
+std::size_t count_of(const Id& attribute, const std::string& what) {
+  const Id space = take(H5Aget_space(attribute.get()), what);
+  const hssize_t count = H5Sget_simple_extent_npoints(space.get());
+  if (count < 0) {
+    fail(what);
+  }
+  return static_cast<std::size_t>(count);
+}
+
 template <typename T>
 T get_number(const Id& object, const char* name, hid_t type, H5T_class_t type_class) {
   const Lock lock;
@@ -100,6 +109,34 @@ std::string get_text(const Id& object, const char* attribute) {
   std::string value = text == nullptr ? "" : text;
   H5free_memory(text);
   return value;
+}
+
+std::vector<std::string> get_texts(const Id& object, const char* attribute) {
+  const Lock lock;
+  const std::string what = std::string("attribute ") + attribute;
+  const Id id = take(H5Aopen(object.get(), attribute, H5P_DEFAULT), what);
+  const Id stored = take(H5Aget_type(id.get()), what);
+  if (H5Tget_class(stored.get()) != H5T_STRING || H5Tis_variable_str(stored.get()) <= 0) {
+    throw Error(what + " is not a list of texts");
+  }
+  std::vector<char*> texts(count_of(id, what), nullptr);
+  const Id type = long_text_type();
+  check(H5Aread(id.get(), type.get(), texts.data()), what);
+  std::vector<std::string> values;
+  for (char* text : texts) {
+    values.emplace_back(text == nullptr ? "" : text);
+    H5free_memory(text);
+  }
+  return values;
+}
+
+std::vector<double> get_numbers(const Id& object, const char* attribute) {
+  const Lock lock;
+  const std::string what = std::string("attribute ") + attribute;
+  const Id id = take(H5Aopen(object.get(), attribute, H5P_DEFAULT), what);
+  std::vector<double> values(count_of(id, what));
+  check(H5Aread(id.get(), H5T_NATIVE_DOUBLE, values.data()), what);
+  return values;
 }
 
 double get_f64(const Id& object, const char* attribute) {

@@ -36,6 +36,8 @@ void put(const Id& object, const char* attribute, std::int64_t value);
 void put(const Id& object, const char* attribute, std::uint64_t value);
 
 std::string get_text(const Id& object, const char* attribute);
+std::vector<std::string> get_texts(const Id& object, const char* attribute);
+std::vector<double> get_numbers(const Id& object, const char* attribute);
 double get_f64(const Id& object, const char* attribute);
 std::int64_t get_i64(const Id& object, const char* attribute);
 std::uint64_t get_u64(const Id& object, const char* attribute);

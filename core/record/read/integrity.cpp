@@ -1,5 +1,5 @@
 #include "core/record/read/integrity.h"
-#include "core/record/read/each_sample.h"
+#include "core/record/read/tick_rows.h"
 
 #include <algorithm>
 #include <optional>

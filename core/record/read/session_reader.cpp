@@ -13,6 +13,7 @@
 #include "core/record/hdf5/deflate.h"
 #include "core/record/hdf5/hdf5_layer.h"
 #include "core/record/hdf5/session_info.h"
+#include "core/record/read/found_table.h"
 #include "core/record/read/sample_columns.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/table/byte_planes.h"
@@ -321,6 +322,42 @@ void SessionReader::each_row(const TableDescription& table,
                         take(cells_of(schema, std::span(packed).subspan(i * bytes, bytes)));
                       }
                     });
+}
+
+void SessionReader::columns(const TableDescription& table, std::uint64_t first, std::uint64_t count,
+                            std::span<const ColumnTarget> targets) const {
+  const bool is_present = &table.schema(impl_->version) == &table.schema();
+  impl_->each_chunk(
+      impl_->own(table), first, count,
+      [&](const BytePlanes& planes, std::size_t at, std::size_t done, std::size_t rows) {
+        if (is_present) {
+          get_columns(table, planes, at, {done, rows}, targets);
+          return;
+        }
+        BytePlanes present(table.schema().row_bytes(), at + rows);
+        const std::vector<std::uint8_t> packed = table.packed(planes, at + rows, impl_->version);
+        for (std::size_t i = 0; i < at + rows; ++i) {
+          present.put_row(i,
+                          std::span(packed).subspan(i * present.row_bytes(), present.row_bytes()));
+        }
+        get_columns(table, present, at, {done, rows}, targets);
+      });
+}
+
+std::vector<std::string> SessionReader::table_names() const {
+  try {
+    return h5::table_names(impl_->file);
+  } catch (const h5::Error& error) {
+    throw InputError(path().string() + ": cannot be read (" + error.what() + ")" + kRecover);
+  }
+}
+
+std::unique_ptr<const TableDescription> SessionReader::description(const std::string& table) const {
+  try {
+    return std::make_unique<FoundTable>(h5::table_in_file(impl_->file, table));
+  } catch (const h5::Error& error) {
+    throw InputError(path().string() + ": cannot be read (" + error.what() + ")" + kRecover);
+  }
 }
 
 std::vector<TimingRow> SessionReader::timing() const {

@@ -7,9 +7,11 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "core/record/read/table_columns.h"
 #include "core/record/rows/response.h"
 #include "core/record/rows/run_types.h"
 #include "core/record/rows/session_types.h"
@@ -96,6 +98,14 @@ class SessionReader {
   void each_row(const TableDescription& table,
                 const std::function<void(const std::vector<Cell>&)>& take) const;
   std::vector<ResponseRow> responses() const { return rows<ResponseRow>(); }
+  /// Columns of rows [first, first + count) of a table that the file has, in the present layout:
+  /// numbers little-endian, texts padded with zeros. @throws std::invalid_argument as rows()
+  void columns(const TableDescription& table, std::uint64_t first, std::uint64_t count,
+               std::span<const ColumnTarget> targets) const;
+
+  std::vector<std::string> table_names() const;  // that the file has
+  /// What the file itself says of one of them, for tables that this program does not know.
+  std::unique_ptr<const TableDescription> description(const std::string& table) const;
 
   std::vector<TimingRow> timing() const;  // of all runs together, in ascending order
   /// What the loop counted, as it was written; none in a file before schema version 4.

@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/record/hdf5/hdf5_layer.h"
-#include "core/record/read/each_sample.h"
+#include "core/record/read/tick_rows.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/recovery/rewrite.h"
 #include "core/record/recovery/tick_ranges.h"

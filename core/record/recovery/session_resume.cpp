@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "core/base/error.h"
-#include "core/record/read/each_sample.h"
+#include "core/record/read/tick_rows.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/read/trial_facts_of.h"
 #include "core/record/recovery/repair.h"

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/record/link/link_row.h"
+#include "core/record/link/network_row.h"
 #include "core/record/rows/device_row.h"
 #include "core/record/rows/marker_row.h"
 #include "core/record/rows/page_answer.h"
@@ -18,10 +19,10 @@
 namespace haptrial::record {
 
 const TableList& common_tables() {
-  static const TableList tables{&responses_table(),       &table_of<DeviceRow>(),
-                                &table_of<SkippedRow>(),  &table_of<DampingRow>(),
-                                &table_of<MarkerRow>(),   &table_of<AnswerRow>(),
-                                &table_of<TutoringRow>(), &table_of<LinkRow>()};
+  static const TableList tables{
+      &responses_table(),       &table_of<DeviceRow>(), &table_of<SkippedRow>(),
+      &table_of<DampingRow>(),  &table_of<MarkerRow>(), &table_of<AnswerRow>(),
+      &table_of<TutoringRow>(), &table_of<LinkRow>(),   &table_of<NetworkRow>()};
   return tables;
 }
 

@@ -77,9 +77,9 @@ void SessionWriter::append(std::span<const Sample> rows) {
 
 void SessionWriter::add_pass(const PassRow& pass) {
   impl_->guarded([&] {
-    // The row fills its chunk, which goes out at once: its samples go before it.
+    // The row fills its chunk, which goes out at once: what it refers to goes before it.
     if (impl_->trials->room() == 1) {
-      impl_->write_samples();
+      impl_->write_before_trials();
     }
     impl_->trials->add(trials_table(), std::span(&pass, 1));
   });

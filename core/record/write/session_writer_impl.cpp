@@ -159,13 +159,12 @@ void SessionWriter::Impl::give_up(const std::string& why) {
   throw RunError(failure);
 }
 
-/// Before a row of /trials that refers to them, whenever the process is killed.
-void SessionWriter::Impl::write_samples() {
+/// What a row of /trials refers to is on its way to the disk before the row is, whenever the
+/// process is killed.
+void SessionWriter::Impl::write_before_trials() {
   samples->write_unfinished();
   for (Own& each : own) {
-    if (each.table->of() == RowsOf::kEachTick) {
-      each.writer->write_unfinished();
-    }
+    each.writer->write_unfinished();
   }
   h5::flush(file);
 }
@@ -180,7 +179,9 @@ void SessionWriter::Impl::write_own() {
 
 void SessionWriter::Impl::write(bool all) {
   if (all || trials->has_unwritten()) {
-    write_samples();
+    write_before_trials();
+  } else {
+    write_own();
   }
   if (all) {
     frames->write_unfinished();
@@ -188,7 +189,6 @@ void SessionWriter::Impl::write(bool all) {
   for (auto* table : {&begun, &trials, &events, &stimuli, &timing, &runs, &attributes}) {
     (*table)->write_unfinished();
   }
-  write_own();
   h5::flush(file);
 }
 

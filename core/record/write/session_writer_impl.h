@@ -57,7 +57,7 @@ struct SessionWriter::Impl {
 
   /// Chunks of samples that are not full stay out, unless `all` or a pass refers to them.
   void write(bool all);
-  void write_samples();
+  void write_before_trials();
   void write_own();  // but what has a row for each tick
   TableWriter::EnsureSpace ensure_space();
   void divert_file() noexcept;

@@ -49,31 +49,37 @@ PixelBox pixels_of(const Eigen::AlignedBox3d& box, const Eigen::Matrix4d& to_cli
 }
 
 BoneLayer::BoneLayer(const Gl& gl) : gl_(gl) {
-  for (Target* target : {&kept_, &over_}) {
-    gl_.gen_framebuffers(1, &target->framebuffer);
-    gl_.gen_renderbuffers(1, &target->colour);
-    gl_.gen_renderbuffers(1, &target->depth);
+  gl_.gen_textures(static_cast<int>(textures_.size()), textures_.data());
+  for (Gl::Name* framebuffer : {&kept_, &openness_, &shaded_, &over_}) {
+    gl_.gen_framebuffers(1, framebuffer);
   }
+  gl_.gen_renderbuffers(1, &over_colour_);
+  gl_.gen_renderbuffers(1, &over_depth_);
 }
 
 BoneLayer::~BoneLayer() {
-  for (const Target* target : {&kept_, &over_}) {
-    gl_.delete_framebuffers(1, &target->framebuffer);
-    gl_.delete_renderbuffers(1, &target->colour);
-    gl_.delete_renderbuffers(1, &target->depth);
+  gl_.delete_textures(static_cast<int>(textures_.size()), textures_.data());
+  for (const Gl::Name* framebuffer : {&kept_, &openness_, &shaded_, &over_}) {
+    gl_.delete_framebuffers(1, framebuffer);
   }
+  gl_.delete_renderbuffers(1, &over_colour_);
+  gl_.delete_renderbuffers(1, &over_depth_);
 }
 
-void BoneLayer::make_room(const Target& target) {
-  gl_.bind_framebuffer(GL_FRAMEBUFFER, target.framebuffer);
-  gl_.bind_renderbuffer(GL_RENDERBUFFER, target.colour);
-  gl_.renderbuffer_storage(GL_RENDERBUFFER, GL_RGBA8, width_, height_);
-  gl_.bind_renderbuffer(GL_RENDERBUFFER, target.depth);
-  gl_.renderbuffer_storage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width_, height_);
-  gl_.bind_renderbuffer(GL_RENDERBUFFER, 0);
-  gl_.framebuffer_renderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
-                               target.colour);
-  gl_.framebuffer_renderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, target.depth);
+void BoneLayer::make_texture(int which, int format, Gl::Enum channels, Gl::Enum type) {
+  gl_.active_texture(GL_TEXTURE0 + static_cast<Gl::Enum>(which));
+  gl_.bind_texture(GL_TEXTURE_2D, textures_[static_cast<std::size_t>(which)]);
+  gl_.tex_image_2d(GL_TEXTURE_2D, 0, format, width_, height_, 0, channels, type, nullptr);
+  gl_.tex_parameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  gl_.tex_parameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+}
+
+void BoneLayer::attach(Gl::Name framebuffer, Gl::Enum attachment, Gl::Name texture) const {
+  gl_.bind_framebuffer(GL_FRAMEBUFFER, framebuffer);
+  gl_.framebuffer_texture_2d(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, texture, 0);
+}
+
+void BoneLayer::check_complete() {
   if (gl_.check_framebuffer_status(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
     const int width = std::exchange(width_, 0);
     gl_.bind_framebuffer(GL_FRAMEBUFFER, static_cast<Gl::Name>(shown_in_));
@@ -82,29 +88,92 @@ void BoneLayer::make_room(const Target& target) {
   }
 }
 
+void BoneLayer::make_room() {
+  for (const int which : {kColour, kNormal, kShaded}) {
+    make_texture(which, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE);
+  }
+  make_texture(kOpenness, GL_R8, GL_RED, GL_UNSIGNED_BYTE);
+  make_texture(kDepth, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT);
+  gl_.active_texture(GL_TEXTURE0);
+  gl_.bind_renderbuffer(GL_RENDERBUFFER, over_colour_);
+  gl_.renderbuffer_storage(GL_RENDERBUFFER, GL_RGBA8, width_, height_);
+  gl_.bind_renderbuffer(GL_RENDERBUFFER, over_depth_);
+  gl_.renderbuffer_storage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width_, height_);
+  gl_.bind_renderbuffer(GL_RENDERBUFFER, 0);
+
+  attach(openness_, GL_COLOR_ATTACHMENT0, textures_[kOpenness]);
+  check_complete();
+  attach(shaded_, GL_COLOR_ATTACHMENT0, textures_[kShaded]);
+  check_complete();
+  gl_.bind_framebuffer(GL_FRAMEBUFFER, over_);
+  gl_.framebuffer_renderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, over_colour_);
+  gl_.framebuffer_renderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, over_depth_);
+  check_complete();
+  attach(kept_, GL_COLOR_ATTACHMENT0, textures_[kColour]);
+  attach(kept_, GL_COLOR_ATTACHMENT1, textures_[kNormal]);
+  attach(kept_, GL_DEPTH_ATTACHMENT, textures_[kDepth]);
+  constexpr std::array<Gl::Enum, 2> kBoth{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+  gl_.draw_buffers(static_cast<int>(kBoth.size()), kBoth.data());
+  check_complete();
+}
+
 bool BoneLayer::begin(int width, int height) {
   gl_.get_integerv(GL_DRAW_FRAMEBUFFER_BINDING, &shown_in_);
   const bool there = width == width_ && height == height_;
   if (!there) {
     width_ = width;
     height_ = height;
-    make_room(over_);
-    make_room(kept_);
+    make_room();
   }
-  gl_.bind_framebuffer(GL_FRAMEBUFFER, kept_.framebuffer);
+  gl_.bind_framebuffer(GL_FRAMEBUFFER, kept_);
   return there;
+}
+
+void BoneLayer::bind_textures() const {
+  for (const int which : {kColour, kNormal, kDepth, kOpenness}) {
+    gl_.active_texture(GL_TEXTURE0 + static_cast<Gl::Enum>(which));
+    gl_.bind_texture(GL_TEXTURE_2D, textures_[static_cast<std::size_t>(which)]);
+  }
+  gl_.active_texture(GL_TEXTURE0);
+}
+
+void BoneLayer::begin_openness() const {
+  gl_.bind_framebuffer(GL_FRAMEBUFFER, openness_);
+  bind_textures();
+}
+
+void BoneLayer::begin_shaded() const {
+  gl_.bind_framebuffer(GL_FRAMEBUFFER, shaded_);
+  bind_textures();
+}
+
+void BoneLayer::shade_plainly() const {
+  gl_.disable(GL_SCISSOR_TEST);
+  gl_.bind_framebuffer(GL_DRAW_FRAMEBUFFER, shaded_);
+  gl_.bind_framebuffer(GL_READ_FRAMEBUFFER, kept_);
+  gl_.blit_framebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT,
+                       GL_NEAREST);
 }
 
 void BoneLayer::copy() const {
   gl_.disable(GL_SCISSOR_TEST);  // it would cut the copy
-  gl_.bind_framebuffer(GL_DRAW_FRAMEBUFFER, over_.framebuffer);
-  gl_.blit_framebuffer(0, 0, width_, height_, 0, 0, width_, height_,
-                       GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
-  gl_.bind_framebuffer(GL_FRAMEBUFFER, over_.framebuffer);
+  const auto copy_of = [&](Gl::Name from, unsigned what) {
+    gl_.bind_framebuffer(GL_READ_FRAMEBUFFER, from);
+    gl_.blit_framebuffer(0, 0, width_, height_, 0, 0, width_, height_, what, GL_NEAREST);
+  };
+  gl_.bind_framebuffer(GL_DRAW_FRAMEBUFFER, over_);
+  copy_of(shaded_, GL_COLOR_BUFFER_BIT);
+  copy_of(kept_, GL_DEPTH_BUFFER_BIT);
+  gl_.bind_framebuffer(GL_FRAMEBUFFER, over_);
+  bind_textures();
 }
 
 void BoneLayer::show() const {
   gl_.disable(GL_SCISSOR_TEST);
+  for (const int which : {kOpenness, kDepth, kNormal, kColour}) {
+    gl_.active_texture(GL_TEXTURE0 + static_cast<Gl::Enum>(which));
+    gl_.bind_texture(GL_TEXTURE_2D, 0);
+  }
   gl_.bind_framebuffer(GL_DRAW_FRAMEBUFFER, static_cast<Gl::Name>(shown_in_));
   gl_.blit_framebuffer(0, height_, width_, 0, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT,
                        GL_NEAREST);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 
 #include "core/render/gl/gl.h"
 
@@ -16,10 +17,11 @@ PixelBox all_pixels(int width, int height);
 PixelBox pixels_of(const Eigen::AlignedBox3d& box, const Eigen::Matrix4d& to_clip, int width,
                    int height);
 
-/// Two pictures with depth: one that is kept from frame to frame, and a copy that what changes in
-/// every frame is drawn over. Both are upside down: copied to a framebuffer of OSMesa's, whose
-/// rows run the other way, they are then copied as they are, 25 times as fast. The copies are
-/// exact. One thread, with the context current.
+/// The pictures that a frame is put together from. Kept from frame to frame: the bones with their
+/// normals and depth, how open each pixel lies, and the bones shaded by that. A copy of these is
+/// what changes in every frame is drawn over. All are upside down: copied to a framebuffer of
+/// OSMesa's, whose rows run the other way, they are then copied as they are, 25 times as fast. The
+/// copies are exact. One thread, with the context current.
 class BoneLayer {
  public:
   explicit BoneLayer(const Gl& gl);
@@ -27,27 +29,44 @@ class BoneLayer {
   BoneLayer(const BoneLayer&) = delete;
   BoneLayer& operator=(const BoneLayer&) = delete;
 
-  /// Later drawing goes to the kept picture, of width x height pixels.
+  /// Later drawing goes to the kept picture of the bones, of width x height pixels: colour to
+  /// attachment 0, normal to 1.
   /// @returns whether what was kept is still there
   /// @throws RunError when OpenGL does not give framebuffers of that size.
   bool begin(int width, int height);
-  /// Later drawing goes over a copy of the kept picture.
+  /// Later drawing goes to the openness, or to the shaded bones; what it reads are the textures
+  /// kColour, kNormal, kDepth and kOpenness in the units of these numbers.
+  void begin_openness() const;
+  void begin_shaded() const;
+  /// The shaded bones are the bones as they are.
+  void shade_plainly() const;
+  /// Later drawing goes over a copy of the shaded bones; it may read the same textures.
   void copy() const;
   /// Copies that to the lower left of the framebuffer that was bound at begin(), the right way up,
   /// and binds it again.
   void show() const;
 
- private:
-  struct Target {
-    Gl::Name framebuffer{0};
-    Gl::Name colour{0};
-    Gl::Name depth{0};
-  };
-  void make_room(const Target& target);
+  static constexpr int kColour = 0;
+  static constexpr int kNormal = 1;
+  static constexpr int kDepth = 2;
+  static constexpr int kOpenness = 3;
 
+ private:
+  void make_room();
+  void make_texture(int which, int format, Gl::Enum channels, Gl::Enum type);
+  void attach(Gl::Name framebuffer, Gl::Enum attachment, Gl::Name texture) const;
+  void check_complete();
+  void bind_textures() const;
+
+  static constexpr int kShaded = 4;
   Gl gl_;
-  Target kept_;
-  Target over_;
+  std::array<Gl::Name, 5> textures_{};
+  Gl::Name kept_{0};  // framebuffers
+  Gl::Name openness_{0};
+  Gl::Name shaded_{0};
+  Gl::Name over_{0};
+  Gl::Name over_colour_{0};  // renderbuffers
+  Gl::Name over_depth_{0};
   int width_{0};
   int height_{0};
   int shown_in_{0};  // framebuffer

@@ -35,10 +35,11 @@ const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(byt
 }  // namespace
 
 BoneObject::BoneObject(const Gl& gl, std::uint32_t id,
-                       std::shared_ptr<const bone::StructureDepths> depths)
+                       std::shared_ptr<const bone::StructureDepths> depths,
+                       std::shared_ptr<bone::Surface> surface)
     : gl_(gl),
       id_(id),
-      surface_(std::move(depths)),
+      surface_(surface ? std::move(surface) : std::make_shared<bone::Surface>(std::move(depths))),
       vertices_(gl, sizeof(GpuVertex)),
       complete_(gl, sizeof(bone::SurfaceTriangle)),
       chosen_(gl, sizeof(bone::SurfaceTriangle)),
@@ -61,17 +62,17 @@ BoneObject::~BoneObject() { gl_.delete_vertex_arrays(1, &array_); }
 
 std::size_t BoneObject::follow(const bone::BoneVolume& volume, const BonePalette& palette,
                                const std::vector<Eigen::Vector3d>& eyes, VisibilityWorker* worker) {
-  surface_.update(volume);
-  blocks_.follow(surface_, volume.grid());
-  if (surface_.rebuilt()) {
+  surface_->update(volume);
+  blocks_.follow(*surface_, volume.grid());
+  if (surface_->rebuilt()) {
     valid_ = false;
     waiting_ = false;
   }
   if (waiting_) {
-    since_.insert(since_.end(), surface_.changed_quads().begin(), surface_.changed_quads().end());
+    since_.insert(since_.end(), surface_->changed_quads().begin(), surface_->changed_quads().end());
   } else if (valid_) {
-    for (const std::int32_t quad : surface_.changed_quads()) {
-      visible_.refresh(surface_, quad, eyes_);
+    for (const std::int32_t quad : surface_->changed_quads()) {
+      visible_.refresh(*surface_, quad, eyes_);
     }
   }
   look(eyes, worker);
@@ -94,23 +95,23 @@ void BoneObject::look(const std::vector<Eigen::Vector3d>& eyes, VisibilityWorker
   waiting_ = true;
   since_.clear();
   if (worker == nullptr) {
-    take({id_, generation_, visible_triangles(surface_.vertices(), surface_.triangles(), eyes_)});
+    take({id_, generation_, visible_triangles(surface_->vertices(), surface_->triangles(), eyes_)});
     return;
   }
   worker->submit({id_,
                   generation_,
                   eyes_,
-                  {surface_.vertices().begin(), surface_.vertices().end()},
-                  {surface_.triangles().begin(), surface_.triangles().end()}});
+                  {surface_->vertices().begin(), surface_->vertices().end()},
+                  {surface_->triangles().begin(), surface_->triangles().end()}});
 }
 
 void BoneObject::take(const VisibilityResult& result) {
   if (!waiting_ || result.generation != generation_) {
     return;
   }
-  visible_.set(surface_, result.triangles);
+  visible_.set(*surface_, result.triangles);
   for (const std::int32_t quad : since_) {
-    visible_.refresh(surface_, quad, eyes_);
+    visible_.refresh(*surface_, quad, eyes_);
   }
   waiting_ = false;
   valid_ = true;
@@ -119,15 +120,15 @@ void BoneObject::take(const VisibilityResult& result) {
 std::size_t BoneObject::send(const BonePalette& palette) {
   const auto write_vertices = [&](ItemRange range, std::byte* to) {
     for (std::size_t i = 0; i < range.count; ++i) {
-      const bone::SurfaceVertex& v = surface_.vertices()[range.first + i];
+      const bone::SurfaceVertex& v = surface_->vertices()[range.first + i];
       const GpuVertex vertex{v.place, {v.normal[0], v.normal[1], v.normal[2], 0}, palette.of(v)};
       std::memcpy(to + i * sizeof(GpuVertex), &vertex, sizeof(GpuVertex));
     }
   };
-  std::size_t sent = vertices_.update(surface_.vertices().size(),
-                                      unsigned_of(surface_.changed_vertices()), write_vertices);
-  sent += complete_.update(surface_.triangles().size(), triangles_of(surface_.changed_quads()),
-                           copier(surface_.triangles()));
+  std::size_t sent = vertices_.update(surface_->vertices().size(),
+                                      unsigned_of(surface_->changed_vertices()), write_vertices);
+  sent += complete_.update(surface_->triangles().size(), triangles_of(surface_->changed_quads()),
+                           copier(surface_->triangles()));
   if (valid_) {
     sent += chosen_.update(visible_.triangles().size(), visible_.take_changed(),
                            copier(visible_.triangles()));
@@ -137,7 +138,7 @@ std::size_t BoneObject::send(const BonePalette& palette) {
 
 std::size_t BoneObject::draw(bool visible) const {
   const bool chosen = visible && valid_;
-  const std::size_t count = chosen ? visible_.triangles().size() : surface_.triangles().size();
+  const std::size_t count = chosen ? visible_.triangles().size() : surface_->triangles().size();
   draw_triangles(chosen ? chosen_ : complete_, count);
   return count;
 }
@@ -154,7 +155,7 @@ std::size_t BoneObject::draw(bool visible, const PixelBox& part, const Eigen::Ma
   std::sort(places_.begin(), places_.end());
   std::vector<std::uint32_t> all(places_.size());
   std::iota(all.begin(), all.end(), 0U);
-  const auto triangles = chosen ? visible_.triangles() : surface_.triangles();
+  const auto triangles = chosen ? visible_.triangles() : surface_->triangles();
   part_.update(places_.size(), std::move(all), [&](ItemRange range, std::byte* to) {
     for (std::size_t i = 0; i < range.count; ++i) {
       std::memcpy(to + i * sizeof(bone::SurfaceTriangle), &triangles[places_[range.first + i]],

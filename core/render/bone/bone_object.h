@@ -20,7 +20,9 @@ namespace haptrial::render {
 class BoneObject {
  public:
   /// @param id  for results of the visibility pass
-  BoneObject(const Gl& gl, std::uint32_t id, std::shared_ptr<const bone::StructureDepths> depths);
+  /// @param surface  that was built already; null: one is built with these depths
+  BoneObject(const Gl& gl, std::uint32_t id, std::shared_ptr<const bone::StructureDepths> depths,
+             std::shared_ptr<bone::Surface> surface = nullptr);
   ~BoneObject();
   BoneObject(const BoneObject&) = delete;
   BoneObject& operator=(const BoneObject&) = delete;
@@ -46,7 +48,7 @@ class BoneObject {
   /// Grows when the visible array is begun anew; 0 while there is none.
   std::uint64_t array() const noexcept { return valid_ ? generation_ : 0; }
   const BoneBlocks& blocks() const noexcept { return blocks_; }
-  std::size_t triangle_count() const noexcept { return surface_.triangle_count(); }
+  std::size_t triangle_count() const noexcept { return surface_->triangle_count(); }
 
  private:
   void look(const std::vector<Eigen::Vector3d>& eyes, VisibilityWorker* worker);
@@ -62,7 +64,7 @@ class BoneObject {
 
   Gl gl_;
   std::uint32_t id_;
-  bone::Surface surface_;
+  std::shared_ptr<bone::Surface> surface_;
   BoneBlocks blocks_;
   VisibleArray visible_;
   bool valid_{false};                  // visible_ is right for eyes_

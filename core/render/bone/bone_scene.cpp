@@ -48,6 +48,17 @@ bool is_same(const EyeView& a, const EyeView& b) {
   return a.view == b.view && a.projection == b.projection;
 }
 
+/// What of a frame's tools casts shadows, in W.
+std::vector<Capsule> capsules_of(const BoneFrame& frame) {
+  std::vector<Capsule> all;
+  for (const SceneMesh& mesh : frame.meshes) {
+    for (const Capsule& each : mesh.casts) {
+      all.push_back({mesh.pose * each.from, mesh.pose * each.to, each.radius});
+    }
+  }
+  return all;
+}
+
 /// A bone as it is in the kept picture.
 struct DrawnBone {
   Eigen::Matrix4d pose;
@@ -69,7 +80,8 @@ struct BoneScene::Impl {
         to_clip(gl.get_uniform_location(program, "to_clip")),
         light(gl.get_uniform_location(program, "light")),
         dust(gl),
-        layer(gl) {
+        layer(gl),
+        shading(gl, look) {
     if (style.visible_array && style.background_visibility) {
       worker = std::make_unique<VisibilityWorker>();
     }
@@ -86,7 +98,7 @@ struct BoneScene::Impl {
             int height);
   void draw_bones(const BoneFrame& frame, const EyeView& view, const PixelBox& part, int width,
                   int height);
-  void draw_over(const BoneFrame& frame, const EyeView& view);
+  void draw_over(const BoneFrame& frame, const EyeView& view, const EyeArea& area);
   void use(const EyeView& view) const;
   void draw_meshes(const BoneFrame& frame, const EyeView& view, bool translucent);
   void use(const EyeView& view, const Eigen::Isometry3d& pose) const;
@@ -102,7 +114,9 @@ struct BoneScene::Impl {
   int light;
   DustDrawing dust;
   BoneLayer layer;
+  BoneShading shading;
   std::vector<EyeView> seen_from;            // as the kept picture is
+  bool is_shaded{false};                     // it is darker where it is closed in
   std::map<std::uint32_t, DrawnBone> shown;  // in the kept picture
   std::map<std::uint32_t, std::unique_ptr<BoneObject>> bones;
   std::map<const geometry::Mesh*, std::unique_ptr<BoneMesh>> meshes;
@@ -142,7 +156,7 @@ void BoneScene::Impl::follow(const BoneFrame& frame, const std::vector<EyeView>&
   for (const SceneBone& bone : frame.bones) {
     std::unique_ptr<BoneObject>& object = bones[bone.id];
     if (object == nullptr) {
-      object = std::make_unique<BoneObject>(gl, bone.id, depths);
+      object = std::make_unique<BoneObject>(gl, bone.id, depths, bone.surface);
     }
     std::vector<Eigen::Vector3d> eyes;
     for (const EyeView& view : views) {
@@ -230,7 +244,8 @@ void BoneScene::Impl::draw_bones(const BoneFrame& frame, const EyeView& view, co
   }
 }
 
-void BoneScene::Impl::draw_over(const BoneFrame& frame, const EyeView& view) {
+void BoneScene::Impl::draw_over(const BoneFrame& frame, const EyeView& view, const EyeArea& area) {
+  shading.draw_shadows(view, area, capsules_of(frame));
   use(view);
   gl.disable(GL_BLEND);
   gl.depth_mask(GL_TRUE);
@@ -244,12 +259,15 @@ void BoneScene::Impl::draw_over(const BoneFrame& frame, const EyeView& view) {
   gl.depth_mask(GL_TRUE);
 }
 
-/// Draws of the bones what is not as the kept picture has it.
+/// Draws of the bones what is not as the kept picture has it. While the camera moves they are not
+/// darkened where they are closed in: all of the picture would have to be, in every frame.
 void BoneScene::Impl::keep(const BoneFrame& frame, const std::vector<EyeView>& views, bool there,
                            int across, int height) {
   std::vector<PixelBox> parts = changed_parts(frame, views, across, height);
-  there = there && style.kept_layer &&
-          std::equal(views.begin(), views.end(), seen_from.begin(), seen_from.end(), is_same);
+  const bool rests =
+      std::equal(views.begin(), views.end(), seen_from.begin(), seen_from.end(), is_same);
+  const bool shaded = rests || seen_from.empty();
+  there = there && style.kept_layer && rests;
   seen_from = views;
   gl.disable(GL_BLEND);
   gl.disable(GL_SCISSOR_TEST);
@@ -272,6 +290,15 @@ void BoneScene::Impl::keep(const BoneFrame& frame, const std::vector<EyeView>& v
       gl.clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     }
     draw_bones(frame, views[eye], part, across, height);
+  }
+  const bool all = std::exchange(is_shaded, shaded) != shaded;
+  if (!shaded) {
+    layer.shade_plainly();
+  }
+  for (std::size_t eye = 0; shaded && eye < views.size(); ++eye) {
+    const EyeArea area{static_cast<int>(eye) * across, across, height};
+    gl.viewport(area.left, 0, across, height);
+    shading.draw(layer, views[eye], area, all ? all_pixels(across, height) : parts[eye]);
   }
 }
 
@@ -319,8 +346,9 @@ void BoneScene::draw(const BoneFrame& frame, int width, int height) {
   scene.keep(frame, views, there, across, height);
   scene.layer.copy();
   for (std::size_t eye = 0; eye < views.size(); ++eye) {
-    gl.viewport(static_cast<int>(eye) * across, 0, across, height);
-    scene.draw_over(frame, views[eye]);
+    const EyeArea area{static_cast<int>(eye) * across, across, height};
+    gl.viewport(area.left, 0, across, height);
+    scene.draw_over(frame, views[eye], area);
   }
   scene.end();
   gl.viewport(0, 0, width, height);

@@ -9,9 +9,11 @@
 
 #include "core/bone/dust/dust_quad.h"
 #include "core/bone/model/bone_volume.h"
+#include "core/bone/surface/surface.h"
 #include "core/bone/surface/surface_depths.h"
 #include "core/geometry/mesh/mesh.h"
 #include "core/render/bone/bone_camera.h"
+#include "core/render/bone/bone_shading.h"
 #include "core/render/bone/bone_style.h"
 #include "core/render/gl/colour.h"
 #include "core/render/gl/gl.h"
@@ -24,6 +26,9 @@ struct SceneBone {
   std::uint32_t id{0};
   const bone::BoneVolume* volume{nullptr};                // alive during draw()
   Eigen::Isometry3d pose{Eigen::Isometry3d::Identity()};  // from B to W
+  /// The volume's surface, built already and from now on the scene's; read for a new id. Null: the
+  /// scene builds one, which takes seconds for a large bone.
+  std::shared_ptr<bone::Surface> surface{};
 };
 
 /// A tool, a plate or anything else with a mesh; kept by the mesh's address while it is drawn.
@@ -31,6 +36,7 @@ struct SceneMesh {
   std::shared_ptr<const geometry::Mesh> mesh;             // in its own frame [m]
   Eigen::Isometry3d pose{Eigen::Isometry3d::Identity()};  // from that frame to W
   Colour colour{0.75, 0.77, 0.80};                        // alpha below 1: translucent
+  std::vector<Capsule> casts{};                           // a shadow on bone, in its own frame
 };
 
 /// All that a picture shows.

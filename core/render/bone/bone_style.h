@@ -12,8 +12,11 @@ struct BoneStyle {
   Colour dust{0.95, 0.92, 0.84};
   double ambient{0.22};           // light from everywhere
   double diffuse{0.72};           // light at the eye, by the cosine
-  double specular{0.10};          // its reflection, ...
-  double shininess{24.0};         // ... by this power of the cosine
+  double specular{0.13};          // its reflection on wet bone, ...
+  double shininess{32.0};         // ... by this power of the cosine
+  double occlusion{0.85};         // share of the light that a closed-in place loses; 0: not drawn
+  double occlusion_reach{0.005};  // how far what closes it in may lie [m]
+  double shadow{0.5};             // share of the light that a tool takes; 0: not drawn
   double through_length{0.0007};  // the share of a structure's colour in the bone over it is
   double through_share{0.85};     // share exp(-depth / length) [m]
   /// The visibility pass on a thread of its own, for a screen. When it ends is then a matter of

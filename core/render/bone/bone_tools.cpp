@@ -1,5 +1,6 @@
 #include "core/render/bone/bone_tools.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -9,7 +10,11 @@
 namespace haptrial::render {
 namespace {
 
-constexpr int kAround = 32;  // sides of a round thing
+constexpr int kAround = 32;                // sides of a round thing
+constexpr double kHandleBegins = 0.55;     // of the length
+constexpr double kThinnestShaft = 1.2e-3;  // of a burr that is thicker, diameter [m]
+constexpr double kShaftShare = 0.4;        // of a thick burr's diameter
+constexpr double kHandleThickness = 2.5;   // times the shaft's
 
 void require(bool good, const char* what) {
   if (!good) {
@@ -53,14 +58,18 @@ void add_turned(geometry::Mesh& mesh, const std::vector<Station>& stations) {
 
 }  // namespace
 
+double burr_shaft(double diameter) noexcept {
+  return std::min(std::max(kThinnestShaft, kShaftShare * diameter), diameter);
+}
+
 geometry::Mesh burr_mesh(double diameter, double shaft_diameter, double length) {
   require(diameter > 0.0 && shaft_diameter > 0.0 && length > diameter,
           "burr_mesh: diameters above 0 and a length above the burr's are needed");
   constexpr int kFrequency = 12;
   geometry::Mesh mesh = geometry::make_sphere(0.5 * diameter, kFrequency);
   const double shaft = 0.5 * shaft_diameter;
-  const double handle = 2.5 * shaft;
-  const double begins = 0.55 * length;  // of the handle
+  const double handle = kHandleThickness * shaft;
+  const double begins = kHandleBegins * length;
   add_turned(mesh, {{0.0, 0.0},
                     {shaft, 0.0},
                     {shaft, begins},
@@ -68,6 +77,16 @@ geometry::Mesh burr_mesh(double diameter, double shaft_diameter, double length) 
                     {handle, length},
                     {0.0, length}});
   return mesh;
+}
+
+std::vector<Capsule> burr_shadow(double diameter, double shaft_diameter, double length) {
+  const double shaft = 0.5 * shaft_diameter;
+  const double handle = kHandleThickness * shaft;
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d begins = (kHandleBegins * length + 2.0 * handle) * up;
+  return {{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 0.5 * diameter},
+          {Eigen::Vector3d::Zero(), begins, shaft},
+          {begins, length * up, handle}};
 }
 
 geometry::Mesh suction_mesh(double inner_diameter, double outer_diameter, double length) {

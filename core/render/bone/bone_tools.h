@@ -1,15 +1,21 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <vector>
 
 #include "core/base/tool_state.h"
 #include "core/geometry/mesh/mesh.h"
+#include "core/render/bone/bone_shading.h"
 
 namespace haptrial::render {
 
 /// Meshes of tools in the tool frame T, whose origin is the burr's centre or the tube's opening and
 /// whose z axis runs along the handle.
+/// A burr's shaft: 1.2 mm, or two fifths of a thick burr; never thicker than the burr [m].
+double burr_shaft(double diameter) noexcept;
 geometry::Mesh burr_mesh(double diameter, double shaft_diameter, double length);
+/// What of such a burr keeps light off: the ball, the shaft and the handle.
+std::vector<Capsule> burr_shadow(double diameter, double shaft_diameter, double length);
 geometry::Mesh suction_mesh(double inner_diameter, double outer_diameter, double length);
 /// A rectangle in the plane z = 0 around the origin, seen from both sides.
 geometry::Mesh plane_mesh(double width, double height);

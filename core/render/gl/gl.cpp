@@ -95,6 +95,7 @@ void load_textures(Gl& gl, const Loader& load) {
   load(gl.gen_framebuffers, "glGenFramebuffers");
   load(gl.bind_framebuffer, "glBindFramebuffer");
   load(gl.framebuffer_texture_2d, "glFramebufferTexture2D");
+  load(gl.draw_buffers, "glDrawBuffers");
   load(gl.check_framebuffer_status, "glCheckFramebufferStatus");
   load(gl.delete_framebuffers, "glDeleteFramebuffers");
   load(gl.gen_renderbuffers, "glGenRenderbuffers");

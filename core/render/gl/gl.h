@@ -85,6 +85,7 @@ struct Gl {
   void (*bind_framebuffer)(Enum target, Name name);
   void (*framebuffer_texture_2d)(Enum target, Enum attachment, Enum texture_target, Name texture,
                                  int level);
+  void (*draw_buffers)(int count, const Enum* attachments);
   Enum (*check_framebuffer_status)(Enum target);
   void (*delete_framebuffers)(int count, const Name* names);
   void (*gen_renderbuffers)(int count, Name* names);

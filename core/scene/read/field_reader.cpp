@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/scene/read/field_reader_internal.h"
+#include "core/scene/read/field_reader.h"
 
 namespace haptrial::scene {
 

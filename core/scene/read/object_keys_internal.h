@@ -5,7 +5,7 @@
 #include "core/contact/objects/moving_objects.h"
 #include "core/contact/proxy/proxy.h"
 #include "core/scene/field.h"
-#include "core/scene/read/field_reader_internal.h"
+#include "core/scene/read/field_reader.h"
 
 namespace haptrial::scene {
 

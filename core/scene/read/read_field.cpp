@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "core/base/random.h"
-#include "core/scene/read/field_reader_internal.h"
+#include "core/scene/read/field_kinds.h"
+#include "core/scene/read/field_reader.h"
 #include "core/scene/read/read_shape.h"
 
 namespace haptrial::scene {
@@ -270,32 +272,38 @@ FieldKind read_path(const FieldReader& read) {
   return p;
 }
 
-struct KindOfField {
-  const char* word;
-  FieldKind (*read)(const FieldReader&);
-  double fade;  // if none is given [s]
-};
-
 constexpr double kSoft = 0.05;
-constexpr KindOfField kKinds[] = {
-    {"constant", read_constant, kSoft},   {"ramp", read_ramp, 0.0},
-    {"pulse", read_pulse, 0.0},           {"spring", read_spring, kSoft},
-    {"wall", read_wall, kSoft},           {"box", read_solid_box, kSoft},
-    {"sphere", read_solid_sphere, kSoft}, {"cylinder", read_solid_cylinder, kSoft},
-    {"channel", read_channel, kSoft},     {"plane", read_plane, kSoft},
-    {"viscous", read_viscous, kSoft},     {"matrix_viscous", read_matrix_viscous, kSoft},
-    {"inertia", read_inertia, kSoft},     {"friction", read_friction, kSoft},
-    {"grating", read_grating, kSoft},     {"texture", read_texture, kSoft},
-    {"vibration", read_vibration, 0.0},   {"tap", read_tap, 0.0},
-    {"detent", read_detent, kSoft},       {"click", read_click, kSoft},
-    {"minimum_jerk", read_mover, 0.0},    {"path", read_path, kSoft},
-};
+
+std::vector<KindOfField>& all_kinds() {
+  static std::vector<KindOfField> kinds{
+      {"constant", read_constant, kSoft},   {"ramp", read_ramp, 0.0},
+      {"pulse", read_pulse, 0.0},           {"spring", read_spring, kSoft},
+      {"wall", read_wall, kSoft},           {"box", read_solid_box, kSoft},
+      {"sphere", read_solid_sphere, kSoft}, {"cylinder", read_solid_cylinder, kSoft},
+      {"channel", read_channel, kSoft},     {"plane", read_plane, kSoft},
+      {"viscous", read_viscous, kSoft},     {"matrix_viscous", read_matrix_viscous, kSoft},
+      {"inertia", read_inertia, kSoft},     {"friction", read_friction, kSoft},
+      {"grating", read_grating, kSoft},     {"texture", read_texture, kSoft},
+      {"vibration", read_vibration, 0.0},   {"tap", read_tap, 0.0},
+      {"detent", read_detent, kSoft},       {"click", read_click, kSoft},
+      {"minimum_jerk", read_mover, 0.0},    {"path", read_path, kSoft},
+  };
+  return kinds;
+}
+
+/// Null if there is none.
+const KindOfField* named(const std::string& word) {
+  const std::vector<KindOfField>& kinds = all_kinds();
+  const auto found = std::find_if(kinds.begin(), kinds.end(),
+                                  [&](const KindOfField& kind) { return kind.word == word; });
+  return found != kinds.end() ? &*found : nullptr;
+}
 
 /// Null, with the problem noted, if the type is not known.
 const KindOfField* kind_of(Table& table) {
   std::vector<std::string> words;
-  for (const KindOfField& kind : kKinds) {
-    words.emplace_back(kind.word);
+  for (const KindOfField& kind : all_kinds()) {
+    words.push_back(kind.word);
   }
   const std::string word = table.choice("type", words);
   if (table.whole_text("type") != word) {
@@ -304,11 +312,20 @@ const KindOfField* kind_of(Table& table) {
     }
     return nullptr;
   }
-  return std::find_if(std::begin(kKinds), std::end(kKinds),
-                      [&](const KindOfField& kind) { return kind.word == word; });
+  return named(word);
 }
 
 }  // namespace
+
+const std::vector<KindOfField>& kinds_of_field() { return all_kinds(); }
+
+void add_kind_of_field(const KindOfField& kind) {
+  if (named(kind.word) != nullptr) {
+    throw std::invalid_argument(
+        fmt::format("add_kind_of_field: there is a field '{}' already", kind.word));
+  }
+  all_kinds().push_back(kind);
+}
 
 Field read_field(Table& table, std::string name, double rate, const NumberSource& source) {
   Field field;

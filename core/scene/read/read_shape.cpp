@@ -1,6 +1,6 @@
 #include "core/scene/read/read_shape.h"
 
-#include "core/scene/read/field_reader_internal.h"
+#include "core/scene/read/field_reader.h"
 
 namespace haptrial::scene {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/scene/read/field_reader_internal.h"
+#include "core/scene/read/field_reader.h"
 #include "core/scene/read/object_keys_internal.h"
 
 namespace haptrial::scene {

@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/deformable/touch/tissue.h"
-#include "core/scene/read/field_reader_internal.h"
+#include "core/scene/read/field_reader.h"
 #include "core/scene/read/object_keys_internal.h"
 
 namespace haptrial::scene {

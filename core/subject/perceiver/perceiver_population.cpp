@@ -1,5 +1,6 @@
 #include "core/subject/perceiver/perceiver_population.h"
 
+#include <algorithm>
 #include <iterator>
 #include <string>
 
@@ -83,6 +84,11 @@ PerceiverPopulation::PerceiverPopulation(Table& table, const JudgementParameters
   for (int i = 0; i < kJudgements; ++i) {
     judgements_[i] = read_key(table, judgement_key(i, logarithmic_), judge);
   }
+}
+
+bool PerceiverPopulation::varies() const {
+  const auto spread = [](const Variation& each) { return each.spread > 0.0; };
+  return std::ranges::any_of(senses_, spread) || std::ranges::any_of(judgements_, spread);
 }
 
 SenseParameters PerceiverPopulation::draw_senses(std::uint64_t seed) const {

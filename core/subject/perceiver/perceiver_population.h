@@ -21,6 +21,9 @@ class PerceiverPopulation {
   /// @param judge  what is not read: `logarithmic`, and the defaults
   explicit PerceiverPopulation(Table& table, const JudgementParameters& judge = {});
 
+  /// Whether any parameter differs between people.
+  bool varies() const;
+
   /// The person of a seed; each parameter has its own stream "observer KEY".
   SenseParameters draw_senses(std::uint64_t seed) const;
   JudgementParameters draw_judgement(std::uint64_t seed) const;

@@ -1,0 +1,55 @@
+#include "core/device/own_devices.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <stdexcept>
+
+namespace haptrial::device {
+namespace {
+
+constexpr std::array kBuiltIn{"virtual", "replay", "mouse", "force-dimension", "open-haptics"};
+
+std::vector<OwnDevice>& all_own() {
+  static std::vector<OwnDevice> devices;
+  return devices;
+}
+
+bool is_word(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char each) {
+    return std::isalnum(each) != 0 || each == '-';
+  });
+}
+
+}  // namespace
+
+const std::vector<OwnDevice>& own_devices() { return all_own(); }
+
+void add_own_device(const OwnDevice& device) {
+  if (!is_word(device.name)) {
+    throw std::invalid_argument(fmt::format(
+        "add_own_device: '{}' is no name; allowed: letters, digits and '-'", device.name));
+  }
+  if (own_device(device.name) != nullptr ||
+      std::find(kBuiltIn.begin(), kBuiltIn.end(), device.name) != kBuiltIn.end()) {
+    throw std::invalid_argument(
+        fmt::format("add_own_device: there is a device '{}' already", device.name));
+  }
+  all_own().push_back(device);
+}
+
+const OwnDevice* own_device(const std::string& choice) {
+  const std::string name = choice.substr(0, choice.find(':'));
+  const auto found = std::find_if(all_own().begin(), all_own().end(),
+                                  [&](const OwnDevice& device) { return device.name == name; });
+  return found != all_own().end() ? &*found : nullptr;
+}
+
+std::string setting_of(const std::string& choice) {
+  const std::size_t colon = choice.find(':');
+  return colon == std::string::npos ? "" : choice.substr(colon + 1);
+}
+
+}  // namespace haptrial::device

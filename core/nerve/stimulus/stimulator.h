@@ -1,0 +1,62 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/nerve/record/nerve_rows.h"
+#include "core/nerve/stimulus/threshold_search.h"
+
+namespace haptrial::nerve {
+
+/// The current of the probe's next pulse [A]: the servo thread reads what a technician sets.
+using PulseCurrent = std::shared_ptr<std::atomic<float>>;
+
+/// A nerve's threshold as a search found it.
+struct FoundThreshold {
+  std::size_t channel{0};
+  double current{0.0};       // [A]
+  bool out_of_range{false};  // answered to the weakest pulse, or not to the strongest
+};
+
+/// What a technician makes of the probe's pulses: sets their current, or lets a search find the
+/// least one that a channel answers. An answer that falls into another event of the channel is not
+/// seen: search in quiet. The thread that makes electromyograms; allocates rows.
+class Stimulator {
+ public:
+  /// @param rate  of ticks [Hz]
+  Stimulator(PulseCurrent current, double rate) : current_(std::move(current)), rate_(rate) {}
+
+  /// Ends a search. @param current  kLeastStimulus to kMostStimulus, else taken as the nearer [A]
+  void set(double current) noexcept;
+  void search(std::size_t channel) noexcept;
+
+  /// After every tick. @param pulse  that began with it [A], 0: none @param ended  its events
+  void follow(std::uint64_t sequence, double pulse, std::span<const record::NerveEventRow> ended,
+              std::vector<record::NerveStimulusRow>& rows);
+
+  double current() const noexcept { return current_->load(std::memory_order_relaxed); }  // [A]
+  /// The channel whose threshold is being looked for.
+  std::optional<std::size_t> searching() const noexcept { return channel_; }
+  const std::optional<FoundThreshold>& found() const noexcept { return found_; }
+
+ private:
+  void give(double current) noexcept;
+  void conclude(std::uint64_t sequence, std::vector<record::NerveStimulusRow>& rows);
+
+  PulseCurrent current_;
+  double rate_;
+  bool set_{false};  // since the tick before
+  bool begun_{false};
+  std::optional<std::size_t> channel_;
+  std::optional<ThresholdSearch> search_;
+  std::optional<std::uint64_t> pulse_;  // tick of the one whose answer is awaited
+  bool answered_{false};
+  std::optional<FoundThreshold> found_;
+};
+
+}  // namespace haptrial::nerve

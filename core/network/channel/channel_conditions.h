@@ -1,0 +1,24 @@
+#pragma once
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::network {
+
+/// What a network does to messages on one way.
+struct ChannelConditions {
+  double delay{0.0};        // least [s]
+  double jitter{0.0};       // mean of what comes on top, exponentially distributed [s]
+  double loss{0.0};         // share, 0 to 1
+  double duplication{0.0};  // share that comes twice, each copy with a jitter of its own
+  double reordering{0.0};   // share that does not wait for those before it
+  double bandwidth{0.0};    // [bytes/s]; 0: no limit
+
+  bool operator==(const ChannelConditions&) const = default;
+};
+
+/// Reads the keys delay, jitter, loss, duplication, reordering and bandwidth of a table.
+ChannelConditions read_channel_conditions(Table& table);
+
+}  // namespace haptrial::network

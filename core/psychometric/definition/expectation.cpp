@@ -1,0 +1,122 @@
+#include "core/psychometric/definition/expectation.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "core/base/definition/table.h"
+#include "core/psychometric/definition/track.h"
+#include "core/psychometric/function/response_observer.h"
+#include "core/psychometric/prediction/staircase_chain.h"
+
+namespace haptrial::psychometric {
+namespace {
+
+/// The share of right answers that a track seeks; nothing if no one number says it.
+std::optional<double> sought(const Track& track) {
+  if (track.staircase && track.staircase->up == 1) {
+    return balance_of(track.staircase->down, track.staircase->steps.back());
+  }
+  return std::nullopt;
+}
+
+std::string sentence(const Track& track, double level, double low, double high, double trials) {
+  return fmt::format(
+      "{}: if people are as expected it finds {:.4g} ({:.4g} to {:.4g}, one standard "
+      "deviation to either side) {} in {:.0f} trials",
+      track.name, level, low, high, track.unit, trials);
+}
+
+std::optional<std::string> by_chain(const Track& track, const PsychometricFunction& function) {
+  const StaircaseParameters& p = *track.staircase;
+  const double share = sought(track).value_or(0.5);
+  const double target = function.level_for(share);
+  const auto found = predict_staircase(
+      p, [&](double level) { return function(level); }, target);
+  std::string text =
+      sentence(track, p.axis.level(found.mean), p.axis.level(found.mean - found.deviation),
+               p.axis.level(found.mean + found.deviation), found.trials);
+  if (sought(track)) {
+    text += fmt::format("; {:.1f} % right is at {:.4g}, so its bias is {:+.2g}", 100.0 * share,
+                        target, p.axis.level(found.mean) - target);
+  }
+  return text;
+}
+
+std::optional<std::string> by_simulation(const Track& track,
+                                         const PsychometricParameters& function) {
+  constexpr int kTracks = 500;
+  const Axis& axis = function.axis;
+  double sum = 0.0, square = 0.0, trials = 0.0;
+  int count = 0;
+  for (int i = 0; i < kTracks; ++i) {
+    const std::string name = fmt::format("expected {}", i);
+    ResponseObserver observer({function}, 1, name);
+    const auto procedure = track.begin(1, name);
+    while (!procedure->finished()) {
+      const double level = track.applied(procedure->next().front());
+      procedure->report(observer.answer(level), {level});
+      ++trials;
+    }
+    const auto estimates = procedure->estimates();
+    if (!estimates.empty()) {
+      const double x = axis.at(estimates.front().value);
+      sum += x;
+      square += x * x;
+      ++count;
+    }
+  }
+  if (count < kTracks / 2) {
+    return std::nullopt;
+  }
+  const double mean = sum / count;
+  const double deviation = std::sqrt(std::max(0.0, square / count - mean * mean));
+  return sentence(track, axis.level(mean), axis.level(mean - deviation),
+                  axis.level(mean + deviation), trials / kTracks) +
+         " (simulated)";
+}
+
+}  // namespace
+
+std::optional<PsychometricParameters> read_expectation(Table& procedure, const Axis& axis) {
+  Table table = procedure.table("expect");
+  PsychometricParameters p;
+  p.axis = axis;
+  p.guess = 0.5;
+  p.threshold = table.number("threshold", {}, "");
+  p.width = table.number("width", kPositive, "");
+  if (table.has("guess")) {
+    p.guess = table.number("guess", {0.0, 0.99}, "1");
+  }
+  if (table.has("lapse")) {
+    p.lapse = table.number("lapse", {0.0, 0.5}, "1");
+  }
+  if (table.has("share")) {
+    p.share = table.number("share", {0.01, 0.99}, "1");
+  }
+  try {
+    if (table.has("function")) {
+      p.sigmoid = sigmoid_named(table.text("function")).sigmoid;
+    }
+    static_cast<void>(PsychometricFunction(p));
+  } catch (const std::invalid_argument& error) {
+    procedure.reject("expect", fmt::format("is refused: {}", error.what()));
+    return std::nullopt;
+  }
+  return p;
+}
+
+std::optional<std::string> predicted(const Track& track) {
+  if (!track.expected || track.listed) {
+    return std::nullopt;
+  }
+  try {
+    return track.staircase ? by_chain(track, PsychometricFunction(*track.expected))
+                           : by_simulation(track, *track.expected);
+  } catch (const std::invalid_argument&) {  // more states than can be followed, no such level
+    return std::nullopt;
+  }
+}
+
+}  // namespace haptrial::psychometric

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/psychometric/function/psychometric_function.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::psychometric {
+
+struct Track;
+
+/// Reads `expect` of a procedure: the psychometric function that a study counts on, of the variable
+/// that the track sets. Keys in brackets are optional.
+///
+///     expect = { threshold, width, [function], [guess], [lapse], [share] }
+///
+/// threshold is a level [unit of the variable], width on the axis of the track's steps. Problems
+/// are noted.
+std::optional<PsychometricParameters> read_expectation(Table& procedure, const Axis& axis);
+
+/// What the track will find if people are as expected, in a sentence: estimate with bias and
+/// standard deviation, and trials. Of a staircase exactly, by its Markov chain; of PEST and psi
+/// from 500 simulated tracks; of listed levels nothing, for there is no estimate but a fit.
+/// @returns nothing without an expectation, or if it cannot be said
+std::optional<std::string> predicted(const Track& track);
+
+}  // namespace haptrial::psychometric

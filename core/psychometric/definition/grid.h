@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/definition/table.h"
+#include "core/psychometric/function/axis.h"
+
+namespace haptrial::psychometric {
+
+struct Track;
+
+/// Where a track finds its keys: in its own table, or else in that of its procedure.
+struct TrackKeys {
+  Table& track;
+  Table& procedure;
+
+  bool has(std::string_view key) const { return track.has(key) || procedure.has(key); }
+  Table& of(std::string_view key) const { return track.has(key) ? track : procedure; }
+};
+
+/// Reads `scale` and `origin` of the steps or the function of a track whose range is known.
+Axis read_axis(const TrackKeys& keys, const Track& track);
+
+/// A list of numbers, one number, or { from, to, count, [spacing] }. Problems are noted.
+std::vector<double> read_grid(Table& table, const std::string& key);
+
+/// The last of these. @param grid  the table itself
+std::vector<double> read_spaced_grid(Table& grid);
+
+}  // namespace haptrial::psychometric

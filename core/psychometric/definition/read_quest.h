@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/psychometric/quest/quest_plus.h"
+
+namespace haptrial::psychometric {
+
+struct Track;
+struct TrackKeys;
+
+/// Reads a QUEST+ over any number of dimensions. Keys in brackets are optional; grids are lists or
+/// { from, to, count, [spacing] }, or { values = [...] } with the keys that follow them.
+///
+///     stimulus     VARIABLE = grid, [resolution]: what it sets; the first one is the track's
+///     parameters   NAME = grid, [prior], [nuisance]: what it asks about; prior = weights of the
+///                  values, or { mean, sd } of a normal distribution
+///     probability  formula of both, of the answer 1; or of the answers 1, 2, …, a list: the
+///                  answer 0 has what is left
+///     or function  a sigmoid of one stimulus with the parameters threshold, width, [guess = 0.5],
+///                  [lapse = 0], as psi has them, with [scale] and [origin]
+///
+/// Problems are noted.
+void read_quest(const TrackKeys& keys, const QuestStop& stop, Track& track);
+
+}  // namespace haptrial::psychometric

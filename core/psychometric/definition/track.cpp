@@ -1,0 +1,57 @@
+#include "core/psychometric/definition/track.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptrial::psychometric {
+
+namespace {
+
+double rounded_within(double asked, double low, double high, double resolution) noexcept {
+  const double kept = std::clamp(asked, low, high);
+  if (resolution <= 0.0) {
+    return kept;
+  }
+  const double rounded = std::round(kept / resolution) * resolution;
+  return rounded < low    ? std::ceil(low / resolution) * resolution
+         : rounded > high ? std::floor(high / resolution) * resolution
+                          : rounded;
+}
+
+}  // namespace
+
+double Track::applied(double asked) const noexcept {
+  return rounded_within(asked, low, high, resolution);
+}
+
+Level Track::applied(const Level& asked) const {
+  Level level{applied(asked.front())};
+  for (std::size_t i = 0; i < further.size(); ++i) {
+    const TrackDimension& own = further[i];
+    level.push_back(rounded_within(asked[i + 1], own.low, own.high, own.resolution));
+  }
+  return level;
+}
+
+std::vector<std::string> Track::variables() const {
+  std::vector<std::string> names{variable};
+  for (const TrackDimension& each : further) {
+    names.push_back(each.variable);
+  }
+  return names;
+}
+
+bool Track::sets(const std::string& one) const {
+  const std::vector<std::string> names = variables();
+  return std::ranges::find(names, one) != names.end();
+}
+
+Level Track::corner(bool of_high) const {
+  Level level{of_high ? high : low};
+  for (const TrackDimension& each : further) {
+    level.push_back(of_high ? each.high : each.low);
+  }
+  return applied(level);
+}
+
+}  // namespace haptrial::psychometric

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/psychometric/function/psychometric_function.h"
+#include "core/psychometric/procedure/procedure.h"
+#include "core/psychometric/procedure/staircase_rule.h"
+
+namespace haptrial::psychometric {
+
+/// A further dimension of a level.
+struct TrackDimension {
+  std::string variable;  // that it sets
+  double low{0.0}, high{0.0};
+  double resolution{0.0};  // 0: not rounded
+};
+
+/// One track of a procedure: it sets a variable of the definition, trial by trial, and learns from
+/// what came of it.
+struct Track {
+  std::string name;
+  std::string kind;             // "staircase", "pest", "psi", "quest_plus", "constant",
+                                // "adjustment", "magnitude"
+  std::string variable;         // that it sets
+  std::string unit;             // of the variable, as a text
+  std::vector<std::string> by;  // factors: each combination has a track of its own
+  std::string counts;  // formula of what it learns; empty: whether the first answer was right
+  double low{0.0}, high{0.0};           // the level is kept between them [unit]
+  double resolution{0.0};               // the level is rounded to a multiple of it; 0: not [unit]
+  std::vector<TrackDimension> further;  // of a level with several dimensions
+  int most_trials{0};                   // of one track
+  bool listed{false};                   // its trials are known from the beginning
+  Axis axis;                            // of its steps
+  std::optional<StaircaseParameters> staircase;    // of a staircase
+  std::optional<PsychometricParameters> expected;  // that the study counts on
+  std::function<std::unique_ptr<Procedure>(std::uint64_t seed, const std::string& name)> begin;
+
+  /// What is presented if a level is asked for: rounded, within the range.
+  double applied(double asked) const noexcept;
+  Level applied(const Level& asked) const;
+  /// Those that it sets, in the order of a level's dimensions.
+  std::vector<std::string> variables() const;
+  bool sets(const std::string& one) const;
+  /// The lowest level of each dimension, or the highest.
+  Level corner(bool high) const;
+};
+
+}  // namespace haptrial::psychometric

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "core/record/read/session_reader.h"
+
+namespace haptrial::record {
+
+/// Visits every row of /samples in order, a piece of the file in memory at a time.
+template <class Visit>
+void each_sample(const SessionReader& reader, Visit visit) {
+  constexpr std::uint64_t kPiece = 65536;  // rows
+  const std::uint64_t count = reader.sample_count();
+  for (std::uint64_t first = 0; first < count; first += kPiece) {
+    for (const Sample& sample : reader.samples(first, std::min(kPiece, count - first))) {
+      visit(sample);
+    }
+  }
+}
+
+/// The first row of a tick that is not before `tick`. Where no row is missing it is found at once.
+/// @param table  whose rows have ascending numbers `sequence` of ticks
+template <class Row>
+std::uint64_t row_of_tick(const SessionReader& reader, const Table<Row>& table,
+                          std::uint64_t tick) {
+  const auto at = [&](std::uint64_t row) { return reader.rows(table, row, 1).front().sequence; };
+  std::uint64_t high = reader.count(table);
+  if (high == 0 || tick <= at(0)) {
+    return 0;
+  }
+  const std::uint64_t likely = tick - at(0);
+  if (likely < high && at(likely) == tick) {
+    return likely;
+  }
+  std::uint64_t low = 1;
+  while (low < high) {
+    const std::uint64_t middle = low + (high - low) / 2;
+    at(middle) < tick ? low = middle + 1 : high = middle;
+  }
+  return low;
+}
+
+/// The rows of `count` ticks from `first` on, of those that are there.
+template <class Row>
+std::vector<Row> rows_of_ticks(const SessionReader& reader, const Table<Row>& table,
+                               std::uint64_t first, std::uint64_t count) {
+  const std::uint64_t row = row_of_tick(reader, table, first);
+  std::vector<Row> rows =
+      reader.rows(table, row, std::min<std::uint64_t>(count, reader.count(table) - row));
+  std::erase_if(rows, [&](const Row& r) { return r.sequence >= first + count; });
+  return rows;
+}
+
+}  // namespace haptrial::record

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <span>
+
+#include "core/render/bone/bone_camera.h"
+#include "core/render/bone/bone_layer.h"
+#include "core/render/bone/bone_style.h"
+#include "core/render/gl/gl.h"
+
+namespace haptrial::render {
+
+/// What a tool takes light away with: all within `radius` of the segment [m].
+struct Capsule {
+  Eigen::Vector3d from{0.0, 0.0, 0.0};
+  Eigen::Vector3d to{0.0, 0.0, 0.0};
+  double radius{0.0};
+};
+
+/// Where an eye's picture lies in the layer's [px].
+struct EyeArea {
+  int left{0};
+  int width{0};
+  int height{0};
+};
+
+/// Darkens bone that is closed in and bone under a tool. Each pixel follows from the kept picture
+/// within kReach pixels around it, so a part drawn again is as it is in the whole. One thread,
+/// with the context current; leaves its own program, blending and scissor behind.
+class BoneShading {
+ public:
+  /// How far, in pixels, a change of the bones' picture reaches in the shaded one.
+  static constexpr int kReach = 42;
+
+  explicit BoneShading(const Gl& gl, const BoneStyle& style);
+  ~BoneShading();
+  BoneShading(const BoneShading&) = delete;
+  BoneShading& operator=(const BoneShading&) = delete;
+
+  /// The layer's shaded bones from what it keeps of the bones, where they changed.
+  /// @param part  changed pixels of the eye's picture, from its lower left; none: nothing is done
+  void draw(const BoneLayer& layer, const EyeView& view, const EyeArea& area,
+            const PixelBox& part) const;
+  /// Over the layer's copy, before the tools: what they take of the bone's light. More than
+  /// kMostCapsules are left out.
+  /// @param capsules  in W
+  void draw_shadows(const EyeView& view, const EyeArea& area,
+                    std::span<const Capsule> capsules) const;
+  static constexpr std::size_t kMostCapsules = 4;
+
+ private:
+  struct Pass {
+    Gl::Name program{0};
+    int lens{-1};
+    int depth_terms{-1};
+    int area{-1};
+    int measures{-1};
+  };
+  Pass make_pass(const char* whose, const char* fragment) const;
+  void use(const Pass& pass, const EyeView& view, const EyeArea& area) const;
+  void fill(const EyeArea& area, const PixelBox& part) const;
+
+  Gl gl_;
+  BoneStyle style_;
+  Gl::Name nothing_{0};  // a vertex array: the corners follow from their numbers
+  Pass openness_;
+  Pass shade_;
+  Pass shadow_;
+  std::array<int, kMostCapsules> from_{};
+  std::array<int, kMostCapsules> to_{};
+};
+
+}  // namespace haptrial::render

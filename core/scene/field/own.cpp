@@ -1,0 +1,24 @@
+#include "core/scene/field/own.h"
+
+#include "core/scene/shape/require.h"
+
+namespace haptrial::scene {
+
+Own::Own(const OwnParameters& parameters, const Setting& setting) : type_(parameters.type) {
+  require(parameters.numbers != nullptr, "has no numbers");
+  law_ = parameters.numbers->law(setting);
+  require(law_ != nullptr, "has no law");
+}
+
+Eigen::Vector3d Own::force(const Felt& felt, FieldState& state) noexcept {
+  const Eigen::Vector3d force = law_->force(felt, state);
+  return force.allFinite() ? force : Eigen::Vector3d::Zero();
+}
+
+void Own::adopt(const Own& before) noexcept {
+  if (type_ == before.type_) {
+    law_->adopt(*before.law_);
+  }
+}
+
+}  // namespace haptrial::scene
