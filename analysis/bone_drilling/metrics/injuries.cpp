@@ -1,6 +1,7 @@
 #include "analysis/bone_drilling/metrics/injuries.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -42,8 +43,12 @@ InjuryMeter::InjuryMeter(std::shared_ptr<const bone::BoneModel> bone,
   const double spacing = bone_->grid.spacing;
   const double reach =
       std::min(largest_radius(tools) + std::numbers::sqrt3 * spacing, 250.0 * spacing);
+  std::array<bool, 256> there{};
+  for (const std::uint8_t label : bone_->labels) {
+    there[label] = true;
+  }
   for (std::size_t label = 1; label < bone_->structures.size(); ++label) {
-    if (bone_->structures[label].vital) {
+    if (bone_->structures[label].vital && there[label]) {
       Injury injury;
       injury.structure = bone_->structures[label].name;
       injury.label = static_cast<std::uint8_t>(label);

@@ -29,7 +29,11 @@ Value scaled(const Value& value, double factor) {
 
 Value count(std::uint64_t number) { return static_cast<double>(number); }
 
+/// Nothing where it is not known what is vital.
 Value injured_voxels(const Parts& p) {
+  if (p.summary.injuries.empty()) {
+    return std::nullopt;
+  }
   std::uint64_t sum = 0;
   for (const Injury& injury : p.summary.injuries) {
     sum += injury.voxels;
@@ -38,6 +42,9 @@ Value injured_voxels(const Parts& p) {
 }
 
 Value injured_structures(const Parts& p) {
+  if (p.summary.injuries.empty()) {
+    return std::nullopt;
+  }
   return count(static_cast<std::uint64_t>(
       std::count_if(p.summary.injuries.begin(), p.summary.injuries.end(),
                     [](const Injury& injury) { return injury.voxels > 0; })));

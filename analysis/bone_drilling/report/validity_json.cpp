@@ -167,9 +167,39 @@ Json procedures_of(const Validity& v, std::span<const ProcedureSummary> procedur
   return rows;
 }
 
-}  // namespace
+/// The bins of Figure 20 for experts, or for novices, the nearest first.
+Json profile_of(const ValidityResult& result, bool expert, NearQuantity quantity) {
+  std::vector<NearCase> side;
+  for (std::size_t i = 0; i < result.procedures.size(); ++i) {
+    for (const NearRemovals& near : result.procedures[i].near) {
+      if (near.structure == result.structure && result.validity.expert[i] == expert) {
+        side.push_back({result.procedures[i].participant, &near});
+      }
+    }
+  }
+  Json bins = Json::array();
+  for (const ProfileBin& bin : near_profile(side, quantity, result.bins)) {
+    bins.push_back({{"from", bin.low},
+                    {"to", bin.high},
+                    {"removals", bin.removals},
+                    {"participants", bin.participants},
+                    {"over_removals", to_json(bin.pooled)},
+                    {"over_participant_means", to_json(bin.by_participant)}});
+  }
+  return bins;
+}
 
-std::string validity_json(const Validity& v, std::span<const ProcedureSummary> procedures) {
+Json near_of(const ValidityResult& result) {
+  Json near{{"structure", result.structure}, {"distance_unit", "m"}};
+  for (const bool expert : {true, false}) {
+    near[expert ? "experts" : "novices"] = {
+        {"force", profile_of(result, expert, NearQuantity::kForce)},
+        {"speed", profile_of(result, expert, NearQuantity::kSpeed)}};
+  }
+  return near;
+}
+
+Json findings_of(const Validity& v, std::span<const ProcedureSummary> procedures) {
   Json root;
   root["simulated"] = v.simulated;
   root["simulated_raters"] = v.simulated_raters;
@@ -194,7 +224,25 @@ std::string validity_json(const Validity& v, std::span<const ProcedureSummary> p
          {"roc", to_json(way.roc)}});
   }
   root["procedures"] = procedures_of(v, procedures);
+  return root;
+}
+
+std::string text_of(const Json& root) {
   return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::string validity_json(const Validity& v, std::span<const ProcedureSummary> procedures) {
+  return text_of(findings_of(v, procedures));
+}
+
+std::string validity_json(const ValidityResult& result) {
+  Json root = findings_of(result.validity, result.procedures);
+  if (!result.structure.empty()) {
+    root["near_structure"] = near_of(result);
+  }
+  return text_of(root);
 }
 
 }  // namespace haptrial::analysis::drilling

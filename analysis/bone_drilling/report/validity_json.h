@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 
+#include "analysis/bone_drilling/report/validity_result.h"
 #include "analysis/bone_drilling/validity/validity_findings.h"
 
 namespace haptrial::analysis::drilling {
@@ -10,5 +11,7 @@ namespace haptrial::analysis::drilling {
 /// Everything that the report prints, as numbers. What is not defined is
 /// {"not_defined": "because ..."}. Equal input gives equal bytes.
 std::string validity_json(const Validity& v, std::span<const ProcedureSummary> procedures);
+/// The same with what Figure 20 shows: force and speed by distance to the structure.
+std::string validity_json(const ValidityResult& result);
 
 }  // namespace haptrial::analysis::drilling

@@ -65,6 +65,7 @@ class Report {
     add_forces();
     add_regions();
     add_combined();
+    add_unknown();
     add_tears();
     add_quality();
     add_published();
@@ -102,6 +103,7 @@ class Report {
   void add_forces();
   void add_regions();
   void add_combined();
+  void add_unknown();
   void add_tears();
   void add_quality();
   void add_published();
@@ -281,6 +283,23 @@ void Report::add_combined() {
     document_.paragraph(fmt::format(
         "Left out, because a rated procedure lacks a value or all values are equal: {}.",
         fmt::join(c.left_out, ", ")));
+  }
+}
+
+/// Whose bones had no vital structure; nothing where all had.
+void Report::add_unknown() {
+  std::vector<std::string> whose;
+  for (const ProcedureSummary& p : result_.procedures) {
+    if (p.injuries.empty()) {
+      whose.push_back(fmt::format("{}, procedure {}", p.participant, p.number));
+    }
+  }
+  if (!whose.empty()) {
+    section("Vital structures that are unknown");
+    document_.paragraph(fmt::format(
+        "These bones have no vital structure by a known name, so that nobody can tell what was "
+        "injured or spared; injuries are left out of their metrics: {}.",
+        fmt::join(whose, "; ")));
   }
 }
 

@@ -108,7 +108,7 @@ ValidityResult analyze(const ValidityStudy& study) {
 void write_validity(const ValidityResult& result, const fs::path& folder) {
   const Staging staging(folder);
   staging.write("metrics.csv", metrics_csv(result.procedures));
-  staging.write("statistics.json", validity_json(result.validity, result.procedures));
+  staging.write("statistics.json", validity_json(result));
   if (!result.nerves.empty()) {
     staging.write("nerves.csv", nerves_csv(result.nerves));
   }

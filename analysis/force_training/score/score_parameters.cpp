@@ -71,6 +71,14 @@ ScoreParameters read_score_parameters(Table& analysis) {
   return p;
 }
 
+ScoreParameters read_scoring(Table& root, Table& analysis) {
+  ScoreParameters p = read_score_parameters(analysis);
+  Table guidance = root.table("guidance");
+  p.over_path = guidance.has("kind") && guidance.choice("kind", {"trajectory", "curve"}) == "curve";
+  p.free_path = guidance.has("recall") && guidance.choice("recall", {"guided", "free"}) == "free";
+  return p;
+}
+
 std::vector<std::pair<std::string, std::string>> described(const ScoreParameters& p) {
   const AlignmentOptions& a = p.alignment;
   std::vector<std::pair<std::string, std::string>> rows;

@@ -37,6 +37,10 @@ struct ScoreParameters {
 /// finish() throws them.
 ScoreParameters read_score_parameters(Table& analysis);
 
+/// The same with what follows from the guidance of a definition.
+/// @param analysis  the table of that name in `root`
+ScoreParameters read_scoring(Table& root, Table& analysis);
+
 /// What the parameters are, in words and with units, for reports: name, value. Options of the
 /// alignment that are as published stay out.
 std::vector<std::pair<std::string, std::string>> described(const ScoreParameters& parameters);

@@ -18,6 +18,8 @@
 #include "core/record/read/check_phases.h"
 #include "core/record/read/even_rows.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/read/tick_rows.h"
+#include "core/record/rows/session_tables.h"
 #include "core/record/rows/tutoring_row.h"
 
 namespace haptrial::analysis {
@@ -97,36 +99,6 @@ std::map<std::int32_t, std::size_t> counted_passes(const std::vector<PassRow>& p
     }
   }
   return rows;
-}
-
-// The first row whose sequence number is not below `sequence`.
-std::uint64_t row_of(const SessionReader& reader, std::uint64_t sequence) {
-  std::uint64_t low = 0;
-  std::uint64_t high = reader.sample_count();
-  while (low < high) {
-    const std::uint64_t middle = low + (high - low) / 2;
-    if (reader.samples(middle, 1).front().sequence < sequence) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
-  }
-  return low;
-}
-
-// `count` rows from the one of the sequence number on; fewer at the end of the file. Without losses
-// a row is its sequence number, so the search is for damaged files only.
-std::vector<Sample> pass_samples(const SessionReader& reader, std::uint64_t sequence,
-                                 std::uint64_t count) {
-  const std::uint64_t rows = reader.sample_count();
-  if (sequence < rows && count <= rows - sequence) {
-    auto samples = reader.samples(sequence, count);
-    if (samples.front().sequence == sequence) {
-      return samples;
-    }
-  }
-  const std::uint64_t row = row_of(reader, sequence);
-  return reader.samples(row, std::min(count, rows - row));
 }
 
 // Everything about one file while it is read.
@@ -240,8 +212,9 @@ class Extraction {
     if (rows.empty()) {
       return std::nullopt;
     }
-    const auto samples = pass_samples(reader_, rows.front().sequence,
-                                      rows.back().sequence - rows.front().sequence + 1);
+    const auto samples =
+        record::rows_of_ticks(reader_, record::samples_table(), rows.front().sequence,
+                              rows.back().sequence - rows.front().sequence + 1);
     auto sample = samples.begin();
     for (const record::TutoringRow& row : rows) {
       sample = std::find_if(sample, samples.end(),
@@ -375,7 +348,8 @@ Defined<std::vector<Sample>> run_samples(const SessionReader& reader, const Pass
     return Undefined{"its samples are not all in the file"};
   }
   const std::uint64_t count = pass.last_sample - pass.first_sample + 1;
-  std::vector<Sample> samples = pass_samples(reader, pass.first_sample, count);
+  std::vector<Sample> samples =
+      record::rows_of_ticks(reader, record::samples_table(), pass.first_sample, count);
   if (samples.size() != count || samples.front().sequence != pass.first_sample ||
       samples.back().sequence != pass.last_sample) {
     return Undefined{"its samples are not all in the file"};

@@ -8,14 +8,9 @@
 #include <vector>
 
 namespace haptrial::analysis {
-namespace {
-
-/// From 1 at 0 down to 0 at 1.
-double fall(double part) noexcept {
+double cosine_fall(double part) noexcept {
   return 0.5 + 0.5 * std::cos(std::numbers::pi * std::clamp(part, 0.0, 1.0));
 }
-
-}  // namespace
 
 StimulusRange stimulus_range(std::span<const double> coordinates) {
   std::vector<double> rising(coordinates.begin(), coordinates.end());
@@ -63,14 +58,14 @@ double PsychometricPrior::density(Dimension dimension, double value) const noexc
 double PsychometricPrior::threshold(double value) const noexcept {
   const double s = range_.high - range_.low;
   const double outside = std::max({0.0, range_.low - value, value - range_.high});
-  return fall(outside / (0.5 * s)) / (1.5 * s);
+  return cosine_fall(outside / (0.5 * s)) / (1.5 * s);
 }
 
 double PsychometricPrior::width(double value) const noexcept {
   const double d = smallest_width_, s = largest_width_;
   // Where the levels are two, 2 d lies above s.
-  const double rise = 1.0 - fall((value - d) / d);
-  const double drop = value < 2.0 * d ? 1.0 : fall((value - s) / (2.0 * s));
+  const double rise = 1.0 - cosine_fall((value - d) / d);
+  const double drop = value < 2.0 * d ? 1.0 : cosine_fall((value - s) / (2.0 * s));
   const double integral = 0.5 * d + std::max(s - 2.0 * d, 0.0) + s;
   return value > 3.0 * s ? 0.0 : rise * drop / integral;
 }

@@ -37,10 +37,9 @@ struct ProfiledFit {
 /// follow a change of scale: those of a level, a Weber fraction against a standard or a slope free
 /// of lapses are the same interval converted, and another share has its own fit.
 ///
-/// This is the interval that reports state: with some 200 trials or more, at given levels or in
-/// several tracks, it holds the truth as often as it says, which bootstrap_fit's does not. A single
-/// adaptive track of some 50 trials tells less than its likelihood seems to: intervals of its fit
-/// hold too rarely (docs/algorithms/procedure-coverage.md).
+/// This is the interval that reports state of trials at listed levels: it holds the truth as often
+/// as it says, which bootstrap_fit's does not. After adaptive trials it holds too rarely, and
+/// adaptive_posterior() is for them (docs/algorithms/procedure-coverage.md).
 /// No allocation. @param level  inside (0, 1); @throws std::invalid_argument naming it.
 /// Source: Venzon and Moolgavkar 1988, Applied Statistics 37, 87.
 ProfiledFit profiled_fit(const LikelihoodFitter& fitter, std::span<const int> correct,

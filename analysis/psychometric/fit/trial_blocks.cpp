@@ -14,6 +14,15 @@ double surprise_of(double count, double predicted) noexcept {
 
 }  // namespace
 
+double nine_digits(double level) {
+  if (level == 0.0 || !std::isfinite(level)) {
+    return level;
+  }
+  constexpr int kDigits = 9;
+  const double scale = std::pow(10.0, kDigits - 1 - std::floor(std::log10(std::abs(level))));
+  return std::round(level * scale) / scale;
+}
+
 std::vector<TrialBlock> pooled(std::span<const TrialBlock> blocks) {
   if (blocks.empty()) {
     throw std::invalid_argument("blocks: there are no trials");

@@ -14,6 +14,9 @@ struct TrialBlock {
   int total{0};       // > 0
 };
 
+/// A level in nine digits: reports take levels that differ less for one.
+double nine_digits(double level);
+
 /// Blocks of the same level as one, in the order of the levels.
 /// @throws std::invalid_argument naming what breaks its bound, or "blocks" when there are none.
 std::vector<TrialBlock> pooled(std::span<const TrialBlock> blocks);

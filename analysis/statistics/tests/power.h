@@ -1,6 +1,7 @@
 #pragma once
 
 #include "analysis/statistics/base/defined.h"
+#include "analysis/statistics/tests/sample_size.h"
 
 namespace haptrial::analysis {
 
@@ -19,13 +20,6 @@ struct TPlan {
 struct AnovaPlan {
   int groups{3};
   double alpha{0.05};
-};
-
-/// A number of participants.
-struct SampleSize {
-  double exact{0.0};  // where the power is met, between whole numbers
-  long n{0};          // the next whole number; at least the smallest that can be tested
-  double power{0.0};  // with n
 };
 
 /// The chance of a significant result, from the noncentral t and F.

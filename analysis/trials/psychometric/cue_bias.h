@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "analysis/trials/psychometric/function_fit.h"
+#include "analysis/trials/fit/function_fit.h"
 
 namespace haptrial::analysis::trials {
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "analysis/psychometric/models/detection.h"
-#include "analysis/trials/psychometric/series.h"
+#include "analysis/trials/fit/series.h"
 
 namespace haptrial::analysis::trials {
 namespace {

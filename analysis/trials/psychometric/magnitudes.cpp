@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "analysis/trials/psychometric/series.h"
+#include "analysis/trials/fit/series.h"
 
 namespace haptrial::analysis::trials {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "analysis/psychometric/models/magnitude.h"
 #include "analysis/trials/data/trials_data.h"
-#include "analysis/trials/psychometric/trials_plan.h"
+#include "analysis/trials/fit/trials_plan.h"
 
 namespace haptrial::analysis::trials {
 

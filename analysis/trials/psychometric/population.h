@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "analysis/psychometric/models/binomial_mixed.h"
-#include "analysis/trials/psychometric/series.h"
+#include "analysis/trials/fit/series.h"
 
 namespace haptrial::analysis::trials {
 

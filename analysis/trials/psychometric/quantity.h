@@ -5,7 +5,7 @@
 
 #include "analysis/statistics/base/descriptive.h"
 #include "analysis/statistics/design/design_tests.h"
-#include "analysis/trials/psychometric/trials_plan.h"
+#include "analysis/trials/fit/trials_plan.h"
 
 namespace haptrial::analysis::trials {
 

@@ -61,9 +61,26 @@ std::vector<QuantityValue> values_of(const std::vector<FunctionFit>& fits, Value
   return values;
 }
 
-void add_functions(TrialsResult& result, int threads) {
+/// Series with a track whose procedure chose levels by the answers.
+void mark_adaptive(TrialsResult& result) {
+  std::set<std::pair<std::string, std::string>> adaptive;  // participant and track
+  for (const TrackEstimate& track : result.tracks) {
+    if (track.adaptive) {
+      adaptive.emplace(track.participant, track.track);
+    }
+  }
+  for (AnsweredSeries& series : result.series) {
+    series.adaptive =
+        std::any_of(series.trials.begin(), series.trials.end(), [&](const LevelTrial& trial) {
+          return adaptive.contains({series.participant, trial.track});
+        });
+  }
+}
+
+void add_functions(TrialsResult& result, const ProcedureOf& procedure_of, int threads) {
   const TrialsPlan& plan = result.plan;
   result.series = series_of(result.data, plan);
+  mark_adaptive(result);
   if (result.series.empty() && !result.surfaces.empty()) {
     return;
   }
@@ -86,10 +103,15 @@ void add_functions(TrialsResult& result, int threads) {
         values_of(result.fits, [](const FunctionReadings& r) { return r.weber.value; }), plan));
     result.quantities.back().compared = false;  // it says again what the threshold says
   }
-  result.serial = serial_effects(result.data, result.series, result.fits, plan);
-  result.drift = against_zero(drifts(result.serial));
-  result.repetition = against_zero(repetitions(result.serial));
-  result.population = population_model(result.series, plan);
+  if (plan.serial) {
+    result.serial = serial_effects(result.data, result.series, result.fits, result.tracks, plan,
+                                   procedure_of, threads);
+    result.drift = against_zero(drifts(result.serial));
+    result.repetition = against_zero(repetitions(result.serial));
+  }
+  if (plan.population) {
+    result.population = population_model(result.series, plan);
+  }
   if (plan.cues) {
     result.cues = cue_study(result.data, result.series, result.fits, plan);
   }
@@ -229,6 +251,9 @@ TrialsResult analyze(TrialsData data, const TrialsPlan& plan, const ProcedureOf&
   }
   result.participants = participants_of(result.data, plan);
   result.tracks = track_estimates(result.data, procedure_of);
+  if (plan.track_intervals) {
+    add_track_intervals(result.tracks, plan, procedure_of, threads);
+  }
   if (plan.kind == AnalysisKind::kDetection) {
     add_detection(result);
   }
@@ -239,7 +264,7 @@ TrialsResult analyze(TrialsData data, const TrialsPlan& plan, const ProcedureOf&
     result.surfaces = surface_conditions(result.data, plan.by, plan.threshold_at, procedure_of);
   }
   if (plan.functions) {
-    add_functions(result, threads);
+    add_functions(result, procedure_of, threads);
   }
   if (plan.kind == AnalysisKind::kMagnitude) {
     add_magnitudes(result);

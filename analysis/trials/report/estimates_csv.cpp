@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "analysis/files/delimited.h"
+#include "analysis/trials/report/trials_words.h"
 
 namespace haptrial::analysis::trials {
 namespace {
@@ -120,10 +121,7 @@ std::string estimates_csv(const TrialsResult& result) {
   }
   for (const TrackEstimate& track : result.tracks) {
     for (const psychometric::Estimate& e : track.estimates) {
-      constexpr double kNormal = 1.959963984540054;
-      const double half = e.deviation ? kNormal * *e.deviation : kNotKnown;
-      rows.add(track.participant, {}, track.track, "procedure", e.name.c_str(),
-               {e.value, e.value - half, e.value + half}, "");
+      rows.add(track.participant, {}, track.track, "procedure", e.name.c_str(), estimated(e), "");
     }
   }
   for (const DetectedCondition& one : result.detected) {

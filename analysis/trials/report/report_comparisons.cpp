@@ -2,7 +2,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
+#include "analysis/document/design/design_blocks.h"
 #include "analysis/statistics/words/wording.h"
 #include "analysis/trials/report/trials_report.h"
 #include "analysis/trials/report/trials_words.h"
@@ -14,61 +16,31 @@ using Rows = std::vector<std::vector<std::string>>;
 
 constexpr std::size_t kMostTracks = 4;
 
-std::string sides_of(const SideTest& test) {
-  return test.sides.tail == Tail::kTwoSided ? test.sides.a + " and " + test.sides.b
-                                            : text_of(test.sides);
-}
-
-void add_family(Document& document, const TestFamily& family) {
-  Rows rows;
-  for (const SideTest& test : family.tests) {
-    rows.push_back(
-        {sides_of(test),
-         test.paired ? counted(test.count_a, "pair")
-                     : fmt::format("{} and {}", test.count_a, test.count_b),
-         test.t ? fmt::format("{} [{}, {}]", number(test.t->difference), number(test.t->low),
-                              number(test.t->high))
-                : "–",
-         test.t ? (test.paired ? "paired " : "Welch's ") + t_result(test.t) : t_result(test.t),
-         p_result(test.holm), effect(test.size), p_result(test.ranks_holm),
-         p_result(test.permutation_holm)});
-  }
-  if (!rows.empty()) {
-    document.table(
-        {capitalized(family.name), "participants", "difference [95 %]", "t-test, not adjusted",
-         "p after Holm", "d_z or d", "ranks, p after Holm", "permutation, p after Holm"},
-        rows);
-  }
-}
-
 void add_quantity(Document& document, const Quantity& q) {
   document.subheading(capitalized(q.title));
-  document.paragraph(fmt::format("Varied {}.{}", q.tests.design,
-                                 q.unit.empty() ? "" : " Differences are in " + q.unit + "."));
-  Rows rows;
-  for (const auto& effect : q.tests.effects) {
-    if (effect) {
-      rows.push_back({effect->factor, effect_result(*effect)});
-    } else {
-      document.paragraph("Whether conditions differ is not defined, because " + effect.because() +
-                         ".");
+  add_design_tests(document, q.table, q.tests, q.unit);
+}
+
+/// Where the intervals of tracks come from, and why some have none.
+void add_interval_words(Document& document, const TrialsResult& result) {
+  std::set<std::string> reasons;
+  bool stated = false;
+  for (const TrackEstimate& track : result.tracks) {
+    if (!track.no_interval.empty()) {
+      reasons.insert(track.no_interval);
     }
+    stated = stated || (!track.estimates.empty() && track.estimates.front().interval &&
+                        !track.estimates.front().freedom);
   }
-  if (!rows.empty()) {
-    document.table({"effect", "test"}, rows);
+  if (stated) {
+    document.paragraph(
+        "The interval of a staircase's or PEST's own estimate is the estimate less the errors of "
+        "999 simulated tracks of the same procedure, whose observers have the functions that the "
+        "track's answers leave open; that of a Bayesian procedure is the central 95 % of its "
+        "posterior.");
   }
-  if (q.table.factors.size() == 1) {
-    document.paragraph(fmt::format("On ranks ({}): {}.",
-                                   q.table.factors[0].within ? "Friedman" : "Kruskal–Wallis",
-                                   rank_result(q.tests.ranks)));
-  }
-  if (!q.tests.incomplete.empty()) {
-    document.paragraph(fmt::format("Left out for lack of a value in some condition: {}.",
-                                   fmt::join(q.tests.incomplete, ", ")));
-  }
-  add_family(document, q.tests.planned);
-  for (const TestFamily& family : q.tests.families) {
-    add_family(document, family);
+  if (!reasons.empty()) {
+    document.paragraph(fmt::format("Estimates without an interval: {}.", fmt::join(reasons, "; ")));
   }
 }
 
@@ -83,8 +55,7 @@ void add_tracks(Document& document, const TrialsResult& result,
   for (const TrackEstimate& track : result.tracks) {
     std::vector<std::string> estimates;
     for (const auto& e : track.estimates) {
-      estimates.push_back(fmt::format("{} {}{}", e.name, number(e.value),
-                                      e.deviation ? " ± " + number(*e.deviation) : ""));
+      estimates.push_back(fmt::format("{} {}", e.name, estimate_word(estimated(e))));
     }
     const auto reversals = std::count_if(track.steps.begin(), track.steps.end(),
                                          [](const TrackStep& step) { return step.reversal; });
@@ -93,8 +64,19 @@ void add_tracks(Document& document, const TrialsResult& result,
                     estimates.empty() ? "none: " + track.because
                                       : fmt::format("{}", fmt::join(estimates, "; "))});
   }
-  document.table({"participant", "track", "trials", "turns", "estimate of the procedure"}, rows,
-                 "Every track");
+  document.table({"participant", "track", "trials", "turns", "estimate of the procedure [95 %]"},
+                 rows, "Every track");
+  add_interval_words(document, result);
+}
+
+/// Why sessions were simulated for the tests, where levels followed from answers.
+std::string words_of_chance(const TrialsResult& result) {
+  const bool adaptive = std::any_of(result.series.begin(), result.series.end(),
+                                    [](const AnsweredSeries& series) { return series.adaptive; });
+  return adaptive ? " Levels that follow from answers give these numbers to people without drift "
+                    "or repetition, too: what 25 simulated sessions of such a person have on "
+                    "average is taken off."
+                  : "";
 }
 
 void add_serial(Document& document, const TrialsResult& result) {
@@ -104,7 +86,8 @@ void add_serial(Document& document, const TrialsResult& result) {
   Rows rows;
   for (const SerialEffects& s : result.serial) {
     rows.push_back({s.participant, fmt::format("{} of {}", s.easy_wrong, s.easy),
-                    s.drift ? number(*s.drift) : "–", s.repetition ? number(*s.repetition) : "–",
+                    s.effects.drift ? number(*s.effects.drift) : "–",
+                    s.effects.repetition ? number(*s.effects.repetition) : "–",
                     std::to_string(s.limited)});
   }
   document.table({"participant", "answers 0 where the function is above 99 %",
@@ -114,8 +97,8 @@ void add_serial(Document& document, const TrialsResult& result) {
   document.paragraph(fmt::format(
       "Drift: how the log odds of an answer 1 change over the session beside the function. "
       "Repetition: how much the answer before moves the log odds of giving it again. Over "
-      "participants against 0: drift {}; repetition {}.",
-      t_result(result.drift), t_result(result.repetition)));
+      "participants against 0: drift {}; repetition {}.{}",
+      t_result(result.drift), t_result(result.repetition), words_of_chance(result)));
 }
 
 }  // namespace

@@ -259,13 +259,10 @@ void add_settings(Document& document, const TrialsResult& result,
     const bool known = !track.estimates.empty();
     rows.push_back({series_name(track.participant, track.track), std::to_string(track.steps.size()),
                     known ? track.estimates.front().name : "not defined, because " + track.because,
-                    known ? number(track.estimates.front().value) : "–",
-                    known && track.estimates.front().deviation
-                        ? number(*track.estimates.front().deviation)
-                        : "–"});
+                    known ? estimate_word(estimated(track.estimates.front())) : "–"});
   }
   document.table({"participant", "presentations", "estimate",
-                  with_unit("level", result.plan.function.axis.unit), "standard error"},
+                  with_unit("level [95 %]", result.plan.function.axis.unit)},
                  rows, "Every participant's settings");
 }
 

@@ -92,6 +92,7 @@ Json to_json(const FunctionFit& fit) {
   return {{"participant", fit.participant},
           {"condition", fit.condition},
           {"trials", fit.trials},
+          {"intervals_from", fit.adaptive ? "posterior" : "profile likelihood and bootstrap"},
           {"likelihood", to_json(fit.likelihood)},
           {"bayesian", to_json(fit.bayesian)},
           {"deviance", to_json(fit.deviance)},
@@ -106,11 +107,17 @@ Json to_json(const TrackEstimate& track) {
   for (const auto& e : track.estimates) {
     estimates.push_back({{"name", e.name},
                          {"value", to_json(e.value)},
-                         {"deviation", e.deviation ? to_json(*e.deviation) : Json()}});
+                         {"deviation", e.deviation ? to_json(*e.deviation) : Json()},
+                         {"low_95", e.interval ? to_json(e.interval->low) : Json()},
+                         {"high_95", e.interval ? to_json(e.interval->high) : Json()}});
   }
-  return {{"participant", track.participant}, {"track", track.track},
-          {"variable", track.variable},       {"trials", track.steps.size()},
-          {"estimates", estimates},           {"none_because", track.because}};
+  return {{"participant", track.participant},
+          {"track", track.track},
+          {"variable", track.variable},
+          {"trials", track.steps.size()},
+          {"estimates", estimates},
+          {"none_because", track.because},
+          {"no_interval_because", track.no_interval}};
 }
 
 Json to_json(const Quantity& q) {
@@ -130,8 +137,10 @@ Json to_json(const Quantity& q) {
 Json to_json(const SerialEffects& s) {
   return {{"participant", s.participant},
           {"trials", s.trials},
-          {"drift_log_odds", to_json(s.drift)},
-          {"repetition_log_odds", to_json(s.repetition)},
+          {"drift_log_odds", to_json(s.effects.drift)},
+          {"drift_log_odds_by_chance", to_json(s.by_chance.drift)},
+          {"repetition_log_odds", to_json(s.effects.repetition)},
+          {"repetition_log_odds_by_chance", to_json(s.by_chance.repetition)},
           {"easy_trials", s.easy},
           {"easy_trials_with_answer_0", s.easy_wrong},
           {"trials_with_another_level_than_asked", s.limited}};

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "analysis/statistics/words/wording.h"
 #include "analysis/trials/report/trials_words.h"
 
@@ -77,21 +79,37 @@ std::string function_words(const TrialsPlan& plan) {
       percent(plan.threshold_at));
 }
 
+/// Where the intervals of functions come from.
+std::string interval_words(const TrialsResult& result) {
+  const auto adaptive = [](const FunctionFit& fit) { return fit.adaptive; };
+  std::string words = "Functions are fitted to each participant by maximum likelihood.";
+  if (std::any_of(result.fits.begin(), result.fits.end(), adaptive)) {
+    words +=
+        " Intervals of adaptive trials are the central 95 % of the posterior of threshold, width "
+        "and lapse rate, which does not depend on how levels were chosen; the prior is flat in the "
+        "threshold and the rates, and 1 / (w + s / 10) in the width w, with levels over a range "
+        "s.";
+  }
+  if (!std::all_of(result.fits.begin(), result.fits.end(), adaptive)) {
+    words += fmt::format(
+        " Intervals of threshold, width and Weber fraction at listed levels are those of the "
+        "profile likelihood (Venzon and Moolgavkar 1988), those of slope, lapse rate and band "
+        "bias-corrected and accelerated over {} parametric bootstrap samples (Wichmann and Hill "
+        "2001).",
+        result.plan.resamples);
+  }
+  return words;
+}
+
 void add_methods(Document& document, const TrialsResult& result) {
   document.heading("Methods");
   const TrialsPlan& plan = result.plan;
   if (plan.functions && (result.surfaces.empty() || !result.series.empty())) {
     document.paragraph(function_words(plan));
-    document.paragraph(fmt::format(
-        "Functions are fitted to each participant by maximum likelihood. Intervals of threshold, "
-        "width and Weber fraction are those of the profile likelihood (Venzon and Moolgavkar "
-        "1988); they hold the truth as often as they say with some 200 trials at given levels or "
-        "in several tracks, but too rarely (74 to 87 %) with one adaptive track of some 50 trials. "
-        "Those of slope, lapse rate and band are bias-corrected and accelerated over {} parametric "
-        "bootstrap samples (Wichmann and Hill 2001). Both take the presented levels as given. The "
-        "Bayesian fit is beta-binomial on a grid (Schütt et al. 2016), so that its intervals are "
-        "wider where answers scatter more than chance; its estimates are posterior means.",
-        plan.resamples));
+    document.paragraph(interval_words(result));
+    document.paragraph(
+        "The Bayesian fit is beta-binomial on a grid (Schütt et al. 2016), so that its intervals "
+        "are wider where answers scatter more than chance; its estimates are posterior means.");
   }
   if (plan.kind == AnalysisKind::kDetection) {
     document.paragraph(
@@ -108,7 +126,8 @@ void add_methods(Document& document, const TrialsResult& result) {
   if (plan.kind == AnalysisKind::kAdjustment) {
     document.paragraph(
         "A setting is the level at which an adjustment was left; those of a track are averaged, "
-        "and the tracks of a participant under a condition again.");
+        "and the tracks of a participant under a condition again. Settings from starts above and "
+        "below count alike, and the difference of the two sides is no part of the interval.");
   }
   if (plan.kind == AnalysisKind::kReaching) {
     add_reaching_methods(document, plan.reaching);

@@ -141,6 +141,10 @@ void add_touched(const TrialsData& data, std::uint64_t TouchedBody::*ticks, cons
 
 }  // namespace
 
+Estimated estimated(const psychometric::Estimate& e) {
+  return e.interval ? Estimated{e.value, e.interval->low, e.interval->high} : Estimated{e.value};
+}
+
 std::string percent(double share) { return fmt::format("{:.3g} %", 100.0 * share); }
 
 std::string series_name(const std::string& participant, const std::string& condition) {

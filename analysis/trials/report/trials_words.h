@@ -16,6 +16,8 @@ inline constexpr double kMillimetres = 1000.0;  // in a metre
 /// "338.2 [330.1, 349.0]", "338.2 [330.1, open]" if the answers do not tell how far it goes,
 /// "338.2" without an interval, or "–".
 std::string estimate_word(const Estimated& e);
+/// A procedure's own estimate with its interval.
+Estimated estimated(const psychometric::Estimate& e);
 /// "75 %".
 std::string percent(double share);
 /// "P07", or "P07, visual".

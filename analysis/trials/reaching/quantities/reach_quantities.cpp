@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "analysis/trials/psychometric/series.h"
+#include "analysis/trials/fit/series.h"
 
 namespace haptrial::analysis::trials {
 namespace {

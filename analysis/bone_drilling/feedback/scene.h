@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "analysis/bone_drilling/feedback/findings.h"
+
+namespace haptrial::analysis::drilling {
+
+/// From where a procedure was looked at first, in W.
+struct FirstView {
+  Eigen::Vector3d towards_eye{Eigen::Vector3d::UnitZ()};  // any length but 0
+  Eigen::Vector3d up{Eigen::Vector3d::UnitY()};           // in the picture, not along it
+};
+
+struct SceneOptions {
+  std::size_t bone_triangles{50000};  // at most, so that a page with two bones is below 5 MB
+  std::size_t structure_triangles{3000};
+  std::size_t removals{60000};  // that are drawn, each with an equal share of all; faults first
+};
+
+/// A bone after a procedure as a JSON object for view.html: its surface, vital structures, removals
+/// with what was wrong with them, paths of strokes, all in W as 16-bit numbers in base64. No
+/// character of it ends a script.
+std::string scene_json(const Findings& findings, const FirstView& view,
+                       const SceneOptions& options = {});
+
+}  // namespace haptrial::analysis::drilling

@@ -1,0 +1,120 @@
+#include "analysis/power/power_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace haptrial::analysis {
+
+std::string share_words(const TestCount& count) {
+  if (count.made == 0) {
+    return "not made";
+  }
+  const Share share = share_of(count.rejected, count.made);
+  return fmt::format("{:.3f} ({:.3f} to {:.3f})", share.value, share.low, share.high);
+}
+
+std::string level_words(Level level) {
+  switch (level) {
+    case Level::kKept:
+      return "keeps its level";
+    case Level::kAbove:
+      return "rejects too often";
+    case Level::kBelow:
+      return "rejects too seldom";
+    case Level::kUnknown:
+      break;
+  }
+  return "not known";
+}
+
+std::string verdict(const PowerResult& result) {
+  const Level level = level_of(result, result.watch);
+  if (level == Level::kKept) {
+    return fmt::format("Without an effect the test \"{}\" keeps its level of {}.", result.watch,
+                       result.alpha);
+  }
+  if (level == Level::kUnknown) {
+    return fmt::format(
+        "Nothing without an effect was simulated, or the test \"{}\" could not be made there, so "
+        "its true level is not known and no share below is a power.",
+        result.watch);
+  }
+  double rate = level == Level::kAbove ? 0.0 : 1.0;
+  for (const PowerCell& cell : result.nulls) {
+    const TestCount count = cell.counts.of(result.watch);
+    const double here = static_cast<double>(count.rejected) /
+                        static_cast<double>(std::max<std::size_t>(1, count.made));
+    rate = level == Level::kAbove ? std::max(rate, here) : std::min(rate, here);
+  }
+  return fmt::format(
+      "Without any effect the test \"{}\" rejects in {:.1f} % of studies where {:g} % are allowed: "
+      "it "
+      "{}. Shares of rejections below are therefore not called power.",
+      result.watch, 100.0 * rate, 100.0 * result.alpha,
+      level == Level::kAbove ? "finds effects that are not there" : "is too careful");
+}
+
+std::string mean_words(const RunningMean& mean) {
+  return mean.count == 0 ? "-" : fmt::format("{:.4g} ± {:.2g}", mean.mean, mean.error());
+}
+
+std::vector<PowerLine> lines_over(const PowerResult& result, std::size_t key) {
+  std::map<std::vector<double>, PowerLine> lines;
+  for (const PowerCell& cell : result.cells) {
+    std::vector<double> others = cell.levels;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(key));
+    PowerLine& line = lines[others];
+    line.cells.push_back(&cell);
+    line.name.clear();
+    for (std::size_t i = 0; i < result.keys.size(); ++i) {
+      if (i != key) {
+        line.name += fmt::format("{}{} {}", line.name.empty() ? "" : ", ", result.keys[i].name,
+                                 cell.levels[i]);
+      }
+    }
+  }
+  std::vector<PowerLine> all;
+  for (auto& [others, line] : lines) {
+    std::ranges::sort(line.cells, {}, [&](const PowerCell* cell) { return cell->levels[key]; });
+    for (const PowerCell* cell : line.cells) {
+      line.x.push_back(cell->levels[key]);
+    }
+    all.push_back(std::move(line));
+  }
+  return all;
+}
+
+std::vector<std::string> size_lines(const PowerResult& result) {
+  std::vector<std::string> lines;
+  if (!result.participants() || !is_power(result)) {
+    return lines;
+  }
+  for (const PowerLine& line : lines_over(result, *result.participants())) {
+    std::vector<PowerPoint> points;
+    for (const PowerCell* cell : line.cells) {
+      const TestCount count = cell->counts.of(result.watch);
+      if (count.made > 0) {
+        points.push_back({cell->levels[*result.participants()], count});
+      }
+    }
+    if (points.empty()) {
+      continue;
+    }
+    const SmallestN size = smallest_n(points, result.target);
+    const auto word = [&](const std::optional<double>& n) {
+      return !n                       ? fmt::format("more than {:g}", points.back().n)
+             : *n <= points.front().n ? fmt::format("{:g} or fewer", points.front().n)
+                                      : fmt::format("{:.0f}", std::ceil(*n - 1e-9));
+    };
+    lines.push_back(
+        fmt::format("{}{}a power of {:g} takes {} participants (95 % interval {} to {})", line.name,
+                    line.name.empty() ? "" : ": ", result.target, word(size.n), word(size.low),
+                    word(size.high)));
+  }
+  return lines;
+}
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,190 @@
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "analysis/psychometric/fit/adaptive_posterior.h"
+#include "analysis/psychometric/fit/profile_interval.h"
+#include "analysis/python/arrays.h"
+#include "core/base/error.h"
+#include "core/psychometric/function/psychometric_function.h"
+
+namespace haptrial::python {
+namespace {
+
+using analysis::LikelihoodOptions;
+using analysis::Task;
+using psychometric::PsychometricFunction;
+using psychometric::PsychometricParameters;
+using psychometric::Scale;
+
+Scale scale_named(const std::string& name) {
+  if (name == "linear") {
+    return Scale::kLinear;
+  }
+  if (name == "log10") {
+    return Scale::kLog10;
+  }
+  if (name == "ln") {
+    return Scale::kNaturalLog;
+  }
+  if (name == "decibel") {
+    return Scale::kDecibel;
+  }
+  throw InputError("scale is '" + name + "'; allowed: linear, log10, ln, decibel");
+}
+
+/// @param scale  empty: as the function's name says, natural logarithms or none
+PsychometricParameters function_shape(const std::string& function, const std::string& scale,
+                                      double origin, double share, double tail) {
+  PsychometricParameters p = psychometric::parameters_named(function);
+  if (!scale.empty()) {
+    p.axis.scale = scale_named(scale);
+  }
+  p.axis.origin = origin;
+  p.share = share;
+  p.tail = tail;
+  return p;
+}
+
+std::vector<analysis::TrialBlock> blocks_of(const Numbers& levels, const std::vector<int>& correct,
+                                            const std::vector<int>& total) {
+  const std::span<const double> list = list_of(levels, "levels");
+  if (list.size() != correct.size() || list.size() != total.size()) {
+    throw InputError("levels, correct and total have " + std::to_string(list.size()) + ", " +
+                     std::to_string(correct.size()) + " and " + std::to_string(total.size()) +
+                     " items; allowed: as many of each");
+  }
+  std::vector<analysis::TrialBlock> blocks;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    blocks.push_back({analysis::nine_digits(list[i]), correct[i], total[i]});
+  }
+  return analysis::pooled(blocks);
+}
+
+py::dict described(const PsychometricParameters& p) {
+  py::dict values;
+  values["threshold"] = p.threshold;
+  values["width"] = p.width;
+  values["guess"] = p.guess;
+  values["lapse"] = p.lapse;
+  values["share"] = p.share;
+  values["x_unit"] = p.axis.x_unit();
+  return values;
+}
+
+/// From low to high; an open side is `lowest`, or infinite.
+template <class Interval, class Level>
+py::tuple interval(const Interval& from, Level level, double lowest) {
+  double low = level(from.low);
+  double high = level(from.high);
+  if constexpr (requires { from.low_open; }) {
+    low = from.low_open ? lowest : low;
+    high = from.high_open ? std::numeric_limits<double>::infinity() : high;
+  }
+  return py::make_tuple(low, high);
+}
+
+/// A fit's numbers, and the function that it found; levels in the unit of the stimulus.
+py::dict fit(const std::vector<analysis::TrialBlock>& blocks, const LikelihoodOptions& options,
+             bool adaptive, double level) {
+  std::optional<analysis::AdaptivePosterior> posterior;
+  std::optional<PsychometricFunction> function;
+  analysis::ProfiledFit found;
+  analysis::PsychometricDeviance deviance;
+  {
+    const py::gil_scoped_release release;
+    found = analysis::profiled_fit(blocks, options, level);
+    if (adaptive) {
+      posterior = analysis::adaptive_posterior(blocks, options, level);
+    }
+    function = analysis::fitted_function(options.function, found.fit.parameters);
+    deviance = analysis::deviance_of(*function, blocks);
+  }
+  const auto on_axis = [&](double x) { return options.function.axis.level(x); };
+  const auto same = [](double value) { return value; };
+  py::dict result;
+  result["function"] = *function;
+  result["threshold"] = on_axis(found.fit.parameters.threshold);
+  const double lowest = options.function.axis.scale == Scale::kLinear
+                            ? -std::numeric_limits<double>::infinity()
+                            : options.function.axis.origin;
+  result["threshold_interval"] = posterior ? interval(posterior->threshold, on_axis, lowest)
+                                           : interval(found.threshold, on_axis, lowest);
+  result["width"] = found.fit.parameters.width;
+  result["width_interval"] =
+      posterior ? interval(posterior->width, same, 0.0) : interval(found.width, same, 0.0);
+  result["width_unit"] = options.function.axis.x_unit();
+  result["lapse"] = found.fit.parameters.lapse;
+  result["guess"] = found.fit.parameters.guess;
+  result["log_likelihood"] = found.fit.log_likelihood;
+  result["deviance"] = deviance.deviance;
+  result["undetermined"] = found.fit.undetermined;
+  return result;
+}
+
+void bind_function(py::module_& module) {
+  py::class_<PsychometricFunction>(
+      module, "PsychometricFunction",
+      "Probability of answer 1 at a level, as haptrial.psychometric_function() makes it.")
+      .def(
+          "__call__",
+          [](const PsychometricFunction& function, const py::array_t<double>& levels) {
+            return py::vectorize([&function](double level) { return function(level); })(levels);
+          },
+          py::arg("level"), "Probability [1] at a level or an array of levels [unit of the level].")
+      .def(
+          "slope",
+          [](const PsychometricFunction& function, const py::array_t<double>& levels) {
+            return py::vectorize([&function](double level) { return function.derivative(level); })(
+                levels);
+          },
+          py::arg("level"), "d probability / d level [1/unit of the level].")
+      .def("level_for", &PsychometricFunction::level_for, py::arg("probability"),
+           "The level at which the probability is this [unit of the level].")
+      .def("level_for_share", &PsychometricFunction::level_for_share, py::arg("share"),
+           "The level at which the function, free of guesses and lapses, is this.")
+      .def_property_readonly(
+          "parameters",
+          [](const PsychometricFunction& function) { return described(function.parameters()); },
+          "Threshold [unit of the level], width [x_unit], guess, lapse, share [1].");
+}
+
+}  // namespace
+
+void bind_psychometric(py::module_& module) {
+  bind_function(module);
+  module.def(
+      "psychometric_function",
+      [](const std::string& function, double threshold, double width, double guess, double lapse,
+         const std::string& scale, double origin, double share, double tail) {
+        PsychometricParameters p = function_shape(function, scale, origin, share, tail);
+        p.threshold = threshold;
+        p.width = width;
+        p.guess = guess;
+        p.lapse = lapse;
+        return PsychometricFunction(p);
+      },
+      py::arg("function"), py::arg("threshold"), py::arg("width"), py::arg("guess"),
+      py::arg("lapse"), py::arg("scale"), py::arg("origin"), py::arg("share"), py::arg("tail"));
+  module.def(
+      "fit",
+      [](const Numbers& levels, const std::vector<int>& correct, const std::vector<int>& total,
+         const std::string& function, std::optional<double> guess, std::pair<double, double> lapse,
+         const std::string& scale, double origin, double share, double tail, bool adaptive,
+         double level) {
+        LikelihoodOptions options;
+        options.function = function_shape(function, scale, origin, share, tail);
+        options.function.guess = guess.value_or(0.0);
+        options.lapse = {lapse.first, lapse.second};
+        options.task = guess && *guess > 0.0 ? Task::kForcedChoice : Task::kYesNo;
+        if (guess && *guess == 0.0) {
+          options.guess = {0.0, 0.0};
+        }
+        return fit(blocks_of(levels, correct, total), options, adaptive, level);
+      },
+      py::arg("levels"), py::arg("correct"), py::arg("total"), py::arg("function"),
+      py::arg("guess"), py::arg("lapse"), py::arg("scale"), py::arg("origin"), py::arg("share"),
+      py::arg("tail"), py::arg("adaptive"), py::arg("level"));
+}
+
+}  // namespace haptrial::python

@@ -1,0 +1,170 @@
+#include "analysis/trials/fit/track_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "analysis/psychometric/fit/adaptive_posterior.h"
+#include "analysis/psychometric/fit/track_interval.h"
+#include "analysis/statistics/base/distributions.h"
+#include "analysis/trials/fit/function_fit.h"
+#include "core/base/parallel.h"
+#include "core/base/random.h"
+#include "core/psychometric/procedure/staircase.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+/// Marks the levels from which a track turned: the last of those on an extreme.
+void mark_reversals(std::vector<TrackStep>& steps) {
+  int direction = 0;
+  for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
+    const double change = steps[i + 1].applied - steps[i].applied;
+    constexpr double kRounding = 1e-9;
+    if (std::abs(change) <= kRounding * std::abs(steps[i].applied)) {
+      continue;
+    }
+    const int now = change > 0.0 ? 1 : -1;
+    steps[i].reversal = direction != 0 && now != direction;
+    direction = now;
+  }
+}
+
+void replay(TrackEstimate& track, const std::vector<psychometric::Level>& levels,
+            psychometric::Procedure& procedure) {
+  const auto* staircase = dynamic_cast<const psychometric::Staircase*>(&procedure);
+  try {
+    for (std::size_t i = 0; i < track.steps.size() && !procedure.finished(); ++i) {
+      if (!std::isfinite(track.steps[i].outcome)) {
+        continue;
+      }
+      const int before = staircase != nullptr ? staircase->state().reversals : 0;
+      procedure.report(track.steps[i].outcome, levels[i]);
+      if (staircase != nullptr) {  // its own count, which knows of bounds and of the last trial
+        track.steps[i].reversal = staircase->state().reversals > before;
+      }
+    }
+    track.finished = procedure.finished();
+    track.estimates = procedure.estimates();
+    if (track.estimates.empty()) {
+      track.because = "there are too few trials";
+    }
+  } catch (const std::invalid_argument& error) {
+    track.because = error.what();
+  }
+}
+
+/// Where Student's t of the error gives an interval.
+void add_student(psychometric::Estimate& e) {
+  if (!e.interval && e.deviation && e.freedom && *e.freedom > 0.0) {
+    const double half = t_quantile(0.975, *e.freedom) * *e.deviation;
+    e.interval = {e.value - half, e.value + half};
+  }
+}
+
+AnsweredSeries series_of(const TrackEstimate& track) {
+  AnsweredSeries series;
+  for (const TrackStep& step : track.steps) {
+    if (step.outcome == 0.0 || step.outcome == 1.0) {
+      LevelTrial trial;
+      trial.trial = step.trial;
+      trial.level = trial.asked = step.applied;
+      trial.outcome = step.outcome == 1.0 ? 1 : 0;
+      series.trials.push_back(trial);
+    }
+  }
+  return series;
+}
+
+Defined<CredibleInterval> simulated_interval(const TrackEstimate& track, const TrialsPlan& plan,
+                                             const ProcedureOf& procedure_of) {
+  if (!plan.functions || !plan.yes.empty() ||
+      (!plan.level.empty() && plan.level != track.variable)) {
+    return Undefined{"no function of what the procedure learnt from is fitted"};
+  }
+  const auto blocks = blocks_of(series_of(track));
+  const auto outside = [&](const TrialBlock& b) {
+    return !std::isfinite(plan.function.axis.at(b.level));
+  };
+  if (blocks.size() < 2 || std::any_of(blocks.begin(), blocks.end(), outside)) {
+    return Undefined{"there are fewer than two levels, or one is not on the axis"};
+  }
+  const auto draws =
+      adaptive_posterior(blocks, likelihood_options(plan), 0.95, kPosteriorDraws).draws;
+  const FinishedTrack again{track.estimates.front(), track.steps.size(), track.finished,
+                            [&] { return procedure_of(track.track); }};
+  return track_interval(again, plan.function, draws,
+                        derived_seed(plan.seed, track.participant + " " + track.track));
+}
+
+void add_interval(TrackEstimate& track, const TrialsPlan& plan, const ProcedureOf& procedure_of) {
+  for (psychometric::Estimate& e : track.estimates) {
+    add_student(e);
+  }
+  if (!track.adaptive || track.estimates.empty() || track.estimates.front().interval) {
+    return;
+  }
+  if (const auto found = simulated_interval(track, plan, procedure_of)) {
+    track.estimates.front().interval = {found->low, found->high};
+  } else {
+    track.no_interval = found.because();
+  }
+}
+
+}  // namespace
+
+void add_track_intervals(std::vector<TrackEstimate>& tracks, const TrialsPlan& plan,
+                         const ProcedureOf& procedure_of, int threads) {
+  in_groups(tracks.size(), 1, threads, [&] {
+    return [&](std::size_t i, std::size_t) { add_interval(tracks[i], plan, procedure_of); };
+  });
+}
+
+std::vector<TrackEstimate> track_estimates(const TrialsData& data,
+                                           const ProcedureOf& procedure_of) {
+  std::vector<TrackEstimate> tracks;
+  std::vector<std::vector<psychometric::Level>> levels;
+  for (std::size_t i = 0; i < data.trials.size(); ++i) {
+    const StudyTrial& trial = data.trials[i];
+    if (!trial.counts() || trial.levels.empty()) {
+      continue;
+    }
+    const GivenLevel& first = trial.levels.front();
+    auto at = std::find_if(tracks.begin(), tracks.end(), [&](const TrackEstimate& t) {
+      return t.session == trial.session && t.track == first.track;
+    });
+    if (at == tracks.end()) {
+      tracks.push_back({trial.session,
+                        data.session_of(trial).participant,
+                        first.track,
+                        first.variable,
+                        {},
+                        false,
+                        false,
+                        {},
+                        "",
+                        ""});
+      levels.emplace_back();
+      at = tracks.end() - 1;
+    }
+    at->steps.push_back({i, first.applied, first.outcome, false});
+    psychometric::Level level;
+    for (const GivenLevel& each : trial.levels) {
+      level.push_back(each.applied);
+    }
+    levels[static_cast<std::size_t>(at - tracks.begin())].push_back(std::move(level));
+  }
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    mark_reversals(tracks[i].steps);
+    const auto procedure = procedure_of ? procedure_of(tracks[i].track) : nullptr;
+    if (procedure) {
+      tracks[i].adaptive = true;
+      replay(tracks[i], levels[i], *procedure);
+    } else {
+      tracks[i].because = "its levels are listed";
+    }
+  }
+  return tracks;
+}
+
+}  // namespace haptrial::analysis::trials
