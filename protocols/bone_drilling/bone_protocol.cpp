@@ -17,6 +17,8 @@
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/display/bone_renderer.h"
 #include "protocols/bone_drilling/display/bone_sound.h"
+#include "protocols/bone_drilling/nerve_page.h"
+#include "protocols/bone_drilling/replayed_nerves.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -28,12 +30,19 @@ class DrillingOutputs {
       : request_(request), replay_(replay), every_(replay.rate() / request.fps) {
     if (!request.sound.empty()) {
       const BoneDefinition& d = replay.definition();
-      sound_.emplace(request.sound, replay.rate(), d.sound_table, d.thin_bone, 1);
+      const int trial = request.trial != 0 ? request.trial : replay.trials().front();
+      sound::SoundTrack::Mix mix;
+      if (d.nerves) {
+        nerves_ = std::make_unique<ReplayedNerves>(request.file, d.nerves->monitor, trial,
+                                                   sound::DrillSound::kRate);
+        mix = [nerves = nerves_.get()](std::span<float> part) { nerves->mix(part); };
+      }
+      sound_.emplace(request.sound, replay.rate(), d.sound_table, d.thin_bone, 1, false, mix);
     }
   }
   bool any() const { return request_.pictures || sound_; }
 
-  void watch(std::uint64_t tick, const bone::DrillingView& seen,
+  void watch(std::uint64_t tick, std::uint64_t sequence, const bone::DrillingView& seen,
              const std::shared_ptr<const BoneStage>& stage) {
     if (stage != stage_) {
       stage_ = stage;
@@ -44,6 +53,9 @@ class DrillingOutputs {
       }
     }
     constexpr std::uint64_t kProbeEvery = 20;  // ticks
+    if (nerves_) {
+      nerves_->tick(sequence);
+    }
     if (sound_) {
       thickness_ = tick % kProbeEvery == 0 ? probe_->under(seen) : thickness_;
       sound_->add(sound_of(seen, stage->simulator->tools(), thickness_));
@@ -72,6 +84,7 @@ class DrillingOutputs {
   double every_;  // ticks from picture to picture
   double next_{0.0};
   int count_{0};
+  std::unique_ptr<ReplayedNerves> nerves_;  // heard with the drill; null: nobody watched any
   std::optional<sound::SoundTrack> sound_;
   std::shared_ptr<const BoneStage> stage_;
   std::unique_ptr<BoneRenderer> renderer_;
@@ -111,7 +124,12 @@ class BoneDrilling final : public Protocol {
     record::TableList tables =
         record::with_tables(record::drilling_tables(), record::nerve_tables());
     tables.push_back(&record::table_of<record::TearRow>());
+    tables.push_back(&record::table_of<record::LedRow>());
     return tables;
+  }
+  SidePages side_pages(const Definition& definition) const override {
+    const bool watched = dynamic_cast<const BoneDefinition&>(definition).nerves.has_value();
+    return watched ? SidePages{std::make_shared<NervePage>()} : SidePages{};
   }
   std::unique_ptr<Trials> trials(const Definition& definition,
                                  const SessionPlace& place) const override {
@@ -133,9 +151,9 @@ void BoneDrilling::replay(const ReplayRequest& request) const {
     const auto ticks = static_cast<double>(replay.ticks(trial));
     BoneReplay::Watch watch;
     if (outputs.any()) {
-      watch = [&](std::uint64_t tick, const bone::DrillingView& seen,
+      watch = [&](std::uint64_t tick, std::uint64_t sequence, const bone::DrillingView& seen,
                   const std::shared_ptr<const BoneStage>& stage) {
-        outputs.watch(tick, seen, stage);
+        outputs.watch(tick, sequence, seen, stage);
         constexpr std::uint64_t kBetween = 100;  // ticks
         if (tick % kBetween == 0) {
           request.progress(static_cast<double>(tick), ticks, fmt::format("trial {}", trial),

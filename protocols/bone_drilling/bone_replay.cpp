@@ -126,7 +126,8 @@ BoneReplay::BoneReplay(const std::filesystem::path& session)
       procedures_(reader_.rows<record::ProcedureRow>()),
       removals_(reader_.rows<record::RemovalRow>()),
       splits_(reader_.rows<record::SplitRow>()),
-      tears_(reader_.rows<record::TearRow>()) {
+      tears_(reader_.rows<record::TearRow>()),
+      led_(reader_.rows<record::LedRow>()) {
   for (const record::BoneRecord& bone : record::recorded_bones(reader_)) {
     bones_.push_back(std::make_shared<const bone::BoneModel>(bone::model_of(bone)));
   }
@@ -151,6 +152,25 @@ std::uint64_t BoneReplay::ticks(int trial) const {
     ticks += pass.trial == trial ? pass.last_sample - pass.first_sample + 1 : 0;
   }
   return ticks;
+}
+
+void BoneReplay::refuse_trial(int trial) const {
+  const std::vector<int> known = trials();
+  throw InputError(known.empty()
+                       ? fmt::format("{}: holds no trials", reader_.path().string())
+                       : fmt::format("--trial is {}; allowed: {} to {}, the trials of {}", trial,
+                                     known.front(), known.back(), reader_.path().string()));
+}
+
+std::int32_t BoneReplay::last_bone(int trial) const {
+  std::int32_t last = -1;
+  for (const record::PassRow& pass : passes_) {
+    last = pass.trial == trial ? std::max(last, pass.repetition) : last;
+  }
+  if (last < 0) {
+    refuse_trial(trial);
+  }
+  return last;
 }
 
 std::shared_ptr<BoneStage> BoneReplay::make_stage(int trial, bool drawn) const {
@@ -190,11 +210,7 @@ ReplayVerdict BoneReplay::run(int trial, const Watch& watch) const {
     }
   }
   if (verdict.passes == 0) {
-    const std::vector<int> known = trials();
-    throw InputError(known.empty()
-                         ? fmt::format("{}: holds no trials", reader_.path().string())
-                         : fmt::format("--trial is {}; allowed: {} to {}, the trials of {}", trial,
-                                       known.front(), known.back(), reader_.path().string()));
+    refuse_trial(trial);
   }
   return verdict;
 }
@@ -214,21 +230,85 @@ std::shared_ptr<BoneStage> BoneReplay::restore(int trial, std::int32_t bone, Rep
   return stage;
 }
 
+/// What the ticks of a pass are simulated with, and held against.
+struct BoneReplay::Work {
+  const std::shared_ptr<BoneStage>& stage;
+  const Onlookers& onlookers;
+  ReplayVerdict& verdict;
+  double dt;
+  Cursor<record::RemovalRow> removals;
+  Cursor<record::SplitRow> splits;
+  Cursor<record::TearRow> tears;
+  std::vector<bone::EmptiedIn> emptied;  // on one tick of the session
+  std::vector<bone::Tear> torn;
+
+  /// @param first  of a tick of the session, which has its splits
+  void step(std::uint64_t sequence, const bone::SimulatorInput& now, bool first) {
+    bone::Simulator& simulator = *stage->simulator;
+    if (first) {
+      emptied.clear();
+      torn.clear();
+      simulator.tick(now, splits_of(splits.take(sequence)));
+    } else {
+      simulator.tick(now);
+    }
+    emptied.insert(emptied.end(), simulator.emptied().begin(), simulator.emptied().end());
+    torn.insert(torn.end(), simulator.tears().begin(), simulator.tears().end());
+    if (onlookers.watch) {
+      stage->companions->after_tick(simulator, dt);
+    }
+  }
+  /// @returns whether a tick of the session is as it was recorded.
+  bool check(std::uint64_t sequence) {
+    verdict.difference = difference(sequence, removals.take(sequence), emptied);
+    if (verdict.difference.empty()) {
+      verdict.difference = difference(sequence, tears.take(sequence), torn);
+    }
+    verdict.emptied += emptied.size();
+    verdict.tears += torn.size();
+    return verdict.difference.empty();
+  }
+  void show(std::uint64_t sequence, const bone::SimulatorInput& seen) {
+    constexpr std::uint64_t kBetweenPulses = 500;  // ticks
+    if (onlookers.watch) {
+      onlookers.watch(verdict.ticks, sequence, protocols::view_of(*stage->simulator, seen), stage);
+    }
+    if (onlookers.pulse && verdict.ticks % kBetweenPulses == 0) {
+      onlookers.pulse(verdict.ticks);
+    }
+    ++verdict.ticks;
+  }
+};
+
 void BoneReplay::run_pass(std::int32_t row, const record::PassRow& pass,
                           const std::shared_ptr<BoneStage>& stage, const Onlookers& onlookers,
                           ReplayVerdict& verdict) const {
-  constexpr std::uint64_t kBetweenPulses = 500;  // ticks
+  Work work{stage,
+            onlookers,
+            verdict,
+            1.0 / rate(),
+            Cursor<record::RemovalRow>(removals_, pass.first_sample),
+            Cursor<record::SplitRow>(splits_, pass.first_sample),
+            Cursor<record::TearRow>(tears_, pass.first_sample),
+            {},
+            {}};
+  if (led_.empty()) {
+    run_own(pass, work);
+  } else {
+    run_led(pass, work);
+  }
+  if (verdict.difference.empty()) {
+    verdict.checksum = stage->simulator->checksum();
+    check_end(row, verdict);
+  }
+}
+
+void BoneReplay::run_own(const record::PassRow& pass, Work& work) const {
   const protocols::DrillingInput input(definition_.drilling);
-  const double dt = 1.0 / rate();
-  bone::Simulator& simulator = *stage->simulator;
-  Cursor<record::RemovalRow> removals(removals_, pass.first_sample);
-  Cursor<record::SplitRow> splits(splits_, pass.first_sample);
-  Cursor<record::TearRow> tears(tears_, pass.first_sample);
   const std::uint64_t offset = reader_.samples(0, 1).front().sequence;
-  const std::uint64_t first = pass.first_sample - offset;
   const std::uint64_t end = pass.last_sample - offset + 1;
   bool begun = false;
-  for (std::uint64_t at = first; at < end; at += kPiece) {
+  for (std::uint64_t at = pass.first_sample - offset; at < end; at += kPiece) {
     const std::uint64_t count = std::min(kPiece, end - at);
     const std::vector<record::Sample> samples = reader_.samples(at, count);
     const std::vector<record::ToolRow> tool = reader_.rows<record::ToolRow>(at, count);
@@ -236,33 +316,46 @@ void BoneReplay::run_pass(std::int32_t row, const record::PassRow& pass,
       if (!tool[i].active) {
         continue;
       }
-      const bone::SimulatorInput now = input.of(reading_of(samples[i], tool[i]), dt);
+      const bone::SimulatorInput now = input.of(reading_of(samples[i], tool[i]), work.dt);
       if (!std::exchange(begun, true)) {
-        simulator.begin(now.functions);
+        work.stage->simulator->begin(now.functions);
       }
-      const std::uint64_t sequence = samples[i].sequence;
-      simulator.tick(now, splits_of(splits.take(sequence)));
-      verdict.difference = difference(sequence, removals.take(sequence), simulator.emptied());
-      verdict.emptied += simulator.emptied().size();
-      if (verdict.difference.empty()) {
-        verdict.difference = difference(sequence, tears.take(sequence), simulator.tears());
-      }
-      verdict.tears += simulator.tears().size();
-      if (!verdict.difference.empty()) {
+      work.step(samples[i].sequence, now, true);
+      if (!work.check(samples[i].sequence)) {
         return;
       }
-      if (onlookers.watch) {
-        stage->companions->after_tick(simulator, dt);
-        onlookers.watch(verdict.ticks, protocols::view_of(simulator, now), stage);
-      }
-      if (onlookers.pulse && verdict.ticks % kBetweenPulses == 0) {
-        onlookers.pulse(verdict.ticks);
-      }
-      ++verdict.ticks;
+      work.show(samples[i].sequence, now);
     }
   }
-  verdict.checksum = simulator.checksum();
-  check_end(row, verdict);
+}
+
+/// The bone followed what another session's device gave.
+void BoneReplay::run_led(const record::PassRow& pass, Work& work) const {
+  const protocols::DrillingInput input(definition_.drilling);
+  Cursor<record::LedRow> led(led_, pass.first_sample);
+  for (std::uint64_t sequence = pass.first_sample; sequence <= pass.last_sample; ++sequence) {
+    const std::span<const record::LedRow> steps = led.take(sequence);
+    bone::SimulatorInput now;
+    for (const record::LedRow& row : steps) {
+      device::DeviceReading reading;
+      reading.tool = row.tool;
+      reading.orientation = row.orientation;
+      reading.buttons = row.buttons;
+      reading.keys = row.keys;
+      reading.pedal = row.pedal;
+      now = input.of(reading, work.dt);
+      if (row.begins) {
+        work.stage->simulator->begin(now.functions);
+      }
+      work.step(sequence, now, &row == steps.data());
+    }
+    if (!steps.empty()) {
+      if (!work.check(sequence)) {
+        return;
+      }
+      work.show(sequence, now);
+    }
+  }
 }
 
 /// Whether the bone at the end of a pass is that of the record.

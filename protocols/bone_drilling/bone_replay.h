@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/bone/record/drilling_types.h"
+#include "core/bone/record/led_row.h"
 #include "core/bone/record/tear_row.h"
 #include "core/record/read/session_reader.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
@@ -43,12 +44,16 @@ class BoneReplay {
   /// Ticks of a trial that were simulated.
   std::uint64_t ticks(int trial) const;
 
+  /// `repetition` of a trial's last bone. @throws InputError for a trial that is not there.
+  std::int32_t last_bone(int trial) const;
+
   /// Called about every 500 ticks; what it throws ends the replay. @param tick  of the trial, from
   /// 0
   using Pulse = std::function<void(std::uint64_t tick)>;
-  /// What is seen on a tick. @param tick  of the trial, from 0
-  using Watch = std::function<void(std::uint64_t tick, const bone::DrillingView& seen,
-                                   const std::shared_ptr<const BoneStage>& stage)>;
+  /// What is seen on a tick. @param tick  of the trial, from 0 @param sequence  as in /samples
+  using Watch =
+      std::function<void(std::uint64_t tick, std::uint64_t sequence, const bone::DrillingView& seen,
+                         const std::shared_ptr<const BoneStage>& stage)>;
   /// @param watch  may be empty: dust is then left out, which nothing else depends on
   /// @throws InputError for a trial that is not there.
   ReplayVerdict run(int trial, const Watch& watch = {}) const;
@@ -61,14 +66,18 @@ class BoneReplay {
                                      const Pulse& pulse = {}) const;
 
  private:
+  [[noreturn]] void refuse_trial(int trial) const;
   /// Who looks on.
   struct Onlookers {
     const Watch& watch;
     const Pulse& pulse;
   };
+  struct Work;
   void run_pass(std::int32_t row, const record::PassRow& pass,
                 const std::shared_ptr<BoneStage>& stage, const Onlookers& onlookers,
                 ReplayVerdict& verdict) const;
+  void run_own(const record::PassRow& pass, Work& work) const;
+  void run_led(const record::PassRow& pass, Work& work) const;
   void check_end(std::int32_t row, ReplayVerdict& verdict) const;
   std::shared_ptr<BoneStage> make_stage(int trial, bool drawn) const;
 
@@ -79,6 +88,7 @@ class BoneReplay {
   std::vector<record::RemovalRow> removals_;
   std::vector<record::SplitRow> splits_;
   std::vector<record::TearRow> tears_;
+  std::vector<record::LedRow> led_;  // none where the bone was the session's own
   std::vector<std::shared_ptr<const bone::BoneModel>> bones_;
 };
 

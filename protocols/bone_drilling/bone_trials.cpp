@@ -17,6 +17,7 @@
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/display/stage_stills.h"
 #include "protocols/bone_drilling/drilling_rig.h"
+#include "protocols/bone_drilling/nerve_page.h"
 #include "protocols/interface/session_file.h"
 
 namespace haptrial::protocols {
@@ -37,6 +38,11 @@ std::vector<PlannedTrial> plan_of(const BoneDefinition& d, const SessionPlace& p
   }
   return plan;
 }
+
+// Shares of the time until the first picture, when the simulator is there and when the surface is
+// begun.
+constexpr double kUntilDepths = 0.2;
+constexpr double kUntilSurface = 0.5;
 
 /// How many bones a trial has had in earlier runs.
 std::int32_t bones_used(const SessionFile& file, const PlannedTrial& trial) {
@@ -64,6 +70,7 @@ BoneTrials::BoneTrials(const BoneDefinition& definition, const SessionPlace& pla
   for (const auto& bone : d_.bones) {  // before there is a window: it takes seconds
     stills_.push_back(place.window ? screen_stills(d_, *bone) : nullptr);
   }
+  depths_.resize(d_.bones.size());
   if (place.frames_per_pass > 0) {
     pictures_ = std::make_unique<BonePictures>(d_, place.frames_per_pass);
   }
@@ -93,13 +100,15 @@ void BoneTrials::watch_nerves() {
     channels_.push_back({static_cast<std::int32_t>(channels_.size()), channel.name, channel.nerve,
                          d_.nerves->monitor.rate});
   }
-  const auto make = [setup = *d_.nerves, rate = d_.rate,
-                     seed = place_.session_seed](std::uint64_t first) {
+  pulse_ = std::make_shared<std::atomic<float>>(static_cast<float>(d_.nerves->current));
+  const auto make = [setup = *d_.nerves, rate = d_.rate, seed = place_.session_seed,
+                     pulse = pulse_](std::uint64_t first) {
     const std::string name = fmt::format("nerves from tick {}", first);
-    return std::make_unique<nerve::NerveSimulation>(setup, rate, derived_seed(seed, name));
+    return std::make_unique<nerve::NerveSimulation>(setup, rate, derived_seed(seed, name), pulse);
   };
   if (place_.real) {
-    const nerve::NerveListeners listeners{place_.nerve_desk, voice_};
+    const auto page = page_of<NervePage>(place_.side_pages);
+    const nerve::NerveListeners listeners{page ? page->desk() : nullptr, voice_};
     nerves_ = std::make_unique<nerve::ThreadedNerves>(make, d_.rate, listeners);
   } else {
     nerves_ = std::make_unique<nerve::SteppedNerves>(make);
@@ -123,6 +132,14 @@ std::vector<std::string> BoneTrials::notices() const {
   if (!notice_.empty()) {
     notices.push_back(notice_);
   }
+  for (const auto& bone : d_.bones) {
+    if (!bone::has_vital_structures(*bone)) {
+      notices.push_back(
+          fmt::format("vital structures of '{}' are unknown: it has none by a known "
+                      "name, so no injury can be told",
+                      bone->name));
+    }
+  }
   if (tears_ > 0) {
     notices.push_back(fmt::format("soft tissue was torn {} (/tears)",
                                   tears_ == 1 ? "once" : fmt::format("{} times", tears_)));
@@ -141,6 +158,9 @@ record::TableList BoneTrials::tables() const {
                 : record::drilling_tables();
   if (!d_.simulator.soft_tissue.empty()) {
     tables.push_back(&record::table_of<record::TearRow>());
+  }
+  if (is_led()) {
+    tables.push_back(&record::table_of<record::LedRow>());
   }
   return tables;
 }
@@ -163,6 +183,10 @@ void BoneTrials::empty_logs(SessionFile& file) {
   empty(logs_.removals);
   empty(logs_.camera);
   empty(logs_.splits);
+  if (is_led()) {
+    empty(logs_.led);
+  }
+  tell_shared(file);
   if (!d_.simulator.soft_tissue.empty()) {
     logs_.tears.flush([&](std::span<const record::TearRow> rows) { tell_tears(file, rows); });
   }
@@ -172,7 +196,25 @@ void BoneTrials::empty_logs(SessionFile& file) {
     file.add(std::span(rows.emg));
     file.add(std::span(rows.events));
     file.add(std::span(rows.thresholds));
+    file.add(std::span(rows.stimuli));
     file.add(std::span(rows.discharges));
+  }
+}
+
+SharedWorld* BoneTrials::share_world(bool leads) {
+  shared_ = std::make_unique<SharedBone>(leads);
+  return shared_.get();
+}
+
+/// Whether the bones of both sides are the same.
+void BoneTrials::tell_shared(SessionFile& file) {
+  const auto told =
+      shared_ && stage_ ? shared_->attend(*stage_->simulator) : std::optional<SharedBone::Told>{};
+  if (told) {
+    file.event(told->differs ? "bone_differs" : "bone_checked", told->text);
+  }
+  if (told && told->differs) {
+    fmt::print(stderr, "{}\n", told->text);
   }
 }
 
@@ -212,9 +254,14 @@ void BoneTrials::prepare(const PlannedTrial& trial, SessionFile& file) {
   bone_ = static_cast<std::size_t>(std::max(trial.trial, 1) - 1) % d_.bones.size();
   bones_used_ = bones_used(file, trial);
   stage_.reset();
-  if (!place_.resumed.empty() && bones_used_ > 0) {
-    restore(trial, file);
+  if (place_.resumed.empty() || bones_used_ == 0) {
+    return;
   }
+  if (shared_) {  // neither side knows how far the other one had come
+    file.event("bone_lost", "the trial begins with a new bone on both sides");
+    return;
+  }
+  restore(trial, file);
 }
 
 /// The bone of an earlier run of the session, as it stood. The servo loop ticks meanwhile.
@@ -238,12 +285,15 @@ void BoneTrials::restore(const PlannedTrial& trial, SessionFile& file) {
 }
 
 void BoneTrials::begin_attempt(const PlannedTrial& trial, bool anew) {
-  if (stage_ && !anew) {
+  const bool fresh = is_led() ? shared_->needs_new_bone() : anew;  // who is led goes by the other
+  if (stage_ && !fresh) {
     return;
   }
   pass_.reset();
+  led_.reset();
   auto stage = std::make_shared<BoneStage>();
   stage->model = d_.bones[bone_];
+  tell_preparing(0.0);
   const geometry::VoxelGrid& grid = stage->model->grid;
   stage->start_view = d_.simulator.camera.start;
   stage->simulator = std::make_unique<bone::Simulator>(*stage->model, simulator_for(d_, grid));
@@ -258,21 +308,29 @@ void BoneTrials::set_up(std::shared_ptr<BoneStage> stage, const PlannedTrial& tr
   const geometry::VoxelGrid& grid = stage->model->grid;
   const bone::CompanionParameters companions = companions_for(d_, grid);
   if (place_.real) {
-    stage->companions = std::make_unique<bone::ThreadedCompanions>(*stage->simulator, companions);
-  } else {
     stage->companions =
-        std::make_unique<bone::SteppedCompanions>(*stage->simulator, companions, d_.rate);
+        std::make_unique<bone::ThreadedCompanions>(*stage->simulator, companions, !is_led());
+  } else {
+    stage->companions = std::make_unique<bone::SteppedCompanions>(*stage->simulator, companions,
+                                                                  d_.rate, !is_led());
   }
   if (place_.window || pictures_) {
-    stage->depths = depths_of(*stage->model);
+    if (depths_[bone_] == nullptr) {
+      tell_preparing(kUntilDepths);
+      depths_[bone_] = depths_of(*stage->model);
+    }
+    stage->depths = depths_[bone_];
   }
   stage->stills = stills_[bone_];
   stage_ = std::move(stage);
+  if (shared_) {
+    shared_->take_new_bone(stage_->simulator->checksum());
+  }
   if (nerves_) {
     const std::string name = fmt::format("nerves {} from tick {}", bones_used_, spent_);
     exposures_ = std::make_unique<nerve::NerveExposures>(*d_.nerves, d_.nerve_distances[bone_],
                                                          derived_seed(trial.stimulus_seed, name),
-                                                         1.0 / d_.rate);
+                                                         1.0 / d_.rate, pulse_);
   }
   vibration_.reset();
   if (d_.vibration_gain > 0.0) {
@@ -283,26 +341,59 @@ void BoneTrials::set_up(std::shared_ptr<BoneStage> stage, const PlannedTrial& tr
   }
 }
 
-MakeDrawing BoneTrials::drawing() { return bone_drawing(d_, stage_); }
+void BoneTrials::tell_preparing(double share) {
+  if (place_.pulse) {
+    place_.pulse("preparing the bone", share);
+  }
+}
+
+/// On the session's thread, so that the screen goes on meanwhile.
+MakeDrawing BoneTrials::drawing() {
+  const auto surface = built_surface(*stage_, [this](double share) {
+    tell_preparing(kUntilSurface + (1.0 - kUntilSurface) * share);
+    return true;
+  });
+  return bone_drawing(d_, stage_, surface);
+}
 
 Pass& BoneTrials::make_pass(PlannedTrial& trial, const record::Phase&) {
   trial.repetition = bones_used_;
-  DrillingParameters drilling = d_.drilling;
-  drilling.time_limit = trial.practice ? d_.practice : drilling.time_limit;
-  pass_ = std::make_unique<DrillingPass>(*stage_->simulator, *stage_->companions, drilling, logs_,
-                                         d_.rate, spent_, vibration_ ? &*vibration_ : nullptr,
-                                         exposures_.get());
+  if (shared_) {
+    shared_->prepare_pass(trial.trial);
+  }
   if (nerves_) {
     nerves_->let_hear(d_.hears_nerves(trial.trial, place_.participant));
   }
   if (pictures_) {
     pictures_->watch(stage_);
   }
+  return is_led() ? make_led_pass(trial) : make_drilling_pass(trial);
+}
+
+Pass& BoneTrials::make_drilling_pass(const PlannedTrial& trial) {
+  DrillingParameters drilling = d_.drilling;
+  drilling.time_limit = trial.practice ? d_.practice : drilling.time_limit;
+  pass_ = std::make_unique<DrillingPass>(*stage_->simulator, *stage_->companions, drilling, logs_,
+                                         d_.rate, spent_, vibration_ ? &*vibration_ : nullptr,
+                                         exposures_.get());
+  if (shared_) {
+    pass_->share(*shared_);
+  }
   return *pass_;
 }
 
+Pass& BoneTrials::make_led_pass(const PlannedTrial& trial) {
+  led_ = std::make_unique<LedPass>(LedPass::Parts{*stage_->simulator, *stage_->companions,
+                                                  d_.drilling, logs_, *shared_, d_.rate,
+                                                  trial.trial, place_.real, exposures_.get()});
+  return *led_;
+}
+
 void BoneTrials::close_pass(SessionFile& file, std::int32_t row) {
-  spent_ = pass_->ticks();
+  spent_ = pass_ ? pass_->ticks() : 0;
+  if (led_) {
+    led_->rest();
+  }
   stage_->companions->settle();
   const bone::Simulator& simulator = *stage_->simulator;
   const bone::DustBalance dust = stage_->companions->dust();

@@ -9,6 +9,8 @@
 #include "protocols/bone_drilling/display/bone_sound.h"
 #include "protocols/bone_drilling/display/bone_stage.h"
 #include "protocols/bone_drilling/drilling_pass.h"
+#include "protocols/bone_drilling/led_pass.h"
+#include "protocols/bone_drilling/shared_bone.h"
 #include "protocols/interface/trials.h"
 
 namespace haptrial::protocols {
@@ -37,17 +39,25 @@ class BoneTrials final : public Trials {
   void prepare(const PlannedTrial& trial, SessionFile& file) override;
   void begin_attempt(const PlannedTrial& trial, bool anew) override;
   MakeDrawing drawing() override;
+  /// Who drills sees what is drilled from the first tick on.
+  bool waits_for_picture() const override { return true; }
   Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) override;
   void close_pass(SessionFile& file, std::int32_t row) override;
   void draw_pictures(const PlannedTrial& trial, const record::Phase& phase) override;
+  SharedWorld* share_world(bool leads) override;
   std::vector<std::string> notices() const override;
   const char* why_aborted() const override { return "the procedure was broken off"; }
 
  private:
+  void tell_preparing(double share);
   void tell_tears(SessionFile& file, std::span<const record::TearRow> rows);
   void open_sound();
   void watch_nerves();
   void restore(const PlannedTrial& trial, SessionFile& file);
+  bool is_led() const { return shared_ && !shared_->leads(); }
+  Pass& make_drilling_pass(const PlannedTrial& trial);
+  Pass& make_led_pass(const PlannedTrial& trial);
+  void tell_shared(SessionFile& file);
   void set_up(std::shared_ptr<BoneStage> stage, const PlannedTrial& trial);
 
   const BoneDefinition& d_;
@@ -58,19 +68,23 @@ class BoneTrials final : public Trials {
   std::vector<record::NerveChannelRow> channels_;
   std::shared_ptr<nerve::NerveVoice> voice_;  // of the sound card
   std::unique_ptr<nerve::NerveBeside> nerves_;
+  nerve::PulseCurrent pulse_;                         // of the probe
   std::unique_ptr<nerve::NerveExposures> exposures_;  // of the present bone
   std::unique_ptr<BonePictures> pictures_;
   std::shared_ptr<BoneStage> stage_;
   std::size_t bone_{0};         // of the definition's
   std::int32_t bones_used_{0};  // in this trial, earlier runs of the session included
   std::vector<std::shared_ptr<const std::vector<render::Image>>> stills_;  // by bone
+  std::vector<std::shared_ptr<const bone::StructureDepths>> depths_;       // by bone, once needed
   std::uint64_t spent_{0};  // ticks of the time limit
   double old_dust_{0.0};    // made in earlier runs of the session, which nobody follows [voxels]
   std::optional<sound::DrillVibration> vibration_;
   std::unique_ptr<BoneSound> sound_;
   std::string notice_;
-  std::uint64_t tears_{0};  // of soft tissue, in this run
+  std::uint64_t tears_{0};              // of soft tissue, in this run
+  std::unique_ptr<SharedBone> shared_;  // with a linked session; null: it is nobody else's
   std::unique_ptr<DrillingPass> pass_;
+  std::unique_ptr<LedPass> led_;  // in its stead, on a bone that belongs to the other side
 };
 
 }  // namespace haptrial::protocols

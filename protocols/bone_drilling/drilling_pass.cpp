@@ -13,18 +13,12 @@
 namespace haptrial::protocols {
 namespace {
 
-constexpr std::uint64_t kBetweenCameraRows = 10;  // ticks at least, while the view moves
-
 Eigen::Quaterniond grip_of(const DrillingParameters& p) {
   if (!(p.handle.norm() > 0.0) || !p.handle.allFinite() || !(p.scale > 0.0)) {
     throw std::invalid_argument(
         "DrillingInput: the handle must have a length and the scale be above 0");
   }
   return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), p.handle);
-}
-
-std::array<std::int32_t, 3> indices(const bone::Voxel& voxel) noexcept {
-  return {voxel.x(), voxel.y(), voxel.z()};
 }
 
 }  // namespace
@@ -86,7 +80,7 @@ DrillingPass::DrillingPass(bone::Simulator& simulator, bone::Companions& compani
       parameters_(parameters),
       input_(parameters),
       logs_(logs),
-      rate_(rate),
+      rows_(simulator, logs, rate),
       vibration_(vibration),
       nerves_(nerves),
       time_limit_(static_cast<std::uint64_t>(std::max(1.0, parameters.time_limit * rate))),
@@ -95,22 +89,8 @@ DrillingPass::DrillingPass(bone::Simulator& simulator, bone::Companions& compani
 void DrillingPass::begin(std::uint64_t sequence) noexcept {
   sequence_ = sequence;
   first_ = true;
-  camera_due_ = true;
-}
-
-void DrillingLogs::record(std::uint64_t sequence, const Readings& readings,
-                          device::Fault /*fault*/) noexcept {
-  record::ToolRow row = std::exchange(row_, record::ToolRow{});
-  row.sequence = sequence;
-  row.orientation = readings[0].orientation;
-  row.buttons = readings[0].buttons;
-  row.keys = readings[0].keys;
-  row.pedal = readings[0].pedal;
-  tool.push(row);
-  if (beside_ != nullptr) {
-    nerve::NerveTick tick = std::exchange(nerves_, nerve::NerveTick{});
-    tick.sequence = sequence;
-    beside_->after_tick(tick);
+  if (shared_ != nullptr) {
+    shared_->tell_begin();
   }
 }
 
@@ -124,15 +104,21 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   const bone::SimulatorOutput& done = simulator_.tick(input);
   companions_.after_tick(simulator_, dt);
   if (nerves_ != nullptr) {
-    logs_.set_nerves(nerves_->step(tool_at_nerves(input)));
+    logs_.set_nerves(nerves_->step(tool_at_nerves(simulator_, input)));
   }
-  log(done, input.tool.tip.velocity.norm());
-  log_camera(done.camera_changed);
+  rows_.log(sequence_, input.tool.tip.velocity.norm());
+  rows_.log_camera(sequence_, done.camera_changed);
+  if (shared_ != nullptr) {
+    shared_->tell_step(recorded, simulator_);
+  }
   ++ticks_;
   ++sequence_;
   first_ = false;
   if (done.finished || ticks_ >= time_limit_) {
     state_ = PassState::kCompleted;
+    if (shared_ != nullptr) {
+      shared_->tell_end();
+    }
   }
 
   PassOutput out;
@@ -149,44 +135,8 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   seen.tone = logs_.nerve_tone();
   out.shown = seen;
   out.shown.tool = reading.tool.position;
-  record::ToolRow tool;
-  tool.tool = done.tool;
-  tool.mode = static_cast<std::uint8_t>(done.mode);
-  tool.active = true;
-  tool.power = done.power > 0.0;
-  tool.piece = simulator_.world().held();
-  tool.immersed = done.immersed;
-  tool.removed = done.removed + done.cut;
-  tool.contact = done.force;
-  logs_.set_tool(tool);
+  rows_.log_tool(done.removed + done.cut, done.force);
   return out;
-}
-
-/// Nerves lie in the bone that was there at the beginning, and go with it.
-nerve::ToolAtNerves DrillingPass::tool_at_nerves(const bone::SimulatorInput& input) const noexcept {
-  using Kind = nerve::ToolAtNerves::Kind;
-  const bone::SimulatorOutput& out = simulator_.output();
-  const bone::ToolSpec& tool = simulator_.tool();
-  nerve::ToolAtNerves at;
-  if (out.mode != bone::HandMode::kTool) {
-    return at;
-  }
-  if (const auto* burr = tool.as<bone::BurrTool>()) {
-    at.kind = Kind::kBurr;
-    at.radius = burr->radius();
-  } else if (const auto* suction = tool.as<bone::SuctionTool>()) {
-    at.kind = Kind::kSuction;
-    at.radius = suction->radius;
-  } else if (const auto* probe = tool.as<bone::ProbeTool>()) {
-    at.kind = Kind::kProbe;
-    at.radius = probe->radius;
-  }
-  const Eigen::Isometry3d& X_WB = std::as_const(simulator_).world().pose(0);
-  at.tip_B = X_WB.inverse(Eigen::Isometry) * input.tool.tip.position;
-  at.speed = input.tool.tip.velocity.norm();
-  at.force = out.force.norm();
-  at.power = out.power;
-  return at;
 }
 
 /// Felt, but neither drilled with nor recorded as contact.
@@ -204,55 +154,6 @@ Eigen::Vector3d DrillingPass::shaking(const bone::SimulatorInput& input) noexcep
   state.contact = out.contact;
   state.force = out.force.norm();
   return vibration_->tick(state, input.tool);
-}
-
-void DrillingPass::log(const bone::SimulatorOutput& out, double speed) noexcept {
-  const double force = out.force.norm();
-  for (const bone::EmptiedIn& gone : simulator_.emptied()) {
-    record::RemovalRow row;
-    row.sequence = sequence_;
-    row.piece = gone.piece;
-    row.voxel = indices(gone.voxel);
-    row.label = gone.label;
-    row.cut = gone.by_cut;
-    row.force = gone.by_cut ? 0.0 : force;
-    row.speed = speed;
-    logs_.removals.push(row);
-  }
-  for (const bone::Tear& tear : simulator_.tears()) {
-    logs_.tears.push(
-        {sequence_, tear.label, out.tool, tear.by_suction, tear.force, tear.depth, tear.place_B});
-  }
-  for (const bone::WorldEvent& event : simulator_.separations()) {
-    using Kind = bone::WorldEvent::Kind;
-    if (event.kind == Kind::kBorn) {
-      for (const bone::Voxel& seed : simulator_.world().seeds(event.piece)) {
-        logs_.splits.push({sequence_, event.parent, event.piece, indices(seed)});
-      }
-    } else if (event.kind == Kind::kCrumb) {
-      logs_.splits.push({sequence_, event.piece, -1, indices(event.seed)});
-    }
-  }
-}
-
-/// A moving view is logged a hundred times a second at most, and where it comes to rest.
-void DrillingPass::log_camera(bool changed) noexcept {
-  camera_due_ = camera_due_ || changed;
-  const bool at_rest = !changed;
-  if (!camera_due_ || !(first_ || at_rest || sequence_ - camera_logged_ >= kBetweenCameraRows)) {
-    return;
-  }
-  const Camera& camera = simulator_.camera();
-  record::CameraRow row;
-  row.sequence = sequence_;
-  row.time_ns = std::llround(static_cast<double>(sequence_) * 1e9 / rate_);
-  row.eye = camera.eye;
-  row.target = camera.target;
-  row.up = camera.up;
-  row.field_of_view = camera.field_of_view;
-  logs_.camera.push(row);
-  camera_logged_ = sequence_;
-  camera_due_ = false;
 }
 
 bool DrillingPass::wants_attention() noexcept {

@@ -14,6 +14,7 @@
 #include "core/markers/marker_options.h"
 #include "core/pages/page.h"
 #include "core/render/trial/trial_display_style.h"
+#include "core/stream/side_stream.h"
 #include "core/subject/hand_parameters.h"
 #include "protocols/definition/schedule.h"
 #include "protocols/definition/screen_options.h"
@@ -87,9 +88,8 @@ struct Definition {
   /// What it plays beside what the protocol sounds like itself; null: nothing.
   virtual const sound::CueSet* sounds() const { return nullptr; }
 
-  /// Channels of a nerve monitor, in their order; none: there is no monitor.
-  virtual std::vector<std::string> nerve_channels() const { return {}; }
-  virtual double nerve_rate() const { return 0.0; }  // of their samples [Hz]
+  /// What a session streams beside its samples, from tables of the protocol's own.
+  virtual std::vector<stream::SideStream> side_streams() const { return {}; }
 
   /// Whether there is a force that the participant is to follow or to recall.
   virtual bool has_target() const { return true; }

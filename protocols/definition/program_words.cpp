@@ -23,6 +23,8 @@ constexpr std::array kSessionInGerman{
           "Angehalten\nDie Kräfte sind abgeschaltet. Bitte warten Sie auf die Versuchsleitung."},
     Words{"A short pause\nThe session continues in a moment.",
           "Eine kurze Pause\nEs geht gleich weiter."},
+    Words{"One moment\nWhat you are going to work on is being prepared.",
+          "Einen Moment\nWoran Sie arbeiten werden, wird vorbereitet."},
     Words{"One moment\nThe forces are off for a few seconds. Hold the handle loosely: it will "
           "guide your hand to the start.",
           "Einen Moment\nDie Kräfte sind für einige Sekunden abgeschaltet. Halten Sie den Griff "

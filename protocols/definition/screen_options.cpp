@@ -68,6 +68,7 @@ SessionTexts read_session_texts(Table& table) {
   };
   read_if_there("stopped", texts.stopped);
   read_if_there("paused", texts.paused);
+  read_if_there("preparing", texts.preparing);
   read_if_there("recovering", texts.recovering);
   read_if_there("limit", texts.limit);
   read_if_there("begin", texts.begin);

@@ -38,6 +38,7 @@ struct SessionTexts {
   std::string thanks;        // at the end
   std::string stopped{"Stopped\nThe forces are off. Please wait for the experimenter."};
   std::string paused{"A short pause\nThe session continues in a moment."};
+  std::string preparing{"One moment\nWhat you are going to work on is being prepared."};
   std::string recovering{// after a pass that was aborted without a fault
                          "One moment\nThe forces are off for a few seconds. Hold the handle "
                          "loosely: it will guide your hand to the start."};

@@ -1,10 +1,36 @@
 #include "protocols/definition/tutoring_options.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
 #include "core/base/definition/table.h"
+#include "core/record/table/schema.h"
 
 namespace haptrial::protocols {
 
 using network::Passivity;
+
+static void read_networks(Table& table, TutoringOptions& o) {
+  if (!table.has("networks")) {
+    return;
+  }
+  for (Table& each : table.tables("networks")) {
+    TutoringNetwork network{each.text("name"), network::read_channel_conditions(each)};
+    const bool taken = std::ranges::any_of(
+        o.networks, [&](const TutoringNetwork& other) { return other.name == network.name; });
+    if (network.name.empty() || network.name.size() >= record::kConditionBytes || taken) {
+      each.reject(
+          "name", "'" + network.name + "'",
+          fmt::format("a name of its own of at most {} bytes", record::kConditionBytes - 1));
+    }
+    o.networks.push_back(std::move(network));
+  }
+  if (table.has("channel")) {
+    table.reject("channel", "and networks are both given; leave out one of them");
+  }
+}
 
 static void read_link_options(Table& table, TutoringOptions& o) {
   o.authority = table.number_or("authority", o.authority, {0.0, 1.0}, "1");
@@ -31,6 +57,7 @@ static void read_link_options(Table& table, TutoringOptions& o) {
     Table channel = table.table("channel");
     o.channel = network::read_channel_conditions(channel);
   }
+  read_networks(table, o);
 }
 
 TutoringOptions read_tutoring_options(Table& table) {

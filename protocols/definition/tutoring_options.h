@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "core/control/tutoring/tutoring_law.h"
 #include "core/network/channel/simulated_channel.h"
 #include "core/network/side/side_parameters.h"
@@ -9,6 +12,12 @@ class Table;
 }
 
 namespace haptrial::protocols {
+
+/// A network over which some of the trials go.
+struct TutoringNetwork {
+  std::string name;
+  network::ChannelConditions channel;  // each way
+};
 
 /// How a tutor leads, the table [tutoring] of a definition: in a recorded run or over a link.
 struct TutoringOptions {
@@ -26,6 +35,8 @@ struct TutoringOptions {
   double deadline{0.1};                // silence after which the force is zero [s]
   double patience{10.0};               // silence after which the session ends [s]
   network::ChannelConditions channel;  // of a dry run, each way
+  /// Networks of a dry run, one for each trial; if there are none, `channel` serves all trials.
+  std::vector<TutoringNetwork> networks;
 };
 
 TutoringOptions read_tutoring_options(Table& table);

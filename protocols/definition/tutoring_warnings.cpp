@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace haptrial::protocols {
 
 using network::Passivity;
@@ -19,7 +21,11 @@ std::vector<std::string> tutoring_warnings(const Definition& definition) {
     return warnings;
   }
   const double damping = definition.hand.damping + o.gains.damping;
-  const double delay = 2.0 * (o.channel.delay + o.channel.jitter);
+  double way = o.channel.delay + o.channel.jitter;
+  for (const TutoringNetwork& network : o.networks) {
+    way = std::max(way, network.channel.delay + network.channel.jitter);
+  }
+  const double delay = 2.0 * way;
   const double most = control::stiffest_over_delay(damping, 1.0 / definition.rate, delay);
   if (o.gains.stiffness >= most) {
     warnings.push_back(fmt::format(

@@ -122,6 +122,9 @@ ForceDefinition read_force_definition(Table& root, std::string_view file_name,
   Table display = root.table("display");
   Table recording = root.table("recording");
   root.leave("analysis");
+  if (root.has("power")) {
+    root.leave("power");  // of who simulates it
+  }
   ForceDefinition d{subject::Population(subject)};
   d.protocol = kForceTraining;
   read_common(root, file_name, d);

@@ -29,6 +29,7 @@ void DeviceSet::read(std::uint32_t keys, std::optional<double> pedal) noexcept {
     readings_[arm].pedal = pedal.value_or(readings_[arm].pedal);
     envelopes_[arm].check(read_ok, readings_[arm]);
   }
+  note_trouble();
   stop_together();
 }
 
@@ -67,6 +68,7 @@ bool DeviceSet::write() noexcept {
       taken = false;
     }
   }
+  note_trouble();
   if (!taken && devices_.size() > 1) {
     stop_together();
     for (device::Device* device : devices_) {
@@ -74,6 +76,17 @@ bool DeviceSet::write() noexcept {
     }
   }
   return taken;
+}
+
+/// At once: the next read that goes well forgets it.
+void DeviceSet::note_trouble() noexcept {
+  const bool faulty_now = fault() != Fault::kNone;
+  if (faulty_now && !noted_) {
+    trouble_ = devices_[faulty()]->trouble();
+  } else if (!faulty_now) {
+    trouble_ = "";
+  }
+  noted_ = faulty_now;
 }
 
 bool DeviceSet::without_force() const noexcept {

@@ -53,14 +53,19 @@ class DeviceSet {
   /// What is wrong, and with which device, from 0; kNone if nothing is.
   device::Fault fault() const noexcept;
   std::size_t faulty() const noexcept;
+  /// What that device said of it when it began (Device::trouble()).
+  const char* trouble() const noexcept { return trouble_; }
 
  private:
   void stop_together() noexcept;
+  void note_trouble() noexcept;
 
   std::vector<device::Device*> devices_;
   std::vector<device::Envelope> envelopes_;
   std::vector<device::DeviceReading> readings_;
   std::vector<Eigen::Vector3d> forces_;
+  const char* trouble_{""};
+  bool noted_{false};  // of this fault
 };
 
 }  // namespace haptrial::protocols

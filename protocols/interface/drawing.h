@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/device/pointer_hand.h"
 #include "core/stimulus/shown.h"
 
 namespace haptrial::render {
@@ -23,6 +24,12 @@ class Drawing {
   /// [m].
   virtual std::optional<Eigen::Vector3d> to_world(const Eigen::Vector2d& pixel) const {
     static_cast<void>(pixel);
+    return std::nullopt;
+  }
+  /// Where a hand in space is that pointer and keys move, in the device's workspace; asked after
+  /// each picture where the mouse is the device. Nothing if they move none.
+  virtual std::optional<device::HandPose> hand(const device::PointerInput& input) {
+    static_cast<void>(input);
     return std::nullopt;
   }
 };

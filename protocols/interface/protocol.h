@@ -9,6 +9,7 @@
 
 #include "protocols/definition/definition.h"
 #include "protocols/interface/replay.h"
+#include "protocols/interface/side_page.h"
 #include "protocols/interface/trials.h"
 
 namespace haptrial::protocols {
@@ -36,6 +37,12 @@ class Protocol {
   virtual std::vector<std::string> virtual_tables() const { return {}; }
   /// Every table of its own that a session of it may record.
   virtual record::TableList tables() const { return {}; }
+  /// The pages beside the console that a session of the definition has to offer, new ones.
+  /// @param definition  of this protocol
+  virtual SidePages side_pages(const Definition& definition) const {
+    static_cast<void>(definition);
+    return {};
+  }
   /// The trials of one session. @param definition  of this protocol; it and the place outlive them
   virtual std::unique_ptr<Trials> trials(const Definition& definition,
                                          const SessionPlace& place) const = 0;

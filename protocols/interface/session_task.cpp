@@ -224,6 +224,7 @@ bool SessionTask::end_if_over(std::uint64_t sequence) noexcept {
   result_.state = state;
   result_.fault = fault;
   result_.device = devices_.faulty();
+  result_.trouble = devices_.trouble();
   result_.last_sample = origin_.sequence + sequence;
   pass_ = nullptr;
   devices_.release();

@@ -22,6 +22,7 @@ struct PassResult {
   PassState state{PassState::kRunning};
   device::Fault fault{device::Fault::kNone};
   std::size_t device{0};          // whose fault it was, from 0
+  const char* trouble{""};        // what it said of it: a text of static duration
   std::uint64_t first_sample{0};  // sequence numbers, both inclusive
   std::uint64_t last_sample{0};
   double least_damping{1.0};       // during the run, as a share of what the definition asks for

@@ -22,6 +22,7 @@ DefinitionRules of_every_study() {
                 "markers.baud",
                 "markers.pulse",
                 "sounds.device",
+                "power",
                 "design.participants",
                 "analysis.planned",
                 "analysis.reference"};

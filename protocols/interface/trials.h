@@ -20,18 +20,16 @@
 #include "protocols/interface/drawing.h"
 #include "protocols/interface/pass.h"
 #include "protocols/interface/rig.h"
+#include "protocols/interface/side_page.h"
 
 namespace haptrial::record {
 class SessionReader;
 }  // namespace haptrial::record
 
-namespace haptrial::nerve {
-class MonitorDesk;
-}
-
 namespace haptrial::protocols {
 
 class SessionFile;
+class SharedWorld;
 
 /// Where the trials of one session take place: what the runner tells a protocol.
 struct SessionPlace {
@@ -48,8 +46,8 @@ struct SessionPlace {
   bool window{false};      // the participant has a screen
   int frames_per_pass{0};  // pictures of what was shown, into frames_folder
   std::filesystem::path frames_folder;
-  std::shared_ptr<nerve::MonitorDesk> nerve_desk;  // a technician's; null: nobody looks
-  std::filesystem::path resumed;                   // the file of the earlier run; empty: none
+  SidePages side_pages;           // those of the protocol's that are served
+  std::filesystem::path resumed;  // the file of the earlier run; empty: none
   /// To be called now and then while something takes seconds: what, and the share that is done.
   /// @throws RunError on an interrupt
   std::function<void(const char* what, double share)> pulse;
@@ -136,6 +134,8 @@ class Trials {
   }
   /// What the participant's screen shows during the trial.
   virtual MakeDrawing drawing() = 0;
+  /// Whether a pass begins only when the screen has shown the first picture of drawing().
+  virtual bool waits_for_picture() const { return false; }
   /// @param trial  as planned; what its row is to say else may be changed
   virtual Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) = 0;
   /// The answers of the pass that ended last; their trial, pass and place in time are filled in.
@@ -158,6 +158,12 @@ class Trials {
   virtual std::optional<record::PartnerState> partner() { return std::nullopt; }
   /// Takes the lead of both hands, or hands it over.
   virtual void take_lead(bool take) { static_cast<void>(take); }
+  /// Before the first trial of a session that is linked to another: what of it must not be lost on
+  /// the way, if there is a world that both work on. @param leads  this side's is the world
+  virtual SharedWorld* share_world(bool leads) {
+    static_cast<void>(leads);
+    return nullptr;
+  }
   /// Sentences for the end of the session.
   virtual std::vector<std::string> notices() const { return {}; }
 };

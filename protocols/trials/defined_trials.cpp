@@ -30,21 +30,6 @@ constexpr const char* kInsideOut =
 constexpr const char* kCrowded =
     "the ball lay on more places of the body than are computed; it may have been felt softer than "
     "its elements (use fewer cells or a smaller ball)";
-constexpr int kPracticeNumbers = 1'000'000;  // a trial of practice is no other's
-
-Table parsed(const Definition& d) {
-  Table root = Table::parse(d.text, d.file_name);
-  root.fill_in(trials_defaults());
-  return root;
-}
-
-Taker taker_of(const TrialsDefinition& d, const SessionPlace& place) {
-  const std::string group = d.groups.size() > 1 ? group_of(d.groups, place.subject)
-                            : d.groups.empty()  ? std::string()
-                                                : d.groups.front().name;
-  return {place.participant, group, place.seed, place.session_seed, place.session};
-}
-
 /// Fields whose force is to work on the hand, a bit each: all but those that only give way.
 std::uint64_t pushing(const std::vector<scene::Field>& fields) {
   std::uint64_t mask = 0;
@@ -99,7 +84,7 @@ std::vector<std::string> blocks_of(const TrialsDefinition& definition, const Ses
 DefinedTrials::DefinedTrials(const StudiedDefinition& definition, const SessionPlace& place)
     : d_(definition),
       place_(place),
-      root_(parsed(definition)),
+      root_(parsed_trials(definition)),
       names_(read_names(root_, definition)),
       sequence_(definition, taker_of(definition, place)),
       object_files_(object_files(definition.objects)) {

@@ -15,6 +15,7 @@ using network::Turns;
 LinkedHand::LinkedHand(const Parts& parts)
     : p_(parts),
       side_(side_parameters(parts.options)),
+      stream_(parts.freight != nullptr ? std::make_unique<network::ReliableStream>() : nullptr),
       coupled_(parts.options.ramp),
       claim_(parts.options.ramp),
       taught_(parts.options.ramp, parts.options.authority) {}
@@ -23,6 +24,9 @@ void LinkedHand::hear(const network::Arrived& arrived) noexcept {
   ++arrived_;
   quality_.hear(arrived);
   side_.hear(arrived.message, arrived.time_ns);
+  if (stream_) {
+    stream_->hear(arrived.message.stream);
+  }
   // The last words of a session come without a number of their own order.
   ever_over_ = ever_over_ || (arrived.message.flags & TickFlag::kOver) != 0;
   ever_left_ = ever_left_ || (arrived.message.flags & TickFlag::kLeft) != 0;
@@ -33,6 +37,9 @@ void LinkedHand::listen() noexcept {
   first_now_ = first_now_ == 0 ? now_ : first_now_;
   arrived_ = 0;
   p_.wire.receive(*this);
+  if (stream_) {
+    stream_->deliver(*p_.freight);
+  }
   quality_.step(side_.sequence(), now_);
   heed_partner();
   listened_ = true;
@@ -46,8 +53,6 @@ void LinkedHand::heed_partner() noexcept {
   }
   stop_seen_ = stops;
 }
-
-bool LinkedHand::alone() const noexcept { return ever_over_ || p_.wire.closed(); }
 
 void LinkedHand::await(std::uint32_t item) noexcept {
   turns_.begin(item);
@@ -106,10 +111,14 @@ void LinkedHand::step(const PointState& tool, const Eigen::Vector3d& own_force,
   own_.buttons = buttons;
   own_.flags = flags();
   own_.turn = turns_.own();
-  const network::CoupledSide::Output out = side_.step(own_, now_, dt);
-  coupling_ = out.force - own_.lead * own_force;
+  own_.news = stream_ && stream_->wants(*p_.freight, now_, side_.clock().round_trip());
+  network::CoupledSide::Output out = side_.step(own_, now_, dt);
+  coupling_ = out.force - side_.own_share() * own_force;
   sent_ = out.message ? static_cast<std::int64_t>(out.message->sequence) : 0;
   if (out.message) {
+    if (stream_) {
+      stream_->fill(out.message->stream, now_);
+    }
     p_.wire.send(*out.message);
   }
 }
@@ -121,15 +130,19 @@ void LinkedHand::couple(PassOutput& out, const device::DeviceReading& reading, d
   share_lead(runs_ && partner_runs && turns_.together() && side_.linked(), dt);
   step(reading.tool, out.force, reading.buttons, dt);
   keep_within_envelope(out);
-  // What the link does is watched by the tank; the own world's part as it always is.
-  out.intent.push = own_.lead * out.intent.push + coupling_;
-  out.intent.stored *= own_.lead;
+  // What the link does is watched by the tank; the own world's part as it always is. A share that
+  // changes puts energy into the own world's springs, or takes it out.
+  const double share = side_.own_share();
+  out.intent.push = share * out.intent.push + coupling_;
+  out.intent.added = share * out.intent.added + (share - last_share_) * out.intent.stored;
+  out.intent.stored *= share;
+  last_share_ = share;
 }
 
 /// A partner far away pulls hard, which is no fault of the own protocol. Without coupling the own
 /// force stays as it is.
 void LinkedHand::keep_within_envelope(PassOutput& out) noexcept {
-  const Eigen::Vector3d own_part = own_.lead * out.force;
+  const Eigen::Vector3d own_part = side_.own_share() * out.force;
   const Eigen::Vector3d wanted = own_part + coupling_;
   out.force = wanted;
   if (coupling_ != Eigen::Vector3d::Zero() && longer(wanted, p_.options.most_force)) {
@@ -162,8 +175,10 @@ void LinkedHand::record(std::uint64_t sequence, const Readings& readings,
     share_lead(false, dt_);
     step(readings[0].tool, Eigen::Vector3d::Zero(), readings[0].buttons, dt_);
     coupling_.setZero();
+    last_share_ = 1.0;
   }
-  side_.acts(in_pass ? Eigen::Vector3d(acts_ - own_.lead * own_.force) : Eigen::Vector3d::Zero());
+  side_.acts(in_pass ? Eigen::Vector3d(acts_ - side_.own_share() * own_.force)
+                     : Eigen::Vector3d::Zero());
   listened_ = false;
   keep_row(sequence);
   tell_state(dt_);
@@ -225,7 +240,8 @@ void LinkedHand::tell_state(double dt) noexcept {
   s.other_claims = (side_.newest().flags & TickFlag::kClaim) != 0;
   s.over = alone();
   // Whoever leaves after a pass that both completed has done all that was asked of it.
-  s.left = ever_left_ && turns_.open();
+  // A world that both work on cannot be gone on with alone.
+  s.left = (ever_left_ || (stream_ && alone())) && turns_.open();
   s.stops = stop_seen_;
   s.silence = 1e-9 * static_cast<double>(now_ - (s.heard ? side_.heard_ns() : first_now_));
   s.lead = own_.lead;

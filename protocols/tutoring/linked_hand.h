@@ -3,8 +3,10 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 
 #include "core/control/tutoring/tutoring_law.h"
+#include "core/network/channel/reliable_stream.h"
 #include "core/network/channel/wire.h"
 #include "core/network/side/coupled_side.h"
 #include "core/network/side/turns.h"
@@ -31,8 +33,9 @@ class LinkedHand final : public TickLog, public stimulus::Observer, private netw
     const TutoringOptions& options;
     LinkRole role{LinkRole::kLearns};
     network::Wire& wire;
-    TickLog* inner{nullptr};     // the protocol's own; null: none
-    std::function<void()> stop;  // an emergency stop of the own session
+    TickLog* inner{nullptr};             // the protocol's own; null: none
+    std::function<void()> stop;          // an emergency stop of the own session
+    network::Freight* freight{nullptr};  // that must not be lost; null: there is none
   };
   /// All parts outlive it.
   explicit LinkedHand(const Parts& parts);
@@ -47,6 +50,8 @@ class LinkedHand final : public TickLog, public stimulus::Observer, private netw
   network::Turns::Step begin_tick(bool own_done, bool holds) noexcept;
   /// The same tick: what the hand feels of both worlds. @param out  of the own world; changed
   void couple(PassOutput& out, const device::DeviceReading& reading, double dt) noexcept;
+  /// Whether nothing is to be expected of the partner any more.
+  bool alone() const noexcept { return ever_over_ || p_.wire.closed(); }
   /// The own part was aborted.
   void abort() noexcept { turns_.abort(); }
 
@@ -68,7 +73,8 @@ class LinkedHand final : public TickLog, public stimulus::Observer, private netw
     log_.flush(std::forward<F>(f));
   }
   std::uint64_t dropped() const noexcept { return log_.dropped(); }
-  std::size_t waiting_rows() const noexcept { return log_.size(); }
+  /// Servo thread.
+  std::size_t waiting_rows() const noexcept { return log_.taken(); }
   std::size_t room() const noexcept { return log_.capacity(); }
   /// When the loop has ended: what the partner is told last. @param flag  kOver or kLeft
   network::TickMessage last_words(network::TickFlag flag) const noexcept;
@@ -77,7 +83,6 @@ class LinkedHand final : public TickLog, public stimulus::Observer, private netw
   void hear(const network::Arrived& arrived) noexcept override;
   void listen() noexcept;
   void heed_partner() noexcept;
-  bool alone() const noexcept;
   void keep_within_envelope(PassOutput& out) noexcept;
   bool claims() const noexcept { return lead_asked_.load(std::memory_order_relaxed) == 1; }
   void share_lead(bool engaged, double dt) noexcept;
@@ -89,6 +94,7 @@ class LinkedHand final : public TickLog, public stimulus::Observer, private netw
 
   Parts p_;
   network::CoupledSide side_;
+  std::unique_ptr<network::ReliableStream> stream_;  // where there is freight
   network::Turns turns_;
   network::Turns::Step step_{network::Turns::Step::kWait};  // the last one
   LinkQuality quality_;
@@ -113,6 +119,7 @@ class LinkedHand final : public TickLog, public stimulus::Observer, private netw
   network::CoupledSide::Own own_;
   Eigen::Vector3d coupling_{Eigen::Vector3d::Zero()};  // of this tick, before the envelope [N]
   Eigen::Vector3d acts_{Eigen::Vector3d::Zero()};      // on the hand until the next tick [N]
+  double last_share_{1.0};                             // of the own world
   double dt_{1e-3};
   std::int32_t arrived_{0};
   std::int64_t sent_{0};  // number of this tick's message

@@ -28,9 +28,15 @@ PassOutput LinkedPass::hold(const Readings& readings) const noexcept {
   return out;
 }
 
+/// A world that both work on is compared before the pass is over.
+bool LinkedPass::own_done() const noexcept {
+  return inner_->state() == PassState::kCompleted &&
+         (world_ == nullptr || world_->settled() || hand_->alone());
+}
+
 PassOutput LinkedPass::tick(const Readings& readings, double dt) noexcept {
   const bool done = inner_->state() == PassState::kCompleted;
-  const Turns::Step step = hand_->begin_tick(done, holds_);
+  const Turns::Step step = hand_->begin_tick(own_done(), holds_);
   ticked_ = !done && state_ == PassState::kRunning;
   if (ticked_) {  // also on the tick with which it is aborted: the file has that tick
     last_ = inner_->tick(readings, dt);
@@ -55,7 +61,8 @@ std::span<const Drive> LinkedPass::others() const noexcept {
 }
 
 bool LinkedPass::wants_attention() noexcept {
-  return inner_->wants_attention() || hand_->waiting_rows() > hand_->room() / 2;
+  return inner_->wants_attention() || (world_ != nullptr && world_->wants_attention()) ||
+         hand_->waiting_rows() > hand_->room() / 2;
 }
 
 }  // namespace haptrial::protocols

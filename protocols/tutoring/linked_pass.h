@@ -1,6 +1,7 @@
 #pragma once
 
 #include "protocols/interface/pass.h"
+#include "protocols/interface/shared_world.h"
 #include "protocols/tutoring/linked_hand.h"
 
 namespace haptrial::protocols {
@@ -11,9 +12,11 @@ class LinkedPass final : public Pass {
  public:
   /// @param item   as network::Turns has it
   /// @param holds  whether it lasts until the other side has completed it too
-  /// Inner pass and hand outlive it.
-  LinkedPass(Pass& inner, LinkedHand& hand, std::uint32_t item, bool holds) noexcept
-      : inner_(&inner), hand_(&hand), item_(item), holds_(holds) {}
+  /// @param world  that both work on; null: there is none
+  /// Inner pass, hand and world outlive it.
+  LinkedPass(Pass& inner, LinkedHand& hand, std::uint32_t item, bool holds,
+             const SharedWorld* world = nullptr) noexcept
+      : inner_(&inner), hand_(&hand), item_(item), holds_(holds), world_(world) {}
 
   bool may_begin() noexcept override;
   void begin(std::uint64_t sequence) noexcept override;
@@ -27,12 +30,14 @@ class LinkedPass final : public Pass {
   network::Turns::Step why() const noexcept { return why_; }
 
  private:
+  bool own_done() const noexcept;
   PassOutput hold(const Readings& readings) const noexcept;
 
   Pass* inner_;
   LinkedHand* hand_;
   std::uint32_t item_;
   bool holds_;
+  const SharedWorld* world_;
   bool awaited_{false};
   bool ticked_{false};  // the inner pass, in this tick
   PassState state_{PassState::kRunning};

@@ -8,8 +8,10 @@
 
 #include "core/base/error.h"
 #include "core/record/link/link_row.h"
+#include "core/record/link/network_row.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/tutoring/linked_pass.h"
+#include "protocols/tutoring/network_order.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -28,7 +30,9 @@ class LinkedTrials final : public Trials {
         options_(options),
         link_(link),
         real_(place.real),
-        hand_({options_, link.role, *link_.wire, inner_->tick_log(), place.stop}) {}
+        seed_(place.session_seed),
+        world_(inner_->share_world(link.role == LinkRole::kTeaches)),
+        hand_({options_, link.role, *link_.wire, inner_->tick_log(), place.stop, world_}) {}
   ~LinkedTrials() override {
     link_.wire->close(hand_.last_words(all_presented_ ? network::kOver : network::kLeft));
   }
@@ -51,6 +55,9 @@ class LinkedTrials final : public Trials {
   record::TableList tables() const override {
     record::TableList tables = inner_->tables();
     tables.push_back(&record::table_of<record::LinkRow>());
+    if (has_networks()) {
+      tables.push_back(&record::table_of<record::NetworkRow>());
+    }
     return tables;
   }
   std::vector<record::Rows> first_rows() const override { return inner_->first_rows(); }
@@ -63,6 +70,7 @@ class LinkedTrials final : public Trials {
     inner_->begin_attempt(trial, anew);
   }
   MakeDrawing drawing() override { return inner_->drawing(); }
+  bool waits_for_picture() const override { return inner_->waits_for_picture(); }
   Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) override;
   std::vector<record::ResponseRow> responses() override { return inner_->responses(); }
   void close_pass(SessionFile& file, std::int32_t row) override;
@@ -77,11 +85,15 @@ class LinkedTrials final : public Trials {
 
  private:
   void check_partner();
+  bool has_networks() const { return !real_ && !options_.networks.empty(); }
 
   std::unique_ptr<Trials> inner_;
   TutoringOptions options_;
   LinkChoice link_;
   bool real_;
+  std::uint64_t seed_;                       // of the session
+  const TutoringNetwork* network_{nullptr};  // of the present trial; null: of all alike
+  SharedWorld* world_;                       // of the inner trials; null: there is none
   LinkedHand hand_;
   std::optional<LinkedPass> pass_;
   std::uint32_t walked_{0};    // trials in the order of the plan, to the present one
@@ -100,6 +112,11 @@ std::optional<PlannedTrial> LinkedTrials::next(const Outcome* last) {
 
 void LinkedTrials::prepare(const PlannedTrial& trial, SessionFile& file) {
   attempts_ = 0;
+  if (has_networks()) {
+    const std::size_t which = network_of_trial(walked_ - 1, options_.networks.size(), seed_);
+    network_ = &options_.networks[which];
+    link_.wire->change(network_->channel);
+  }
   if (!std::exchange(begun_, true)) {
     file.event("partner", fmt::format("{}; link {}", name_of(link_.role), link_.session));
   }
@@ -110,9 +127,11 @@ Pass& LinkedTrials::make_pass(PlannedTrial& trial, const record::Phase& phase) {
   const std::span<const record::Phase> all = phases();
   const auto at =
       static_cast<std::uint32_t>(std::find(all.begin(), all.end(), phase) - all.begin());
-  // What is simulated again from the file needs every tick of its pass.
-  const bool holds = inner_->tick_log() == nullptr;
-  pass_.emplace(inner_->make_pass(trial, phase), hand_, walked_ * Turns::kPhases + at, holds);
+  // What is simulated again from the file needs every tick of its pass, and a world that both work
+  // on is the same only when both are through.
+  const bool holds = inner_->tick_log() == nullptr || world_ != nullptr;
+  pass_.emplace(inner_->make_pass(trial, phase), hand_, walked_ * Turns::kPhases + at, holds,
+                world_);
   return *pass_;
 }
 
@@ -126,7 +145,7 @@ void LinkedTrials::empty_logs(SessionFile& file) {
 void LinkedTrials::check_partner() {
   constexpr double kToBegin = 60.0;  // a partner may have much to load [s]
   const record::PartnerState& s = hand_.state();
-  if (all_presented_ || s.over || told_) {
+  if (all_presented_ || (s.over && !s.left) || told_) {
     return;
   }
   const double most = s.heard || !real_ ? options_.patience : std::max(kToBegin, options_.patience);
@@ -142,6 +161,12 @@ void LinkedTrials::check_partner() {
 
 void LinkedTrials::close_pass(SessionFile& file, std::int32_t row) {
   inner_->close_pass(file, row);
+  if (network_ != nullptr) {
+    const network::ChannelConditions& n = network_->channel;
+    const record::NetworkRow network{row,    network_->name, n.delay,      n.jitter,
+                                     n.loss, n.duplication,  n.reordering, n.bandwidth};
+    file.add(std::span(&network, 1));
+  }
   const record::PartnerState& s = hand_.state();
   const network::WireCounts c = link_.wire->counts();
   file.event("link",
@@ -183,6 +208,10 @@ AfterAbort LinkedTrials::after_abort() const {
 
 std::vector<std::string> LinkedTrials::notices() const {
   std::vector<std::string> all = inner_->notices();
+  if (real_ && !options_.networks.empty()) {
+    all.emplace_back(
+        "the networks of the definition are those of a dry run; this link was a real one");
+  }
   all.push_back(fmt::format("this side {} over the link", name_of(link_.role)));
   return all;
 }

@@ -19,7 +19,7 @@ void TutoredPass::begin(std::uint64_t sequence) noexcept {
 }
 
 bool TutoredPass::wants_attention() noexcept {
-  return inner_->wants_attention() || log_->size() > log_->capacity() / 2;
+  return inner_->wants_attention() || log_->taken() > log_->capacity() / 2;
 }
 
 PassOutput TutoredPass::tick(const Readings& readings, double dt) noexcept {

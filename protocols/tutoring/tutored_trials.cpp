@@ -57,6 +57,7 @@ class TutoredTrials final : public Trials {
     inner_->begin_attempt(trial, anew);
   }
   MakeDrawing drawing() override { return inner_->drawing(); }
+  bool waits_for_picture() const override { return inner_->waits_for_picture(); }
   Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) override {
     Pass& pass = inner_->make_pass(trial, phase);
     if (!(phase == phases().front())) {

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/base/definition/table_vector.h"
 #include "core/base/error.h"
+#include "core/bone/anatomy/ear_side.h"
 #include "core/bone/anatomy/mandible.h"
 #include "core/bone/anatomy/temporal_bone.h"
 #include "core/bone/data/load_bone.h"
@@ -39,25 +41,6 @@ protocols::Design read_procedures(Table& table) {
         fmt::format("a whole number below the {} procedures, or 0 for no break", design.trials));
   }
   return design;
-}
-
-BonePlacement read_placement(Table& table) {
-  BonePlacement placement;
-  placement.centre = read_vector(table, "centre", {-1.0, 1.0}, "m");
-  const Eigen::Vector3d x = read_vector(table, "x_to", {-1.0, 1.0}, "");
-  const Eigen::Vector3d y = read_vector(table, "y_to", {-1.0, 1.0}, "");
-  constexpr double kSquare = 1e-3;  // of the angle between them [rad]
-  if (!(x.norm() > 0.0)) {
-    table.reject("x_to", "is zero; write the direction in the world of the bone's x axis");
-  } else if (!(y.norm() > 0.0) || std::abs(x.normalized().dot(y.normalized())) > kSquare) {
-    table.reject("y_to",
-                 "is not square to x_to; write the direction in the world of the bone's y axis");
-  } else {
-    placement.turn.col(0) = x.normalized();
-    placement.turn.col(2) = x.cross(y).normalized();
-    placement.turn.col(1) = placement.turn.col(2).cross(placement.turn.col(0));
-  }
-  return placement;
 }
 
 protocols::DrillingParameters read_drilling(Table& root) {
@@ -220,6 +203,17 @@ void read_nerves(Table& root, BoneDefinition& d) {
                             : std::vector<std::string>{kMonitorOn, kMonitorOff};
 }
 
+void read_feedback(Table& root, BoneDefinition& d) {
+  if (!root.has("feedback")) {
+    return;
+  }
+  Table table = root.table("feedback");
+  d.trainee_page = table.boolean("page");
+  if (table.has("study")) {
+    d.experts_study = table.text("study");
+  }
+}
+
 bone::BoneModel load_source(const std::string& source, const BoneDefinition& d,
                             const fs::path& folder) {
   if (source == "procedural temporal") {
@@ -240,17 +234,31 @@ bone::BoneModel load_source(const std::string& source, const BoneDefinition& d,
   return bone::load_bone(file, options);
 }
 
-}  // namespace
-
-Eigen::Isometry3d pose_of(const BonePlacement& placement, const geometry::VoxelGrid& grid) {
-  const Eigen::Vector3d middle =
-      0.5 *
-      (grid.centre(0, 0, 0) + grid.centre(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1));
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = placement.turn;
-  pose.translation() = placement.centre - placement.turn * middle;
-  return pose;
+/// Where a hand begins that only sees: in the middle of the first picture, in front of all bone.
+Eigen::Vector3d before_bones(const BoneDefinition& d) {
+  constexpr double kBefore = 0.010;  // of the nearest bone; beyond the largest burr's radius [m]
+  const Camera& camera = d.simulator.camera.start;
+  const Eigen::Vector3d towards = camera.axes().col(2);
+  double nearest = camera.distance();
+  for (const auto& model : d.bones) {
+    const geometry::VoxelGrid& grid = model->grid;
+    const Eigen::Isometry3d pose = pose_of(d.placement, grid);
+    const Eigen::Vector3d along = grid.spacing * (pose.linear().transpose() * -towards);
+    const double first = towards.dot(camera.eye - pose * grid.origin);
+    std::size_t voxel = 0;
+    for (int k = 0; k < grid.size[2]; ++k) {
+      for (int j = 0; j < grid.size[1]; ++j) {
+        double depth = first + along.y() * j + along.z() * k;
+        for (int i = 0; i < grid.size[0]; ++i, ++voxel, depth += along.x()) {
+          nearest = model->labels[voxel] != 0 ? std::min(nearest, depth) : nearest;
+        }
+      }
+    }
+  }
+  return camera.eye - std::max(0.25 * nearest, nearest - kBefore) * towards;
 }
+
+}  // namespace
 
 BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
                                     const fs::path* folder) {
@@ -274,6 +282,7 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
     d.spacing = bone.number("spacing", {5e-5, 5e-3}, "m");
   }
   d.placement = read_placement(bone);
+  d.mirror = bone.has("mirror") && bone.boolean("mirror");
   d.simulator.tools = bone::read_tools(tools);
   d.simulator.camera = bone::read_microscope_parameters(camera);
   if (root.has("pieces")) {
@@ -303,12 +312,16 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
   if (root.has("cavity")) {
     Table cavity = root.table("cavity");
     d.cavity = read_cavity_parameters(cavity);
+    if (d.placement.left_ear) {  // it is told for a right one
+      d.cavity->offset_B.x() *= -1.0;
+    }
   }
   read_groups(root, d);
   read_surgeons(root, d);
   read_display(display, d);
   read_sound(root, d, folder);
   read_nerves(root, d);
+  read_feedback(root, d);
   check_common(root, d);
   check_together(root, d);
   if (folder != nullptr && root.has("drilling_hand")) {
@@ -319,8 +332,12 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
 
 void BoneDefinition::load_bones(const fs::path& folder) {
   for (const std::string& source : sources) {
-    bones.push_back(std::make_shared<const bone::BoneModel>(load_source(source, *this, folder)));
+    bone::BoneModel loaded = load_source(source, *this, folder);
+    bones.push_back(std::make_shared<const bone::BoneModel>(mirror ? bone::mirrored(loaded)
+                                                                   : std::move(loaded)));
     try {
+      check_placement(placement, *bones.back(), simulator.camera.start,
+                      cavity ? &*cavity : nullptr);
       bone::check_soft_tissue(*bones.back(), simulator.soft_tissue);
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: {}", file_name, error.what()));
@@ -335,6 +352,8 @@ void BoneDefinition::load_bones(const fs::path& folder) {
           std::make_shared<const nerve::NerveDistances>(*bones.back(), nerves->nerves));
     }
   }
+  mouse.in_space = true;
+  mouse.start = drilling.scale * before_bones(*this);
 }
 
 bool BoneDefinition::hears_nerves(int trial, int participant) const {

@@ -20,6 +20,7 @@
 #include "core/subject/drilling/drilling_surgeon.h"
 #include "protocols/bone_drilling/definition/cavity.h"
 #include "protocols/bone_drilling/definition/drilling_parameters.h"
+#include "protocols/bone_drilling/definition/placement.h"
 #include "protocols/definition/definition.h"
 
 namespace haptrial::protocols {
@@ -28,13 +29,6 @@ inline constexpr const char* kBoneDrilling = "bone_drilling";  // its name in [e
 // Conditions of procedures in which the nerve monitor is heard, and not.
 inline constexpr const char* kMonitorOn = "monitor on";
 inline constexpr const char* kMonitorOff = "monitor off";
-
-/// How a bone lies in the scene.
-struct BonePlacement {
-  Eigen::Vector3d centre{Eigen::Vector3d::Zero()};    // of its grid, in W [m]
-  Eigen::Matrix3d turn{Eigen::Matrix3d::Identity()};  // from B to W: a rotation
-};
-Eigen::Isometry3d pose_of(const BonePlacement& placement, const geometry::VoxelGrid& grid);
 
 /// Participants of one kind. The first ones belong to the first group, and so on.
 struct ParticipantGroup {
@@ -51,6 +45,7 @@ struct BoneDefinition : Definition {
   std::uint64_t bone_seed{1};     // of procedural ones
   std::optional<double> spacing;  // of voxels [m]; default: as the source has it
   BonePlacement placement;
+  bool mirror{false};                   // left and right of all bones are exchanged
   bone::SimulatorParameters simulator;  // but for the pose
   bone::CompanionParameters companions;
   DrillingParameters drilling;
@@ -70,6 +65,8 @@ struct BoneDefinition : Definition {
   double eye_distance{0.02};  // between the eyes, in the scene >= 0 [m]
   int stills{0};              // of stages of the cavity, which can be called up; 0: none
   std::optional<nerve::NerveSetup> nerves;  // that are watched
+  bool trainee_page{false};                 // written after a session, beside its file
+  std::string experts_study;                // folder that the page compares with; empty: nobody
   /// By source; procedures take them in turn. None where only a text was parsed: a session file has
   /// its bones in it.
   std::vector<std::shared_ptr<const bone::BoneModel>> bones;
@@ -90,8 +87,8 @@ struct BoneDefinition : Definition {
   std::vector<std::string> left_out_of_dry_runs() const override;
   double longest(int trials) const override { return trials * drilling.time_limit; }
   bool has_target() const override { return false; }
-  std::vector<std::string> nerve_channels() const override;
-  double nerve_rate() const override { return nerves ? nerves->monitor.rate : 0.0; }
+  /// Electromyograms of the nerve monitor.
+  std::vector<stream::SideStream> side_streams() const override;
   std::uint32_t functions_of(const std::vector<int>& held) const override {
     return functions_of_keys(drilling.controls, held);
   }

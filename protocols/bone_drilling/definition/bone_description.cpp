@@ -5,6 +5,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/text/counted.h"
+#include "core/nerve/record/nerve_rows.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/definition/contact_margin.h"
 
@@ -121,14 +122,20 @@ std::vector<std::string> BoneDefinition::description() const {
   return lines;
 }
 
-std::vector<std::string> BoneDefinition::nerve_channels() const {
-  std::vector<std::string> names;
-  if (nerves) {
-    for (const nerve::WatchedNerve& nerve : nerves->nerves) {
-      names.insert(names.end(), nerve.channels.begin(), nerve.channels.end());
-    }
+std::vector<stream::SideStream> BoneDefinition::side_streams() const {
+  if (!nerves) {
+    return {};
   }
-  return names;
+  const double hertz = nerves->monitor.rate;
+  stream::SideStream emg{"nerves", "EMG", "V", {}, hertz, {{"model", "simulated electromyogram"}},
+                         {}};
+  for (const nerve::WatchedNerve& nerve : nerves->nerves) {
+    emg.channels.insert(emg.channels.end(), nerve.channels.begin(), nerve.channels.end());
+  }
+  emg.read = stream::reads_rows<record::EmgRow>([hertz](const record::EmgRow& row) {
+    return stream::SideSample{row.sequence, static_cast<double>(row.sample) / hertz, row.channels};
+  });
+  return {emg};
 }
 
 std::vector<std::string> BoneDefinition::left_out_of_dry_runs() const {

@@ -20,7 +20,6 @@ constexpr double kReach = 10e-3;   // of clearances [m]
 constexpr double kBelow = 2e-3;    // layers under the cavity's end [m]
 constexpr double kAbove = 45e-3;   // and above it: more than a temporal bone is thick [m]
 constexpr double kAround = 22e-3;  // columns on each side [m]
-constexpr const char* kPlainBone = "bone";
 
 [[noreturn]] void refuse(const bone::BoneModel& model, const char* key, const std::string& name) {
   std::vector<bool> there(model.structures.size(), false);
@@ -79,11 +78,18 @@ subject::DrillingChart empty_chart(const Eigen::Vector3d& end_W, const CavityPar
   return chart;
 }
 
-/// A margin to what is not there would be one that nobody keeps.
+/// A margin to what is not there, or has a name but no voxels, would be one that nobody keeps.
 void check_structures(const bone::BoneModel& model, const CavityParameters& cavity) {
+  std::vector<bool> there(model.structures.size(), false);
+  for (const std::uint8_t label : model.labels) {
+    there[label] = true;
+  }
   for (const std::string& name : cavity.structures) {
-    const auto named = [&](const bone::Structure& s) { return s.name == name; };
-    if (std::none_of(model.structures.begin(), model.structures.end(), named)) {
+    bool found = false;
+    for (std::size_t label = 1; label < there.size(); ++label) {
+      found = found || (there[label] && model.structures[label].name == name);
+    }
+    if (!found) {
       refuse(model, "cavity.structures", name);
     }
   }
@@ -205,7 +211,7 @@ subject::DrillingChart make_chart(const bone::BoneModel& model, const Eigen::Iso
   find_surface(chart, model, X_BW);
   for (std::size_t label = 1; label < model.structures.size(); ++label) {
     const std::string& name = model.structures[label].name;
-    if (name != kPlainBone && !name.empty()) {
+    if (name != bone::kPlainBone && !name.empty()) {
       keep_away(chart, model, X_BW, label, margin_of(cavity, name));
     }
   }
@@ -220,7 +226,7 @@ std::vector<float> cavity_depths(const bone::BoneModel& model, const Eigen::Isom
   for (int k = 0; k < model.grid.size[2]; ++k) {
     for (int j = 0; j < model.grid.size[1]; ++j) {
       for (int i = 0; i < model.grid.size[0]; ++i, ++at) {
-        if (model.labels[at] == 0 || model.structures[model.labels[at]].name != kPlainBone) {
+        if (model.labels[at] == 0 || model.structures[model.labels[at]].name != bone::kPlainBone) {
           continue;
         }
         const Eigen::Vector3d place = chart.place(X_WB * model.grid.centre(i, j, k));
@@ -231,7 +237,13 @@ std::vector<float> cavity_depths(const bone::BoneModel& model, const Eigen::Isom
         }
         const std::size_t column = chart.column(u, v);
         const auto deep = static_cast<float>(place.z());
-        if (chart.surface[column] != subject::DrillingChart::kNone && deep < floor[column]) {
+        // A column that is to be left has its floor at its surface, which a slope may rise above.
+        const bool drilled = chart.surface[column] != subject::DrillingChart::kNone &&
+                             floor[column] > chart.surface[column];
+        const double aside = (place - chart.end).head<2>().norm();
+        const double wide =
+            chart.floor_radius + chart.slope * std::max(0.0, chart.end.z() - place.z());
+        if (drilled && deep < floor[column] && aside <= wide) {
           depths[at] = std::max(0.0F, deep - chart.surface[column]);
         }
       }

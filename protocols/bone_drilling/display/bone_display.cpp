@@ -1,28 +1,80 @@
 #include "protocols/bone_drilling/display/bone_display.h"
-#include "core/render/bone/bone_tools.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include "core/render/bone/bone_tools.h"
 
 namespace haptrial::protocols {
 namespace {
 
-constexpr double kShaft = 1.2e-3;  // diameter of a burr's shaft, at most [m]
 const render::Colour kSteel{0.72, 0.74, 0.78};
 const render::Colour kPlate{0.60, 0.66, 0.72};
 const render::Colour kPlane{0.35, 0.65, 1.0, 0.4};
 
+/// The right button turns the tool where it has no other meaning.
+device::PointerHandParameters pointer_hand_of(const BoneDefinition& d) {
+  device::PointerHandParameters p;
+  p.start = d.mouse.start / d.drilling.scale;
+  const auto uses = [&p](std::uint32_t buttons) {
+    return device::is_pressed(buttons, p.turn_button);
+  };
+  if (d.mouse.stop_button == p.turn_button ||
+      std::any_of(d.drilling.controls.buttons.begin(), d.drilling.controls.buttons.end(), uses)) {
+    p.turn_button = -1;
+  }
+  p.reach /= d.drilling.scale;
+  return p;
+}
+
 class BoneDrawing final : public Drawing {
  public:
   BoneDrawing(const render::Gl& gl, const BoneDefinition& definition,
-              std::shared_ptr<const BoneStage> stage, int width, int height)
-      : display_(gl, definition, std::move(stage), width, height) {}
+              std::shared_ptr<const BoneStage> stage, int width, int height,
+              std::shared_ptr<bone::Surface> surface)
+      : definition_(definition),
+        display_(gl, definition, std::move(stage), width, height, std::move(surface)),
+        hand_(pointer_hand_of(definition)) {}
   void draw(const stimulus::Shown& shown) override {
     const auto* seen = shown.as<bone::DrillingView>();
-    display_.draw(seen != nullptr ? *seen : bone::DrillingView{});
+    seen_ = seen != nullptr ? *seen : bone::DrillingView{};
+    display_.draw(seen_);
+  }
+  std::optional<device::HandPose> hand(const device::PointerInput& input) override {
+    if (!definition_.mouse.in_space || !seen_.shown) {
+      return std::nullopt;
+    }
+    device::PointerInput free = input;
+    free.pixel.x() = std::fmod(input.pixel.x(), display_.width());
+    keys_.clear();
+    for (const int key : input.keys) {
+      if (definition_.functions_of({key}) == 0) {
+        keys_.push_back(key);
+      }
+    }
+    free.keys = keys_;
+    const std::uint32_t held =
+        definition_.functions_of(std::vector<int>(input.keys.begin(), input.keys.end()));
+    const bool view = (held & (bone::bit(bone::Function::kCameraMove) |
+                               bone::bit(bone::Function::kCameraTurn))) != 0;
+    device::HandPose pose =
+        hand_.follow(display_.camera(), display_.width(), display_.height(), free, seen_.tip, view);
+    if (seen_.contact) {  // else a pointer far away would draw the burr through any wall
+      const Eigen::Vector3d lead = pose.position - seen_.tip;
+      const double leash = hand_.leash();
+      pose.position = seen_.tip + leash / std::max(leash, lead.norm()) * lead;
+    }
+    pose.position *= definition_.drilling.scale;
+    return pose;
   }
 
  private:
+  const BoneDefinition& definition_;
   BoneDisplay display_;
+  bone::DrillingView seen_;
+  device::PointerHand hand_;
+  std::vector<int> keys_;
 };
 
 }  // namespace
@@ -32,9 +84,11 @@ std::shared_ptr<const bone::StructureDepths> depths_of(const bone::BoneModel& mo
 }
 
 BoneDisplay::BoneDisplay(const render::Gl& gl, const BoneDefinition& definition,
-                         std::shared_ptr<const BoneStage> stage, int width, int height)
+                         std::shared_ptr<const BoneStage> stage, int width, int height,
+                         std::shared_ptr<bone::Surface> surface)
     : gl_(gl),
       stage_(std::move(stage)),
+      surface_(std::move(surface)),
       width_(width),
       height_(height),
       scene_(gl, render::BoneStyle{}, stage_->model->structures, stage_->depths) {
@@ -54,7 +108,7 @@ std::shared_ptr<const geometry::Mesh> BoneDisplay::mesh_of(int tool) const {
   };
   if (const auto* burr = spec.as<bone::BurrTool>()) {
     const double diameter = burr->burr.diameter;
-    return shared(render::burr_mesh(diameter, std::min(kShaft, diameter), spec.handle_length));
+    return shared(render::burr_mesh(diameter, render::burr_shaft(diameter), spec.handle_length));
   }
   if (const auto* suction = spec.as<bone::SuctionTool>()) {
     return shared(
@@ -69,14 +123,31 @@ std::shared_ptr<const geometry::Mesh> BoneDisplay::mesh_of(int tool) const {
   return shared(render::burr_mesh(1e-3, 1e-3, spec.handle_length));
 }
 
+/// The shadow of a burr or a suction tube; other tools cast none.
+std::vector<render::Capsule> BoneDisplay::shadow_of(int tool) const {
+  const bone::ToolSpec& spec = stage_->simulator->tools()[static_cast<std::size_t>(tool)];
+  if (const auto* burr = spec.as<bone::BurrTool>()) {
+    const double diameter = burr->burr.diameter;
+    return render::burr_shadow(diameter, render::burr_shaft(diameter), spec.handle_length);
+  }
+  if (const auto* suction = spec.as<bone::SuctionTool>()) {
+    return {{Eigen::Vector3d::Zero(), spec.handle_length * Eigen::Vector3d::UnitZ(),
+             2.0 * suction->radius}};
+  }
+  return {};
+}
+
 void BoneDisplay::draw(const bone::DrillingView& seen) {
   const bone::BoneWorld& world = std::as_const(*stage_->simulator).world();
   const int pieces = world.pieces();
   frame_.bones.resize(static_cast<std::size_t>(pieces));
   world.published_poses().read(pieces, [&](int piece, const Eigen::Isometry3d& pose) {
     frame_.bones[static_cast<std::size_t>(piece)] = {static_cast<std::uint32_t>(piece),
-                                                     &world.volume(piece), pose};
+                                                     &world.volume(piece), pose, nullptr};
   });
+  if (!frame_.bones.empty()) {
+    frame_.bones.front().surface = std::exchange(surface_, nullptr);
+  }
   frame_.meshes.clear();
   const int plates = world.plates();
   std::vector<Eigen::Isometry3d> poses(static_cast<std::size_t>(plates));
@@ -93,7 +164,8 @@ void BoneDisplay::draw(const bone::DrillingView& seen) {
     const auto tool = static_cast<std::size_t>(seen.tool);
     const bool plane = stage_->simulator->tools()[tool].as<bone::CutPlane>() != nullptr;
     const ToolState held{{seen.tip, Eigen::Vector3d::Zero()}, seen.orientation};
-    frame_.meshes.push_back({meshes_[tool], render::pose_of(held), plane ? kPlane : kSteel});
+    frame_.meshes.push_back(
+        {meshes_[tool], render::pose_of(held), plane ? kPlane : kSteel, shadow_of(seen.tool)});
     frame_.camera = {seen.eye, seen.target, seen.up, seen.field_of_view};
   } else {
     frame_.camera = stage_->start_view;
@@ -120,9 +192,19 @@ void BoneDisplay::draw_still(std::int32_t asked) {
   }
 }
 
-MakeDrawing bone_drawing(const BoneDefinition& definition, std::shared_ptr<const BoneStage> stage) {
-  return [&definition, stage](const render::Gl& gl, int width, int height) {
-    return std::make_unique<BoneDrawing>(gl, definition, stage, width, height);
+std::shared_ptr<bone::Surface> built_surface(const BoneStage& stage,
+                                             const geometry::WorkReport& report) {
+  auto surface = std::make_shared<bone::Surface>(stage.depths);
+  surface->build(std::as_const(*stage.simulator).world().volume(0), report);
+  return surface;
+}
+
+MakeDrawing bone_drawing(const BoneDefinition& definition, std::shared_ptr<const BoneStage> stage,
+                         std::shared_ptr<bone::Surface> surface) {
+  const auto built = std::make_shared<std::shared_ptr<bone::Surface>>(std::move(surface));
+  return [&definition, stage, built](const render::Gl& gl, int width, int height) {
+    return std::make_unique<BoneDrawing>(gl, definition, stage, width, height,
+                                         std::exchange(*built, nullptr));
   };
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/bone/simulator/drilling_view.h"
+#include "core/bone/surface/surface.h"
 #include "core/render/bone/bone_scene.h"
 #include "core/render/bone/bone_stills.h"
 #include "core/render/gl/image.h"
@@ -21,22 +22,31 @@ std::shared_ptr<const bone::StructureDepths> depths_of(const bone::BoneModel& mo
 /// Draws a stage as a participant sees it. One thread with its OpenGL context current.
 class BoneDisplay {
  public:
+  /// @param surface  built_surface() of the stage, for this display alone; null: the first draw()
+  /// builds it
   /// @throws RunError where OpenGL does not give what is needed.
   BoneDisplay(const render::Gl& gl, const BoneDefinition& definition,
-              std::shared_ptr<const BoneStage> stage, int width, int height);
+              std::shared_ptr<const BoneStage> stage, int width, int height,
+              std::shared_ptr<bone::Surface> surface = nullptr);
 
   /// @param seen  of this stage; whatever moves beside it is taken as published
   void draw(const bone::DrillingView& seen);
   /// What can be called up from now on; at first those of the stage. Null: nothing.
   void set_stills(std::shared_ptr<const std::vector<render::Image>> stills);
+  /// The camera of the last picture, or of one of its two.
+  const Camera& camera() const { return frame_.camera; }
+  int width() const { return frame_.stereo ? width_ / 2 : width_; }
+  int height() const { return height_; }
 
  private:
   std::shared_ptr<const geometry::Mesh> mesh_of(int tool) const;
+  std::vector<render::Capsule> shadow_of(int tool) const;
   void draw_still(std::int32_t asked);
 
   render::Gl gl_;
 
   std::shared_ptr<const BoneStage> stage_;
+  std::shared_ptr<bone::Surface> surface_;  // until the first draw()
   int width_;
   int height_;
   render::BoneScene scene_;
@@ -46,7 +56,15 @@ class BoneDisplay {
   std::unique_ptr<render::BoneStills> stills_;  // null where there are none
 };
 
-/// The same for a screen. The definition outlives the screen.
-MakeDrawing bone_drawing(const BoneDefinition& definition, std::shared_ptr<const BoneStage> stage);
+/// The surface of a stage's bone as it is now, on all processors: what a first picture waits for.
+/// @param report  as bone::Surface::build() has it
+std::shared_ptr<bone::Surface> built_surface(const BoneStage& stage,
+                                             const geometry::WorkReport& report = {});
+
+/// The same for a screen, on which pointer and keys may move a hand in space; keys that the
+/// definition uses otherwise do not. The definition outlives the screen. @param surface  as
+/// BoneDisplay has it
+MakeDrawing bone_drawing(const BoneDefinition& definition, std::shared_ptr<const BoneStage> stage,
+                         std::shared_ptr<bone::Surface> surface = nullptr);
 
 }  // namespace haptrial::protocols

@@ -91,6 +91,16 @@ Choice read_choice(Table& table, std::size_t place, Means& means) {
   return choice;
 }
 
+/// The key in which two choices are the same; null: in none.
+const char* same_key(const Choice& a, const Choice& b) {
+  return a.value == b.value                       ? "value"
+         : (a.keys & b.keys) != 0                 ? "keys"
+         : (a.buttons & b.buttons) != 0           ? "buttons"
+         : !a.touch.empty() && a.touch == b.touch ? "touch"
+         : a.pedal > 0.0 && b.pedal > 0.0         ? "pedal"
+                                                  : nullptr;
+}
+
 void read_choices(Table& table, Question& question, Means& means) {
   std::vector<Table> choices = table.tables("choices");
   if (choices.size() < 2 || choices.size() > kMostChoices) {
@@ -99,16 +109,14 @@ void read_choices(Table& table, Question& question, Means& means) {
   }
   for (std::size_t i = 0; i < choices.size(); ++i) {
     question.choices.push_back(read_choice(choices[i], i, means));
-    const Choice& last = question.choices.back();
-    const auto same = [&](const Choice& each) {
-      return &each != &last && (each.value == last.value || (each.keys & last.keys) != 0 ||
-                                (each.buttons & last.buttons) != 0 ||
-                                (!each.touch.empty() && each.touch == last.touch) ||
-                                (each.pedal > 0.0 && last.pedal > 0.0));
-    };
-    if (std::any_of(question.choices.begin(), question.choices.end() - 1, same)) {
-      choices[i].reject("value", fmt::format("\"{}\"", last.value),
-                        "a choice whose value, keys, buttons, place and pedal no other choice has");
+    for (std::size_t before = 0; before < i; ++before) {
+      const char* key = same_key(question.choices[before], question.choices[i]);
+      if (key != nullptr) {
+        choices[i].reject(
+            key, fmt::format("that of choices[{}]", before + 1),
+            "a choice whose value, keys, buttons, place and pedal no other choice has");
+        break;
+      }
     }
   }
   const auto touched = std::ranges::count_if(

@@ -9,6 +9,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "core/psychometric/definition/read_tracks.h"
 #include "core/scene/needed_damping.h"
 #include "core/scene/read/read_field.h"
 #include "core/scene/read/read_solid.h"
@@ -16,7 +17,6 @@
 #include "core/sound/cues/read_cues.h"
 #include "protocols/definition/handle_loop.h"
 #include "protocols/trials/definition/defaults.h"
-#include "protocols/trials/definition/read_tracks.h"
 #include "protocols/trials/definition/trial_devices.h"
 #include "protocols/trials/definition/trial_values.h"
 
@@ -269,8 +269,8 @@ void note_restless(const std::vector<scene::Field>& fields, TrialsDefinition& d)
     const double needed = scene::needed_damping_below(0.0, steepness, d.rate);
     if (steepness.passive && needed > d.hand.damping) {
       d.restless.push_back(fmt::format(
-          "{}.{} turns by {:.0f} N/m: at {:g} Hz it stays calm with {:.3g} N·s/m of damping, "
-          "and the hand of [hand] has {:g}",
+          "the force of {}.{} changes by up to {:.0f} N for each metre: at {:g} Hz it stays calm "
+          "with {:.3g} N·s/m of damping, and the hand of [hand] has {:g}",
           scene::is_object(fields[i]) ? "objects" : "fields", fields[i].name, steepness.stiffness,
           d.rate, needed, d.hand.damping));
     }
@@ -313,6 +313,12 @@ void read_first_trial(Table& root, TrialsDefinition& d) {
 }
 
 }  // namespace
+
+Table parsed_trials(const Definition& d) {
+  Table root = Table::parse(d.text, d.file_name);
+  root.fill_in(trials_defaults());
+  return root;
+}
 
 std::unique_ptr<Names> read_names(Table& root, const TrialsDefinition& d) {
   auto names = std::make_unique<Names>();
@@ -438,6 +444,9 @@ int right_choice(const Names& names, const Question& question) {
 void read_trials_definition(Table& root, std::string_view file_name, TrialsDefinition& d) {
   root.fill_in(trials_defaults());
   root.leave("analysis");
+  if (root.has("power")) {
+    root.leave("power");  // of who simulates it
+  }
   root.leave("groups");
   read_common(root, file_name, d);
   d.protocol = kTrials;
@@ -451,7 +460,7 @@ void read_trials_definition(Table& root, std::string_view file_name, TrialsDefin
     check_object_names(root);
   }
   d.questions = read_questions(root, d.keys);
-  d.tracks = read_tracks(root);
+  d.tracks = psychometric::read_tracks(root);
   d.order = read_trial_design(root, !d.tracks.empty());
   read_intervals(root, d);
   check_common(root, d);

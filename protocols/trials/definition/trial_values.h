@@ -5,14 +5,15 @@
 #include <utility>
 #include <vector>
 
+#include "core/psychometric/definition/track.h"
 #include "protocols/trials/definition/block.h"
 
 namespace haptrial::protocols {
 
 class Names;
 struct Interval;
-struct Track;
 struct TrialsDefinition;
+using psychometric::Track;
 
 /// What one trial gives the names of a definition.
 struct TrialValues {

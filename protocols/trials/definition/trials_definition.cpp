@@ -6,7 +6,8 @@
 #include <algorithm>
 
 #include "core/base/text/counted.h"
-#include "protocols/trials/definition/expectation.h"
+#include "core/psychometric/definition/expectation.h"
+#include "protocols/trials/language/stray_words.h"
 
 namespace haptrial::protocols {
 
@@ -148,7 +149,8 @@ std::vector<markers::MarkerMeaning> TrialsDefinition::marker_meanings() const {
 }
 
 std::vector<std::string> TrialsDefinition::warnings() const {
-  std::vector<std::string> all = restless;
+  std::vector<std::string> all = stray_words(text);
+  all.insert(all.end(), restless.begin(), restless.end());
   for (const Question& question : questions) {
     const bool tells = question.has_limits() || question.feedback != Feedback::kNever;
     if (tells && feedback_time == 0.0) {

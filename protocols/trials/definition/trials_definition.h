@@ -4,17 +4,19 @@
 #include <string>
 #include <vector>
 
+#include "core/psychometric/definition/track.h"
 #include "core/sound/cues/cue.h"
 #include "protocols/definition/definition.h"
 #include "protocols/definition/groups.h"
 #include "protocols/trials/definition/block.h"
 #include "protocols/trials/definition/question.h"
-#include "protocols/trials/definition/track.h"
 #include "protocols/trials/definition/trial_devices.h"
 #include "protocols/trials/looks/look.h"
 #include "protocols/trials/objects/trial_object.h"
 
 namespace haptrial::protocols {
+
+using psychometric::Track;
 
 inline constexpr const char* kTrials = "trials";  // its name in [experiment]
 

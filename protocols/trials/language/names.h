@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/scene/read/number_source.h"
-#include "protocols/trials/language/labels.h"
+#include "core/base/formula/labels.h"
 #include "protocols/trials/language/variables.h"
 
 namespace haptrial {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "protocols/trials/language/expression.h"
+#include "core/base/formula/expression.h"
 
 namespace haptrial::protocols {
 

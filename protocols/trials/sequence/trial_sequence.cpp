@@ -59,6 +59,13 @@ std::vector<std::size_t> shuffled_indices(std::size_t count, RandomStream& rando
 
 }  // namespace
 
+Taker taker_of(const TrialsDefinition& d, const SessionPlace& place) {
+  const std::string group = d.groups.size() > 1 ? group_of(d.groups, place.subject)
+                            : d.groups.empty()  ? std::string()
+                                                : d.groups.front().name;
+  return {place.participant, group, place.seed, place.session_seed, place.session};
+}
+
 TrialSequence::TrialSequence(const TrialsDefinition& definition, const Taker& taker)
     : d_(definition), taker_(taker) {
   std::vector<std::size_t> others;

@@ -8,10 +8,14 @@
 
 #include "core/psychometric/procedure/procedure.h"
 #include "protocols/definition/schedule.h"
+#include "protocols/interface/trials.h"
 #include "protocols/trials/definition/trial_values.h"
 #include "protocols/trials/definition/trials_definition.h"
 
 namespace haptrial::protocols {
+
+/// Added to the number of a trial of practice, which is no other's.
+inline constexpr int kPracticeNumbers = 1'000'000;
 
 /// Who takes part, as far as an order depends on it.
 struct Taker {
@@ -21,6 +25,9 @@ struct Taker {
   std::uint64_t session_seed{0};
   int session{1};  // from 1
 };
+
+/// Who comes to a session of a definition. @param place  with its seeds
+Taker taker_of(const TrialsDefinition& definition, const SessionPlace& place);
 
 /// One track in one combination of its factors.
 struct RunningTrack {

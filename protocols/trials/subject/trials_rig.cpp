@@ -18,11 +18,10 @@
 #include "protocols/trials/definition/question.h"
 #include "protocols/trials/definition/trials_definition.h"
 #include "protocols/trials/subject/answer_by_hand.h"
+#include "protocols/trials/subject/decider.h"
 
 namespace haptrial::protocols {
 namespace {
-
-constexpr std::size_t kMostIntervals = 16;
 
 int index_of(const std::vector<std::string>& names, const std::string& name) {
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -46,11 +45,10 @@ class TrialsRig::Participant final : public stimulus::Observer {
         seed_(derived_seed(session_seed, "subject")),
         hand_parameters_(briefing.definition->hand),
         step_(1.0 / briefing.definition->rate),
-        judgement_(plan_.people->draw_judgement(derived_seed(person_seed, "subject"))),
         senses_(plan_.people->draw_senses(derived_seed(person_seed, "subject"))),
         sense_(senses_, plan_.senses),
         grip_(senses_),
-        judge_(judgement_, seed_),
+        decider_(plan_, plan_.people->draw_judgement(derived_seed(person_seed, "subject")), seed_),
         felt_in_(index_of(briefing.stages, plan_.stage)),
         reaction_(seed_, "reaction") {
     for (const auto& arm : arms) {
@@ -124,7 +122,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
     if (!recalled_) {
       return;
     }
-    judge_.set_previous(recalled_->previous);
+    decider_.set_previous(recalled_->previous);
     if (adaptation_) {
       adaptation_->recall(recalled_->fast, recalled_->slow);
     }
@@ -154,7 +152,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
     end_answer();
     intervals_ = 1;
     percepts_ = {};
-    judge_.begin_trial(trial);
+    decider_.begin_trial(trial);
     // A hand that is quite still would look like a device whose reading is frozen.
     for (std::size_t i = 0; i < limbs_.size(); ++i) {
       limbs_[i].prober = subject::Prober(
@@ -187,11 +185,10 @@ class TrialsRig::Participant final : public stimulus::Observer {
   }
 
   void begin_interval(int interval) noexcept {
-    const int number = trial_ * static_cast<int>(kMostIntervals) + interval;
-    RandomStream random =
-        subject::trial_stream(seed_, interval == 0 ? "sense" : "sense again", number);
+    RandomStream random = sense_stream(seed_, trial_, interval);
     sense_.begin(random);
-    RandomStream cues = subject::trial_stream(seed_, "cues", number);
+    RandomStream cues =
+        subject::trial_stream(seed_, "cues", trial_ * static_cast<int>(kMostIntervals) + interval);
     grip_noise_ = subject::draw_noise(cues);
     sight_noise_ = cues.normal();
     grip_.begin();
@@ -302,7 +299,10 @@ class TrialsRig::Participant final : public stimulus::Observer {
       return;
     }
     const Question& question = questions_[view.question - 1U];
-    decide(question, view.question == 1);
+    const Decider::Said said =
+        decider_.decide(question, view.question == 1, std::span(percepts_.data(), intervals_));
+    said_.choice = said.choice;
+    said_.value = said.value;
     decided_ = true;
     give(question, view);
   }
@@ -335,51 +335,12 @@ class TrialsRig::Participant final : public stimulus::Observer {
     }
   }
 
-  void decide(const Question& question, bool first) noexcept {
-    if (question.types()) {
-      said_.choice = -1;
-      said_.value =
-          std::clamp(judge_.magnitude(std::max(0.0, percepts_[0])), question.low, question.high);
-      return;
-    }
-    const int most = static_cast<int>(question.choices.size());
-    if (first && plan_.decides == Decides::kAdjust) {
-      const double wanted = intervals_ > 1 ? percepts_[0] : plan_.wanted;
-      const int way = judge_.adjust(percepts_[intervals_ - 1], wanted);
-      said_.choice = way > 0 ? plan_.raise : way < 0 ? plan_.lower : plan_.done;
-    } else if (first) {
-      decision_ = judged();
-      said_.choice = plan_.decides == Decides::kYes
-                         ? (decision_.answer == 1 ? plan_.yes : 1 - plan_.yes)
-                         : decision_.answer;
-    } else {  // a rating of how sure it is
-      said_.choice = subject::confidence(decision_, judgement_.noise, most) - 1;
-    }
-    said_.choice = std::clamp(said_.choice, 0, most - 1);
-    if (first) {
-      judge_.set_previous(said_.choice);
-    }
-  }
-
-  subject::Decision judged() noexcept {
-    if (plan_.decides == Decides::kYes) {
-      return judge_.yes_no(percepts_[0]);
-    }
-    if (plan_.decides == Decides::kNearest) {
-      return judge_.nearest(percepts_[0], plan_.prototypes);
-    }
-    const auto extreme = plan_.decides == Decides::kSmallest ? subject::Extreme::kSmallest
-                                                             : subject::Extreme::kLargest;
-    return judge_.between(std::span(percepts_.data(), intervals_), extreme);
-  }
-
   const ObserverPlan& plan_;
   const std::vector<Question>& questions_;
   SaidAnswer& said_;
   std::uint64_t seed_;
   subject::HandParameters hand_parameters_;
   double step_;  // [s]
-  subject::JudgementParameters judgement_;
   subject::SenseParameters senses_;
   subject::Sense sense_;
   subject::Grip grip_;
@@ -388,7 +349,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
   double sight_noise_{0.0};  // of the interval, standard normal
   DotsShown seen_;           // in the interval
   std::vector<Limb> limbs_;  // (devices)
-  subject::Judge judge_;
+  Decider decider_;
   int felt_in_;  // stage; -1: all
   RandomStream reaction_;
   std::optional<subject::TwoRate> adaptation_;
@@ -405,7 +366,6 @@ class TrialsRig::Participant final : public stimulus::Observer {
   bool decided_{false};
   AnswerByHand by_hand_;
   double pedal_{0.0};  // how far it is held down
-  subject::Decision decision_;
   std::array<double, kMostIntervals> percepts_{};
 };
 

@@ -1,0 +1,243 @@
+#include "protocols/bone_drilling/display/placement_legend.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "core/bone/anatomy/ear_side.h"
+#include "core/render/flat/painter.h"
+#include "core/render/flat/text.h"
+
+namespace haptrial::protocols {
+namespace {
+
+constexpr double kBar = 0.010;                           // the scale's bar [m]
+const render::Colour kInk{0.96, 0.96, 0.96};             // of words and arrows
+const render::Colour kWordPlate{0.05, 0.06, 0.08, 0.7};  // under words
+
+/// Where a point is seen [px].
+Eigen::Vector2d pixel_of(const Camera& camera, const Eigen::Vector3d& p_W, int width, int height) {
+  const Eigen::Vector3d p = camera.pose().inverse() * p_W;
+  const double scale = 0.5 * height / std::tan(0.5 * camera.field_of_view) / -p.z();
+  return {0.5 * width + scale * p.x(), 0.5 * height - scale * p.y()};
+}
+
+template <class Visit>
+void each_voxel(const bone::BoneModel& model, Visit&& visit) {
+  std::size_t at = 0;
+  for (int k = 0; k < model.grid.size[2]; ++k) {
+    for (int j = 0; j < model.grid.size[1]; ++j) {
+      for (int i = 0; i < model.grid.size[0]; ++i, ++at) {
+        if (model.labels[at] != 0) {
+          visit(model.grid.centre(i, j, k), at);
+        }
+      }
+    }
+  }
+}
+
+/// By label: the voxel nearest to the middle of all of its voxels; none where it has no voxel.
+std::vector<std::optional<Eigen::Vector3d>> middles_in(const bone::BoneModel& model) {
+  const std::size_t labels = model.structures.size();
+  std::vector<Eigen::Vector3d> sums(labels, Eigen::Vector3d::Zero());
+  std::vector<double> counts(labels, 0.0);
+  each_voxel(model, [&](const Eigen::Vector3d& p, std::size_t at) {
+    sums[model.labels[at]] += p;
+    counts[model.labels[at]] += 1.0;
+  });
+  std::vector<std::optional<Eigen::Vector3d>> middles(labels);
+  std::vector<double> nearest(labels, std::numeric_limits<double>::infinity());
+  each_voxel(model, [&](const Eigen::Vector3d& p, std::size_t at) {
+    const std::uint8_t label = model.labels[at];
+    const double distance = (p - sums[label] / counts[label]).squaredNorm();
+    if (distance < nearest[label]) {
+      nearest[label] = distance;
+      middles[label] = p;
+    }
+  });
+  return middles;
+}
+
+/// What is written and drawn over a picture.
+class Legend {
+ public:
+  Legend(const render::Gl& gl, const BoneDefinition& d, const bone::BoneModel& model)
+      : d_(d),
+        model_(model),
+        width_(d.display.width),
+        height_(d.display.height),
+        painter_(gl, width_, height_),
+        text_(gl, width_, height_) {
+    constexpr double kLines = 40.0;  // of text in a picture's height
+    style_ = {std::max(9, static_cast<int>(height_ / kLines)), false, kInk};
+  }
+  void draw() {
+    std::vector<PlacedStructure> all = placed_structures(d_, model_, width_, height_);
+    std::ranges::stable_sort(all, {}, [](const auto& one) { return one.pixel.x(); });
+    const auto half = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+    std::vector<PlacedStructure> left(all.begin(), half);
+    std::vector<PlacedStructure> right(half, all.end());
+    names(left, true);
+    names(right, false);
+    words();
+    axes();
+    scale();
+  }
+
+ private:
+  double row() const { return 1.5 * style_.size; }
+
+  void plate(const Eigen::Vector2d& low, const Eigen::Vector2d& high) {
+    painter_.fill({low, high}, 0.25 * style_.size, kWordPlate);
+  }
+
+  /// Names in a column at one side, from top to bottom as they are seen.
+  void names(std::vector<PlacedStructure>& column, bool left) {
+    std::ranges::stable_sort(column, {}, [](const auto& one) { return one.pixel.y(); });
+    const double em = style_.size;
+    double y = 5.0 * em;
+    for (const PlacedStructure& one : column) {
+      const std::string name = one.in_sight ? one.name : one.name + " (out of sight)";
+      const double wide = text_.width_of(name, style_) + 2.0 * em;
+      const double x = left ? 0.5 * em : width_ - 0.5 * em - wide;
+      painter_.begin_over();
+      if (one.in_sight) {
+        const Eigen::Vector2d from(left ? x + wide : x, y + 0.5 * row());
+        painter_.line(from, one.pixel, 1.2, render::with_alpha(kInk, 0.6));
+        painter_.disc(one.pixel, 0.25 * em, kInk);
+        painter_.disc(one.pixel, 0.17 * em, one.colour);
+      }
+      plate({x, y}, {x + wide, y + row() - 2.0});
+      painter_.disc({x + 0.8 * em, y + 0.5 * row() - 1.0}, 0.4 * em, one.colour);
+      painter_.end();
+      line(name, {x + 1.6 * em, y + row() - 0.55 * em});
+      y += row();
+    }
+  }
+
+  void line(const std::string& words, const Eigen::Vector2d& anchor,
+            render::Align align = render::Align::kLeft) {
+    text_.begin();
+    text_.line(words, anchor, style_, align);
+    text_.end();
+  }
+
+  void words() {
+    const double em = style_.size;
+    const std::string side = placement_words(d_, model_);
+    std::string asked;
+    if (d_.cavity) {
+      asked = fmt::format("red: the cavity that is asked for, beside the {}", d_.cavity->beside);
+    }
+    painter_.begin_over();
+    plate({0.0, 0.0}, {static_cast<double>(width_), 3.2 * em});
+    painter_.end();
+    line(model_.name, {em, 1.3 * em});
+    line(asked, {width_ - em, 1.3 * em}, render::Align::kRight);
+    line(side, {em, 2.7 * em});
+  }
+
+  /// Arrows of the bone's axes: those of the patient.
+  void axes() {
+    const double em = style_.size;
+    const Eigen::Vector2d from(6.0 * em, height_ - 5.0 * em);
+    const Eigen::Matrix3d to_picture =
+        d_.simulator.camera.start.axes().transpose() * d_.placement.turn;
+    const std::array<std::pair<Eigen::Vector3d, const char*>, 3> arrows{
+        {{-Eigen::Vector3d::UnitX(), "right"},
+         {Eigen::Vector3d::UnitY(), "back"},
+         {Eigen::Vector3d::UnitZ(), "up"}}};
+    painter_.begin_over();
+    plate({0.5 * em, height_ - 9.5 * em}, {12.0 * em, height_ - 0.5 * em});
+    painter_.end();
+    for (const auto& [axis, name] : arrows) {
+      const Eigen::Vector3d seen = to_picture * axis;
+      const Eigen::Vector2d along(seen.x(), -seen.y());
+      const Eigen::Vector2d to = from + 3.0 * em * along;
+      painter_.begin_over();
+      painter_.line(from, to, 2.0, kInk);
+      painter_.disc(to, 0.25 * em, kInk);
+      painter_.end();
+      const Eigen::Vector2d beside = to + (along.norm() > 0.2 ? 0.9 * em * along.normalized()
+                                                              : Eigen::Vector2d(0.6 * em, -em));
+      line(name, beside + Eigen::Vector2d(0.0, 0.35 * em),
+           along.x() < -0.3 ? render::Align::kRight : render::Align::kLeft);
+    }
+  }
+
+  void scale() {
+    const double em = style_.size;
+    const Camera& camera = d_.simulator.camera.start;
+    const double length =
+        kBar * 0.5 * height_ / std::tan(0.5 * camera.field_of_view) / camera.distance();
+    const Eigen::Vector2d right(width_ - 1.5 * em, height_ - 1.2 * em);
+    const Eigen::Vector2d left = right - Eigen::Vector2d(length, 0.0);
+    const std::string words = fmt::format("{:.0f} mm", 1e3 * kBar);
+    painter_.begin_over();
+    plate({left.x() - em, height_ - 3.4 * em}, {width_ - 0.5 * em, height_ - 0.5 * em});
+    painter_.line(left, right, 3.0, kInk);
+    painter_.end();
+    line(words, {0.5 * (left.x() + right.x()), height_ - 1.9 * em}, render::Align::kCentre);
+  }
+
+  const BoneDefinition& d_;
+  const bone::BoneModel& model_;
+  int width_;
+  int height_;
+  render::Painter painter_;
+  render::TextPainter text_;
+  render::TextStyle style_;
+};
+
+}  // namespace
+
+std::vector<PlacedStructure> placed_structures(const BoneDefinition& d,
+                                               const bone::BoneModel& model, int width,
+                                               int height) {
+  const Eigen::Isometry3d pose = pose_of(d.placement, model.grid);
+  const Camera& camera = d.simulator.camera.start;
+  const auto middles = middles_in(model);
+  std::vector<PlacedStructure> placed;
+  for (std::size_t label = 1; label < middles.size(); ++label) {
+    const bone::Structure& structure = model.structures[label];
+    if (!middles[label] || structure.name == bone::kPlainBone) {
+      continue;
+    }
+    const Eigen::Vector3d p_W = pose * *middles[label];
+    const Eigen::Vector2d pixel = pixel_of(camera, p_W, width, height);
+    const bool before = (p_W - camera.eye).dot(camera.target - camera.eye) > 0.0;
+    const bool within = (pixel.array() >= 0.0).all() && pixel.x() < width && pixel.y() < height;
+    placed.push_back({structure.name,
+                      {structure.colour[0], structure.colour[1], structure.colour[2]},
+                      pixel,
+                      before && within});
+  }
+  return placed;
+}
+
+std::string placement_words(const BoneDefinition& d, const bone::BoneModel& model) {
+  const auto side = bone::ear_side(model);
+  std::string words = !side
+                          ? "no side is known: inner ear, ear canal and sinus are not all labelled"
+                      : *side == bone::EarSide::kLeft ? "a left ear, by its structures"
+                                                      : "a right ear, by its structures";
+  if (d.mirror) {
+    words += "; left and right exchanged by mirror = true";
+  }
+  if (d.placement.left_ear) {
+    words += "; placed as a surgeon sees a left ear";
+  }
+  return words;
+}
+
+void draw_placement_legend(const render::Gl& gl, const BoneDefinition& d,
+                           const bone::BoneModel& model) {
+  Legend(gl, d, model).draw();
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/render/gl/colour.h"
+#include "core/render/gl/gl.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
+
+namespace haptrial::protocols {
+
+/// A structure of a bone where the first picture of a procedure has it.
+struct PlacedStructure {
+  std::string name;
+  render::Colour colour;
+  Eigen::Vector2d pixel;  // of its voxel that is nearest to its middle, from the top left [px]
+  bool in_sight{false};   // within the picture
+};
+
+/// All that has voxels but plain bone, by label. @param width, height  of the picture [px]
+std::vector<PlacedStructure> placed_structures(const BoneDefinition& definition,
+                                               const bone::BoneModel& model, int width, int height);
+
+/// Which ear a bone is and how it is placed: "a left ear by its structures; placed as ...".
+std::string placement_words(const BoneDefinition& definition, const bone::BoneModel& model);
+
+/// Draws over a picture what is said of it: names with lines to their structures, the side and the
+/// cavity in words, arrows of the patient's axes, and a bar for the scale at the depth of the
+/// camera's target. Thread with the context of OpenGL.
+void draw_placement_legend(const render::Gl& gl, const BoneDefinition& definition,
+                           const bone::BoneModel& model);
+
+}  // namespace haptrial::protocols

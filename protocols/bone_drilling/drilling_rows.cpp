@@ -1,0 +1,125 @@
+#include "protocols/bone_drilling/drilling_rows.h"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace haptrial::protocols {
+namespace {
+
+constexpr std::uint64_t kBetweenCameraRows = 10;  // ticks at least, while the view moves
+
+std::array<std::int32_t, 3> indices(const bone::Voxel& voxel) noexcept {
+  return {voxel.x(), voxel.y(), voxel.z()};
+}
+
+}  // namespace
+
+void DrillingLogs::record(std::uint64_t sequence, const Readings& readings,
+                          device::Fault /*fault*/) noexcept {
+  record::ToolRow row = std::exchange(row_, record::ToolRow{});
+  row.sequence = sequence;
+  row.orientation = readings[0].orientation;
+  row.buttons = readings[0].buttons;
+  row.keys = readings[0].keys;
+  row.pedal = readings[0].pedal;
+  tool.push(row);
+  if (beside_ != nullptr) {
+    nerve::NerveTick tick = std::exchange(nerves_, nerve::NerveTick{});
+    tick.sequence = sequence;
+    beside_->after_tick(tick);
+  }
+}
+
+void DrillingRows::log(std::uint64_t sequence, double speed) noexcept {
+  const bone::SimulatorOutput& out = simulator_.output();
+  const double force = out.force.norm();
+  for (const bone::EmptiedIn& gone : simulator_.emptied()) {
+    record::RemovalRow row;
+    row.sequence = sequence;
+    row.piece = gone.piece;
+    row.voxel = indices(gone.voxel);
+    row.label = gone.label;
+    row.cut = gone.by_cut;
+    row.force = gone.by_cut ? 0.0 : force;
+    row.speed = speed;
+    logs_.removals.push(row);
+  }
+  for (const bone::Tear& tear : simulator_.tears()) {
+    logs_.tears.push(
+        {sequence, tear.label, out.tool, tear.by_suction, tear.force, tear.depth, tear.place_B});
+  }
+  for (const bone::WorldEvent& event : simulator_.separations()) {
+    using Kind = bone::WorldEvent::Kind;
+    if (event.kind == Kind::kBorn) {
+      for (const bone::Voxel& seed : simulator_.world().seeds(event.piece)) {
+        logs_.splits.push({sequence, event.parent, event.piece, indices(seed)});
+      }
+    } else if (event.kind == Kind::kCrumb) {
+      logs_.splits.push({sequence, event.piece, -1, indices(event.seed)});
+    }
+  }
+}
+
+void DrillingRows::log_camera(std::uint64_t sequence, bool changed) noexcept {
+  camera_due_ = camera_due_ || changed;
+  const bool at_rest = !changed;
+  const bool first = std::exchange(first_, false);
+  if (!camera_due_ || !(first || at_rest || sequence - camera_logged_ >= kBetweenCameraRows)) {
+    return;
+  }
+  const Camera& camera = simulator_.camera();
+  record::CameraRow row;
+  row.sequence = sequence;
+  row.time_ns = std::llround(static_cast<double>(sequence) * 1e9 / rate_);
+  row.eye = camera.eye;
+  row.target = camera.target;
+  row.up = camera.up;
+  row.field_of_view = camera.field_of_view;
+  logs_.camera.push(row);
+  camera_logged_ = sequence;
+  camera_due_ = false;
+}
+
+void DrillingRows::log_tool(double removed, const Eigen::Vector3d& contact) noexcept {
+  const bone::SimulatorOutput& out = simulator_.output();
+  record::ToolRow tool;
+  tool.tool = out.tool;
+  tool.mode = static_cast<std::uint8_t>(out.mode);
+  tool.active = true;
+  tool.power = out.power > 0.0;
+  tool.piece = simulator_.world().held();
+  tool.immersed = out.immersed;
+  tool.removed = removed;
+  tool.contact = contact;
+  logs_.set_tool(tool);
+}
+
+nerve::ToolAtNerves tool_at_nerves(const bone::Simulator& simulator,
+                                   const bone::SimulatorInput& input) noexcept {
+  using Kind = nerve::ToolAtNerves::Kind;
+  const bone::SimulatorOutput& out = simulator.output();
+  const bone::ToolSpec& tool = simulator.tool();
+  nerve::ToolAtNerves at;
+  if (out.mode != bone::HandMode::kTool) {
+    return at;
+  }
+  if (const auto* burr = tool.as<bone::BurrTool>()) {
+    at.kind = Kind::kBurr;
+    at.radius = burr->radius();
+  } else if (const auto* suction = tool.as<bone::SuctionTool>()) {
+    at.kind = Kind::kSuction;
+    at.radius = suction->radius;
+  } else if (const auto* probe = tool.as<bone::ProbeTool>()) {
+    at.kind = Kind::kProbe;
+    at.radius = probe->radius;
+  }
+  const Eigen::Isometry3d& X_WB = simulator.world().pose(0);
+  at.tip_B = X_WB.inverse(Eigen::Isometry) * input.tool.tip.position;
+  at.speed = input.tool.tip.velocity.norm();
+  at.force = out.force.norm();
+  at.power = out.power;
+  return at;
+}
+
+}  // namespace haptrial::protocols

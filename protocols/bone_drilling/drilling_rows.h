@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/bone/record/drilling_types.h"
+#include "core/bone/record/led_row.h"
+#include "core/bone/record/tear_row.h"
+#include "core/bone/simulator/simulator.h"
+#include "core/nerve/beside/nerve_beside.h"
+#include "core/nerve/setup/nerve_exposures.h"
+#include "core/realtime/block_log.h"
+#include "protocols/interface/pass.h"
+
+namespace haptrial::protocols {
+
+/// Where the servo thread leaves what happens to the bone; emptied by the session's thread. A cut
+/// empties CutPlaneTool::kMostEmptied voxels a tick at most: there is room for 1,024 such ticks.
+class DrillingLogs final : public TickLog {
+ public:
+  realtime::BlockLog<record::ToolRow> tool;
+  realtime::BlockLog<record::RemovalRow> removals{1024, 256};
+  realtime::BlockLog<record::CameraRow> camera{256, 64};
+  realtime::BlockLog<record::SplitRow> splits{1024, 16};
+  realtime::BlockLog<record::TearRow> tears{64, 16};
+  realtime::BlockLog<record::LedRow> led{1024, 16};
+
+  /// What the present tick says of the tool in hand; taken by record(). Servo thread.
+  void set_tool(const record::ToolRow& row) noexcept { row_ = row; }
+  const record::ToolRow& tool_now() const noexcept { return row_; }
+  /// What the present tick does to nerves; likewise.
+  void set_nerves(const nerve::NerveTick& tick) noexcept { nerves_ = tick; }
+  /// Gets every tick from the next one on, also between passes; null: nobody watches nerves.
+  void watch_nerves(nerve::NerveBeside* beside) noexcept { beside_ = beside; }
+  bool nerve_tone() const noexcept { return beside_ != nullptr && beside_->tone(); }
+  /// A row of /tool for every tick, also between passes.
+  void record(std::uint64_t sequence, const Readings& readings,
+              device::Fault fault) noexcept override;
+
+  std::uint64_t dropped() const noexcept {
+    return tool.dropped() + removals.dropped() + camera.dropped() + splits.dropped() +
+           tears.dropped() + led.dropped();
+  }
+
+ private:
+  record::ToolRow row_;
+  nerve::NerveTick nerves_;
+  nerve::NerveBeside* beside_{nullptr};
+};
+
+/// What the ticks of a pass leave in the logs. Servo thread.
+class DrillingRows {
+ public:
+  /// Both outlive it.
+  DrillingRows(const bone::Simulator& simulator, DrillingLogs& logs, double rate) noexcept
+      : simulator_(simulator), logs_(logs), rate_(rate) {}
+
+  /// What the simulator's last tick did to the bone. @param speed  of the tool [m/s]
+  void log(std::uint64_t sequence, double speed) noexcept;
+  /// A moving view is logged a hundred times a second at most, and where it comes to rest. Each
+  /// tick of the pass.
+  void log_camera(std::uint64_t sequence, bool changed) noexcept;
+  /// The tool in hand after it. @param removed  in this tick [voxels]
+  void log_tool(double removed, const Eigen::Vector3d& contact) noexcept;
+
+ private:
+  const bone::Simulator& simulator_;
+  DrillingLogs& logs_;
+  double rate_;
+  bool first_{true};
+  bool camera_due_{true};           // a change is not logged yet
+  std::uint64_t camera_logged_{0};  // sequence number of the last row
+};
+
+/// The tool after a tick of the simulator, as nerves have it. They lie in the bone that was there
+/// at the beginning, and go with it.
+nerve::ToolAtNerves tool_at_nerves(const bone::Simulator& simulator,
+                                   const bone::SimulatorInput& input) noexcept;
+
+}  // namespace haptrial::protocols

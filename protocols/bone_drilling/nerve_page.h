@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "core/nerve/beside/monitor_desk.h"
+#include "protocols/interface/side_page.h"
+
+namespace haptrial::protocols {
+
+/// nerves.html as it stands in the source; built in.
+std::string_view nerves_html();
+
+/// The page of a nerve monitor's technician: traces, events, thresholds. Each of its events has
+/// what came since the one before, samples in multiples of 0.1 uV.
+class NervePage final : public SidePage {
+ public:
+  std::string_view name() const override { return "nerves"; }
+  std::string_view title() const override { return "nerve monitor"; }
+  std::string_view html() const override { return nerves_html(); }
+  Events events() override;
+  /// {"channel": 0, "muted": true}, {"channel": 0, "threshold": 150e-6}, 10 to 400 uV,
+  /// {"channel": 0, "search": true}: the least current that the channel answers, or
+  /// {"stimulus": 0.5e-3}: the probe's current, 0.05 to 3 mA.
+  void ask(const std::string& json) override;
+
+  /// Where the monitor shows what it does, and takes what is asked.
+  const std::shared_ptr<nerve::MonitorDesk>& desk() const { return desk_; }
+
+ private:
+  std::shared_ptr<nerve::MonitorDesk> desk_{std::make_shared<nerve::MonitorDesk>()};
+};
+
+/// What NervePage::ask() takes.
+/// @throws InputError
+nerve::MonitorOrder parse_nerve_order(const std::string& json);
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "core/network/channel/reliable_stream.h"
+
+namespace haptrial::protocols {
+
+/// What two linked sessions work on: the world of the side that teaches; that of the other side
+/// follows it by what the one gives and the other takes. What the bytes are, the protocol knows.
+class SharedWorld : public network::Freight {
+ public:
+  /// Whether both sides know that the pass that was completed left them the same world, or have
+  /// said how it differs; the pass lasts until then. Servo thread.
+  virtual bool settled() const noexcept = 0;
+  /// On a simulated clock: whether the session's thread has to empty the protocol's own logs.
+  virtual bool wants_attention() const noexcept = 0;
+};
+
+}  // namespace haptrial::protocols
