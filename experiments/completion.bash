@@ -4,12 +4,12 @@ _haptrial() {
   local names words part
   names=$(haptrial --help 2>/dev/null | sed -n '/^Subcommands:/,/^$/s/^  \([a-z-]*\) .*/\1/p')
   if [ "$COMP_CWORD" -eq 1 ]; then
-    mapfile -t COMPREPLY < <(compgen -W "$names --help --version" -- "$word")
-  elif [ "$COMP_CWORD" -eq 2 ] && [[ $sub =~ ^(mesh|bone|deform|rate)$ ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "$names --help --version --plugin" -- "$word")
+  elif [ "$COMP_CWORD" -eq 2 ] && [[ $sub =~ ^(mesh|bone|deform|rate|power)$ ]]; then
     names=$(haptrial "$sub" --help 2>/dev/null | sed -n '/^Subcommands:/,/^$/s/^  \([a-z-]*\) .*/\1/p')
     mapfile -t COMPREPLY < <(compgen -W "$names --help" -- "$word")
   elif [[ $word == -* ]]; then
-    [[ $sub =~ ^(mesh|bone|deform|rate)$ ]] && part=${COMP_WORDS[2]}
+    [[ $sub =~ ^(mesh|bone|deform|rate|power)$ ]] && part=${COMP_WORDS[2]}
     words=$(haptrial "$sub" ${part:+"$part"} --help 2>/dev/null | grep -o -- '--[a-z-]*' | sort -u)
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
   else

@@ -31,6 +31,7 @@ struct DryRunOptions {
   std::string seed{"1"};
   std::optional<int> jobs;  // default: one per processor
   std::string out;          // default: a new folder out/NAME-001
+  std::string parts;        // in its place, a folder that is gone on with
   int frames{0};
   std::optional<int> trials;   // default: all
   std::optional<int> session;  // of each subject; default: all, in their order
@@ -55,7 +56,7 @@ struct RunOptions {
   std::string learn_from;          // HOST:PORT of the side that teaches; empty: nobody
   std::string secret;              // file that both sides have
   bool console{false};
-  bool nerve_monitor{false};  // its technician's page beside the console
+  std::vector<std::string> side_pages;  // of the protocol, beside the console
   bool keyboard{false};
   std::optional<std::string> address;  // of the console; default: the loopback's
   std::optional<int> port;             // of the console; default: any that is free
@@ -209,12 +210,16 @@ int keys(const std::string& protocol);
 
 /// Two of an effect (delta and sd, or f), n and power; the third is computed.
 struct PowerOptions {
-  std::string test;                   // "t", "anova"
+  std::string test;                   // "t", "anova", "repeated"
   std::optional<std::string> design;  // of t: "two-sample" by default, "paired", "one-sample"
   std::optional<double> delta;        // difference of the means
   double sd{1.0};                     // in the same unit; of paired values that of the differences
-  std::optional<double> f;            // of anova: Cohen's
-  std::optional<int> groups;          // of anova
+  std::optional<double> f;            // of anova and repeated: Cohen's
+  std::optional<int> groups;          // of anova; of repeated 1 if left out
+  std::optional<std::string> effect;  // of repeated: "within" by default, "interaction", "between"
+  std::optional<int> measurements;    // of repeated: conditions that everybody has
+  std::optional<double> correlation;  // of repeated: of any two measurements
+  std::optional<double> epsilon;      // of repeated: Greenhouse and Geisser's
   std::optional<long> n;              // participants in each group
   std::optional<double> power;
   double alpha{0.05};
@@ -265,10 +270,10 @@ struct BoneOptions {
   std::optional<double> dense;       // of grey volumes: the number of bone with density 1
   std::string labels;                // names of labels (.toml)
   std::vector<std::string> without;  // names of structures that are left out
+  bool mirror{false};                // left and right are exchanged
   std::optional<double> max_memory;  // [GB]
   bool overwrite{false};
 };
-int bone_import(const BoneOptions& options);
 int bone_info(const BoneOptions& options);
 int bone_make(const BoneOptions& options);
 

@@ -8,6 +8,8 @@
 #include <atomic>
 #include <cstring>
 #include <optional>
+#include <set>
+#include <stdexcept>
 #include <utility>
 
 #include "core/base/error.h"
@@ -17,7 +19,6 @@
 #include "experiments/console/console_guard.h"
 #include "experiments/console/console_messages.h"
 #include "experiments/console/console_page.h"
-#include "experiments/console/nerve_page.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -153,6 +154,26 @@ RequestHead head_of(const httplib::Request& request) {
   return head;
 }
 
+std::vector<std::string> names_of(const protocols::SidePages& sides) {
+  const std::set<std::string, std::less<>> own{"events", "picture", "ask", "note", "answer"};
+  std::vector<std::string> names;
+  for (const auto& side : sides) {
+    const std::string name(side->name());
+    const bool letters = !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+      return (c >= 'a' && c <= 'z') || c == '_';
+    });
+    if (!letters || own.contains(name) ||
+        std::find(names.begin(), names.end(), name) != names.end()) {
+      throw std::invalid_argument(fmt::format(
+          "a page beside the console cannot be named '{}': names are of letters a to z and '_', "
+          "none twice and none of the console's own",
+          name));
+    }
+    names.push_back(name);
+  }
+  return names;
+}
+
 void check_options(const ConsoleOptions& o) {
   const auto require = [](bool good, const char* what) {
     if (!good) {
@@ -184,7 +205,7 @@ class Console::Implementation {
     set_up_server();
     port_ = bind();
     names_ = console_hosts(options_.address, loopback, port_);
-    gate_.emplace(Gate::Rules{token_, names_, kMaxBody, options_.nerve_desk != nullptr});
+    gate_.emplace(Gate::Rules{token_, names_, kMaxBody, names_of(options_.sides)});
     constexpr int kForRequests = 4;  // beside the event streams
     ours_.emplace(options_.event_streams + kForRequests, options_.waiting);
     others_.emplace(options_.workers, options_.waiting);
@@ -203,8 +224,8 @@ class Console::Implementation {
   }
 
   std::string url() const { return fmt::format("http://{}/?token={}", names_.front(), token_); }
-  std::string nerve_url() const {
-    return fmt::format("http://{}/nerves?token={}", names_.front(), token_);
+  std::string side_url(std::string_view name) const {
+    return fmt::format("http://{}/{}?token={}", names_.front(), name, token_);
   }
   int port() const { return port_; }
   const std::string& token() const { return token_; }
@@ -246,7 +267,8 @@ class Console::Implementation {
   using MakeEvent = std::function<std::string()>;
   void send_events(httplib::Response& response, MakeEvent make);
   MakeEvent status_events();
-  MakeEvent nerve_events();
+  void serve(const std::shared_ptr<protocols::SidePage>& side);
+  static void take(httplib::Response& response, const std::function<void()>& action);
   void send_picture(httplib::Response& response);
   static void refuse(httplib::Response& response, int status, const std::string& reason);
 
@@ -299,8 +321,10 @@ void Console::Implementation::set_up_server() {
     answer(request, response);
   };
   server_.Get("/", handler).Get("/events", handler).Post("/ask", handler).Post("/note", handler);
-  server_.Get("/nerves", handler).Get("/nerves/events", handler).Post("/nerves/ask", handler);
   server_.Get("/picture", handler).Post("/answer", handler);
+  for (const std::shared_ptr<protocols::SidePage>& side : options_.sides) {
+    serve(side);
+  }
   server_.set_error_handler(httplib::Server::Handler([this](const auto& request, auto& response) {
     if (response.body.empty()) {
       const int cut_off = status_of(t_job->connection.trouble());
@@ -320,33 +344,45 @@ void Console::Implementation::answer(const httplib::Request& request, httplib::R
   if (request.path == "/") {
     return send_page(response, console_page_template());
   }
-  if (request.path == "/nerves") {
-    return send_page(response, nerve_page_template());
-  }
   if (request.path == "/events") {
     return send_events(response, status_events());
-  }
-  if (request.path == "/nerves/events") {
-    return send_events(response, nerve_events());
   }
   if (request.path == "/picture") {
     return send_picture(response);
   }
-  try {
+  take(response, [&] {
     if (request.path == "/ask") {
       control_.ask(parse_request(request.body));
-    } else if (request.path == "/nerves/ask") {
-      options_.nerve_desk->ask(parse_nerve_order(request.body));
     } else if (request.path == "/answer") {
       auto [number, text] = parse_answer(request.body);
       control_.answer(number, std::move(text));
     } else {
       control_.note(parse_note(request.body));
     }
+  });
+}
+
+/// What is asked by a body.
+void Console::Implementation::take(httplib::Response& response,
+                                   const std::function<void()>& action) {
+  try {
+    action();
     response.set_content("{\"accepted\":true}\n", "application/json");
   } catch (const InputError& error) {
     refuse(response, 400, error.what());
   }
+}
+
+void Console::Implementation::serve(const std::shared_ptr<protocols::SidePage>& side) {
+  using httplib::Request;
+  using httplib::Response;
+  const std::string at = fmt::format("/{}", side->name());
+  server_.Get(at, [side](const Request&, Response& out) { send_page(out, side->html()); });
+  server_.Get(at + "/events",
+              [this, side](const Request&, Response& out) { send_events(out, side->events()); });
+  server_.Post(at + "/ask", [side](const Request& request, Response& out) {
+    take(out, [&] { side->ask(request.body); });
+  });
 }
 
 void Console::Implementation::send_page(httplib::Response& response, std::string_view html) {
@@ -366,16 +402,6 @@ void Console::Implementation::send_picture(httplib::Response& response) {
 
 Console::Implementation::MakeEvent Console::Implementation::status_events() {
   return [this] { return status_json(control_.status(), log_.count()); };
-}
-
-/// Each page gets what came since its own last event.
-Console::Implementation::MakeEvent Console::Implementation::nerve_events() {
-  return [this, column = std::uint64_t{0}, event = std::uint64_t{0}]() mutable {
-    const nerve::MonitorDesk::View view = options_.nerve_desk->since(column, event);
-    column = view.next_column;
-    event = view.next_event;
-    return nerve_json(view);
-  };
 }
 
 void Console::Implementation::send_events(httplib::Response& response, MakeEvent make) {
@@ -406,7 +432,9 @@ Console::Console(SessionControl& control, ConsoleOptions options)
 Console::~Console() = default;
 
 std::string Console::url() const { return implementation_->url(); }
-std::string Console::nerve_url() const { return implementation_->nerve_url(); }
+std::string Console::side_url(std::string_view name) const {
+  return implementation_->side_url(name);
+}
 int Console::port() const { return implementation_->port(); }
 const std::string& Console::token() const { return implementation_->token(); }
 std::uint64_t Console::refused() const { return implementation_->log().count(); }

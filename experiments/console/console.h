@@ -4,10 +4,11 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "core/nerve/beside/monitor_desk.h"
 #include "experiments/control/session_control.h"
+#include "protocols/interface/side_page.h"
 
 namespace haptrial::experiments {
 
@@ -17,10 +18,10 @@ struct ConsoleOptions {
   bool allow_remote{false};          // other addresses than loopback
   double events_per_second{15.0};    // to each page, 1 to 60
   double request_time{2.0};          // a request that takes longer is refused > 0 [s]
-  int workers{8};        // requests at a time of those who have not shown the token, >= 1
-  int event_streams{4};  // pages at a time, >= 1
-  int waiting{32};       // connections that may wait for a worker
-  std::shared_ptr<nerve::MonitorDesk> nerve_desk{};  // of the nerve monitor's page; null: none
+  int workers{8};                // requests at a time of those who have not shown the token, >= 1
+  int event_streams{4};          // pages at a time, >= 1
+  int waiting{32};               // connections that may wait for a worker
+  protocols::SidePages sides{};  // pages beside the console's
   /// Gets a sentence for each of the first refusals (RefusalLog); on a thread of the console.
   std::function<void(const std::string&)> on_refusal;
 };
@@ -36,16 +37,16 @@ struct ConsoleOptions {
 ///     POST /ask            {"request": "pause"}, with the header X-Haptrial-Token
 ///     POST /note           {"text": "..."}, likewise
 ///
-/// With a nerve monitor, for its technician:
+/// For each page beside it (protocols/interface/side_page.h), by its name:
 ///
-///     GET /nerves?token=T         the page
-///     GET /nerves/events?token=T  server-sent events: traces, events, thresholds as JSON
-///     POST /nerves/ask            {"channel": 0, "muted": true}, with the header
+///     GET /NAME?token=T         the page
+///     GET /NAME/events?token=T  server-sent events, as the page has them
+///     POST /NAME/ask            what the page takes, with the header
 class Console {
  public:
   /// Serves when it returns. @param control  outlives the console.
-  /// @throws InputError for an address or option that is not allowed; RunError where the port is
-  /// taken.
+  /// @throws InputError for an address or option that is not allowed; std::invalid_argument for
+  /// pages that cannot have addresses of their own; RunError where the port is taken.
   explicit Console(SessionControl& control, ConsoleOptions options = {});
   /// Hangs up on every client and returns within a fraction of a second.
   ~Console();
@@ -54,8 +55,8 @@ class Console {
 
   /// What the experimenter opens; holds the token.
   std::string url() const;
-  /// What the technician of the nerve monitor opens, if there is one; holds the token.
-  std::string nerve_url() const;
+  /// What is opened for a page beside it; likewise. @param name  of the page
+  std::string side_url(std::string_view name) const;
   int port() const;
   const std::string& token() const;
 

@@ -54,19 +54,43 @@ std::optional<Refusal> Gate::judge(const RequestHead& head) const {
   if (auto refusal = judge_sender(head)) {
     return refusal;
   }
-  const bool reads_nerves = head.path == "/nerves" || head.path == "/nerves/events";
-  const bool nerves = rules_.nerves && (reads_nerves || head.path == "/nerves/ask");
-  const bool reads =
-      head.path == "/" || head.path == "/events" || head.path == "/picture" || reads_nerves;
-  const bool known = head.path == "/" || head.path == "/events" || head.path == "/picture" ||
-                     head.path == "/ask" || head.path == "/note" || head.path == "/answer";
-  if (!known && !nerves) {
-    return Refusal{404, "no such page; there are /, /events, /picture, /ask, /note and /answer"};
+  const std::optional<Place> place = place_of(head.path);
+  if (!place) {
+    return Refusal{404, "no such page; there are " + places()};
   }
-  if (head.method != (reads ? "GET" : "POST")) {
-    return Refusal{405, fmt::format("this address takes {} only", reads ? "GET" : "POST")};
+  if (head.method != (place->reads ? "GET" : "POST")) {
+    return Refusal{405, fmt::format("this address takes {} only", place->reads ? "GET" : "POST")};
   }
   return judge_body(head);
+}
+
+std::optional<Gate::Place> Gate::place_of(const std::string& path) const {
+  if (path == "/") {
+    return Place{true, true};
+  }
+  if (path == "/events" || path == "/picture") {
+    return Place{false, true};
+  }
+  if (path == "/ask" || path == "/note" || path == "/answer") {
+    return Place{false, false};
+  }
+  for (const std::string& side : rules_.sides) {
+    if (path == "/" + side) {
+      return Place{true, true};
+    }
+    if (path == "/" + side + "/events" || path == "/" + side + "/ask") {
+      return Place{false, path.ends_with("/events")};
+    }
+  }
+  return std::nullopt;
+}
+
+std::string Gate::places() const {
+  std::string all = "/, /events, /picture, /ask, /note and /answer";
+  for (const std::string& side : rules_.sides) {
+    all += fmt::format(", and /{0}, /{0}/events and /{0}/ask", side);
+  }
+  return all;
 }
 
 std::optional<Refusal> Gate::judge_sender(const RequestHead& head) const {
@@ -82,8 +106,8 @@ std::optional<Refusal> Gate::judge_sender(const RequestHead& head) const {
     return Refusal{403, "the Origin is another page"};
   }
   // A link that is followed to the page itself comes from elsewhere, and that is fine.
-  const bool page = head.path == "/" || head.path == "/nerves";
-  if (!page && !head.fetch_site.empty() && head.fetch_site != "same-origin" &&
+  const std::optional<Place> place = place_of(head.path);
+  if (!(place && place->page) && !head.fetch_site.empty() && head.fetch_site != "same-origin" &&
       head.fetch_site != "none") {
     return Refusal{403, "the browser says that another site asks"};
   }

@@ -51,7 +51,7 @@ class Gate {
     std::string token;
     std::vector<std::string> hosts;  // "127.0.0.1:8080"
     std::size_t max_body{4096};      // [bytes]
-    bool nerves{false};              // there is a nerve monitor
+    std::vector<std::string> sides;  // names of the pages beside the console's
   };
   explicit Gate(Rules rules) : rules_(std::move(rules)) {}
 
@@ -59,6 +59,13 @@ class Gate {
   std::optional<Refusal> judge(const RequestHead& head) const;
 
  private:
+  struct Place {
+    bool page{false};   // that is opened by its address
+    bool reads{false};  // GET; else POST
+  };
+  /// Nothing where there is nothing.
+  std::optional<Place> place_of(const std::string& path) const;
+  std::string places() const;
   std::optional<Refusal> judge_sender(const RequestHead& head) const;
   std::optional<Refusal> judge_body(const RequestHead& head) const;
   Rules rules_;

@@ -1,7 +1,9 @@
 #include "experiments/control/signals.h"
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <ctime>
 #include <initializer_list>
 
 #include "experiments/control/interrupt.h"
@@ -11,11 +13,29 @@
 namespace haptrial::experiments {
 namespace {
 
+constexpr double kOneWish = 0.3;    // [s]
+std::atomic<double> first_at{0.0};  // [s]
+static_assert(std::atomic<double>::is_always_lock_free);
+
+double seconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// `timeout` tells the program and then its group, which is one wish.
+extern "C" void on_next_signal(int signal) {
+  if (seconds() - first_at.load(std::memory_order_relaxed) > kOneWish) {
+    stop_and_die(signal);
+  }
+}
+
 extern "C" void on_signal(int signal) {
   interrupt();
   restore_terminal();
   if (signal != SIGHUP) {  // a shell and the system may both tell of a closed terminal
-    std::signal(signal, stop_and_die);
+    first_at.store(seconds(), std::memory_order_relaxed);
+    std::signal(signal, on_next_signal);
   }
 }
 

@@ -3,7 +3,8 @@
 namespace haptrial::experiments {
 
 /// From now on SIGINT, SIGTERM and a closed terminal (SIGHUP, unless it was ignored) ask the
-/// program to stop; a second SIGINT or SIGTERM ends it at once, once the force is zero.
+/// program to stop; a second SIGINT or SIGTERM, 0.3 s later or more, ends it at once, once the
+/// force is zero.
 void watch_for_interrupt();
 
 /// Every signal that would kill the program takes the force away first, and so does one that

@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/text/nearest.h"
 #include "core/device/mouse.h"
+#include "core/device/own_devices.h"
 #include "core/device/replay.h"
 #include "core/device/vendor/force_dimension.h"
 #include "core/device/vendor/open_haptics.h"
@@ -104,6 +105,9 @@ std::unique_ptr<protocols::Rig> open_rig(
   if (const auto file = replayed_file(choice.name)) {
     return with(replayed(*file, d.rate));
   }
+  if (const device::OwnDevice* own = device::own_device(choice.name)) {
+    return with(own->open(device::setting_of(choice.name), choice.number, d.rate));
+  }
   check_device_name(choice.name);
   return virtual_rig();
 }
@@ -128,10 +132,13 @@ void check_device_name(const std::string& name) {
   if (name == kReplay) {
     throw InputError("--device replay: names no file; write replay:FILE");
   }
-  const std::vector<std::string> known{"virtual", "mouse", "force-dimension", "open-haptics",
-                                       "replay:FILE"};
-  if (!name.starts_with(kReplay) &&
-      std::find(known.begin(), known.end() - 1, name) == known.end() - 1) {
+  std::vector<std::string> known{"virtual", "mouse", "force-dimension", "open-haptics"};
+  if (!name.starts_with(kReplay) && device::own_device(name) == nullptr &&
+      std::find(known.begin(), known.end(), name) == known.end()) {
+    for (const device::OwnDevice& own : device::own_devices()) {
+      known.push_back(own.name);
+    }
+    known.emplace_back("replay:FILE");
     throw InputError(not_allowed("--device", fmt::format("'{}'", name), known) +
                      " (haptrial devices lists which are present)");
   }

@@ -7,7 +7,7 @@ namespace haptrial::experiments {
 void AbortedPass::see_to(const protocols::PassResult& result) {
   const bool fault = result.fault != device::Fault::kNone;
   const std::string why = fault ? cause(result) : why_broken_off();
-  const std::string trouble = fault ? p_.rig.device().trouble() : "";
+  const std::string trouble = result.trouble;
   const std::string all = trouble.empty() ? why : why + "; " + trouble;
   const bool overloaded = !p_.pace.overload().empty();  // and no better the next time
   p_.record.event("aborted", fmt::format("trial {}: {}", p_.record.pass().trial, all));

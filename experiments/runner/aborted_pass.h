@@ -5,7 +5,6 @@
 #include "experiments/control/session_desk.h"
 #include "experiments/runner/session_pace.h"
 #include "experiments/runner/session_record.h"
-#include "protocols/interface/rig.h"
 #include "protocols/interface/session_task.h"
 #include "protocols/interface/trials.h"
 
@@ -18,7 +17,6 @@ class AbortedPass {
   /// All of them outlive it.
   struct Parts {
     const protocols::Definition& definition;
-    protocols::Rig& rig;
     protocols::Trials& trials;
     SessionRecord& record;
     SessionDesk& desk;

@@ -15,6 +15,7 @@
 #include "experiments/devices/devices.h"
 #include "experiments/devices/session_pedal.h"
 #include "experiments/loop/servo_thread.h"
+#include "experiments/plugin/loaded/loaded_plugins.h"
 #include "experiments/runner/aborted_pass.h"
 #include "experiments/runner/earlier_run.h"
 #include "experiments/runner/next_trial.h"
@@ -51,7 +52,7 @@ class Session {
   void hear_pedal();
   void show_trial();
   void run_trials();
-  void note_language();
+  void note_setting();
   bool has_break_after(const PlannedTrial& trial) const;
   Outcome present(const PlannedTrial& trial);
   bool run_trial(const PlannedTrial& trial, int attempt);
@@ -117,7 +118,7 @@ protocols::SessionPlace Session::place() {
   give_seeds(place, teaches ? "who teaches" : "");
   place.real = real_;
   place.window = request_.window;
-  place.nerve_desk = request_.nerve_desk;
+  place.side_pages = request_.side_pages;
   place.frames_per_pass = request_.frames_per_pass;
   place.frames_folder = request_.frames_folder;
   place.resumed = resumed_file(request_);
@@ -126,6 +127,7 @@ protocols::SessionPlace Session::place() {
       progress_ = std::make_unique<Progress>(what, 1.0);
     }
     pace_.meanwhile();
+    pace_.show_progress(share);
     progress_->update(share, "", 0.0);
   };
   place.stop = [this] { task_.emergency_stop(); };
@@ -165,7 +167,7 @@ Session::Session(const SessionRequest& request)
       pages_({request, record_, desk_, pace_, page_keys_, screen_.get(), place_.session_seed}),
       next_({request, *trials_, record_, pages_}),
       notices_({request, loop_, record_, desk_, summary_}),
-      aborted_({d_, *rig_, *trials_, record_, desk_, pace_, real_}),
+      aborted_({d_, *trials_, record_, desk_, pace_, real_}),
       servo_(loop_, task_, longest_fade(d_.envelope)),
       stop_(task_, servo_, rig_->device()) {
   SessionStatus& status = desk_.status();
@@ -259,7 +261,7 @@ SessionSummary Session::run() {
 }
 
 void Session::run_trials() {
-  note_language();
+  note_setting();
   if (const std::string tutor = tutor_text(request_); !tutor.empty()) {
     record_.event("tutor", tutor);
   }
@@ -308,17 +310,25 @@ void Session::run_trials() {
   pace_.let_read(d_.texts.thanks, "thanks");
 }
 
-/// An event for each run: a resumed session may go on in another language.
-void Session::note_language() {
+/// Events for each run: a resumed session may go on in another language.
+void Session::note_setting() {
   if (!d_.language.empty()) {
     record_.event("language", d_.language);
+  }
+  for (const std::string& plugin : plugin_lines()) {
+    record_.event(kPluginEvent, plugin);
   }
 }
 
 void Session::show_trial() {
   pace_.clear_text();
   if (screen_) {
-    screen_->show(trials_->drawing());
+    const std::uint64_t number = screen_->show(trials_->drawing());
+    pace_.clear_text();
+    if (trials_->waits_for_picture()) {
+      pace_.wait_for_picture(number);
+    }
+    progress_.reset();
   }
 }
 

@@ -18,7 +18,10 @@ using record::MarkerOf;
 using record::MarkerRow;
 using record::MarkerWay;
 
-constexpr std::chrono::milliseconds kLongestWait{100};  // for what is on its way
+// For what is on its way. The sending thread never waits for its line: only a machine that gives
+// it no time keeps it. A screen or a card may have stopped.
+constexpr std::chrono::seconds kLongestForThread{2};
+constexpr std::chrono::milliseconds kLongestForShown{100};
 
 }  // namespace
 
@@ -210,10 +213,11 @@ void SessionMarkers::gather() {
   }
 }
 
-bool SessionMarkers::complete() const {
-  return !thread_ || (thread_->wait_until_sent(std::chrono::milliseconds(0)) && unseen_.empty() &&
-                      unheard_.empty());
+bool SessionMarkers::all_sent() const {
+  return !thread_ || thread_->wait_until_sent(std::chrono::milliseconds(0));
 }
+
+bool SessionMarkers::all_shown() const { return unseen_.empty() && unheard_.empty(); }
 
 /// The screen or the card has stopped.
 void SessionMarkers::give_up_waiting() {
@@ -231,13 +235,15 @@ std::vector<MarkerRow> SessionMarkers::take_rows(bool last) {
   if (!used()) {
     return {};
   }
-  const auto end = std::chrono::steady_clock::now() + kLongestWait;
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
   gather();
-  while (!complete() && std::chrono::steady_clock::now() < end) {
+  while ((!all_sent() && Clock::now() < begin + kLongestForThread) ||
+         (!all_shown() && Clock::now() < begin + kLongestForShown)) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     gather();
   }
-  gather();  // what came since it was complete
+  gather();  // what came since all was sent
   if (last) {
     give_up_waiting();
   }

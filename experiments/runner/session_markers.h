@@ -62,7 +62,8 @@ class SessionMarkers {
   void gather();
   void take_in(const markers::TimedOnset& onset);
   void give_up_waiting();
-  bool complete() const;
+  bool all_sent() const;
+  bool all_shown() const;
   record::MarkerRow row_of(const markers::TimedOnset& onset) const;
   void add(const markers::TimedOnset& onset, record::MarkerWay way, std::int64_t written_ns,
            std::int64_t frame = -1);

@@ -17,6 +17,7 @@
 #include "core/record/rows/page_answer.h"
 #include "core/record/rows/trial_facts.h"
 #include "experiments/control/interrupt.h"
+#include "experiments/plugin/loaded/loaded_plugins.h"
 #include "experiments/runner/version.h"
 #include "protocols/interface/study_rules.h"
 
@@ -142,6 +143,7 @@ record::SessionWriter open_writer(const SessionRequest& request, const device::D
   check_same_session(request, before.info);
   const record::SessionReader file(request.file.string() + ".partial");
   check_same_tutor(request, file);
+  check_same_plugins(file);
   trials.check_resumed(file);
   return writer;
 }
@@ -231,8 +233,11 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::Mouse
   }
   if (mouse != nullptr) {
     callbacks.pointer = [mouse](const ScreenPointer& pointer) {
-      mouse->move(pointer.x, pointer.z);
       mouse->set_buttons(pointer.buttons);
+      if (pointer.hand) {
+        return mouse->reach(*pointer.hand);
+      }
+      mouse->move(pointer.x, pointer.z);
       mouse->press(device::is_pressed(pointer.buttons, 0) ? mouse->press_at(pointer.wheel) : 0.0);
     };
   }
@@ -253,8 +258,7 @@ std::unique_ptr<stream::LslOutlet> open_outlet(const SessionRequest& request, bo
                                    .device = request.device.name,
                                    .rate = request.definition->rate,
                                    .simulated = simulated,
-                                   .nerve_channels = request.definition->nerve_channels(),
-                                   .nerve_rate = request.definition->nerve_rate()};
+                                   .sides = request.definition->side_streams()};
   return request.stream_optional ? stream::LslOutlet::open(options, std::move(now), notice)
                                  : std::make_unique<stream::LslOutlet>(options, std::move(now));
 }

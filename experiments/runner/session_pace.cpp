@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <thread>
@@ -213,6 +214,30 @@ void SessionPace::show_page(render::TextPage page, const std::string& text) {
   }
   p_.desk.status().screen = text;
   text_shown_ = true;
+}
+
+void SessionPace::show_progress(double share) {
+  if (!real_) {
+    return;
+  }
+  constexpr double kPercent = 100.0;
+  show_text(d_.texts.preparing, fmt::format("{:.0f} %", kPercent * std::clamp(share, 0.0, 1.0)));
+  publish("preparing");
+}
+
+void SessionPace::wait_for_picture(std::uint64_t number) {
+  const Wishes& wishes = p_.desk.wishes();
+  const auto start = Clock::now();
+  while (!p_.screen->has_shown(number) && p_.screen->trouble().empty() && !wishes.abort) {
+    wait(0.002, "preparing");
+    if (asked_to_stop()) {
+      end_early("interrupted");
+    }
+  }
+  const std::chrono::duration<double> waited = Clock::now() - start;
+  p_.record.event("first_picture", fmt::format("was shown {:.2f} s after it was asked for; the "
+                                               "pass begins now",
+                                               waited.count()));
 }
 
 void SessionPace::wait_a_little(const char* state) {

@@ -62,6 +62,11 @@ class SessionPace {
   /// On the participant's screen and the experimenter's.
   void show_text(const std::string& text, const std::string& hint, double countdown = 0.0);
   void show_page(render::TextPage page, const std::string& text);
+  /// How far what is being prepared has come. @param share  from 0 to 1
+  void show_progress(double share);
+  /// Until the participant has seen the first picture of what Screen::show() was given. @throws
+  /// RunError on an interrupt
+  void wait_for_picture(std::uint64_t number);
   /// Between two looks at what a page is answered. @throws RunError on an interrupt
   void wait_a_little(const char* state);
   void publish(const char* state);

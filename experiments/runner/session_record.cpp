@@ -45,8 +45,7 @@ SessionRecord::SessionRecord(const SessionRequest& request, const device::Device
       markers_(request, onsets, outlet_.get(), [this] { return now_ns(); }),
       writer_(open_writer(request, device, before_, trials)),
       file_(writer_),
-      stream_(outlet_.get(), request.definition->nerve_channels().size(),
-              request.definition->nerve_rate()),
+      stream_(outlet_.get(), request.definition->side_streams()),
       sinks_{&file_},
       trials_(trials),
       blocks_(before_.blocks),
@@ -210,6 +209,9 @@ std::size_t SessionRecord::collect(const Follower& follow) {
     follow(samples);
   };
   const std::size_t count = real_ ? log_.flush(take) : log_.drain(take);
+  if (!real_) {
+    trials_.empty_logs(*this);  // it may wait for that, and the next full block is a second away
+  }
   constexpr std::chrono::milliseconds kFlushEvery{500};
   const auto now = std::chrono::steady_clock::now();
   if (real_ && now - flushed_ >= kFlushEvery) {

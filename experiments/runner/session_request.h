@@ -17,10 +17,6 @@
 #include "protocols/tutoring/linked_trials.h"
 #include "protocols/tutoring/model_motion.h"
 
-namespace haptrial::nerve {
-class MonitorDesk;
-}
-
 namespace haptrial::experiments {
 
 /// One participant's session: the unit of work. What it records is a pure function of definition,
@@ -48,14 +44,14 @@ struct SessionRequest {
 
   // Sessions on the real clock.
   DeviceChoice device;
-  std::vector<DeviceChoice> more_devices;            // after the first; empty: as the first
-  SessionControl* control{nullptr};                  // of an experimenter at a console or keyboard
-  std::shared_ptr<nerve::MonitorDesk> nerve_desk{};  // of who watches nerves; may be null
-  bool window{false};                                // the participant's screen
-  bool stream{false};                                // to the Lab Streaming Layer
-  bool stream_optional{false};                       // go on without where the layer is absent
-  bool resume{false};                                // go on with FILE.partial where there is one
-  bool pilot{false};                                 // no part of the study
+  std::vector<DeviceChoice> more_devices;  // after the first; empty: as the first
+  SessionControl* control{nullptr};        // of an experimenter at a console or keyboard
+  protocols::SidePages side_pages{};       // of the protocol's, those that are served
+  bool window{false};                      // the participant's screen
+  bool stream{false};                      // to the Lab Streaming Layer
+  bool stream_optional{false};             // go on without where the layer is absent
+  bool resume{false};                      // go on with FILE.partial where there is one
+  bool pilot{false};                       // no part of the study
   /// Lines for whoever watches the terminal, while the session runs; from the session's thread.
   std::function<void(const std::string&)> tell;
   record::Participant person;

@@ -11,11 +11,26 @@ void FileSink::rows(const record::Rows& rows) {
   }
 }
 
+StreamSink::StreamSink(stream::LslOutlet* outlet, const std::vector<stream::SideStream>& sides)
+    : outlet_(outlet), markers_(outlet) {
+  for (const stream::SideStream& side : sides) {
+    sides_.emplace_back(outlet, side, sides_.size());
+  }
+}
+
+void StreamSink::rows(const record::Rows& rows) {
+  for (stream::StreamRows& side : sides_) {
+    side.add(rows);
+  }
+}
+
 void StreamSink::samples(std::span<const record::Sample> samples) {
   if (outlet_ != nullptr) {
     outlet_->push(samples);
   }
-  nerves_.follow(samples);
+  for (stream::StreamRows& side : sides_) {
+    side.follow(samples);
+  }
   markers_.follow(samples, pass_);
 }
 

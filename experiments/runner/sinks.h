@@ -1,9 +1,11 @@
 #pragma once
 
+#include <vector>
+
 #include "core/record/rows/sink.h"
 #include "core/record/write/session_writer.h"
 #include "core/stream/lsl_outlet.h"
-#include "core/stream/stream_nerves.h"
+#include "core/stream/stream_rows.h"
 #include "experiments/runner/stream_markers.h"
 
 namespace haptrial::experiments {
@@ -26,11 +28,10 @@ class FileSink final : public record::Sink {
 class StreamSink final : public record::Sink {
  public:
   /// @param outlet  may be null; outlives the sink
-  /// @param nerves  channels of a nerve monitor  @param nerve_rate  of their samples [Hz]
-  StreamSink(stream::LslOutlet* outlet, std::size_t nerves, double nerve_rate)
-      : outlet_(outlet), markers_(outlet), nerves_(outlet, nerves, nerve_rate) {}
+  /// @param sides  side streams of the outlet, in its order
+  StreamSink(stream::LslOutlet* outlet, const std::vector<stream::SideStream>& sides);
   void begin_pass(const record::PassRow& pass, std::int32_t) override { pass_ = pass; }
-  void rows(const record::Rows& rows) override { nerves_.add(rows.as<record::EmgRow>()); }
+  void rows(const record::Rows& rows) override;
   void samples(std::span<const record::Sample> samples) override;
   void end_pass(const record::PassRow& pass) override { markers_.end_pass(pass); }
   void event(const record::EventRow& event) override;
@@ -38,7 +39,7 @@ class StreamSink final : public record::Sink {
  private:
   stream::LslOutlet* outlet_;
   StreamMarkers markers_;
-  stream::StreamNerves nerves_;
+  std::vector<stream::StreamRows> sides_;
   record::PassRow pass_;
 };
 

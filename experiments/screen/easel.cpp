@@ -84,12 +84,16 @@ double Easel::probe() {
   return *middle;
 }
 
-ScreenPointer Easel::pointer() const {
+ScreenPointer Easel::pointer(std::span<const int> held, double dt) {
   const render::Pointer p = window_.pointer();
   const protocols::Drawing* drawing = drawing_ ? drawing_.get() : before_.get();
   const auto seen = drawing != nullptr ? drawing->to_world(p.position) : std::nullopt;
   const Eigen::Vector3d point = seen.value_or(trial_.to_world(p.position));
-  return {point.x(), point.z(), p.wheel, p.buttons};
+  ScreenPointer pointer{point.x(), point.z(), p.wheel, p.buttons};
+  if (drawing_) {
+    pointer.hand = drawing_->hand({p.position, p.wheel, p.buttons, held, dt});
+  }
+  return pointer;
 }
 
 bool Easel::is_white(const stimulus::Shown& shown) const {

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "core/render/flat/painter.h"
 #include "core/render/flat/text_screen.h"
@@ -36,13 +37,15 @@ class Easel {
 
   /// @returns whether it is another one than before.
   bool take(const Scene& scene);
+  std::uint64_t version() const noexcept { return scene_.version; }  // of the scene it draws
   void draw(const stimulus::Shown& shown);
   /// The square is white from this frame on. @returns the onsets that it shows first; 0: no new
   /// ones
   std::uint64_t flash(std::uint64_t onsets);
   /// How fast the display takes pictures [s]; shows empty ones.
   double probe();
-  ScreenPointer pointer() const;
+  /// @param held  keys  @param dt  since the picture before [s]
+  ScreenPointer pointer(std::span<const int> held, double dt);
 
  private:
   bool is_white(const stimulus::Shown& shown) const;

@@ -70,6 +70,7 @@ struct Screen::Impl {
 
   realtime::LatestValue<stimulus::Shown> shown;  // servo thread -> screen's
   std::atomic<std::int64_t> first_tick_ns{0};    // 0: none yet
+  std::atomic<std::uint64_t> version_shown{0};   // of the scene, in a picture that was shown
   std::atomic<const markers::OnsetLog*> onsets{nullptr};
 
   mutable std::mutex mutex;  // all below
@@ -101,11 +102,17 @@ class Happenings {
       : window_(window), callbacks_(callbacks), pointer_(window.pointer()) {}
 
   /// @param other_view  the view moved under the pointer
-  void tell(const Easel& easel, bool other_view) {
+  void tell(Easel& easel, bool other_view) {
     tell_keys();
     const bool moved = std::exchange(pointer_, window_.pointer()) != pointer_;
-    if (callbacks_.pointer && (moved || other_view)) {
-      callbacks_.pointer(easel.pointer());
+    const std::int64_t now = screen_ns();
+    const double dt = told_ns_ != 0 ? 1e-9 * static_cast<double>(now - told_ns_) : 0.0;
+    told_ns_ = now;
+    if (callbacks_.pointer) {
+      const ScreenPointer pointer = easel.pointer(held_, dt);
+      if (moved || other_view || pointer.hand) {
+        callbacks_.pointer(pointer);
+      }
     }
     if (window_.close_asked() && !std::exchange(closed_, true) && callbacks_.closed) {
       callbacks_.closed();
@@ -124,8 +131,7 @@ class Happenings {
         held.push_back(press.key);  // let go again already: held for a picture all the same
       }
     }
-    if (callbacks_.held && held != held_) {
-      held_ = std::move(held);
+    if (std::exchange(held_, held) != held && callbacks_.held) {
       callbacks_.held(held_);
     }
   }
@@ -134,6 +140,7 @@ class Happenings {
   const ScreenCallbacks& callbacks_;
   render::Pointer pointer_;
   std::vector<int> held_;
+  std::int64_t told_ns_{0};
   bool closed_{false};
 };
 
@@ -179,6 +186,7 @@ void Screen::Impl::show_pictures(render::Window& window, Easel& easel, const Agr
     give_picture(window);
     const std::int64_t drawn = screen_ns();
     window.swap();
+    version_shown.store(easel.version(), std::memory_order_release);
     count(pace.shown(drawn - start), flashed);
     window.poll();
     happenings.tell(easel, other_view);
@@ -244,9 +252,14 @@ void Screen::show_text(render::TextPage page) {
   impl_->scene = {impl_->scene.version + 1, {}, std::move(page), ScreenClock::now()};
 }
 
-void Screen::show(protocols::MakeDrawing make) {
+std::uint64_t Screen::show(protocols::MakeDrawing make) {
   const std::lock_guard lock(impl_->mutex);
   impl_->scene = {impl_->scene.version + 1, std::move(make), {}, {}};
+  return impl_->scene.version;
+}
+
+bool Screen::has_shown(std::uint64_t number) const noexcept {
+  return impl_->version_shown.load(std::memory_order_acquire) >= number;
 }
 
 void Screen::observe(const stimulus::Shown& shown, const stimulus::Forces&, double) noexcept {

@@ -74,7 +74,10 @@ class Screen final : public stimulus::Observer {
   /// From the next picture on, a page; a countdown runs from this call.
   void show_text(render::TextPage page);
   /// From the next picture on, what this makes of what observe() is given.
-  void show(protocols::MakeDrawing make);
+  /// @returns a number for has_shown()
+  std::uint64_t show(protocols::MakeDrawing make);
+  /// Whether the participant has seen a picture of what show() or show_text() asked for then.
+  bool has_shown(std::uint64_t number) const noexcept;
 
   /// Whose onsets make the photodiode's square white (Photodiode::kOnset). @param log  outlives the
   /// screen

@@ -7,6 +7,7 @@
 
 #include "core/bone/record/drilling_types.h"
 #include "core/record/read/session_reader.h"
+#include "experiments/studies/drilling/trainee_pages.h"
 #include "experiments/studies/drilling_study.h"
 #include "experiments/studies/live_drilling.h"
 #include "protocols/bone_drilling/bone_protocol.h"
@@ -91,6 +92,12 @@ class BoneStudy final : public Study {
                                                     const fs::path& resumed) const override {
     return std::make_unique<DrillingFigures>(
         dynamic_cast<const protocols::BoneDefinition&>(definition), resumed);
+  }
+  std::vector<std::string> after_session(const protocols::Definition& definition,
+                                         const fs::path& folder,
+                                         const fs::path& file) const override {
+    return page_after_session(dynamic_cast<const protocols::BoneDefinition&>(definition), folder,
+                              file);
   }
   std::vector<std::string> analyze(const AnalysisRequest& request) const override {
     return analyze_drillings(request.folder, request.files, request.out, request.threads);

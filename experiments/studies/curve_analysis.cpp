@@ -40,24 +40,12 @@ std::vector<std::string> conditions_of(Table& root) {
   return design.has("conditions") ? design.texts("conditions") : std::vector<std::string>{};
 }
 
-bool follows_curve(Table& root) {
-  Table guidance = root.table("guidance");
-  return guidance.has("kind") && guidance.choice("kind", {"trajectory", "curve"}) == "curve";
-}
-
-bool recalls_path(Table& root) {
-  Table guidance = root.table("guidance");
-  return guidance.has("recall") && guidance.choice("recall", {"guided", "free"}) == "free";
-}
-
 }  // namespace
 
 CurveAnalysis read_curve_analysis(Table& root, bool fresh) {
   Table analysis = root.table("analysis");
-  CurveAnalysis found{analysis::read_score_parameters(analysis), {}};
+  CurveAnalysis found{analysis::read_scoring(root, analysis), {}};
   found.plan = analysis::read_analysis_plan(analysis, nameable(conditions_of(root)));
-  found.scoring.over_path = follows_curve(root);
-  found.scoring.free_path = recalls_path(root);
   if (fresh) {
     reject_empty_score(analysis, found.scoring);
   }

@@ -14,7 +14,11 @@ std::string clock(double seconds) {
   return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
+/// A bone without known structures has no all-clear.
 std::string injured(const analysis::drilling::LiveFigures& figures) {
+  if (figures.injuries.empty()) {
+    return "vital structures unknown: the bone has none by a known name";
+  }
   std::string list;
   for (const analysis::drilling::Injury& injury : figures.injuries) {
     if (injury.voxels + injury.crumbled > 0) {
@@ -67,9 +71,12 @@ record::LiveState state_of(const DrilledProcedure& procedure) {
       injuries.push_back({capital(injury.structure), fmt::format("{} voxels", voxels), true});
     }
   }
+  const bool unknown = f.injuries.empty();
   add("Vital structures",
-      injuries.empty() ? "none injured" : fmt::format("{} injured", injuries.size()),
-      !injuries.empty());
+      unknown            ? "unknown: none by a known name"
+      : injuries.empty() ? "none injured"
+                         : fmt::format("{} injured", injuries.size()),
+      unknown || !injuries.empty());
   state.figures.insert(state.figures.end(), injuries.begin(), injuries.end());
   return state;
 }

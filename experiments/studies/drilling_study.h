@@ -6,17 +6,12 @@
 #include <vector>
 
 #include "analysis/bone_drilling/report/validity_study.h"
+#include "experiments/studies/drilling/procedure_setup.h"
 #include "experiments/study/study_files.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/definition/groups.h"
 
 namespace haptrial::experiments {
-
-/// What metrics need of a definition; the group is empty.
-analysis::drilling::ProcedureSetup procedure_setup(const protocols::BoneDefinition& definition);
-/// Of the definition in a session file.
-analysis::drilling::ProcedureSetup procedure_setup(
-    const record::SessionReader& session, const std::vector<protocols::StudyGroup>& groups);
 
 /// The name of the ratings within a study's folder.
 inline constexpr const char* kRatingsFile = "ratings.csv";

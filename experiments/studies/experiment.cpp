@@ -15,6 +15,7 @@
 #include "core/render/flat/typesetter.h"
 #include "core/render/gl/image.h"
 #include "experiments/studies/registry.h"
+#include "experiments/studies/rehearsal/power_plan.h"
 #include "protocols/definition/lab_file.h"
 #include "protocols/definition/languages.h"
 #include "protocols/definition/tutoring_warnings.h"
@@ -40,6 +41,9 @@ Experiment read(Table& root, std::string_view file_name, const std::filesystem::
   experiment.definition = experiment.study->protocol().read(root, file_name, folder);
   experiment.study->read_analysis(root, folder != nullptr);
   protocols::check_markers(root, *experiment.definition);
+  if (root.has("power")) {
+    read_power_plan(root);
+  }
   root.finish();
   experiment.shown = root.shown_texts();
   return experiment;
@@ -88,8 +92,12 @@ Experiment load_experiment(const std::filesystem::path& file, const std::string&
 }
 
 Experiment parse_experiment(std::string_view text, std::string_view file_name) {
-  Table root = Table::parse(text, file_name);
-  return read(root, file_name, nullptr);
+  return parse_experiment(std::vector<NamedText>{{std::string(text), std::string(file_name)}});
+}
+
+Experiment parse_experiment(const std::vector<NamedText>& parts) {
+  Table root = Table::parse(parts);
+  return read(root, parts.front().file_name, nullptr);
 }
 
 std::vector<std::string> warnings_of(const Experiment& experiment) {

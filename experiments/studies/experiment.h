@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/table.h"
 #include "core/base/definition/translations.h"
 #include "experiments/studies/study.h"
 
@@ -23,6 +24,9 @@ struct Experiment {
 Experiment load_experiment(const std::filesystem::path& file, const std::string& language = "");
 /// From the text that a session file keeps: what the protocol loads beside it is not.
 Experiment parse_experiment(std::string_view text, std::string_view file_name);
+/// The same of several files, of which sentences name each with its own lines; the definition's is
+/// the first.
+Experiment parse_experiment(const std::vector<NamedText>& parts);
 
 /// Sentences on what a definition allows but what spoils its data without a word: what was found,
 /// and what will happen. None where all is well.

@@ -10,6 +10,7 @@
 #include "analysis/force_training/study/study_summary.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "experiments/studies/rehearsal/force_rehearsal.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"
 
@@ -77,6 +78,13 @@ class ForceStudy final : public Study {
     lines.insert(lines.end(), study.remarks.begin(), study.remarks.end());
     lines.insert(lines.end(), study.alarms.begin(), study.alarms.end());
     return lines;
+  }
+  std::unique_ptr<Rehearsal> rehearsal(const std::vector<NamedText>& definition,
+                                       const std::string& watched) const override {
+    static_cast<void>(watched);  // all of its tests are quick
+    const CurveAnalysis curves =
+        parse_curve_analysis(Table::parse(definition).source(), definition.front().file_name);
+    return force_rehearsal(definition, curves.scoring, curves.plan);
   }
 };
 

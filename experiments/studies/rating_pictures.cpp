@@ -41,7 +41,7 @@ class Watcher {
 
   template <class Wanted, class Frame, class End>
   protocols::BoneReplay::Watch watch(Wanted wanted, Frame frame, End end) {
-    return [=, this](std::uint64_t tick, const bone::DrillingView& seen,
+    return [=, this](std::uint64_t tick, std::uint64_t, const bone::DrillingView& seen,
                      const std::shared_ptr<const protocols::BoneStage>& stage) {
       if (stage != stage_) {
         renderer_.reset();

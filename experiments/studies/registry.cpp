@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/definition/table.h"
+#include "core/base/error.h"
 #include "core/record/rows/common_tables.h"
 #include "experiments/studies/bone_study.h"
 #include "experiments/studies/force_study.h"
@@ -40,6 +41,15 @@ const Study* named(std::string_view name) {
 }
 
 }  // namespace
+
+std::unique_ptr<Rehearsal> Study::rehearsal(const std::vector<NamedText>& definition,
+                                            const std::string& watched) const {
+  static_cast<void>(watched);
+  throw InputError(fmt::format(
+      "{}: power by simulation does not know the report of protocol '{}'; see haptrial power t, "
+      "anova and repeated",
+      definition.front().file_name, protocol().name()));
+}
 
 const std::vector<const Study*>& studies() { return all(); }
 

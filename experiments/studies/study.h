@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/table.h"
 #include "core/record/rows/live_figures.h"
 #include "experiments/studies/curve_analysis.h"
+#include "experiments/studies/rehearsal/rehearsal.h"
 #include "experiments/study/study_files.h"
 #include "protocols/interface/protocol.h"
 
@@ -49,8 +51,25 @@ class Study {
     static_cast<void>(resumed);
     return nullptr;
   }
+  /// What a definition asks for when a session has ended. @param file  finished
+  /// @param folder  of the definition. @returns lines for the terminal; never throws for what it
+  /// cannot make, since the session is done
+  virtual std::vector<std::string> after_session(const protocols::Definition& definition,
+                                                 const std::filesystem::path& folder,
+                                                 const std::filesystem::path& file) const {
+    static_cast<void>(definition);
+    static_cast<void>(folder);
+    static_cast<void>(file);
+    return {};
+  }
   /// Computes, and writes report, tables and figures. @returns lines for the terminal
   virtual std::vector<std::string> analyze(const AnalysisRequest& request) const = 0;
+  /// Its report for simulated participants, for the simulation of power.
+  /// @param definition  its text; [power] may stand in a part, and so a file, of its own
+  /// @param watched     name of the test whose power is asked for
+  /// @throws InputError by default: it cannot be had
+  virtual std::unique_ptr<Rehearsal> rehearsal(const std::vector<NamedText>& definition,
+                                               const std::string& watched) const;
   /// What to do with the sessions of a dry run: "haptrial analyze DIR".
   virtual std::string next_step(const std::filesystem::path& folder) const {
     return "haptrial analyze " + folder.string();

@@ -3,8 +3,8 @@
 #include <memory>
 #include <string>
 
-#include "analysis/trials/psychometric/track_estimate.h"
-#include "analysis/trials/psychometric/trials_plan.h"
+#include "analysis/trials/fit/track_estimate.h"
+#include "analysis/trials/fit/trials_plan.h"
 
 namespace haptrial::protocols {
 struct TrialsDefinition;

@@ -18,6 +18,7 @@
 #include "core/base/error.h"
 #include "experiments/studies/live_trials.h"
 #include "experiments/studies/reaching/reach_ways.h"
+#include "experiments/studies/rehearsal/trials_rehearsal.h"
 #include "experiments/studies/trials_analysis.h"
 #include "protocols/trials/definition/trials_definition.h"
 #include "protocols/trials/trials_protocol.h"
@@ -133,6 +134,16 @@ class TrialsStudy final : public Study {
                                         resumed);
   }
   std::vector<std::string> analyze(const AnalysisRequest& request) const override;
+  std::unique_ptr<Rehearsal> rehearsal(const std::vector<NamedText>& definition,
+                                       const std::string& watched) const override {
+    const std::string& file_name = definition.front().file_name;
+    Table root = Table::parse(definition);
+    auto read = protocols::trials_protocol().read(root, file_name, nullptr);
+    root.check();
+    auto* studied = dynamic_cast<protocols::StudiedDefinition*>(read.release());
+    return trials_rehearsal(std::unique_ptr<const protocols::StudiedDefinition>(studied),
+                            plan_of_text(root.source(), file_name), definition, watched);
+  }
 };
 
 std::vector<std::string> TrialsStudy::analysis_warnings(const protocols::Definition& d) const {

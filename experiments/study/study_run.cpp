@@ -7,11 +7,17 @@
 #include <chrono>
 #include <exception>
 #include <mutex>
+#include <optional>
+#include <thread>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "experiments/control/interrupt.h"
 #include "experiments/control/progress.h"
+#include "experiments/plugin/loaded/loaded_plugins.h"
 #include "experiments/runner/session.h"
+#include "experiments/runner/version.h"
+#include "experiments/study/dry_parts.h"
 #include "experiments/study/session_name.h"
 #include "experiments/study/taught_session.h"
 
@@ -57,15 +63,25 @@ class OutputFolder {
 class Crew {
  public:
   /// @param first  with the definition, to be completed for each participant
-  Crew(const SessionRequest& first, double ticks_each, const DryRun& dry_run)
-      : first_(first), setup_(*first.definition), ticks_each_(ticks_each), dry_run_(dry_run) {}
+  /// @param parts  null: every session is run
+  Crew(const SessionRequest& first, double ticks_each, const DryRun& dry_run,
+       DryParts* parts = nullptr)
+      : first_(first),
+        setup_(*first.definition),
+        ticks_each_(ticks_each),
+        dry_run_(dry_run),
+        parts_(parts) {}
 
   DryRunSummary run() {
     const auto start = std::chrono::steady_clock::now();
-    SharedWork sessions(static_cast<std::size_t>(count()), dry_run_.jobs,
-                        [this] { return [this](std::size_t i) { work(static_cast<int>(i)); }; });
+    SharedWork sessions(static_cast<std::size_t>(count()), dry_run_.jobs, [this] {
+      return [this](std::size_t i) {
+        work((static_cast<int>(i) + static_cast<int>(dry_run_.start * count())) % count());
+      };
+    });
     show_progress(sessions);
     sessions.finish();
+    wait_for_others();
     if (failure_) {
       std::rethrow_exception(failure_);
     }
@@ -82,12 +98,12 @@ class Crew {
       return;
     }
     try {
-      const SessionSummary done = dry_run_.taught ? run_taught_session(request(place), kTeaching)
-                                                  : run_session(request(place));
-      const std::lock_guard lock(mutex_);
-      summary_.ticks += done.ticks;
-      summary_.passes += done.passes;
-      summary_.aborted_passes += done.aborted_passes;
+      if (parts_ != nullptr) {
+        parts_->run(static_cast<std::size_t>(place), request(place).file,
+                    [&] { run_one(request(place)); });
+      } else {
+        run_one(request(place));
+      }
     } catch (...) {
       const std::lock_guard lock(mutex_);
       if (!failure_) {
@@ -96,6 +112,31 @@ class Crew {
       cancel_ = true;
     }
     ++finished_;
+  }
+
+  void run_one(const SessionRequest& request) {
+    const SessionSummary done =
+        dry_run_.taught ? run_taught_session(request, kTeaching) : run_session(request);
+    const std::lock_guard lock(mutex_);
+    ++summary_.sessions;
+    summary_.ticks += done.ticks;
+    summary_.passes += done.passes;
+    summary_.aborted_passes += done.aborted_passes;
+  }
+
+  /// Sessions that other processes run: each is there in the end, or its process died.
+  void wait_for_others() {
+    constexpr auto kPause = std::chrono::milliseconds(100);
+    while (parts_ != nullptr && !cancel_ && !interrupted()) {
+      const std::vector<std::size_t> others = parts_->elsewhere();
+      if (others.empty()) {
+        return;
+      }
+      std::this_thread::sleep_for(kPause);
+      for (const std::size_t place : others) {
+        work(static_cast<int>(place));
+      }
+    }
   }
 
   int sessions_each() const { return dry_run_.session > 0 ? 1 : setup_.sessions(); }
@@ -132,6 +173,7 @@ class Crew {
   const protocols::Definition& setup_;
   double ticks_each_;
   const DryRun& dry_run_;
+  DryParts* parts_;
   std::atomic<int> finished_{0};
   std::atomic<std::uint64_t> ticks_{0};
   std::atomic<bool> cancel_{false};
@@ -139,6 +181,19 @@ class Crew {
   DryRunSummary summary_;
   std::exception_ptr failure_;
 };
+
+/// Everything on which the sessions of a dry run depend.
+std::string facts_of(const protocols::Definition& definition, const DryRun& dry_run) {
+  const std::string language =
+      definition.language.empty() ? std::string() : ", language " + definition.language;
+  std::string plugins;
+  for (const std::string& plugin : plugin_lines()) {
+    plugins += "# plug-in " + plugin + "\n";
+  }
+  return fmt::format("# haptrial {} ({}), dry run: seed {}, trials {}, session {}{} (0: all)\n{}{}",
+                     program_version(), program_commit(), dry_run.seed, dry_run.max_trials,
+                     dry_run.session, language, plugins, definition.text);
+}
 
 }  // namespace
 
@@ -148,6 +203,11 @@ DryRunSummary run_dry(const protocols::Protocol& protocol, const protocols::Defi
   first.protocol = &protocol;
   first.definition = &definition;
   const int trials = dry_run.max_trials > 0 ? dry_run.max_trials : definition.design.trials;
+  const double ticks_each = definition.rate * definition.longest(trials);
+  if (dry_run.parts) {
+    DryParts parts(dry_run.folder, facts_of(definition, dry_run));
+    return Crew(first, ticks_each, dry_run, &parts).run();
+  }
   OutputFolder folder(dry_run.folder);
   if (dry_run.taught) {
     fs::create_directory(dry_run.folder / kTeaching);
@@ -155,8 +215,7 @@ DryRunSummary run_dry(const protocols::Protocol& protocol, const protocols::Defi
   if (dry_run.frames_per_pass > 0) {
     fs::create_directory(dry_run.folder / "frames");
   }
-  const DryRunSummary summary =
-      Crew(first, definition.rate * definition.longest(trials), dry_run).run();
+  const DryRunSummary summary = Crew(first, ticks_each, dry_run).run();
   folder.keep();
   return summary;
 }

@@ -20,9 +20,14 @@ struct DryRun {
   std::optional<protocols::TutorChoice> tutor;  // see SessionRequest
   bool taught{false};            // each participant by a second one over a simulated network
   std::filesystem::path folder;  // created; one session file per participant
+  /// The folder is the state: sessions that are there stay and are not run again, and nothing is
+  /// taken back. Without frames, tutor and teachers.
+  bool parts{false};
+  double start{0.0};  // of parts: share of the sessions that comes last
 };
 
 struct DryRunSummary {
+  int sessions{0};  // that were run
   std::uint64_t ticks{0};
   int passes{0};
   int aborted_passes{0};
@@ -31,8 +36,8 @@ struct DryRunSummary {
 };
 
 /// Participants are shared out over threads; the files do not depend on how many.
-/// Where anything fails the other sessions are stopped and nothing is left.
-/// @throws InputError when the folder exists or cannot be made.
+/// Where anything fails the other sessions are stopped and, but for parts, nothing is left.
+/// @throws InputError when the folder exists, or is of other parts, or cannot be made.
 DryRunSummary run_dry(const protocols::Protocol& protocol, const protocols::Definition& definition,
                       const DryRun& dry_run);
 

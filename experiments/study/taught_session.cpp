@@ -1,8 +1,10 @@
 #include "experiments/study/taught_session.h"
 
+#include <algorithm>
 #include <exception>
 #include <memory>
 #include <thread>
+#include <vector>
 
 #include "core/base/random.h"
 #include "core/network/channel/simulated_link.h"
@@ -34,8 +36,16 @@ SessionSummary run_side(const SessionRequest& request) {
 SessionSummary run_taught_session(const SessionRequest& request,
                                   const std::filesystem::path& folder) {
   const protocols::Definition& d = *request.definition;
+  const std::vector<protocols::TutoringNetwork>& networks = d.tutoring.networks;
+  double least = d.tutoring.channel.delay;
+  if (!networks.empty()) {
+    least = std::ranges::min_element(networks, {}, [](const auto& n) {
+              return n.channel.delay;
+            })->channel.delay;
+  }
   const auto link = std::make_shared<network::SimulatedLink>(
-      d.tutoring.channel, derived_seed(request.seed, "link " + request.subject), d.rate);
+      networks.empty() ? d.tutoring.channel : networks.front().channel, least,
+      derived_seed(request.seed, "link " + request.subject), d.rate);
   SessionRequest learns = request;
   SessionRequest teaches = request;
   learns.link = choice(link, protocols::LinkRole::kLearns);

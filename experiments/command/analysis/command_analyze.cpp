@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "analysis/link/link_report.h"
+#include "analysis/scores/score.h"
 #include "core/base/error.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/curves/curve_commands.h"
+#include "experiments/plugin/loaded/loaded_plugins.h"
 #include "experiments/studies/registry.h"
 #include "experiments/study/study_files.h"
 
@@ -27,16 +30,36 @@ void print_report(const std::vector<std::string>& lines, const fs::path& out) {
   fmt::print("report: {}\n", (fs::absolute(out) / "report.html").lexically_normal().string());
 }
 
+/// Of sessions of two hands, whatever they do together.
+void report_link(const AnalysisRequest& request) {
+  namespace link = analysis::link;
+  const auto study =
+      link::link_study(request.files.files, request.files.first.seed, request.threads);
+  if (study) {
+    link::write_link(*study, request.out);
+    fmt::print("link: {}\n", (fs::absolute(request.out) / "link.html").lexically_normal().string());
+  }
+}
+
 int analyze_sessions(const AnalyzeOptions& options, Pilots pilots, int threads) {
   AnalysisRequest request;
   request.folder = options.folder;
-  request.files = study_files(options.folder, pilots, protocol_of);
+  request.files = with_plugins(options.folder,
+                               [&] { return study_files(options.folder, pilots, protocol_of); });
   request.out = report_folder(options.folder, pilots);
   request.pilots = pilots;
   request.threads = threads;
   request.planned = options.planned;
   request.reference = options.reference;
-  print_report(study_of(request.files.first).analyze(request), request.out);
+  const std::vector<std::string> lines =
+      with_plugins(options.folder, [&] { return study_of(request.files.first).analyze(request); });
+  print_report(lines, request.out);
+  report_link(request);
+  if (!analysis::scores().empty()) {
+    const fs::path table = request.out / "plugin_scores.csv";
+    fmt::print("{} scores of plug-ins: {}\n", analysis::write_scores(request.files.files, table),
+               fs::absolute(table).lexically_normal().string());
+  }
   return 0;
 }
 

@@ -1,10 +1,13 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
-#include <tuple>
+#include <vector>
 
 #include "analysis/statistics/tests/power.h"
+#include "analysis/statistics/tests/repeated_power.h"
 #include "core/base/error.h"
 #include "core/base/text/nearest.h"
 #include "experiments/command/commands.h"
@@ -26,30 +29,53 @@ void check_inside(const char* option, double value, double low, double high) {
 /// The effect in standard deviations: |delta| / sd, or f. A one-tailed test looks where delta
 /// points.
 std::optional<double> effect_of(const PowerOptions& options) {
-  if (options.test == "anova") {
+  if (options.test != "t") {
     return options.f;
   }
   return options.delta ? std::optional(std::abs(*options.delta) / options.sd) : std::nullopt;
 }
 
-void check_test(const PowerOptions& options) {
-  const bool anova = options.test == "anova";
-  if (!anova && options.test != "t") {
-    throw InputError(not_allowed("TEST", fmt::format("'{}'", options.test), {"t", "anova"}));
+/// An option, whether it was given, and the tests that it belongs to.
+struct Belonging {
+  const char* option;
+  bool given;
+  std::vector<std::string> tests;
+};
+
+void check_test(const PowerOptions& o) {
+  const std::vector<std::string> tests{"t", "anova", "repeated"};
+  if (o.test.empty()) {
+    throw InputError("TEST is missing; allowed: t, anova, repeated, or one of the subcommands");
   }
-  for (const auto& [option, given, belongs, test] :
-       {std::tuple{"--f", options.f.has_value(), anova, "anova"},
-        {"--groups", options.groups.has_value(), anova, "anova"},
-        {"--delta", options.delta.has_value(), !anova, "t"},
-        {"--design", options.design.has_value(), !anova, "t"},
-        {"--one-tailed", options.one_tailed, !anova, "t"}}) {
-    if (given && !belongs) {
-      throw InputError(
-          fmt::format("{} is given with {}; use it with {} only", option, options.test, test));
+  if (std::ranges::find(tests, o.test) == tests.end()) {
+    throw InputError(not_allowed("TEST", fmt::format("'{}'", o.test), tests));
+  }
+  for (const Belonging& each : {Belonging{"--f", o.f.has_value(), {"anova", "repeated"}},
+                                {"--groups", o.groups.has_value(), {"anova", "repeated"}},
+                                {"--delta", o.delta.has_value(), {"t"}},
+                                {"--design", o.design.has_value(), {"t"}},
+                                {"--one-tailed", o.one_tailed, {"t"}},
+                                {"--effect", o.effect.has_value(), {"repeated"}},
+                                {"--measurements", o.measurements.has_value(), {"repeated"}},
+                                {"--correlation", o.correlation.has_value(), {"repeated"}},
+                                {"--epsilon", o.epsilon.has_value(), {"repeated"}}}) {
+    if (each.given && std::ranges::find(each.tests, o.test) == each.tests.end()) {
+      throw InputError(fmt::format("{} is given with {}; use it with {} only", each.option, o.test,
+                                   fmt::join(each.tests, " or ")));
     }
   }
-  if (anova && !options.groups) {
+  if (o.test == "anova" && !o.groups) {
     throw InputError("--groups is missing; give the number of groups");
+  }
+  if (o.test == "repeated" && !o.measurements) {
+    throw InputError("--measurements is missing; give the number of conditions that everybody has");
+  }
+}
+
+void check_count(const char* option, const std::optional<int>& count, int fewest) {
+  if (count && (*count < fewest || *count > kMostGroups)) {
+    throw InputError(fmt::format("{} is {}; allowed: a whole number from {} to {}", option, *count,
+                                 fewest, kMostGroups));
   }
 }
 
@@ -59,9 +85,20 @@ void check_numbers(const PowerOptions& options) {
   if (options.power) {
     check_inside("--power", *options.power, options.alpha, 1.0);
   }
-  if (options.groups && (*options.groups < 2 || *options.groups > kMostGroups)) {
-    throw InputError(fmt::format("--groups is {}; allowed: a whole number from 2 to {}",
-                                 *options.groups, kMostGroups));
+  const int fewest =
+      options.test == "repeated" && options.effect.value_or("within") == "within" ? 1 : 2;
+  check_count("--groups", options.groups, fewest);
+  check_count("--measurements", options.measurements, 2);
+  if (const double r = options.correlation.value_or(0.0); !(r >= 0.0 && r < 1.0)) {
+    throw InputError(fmt::format("--correlation is {}; allowed: a number from 0 to below 1", r));
+  }
+  if (options.epsilon) {
+    const double least = 1.0 / (*options.measurements - 1.0);
+    if (!(*options.epsilon >= least - 1e-9 && *options.epsilon <= 1.0)) {
+      throw InputError(fmt::format(
+          "--epsilon is {}; allowed: a number from 1 / (measurements - 1) = {:.4g} to 1",
+          *options.epsilon, least));
+    }
   }
   if (options.n && *options.n < 2) {
     throw InputError(fmt::format("--n is {}; allowed: a whole number of at least 2", *options.n));
@@ -75,7 +112,7 @@ void check_numbers(const PowerOptions& options) {
   const int given = (effect_of(options) ? 1 : 0) + (options.n ? 1 : 0) + (options.power ? 1 : 0);
   if (given != 2) {
     throw InputError(fmt::format("give two of {}, --n and --power; the third is computed",
-                                 options.test == "anova" ? "--f" : "--delta"));
+                                 options.test == "t" ? "--delta" : "--f"));
   }
 }
 
@@ -137,6 +174,37 @@ Plan anova_solution(const PowerOptions& options) {
           *options.power};
 }
 
+analysis::RepeatedPlan repeated_plan(const PowerOptions& options) {
+  analysis::RepeatedPlan plan;
+  const std::string effect = options.effect.value_or("within");
+  if (effect != "within" && effect != "interaction" && effect != "between") {
+    throw InputError(
+        not_allowed("--effect", fmt::format("'{}'", effect), {"within", "interaction", "between"}));
+  }
+  plan.term = effect == "within"    ? analysis::RepeatedTerm::kWithin
+              : effect == "between" ? analysis::RepeatedTerm::kBetween
+                                    : analysis::RepeatedTerm::kInteraction;
+  plan.groups = options.groups.value_or(plan.term == analysis::RepeatedTerm::kWithin ? 1 : 2);
+  plan.measurements = *options.measurements;
+  plan.correlation = options.correlation.value_or(plan.correlation);
+  plan.epsilon = options.epsilon.value_or(plan.epsilon);
+  plan.alpha = options.alpha;
+  return plan;
+}
+
+Plan repeated_solution(const PowerOptions& options, const analysis::RepeatedPlan& plan) {
+  if (!options.n) {
+    const auto size = value_of(analysis::repeated_sample_size(plan, *options.f, *options.power));
+    return {*options.f, size.n, size.power};
+  }
+  const auto n = static_cast<double>(*options.n);
+  if (!options.power) {
+    return {*options.f, *options.n, value_of(analysis::repeated_power(plan, n, *options.f))};
+  }
+  return {value_of(analysis::repeated_detectable(plan, n, *options.power)), *options.n,
+          *options.power};
+}
+
 void print_size(const Plan& plan, int groups) {
   if (groups == 1) {
     fmt::print("participants  {}\n", plan.n);
@@ -159,6 +227,21 @@ void print_t(const PowerOptions& options, const Plan& plan) {
   print_size(plan, design == "two-sample" ? 2 : 1);
 }
 
+void print_repeated(const PowerOptions& options) {
+  const analysis::RepeatedPlan plan = repeated_plan(options);
+  const Plan solution = repeated_solution(options, plan);
+  fmt::print("{}, {} group{}, {} measurements, correlation {}, epsilon {}, significance level {}\n",
+             plan.term == analysis::RepeatedTerm::kWithin ? "within participants"
+             : plan.term == analysis::RepeatedTerm::kBetween
+                 ? "between groups"
+                 : "interaction of groups and measurements",
+             plan.groups, plan.groups == 1 ? "" : "s", plan.measurements, plan.correlation,
+             plan.epsilon, plan.alpha);
+  fmt::print("effect        f = {:.4g}: standard deviation of the means over that within a cell\n",
+             solution.effect);
+  print_size(solution, plan.groups);
+}
+
 }  // namespace
 
 int power(const PowerOptions& options) {
@@ -166,6 +249,10 @@ int power(const PowerOptions& options) {
   check_numbers(options);
   if (options.test == "t") {
     print_t(options, t_solution(options));
+    return 0;
+  }
+  if (options.test == "repeated") {
+    print_repeated(options);
     return 0;
   }
   const Plan plan = anova_solution(options);

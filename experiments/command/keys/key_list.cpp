@@ -14,6 +14,7 @@
 #include "core/base/error.h"
 #include "experiments/command/keys/key_words_internal.h"
 #include "experiments/studies/registry.h"
+#include "experiments/studies/rehearsal/power_plan.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -229,6 +230,9 @@ std::vector<KnownKey> keys_of(const Study& study) {
       // What the analysis asks for is asked for all the same.
     }
     study.read_analysis(root, true);
+    if (root.has("power")) {
+      read_power_plan(root);
+    }
   };
   const auto found = known_keys(text, read, beginnings());
   std::vector<KnownKey> keys;

@@ -60,6 +60,13 @@ tutoring.channel.loss | | share of messages that never come
 tutoring.channel.duplication | | share that comes twice
 tutoring.channel.reordering | | share that may overtake others
 tutoring.channel.bandwidth | | of the line; 0: no limit
+tutoring.networks[].name | | of a simulated network that is a condition: in a dry run each trial goes over one of them
+tutoring.networks[].delay | | each way
+tutoring.networks[].jitter | | beside it, mean
+tutoring.networks[].loss | | share of messages that never come
+tutoring.networks[].duplication | | share that comes twice
+tutoring.networks[].reordering | | share that may overtake others
+tutoring.networks[].bandwidth | | of the line; 0: no limit
 pedal.input | | file of the input device of an analog pedal: /dev/input/by-id/…-event-joystick, /dev/input/eventN, or a named pipe
 pedal.axis | | its axis, by the kernel's name
 pedal.released | lower end of the axis, as the device states it | axis value of a pedal that nobody presses
@@ -119,6 +126,8 @@ sounds.masking.high | 20000, of a band needed | its highest frequency
 sounds.masking.level | | its root mean square below full scale
 sounds.masking.fade | 0.5 | time over which it comes and goes
 sounds.masking.stages | the whole session | stages in which it sounds
+feedback.page | | whether a page about the session is written beside its file at its end
+feedback.study | none | folder of a study relative to the definition; the page compares with its experts
 display.stills | 0 | stills of the bone's stages that can be shown
 screen.title | haptrial | of the participant's window
 screen.full_screen | true | whether the window fills the monitor
@@ -133,6 +142,7 @@ texts.rest | | during a break
 texts.thanks | | after the last trial
 texts.stopped | | after a fault or an emergency stop
 texts.paused | | while the experimenter pauses the session
+texts.preparing | | while a bone is built, before its first picture
 texts.recovering | | while the force stays off after an aborted pass
 texts.limit | | last paragraph of the instructions of a force study
 texts.begin | | small line below a text that the experimenter ends
@@ -553,6 +563,21 @@ trials:analysis.quantities | ["error"] | of reaches, compared between the condit
 trials:analysis.cycles | all | cycles of each block that such a comparison takes
 analysis.planned | none | planned tests: "a < b", "a > b" or "a != b" of conditions
 analysis.reference | the first | condition that the others are compared with
+power.definition | this file | definition that a file with [power] alone asks about
+power.watch | | name of the test of the report whose power is asked for
+power.alpha | | below which p counts
+power.target | | power for which participants are counted
+power.replications | | studies of each cell
+power.null_replications | | studies of each cell without an effect
+power.block | | studies of a part
+power.seed | | of every random number
+power.depth | responses | whether answers alone or full sessions are simulated
+power.check.cells | | cells that are also simulated in full
+power.check.replications | | studies of each of them
+power.responses | nothing is known | what responses need to know (docs/guide-power.md)
+power.vary[].key | | key that is varied, with its tables: observer.lapse.median
+power.vary[].values | | its values
+power.vary[].none | it makes no effect | its value without an effect
 trajectory.from | generated curves | file with the curve to follow
 trajectory.speed | | along the arc
 trajectory.length_x | | of the trajectory from left to right
@@ -628,8 +653,10 @@ bone.bones | | procedural temporal, procedural mandible, or files; procedures us
 bone.seed | 1 | of procedural bones
 bone.spacing | of the bone | of voxels
 bone.centre | | of the volume in the world
-bone.x_to | | direction of the bone's x axis in the world
-bone.y_to | | direction of its y axis
+bone.place | x_to and y_to say | how an ear lies, instead of x_to and y_to: its side up, the back of the head to the participant
+bone.mirror | false | whether left and right of the bones are exchanged
+bone.x_to | place says | direction of the bone's x axis in the world
+bone.y_to | place says | direction of its y axis
 tools.in_hand | | names of tools, in the order in which a button selects them
 tools.NAME.type | | what the tool is
 tools.NAME.handle_radius | | of the tool's handle
@@ -640,7 +667,7 @@ tools.NAME.sample_spacing | | edge of a cell of the burr with one sample
 tools.NAME.removal_rate | | share of the immersed volume that is removed
 tools.NAME.falloff | | of that rate with latitude
 tools.NAME.tangential_gain | | of the force along the surface
-tools.NAME.right_handed | true | direction in which the burr turns
+tools.NAME.rotation | clockwise | how the burr turns, seen from the handle
 tools.NAME.feel.first_gain | | force for an immersed volume just after contact
 tools.NAME.feel.second_gain | | the same deeper
 tools.NAME.feel.threshold | | immersed volume at which the gain changes

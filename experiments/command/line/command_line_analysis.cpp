@@ -134,8 +134,15 @@ void add_power(CLI::App& app, int& status) {
                              "Compute the participants, the effect or the power of a planned study",
                              "haptrial power t --design paired --delta 20 --sd 35 --power 0.8",
                              {"", "algorithms/power.md"});
-  auto& o = options_of<PowerOptions>(*sub, status, power);
-  sub->add_option("TEST", o.test, "Test: t or anova (one-way)")->required();
+  auto options = std::make_shared<PowerOptions>();
+  sub->callback([options, &status, sub] {
+    if (sub->get_subcommands().empty()) {
+      status = power(*options);
+    }
+  });
+  PowerOptions& o = *options;
+  sub->add_option("TEST", o.test,
+                  "Test: t, anova (one-way) or repeated (repeated measures and mixed designs)");
   sub->add_option("--design", o.design,
                   "Design of the t test: two-sample, paired or one-sample (default: two-sample)");
   sub->add_option("--delta", o.delta, "Difference of the means to detect (t test)");
@@ -144,13 +151,22 @@ void add_power(CLI::App& app, int& status) {
       "Standard deviation, of the differences if paired, in the unit of --delta (default: 1)");
   sub->add_option(
       "--f", o.f,
-      "Effect size f: standard deviation of the group means over that within groups (anova)");
-  sub->add_option("--groups", o.groups, "Number of groups (anova)");
+      "Effect size f: standard deviation of the means over that within a cell (anova, repeated)");
+  sub->add_option("--groups", o.groups, "Number of groups (anova; repeated, default: 1)");
+  sub->add_option("--effect", o.effect,
+                  "Effect: within, interaction or between (repeated; default: within)");
+  sub->add_option("--measurements", o.measurements,
+                  "Number of conditions that everybody has (repeated)");
+  sub->add_option("--correlation", o.correlation,
+                  "Correlation of any two conditions over participants (repeated; default: 0.5)");
+  sub->add_option("--epsilon", o.epsilon,
+                  "Epsilon of Greenhouse and Geisser, 1 for a sphere (repeated; default: 1)");
   sub->add_option("--n", o.n, "Number of participants in each group");
   sub->add_option("--power", o.power, "Power: probability of detecting the effect");
   sub->add_option("--alpha", o.alpha, "Significance level: false-positive rate (default: 0.05)");
   sub->add_flag("--one-tailed", o.one_tailed,
                 "Test one tail only; the sign of the difference was planned (t test)");
+  add_simulated_power(*sub, status);
 }
 
 }  // namespace haptrial::experiments

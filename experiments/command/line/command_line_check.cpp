@@ -50,7 +50,8 @@ void check_subcommand(const Typed& typed) {
   for (const CLI::App* sub : subcommands_of(*typed.app)) {
     known.push_back(sub->get_name());
   }
-  if (known.empty() || (!typed.rest.empty() && typed.rest[0][0] == '-')) {
+  const bool optional = typed.app->get_require_subcommand_min() == 0;  // as of haptrial power t
+  if (known.empty() || optional || (!typed.rest.empty() && typed.rest[0][0] == '-')) {
     return;
   }
   const std::string allowed = fmt::format("{}", fmt::join(known, ", "));

@@ -37,6 +37,8 @@ void add_evaluate(CLI::App& app, int& status);
 void add_compare(CLI::App& app, int& status);
 void add_statistics(CLI::App& app, int& status);
 void add_power(CLI::App& app, int& status);
+// command_line_power.cpp: subcommands of it
+void add_simulated_power(CLI::App& power, int& status);
 
 void add_mesh(CLI::App& app, int& status);      // command_line_mesh.cpp
 void add_bone(CLI::App& app, int& status);      // command_line_bone.cpp

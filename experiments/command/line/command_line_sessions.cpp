@@ -15,6 +15,9 @@ void add_dry_run(CLI::App& app, int& status) {
   sub->add_option("--seed", o.seed, "Seed of every random number (default: 1)");
   sub->add_option("--jobs", o.jobs, "Number of threads (default: one per processor)");
   sub->add_option("--out", o.out, "New folder for the session files (default: out/NAME-001)");
+  sub->add_option("--parts", o.parts,
+                  "Folder of session files, in place of --out: the same command again, or several "
+                  "at once, run the sessions that are missing");
   sub->add_option("--trials", o.trials,
                   "Number of trials of each session, from the first (default: all)");
   sub->add_option(
@@ -42,9 +45,10 @@ void add_run(CLI::App& app, int& status) {
   sub->add_option("--session", o.session,
                   "Number of the participant's session, of a study on several days (default: the "
                   "first that is left)");
-  sub->add_option("--device", o.devices,
-                  "Device: virtual, mouse, force-dimension, open-haptics or replay:FILE "
-                  "(default: virtual); repeated for each device of an experiment with several")
+  sub->add_option(
+         "--device", o.devices,
+         "Device: virtual, mouse, force-dimension, open-haptics, replay:FILE or a "
+         "plug-in's (default: virtual); repeated for each device of an experiment with several")
       ->allow_extra_args(false);
   sub->add_option("--library", o.library,
                   "Path of the vendor's library (default: found by the system)");
@@ -59,8 +63,10 @@ void add_run(CLI::App& app, int& status) {
   sub->add_flag("--window", o.window, "Show the participant's screen");
   sub->add_flag("--keyboard", o.keyboard, "Control the session with this terminal's keys");
   sub->add_flag("--console", o.console, "Serve the experimenter's page on the loopback address");
-  sub->add_flag("--nerve-monitor", o.nerve_monitor,
-                "Serve the page of the nerve monitor's technician beside the console");
+  sub->add_option("--side-page", o.side_pages,
+                  "Name of a page to serve beside the console; repeated for each page (haptrial "
+                  "validate lists those of a definition)")
+      ->allow_extra_args(false);
   sub->add_option("--port", o.port, "Port of the console (default: any free port)");
   sub->add_option("--address", o.address,
                   "Address of the console; needs --remote (default: 127.0.0.1)");
@@ -187,7 +193,8 @@ void add_device_test(CLI::App& app, int& status) {
   CLI::App* sub = subcommand(app, "device-test", "Check whether a device is fit for experiments",
                              "haptrial device-test force-dimension", {"", "devices.md"});
   auto& o = options_of<DeviceTestOptions>(*sub, status, device_test);
-  sub->add_option("NAME", o.name, "Device: virtual, mouse, force-dimension or open-haptics")
+  sub->add_option("NAME", o.name,
+                  "Device: virtual, mouse, force-dimension, open-haptics or a plug-in's")
       ->required();
   sub->add_option(
       "--definition", o.definition,

@@ -13,6 +13,7 @@
 #include "core/base/text/nearest.h"
 #include "core/device/coupled_mass.h"
 #include "core/device/mouse.h"
+#include "core/device/own_devices.h"
 #include "core/device/vendor/force_dimension.h"
 #include "core/device/vendor/open_haptics.h"
 #include "experiments/command/commands.h"
@@ -79,6 +80,8 @@ DeviceSetup setup_of(const DeviceTestOptions& options) {
     }
   }
   setup.mouse.stop_button = -1;
+  setup.mouse.in_space = false;
+  setup.mouse.start.setZero();
   setup.force_dimension.stop_button = -1;
   setup.open_haptics.stop_button = -1;
   return setup;
@@ -118,9 +121,14 @@ Bench vendor_bench(const DeviceTestOptions& options, const DeviceSetup& setup) {
   } else if (options.name == "open-haptics") {
     bench.device =
         std::make_unique<device::OpenHapticsDevice>(setup.open_haptics, kRate, options.library);
+  } else if (const device::OwnDevice* own = device::own_device(options.name)) {
+    bench.device = own->open(device::setting_of(options.name), 0, kRate);
   } else {
-    throw InputError(not_allowed("the device to test", fmt::format("'{}'", options.name),
-                                 {"virtual", "mouse", "force-dimension", "open-haptics"}));
+    std::vector<std::string> known{"virtual", "mouse", "force-dimension", "open-haptics"};
+    for (const device::OwnDevice& each : device::own_devices()) {
+      known.push_back(each.name);
+    }
+    throw InputError(not_allowed("the device to test", fmt::format("'{}'", options.name), known));
   }
   return bench;
 }

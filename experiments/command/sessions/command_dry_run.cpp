@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/text/counted.h"
@@ -12,6 +14,7 @@
 #include "experiments/control/interrupt.h"
 #include "experiments/control/signals.h"
 #include "experiments/studies/experiment.h"
+#include "experiments/study/launch_rank.h"
 #include "experiments/study/session_name.h"
 #include "experiments/study/study_run.h"
 
@@ -27,6 +30,29 @@ fs::path fresh_folder(const std::string& name) {
       return folder;
     }
   }
+}
+
+/// Takes --parts, and the rank of a process that mpirun or srun started. @returns the rank
+int take_parts(const DryRunOptions& options, DryRun& dry) {
+  if (options.parts.empty()) {
+    return 0;
+  }
+  for (const auto& [name, given] :
+       {std::pair{"--out", !options.out.empty()}, std::pair{"--frames", options.frames > 0},
+        std::pair{"--tutor", !options.tutor.empty()}, std::pair{"--taught", options.taught}}) {
+    if (given) {
+      throw InputError(fmt::format("{} is given together with --parts; leave it out", name));
+    }
+  }
+  dry.parts = true;
+  dry.folder = options.parts;
+  const std::optional<LaunchRank> rank = launch_rank();
+  if (!rank) {
+    return 0;
+  }
+  dry.jobs = options.jobs.value_or(1);
+  dry.start = static_cast<double>(rank->rank) / rank->size;
+  return rank->rank;
 }
 
 }  // namespace
@@ -52,11 +78,13 @@ int dry_run(const DryRunOptions& options) {
     throw InputError("--tutor and --taught are both given; leave out one of them");
   }
   dry.taught = options.taught;
-  const int sessions = dry.participants * (dry.session > 0 ? 1 : setup.sessions());
+  const int rank = take_parts(options, dry);
   if (interrupted()) {  // while the definition was read, which makes its bones
     throw RunError("interrupted");
   }
-  dry.folder = options.out.empty() ? fresh_folder(setup.name) : fs::path(options.out);
+  if (!dry.parts) {
+    dry.folder = options.out.empty() ? fresh_folder(setup.name) : fs::path(options.out);
+  }
   print_warnings(experiment);
   for (const std::string& sentence : experiment.untranslated) {
     fmt::print("{}\n", sentence);
@@ -65,10 +93,13 @@ int dry_run(const DryRunOptions& options) {
     fmt::print("{}\n", line);
   }
   const DryRunSummary done = run_dry(experiment.study->protocol(), setup, dry);
+  if (rank > 0) {
+    return 0;  // the first of them reports
+  }
   fmt::print("{}, {:.0f} s of simulated time in {:.1f} s ({:.0f} times real time)\n",
-             counted(sessions, "session", "sessions"), done.recorded_seconds, done.elapsed_seconds,
-             done.recorded_seconds / done.elapsed_seconds);
-  if (done.aborted_passes == done.passes) {
+             counted(done.sessions, "session", "sessions"), done.recorded_seconds,
+             done.elapsed_seconds, done.recorded_seconds / done.elapsed_seconds);
+  if (done.aborted_passes == done.passes && done.sessions > 0) {
     const fs::path first =
         dry.folder / session_file_name("S01", std::max(1, dry.session), setup.sessions());
     throw RunError(
@@ -77,6 +108,12 @@ int dry_run(const DryRunOptions& options) {
   if (done.aborted_passes > 0) {
     fmt::print("{}; haptrial info FILE says which and why\n",
                counted(done.aborted_passes, "pass was aborted", "passes were aborted"));
+  }
+  for (const fs::path& file : session_files(dry.folder)) {
+    for (const std::string& line :
+         experiment.study->after_session(setup, fs::path(options.definition).parent_path(), file)) {
+      fmt::print("{}\n", line);
+    }
   }
   fmt::print("sessions: {}\n", dry.folder.string());
   fmt::print("next: {}\n", experiment.study->next_step(dry.folder));

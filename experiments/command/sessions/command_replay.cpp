@@ -10,6 +10,7 @@
 #include "experiments/command/commands.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/progress.h"
+#include "experiments/plugin/loaded/loaded_plugins.h"
 #include "experiments/screen/video.h"
 #include "experiments/studies/registry.h"
 
@@ -62,8 +63,9 @@ class PictureFolder {
 int replay(const ReplayOptions& options) {
   constexpr int kMostFps = 240;
   const int fps = checked_number("--fps", options.fps, 1, kMostFps);
-  const protocols::Protocol& protocol =
-      study_of(record::SessionReader(options.file).info()).protocol();
+  const Study& study = *with_plugins(
+      options.file, [&] { return &study_of(record::SessionReader(options.file).info()); });
+  const protocols::Protocol& protocol = study.protocol();
   std::optional<VideoWriter> video;
   std::optional<PictureFolder> pictures;
   if (!options.video.empty()) {
@@ -102,7 +104,7 @@ int replay(const ReplayOptions& options) {
     progress.reset();
     lines.push_back(line);
   };
-  protocol.replay(request);
+  with_plugins(options.file, [&] { protocol.replay(request); });
   progress.reset();
   if (video) {
     video->finish();

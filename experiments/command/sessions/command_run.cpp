@@ -1,11 +1,14 @@
 #include "experiments/command/commands.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/base/text/counted.h"
@@ -79,14 +82,11 @@ SessionSummary attended_session(SessionRequest& request, const RunOptions& optio
     console_options.on_refusal = [&control](const std::string& sentence) {
       control.note("console: " + sentence);
     };
-    if (options.nerve_monitor) {
-      request.nerve_desk = std::make_shared<nerve::MonitorDesk>();
-      console_options.nerve_desk = request.nerve_desk;
-    }
+    console_options.sides = request.side_pages;
     console = std::make_unique<Console>(control, console_options);
     fmt::print("console: {}\n", console->url());
-    if (options.nerve_monitor) {
-      fmt::print("nerve monitor: {}\n", console->nerve_url());
+    for (const auto& side : request.side_pages) {
+      fmt::print("{}: {}\n", side->title(), console->side_url(side->name()));
     }
     std::fflush(stdout);
   }
@@ -114,15 +114,29 @@ void check_pages(const RunOptions& options, const protocols::Definition& definit
   }
 }
 
-void check_nerve_monitor(const RunOptions& options, const protocols::Definition& definition) {
-  if (options.nerve_monitor && definition.nerve_channels().empty()) {
-    throw InputError(
-        fmt::format("--nerve-monitor: {} has no table [nerve_monitor], so there is nothing to show",
-                    options.definition));
+/// Those of the definition's pages that are to be served.
+protocols::SidePages chosen_pages(const RunOptions& options, const protocols::Protocol& protocol,
+                                  const protocols::Definition& definition) {
+  const protocols::SidePages all = protocol.side_pages(definition);
+  std::vector<std::string> offered;
+  for (const auto& side : all) {
+    offered.emplace_back(side->name());
   }
-  if (options.nerve_monitor && !options.console) {
-    throw InputError("--nerve-monitor needs --console, which serves its page");
+  protocols::SidePages chosen;
+  for (const std::string& name : std::set(options.side_pages.begin(), options.side_pages.end())) {
+    const auto found = std::find(offered.begin(), offered.end(), name);
+    if (found == offered.end()) {
+      throw InputError(fmt::format("--side-page: {} has no page '{}'; {}", options.definition, name,
+                                   offered.empty()
+                                       ? "it has none beside the console's"
+                                       : fmt::format("it has {}", fmt::join(offered, ", "))));
+    }
+    chosen.push_back(all[static_cast<std::size_t>(found - offered.begin())]);
   }
+  if (!chosen.empty() && !options.console) {
+    throw InputError("--side-page needs --console, which serves the page");
+  }
+  return chosen;
 }
 
 }  // namespace
@@ -143,7 +157,8 @@ int run(const RunOptions& asked) {
   }
   check_recording(options, experiment.study->protocol(), setup);
   check_pages(options, setup);
-  check_nerve_monitor(options, setup);
+  const protocols::SidePages side_pages =
+      chosen_pages(options, experiment.study->protocol(), setup);
   for (const std::string& sentence : experiment.untranslated) {
     fmt::print("{}\n", sentence);
   }
@@ -191,6 +206,7 @@ int run(const RunOptions& asked) {
         fmt::format("{}: the folder cannot be created ({})", options.out, error.message()));
   }
   choose_devices(options, request);
+  request.side_pages = side_pages;
   request.window = options.window;
   request.stream = options.stream || options.stream_optional;
   request.stream_optional = options.stream_optional;
@@ -209,6 +225,12 @@ int run(const RunOptions& asked) {
   fmt::print("session: {}{}\n", request.file.string(), done.stopped ? ".partial" : "");
   if (done.stopped) {
     fmt::print("stopped with trials left; the same command with --resume continues with them\n");
+  }
+  if (!done.stopped) {
+    for (const std::string& line : experiment.study->after_session(
+             setup, fs::path(options.definition).parent_path(), request.file)) {
+      fmt::print("{}\n", line);
+    }
   }
   fmt::print("{} ticks at {} Hz, {}, {}, {} aborted\n", done.ticks, setup.rate,
              counted(done.overruns, "overrun", "overruns"),

@@ -24,6 +24,11 @@ int validate(const std::string& file) {
   for (const std::string& line : experiment.definition->description()) {
     fmt::print("{}\n", line);
   }
+  const protocols::Definition& definition = *experiment.definition;
+  for (const auto& side : experiment.study->protocol().side_pages(definition)) {
+    fmt::print("page beside the console: {} (haptrial run --console --side-page {})\n",
+               side->title(), side->name());
+  }
   print_warnings(experiment);
   print_undrawable(experiment);
   for (const std::string& language : protocols::languages_of(file)) {

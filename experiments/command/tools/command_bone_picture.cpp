@@ -97,8 +97,10 @@ void add_burr(const BonePictureOptions& options, render::BoneFrame& frame) {
   }
   render::SceneMesh mesh;
   const double diameter = 2.0 * burr.radius;
-  mesh.mesh = std::make_shared<geometry::Mesh>(
-      render::burr_mesh(diameter, std::max(0.4 * diameter, 0.0012), 0.09));
+  const double shaft = render::burr_shaft(diameter);
+  constexpr double kLength = 0.09;  // [m]
+  mesh.mesh = std::make_shared<geometry::Mesh>(render::burr_mesh(diameter, shaft, kLength));
+  mesh.casts = render::burr_shadow(diameter, shaft, kLength);
   mesh.pose.translation() = burr.from;
   mesh.pose.linear() =
       Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), burr.to - burr.from)

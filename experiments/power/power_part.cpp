@@ -1,0 +1,128 @@
+#include "experiments/power/power_part.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/base/files/file_text.h"
+#include "core/base/fnv.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kChecksum = "checksum ";
+
+/// Names once, then a row of values for each replication; null: it has none.
+Json table_of(const std::vector<Rehearsed>& all, std::vector<NamedNumber> Rehearsed::*numbers) {
+  std::vector<std::string> names;
+  std::map<std::string, std::size_t> places;
+  for (const Rehearsed& each : all) {
+    for (const NamedNumber& number : each.*numbers) {
+      if (places.try_emplace(number.name, names.size()).second) {
+        names.push_back(number.name);
+      }
+    }
+  }
+  Json rows = Json::array();
+  for (const Rehearsed& each : all) {
+    std::vector<Json> row(names.size());
+    for (const NamedNumber& number : each.*numbers) {
+      row[places.at(number.name)] = std::isfinite(number.value) ? Json(number.value) : Json();
+    }
+    rows.push_back(row);
+  }
+  return {{"names", names}, {"rows", rows}};
+}
+
+void fill(const Json& table, std::vector<Rehearsed>& all,
+          std::vector<NamedNumber> Rehearsed::*numbers) {
+  const auto names = table.at("names").get<std::vector<std::string>>();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Json& row = table.at("rows").at(i);
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      if (row.at(k).is_number()) {
+        (all[i].*numbers).push_back({names[k], row.at(k).get<double>()});
+      }
+    }
+  }
+}
+
+Json header_of(const PowerQuestion& question, const PowerUnit& unit) {
+  return {{"simulated", true},
+          {"program", program_words()},
+          {"question", question.fingerprint},
+          {"cell", question.cells[unit.cell].name},
+          {"depth", unit.sessions ? "sessions" : "responses"},
+          {"first", unit.first},
+          {"count", unit.count}};
+}
+
+std::string with_checksum(std::string body) {
+  body += '\n';
+  return body + fmt::format("{}{:016x}\n", kChecksum, fnv1a(body));
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
+  throw InputError(fmt::format("{}: {}", file.string(), why));
+}
+
+std::string body_of(const std::filesystem::path& file, const std::string& text) {
+  const std::size_t at = text.rfind(kChecksum);
+  if (at == std::string::npos || with_checksum(text.substr(0, at > 0 ? at - 1 : 0)) != text) {
+    refuse(file, "is damaged: its checksum is another; delete it and simulate again");
+  }
+  return text.substr(0, at);
+}
+
+}  // namespace
+
+std::string part_text(const PowerQuestion& question, const PowerUnit& unit,
+                      const std::vector<Rehearsed>& replications) {
+  Json json = header_of(question, unit);
+  json["tests"] = table_of(replications, &Rehearsed::tests);
+  json["values"] = table_of(replications, &Rehearsed::values);
+  Json failures = Json::array(), trials = Json::array(), hours = Json::array();
+  for (const Rehearsed& each : replications) {
+    failures.push_back(each.failures);
+    trials.push_back(each.trials);
+    hours.push_back(each.hours);
+  }
+  json["failures"] = failures;
+  json["trials"] = trials;
+  json["hours"] = hours;
+  return with_checksum(json.dump());
+}
+
+std::vector<Rehearsed> read_part(const std::filesystem::path& file, const PowerQuestion& question,
+                                 const PowerUnit& unit) {
+  const std::string body = body_of(file, file_text(file));
+  std::vector<Rehearsed> all(static_cast<std::size_t>(unit.count));
+  try {
+    const Json json = Json::parse(body);
+    const Json header = header_of(question, unit);
+    for (const auto& [key, value] : header.items()) {
+      if (json.at(key) != value) {
+        refuse(file, fmt::format("has {} {}, but this question has {}; simulate into a new folder",
+                                 key, json.at(key).dump(), value.dump()));
+      }
+    }
+    fill(json.at("tests"), all, &Rehearsed::tests);
+    fill(json.at("values"), all, &Rehearsed::values);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      all[i].failures = json.at("failures").at(i).get<std::vector<std::string>>();
+      all[i].trials = json.at("trials").at(i).get<std::uint64_t>();
+      all[i].hours = json.at("hours").at(i).get<double>();
+    }
+  } catch (const nlohmann::json::exception& error) {
+    refuse(file, "is no part of a simulation of power; delete it and simulate again");
+  }
+  return all;
+}
+
+}  // namespace haptrial::experiments

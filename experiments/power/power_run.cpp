@@ -1,0 +1,180 @@
+#include "experiments/power/power_run.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "experiments/control/interrupt.h"
+#include "experiments/control/progress.h"
+#include "experiments/study/unit_locks.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// The missing units of a share, as places in PowerFolder::units.
+std::vector<std::size_t> own_units(const PowerFolder& folder, const PowerShare& share) {
+  std::set<std::string> missing;
+  for (const PowerUnit& unit : folder.missing()) {
+    missing.insert(unit.file());
+  }
+  std::vector<std::size_t> own;
+  const std::vector<PowerUnit>& units = folder.units();
+  for (auto i = static_cast<std::size_t>(share.part - 1); i < units.size();
+       i += static_cast<std::size_t>(share.of)) {
+    if (missing.contains(units[i].file())) {
+      own.push_back(i);
+    }
+  }
+  const auto first = static_cast<std::ptrdiff_t>(share.start * static_cast<double>(own.size()));
+  std::ranges::rotate(own, own.begin() + first);
+  return own;
+}
+
+/// What the threads of a process do with units, and what came of it.
+class Filling {
+ public:
+  Filling(const PowerFolder& folder, const PowerQuestion& question, const PowerShare& share)
+      : folder_(folder), question_(question), share_(share), locks_(folder.path() / kLocks) {}
+
+  /// Makes a unit unless another process does, or has. @returns whether the part is there
+  bool make(std::size_t unit) {
+    if (is_over()) {
+      return true;
+    }
+    const PowerUnit& one = folder_.units()[unit];
+    const TakenUnit taken(locks_, unit);
+    if (!taken) {
+      return false;
+    }
+    if (folder_.has(one)) {
+      return true;
+    }
+    try {
+      keep(one);
+    } catch (const RunError&) {
+      if (!interrupted()) {
+        throw;
+      }
+      stopped_ = true;
+    }
+    return true;
+  }
+
+  /// Whether nothing else may be begun.
+  bool is_over() {
+    if (interrupted() || (share_.minutes && seconds() > 60.0 * *share_.minutes)) {
+      stopped_ = true;
+    }
+    return stopped_;
+  }
+
+  std::size_t made() const { return made_; }
+  double seconds() const { return seconds_since(start_); }
+  PowerProgress progress() const {
+    return {made_, folder_.missing().size(), trials_, seconds(), stopped_};
+  }
+
+ private:
+  static constexpr const char* kLocks = "parts.lock";
+
+  void keep(const PowerUnit& unit) {
+    const std::vector<Rehearsed> studies = simulated(question_, unit);
+    folder_.keep(unit, studies);
+    for (const Rehearsed& study : studies) {
+      trials_ += study.trials;
+    }
+    ++made_;
+  }
+
+  const PowerFolder& folder_;
+  const PowerQuestion& question_;
+  const PowerShare& share_;
+  UnitLocks locks_;
+  Clock::time_point start_{Clock::now()};
+  std::atomic<std::size_t> made_{0};
+  std::atomic<std::uint64_t> trials_{0};
+  std::atomic<bool> stopped_{false};
+};
+
+/// Units that other processes make: each is there in the end, or its process died.
+void wait_for(const std::vector<std::size_t>& units, Filling& filling) {
+  constexpr auto kPause = std::chrono::milliseconds(100);
+  for (const std::size_t unit : units) {
+    while (!filling.make(unit)) {
+      if (filling.is_over()) {
+        return;
+      }
+      std::this_thread::sleep_for(kPause);
+    }
+  }
+}
+
+}  // namespace
+
+void check_watched(const PowerQuestion& question) {
+  constexpr int kStudies = 3;  // a test that one study could not make
+  std::vector<std::string> names;
+  std::string because;
+  for (int i = 0; i < kStudies; ++i) {
+    const PowerUnit unit{0, question.plan.depth == PowerDepth::kSessions, i, 1};
+    const Rehearsed study = simulated(question, unit).front();
+    for (const NamedNumber& test : study.tests) {
+      if (test.name == question.plan.watch) {
+        return;
+      }
+      names.push_back(fmt::format("\"{}\"", test.name));
+    }
+    because = study.failures.empty() ? because : study.failures.front();
+    if (!names.empty()) {
+      break;
+    }
+  }
+  if (names.empty()) {
+    throw InputError(fmt::format("{}: the report has no test at all{}{}", question.file_name,
+                                 because.empty() ? "" : ": ", because));
+  }
+  throw InputError(fmt::format("{}: power.watch is \"{}\"; allowed: {}", question.file_name,
+                               question.plan.watch, fmt::join(names, ", ")));
+}
+
+PowerProgress fill(const PowerFolder& folder, const PowerQuestion& question,
+                   const PowerShare& share) {
+  const std::vector<std::size_t> own = own_units(folder, share);
+  Filling filling(folder, question, share);
+  std::mutex mutex;
+  std::vector<std::size_t> elsewhere;  // made by other processes
+  const auto work = [&](std::size_t i) {
+    if (!filling.make(own[i])) {
+      const std::lock_guard lock(mutex);
+      elsewhere.push_back(own[i]);
+    }
+  };
+  {
+    SharedWork shared(own.size(), share.jobs, [&] { return SharedWork::Work(work); });
+    Progress progress("power", static_cast<double>(own.size()));
+    while (!shared.ended_within(std::chrono::milliseconds(50))) {
+      progress.update(static_cast<double>(filling.made()),
+                      fmt::format("{} of {} parts", filling.made(), own.size()), 0.0);
+    }
+    shared.finish();
+  }
+  std::ranges::sort(elsewhere);
+  wait_for(elsewhere, filling);
+  return filling.progress();
+}
+
+}  // namespace haptrial::experiments

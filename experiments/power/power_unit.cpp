@@ -1,0 +1,116 @@
+#include "experiments/power/power_unit.h"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "core/base/error.h"
+#include "core/base/random.h"
+#include "experiments/control/interrupt.h"
+#include "experiments/studies/experiment.h"
+#include "experiments/study/study_run.h"
+
+namespace haptrial::experiments {
+namespace fs = std::filesystem;
+namespace {
+
+/// A folder for session files that is gone at the end.
+class SessionsFolder {
+ public:
+  SessionsFolder() {
+    std::string name = (fs::temp_directory_path() / "haptrial-power-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) {
+      throw RunError(name + ": a folder for sessions cannot be made");
+    }
+    path_ = name;
+  }
+  ~SessionsFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  SessionsFolder(const SessionsFolder&) = delete;
+  SessionsFolder& operator=(const SessionsFolder&) = delete;
+  fs::path sessions() const { return path_ / "sessions"; }
+
+ private:
+  fs::path path_;
+};
+
+/// A cell's definition, and what simulates it.
+struct ReadyCell {
+  Experiment experiment;
+  std::unique_ptr<Rehearsal> rehearsal;
+};
+
+ReadyCell ready(const PowerQuestion& question, const PowerUnit& unit) {
+  const std::vector<NamedText> parts = question.parts_of(question.cells[unit.cell]);
+  ReadyCell cell;
+  cell.rehearsal = question.study->rehearsal(parts, question.plan.watch);
+  if (unit.sessions) {
+    cell.experiment = parse_experiment(parts);
+    question.study->protocol().load(*cell.experiment.definition, question.folder);
+  }
+  return cell;
+}
+
+Rehearsed in_full(const ReadyCell& cell, std::uint64_t seed) {
+  const SessionsFolder folder;
+  DryRun dry;
+  dry.participants = cell.experiment.definition->design.participants;
+  dry.seed = seed;
+  dry.folder = folder.sessions();
+  run_dry(cell.experiment.study->protocol(), *cell.experiment.definition, dry);
+  return cell.rehearsal->sessions(session_files(dry.folder));
+}
+
+}  // namespace
+
+std::string PowerUnit::file() const {
+  return fmt::format("{}-{:05}-{:07}.part", sessions ? 's' : 'r', cell, first);
+}
+
+std::vector<PowerUnit> units_of(const PowerQuestion& question) {
+  const PowerPlan& plan = question.plan;
+  const bool sessions = plan.depth == PowerDepth::kSessions;
+  std::vector<PowerUnit> units;
+  for (std::size_t i = 0; i < question.cells.size(); ++i) {
+    const QuestionCell& cell = question.cells[i];
+    const int all = cell.null ? plan.null_replications : plan.replications;
+    const int block = sessions ? 1 : plan.block;  // full sessions take long
+    for (int first = 0; first < all; first += block) {
+      units.push_back({i, sessions, first, std::min(block, all - first)});
+    }
+    for (int first = 0; cell.checked && first < plan.checked_replications; ++first) {
+      units.push_back({i, true, first, 1});
+    }
+  }
+  return units;
+}
+
+std::vector<Rehearsed> simulated(const PowerQuestion& question, const PowerUnit& unit) {
+  const ReadyCell cell = ready(question, unit);
+  const std::uint64_t seed =
+      derived_seed(question.plan.seed, "power cell " + question.cells[unit.cell].name);
+  std::vector<Rehearsed> all;
+  for (int i = unit.first; i < unit.first + unit.count; ++i) {
+    if (interrupted()) {
+      throw RunError("interrupted");
+    }
+    const std::uint64_t own = derived_seed(seed, fmt::format("replication {}", i));
+    try {
+      all.push_back(unit.sessions ? in_full(cell, own) : cell.rehearsal->responses(own));
+    } catch (const InputError& error) {
+      all.emplace_back().failures.push_back(error.what());
+    } catch (const RunError& error) {
+      if (interrupted()) {
+        throw;
+      }
+      all.emplace_back().failures.push_back(error.what());
+    }
+  }
+  return all;
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "analysis/bone_drilling/procedure/procedure.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
+#include "protocols/definition/groups.h"
+
+namespace haptrial::experiments {
+
+/// What metrics need of a definition; the group is empty.
+analysis::drilling::ProcedureSetup procedure_setup(const protocols::BoneDefinition& definition);
+/// Of the definition in a session file.
+analysis::drilling::ProcedureSetup procedure_setup(
+    const record::SessionReader& session, const std::vector<protocols::StudyGroup>& groups);
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,324 @@
+#include "experiments/studies/drilling/trainee_pages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "analysis/bone_drilling/feedback/procedure_page.h"
+#include "analysis/bone_drilling/feedback/trainee_page.h"
+#include "analysis/bone_drilling/report/visibility_picture.h"
+#include "core/base/error.h"
+#include "core/base/files/file_text.h"
+#include "core/base/files/whole_file.h"
+#include "core/bone/record/drilling_tables.h"
+#include "core/record/read/session_reader.h"
+#include "experiments/studies/drilling/procedure_setup.h"
+#include "experiments/study/study_run.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+namespace drilling = analysis::drilling;
+
+/// A procedure of an expert, and where it is.
+struct Expert {
+  fs::path file;
+  int trial{1};
+  std::shared_ptr<const bone::BoneModel> bone;
+  drilling::ExpertProcedure procedure;
+};
+
+/// A session file as pages use it.
+struct Session {
+  explicit Session(const fs::path& file) : path(file), reader(file) {
+    const record::SessionInfo& info = reader.info();
+    groups = protocols::study_groups(info.definition, info.definition_name);
+    definition = protocols::parse_bone_definition(info.definition, info.definition_name);
+  }
+
+  fs::path path;
+  record::SessionReader reader;
+  std::vector<protocols::StudyGroup> groups;
+  protocols::BoneDefinition definition;
+};
+
+void require_drilling(const fs::path& file) {
+  if (!record::drills(record::SessionReader(file))) {
+    throw InputError(fmt::format("{}: is not a drilling session", file.string()));
+  }
+}
+
+class Pages {
+ public:
+  explicit Pages(const TraineeRequest& request) : request_(request) {}
+
+  std::vector<fs::path> written() {
+    load_sessions();
+    load_experts();
+    std::vector<std::pair<const Session*, int>> procedures = chosen();
+    require_room(procedures.size());
+    experts_ = drilling::experts_of(summaries_, participant_, options_);
+    for (const auto& [session, trial] : procedures) {
+      write_procedure(*session, trial, procedures.size());
+    }
+    if (procedures.size() > 1) {
+      write(request_.out, drilling::trainee_page(participant_, done_, experts_));
+      std::rotate(files_.begin(), files_.end() - 1, files_.end());
+    }
+    return files_;
+  }
+
+ private:
+  void load_sessions();
+  void load_experts();
+  void load_expert(const fs::path& file);
+  std::vector<std::pair<const Session*, int>> chosen();
+  void require_room(std::size_t procedures) const;
+  void write_procedure(const Session& session, int trial, std::size_t procedures);
+  drilling::Procedure load(const Session& session, int trial);
+  const Expert* shown_beside(const bone::BoneModel* bone) const;
+  drilling::FirstView first_view(const Session& session) const;
+  std::string picture(const drilling::Findings& findings, const Session& session) const;
+  void write(const fs::path& file, const std::string& html);
+  fs::path numbered(std::size_t number) const {
+    return request_.out.parent_path() / fmt::format("{}-{}{}", request_.out.stem().string(), number,
+                                                    request_.out.extension().string());
+  }
+
+  const TraineeRequest& request_;
+  drilling::SafeOptions options_;
+  drilling::StudyBones bones_;
+  std::vector<std::unique_ptr<Session>> sessions_;  // in order of their start
+  std::string participant_;
+  std::vector<Expert> expert_procedures_;
+  std::vector<drilling::ExpertProcedure> summaries_;  // (expert_procedures_)
+  drilling::Experts experts_;
+  std::vector<drilling::TraineeProcedure> done_;
+  std::vector<fs::path> files_;
+};
+
+void Pages::load_sessions() {
+  for (const fs::path& file : request_.sessions) {
+    require_drilling(file);
+    sessions_.push_back(std::make_unique<Session>(file));
+    const std::string& subject = sessions_.back()->reader.info().subject;
+    if (sessions_.size() > 1 && subject != participant_) {
+      throw InputError(fmt::format("{}: is of participant {}, but {} is of {}; a page is about one",
+                                   file.string(), subject, request_.sessions.front().string(),
+                                   participant_));
+    }
+    participant_ = subject;
+  }
+  std::stable_sort(sessions_.begin(), sessions_.end(), [](const auto& a, const auto& b) {
+    return a->reader.info().start_utc < b->reader.info().start_utc;
+  });
+}
+
+void Pages::load_experts() {
+  for (const fs::path& file : request_.experts) {
+    load_expert(file);
+  }
+  if (request_.study.empty()) {
+    return;
+  }
+  const std::size_t before = expert_procedures_.size();
+  for (const fs::path& file : session_files(request_.study)) {
+    const record::SessionReader reader(file);
+    const record::SessionInfo& info = reader.info();
+    if (info.pilot || !record::drills(reader)) {
+      continue;
+    }
+    const auto groups = protocols::study_groups(info.definition, info.definition_name);
+    const std::string own = protocols::group_of(groups, info.subject);
+    const bool expert = std::any_of(groups.begin(), groups.end(), [&own](const auto& group) {
+      return group.expert && group.name == own;
+    });
+    if (expert) {
+      load_expert(file);
+    }
+  }
+  if (expert_procedures_.size() == before) {
+    throw InputError(
+        fmt::format("{}: holds no drilling of an expert; choose a study whose definition has "
+                    "[groups], all but novices being experts",
+                    request_.study.string()));
+  }
+}
+
+void Pages::load_expert(const fs::path& file) {
+  const bool again =
+      std::any_of(expert_procedures_.begin(), expert_procedures_.end(),
+                  [&file](const Expert& expert) { return fs::equivalent(expert.file, file); });
+  if (again) {
+    return;  // named, and of the study as well
+  }
+  const record::SessionReader reader(file);
+  const record::SessionInfo& info = reader.info();
+  const auto setup =
+      procedure_setup(reader, protocols::study_groups(info.definition, info.definition_name));
+  for (const drilling::Procedure& procedure : load_procedures(reader, setup, &bones_)) {
+    expert_procedures_.push_back({file, procedure.number, procedure.bone,
+                                  drilling::expert_procedure(procedure, options_, bones_)});
+    summaries_.push_back(expert_procedures_.back().procedure);
+  }
+}
+
+/// Every procedure that gets a page.
+std::vector<std::pair<const Session*, int>> Pages::chosen() {
+  std::vector<std::pair<const Session*, int>> procedures;
+  for (const auto& session : sessions_) {
+    std::vector<int> trials;
+    for (const record::PassRow& pass : session->reader.passes()) {
+      const bool wanted = !request_.trial || pass.trial == *request_.trial;
+      if (!pass.practice && wanted && pass.phase == record::kDrillingPhase &&
+          std::find(trials.begin(), trials.end(), pass.trial) == trials.end()) {
+        trials.push_back(pass.trial);
+      }
+    }
+    std::sort(trials.begin(), trials.end());
+    for (const int trial : trials) {
+      procedures.emplace_back(session.get(), trial);
+    }
+  }
+  if (procedures.empty()) {
+    throw InputError(fmt::format("{}: holds no procedure{}", request_.sessions.front().string(),
+                                 request_.trial ? fmt::format(" {}", *request_.trial) : ""));
+  }
+  return procedures;
+}
+
+/// Before any work.
+void Pages::require_room(std::size_t procedures) const {
+  std::vector<fs::path> files{request_.out};
+  for (std::size_t n = 1; n <= procedures && procedures > 1; ++n) {
+    files.push_back(numbered(n));
+  }
+  for (const fs::path& file : files) {
+    if (!request_.overwrite && fs::exists(file)) {
+      throw InputError(
+          fmt::format("{}: exists already; choose another name or add --overwrite", file.string()));
+    }
+  }
+}
+
+drilling::Procedure Pages::load(const Session& session, int trial) {
+  for (drilling::Procedure& procedure :
+       load_procedures(session.reader, procedure_setup(session.reader, session.groups), &bones_)) {
+    if (procedure.number == trial) {
+      return std::move(procedure);
+    }
+  }
+  throw InputError(fmt::format("{}: holds no procedure {}", session.path.string(), trial));
+}
+
+/// On the same bone, somebody else's: of the procedures that were asked for by name the one with
+/// most in sight, else of all.
+const Expert* Pages::shown_beside(const bone::BoneModel* bone) const {
+  const auto named = [this](const Expert& expert) {
+    return std::find(request_.experts.begin(), request_.experts.end(), expert.file) !=
+           request_.experts.end();
+  };
+  const auto rank = [&](const Expert& expert) {
+    return std::pair(named(expert), expert.procedure.summary.value("visible_share").value_or(-1.0));
+  };
+  const Expert* best = nullptr;
+  for (const Expert& expert : expert_procedures_) {
+    if (expert.bone.get() == bone && expert.procedure.summary.participant != participant_ &&
+        (best == nullptr || rank(expert) > rank(*best))) {
+      best = &expert;
+    }
+  }
+  return best;
+}
+
+drilling::FirstView Pages::first_view(const Session& session) const {
+  const Camera& start = session.definition.simulator.camera.start;
+  return {start.eye - start.target, start.up};
+}
+
+std::string Pages::picture(const drilling::Findings& f, const Session& session) const {
+  if (f.summary.removed.empty()) {
+    return "";
+  }
+  const drilling::FirstView view = first_view(session);
+  const Eigen::Matrix3d R_BW = f.pose_WB.linear().transpose();
+  const fs::path file = request_.out.string() + ".picture.png";
+  render::write_png(file, drilling::visibility_figure(
+                              {f.summary.bone.get(), f.summary.removed, f.summary.removed_seen},
+                              {R_BW * view.towards_eye, R_BW * view.up}));
+  std::string bytes = file_text(file);
+  fs::remove(file);
+  return bytes;
+}
+
+void Pages::write_procedure(const Session& session, int trial, std::size_t procedures) {
+  const drilling::Findings f =
+      drilling::findings_of(load(session, trial), experts_, bones_, options_);
+  const bool several = procedures > 1;
+  drilling::ProcedurePage page;
+  page.findings = &f;
+  page.experts = &experts_;
+  page.scene = drilling::scene_json(f, first_view(session));
+  page.picture = picture(f, session);
+  page.started = session.reader.info().start_utc;
+  page.overview = several ? request_.out.filename().string() : "";
+  if (const Expert* expert = shown_beside(f.summary.bone.get())) {
+    const Session other(expert->file);
+    const std::string& name = expert->procedure.summary.participant;
+    const drilling::Experts others = drilling::experts_of(summaries_, name, options_);
+    const drilling::Findings theirs =
+        drilling::findings_of(load(other, expert->trial), others, bones_, options_);
+    page.expert_scene = drilling::scene_json(theirs, first_view(other));
+    page.expert_name = fmt::format("Expert {}, procedure {}{}", name, expert->trial,
+                                   theirs.summary.simulated ? " (simulated)" : "");
+  }
+  const fs::path file = several ? numbered(done_.size() + 1) : request_.out;
+  write(file, drilling::procedure_page(page));
+  drilling::TraineeProcedure done;
+  done.summary = f.summary;
+  done.summary.removed = {};
+  done.summary.removed_seen = {};
+  done.summary.near = {};
+  done.judged = static_cast<std::size_t>(std::count(f.judged.begin(), f.judged.end(), 1));
+  done.too_hard = f.count(drilling::kForceFault);
+  done.too_fast = f.count(drilling::kSpeedFault);
+  done.page = file.filename().string();
+  done.started = page.started;
+  done_.push_back(std::move(done));
+}
+
+void Pages::write(const fs::path& file, const std::string& html) {
+  WholeFile whole(file, request_.overwrite);
+  whole.write(html);
+  whole.finish();
+  files_.push_back(file);
+}
+
+}  // namespace
+
+std::vector<fs::path> write_trainee_pages(const TraineeRequest& request) {
+  return Pages(request).written();
+}
+
+std::vector<std::string> page_after_session(const protocols::BoneDefinition& definition,
+                                            const fs::path& folder, const fs::path& file) {
+  if (!definition.trainee_page) {
+    return {};
+  }
+  TraineeRequest request;
+  request.sessions = {file};
+  request.out = fs::path(file).replace_extension(".html");
+  request.overwrite = true;
+  if (!definition.experts_study.empty()) {
+    request.study = folder / definition.experts_study;
+  }
+  try {
+    return {"page: " + write_trainee_pages(request).front().string()};
+  } catch (const std::exception& error) {  // the session itself is whole
+    return {fmt::format("no page: {}", error.what())};
+  }
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "analysis/force_training/score/score_parameters.h"
+#include "analysis/statistics/design/analysis_plan.h"
+#include "core/base/definition/table.h"
+#include "experiments/studies/rehearsal/rehearsal.h"
+#include "protocols/force_training/force_definition.h"
+
+namespace haptrial::experiments {
+
+/// The report on force curves for simulated participants. At the level of responses a trial is its
+/// score,
+///
+///     mean + effect(condition) + participant + participant × condition + block + trial
+///
+/// with independent normal parts, the random terms of the report's mixed model; the order of the
+/// conditions is that of the sessions. Of power.responses:
+///
+///     mean                      of the score in a condition without an effect
+///     participant, interaction, block, trial   standard deviations of the parts
+///     [effects]                 CONDITION = number, as the difference from the mean
+///
+/// @throws InputError for keys that are missing or no conditions of the definition
+std::unique_ptr<Rehearsal> force_rehearsal(const std::vector<NamedText>& definition,
+                                           const analysis::ScoreParameters& scoring,
+                                           const analysis::AnalysisPlan& plan);
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::experiments {
+
+/// A key of the definition that is varied.
+struct VariedKey {
+  std::string key;             // "observer.drift", "blocks.hard.shift"
+  std::vector<double> values;  // at least one
+  std::optional<double> none;  // the value without an effect; nothing: it makes no effect
+};
+
+/// How virtual participants take part.
+enum class PowerDepth : std::uint8_t { kResponses, kSessions };
+
+/// What a table [power] asks.
+struct PowerPlan {
+  std::string definition;  // file, from the folder of this one; empty: it is this one
+  std::string watch;       // a test of the report by its name
+  double alpha{0.05};
+  double target{0.8};           // power
+  int replications{1000};       // of each cell
+  int null_replications{2000};  // of each cell without an effect
+  int block{100};               // replications of a part
+  std::uint64_t seed{1};
+  PowerDepth depth{PowerDepth::kResponses};
+  int checked_cells{0};  // cells that are also simulated in full
+  int checked_replications{4};
+  std::vector<VariedKey> vary;
+};
+
+/// Reads the table [power]. Keys in brackets are optional.
+///
+///     [definition]    the definition's file; left out: the table is a part of it
+///     watch           name of a test of the report
+///     [alpha], [target], [replications], [null_replications], [block], [seed]
+///     [depth]         "responses" or "sessions"
+///     [check]         { cells, replications }: cells that are also simulated in full
+///     [responses]     the study's own: what responses need to know
+///     [[power.vary]]  key, values, [none]
+///
+/// Problems are noted.
+PowerPlan read_power_plan(Table& root);
+
+}  // namespace haptrial::experiments
