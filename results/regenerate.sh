@@ -4,6 +4,7 @@
 #   results/regenerate.sh force_training [SEED]
 # A variant, force_training_..., is also compared with force_training. A study of drillings is rated by
 # simulated raters; of an experiment that its definition states whole a few participants are kept.
+# power_QUESTION simulates docs/worked/power/QUESTION.toml, power_null the files of docs/worked/power/null.
 # contact_evaluation and calibration are no studies: haptrial evaluate --duck and haptrial deform
 # calibrate make them.
 set -euo pipefail
@@ -13,6 +14,7 @@ seed=${2:-1}
 definition=experiments/$study.toml
 cd "$root"
 sum() { sha256sum "$1" | cut -d' ' -f1; }
+program() { build/haptrial --version | head -n 1; }
 
 if [ "$study" = contact_evaluation ]; then  # no participants: a simulated recording of a contact
   out=$(mktemp -d)/duck
@@ -29,12 +31,58 @@ if [ "$study" = contact_evaluation ]; then  # no participants: a simulated recor
     "haptrial evaluate --duck --seed $seed --out OUT"
   ],
   "seed": $seed,
-  "program": "$(build/haptrial --version)",
+  "program": "$(program)",
   "table_4_sha256": "$(sum "results/$study/table-4.csv")",
   "table_5_sha256": "$(sum "results/$study/table-5.csv")",
   "table_6_sha256": "$(sum "results/$study/table-6.csv")",
   "operations_sha256": "$(sum "results/$study/operations.csv")",
   "failures_sha256": "$(sum "results/$study/failures.csv")"
+}
+EOF
+  exit
+fi
+if [ "$study" = power_null ]; then  # do the tests of the reports keep their level?
+  out=$(mktemp -d)
+  trap 'rm -rf "$out"' EXIT
+  mkdir "$out/simulations"
+  for question in docs/worked/power/null/*.toml; do
+    build/haptrial power simulate "$question" --out "$out/simulations/$(basename "$question" .toml)"
+  done
+  mkdir -p "results/$study"
+  python3 results/null_table.py "$out/simulations" "results/$study/null.csv"
+  cat >"results/$study/manifest.json" <<EOF
+{
+  "study": "$study",
+  "simulated": true,
+  "commands": [
+    "haptrial power simulate docs/worked/power/null/DEFINITION.toml --out SIMULATIONS/DEFINITION",
+    "python3 results/null_table.py SIMULATIONS null.csv"
+  ],
+  "questions_sha256": "$(cat docs/worked/power/null/*.toml | sha256sum | cut -d' ' -f1)",
+  "program": "$(program)",
+  "null_sha256": "$(sum "results/$study/null.csv")"
+}
+EOF
+  exit
+fi
+if [[ $study == power_* ]]; then  # many simulated studies
+  out=$(mktemp -d)/power
+  trap 'rm -rf "$(dirname "$out")"' EXIT
+  question=docs/worked/power/${study#power_}.toml
+  build/haptrial power simulate "$question" --out "$out"
+  rm -rf "results/$study"
+  mkdir -p "results/$study"
+  cp "$out"/report.html "$out"/power.csv "$out"/power.json "$out"/power.svg "results/$study/"
+  cat >"results/$study/manifest.json" <<EOF
+{
+  "study": "$study",
+  "simulated": true,
+  "commands": [
+    "haptrial power simulate $question --out OUT"
+  ],
+  "question_sha256": "$(sum "$question")",
+  "program": "$(program)",
+  "power_sha256": "$(sum "results/$study/power.csv")"
 }
 EOF
   exit
@@ -60,7 +108,7 @@ if [ "$study" = calibration ]; then  # springs that follow elements, and a real 
   else
     echo "regenerate.sh: no data of the real cube; $folder/truth_cube.csv stays as it is" >&2
   fi
-  python3 "$folder/runs.py" tables "$(build/haptrial --version)"
+  python3 "$folder/runs.py" tables "$(program)"
   exit
 fi
 [ -f "$definition" ] || { echo "regenerate.sh: no $definition" >&2; exit 2; }
@@ -112,7 +160,7 @@ cat >"results/$study/manifest.json" <<EOF
   ],
   "definition_sha256": "$(sum "$definition")",
   "seed": $seed,
-  "program": "$(build/haptrial --version)",
+  "program": "$(program)",
   "${table}_sha256": "$(sum "results/$study/$table.csv")"
 }
 EOF

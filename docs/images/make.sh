@@ -8,6 +8,7 @@
 #   docs/algorithms/tutoring.sh                              a led hand beside its tutor's
 #   docs/images/folders.py                                   folders.svg, from CMakeLists.txt
 #   tests/benchmarks/stops.py, every_hand.gp                 stops.svg, every-hand.svg
+#   docs/images/scan.sh                                      scan-*.png, by a test
 #   HAPTRIAL_KEEP_PICTURES=FOLDER build/test_drilling_analysis  drilling-visibility.png
 # A page says under its picture which command draws it, if one does.
 set -euo pipefail

@@ -11,9 +11,10 @@
 #include "core/record/rows/response.h"
 #include "presser.h"
 #include "protocols/definition/definition.h"
-#include "protocols/interface/row_figures.h"
+#include "protocols/definition/row_figures.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/interface/text_drawing.h"
+#include "spring_page.h"
 #include "spring_pass.h"
 
 using namespace haptrial;
@@ -54,6 +55,16 @@ const record::Table<SpringRow>& record::table_of<SpringRow>() {
   return table;
 }
 
+template <>
+const record::Table<DepthRow>& record::table_of<DepthRow>() {
+  using T = record::Table<DepthRow>;
+  static const T table(
+      {"depths", "how deep a spring is pressed", 1024, record::RowsOf::kTick, {"sequence"}},
+      {T::column("sequence", &DepthRow::sequence, "1", "tick number, as in /samples"),
+       T::column("depth", &DepthRow::depth, "m", "below the springs' rest")});
+  return table;
+}
+
 namespace {
 
 // ---- what the participant sees
@@ -86,7 +97,10 @@ psychometric::StaircaseParameters staircase_of(const SpringsDefinition& d) {
 class SpringTrials final : public Trials {
  public:
   SpringTrials(const SpringsDefinition& d, const SessionPlace& place)
-      : d_(d), place_(place), staircase_(staircase_of(d)) {}
+      : d_(d),
+        place_(place),
+        page_(page_of<SpringPage>(place.side_pages)),
+        staircase_(staircase_of(d)) {}
 
   Extent extent(int most) const override {
     const int trials = most > 0 ? std::min(most, d_.design.trials) : d_.design.trials;
@@ -106,8 +120,14 @@ class SpringTrials final : public Trials {
     return kPhases;
   }
   record::TableList tables() const override {
-    return {&record::table_of<SpringRow>(), &record::responses_table()};
+    return {&record::table_of<SpringRow>(), &record::table_of<DepthRow>(),
+            &record::responses_table()};
   }
+  TickLog* tick_log() override { return &depths_; }
+  void empty_logs(SessionFile& file) override {
+    depths_.rows.flush([&file](std::span<const DepthRow> rows) { file.add(rows); });
+  }
+  std::uint64_t dropped() const override { return depths_.rows.dropped(); }
   std::unique_ptr<Rig> virtual_rig() const override {
     return std::make_unique<Presser>(d_, place_.session_seed);
   }
@@ -117,7 +137,12 @@ class SpringTrials final : public Trials {
     stiffer_ = 1 + static_cast<int>(random.below(2));
     row_ = {0, staircase_.next().front(), {d_.standard, d_.standard}};
     row_.stiffness[static_cast<std::size_t>(stiffer_ - 1)] += row_.difference;
-    pass_ = std::make_unique<SpringPass>(trial.trial, row_.stiffness, d_.interval);
+    double interval = d_.interval;
+    if (page_) {
+      page_->show(trial.trial, row_.difference);
+      interval = page_->interval().value_or(interval);
+    }
+    pass_ = std::make_unique<SpringPass>(trial.trial, row_.stiffness, interval);
     return *pass_;
   }
   std::vector<record::ResponseRow> responses() override {
@@ -143,7 +168,9 @@ class SpringTrials final : public Trials {
  private:
   const SpringsDefinition& d_;
   const SessionPlace& place_;
+  std::shared_ptr<SpringPage> page_;  // null: nobody assists
   psychometric::Staircase staircase_;
+  DepthLog depths_;
   int trial_{0};
   int stiffer_{1};
   SpringRow row_;
@@ -162,7 +189,12 @@ class Springs final : public Protocol {
   std::vector<std::pair<record::Phase, std::string>> phases() const override {
     return {{record::Phase("compare"), "two springs are felt and compared"}};
   }
-  record::TableList tables() const override { return {&record::table_of<SpringRow>()}; }
+  record::TableList tables() const override {
+    return {&record::table_of<SpringRow>(), &record::table_of<DepthRow>()};
+  }
+  SidePages side_pages(const Definition&) const override {
+    return {std::make_shared<SpringPage>()};
+  }
   std::unique_ptr<Trials> trials(const Definition& d, const SessionPlace& place) const override {
     return std::make_unique<SpringTrials>(dynamic_cast<const SpringsDefinition&>(d), place);
   }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "depth_log.h"
 #include "protocols/definition/definition.h"
 
 /// What a definition of two springs states.
@@ -15,6 +16,9 @@ struct SpringsDefinition final : haptrial::protocols::Definition {
   bool has_target() const override { return false; }
   std::vector<std::string> description() const override {
     return {"two springs, one after the other; a button says which was stiffer"};
+  }
+  std::vector<haptrial::stream::SideStream> side_streams() const override {
+    return {depth_stream(rate)};
   }
   double longest(int trials) const override { return trials * (2.0 * interval + 2.0); }
 };

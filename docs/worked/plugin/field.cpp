@@ -1,0 +1,50 @@
+// A field that [fields] may have: a valley along x, whose walls grow with the cube of the distance.
+#include <algorithm>
+#include <cmath>
+
+#include "core/scene/read/field_kinds.h"
+#include "experiments/plugin/plugin.h"
+
+namespace {
+
+using namespace haptrial::scene;
+
+/// f_z = -s (z / w)^3 [N]
+class Valley final : public OwnLaw {
+ public:
+  Valley(double strength, double width) : strength_(strength), width_(width) {}
+  Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept override {
+    const double share = felt.hand.position.z() / width_;
+    state.depth = std::abs(felt.hand.position.z());
+    return {0.0, 0.0, -strength_ * share * share * share};
+  }
+
+ private:
+  double strength_;  // [N]
+  double width_;     // [m]
+};
+
+class ValleyNumbers final : public OwnNumbers {
+ public:
+  ValleyNumbers(double strength, double width) : strength_(strength), width_(width) {}
+  std::unique_ptr<OwnLaw> law(const Setting&) const override {
+    return std::make_unique<Valley>(strength_, width_);
+  }
+
+ private:
+  double strength_;
+  double width_;
+};
+
+/// [fields.NAME] type = "valley": strength [N] at the distance width [m]. Formulas may stand there.
+FieldKind read_valley(const FieldReader& read) {
+  const double strength = read.number("strength", kStrengthBounds, "N");
+  const double width = std::max(read.number("width", kLengthBounds, "m"), 1e-6);
+  return OwnParameters{"valley", std::make_shared<ValleyNumbers>(strength, width)};
+}
+
+void add(haptrial::experiments::PluginParts& parts) { parts.field({"valley", read_valley}); }
+
+}  // namespace
+
+HAPTRIAL_PLUGIN("valley", "1.0", add)
