@@ -23,7 +23,7 @@ run_tests() {
 case "${1:-release}" in
   release)
     install_packages build test
-    build build -DHAPTRIAL_TESTS=ON -DHAPTRIAL_UNITY=ON
+    build build -DHAPTRIAL_TESTS=ON -DHAPTRIAL_UNITY=ON -DHAPTRIAL_PYTHON=ON
     run_tests build
     ;;
   asan | tsan)

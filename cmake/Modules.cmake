@@ -90,16 +90,29 @@ function(haptrial_stand_ins)
   endforeach()
 endfunction()
 
-# The console's page is built into the command.
-function(haptrial_console_page)
-  set(html ${CMAKE_SOURCE_DIR}/experiments/console.html)
-  set(nerves ${CMAKE_SOURCE_DIR}/experiments/nerves.html)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${html} ${nerves})
-  file(READ ${html} HAPTRIAL_CONSOLE_HTML)
-  file(READ ${nerves} HAPTRIAL_NERVES_HTML)
-  configure_file(${CMAKE_SOURCE_DIR}/cmake/console_page.cpp.in ${CMAKE_BINARY_DIR}/console_page.cpp
-                 @ONLY)
-  target_sources(haptrial_console PRIVATE ${CMAKE_BINARY_DIR}/console_page.cpp)
+# Plug-ins with what the command refuses, and one without: stand_in_plugin.
+function(haptrial_stand_in_plugins)
+  foreach(flaw none other_program unlinked bad_name taken_device taken_field)
+    string(REPLACE "_none" "" name stand_in_plugin_${flaw})
+    string(TOUPPER STAND_IN_${flaw} definition)
+    add_library(${name} MODULE ${CMAKE_SOURCE_DIR}/tests/support/stand_in_plugin.cpp)
+    target_link_libraries(${name} PRIVATE haptrial_plugin)
+    target_compile_definitions(${name} PRIVATE ${definition})
+    set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
+    haptrial_optimise(${name} tests/support)
+    add_dependencies(${name} haptrial_plugin_abi)
+    add_dependencies(test_experiments ${name})
+  endforeach()
+endfunction()
+
+# haptrial_page(MODULE FILE FUNCTION HEADER): a page is built in, as what FUNCTION() of HEADER returns.
+function(haptrial_page module file HAPTRIAL_PAGE_FUNCTION HAPTRIAL_PAGE_HEADER)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${file})
+  file(READ ${CMAKE_SOURCE_DIR}/${file} HAPTRIAL_PAGE_HTML)
+  cmake_path(GET file STEM name)
+  set(built ${CMAKE_BINARY_DIR}/${name}_page.cpp)
+  configure_file(${CMAKE_SOURCE_DIR}/cmake/page.cpp.in ${built} @ONLY)
+  target_sources(haptrial_${module} PRIVATE ${built})
 endfunction()
 
 # So are the shipped definitions, which a new one may begin from.
@@ -122,8 +135,14 @@ function(haptrial_test name link)
   add_executable(test_${name} ${ARGN})
   target_link_libraries(test_${name} PRIVATE haptrial_${link} haptrial_test_support GTest::gmock
                                              GTest::gtest GTest::gtest_main)
-  haptrial_precompile(test_${name} tests)
-  haptrial_optimise(test_${name} tests)
+  list(GET ARGN 0 folder)
+  cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${CMAKE_SOURCE_DIR})
+  haptrial_optimise(test_${name} ${folder})
+  if(folder MATCHES "${HAPTRIAL_COMPUTING_TESTS}")
+    haptrial_precompile(test_${name} core_tests)
+  else()
+    haptrial_precompile(test_${name} tests)
+  endif()
   haptrial_unite_tests(test_${name} ${ARGN})
   # The allocation guard sees malloc of our objects too (Eigen calls it directly); it is linked
   # also where no test names it.
@@ -214,6 +233,7 @@ function(haptrial_layer_tests)
   target_sources(test_experiments PRIVATE ${CMAKE_SOURCE_DIR}/docs/worked/protocol/springs.cpp)
   target_include_directories(test_experiments PRIVATE ${CMAKE_SOURCE_DIR}/docs/worked/protocol)
   add_dependencies(test_experiments stand_in_dhd stand_in_hd stand_in_lsl)
+  haptrial_stand_in_plugins()
 endfunction()
 
 # What tests of a module need beside it: peers, slow methods to compare with, files to try.
@@ -259,8 +279,11 @@ endfunction()
 function(haptrial_tests)
   include(GoogleTest)
   find_package(GTest REQUIRED)
-  haptrial_precompiled(tests LIBRARIES Eigen3::Eigen fmt::fmt GTest::gmock GTest::gtest
-                       HEADERS <gmock/gmock.h> <gtest/gtest.h>)
+  foreach(kind tests core_tests)
+    string(REPLACE core_tests tests/core folder ${kind})
+    haptrial_precompiled(${kind} FOR ${folder} LIBRARIES Eigen3::Eigen fmt::fmt GTest::gmock GTest::gtest
+                         HEADERS <gmock/gmock.h> <gtest/gtest.h>)
+  endforeach()
   file(GLOB support CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/support/*.cpp)
   list(FILTER support EXCLUDE REGEX "/stand_in_")
   add_library(haptrial_test_support STATIC ${support})

@@ -6,6 +6,9 @@ set(CPACK_PACKAGE_CONTACT "the haptrial authors <haptrial@localhost>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES TRUE)
 set(CPACK_COMPONENTS_ALL command development)
+if(HAPTRIAL_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEB_COMPONENT_INSTALL TRUE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -21,6 +24,18 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libhaptrial-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Headers, static libraries and CMake
 files, for protocols and programs of one's own.")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-haptrial)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS TRUE)
+if(HAPTRIAL_PYTHON)  # an extension serves the one version of Python that it was built for
+  math(EXPR next "${Python3_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+      "python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next}), python3-numpy, python3-pandas")
+endif()
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS haptrial)
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Sessions of haptrial as pandas frames,
+with its scores, fits and procedures, in Python.")
 
 # The libraries that an exported target names, as packages.txt lists them for the build.
 file(STRINGS ${CMAKE_SOURCE_DIR}/cmake/packages.txt lines REGEX "^build +[a-z0-9.+-]+-dev ")

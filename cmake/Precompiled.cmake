@@ -1,5 +1,5 @@
-# The headers of libraries that most files read, compiled once for the modules and once for the
-# tests. Every file still includes what it uses: HAPTRIAL_PRECOMPILED=OFF builds without them.
+# The headers of libraries that most files read, compiled once for the modules and twice for
+# the tests, at both levels of optimisation. Every file still includes what it uses: HAPTRIAL_PRECOMPILED=OFF builds without them.
 option(HAPTRIAL_PRECOMPILED "Precompile the headers of libraries (GCC)" ON)
 if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   set(HAPTRIAL_PRECOMPILED OFF)
@@ -12,8 +12,8 @@ set(HAPTRIAL_LIBRARY_HEADERS
     <thread> <tuple> <unordered_map> <utility> <variant> <vector>
     <Eigen/Geometry> <fmt/format.h>)
 
-# haptrial_precompile(TARGET KIND): TARGET's files begin with KIND's precompiled headers: modules or
-# tests. Targets of one kind must agree in all macros and options that these headers depend on.
+# haptrial_precompile(TARGET KIND): TARGET's files begin with KIND's precompiled headers: modules,
+# tests or core_tests. Targets of one kind must agree in all macros and options that these headers depend on.
 function(haptrial_precompile target kind)
   if(HAPTRIAL_PRECOMPILED)
     target_precompile_headers(${target} REUSE_FROM precompiled_${kind})
@@ -34,9 +34,10 @@ function(haptrial_skip_own_options target)
   endforeach()
 endfunction()
 
-# haptrial_precompiled(KIND LIBRARY... HEADERS ...): makes what haptrial_precompile takes.
+# haptrial_precompiled(KIND FOR FOLDER LIBRARIES ... HEADERS ...): makes what haptrial_precompile
+# takes, at the level of optimisation of a folder.
 function(haptrial_precompiled kind)
-  cmake_parse_arguments(ARG "" "" "LIBRARIES;HEADERS" ${ARGN})
+  cmake_parse_arguments(ARG "" "FOR" "LIBRARIES;HEADERS" ${ARGN})
   if(NOT HAPTRIAL_PRECOMPILED)
     return()
   endif()
@@ -45,5 +46,6 @@ function(haptrial_precompiled kind)
   add_library(precompiled_${kind} OBJECT EXCLUDE_FROM_ALL ${source})
   target_compile_features(precompiled_${kind} PRIVATE cxx_std_20)
   target_link_libraries(precompiled_${kind} PRIVATE ${ARG_LIBRARIES})
+  haptrial_optimise(precompiled_${kind} "${ARG_FOR}")  # __OPTIMIZE__ is one of the macros
   target_precompile_headers(precompiled_${kind} PRIVATE ${HAPTRIAL_LIBRARY_HEADERS} ${ARG_HEADERS})
 endfunction()

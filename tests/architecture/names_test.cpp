@@ -12,6 +12,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -31,12 +32,24 @@ std::optional<std::string> name_in(const std::string& line) {
   return std::nullopt;
 }
 
+/// Whether what follows a line is text, a shader's say, that a raw string holds.
+bool is_text_after(const std::string& line, bool text) {
+  static const std::regex kBegins("R\"\\w*\\((?!.*\\)\\w*\").*");
+  static const std::regex kEnds("\\)\\w*\"");
+  return text ? !std::regex_search(line, kEnds) : std::regex_search(line, kBegins);
+}
+
 /// The names that a file's anonymous namespace gives, each with the namespace around it.
 std::set<std::string> own_names(std::istream& in) {
   std::set<std::string> names;
   std::string around;
   bool inside = false;
+  bool text = false;
   for (std::string line; std::getline(in, line);) {
+    const bool was_text = std::exchange(text, is_text_after(line, text));
+    if (was_text) {
+      continue;
+    }
     if (line.starts_with("namespace haptrial")) {
       around = line.substr(line.find(' ') + 1, line.rfind(' ') - line.find(' ') - 1) + "::";
     } else if (line == "namespace {") {

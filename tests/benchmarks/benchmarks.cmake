@@ -44,8 +44,10 @@ endforeach()
 target_sources(bench_servo PRIVATE ${CMAKE_SOURCE_DIR}/tests/experiments/timed_session.cpp
                                    ${CMAKE_SOURCE_DIR}/tests/experiments/shipped.cpp
                                    ${CMAKE_SOURCE_DIR}/tests/support/temporary_folder.cpp)
-target_sources(bench_procedure_coverage PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/psychometric/fit/procedure_study.cpp)
-target_link_libraries(bench_procedure_coverage PRIVATE PkgConfig::gsl)
+target_sources(bench_procedure_coverage
+               PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/psychometric/fit/procedure_study.cpp
+                       ${CMAKE_SOURCE_DIR}/tests/analysis/psychometric/surface/surface_counts.cpp)
+target_link_libraries(bench_procedure_coverage PRIVATE haptrial_psychometric_surface PkgConfig::gsl)
 target_sources(bench_null_reports PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/force_training/statistics/null_reports.cpp)
 target_sources(bench_null_relabelled
                PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/force_training/comparison/null_comparisons.cpp

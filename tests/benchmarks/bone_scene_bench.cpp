@@ -123,6 +123,7 @@ class Stage {
     frame_.meshes.push_back(
         {std::make_shared<geometry::Mesh>(render::burr_mesh(0.006, 0.0024, 0.09)),
          Eigen::Isometry3d::Identity()});
+    frame_.meshes.back().casts = render::burr_shadow(0.006, 0.0024, 0.09);
     draw();
   }
   Cost moving() {

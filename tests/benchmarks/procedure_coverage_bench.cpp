@@ -3,7 +3,7 @@
 // the truth. The tables of docs/algorithms/procedure-coverage.md. The numbers do not depend on the
 // number of threads.
 //
-//     bench_procedure_coverage [observers] [threads] [part of a name]
+//     bench_procedure_coverage [observers] [threads] [part of a name] [beta-binomial fits of each]
 
 #include <fmt/format.h>
 
@@ -14,6 +14,7 @@
 #include <string>
 
 #include "tests/analysis/psychometric/fit/procedure_study.h"
+#include "tests/analysis/psychometric/surface/surface_counts.h"
 
 namespace {
 
@@ -39,8 +40,18 @@ void print(const char* what, const Tally& t, const char* lacking) {
              percent(t.open, t.observers));
 }
 
-void report(const ProcedureStudy& study, int observers, int threads) {
-  const StudyResult r = run_study(study, observers, threads);
+/// How often an interval of a fit holds the truth.
+void print_held(const char* what, const Tally& t) {
+  if (t.observers > 0) {
+    const double share = t.coverage();
+    fmt::print("    {:45} holds {:5.1f} % ± {:.1f}  open {:.1f} %\n", what, 100.0 * share,
+               100.0 * std::sqrt(share * (1.0 - share) / t.observers),
+               percent(t.open, t.observers));
+  }
+}
+
+void report(const ProcedureStudy& study, int observers, int threads, int bayesian) {
+  const StudyResult r = run_study(study, observers, threads, bayesian);
   fmt::print("{} ({:.0f} trials)\n", study.name, r.trials);
   print(("own estimate of " + study.meant).c_str(), r.natural, "without");
   print("own width, ln(found/true)", r.natural_width, "without");
@@ -50,6 +61,10 @@ void report(const ProcedureStudy& study, int observers, int threads) {
   }
   print("fit: threshold", r.threshold, "open");
   print("fit: ln(width/true)", r.width, "open");
+  print_held("profile likelihood: threshold", r.profile);
+  print_held("profile likelihood: width", r.profile_width);
+  print_held("beta-binomial fit: threshold", r.bayesian);
+  print_held("beta-binomial fit: width", r.bayesian_width);
   if (r.threshold.observers > 0) {
     auto widths = r.width.errors;
     std::nth_element(widths.begin(), widths.begin() + static_cast<long>(widths.size() / 2),
@@ -59,17 +74,34 @@ void report(const ProcedureStudy& study, int observers, int threads) {
   }
 }
 
+/// QUEST+ of two variables: the posterior that a report of surfaces states.
+void report_surfaces(int observers, int threads) {
+  const auto c = haptrial::test::count_surfaces(observers, threads);
+  fmt::print("QUEST+ of two variables (120 trials)\n");
+  const char* const names[] = {"threshold", "gain", "spread"};
+  for (std::size_t k = 0; k < c.held.size(); ++k) {
+    fmt::print("    {:28} bias {:+.3f}  holds {:5.1f} %\n", names[k], c.error[k],
+               percent(c.held[k], c.observers));
+  }
+  fmt::print("    contour                      holds {:5.1f} % of {}\n",
+             percent(c.contours_held, c.contours), c.contours);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const int observers = argc > 1 ? std::atoi(argv[1]) : 1000;
   const int threads = argc > 2 ? std::atoi(argv[2]) : 2;
   const std::string part = argc > 3 ? argv[3] : "";
+  const int bayesian = argc > 4 ? std::atoi(argv[4]) : 0;
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   for (const ProcedureStudy& study : haptrial::test::procedure_studies()) {
     if (study.name.find(part) != std::string::npos) {
-      report(study, observers, threads);
+      report(study, observers, threads, bayesian);
     }
+  }
+  if (std::string("surfaces").find(part) != std::string::npos) {
+    report_surfaces(observers, threads);
   }
   return 0;
 }

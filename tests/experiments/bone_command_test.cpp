@@ -1,12 +1,19 @@
-// haptrial bone import, info and make, as they are called from a shell.
+// haptrial bone import, info, make, structures, place and export, as they are called from a shell.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
+#include "core/bone/anatomy/anatomy.h"
+#include "core/bone/data/load_bone.h"
+#include "core/bone/record/drilling_types.h"
+#include "core/record/read/session_reader.h"
 #include "tests/experiments/command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/experiments/small_drilling.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"
 
@@ -91,6 +98,111 @@ TEST_F(BoneCommandTest, ACtBecomesABone) {
   EXPECT_EQ(result.status, 0) << result.errors;
   EXPECT_THAT(result.output, HasSubstr("bone from 1324 on"));
   EXPECT_THAT(result.errors, IsEmpty());
+}
+
+TEST_F(BoneCommandTest, TheOptionsOfAnImportAreCheckedBeforeAnythingIsRead) {
+  const std::string import = "haptrial bone import absent.nrrd new.nrrd ";
+  expect_refusal(import + "--crop 0,1,0,1", "--crop is not a box; allowed: X0,X1,Y0,Y1,Z0,Z1");
+  expect_refusal(import + "--crop 1,0,0,1,0,1", "the lower first");
+  expect_refusal(import + "--around 1,2,3,0", "allowed: X,Y,Z,EDGE");
+  expect_refusal(import + "--around 1,2,3,4 --crop 0,1,0,1,0,1", "write one of them");
+  expect_refusal(import + "--structure nerve.stl", "allowed: NAME=FILE");
+  expect_refusal(import + "--mesh-axes xyz", "auto, lps, ras");
+  expect_refusal(import + "--histogram picture.jpg", "allowed: .png, .svg");
+  expect_refusal(import + "--fill 0", "--fill is 0");
+}
+
+TEST_F(BoneCommandTest, StructuresAreListedAndNamedByATable) {
+  ASSERT_EQ(run("haptrial bone make temporal ear.nrrd --spacing 2").status, 0);
+  test::write_text(folder_ / "odd.toml", "[names]\n\"incus\" = \"Incus \\\"dexter\\\"\"\n");
+  const auto odd =
+      run("haptrial bone structures ear.nrrd --labels odd.toml --out odd.nrrd --table back.toml");
+  EXPECT_EQ(odd.status, 0) << odd.errors;
+  EXPECT_THAT(odd.output, HasSubstr("unknown; the nearest known name is 'incus'"));
+  EXPECT_THAT(odd.output, HasSubstr("known, vital"));
+  EXPECT_THAT(test::read_text(folder_ / "back.toml"),
+              HasSubstr("\"Incus \\\"dexter\\\"\" = \"incus\"\n"));
+  const auto back =
+      run("haptrial bone structures odd.nrrd --labels back.toml --out back.nrrd && haptrial bone "
+          "structures ear.nrrd > one && haptrial bone structures back.nrrd > two && cmp one two");
+  EXPECT_EQ(back.status, 0) << back.errors << back.output;
+  expect_refusal("haptrial bone structures ear.nrrd --out odd.nrrd", "exists already");
+}
+
+TEST_F(BoneCommandTest, TheLabelsOfADrilledBoneSayWhatTheSessionRemoved) {
+  test::write_small_drilling(folder_.path(), 4.0);
+  const auto drilled =
+      run("haptrial dry-run study.toml --out out >/dev/null && "
+          "haptrial bone export out/S01.h5 drilled.seg.nrrd && "
+          "haptrial bone export out/S01.h5 drilled.stl && haptrial mesh info drilled.stl");
+  ASSERT_EQ(drilled.status, 0) << drilled.errors << drilled.output;
+  EXPECT_THAT(drilled.output, HasSubstr("removed     bone: "));
+  // As another program reads the file: a head of text, an empty line, bytes in gzip.
+  const auto counts = run(
+      "export LC_ALL=C; sed '1,/^$/d' drilled.seg.nrrd | gzip -dc | od -An -v -tu1 -w1 | sort -n | "
+      "uniq -c; grep -a -A4 'Segment2_ID' drilled.seg.nrrd; grep -a '^sizes' drilled.seg.nrrd");
+  EXPECT_THAT(counts.output, AllOf(HasSubstr("Segment2_LabelValue:=3"),
+                                   HasSubstr("Segment2_Name:=removed"), HasSubstr("32 12 20")));
+  std::istringstream lines(counts.output);
+  std::size_t removed = 0;
+  std::size_t all = 0;
+  for (std::size_t count = 0, label = 0; lines >> count >> label;) {
+    all += count;
+    removed += label == 3 ? count : 0;
+  }
+  EXPECT_EQ(all, 32U * 12U * 20U);
+  const record::SessionReader session(folder_ / "out/S01.h5");
+  EXPECT_GT(removed, 20U);
+  EXPECT_GE(removed, session.rows<record::RemovalRow>().size());
+  EXPECT_LE(removed, session.rows<record::RemovalRow>().size() + 64);  // crumbs
+  expect_refusal("haptrial bone export out/S01.h5 two.stl --trial 2", "--trial is 2; allowed: 1");
+  expect_refusal("haptrial bone export out/S01.h5 one.png", ".stl");
+  expect_refusal("haptrial bone export slabs.nrrd a.stl --trial 1", "leave it out for a bone");
+  expect_refusal("haptrial bone export slabs.nrrd a.stl --structure nerv", "facial nerve");
+  expect_refusal("haptrial bone export slabs.nrrd drilled.stl", "exists already");
+}
+
+TEST_F(BoneCommandTest, AStructureLeavesInEveryFormatAndComesBackInItsPlace) {
+  ASSERT_EQ(run("haptrial bone make temporal ear.nrrd --spacing 1 && haptrial bone import ear.nrrd "
+                "bare.nrrd --without 'sigmoid sinus'")
+                .status,
+            0);
+  const bone::BoneModel ear = bone::load_bone(folder_ / "ear.nrrd");
+  const auto sinus = static_cast<std::uint8_t>(bone::Anatomy::kSinusAndDura);
+  for (const char* name : {"a.stl", "a.obj", "a.ply", "ras.stl"}) {
+    const std::string file = name;
+    const bool ras = file == "ras.stl";
+    const auto there_and_back = run("haptrial bone export ear.nrrd " + file +
+                                    " --structure 'sigmoid sinus'" + (ras ? " --ras" : "") +
+                                    " && haptrial bone import bare.nrrd back.nrrd --overwrite "
+                                    "--structure 'dura=" +
+                                    file + "'" + (ras ? " --mesh-axes ras" : ""));
+    ASSERT_EQ(there_and_back.status, 0) << there_and_back.errors;
+    const bone::BoneModel back = bone::load_bone(folder_ / "back.nrrd");
+    ASSERT_EQ(back.labels.size(), ear.labels.size());
+    std::size_t all = 0;
+    std::size_t other = 0;
+    for (std::size_t at = 0; at < ear.labels.size(); ++at) {
+      const bool before = ear.labels[at] == sinus;
+      const bool after = back.structures[back.labels[at]].name == "sigmoid sinus and dura";
+      all += before ? 1 : 0;
+      other += before != after ? 1 : 0;
+    }
+    EXPECT_GT(all, 500U);
+    EXPECT_LT(other, all / 20) << name;  // the surface is smooth
+  }
+}
+
+TEST_F(BoneCommandTest, ThePictureOfAPlacedBoneIsDrawnAndWhatItCannotBeIsRefused) {
+  test::write_small_drilling(folder_.path(), 1.0);
+  const auto placed = run("haptrial bone place study.toml placed.png");
+  EXPECT_EQ(placed.status, 0) << placed.errors;
+  EXPECT_THAT(placed.output, AllOf(HasSubstr("no side is known"), HasSubstr("wrote")));
+  EXPECT_GT(std::filesystem::file_size(folder_ / "placed.png"), 10'000U);
+  expect_refusal("haptrial bone place study.toml placed.png", "exists already");
+  expect_refusal("haptrial bone place study.toml placed.jpg", "allowed: .png");
+  expect_refusal("haptrial bone place study.toml two.png --bone 2",
+                 "--bone is 2; allowed: a whole");
 }
 
 }  // namespace

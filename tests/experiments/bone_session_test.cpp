@@ -95,7 +95,7 @@ TEST_F(BoneSessionTest, RemovalsAndCrumbsAreTheDifferenceOfStartAndEnd) {
   ASSERT_GT(gone.size(), 30u);
   std::shared_ptr<const protocols::BoneStage> stage;
   const protocols::BoneReplay replay(*folder_ / "S01.h5");
-  replay.run(1, [&](std::uint64_t, const bone::DrillingView&,
+  replay.run(1, [&](std::uint64_t, std::uint64_t, const bone::DrillingView&,
                     const std::shared_ptr<const protocols::BoneStage>& now) { stage = now; });
   std::size_t crumbs = 0;
   std::size_t missing = 0;

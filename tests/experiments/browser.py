@@ -1,4 +1,4 @@
-"""Drives headless Chromium for the tests of the experimenter's console.
+"""Drives headless Chromium for the tests of pages.
 
 Speaks the WebDriver protocol to chromedriver with the standard library alone.
 """
@@ -23,7 +23,7 @@ ESCAPE = "\ue00c"
 class Driver:
     """One chromedriver on a port of its own choice, with one window."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, flags=()):
         profile = folder / "profile"
         self.process = subprocess.Popen(
             ["chromedriver", "--port=0"], stdout=subprocess.PIPE, text=True,
@@ -34,8 +34,8 @@ class Driver:
                 port = line.strip().rstrip(".").rsplit(" ", 1)[1]
                 self.base = f"http://127.0.0.1:{port}"
                 break
-        options = {"args": FLAGS + [f"--user-data-dir={profile}"]}
-        logging = {"goog:loggingPrefs": {"browser": "ALL"}}
+        options = {"args": FLAGS + [f"--user-data-dir={profile}", *flags]}
+        logging = {"goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}
         try:
             answer = self.call("POST", "/session", {"capabilities": {"alwaysMatch": {
                 "browserName": "chrome", "goog:chromeOptions": options, **logging}}})
@@ -86,6 +86,13 @@ class Driver:
         """Errors in the browser's console: scripts that fail, things that the policy blocks."""
         log = self.call("POST", "/se/log", {"type": "browser"})
         return [entry["message"] for entry in log if entry["level"] in ("SEVERE", "WARNING")]
+
+    def requested(self):
+        """Addresses that pages asked for since the last call."""
+        log = self.call("POST", "/se/log", {"type": "performance"})
+        messages = [json.loads(entry["message"])["message"] for entry in log]
+        return [message["params"]["request"]["url"] for message in messages
+                if message["method"] == "Network.requestWillBeSent"]
 
     def close(self):
         try:

@@ -57,7 +57,9 @@ TEST_F(CommandTest, HelpShowsAnExampleOfEverySubcommand) {
     EXPECT_EQ(help.status, 0);
     EXPECT_THAT(help.output, HasSubstr(std::string("Example:\n  haptrial ") + name));
   }
-  EXPECT_THAT(run_command("haptrial --version").output, HasSubstr("haptrial 0."));
+  EXPECT_THAT(run_command("haptrial --version").output,
+              testing::AllOf(HasSubstr("haptrial 0."), HasSubstr("\nEigen 3."),
+                             HasSubstr("HDF5 1."), HasSubstr("GSL 2."), HasSubstr("SUNDIALS ")));
 }
 
 TEST_F(CommandTest, StudyFromDefinitionToReport) {

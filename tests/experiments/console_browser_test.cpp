@@ -234,5 +234,78 @@ TEST(ConsoleBrowserTest, ADrillingHasAPanelOfItsFigures) {
   }
 }
 
+/// What a session of two says of its link: at first nothing, then a link, then its loss.
+record::PartnerState partner_at(int step) {
+  record::PartnerState p;
+  if (step == 0) {
+    return p;
+  }
+  p.heard = true;
+  p.round_trip = 0.10341;
+  p.jitter = 0.00832;
+  p.loss = 0.0487;
+  p.energy = 0.01249;
+  p.linked = p.coupled = p.claims = step == 1;
+  p.other_claims = step == 2;
+  p.lead = step == 1 ? 0.75 : 1.0;
+  p.losses = step == 1 ? 0 : 2;
+  return p;
+}
+
+TEST(ConsoleBrowserTest, ASessionOfTwoHasAPanelOfItsLink) {
+  if (!is_installed("chromedriver") || !is_installed("chromium") || !is_installed("python3")) {
+    GTEST_SKIP() << "needs Debian's chromium, chromium-driver and python3";
+  }
+  const test::TemporaryFolder folder;
+  SessionControl control;
+  std::atomic<bool> ended{false};
+  std::vector<std::string> asked;
+  std::thread session([&] {
+    SessionStatus status;
+    status.subject = "S01";
+    status.state = "running";
+    status.stage = "run";
+    status.simulated = true;
+    status.trial = status.trials = 1;
+    status.rate = status.rate_measured = 1000.0;
+    int step = 0;
+    for (; !ended; std::this_thread::sleep_for(std::chrono::milliseconds(20))) {
+      for (const auto& message : control.take()) {
+        asked.push_back(name_of(message.request));
+        step = message.request == Request::kTakeLead   ? 1
+               : message.request == Request::kHandOver ? 2
+                                                       : step;
+      }
+      status.ticks += 20;
+      status.partner = partner_at(step);
+      control.publish(status);
+    }
+  });
+  int status = 0;
+  std::string output;
+  {
+    const Console console(control);
+    const std::string command = "timeout 120 python3 '" HAPTRIAL_SOURCE_DIR
+                                "/tests/experiments/console_partner.py' '" +
+                                console.url() + "' '" + folder.path().string() + "' 2>&1";
+    FILE* script = ::popen(command.c_str(), "r");
+    for (std::array<char, 512> line; std::fgets(line.data(), line.size(), script) != nullptr;) {
+      output += line.data();
+    }
+    status = ::pclose(script);
+  }
+  ended = true;
+  session.join();
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 77) {
+    GTEST_SKIP() << output;
+  }
+  EXPECT_EQ(status, 0) << output;
+  EXPECT_THAT(asked, ElementsAre("take_lead", "hand_over"));
+  if (const char* kept = std::getenv("HAPTRIAL_KEEP_PICTURES")) {
+    fs::copy_file(folder / "console-partner.png", fs::path(kept) / "console-partner.png",
+                  fs::copy_options::overwrite_existing);
+  }
+}
+
 }  // namespace
 }  // namespace haptrial::experiments

@@ -87,6 +87,7 @@ TEST_P(ShownCommands, Work) {
   const test::TemporaryFolder checkout;  // looks like a checkout, and may be written to
   fs::create_directory_symlink(HAPTRIAL_BINARY_DIR, checkout / "build");
   fs::create_directory_symlink(kSource / "experiments", checkout / "experiments");
+  fs::create_directory_symlink(kSource / "docs", checkout / "docs");
   const test::CommandResult result = test::run_command("set -e; cd '" + checkout.path().string() +
                                                        "'\n" + shell_blocks(GetParam()));
   // A machine that does something else besides may be too late for a device; the page says so.

@@ -57,6 +57,45 @@ TEST_F(InstallTest, AProgramWithAProtocolOfItsOwnRunsStudies) {
   EXPECT_EQ(ran.status, 0) << "it has the others' as well: " << ran.errors;
 }
 
+/// Each kind of plug-in, with nothing of the source tree, in the command as it is installed.
+TEST_F(InstallTest, TheInstalledCommandLoadsPlugins) {
+  const test::CommandResult built = build("plugin");
+  ASSERT_EQ(built.status, 0) << built.output << built.errors;
+  const std::string program = root_ + "/installed/bin/haptrial ";
+  const auto plugin = [&](const char* name) {
+    return " --plugin '" + root_ + "/build/" + name + ".so' ";
+  };
+  const std::string sessions = root_ + "/sessions";
+  test::CommandResult ran =
+      test::run_command(program + plugin("protocol") +
+                        "dry-run " HAPTRIAL_SOURCE_DIR
+                        "/docs/worked/protocol/springs.toml --subjects 1 --trials 8 --out " +
+                        sessions);
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  ran = test::run_command(program + "analyze " + sessions);
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.errors.find("plug-in springs 1.0"), std::string::npos) << ran.errors;
+  ran = test::run_command(program + plugin("score") + plugin("protocol") + "analyze " + sessions);
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_NE(ran.output.find("S01: threshold "), std::string::npos) << ran.output;
+  EXPECT_NE(ran.output.find("8 scores of plug-ins"), std::string::npos) << ran.output;
+  const test::CommandResult table = test::run_command("cat " + sessions + "/plugin_scores.csv");
+  EXPECT_NE(table.output.find("S01,1,7,8,compare,way,0."), std::string::npos) << table.output;
+
+  ran = test::run_command(program + plugin("device") + "devices");
+  EXPECT_NE(ran.output.find("circle           ready"), std::string::npos) << ran.output;
+  ran = test::run_command(program + plugin("device") + "device-test circle:0.5");
+  EXPECT_EQ(ran.status, 2) << ran.output;
+  EXPECT_NE(ran.errors.find("a radius up to 0.07"), std::string::npos) << ran.errors;
+  ran = test::run_command("cd '" + root_ +
+                          "' && cp " HAPTRIAL_SOURCE_DIR
+                          "/experiments/first_experiment.toml valley.toml && printf "
+                          "'\n[fields.valley]\ntype = \"valley\"\nstrength = 2\nwidth = 0.02\n'"
+                          " >> valley.toml && " +
+                          program + plugin("field") + "validate valley.toml");
+  EXPECT_EQ(ran.status, 0) << ran.errors;
+}
+
 TEST_F(InstallTest, AnotherProjectFindsLinksAndRunsTheLibraries) {
   const test::CommandResult built = build("geometry");
   ASSERT_EQ(built.status, 0) << built.output << built.errors;

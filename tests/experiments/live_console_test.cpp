@@ -38,7 +38,7 @@ class LiveConsoleTest : public testing::Test {
     // Slow enough for a browser on a busy machine to do something within a pass.
     test::write_text(folder_ / "study.toml", kept_pictures() != nullptr
                                                  ? test::shipped_text()
-                                                 : test::brisk_text({{"speed", "speed = 0.018"}}));
+                                                 : test::brisk_text({{"speed", "speed = 0.012"}}));
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 

@@ -144,6 +144,17 @@ TEST_F(LiveDrillingWindowTest, EveryKeyDoesItsPartAndTheReplayKnows) {
   ASSERT_EQ(ended.status, 0) << ended.errors;
 
   const record::SessionReader reader(file());
+  // Nothing before the first picture: neither a sample of the pass nor a cut.
+  const std::vector<record::EventRow> events = reader.events();
+  const auto picture = std::find_if(events.begin(), events.end(), [](const auto& event) {
+    return event.kind == "first_picture";
+  });
+  ASSERT_NE(picture, events.end());
+  const std::uint64_t first_sample = reader.passes().at(0).first_sample;
+  EXPECT_LE(picture->time_ns, 1'000'000 * static_cast<std::int64_t>(first_sample));
+  for (const record::RemovalRow& row : reader.rows<record::RemovalRow>()) {
+    ASSERT_GE(row.sequence, first_sample);
+  }
   const auto rows = reader.rows<record::ToolRow>();
   EXPECT_THAT(while_held(rows, Function::kCameraMove).modes, testing::Contains(1));
   EXPECT_THAT(while_held(rows, Function::kCameraTurn).modes, testing::Contains(2));

@@ -68,6 +68,7 @@ class LiveInterruptTest : public testing::TestWithParam<std::tuple<Way, Moment>>
         break;
       case Way::kTerminate:
         session.signal(SIGTERM);
+        session.signal(SIGTERM);  // as `timeout` tells the program and its group
         break;
       case Way::kCloseTerminal:
         session.hang_up();

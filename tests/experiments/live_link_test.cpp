@@ -318,8 +318,11 @@ TEST_F(LiveLinkTest, AStopOnOneSideStopsBoth) {
 }
 
 /// Ten minutes each over the networks of the table in docs/algorithms/tutoring.md, where asked for;
-/// else a trial over one of them.
+/// else a trial over one of them. Each hand has half of its own world: with none of it, a hand that
+/// presses has nothing but the spring of the law to rest on.
 TEST_F(TimedLinkTest, EveryNetworkLeavesTheHandsPassive) {
+  test::write_text(definition(),
+                   test::brisk_text() + "\n[tutoring]\npatience = 2\nauthority = 0.5\n");
   const bool all = std::getenv("HAPTRIAL_EVERY_NETWORK") != nullptr;
   for (const double delay : all ? std::vector{0.0, 0.05, 0.2} : std::vector{0.05}) {
     for (const char* side : {"learning", "teaching"}) {

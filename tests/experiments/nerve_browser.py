@@ -54,10 +54,24 @@ def look(page, url, folder):
     page.run("document.activeElement.blur()")
     wait("the threshold of the monitor", lambda: page.run(
         "return document.getElementById('threshold_2').value") == "250")
-    page.picture(folder / "nerve-monitor.png", height=1000)
+    page.type("stimulus", CONTROL + "a" + CONTROL + "0.3" + ENTER)
+    wait("the current", lambda: page.text("said") == "probe: 0.3 mA")
+    page.run("document.activeElement.blur()")
+    wait("the current of the probe", lambda: page.run(
+        "return document.getElementById('stimulus').value") == "0.300")
+    page.click("search_0")
+    # A busy machine may show the answer first.
+    words = ("looking for the least current that oculi", "oculi answers from")
+    wait("a search", lambda: page.text("probe").startswith(words))
+    page.picture(folder / "nerve-monitor.png", height=1400)
     page.picture(folder / "nerve-monitor-narrow.png", 620, 1300)
     wide = page.run("return document.documentElement.scrollWidth > window.innerWidth")
     assert not wide, "the narrow page scrolls sideways"
+
+    # At the nerve itself an answer of 100 µV needs about 0.09 mA.
+    wait("the threshold of the nerve", lambda: page.text("probe").startswith("oculi answers from"), 20)
+    found = float(page.text("probe").split()[3])
+    assert 0.07 < found < 0.13, found
 
     print("CLOSE", flush=True)
     wait("the banner of a lost connection", lambda: not page.hidden("lost"))

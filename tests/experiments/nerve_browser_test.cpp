@@ -14,7 +14,7 @@
 #include "core/base/error.h"
 #include "core/nerve/beside/nerve_beside.h"
 #include "experiments/console/console.h"
-#include "experiments/console/nerve_page.h"
+#include "protocols/bone_drilling/nerve_page.h"
 #include "tests/experiments/console_client.h"
 #include "tests/support/temporary_folder.h"
 
@@ -34,13 +34,14 @@ nerve::NerveSetup setup() {
   return s;
 }
 
-/// A servo loop that drills beside nerves in real time.
+/// A servo loop that drills beside nerves in real time; when the technician has set the current, it
+/// holds a probe on the first of them instead.
 class Drilling {
  public:
   explicit Drilling(std::shared_ptr<nerve::MonitorDesk> desk)
       : beside_(
-            [](std::uint64_t) {
-              return std::make_unique<nerve::NerveSimulation>(setup(), 1000.0, 1);
+            [this](std::uint64_t) {
+              return std::make_unique<nerve::NerveSimulation>(setup(), 1000.0, 1, pulse_);
             },
             1000.0, {std::move(desk), nullptr}),
         thread_([this] { run(); }) {}
@@ -55,10 +56,14 @@ class Drilling {
     nerve::NerveTick tick;
     auto due = std::chrono::steady_clock::now();
     for (; !ended_; ++tick.sequence) {
-      tick.drilling = (tick.sequence / 4000) % 2 == 0;
+      const float current = pulse_->load();
+      const bool probes = current != kAtFirst;
+      tick.drilling = !probes && (tick.sequence / 4000) % 2 == 0;
+      tick.current = probes && tick.sequence % 250 == 0 ? current : 0.0f;
+      tick.nerves[0].distance = 0.0f;
       for (std::size_t n = 0; n < 2; ++n) {
-        tick.nerves[n].burst = tick.sequence % 1500 == 400 + 600 * n;
-        tick.nerves[n].train = tick.sequence % 6000 == 2500 + 2000 * n;
+        tick.nerves[n].burst = !probes && tick.sequence % 1500 == 400 + 600 * n;
+        tick.nerves[n].train = !probes && tick.sequence % 6000 == 2500 + 2000 * n;
         tick.nerves[n].severity = static_cast<float>(random.uniform(0.5, 1.0));
       }
       beside_.after_tick(tick);
@@ -67,6 +72,8 @@ class Drilling {
     }
   }
 
+  static constexpr float kAtFirst = 0.5e-3f;  // [A]
+  nerve::PulseCurrent pulse_{std::make_shared<std::atomic<float>>(kAtFirst)};
   nerve::ThreadedNerves beside_;
   std::atomic<bool> ended_{false};
   std::thread thread_;
@@ -79,12 +86,13 @@ TEST(NerveBrowserTest, ATechnicianWatchesMutesAndSetsAThreshold) {
   const test::TemporaryFolder folder;
   SessionControl control;
   ConsoleOptions options;
-  options.nerve_desk = std::make_shared<nerve::MonitorDesk>();
-  const Drilling drilling(options.nerve_desk);
+  const auto page = std::make_shared<protocols::NervePage>();
+  options.sides = {page};
+  const Drilling drilling(page->desk());
   auto console = std::make_unique<Console>(control, options);
-  const std::string command = "timeout 120 python3 '" HAPTRIAL_SOURCE_DIR
-                              "/tests/experiments/nerve_browser.py' '" +
-                              console->nerve_url() + "' '" + folder.path().string() + "' 2>&1";
+  const std::string command =
+      "timeout 120 python3 '" HAPTRIAL_SOURCE_DIR "/tests/experiments/nerve_browser.py' '" +
+      console->side_url("nerves") + "' '" + folder.path().string() + "' 2>&1";
   FILE* script = ::popen(command.c_str(), "r");
   ASSERT_NE(script, nullptr);
   std::string output;
@@ -109,7 +117,7 @@ TEST(NerveBrowserTest, ATechnicianWatchesMutesAndSetsAThreshold) {
 
 std::string refusal(const std::string& json) {
   try {
-    parse_nerve_order(json);
+    protocols::parse_nerve_order(json);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -118,16 +126,24 @@ std::string refusal(const std::string& json) {
 
 TEST(NervePageTest, OrdersAreReadStrictly) {
   EXPECT_EQ(refusal(R"({"channel": 0, "muted": true})"), "");
-  const nerve::MonitorOrder order = parse_nerve_order(R"({"channel": 2, "threshold": 150e-6})");
+  const nerve::MonitorOrder order =
+      protocols::parse_nerve_order(R"({"channel": 2, "threshold": 150e-6})");
   EXPECT_EQ(order.channel, 2u);
-  EXPECT_FALSE(order.mutes);
+  using What = nerve::MonitorOrder::What;
+  EXPECT_EQ(order.what, What::kThreshold);
   EXPECT_DOUBLE_EQ(order.threshold, 150e-6);
+  EXPECT_EQ(protocols::parse_nerve_order(R"({"channel": 1, "search": true})").what, What::kSearch);
+  const nerve::MonitorOrder probe = protocols::parse_nerve_order(R"({"stimulus": 0.003})");
+  EXPECT_EQ(probe.what, What::kStimulus);
+  EXPECT_DOUBLE_EQ(probe.current, 0.003);
   for (const char* wrong : {"", "[]", "{}", R"({"channel": 0})", R"({"muted": true})",
                             R"({"channel": -1, "muted": true})", R"({"channel": 9, "muted": true})",
                             R"({"channel": 0, "muted": 1})", R"({"channel": 0, "threshold": 1})",
-                            R"({"channel": 0, "threshold": 0})",
+                            R"({"channel": 0, "threshold": 0})", R"({"stimulus": 0.01})",
+                            R"({"stimulus": 1e-3, "channel": 0})",
+                            R"({"channel": 0, "search": false})",
                             R"({"channel": 0, "threshold": 1e-4, "muted": true})"}) {
-    EXPECT_THAT(refusal(wrong), HasSubstr("either \"muted\"")) << wrong;
+    EXPECT_THAT(refusal(wrong), HasSubstr("one of \"muted\"")) << wrong;
   }
 }
 
@@ -143,7 +159,7 @@ TEST(NervePageTest, OnlyAConsoleWithAMonitorServesIt) {
   const Console plain(control);
   EXPECT_EQ(test::status_of(got(plain, "/nerves?token=" + plain.token())), 404);
   ConsoleOptions options;
-  options.nerve_desk = std::make_shared<nerve::MonitorDesk>();
+  options.sides = {std::make_shared<protocols::NervePage>()};
   const Console watched(control, options);
   EXPECT_THAT(got(watched, "/nerves?token=" + watched.token()), HasSubstr("Nerve monitor"));
   EXPECT_THAT(got(watched, "/nerves"), HasSubstr("the token is missing"));

@@ -4,8 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <complex>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <numbers>
+#include <span>
 #include <thread>
 
 #include "analysis/bone_drilling/nerves/nerve_findings.h"
@@ -15,11 +19,14 @@
 #include "core/nerve/record/nerve_rows.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
+#include "core/sound/wav.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
+#include "protocols/bone_drilling/nerve_page.h"
 #include "tests/experiments/command.h"
+#include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/temporary_folder.h"
@@ -219,7 +226,8 @@ TEST(NerveTrainingTest, TheShippedDefinitionIsATrainingWithAndWithout) {
   const Experiment experiment =
       load_experiment(fs::path(HAPTRIAL_SOURCE_DIR) / "experiments/nerve_training.toml");
   const auto& d = dynamic_cast<const protocols::BoneDefinition&>(*experiment.definition);
-  EXPECT_EQ(d.nerve_channels().size(), 4u);
+  ASSERT_EQ(d.side_streams().size(), 1u);
+  EXPECT_EQ(d.side_streams().front().channels.size(), 4u);
   EXPECT_EQ(d.nerve_distances.size(), 1u);
   EXPECT_THAT(d.design.conditions, testing::ElementsAre("monitor on", "monitor off"));
   EXPECT_TRUE(d.surgeon.has_value());
@@ -232,10 +240,12 @@ TEST(LiveNerveTest, ATechnicianSeesASessionOnTheRealClock) {
   SessionRequest request = request_of(definition, folder / "S01.h5");
   request.clock = realtime::ClockKind::kReal;
   request.device.name = "virtual";
-  request.nerve_desk = std::make_shared<nerve::MonitorDesk>();
+  request.side_pages = request.protocol->side_pages(definition);
+  const auto page = protocols::page_of<protocols::NervePage>(request.side_pages);
+  ASSERT_NE(page, nullptr);
   const SessionSummary done = run_session(request);
   EXPECT_EQ(done.dropped, 0u);
-  const nerve::MonitorDesk::View view = request.nerve_desk->since(0, 0);
+  const nerve::MonitorDesk::View view = page->desk()->since(0, 0);
   EXPECT_EQ(view.channels.size(), 3u);
   EXPECT_GT(view.next_column, 400u);
   const record::SessionReader reader(folder / "S01.h5");
@@ -245,20 +255,145 @@ TEST(LiveNerveTest, ATechnicianSeesASessionOnTheRealClock) {
   EXPECT_TRUE(integrity.ok) << integrity.problems.front();
 }
 
+/// The amplitude of one frequency in a stretch of a sound.
+double amplitude_at(double frequency, std::span<const float> sound, double rate) {
+  std::complex<double> sum;
+  for (std::size_t i = 0; i < sound.size(); ++i) {
+    const double t = static_cast<double>(i) / rate;
+    sum += static_cast<double>(sound[i]) * std::polar(1.0, -2.0 * std::numbers::pi * frequency * t);
+  }
+  return 2.0 * std::abs(sum) / static_cast<double>(sound.size());
+}
+
+/// The tone of the first muscle's longest event, and of what comes a second before it or after.
+struct HeardTone {
+  double during{0.0};
+  double beside{0.0};
+};
+HeardTone tone_of_replay(const fs::path& file, const fs::path& wav) {
+  const test::CommandResult made = test::run_command("haptrial replay '" + file.string() +
+                                                     "' --trial 1 --sound '" + wav.string() + "'");
+  EXPECT_EQ(made.status, 0) << made.errors;
+  const record::SessionReader reader(file);
+  auto events = reader.rows<record::NerveEventRow>();
+  std::erase_if(events, [](const record::NerveEventRow& row) {
+    return row.channel != 1 || row.kind == record::NerveEventRow::Kind::kArtefact;
+  });
+  const auto length = [](const record::NerveEventRow& row) { return row.sequence - row.begin; };
+  const auto longest = std::ranges::max_element(events, {}, length);
+  if (longest == events.end()) {
+    ADD_FAILURE() << "no event";
+    return {};
+  }
+  const sound::Recording heard = sound::read_recording(wav);
+  const std::uint64_t first = reader.passes().front().first_sample;
+  const auto part = [&](std::uint64_t begin, std::uint64_t end) {
+    return std::span(heard.samples).subspan((begin - first) * 48, (end - begin) * 48);
+  };
+  constexpr double kFirstMuscle = 400.0 * 1.25;  // [Hz]
+  HeardTone tone;
+  tone.during =
+      amplitude_at(kFirstMuscle, part(longest->begin + 20, longest->sequence - 5), heard.rate);
+  const auto quiet = [&](std::uint64_t begin, std::uint64_t end) {
+    return std::ranges::none_of(events, [&](const record::NerveEventRow& row) {
+      return row.begin < end && row.sequence + 100 > begin;
+    });
+  };
+  std::uint64_t begin = first + 500;
+  while (!quiet(begin, begin + length(*longest))) {
+    ++begin;
+  }
+  tone.beside = amplitude_at(kFirstMuscle, part(begin, begin + length(*longest)), heard.rate);
+  return tone;
+}
+
+TEST(NerveReplayTest, TheMonitorIsHeardBesideTheDrillWhereItWasHeardThen) {
+  for (const bool heard : {true, false}) {
+    const test::TemporaryFolder folder;
+    std::string monitor = kMonitor;
+    if (!heard) {
+      monitor.replace(monitor.find("bursts"), 0, "heard_in = \"none\"\n");
+    }
+    monitor.replace(monitor.find("bursts = 0.2"), 12, "bursts = 1.0");
+    const protocols::BoneDefinition definition =
+        protocols::load_bone_definition(write_monitored(folder.path(), 12.0, monitor));
+    run_session(request_of(definition, folder / "S01.h5"));
+    const HeardTone tone = tone_of_replay(folder / "S01.h5", folder / "S01.wav");
+    EXPECT_LT(tone.beside, 0.03);
+    if (heard) {
+      EXPECT_NEAR(tone.during, 0.12, 0.03) << "a tone is 0.12 of full scale";
+    } else {
+      EXPECT_LT(tone.during, 0.03);
+    }
+  }
+}
+
+TEST(LiveNerveTest, AfterAKillTheMonitorGoesOnInTheSameTables) {
+  const test::TemporaryFolder folder;
+  const fs::path study = write_monitored(folder.path(), 5.0);
+  const fs::path file = folder / "out" / "S01.h5";
+  const std::string line =
+      "run '" + study.string() + "' --subject S01 --out '" + (folder / "out").string() + "'";
+  const fs::path partial = file.string() + ".partial";
+  std::uint64_t samples = 0;
+  {
+    test::LiveCommand session(line);
+    ASSERT_TRUE(test::eventually(
+        [&] {
+          std::error_code ignored;
+          samples = fs::exists(partial, ignored)
+                        ? record::SessionReader(partial).count<record::EmgRow>()
+                        : 0;
+          return samples > 8000;
+        },
+        60.0))
+        << session.errors();
+    session.signal(SIGKILL);
+    session.wait();
+  }
+  test::LiveCommand session(line + " --resume");
+  const test::CommandResult ended = session.wait(60.0);
+  ASSERT_EQ(ended.status, 0) << ended.errors;
+  const record::SessionReader reader(file);
+  const record::Integrity integrity =
+      record::check_session(reader, protocols::bone_drilling().tables());
+  EXPECT_TRUE(integrity.ok) << integrity.problems.front();
+  EXPECT_EQ(reader.passes().size(), 2u);
+  EXPECT_EQ(reader.rows<record::NerveChannelRow>().size(), 3u) << "not once more";
+  const auto emg = reader.rows<record::EmgRow>();
+  EXPECT_GE(emg.size(), samples);
+  ASSERT_EQ(emg.size(), reader.sample_count() * 8) << "every sample of every tick of both runs";
+  const auto ticks = reader.samples(0, reader.sample_count());
+  for (std::size_t i = 0; i < emg.size(); ++i) {
+    ASSERT_EQ(emg[i].sequence, ticks[i / 8].sequence) << i;
+    ASSERT_EQ(emg[i].sample, i % 8) << i;
+  }
+  const auto thresholds = reader.rows<record::NerveThresholdRow>();
+  const auto starts = std::ranges::count(thresholds, record::NerveThresholdRow::Cause::kStart,
+                                         &record::NerveThresholdRow::cause);
+  EXPECT_EQ(starts, 6) << "of three channels in each run";
+}
+
 TEST(NerveCommandTest, TheTechniciansPageNeedsAMonitorAndAConsole) {
   const test::TemporaryFolder folder;
   const std::string out = " --out '" + (folder / "out").string() + "'";
   const fs::path plain = test::write_small_drilling(folder.path(), 1.0);
   const test::CommandResult none =
-      test::run_command("haptrial run '" + plain.string() + "' --console --nerve-monitor" + out);
+      test::run_command("haptrial run '" + plain.string() + "' --console --side-page nerves" + out);
   EXPECT_EQ(none.status, 2);
-  EXPECT_THAT(none.errors, HasSubstr("has no table [nerve_monitor]"));
+  EXPECT_THAT(none.errors, HasSubstr("has no page 'nerves'; it has none beside the console's"));
   const test::TemporaryFolder other;
   const fs::path watched = write_monitored(other.path(), 1.0);
   const test::CommandResult alone =
-      test::run_command("haptrial run '" + watched.string() + "' --nerve-monitor" + out);
+      test::run_command("haptrial run '" + watched.string() + "' --side-page nerves" + out);
   EXPECT_EQ(alone.status, 2);
-  EXPECT_THAT(alone.errors, HasSubstr("--nerve-monitor needs --console"));
+  EXPECT_THAT(alone.errors, HasSubstr("--side-page needs --console"));
+  const test::CommandResult other_name = test::run_command("haptrial run '" + watched.string() +
+                                                           "' --console --side-page nerve" + out);
+  EXPECT_EQ(other_name.status, 2);
+  EXPECT_THAT(other_name.errors, HasSubstr("has no page 'nerve'; it has nerves"));
+  EXPECT_THAT(test::run_command("haptrial validate '" + watched.string() + "'").output,
+              HasSubstr("page beside the console: nerve monitor"));
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // A protocol that no file of the product knows (docs/worked/protocol): a staircase with answers, a
-// table, a display and live figures of its own, through the same session, command and recovery.
+// table, a display, live figures, a page beside the console and a stream of its own, through the
+// same session, command and recovery.
 
+#include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -18,13 +20,18 @@
 #include "core/record/recovery/recover.h"
 #include "core/render/gl/image.h"
 #include "core/render/gl/offscreen.h"
+#include "docs/worked/protocol/depth_log.h"
 #include "docs/worked/protocol/spring_pass.h"
 #include "docs/worked/protocol/springs.h"
+#include "experiments/console/console.h"
 #include "experiments/runner/session.h"
+#include "experiments/runner/sinks.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
+#include "tests/experiments/console_client.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/sanitizer.h"
+#include "tests/support/stand_in_lsl.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments::own_protocol_test {
@@ -274,6 +281,110 @@ TEST(OwnProtocolTest, TheScreenDrawsItsView) {
   const auto none = ink({1, 0, false});
   EXPECT_GT(ink({1, 1, false}), none);
   EXPECT_GT(ink({1, 0, true}), ink({1, 1, false})) << "a question has more letters";
+}
+
+/// GET or POST of a console's page. @returns the answer, or what came of it in the time
+std::string answer_of(const Console& console, const std::string& method, const std::string& path,
+                      const std::string& body = "", double seconds = 3.0) {
+  test::RawClient client(console.port());
+  client.send(method + " " + path + "?token=" + console.token() + " HTTP/1.1\r\nHost: 127.0.0.1:" +
+              std::to_string(console.port()) + "\r\nX-Haptrial-Token: " + console.token() +
+              (method == "GET" ? ""
+                               : "\r\nContent-Type: application/json\r\nContent-Length: " +
+                                     std::to_string(body.size())) +
+              "\r\nConnection: close\r\n\r\n" + body);
+  return client.receive(seconds);
+}
+
+TEST(OwnProtocolTest, AnAssistantsPageStandsBesideTheConsole) {
+  const test::TemporaryFolder folder;
+  SessionControl control;
+  SessionRequest request = request_for(folder / "S01.h5");
+  request.side_pages = request.protocol->side_pages(*request.definition);
+  ConsoleOptions options;
+  options.sides = request.side_pages;
+  const Console console(control, options);
+  EXPECT_THAT(console.side_url("springs"), testing::HasSubstr("/springs?token=" + console.token()));
+  const std::string page = answer_of(console, "GET", "/springs");
+  EXPECT_THAT(page, testing::HasSubstr("<title>Springs</title>"));
+  EXPECT_THAT(page, testing::Not(testing::HasSubstr("NONCE"))) << "its nonce is in place";
+  const std::string wrong = answer_of(console, "POST", "/springs/ask", R"({"interval": 0})");
+  EXPECT_EQ(test::status_of(wrong), 400);
+  EXPECT_THAT(wrong, testing::HasSubstr("0.2 to 10"));
+  EXPECT_EQ(test::status_of(answer_of(console, "POST", "/springs/ask", R"({"interval": 0.3})")),
+            200);
+  EXPECT_EQ(test::status_of(answer_of(console, "GET", "/springs/ask")), 405);
+  EXPECT_THAT(answer_of(console, "GET", "/nowhere"), testing::HasSubstr("/springs/events"));
+  request.max_trials = 3;
+  run_session(request);
+  const record::SessionReader file(folder / "S01.h5");
+  for (const record::PassRow& pass : file.passes()) {
+    EXPECT_LT(pass.last_sample - pass.first_sample, 1000u) << "0.3 s each in place of 1 s";
+  }
+  const std::string events = answer_of(console, "GET", "/springs/events", "", 0.3);
+  EXPECT_THAT(events, testing::HasSubstr("\"trial\":3"));
+}
+
+class ReservedPage final : public protocols::SidePage {
+ public:
+  explicit ReservedPage(std::string name) : name_(std::move(name)) {}
+  std::string_view name() const override { return name_; }
+  std::string_view title() const override { return "page"; }
+  std::string_view html() const override { return ""; }
+  Events events() override {
+    return [] { return "{}"; };
+  }
+  void ask(const std::string&) override {}
+
+ private:
+  std::string name_;
+};
+
+TEST(OwnProtocolTest, APageNeedsAnAddressOfItsOwn) {
+  SessionControl control;
+  for (const char* name : {"", "events", "note", "Page", "a/b", "page?"}) {
+    ConsoleOptions options;
+    options.sides = {std::make_shared<ReservedPage>(name)};
+    EXPECT_THROW(const Console console(control, options), std::invalid_argument) << name;
+  }
+  ConsoleOptions twice;
+  twice.sides = {std::make_shared<ReservedPage>("one"), std::make_shared<ReservedPage>("one")};
+  EXPECT_THROW(const Console console(control, twice), std::invalid_argument);
+}
+
+TEST(OwnProtocolTest, DepthsAreStreamedBesideTheSamples) {
+  const test::TemporaryFolder folder;
+  run_session(request_for(folder / "S01.h5"));
+  const record::SessionReader file(folder / "S01.h5");
+  const auto depths = file.rows<DepthRow>();
+  const auto samples = file.samples(0, file.sample_count());
+  ASSERT_GT(depths.size(), 1000u);
+
+  void* const library = dlopen(HAPTRIAL_BINARY_DIR "/libstand_in_lsl.so", RTLD_NOW);
+  ASSERT_NE(library, nullptr);
+  test::LslRecord& heard =
+      *reinterpret_cast<test::LslRecord* (*)()>(dlsym(library, "stand_in_lsl"))();
+  heard = {};
+  {
+    stream::LslOptions options;
+    options.library = HAPTRIAL_BINARY_DIR "/libstand_in_lsl.so";
+    options.sides = experiment().definition->side_streams();
+    stream::LslOutlet outlet(options, [] { return std::int64_t{0}; });
+    StreamSink sink(&outlet, options.sides);  // as the session has it
+    sink.rows(record::Rows(std::span<const DepthRow>(depths)));
+    sink.samples(samples);
+  }
+  ASSERT_EQ(heard.streams.size(), 3u);
+  const test::LslStream& stream = heard.streams[2];
+  EXPECT_EQ(stream.type, "Position");
+  EXPECT_EQ(stream.rate, 100.0);
+  ASSERT_EQ(stream.values.size(), depths.size());
+  const double first = stream.timestamps.front();
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    EXPECT_EQ(stream.values[i], depths[i].depth);
+    EXPECT_NEAR(stream.timestamps[i] - first, 0.01 * static_cast<double>(i), 1e-9);
+  }
+  dlclose(library);
 }
 
 }  // namespace

@@ -63,13 +63,21 @@ TEST(PowerCommand, ComputesWhicheverIsMissing) {
               HasSubstr("one-sample t test, two-tailed, significance level 0.01"));
 }
 
+TEST(PowerCommand, PlansRepeatedMeasuresAndMixedDesigns) {
+  EXPECT_THAT(printed("repeated --measurements 3 --f 0.25 --power 0.8"),
+              testing::AllOf(HasSubstr("within participants, 1 group, 3 measurements"),
+                             HasSubstr("participants  28\n")));
+  EXPECT_THAT(printed("repeated --groups 2 --measurements 4 --effect interaction --f 0.25 --n 18"),
+              HasSubstr("participants  18 in each of 2 groups, 36 in all\n"));
+}
+
 TEST(PowerCommand, RefusesWithASentence) {
   expect_refused("", "TEST");
-  expect_refused("u", "TEST is 'u'; allowed: t, anova");
+  expect_refused("u", "TEST is 'u'; allowed: t, anova, repeated");
   expect_refused("t --delta 1", "give two of --delta, --n and --power; the third is computed");
   expect_refused("t", "give two of --delta, --n and --power");
   expect_refused("t --delta 1 --n 4 --power 0.9", "give two of --delta, --n and --power");
-  expect_refused("t --f 0.2 --n 9", "--f is given with t; use it with anova only");
+  expect_refused("t --f 0.2 --n 9", "--f is given with t; use it with anova or repeated only");
   expect_refused("anova --groups 3 --delta 0.2 --n 9", "--delta is given with anova");
   expect_refused("anova --f 0.2 --n 9", "--groups is missing");
   expect_refused("anova --groups 1 --f 0.2 --n 9", "--groups is 1; allowed: a whole number from 2");
@@ -87,6 +95,15 @@ TEST(PowerCommand, RefusesWithASentence) {
   expect_refused("t --delta -1 --power 0.8 --one-tailed --sd 1e9",
                  "more than ten million participants would be needed");
   expect_refused("t --delta 1e9 --n 9", "100 standard deviations");
+  expect_refused("repeated --f 0.2 --n 9", "--measurements is missing");
+  expect_refused("repeated --measurements 3 --f 0.2 --n 9 --correlation 1", "--correlation is 1");
+  expect_refused("repeated --measurements 3 --f 0.2 --n 9 --epsilon 0.4",
+                 "--epsilon is 0.4; allowed: a number from 1 / (measurements - 1) = 0.5 to 1");
+  expect_refused("repeated --measurements 3 --f 0.2 --n 9 --effect within --groups 0",
+                 "--groups is 0; allowed: a whole number from 1");
+  expect_refused("repeated --measurements 3 --f 0.2 --n 9 --effect betwen",
+                 "--effect is 'betwen'; did you mean between?");
+  expect_refused("t --delta 1 --n 9 --epsilon 1", "use it with repeated only");
 }
 
 }  // namespace

@@ -103,7 +103,8 @@ TEST_F(RateTest, WhatRatersGetDoesNotDependOnNames) {
     EXPECT_EQ(times.back(), times.front()) << entry.path();
   }
   for (const auto& [name, bytes] : a) {
-    EXPECT_EQ(bytes.find("S01"), std::string::npos) << name;
+    const std::string told = bytes.substr(0, bytes.find("IDAT"));  // pixels have any three letters
+    EXPECT_EQ(told.find("S01"), std::string::npos) << name;
   }
 }
 

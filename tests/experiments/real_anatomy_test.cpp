@@ -1,11 +1,16 @@
 // The shipped construct-validity study on labelled bones of people: only the line `bones` changes.
+// Their mirror images are left ears: for these the lines of the placement change too.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
+#include "core/bone/anatomy/ear_side.h"
+#include "core/bone/data/bone_file.h"
+#include "core/bone/data/load_bone.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/drilling_study.h"
 #include "experiments/studies/registry.h"
@@ -13,7 +18,10 @@
 #include "experiments/study/study_run.h"
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
+#include "protocols/bone_drilling/display/placement_legend.h"
+#include "protocols/bone_drilling/display/placement_picture.h"
 #include "tests/experiments/shipped.h"
+#include "tests/support/message_of.h"
 #include "tests/support/sanitizer.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"
@@ -23,22 +31,39 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class RealAnatomyTest : public testing::TestWithParam<const char*> {
+struct RealEar {
+  const char* file;
+  bool left;  // its mirror image
+};
+
+class RealAnatomyTest : public testing::TestWithParam<RealEar> {
  protected:
   void SetUp() override {
     if (test::kThreadSanitizer || test::kAddressSanitizer) {
       GTEST_SKIP() << "bones of millions of voxels take too long here";
     }
-    const auto file = test::shared_data(GetParam());
+    const bool large = std::string(GetParam().file).find("256") != std::string::npos;
+    if (large && GetParam().left && std::getenv("HAPTRIAL_EVERY_STUDY") == nullptr) {
+      GTEST_SKIP() << "the other left ear does; set HAPTRIAL_EVERY_STUDY=1 for this one";
+    }
+    const auto file = test::shared_data(GetParam().file);
     if (!file) {
-      GTEST_SKIP() << "neither HAPTRIAL_DATA nor ../shared/data holds " << GetParam();
+      GTEST_SKIP() << "neither HAPTRIAL_DATA nor ../shared/data holds " << GetParam().file;
     }
     std::string text =
         test::read_text(fs::path(HAPTRIAL_SOURCE_DIR) / "experiments/construct_validity.toml");
-    const std::string line = "bones = [\"procedural temporal\"]";
-    const auto at = text.find(line);
-    ASSERT_NE(at, std::string::npos);
-    text.replace(at, line.size(), "bones = [\"" + file->string() + "\"]");
+    const auto replace = [&text](const std::string& line, const std::string& other) {
+      const auto at = text.find(line);
+      ASSERT_NE(at, std::string::npos) << line;
+      text.replace(at, line.size(), other);
+    };
+    replace("bones = [\"procedural temporal\"]",
+            "bones = [\"" + (GetParam().left ? "left.nrrd" : file->string()) + "\"]");
+    if (GetParam().left) {
+      bone::save_bone(folder_ / "left.nrrd", bone::mirrored(bone::load_bone(*file)));
+      replace("x_to = [0.0, -1.0, 0.0]", "place = \"surgeon's view of a left ear\"");
+      replace("y_to = [0.0, 0.0, 1.0]", "");
+    }
     test::write_text(folder_ / "study.toml", text);
     d_ = protocols::load_bone_definition(folder_ / "study.toml");
   }
@@ -111,11 +136,46 @@ TEST_P(RealAnatomyTest, TheCavityLiesWhereSurgeonsOpenTheMastoidInSightAndReach)
   EXPECT_LT(volume, 10e-6);
   EXPECT_LT(outermost, 1.0);
   EXPECT_LT(farthest, d_.envelope.workspace_radius - 0.01);
-  // Right ears, in the patient's axes: x to the left, y to the back, z up.
+  // In the patient's axes: x to the left, y to the back, z up.
   const Eigen::Vector3d canal = middle_of("external auditory canal");
-  EXPECT_LT(opening.x(), middle_of("incus").x() - 5e-3) << "is not on the side of the skull";
+  const double outwards = GetParam().left ? 1.0 : -1.0;
+  EXPECT_GT(outwards * (opening.x() - middle_of("incus").x()), 5e-3)
+      << "is not on the side of the skull";
   EXPECT_GT(opening.y(), canal.y()) << "is not behind the canal";
   EXPECT_LT(opening.y(), canal.y() + 30e-3) << "is not near the canal";
+}
+
+TEST_P(RealAnatomyTest, ThePictureBeforeASessionHasTheCavityAndEveryNameInSight) {
+  if (!GetParam().left) {
+    d_.display.width = 640;  // half a picture does for one of both
+    d_.display.height = 360;
+  }
+  const int width = d_.display.width;
+  const int height = d_.display.height;
+  EXPECT_THAT(protocols::placement_words(d_, model()),
+              testing::HasSubstr(GetParam().left ? "a left ear, by its structures; placed as"
+                                                 : "a right ear, by its structures"));
+  for (const auto& one : protocols::placed_structures(d_, model(), width, height)) {
+    EXPECT_TRUE(one.in_sight) << one.name;
+  }
+  const render::Image image = protocols::placement_picture(d_, 0);
+  ASSERT_EQ(image.width, width);
+  std::size_t red = 0;  // unlike bone and words: the cavity
+  for (std::size_t at = 0; at < image.rgb.size(); at += 3) {
+    const int green = std::max(image.rgb[at + 1], image.rgb[at + 2]);
+    red += image.rgb[at] > green + 60 ? 1 : 0;
+  }
+  EXPECT_GT(red, image.rgb.size() / 3 / 50);
+}
+
+TEST_P(RealAnatomyTest, TheOtherEarsViewIsRefused) {
+  d_.placement.left_ear = !d_.placement.left_ear;
+  d_.placement.turn.col(0) *= -1.0;
+  d_.placement.turn.col(2) *= -1.0;
+  const std::string words = test::message_of(
+      [this] { check_placement(d_.placement, model(), d_.simulator.camera.start, &*d_.cavity); });
+  EXPECT_THAT(words, testing::HasSubstr("from inside the skull; it is a "));
+  EXPECT_THAT(words, testing::HasSubstr(GetParam().left ? "view of a left ear" : "a right ear"));
 }
 
 TEST_P(RealAnatomyTest, AVirtualSurgeonDrillsItAndItIsRatedAndReported) {
@@ -150,8 +210,14 @@ TEST_P(RealAnatomyTest, AVirtualSurgeonDrillsItAndItIsRatedAndReported) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Bones, RealAnatomyTest,
-                         testing::Values("bone/ear3_171_labels.nrrd", "bone/RT138_256_labels.nrrd"),
-                         [](const auto& bone) { return bone.index == 0 ? "Ear3" : "Rt138"; });
+                         testing::Values(RealEar{"bone/ear3_171_labels.nrrd", false},
+                                         RealEar{"bone/RT138_256_labels.nrrd", false},
+                                         RealEar{"bone/ear3_171_labels.nrrd", true},
+                                         RealEar{"bone/RT138_256_labels.nrrd", true}),
+                         [](const auto& bone) {
+                           return std::string(bone.index % 2 == 0 ? "Ear3" : "Rt138") +
+                                  (bone.param.left ? "Left" : "");
+                         });
 
 }  // namespace
 }  // namespace haptrial::experiments

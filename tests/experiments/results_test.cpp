@@ -179,6 +179,68 @@ TEST_P(ContactResults, Reproduce) {
 INSTANTIATE_TEST_SUITE_P(Shipped, ContactResults, testing::ValuesIn(results_with("table-6.csv")),
                          study_of);
 
+/// Power by simulation: what does not depend on full sessions.
+class PowerResults : public Results {};
+
+TEST_P(PowerResults, Reproduce) {
+  if (test::kThreadSanitizer) {
+    GTEST_SKIP() << "thousands of studies take too long here; other builds make them anew";
+  }
+  const std::string question = "docs/worked/power/" +
+                               folder_.filename().string().substr(std::string("power_").size()) +
+                               ".toml";
+  EXPECT_EQ(sum_of(kSource / question), manifest_["question_sha256"]);
+  EXPECT_EQ(sum_of(folder_ / "power.csv"), manifest_["power_sha256"]);
+  if (!every_study()) {
+    GTEST_SKIP() << "it takes minutes; set HAPTRIAL_EVERY_STUDY=1 to make it anew";
+  }
+  ASSERT_NO_FATAL_FAILURE(make_again());
+  expect_the_same("power.csv");
+}
+
+INSTANTIATE_TEST_SUITE_P(Shipped, PowerResults, testing::ValuesIn(results_with("power.csv")),
+                         study_of);
+
+/// A row of a table whose texts may be quoted.
+std::vector<std::string> fields_of(const std::string& row) {
+  std::vector<std::string> fields{""};
+  bool quoted = false;
+  for (const char c : row) {
+    quoted = quoted != (c == '"');
+    if (c == ',' && !quoted) {
+      fields.emplace_back();
+    } else if (c != '"') {
+      fields.back() += c;
+    }
+  }
+  return fields;
+}
+
+/// Whether the tests of shipped reports keep their level; the guide names those that do not.
+TEST(NullResults, AreOfTheShippedQuestionsAndInTheGuide) {
+  const fs::path folder = kSource / "results/power_null";
+  const auto manifest = nlohmann::json::parse(test::read_text(folder / "manifest.json"));
+  EXPECT_EQ(sum_of(folder / "null.csv"), manifest["null_sha256"]);
+  const auto questions =
+      test::run_command("cat '" + kSource.string() + "'/docs/worked/power/null/*.toml | sha256sum");
+  EXPECT_EQ(questions.output.substr(0, 64), manifest["questions_sha256"]);
+  const std::string guide = test::read_text(kSource / "docs/guide-power.md");
+  std::istringstream rows(test::read_text(folder / "null.csv"));
+  std::string row;
+  std::getline(rows, row);
+  int tests = 0;
+  for (; std::getline(rows, row); ++tests) {
+    // definition, participants, test, made, rejected, share, band_low, band_high, keeps_level
+    const std::vector<std::string> fields = fields_of(row);
+    ASSERT_EQ(fields.size(), 9u) << row;
+    EXPECT_GE(std::stoi(fields[3]), 1900) << row;
+    if (fields[8] == "no") {
+      EXPECT_NE(guide.find(fields[2] + " | " + fields[4] + " |"), std::string::npos) << row;
+    }
+  }
+  EXPECT_EQ(tests, 4 * 2 + 2 * 16);
+}
+
 /// Springs calibrated to elements: the first evaluations of the shortest search.
 TEST(CalibrationResults, BeginAsTheyAreShipped) {
   constexpr std::size_t kRows = 12;

@@ -9,7 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "analysis/link/led_passes.h"
 #include "core/record/link/link_row.h"
+#include "core/record/link/network_row.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "tests/experiments/command.h"
@@ -163,6 +165,80 @@ TEST_F(TaughtTest, ALostNetworkEndsADryRunWithASentence) {
   EXPECT_EQ(r.status, 1);
   EXPECT_THAT(r.errors, HasSubstr("was not heard for"));
   EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+/// The delay that a trial had, as its ticks found it [s].
+double found_delay(const record::SessionReader& reader, const record::PassRow& pass) {
+  std::vector<double> delays;
+  for (const LinkRow& row : reader.rows<LinkRow>()) {
+    if (row.sequence >= pass.first_sample && row.sequence <= pass.last_sample && row.delay > 0.0) {
+      delays.push_back(row.delay);
+    }
+  }
+  const auto middle = delays.begin() + static_cast<std::ptrdiff_t>(delays.size() / 2);
+  std::ranges::nth_element(delays, middle);
+  return *middle;
+}
+
+/// Root mean square between the hands while they were coupled: the partner's place from the
+/// partner's own file, at the tick whose message was heard [m].
+double distance_from_both_files(const record::SessionReader& reader,
+                                const record::SessionReader& partner, const record::PassRow& pass) {
+  const std::vector<LinkRow> theirs = partner.rows<LinkRow>();
+  const auto numbered = by_number(theirs);
+  double squares = 0.0;
+  int ticks = 0;
+  for (const LinkRow& row : reader.rows<LinkRow>()) {
+    const bool within = row.sequence >= pass.first_sample && row.sequence <= pass.last_sample;
+    if (within && (row.state & record::kLinkEngaged) != 0) {
+      const std::uint64_t tick = numbered.at(row.heard)->sequence;
+      squares +=
+          (reader.samples(row.sequence, 1)[0].position - partner.samples(tick, 1)[0].position)
+              .squaredNorm();
+      ++ticks;
+    }
+  }
+  return std::sqrt(squares / ticks);
+}
+
+TEST_F(TaughtTest, NetworksAreAConditionOfTheTrials) {
+  const std::string file = (folder_ / "networks.toml").string();
+  test::write_text(file, test::brisk_text() +
+                             "\n[[tutoring.networks]]\nname = \"near\"\n"
+                             "[[tutoring.networks]]\nname = \"far\"\ndelay = 0.1\nloss = 0.02\n");
+  const std::string out = (folder_ / "networks").string();
+  const test::CommandResult r =
+      run_command("haptrial dry-run " + file + " --subjects 1 --trials 2 --taught --out " + out);
+  ASSERT_EQ(r.status, 0) << r.errors;
+  const record::SessionReader learns(out + "/S01.h5");
+  const record::SessionReader teaches(out + "/teaching/S01.h5");
+  const auto own = learns.rows<record::NetworkRow>();
+  const auto other = teaches.rows<record::NetworkRow>();
+  const auto passes = learns.passes();
+  ASSERT_EQ(own.size(), passes.size());
+  ASSERT_EQ(other.size(), own.size());
+  std::map<std::string, int> trials;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    EXPECT_EQ(own[i].pass, static_cast<std::int32_t>(i));
+    EXPECT_EQ(own[i].name, other[i].name);
+    EXPECT_EQ(own[i].delay, own[i].name == "far" ? 0.1 : 0.0);
+    EXPECT_EQ(own[i].loss, own[i].name == "far" ? 0.02 : 0.0);
+    EXPECT_NEAR(found_delay(learns, passes[i]), own[i].delay, 2e-3) << own[i].name;
+    ++trials[own[i].name];
+  }
+  EXPECT_EQ(trials["near"], trials["far"]) << "each once in two trials";
+
+  const test::CommandResult analysed = run_command("haptrial analyze " + out);
+  EXPECT_EQ(analysed.status, 0) << analysed.errors;
+  EXPECT_THAT(analysed.output, HasSubstr("/link.html"));
+  for (const analysis::link::LedPass& led : analysis::link::led_passes(learns)) {
+    EXPECT_EQ(led.set_delay, led.network == "far" ? 0.1 : 0.0);
+    EXPECT_NEAR(led.delay, led.set_delay, 2e-3);
+    EXPECT_NEAR(led.lost, led.network == "far" ? 0.02 : 0.0, 0.01);
+    EXPECT_NEAR(led.apart, distance_from_both_files(learns, teaches, led.pass), 1e-5);
+  }
+  EXPECT_EQ(analysis::link::led_passes(learns).size(), 2u) << "the training pass of each trial";
+  EXPECT_TRUE(std::filesystem::exists(out + "/link.csv"));
 }
 
 TEST_F(TaughtTest, StiffCouplingsWithoutControlAreWarnedOf) {

@@ -71,9 +71,10 @@ TEST_P(ShippedTrialsTest, RunsAndIsWhole) {
   EXPECT_EQ(summary.aborted_passes, 0) << "the participant does what is asked";
   const record::SessionReader file(folder / "S01.h5");
   EXPECT_TRUE(record::check_session(file, known_tables()).ok);
-  EXPECT_GE(file.passes().size(), 6u);
+  const std::vector<record::PassRow> passes = file.passes();
+  EXPECT_GE(passes.size(), 6u);
   for (const record::StageRow& stage : file.rows<record::StageRow>()) {
-    const record::PassRow& pass = file.passes().at(static_cast<std::size_t>(stage.pass));
+    const record::PassRow& pass = passes.at(static_cast<std::size_t>(stage.pass));
     EXPECT_GE(stage.first_sample, pass.first_sample);
     EXPECT_LE(stage.last_sample, pass.last_sample);
     EXPECT_LE(stage.first_sample, stage.last_sample);

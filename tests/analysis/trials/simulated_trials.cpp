@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -20,6 +23,7 @@ using namespace analysis::trials;
 using psychometric::PsychometricParameters;
 
 constexpr double kStandard = 300.0;  // [N/m]
+const std::vector<std::string> kShapes{"sphere", "egg", "cube", "cylinder"};
 
 PsychometricParameters function_of(const SimulatedTrials& study, double person) {
   PsychometricParameters p =
@@ -61,8 +65,9 @@ std::vector<std::unique_ptr<psychometric::Procedure>> procedures_of(const Simula
                     ? std::vector<double>{7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0}
                 : study.task == SimulatedTask::kMagnitude
                     ? std::vector<double>{1.0, 2.0, 4.0, 8.0, 16.0}
-                : study.task == SimulatedTask::kDetection
-                    ? std::vector<double>{0.0, 1.0}
+                : study.task == SimulatedTask::kDetection ? std::vector<double>{0.0, 1.0}
+                : study.task == SimulatedTask::kIdentification
+                    ? std::vector<double>{0.0, 1.0, 2.0, 3.0}  // of kShapes
                     : std::vector<double>{305.0, 312.0, 320.0, 335.0, 360.0, 420.0};
   list.repetitions = std::max(1, study.trials / static_cast<int>(list.levels.size()));
   if (study.task == SimulatedTask::kMagnitude) {
@@ -140,6 +145,8 @@ class Sitting {
                          {"sure", sure, "", -1, time}};
         return yes ? 1.0 : 0.0;
       }
+      case SimulatedTask::kIdentification:
+        return identify(static_cast<std::size_t>(level), time, trial);
       case SimulatedTask::kMagnitude:
         break;
     }
@@ -147,6 +154,29 @@ class Sitting {
                                               0.15 * random_.normal());
     trial.answers = {{"number", number, "", -1, time}};
     return number;
+  }
+
+  /// Each shape gives noise, the one presented d' more; the largest is answered.
+  double identify(std::size_t shown, double time, StudyTrial& trial) {
+    std::array<double, 4> felt{};
+    for (std::size_t i = 0; i < felt.size(); ++i) {
+      felt[i] = random_.normal() + (i == shown ? kTypicalDPrime + person_ : 0.0);
+    }
+    const auto most = std::max_element(felt.begin(), felt.end());
+    const auto answered = static_cast<std::size_t>(most - felt.begin());
+    const double best = *most;
+    std::nth_element(felt.begin(), felt.begin() + 1, felt.end(), std::greater<>());
+    const double lead = best - felt[1];
+    const bool right = answered == shown;
+    trial.variables.push_back({"shape", 0, kNotKnown, kShapes[shown]});
+    trial.answers = {
+        {"which", static_cast<double>(answered) + 1.0, kShapes[answered], right ? 1 : 0, time},
+        {"sure",
+         lead > 1.2   ? 3.0
+         : lead > 0.5 ? 2.0
+                      : 1.0,
+         "", -1, time}};
+    return right ? 1.0 : 0.0;
   }
 
   const SimulatedTrials& study_;
@@ -280,9 +310,10 @@ TrialsData simulated_trials(const SimulatedTrials& study) {
 
 TrialsPlan plan_of(const SimulatedTrials& study) {
   TrialsPlan plan;
-  plan.kind = study.task == SimulatedTask::kDetection   ? AnalysisKind::kDetection
-              : study.task == SimulatedTask::kMagnitude ? AnalysisKind::kMagnitude
-                                                        : AnalysisKind::kPsychometric;
+  plan.kind = study.task == SimulatedTask::kDetection        ? AnalysisKind::kDetection
+              : study.task == SimulatedTask::kMagnitude      ? AnalysisKind::kMagnitude
+              : study.task == SimulatedTask::kIdentification ? AnalysisKind::kIdentification
+                                                             : AnalysisKind::kPsychometric;
   if (study.conditions > 1) {
     plan.by = {"light"};
   }
@@ -292,7 +323,13 @@ TrialsPlan plan_of(const SimulatedTrials& study) {
   plan.guess_free = study.task == SimulatedTask::kComparison;
   plan.threshold_at = plan.guess_free ? 0.5 : 0.75;
   plan.reference = study.task == SimulatedTask::kComparison ? 10.0 : kStandard;
-  plan.rating = study.task == SimulatedTask::kDetection ? "sure" : "";
+  if (study.task == SimulatedTask::kIdentification) {
+    plan.stimulus = "shape";
+    plan.choices = kShapes;
+  }
+  const bool rated =
+      study.task == SimulatedTask::kDetection || study.task == SimulatedTask::kIdentification;
+  plan.rating = rated ? "sure" : "";
   plan.resamples = 0;
   plan.permutations = 0;
   plan.bayesian = false;

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "analysis/trials/data/trials_data.h"
-#include "analysis/trials/psychometric/trials_plan.h"
+#include "analysis/trials/fit/trials_plan.h"
 
 namespace haptrial::test {
 
@@ -14,6 +14,7 @@ enum class SimulatedTask {
   kComparison,  // "larger" or "smaller" than 10 N, constant stimuli, cumulative Gaussian
   kDetection,   // yes or no with a rating from 1 to 3, half of the trials with signal
   kMagnitude,   // numbers for five levels
+  kIdentification,  // which of four shapes it is, with a rating from 1 to 3
 };
 
 /// A study at the level of answers, without a servo loop. Two conditions, "off" and "on" of the

@@ -107,6 +107,24 @@ TEST(ReadingWatchTest, KnocksAndFastStrokesAreNoFault) {
   }
 }
 
+/// The device's clock and the loop's: a reading is given twice, the next one is left out.
+TEST(ReadingWatchTest, AStrokeReadByAnotherClockIsNoFault) {
+  for (const double rate : {1000.0, 4000.0}) {
+    RandomStream random(2, "lateness");
+    double newest = 0.0;  // that the device has measured [s]
+    EXPECT_EQ(found_after(
+                  rate, Fault::kNone,
+                  [&](double t) {
+                    const double late = random.uniform(-1.0, 1.0) / rate;
+                    newest = std::max(newest, std::floor((t + late) * rate) / rate);
+                    return Vector3d(0.1 * std::sin(12.0 * newest), 1e-7 * t, 0.0);
+                  },
+                  [](double) { return Vector3d(1.0, 0.0, 0.0); }),
+              -1.0)
+        << rate;
+  }
+}
+
 /// Coulomb friction below the holding force, coarse encoders, and a force that wanders slowly.
 TEST(ReadingWatchTest, AHandOnAVirtualDeviceThatHoldsStillIsNoFault) {
   for (const double quantum : {1e-6, 1e-5, 6e-5}) {

@@ -248,24 +248,6 @@ TEST(NerveMonitorTest, TonesGoFromLowToHighByChannel) {
   EXPECT_THROW(NerveMonitor({}, 9), std::invalid_argument);
 }
 
-TEST(ThresholdSearchTest, FindsTheThresholdWithinATwentieth) {
-  for (const double threshold : {0.06e-3, 0.1e-3, 0.8e-3, 2.5e-3}) {
-    ThresholdSearch search;
-    int pulses = 0;
-    while (!search.done()) {
-      search.tell(search.current() >= threshold);
-      ++pulses;
-    }
-    EXPECT_FALSE(search.out_of_range());
-    EXPECT_GE(search.threshold(), threshold);
-    EXPECT_LE(search.threshold(), 1.05 * threshold);
-    EXPECT_LE(pulses, 10);
-  }
-  ThresholdSearch deaf;
-  deaf.tell(false);
-  EXPECT_TRUE(deaf.done() && deaf.out_of_range());
-}
-
 TEST(NerveMonitorTest, ATickDoesNotAllocate) {
   Theatre theatre(5, 4);
   theatre.events.reserve(1000);

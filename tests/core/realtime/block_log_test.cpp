@@ -120,6 +120,8 @@ TEST(BlockLogTest, ElementsAreThoseNotYetDelivered) {
       ASSERT_EQ(log.at(k), log[k]);
     }
     ASSERT_THROW(log.at(log.size()), std::out_of_range);
+    ASSERT_GE(log.taken(), log.size());
+    ASSERT_LT(log.taken(), log.size() + log.block_size());
     if (log.size() > 6) {
       drained(log);
     }
@@ -241,9 +243,10 @@ TEST_P(BlockLogThreadsTest, LosslessInOrderWithASlowConsumer) {
     }
     log.flush(check);
   });
-  std::uint64_t refused = 0;
+  std::uint64_t refused = 0, crowded = 0;
   Wide record{};
   while (record.sequence < kRecords) {
+    crowded += log.taken() > log.capacity();
     record.copies.fill(record.sequence);
     if (log.push(record)) {
       ++record.sequence;
@@ -257,6 +260,7 @@ TEST_P(BlockLogThreadsTest, LosslessInOrderWithASlowConsumer) {
   EXPECT_EQ(expected, kRecords);
   EXPECT_EQ(wrong, 0u);
   EXPECT_EQ(log.dropped(), refused);
+  EXPECT_EQ(crowded, 0u);
   EXPECT_GT(refused, 0u);
   EXPECT_GT(naps, 1u);
 }

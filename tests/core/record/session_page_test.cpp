@@ -7,6 +7,7 @@
 
 #include "core/base/files/file_text.h"
 #include "core/bone/record/drilling_tables.h"
+#include "core/bone/record/led_row.h"
 #include "core/bone/record/tear_row.h"
 #include "core/nerve/record/nerve_rows.h"
 #include "core/record/rows/common_tables.h"
@@ -59,6 +60,7 @@ TEST(SessionPageTest, TablesOfTrials) {
 TEST(SessionPageTest, TablesOfDrillings) {
   TableList tables = drilling_tables();
   tables.push_back(&table_of<TearRow>());
+  tables.push_back(&table_of<LedRow>());
   expect_described("drilling", tables);
 }
 TEST(SessionPageTest, TablesOfNerveMonitors) { expect_described("nerves", nerve_tables()); }

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "core/bone/record/drilling_tables.h"
+#include "core/bone/record/led_row.h"
 #include "core/bone/record/tear_row.h"
 #include "core/nerve/record/nerve_rows.h"
 #include "core/record/rows/common_tables.h"
@@ -58,6 +59,7 @@ void expect_that_python_reads(bool drills) {
   const std::vector<BoneRecord> bones{test::small_bone()};
   TableList own = with_tables(drilling_tables(), nerve_tables());
   own.push_back(&table_of<TearRow>());
+  own.push_back(&table_of<LedRow>());
   SessionWriter writer =
       drills ? SessionWriter(folder / "session.h5", test::example_info(), own, rows_of(bones))
              : SessionWriter(folder / "session.h5", test::example_info());

@@ -106,29 +106,36 @@ TEST_F(LslOutletTest, SamplesArriveChannelByChannelOnTheLayersClock) {
   EXPECT_EQ(outlet.refused(), 0u);
 }
 
-TEST_F(LslOutletTest, ANerveMonitorHasAStreamOfItsOwn) {
-  LslOptions watched = options();
-  watched.nerve_channels = {"frontalis", "mentalis"};
-  watched.nerve_rate = 8000.0;
-  LslOutlet outlet(watched, now());
+TEST_F(LslOutletTest, SideStreamsStandBesideTheSamples) {
+  LslOptions more = options();
+  more.sides.push_back({"muscles", "EMG", "V", {"left", "right"}, 8000.0, {{"model", "made"}}, {}});
+  more.sides.push_back({"grip", "Force", "N", {"grip"}, 0.0, {}, {}});
+  LslOutlet outlet(more, now());
   record_->clock = 5000.0;
   now_ns_ = 2'000'000'000;
-  ASSERT_EQ(record_->streams.size(), 3u);
+  ASSERT_EQ(record_->streams.size(), 4u);
   const test::LslStream& stream = record_->streams[2];
-  EXPECT_EQ(stream.name, "haptrial P07 nerves");
+  EXPECT_EQ(stream.name, "haptrial P07 muscles");
+  EXPECT_EQ(stream.source_id, "haptrial-force_training-P07-muscles");
   EXPECT_EQ(stream.type, "EMG");
   EXPECT_EQ(stream.rate, 8000.0);
   EXPECT_EQ(stream.channels, 2);
-  EXPECT_THAT(stream.description, testing::Contains(Pair("channels/channel/label", "mentalis")));
+  EXPECT_EQ(stream.format, 2) << "double precision";
+  EXPECT_THAT(stream.description, testing::Contains(Pair("channels/channel/label", "right")));
   EXPECT_THAT(stream.description, testing::Contains(Pair("channels/channel/unit", "V")));
-  EXPECT_THAT(stream.description, testing::Contains(Pair("model", "simulated electromyogram")));
-  outlet.push_nerves(std::vector{1e-6, 2e-6, 3e-6, 4e-6}, std::vector{2.0, 2.000125});
+  EXPECT_THAT(stream.description, testing::Contains(Pair("model", "made")));
+  EXPECT_THAT(stream.description, testing::Contains(Pair("subject", "P07")));
+  EXPECT_EQ(record_->streams[3].rate, 0.0) << "irregular";
+  EXPECT_EQ(record_->infos, 0);
+  outlet.push_side(0, std::vector{1e-6, 2e-6, 3e-6, 4e-6}, std::vector{2.0, 2.000125});
+  outlet.push_side(1, std::vector{7.0}, std::vector{2.5});
   EXPECT_THAT(stream.values, ElementsAre(1e-6, 2e-6, 3e-6, 4e-6));
   ASSERT_EQ(stream.timestamps.size(), 2u);
   EXPECT_NEAR(stream.timestamps[1], 5000.000125, 1e-9);
-  LslOutlet plain(options(), now());
-  plain.push_nerves(std::vector{1e-6}, std::vector{2.0});
-  EXPECT_EQ(plain.refused(), 0u) << "nobody watches nerves there";
+  EXPECT_THAT(record_->streams[3].values, ElementsAre(7.0));
+  EXPECT_NEAR(record_->streams[3].timestamps.at(0), 5000.5, 1e-9);
+  outlet.push_side(2, std::vector{7.0}, std::vector{2.5});
+  EXPECT_EQ(outlet.refused(), 0u) << "there is no third one";
 }
 
 TEST_F(LslOutletTest, SamplesAreNotTakenForTheMomentInWhichTheyArePushed) {

@@ -85,6 +85,30 @@ class ScreenTest : public testing::Test {
   protocols::ScreenOptions options_;
 };
 
+/// A drawing that takes long to begin, as that of a bone does.
+TEST_F(ScreenTest, HasShownADrawingOnlyWhenItsFirstPictureIsOut) {
+  Screen screen(options_, style());
+  std::atomic<bool> drawn{false};
+  class Slow final : public protocols::Drawing {
+   public:
+    explicit Slow(std::atomic<bool>& drawn) : drawn_(drawn) { std::this_thread::sleep_for(100ms); }
+    void draw(const stimulus::Shown&) override {
+      std::this_thread::sleep_for(100ms);
+      drawn_ = true;
+    }
+
+   private:
+    std::atomic<bool>& drawn_;
+  };
+  const std::uint64_t number =
+      screen.show([&](const render::Gl&, int, int) { return std::make_unique<Slow>(drawn); });
+  while (!screen.has_shown(number)) {
+    std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_TRUE(drawn);
+  EXPECT_FALSE(screen.has_shown(number + 1));
+}
+
 TEST_F(ScreenTest, ShowsATrialAsTheRendererDrawsItOffScreen) {
   Screen screen(options_, style());
   screen.show(protocols::path_drawing(style(), path()));
@@ -314,8 +338,11 @@ TEST_F(ScreenTest, AServoThreadAndASessionThreadUseItAtOnce) {
   });
   std::size_t frames = 0;
   for (int i = 0; i < 20; ++i) {
-    i % 2 == 0 ? screen.show_text({"Page", "", "", 5.0})
-               : screen.show(protocols::path_drawing(style(), path()));
+    if (i % 2 == 0) {
+      screen.show_text({"Page", "", "", 5.0});
+    } else {
+      screen.show(protocols::path_drawing(style(), path()));
+    }
     std::this_thread::sleep_for(30ms);
     frames += screen.take_frames().size();
     EXPECT_EQ(screen.screenshot().width, kWidth);

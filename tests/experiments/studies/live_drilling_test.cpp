@@ -41,7 +41,7 @@ drilling::LiveFigures figures_of(const drilling::Procedure& procedure) {
   f.removed = s.usage.removed;
   f.voxels = s.visibility.visible.size();
   f.visible_share = s.visibility.share();
-  f.injured_voxels = static_cast<std::uint64_t>(*s.value("injured_voxels"));
+  f.injured_voxels = static_cast<std::uint64_t>(s.value("injured_voxels").value_or(0.0));
   f.injuries = s.injuries;
   f.mean_force = s.usage.mean_force;
   return f;
@@ -291,6 +291,9 @@ TEST(LiveDrillingTest, TheConsoleGetsTheFigures) {
               HasSubstr("procedure 2: 1:05, drilling 0:09, 12.3 mm3 of bone, 40 voxels, 88 % in "
                         "sight, 2.3"));
   EXPECT_THAT(state_of(procedure).line, HasSubstr("nothing vital injured"));
+  procedure.figures.injuries = {};
+  EXPECT_THAT(state_of(procedure).line, HasSubstr("vital structures unknown"));
+  EXPECT_TRUE(state_of(procedure).figures.back().alarm);
   procedure.practice = true;
   EXPECT_THAT(state_of(procedure).line, testing::StartsWith("practice: "));
 }

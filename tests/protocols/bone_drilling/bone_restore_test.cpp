@@ -117,7 +117,7 @@ TEST_F(BoneRestoreTest, AfterACrashTheBoneIsThatOfAnUninterruptedSimulationOnTha
   run(file_, true);
   std::uint64_t uninterrupted = 0;
   protocols::BoneReplay(*shared_ / "whole.h5")
-      .run(1, [&](std::uint64_t tick, const bone::DrillingView&,
+      .run(1, [&](std::uint64_t tick, std::uint64_t, const bone::DrillingView&,
                   const std::shared_ptr<const protocols::BoneStage>& stage) {
         if (tick + 1 == kCrash) {
           uninterrupted = stage->simulator->checksum();
@@ -126,7 +126,7 @@ TEST_F(BoneRestoreTest, AfterACrashTheBoneIsThatOfAnUninterruptedSimulationOnTha
   std::uint64_t resumed = 0;
   std::uint64_t emptied = 0;
   protocols::BoneReplay(file_).run(1,
-                                   [&](std::uint64_t tick, const bone::DrillingView&,
+                                   [&](std::uint64_t tick, std::uint64_t, const bone::DrillingView&,
                                        const std::shared_ptr<const protocols::BoneStage>& stage) {
                                      if (tick + 1 == kCrash) {
                                        resumed = stage->simulator->checksum();

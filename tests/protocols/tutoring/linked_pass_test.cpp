@@ -43,7 +43,7 @@ class DirectWire final : public network::Wire {
   std::vector<network::TickMessage> inbox_;
 };
 
-/// Pushes with a constant force, for a number of ticks.
+/// Pushes with a constant force, for a number of ticks; `stored` is what its springs would hold.
 class Push final : public Pass {
  public:
   Push(int ticks, const Vector3d& force) : left_(ticks), force_(force) {}
@@ -51,6 +51,7 @@ class Push final : public Pass {
     --left_;
     PassOutput out;
     out.force = force_;
+    out.intent.stored = stored;
     out.stage = record::Stage::kRun;
     out.shown.tool = readings[0].tool.position;
     return out;
@@ -59,6 +60,7 @@ class Push final : public Pass {
     return broken ? PassState::kAborted : left_ > 0 ? PassState::kRunning : PassState::kCompleted;
   }
   bool broken{false};
+  double stored{0.0};  // [J]
 
  private:
   int left_;
@@ -88,7 +90,9 @@ struct Side {
       pass.begin(sequence);
     }
     if (running && fault == device::Fault::kNone) {
-      force = pass.tick(readings, 1e-3).force;
+      const PassOutput out = pass.tick(readings, 1e-3);
+      force = out.force;
+      intent = out.intent;
       ++ticks;
     }
     hand.observe({}, stimulus::Forces(force), 1e-3);
@@ -106,6 +110,7 @@ struct Side {
   LinkedPass pass;
   device::DeviceReading reading;
   Vector3d force{Vector3d::Zero()};
+  device::ForceIntent intent;  // of it
   std::uint64_t sequence{0};
   int ticks{0};
   int stops{0};
@@ -189,6 +194,26 @@ TEST(LinkedPassTest, WhoLearnsCanAlwaysTakeTheLead) {
   EXPECT_LT((pair.learns.force - Vector3d(0.8, 2.0, 0.0)).norm(), 1e-9);
 }
 
+/// A hand that does not move gets no energy, however far the own world's springs are stretched and
+/// whoever leads.
+TEST(LinkedPassTest, AChangeOfTheLeadIsNoEnergyForTheHand) {
+  Pair pair(4000, 4000);
+  pair.learns.inner.stored = 0.5;
+  device::EnergyWatch watch;
+  double least_lead = 1.0;
+  for (int i = 0; i < 2000; ++i) {
+    pair.learns.hand.take_lead(i % 400 > 200);
+    pair.teaches.wire.open = i % 700 < 500;
+    pair.tick();
+    if (pair.learns.ticks > 0) {
+      EXPECT_FALSE(watch.look(pair.learns.force, Vector3d::Zero(), pair.learns.intent, 1e-3)) << i;
+      least_lead = std::min(least_lead, pair.learns.intent.stored / 0.5);
+    }
+  }
+  EXPECT_LT(watch.generated(), 1e-9);
+  EXPECT_LT(least_lead, 0.01) << "the partner led";
+}
+
 TEST(LinkedPassTest, AnAbortOnOneSideIsOneOnBoth) {
   Pair pair(1000, 1000);
   for (int i = 0; i < 100; ++i) {
@@ -231,6 +256,11 @@ TEST(LinkedPassTest, SilenceTakesTheForceAwayAtTheDeadline) {
   pair.tick();
   pair.tick();
   EXPECT_LT(std::abs(pair.learns.force.y()), 1e-12) << "0.1 s after the last message";
+  for (int i = 0; i < 50; ++i) {
+    pair.tick();
+  }
+  EXPECT_LT((pair.learns.force - Vector3d(1.0, 0.0, 0.0)).norm(), 1e-9)
+      << "the hand has its own world to rest on again";
   pair.teaches.wire.open = true;
   double last = 0.0;
   for (int i = 0; i < 200; ++i) {

@@ -38,7 +38,7 @@ TEST(InjuriesTest, AreCountedByStructureWithTheirFirstTimes) {
   }
   test::remove_in_turn(p, path);
   const std::vector<Injury> found = injuries(p, bones);
-  ASSERT_EQ(found.size(), 3u) << "the canal is not vital";
+  ASSERT_EQ(found.size(), 2u) << "the canal is not vital, and of the ossicle nothing is there";
   EXPECT_EQ(found[0].structure, "nerve");
   EXPECT_EQ(found[0].voxels, 1u);
   EXPECT_DOUBLE_EQ(*found[0].first_contact, 0.014) << "the end of tick 14 of 1 ms";
@@ -46,7 +46,6 @@ TEST(InjuriesTest, AreCountedByStructureWithTheirFirstTimes) {
   EXPECT_EQ(found[1].structure, "vein");
   EXPECT_EQ(found[1].voxels, 0u);
   EXPECT_FALSE(found[1].first_contact);
-  EXPECT_FALSE(found[2].first_contact);
 }
 
 TEST(InjuriesTest, ContactIsWhereTheBurrReachesTheVoxelsCube) {

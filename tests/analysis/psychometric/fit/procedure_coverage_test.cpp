@@ -35,14 +35,41 @@ TEST(ProcedureCoverage, ConstantStimuliHoldThresholdAndWidth) {
   }
 }
 
-TEST(ProcedureCoverage, FourTracksHoldTheThreshold) {
-  const StudyResult r = result_of("2-down/1-up, four tracks", 1000);
-  expect_held(r.natural, "mean of the tracks");
-  expect_held(r.threshold, "fit of their trials");
+class SingleTrackCoverage : public testing::TestWithParam<const char*> {};
+
+TEST_P(SingleTrackCoverage, HoldsTheThreshold) {
+  const StudyResult r = result_of(GetParam(), 150);
+  expect_held(r.natural, "own estimate");
+  expect_held(r.threshold, "fit");
+  EXPECT_LT(r.profile.coverage(), 0.93) << "the posterior would not be needed";
 }
 
-TEST(ProcedureCoverage, PosteriorOfPsiHoldsTheThreshold) {
-  expect_held(result_of("Psi", 500).natural, "posterior");
+INSTANTIATE_TEST_SUITE_P(Procedures, SingleTrackCoverage,
+                         testing::Values("2-down/1-up", "3-down/1-up", "weighted up-down", "PEST"));
+
+TEST(ProcedureCoverage, FourTracksHoldTheThreshold) {
+  const StudyResult r = result_of("2-down/1-up, four tracks", 300);
+  expect_held(r.natural, "mean of the tracks");
+  expect_held(r.threshold, "fit of their trials");
+  expect_held(r.width, "width");
+}
+
+class BayesianProcedureCoverage : public testing::TestWithParam<const char*> {};
+
+TEST_P(BayesianProcedureCoverage, HoldsTheThreshold) {
+  const StudyResult r = result_of(GetParam(), 150);
+  expect_held(r.natural, "posterior");
+  expect_held(r.threshold, "fit");
+  expect_held(r.width, "width of the fit");
+}
+
+INSTANTIATE_TEST_SUITE_P(Procedures, BayesianProcedureCoverage,
+                         testing::Values("Psi", "Psi that assumes no lapses",
+                                         "QUEST+ with lapses"));
+
+TEST(ProcedureCoverage, SettingsAndMagnitudesHoldWhatTheyAreMeantFor) {
+  expect_held(result_of("adjustment", 1000).natural, "adjustment");
+  expect_held(result_of("magnitude estimation", 1000).natural, "exponent");
 }
 
 }  // namespace

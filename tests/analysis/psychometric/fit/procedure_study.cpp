@@ -7,6 +7,8 @@
 #include <memory>
 #include <numeric>
 
+#include "analysis/psychometric/fit/adaptive_posterior.h"
+#include "analysis/psychometric/fit/track_interval.h"
 #include "core/base/parallel.h"
 #include "core/psychometric/function/response_observer.h"
 #include "core/psychometric/procedure/adjusting.h"
@@ -39,6 +41,13 @@ ResponseObserver observer_of(const Truth& truth, Task task, std::uint64_t seed) 
   return {{function_of(truth, task), 0.0, 0.0}, seed, "coverage/answers"};
 }
 
+analysis::LikelihoodOptions options_of(Task task) {
+  analysis::LikelihoodOptions options{.task = task};
+  options.function.sigmoid = Sigmoid::kGaussian;
+  options.function.guess = kChance;
+  return options;
+}
+
 /// To the end; every trial goes to the blocks of the session.
 void run(Procedure& procedure, ResponseObserver& observer, Session& session) {
   while (!procedure.finished()) {
@@ -50,12 +59,41 @@ void run(Procedure& procedure, ResponseObserver& observer, Session& session) {
   }
 }
 
-Found with_student(double value, double truth, std::optional<double> error, double freedom) {
-  if (!error || !(freedom >= 1.0)) {
-    return {value, truth};
+/// With the interval that the procedure states itself, or Student's of its error.
+Found found_of(const Estimate& e, double truth) {
+  if (e.interval) {
+    return {e.value, truth, true, e.interval->low, e.interval->high};
   }
-  const double half = gsl_cdf_tdist_Pinv(0.975, freedom) * *error;
-  return {value, truth, true, value - half, value + half};
+  if (!e.deviation || !e.freedom) {
+    return {e.value, truth};
+  }
+  const double half = gsl_cdf_tdist_Pinv(0.975, *e.freedom) * *e.deviation;
+  return {e.value, truth, true, e.value - half, e.value + half};
+}
+
+/// An estimate of a finished track, with the interval that a report states.
+template <class Track, class Parameters>
+void add_estimate(const Track& track, const Parameters& p, const Truth& truth, std::uint64_t seed,
+                  Session& session) {
+  const auto estimates = track.estimates();
+  const auto blocks = analysis::pooled(session.blocks);
+  if (estimates.empty() || blocks.size() < 2) {
+    return;
+  }
+  const double aim =
+      PsychometricFunction(function_of(truth, session.task)).level_for(*track.target());
+  session.natural = Found{estimates[0].value, aim};
+  const auto options = options_of(session.task);
+  const auto draws =
+      analysis::adaptive_posterior(blocks, options, 0.95, analysis::kPosteriorDraws).draws;
+  const auto interval = analysis::track_interval(
+      {estimates[0], session.blocks.size(), true, [&p] { return std::make_unique<Track>(p); }},
+      options.function, draws, seed);
+  if (interval) {
+    session.natural->interval = true;
+    session.natural->low = interval->low;
+    session.natural->high = interval->high;
+  }
 }
 
 Session constant_stimuli(const Truth& truth, std::uint64_t seed, Task task) {
@@ -83,25 +121,20 @@ StaircaseParameters staircase(int down, StaircaseStep step) {
   return p;
 }
 
-Session one_track(const Truth& truth, std::uint64_t seed, const StaircaseParameters& p,
-                  double target) {
+Session one_track(const Truth& truth, std::uint64_t seed, const StaircaseParameters& p) {
   Session session;
+  session.adaptive = true;
   auto observer = observer_of(truth, Task::kForcedChoice, seed);
   Staircase track(p);
   run(track, observer, session);
-  const auto estimates = track.estimates();
-  if (!estimates.empty()) {
-    const double aim =
-        PsychometricFunction(function_of(truth, Task::kForcedChoice)).level_for(target);
-    const auto pairs = static_cast<double>((track.reversals().size() - 2) / 2);
-    session.natural = with_student(estimates[0].value, aim, estimates[0].deviation, pairs - 1.0);
-  }
+  add_estimate(track, p, truth, seed, session);
   return session;
 }
 
 /// Tracks of the same rule, each from its own start; the interval is that of their mean.
 Session four_tracks(const Truth& truth, std::uint64_t seed, StaircaseParameters p, double target) {
   Session session;
+  session.adaptive = true;
   auto observer = observer_of(truth, Task::kForcedChoice, seed);
   std::vector<double> found;
   for (const double start : {2.0, 2.5, 3.0, 3.5}) {
@@ -117,7 +150,7 @@ Session four_tracks(const Truth& truth, std::uint64_t seed, StaircaseParameters 
   }
   const double aim =
       PsychometricFunction(function_of(truth, Task::kForcedChoice)).level_for(target);
-  session.natural = with_student(mean, aim, std::sqrt(squares / (n - 1.0) / n), n - 1.0);
+  session.natural = found_of({"", mean, std::sqrt(squares / (n - 1.0) / n), n - 1.0}, aim);
   return session;
 }
 
@@ -131,14 +164,11 @@ Session pest(const Truth& truth, std::uint64_t seed) {
   p.largest_step = 2.0;
   p.stop_trials = 400;
   Session session;
+  session.adaptive = true;
   auto observer = observer_of(truth, Task::kForcedChoice, seed);
   Pest track(p);
   run(track, observer, session);
-  const auto estimates = track.estimates();
-  if (!estimates.empty()) {
-    const PsychometricFunction psi(function_of(truth, Task::kForcedChoice));
-    session.natural = Found{estimates[0].value, psi.level_for(p.target)};
-  }
+  add_estimate(track, p, truth, seed, session);
   return session;
 }
 
@@ -164,42 +194,20 @@ std::shared_ptr<const QuestTables> psi_tables(const std::vector<double>& lapses,
   return std::make_shared<QuestTables>(psi_definition(p));
 }
 
-/// Where the distribution of a marginal is `share`: each value stands for the step around it.
-double quantile(const std::vector<double>& values, const std::vector<double>& masses,
-                double share) {
-  double below = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (below + masses[i] >= share || i + 1 == values.size()) {
-      const double step = values[1] - values[0];
-      return values[i] + step * ((share - below) / std::max(masses[i], 1e-300) - 0.5);
-    }
-    below += masses[i];
-  }
-  return values.back();
-}
-
-Found of_marginal(const std::vector<double>& values, const std::vector<double>& masses,
-                  double truth) {
-  double mean = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    mean += values[i] * masses[i];
-  }
-  return {mean, truth, true, quantile(values, masses, 0.025), quantile(values, masses, 0.975)};
-}
-
 Session psi(const Truth& truth, std::uint64_t seed, std::shared_ptr<const QuestTables> tables) {
   Session session;
+  session.adaptive = true;
   auto observer = observer_of(truth, Task::kForcedChoice, seed);
   QuestPlus quest(tables, {120, 0.0});
   run(quest, observer, session);
-  const auto& parameters = tables->definition().parameters;
-  session.natural = of_marginal(parameters[0].values, quest.marginal(0), truth.threshold);
-  std::vector<double> widths = parameters[1].values;
-  for (double& width : widths) {
-    width = std::log(width);
-  }
+  const auto estimates = quest.estimates();
+  session.natural = found_of(estimates[0], truth.threshold);
   const double width = function_of(truth, Task::kForcedChoice).width;
-  session.width = of_marginal(widths, quest.marginal(1), std::log(width));
+  session.width = found_of(estimates[1], width);
+  for (double* number :
+       {&session.width->value, &session.width->truth, &session.width->low, &session.width->high}) {
+    *number = std::log(*number);
+  }
   return session;
 }
 
@@ -227,8 +235,7 @@ Session adjustment(const Truth& truth, std::uint64_t seed) {
     settings.report(0.0, Level(settings.next()));
     ++session.trials;
   }
-  const auto estimate = settings.estimates().at(0);
-  session.natural = with_student(estimate.value, truth.threshold, estimate.deviation, 11.0);
+  session.natural = found_of(settings.estimates().at(0), truth.threshold);
   return session;
 }
 
@@ -246,30 +253,44 @@ Session magnitudes(const Truth& truth, std::uint64_t seed) {
     numbers.report(digit * std::round(felt / digit), level);
     ++session.trials;
   }
-  const auto estimate = numbers.estimates().at(0);
-  session.natural = with_student(estimate.value, truth.sigma, estimate.deviation, 22.0);
+  session.natural = found_of(numbers.estimates().at(0), truth.sigma);
   return session;
 }
 
 struct Counted {
   Session session;
   std::optional<analysis::ProfiledFit> fit;
+  std::optional<analysis::AdaptivePosterior> posterior;  // of adaptive trials
+  std::optional<analysis::BayesianFit> bayesian;
   Truth truth;
 };
 
-Counted observed(const ProcedureStudy& study, std::uint64_t number) {
+analysis::BayesianFit bayesian_of(const std::vector<TrialBlock>& blocks, Task task) {
+  analysis::BayesianOptions options;
+  options.function = options_of(task).function;
+  options.task = task;
+  options.levels = {0.95};
+  return analysis::bayesian_fit(blocks, options);
+}
+
+Counted observed(const ProcedureStudy& study, std::uint64_t number, bool bayesian) {
   Counted counted;
   RandomStream random(number, "coverage/observer");
   counted.truth.threshold = random.uniform(-1.0, 1.0);
   counted.truth.sigma = 0.7 * std::pow(2.0, random.uniform());
   counted.session = study.run(counted.truth, number);
-  if (!counted.session.blocks.empty()) {
-    analysis::LikelihoodOptions options{.task = counted.session.task};
-    options.function.sigmoid = Sigmoid::kGaussian;
-    options.function.guess = kChance;
-    const auto blocks = analysis::pooled(counted.session.blocks);
-    if (blocks.size() > 1) {
-      counted.fit = analysis::profiled_fit(blocks, options);
+  if (counted.session.blocks.empty()) {
+    return counted;
+  }
+  const auto options = options_of(counted.session.task);
+  const auto blocks = analysis::pooled(counted.session.blocks);
+  if (blocks.size() > 1) {
+    counted.fit = analysis::profiled_fit(blocks, options);
+    if (counted.session.adaptive) {
+      counted.posterior = analysis::adaptive_posterior(blocks, options);
+    }
+    if (bayesian) {
+      counted.bayesian = bayesian_of(blocks, counted.session.task);
     }
   }
   return counted;
@@ -279,6 +300,10 @@ void count(Tally& tally, const analysis::ProfileInterval& interval, double truth
   ++tally.observers;
   tally.held += interval.holds(truth) ? 1 : 0;
   tally.open += interval.low_open || interval.high_open ? 1 : 0;
+}
+
+void count(Tally& tally, const analysis::CredibleInterval& interval, double truth) {
+  count(tally, analysis::ProfileInterval{interval.low, interval.high}, truth);
 }
 
 void add(StudyResult& result, const Counted& counted) {
@@ -292,13 +317,26 @@ void add(StudyResult& result, const Counted& counted) {
   if (!counted.fit) {
     return;
   }
+  const double threshold = counted.truth.threshold;
   const double width = function_of(counted.truth, session.task).width;
   const auto& fit = *counted.fit;
-  count(result.threshold, fit.threshold, counted.truth.threshold);
-  count(result.width, fit.width, width);
+  count(result.profile, fit.threshold, threshold);
+  count(result.profile_width, fit.width, width);
+  if (counted.posterior) {
+    count(result.threshold, counted.posterior->threshold, threshold);
+    count(result.width, counted.posterior->width, width);
+  } else {
+    count(result.threshold, fit.threshold, threshold);
+    count(result.width, fit.width, width);
+  }
+  if (counted.bayesian) {
+    const auto& intervals = counted.bayesian->intervals;
+    count(result.bayesian, intervals[analysis::kThreshold][0], threshold);
+    count(result.bayesian_width, intervals[analysis::kWidth][0], width);
+  }
   result.undetermined += fit.fit.undetermined ? 1 : 0;
   if (!fit.fit.undetermined) {
-    result.threshold.errors.push_back(fit.fit.parameters.threshold - counted.truth.threshold);
+    result.threshold.errors.push_back(fit.fit.parameters.threshold - threshold);
     result.width.errors.push_back(std::log(fit.fit.parameters.width / width));
   }
 }
@@ -308,9 +346,9 @@ void add(StudyResult& result, const Counted& counted) {
 std::vector<ProcedureStudy> procedure_studies() {
   const StaircaseStep equal{0.5, 0.5, 0};
   const StaircaseStep weighted = weighted_step(0.75, 0.25);
-  const auto track = [](int down, StaircaseStep step, double target) {
+  const auto track = [](int down, StaircaseStep step) {
     return [=](const Truth& t, std::uint64_t seed) {
-      return one_track(t, seed, staircase(down, step), target);
+      return one_track(t, seed, staircase(down, step));
     };
   };
   const auto of_tables = [](const std::vector<double>& lapses, bool nuisance) {
@@ -321,12 +359,12 @@ std::vector<ProcedureStudy> procedure_studies() {
   const auto constant = [](Task task) {
     return [=](const Truth& t, std::uint64_t seed) { return constant_stimuli(t, seed, task); };
   };
-  const double two = balance_of(2, equal), three = balance_of(3, equal);
+  const double two = balance_of(2, equal);
   return {{"constant stimuli, forced choice", "", constant(Task::kForcedChoice)},
           {"constant stimuli, yes/no", "", constant(Task::kYesNo)},
-          {"2-down/1-up", "0.707", track(2, equal, two)},
-          {"3-down/1-up", "0.794", track(3, equal, three)},
-          {"weighted up-down", "0.75", track(1, weighted, 0.75)},
+          {"2-down/1-up", "0.707", track(2, equal)},
+          {"3-down/1-up", "0.794", track(3, equal)},
+          {"weighted up-down", "0.75", track(1, weighted)},
           {"2-down/1-up, four tracks", "0.707",
            [=](const Truth& t, std::uint64_t seed) {
              return four_tracks(t, seed, staircase(2, equal), two);
@@ -360,9 +398,11 @@ double Tally::deviation() const {
   return std::sqrt(squares / (static_cast<double>(errors.size()) - 1.0));
 }
 
-StudyResult run_study(const ProcedureStudy& study, int observers, int threads) {
+StudyResult run_study(const ProcedureStudy& study, int observers, int threads, int bayesian) {
   std::vector<Counted> all(static_cast<std::size_t>(observers));
-  parallel_for(all.size(), threads, [&](std::size_t i) { all[i] = observed(study, i); });
+  parallel_for(all.size(), threads, [&](std::size_t i) {
+    all[i] = observed(study, i, i < static_cast<std::size_t>(bayesian));
+  });
   StudyResult result;
   for (const Counted& counted : all) {
     result.trials += static_cast<double>(counted.session.trials) / observers;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/psychometric/fit/bayesian_fit.h"
 #include "analysis/psychometric/fit/profile_interval.h"
 
 namespace haptrial::test {
@@ -31,6 +32,7 @@ struct Session {
   std::optional<Found> natural;              // the procedure's own estimate
   std::optional<Found> width;                // likewise, on a logarithmic scale
   std::vector<analysis::TrialBlock> blocks;  // to be fitted; empty: nothing is fitted
+  bool adaptive{false};                      // the levels depended on the answers
   analysis::Task task{analysis::Task::kForcedChoice};
 };
 
@@ -54,12 +56,16 @@ struct Tally {
 };
 
 struct StudyResult {
-  double trials{0.0};                              // mean
-  Tally natural, natural_width, threshold, width;  // errors of widths: ln(found / true)
+  double trials{0.0};            // mean
+  Tally natural, natural_width;  // errors of widths: ln(found / true)
+  Tally threshold, width;        // the fit with the intervals that a report states
+  Tally profile, profile_width;  // with those of the profile likelihood
+  Tally bayesian, bayesian_width;
   int undetermined{0};  // fits; their errors are left out, their intervals count
 };
 
 /// @param observers  numbers 0 .. observers - 1, each with its own random streams
-StudyResult run_study(const ProcedureStudy& study, int observers, int threads);
+/// @param bayesian   how many, from the first on, also have the beta-binomial fit (0.3 s each)
+StudyResult run_study(const ProcedureStudy& study, int observers, int threads, int bayesian = 0);
 
 }  // namespace haptrial::test

@@ -6,29 +6,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
-#include <iostream>
-#include <memory>
 
 #include "analysis/psychometric/surface/contour.h"
-#include "core/base/random.h"
-#include "core/psychometric/quest/quest_plus.h"
+#include "tests/analysis/psychometric/surface/surface_counts.h"
 #include "tests/support/message_of.h"
 
 namespace haptrial::analysis::surface_test {
 namespace {
 
 using psychometric::QuestDefinition;
-using psychometric::QuestDimension;
-
-std::vector<double> even(double from, double to, int count) {
-  std::vector<double> values;
-  for (int i = 0; i < count; ++i) {
-    values.push_back(from + (to - from) * i / (count - 1));
-  }
-  return values;
-}
+using test::ellipse;
 
 /// The answer 1 has the probability `rate`, whatever is presented.
 QuestDefinition coin(std::vector<double> prior = {}) {
@@ -106,77 +94,18 @@ TEST(SurfaceFitTest, WhatCannotBeFittedIsSaidInASentence) {
   EXPECT_THAT(refusal(impossible, tosses(1, 1)), testing::HasSubstr("impossible for all values"));
 }
 
-/// Felt if the size of (x, gain y) is above a threshold; with a slope.
-QuestDefinition ellipse() {
-  QuestDefinition d;
-  d.stimulus = {{"x", even(0.0, 2.0, 8), {}, false}, {"y", even(0.0, 2.0, 8), {}, false}};
-  d.parameters = {{"threshold", even(0.5, 1.5, 11), {}, false},
-                  {"gain", even(0.7, 1.3, 7), {}, false},
-                  {"spread", {0.1, 0.2, 0.3}, {}, false}};
-  d.model = [](const double* s, const double* p, double* probability) {
-    const double z = (std::hypot(s[0], p[1] * s[1]) - p[0]) / p[2];
-    probability[1] = 0.01 + 0.98 * 0.5 * std::erfc(-z / std::sqrt(2.0));
-    probability[0] = 1.0 - probability[1];
-  };
-  return d;
-}
-
-/// The answers of an observer to what QUEST+ presents.
-std::vector<SurfaceTrial> asked(const std::shared_ptr<const psychometric::QuestTables>& tables,
-                                const std::vector<double>& truth, int trials,
-                                RandomStream& random) {
-  psychometric::QuestPlus quest(tables, {trials, 0.0});
-  std::vector<SurfaceTrial> all;
-  std::array<double, 2> p{};
-  while (!quest.finished()) {
-    const psychometric::Level level = quest.next();
-    tables->definition().model(level.data(), truth.data(), p.data());
-    const bool one = random.uniform() < p[1];
-    quest.report(one ? 1.0 : 0.0, level);
-    all.push_back({level, one ? 1u : 0u});
-  }
-  return all;
-}
-
 TEST(SurfaceFitTest, IntervalsHoldTheTruthOfObserversDrawnFromThePrior) {
-  constexpr int kObservers = 160, kTrials = 120;
-  const auto tables = std::make_shared<const psychometric::QuestTables>(ellipse());
-  RandomStream random(11, "observers");
-  std::vector<int> held(3, 0);
-  int contour_held = 0, contours = 0;
-  std::vector<double> error(3, 0.0);
-  for (int i = 0; i < kObservers; ++i) {
-    const std::vector<double> truth{0.5 + random.uniform(), 0.7 + 0.6 * random.uniform(),
-                                    0.1 + 0.2 * random.uniform()};
-    const SurfaceFit fit = fit_surface(tables->definition(), asked(tables, truth, kTrials, random));
-    for (std::size_t k = 0; k < 3; ++k) {
-      const SurfaceParameter& p = fit.parameters[k];
-      held[k] += p.low <= truth[k] && truth[k] <= p.high ? 1 : 0;
-      error[k] += (p.mean - truth[k]) / kObservers;
-    }
-    const ThresholdMap map(tables->definition(), fit, 0.5);
-    const ContourPoint at_zero = map.points(5).front();
-    const double second = truth[0] / truth[1];  // where x is 0
-    ASSERT_EQ(at_zero.second.size(), 1u);
-    if (at_zero.low == at_zero.low && at_zero.high == at_zero.high) {
-      ++contours;
-      contour_held += at_zero.low <= second && second <= at_zero.high ? 1 : 0;
-    }
-  }
-  std::cout << "held of " << kObservers << " (simulated): threshold " << held[0] << ", gain "
-            << held[1] << ", spread " << held[2] << "; contour " << contour_held << " of "
-            << contours << "; mean errors " << error[0] << ", " << error[1] << ", " << error[2]
-            << "\n";
+  const test::SurfaceCounts counts = test::count_surfaces(160, 1);
   constexpr int kLeast = 142, kMost = 159;  // 99.8 % of binomial counts of 160 at 0.95
-  for (const int count : held) {
+  for (const int count : counts.held) {
     EXPECT_GE(count, kLeast);
     EXPECT_LE(count, kMost);
   }
-  EXPECT_GT(contours, 150);
-  EXPECT_GE(contour_held, contours - 18);
-  EXPECT_LT(contour_held, contours);
-  EXPECT_NEAR(error[0], 0.0, 0.02);
-  EXPECT_NEAR(error[1], 0.0, 0.02);
+  EXPECT_GT(counts.contours, 150);
+  EXPECT_GE(counts.contours_held, counts.contours - 18);
+  EXPECT_LT(counts.contours_held, counts.contours);
+  EXPECT_NEAR(counts.error[0], 0.0, 0.02);
+  EXPECT_NEAR(counts.error[1], 0.0, 0.02);
 }
 
 TEST(ThresholdMapTest, AKnownFunctionHasItsCircle) {

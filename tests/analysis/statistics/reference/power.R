@@ -37,4 +37,25 @@ for (groups in c(2, 3, 6)) {
   answer(paste(groups), n = solve(function(n) anova_power(groups, n, 0.25) - 0.8, c(2, 999)),
          f = solve(function(f) anova_power(groups, 15, f) - 0.9, c(0.01, 3)))
 }
+# Terms of repeated-measures and mixed designs; G*Power 3's f, correlation and epsilon.
+repeated_power <- function(term, k, m, n, f, rho, eps) {
+  lambda <- k * n * m * f^2 / if (term == "between") 1 + (m - 1) * rho else (1 - rho) / eps
+  df1 <- switch(term, within = eps * (m - 1), between = k - 1, interaction = eps * (k - 1) * (m - 1))
+  df2 <- (k * n - k) * if (term == "between") 1 else eps * (m - 1)
+  q <- qf(0.05, df1, df2, lower.tail = FALSE)
+  j <- 0:3000
+  p <- sum(dpois(j, lambda / 2) *
+             pbeta(q * df1 / (q * df1 + df2), df1 / 2 + j, df2 / 2, lower.tail = FALSE))
+  stopifnot(abs(p - pf(q, df1, df2, lambda, lower.tail = FALSE)) < 1e-8)
+  p
+}
+procedure("Power of repeated measures and mixed designs", "sum(dpois * pbeta); pf(ncp = )")
+for (term in c("within", "interaction", "between")) for (m in c(2, 4)) for (eps in c(1, 0.6)) {
+  if (m == 2 && eps < 1) next
+  for (n in c(6, 25)) for (rho in c(0, 0.5, 0.8)) {
+    answer(paste(term, m, eps, n, rho), power = repeated_power(term, 2, m, n, 0.25, rho, eps))
+  }
+  answer(paste(term, m, eps),
+         n = solve(function(n) repeated_power(term, 2, m, n, 0.25, 0.5, eps) - 0.8, c(2, 999)))
+}
 finish()

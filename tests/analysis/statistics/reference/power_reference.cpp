@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "analysis/statistics/tests/power.h"
+#include "analysis/statistics/tests/repeated_power.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
 namespace haptrial::analysis::reference::power_reference {
@@ -37,6 +40,19 @@ void compare_anova(Answers& r, int groups) {
       .is("f", *anova_detectable(plan, 15.0, 0.9));
 }
 
+void compare_repeated(Answers& r, const std::string& term, RepeatedPlan plan) {
+  const char* const procedure = "Power of repeated measures and mixed designs";
+  const std::string name = fmt::format("{} {} {:g}", term, plan.measurements, plan.epsilon);
+  r.at(procedure, name).is("n", repeated_sample_size(plan, 0.25, 0.8)->exact);
+  for (const double n : {6.0, 25.0}) {
+    for (const double correlation : {0.0, 0.5, 0.8}) {
+      plan.correlation = correlation;
+      r.at(procedure, fmt::format("{} {:g} {:g}", name, n, correlation))
+          .is("power", *repeated_power(plan, n, 0.25));
+    }
+  }
+}
+
 void compare(Answers& r) {
   for (const bool one_tailed : {false, true}) {
     const std::string tails = one_tailed ? " one.sided" : " two.sided";
@@ -46,6 +62,13 @@ void compare(Answers& r) {
   }
   for (const int groups : {2, 3, 6}) {
     compare_anova(r, groups);
+  }
+  for (const auto& [term, word] : {std::pair(RepeatedTerm::kWithin, "within"),
+                                   {RepeatedTerm::kInteraction, "interaction"},
+                                   {RepeatedTerm::kBetween, "between"}}) {
+    compare_repeated(r, word, {term, 2, 2, 0.5, 1.0, 0.05});
+    compare_repeated(r, word, {term, 2, 4, 0.5, 1.0, 0.05});
+    compare_repeated(r, word, {term, 2, 4, 0.5, 0.6, 0.05});
   }
 }
 

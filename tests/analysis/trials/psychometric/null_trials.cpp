@@ -17,6 +17,8 @@ const char* name_of(SimulatedTask task) {
       return "larger or smaller, constant stimuli";
     case SimulatedTask::kDetection:
       return "yes or no with ratings";
+    case SimulatedTask::kIdentification:
+      return "which of four, with ratings";
     case SimulatedTask::kMagnitude:
       break;
   }
@@ -29,7 +31,9 @@ NullLevels one_study(SimulatedTask task, std::uint64_t seed, std::size_t number,
                      std::size_t permutations) {
   SimulatedTrials study;
   study.task = task;
-  study.trials = task == SimulatedTask::kMagnitude ? 25 : 120;
+  study.trials = task == SimulatedTask::kMagnitude        ? 25
+                 : task == SimulatedTask::kIdentification ? 48
+                                                          : 120;
   if (task == SimulatedTask::kComparison) {
     study.spread = 0.6;
     study.interaction = 0.3;

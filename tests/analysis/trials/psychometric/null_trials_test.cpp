@@ -36,7 +36,8 @@ TEST(NullTrialsTest, ASearchThatMustDampAnewEnds) {
 INSTANTIATE_TEST_SUITE_P(Tasks, NullTrials,
                          testing::Values(SimulatedTask::kStaircase, SimulatedTask::kConstant,
                                          SimulatedTask::kComparison, SimulatedTask::kDetection,
-                                         SimulatedTask::kMagnitude));
+                                         SimulatedTask::kMagnitude,
+                                         SimulatedTask::kIdentification));
 
 }  // namespace
 }  // namespace haptrial::test

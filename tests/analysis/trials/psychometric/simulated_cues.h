@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "analysis/trials/data/trials_data.h"
-#include "analysis/trials/psychometric/trials_plan.h"
+#include "analysis/trials/fit/trials_plan.h"
 
 namespace haptrial::test {
 

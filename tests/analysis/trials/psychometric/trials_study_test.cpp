@@ -236,6 +236,52 @@ TEST(TrialsStudyTest, ATrackIsReplayedAsItRan) {
   }
 }
 
+TEST(TrialsStudyTest, AdaptiveTrialsHaveIntervalsThatHoldTheTruth) {
+  SimulatedTrials study;
+  study.participants = 12;
+  study.conditions = 1;
+  study.spread = study.interaction = 0.0;
+  psychometric::StaircaseParameters p;
+  p.axis = {psychometric::Scale::kLog10, 300.0, "N/m"};
+  p.low = 302.0;
+  p.high = 600.0;
+  p.steps = {{0.2, 0.2, 0}, {0.1, 0.1, 1}};
+  p.stop_trials = study.trials / 2;
+  p.skip = 2;
+  const ProcedureOf begin = [p](const std::string& name) {
+    auto own = p;
+    own.start = name.starts_with("track 1") ? 450.0 : 345.0;
+    return std::make_unique<psychometric::Staircase>(own);
+  };
+  TrialsPlan plan = test::plan_of(study);
+  const TrialsResult result = analyze(test::simulated_trials(study), plan, begin, 2);
+  psychometric::PsychometricParameters truth = plan.function;
+  truth.threshold = 300.0 + std::exp(test::kTypicalLogThreshold);
+  const double aim = psychometric::PsychometricFunction(truth).level_for(std::sqrt(0.5));
+  int held = 0, own_held = 0;
+  for (const FunctionFit& fit : result.fits) {
+    EXPECT_TRUE(fit.adaptive);
+    if (fit.likelihood) {
+      const Estimated x = fit.likelihood->x;
+      held += x.low <= test::kTypicalLogThreshold && test::kTypicalLogThreshold <= x.high ? 1 : 0;
+      EXPECT_TRUE(std::isfinite(fit.likelihood->width.high)) << "the prior ends it";
+    }
+  }
+  for (const TrackEstimate& track : result.tracks) {
+    ASSERT_TRUE(track.estimates.at(0).interval) << track.no_interval;
+    const auto [low, high] = *track.estimates[0].interval;
+    own_held += low <= aim && aim <= high ? 1 : 0;
+  }
+  // Of 12 and 24 intervals of 95 %, 8 and 18 or fewer hold the truth once in 10,000 studies.
+  EXPECT_GE(held, 9);
+  EXPECT_GE(own_held, 19);
+  plan.functions = false;
+  const TrialsResult without = analyze(test::simulated_trials(study), plan, begin, 2);
+  EXPECT_FALSE(without.tracks[0].estimates.at(0).interval);
+  EXPECT_EQ(without.tracks[0].no_interval,
+            "no function of what the procedure learnt from is fitted");
+}
+
 TEST(TrialsStudyTest, PracticeAndAbortedTrialsCountNowhere) {
   SimulatedTrials study;
   study.task = SimulatedTask::kConstant;

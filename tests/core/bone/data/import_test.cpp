@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "core/bone/anatomy/ear_side.h"
 #include "core/bone/data/bone_summary.h"
 #include "core/bone/data/load_bone.h"
 #include "tests/core/bone/data/volume_bytes.h"
@@ -282,6 +283,31 @@ TEST_F(ImportTest, ATableNamesLabelsAndStructuresCanBeLeftOut) {
   EXPECT_THAT(refusal("v.nrrd", nrrd_of(volume), options), HasSubstr("no 'tooth' to leave out"));
   test::write_bytes(folder_ / "names.toml", "[labels.300]\nname = \"x\"\n");
   EXPECT_THAT(refusal("v.nrrd", nrrd_of(volume), options), HasSubstr("labels.300"));
+}
+
+TEST_F(ImportTest, ATableMapsNamesThatAreNotKnown) {
+  PlainVolume volume({4, 4, 4});
+  volume.at(1, 1, 1) = 2;
+  volume.more = "label_02:=N. facialis dexter\n";
+  EXPECT_FALSE(has_vital_structures(load("v.nrrd", nrrd_of(volume))));
+  test::write_bytes(folder_ / "names.toml", "[names]\n\"N. facialis dexter\" = \"CN VII\"\n");
+  LoadOptions options;
+  options.label_file = (folder_ / "names.toml").string();
+  const BoneModel model = load("v.nrrd", nrrd_of(volume), options);
+  EXPECT_EQ(model.structures[2].name, "facial nerve");
+  EXPECT_TRUE(has_vital_structures(model));
+}
+
+TEST_F(ImportTest, TheRealTemporalBonesAreRightEarsAndTheirMirrorImagesLeftOnes) {
+  const auto file = test::shared_data("bone/ear3_171_labels.nrrd");
+  if (!file) {
+    GTEST_SKIP() << "neither HAPTRIAL_DATA nor ../shared/data holds bone/ear3_171_labels.nrrd";
+  }
+  LoadOptions options;
+  options.spacing = 1e-3;
+  EXPECT_EQ(ear_side(load_bone(*file, options)), EarSide::kRight);
+  options.mirror = true;
+  EXPECT_EQ(ear_side(load_bone(*file, options)), EarSide::kLeft);
 }
 
 TEST_F(ImportTest, TheRealTemporalBoneComesAsItIs) {

@@ -125,14 +125,14 @@ TEST(BurrTest, IsReadFromADefinition) {
 
 TEST(BurrTest, EveryWrongKeyGetsASentence) {
   Table table = Table::parse(
-      "kind = 'laser'\ndiameter = 4\nremoval_rate = -1\nright_handed = 1\ncolour = 2\n", "a.toml");
+      "kind = 'laser'\ndiameter = 4\nremoval_rate = -1\nrotation = 'left'\ncolour = 2\n", "a.toml");
   read_burr_parameters(table);
   try {
     table.finish();
     FAIL() << "accepted";
   } catch (const InputError& error) {
     for (const char* part : {"a.toml:1: kind", "a.toml:2: diameter", "a.toml:3: removal_rate",
-                             "a.toml:4: right_handed", "a.toml:5: colour"}) {
+                             "a.toml:4: rotation", "a.toml:5: colour"}) {
       EXPECT_THAT(error.what(), HasSubstr(part));
     }
   }

@@ -227,7 +227,8 @@ TEST(DrillTest, AWhollyImmersedBurrDoesNotKnowTheWayOut) {
 
 TEST(DrillTest, TeethPullAcrossTheAxisAndAlongTheBone) {
   const BoneVolume bone(test::flat_bone(40, kSpacing));
-  const BurrParameters burr = default_burr(BurrKind::kCutting, 4e-3);
+  BurrParameters burr = default_burr(BurrKind::kCutting, 4e-3);
+  burr.clockwise = false;  // as the source has the sign
   Drill drill(burr, {});
   // The handle lies along x, the bone below: (p - sc) points down, times d it points along -y.
   const Quaterniond lying(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitY()));

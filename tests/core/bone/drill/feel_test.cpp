@@ -9,6 +9,7 @@
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
+#include "tests/support/solid_bone.h"
 
 namespace haptrial::bone {
 namespace {
@@ -81,12 +82,27 @@ TEST(FeelTest, TeethPullOnlyWhileTheBurrTurnsAndByItsHand) {
   BurrParameters burr = default_burr(BurrKind::kCutting, 4e-3);
   Contact contact = contact_of(1e-9, 1e-9 * Eigen::Vector3d::UnitZ());
   contact.turn = 1e-12 * Eigen::Vector3d::UnitX();
-  const Eigen::Vector3d right = drag_force(contact, burr, 1.0);
-  EXPECT_GT(right.x(), 0.0);
+  const Eigen::Vector3d forward = drag_force(contact, burr, 1.0);
+  EXPECT_LT(forward.x(), 0.0);
   EXPECT_EQ(drag_force(contact, burr, 0.0), Eigen::Vector3d(0, 0, 0));
-  EXPECT_EQ(drag_force(contact, burr, 0.5), 0.5 * right);
-  burr.right_handed = false;
-  EXPECT_EQ(drag_force(contact, burr, 1.0), -right);
+  EXPECT_EQ(drag_force(contact, burr, 0.5), 0.5 * forward);
+  burr.clockwise = false;
+  EXPECT_EQ(drag_force(contact, burr, 1.0), -forward);
+}
+
+/// A wheel that turns clockwise before one's eyes rolls to the right.
+TEST(FeelTest, AClockwiseBurrRunsAlongTheBoneAsAWheelRolls) {
+  const BoneVolume bone(test::flat_bone(40, 0.5e-3));  // below z = 0
+  const BurrParameters burr = default_burr(BurrKind::kCutting, 4e-3);
+  EXPECT_TRUE(burr.clockwise);
+  Drill drill(burr, {});
+  // Who holds the handle stands at -y and looks along y, with x to the right.
+  const auto turn =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), -Eigen::Vector3d::UnitY());
+  const Contact contact = drill.touch(bone, {0.0, 0.0, 1.5e-3}, turn);
+  const Eigen::Vector3d force = drag_force(contact, burr, 1.0);
+  EXPECT_GT(force.x(), 0.1);
+  EXPECT_NEAR(force.y(), 0.0, 0.01 * force.x());
 }
 
 TEST(FeelTest, SmallBurrsCarryTheForceLimit) {

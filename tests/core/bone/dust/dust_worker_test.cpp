@@ -91,6 +91,23 @@ TEST(DustWorkerTest, WhatFindsTheChannelFullGoesWithTheNext) {
   EXPECT_TRUE(comes_to(worker, 5001.0)) << worker.balance().deposited;
 }
 
+/// However slow its rounds are, and though no other deposit takes along what found no room.
+TEST(DustWorkerTest, SettledItHasAllThatWasDeposited) {
+  BoneVolume bone(block_of_bone());
+  DustWorker worker(
+      {},
+      [&](std::vector<DustBone>& bones) {
+        bones.push_back({&bone});
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+      },
+      0.5);
+  for (int i = 0; i < 20'000; ++i) {  // more than the channel holds, within one period
+    worker.deposit({Eigen::Vector3d(0.01, 0.03, 0.01), 1e-3, 0.25});
+  }
+  worker.settle();
+  EXPECT_NEAR(worker.balance().deposited, 5000.0, 1e-3);
+}
+
 TEST(DustWorkerTest, APeriodOutOfBoundsIsRefused) {
   EXPECT_THROW(DustWorker(
                    {}, [](std::vector<DustBone>&) {}, 0.0),

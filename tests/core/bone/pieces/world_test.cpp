@@ -219,6 +219,13 @@ TEST(BoneWorldTest, AGrabbedPieceMovesRigidlyWithTheToolAndAlone) {
   const auto touch = world.touch(bone * p_B, 2e-3);
   ASSERT_TRUE(touch.has_value());
   EXPECT_EQ(touch->piece, 1);
+  EXPECT_TRUE(world.is_fixed(0));
+  EXPECT_FALSE(world.is_fixed(1));
+  const std::vector<Voxel> across{{24, 6, 0}, {26, 6, 0}};
+  const int plate = world.attach_plate(0, across, Isometry3d::Identity());
+  EXPECT_TRUE(world.is_fixed(1)) << "a plate joins it with the bone";
+  world.detach_plate(plate);
+  EXPECT_FALSE(world.is_fixed(1));
   EXPECT_EQ(touch->voxel, Voxel(30, 6, 0));
   EXPECT_NEAR(touch->distance, 1e-3, 1e-12);
   EXPECT_FALSE(world.touch(bone * p_B, 0.9e-3).has_value());

@@ -320,6 +320,36 @@ TEST(SurfaceTest, DensitiesAreThoseOfTheVoxelsAround) {
   }
 }
 
+TEST(SurfaceTest, BuiltBeforehandItFollowsWhatWasCarvedSinceAndReportsAll) {
+  const BoneModel model = rich_model(60, 9);
+  BoneVolume volume(model);
+  Surface surface(std::make_shared<const StructureDepths>(model, std::vector{false, false, true},
+                                                          6.0 * model.grid.spacing));
+  EXPECT_FALSE(surface.built());
+  double share = 0.0;
+  surface.build(volume, [&](double now) {
+    EXPECT_GE(now, share);
+    share = now;
+    return true;
+  });
+  EXPECT_TRUE(surface.built());
+  EXPECT_EQ(share, 1.0);
+  RandomStream random(10, "carve");
+  carve(volume, random);
+  EXPECT_TRUE(surface.update(volume));
+  EXPECT_TRUE(surface.rebuilt());
+  const std::set<std::int32_t> told(surface.changed_quads().begin(), surface.changed_quads().end());
+  EXPECT_EQ(told.size(), surface.triangles().size() / 2);
+  EXPECT_EQ(told.size(), surface.changed_quads().size());
+  Surface fresh;
+  fresh.update(volume);
+  EXPECT_EQ(surface.triangle_count(), fresh.triangle_count());
+  EXPECT_EQ(open_edges(living(surface.triangles())), 0);
+  EXPECT_FALSE(surface.update(volume));
+  Surface stopped;
+  EXPECT_THROW(stopped.build(volume, [](double) { return false; }), geometry::Cancelled);
+}
+
 TEST(SurfaceTest, FollowsWhileAnotherThreadDrills) {
   const BoneModel model = rich_model(40, 5);
   BoneVolume volume(model);

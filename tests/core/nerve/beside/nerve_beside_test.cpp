@@ -154,9 +154,10 @@ TEST(NerveBesideTest, ATechnicianMutesAndSetsThresholds) {
     beside.after_tick(ticks[i]);
   }
   beside.settle();
-  desk->ask({0, true, true, 0.0});
-  desk->ask({1, false, false, 250e-6});
-  desk->ask({99, true, true, 0.0});
+  using What = MonitorOrder::What;
+  desk->ask({.what = What::kMute, .channel = 0, .muted = true});
+  desk->ask({.what = What::kThreshold, .channel = 1, .threshold = 250e-6});
+  desk->ask({.what = What::kMute, .channel = 99, .muted = true});
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   for (std::size_t i = 2000; i < 4000; ++i) {
     beside.after_tick(ticks[i]);

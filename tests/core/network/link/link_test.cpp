@@ -259,13 +259,13 @@ TEST(LinkThreadTest, EverythingArrivesAndAFloodOfStrangersIsCounted) {
   std::thread stranger([&] {
     const Socket socket = datagram_socket(0);
     Address to = address_of("127.0.0.1:" + std::to_string(port));
-    SealedBytes noise{};
     const SealedBytes replay = Sealer(own).seal(message(1));
+    const SealedBytes noise(replay.size());
     LinkKeys guessed = own;
     guessed.send[0] ^= 1;
     while (!over.load()) {
       const SealedBytes forged = Sealer(guessed).seal(message(1'000'000 + thrown));
-      for (const SealedBytes* bytes : {&std::as_const(noise), &replay, &forged}) {
+      for (const SealedBytes* bytes : {&noise, &replay, &forged}) {
         thrown += ::sendto(socket.get(), bytes->data(), bytes->size(), 0,
                            reinterpret_cast<const sockaddr*>(&to.storage), to.size) > 0;
       }

@@ -78,7 +78,7 @@ TEST(AdjustingTest, SomebodyWhoKnowsTheStandardSetsItFromBothSides) {
   }
   const auto estimates = procedure.estimates();
   ASSERT_EQ(estimates.size(), 1U);
-  EXPECT_EQ(estimates[0].name, "mean of 6 settings");
+  EXPECT_EQ(estimates[0].name, "mean of 6 settings, both sides alike");
   EXPECT_NEAR(estimates[0].value, 13.2, 0.5);
 }
 
@@ -95,6 +95,36 @@ TEST(AdjustingTest, MeanAndStandardErrorOfTheSettings) {
   }
   EXPECT_DOUBLE_EQ(procedure.estimates()[0].value, 3.0);
   EXPECT_NEAR(procedure.estimates()[0].deviation.value(), std::sqrt(14.0 / 12.0), 1e-14);
+}
+
+// Settings of 1, 2 and 3 from below and 5 and 7 from above: means 2 and 6, mean 4. Squares within
+// sides 2 + 2 with 3 degrees of freedom, so the error is sqrt(4/3 (1/3 + 1/2)) / 2.
+TEST(AdjustingTest, SettingsFromEitherSideCountAlikeAndTheirDifferenceIsNoScatter) {
+  AdjustingParameters p;
+  p.starts = {{0.0, 10.0}, 3, true};
+  p.steps = {1.0};
+  p.low = 0.0;
+  p.high = 10.0;
+  Adjusting procedure(p, 5, "starts");
+  std::vector<double> below{1.0, 2.0, 3.0}, above{5.0, 7.0};
+  while (!procedure.finished()) {
+    const bool under = procedure.next().front() == 0.0;
+    auto& left = under ? below : above;
+    if (left.empty()) {  // the third from above is given up
+      procedure.report(1.0, Level(procedure.next()));
+      while (!procedure.finished() && procedure.next().front() == 10.0) {
+        procedure.report(1.0, Level(procedure.next()));
+      }
+      continue;
+    }
+    procedure.report(0.0, {left.front()});
+    left.erase(left.begin());
+  }
+  const auto estimate = procedure.estimates().at(0);
+  ASSERT_EQ(procedure.settings().size(), 5U);
+  EXPECT_DOUBLE_EQ(estimate.value, 4.0);
+  EXPECT_NEAR(estimate.deviation.value(), 0.5 * std::sqrt(4.0 / 3.0 * (1.0 / 3.0 + 0.5)), 1e-14);
+  EXPECT_DOUBLE_EQ(estimate.freedom.value(), 3.0);
 }
 
 TEST(AdjustingTest, ARepetitionOfTheOutcomesGivesTheSameLevels) {

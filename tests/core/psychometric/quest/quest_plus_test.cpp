@@ -217,6 +217,9 @@ TEST(QuestPlusTest, PriorsMarginalsAndEstimates) {
   EXPECT_NEAR(estimates[0].value, mean, 1e-14);
   const double square = (4.0 + 2.0 * 0.25 + 3.0 * 0.25 + 1.0) / 7.0;
   EXPECT_NEAR(estimates[0].deviation.value(), std::sqrt(square - mean * mean), 1e-14);
+  ASSERT_TRUE(estimates[0].interval);
+  EXPECT_LT(estimates[0].interval->low, mean);
+  EXPECT_GT(estimates[0].interval->high, mean);
   EXPECT_EQ(estimates[3].value, 0.5);  // mode of u
 }
 

@@ -79,6 +79,7 @@ BoneFrame frame_of(const BoneModel& model, const BoneVolume& volume) {
   frame.meshes.push_back({std::make_shared<geometry::Mesh>(plane_mesh(0.03, 0.03)),
                           Eigen::Isometry3d::Identity(),
                           {0.2, 0.4, 1.0, 0.4}});
+  frame.meshes.front().casts = burr_shadow(0.006, 0.002, 0.08);
   return frame;
 }
 

@@ -64,9 +64,23 @@ TEST(TrialMistakesTest, ResponsesWithoutChoices) {
                                  "choices, scale, number")));
   EXPECT_THAT(problems_of_trials(with(kSmall, ", { value = \"second\" }]", "]")),
               Contains(HasSubstr("response.choices is a list of 1; allowed: 2 to 12 choices")));
-  EXPECT_THAT(problems_of_trials(
-                  with(kSmall, "{ value = \"second\" }", "{ value = \"second\", keys = [\"1\"] }")),
-              Contains(HasSubstr("no other choice has")));
+  EXPECT_THAT(
+      problems_of_trials(
+          with(kSmall, "{ value = \"second\" }", "{ value = \"second\", keys = [\"1\"] }")),
+      Contains(HasSubstr("response.choices[2].keys is that of choices[1]; allowed: a choice "
+                         "whose value, keys, buttons")));
+}
+
+TEST(TrialMistakesTest, AWordThatNothingEverIsGetsAWarning) {
+  const std::string formula = "correct = \"$block == 'main' ? 1 : 2\"";
+  TrialsDefinition fits, strays;
+  read_small(with(kSmall, "correct = \"$interval.comparison\"", formula), fits);
+  EXPECT_THAT(fits.warnings(), IsEmpty());
+  read_small(
+      with(kSmall, "correct = \"$interval.comparison\"", "correct = \"$block == 'mian' ? 1 : 2\""),
+      strays);
+  EXPECT_THAT(strays.warnings(), ElementsAre(HasSubstr("compares with 'mian', which nothing in the "
+                                                       "definition ever is; did you mean main?")));
 }
 
 const char* const kBoxes = R"([regions.near]
@@ -184,8 +198,9 @@ TEST(TrialMistakesTest, AFieldThatTheLoopCannotHoldGetsAWarning) {
   read_small(kSmall, calm);
   EXPECT_THAT(calm.warnings(), IsEmpty());
   read_small(with(kSmall, "\"$stiffness\"", "40000.0"), restless);
-  EXPECT_THAT(restless.warnings(), ElementsAre(AllOf(HasSubstr("fields.floor turns by 40000 N/m"),
-                                                     HasSubstr("with 20 N·s/m of damping"))));
+  EXPECT_THAT(restless.warnings(),
+              ElementsAre(AllOf(HasSubstr("fields.floor changes by up to 40000 N"),
+                                HasSubstr("with 20 N·s/m of damping"))));
 }
 
 TEST(TrialMistakesTest, NothingToLearnFrom) {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "core/base/error.h"
-#include "protocols/trials/language/labels.h"
+#include "core/base/formula/labels.h"
 
 namespace haptrial::protocols {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "analysis/trials/psychometric/trials_plan.h"
+#include "analysis/trials/fit/trials_plan.h"
 #include "analysis/trials/reaching/reaching_study.h"
 #include "tests/support/null_levels.h"
 

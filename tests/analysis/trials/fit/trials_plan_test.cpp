@@ -1,4 +1,4 @@
-#include "analysis/trials/psychometric/trials_plan.h"
+#include "analysis/trials/fit/trials_plan.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

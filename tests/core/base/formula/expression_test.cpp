@@ -1,4 +1,4 @@
-#include "protocols/trials/language/expression.h"
+#include "core/base/formula/expression.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,9 +11,9 @@
 #include <map>
 
 #include "core/base/error.h"
-#include "protocols/trials/language/labels.h"
+#include "core/base/formula/labels.h"
 
-namespace haptrial::protocols {
+namespace haptrial {
 namespace {
 
 double value_of(const std::string& text, const std::map<std::string, double>& values = {}) {
@@ -116,4 +116,4 @@ TEST(ExpressionTest, AreMadeInSeveralThreadsAtOnce) {
 }
 
 }  // namespace
-}  // namespace haptrial::protocols
+}  // namespace haptrial

@@ -1,0 +1,68 @@
+#include "core/scene/field/own.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+
+namespace haptrial::scene {
+namespace {
+
+/// Counts its ticks, and at the third one gives what no force is.
+class Counting final : public OwnLaw {
+ public:
+  Eigen::Vector3d force(const Felt&, FieldState& state) noexcept override {
+    state.depth = ++ticks_;
+    return {ticks_ == 3 ? std::numeric_limits<double>::quiet_NaN() : ticks_, 0.0, 0.0};
+  }
+  void adopt(const OwnLaw& before) noexcept override {
+    ticks_ = static_cast<const Counting&>(before).ticks_;
+  }
+
+ private:
+  double ticks_{0.0};
+};
+
+class CountingNumbers final : public OwnNumbers {
+ public:
+  std::unique_ptr<OwnLaw> law(const Setting&) const override {
+    return std::make_unique<Counting>();
+  }
+};
+
+class NoLaw final : public OwnNumbers {
+ public:
+  std::unique_ptr<OwnLaw> law(const Setting&) const override { return nullptr; }
+};
+
+Own counting(const char* type) { return {{type, std::make_shared<CountingNumbers>()}, {}}; }
+
+TEST(OwnTest, AForceThatIsNotFiniteCountsAsZero) {
+  Own own = counting("count");
+  FieldState state;
+  EXPECT_EQ(own.force({}, state).x(), 1.0);
+  EXPECT_EQ(own.force({}, state).x(), 2.0);
+  EXPECT_EQ(own.force({}, state), Eigen::Vector3d::Zero());
+  EXPECT_EQ(own.force({}, state).x(), 4.0);
+  EXPECT_EQ(state.depth, 4.0);
+}
+
+TEST(OwnTest, GoesOnOnlyWhereALawOfTheSameTypeStood) {
+  FieldState state;
+  Own before = counting("count");
+  before.force({}, state);
+  Own same = counting("count");
+  same.adopt(before);
+  EXPECT_EQ(same.force({}, state).x(), 2.0);
+  Own other = counting("another");
+  other.adopt(before);
+  EXPECT_EQ(other.force({}, state).x(), 1.0);
+}
+
+TEST(OwnTest, WithoutNumbersOrALawIsRefused) {
+  EXPECT_THROW(Own({"none", nullptr}, {}), std::invalid_argument);
+  EXPECT_THROW(Own({"none", std::make_shared<NoLaw>()}, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace haptrial::scene

@@ -1,0 +1,176 @@
+// Studies of the level of responses: what they share with full sessions, and what their reports
+// find.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analysis/trials/data/read_trials.h"
+#include "core/base/error.h"
+#include "core/base/files/file_text.h"
+#include "core/base/random.h"
+#include "experiments/power/power_run.h"
+#include "experiments/studies/experiment.h"
+#include "experiments/study/study_run.h"
+#include "protocols/trials/response_session.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::experiments::responses_test {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+
+const fs::path kSource = HAPTRIAL_SOURCE_DIR;
+
+struct Agreement {
+  double same{0.0};    // answers
+  double levels{0.0};  // trials with the same level
+};
+
+/// One participant with a hand and without one.
+Agreement agreement_of(const std::string& name, const std::string& met) {
+  const TemporaryFolder folder;
+  const Experiment experiment = load_experiment(kSource / "experiments" / (name + ".toml"));
+  DryRun dry;
+  dry.participants = 1;
+  dry.seed = 5;
+  dry.max_trials = 60;
+  dry.folder = folder / "sessions";
+  run_dry(experiment.study->protocol(), *experiment.definition, dry);
+  const auto full = analysis::trials::read_trials(
+      session_files(dry.folder), [](const std::string&) { return std::string(); }, 1);
+  const auto& d = dynamic_cast<const protocols::StudiedDefinition&>(*experiment.definition);
+  protocols::SessionPlace place;
+  place.subject = participant_name(0);
+  place.seed = 5;
+  protocols::give_seeds(place);
+  const auto alone = protocols::ResponseSession(d, met, {}).answered(place);
+  Agreement agreement;
+  for (std::size_t i = 0; i < full.trials.size(); ++i) {
+    const auto& a = full.trials[i];
+    const auto& b = alone[i];
+    EXPECT_EQ(a.trial, b.plan.trial);
+    EXPECT_EQ(a.condition, b.plan.condition);
+    agreement.same += a.answers.front().text == b.answers.front().text ? 1.0 : 0.0;
+    const double level = a.levels.empty() ? 0.0 : a.levels.front().applied;
+    const double other = b.levels.empty() ? 0.0 : b.levels.front().applied;
+    agreement.levels += level == other ? 1.0 : 0.0;
+  }
+  agreement.same /= static_cast<double>(full.trials.size());
+  agreement.levels /= static_cast<double>(full.trials.size());
+  return agreement;
+}
+
+TEST(ResponseSession, PresentsAndAnswersAlmostAsAFullSessionOfTheSameSeed) {
+  const Agreement force = agreement_of("force_discrimination", "$force");
+  EXPECT_EQ(force.levels, 1.0) << "constant stimuli do not depend on answers";
+  EXPECT_GE(force.same, 0.9);
+}
+
+TEST(ResponseSession, RefusesAFormulaWithUnknownNames) {
+  const Experiment experiment = load_experiment(kSource / "experiments/force_discrimination.toml");
+  const auto& d = dynamic_cast<const protocols::StudiedDefinition&>(*experiment.definition);
+  EXPECT_THROW(protocols::ResponseSession(d, "$weight", {}).check_met(), InputError);
+}
+
+PowerQuestion question_of(const TemporaryFolder& folder, const std::string& power) {
+  write_text(folder / "power.toml", power);
+  return load_question(folder / "power.toml");
+}
+
+std::string power_of(const std::string& name, const std::string& rest) {
+  return "[power]\ndefinition = \"" + (kSource / "experiments" / (name + ".toml")).string() +
+         "\"\n" + rest;
+}
+
+void expect_refused(const std::string& power, const std::string& words) {
+  const TemporaryFolder folder;
+  try {
+    check_watched(question_of(folder, power));
+    ADD_FAILURE() << "not refused: " << words;
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr(words));
+  }
+}
+
+constexpr const char* kVary = R"(
+[[power.vary]]
+key = "design.participants"
+values = [4, 6]
+)";
+
+TEST(PowerQuestion, RefusesBadInputWithASentence) {
+  const std::string met = "[power.responses]\nmet = \"$stiffness\"\n";
+  const std::string name = "stiffness_discrimination";
+  expect_refused(power_of(name, "watch = \"sign test\"\n" + met + kVary),
+                 "power.watch is \"sign test\"; allowed: \"drift over the trials\"");
+  std::string huge = "watch = \"drift over the trials\"\n" + met;
+  for (const char* key : {"observer.drift", "observer.repetition", "observer.lapse.median"}) {
+    huge += "[[power.vary]]\nkey = \"" + std::string(key) + "\"\nvalues = [";
+    for (int i = 0; i < 1000; ++i) {
+      huge += std::to_string(i) + ", ";
+    }
+    huge += "]\n";
+  }
+  expect_refused(power_of(name, huge), "power.vary has 1e+09 cells; allowed: at most 10000");
+  expect_refused(power_of(name, "watch = \"drift over the trials\"\n" + std::string(kVary)),
+                 "power.responses.met is missing");
+  expect_refused(
+      power_of(name, "watch = \"drift over the trials\"\n" + met +
+                         "[[power.vary]]\nkey = \"design.participants\"\nvalues = [-3]\n"),
+      "design.participants is -3");
+  expect_refused(power_of(name, "watch = \"drift over the trials\"\n" + met +
+                                    "[[power.vary]]\nkey = \"observer.wit\"\nvalues = [1]\n"),
+                 "observer.wit");
+  expect_refused(power_of(name, "watch = \"drift over the trials\"\n" + met +
+                                    "[[power.vary]]\nkey = \"observer.force_weber.spread\"\n"
+                                    "values = [0.0]\n[[power.vary]]\n"
+                                    "key = \"observer.lapse.spread\"\nvalues = [0.0]\n"),
+                 "do not differ from each other");
+  expect_refused(power_of(name, "watch = \"t\"\n" + met +
+                                    "[[power.vary]]\nkey = \"design.participants\"\nvalues = []\n"),
+                 "power.toml:8: power.vary[1].values is an empty array");
+  expect_refused(power_of("bone_drilling", "watch = \"t\"\n" + std::string(kVary)),
+                 "does not know the report of protocol 'bone_drilling'");
+}
+
+TEST(PowerQuestion, VariesKeysAndPutsNullCellsFirst) {
+  const TemporaryFolder folder;
+  const PowerQuestion q = question_of(
+      folder, power_of("wall_detection",
+                       "watch = \"drift over the trials\"\n[power.responses]\n"
+                       "met = \"0.0175 * $level\"\n" +
+                           std::string(kVary) +
+                           "[[power.vary]]\nkey = \"observer.drift\"\nvalues = [0.0, 0.01]\n"
+                           "none = 0.0\n"));
+  ASSERT_EQ(q.cells.size(), 4u);  // cells at none are the null cells, once
+  EXPECT_TRUE(q.cells[0].null && q.cells[1].null);
+  EXPECT_EQ(q.cells[3].name, "design.participants 6, observer.drift 0.01");
+  EXPECT_THAT(q.text_of(q.cells[3]), HasSubstr("participants = 6\n"));
+  check_watched(q);
+}
+
+TEST(PowerQuestion, TheSourcesPooledTestExceedsItsLevelAndThePairedOneDoesNot) {
+  const TemporaryFolder folder;
+  PowerQuestion q = load_question(kSource / "docs/worked/power/pooled.toml");
+  q.plan.null_replications = 100;
+  q.plan.replications = 1;
+  q.cells.resize(1);  // without an effect
+  const PowerFolder parts(folder / "power", q);
+  fill(parts, q, {2});
+  const auto result = parts.merged();
+  for (const analysis::PowerCell& cell : result.nulls) {
+    const auto pooled = cell.counts.of(q.plan.watch);
+    EXPECT_GT(pooled.rejected, analysis::binomial_band(100, 0.05, 0.999).high);
+    const auto paired = cell.counts.of("planned: visuohaptic < visual, paired t");
+    EXPECT_TRUE(analysis::binomial_band(100, 0.05, 0.999).holds(paired.rejected))
+        << paired.rejected;
+  }
+  EXPECT_FALSE(analysis::is_power(result));
+}
+
+}  // namespace
+}  // namespace haptrial::experiments::responses_test

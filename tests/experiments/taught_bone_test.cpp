@@ -1,0 +1,214 @@
+// A bone that a second session drills along: over a simulated network, and in two processes.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/bone/data/bone_file.h"
+#include "core/bone/record/drilling_tables.h"
+#include "core/bone/record/led_row.h"
+#include "core/record/link/link_row.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
+#include "protocols/bone_drilling/bone_replay.h"
+#include "tests/experiments/command.h"
+#include "tests/experiments/live_command.h"
+#include "tests/experiments/network_relay.h"
+#include "tests/experiments/shipped.h"
+#include "tests/experiments/small_drilling.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::taught_bone_test {
+namespace {
+
+namespace fs = std::filesystem;
+using test::run_command;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::vector<std::string> texts_of(const record::SessionReader& reader, const std::string& kind) {
+  std::vector<std::string> texts;
+  for (const record::EventRow& event : reader.events()) {
+    if (event.kind == kind) {
+      texts.push_back(event.text);
+    }
+  }
+  return texts;
+}
+
+/// What two files say of one bone, to the bit.
+void expect_one_bone(const record::SessionReader& learns, const record::SessionReader& teaches) {
+  for (const record::SessionReader* reader : {&learns, &teaches}) {
+    const record::Integrity integrity = record::check_session(*reader);
+    EXPECT_TRUE(integrity.ok) << testing::PrintToString(integrity.problems);
+    EXPECT_EQ(integrity.dropped, 0u);
+    EXPECT_THAT(texts_of(*reader, "bone_checked"), ElementsAre(HasSubstr("are the same after")));
+    EXPECT_THAT(texts_of(*reader, "bone_differs"), testing::IsEmpty());
+    const protocols::ReplayVerdict again = protocols::BoneReplay(reader->path()).run(1);
+    EXPECT_EQ(again.difference, "");
+    EXPECT_TRUE(again.whole);
+  }
+  EXPECT_EQ(texts_of(learns, "bone_checked"), texts_of(teaches, "bone_checked"));
+  const auto own = learns.rows<record::ProcedureRow>();
+  const auto other = teaches.rows<record::ProcedureRow>();
+  ASSERT_EQ(own.size(), other.size());
+  EXPECT_EQ(own.back().checksum, other.back().checksum);
+  EXPECT_EQ(own.back().left, other.back().left);
+  const auto followed = learns.rows<record::RemovalRow>();
+  const auto removed = teaches.rows<record::RemovalRow>();
+  ASSERT_EQ(followed.size(), removed.size());
+  EXPECT_GT(removed.size(), 10u);
+  for (std::size_t i = 0; i < removed.size(); ++i) {
+    ASSERT_EQ(followed[i].voxel, removed[i].voxel) << i;
+    ASSERT_EQ(followed[i].piece, removed[i].piece) << i;
+    ASSERT_EQ(followed[i].label, removed[i].label) << i;
+    ASSERT_NEAR(followed[i].force, removed[i].force, 1e-6) << i;
+    ASSERT_EQ(followed[i].speed, removed[i].speed) << i;
+  }
+  EXPECT_EQ(learns.rows<record::SplitRow>().size(), teaches.rows<record::SplitRow>().size());
+}
+
+/// A hand that presses needs something of its own world to rest on.
+constexpr const char* kBad =
+    "authority = 0.5\n[tutoring.channel]\ndelay = 0.01\njitter = 0.002\nloss = 0.05\n"
+    "duplication = 0.02\nreordering = 0.05\n";
+
+class TaughtBoneTest : public testing::Test {
+ protected:
+  fs::path definition(const std::string& tutoring, double seconds = 8.0) {
+    const fs::path file = test::write_small_drilling(folder_.path(), seconds);
+    test::write_text(file, test::read_text(file) + "\n[tutoring]\n" + tutoring);
+    return file;
+  }
+  std::string taught(const fs::path& file, const std::string& name) {
+    const std::string out = (folder_ / name).string();
+    const test::CommandResult r =
+        run_command("haptrial dry-run '" + file.string() + "' --subjects 1 --taught --out " + out);
+    EXPECT_EQ(r.status, 0) << r.errors;
+    return out;
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(TaughtBoneTest, OverABadNetworkBothFilesHaveTheSameBoneAndSoHasTheNextRun) {
+  const fs::path file = definition(kBad, 3.0);
+  const std::string out = taught(file, "out");
+  const record::SessionReader learns(out + "/S01.h5");
+  expect_one_bone(learns, record::SessionReader(out + "/teaching/S01.h5"));
+  const std::string again = taught(file, "again");
+  const record::SessionReader same(again + "/S01.h5");
+  const record::PassRow pass = learns.passes().at(0);
+  const auto a = learns.rows<record::LedRow>();
+  EXPECT_LT(pass.last_sample - a.back().sequence, 100u) << "checksums are compared at once";
+  const auto b = same.rows<record::LedRow>();
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].sequence, b[i].sequence) << i;
+    ASSERT_EQ(a[i].tool.position, b[i].tool.position) << i;
+  }
+  EXPECT_EQ(texts_of(learns, "link"), texts_of(same, "link"));
+}
+
+TEST_F(TaughtBoneTest, AReplayOfTheLedSessionGivesItsBone) {
+  const std::string out = taught(definition("", 3.0), "out");
+  const test::CommandResult r = run_command("haptrial replay " + out + "/S01.h5");
+  EXPECT_EQ(r.status, 0) << r.errors;
+  EXPECT_THAT(r.output, HasSubstr("trial 1: the same bone"));
+}
+
+/// Two processes over the network of a relay.
+class LiveTaughtBoneTest : public TaughtBoneTest {
+ protected:
+  void start(const fs::path& teaches, const fs::path& learns, const std::string& more = "") {
+    const std::string secret = (folder_ / "tutoring.secret").string();
+    if (!fs::exists(secret)) {
+      run_command("haptrial secret " + secret);
+    }
+    const auto line = [&](const fs::path& file, const char* side) {
+      return "run '" + file.string() + "' --subject P01 --secret " + secret + " --out " +
+             (folder_ / side).string() + " " + more + " ";
+    };
+    const std::uint16_t port = test::free_port();
+    teaches_ = std::make_unique<test::LiveCommand>(line(teaches, "teaching") + "--teach " +
+                                                   std::to_string(port));
+    ASSERT_NE(teaches_->line_after("waiting at port"), "");
+    relay_ = std::make_unique<test::NetworkRelay>(
+        port,
+        test::RelayConditions{
+            .delay = 0.01, .jitter = 0.005, .loss = 0.05, .duplication = 0.02, .reordering = 0.05});
+    learns_ = std::make_unique<test::LiveCommand>(
+        line(learns, "learning") + "--learn-from 127.0.0.1:" + std::to_string(relay_->port()));
+  }
+  record::SessionReader file(const std::string& side) const {
+    return record::SessionReader(folder_ / side / "P01.h5");
+  }
+
+  std::unique_ptr<test::LiveCommand> teaches_;
+  std::unique_ptr<test::NetworkRelay> relay_;
+  std::unique_ptr<test::LiveCommand> learns_;
+};
+
+TEST_F(LiveTaughtBoneTest, TwoProcessesHaveOneBone) {
+  const fs::path study = definition("patience = 3\n", 6.0);
+  start(study, study);
+  const test::CommandResult a = learns_->wait(60.0);
+  const test::CommandResult b = teaches_->wait(20.0);
+  ASSERT_EQ(a.status, 0) << a.errors << b.errors;
+  ASSERT_EQ(b.status, 0) << b.errors;
+  expect_one_bone(file("learning"), file("teaching"));
+}
+
+TEST_F(LiveTaughtBoneTest, AnotherBoneInTheFileIsSaidOnBothSides) {
+  const fs::path study = definition("patience = 3\n", 2.0);
+  fs::create_directory(folder_ / "other");
+  fs::copy(study, folder_ / "other" / study.filename());
+  bone::BoneModel bone = test::two_slabs();
+  bone.labels[0] = 0;
+  bone::save_bone(folder_ / "other" / "slabs.nrrd", bone);
+  start(study, folder_ / "other" / study.filename());
+  const test::CommandResult a = learns_->wait(60.0);
+  const test::CommandResult b = teaches_->wait(20.0);
+  ASSERT_EQ(a.status, 0) << a.errors << b.errors;
+  ASSERT_EQ(b.status, 0) << b.errors;
+  EXPECT_THAT(a.errors, HasSubstr("differ from the beginning"));
+  EXPECT_THAT(b.errors, HasSubstr("bones of the two sides differ after"));
+  EXPECT_THAT(texts_of(file("teaching"), "bone_differs"), testing::SizeIs(1));
+  EXPECT_THAT(texts_of(file("learning"), "bone_differs"), testing::SizeIs(2));
+}
+
+TEST_F(LiveTaughtBoneTest, AfterAKillBothGoOnWithANewBone) {
+  const fs::path study = definition("patience = 2\n", 3.0);
+  start(study, study);
+  ASSERT_NE(learns_->line_after("linked"), "");
+  const fs::path partial = folder_ / "learning" / "P01.h5.partial";
+  ASSERT_TRUE(test::eventually([&] {
+    try {
+      return !record::SessionReader(partial).rows<record::LedRow>().empty();
+    } catch (const std::exception&) {
+      return false;
+    }
+  }));
+  teaches_->signal(SIGKILL);
+  EXPECT_THAT(learns_->wait(20.0).errors, HasSubstr("continue with --resume on both sides"));
+  teaches_->wait(5.0);
+  start(study, study, "--resume");
+  const test::CommandResult a = learns_->wait(60.0);
+  ASSERT_EQ(a.status, 0) << a.errors;
+  ASSERT_EQ(teaches_->wait(20.0).status, 0);
+  const auto learns = file("learning");
+  const auto teaches = file("teaching");
+  EXPECT_TRUE(record::check_session(learns).ok);
+  EXPECT_TRUE(record::check_session(teaches).ok);
+  EXPECT_THAT(texts_of(learns, "bone_checked"), ElementsAre(HasSubstr("are the same after")));
+  EXPECT_EQ(texts_of(learns, "bone_checked"), texts_of(teaches, "bone_checked"));
+  EXPECT_EQ(learns.rows<record::ProcedureRow>().back().checksum,
+            teaches.rows<record::ProcedureRow>().back().checksum);
+}
+
+}  // namespace
+}  // namespace haptrial::taught_bone_test

@@ -1,0 +1,97 @@
+// Pages of trainees from whole sessions: by command, at the end of a session, in a real browser.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "tests/experiments/command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/experiments/small_drilling.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::trainee_pages_test {
+namespace {
+
+namespace fs = std::filesystem;
+using test::run_command;
+using testing::HasSubstr;
+using testing::Not;
+
+bool installed(const std::string& program) {
+  return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
+}
+
+/// Dry run of a few seconds of the shipped drilling. @returns the folder of its sessions
+fs::path drilled(const fs::path& folder, const std::string& subjects,
+                 const std::vector<std::pair<std::string, std::string>>& more = {},
+                 const std::string& tables = "") {
+  std::vector<std::pair<std::string, std::string>> lines{{"time_limit", "time_limit = 3.0"},
+                                                         {"procedures", "procedures = 2"},
+                                                         {"card", "card = false"}};
+  lines.insert(lines.end(), more.begin(), more.end());
+  std::string text = test::drilling_with(lines);
+  text.erase(text.find("[dust]"), text.find("[sound]") - text.find("[dust]"));
+  test::write_text(folder / "study.toml", text + tables);
+  const auto dry = run_command("haptrial dry-run " + (folder / "study.toml").string() +
+                               " --subjects " + subjects + " --out " + (folder / "out").string());
+  EXPECT_EQ(dry.status, 0) << dry.errors;
+  return folder / "out";
+}
+
+TEST(TraineePagesTest, ABrowserTurnsTheBoneAndAsksNobody) {
+  if (!installed("chromedriver") || !installed("chromium") || !installed("python3")) {
+    GTEST_SKIP() << "needs Debian's chromium, chromium-driver and python3";
+  }
+  const test::TemporaryFolder folder;
+  const fs::path out = drilled(folder.path(), "2");
+  const auto made =
+      run_command("haptrial bone page " + (out / "S01.h5").string() + " --expert " +
+                  (out / "S02.h5").string() + " --out " + (folder / "S01.html").string());
+  ASSERT_EQ(made.status, 0) << made.errors;
+  EXPECT_LT(fs::file_size(folder / "S01-1.html"), 5'000'000u);
+  EXPECT_THAT(test::read_text(folder / "S01-2.html"), HasSubstr("Expert S02, procedure"));
+  const auto seen = run_command(
+      "timeout 200 python3 '" HAPTRIAL_SOURCE_DIR "/tests/experiments/trainee_browser.py' '" +
+      (folder / "S01.html").string() + "' '" + folder.path().string() + "' 2>&1");
+  if (seen.status == 77) {
+    GTEST_SKIP() << seen.output;
+  }
+  EXPECT_EQ(seen.status, 0) << seen.output;
+}
+
+TEST(TraineePagesTest, ALeftEarIsSeenFromItsSurgeonsSide) {
+  const test::TemporaryFolder folder;
+  const fs::path out = drilled(folder.path(), "1",
+                               {{"x_to", "place = \"surgeon's view of a left ear\"\nmirror = true"},
+                                {"y_to", ""},
+                                {"procedures", "procedures = 1"}});
+  const std::string page = (folder / "left.html").string();
+  const auto made =
+      run_command("haptrial bone page " + (out / "S01.h5").string() + " --out " + page);
+  ASSERT_EQ(made.status, 0) << made.errors;
+  const std::string html = test::read_text(page);
+  EXPECT_THAT(html, HasSubstr("Hidden when removed"));
+  EXPECT_THAT(html, HasSubstr("\"name\":\"facial nerve\""));
+  EXPECT_THAT(html, Not(HasSubstr("unknown")));
+  const auto again =
+      run_command("haptrial bone page " + (out / "S01.h5").string() + " --out " + page);
+  EXPECT_EQ(again.status, 2);
+  EXPECT_THAT(again.errors, HasSubstr("exists already; choose another name or add --overwrite"));
+}
+
+TEST(TraineePagesTest, ADefinitionAsksForThePageAtTheEnd) {
+  const test::TemporaryFolder folder;
+  const fs::path out = drilled(folder.path(), "1", {{"procedures", "procedures = 1"}},
+                               "\n[feedback]\npage = true\n");
+  const std::string html = test::read_text(out / "S01.html");
+  EXPECT_THAT(html, HasSubstr("After a procedure: S01"));
+  EXPECT_THAT(html, HasSubstr("SIMULATED: the participant is a program"));
+  EXPECT_THAT(html, HasSubstr("not judged: there are no experts"));
+}
+
+}  // namespace
+}  // namespace haptrial::trainee_pages_test
