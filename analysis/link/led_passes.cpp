@@ -58,7 +58,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Of the messages that the partner numbered between the first and the last tick.
+/// The share of the partner's messages that was lost between the first and the last tick.
 double share_lost(const std::vector<LinkRow>& rows) {
   const auto sent = rows.back().heard - rows.front().heard;
   const auto lost = rows.back().lost - rows.front().lost;

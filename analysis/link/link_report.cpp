@@ -78,9 +78,9 @@ Document link_report(const LinkStudy& study) {
     document.alarm("Simulated participants: these figures say nothing about people.");
   }
   document.paragraph(
-      "Of the ticks at which the hands were coupled, with the partner's hand where it was heard of "
-      "at that tick: over a slow network a part of the distance is what the partner's hand moved "
-      "meanwhile.");
+      "Measured at the ticks at which the hands were coupled, against the partner's hand as it was "
+      "known at that tick: over a slow network a part of the distance is what the partner's hand "
+      "moved meanwhile.");
   if (!study.networks.empty()) {
     document.heading("Networks");
     add_means(

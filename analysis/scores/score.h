@@ -23,7 +23,8 @@ class Score {
   virtual ~Score() = default;
   virtual std::string_view name() const = 0;  // unlike every other score's
   virtual std::string_view unit() const = 0;  // "N", "m"; "1" for a share
-  /// Of one session, in the order of its passes; no values where the session is of no such kind.
+  /// The scores of one session in the order of its passes; none where the session is of another
+  /// kind.
   /// @throws InputError for a session that should have been of it
   virtual std::vector<ScoreValue> values(const record::SessionReader& session) const = 0;
 };

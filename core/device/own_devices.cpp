@@ -10,7 +10,8 @@
 namespace haptrial::device {
 namespace {
 
-constexpr std::array kBuiltIn{"virtual", "replay", "mouse", "force-dimension", "open-haptics"};
+constexpr std::array kBuiltIn{"virtual", "mouse", "force-dimension", "open-haptics"};
+constexpr const char* kReplay = "replay";  // with a file
 
 std::vector<OwnDevice>& all_own() {
   static std::vector<OwnDevice> devices;
@@ -32,12 +33,21 @@ void add_own_device(const OwnDevice& device) {
     throw std::invalid_argument(fmt::format(
         "add_own_device: '{}' is no name; allowed: letters, digits and '-'", device.name));
   }
-  if (own_device(device.name) != nullptr ||
-      std::find(kBuiltIn.begin(), kBuiltIn.end(), device.name) != kBuiltIn.end()) {
+  const std::vector<std::string> taken = device_names();
+  if (device.name == kReplay ||
+      std::find(taken.begin(), taken.end(), device.name) != taken.end()) {
     throw std::invalid_argument(
         fmt::format("add_own_device: there is a device '{}' already", device.name));
   }
   all_own().push_back(device);
+}
+
+std::vector<std::string> device_names() {
+  std::vector<std::string> names(kBuiltIn.begin(), kBuiltIn.end());
+  for (const OwnDevice& each : all_own()) {
+    names.push_back(each.name);
+  }
+  return names;
 }
 
 const OwnDevice* own_device(const std::string& choice) {

@@ -23,6 +23,8 @@ struct OwnDevice {
 const std::vector<OwnDevice>& own_devices();
 /// @throws std::invalid_argument for a name that is taken or has other characters
 void add_own_device(const OwnDevice& device);
+/// What --device takes without a file: the program's own devices, then added ones.
+std::vector<std::string> device_names();
 /// The one that NAME or NAME:SETTING asks for; null if there is none.
 const OwnDevice* own_device(const std::string& choice);
 /// SETTING of NAME:SETTING; empty without one.

@@ -132,12 +132,9 @@ void check_device_name(const std::string& name) {
   if (name == kReplay) {
     throw InputError("--device replay: names no file; write replay:FILE");
   }
-  std::vector<std::string> known{"virtual", "mouse", "force-dimension", "open-haptics"};
+  std::vector<std::string> known = device::device_names();
   if (!name.starts_with(kReplay) && device::own_device(name) == nullptr &&
       std::find(known.begin(), known.end(), name) == known.end()) {
-    for (const device::OwnDevice& own : device::own_devices()) {
-      known.push_back(own.name);
-    }
     known.emplace_back("replay:FILE");
     throw InputError(not_allowed("--device", fmt::format("'{}'", name), known) +
                      " (haptrial devices lists which are present)");

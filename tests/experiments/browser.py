@@ -103,7 +103,7 @@ class Driver:
         self.process.wait(20)
 
 
-def wait(what, condition, seconds=10):
+def wait(what, condition, seconds=60):  # a busy machine takes long, a good one waits for nothing
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         if condition():
@@ -112,5 +112,5 @@ def wait(what, condition, seconds=10):
     raise AssertionError("never came: " + what)
 
 
-def state(page, wanted, seconds=10):
+def state(page, wanted, seconds=60):
     wait(f"state {wanted}", lambda: page.text("state") == wanted, seconds)

@@ -34,7 +34,7 @@ bool ConsolePerson::ask(const std::string& request) const {
   asked.body = json{{"request", request}}.dump();
   RawClient client(port_);
   client.send(asked.text());
-  return status_of(client.receive(5.0)) == 200;
+  return status_of(client.receive(kPatience)) == 200;
 }
 
 json ConsolePerson::status() {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tests/experiments/console_client.h"
+#include "tests/experiments/live_command.h"
 
 namespace haptrial::test {
 
@@ -21,7 +22,7 @@ class ConsolePerson {
   /// What the page shows now; null before the first event.
   nlohmann::json status();
   /// Whether the session comes to a state, and to a stage of a pass where one is named.
-  bool sees(const std::string& state, const std::string& stage = "", double seconds = 20.0);
+  bool sees(const std::string& state, const std::string& stage = "", double seconds = kPatience);
 
  private:
   std::string host_;

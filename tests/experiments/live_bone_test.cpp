@@ -41,7 +41,7 @@ TEST(LiveBoneTest, NothingIsLostAndAReplayGivesTheSameBone) {
   const test::TemporaryFolder folder;
   test::write_small_drilling(folder.path(), 8.0);
   test::LiveCommand session(run_arguments(folder));
-  const test::CommandResult ended = session.wait(60.0);
+  const test::CommandResult ended = session.wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
   EXPECT_THAT(ended.output, HasSubstr(" 0 lost records"));
   const fs::path file = folder / "out" / "S01.h5";
@@ -78,7 +78,7 @@ TEST(LiveBoneTest, AfterAKillTheSessionGoesOnWithTheBoneAsItStood) {
   }
   EXPECT_TRUE(record::drills(record::SessionReader(partial)));
   test::LiveCommand session(run_arguments(folder, "--resume"));
-  const test::CommandResult ended = session.wait(60.0);
+  const test::CommandResult ended = session.wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
   const fs::path file = folder / "out" / "S01.h5";
   const record::SessionReader reader(file);
@@ -109,12 +109,12 @@ TEST(LiveBoneTest, AnInterruptedDryRunIsGoneAtOnce) {
   const fs::path out = folder / "out";
   test::LiveCommand dry("dry-run '" + (folder / "study.toml").string() +
                         "' --subjects 2 --jobs 2 --out '" + out.string() + "'");
-  ASSERT_TRUE(test::eventually([&] { return fs::exists(out / "S01.h5.partial"); }, 60.0))
+  ASSERT_TRUE(test::eventually([&] { return fs::exists(out / "S01.h5.partial"); }))
       << dry.errors();
   std::this_thread::sleep_for(std::chrono::seconds(2));
   const auto asked = std::chrono::steady_clock::now();
   dry.signal(SIGINT);
-  const test::CommandResult ended = dry.wait(60.0);
+  const test::CommandResult ended = dry.wait();
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - asked;
   EXPECT_NE(ended.status, 0);
   EXPECT_THAT(ended.errors, HasSubstr("interrupted"));

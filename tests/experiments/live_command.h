@@ -12,8 +12,11 @@
 
 namespace haptrial::test {
 
+/// How long a test waits for what must come: a busy machine is slow, and what comes ends the wait.
+constexpr double kPatience = 120.0;  // [s]
+
 /// Whether `good` came true within so many seconds; asked every 10 ms.
-bool eventually(const std::function<bool()>& good, double seconds = 20.0);
+bool eventually(const std::function<bool()>& good, double seconds = kPatience);
 
 /// The built command while it runs, with a person who watches it and meddles. What it printed stays
 /// in a folder of its own. A command that outlives this is killed.
@@ -37,7 +40,7 @@ class LiveCommand {
   std::string output();  // standard output so far; on a terminal, all that it shows
   std::string errors();  // standard error so far; on a terminal, nothing
   /// The first line of the output that starts so, without that start; "" where none comes.
-  std::string line_after(const std::string& start, double seconds = 20.0);
+  std::string line_after(const std::string& start, double seconds = kPatience);
 
   void signal(int number) const;
   void press(const std::string& keys) const;  // on the terminal
@@ -46,7 +49,7 @@ class LiveCommand {
   bool runs();
 
   /// @returns what it gave; status -1 where it had to be killed because it did not end in time.
-  CommandResult wait(double seconds = 20.0);
+  CommandResult wait(double seconds = kPatience);
 
  private:
   void start_on_terminal(const std::string& script);

@@ -43,7 +43,7 @@ class LiveConsoleTest : public testing::Test {
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
   CommandResult click_through(const std::string& url) const {
-    return test::run_command("timeout 300 python3 '" HAPTRIAL_SOURCE_DIR
+    return test::run_command("timeout 500 python3 '" HAPTRIAL_SOURCE_DIR
                              "/tests/experiments/live_console.py' '" +
                              url + "' '" + folder_.path().string() + "'");
   }

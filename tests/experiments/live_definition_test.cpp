@@ -52,7 +52,7 @@ TEST_F(LiveDefinitionTest, ATextMayChangeBeforeAResumeAndTheFileKeepsBoth) {
   std::string second = first + "\n# a comment\n";
   second.replace(second.find("Time for a rest"), 4, "Hour");
   define(second);
-  const CommandResult ended = LiveCommand(run("--resume")).wait(60.0);
+  const CommandResult ended = LiveCommand(run("--resume")).wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
   const record::SessionReader reader(file());
   EXPECT_EQ(reader.info().definition, first);
@@ -77,7 +77,7 @@ TEST_F(LiveDefinitionTest, WhatWasPresentedMayNotChangeBeforeAResume) {
   define(test::brisk_text());
   ASSERT_NO_FATAL_FAILURE(break_off());
   define(test::brisk_text({{"base_max", "base_max = 9.0"}}));
-  const CommandResult ended = LiveCommand(run("--resume")).wait(60.0);
+  const CommandResult ended = LiveCommand(run("--resume")).wait();
   EXPECT_EQ(ended.status, 2);
   EXPECT_THAT(ended.errors, HasSubstr("force_pattern.base_max was 10, is 9"));
   EXPECT_TRUE(fs::exists(partial()));
@@ -86,11 +86,11 @@ TEST_F(LiveDefinitionTest, WhatWasPresentedMayNotChangeBeforeAResume) {
 TEST_F(LiveDefinitionTest, AFolderTakesOneStudy) {
   const std::string first = test::brisk_text();
   define(first);
-  ASSERT_EQ(LiveCommand(run("")).wait(60.0).status, 0);
+  ASSERT_EQ(LiveCommand(run("")).wait().status, 0);
   const auto other = [this](const std::string& subject, const std::string& more = "") {
     std::string line = run(more);
     line.replace(line.find("S01"), 3, subject);
-    return LiveCommand(line).wait(60.0);
+    return LiveCommand(line).wait();
   };
   define("# for the other room\n" + test::brisk_text({{"refresh_lock", "refresh_lock = false"}}));
   const CommandResult screen = other("S02");
@@ -117,10 +117,10 @@ TEST_F(LiveDefinitionTest, AFolderTakesOneStudy) {
 TEST_F(LiveDefinitionTest, APilotIsMarkedAndAnalysedOnlyWhereItIsAskedFor) {
   define(test::brisk_text());
   ASSERT_NO_FATAL_FAILURE(break_off("--pilot"));
-  const CommandResult other = LiveCommand(run("--resume")).wait(60.0);
+  const CommandResult other = LiveCommand(run("--resume")).wait();
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.errors, HasSubstr("was recorded as a pilot; resume it with --pilot"));
-  ASSERT_EQ(LiveCommand(run("--resume --pilot")).wait(60.0).status, 0);
+  ASSERT_EQ(LiveCommand(run("--resume --pilot")).wait().status, 0);
   EXPECT_TRUE(record::SessionReader(file()).info().pilot);
   EXPECT_THAT(test::run_command("haptrial info '" + file().string() + "'").output,
               HasSubstr("S01 (simulated) (pilot, not part of the study)"));

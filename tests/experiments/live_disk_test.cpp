@@ -30,7 +30,7 @@ TEST(LiveDiskTest, AFullDiskEndsTheSessionInASentenceAndItGoesOnWhereThereIsRoom
   test::write_text(folder / "study.toml", test::brisk_text());
   const std::string run = "run '" + (folder / "study.toml").string() +
                           "' --subject S01 --trials 2 --out '" + (folder / "out").string() + "' ";
-  const CommandResult full = LiveCommand(run, "ulimit -f 360").wait(60.0);
+  const CommandResult full = LiveCommand(run, "ulimit -f 360").wait();
   EXPECT_EQ(full.status, 1) << full.output;
   EXPECT_EQ(std::count(full.errors.begin(), full.errors.end(), '\n'), 1) << full.errors;
   EXPECT_THAT(full.errors, HasSubstr("S01.h5: the session cannot be written (File too large)"));
@@ -55,7 +55,7 @@ TEST(LiveDiskTest, AFullDiskEndsTheSessionInASentenceAndItGoesOnWhereThereIsRoom
     EXPECT_EQ(python.output, std::to_string(rows) + "\n");
   }
 
-  const CommandResult again = LiveCommand(run + "--resume").wait(60.0);
+  const CommandResult again = LiveCommand(run + "--resume").wait();
   ASSERT_EQ(again.status, 0) << again.errors;
   const record::SessionReader reader(folder / "out/S01.h5");
   const record::Integrity integrity = record::check_session(reader);

@@ -140,7 +140,7 @@ TEST_F(LiveDrillingWindowTest, EveryKeyDoesItsPartAndTheReplayKnows) {
     hold(key);
   }
   tap('f');
-  const test::CommandResult ended = session.wait(30.0);
+  const test::CommandResult ended = session.wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
 
   const record::SessionReader reader(file());
@@ -190,7 +190,7 @@ TEST_F(LiveDrillingWindowTest, TwoEyesAreShownAndKeysOfTheDefinitionDoNotSteer) 
   write_study("R", true);
   test::LiveCommand session(run("--console"));
   test::ConsolePerson person(session.line_after("console: "));
-  ASSERT_TRUE(person.sees("instructions", "", 60.0)) << session.errors();
+  ASSERT_TRUE(person.sees("instructions")) << session.errors();
   ASSERT_TRUE(person.ask("start"));
   ASSERT_TRUE(drills()) << session.errors();
   const Image image = screen();
@@ -211,7 +211,7 @@ TEST_F(LiveDrillingWindowTest, TwoEyesAreShownAndKeysOfTheDefinitionDoNotSteer) 
   hold('r');  // carries, and repeats nothing
   EXPECT_EQ(person.status()["aborted_passes"], 0);
   tap('s');  // not of the definition: skips
-  const test::CommandResult ended = session.wait(30.0);
+  const test::CommandResult ended = session.wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
   const record::SessionReader reader(file());
   ASSERT_EQ(reader.passes().size(), 1u);
@@ -225,7 +225,7 @@ TEST_F(LiveDrillingWindowTest, EscapeStopsASessionThatNobodyAttends) {
   test::LiveCommand session(run(""));
   ASSERT_TRUE(drills()) << session.errors();
   display_->press_key("haptrial", 0xff1b);
-  const test::CommandResult ended = session.wait(30.0);
+  const test::CommandResult ended = session.wait();
   EXPECT_NE(ended.status, 0);
   EXPECT_THAT(ended.errors, HasSubstr("; continue with --resume"));
   EXPECT_TRUE(fs::exists(partial()));

@@ -128,8 +128,8 @@ std::string bytes_of(const std::string& path) { return test::read_text(path); }
 
 TEST_F(LiveLinkTest, TwoProcessesGoThroughAStudyInStep) {
   start(2, {.delay = 0.01, .jitter = 0.005, .loss = 0.05, .duplication = 0.02, .reordering = 0.05});
-  const test::CommandResult a = learns_->wait(60.0);
-  const test::CommandResult b = teaches_->wait(20.0);
+  const test::CommandResult a = learns_->wait();
+  const test::CommandResult b = teaches_->wait();
   ASSERT_EQ(a.status, 0) << a.errors << a.output;
   ASSERT_EQ(b.status, 0) << b.errors << b.output;
   for (const char* side : {"learning", "teaching"}) {
@@ -161,8 +161,8 @@ TEST_F(LiveLinkTest, AStrangerIsCountedAndChangesNothing) {
     ::sendto(socket.get(), noise.data(), noise.size(), 0,
              reinterpret_cast<const sockaddr*>(&to.storage), to.size);
   }
-  ASSERT_EQ(learns_->wait(60.0).status, 0) << said();
-  ASSERT_EQ(teaches_->wait(20.0).status, 0) << said();
+  ASSERT_EQ(learns_->wait().status, 0) << said();
+  ASSERT_EQ(teaches_->wait().status, 0) << said();
   long counted = 0;
   for (const record::EventRow& event : record::SessionReader(file("teaching")).events()) {
     const std::size_t at = event.text.find(" foreign");
@@ -192,7 +192,7 @@ TEST_F(LiveLinkTest, WhoDoesNotKnowTheSecretOrHasAnotherStudyIsTurnedAway) {
   const test::CommandResult differs = test::run_command("haptrial " + line("learning", 2, come));
   EXPECT_EQ(differs.status, 2);
   EXPECT_THAT(differs.errors, HasSubstr("both must have the same ones"));
-  EXPECT_EQ(teaches_->wait(10.0).status, 2);
+  EXPECT_EQ(teaches_->wait().status, 2);
 }
 
 /// The force of the link in the ticks after the last message.
@@ -228,7 +228,7 @@ TEST_F(LiveLinkTest, TheKilledSideLeavesTheOtherWholeAndBothGoOn) {
     ASSERT_TRUE(coupled(partial(left))) << said();
     (std::string(killed) == "learning" ? learns_ : teaches_)->signal(SIGKILL);
     LiveCommand& survivor = left == "learning" ? *learns_ : *teaches_;
-    const test::CommandResult r = survivor.wait(20.0);
+    const test::CommandResult r = survivor.wait();
     EXPECT_EQ(r.status, 1);
     EXPECT_THAT(r.errors, HasSubstr("continue with --resume on both sides"));
     const record::Integrity whole = record::check_session(record::SessionReader(partial(left)));
@@ -238,8 +238,8 @@ TEST_F(LiveLinkTest, TheKilledSideLeavesTheOtherWholeAndBothGoOn) {
       continue;  // once is enough
     }
     start(1, {.delay = 0.005}, "--resume");
-    EXPECT_EQ(learns_->wait(60.0).status, 0) << said();
-    EXPECT_EQ(teaches_->wait(20.0).status, 0) << said();
+    EXPECT_EQ(learns_->wait().status, 0) << said();
+    EXPECT_EQ(teaches_->wait().status, 0) << said();
     for (const char* side : {"learning", "teaching"}) {
       const record::SessionReader reader(file(side));
       EXPECT_TRUE(record::check_session(reader).ok);
@@ -256,8 +256,8 @@ TEST_F(LiveLinkTest, ACutNetworkTakesTheForceAwayAndGivesItBackByARamp) {
   relay_->cut(true);
   std::this_thread::sleep_for(std::chrono::milliseconds(700));
   relay_->cut(false);
-  ASSERT_EQ(learns_->wait(60.0).status, 0) << said();
-  ASSERT_EQ(teaches_->wait(20.0).status, 0) << said();
+  ASSERT_EQ(learns_->wait().status, 0) << said();
+  ASSERT_EQ(teaches_->wait().status, 0) << said();
   expect_no_force_after_silence(file("learning"));
   const auto all = rows(file("learning"));
   bool lost = false;
@@ -296,8 +296,8 @@ TEST_F(LiveLinkTest, AStopOnOneSideStopsBoth) {
   teaches_->press("c");  // who stopped clears, for both, and begins again
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   teaches_->press(" ");
-  ASSERT_EQ(learns_->wait(60.0).status, 0) << said();
-  ASSERT_EQ(teaches_->wait(20.0).status, 0) << said();
+  ASSERT_EQ(learns_->wait().status, 0) << said();
+  ASSERT_EQ(teaches_->wait().status, 0) << said();
   const record::SessionReader reader(file("learning"));
   EXPECT_EQ(reader.passes().front().status, record::PassStatus::kAborted);
   EXPECT_EQ(reader.passes().back().status, record::PassStatus::kCompleted);
@@ -332,7 +332,7 @@ TEST_F(TimedLinkTest, EveryNetworkLeavesTheHandsPassive) {
     start(trials,
           {.delay = delay, .jitter = 0.02, .loss = 0.05, .duplication = 0.02, .reordering = 0.05});
     ASSERT_EQ(learns_->wait(1200.0).status, 0) << said();
-    ASSERT_EQ(teaches_->wait(20.0).status, 0) << said();
+    ASSERT_EQ(teaches_->wait().status, 0) << said();
     double given = 0.0;
     for (const char* side : {"learning", "teaching"}) {
       const Figures f = figures_of(file(side));

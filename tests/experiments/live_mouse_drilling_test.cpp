@@ -130,7 +130,7 @@ TEST_F(LiveMouseDrillingTest, WheelAndLeftButtonDrillAndTheArrowsTilt) {
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   keep("first-drilling-3.png");
   display_->press_key(kTitle, 'f');
-  const test::CommandResult ended = session.wait(60.0);
+  const test::CommandResult ended = session.wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
 
   const record::SessionReader reader(file());

@@ -69,7 +69,7 @@ TEST_F(LivePracticeTest, ComesOnceIsMarkedAndIsNotAnalysedAlsoAfterAKill) {
   // Whoever reads the file while it is opened for writing keeps the session from going on.
   test::LiveCommand session(run("--resume"));
   ASSERT_TRUE(test::eventually(
-      [&] { return session.errors().find("resumed after") != std::string::npos; }, 60.0))
+      [&] { return session.errors().find("resumed after") != std::string::npos; }))
       << session.errors();
   session.signal(SIGINT);
   session.wait();
@@ -89,7 +89,7 @@ TEST_F(LivePracticeTest, ComesOnceIsMarkedAndIsNotAnalysedAlsoAfterAKill) {
 TEST_F(LivePracticeTest, ProceduresThatAreAnalysedDoNotHaveItAmongThem) {
   write(1.0, 2.0);
   test::LiveCommand session(run());
-  const test::CommandResult ended = session.wait(60.0);
+  const test::CommandResult ended = session.wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
   const std::vector<PassRow> all = passes();
   ASSERT_EQ(all.size(), 2u);
@@ -112,7 +112,7 @@ TEST_F(LivePracticeTest, AnExperimenterStartsRepeatsAndSkipsIt) {
   write(60.0, 2.0);
   test::LiveCommand session(run("--console"));
   test::ConsolePerson person(session.line_after("console: "));
-  ASSERT_TRUE(person.sees("instructions", "", 60.0)) << session.errors();
+  ASSERT_TRUE(person.sees("instructions")) << session.errors();
   ASSERT_TRUE(person.ask("start"));
   ASSERT_TRUE(test::eventually([&] {
     const auto now = person.status();
@@ -125,7 +125,7 @@ TEST_F(LivePracticeTest, AnExperimenterStartsRepeatsAndSkipsIt) {
   ASSERT_TRUE(test::eventually([&] { return person.status()["aborted_passes"] == 1; }));
   ASSERT_TRUE(person.sees("practice"));
   ASSERT_TRUE(person.ask("skip"));
-  const test::CommandResult ended = session.wait(60.0);
+  const test::CommandResult ended = session.wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
   const std::vector<PassRow> all = passes();
   ASSERT_EQ(all.size(), 3u);

@@ -54,7 +54,7 @@ TEST(LiveSoundTest, TheCardIsGivenTheDrillsSoundWhileTheLoopKeepsItsTime) {
   test::LiveCommand session("run '" + (folder / "study.toml").string() + "' --subject S01 --out '" +
                                 (folder / "out").string() + "'",
                             "export ALSA_CONFIG_PATH='" + (folder / "card.conf").string() + "'");
-  const test::CommandResult ended = session.wait(60.0);
+  const test::CommandResult ended = session.wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
   EXPECT_THAT(ended.output, HasSubstr(" 0 lost records"));
   if (ended.output.find("sound card 'default'") != std::string::npos) {

@@ -74,7 +74,7 @@ class LiveStreamTest : public testing::Test {
 };
 
 TEST_F(LiveStreamTest, SamplesAndMarkersArriveInALibraryThatTheLoaderFinds) {
-  const CommandResult ended = LiveCommand(run(), with_the_layer()).wait(40.0);
+  const CommandResult ended = LiveCommand(run(), with_the_layer()).wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
   const auto streams = streams_in(folder_ / "heard");
   ASSERT_EQ(streams.size(), 2u);
@@ -115,7 +115,7 @@ TEST_F(LiveStreamTest, SamplesAndMarkersArriveInALibraryThatTheLoaderFinds) {
 /// Of every protocol: the study of force curves has the stages of its passes.
 TEST_F(LiveStreamTest, OnsetsArriveWithTheirCodes) {
   test::write_text(folder_ / "study.toml", test::brisk_text() + "\n[markers]\nstage = 41\n");
-  const CommandResult ended = LiveCommand(run(), with_the_layer()).wait(40.0);
+  const CommandResult ended = LiveCommand(run(), with_the_layer()).wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
   std::vector<std::string> heard;
   const auto streams = streams_in(folder_ / "heard");
@@ -146,7 +146,7 @@ TEST_F(LiveStreamTest, OnsetsArriveWithTheirCodes) {
 }
 
 TEST_F(LiveStreamTest, TimesAreThoseOfTheSamplesFromTheFirstOneOn) {
-  const CommandResult ended = LiveCommand(run(), with_the_layer()).wait(40.0);
+  const CommandResult ended = LiveCommand(run(), with_the_layer()).wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
   const double delay = least_delay(streams_in(folder_ / "heard").at(0));
   EXPECT_GE(delay, 0.0) << "it would have arrived before it was taken";
@@ -165,7 +165,7 @@ TEST_F(LiveStreamTest, TimesHoldAfterASuspension) {
   session.signal(SIGSTOP);
   std::this_thread::sleep_for(std::chrono::milliseconds(700));
   session.signal(SIGCONT);
-  const CommandResult ended = session.wait(40.0);
+  const CommandResult ended = session.wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
   const auto streams = streams_in(folder_ / "heard");
   auto after = streams.at(0);
@@ -181,7 +181,7 @@ TEST_F(LiveStreamTest, TimesHoldAfterASuspension) {
 }
 
 TEST_F(LiveStreamTest, TrialsPassesAndStagesAreMarkedAtTheTicksWithWhichTheyBegin) {
-  const CommandResult ended = LiveCommand(run(), with_the_layer()).wait(40.0);
+  const CommandResult ended = LiveCommand(run(), with_the_layer()).wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
   const auto streams = streams_in(folder_ / "heard");
   std::vector<std::string> kinds;
@@ -214,7 +214,7 @@ TEST_F(LiveStreamTest, TrialsPassesAndStagesAreMarkedAtTheTicksWithWhichTheyBegi
 }
 
 TEST_F(LiveStreamTest, WithoutTheLibraryTheSessionIsRefusedBeforeItBegins) {
-  const CommandResult ended = LiveCommand(run()).wait(40.0);
+  const CommandResult ended = LiveCommand(run()).wait();
   if (ended.status == 0) {
     GTEST_SKIP() << "the layer is installed here";
   }
@@ -226,7 +226,7 @@ TEST_F(LiveStreamTest, WithoutTheLibraryTheSessionIsRefusedBeforeItBegins) {
 }
 
 TEST_F(LiveStreamTest, WhereTheStreamsAreOptionalTheSessionGoesOnAndSaysSoBeforeItBegins) {
-  const CommandResult ended = LiveCommand(run("--lsl-optional")).wait(40.0);
+  const CommandResult ended = LiveCommand(run("--lsl-optional")).wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
   if (ended.output.find("liblsl.so") == std::string::npos) {
     GTEST_SKIP() << "the layer is installed here";

@@ -202,7 +202,7 @@ TEST_P(LiveWindowTest, ShowsWhatTheFileHolds) {
     }
     return pictures.size() == 5;
   })) << "path, cursor and both bars";
-  EXPECT_TRUE(test::eventually([&] { return patch_is_white(); }, 1.0));
+  EXPECT_TRUE(test::eventually([&] { return patch_is_white(); }));
 
   display_->press_key(definition_->screen.title, 0xff1b);  // Escape at the participant's keyboard
   ASSERT_TRUE(person.sees("stopped"));

@@ -30,6 +30,10 @@ def log(page):
     )
 
 
+def shown_threshold(page, channel):
+    return float(page.run(f"return document.getElementById('threshold_{channel}').value"))
+
+
 def look(page, url, folder):
     page.call("POST", "/url", {"url": url})
     wait("connected", lambda: page.text("link") == "connected")
@@ -39,21 +43,21 @@ def look(page, url, folder):
     names = page.run("return [...document.querySelectorAll('.name')].map((e) => e.textContent)")
     assert names == ["oculi", "oris", "drawn <b>"], names
     wait("traces", lambda: all(drawn(page, channel) > 500 for channel in range(3)))
-    wait("an event in the log", lambda: len(log(page)) >= 2, 20)
+    wait("an event in the log", lambda: len(log(page)) >= 2)
     kinds = {row[2] for row in log(page)}
     assert kinds <= {"burst", "train", "artefact", "response"}, kinds
-    wait("an event on the screen", lambda: any(page.text(f"event_{i}") for i in range(3)), 20)
-    assert page.run("return document.getElementById('threshold_0').value") == "100"
+    wait("an event on the screen", lambda: any(page.text(f"event_{i}") for i in range(3)))
+    # After ten seconds of tones the monitor raises it by itself.
+    assert 100 <= shown_threshold(page, 0) <= 400, shown_threshold(page, 0)
 
     page.click("mute_1")
     wait("muted", lambda: page.run(
         "return document.getElementById('mute_1').getAttribute('aria-pressed')") == "true")
-    assert page.text("said") == "oris: muted", page.text("said")
+    wait("the answer", lambda: page.text("said") == "oris: muted")
     page.type("threshold_2", CONTROL + "a" + CONTROL + "250" + ENTER)
     wait("the threshold", lambda: page.text("said") == "drawn <b>: threshold 250 µV")
     page.run("document.activeElement.blur()")
-    wait("the threshold of the monitor", lambda: page.run(
-        "return document.getElementById('threshold_2').value") == "250")
+    wait("the threshold of the monitor", lambda: 250 <= shown_threshold(page, 2) <= 400)
     page.type("stimulus", CONTROL + "a" + CONTROL + "0.3" + ENTER)
     wait("the current", lambda: page.text("said") == "probe: 0.3 mA")
     page.run("document.activeElement.blur()")
@@ -69,7 +73,7 @@ def look(page, url, folder):
     assert not wide, "the narrow page scrolls sideways"
 
     # At the nerve itself an answer of 100 µV needs about 0.09 mA.
-    wait("the threshold of the nerve", lambda: page.text("probe").startswith("oculi answers from"), 20)
+    wait("the threshold of the nerve", lambda: page.text("probe").startswith("oculi answers from"))
     found = float(page.text("probe").split()[3])
     assert 0.07 < found < 0.13, found
 

@@ -91,7 +91,7 @@ TEST(NerveBrowserTest, ATechnicianWatchesMutesAndSetsAThreshold) {
   const Drilling drilling(page->desk());
   auto console = std::make_unique<Console>(control, options);
   const std::string command =
-      "timeout 120 python3 '" HAPTRIAL_SOURCE_DIR "/tests/experiments/nerve_browser.py' '" +
+      "timeout 500 python3 '" HAPTRIAL_SOURCE_DIR "/tests/experiments/nerve_browser.py' '" +
       console->side_url("nerves") + "' '" + folder.path().string() + "' 2>&1";
   FILE* script = ::popen(command.c_str(), "r");
   ASSERT_NE(script, nullptr);

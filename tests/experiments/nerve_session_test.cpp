@@ -352,7 +352,7 @@ TEST(LiveNerveTest, AfterAKillTheMonitorGoesOnInTheSameTables) {
     session.wait();
   }
   test::LiveCommand session(line + " --resume");
-  const test::CommandResult ended = session.wait(60.0);
+  const test::CommandResult ended = session.wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
   const record::SessionReader reader(file);
   const record::Integrity integrity =

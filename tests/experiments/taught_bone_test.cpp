@@ -156,8 +156,8 @@ class LiveTaughtBoneTest : public TaughtBoneTest {
 TEST_F(LiveTaughtBoneTest, TwoProcessesHaveOneBone) {
   const fs::path study = definition("patience = 3\n", 6.0);
   start(study, study);
-  const test::CommandResult a = learns_->wait(60.0);
-  const test::CommandResult b = teaches_->wait(20.0);
+  const test::CommandResult a = learns_->wait();
+  const test::CommandResult b = teaches_->wait();
   ASSERT_EQ(a.status, 0) << a.errors << b.errors;
   ASSERT_EQ(b.status, 0) << b.errors;
   expect_one_bone(file("learning"), file("teaching"));
@@ -171,8 +171,8 @@ TEST_F(LiveTaughtBoneTest, AnotherBoneInTheFileIsSaidOnBothSides) {
   bone.labels[0] = 0;
   bone::save_bone(folder_ / "other" / "slabs.nrrd", bone);
   start(study, folder_ / "other" / study.filename());
-  const test::CommandResult a = learns_->wait(60.0);
-  const test::CommandResult b = teaches_->wait(20.0);
+  const test::CommandResult a = learns_->wait();
+  const test::CommandResult b = teaches_->wait();
   ASSERT_EQ(a.status, 0) << a.errors << b.errors;
   ASSERT_EQ(b.status, 0) << b.errors;
   EXPECT_THAT(a.errors, HasSubstr("differ from the beginning"));
@@ -194,12 +194,12 @@ TEST_F(LiveTaughtBoneTest, AfterAKillBothGoOnWithANewBone) {
     }
   }));
   teaches_->signal(SIGKILL);
-  EXPECT_THAT(learns_->wait(20.0).errors, HasSubstr("continue with --resume on both sides"));
+  EXPECT_THAT(learns_->wait().errors, HasSubstr("continue with --resume on both sides"));
   teaches_->wait(5.0);
   start(study, study, "--resume");
-  const test::CommandResult a = learns_->wait(60.0);
+  const test::CommandResult a = learns_->wait();
   ASSERT_EQ(a.status, 0) << a.errors;
-  ASSERT_EQ(teaches_->wait(20.0).status, 0);
+  ASSERT_EQ(teaches_->wait().status, 0);
   const auto learns = file("learning");
   const auto teaches = file("teaching");
   EXPECT_TRUE(record::check_session(learns).ok);

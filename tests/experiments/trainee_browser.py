@@ -66,7 +66,7 @@ def turned(page, url, folder):
     only_itself(page)
 
     page.run("document.querySelector('#procedures a').click()")
-    wait("the view", lambda: page.run("return document.documentElement.dataset.view") == "webgl", 60)
+    wait("the view", lambda: page.run("return document.documentElement.dataset.view") == "webgl")
     assert page.hidden("picture")
     page.run("document.getElementById('stage').scrollIntoView()")
     first = page.run(COLOURS)
@@ -102,14 +102,14 @@ def turned(page, url, folder):
     only_itself(page)
 
     page.run("document.getElementById('overview').click()")
-    wait("the overview", lambda: page.run("return document.getElementById('procedures') !== null"), 60)
+    wait("the overview", lambda: page.run("return document.getElementById('procedures') !== null"))
 
 
 def flat(page, url):
     page.call("POST", "/url", {"url": url})
     page.run("document.querySelector('#procedures a').click()")
     wait("the picture", lambda: page.run(
-        "const i = document.querySelector('#picture img'); return i ? i.naturalWidth : 0") > 500, 60)
+        "const i = document.querySelector('#picture img'); return i ? i.naturalWidth : 0") > 500)
     assert not page.hidden("picture") and page.hidden("canvas")
     assert "no WebGL" in page.text("help")
     assert page.run("return document.documentElement.dataset.view || ''") == ""

@@ -55,7 +55,7 @@ TEST(TraineePagesTest, ABrowserTurnsTheBoneAndAsksNobody) {
   EXPECT_LT(fs::file_size(folder / "S01-1.html"), 5'000'000u);
   EXPECT_THAT(test::read_text(folder / "S01-2.html"), HasSubstr("Expert S02, procedure"));
   const auto seen = run_command(
-      "timeout 200 python3 '" HAPTRIAL_SOURCE_DIR "/tests/experiments/trainee_browser.py' '" +
+      "timeout 500 python3 '" HAPTRIAL_SOURCE_DIR "/tests/experiments/trainee_browser.py' '" +
       (folder / "S01.html").string() + "' '" + folder.path().string() + "' 2>&1");
   if (seen.status == 77) {
     GTEST_SKIP() << seen.output;

@@ -42,7 +42,7 @@ std::uint64_t row_of_tick(const SessionReader& reader, const Table<Row>& table,
   return low;
 }
 
-/// The rows of `count` ticks from `first` on, of those that are there.
+/// The rows of `count` ticks from `first` on; rows that are missing are left out.
 template <class Row>
 std::vector<Row> rows_of_ticks(const SessionReader& reader, const Table<Row>& table,
                                std::uint64_t first, std::uint64_t count) {

@@ -30,7 +30,7 @@ void print_report(const std::vector<std::string>& lines, const fs::path& out) {
   fmt::print("report: {}\n", (fs::absolute(out) / "report.html").lexically_normal().string());
 }
 
-/// Of sessions of two hands, whatever they do together.
+/// A report on the link, where sessions had two coupled hands, in any protocol.
 void report_link(const AnalysisRequest& request) {
   namespace link = analysis::link;
   const auto study =

@@ -39,7 +39,7 @@ int megabytes_of_a_task() {
   return static_cast<int>(kStep * std::max(1.0, std::ceil(most / kStep)));
 }
 
-/// Whether so many files in so short a time hurt a file system that many share, and what to do.
+/// Warns of many small files, which slow a shared file system, and says which block avoids them.
 void print_bundling(const PowerQuestion& question, std::size_t parts, double each) {
   constexpr std::size_t kFew = 1000;  // files that hurt nobody
   constexpr double kSeconds = 60.0;   // of computing that are worth a file

@@ -124,11 +124,8 @@ Bench vendor_bench(const DeviceTestOptions& options, const DeviceSetup& setup) {
   } else if (const device::OwnDevice* own = device::own_device(options.name)) {
     bench.device = own->open(device::setting_of(options.name), 0, kRate);
   } else {
-    std::vector<std::string> known{"virtual", "mouse", "force-dimension", "open-haptics"};
-    for (const device::OwnDevice& each : device::own_devices()) {
-      known.push_back(each.name);
-    }
-    throw InputError(not_allowed("the device to test", fmt::format("'{}'", options.name), known));
+    throw InputError(not_allowed("the device to test", fmt::format("'{}'", options.name),
+                                 device::device_names()));
   }
   return bench;
 }

@@ -31,7 +31,7 @@ bool has_word(const std::string& definition, const std::string& word) {
          definition.find('\'' + word + '\'') != std::string::npos;
 }
 
-/// Of all runs of a session, each once.
+/// The plug-ins of all runs of a session, each once.
 std::vector<std::string> lines_of(const record::SessionReader& session) {
   std::vector<std::string> lines;
   for (const record::EventRow& event : session.events()) {

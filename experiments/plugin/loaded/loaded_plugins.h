@@ -31,8 +31,8 @@ void note_plugin(LoadedPlugin plugin);
 /// What a session file keeps of each: "NAME VERSION CHECKSUM KIND:NAME ...".
 std::vector<std::string> plugin_lines();
 
-/// Of a session that is resumed: with the same plug-ins, to the bit. A run that was killed before
-/// it wrote them is gone on with as it is. @throws InputError
+/// A session is resumed with the same plug-ins, to the bit. A run that was killed before it wrote
+/// them is gone on with as it is. @throws InputError
 void check_same_plugins(const record::SessionReader& before);
 
 /// @throws InputError naming the plug-in that gave a protocol or a field that the definition of the

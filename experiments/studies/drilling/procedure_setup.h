@@ -10,7 +10,7 @@ namespace haptrial::experiments {
 
 /// What metrics need of a definition; the group is empty.
 analysis::drilling::ProcedureSetup procedure_setup(const protocols::BoneDefinition& definition);
-/// Of the definition in a session file.
+/// The same from the definition in a session file.
 analysis::drilling::ProcedureSetup procedure_setup(
     const record::SessionReader& session, const std::vector<protocols::StudyGroup>& groups);
 

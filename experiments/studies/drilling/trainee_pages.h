@@ -21,7 +21,7 @@ struct TraineeRequest {
   bool overwrite{false};
 };
 
-/// Writes a page about the trainee's procedure; of several procedures an overview, and a page of
+/// Writes a page about the trainee's procedure; for several procedures an overview, and a page for
 /// each beside it (NAME-1.html, ...).
 /// @returns the files, the overview or the only page first
 /// @throws InputError where sessions are no drillings or of several participants, a study has no
