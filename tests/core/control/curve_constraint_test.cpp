@@ -172,7 +172,7 @@ TEST(CurveConstraintTest, AToolThatIsNowhereFeelsNothing) {
   const SampledCurve curve(line());
   CurveConstraint constraint(curve, {900.0, 100.0});
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(constraint.force({{nan, 0.0, 0.0}, {}}).isZero());
+  EXPECT_TRUE(constraint.force({{nan, 0.0, 0.0}, Vector3d::Zero()}).isZero());
   EXPECT_TRUE(constraint.force({{0.01, 0.0, 0.0}, {0.0, nan, 0.0}}).isZero());
 }
 

@@ -164,8 +164,10 @@ TEST(PdControllerTest, ForceDoesNotAllocate) {
   const PdController pd({900.0, 100.0});
   const test::AllocationGuard guard;
   Vector3d sum = Vector3d::Zero();
+  PointState target;
   for (int i = 0; i < 1000; ++i) {
-    sum += saturate(pd.force({{1e-3 * i, 0.0, 0.0}, {}}, {}), 5.0);
+    target.position.x() = 1e-3 * i;
+    sum += saturate(pd.force(target, {}), 5.0);
   }
   EXPECT_EQ(guard.count(), 0u);
   EXPECT_GT(sum.x(), 0.0);
