@@ -65,6 +65,26 @@ Json to_json(const PowerResult& result, const PowerCell& cell) {
   return json;
 }
 
+Json to_json(const PowerResult& result, const std::vector<PowerCell>& cells) {
+  Json all = Json::array();
+  for (const PowerCell& cell : cells) {
+    all.push_back(to_json(result, cell));
+  }
+  return all;
+}
+
+Json to_json(const PowerResult& result, const PowerStrain& strain) {
+  if (!strain.refused.empty()) {
+    return {{"what", strain.name}, {"not_simulated_because", strain.refused}};
+  }
+  const PowerResult strained = under(result, strain);
+  return {{"what", strain.name},
+          {"is_power", is_power(strained)},
+          {"participants_needed", size_lines(strained)},
+          {"without_an_effect", to_json(result, strain.nulls)},
+          {"cells", to_json(result, strain.cells)}};
+}
+
 /// A field with a comma or a quotation mark in quotes.
 std::string field(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) {
@@ -77,8 +97,8 @@ std::string field(const std::string& text) {
   return quoted + "\"";
 }
 
-std::string csv_row(const PowerResult& result, const PowerCell& cell, const char* kind) {
-  std::string row = kind;
+std::string csv_row(const PowerResult& result, const PowerCell& cell, const std::string& kind) {
+  std::string row = field(kind);
   for (const double level : cell.levels) {
     row += fmt::format(",{}", level);
   }
@@ -108,17 +128,19 @@ std::string power_csv(const PowerResult& result) {
   for (const PowerCell& cell : result.cells) {
     csv += csv_row(result, cell, "study");
   }
+  for (const PowerStrain& strain : result.strains) {
+    for (const PowerCell& cell : strain.nulls) {
+      csv += csv_row(result, cell, "no effect, " + strain.name);
+    }
+    for (const PowerCell& cell : strain.cells) {
+      csv += csv_row(result, cell, "study, " + strain.name);
+    }
+  }
   return csv;
 }
 
 std::string power_json(const PowerResult& result) {
-  Json nulls = Json::array(), cells = Json::array(), check = Json::array();
-  for (const PowerCell& cell : result.nulls) {
-    nulls.push_back(to_json(result, cell));
-  }
-  for (const PowerCell& cell : result.cells) {
-    cells.push_back(to_json(result, cell));
-  }
+  Json check = Json::array();
   for (const DepthRow& row : depth_check(result)) {
     check.push_back({{"cell", row.cell},
                      {"value", row.value},
@@ -127,7 +149,7 @@ std::string power_json(const PowerResult& result) {
                      {"z", row.z},
                      {"agrees", row.agrees}});
   }
-  const Json json{{"simulated", true},
+  Json json{{"simulated", true},
                   {"experiment", result.title},
                   {"watch", result.watch},
                   {"alpha", result.alpha},
@@ -138,9 +160,12 @@ std::string power_json(const PowerResult& result) {
                   {"is_power", is_power(result)},
                   {"verdict", verdict(result)},
                   {"participants_needed", size_lines(result)},
-                  {"without_an_effect", nulls},
-                  {"cells", cells},
+                  {"without_an_effect", to_json(result, result.nulls)},
+                  {"cells", to_json(result, result.cells)},
                   {"depth_check", check}};
+  for (const PowerStrain& strain : result.strains) {
+    json["what_may_go_wrong"].push_back(to_json(result, strain));
+  }
   return json.dump(1) + "\n";
 }
 

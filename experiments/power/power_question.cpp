@@ -27,14 +27,15 @@ std::string written(double value) {
              : fmt::format("{}", value);
 }
 
-void check_size(const PowerPlan& plan, const std::string& file_name) {
-  double cells = 1.0;
+void check_size(const PowerPlan& plan, std::size_t strains, const std::string& file_name) {
+  double cells = 1.0 + static_cast<double>(strains);
   for (const VariedKey& key : plan.vary) {
     cells *= static_cast<double>(key.values.size());
   }
   if (cells > kMostCells) {
-    throw InputError(fmt::format("{}: power.vary has {:.3g} cells; allowed: at most {:g}",
-                                 file_name, cells, kMostCells));
+    throw InputError(fmt::format("{}: power.vary has {:.3g} cells{}; allowed: at most {:g}",
+                                 file_name, cells,
+                                 strains == 0 ? "" : " with what may go wrong", kMostCells));
   }
 }
 
@@ -104,6 +105,19 @@ std::vector<QuestionCell> cells_of(const PowerPlan& plan) {
   return cells;
 }
 
+/// Throws InputError where a cell cannot be simulated.
+void check_cell(const PowerQuestion& question, const QuestionCell& cell) {
+  const std::vector<NamedText> parts = question.parts_of(cell);
+  static_cast<void>(parse_experiment(parts));
+  const auto rehearsal = question.study->rehearsal(parts, question.plan.watch);
+  if (!rehearsal->people_differ()) {
+    throw InputError(fmt::format(
+        "{}: virtual participants do not differ from each other, so a test over participants says "
+        "nothing of people; give a parameter of theirs a spread above 0",
+        question.definition_name));
+  }
+}
+
 /// Every level of every key once, the others at their first: a value that the definition does not
 /// allow is found before anything is simulated.
 void check_levels(const PowerQuestion& question) {
@@ -115,15 +129,7 @@ void check_levels(const PowerQuestion& question) {
   const auto check = [&] {
     cell.name = name_of(plan, cell.levels);
     try {
-      const std::vector<NamedText> parts = question.parts_of(cell);
-      static_cast<void>(parse_experiment(parts));
-      const auto rehearsal = question.study->rehearsal(parts, plan.watch);
-      if (!rehearsal->people_differ()) {
-        throw InputError(fmt::format(
-            "{}: virtual participants do not differ from each other, so a test over participants "
-            "says nothing of people; give a parameter of theirs a spread above 0",
-            question.definition_name));
-      }
+      check_cell(question, cell);
     } catch (const InputError& error) {
       throw InputError(
           fmt::format("{}{}{}", error.what(), cell.levels.empty() ? "" : "; with ", cell.name));
@@ -140,6 +146,47 @@ void check_levels(const PowerQuestion& question) {
       check();
     }
     cell.levels[i] = plan.vary[i].values.front();
+  }
+}
+
+long participants_of(const NamedText& definition) {
+  Table root = Table::parse(definition.text, definition.file_name);
+  return root.table("design").integer("participants", 1, 1'000'000);
+}
+
+/// Whether every key but the number of participants is at its first level.
+bool is_at_first(const PowerPlan& plan, const QuestionCell& cell) {
+  for (std::size_t i = 0; i < cell.levels.size(); ++i) {
+    const VariedKey& key = plan.vary[i];
+    if (key.key != "design.participants" && cell.levels[i] != key.values.front()) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// What may go wrong, in every cell. What one cell does not allow is not simulated at all.
+void add_strained(PowerQuestion& question) {
+  const std::vector<QuestionCell> planned = question.cells;
+  for (std::size_t number = 1; number <= question.strains.size(); ++number) {
+    QuestionStrain& strain = question.strains[number - 1];
+    std::vector<QuestionCell> strained = planned;
+    for (QuestionCell& cell : strained) {
+      cell.strain = number;
+      cell.checked = false;
+    }
+    try {
+      for (const QuestionCell& cell : strained) {
+        if (strain.refused.empty() && is_at_first(question.plan, cell)) {
+          check_cell(question, cell);
+        }
+      }
+    } catch (const InputError& error) {
+      strain.refused = error.what();
+    }
+    if (strain.refused.empty()) {
+      question.cells.insert(question.cells.end(), strained.begin(), strained.end());
+    }
   }
 }
 
@@ -164,13 +211,30 @@ std::vector<NamedText> PowerQuestion::parts_of(const QuestionCell& cell) const {
     (own ? asked : given).push_back({plan.vary[i].key, written(cell.levels[i])});
   }
   std::vector<NamedText> all = parts;
-  all.back().text = with_values(all.back().text, all.back().file_name, asked);
-  all.front().text = with_values(all.front().text, all.front().file_name, given);
+  const auto give = [&all](const std::vector<GivenKey>& to_question,
+                           const std::vector<GivenKey>& to_definition) {
+    all.back().text = with_values(all.back().text, all.back().file_name, to_question);
+    all.front().text = with_values(all.front().text, all.front().file_name, to_definition);
+  };
+  give(asked, given);
+  if (cell.strain > 0) {
+    asked.clear();
+    given.clear();
+    for (GivenKey& key : keys_under(strains[cell.strain - 1], participants_of(all.front()))) {
+      (key.key.starts_with("power.") ? asked : given).push_back(std::move(key));
+    }
+    give(asked, given);
+  }
   return all;
 }
 
-PowerQuestion load_question(const fs::path& file) {
-  Table root = Table::load(file);
+PowerQuestion load_question(const fs::path& file, bool robust) {
+  const std::string asked = file_text(file);
+  const GivenKey key{"power.robust", "true"};
+  const bool has_table = Table::parse(asked, file.string()).has("power");
+  Table root = Table::parse(
+      robust && has_table ? with_values(asked, file.string(), std::span(&key, 1)) : asked,
+      file.string());
   if (!root.has("power")) {
     throw InputError(fmt::format(
         "{}: has no table [power]; give it watch and [[power.vary]] (docs/guide-power.md)",
@@ -210,9 +274,14 @@ PowerQuestion parse_question(const std::vector<NamedText>& parts, const fs::path
   question.title = experiment.definition->name;
   question.fingerprint =
       fmt::format("{:016x}", Fnv1a().add(question.text).add(program_words()).value());
-  check_size(question.plan, question.file_name);
+  if (question.plan.robust) {
+    question.strains = strains_of(*question.study->rehearsal(parts, question.plan.watch),
+                                  question.plan);
+  }
+  check_size(question.plan, question.strains.size(), question.file_name);
   question.cells = cells_of(question.plan);
   check_levels(question);
+  add_strained(question);
   return question;
 }
 

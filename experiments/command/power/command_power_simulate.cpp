@@ -54,7 +54,7 @@ int power_simulate(const PowerSimulateOptions& options) {
   if (options.minutes) {
     share.minutes = checked_real("--minutes", *options.minutes, 0.0, 1e6);
   }
-  const PowerQuestion question = load_question(options.question);
+  const PowerQuestion question = load_question(options.question, options.robust);
   check_watched(question);
   const PowerFolder folder(
       options.out.empty() ? fs::path("out") / (question.title + "-power") : fs::path(options.out),

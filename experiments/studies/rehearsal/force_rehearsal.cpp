@@ -24,6 +24,7 @@ using analysis::TrialScore;
 /// The parts of a score.
 struct ScoreParts {
   double mean{0.0};
+  double practice{0.0};  // from trial to trial of the session
   double participant{0.0}, interaction{0.0}, block{0.0}, trial{0.0};  // standard deviations
   std::map<std::string, double> effects;                              // by condition
 };
@@ -41,6 +42,7 @@ std::optional<ScoreParts> read_parts(const std::vector<NamedText>& definition,
   parts.interaction = table.number("interaction", kNonNegative, "");
   parts.block = table.number("block", kNonNegative, "");
   parts.trial = table.number("trial", kNonNegative, "");
+  parts.practice = table.number_or("practice", 0.0, {}, "");
   if (table.has("effects")) {
     Table effects = table.table("effects");
     for (const std::string& name : effects.keys()) {
@@ -127,6 +129,19 @@ class ForceRehearsal final : public Rehearsal {
     return !parts_ || parts_->participant > 0.0 || parts_->interaction > 0.0;
   }
 
+  /// Practice over a session is that of two standard deviations of a trial.
+  std::vector<Strain> strains() const override {
+    if (!parts_) {
+      return {};
+    }
+    const auto given = [](const char* key, double value) {
+      return GivenKey{std::string("power.responses.") + key, fmt::format("{}", value)};
+    };
+    return {{"practice is left in", {given("practice", -2.0 * parts_->trial / d_.design.trials)}},
+            {"blocks that differ twice as much", {given("block", 2.0 * parts_->block)}},
+            {"trials that differ twice as much", {given("trial", 2.0 * parts_->trial)}}};
+  }
+
   Rehearsed responses(std::uint64_t seed) const override {
     if (!parts_) {
       throw InputError(
@@ -172,6 +187,7 @@ class ForceRehearsal final : public Rehearsal {
     }
     int block = 0;
     double of_block = 0.0;
+    int scored = 0;
     for (const protocols::PlannedTrial& trial :
          plan_trials(d_.design, participant, seed, place.session_seed)) {
       if (trial.practice) {
@@ -189,7 +205,8 @@ class ForceRehearsal final : public Rehearsal {
       score.block = trial.block;
       score.repetition = trial.repetition;
       score.score =
-          parts_->mean + own.at(trial.condition) + of_block + parts_->trial * trials.normal();
+          parts_->mean + own.at(trial.condition) + of_block + parts_->trial * trials.normal() +
+          parts_->practice * static_cast<double>(scored++);
       scores.push_back(std::move(score));
     }
   }
