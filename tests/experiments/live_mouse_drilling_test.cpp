@@ -98,8 +98,7 @@ TEST_F(LiveMouseDrillingTest, WheelAndLeftButtonDrillAndTheArrowsTilt) {
         keep("first-drilling-0.png");
         display_->try_key(kTitle, VirtualDisplay::kEnter);
         return rows<record::ToolRow>() > 0;
-      },
-      60.0))
+      }))
       << session.errors();
   move(0.5, 0.45);
   std::this_thread::sleep_for(std::chrono::seconds(1));
@@ -109,8 +108,7 @@ TEST_F(LiveMouseDrillingTest, WheelAndLeftButtonDrillAndTheArrowsTilt) {
       [&] {
         roll(kWheelUp, 2);
         return rows<record::RemovalRow>() > 0;
-      },
-      60.0))
+      }))
       << "deeper and deeper it comes to the bone";
   // Strokes across a field, deeper after every eight.
   constexpr int kSteps = 12;
@@ -132,6 +130,10 @@ TEST_F(LiveMouseDrillingTest, WheelAndLeftButtonDrillAndTheArrowsTilt) {
   display_->press_key(kTitle, 'f');
   const test::CommandResult ended = session.wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr("page: " + (folder_ / "out/P01.html").string()));
+  const std::string page = test::read_text(folder_ / "out/P01.html");
+  EXPECT_THAT(page, HasSubstr("P01"));
+  EXPECT_THAT(page, testing::Not(HasSubstr("SIMULATED"))) << "a person drilled";
 
   const record::SessionReader reader(file());
   EXPECT_EQ(reader.info().device, "mouse");
