@@ -164,23 +164,28 @@ PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
 
 analysis::trials::TrialsPlan read_trials_analysis(Table& root) {
   PlanDefaults defaults;
+  bool scripted = false;
   try {
     // A document of its own: what is wrong with it was noted by who read the definition.
     Table copy = Table::parse(root.source(), "");
     const auto definition = protocols::trials_protocol().read(copy, "", nullptr);
+    scripted = dynamic_cast<const protocols::TrialsDefinition&>(*definition).script.has_value();
     defaults = plan_defaults(dynamic_cast<const protocols::TrialsDefinition&>(*definition));
     take_axis(copy, defaults.axis);
   } catch (const InputError&) {
     defaults = {};
   }
-  return analysis::trials::read_trials_plan(root, defaults);
+  analysis::trials::TrialsPlan plan = analysis::trials::read_trials_plan(root, defaults);
+  // Levels that follow from answers pull both tests from 0; a script cannot be asked again.
+  plan.serial = plan.serial && !scripted;
+  return plan;
 }
 
 analysis::trials::ProcedureOf procedures_of(const protocols::TrialsDefinition& definition) {
   return [&definition](const std::string& name) -> std::unique_ptr<psychometric::Procedure> {
     for (const protocols::Track& track : definition.tracks) {
       const bool own = name == track.name || name.starts_with(track.name + ", ");
-      if (own && !track.listed && track.begin) {
+      if (own && !track.listed && track.begin && !definition.script) {
         return track.begin(1, name);
       }
     }

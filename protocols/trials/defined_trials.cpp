@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/random.h"
@@ -90,6 +91,34 @@ DefinedTrials::DefinedTrials(const StudiedDefinition& definition, const SessionP
       object_files_(object_files(definition.objects)) {
   if (records_contacts(d_)) {
     contacts_ = std::make_unique<ContactLog>();
+  }
+  if (d_.script) {
+    use_script();
+  }
+}
+
+void DefinedTrials::use_script() {
+  std::function<void()> pulse;
+  if (place_.pulse) {
+    pulse = [this] { place_.pulse("waiting for the script of levels", 0.0); };
+  }
+  script_ = std::make_unique<ScriptedLevels>(*d_.script, place_.subject, place_.real, pulse);
+  if (!place_.resumed.empty()) {
+    script_->recall(record::SessionReader(place_.resumed));
+    script_kept_ = script_->recalled();
+  }
+  sequence_.choose_by(*script_);
+}
+
+void DefinedTrials::prepare(const PlannedTrial&, SessionFile& file) {
+  if (script_ == nullptr) {
+    return;
+  }
+  if (!std::exchange(script_kept_, true)) {
+    file.event(kScriptEvent, d_.script->text);
+  }
+  for (const std::string& trouble : script_->take_troubles()) {
+    file.event(kScriptTrouble, trouble);
   }
 }
 
@@ -446,6 +475,11 @@ std::vector<std::string> DefinedTrials::notices() const {
                                   "/touched_bodies", sum.ticks, what));
     }
   };
+  if (script_ != nullptr && script_->left() > 0) {
+    lines.push_back(fmt::format("{}: in {} of {} trials the level was the procedure's own (events {})",
+                                d_.script->file.filename().string(), script_->left(),
+                                script_->asked(), kScriptTrouble));
+  }
   say(inverted_, kInsideOut);
   say(crowded_, kCrowded);
   return lines;

@@ -10,6 +10,7 @@
 #include "core/record/trials/trial_rows.h"
 #include "protocols/interface/trials.h"
 #include "protocols/trials/presentation/trial_pass.h"
+#include "protocols/trials/script/scripted_levels.h"
 #include "protocols/trials/sequence/trial_sequence.h"
 #include "protocols/trials/studied_definition.h"
 
@@ -32,7 +33,7 @@ class DefinedTrials final : public Trials {
   record::TableList tables() const override;
   std::vector<record::Rows> first_rows() const override;
   void check_resumed(const record::SessionReader& file) const override;
-  void prepare(const PlannedTrial&, SessionFile&) override {}
+  void prepare(const PlannedTrial& trial, SessionFile& file) override;
   MakeDrawing drawing() override;
   Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) override;
   std::vector<record::ResponseRow> responses() override;
@@ -47,6 +48,7 @@ class DefinedTrials final : public Trials {
   const std::vector<std::vector<NamedStage>>& stages() const { return stages_; }
 
  private:
+  void use_script();
   void number_bodies(const std::vector<scene::Field>& fields, std::vector<StageSight>& sights);
   IntervalRun make_interval(std::size_t place, RandomStream& random);
   std::vector<Asked> make_questions();
@@ -64,6 +66,8 @@ class DefinedTrials final : public Trials {
   SessionPlace place_;
   Table root_;
   std::unique_ptr<Names> names_;
+  std::unique_ptr<ScriptedLevels> script_;  // null: the procedures choose
+  bool script_kept_{false};                 // its text is in the file
   TrialSequence sequence_;
   NextTrial current_;
   void keep_adaptation(SessionFile& file, std::int32_t row) const;

@@ -38,6 +38,9 @@ class TrialsProtocol final : public Protocol {
     } catch (const InputError& error) {
       throw InputError(d.file_name + ": " + error.what());
     }
+    if (d.script) {
+      load_level_script(*d.script, folder);
+    }
     d.bodies = check_every_value(d);
     for (const sound::Cue& cue : d.cues.cues) {
       sound::rendered(cue, 0);  // a file that cannot be played is a mistake of the definition

@@ -445,6 +445,8 @@ objects.NAME.length | | along z
 objects.NAME.tube | | radius of a torus's tube
 objects.NAME.friction.static | | coefficient of what holds the tool where it rests
 objects.NAME.friction.dynamic | | coefficient of what resists the tool that slides
+level_script.file | | Python script (.py), or a program, that chooses the levels between trials, beside the definition
+level_script.deadline | | for its answer; where nobody waits it has a minute
 looks.NAME.type | | what can be seen: a bar of random dots
 looks.NAME.width | | of the bar
 looks.NAME.height | | of the bar

@@ -163,6 +163,12 @@ class TrialsRehearsal final : public Rehearsal {
   }
 
   Rehearsed responses(std::uint64_t seed) const override {
+    if (d_->script) {
+      throw InputError(fmt::format(
+          "{}: level_script chooses the levels, which responses alone do not run; give power.depth "
+          "= \"sessions\"",
+          asked_in_));
+    }
     if (!session_) {
       throw InputError(
           fmt::format("{}: power.responses.met is missing; give the formula of what an interval "

@@ -461,6 +461,7 @@ void read_trials_definition(Table& root, std::string_view file_name, TrialsDefin
   }
   d.questions = read_questions(root, d.keys);
   d.tracks = psychometric::read_tracks(root);
+  d.script = read_level_script(root);
   d.order = read_trial_design(root, !d.tracks.empty());
   read_intervals(root, d);
   check_common(root, d);

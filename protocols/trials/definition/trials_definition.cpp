@@ -151,6 +151,12 @@ std::vector<markers::MarkerMeaning> TrialsDefinition::marker_meanings() const {
 std::vector<std::string> TrialsDefinition::warnings() const {
   std::vector<std::string> all = stray_words(text);
   all.insert(all.end(), restless.begin(), restless.end());
+  if (script) {
+    all.push_back(fmt::format(
+        "{} chooses the levels (level_script); what is said of the procedures holds for levels of "
+        "their own, which are presented where it gives none",
+        script->file.filename().string()));
+  }
   for (const Question& question : questions) {
     const bool tells = question.has_limits() || question.feedback != Feedback::kNever;
     if (tells && feedback_time == 0.0) {

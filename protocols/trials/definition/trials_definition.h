@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "protocols/definition/definition.h"
 #include "protocols/definition/groups.h"
 #include "protocols/trials/definition/block.h"
+#include "protocols/trials/definition/level_script_plan.h"
 #include "protocols/trials/definition/question.h"
 #include "protocols/trials/definition/trial_devices.h"
 #include "protocols/trials/looks/look.h"
@@ -44,6 +46,7 @@ struct TrialsDefinition : Definition {
   std::vector<Question> questions;
   KeyBits keys;
   std::vector<Track> tracks;
+  std::optional<LevelScriptPlan> script;  // may choose the levels of the tracks
   std::vector<std::string> stages;  // names, in their order
   std::vector<int> stage_markers;   // the code of each; 0: the one of its place
   std::vector<StudyGroup> groups;

@@ -293,6 +293,10 @@ void TrialSequence::choose_track(NextTrial& next) {
   RunningTrack& running = running_[chosen];
   next.track = static_cast<int>(chosen);
   next.asked = running.procedure->next();
+  if (chooser_ != nullptr) {
+    next.asked = chooser_->choose(
+        {next.plan.trial, next.plan.practice, running.name, *running.track, next.asked});
+  }
   next.applied = running.track->applied(next.asked);
   const std::vector<std::string> variables = running.track->variables();
   for (std::size_t i = 0; i < variables.size(); ++i) {
@@ -345,6 +349,9 @@ void TrialSequence::conclude(bool presented, double outcome, bool right) {
     ++running.trials;
     if (std::isfinite(outcome)) {
       running.procedure->report(outcome, done.applied);
+      if (chooser_ != nullptr) {
+        chooser_->told(running.name, {outcome, done.applied});
+      }
     }
   }
 }

@@ -11,6 +11,7 @@
 #include "protocols/interface/trials.h"
 #include "protocols/trials/definition/trial_values.h"
 #include "protocols/trials/definition/trials_definition.h"
+#include "protocols/trials/sequence/level_chooser.h"
 
 namespace haptrial::protocols {
 
@@ -68,6 +69,9 @@ class TrialSequence {
   /// @throws std::logic_error without a next() before
   void postpone();
 
+  /// From the next trial on. @param chooser  outlives the sequence
+  void choose_by(LevelChooser& chooser) { chooser_ = &chooser; }
+
   const std::vector<RunningTrack>& running() const { return running_; }
   /// The block that a trial belongs to, in the order of this participant.
   const std::vector<std::size_t>& blocks() const { return blocks_; }
@@ -91,6 +95,7 @@ class TrialSequence {
 
   const TrialsDefinition& d_;
   Taker taker_;
+  LevelChooser* chooser_{nullptr};  // null: the procedures
   std::vector<std::size_t> blocks_;  // of the definition, in this participant's order
   std::size_t at_{0};                // of blocks_
   std::vector<RunningTrack> running_;

@@ -1,0 +1,38 @@
+#include "protocols/trials/definition/level_script_plan.h"
+
+#include <fmt/format.h>
+
+#include "core/base/definition/table.h"
+#include "core/base/error.h"
+#include "core/base/files/file_text.h"
+
+namespace haptrial::protocols {
+
+std::optional<LevelScriptPlan> read_level_script(Table& root) {
+  if (!root.has("level_script")) {
+    return std::nullopt;
+  }
+  Table table = root.table("level_script");
+  LevelScriptPlan plan;
+  plan.file = table.text("file");
+  plan.deadline = table.number_or("deadline", plan.deadline, {0.05, 10.0}, "s");
+  if (!root.has("procedure") && !root.has("procedures")) {
+    root.reject("level_script", "stands without a [procedure]",
+                "a procedure beside it, whose levels are presented where the script gives none");
+  }
+  return plan;
+}
+
+void load_level_script(LevelScriptPlan& plan, const std::filesystem::path& folder) {
+  if (plan.file.is_relative()) {
+    plan.file = folder / plan.file;
+  }
+  constexpr std::size_t kMost = 200'000;  // [bytes]; every session file keeps it
+  plan.text = file_text(plan.file);
+  if (plan.text.empty() || plan.text.size() > kMost) {
+    throw InputError(fmt::format("{}: holds {} bytes; allowed: a script of 1 to {} bytes",
+                                 plan.file.string(), plan.text.size(), kMost));
+  }
+}
+
+}  // namespace haptrial::protocols
