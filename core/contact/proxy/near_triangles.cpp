@@ -18,6 +18,7 @@ constexpr int kFewOfSphere = 24, kManyOfSphere = 70;
 NearTriangles::NearTriangles(const ContactSurface& surface, double radius)
     : surface_(&surface),
       radius_(radius),
+      hulls_(surface),
       found_(kMostListed),
       listed_(kMostListed),
       candidates_(kMostListed),
@@ -32,12 +33,16 @@ void NearTriangles::forget() noexcept {
 
 bool NearTriangles::meets(const Sweep& sweep, std::int32_t slot, SweepHit& hit) noexcept {
   ++operations_.triangles_tested;
-  if (radius_ > 0.0) {
-    SphereGap gap;
-    return sweep_sphere(sweep, surface_->corners(slot), surface_->normal(slot), slot, 1.0, hit,
-                        gap);
-  }
-  return sweep_point(sweep, surface_->corners(slot), surface_->normal(slot), slot, 1.0, hit);
+  Eigen::Vector3d apart;
+  return meets(sweep, slot, 1.0, hit, apart);
+}
+
+bool NearTriangles::meets(const Sweep& sweep, std::int32_t slot, double end, SweepHit& hit,
+                          Eigen::Vector3d& apart) noexcept {
+  const Hull& hull = hulls_.of(slot);
+  return radius_ > 0.0 ? sweep_sphere(sweep, surface_->corners(slot), surface_->normal(slot), hull,
+                                      end, hit, apart)
+                       : sweep_point(sweep, hull, end, hit, apart);
 }
 
 bool NearTriangles::is_clear(const Sweep& sweep, double length) const noexcept {
@@ -113,25 +118,27 @@ SweepHit sooner(const SweepHit& a, const SweepHit& b, double length, double same
 
 }  // namespace
 
+namespace {
+
+/// From the nearest point of a triangle; zero if that is where the point is.
+Eigen::Vector3d away_from_triangle(const Eigen::Vector3d& at, const geometry::Corners& c) {
+  const geometry::ClosestPoint nearest = geometry::closest_on_triangle(at, c[0], c[1], c[2]);
+  const double distance = std::sqrt(nearest.distance_squared);
+  return distance > 0.0 ? Eigen::Vector3d((at - nearest.point) / distance)
+                        : Eigen::Vector3d(Eigen::Vector3d::Zero());
+}
+
+}  // namespace
+
 bool NearTriangles::meets_listed(const Sweep& sweep, int i, double end, SweepHit& hit) noexcept {
   const std::int32_t slot = listed_.slot(i);
-  const geometry::Corners& c = surface_->corners(slot);
-  if (radius_ > 0.0) {
-    SphereGap gap;
-    const bool met = sweep_sphere(sweep, c, surface_->normal(slot), slot, end, hit, gap);
-    listed_.part(i, c, gap.away);
-    return met;
+  Eigen::Vector3d apart = Eigen::Vector3d::Zero();
+  const bool met = meets(sweep, slot, end, hit, apart);
+  if (!met && apart.isZero(0.0)) {
+    apart = away_from_triangle(sweep.from, surface_->corners(slot));
   }
-  const bool met = sweep_point(sweep, c, surface_->normal(slot), slot, end, hit);
-  if (!met) {
-    const geometry::ClosestPoint nearest =
-        geometry::closest_on_triangle(sweep.from, c[0], c[1], c[2]);
-    if (nearest.part == geometry::TrianglePart::kFace) {
-      const Eigen::Vector3d& n = surface_->normal(slot);
-      listed_.part(i, c, n.dot(sweep.from - c[0]) >= 0.0 ? n : Eigen::Vector3d(-n));
-    } else if (nearest.distance_squared > 0.0) {
-      listed_.part(i, c, (sweep.from - nearest.point) / std::sqrt(nearest.distance_squared));
-    }
+  if (!apart.isZero(0.0)) {
+    listed_.part(i, surface_->corners(slot), apart);
   }
   return met;
 }

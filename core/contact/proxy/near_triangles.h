@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/contact/proxy/hull.h"
 #include "core/contact/proxy/operations.h"
 #include "core/contact/proxy/parted_triangles.h"
 #include "core/contact/proxy/sweep.h"
@@ -36,6 +37,8 @@ class NearTriangles {
   const Operations& operations() const noexcept { return operations_; }
 
  private:
+  bool meets(const Sweep& sweep, std::int32_t slot, double end, SweepHit& hit,
+             Eigen::Vector3d& apart) noexcept;
   bool is_clear(const Sweep& sweep, double length) const noexcept;
   double left(const Sweep& sweep) const noexcept;
   bool list_around(const Sweep& sweep) noexcept;
@@ -48,6 +51,7 @@ class NearTriangles {
 
   const ContactSurface* surface_;
   double radius_;
+  Hulls hulls_;
   std::vector<NearTriangle> found_;  // as long as what is listed may be
   PartedTriangles listed_;
   std::vector<PartedTriangles::Candidate> candidates_;     // as long

@@ -30,6 +30,11 @@ const ProxyOptions& checked(const ProxyOptions& options) {
   return options;
 }
 
+/// What the proxy touches does not stop a move that leads off its plane.
+bool leads_off(const ContactPlane& plane, const Vector3d& move) {
+  return plane.normal.dot(move) >= 0.0;
+}
+
 }  // namespace
 
 /// What holds for one tick.
@@ -88,7 +93,7 @@ bool Proxy::go(Tick& tick, const Vector3d& move) noexcept {
   bool met = false;
   const double length = move.norm();
   for (int i = 0; i < before_.size() && !met; ++i) {
-    if (planes_.has(before_[i])) {
+    if (planes_.has(before_[i]) || leads_off(before_[i], move)) {
       continue;  // the move heeds it
     }
     // What held the proxy a moment ago most often still does; then it is not moved at all.
@@ -166,7 +171,8 @@ bool Proxy::blocked_at_once(const Sweep& sweep, double enough) noexcept {
   const double length = sweep.move.norm();
   SweepHit hit;
   for (int i = 0; i < planes_.size(); ++i) {
-    if (near_.meets(sweep, planes_[i].slot, hit) && hit.t * length <= enough) {
+    if (!leads_off(planes_[i], sweep.move) && near_.meets(sweep, planes_[i].slot, hit) &&
+        hit.t * length <= enough) {
       return true;
     }
   }

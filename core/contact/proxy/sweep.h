@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "core/contact/proxy/hull.h"
 #include "core/contact/proxy/plane_set.h"
-#include "core/geometry/triangle/closest_point.h"
 
 namespace haptrial::contact {
 
@@ -34,25 +34,20 @@ struct SweepHit {
   ContactPlane plane;  // what stops it
 };
 
-/// Whether a point meets a triangle before the part `end` of its move. The triangle is wrapped in a
-/// prism, 2h thick and h/2 wider than itself, in which it lies whatever the rounding of its normal;
-/// the point never enters it. `hit` is written where it is met.
-/// @param normal  of the triangle, a unit vector
-bool sweep_point(const Sweep& sweep, const geometry::Corners& corners,
-                 const Eigen::Vector3d& normal, std::int32_t slot, double end,
-                 SweepHit& hit) noexcept;
-
-/// Where a sphere's centre is to a triangle before it moves.
-struct SphereGap {
-  double distance;       // [m]
-  Eigen::Vector3d away;  // from the triangle's nearest point, a unit vector
-};
+/// Whether a point meets a triangle before the part `end` of its move. Its hull is taken h thicker
+/// and h/2 wider, and the point never enters it. `hit` is written where it is met.
+/// @param apart  receives the direction of a plane between the move and the triangle, a unit
+///     vector; unchanged if the triangle is met or no plane of the hull keeps them apart
+bool sweep_point(const Sweep& sweep, const Hull& hull, double end, SweepHit& hit,
+                 Eigen::Vector3d& apart) noexcept;
 
 /// The same for a sphere: the distance from its centre to a triangle is a convex function of t, so
 /// Newton's steps from the left never pass its first crossing of r + h.
-/// @param gap  receives where the sphere is at the start
+/// @param normal  of the triangle, a unit vector
+/// @param apart  receives the direction from the triangle's nearest point to where the sphere is at
+///     the start
 bool sweep_sphere(const Sweep& sweep, const geometry::Corners& corners,
-                  const Eigen::Vector3d& normal, std::int32_t slot, double end, SweepHit& hit,
-                  SphereGap& gap) noexcept;
+                  const Eigen::Vector3d& normal, const Hull& hull, double end, SweepHit& hit,
+                  Eigen::Vector3d& apart) noexcept;
 
 }  // namespace haptrial::contact

@@ -54,10 +54,12 @@ TEST(PartedTrianglesTest, WhatIsPassedOverIsNotMet) {
             const Corners& c = triangles[parted.slot(i)];
             const Vector3d n = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
             SweepHit hit;
-            SphereGap gap;
+            Hull hull;
+            hull.wrap(c, n, i);
+            Vector3d apart = Vector3d::Zero();
             const Sweep way{from, move, radius, skin};
-            const bool meets = radius > 0.0 ? sweep_sphere(way, c, n, i, 1.0, hit, gap)
-                                            : sweep_point(way, c, n, i, 1.0, hit);
+            const bool meets = radius > 0.0 ? sweep_sphere(way, c, n, hull, 1.0, hit, apart)
+                                            : sweep_point(way, hull, 1.0, hit, apart);
             ASSERT_TRUE(!meets || candidates.contains(i)) << list << ", " << sweep << ", " << i;
             met += meets;
             passed += !candidates.contains(i);
