@@ -9,6 +9,7 @@
 #include "core/record/trials/touched_body_row.h"
 #include "core/record/trials/trial_rows.h"
 #include "protocols/interface/trials.h"
+#include "protocols/trials/definition/presented.h"
 #include "protocols/trials/presentation/trial_pass.h"
 #include "protocols/trials/script/scripted_levels.h"
 #include "protocols/trials/sequence/trial_sequence.h"

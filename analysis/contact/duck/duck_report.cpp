@@ -192,48 +192,79 @@ analysis::Figure resolution_figure(const DuckTables& t) {
   return figure;
 }
 
+namespace {
+
+/// A report that grows: each table is a file as well.
+class Report {
+ public:
+  explicit Report(const std::filesystem::path& folder) : out_(folder) {}
+
+  void begin(const DuckTables& t) {
+    document_.title = "Rendered beside simulated contact: the source's duck made anew";
+    document_.simulated = true;
+    document_.alarm("SIMULATED RECORDING: no hand touched a body.");
+    document_.points(facts(t));
+  }
+  void add(const char* heading, const char* name, const TextTable& table) {
+    add(heading, name, table, csv_of(table));
+  }
+  void add(const char* heading, const char* name, const TextTable& table, const std::string& file) {
+    document_.heading(heading);
+    document_.table(table.heading, table.rows);
+    out_.write(name, file);
+  }
+  /// Draws them. They are put into the document one by one.
+  void draw(const std::vector<analysis::Figure>& figures) {
+    const std::filesystem::path place = out_.place("report.html").parent_path();
+    analysis::draw_figures(figures, place);
+    for (const analysis::Figure& figure : figures) {
+      drawings_.push_back({figure, file_text(place / (figure.name + ".svg"))});
+    }
+  }
+  void put_pictures(std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      document_.picture(drawings_[i]);
+    }
+  }
+  void remark(const std::vector<std::string>& remarks) {
+    document_.heading("Remarks");
+    for (const std::string& remark : remarks) {
+      document_.paragraph(remark);
+    }
+  }
+  void publish() {
+    out_.write("report.html", analysis::to_html(document_));
+    out_.publish();
+  }
+
+ private:
+  exchange::NewFolder out_;
+  std::vector<analysis::Drawing> drawings_;  // the document keeps where they are
+  analysis::Document document_;
+};
+
+}  // namespace
+
 void write_duck(const DuckTables& t, const std::vector<FailureMap>& maps,
                 const std::filesystem::path& folder) {
-  exchange::NewFolder out(folder);
-  analysis::Document document;
-  document.title = "Rendered beside simulated contact: the source's duck made anew";
-  document.simulated = true;
-  document.alarm("SIMULATED RECORDING: no hand touched a body.");
-  document.points(facts(t));
-  const auto add = [&](const char* heading, const char* name, const TextTable& table) {
-    document.heading(heading);
-    document.table(table.heading, table.rows);
-    out.write(name, csv_of(table));
-  };
-  add("Table 4: proxy and voxels", "table-4.csv", table4(t));
-  add("Table 5: friction", "table-5.csv", table5(t));
-  add("Table 6: size of the mesh", "table-6.csv", table6(t));
   std::vector<analysis::Figure> figures{resolution_figure(t)};
   for (const FailureMap& map : maps) {
     figures.push_back(failure_figure(map));
   }
-  const std::filesystem::path place = out.place("report.html").parent_path();
-  analysis::draw_figures(figures, place);
-  std::vector<analysis::Drawing> drawings;  // the document keeps where they are
-  for (const analysis::Figure& figure : figures) {
-    drawings.push_back({figure, file_text(place / (figure.name + ".svg"))});
-  }
-  document.picture(drawings.front());
-  document.heading("Figure 65: a ridge, where each algorithm fails");
-  const TextTable counts = failures(maps);
-  document.table(counts.heading, counts.rows);
-  out.write("failures.csv", failure_csv(maps));
-  for (std::size_t i = 1; i < drawings.size(); ++i) {
-    document.picture(drawings[i]);
-  }
-  add("Operations a tick", "operations.csv", operations(t));
-  add("Costs on this computer", "costs.csv", costs(t));
-  document.heading("Remarks");
-  for (const std::string& remark : t.contact.remarks) {
-    document.paragraph(remark);
-  }
-  out.write("report.html", analysis::to_html(document));
-  out.publish();
+  Report report(folder);
+  report.begin(t);
+  report.add("Table 4: proxy and voxels", "table-4.csv", table4(t));
+  report.add("Table 5: friction", "table-5.csv", table5(t));
+  report.add("Table 6: size of the mesh", "table-6.csv", table6(t));
+  report.draw(figures);
+  report.put_pictures(0, 1);
+  report.add("Figure 65: a ridge, where each algorithm fails", "failures.csv", failures(maps),
+             failure_csv(maps));
+  report.put_pictures(1, figures.size());
+  report.add("Operations a tick", "operations.csv", operations(t));
+  report.add("Costs on this computer", "costs.csv", costs(t));
+  report.remark(t.contact.remarks);
+  report.publish();
 }
 
 }  // namespace haptrial::evaluation

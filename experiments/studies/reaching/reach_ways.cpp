@@ -9,6 +9,7 @@
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "protocols/trials/definition/defaults.h"
+#include "protocols/trials/definition/presented.h"
 #include "protocols/trials/definition/read_definition.h"
 #include "protocols/trials/definition/trial_values.h"
 

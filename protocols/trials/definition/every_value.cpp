@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/scene/scene.h"
 #include "protocols/trials/definition/defaults.h"
+#include "protocols/trials/definition/presented.h"
 #include "protocols/trials/definition/read_definition.h"
 #include "protocols/trials/definition/trial_values.h"
 #include "protocols/trials/objects/yielding_bodies.h"

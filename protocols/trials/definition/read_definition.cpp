@@ -1,22 +1,18 @@
 #include "protocols/trials/definition/read_definition.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/psychometric/definition/read_tracks.h"
 #include "core/scene/needed_damping.h"
-#include "core/scene/read/read_field.h"
-#include "core/scene/read/read_solid.h"
-#include "core/scene/read/read_yielding.h"
 #include "core/sound/cues/read_cues.h"
-#include "protocols/definition/handle_loop.h"
+#include "protocols/trials/definition/check_definition.h"
 #include "protocols/trials/definition/defaults.h"
+#include "protocols/trials/definition/presented.h"
 #include "protocols/trials/definition/trial_devices.h"
 #include "protocols/trials/definition/trial_values.h"
 
@@ -69,19 +65,6 @@ void read_sounds(Table& root, TrialsDefinition& d) {
   read("sound_wrong", d.sound_wrong);
 }
 
-/// Masking noise in stages that are not there would never be heard.
-void check_masking(Table& root, const TrialsDefinition& d) {
-  if (!d.cues.masking) {
-    return;
-  }
-  for (const std::string& stage : d.cues.masking->stages) {
-    if (std::ranges::find(d.stages, stage) == d.stages.end()) {
-      root.reject("sounds", fmt::format("masking names the stage \"{}\"; allowed: {}", stage,
-                                        fmt::join(d.stages, ", ")));
-    }
-  }
-}
-
 std::vector<GivenValue> interval_values(Table& table) {
   std::vector<GivenValue> values;
   for (const std::string& key : table.keys()) {
@@ -108,133 +91,6 @@ void read_intervals(Table& root, TrialsDefinition& d) {
   if (d.intervals.empty()) {
     table.reject("order", "stands alone; add intervals: reference = { stiffness = 300.0 }");
     d.intervals.push_back({"only", {}});
-  }
-}
-
-/// Two tracks may not set one variable in the same trial, nor a track what a block gives.
-void check_tracks(Table& root, const TrialsDefinition& d) {
-  std::set<std::string> factors;
-  for (const Factor& factor : d.order.factors) {
-    factors.insert(factor.name);
-  }
-  std::set<std::string> names;
-  for (const Track& track : d.tracks) {
-    const char* table = root.has("procedure") ? "procedure" : "procedures";
-    if (!names.insert(track.name).second) {
-      root.reject(table,
-                  fmt::format("has two tracks \"{}\"; give each a name of its own", track.name));
-    }
-    for (const std::string& factor : track.by) {
-      if (!factors.contains(factor)) {
-        root.reject(table,
-                    fmt::format("names the factor \"{}\" in `by`; allowed: {}", factor,
-                                factors.empty() ? "none, the definition has no [factors]"
-                                                : fmt::format("{}", fmt::join(factors, ", "))));
-      }
-    }
-    for (const std::string& variable : track.variables()) {
-      if (factors.contains(variable)) {
-        root.reject(table, fmt::format("sets \"{}\", which is a factor; let one of the two have "
-                                       "another name",
-                                       variable));
-      }
-      for (const Interval& interval : d.intervals) {
-        const auto given = [&](const GivenValue& value) { return value.name == variable; };
-        if (std::any_of(interval.values.begin(), interval.values.end(), given)) {
-          root.reject(table,
-                      fmt::format("sets \"{}\", which the interval {} gives a value as well; "
-                                  "keep one of the two",
-                                  variable, interval.name));
-        }
-      }
-    }
-  }
-}
-
-/// What a track learns from, and what it could learn at best.
-void check_learning(Table& root, const TrialsDefinition& d) {
-  const char* table = root.has("procedure") ? "procedure" : "procedures";
-  for (const Track& track : d.tracks) {
-    if (!track.counts.empty()) {
-      continue;
-    }
-    if (track.kind == "adjustment") {
-      root.reject(table, fmt::format("does not say which answer raises the level (\"{}\"); add "
-                                     "`counts`, a formula that is 1, -1 or 0: \"$answer == 1 ? 1 "
-                                     ": $answer == 2 ? -1 : 0\"",
-                                     track.name));
-    } else if (d.questions.empty() || d.questions.front().correct.empty()) {
-      root.reject(table,
-                  fmt::format("learns from right answers (\"{}\"), and no response says which "
-                              "is right; add `correct` to [response] or `counts` to the "
-                              "procedure",
-                              track.name));
-    } else if (track.staircase && track.staircase->up == 1) {
-      const double balance =
-          psychometric::balance_of(track.staircase->down, track.staircase->steps.back());
-      const double guess = 1.0 / static_cast<double>(d.questions.front().choices.size());
-      if (balance <= guess) {
-        root.reject(table,
-                    fmt::format("is in balance at {:.3g} % right answers (\"{}\"), which guessing "
-                                "gives; let more right answers make a step down, or steps up be "
-                                "larger",
-                                100.0 * balance, track.name));
-      }
-    }
-  }
-}
-
-/// Each [[procedures]] has its variable; in its trials the others have what [variables] says.
-void check_variables(Table& root) {
-  if (!root.has("procedures")) {
-    return;
-  }
-  std::set<std::string> variables;
-  for (Table& table : root.tables("procedures")) {
-    const bool several = table.has("stimulus");  // of quest_plus
-    const char* key = several ? "stimulus" : "variable";
-    for (const std::string& variable :
-         several ? table.table(key).keys_as_written() : std::vector{table.text(key)}) {
-      if (!variables.insert(variable).second) {
-        table.reject(key, fmt::format("\"{}\"", variable),
-                     "a variable that no other procedure sets; tracks of one procedure are its "
-                     "[[procedures.tracks]]");
-      }
-    }
-  }
-  Table stated = root.has("variables") ? root.table("variables") : root;
-  for (const std::string& variable : variables) {
-    if (variables.size() > 1 && (!root.has("variables") || !stated.has(variable))) {
-      root.reject("procedures",
-                  fmt::format("set {} in some trials only; add its value in the others to "
-                              "[variables]",
-                              variable));
-    }
-  }
-}
-
-void check_seen_objects(Table& root, const TrialsDefinition& d,
-                        const std::vector<NamedStage>& stages) {
-  for (const NamedStage& stage : stages) {
-    const auto seen = std::ranges::count_if(stage.show, [&](const std::string& name) {
-      return std::ranges::find(d.objects, name, &TrialObject::name) != d.objects.end();
-    });
-    if (seen > static_cast<std::ptrdiff_t>(kMostSeenObjects)) {
-      root.reject("stages", fmt::format("show {} objects in the stage \"{}\"; show at most {}",
-                                        seen, stage.name, kMostSeenObjects));
-    }
-  }
-}
-
-void check_questions(Table& root, const TrialsDefinition& d,
-                     const std::vector<NamedStage>& stages) {
-  for (const Question& question : d.questions) {
-    const auto named = [&](const NamedStage& stage) { return stage.name == question.onset; };
-    if (!question.onset.empty() && std::none_of(stages.begin(), stages.end(), named)) {
-      root.reject(root.has("response") ? "response" : "responses",
-                  fmt::format("counts the reaction from the stage \"{}\", which is not there",
-                              question.onset));
-    }
   }
 }
 
@@ -277,6 +133,17 @@ void note_restless(const std::vector<scene::Field>& fields, TrialsDefinition& d)
   }
 }
 
+void keep_stages(const std::vector<NamedStage>& stages, TrialsDefinition& d) {
+  for (const NamedStage& stage : stages) {
+    d.stages.push_back(stage.name);
+    d.stage_markers.push_back(stage.marker);
+    d.markers.used = d.markers.used || stage.marker > 0;
+    const Until& until = stage.stage.until;
+    d.stage_time +=
+        std::max(until.time, until.hold) + (std::isfinite(stage.stage.timeout) ? 1.0 : 0.0);
+  }
+}
+
 /// Everything that a first trial would read: so that a mistake has its line.
 void read_first_trial(Table& root, TrialsDefinition& d) {
   const std::unique_ptr<Names> names = read_names(root, d);
@@ -299,17 +166,8 @@ void read_first_trial(Table& root, TrialsDefinition& d) {
     }
     stages = std::move(presented.stages);
   }
-  for (const NamedStage& stage : stages) {
-    d.stages.push_back(stage.name);
-    d.stage_markers.push_back(stage.marker);
-    d.markers.used = d.markers.used || stage.marker > 0;
-    const Until& until = stage.stage.until;
-    d.stage_time +=
-        std::max(until.time, until.hold) + (std::isfinite(stage.stage.timeout) ? 1.0 : 0.0);
-  }
-  check_seen_objects(root, d, stages);
-  check_questions(root, d, stages);
-  check_masking(root, d);
+  keep_stages(stages, d);
+  check_stages(root, d, stages);
 }
 
 }  // namespace
@@ -325,104 +183,6 @@ std::unique_ptr<Names> read_names(Table& root, const TrialsDefinition& d) {
   declare_names(*names, d);
   names->read(root);
   return names;
-}
-
-namespace {
-
-/// Fields, and behind them the objects, which are felt as fields.
-void read_what_is_felt(Table& root, const Names& names, const TrialsDefinition& d,
-                       Presented& presented) {
-  DeviceOf devices;
-  std::vector<scene::Field> objects;
-  if (root.has("objects")) {
-    Table table = root.table("objects");
-    devices = devices_of(table, d.hands);
-    for (const std::string& name : table.keys()) {
-      const auto object = std::ranges::find(d.objects, name, &TrialObject::name);
-      Table own = table.table(name);
-      const bool known = object != d.objects.end();
-      objects.push_back(known && object->yields
-                            ? scene::read_yielding(own, name, object->felt, names)
-                            : scene::read_solid(own, name, known ? object->body : nullptr, names));
-    }
-  }
-  if (root.has("fields")) {
-    Table table = root.table("fields");
-    devices.merge(devices_of(table, d.hands));
-    presented.fields = scene::read_fields(table, d.rate, names, objects);
-    for (scene::Field& field : presented.fields) {
-      if (auto* path = std::get_if<scene::PathParameters>(&field.kind)) {
-        path->loop = handle_loop(d);
-      }
-    }
-  }
-  presented.fields.insert(presented.fields.end(), objects.begin(), objects.end());
-  presented.felt = felt_by(presented.fields, devices, d.hands);
-}
-
-/// A stage names fields, regions, looks and objects: each name stands for one thing.
-void check_object_names(Table& root) {
-  Table objects = root.table("objects");
-  for (const char* other : {"fields", "regions", "looks"}) {
-    const std::vector<std::string> taken =
-        root.has(other) ? root.table(other).keys() : std::vector<std::string>{};
-    for (const std::string& name : objects.keys_as_written()) {
-      if (std::ranges::find(taken, name) != taken.end()) {
-        objects.reject(name, fmt::format("is the name of a table of [{}] as well; give one of the "
-                                         "two another name",
-                                         other));
-      }
-    }
-  }
-}
-
-}  // namespace
-
-Presented read_presented(Table& root, const Names& names, const TrialsDefinition& d,
-                         RandomStream* random) {
-  Presented presented;
-  std::vector<std::string> fields, regions;
-  std::vector<std::string> sights{"hand", "interval_number"};
-  read_what_is_felt(root, names, d, presented);
-  presented.felt.resize(static_cast<std::size_t>(d.devices()), 0);
-  if (root.has("regions")) {
-    Table table = root.table("regions");
-    const DeviceOf devices = devices_of(table, d.hands);
-    presented.regions = scene::read_regions(table, names);
-    for (const scene::Region& region : presented.regions) {
-      const auto own = devices.find(region.name);
-      presented.region_devices.push_back(own == devices.end() ? 0 : own->second);
-    }
-  }
-  if (root.has("looks")) {
-    Table table = root.table("looks");
-    presented.looks = read_looks(table, names);
-  }
-  for (const scene::Field& field : presented.fields) {
-    fields.push_back(field.name);
-  }
-  for (const scene::Region& region : presented.regions) {
-    regions.push_back(region.name);
-    sights.push_back(region.name);
-  }
-  for (const Look& look : presented.looks) {
-    sights.push_back(look.name);
-  }
-  for (const TrialObject& object : d.objects) {
-    sights.push_back(object.name);
-  }
-  const std::vector<std::string> places = names.places();
-  sights.insert(sights.end(), places.begin(), places.end());
-  const StageSource source{
-      fields,
-      regions,
-      names,
-      [&names](const std::string& text) { return names.word(text); },
-      random,
-      root.has("sounds") ? sound::cue_names(root.table("sounds")) : std::vector<std::string>{},
-      sights};
-  presented.stages = read_stages(root, source);
-  return presented;
 }
 
 int right_choice(const Names& names, const Question& question) {
@@ -441,34 +201,27 @@ int right_choice(const Names& names, const Question& question) {
                                question.correct));
 }
 
-void read_trials_definition(Table& root, std::string_view file_name, TrialsDefinition& d) {
-  root.fill_in(trials_defaults());
+namespace {
+
+/// Other programs read these.
+void leave_to_others(Table& root) {
   root.leave("analysis");
   if (root.has("power")) {
     root.leave("power");  // of who simulates it
   }
   root.leave("groups");
-  read_common(root, file_name, d);
-  d.protocol = kTrials;
-  read_view(root, d);
-  d.hands = read_devices(root);
-  read_sounds(root, d);
-  d.groups = study_groups(root.source(), file_name);
+}
+
+void read_all_objects(Table& root, TrialsDefinition& d) {
   if (root.has("objects")) {
     Table table = root.table("objects");
     d.objects = read_objects(table);
     check_object_names(root);
   }
-  d.questions = read_questions(root, d.keys);
-  d.tracks = psychometric::read_tracks(root);
-  d.script = read_level_script(root);
-  d.order = read_trial_design(root, !d.tracks.empty());
-  read_intervals(root, d);
-  check_common(root, d);
-  check_tracks(root, d);
-  check_learning(root, d);
-  check_variables(root);
-  read_first_trial(root, d);
+}
+
+/// What a session is planned by.
+void plan(TrialsDefinition& d) {
   d.design.participants = d.order.participants;
   d.design.break_after = d.order.break_after;
   d.design.break_duration = d.order.break_duration;
@@ -476,6 +229,29 @@ void read_trials_definition(Table& root, std::string_view file_name, TrialsDefin
   d.design.trials = std::max(1, d.most_trials());
   d.design.practice = d.practice_trials();
   d.design.repetitions = 1;
+}
+
+}  // namespace
+
+void read_trials_definition(Table& root, std::string_view file_name, TrialsDefinition& d) {
+  root.fill_in(trials_defaults());
+  leave_to_others(root);
+  read_common(root, file_name, d);
+  d.protocol = kTrials;
+  read_view(root, d);
+  d.hands = read_devices(root);
+  read_sounds(root, d);
+  d.groups = study_groups(root.source(), file_name);
+  read_all_objects(root, d);
+  d.questions = read_questions(root, d.keys);
+  d.tracks = psychometric::read_tracks(root);
+  d.script = read_level_script(root);
+  d.order = read_trial_design(root, !d.tracks.empty());
+  read_intervals(root, d);
+  check_common(root, d);
+  check_procedures(root, d);
+  read_first_trial(root, d);
+  plan(d);
 }
 
 }  // namespace haptrial::protocols

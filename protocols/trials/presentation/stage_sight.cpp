@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <variant>
 
-#include "protocols/trials/definition/read_definition.h"
+#include "protocols/trials/definition/presented.h"
 
 namespace haptrial::protocols {
 namespace {

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/scene/field.h"
+#include "core/scene/read/read_shape.h"
+#include "protocols/trials/definition/trials_definition.h"
+#include "protocols/trials/language/names.h"
+#include "protocols/trials/looks/look.h"
+#include "protocols/trials/stages/read_stages.h"
+
+namespace haptrial {
+class RandomStream;
+class Table;
+}  // namespace haptrial
+
+namespace haptrial::protocols {
+
+/// What an interval consists of once every name has a value.
+struct Presented {
+  std::vector<scene::Field> fields;
+  std::vector<std::uint64_t> felt;  // (devices) the fields that act on each, a bit each
+  std::vector<scene::Region> regions;
+  std::vector<std::size_t> region_devices;  // (regions) whose tool it is asked of, from 0
+  std::vector<Look> looks;
+  std::vector<NamedStage> stages;
+};
+
+/// What is presented with the values that the names have. Problems are noted.
+/// @param random  for durations; null: the shortest
+Presented read_presented(Table& root, const Names& names, const TrialsDefinition& definition,
+                         RandomStream* random);
+
+}  // namespace haptrial::protocols
