@@ -257,11 +257,20 @@ void BoneTrials::prepare(const PlannedTrial& trial, SessionFile& file) {
   if (place_.resumed.empty() || bones_used_ == 0) {
     return;
   }
-  if (shared_) {  // neither side knows how far the other one had come
-    file.event("bone_lost", "the trial begins with a new bone on both sides");
+  if (shared_) {
+    begin_again(trial, file);
     return;
   }
   restore(trial, file);
+}
+
+/// Each file may have ticks that the other one lost, so that no later bone is known to both sides.
+void BoneTrials::begin_again(const PlannedTrial& trial, SessionFile& file) {
+  const std::string told = fmt::format(
+      "trial {} is done again from its beginning, on both sides, with the bone as it was then",
+      trial.trial);
+  file.event("bone_anew", told);
+  fmt::print(stderr, "{}\n", told);
 }
 
 /// The bone of an earlier run of the session, as it stood. The servo loop ticks meanwhile.
@@ -383,9 +392,9 @@ Pass& BoneTrials::make_drilling_pass(const PlannedTrial& trial) {
 }
 
 Pass& BoneTrials::make_led_pass(const PlannedTrial& trial) {
-  led_ = std::make_unique<LedPass>(LedPass::Parts{*stage_->simulator, *stage_->companions,
-                                                  d_.drilling, logs_, *shared_, d_.rate,
-                                                  trial.trial, place_.real, exposures_.get()});
+  led_ = std::make_unique<LedPass>(LedPass::Parts{
+      *stage_->simulator, *stage_->companions, d_.drilling, logs_, *shared_, d_.rate, trial.trial,
+      place_.real, exposures_.get(), vibration_ ? &*vibration_ : nullptr});
   return *led_;
 }
 

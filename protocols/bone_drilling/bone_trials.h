@@ -54,6 +54,7 @@ class BoneTrials final : public Trials {
   void open_sound();
   void watch_nerves();
   void restore(const PlannedTrial& trial, SessionFile& file);
+  static void begin_again(const PlannedTrial& trial, SessionFile& file);
   bool is_led() const { return shared_ && !shared_->leads(); }
   Pass& make_drilling_pass(const PlannedTrial& trial);
   Pass& make_led_pass(const PlannedTrial& trial);

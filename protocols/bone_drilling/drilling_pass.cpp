@@ -71,6 +71,21 @@ bone::DrillingView view_of(const bone::Simulator& simulator,
   return view;
 }
 
+Eigen::Vector3d shaking(sound::DrillVibration* vibration, const bone::Simulator& simulator,
+                        bool contact, double force, const ToolState& tool) noexcept {
+  const auto* burr = simulator.tool().as<bone::BurrTool>();
+  if (vibration == nullptr || burr == nullptr) {
+    return Eigen::Vector3d::Zero();
+  }
+  sound::DrillState state;
+  state.burr =
+      burr->burr.kind == bone::BurrKind::kDiamond ? sound::Burr::kDiamond : sound::Burr::kCutting;
+  state.speed = simulator.output().power;
+  state.contact = contact;
+  state.force = force;
+  return vibration->tick(state, tool);
+}
+
 DrillingPass::DrillingPass(bone::Simulator& simulator, bone::Companions& companions,
                            const DrillingParameters& parameters, DrillingLogs& logs, double rate,
                            std::uint64_t spent, sound::DrillVibration* vibration,
@@ -122,7 +137,8 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   }
 
   PassOutput out;
-  const Eigen::Vector3d shake = shaking(input);
+  const Eigen::Vector3d shake =
+      shaking(vibration_, simulator_, done.contact, done.force.norm(), input.tool);
   const Eigen::Vector3d wanted = done.force + shake;
   out.force = control::saturate(wanted, parameters_.force_limit);
   out.intent.push = done.drag + shake;
@@ -137,23 +153,6 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   out.shown.tool = reading.tool.position;
   rows_.log_tool(done.removed + done.cut, done.force);
   return out;
-}
-
-/// Felt, but neither drilled with nor recorded as contact.
-Eigen::Vector3d DrillingPass::shaking(const bone::SimulatorInput& input) noexcept {
-  const bone::ToolSpec& tool = simulator_.tool();
-  const auto* burr = tool.as<bone::BurrTool>();
-  if (vibration_ == nullptr || burr == nullptr) {
-    return Eigen::Vector3d::Zero();
-  }
-  const bone::SimulatorOutput& out = simulator_.output();
-  sound::DrillState state;
-  state.burr =
-      burr->burr.kind == bone::BurrKind::kDiamond ? sound::Burr::kDiamond : sound::Burr::kCutting;
-  state.speed = out.power;
-  state.contact = out.contact;
-  state.force = out.force.norm();
-  return vibration_->tick(state, input.tool);
 }
 
 bool DrillingPass::wants_attention() noexcept {

@@ -36,6 +36,12 @@ class DrillingInput {
 bone::DrillingView view_of(const bone::Simulator& simulator,
                            const bone::SimulatorInput& input) noexcept;
 
+/// What a hand feels of the burr's shaking: neither drilled with nor recorded as contact. Servo
+/// thread. @param vibration  null: it does not shake; nor does a tool that is no burr
+/// @param force  between burr and bone [N]
+Eigen::Vector3d shaking(sound::DrillVibration* vibration, const bone::Simulator& simulator,
+                        bool contact, double force, const ToolState& tool) noexcept;
+
 /// Work on a bone: drilling, suction, cutting, plating, looking around. Ends when the time is over
 /// or the participant says so. Source: Morris 2006, §3.2 and §8.2.2.
 class DrillingPass final : public Pass {
@@ -61,8 +67,6 @@ class DrillingPass final : public Pass {
   std::uint64_t ticks() const noexcept { return ticks_; }
 
  private:
-  Eigen::Vector3d shaking(const bone::SimulatorInput& input) noexcept;
-
   bone::Simulator& simulator_;
   bone::Companions& companions_;
   DrillingParameters parameters_;

@@ -151,10 +151,13 @@ void LedPass::follow() noexcept {
 PassOutput LedPass::output(const Readings& readings) noexcept {
   const bone::SimulatorInput own = input_.of(as_recorded(readings[0]), last_.dt);
   const bone::BoneTouch::Felt felt = touch_.tick(p_.simulator, own.tool);
+  const Eigen::Vector3d shake =
+      shaking(p_.vibration, p_.simulator, felt.contact, felt.force.norm(), own.tool);
+  const Eigen::Vector3d wanted = felt.force + shake;
   PassOutput out;
-  out.force = control::saturate(felt.force, p_.parameters.force_limit);
-  out.intent.push = felt.drag;
-  out.saturated = felt.force.norm() > p_.parameters.force_limit;
+  out.force = control::saturate(wanted, p_.parameters.force_limit);
+  out.intent.push = felt.drag + shake;
+  out.saturated = wanted.norm() > p_.parameters.force_limit;
   out.applied_force = out.force.y();
   out.stage = record::Stage::kRun;
   bone::DrillingView seen = view_of(p_.simulator, own);

@@ -13,8 +13,8 @@ namespace haptrial::protocols {
 
 /// A drilling on a bone that belongs to another session: the bone follows what its tools do there
 /// (SharedBone). The tool in hand, the view and what the burr does are the other side's; the own
-/// hand feels the bone and removes nothing of it. Ends when all of the other side's pass was
-/// followed. Source: Morris 2006, §3.4.1.
+/// hand feels what it would feel with that tool (BoneTouch) and changes nothing. Ends when all of
+/// the other side's pass was followed. Source: Morris 2006, §3.4.1.
 class LedPass final : public Pass {
  public:
   /// What it works with; everything outlives the pass.
@@ -28,6 +28,7 @@ class LedPass final : public Pass {
     std::int32_t trial{0};
     bool real{false};  // parts that come off are then separated by a thread of its own
     nerve::NerveExposures* nerves{nullptr};
+    sound::DrillVibration* vibration{nullptr};  // of the burr; null: it does not shake
   };
   explicit LedPass(const Parts& parts);
   ~LedPass() override;

@@ -6,16 +6,23 @@
 #include <algorithm>
 #include <csignal>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/bone/data/bone_file.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/led_row.h"
+#include "core/bone/simulator/bone_touch.h"
 #include "core/record/link/link_row.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/table/rounding.h"
+#include "core/record/table/schema.h"
 #include "protocols/bone_drilling/bone_replay.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
+#include "protocols/bone_drilling/drilling_pass.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/network_relay.h"
@@ -80,8 +87,9 @@ constexpr const char* kBad =
 
 class TaughtBoneTest : public testing::Test {
  protected:
-  fs::path definition(const std::string& tutoring, double seconds = 8.0) {
-    const fs::path file = test::write_small_drilling(folder_.path(), seconds);
+  fs::path definition(const std::string& tutoring, double seconds = 8.0,
+                      const std::vector<std::pair<std::string, std::string>>& more = {}) {
+    const fs::path file = test::write_small_drilling(folder_.path(), seconds, more);
     test::write_text(file, test::read_text(file) + "\n[tutoring]\n" + tutoring);
     return file;
   }
@@ -119,6 +127,61 @@ TEST_F(TaughtBoneTest, AReplayOfTheLedSessionGivesItsBone) {
   const test::CommandResult r = run_command("haptrial replay " + out + "/S01.h5");
   EXPECT_EQ(r.status, 0) << r.errors;
   EXPECT_THAT(r.output, HasSubstr("trial 1: the same bone"));
+}
+
+/// The upper slab of bone over dura.
+bone::BoneModel over_dura() {
+  bone::BoneModel model = test::two_slabs();
+  for (std::size_t at = 0; at < model.labels.size(); ++at) {
+    const std::size_t j = at / 32 % 12;
+    model.labels[at] = j < 7 ? 2 : j >= 10 ? 1 : 0;
+  }
+  model.structures[2] = {"sigmoid sinus and dura", {0.32, 0.38, 0.75}, 0.25, true};
+  return model;
+}
+
+/// What a hand felt of a bone that it did not drill itself is felt again with the bone that the
+/// replay makes: to the last bit of the file.
+TEST_F(TaughtBoneTest, WhatTheLedHandFeltFollowsFromTheFile) {
+  const fs::path study =
+      definition("authority = 0.5\n", 8.0, {{"bones", "bones = [\"dura.nrrd\"]"}});
+  test::write_text(study, test::read_text(study) +
+                              "\n[soft_tissue.dura]\nstructure = \"dura\"\nstiffness = 500.0\n");
+  bone::save_bone(folder_ / "dura.nrrd", over_dura());
+  const record::SessionReader reader(taught(study, "out") + "/S01.h5");
+  const auto samples = reader.samples(0, reader.sample_count());
+  const auto tool = reader.rows<record::ToolRow>();
+  const protocols::DrillingInput input(protocols::load_bone_definition(study).drilling);
+  const auto led = reader.rows<record::LedRow>();
+  std::optional<bone::BoneTouch> hand;
+  std::size_t next = reader.passes().at(0).first_sample - samples.front().sequence;
+  std::size_t touched = 0;
+  const auto verdict =
+      protocols::BoneReplay(reader.path())
+          .run(1, [&](std::uint64_t, std::uint64_t sequence, const bone::DrillingView&,
+                      const std::shared_ptr<const protocols::BoneStage>& stage) {
+            if (!hand) {
+              hand.emplace(*stage->simulator);
+            }
+            // The bone stays as it is until what was followed next.
+            const auto later =
+                std::ranges::upper_bound(led, sequence, {}, &record::LedRow::sequence);
+            const std::uint64_t end = later != led.end() ? later->sequence : sequence + 1;
+            for (; next < samples.size() && samples[next].sequence < end; ++next) {
+              device::DeviceReading reading;
+              reading.tool = {samples[next].position, samples[next].velocity};
+              reading.orientation = tool[next].orientation;
+              const auto felt = hand->tick(*stage->simulator, input.of(reading, 1e-3).tool);
+              for (Eigen::Index axis = 0; axis < 3; ++axis) {
+                ASSERT_EQ(record::on_grid(felt.force[axis], record::kForceResolution),
+                          tool[next].contact[axis])
+                    << "tick " << samples[next].sequence;
+              }
+              touched += felt.force.isZero(0.0) ? 0 : 1;
+            }
+          });
+  EXPECT_EQ(verdict.difference, "");
+  EXPECT_GT(touched, 500u);
 }
 
 /// Two processes over the network of a relay.
@@ -181,34 +244,75 @@ TEST_F(LiveTaughtBoneTest, AnotherBoneInTheFileIsSaidOnBothSides) {
   EXPECT_THAT(texts_of(file("learning"), "bone_differs"), testing::SizeIs(2));
 }
 
-TEST_F(LiveTaughtBoneTest, AfterAKillBothGoOnWithANewBone) {
-  const fs::path study = definition("patience = 2\n", 3.0);
-  start(study, study);
-  ASSERT_NE(learns_->line_after("linked"), "");
-  const fs::path partial = folder_ / "learning" / "P01.h5.partial";
-  ASSERT_TRUE(test::eventually([&] {
-    try {
-      return !record::SessionReader(partial).rows<record::LedRow>().empty();
-    } catch (const std::exception&) {
-      return false;
+/// Which side is killed while both drill their second bone.
+class KilledBoneTest : public LiveTaughtBoneTest, public testing::WithParamInterface<const char*> {
+ protected:
+  /// Until the side that learns has followed ticks of the second trial.
+  bool is_in_second_trial() {
+    const fs::path partial = folder_ / "learning" / "P01.h5.partial";
+    return test::eventually([&] {
+      try {
+        const record::SessionReader reader(partial);
+        const auto led = reader.rows<record::LedRow>();
+        return reader.passes().size() == 1 && !led.empty() &&
+               led.back().sequence > reader.passes()[0].last_sample;
+      } catch (const std::exception&) {
+        return false;
+      }
+    });
+  }
+  void kill_and_go_on(const fs::path& study) {
+    start(study, study);
+    ASSERT_TRUE(is_in_second_trial()) << learns_->errors() << teaches_->errors();
+    const bool learner = std::string(GetParam()) == "learning";
+    (learner ? learns_ : teaches_)->signal(SIGKILL);
+    EXPECT_THAT((learner ? teaches_ : learns_)->wait().errors,
+                HasSubstr("continue with --resume on both sides"));
+    (learner ? learns_ : teaches_)->wait();
+    start(study, study, "--resume");
+    const test::CommandResult a = learns_->wait();
+    const test::CommandResult b = teaches_->wait();
+    ASSERT_EQ(a.status, 0) << a.errors << b.errors;
+    ASSERT_EQ(b.status, 0) << a.errors << b.errors;
+  }
+};
+
+TEST_P(KilledBoneTest, TheTrialIsDoneAgainFromItsBeginningAndEarlierBonesStay) {
+  const fs::path study = definition("patience = 2\n", 3.0, {{"procedures", "procedures = 2"}});
+  kill_and_go_on(study);
+  std::vector<std::vector<record::ProcedureRow>> bones;
+  for (const char* side : {"learning", "teaching"}) {
+    const record::SessionReader reader = file(side);
+    const record::Integrity integrity = record::check_session(reader);
+    EXPECT_TRUE(integrity.ok) << side << testing::PrintToString(integrity.problems);
+    EXPECT_THAT(texts_of(reader, "bone_checked"), testing::SizeIs(2)) << side;
+    EXPECT_THAT(texts_of(reader, "bone_differs"), testing::IsEmpty()) << side;
+    const auto anew = texts_of(reader, "bone_anew");
+    if (std::string(side) != GetParam()) {  // the killed side's file may not know that it had begun
+      EXPECT_THAT(anew, ElementsAre(HasSubstr("trial 2 is done again from its beginning")));
     }
-  }));
-  teaches_->signal(SIGKILL);
-  EXPECT_THAT(learns_->wait().errors, HasSubstr("continue with --resume on both sides"));
-  teaches_->wait(5.0);
-  start(study, study, "--resume");
-  const test::CommandResult a = learns_->wait();
-  ASSERT_EQ(a.status, 0) << a.errors;
-  ASSERT_EQ(teaches_->wait().status, 0);
-  const auto learns = file("learning");
-  const auto teaches = file("teaching");
-  EXPECT_TRUE(record::check_session(learns).ok);
-  EXPECT_TRUE(record::check_session(teaches).ok);
-  EXPECT_THAT(texts_of(learns, "bone_checked"), ElementsAre(HasSubstr("are the same after")));
-  EXPECT_EQ(texts_of(learns, "bone_checked"), texts_of(teaches, "bone_checked"));
-  EXPECT_EQ(learns.rows<record::ProcedureRow>().back().checksum,
-            teaches.rows<record::ProcedureRow>().back().checksum);
+    const record::PassRow last = reader.passes().back();
+    EXPECT_EQ(last.trial, 2);
+    EXPECT_EQ(last.status, record::PassStatus::kCompleted);
+    EXPECT_GE(last.last_sample - last.first_sample + 1, 3000u) << side << ": all of its time";
+    const auto procedures = reader.rows<record::ProcedureRow>();
+    ASSERT_GE(procedures.size(), 2u);
+    bones.push_back({procedures.front(), procedures.back()});
+    for (const int trial : {1, 2}) {
+      const protocols::ReplayVerdict again = protocols::BoneReplay(reader.path()).run(trial);
+      EXPECT_EQ(again.difference, "") << side << ", trial " << trial;
+      EXPECT_EQ(again.checksum, bones.back()[static_cast<std::size_t>(trial - 1)].checksum);
+    }
+  }
+  for (std::size_t trial = 0; trial < 2; ++trial) {
+    EXPECT_EQ(bones[0][trial].checksum, bones[1][trial].checksum);
+    EXPECT_EQ(bones[0][trial].left, bones[1][trial].left);
+    EXPECT_LT(bones[0][trial].left, bones[0][trial].before) << "it was drilled";
+  }
 }
+
+INSTANTIATE_TEST_SUITE_P(LiveEitherSide, KilledBoneTest, testing::Values("learning", "teaching"),
+                         [](const auto& side) { return std::string(side.param); });
 
 }  // namespace
 }  // namespace haptrial::taught_bone_test

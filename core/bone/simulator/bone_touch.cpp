@@ -4,7 +4,7 @@
 
 namespace haptrial::bone {
 
-BoneTouch::BoneTouch(const Simulator& simulator) {
+BoneTouch::BoneTouch(const Simulator& simulator) : soft_(simulator.soft_tissue().touch()) {
   for (const ToolSpec& tool : simulator.tools()) {
     const auto* burr = tool.as<BurrTool>();
     const double spacing = simulator.world().volume(0).grid().spacing;
@@ -17,14 +17,31 @@ BoneTouch::BoneTouch(const Simulator& simulator) {
 
 BoneTouch::Felt BoneTouch::tick(const Simulator& simulator, const ToolState& tool) noexcept {
   const int in_hand = simulator.output().tool;
-  waits_until_free_ = waits_until_free_ || in_hand != tool_;
-  tool_ = in_hand;
-  const auto* burr = simulator.tool().as<BurrTool>();
-  Felt felt;
-  if (burr == nullptr) {
-    return felt;
+  if (in_hand != tool_) {
+    waits_until_free_ = true;
+    SoftTissue::forget(soft_);
   }
-  Drill& drill = *drills_[static_cast<std::size_t>(in_hand)];
+  tool_ = in_hand;
+  Felt felt;
+  if (const auto* burr = simulator.tool().as<BurrTool>()) {
+    felt = touch_by_burr(simulator, *burr, tool);
+    felt.force += touch_soft(simulator, burr->radius(), false, tool);
+  } else if (const auto* tube = simulator.tool().as<SuctionTool>()) {
+    felt.force = touch_soft(simulator, tube->radius, simulator.output().power > 0.0, tool);
+  } else if (simulator.tool().as<PlateTool>() != nullptr) {
+    felt = touch_by_plate(simulator, tool);
+  }
+  return felt;
+}
+
+bool BoneTouch::lets_feel(bool contact) noexcept {
+  waits_until_free_ = waits_until_free_ && contact;
+  return contact && !waits_until_free_;
+}
+
+BoneTouch::Felt BoneTouch::touch_by_burr(const Simulator& simulator, const BurrTool& burr,
+                                         const ToolState& tool) noexcept {
+  Drill& drill = *drills_[static_cast<std::size_t>(tool_)];
   drill.begin_tick();
   Contact all;
   for (int piece = 0; piece < simulator.world().pieces(); ++piece) {
@@ -37,14 +54,36 @@ BoneTouch::Felt BoneTouch::tick(const Simulator& simulator, const ToolState& too
       all = all ? together(all, in_world(contact, pose)) : in_world(contact, pose);
     }
   }
-  felt.contact = static_cast<bool>(all);
-  waits_until_free_ = waits_until_free_ && felt.contact;
-  if (felt.contact && !waits_until_free_) {
+  Felt touched;
+  touched.contact = static_cast<bool>(all);
+  if (lets_feel(touched.contact)) {
     const double power = simulator.output().power;
-    felt.force = bone_force(all, burr->feel, burr->burr, power);
-    felt.drag = drag_force(all, burr->burr, power);
+    touched.force = bone_force(all, burr.feel, burr.burr, power);
+    touched.drag = drag_force(all, burr.burr, power);
   }
-  return felt;
+  return touched;
+}
+
+BoneTouch::Felt BoneTouch::touch_by_plate(const Simulator& simulator,
+                                          const ToolState& tool) noexcept {
+  const PlateContact contact = press(*simulator.plate(tool_), pose_of(tool), simulator.world());
+  Felt touched;
+  touched.contact = contact.touching > 0;
+  if (lets_feel(touched.contact)) {
+    touched.force = contact.force;
+  }
+  return touched;
+}
+
+/// Soft tissue is part of the bone itself, not of pieces that come off it.
+Eigen::Vector3d BoneTouch::touch_soft(const Simulator& simulator, double radius, bool sucks,
+                                      const ToolState& tool) noexcept {
+  if (simulator.soft_tissue().empty()) {
+    return Eigen::Vector3d::Zero();
+  }
+  const Eigen::Isometry3d& pose = simulator.world().pose(0);
+  const Eigen::Vector3d tip_B = pose.inverse(Eigen::Isometry) * tool.tip.position;
+  return pose.linear() * simulator.soft_tissue().feel(soft_, tip_B, radius, sucks);
 }
 
 }  // namespace haptrial::bone

@@ -9,15 +9,16 @@
 
 namespace haptrial::bone {
 
-/// What a hand feels of bones that another hand works on: the contact of the burr that the other
-/// one holds, and nothing is taken. A tool that is in bone at first is not felt before it has been
-/// free. Servo thread: no allocation, lock, wait or throw after construction.
+/// What a hand feels of bones that another hand works on, with the tool that the other one holds:
+/// a burr in bone, burr and suction at soft tissue, a plate against the bone; nothing is taken,
+/// torn or fixed. A tool that is in bone at first is not felt before it has been free. Servo
+/// thread: no allocation, lock, wait or throw after construction.
 class BoneTouch {
  public:
   struct Felt {
     Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // on the tool, in W [N]
     Eigen::Vector3d drag{Eigen::Vector3d::Zero()};   // the part that the turning teeth give [N]
-    bool contact{false};
+    bool contact{false};                             // with bone
   };
 
   explicit BoneTouch(const Simulator& simulator);
@@ -27,8 +28,17 @@ class BoneTouch {
   Felt tick(const Simulator& simulator, const ToolState& tool) noexcept;
 
  private:
+  Felt touch_by_burr(const Simulator& simulator, const BurrTool& burr,
+                     const ToolState& tool) noexcept;
+  Felt touch_by_plate(const Simulator& simulator, const ToolState& tool) noexcept;
+  Eigen::Vector3d touch_soft(const Simulator& simulator, double radius, bool sucks,
+                             const ToolState& tool) noexcept;
+  /// Whether what touches is felt.
+  bool lets_feel(bool contact) noexcept;
+
   std::vector<std::unique_ptr<Drill>> drills_;  // by tool; null where it is no burr
-  int tool_{-1};                                // in hand
+  SoftTissue::Touch soft_;
+  int tool_{-1};  // in hand
   bool waits_until_free_{true};
 };
 

@@ -196,12 +196,19 @@ SoftTissue::SoftTissue(const BoneModel& model, std::span<const SoftTissueParamet
       parts_.push_back({p, label, SurfaceDepth(model, label, largest_radius + held)});
     }
   }
+  own_ = touch();
   holes_.reserve(kMostHoles);
   tears_.resize(parts_.size());
 }
 
-void SoftTissue::forget() noexcept {
-  for (Part& part : parts_) {
+SoftTissue::Touch SoftTissue::touch() const {
+  Touch touch;
+  touch.parts_.resize(parts_.size());
+  return touch;
+}
+
+void SoftTissue::forget(Touch& touch) noexcept {
+  for (TouchedPart& part : touch.parts_) {
     part.state = State::kUnfelt;
   }
 }
@@ -209,46 +216,60 @@ void SoftTissue::forget() noexcept {
 Vector3d SoftTissue::tick(const Vector3d& c_B, double radius, bool sucks) noexcept {
   begin_tick();
   Vector3d force = Vector3d::Zero();
-  for (Part& part : parts_) {
-    force += press(part, c_B, radius, sucks);
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const Pressed pressed = press(parts_[i], own_.parts_[i], c_B, radius, sucks);
+    if (pressed.tears) {
+      tear(pressed.tear, radius);
+    }
+    force += pressed.force;
   }
   return force;
 }
 
-Vector3d SoftTissue::press(Part& part, const Vector3d& c_B, double radius, bool sucks) noexcept {
+Vector3d SoftTissue::feel(Touch& touch, const Vector3d& c_B, double radius,
+                          bool sucks) const noexcept {
+  Vector3d force = Vector3d::Zero();
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    force += press(parts_[i], touch.parts_[i], c_B, radius, sucks).force;
+  }
+  return force;
+}
+
+SoftTissue::Pressed SoftTissue::press(const Part& part, TouchedPart& touched, const Vector3d& c_B,
+                                      double radius, bool sucks) const noexcept {
   SurfaceDepth::Here here{};
   const bool near = part.depth.at(c_B, here);
   const double depth = near ? radius - here.distance : 0.0;
-  const bool holds = part.state == State::kHeld && sucks;
+  const bool holds = touched.state == State::kHeld && sucks;
   if (!near || (depth <= 0.0 && !holds)) {
-    part.state = State::kFree;
-    return Vector3d::Zero();
+    touched.state = State::kFree;
+    return {};
   }
-  if (part.state == State::kInHole || part.state == State::kUnfelt) {
-    return Vector3d::Zero();
+  if (touched.state == State::kInHole || touched.state == State::kUnfelt) {
+    return {};
   }
   const double slope = here.gradient.norm();
   const Vector3d place = c_B - here.distance / std::max(slope, kWayOut) * here.gradient;
   if (holed(part.label, place)) {
-    part.state = State::kInHole;
-    return Vector3d::Zero();
+    touched.state = State::kInHole;
+    return {};
   }
   const Vector3d force = part.parameters.stiffness * depth * here.gradient;
   const double size = force.norm();
-  const bool was_touched = part.state == State::kPressed || part.state == State::kHeld;
-  const bool turned = was_touched && here.gradient.dot(part.way_out) < 0.0;
+  const bool was_touched = touched.state == State::kPressed || touched.state == State::kHeld;
+  const bool turned = was_touched && here.gradient.dot(touched.way_out) < 0.0;
   const bool through = here.distance < 0.5 * part.depth.spacing() && (slope < kWayOut || turned);
-  part.way_out = here.gradient;
+  touched.way_out = here.gradient;
   if (size >= part.parameters.tears_at || through) {
-    tear(part, {part.label, depth <= 0.0, size, std::abs(depth), place}, radius);
-    return force;
+    touched.state = State::kInHole;
+    return {force, true, {part.label, depth <= 0.0, size, std::abs(depth), place}};
   }
   if (depth <= 0.0 && size > part.parameters.suction) {
-    part.state = State::kFree;  // it comes off the tube
-    return Vector3d::Zero();
+    touched.state = State::kFree;  // it comes off the tube
+    return {};
   }
-  part.state = sucks ? State::kHeld : State::kPressed;
-  return force;
+  touched.state = sucks ? State::kHeld : State::kPressed;
+  return {force};
 }
 
 bool SoftTissue::holed(std::uint8_t label, const Vector3d& place) const noexcept {
@@ -257,17 +278,16 @@ bool SoftTissue::holed(std::uint8_t label, const Vector3d& place) const noexcept
   });
 }
 
-void SoftTissue::tear(Part& part, const Tear& tear, double radius) noexcept {
-  part.state = State::kInHole;
+void SoftTissue::tear(const Tear& tear, double radius) noexcept {
   tears_[tear_count_++] = tear;
   if (holes_.size() < kMostHoles) {
-    holes_.push_back({tear.place_B, radius, part.label});
+    holes_.push_back({tear.place_B, radius, tear.label});
   }
 }
 
 bool SoftTissue::in_hole() const noexcept {
-  return std::any_of(parts_.begin(), parts_.end(),
-                     [](const Part& part) { return part.state == State::kInHole; });
+  return std::any_of(own_.parts_.begin(), own_.parts_.end(),
+                     [](const TouchedPart& part) { return part.state == State::kInHole; });
 }
 
 }  // namespace haptrial::bone

@@ -89,13 +89,23 @@ class SoftTissue {
   /// By label.
   const std::array<bool, 256>& soft() const noexcept { return soft_; }
 
+  /// How a tool stands to each structure.
+  class Touch;
+  /// Of a tool that is nowhere yet. Allocates.
+  Touch touch() const;
+
   /// A tool is taken in hand: structures that it is in are not felt before it has left them.
-  void forget() noexcept;
+  void forget() noexcept { forget(own_); }
+  static void forget(Touch& touch) noexcept;
   /// Forgets the tears of the last tick.
   void begin_tick() noexcept { tear_count_ = 0; }
   /// @param sucks  the tool is a tube that sucks
   /// @returns the force on the tool, in B [N]; on the tick of a tear that at which it tore
   Eigen::Vector3d tick(const Eigen::Vector3d& c_B, double radius, bool sucks) noexcept;
+  /// Likewise of a second tool, which tears nothing: where the first one would, it slips through,
+  /// and feels nothing until it is out of the structure.
+  Eigen::Vector3d feel(Touch& touch, const Eigen::Vector3d& c_B, double radius,
+                       bool sucks) const noexcept;
   /// What tore on the last tick.
   std::span<const Tear> tears() const noexcept { return {tears_.data(), tear_count_}; }
   /// Whether the ball is in a hole of a structure.
@@ -107,6 +117,8 @@ class SoftTissue {
     SoftTissueParameters parameters;
     std::uint8_t label;
     SurfaceDepth depth;
+  };
+  struct TouchedPart {
     State state{State::kUnfelt};
     Eigen::Vector3d way_out{Eigen::Vector3d::Zero()};  // on the last tick of contact
   };
@@ -115,11 +127,25 @@ class SoftTissue {
     double radius;
     std::uint8_t label;
   };
-  Eigen::Vector3d press(Part& part, const Eigen::Vector3d& c_B, double radius, bool sucks) noexcept;
+  struct Pressed {
+    Eigen::Vector3d force{Eigen::Vector3d::Zero()};
+    bool tears{false};
+    Tear tear{};
+  };
+  Pressed press(const Part& part, TouchedPart& touched, const Eigen::Vector3d& c_B, double radius,
+                bool sucks) const noexcept;
   bool holed(std::uint8_t label, const Eigen::Vector3d& place) const noexcept;
-  void tear(Part& part, const Tear& tear, double radius) noexcept;
+  void tear(const Tear& tear, double radius) noexcept;
 
+ public:
+  class Touch {
+    friend class SoftTissue;
+    std::vector<TouchedPart> parts_;  // (structures)
+  };
+
+ private:
   std::vector<Part> parts_;
+  Touch own_;
   std::array<bool, 256> soft_{};
   std::vector<Hole> holes_;  // room for kMostHoles; beyond these a tear is told and closes again
   std::vector<Tear> tears_;  // (structures)

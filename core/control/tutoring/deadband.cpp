@@ -15,20 +15,23 @@ Partner expected(const Partner& sent, double since, double most) noexcept {
   return now;
 }
 
-bool Deadband::wrong(const Partner& now) const noexcept {
+/// @param most  that the force may be wrong by [N]
+bool Deadband::wrong(const Partner& now, double most) const noexcept {
   const Partner heard = held();
-  const double most = std::max(p_.force_fraction * now.force.norm(), p_.least_force);
   return longer(now.force - heard.force, most) ||
          longer(now.tool.position - heard.tool.position, p_.place);
 }
 
-bool Deadband::due(const Partner& now, double dt) noexcept {
+bool Deadband::due(const Partner& now, double dt, bool news) noexcept {
   since_ += dt;
   const bool first = ticks_++ == 0;
-  if (!first && since_ < p_.keepalive && !wrong(now)) {
+  const double most = std::max(p_.force_fraction * now.force.norm(), p_.least_force);
+  forces_.add(now.force);
+  if (!first && !news && since_ < p_.keepalive && !wrong(now, most)) {
     return false;
   }
   sent_ = now;
+  sent_.force = forces_.choose(most);
   since_ = 0.0;
   ++messages_;
   return true;

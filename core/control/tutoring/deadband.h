@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/control/tutoring/held_force.h"
 #include "core/control/tutoring/tutoring_law.h"
 
 namespace haptrial::control {
@@ -21,15 +22,19 @@ Partner expected(const Partner& sent, double since, double most) noexcept;
 /// Says which ticks need a message: those that the partner would feel or see wrongly without it.
 /// Values are absolute, so a lost message is mended by the next one, and a silence ends after
 /// `keepalive`. Without loss the partner's force is wrong by at most
-/// max(force_fraction |f|, least_force) and its place by at most `place`, at every tick.
-/// Source of the Weber rule: Hinterseer, Hirche, Chaudhuri, Steinbach and Buss (2008).
+/// max(force_fraction |f|, least_force) and its place by at most `place`, at every tick, also the
+/// one of a message: what it says of the force is chosen within these bounds so as to last
+/// (HeldForce). Source of the Weber rule: Hinterseer, Hirche, Chaudhuri, Steinbach and Buss (2008).
 /// Servo thread: no allocation, lock, I/O or throw.
 class Deadband {
  public:
   explicit Deadband(const DeadbandParameters& parameters = {}) noexcept : p_(parameters) {}
 
-  /// A tick. @returns whether it needs a message; it then counts as sent.
-  bool due(const Partner& now, double dt) noexcept;
+  /// A tick. @param news  a message goes in any case
+  /// @returns whether it needs a message; sent() then counts as sent.
+  bool due(const Partner& now, double dt, bool news = false) noexcept;
+  /// What the last message says.
+  const Partner& sent() const noexcept { return sent_; }
   /// What the partner has without loss, of the last tick.
   Partner held() const noexcept { return expected(sent_, since_, p_.keepalive); }
 
@@ -37,9 +42,10 @@ class Deadband {
   std::uint64_t messages() const noexcept { return messages_; }
 
  private:
-  bool wrong(const Partner& now) const noexcept;
+  bool wrong(const Partner& now, double most) const noexcept;
 
   DeadbandParameters p_;
+  HeldForce forces_;
   Partner sent_;
   double since_{0.0};  // the last message [s]
   std::uint64_t ticks_{0};

@@ -70,7 +70,8 @@ const Table<EmgRow>& table_of<EmgRow>() {
        RowsOf::kTick,
        {"sequence", "sample"},
        kGroup,
-       kSince},
+       kSince,
+       true},
       {T::column("sequence", &R::sequence, "1", "tick number, as in /samples"),
        T::column("sample", &R::sample, "1", "of the tick, from 0"),
        T::rounded_elements(

@@ -101,7 +101,7 @@ Vector3d CoupledSide::felt_by_waves(const PointState& own, double share, double 
 /// A word about the session waits for no deadband.
 bool CoupledSide::due(const Own& own, double dt) noexcept {
   const bool news = own.flags != told_flags_ || own.turn != told_turn_ || own.news;
-  return !p_.sparse || deadband_.due({own.tool, own.force}, dt) || news;
+  return !p_.sparse || deadband_.due({own.tool, own.force}, dt, news);
 }
 
 std::optional<TickMessage> CoupledSide::told(const Own& own, std::int64_t now_ns,
@@ -118,7 +118,7 @@ std::optional<TickMessage> CoupledSide::told(const Own& own, std::int64_t now_ns
   m.held_ns = window_.highest() > 0 ? now_ns - heard_ns_ : 0;
   m.position = own.tool.position;
   m.velocity = own.tool.velocity;
-  m.force = own.force;
+  m.force = p_.sparse ? deadband_.sent().force : own.force;
   m.wave = waves_.outgoing();
   m.energy = tank_.sent();
   m.lead = own.lead;

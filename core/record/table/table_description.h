@@ -30,6 +30,7 @@ struct TableHead {
   std::vector<const char*> order{};  // columns of integers that bring recovered rows in order
   const char* group{""};  // recovery makes all tables of a group anew when it finds rows of one
   std::int64_t since{1};  // schema version from which on files may have the table
+  bool dense{false};      // large and noisy: compressed more closely, which takes longer
 };
 
 /// One table of the session file: its rows as C++ has them and as the file does, each column
@@ -44,6 +45,7 @@ class TableDescription {
   RowsOf of() const { return head_.of; }
   const char* group() const { return head_.group; }
   std::int64_t since() const { return head_.since; }
+  bool dense() const { return head_.dense; }
   const std::vector<Field>& fields() const { return fields_; }
   std::size_t row_size() const { return row_size_; }  // in memory [bytes]
 

@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 // Dry runs write twelve sessions in seconds; a session with a person has time, and short chunks.
 constexpr int kFastLevel = 1;
 constexpr int kLiveLevel = 3;
+constexpr int kDenseLevel = 6;
 
 bool is_live(const SessionInfo& info) { return info.clock == "real"; }
 
@@ -48,7 +49,7 @@ SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info,
       const TableSchema& schema = *part.schema;
       part.writer->emplace(
           file, live && part.each_tick ? schema.with_chunks(live_chunk_rows(info.rate)) : schema,
-          live ? kLiveLevel : kFastLevel, ensure_space());
+          level_of(part), ensure_space());
     }
     for (const char* count : {"ticks", "overruns", "dropped"}) {
       h5::put(timing->dataset(), count, std::int64_t{-1});
@@ -97,8 +98,7 @@ void SessionWriter::Impl::go_on() {
   space = {};
   space.ensure(h5::descriptor(file), 0);
   for (const Part& part : tables()) {
-    part.writer->emplace(
-        TableWriter::go_on(file, *part.schema, live ? kLiveLevel : kFastLevel, ensure_space()));
+    part.writer->emplace(TableWriter::go_on(file, *part.schema, level_of(part), ensure_space()));
   }
   h5::flush(file);
   start_syncing();
@@ -122,9 +122,14 @@ std::vector<SessionWriter::Impl::Part> SessionWriter::Impl::tables() {
                         {&runs, &runs_table().schema(), false},
                         {&begun, &begun_table().schema(), false}};
   for (Own& each : own) {
-    all.push_back({&each.writer, &each.table->schema(), each.table->of() == RowsOf::kEachTick});
+    all.push_back({&each.writer, &each.table->schema(), each.table->of() == RowsOf::kEachTick,
+                   each.table->dense()});
   }
   return all;
+}
+
+int SessionWriter::Impl::level_of(const Part& part) const {
+  return part.dense ? kDenseLevel : live ? kLiveLevel : kFastLevel;
 }
 
 TableWriter& SessionWriter::Impl::own_table(const TableDescription& table) {

@@ -33,8 +33,10 @@ struct SessionWriter::Impl {
     std::optional<TableWriter>* writer;
     const TableSchema* schema;
     bool each_tick;  // it has a row for each tick
+    bool dense{false};
   };
   std::vector<Part> tables();
+  int level_of(const Part& part) const;  // of compression
   /// @throws std::invalid_argument if the session does not have the table
   TableWriter& own_table(const TableDescription& table);
   void put(const Rows& rows);

@@ -13,10 +13,10 @@
 #include "core/markers/marker_times.h"
 #include "core/record/hdf5/file_lock.h"
 #include "core/record/read/integrity.h"
+#include "core/record/read/overruns.h"
 #include "core/record/read/readable.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/read/trial_progress.h"
-#include "core/record/read/overruns.h"
 #include "experiments/studies/registry.h"
 #include "protocols/definition/lab_file.h"
 
@@ -92,11 +92,11 @@ void print_progress(const record::SessionReader& reader, const record::Integrity
 
 /// What a person did or has to know; the rest is in /events.
 bool is_told(const std::string& kind) {
-  constexpr std::array<std::string_view, 14> kTold{
-      "repaired",       "session_stopped", "ended_for_good", "aborted",
-      "interrupted",    "notice",          "note",           "recovered",
-      "emergency_stop", "bone_restored",   "bone_lost",      "definition_changed",
-      "overruns",       "skipped"};
+  constexpr std::array<std::string_view, 15> kTold{
+      "repaired",      "session_stopped", "ended_for_good", "aborted",
+      "interrupted",   "notice",          "note",           "recovered",
+      "overruns",      "skipped",         "emergency_stop", "definition_changed",
+      "bone_restored", "bone_lost",       "bone_anew"};
   return std::find(kTold.begin(), kTold.end(), kind) != kTold.end();
 }
 

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "core/base/random.h"
-#include "core/control/tutoring/deadband.h"
 #include "core/control/tutoring/energy_tank.h"
 #include "core/control/tutoring/tutoring_law.h"
 #include "core/control/tutoring/wave_port.h"
@@ -168,49 +167,6 @@ TEST(WavePortTest, ADriftIsUndoneOnlyWithEnergyThatWasTaken) {
   }
   EXPECT_GT(port.budget(), before);
   EXPECT_THROW(WavePort({0.0, 0.5}, {}), std::invalid_argument);
-}
-
-/// A hand that draws: sums of a few sines, with a force of contact.
-Partner drawn(double t) {
-  Partner now;
-  now.tool.position = {0.03 * std::sin(1.3 * t), 0.02 * std::sin(2.1 * t),
-                       0.01 * std::sin(0.7 * t)};
-  now.tool.velocity = {0.039 * std::cos(1.3 * t), 0.042 * std::cos(2.1 * t),
-                       0.007 * std::cos(0.7 * t)};
-  now.force = {0.0, 2.0 + std::sin(3.0 * t), 0.1 * std::sin(40.0 * t)};
-  return now;
-}
-
-TEST(DeadbandTest, TheErrorStaysWithinTheFractionAtEveryTick) {
-  const DeadbandParameters p{0.1, 0.05, 0.0005, 0.05};
-  Deadband deadband(p);
-  Partner heard;
-  double since = 0.0;
-  for (int tick = 0; tick < 60'000; ++tick) {
-    const Partner now = drawn(kDt * tick);
-    since += kDt;
-    if (deadband.due(now, kDt)) {
-      heard = now;
-      since = 0.0;
-    }
-    const Partner taken = expected(heard, since, p.keepalive);
-    ASSERT_LE((taken.force - now.force).norm(),
-              std::max(p.force_fraction * now.force.norm(), p.least_force));
-    ASSERT_LE((taken.tool.position - now.tool.position).norm(), p.place);
-    ASSERT_LT(since, p.keepalive);
-  }
-  EXPECT_LT(static_cast<double>(deadband.messages()), 0.15 * static_cast<double>(deadband.ticks()));
-}
-
-TEST(DeadbandTest, AForceIsNeverStuckForLongerThanTheKeepalive) {
-  Deadband deadband({0.1, 0.05, 0.0005, 0.05});
-  Partner still;
-  still.force = {0.0, 1.0, 0.0};
-  int since = 0;
-  for (int tick = 0; tick < 1000; ++tick) {
-    since = deadband.due(still, kDt) ? 0 : since + 1;
-    ASSERT_LT(since, 50);
-  }
 }
 
 }  // namespace
