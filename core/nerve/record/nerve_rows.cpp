@@ -66,7 +66,7 @@ const Table<EmgRow>& table_of<EmgRow>() {
   static const T table(
       {"nerve_emg",
        "simulated electromyograms at their full rate, a row for each sample",
-       12000,
+       24000,
        RowsOf::kTick,
        {"sequence", "sample"},
        kGroup,
