@@ -160,7 +160,7 @@ double megabytes_an_hour(int channels,
   return each;
 }
 
-/// Four channels or one, with pauses of the drill or with none.
+/// Four channels or one, with suction between the strokes or without.
 TEST(NerveFileTest, AChannelTakesAtMostThirtyMegabytesAnHour) {
   for (const int channels : {4, 1}) {
     const double paused = megabytes_an_hour(channels, {});
