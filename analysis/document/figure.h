@@ -10,7 +10,7 @@ namespace haptrial::analysis {
 /// How a series is drawn. Colour is never the only difference: lines also differ in dash and width,
 /// points in shape.
 struct Look {
-  const char* color{"#000000"};  // #rrggbb, a literal
+  const char* color{"#000000"};  // `#rrggbb`, a literal
   const char* dash{"solid"};     // "solid", or lengths drawn and left out: "(8,5)"
   int point{7};                  // gnuplot point type; 7 is a filled circle
   double width{2.0};

@@ -35,7 +35,7 @@ struct DryRunOptions {
   int frames{0};
   std::optional<int> trials;   // default: all
   std::optional<int> session;  // of each subject; default: all, in their order
-  std::string tutor;           // FILE, FILE:TRIAL or FILE:TRIAL@SECONDS; empty: none
+  std::string tutor;           // `FILE`, `FILE:TRIAL` or `FILE:TRIAL@SECONDS`; empty: none
   bool taught{false};          // each subject, by a second one over a simulated network
   std::string language;        // of what participants read; default: the definition's own
 };
@@ -51,7 +51,7 @@ struct RunOptions {
   std::optional<int> session;      // default: the first that the subject has left
   std::string out;                 // default: out/sessions, out/teaching with --teach
   std::optional<int> trials;       // default: all
-  std::string tutor;               // FILE, FILE:TRIAL or FILE:TRIAL@SECONDS; empty: none
+  std::string tutor;               // `FILE`, `FILE:TRIAL` or `FILE:TRIAL@SECONDS`; empty: none
   std::optional<int> teach;        // port at which the side that learns is awaited
   std::string learn_from;          // HOST:PORT of the side that teaches; empty: nobody
   std::string secret;              // file that both sides have

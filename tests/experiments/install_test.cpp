@@ -94,6 +94,9 @@ TEST_F(InstallTest, TheInstalledCommandLoadsPlugins) {
                           " >> valley.toml && " +
                           program + plugin("field") + "validate valley.toml");
   EXPECT_EQ(ran.status, 0) << ran.errors;
+  ran = test::run_command(program + plugin("field") + "keys trials");
+  EXPECT_NE(ran.output.find("| `strength` | number or text | N | needed | "), std::string::npos);
+  EXPECT_NE(ran.output.find("(type: valley) |"), std::string::npos);
 }
 
 TEST_F(InstallTest, AnotherProjectFindsLinksAndRunsTheLibraries) {

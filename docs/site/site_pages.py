@@ -1,0 +1,137 @@
+"""Prepares what mkdocs makes the site from: site_pages ROOT HAPTRIAL WORK.
+
+WORK/pages gets the documents under the paths that they have in the repository, so that their links
+hold in both places, and beside them the pages that are made here.
+"""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+import site_gallery
+import site_headers
+from site_links import Linker
+
+COPIED = {".svg", ".png", ".jpg", ".gif", ".csv", ".json", ".html"}  # browsers show or keep them
+
+
+def documents(root):
+    found = [root / "README.md", root / "CHANGELOG.md"]
+    for folder in ("docs", "results"):
+        found += sorted((root / folder).rglob("*.md"))
+    return found
+
+
+def title(text):
+    return re.search(r"^# (.*)", text, re.M)[1]
+
+
+def commands(haptrial):
+    """The help of every command, and of those below it."""
+    def names(text):
+        block = re.search(r"^Subcommands:\n(.*?)(\n\n|\Z)", text, re.M | re.S)
+        return re.findall(r"^  ([a-z-]+) ", block[1] + "\n", re.M) if block else []
+
+    def page(path):
+        text = subprocess.run([haptrial, *path, "--help"], capture_output=True, text=True,
+                              check=True).stdout
+        yield f"## {' '.join(['haptrial', *path])}\n\n```text\n{text.rstrip()}\n```\n"
+        for name in names(text):
+            yield from page([*path, name])
+    return "# Every command\n\nWhat `--help` says.\n\n" + "\n".join(page([]))
+
+
+def roles(readme):
+    """The rows of README's table "Read on": for whom, and the pages linked."""
+    table = readme.split("## Read on")[1].split("\n## ")[0]
+    for line in table.splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        links = re.findall(r"\[([^]]*)\]\(([^)#]+\.md)\)", cells[-1])
+        if len(cells) == 2 and links:
+            yield cells[0], links
+
+
+def navigation(pages):
+    """Guides by role as in README; each page once."""
+    readme = (pages / "README.md").read_text()
+    reference = [("Commands", "reference/commands.md"), ("Keys of a definition", "docs/keys.md"),
+                 ("Tables of a session file", "docs/session-file.md"),
+                 ("Headers", "reference/headers.md"), ("Sections of the source", "docs/sections.md")]
+    shown = {path for _, path in reference} | {"README.md", "gallery/index.md"}
+    lines = ["  - Start: README.md", "  - Gallery: gallery/index.md"]
+
+    def group(name, links):
+        kept = [(text, path) for text, path in links
+                if path not in shown and (pages / path).exists()]
+        shown.update(path for _, path in kept)
+        if kept:
+            lines.append(f"  - {quoted(name)}:")
+            lines.extend(f"      - {quoted(capital(text))}: {path}" for text, path in kept)
+
+    for role, links in roles(readme):
+        group(capital(role), links)
+    lines.append("  - Reference:")
+    lines.extend(f"      - {text}: {path}" for text, path in reference if (pages / path).exists())
+    everything = [(title(file.read_text()), file.relative_to(pages).as_posix())
+                  for file in sorted(pages.rglob("*.md"))]
+    for name, folder in (("Decisions", "docs/decisions/"), ("Experiments", "gallery/"),
+                         ("More pages", "docs/"), ("Results", "results/"), ("Files", "code/"),
+                         ("Project", "")):
+        group(name, [each for each in everything if each[1].startswith(folder)])
+    return "\n".join(lines)
+
+
+def capital(text):
+    return text if "_" in text else text[:1].upper() + text[1:]
+
+
+def quoted(text):
+    return '"' + text.replace("\\", "").replace('"', '\\"').replace("`", "") + '"'
+
+
+def settings(pages, theme):
+    return f"""site_name: haptrial
+site_url: ""
+docs_dir: {pages}
+use_directory_urls: false
+theme:
+  name: material
+  custom_dir: {theme}
+  font: false
+  features: [navigation.top, search.highlight]
+plugins: [search]
+markdown_extensions:
+  - tables
+  - fenced_code
+  - sane_lists
+  - codehilite: {{guess_lang: false}}
+  - toc: {{permalink: true, slugify: !!python/name:site_links.anchor }}
+nav:
+{navigation(pages)}
+"""
+
+
+def main(root, haptrial, work):
+    root, work = pathlib.Path(root), pathlib.Path(work)
+    pages = work / "pages"
+    linker = Linker(root, pages, site_headers.pages_of(root, work / "headers.xml"))
+    made = {"reference/commands.md": commands(haptrial), **site_gallery.pages(root, haptrial, pages)}
+    if linker.headers:
+        made["reference/headers.md"] = site_headers.index(root, linker.headers)
+    for path, text in made.items():
+        (pages / path).parent.mkdir(parents=True, exist_ok=True)
+        (pages / path).write_text(text)
+    for folder in ("docs", "results"):
+        for file in (root / folder).rglob("*"):
+            if file.suffix in COPIED and root / "docs/site" not in file.parents:
+                target = pages / file.relative_to(root)
+                target.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(file, target)
+    for file in documents(root):
+        linker.write(file)
+    (work / "mkdocs.yml").write_text(settings(pages, root / "docs/site/theme"))
+
+
+main(*sys.argv[1:])
