@@ -282,5 +282,33 @@ TEST(WorkedScriptTest, RGivesTheNumbersOfTheReport) {
   expect_the_reports_numbers("Rscript", "analysis.R");
 }
 
+/// From the tidy tables, by a search of R's own.
+TEST_F(ExchangeTest, RFindsTheThresholdsOfTheReport) {
+  if (run_command("command -v Rscript").status != 0) {
+    GTEST_SKIP() << "there is no Rscript";
+  }
+  const fs::path source = HAPTRIAL_SOURCE_DIR;
+  const CommandResult run = run_command(
+      "set -e; haptrial dry-run '" +
+      (source / "experiments/stiffness_discrimination.toml").string() + "' --subjects 2 --out " +
+      path("study") + " >&2; haptrial analyze " + path("study") + " >&2; haptrial export --csv " +
+      path("tables") + " " + path("study") + " >&2; Rscript '" +
+      (source / "docs/worked/thresholds.R").string() + "' " + path("tables/levels.csv"));
+  ASSERT_EQ(run.status, 0) << run.errors;
+  std::istringstream theirs(run.output);
+  const std::string estimates = test::read_text(folder_ / "study/estimates.csv");
+  int compared = 0;
+  for (std::string who, word; theirs >> who >> word; ++compared) {
+    double threshold = 0.0;
+    theirs >> threshold;
+    std::getline(theirs, word);
+    const std::string row = who + ",,likelihood,threshold,";
+    const std::size_t at = estimates.find(row);
+    ASSERT_NE(at, std::string::npos) << row << "\n" << estimates;
+    EXPECT_NEAR(threshold, std::stod(estimates.substr(at + row.size())), 0.01) << who;
+  }
+  EXPECT_EQ(compared, 2) << run.output;
+}
+
 }  // namespace
 }  // namespace haptrial
