@@ -20,8 +20,8 @@ struct DryRun {
   std::optional<protocols::TutorChoice> tutor;  // see SessionRequest
   bool taught{false};            // each participant by a second one over a simulated network
   std::filesystem::path folder;  // created; one session file per participant
-  /// The folder is the state: sessions that are there stay and are not run again, and nothing is
-  /// taken back. Without frames, tutor and teachers.
+  /// The folder is the state: finished sessions stay and are not run again. Without frames, tutor
+  /// and teachers.
   bool parts{false};
   double start{0.0};  // of parts: share of the sessions that comes last
 };

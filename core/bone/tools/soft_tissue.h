@@ -91,7 +91,7 @@ class SoftTissue {
 
   /// How a tool stands to each structure.
   class Touch;
-  /// Of a tool that is nowhere yet. Allocates.
+  /// The touch of a tool that has no place yet. Allocates.
   Touch touch() const;
 
   /// A tool is taken in hand: structures that it is in are not felt before it has left them.

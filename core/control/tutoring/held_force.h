@@ -41,7 +41,7 @@ class HeldForce {
   }
   double difference(std::size_t ago) const noexcept;
   Analogues nearest() const noexcept;
-  /// What is to come in so many ticks if it goes on as it did then.
+  /// The force in `ticks` ticks if it changes as it did after the tick `ago`.
   Eigen::Vector3d coming(std::size_t ago, std::size_t ticks) const noexcept {
     return at(ago - ticks) + (at(0) - at(ago));
   }

@@ -25,7 +25,7 @@ struct TraineeRequest {
 /// each beside it (NAME-1.html, ...).
 /// @returns the files, the overview or the only page first
 /// @throws InputError where sessions are no drillings or of several participants, a study has no
-/// experts, or a page is there already.
+/// experts, or a page of that name exists.
 std::vector<std::filesystem::path> write_trainee_pages(const TraineeRequest& request);
 
 /// The page that a definition asks for, beside a session's file as NAME.html; one that is there is
