@@ -209,7 +209,7 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::Mouse
         begin->store(true);
       }
       const auto asked = request_of(press);
-      const bool of_trial = request.definition->functions_of({press.key}) != 0;
+      const bool of_trial = request.definition->bits_of({press.key}) != 0;
       const bool may = asked == Request::kEmergencyStop || steers;
       if (asked && may && !of_trial) {
         control->ask(*asked, Asker::kWindow);
@@ -242,7 +242,7 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::Mouse
     };
   }
   callbacks.held = [held, &request](const std::vector<int>& keys) {
-    held->store(request.definition->functions_of(keys), std::memory_order_relaxed);
+    held->store(request.definition->bits_of(keys), std::memory_order_relaxed);
   };
   const protocols::Definition& setup = *request.definition;
   return std::make_unique<Screen>(setup.screen, setup.display, std::move(callbacks));

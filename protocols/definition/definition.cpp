@@ -82,6 +82,13 @@ void check_common(Table& root, const Definition& definition) {
         "workspace_radius", fmt::format("{}", definition.envelope.workspace_radius),
         fmt::format("at most device.workspace_radius, {} [m]", definition.device.workspace_radius));
   }
+  for (const int key : definition.tutoring.pause_keys) {
+    if (definition.functions_of({key}) != 0) {
+      root.table("tutoring")
+          .reject("pause_keys", "a list with a key that has another function",
+                  "keys that the definition uses for nothing else");
+    }
+  }
   const bool plain =
       std::all_of(definition.name.begin(), definition.name.end(),
                   [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; });
@@ -99,6 +106,12 @@ std::vector<markers::MarkerMeaning> Definition::marker_meanings() const {
           {MarkerOf::kStage, 1, "wait", stage + 1},
           {MarkerOf::kStage, 2, "run", stage + 2},
           {MarkerOf::kStage, 3, "return", stage + 3}};
+}
+
+std::uint32_t Definition::bits_of(const std::vector<int>& held) const {
+  const bool waits = std::ranges::any_of(
+      tutoring.pause_keys, [&](int key) { return std::ranges::find(held, key) != held.end(); });
+  return functions_of(held) | (waits ? kPauseBit : 0);
 }
 
 void check_markers(Table& root, const Definition& definition) {

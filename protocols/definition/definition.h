@@ -95,12 +95,14 @@ struct Definition {
   virtual bool has_target() const { return true; }
   /// What the participant reads before the first trial.
   virtual std::string instructions() const { return texts.instructions; }
-  /// The functions that the held keys of the participant's window stand for, a bit each: what
-  /// DeviceReading::keys has. @param held  codes of the window
+  /// The functions of the protocol's own that held keys of the participant's window stand for, a
+  /// bit each but kPauseBit. @param held  codes of the window
   virtual std::uint32_t functions_of(const std::vector<int>& held) const {
     static_cast<void>(held);
     return 0;
   }
+  /// What DeviceReading::keys has while keys are held: functions_of(held), and kPauseBit.
+  std::uint32_t bits_of(const std::vector<int>& held) const;
 };
 
 /// Reads what every protocol has, but design, recovery and display, which protocols say in their

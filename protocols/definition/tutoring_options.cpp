@@ -6,7 +6,10 @@
 #include <utility>
 
 #include "core/base/definition/table.h"
+#include "core/base/definition/table_vector.h"
+#include "core/device/device.h"
 #include "core/record/table/schema.h"
+#include "protocols/definition/window_keys.h"
 
 namespace haptrial::protocols {
 
@@ -67,8 +70,18 @@ TutoringOptions read_tutoring_options(Table& table) {
   o.gains.force_share = table.number_or("force_share", o.gains.force_share, {0.0, 1.0}, "1");
   o.ramp = table.number_or("ramp", o.ramp, {0.05, 10.0}, "s");
   o.speed = table.number_or("speed", o.speed, {0.5, 1.0}, "1");
+  if (table.has("pause_buttons")) {
+    o.pause_buttons = read_bits(table, "pause_buttons");
+  }
+  if (table.has("pause_keys")) {
+    o.pause_keys = read_window_keys(table, "pause_keys");
+  }
   read_link_options(table, o);
   return o;
+}
+
+bool asks_to_wait(const TutoringOptions& o, const device::DeviceReading& reading) noexcept {
+  return (reading.buttons & o.pause_buttons) != 0 || (reading.keys & kPauseBit) != 0;
 }
 
 network::SideParameters side_parameters(const TutoringOptions& o) {

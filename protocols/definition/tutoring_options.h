@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -9,7 +10,10 @@
 
 namespace haptrial {
 class Table;
+namespace device {
+struct DeviceReading;
 }
+}  // namespace haptrial
 
 namespace haptrial::protocols {
 
@@ -22,9 +26,11 @@ struct TutoringNetwork {
 /// How a tutor leads, the table [tutoring] of a definition: in a recorded run or over a link.
 struct TutoringOptions {
   control::TutoringGains gains;
-  double ramp{0.5};         // from no lead to all of it, and back [s]
-  double speed{1.0};        // of a playback, 0.5 to 1 of the original
-  double most_force{12.0};  // of own world, tutor and coupling together: the envelope's [N]
+  double ramp{0.5};                // from no lead to all of it, and back [s]
+  double speed{1.0};               // of a playback, 0.5 to 1 of the original
+  std::uint32_t pause_buttons{0};  // a playback waits while one is pressed: bit i, button i
+  std::vector<int> pause_keys;     // or one of the window's is held: codes
+  double most_force{12.0};         // of own world, tutor and coupling together: the envelope's [N]
 
   // Over a link.
   double authority{1.0};  // of who teaches over the other hand, 0 to 1
@@ -39,7 +45,14 @@ struct TutoringOptions {
   std::vector<TutoringNetwork> networks;
 };
 
+/// The bit of DeviceReading::keys that a key of `pause_keys` sets; no function of a protocol's has
+/// it.
+inline constexpr std::uint32_t kPauseBit = std::uint32_t{1} << 31;
+
 TutoringOptions read_tutoring_options(Table& table);
+
+/// Whether who is led asks a playback to wait. Servo thread.
+bool asks_to_wait(const TutoringOptions& options, const device::DeviceReading& reading) noexcept;
 
 /// What one side of a link is made of.
 network::SideParameters side_parameters(const TutoringOptions& options);

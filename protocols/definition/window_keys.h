@@ -2,6 +2,11 @@
 
 #include <optional>
 #include <string>
+#include <vector>
+
+namespace haptrial {
+class Table;
+}
 
 namespace haptrial::protocols {
 
@@ -16,5 +21,8 @@ std::optional<int> key_code(const std::string& name);
 
 /// The names, for sentences.
 inline constexpr const char* kKeyNames = "space, enter, A to Z, 0 to 9, left, right, up, down";
+
+/// Codes of a list of keys by their names. Notes a name that is none.
+std::vector<int> read_window_keys(Table& table, const std::string& key);
 
 }  // namespace haptrial::protocols

@@ -144,6 +144,9 @@ ForceDefinition read_force_definition(Table& root, std::string_view file_name,
     Table path_memory = root.table("path_memory");
     d.paths.emplace(path_memory);
   }
+  if (!root.has("tutoring") || !root.table("tutoring").has("pause_buttons")) {
+    d.tutoring.pause_buttons = ~std::uint32_t{0};  // buttons mean nothing else here
+  }
   d.guidance.tutoring = d.tutoring;
   if (folder != nullptr && !d.trajectory.from.empty()) {
     d.trajectory.points = recorded_path(d.trajectory.from, *folder);

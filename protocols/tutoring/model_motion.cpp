@@ -101,7 +101,8 @@ control::Partner Playback::now() const noexcept {
   const control::Partner& b = ticks[std::min(i + 1, ticks.size() - 1)];
   control::Partner now;
   now.tool.position = (1.0 - part) * a.tool.position + part * b.tool.position;
-  now.tool.velocity = speed_ * ((1.0 - part) * a.tool.velocity + part * b.tool.velocity);
+  now.tool.velocity =
+      (waits_ ? 0.0 : speed_) * ((1.0 - part) * a.tool.velocity + part * b.tool.velocity);
   now.force = (1.0 - part) * a.force + part * b.force;
   return now;
 }

@@ -41,7 +41,9 @@ class Playback {
   /// Between two recorded ticks: places and forces on the line between them; a slower playback has
   /// smaller velocities and the same forces. After its end it stands still without a force.
   control::Partner now() const noexcept;
-  void step(double dt) noexcept { time_ += speed_ * dt; }
+  void step(double dt) noexcept { time_ += waits_ ? 0.0 : speed_ * dt; }
+  /// Whether it stands where it is, from now on: without velocity, with the force of that place.
+  void wait(bool waits) noexcept { waits_ = waits; }
   bool over() const noexcept { return time_ >= motion_->duration(); }
   double time() const noexcept { return time_; }  // in the motion [s]
 
@@ -49,6 +51,7 @@ class Playback {
   const ModelMotion* motion_;
   double speed_;
   double time_;
+  bool waits_{false};
 };
 
 }  // namespace haptrial::protocols

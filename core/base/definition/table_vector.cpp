@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <vector>
 
 namespace haptrial {
@@ -24,6 +25,19 @@ Eigen::Vector3d read_direction(Table& table, std::string_view key) {
     return Eigen::Vector3d::UnitY();
   }
   return vector.normalized();
+}
+
+std::uint32_t read_bits(Table& table, std::string_view key) {
+  constexpr double kLast = 30.0;
+  std::uint32_t mask = 0;
+  for (const double number : table.numbers(key, {0.0, kLast}, "")) {
+    if (number != std::floor(number)) {
+      table.reject(key, fmt::format("a list with {}", number), "whole numbers, such as those of buttons from 0");
+    } else {
+      mask |= std::uint32_t{1} << static_cast<unsigned>(number);
+    }
+  }
+  return mask;
 }
 
 }  // namespace haptrial

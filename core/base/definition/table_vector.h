@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <string_view>
 
 #include "core/base/definition/table.h"
@@ -16,5 +17,8 @@ Eigen::Vector3d read_vector(Table& table, std::string_view key, const Bounds& bo
 /// The same for a direction: numbers from -1 to 1, not all zero. @returns it with length 1; y after
 /// a problem
 Eigen::Vector3d read_direction(Table& table, std::string_view key);
+
+/// Bits of an array of numbers from 0 to 30, such as those of buttons. Notes a number that is none.
+std::uint32_t read_bits(Table& table, std::string_view key);
 
 }  // namespace haptrial

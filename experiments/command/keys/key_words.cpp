@@ -47,6 +47,8 @@ tutoring.damping | | beside it
 tutoring.force_share | | of the tutor's forces that is played
 tutoring.ramp | | time over which the tutor takes the lead, and gives it back
 tutoring.speed | | of a recorded run, beside its own
+tutoring.pause_buttons | in force training every button, else none | a recorded run waits while one of these buttons of the handle is pressed
+tutoring.pause_keys | none | likewise for keys of the window
 tutoring.authority | | over a link: how far the hand that teaches leads the other one
 tutoring.felt_back | | over a link: how much of the coupling the hand that leads feels
 tutoring.passivity | tank | over a link: what keeps the coupled hands from swinging up

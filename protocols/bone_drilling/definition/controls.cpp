@@ -1,39 +1,12 @@
 #include "protocols/bone_drilling/definition/controls.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "core/base/definition/table.h"
+#include "core/base/definition/table_vector.h"
 #include "protocols/definition/window_keys.h"
 
 namespace haptrial::protocols {
-namespace {
-
-constexpr int kMostButtons = 31;
-
-void read_buttons(Table& table, const std::string& key, std::uint32_t& mask) {
-  for (const double number : table.numbers(key, {0.0, kMostButtons - 1.0}, "")) {
-    const int button = static_cast<int>(number);
-    if (button != number) {
-      table.reject(key, fmt::format("a list with {}", number), "numbers of buttons, from 0");
-    } else {
-      mask |= std::uint32_t{1} << static_cast<unsigned>(button);
-    }
-  }
-}
-
-void read_keys(Table& table, const std::string& key, std::vector<int>& codes) {
-  for (const std::string& name : table.texts(key)) {
-    if (const auto code = key_code(name)) {
-      codes.push_back(*code);
-    } else {
-      table.reject(key, fmt::format("a list with '{}'", name), kKeyNames);
-    }
-  }
-}
-
-}  // namespace
 
 Controls read_controls(Table& root) {
   Controls controls;
@@ -53,10 +26,10 @@ Controls read_controls(Table& root) {
     }
   };
   each("buttons", [&](Table& table, const std::string& key, std::size_t f) {
-    read_buttons(table, key, controls.buttons[f]);
+    controls.buttons[f] = read_bits(table, key);
   });
   each("keys", [&](Table& table, const std::string& key, std::size_t f) {
-    read_keys(table, key, controls.keys[f]);
+    controls.keys[f] = read_window_keys(table, key);
   });
   return controls;
 }

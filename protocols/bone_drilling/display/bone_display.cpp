@@ -49,7 +49,7 @@ class BoneDrawing final : public Drawing {
     free.pixel.x() = std::fmod(input.pixel.x(), display_.width());
     keys_.clear();
     for (const int key : input.keys) {
-      if (definition_.functions_of({key}) == 0) {
+      if (definition_.bits_of({key}) == 0) {
         keys_.push_back(key);
       }
     }

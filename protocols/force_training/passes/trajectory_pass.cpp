@@ -189,13 +189,14 @@ control::Partner TrajectoryPass::expert() const noexcept {
   return expert;
 }
 
-/// A playback waits while a button of the handle is pressed, and for a hand that was left behind.
+/// A playback waits while it is asked to, and for a hand that was left behind.
 bool TrajectoryPass::waits_for_hand(const device::DeviceReading& reading) const noexcept {
   if (stage_ != Stage::kRun || run_lead() != RunLead::kPlayed) {
     return false;
   }
   const Eigen::Vector3d away = stimulus_.path.at(along_).position - reading.tool.position;
-  return reading.buttons != 0 || std::hypot(away.x(), away.z()) > parameters_.pause_beyond;
+  return asks_to_wait(parameters_.tutoring, reading) ||
+         std::hypot(away.x(), away.z()) > parameters_.pause_beyond;
 }
 
 double TrajectoryPass::longest_run() const noexcept {

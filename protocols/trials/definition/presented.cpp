@@ -10,6 +10,7 @@
 #include "core/scene/read/read_yielding.h"
 #include "core/sound/cues/read_cues.h"
 #include "protocols/definition/handle_loop.h"
+#include "protocols/definition/window_keys.h"
 #include "protocols/trials/definition/trial_devices.h"
 
 namespace haptrial::protocols {
@@ -109,7 +110,10 @@ Presented read_presented(Table& root, const Names& names, const TrialsDefinition
       [&names](const std::string& text) { return names.word(text); },
       random,
       root.has("sounds") ? sound::cue_names(root.table("sounds")) : std::vector<std::string>{},
-      sights};
+      sights,
+      [&d](Table& table, const std::string& key) {
+        return d.keys.bits_of(read_window_keys(table, key));
+      }};
   presented.stages = read_stages(root, source);
   return presented;
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/definition/table.h"
+#include "core/base/definition/table_vector.h"
 #include "core/base/error.h"
 #include "core/record/rows/response.h"
 #include "protocols/definition/window_keys.h"
@@ -16,30 +17,12 @@
 namespace haptrial::protocols {
 namespace {
 
-constexpr int kMostButtons = 31;
 constexpr std::size_t kMostChoices = 12;
 
 std::uint32_t keys_of(Table& table, const char* key, KeyBits& bits) {
   std::uint32_t mask = 0;
-  for (const std::string& name : table.texts(key)) {
-    const auto code = key_code(name);
-    if (!code) {
-      table.reject(key, fmt::format("a list with '{}'", name), kKeyNames);
-      continue;
-    }
-    mask |= bits.bit_of(*code);
-  }
-  return mask;
-}
-
-std::uint32_t buttons_of(Table& table, const char* key) {
-  std::uint32_t mask = 0;
-  for (const double number : table.numbers(key, {0.0, kMostButtons - 1.0}, "")) {
-    if (number != std::floor(number)) {
-      table.reject(key, fmt::format("a list with {}", number), "numbers of buttons, from 0");
-      continue;
-    }
-    mask |= std::uint32_t{1} << static_cast<unsigned>(number);
+  for (const int code : read_window_keys(table, key)) {
+    mask |= bits.bit_of(code);
   }
   return mask;
 }
@@ -72,7 +55,7 @@ Choice read_choice(Table& table, std::size_t place, Means& means) {
     choice.hint = names.empty() ? "" : names.front();
   }
   if (table.has("buttons")) {
-    choice.buttons = buttons_of(table, "buttons");
+    choice.buttons = read_bits(table, "buttons");
   }
   if (table.has("touch")) {
     read_touch(table, means, choice);

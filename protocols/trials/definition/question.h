@@ -14,7 +14,7 @@ namespace haptrial::protocols {
 /// The keys of the participant's window that a definition uses, a bit of DeviceReading::keys each.
 class KeyBits {
  public:
-  static constexpr std::size_t kMost = 32;
+  static constexpr std::size_t kMost = 31;  // the last bit pauses a playback
   /// The bit of a key's code; a new one gets the next. @throws InputError beyond kMost keys
   std::uint32_t bit_of(int code);
   /// The bits of held keys; keys that nobody asked for have none.

@@ -10,6 +10,7 @@
 #include "core/psychometric/definition/read_tracks.h"
 #include "core/scene/needed_damping.h"
 #include "core/sound/cues/read_cues.h"
+#include "protocols/definition/window_keys.h"
 #include "protocols/trials/definition/check_definition.h"
 #include "protocols/trials/definition/defaults.h"
 #include "protocols/trials/definition/presented.h"
@@ -231,6 +232,21 @@ void plan(TrialsDefinition& d) {
   d.design.repetitions = 1;
 }
 
+/// What ends a stage may be a key that answers no question.
+void note_keys_of_stages(Table& root, KeyBits& keys) {
+  if (!root.has("stages")) {
+    return;
+  }
+  for (Table& stage : root.tables("stages")) {
+    if (stage.has("until") && stage.table("until").has("keys")) {
+      Table until = stage.table("until");
+      for (const int code : read_window_keys(until, "keys")) {
+        keys.bit_of(code);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void read_trials_definition(Table& root, std::string_view file_name, TrialsDefinition& d) {
@@ -244,6 +260,7 @@ void read_trials_definition(Table& root, std::string_view file_name, TrialsDefin
   d.groups = study_groups(root.source(), file_name);
   read_all_objects(root, d);
   d.questions = read_questions(root, d.keys);
+  note_keys_of_stages(root, d.keys);
   d.tracks = psychometric::read_tracks(root);
   d.script = read_level_script(root);
   d.order = read_trial_design(root, !d.tracks.empty());

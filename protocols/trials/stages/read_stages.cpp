@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/definition/table.h"
+#include "core/base/definition/table_vector.h"
 #include "core/base/random.h"
 #include "core/scene/read/number_source.h"
 
@@ -18,7 +19,6 @@ constexpr double kLongest = 3600.0;  // [s]
 constexpr Bounds kDuration{0.0, kLongest, false};
 constexpr Bounds kTimeoutBounds{0.0, kLongest, true};
 constexpr Bounds kSpeed{0.0, 10.0, true};
-constexpr int kMostButtons = 31;
 
 constexpr std::array<std::pair<const char*, Consequence>, 3> kConsequences{
     {{"abort", Consequence::kAbort},
@@ -112,14 +112,6 @@ class StageReader {
     return static_cast<int>(found - known.begin());
   }
 
-  std::uint32_t bits(Table& table, const char* key) {
-    std::uint32_t mask = 0;
-    for (const double number : table.numbers(key, {0.0, kMostButtons, false}, "")) {
-      mask |= std::uint32_t{1} << static_cast<unsigned>(number);
-    }
-    return mask;
-  }
-
   void read_until(Table& table) {
     Until& until = result_.stage.until;
     int asked = 0;
@@ -141,10 +133,10 @@ class StageReader {
       until.speed_above = number(table, "speed_above", kSpeed, "m/s");
     }
     if (has("buttons")) {
-      until.buttons = bits(table, "buttons");
+      until.buttons = read_bits(table, "buttons");
     }
     if (has("keys")) {
-      until.keys = bits(table, "keys");
+      until.keys = source_.keys ? source_.keys(table, "keys") : 0;
     }
     waits_ = asked > 0;
     if (has("time")) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -37,6 +38,8 @@ struct StageSource {
   RandomStream* random{nullptr};      // draws durations "for = [0.5, 1.0]"; null: the shortest
   std::vector<std::string> sounds{};  // by index
   std::vector<std::string> sights{};  // what can be shown; empty: anything
+  /// The bits of a list of keys of the window by their names. Null: no keys are known.
+  std::function<std::uint32_t(Table&, const std::string&)> keys{};
 };
 
 /// Reads the tables [[stages]]. Problems are noted in the table; keys in brackets are optional.
@@ -46,8 +49,8 @@ struct StageSource {
 ///     [show]    names, or texts such as "$seen"; "null" is nothing
 ///     until     one or more of: time [s], inside (a region, or several), contact (a field, or
 ///               several), speed_below,
-///               speed_above [m/s], buttons, keys (numbers from 0); [for] = time for which they
-///               hold [s], or [shortest, longest]
+///               speed_above [m/s], buttons (numbers from 0), keys (of the window, names); [for] =
+///               time for which they hold [s], or [shortest, longest]
 ///     [timeout] after [s], then = "abort", "repeat" or "go on"
 ///     [require] max_of = "depth", "force" (with field) or "speed", at_least, else = as then
 ///     [onset]   speed_above [m/s]

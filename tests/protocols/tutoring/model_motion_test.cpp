@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <span>
+#include <vector>
+
 #include "core/base/error.h"
+#include "protocols/tutoring/tutored_pass.h"
 #include "tests/support/message_of.h"
 
 namespace haptrial::protocols {
@@ -49,6 +53,66 @@ TEST(PlaybackTest, AtHalfTheSpeedPlacesAndForcesAreTheSameAndVelocitiesHalf) {
   EXPECT_TRUE(playback.now().force.isZero(0.0));
   EXPECT_TRUE(playback.now().tool.velocity.isZero(0.0));
   EXPECT_EQ(playback.now().tool.position.x(), 1.0);
+}
+
+TEST(PlaybackTest, WhileItWaitsItStandsAndItsForceStays) {
+  const ModelMotion motion = accelerating();
+  Playback playback(motion, 1.0, 0.5);
+  const control::Partner before = playback.now();
+  playback.wait(true);
+  for (int i = 0; i < 100; ++i) {
+    playback.step(1e-3);
+    ASSERT_EQ(playback.now().tool.position, before.tool.position);
+    ASSERT_TRUE(playback.now().tool.velocity.isZero(0.0));
+    ASSERT_EQ(playback.now().force, before.force);
+  }
+  playback.wait(false);
+  EXPECT_EQ(playback.now().tool.velocity, before.tool.velocity);
+  playback.step(1e-3);
+  EXPECT_NEAR(playback.time(), 0.501, 1e-12);
+}
+
+/// A pass that runs for a second.
+class PlainPass final : public Pass {
+ public:
+  void begin(std::uint64_t) noexcept override {}
+  PassOutput tick(const Readings&, double) noexcept override {
+    PassOutput out;
+    out.stage = record::Stage::kRun;
+    ++ticks_;
+    return out;
+  }
+  PassState state() const noexcept override {
+    return ticks_ < 1000 ? PassState::kRunning : PassState::kCompleted;
+  }
+
+ private:
+  int ticks_{0};
+};
+
+TEST(TutoredPassTest, ARecordedRunWaitsWhileThePauseIsAskedForInAnyProtocol) {
+  const ModelMotion motion = accelerating();
+  TutoringOptions options;
+  options.pause_buttons = 2;
+  TutoringLog log(4096, 4);
+  PlainPass inner;
+  TutoredPass pass(inner, options, motion, 0.0, log);
+  pass.begin(0);
+  for (int i = 0; pass.state() == PassState::kRunning; ++i) {
+    device::DeviceReading reading;
+    reading.buttons = i >= 200 && i < 350 ? 2 : 1;
+    reading.keys = i >= 400 && i < 450 ? kPauseBit : 0;
+    pass.tick(reading, 1e-3);
+  }
+  std::vector<record::TutoringRow> rows;
+  log.flush([&rows](std::span<const record::TutoringRow> some) {
+    rows.insert(rows.end(), some.begin(), some.end());
+  });
+  ASSERT_EQ(rows.size(), 1000u);
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const bool waits = (i > 200 && i <= 350) || (i > 400 && i <= 450);
+    ASSERT_NEAR(rows[i].time - rows[i - 1].time, waits ? 0.0 : 1e-3, 1e-12) << i;
+  }
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ TEST(BoneDefinitionTest, EachMistakeGetsASentence) {
   EXPECT_THAT(refusal({{"handle", "handle = [0.0, 0.0, 0.0]"}}), HasSubstr("along the handle"));
   EXPECT_THAT(refusal({{"force_limit", "force_limit = 9.5"}}),
               HasSubstr("at most envelope.max_force, 9"));
-  EXPECT_THAT(refusal({{"next_tool", "next_tool = [1.5]"}}), HasSubstr("numbers of buttons"));
+  EXPECT_THAT(refusal({{"next_tool", "next_tool = [1.5]"}}), HasSubstr("those of buttons"));
   EXPECT_THAT(refusal({{"carry", "carry = [\"pedal\"]"}}), HasSubstr("space, enter, A to Z"));
   EXPECT_THAT(refusal({{"carry", "juggle = [\"J\"]"}}), HasSubstr("keys.juggle"));
   EXPECT_THAT(refusal({{"up", "up = [0.0, 0.17, 0.084]"}}), HasSubstr("across the view"));

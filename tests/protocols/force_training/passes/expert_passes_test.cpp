@@ -38,6 +38,7 @@ struct Hand {
                       test::FreeMass::Rule::kSymplectic,
                       15.0};
   std::uint32_t buttons{0};
+  std::uint32_t keys{0};
 };
 
 template <class During>
@@ -49,6 +50,7 @@ std::vector<Moment> run(TrajectoryPass& pass, During&& during) {
     const PointState tool = hand.mass.state();
     device::DeviceReading reading{tool};
     reading.buttons = hand.buttons;
+    reading.keys = hand.keys;
     moments.push_back({100 + moments.size(), tool, pass.tick(reading, kDt)});
     const Vector3d own{0.0, -500.0 * tool.position.y() - 30.0 * tool.velocity.y(), 0.0};
     hand.mass.step(moments.back().out.force + own, kDt);
@@ -115,14 +117,21 @@ TEST(PlaybackTrainingTest, ItTakesTheLeadWithoutAStep) {
   }
 }
 
-TEST(PlaybackTrainingTest, TheExpertWaitsForALostHandAndWhileAButtonIsPressed) {
-  const auto pass = make_training_pass(kPlayback, stimulus_of_study(), {}, 7);
+GuidanceParameters waiting_for_buttons() {
+  GuidanceParameters p;
+  p.tutoring.pause_buttons = 0b101;
+  return p;
+}
+
+TEST(PlaybackTrainingTest, TheExpertWaitsForALostHandAndWhileAButtonOrKeyOfThePauseIsHeld) {
+  const auto pass = make_training_pass(kPlayback, stimulus_of_study(), waiting_for_buttons(), 7);
   const auto log = large_log();
   pass->record_expert(*log);
   int ran = 0;
   const auto moments = run(*pass, [&ran](const Moment& m, Hand& hand) {
     ran += m.out.stage == Stage::kRun ? 1 : 0;
-    hand.buttons = ran >= 1000 && ran < 1700 ? 1 : 0;
+    hand.buttons = ran >= 1000 && ran < 1700 ? 4 : 2;  // the button between means nothing
+    hand.keys = ran >= 2000 && ran < 2400 ? kPauseBit : 1;
     if (ran >= 3000 && ran < 6000) {  // it holds on to where it was
       hand.mass = test::FreeMass(1.0, {m.tool.position, Vector3d::Zero()},
                                  test::FreeMass::Rule::kSymplectic, 15.0);
@@ -134,14 +143,14 @@ TEST(PlaybackTrainingTest, TheExpertWaitsForALostHandAndWhileAButtonIsPressed) {
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const bool waits = rows[i].time == rows[i - 1].time;
     waited += waits ? 1 : 0;
-    if (i > 1001 && i < 1700) {
+    if ((i > 1001 && i < 1700) || (i > 2001 && i < 2400)) {
       ASSERT_TRUE(waits) << i;
     }
     const Vector3d& hand = moments.at(rows[i].sequence - 100).tool.position;
     const Vector3d away = rows[i].position - hand;
     EXPECT_LT(std::hypot(away.x(), away.z()), 0.0301) << "it is never left farther behind";
   }
-  EXPECT_GT(waited, 700 + 500);
+  EXPECT_GT(waited, 700 + 400 + 500);
 }
 
 TEST(PlaybackTrainingTest, AHandThatNeverComesEndsThePass) {
@@ -228,7 +237,9 @@ TEST(ExpertPassesTest, InstructionsAndPicturesFollowTheCondition) {
 }
 
 TEST(ExpertPassesTest, WhatWasSeenFollowsFromTheRecordAlsoOverAPause) {
-  const auto pass = make_training_pass(kWatchedPlayback, stimulus_of_study(), at_speed(0.8), 7);
+  GuidanceParameters waiting = waiting_for_buttons();
+  waiting.tutoring.speed = 0.8;
+  const auto pass = make_training_pass(kWatchedPlayback, stimulus_of_study(), waiting, 7);
   const auto log = large_log();
   pass->record_expert(*log);
   int ran = 0;

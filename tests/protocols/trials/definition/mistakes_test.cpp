@@ -1,6 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bit>
+
+#include "protocols/definition/window_keys.h"
 #include "tests/protocols/trials/definition/small_definition.h"
 
 namespace haptrial::protocols::mistakes_test {
@@ -55,6 +58,31 @@ TEST(TrialMistakesTest, StagesWithoutAnEnd) {
   EXPECT_THAT(
       problems_of_trials(with(kSmall, "until = { time = 0.2 }", "until = { contact = \"floor\" }")),
       Contains(HasSubstr("may never come; add timeout")));
+}
+
+TEST(TrialMistakesTest, AKeyThatEndsAStageIsNamedAndMayAnswerNothing) {
+  const auto ended_by = [](const std::string& keys) {
+    return with(kSmall, "until = { time = 0.2 }",
+                "timeout = { after = 9.0, then = \"abort\" }\nuntil = { keys = " + keys + " }");
+  };
+  TrialsDefinition d;
+  read_small(ended_by("[\"enter\"]"), d);
+  EXPECT_EQ(std::popcount(d.functions_of({kEnterKey})), 1);
+  EXPECT_EQ(d.functions_of({kEnterKey}) & d.functions_of({'1'}), 0u);
+  EXPECT_THAT(problems_of_trials(ended_by("[\"enter\"]")), IsEmpty());
+  EXPECT_THAT(problems_of_trials(ended_by("[\"return\"]")),
+              Contains(AllOf(HasSubstr("stages[1].until.keys"), HasSubstr("'return'"),
+                             HasSubstr("space, enter, A to Z"))));
+}
+
+TEST(TrialMistakesTest, AKeyThatPausesAPlaybackHasNoOtherFunction) {
+  EXPECT_THAT(problems_of_trials(kSmall + "[tutoring]\npause_keys = [\"P\"]\n"), IsEmpty());
+  EXPECT_THAT(problems_of_trials(kSmall + "[tutoring]\npause_keys = [\"1\"]\n"),
+              Contains(AllOf(HasSubstr("tutoring.pause_keys"), HasSubstr("nothing else"))));
+  TrialsDefinition d;
+  read_small(kSmall + "[tutoring]\npause_keys = [\"P\"]\n", d);
+  EXPECT_EQ(d.bits_of({'P'}), kPauseBit);
+  EXPECT_EQ(d.bits_of({'P', '1'}), kPauseBit | d.functions_of({'1'}));
 }
 
 TEST(TrialMistakesTest, ResponsesWithoutChoices) {
