@@ -32,7 +32,8 @@ std::uint32_t read_bits(Table& table, std::string_view key) {
   std::uint32_t mask = 0;
   for (const double number : table.numbers(key, {0.0, kLast}, "")) {
     if (number != std::floor(number)) {
-      table.reject(key, fmt::format("a list with {}", number), "whole numbers, such as those of buttons from 0");
+      table.reject(key, fmt::format("a list with {}", number),
+                   "whole numbers, such as those of buttons from 0");
     } else {
       mask |= std::uint32_t{1} << static_cast<unsigned>(number);
     }
