@@ -6,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/base/one_processor.h"
 #include "core/base/random.h"
 #include "core/network/channel/simulated_link.h"
 
@@ -53,6 +54,7 @@ SessionSummary run_taught_session(const SessionRequest& request,
   teaches.file = request.file.parent_path() / folder / request.file.filename();
   teaches.frames_per_pass = 0;
   teaches.ticks = nullptr;
+  const OneProcessor beside;  // their ticks take turns
   std::exception_ptr failure;
   std::thread teacher([&] {
     try {
