@@ -6,6 +6,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "core/render/bone/bone_layer.h"
 #include "core/render/bone/bone_shaders.h"
 #include "core/render/gl/gl_program.h"
 
@@ -31,12 +32,14 @@ DustDrawing::DustDrawing(const Gl& gl)
       to_clip_(gl.get_uniform_location(program_, "to_clip")),
       colour_(gl.get_uniform_location(program_, "dust")),
       quads_(gl, sizeof(bone::DustQuad)) {
+  gl_.use_program(program_);
+  gl_.uniform1i(gl.get_uniform_location(program_, "openness"), BoneLayer::kOpenness);
   gl_.gen_vertex_arrays(1, &array_);
   gl_.bind_vertex_array(array_);
   quads_.bind(GL_ARRAY_BUFFER);
   for (unsigned index = 0; index < 2; ++index) {
     gl_.enable_vertex_attrib_array(index);
-    gl_.vertex_attrib_divisor(index, 1);
+    gl_.vertex_attrib_divisor(index, kGrains);
   }
   gl_.vertex_attrib_pointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(bone::DustQuad), nullptr);
   gl_.vertex_attrib_pointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(bone::DustQuad),
@@ -50,7 +53,7 @@ DustDrawing::~DustDrawing() {
 }
 
 void DustDrawing::draw(std::span<const bone::DustQuad> dust, const EyeView& view,
-                       const Colour& colour) {
+                       const Colour& colour, bool shaded) {
   if (dust.empty()) {
     return;
   }
@@ -67,9 +70,9 @@ void DustDrawing::draw(std::span<const bone::DustQuad> dust, const EyeView& view
   gl_.uniform_matrix4fv(to_eye_, 1, GL_FALSE, to_eye.data());
   gl_.uniform_matrix4fv(to_clip_, 1, GL_FALSE, to_clip.data());
   gl_.uniform4f(colour_, static_cast<float>(colour.red), static_cast<float>(colour.green),
-                static_cast<float>(colour.blue), 1.0F);
+                static_cast<float>(colour.blue), shaded ? 1.0F : 0.0F);
   gl_.bind_vertex_array(array_);
-  gl_.draw_arrays_instanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<int>(dust.size()));
+  gl_.draw_arrays_instanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<int>(kGrains * dust.size()));
   gl_.bind_vertex_array(0);
 }
 

@@ -24,7 +24,9 @@ class DustDrawing {
   DustDrawing(const DustDrawing&) = delete;
   DustDrawing& operator=(const DustDrawing&) = delete;
 
-  void draw(std::span<const bone::DustQuad> dust, const EyeView& view, const Colour& colour);
+  /// @param shaded  the openness of a BoneLayer, which is bound, is that of this picture
+  void draw(std::span<const bone::DustQuad> dust, const EyeView& view, const Colour& colour,
+            bool shaded);
 
  private:
   Gl gl_;

@@ -48,12 +48,11 @@ PixelBox pixels_of(const Eigen::AlignedBox3d& box, const Eigen::Matrix4d& to_cli
   return pixels.isEmpty() ? PixelBox() : pixels;
 }
 
-BoneLayer::BoneLayer(const Gl& gl) : gl_(gl) {
+BoneLayer::BoneLayer(const Gl& gl) : gl_(gl), antialias_(gl) {
   gl_.gen_textures(static_cast<int>(textures_.size()), textures_.data());
   for (Gl::Name* framebuffer : {&kept_, &openness_, &shaded_, &over_}) {
     gl_.gen_framebuffers(1, framebuffer);
   }
-  gl_.gen_renderbuffers(1, &over_colour_);
   gl_.gen_renderbuffers(1, &over_depth_);
 }
 
@@ -62,16 +61,15 @@ BoneLayer::~BoneLayer() {
   for (const Gl::Name* framebuffer : {&kept_, &openness_, &shaded_, &over_}) {
     gl_.delete_framebuffers(1, framebuffer);
   }
-  gl_.delete_renderbuffers(1, &over_colour_);
   gl_.delete_renderbuffers(1, &over_depth_);
 }
 
-void BoneLayer::make_texture(int which, int format, Gl::Enum channels, Gl::Enum type) {
+void BoneLayer::make_texture(int which, int format, Gl::Enum channels, Gl::Enum type, int filter) {
   gl_.active_texture(GL_TEXTURE0 + static_cast<Gl::Enum>(which));
   gl_.bind_texture(GL_TEXTURE_2D, textures_[static_cast<std::size_t>(which)]);
   gl_.tex_image_2d(GL_TEXTURE_2D, 0, format, width_, height_, 0, channels, type, nullptr);
-  gl_.tex_parameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  gl_.tex_parameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  gl_.tex_parameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
+  gl_.tex_parameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
 }
 
 void BoneLayer::attach(Gl::Name framebuffer, Gl::Enum attachment, Gl::Name texture) const {
@@ -90,13 +88,14 @@ void BoneLayer::check_complete() {
 
 void BoneLayer::make_room() {
   for (const int which : {kColour, kNormal, kShaded}) {
-    make_texture(which, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE);
+    make_texture(which, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST);
   }
-  make_texture(kOpenness, GL_R8, GL_RED, GL_UNSIGNED_BYTE);
-  make_texture(kDepth, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT);
+  make_texture(kOver, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, GL_LINEAR);
+  gl_.tex_parameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  gl_.tex_parameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  make_texture(kOpenness, GL_R8, GL_RED, GL_UNSIGNED_BYTE, GL_NEAREST);
+  make_texture(kDepth, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, GL_NEAREST);
   gl_.active_texture(GL_TEXTURE0);
-  gl_.bind_renderbuffer(GL_RENDERBUFFER, over_colour_);
-  gl_.renderbuffer_storage(GL_RENDERBUFFER, GL_RGBA8, width_, height_);
   gl_.bind_renderbuffer(GL_RENDERBUFFER, over_depth_);
   gl_.renderbuffer_storage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width_, height_);
   gl_.bind_renderbuffer(GL_RENDERBUFFER, 0);
@@ -105,8 +104,7 @@ void BoneLayer::make_room() {
   check_complete();
   attach(shaded_, GL_COLOR_ATTACHMENT0, textures_[kShaded]);
   check_complete();
-  gl_.bind_framebuffer(GL_FRAMEBUFFER, over_);
-  gl_.framebuffer_renderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, over_colour_);
+  attach(over_, GL_COLOR_ATTACHMENT0, textures_[kOver]);
   gl_.framebuffer_renderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, over_depth_);
   check_complete();
   attach(kept_, GL_COLOR_ATTACHMENT0, textures_[kColour]);
@@ -168,15 +166,19 @@ void BoneLayer::copy() const {
   bind_textures();
 }
 
-void BoneLayer::show() const {
+void BoneLayer::show(bool smooth) const {
   gl_.disable(GL_SCISSOR_TEST);
   for (const int which : {kOpenness, kDepth, kNormal, kColour}) {
     gl_.active_texture(GL_TEXTURE0 + static_cast<Gl::Enum>(which));
     gl_.bind_texture(GL_TEXTURE_2D, 0);
   }
   gl_.bind_framebuffer(GL_DRAW_FRAMEBUFFER, static_cast<Gl::Name>(shown_in_));
-  gl_.blit_framebuffer(0, height_, width_, 0, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT,
-                       GL_NEAREST);
+  if (smooth) {
+    antialias_.draw(textures_[kOver], width_, height_);
+  } else {
+    gl_.blit_framebuffer(0, height_, width_, 0, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT,
+                         GL_NEAREST);
+  }
   gl_.bind_framebuffer(GL_FRAMEBUFFER, static_cast<Gl::Name>(shown_in_));
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 
+#include "core/render/gl/antialias.h"
 #include "core/render/gl/gl.h"
 
 namespace haptrial::render {
@@ -21,7 +22,8 @@ PixelBox pixels_of(const Eigen::AlignedBox3d& box, const Eigen::Matrix4d& to_cli
 /// normals and depth, how open each pixel lies, and the bones shaded by that. A copy of these is
 /// what changes in every frame is drawn over. All are upside down: copied to a framebuffer of
 /// OSMesa's, whose rows run the other way, they are then copied as they are, 25 times as fast. The
-/// copies are exact. One thread, with the context current.
+/// copies are exact, but for edges that are smoothed as they are shown. One thread, with the
+/// context current.
 class BoneLayer {
  public:
   explicit BoneLayer(const Gl& gl);
@@ -43,8 +45,8 @@ class BoneLayer {
   /// Later drawing goes over a copy of the shaded bones; it may read the same textures.
   void copy() const;
   /// Copies that to the lower left of the framebuffer that was bound at begin(), the right way up,
-  /// and binds it again.
-  void show() const;
+  /// and binds it again. @param smooth  with its edges smoothed, if not exactly
+  void show(bool smooth) const;
 
   static constexpr int kColour = 0;
   static constexpr int kNormal = 1;
@@ -53,20 +55,21 @@ class BoneLayer {
 
  private:
   void make_room();
-  void make_texture(int which, int format, Gl::Enum channels, Gl::Enum type);
+  void make_texture(int which, int format, Gl::Enum channels, Gl::Enum type, int filter);
   void attach(Gl::Name framebuffer, Gl::Enum attachment, Gl::Name texture) const;
   void check_complete();
   void bind_textures() const;
 
   static constexpr int kShaded = 4;
+  static constexpr int kOver = 5;
   Gl gl_;
-  std::array<Gl::Name, 5> textures_{};
+  Antialias antialias_;
+  std::array<Gl::Name, 6> textures_{};
   Gl::Name kept_{0};  // framebuffers
   Gl::Name openness_{0};
   Gl::Name shaded_{0};
   Gl::Name over_{0};
-  Gl::Name over_colour_{0};  // renderbuffers
-  Gl::Name over_depth_{0};
+  Gl::Name over_depth_{0};  // renderbuffer
   int width_{0};
   int height_{0};
   int shown_in_{0};  // framebuffer

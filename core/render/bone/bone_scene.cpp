@@ -255,7 +255,7 @@ void BoneScene::Impl::draw_over(const BoneFrame& frame, const EyeView& view, con
   gl.blend_func_separate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   gl.depth_mask(GL_FALSE);
   draw_meshes(frame, view, true);
-  dust.draw(frame.dust, view, style.dust);
+  dust.draw(frame.dust, view, style.dust, is_shaded);
   gl.depth_mask(GL_TRUE);
 }
 
@@ -308,8 +308,8 @@ void BoneScene::Impl::end() const {
   gl.disable(GL_CULL_FACE);
   gl.cull_face(GL_BACK);
   gl.disable(GL_BLEND);
+  layer.show(style.smooth_edges);
   gl.use_program(0);
-  layer.show();
 }
 
 BoneScene::BoneScene(const Gl& gl, const BoneStyle& style,

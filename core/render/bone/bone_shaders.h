@@ -35,29 +35,58 @@ void main() {
   normal = vec4(0.5 * n + 0.5, 1.0);
 })";
 
-/// Squares that face the eye, one an instance, faded to a disc.
+/// Grains of dust, kGrains a cell: balls that face the eye, each a little off the middle of its
+/// cell by a random way that follows from where the cell is, so that they make no lattice.
+inline constexpr unsigned kGrains = 3;
 inline constexpr const char* kDustVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec2 size_and_alpha;
 uniform mat4 to_eye;
 uniform mat4 to_clip;
 out vec2 from_middle;
-out float alpha;
+flat out vec2 alpha_and_shade;
+uint mixed(uint x) {
+  x = (x ^ (x >> 16)) * 0x7feb352dU;
+  x = (x ^ (x >> 15)) * 0x846ca68bU;
+  return x ^ (x >> 16);
+}
+float between(float low, float high, inout uint state) {
+  state = mixed(state + 0x9e3779b9U);
+  return mix(low, high, float(state >> 8) / 16777216.0);
+}
 void main() {
+  uvec3 bits = floatBitsToUint(place);
+  uint state = mixed(bits.x ^ mixed(bits.y ^ mixed(bits.z + uint(gl_InstanceID % 3))));
+  float size = size_and_alpha.x;
+  vec3 off;
+  off.x = between(-0.5, 0.5, state);
+  off.y = between(-0.5, 0.5, state);
+  off.z = between(-0.5, 0.5, state);
+  float radius = 0.5 * size * sqrt(size_and_alpha.y) * between(0.6, 1.15, state);
   from_middle = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0;
-  vec4 p = to_eye * vec4(place, 1.0);
-  p.xy += 0.5 * size_and_alpha.x * from_middle;
-  alpha = size_and_alpha.y;
+  vec4 p = to_eye * vec4(place + size * off, 1.0);
+  p.xy += radius * from_middle;
+  alpha_and_shade = vec2(sqrt(size_and_alpha.y), between(0.88, 1.0, state));
   gl_Position = to_clip * p;
 })";
 
+/// Lit as a ball by a lamp beside the eye, and darker where the bone behind is closed in.
 inline constexpr const char* kDustFragmentShader = R"(#version 330 core
 in vec2 from_middle;
-in float alpha;
-uniform vec4 dust;
+flat in vec2 alpha_and_shade;
+uniform vec4 dust;  // and how much of the openness counts
+uniform sampler2D openness;
 out vec4 colour;
+const vec3 kLamp = vec3(0.36, 0.48, 0.8);
 void main() {
-  colour = vec4(dust.rgb, alpha * clamp(1.0 - dot(from_middle, from_middle), 0.0, 1.0));
+  float squared = dot(from_middle, from_middle);
+  if (squared > 1.0) {
+    discard;
+  }
+  vec3 n = vec3(from_middle, sqrt(1.0 - squared));
+  float open = mix(1.0, texelFetch(openness, ivec2(gl_FragCoord.xy), 0).r, dust.a);
+  float light = open * alpha_and_shade.y * (0.5 + 0.55 * max(dot(n, kLamp), 0.0));
+  colour = vec4(dust.rgb * light, alpha_and_shade.x * (1.0 - squared * squared));
 })";
 
 }  // namespace haptrial::render
