@@ -48,20 +48,47 @@ PixelBox pixels_of(const Eigen::AlignedBox3d& box, const Eigen::Matrix4d& to_cli
   return pixels.isEmpty() ? PixelBox() : pixels;
 }
 
+std::vector<PixelBox> strips_of(std::span<const PixelBox> boxes) {
+  std::vector<int> cuts;
+  for (const PixelBox& box : boxes) {
+    if (!box.isEmpty()) {
+      cuts.push_back(box.min().x());
+      cuts.push_back(box.max().x() + 1);
+    }
+  }
+  std::ranges::sort(cuts);
+  std::vector<PixelBox> strips;
+  for (std::size_t i = 1; i < cuts.size(); ++i) {
+    PixelBox strip;
+    for (const PixelBox& box : boxes) {
+      if (!box.isEmpty() && box.min().x() <= cuts[i - 1] && box.max().x() >= cuts[i] - 1) {
+        strip.extend(Eigen::Vector2i(cuts[i - 1], box.min().y()));
+        strip.extend(Eigen::Vector2i(cuts[i] - 1, box.max().y()));
+      }
+    }
+    if (cuts[i] > cuts[i - 1] && !strip.isEmpty()) {
+      strips.push_back(strip);
+    }
+  }
+  return strips;
+}
+
 BoneLayer::BoneLayer(const Gl& gl) : gl_(gl), antialias_(gl) {
   gl_.gen_textures(static_cast<int>(textures_.size()), textures_.data());
-  for (Gl::Name* framebuffer : {&kept_, &openness_, &shaded_, &over_}) {
+  for (Gl::Name* framebuffer : {&kept_, &openness_, &shaded_, &over_, &smooth_}) {
     gl_.gen_framebuffers(1, framebuffer);
   }
   gl_.gen_renderbuffers(1, &over_depth_);
+  gl_.gen_renderbuffers(1, &smooth_depth_);
 }
 
 BoneLayer::~BoneLayer() {
   gl_.delete_textures(static_cast<int>(textures_.size()), textures_.data());
-  for (const Gl::Name* framebuffer : {&kept_, &openness_, &shaded_, &over_}) {
+  for (const Gl::Name* framebuffer : {&kept_, &openness_, &shaded_, &over_, &smooth_}) {
     gl_.delete_framebuffers(1, framebuffer);
   }
   gl_.delete_renderbuffers(1, &over_depth_);
+  gl_.delete_renderbuffers(1, &smooth_depth_);
 }
 
 void BoneLayer::make_texture(int which, int format, Gl::Enum channels, Gl::Enum type, int filter) {
@@ -87,7 +114,7 @@ void BoneLayer::check_complete() {
 }
 
 void BoneLayer::make_room() {
-  for (const int which : {kColour, kNormal, kShaded}) {
+  for (const int which : {kColour, kNormal, kShaded, kSmooth}) {
     make_texture(which, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST);
   }
   make_texture(kOver, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, GL_LINEAR);
@@ -96,8 +123,10 @@ void BoneLayer::make_room() {
   make_texture(kOpenness, GL_R8, GL_RED, GL_UNSIGNED_BYTE, GL_NEAREST);
   make_texture(kDepth, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, GL_NEAREST);
   gl_.active_texture(GL_TEXTURE0);
-  gl_.bind_renderbuffer(GL_RENDERBUFFER, over_depth_);
-  gl_.renderbuffer_storage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width_, height_);
+  for (const Gl::Name depth : {over_depth_, smooth_depth_}) {
+    gl_.bind_renderbuffer(GL_RENDERBUFFER, depth);
+    gl_.renderbuffer_storage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width_, height_);
+  }
   gl_.bind_renderbuffer(GL_RENDERBUFFER, 0);
 
   attach(openness_, GL_COLOR_ATTACHMENT0, textures_[kOpenness]);
@@ -106,6 +135,9 @@ void BoneLayer::make_room() {
   check_complete();
   attach(over_, GL_COLOR_ATTACHMENT0, textures_[kOver]);
   gl_.framebuffer_renderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, over_depth_);
+  check_complete();
+  attach(smooth_, GL_COLOR_ATTACHMENT0, textures_[kSmooth]);
+  gl_.framebuffer_renderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, smooth_depth_);
   check_complete();
   attach(kept_, GL_COLOR_ATTACHMENT0, textures_[kColour]);
   attach(kept_, GL_COLOR_ATTACHMENT1, textures_[kNormal]);
@@ -166,6 +198,21 @@ void BoneLayer::copy() const {
   bind_textures();
 }
 
+void BoneLayer::smooth(int left, int width, std::vector<PixelBox> parts) const {
+  const Eigen::Vector2i corner(left, 0);
+  const Eigen::Vector2i around = Eigen::Vector2i::Constant(Antialias::kReach);
+  PixelBox area = all_pixels(width, height_);
+  area.translate(corner);
+  for (PixelBox& part : parts) {
+    if (!part.isEmpty()) {
+      part =
+          PixelBox(part.min() + corner - around, part.max() + corner + around).intersection(area);
+    }
+  }
+  gl_.bind_framebuffer(GL_FRAMEBUFFER, smooth_);
+  antialias_.draw(textures_[kOver], area, strips_of(parts));
+}
+
 void BoneLayer::show(bool smooth) const {
   gl_.disable(GL_SCISSOR_TEST);
   for (const int which : {kOpenness, kDepth, kNormal, kColour}) {
@@ -173,12 +220,9 @@ void BoneLayer::show(bool smooth) const {
     gl_.bind_texture(GL_TEXTURE_2D, 0);
   }
   gl_.bind_framebuffer(GL_DRAW_FRAMEBUFFER, static_cast<Gl::Name>(shown_in_));
-  if (smooth) {
-    antialias_.draw(textures_[kOver], width_, height_);
-  } else {
-    gl_.blit_framebuffer(0, height_, width_, 0, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT,
-                         GL_NEAREST);
-  }
+  gl_.bind_framebuffer(GL_READ_FRAMEBUFFER, smooth ? smooth_ : over_);
+  gl_.blit_framebuffer(0, height_, width_, 0, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT,
+                       GL_NEAREST);
   gl_.bind_framebuffer(GL_FRAMEBUFFER, static_cast<Gl::Name>(shown_in_));
 }
 

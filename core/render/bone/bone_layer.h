@@ -2,14 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <span>
+#include <vector>
 
 #include "core/render/gl/antialias.h"
 #include "core/render/gl/gl.h"
 
 namespace haptrial::render {
-
-/// Pixels from min() to max(), both included, from the lower left of a framebuffer.
-using PixelBox = Eigen::AlignedBox2i;
 
 PixelBox all_pixels(int width, int height);
 /// The pixels that a box may cover, with room for rounding; all of them where it reaches the
@@ -18,11 +17,14 @@ PixelBox all_pixels(int width, int height);
 PixelBox pixels_of(const Eigen::AlignedBox3d& box, const Eigen::Matrix4d& to_clip, int width,
                    int height);
 
+/// Boxes of which no two share a pixel, and that cover these: upright strips.
+std::vector<PixelBox> strips_of(std::span<const PixelBox> boxes);
+
 /// The pictures that a frame is put together from. Kept from frame to frame: the bones with their
 /// normals and depth, how open each pixel lies, and the bones shaded by that. A copy of these is
 /// what changes in every frame is drawn over. All are upside down: copied to a framebuffer of
 /// OSMesa's, whose rows run the other way, they are then copied as they are, 25 times as fast. The
-/// copies are exact, but for edges that are smoothed as they are shown. One thread, with the
+/// copies are exact. One thread, with the
 /// context current.
 class BoneLayer {
  public:
@@ -44,8 +46,13 @@ class BoneLayer {
   void shade_plainly() const;
   /// Later drawing goes over a copy of the shaded bones; it may read the same textures.
   void copy() const;
-  /// Copies that to the lower left of the framebuffer that was bound at begin(), the right way up,
-  /// and binds it again. @param smooth  with its edges smoothed, if not exactly
+  /// Smooths the edges of what was drawn over the copy, to a picture that is kept.
+  /// @param left, width  of an eye's picture  @param parts  of it, from its lower left, that are
+  /// not
+  ///                     as they were the last time
+  void smooth(int left, int width, std::vector<PixelBox> parts) const;
+  /// Copies what was drawn over the copy, or the smoothed picture, to the lower left of the
+  /// framebuffer that was bound at begin(), the right way up, and binds it again.
   void show(bool smooth) const;
 
   static constexpr int kColour = 0;
@@ -62,14 +69,17 @@ class BoneLayer {
 
   static constexpr int kShaded = 4;
   static constexpr int kOver = 5;
+  static constexpr int kSmooth = 6;
   Gl gl_;
   Antialias antialias_;
-  std::array<Gl::Name, 6> textures_{};
+  std::array<Gl::Name, 7> textures_{};
   Gl::Name kept_{0};  // framebuffers
   Gl::Name openness_{0};
   Gl::Name shaded_{0};
   Gl::Name over_{0};
-  Gl::Name over_depth_{0};  // renderbuffer
+  Gl::Name smooth_{0};
+  Gl::Name over_depth_{0};  // renderbuffers
+  Gl::Name smooth_depth_{0};
   int width_{0};
   int height_{0};
   int shown_in_{0};  // framebuffer

@@ -2,7 +2,7 @@
 
 #include <GL/glcorearb.h>
 
-#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -44,8 +44,38 @@ std::vector<LitCorner> lit_corners(const geometry::Mesh& mesh) {
   return corners;
 }
 
+std::vector<Eigen::AlignedBox3d> slabs_of(const geometry::Mesh& mesh) {
+  constexpr int kSlabs = 6;
+  Eigen::AlignedBox3d all;
+  for (const Eigen::Vector3d& vertex : mesh.vertices) {
+    all.extend(vertex);
+  }
+  std::vector<Eigen::AlignedBox3d> slabs(kSlabs);
+  Eigen::Index axis = 0;
+  const double length = all.isEmpty() ? 0.0 : all.sizes().maxCoeff(&axis);
+  const auto place = [&](double at) {
+    const double share = length > 0.0 ? (at - all.min()[axis]) / length : 0.0;
+    return std::clamp(static_cast<int>(kSlabs * share), 0, kSlabs - 1);
+  };
+  for (const geometry::Triangle& triangle : mesh.triangles) {
+    Eigen::AlignedBox3d box;
+    for (const std::int32_t v : triangle) {
+      box.extend(mesh.vertices[static_cast<std::size_t>(v)]);
+    }
+    const int last = place(box.max()[axis]);
+    for (int i = place(box.min()[axis]); i <= last; ++i) {
+      Eigen::AlignedBox3d cut = all;
+      cut.min()[axis] += length * i / kSlabs;
+      cut.max()[axis] = all.min()[axis] + length * (i + 1) / kSlabs;
+      cut = cut.intersection(box);
+      slabs[static_cast<std::size_t>(i)].extend(cut.isEmpty() ? box : cut);
+    }
+  }
+  return slabs;
+}
+
 BoneMesh::BoneMesh(const Gl& gl, std::shared_ptr<const geometry::Mesh> mesh)
-    : gl_(gl), mesh_(std::move(mesh)), corners_(gl, sizeof(LitCorner)) {
+    : gl_(gl), mesh_(std::move(mesh)), slabs_(slabs_of(*mesh_)), corners_(gl, sizeof(LitCorner)) {
   const std::vector<LitCorner> corners = lit_corners(*mesh_);
   count_ = static_cast<int>(corners.size());
   corners_.update(corners.size(), {}, [&](ItemRange range, std::byte* to) {

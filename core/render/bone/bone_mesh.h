@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <memory>
 #include <vector>
@@ -19,6 +20,10 @@ struct LitCorner {
 /// Three corners to a triangle. Normals are smooth over edges of less than 40 degrees.
 std::vector<LitCorner> lit_corners(const geometry::Mesh& mesh);
 
+/// Boxes that hold a mesh between them, cut across its longest side: less room than one where a
+/// long tool lies aslant.
+std::vector<Eigen::AlignedBox3d> slabs_of(const geometry::Mesh& mesh);
+
 /// A mesh in OpenGL. One thread, with the context current.
 class BoneMesh {
  public:
@@ -28,12 +33,14 @@ class BoneMesh {
   BoneMesh& operator=(const BoneMesh&) = delete;
 
   const geometry::Mesh* mesh() const noexcept { return mesh_.get(); }
+  const std::vector<Eigen::AlignedBox3d>& slabs() const noexcept { return slabs_; }
   /// Its colour is the constant value of attribute 2.
   void draw() const;
 
  private:
   Gl gl_;
   std::shared_ptr<const geometry::Mesh> mesh_;
+  std::vector<Eigen::AlignedBox3d> slabs_;
   GlBuffer corners_;
   int count_{0};
   Gl::Name array_{0};

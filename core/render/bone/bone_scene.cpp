@@ -48,6 +48,18 @@ bool is_same(const EyeView& a, const EyeView& b) {
   return a.view == b.view && a.projection == b.projection;
 }
 
+/// A box that holds the grains of all cells.
+Eigen::AlignedBox3d bounds_of(std::span<const bone::DustQuad> dust) {
+  constexpr double kAround = 1.1;  // times a cell's size
+  Eigen::AlignedBox3d bounds;
+  for (const bone::DustQuad& quad : dust) {
+    const Eigen::Vector3d around = Eigen::Vector3d::Constant(kAround * quad.size);
+    bounds.extend(Eigen::Vector3d(quad.position.cast<double>() - around));
+    bounds.extend(Eigen::Vector3d(quad.position.cast<double>() + around));
+  }
+  return bounds;
+}
+
 /// What of a frame's tools casts shadows, in W.
 std::vector<Capsule> capsules_of(const BoneFrame& frame) {
   std::vector<Capsule> all;
@@ -98,7 +110,8 @@ struct BoneScene::Impl {
             int height);
   void draw_bones(const BoneFrame& frame, const EyeView& view, const PixelBox& part, int width,
                   int height);
-  void draw_over(const BoneFrame& frame, const EyeView& view, const EyeArea& area);
+  std::vector<PixelBox> draw_over(const BoneFrame& frame, const EyeView& view, const EyeArea& area);
+  void smooth(std::vector<std::vector<PixelBox>> drawn, int across);
   void use(const EyeView& view) const;
   void draw_meshes(const BoneFrame& frame, const EyeView& view, bool translucent);
   void use(const EyeView& view, const Eigen::Isometry3d& pose) const;
@@ -117,6 +130,8 @@ struct BoneScene::Impl {
   BoneShading shading;
   std::vector<EyeView> seen_from;            // as the kept picture is
   bool is_shaded{false};                     // it is darker where it is closed in
+  std::vector<PixelBox> changed;             // of it in this frame, by eye
+  std::vector<std::vector<PixelBox>> over;   // where it was drawn over in the last frame, by eye
   std::map<std::uint32_t, DrawnBone> shown;  // in the kept picture
   std::map<std::uint32_t, std::unique_ptr<BoneObject>> bones;
   std::map<const geometry::Mesh*, std::unique_ptr<BoneMesh>> meshes;
@@ -244,8 +259,17 @@ void BoneScene::Impl::draw_bones(const BoneFrame& frame, const EyeView& view, co
   }
 }
 
-void BoneScene::Impl::draw_over(const BoneFrame& frame, const EyeView& view, const EyeArea& area) {
-  shading.draw_shadows(view, area, capsules_of(frame));
+/// @returns the pixels that may have changed by that, from the eye's lower left
+std::vector<PixelBox> BoneScene::Impl::draw_over(const BoneFrame& frame, const EyeView& view,
+                                                 const EyeArea& area) {
+  std::vector<PixelBox> parts = shading.draw_shadows(view, area, capsules_of(frame));
+  const Eigen::Matrix4d clip = view.projection * view.view;
+  for (const SceneMesh& mesh : frame.meshes) {
+    for (const Eigen::AlignedBox3d& slab : meshes.at(mesh.mesh.get())->slabs()) {
+      parts.push_back(pixels_of(slab, clip * mesh.pose.matrix(), area.width, area.height));
+    }
+  }
+  parts.push_back(pixels_of(bounds_of(frame.dust), clip, area.width, area.height));
   use(view);
   gl.disable(GL_BLEND);
   gl.depth_mask(GL_TRUE);
@@ -257,6 +281,19 @@ void BoneScene::Impl::draw_over(const BoneFrame& frame, const EyeView& view, con
   draw_meshes(frame, view, true);
   dust.draw(frame.dust, view, style.dust, is_shaded);
   gl.depth_mask(GL_TRUE);
+  return parts;
+}
+
+/// Smooths again what is not as it was, and what is near it.
+void BoneScene::Impl::smooth(std::vector<std::vector<PixelBox>> drawn, int across) {
+  over.resize(drawn.size());
+  for (std::size_t eye = 0; eye < drawn.size(); ++eye) {
+    std::vector<PixelBox> parts = drawn[eye];
+    parts.insert(parts.end(), over[eye].begin(), over[eye].end());
+    parts.push_back(changed[eye]);
+    layer.smooth(static_cast<int>(eye) * across, across, std::move(parts));
+  }
+  over = std::move(drawn);
 }
 
 /// Draws of the bones what is not as the kept picture has it. While the camera moves they are not
@@ -295,10 +332,14 @@ void BoneScene::Impl::keep(const BoneFrame& frame, const std::vector<EyeView>& v
   if (!shaded) {
     layer.shade_plainly();
   }
+  changed.assign(views.size(), all_pixels(across, height));
   for (std::size_t eye = 0; shaded && eye < views.size(); ++eye) {
     const EyeArea area{static_cast<int>(eye) * across, across, height};
     gl.viewport(area.left, 0, across, height);
     shading.draw(layer, views[eye], area, all ? all_pixels(across, height) : parts[eye]);
+    if (!all) {
+      changed[eye] = BoneShading::reached_by(parts[eye], across, height);
+    }
   }
 }
 
@@ -308,8 +349,8 @@ void BoneScene::Impl::end() const {
   gl.disable(GL_CULL_FACE);
   gl.cull_face(GL_BACK);
   gl.disable(GL_BLEND);
-  layer.show(style.smooth_edges);
   gl.use_program(0);
+  layer.show(style.smooth_edges && is_shaded);
 }
 
 BoneScene::BoneScene(const Gl& gl, const BoneStyle& style,
@@ -345,10 +386,14 @@ void BoneScene::draw(const BoneFrame& frame, int width, int height) {
                  static_cast<float>(ground.blue), 1.0F);
   scene.keep(frame, views, there, across, height);
   scene.layer.copy();
+  std::vector<std::vector<PixelBox>> drawn;
   for (std::size_t eye = 0; eye < views.size(); ++eye) {
     const EyeArea area{static_cast<int>(eye) * across, across, height};
     gl.viewport(area.left, 0, across, height);
-    scene.draw_over(frame, views[eye], area);
+    drawn.push_back(scene.draw_over(frame, views[eye], area));
+  }
+  if (scene.style.smooth_edges && scene.is_shaded) {
+    scene.smooth(std::move(drawn), across);
   }
   scene.end();
   gl.viewport(0, 0, width, height);

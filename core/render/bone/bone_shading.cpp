@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 
 #include "core/render/gl/gl_program.h"
@@ -150,7 +151,8 @@ const Eigen::Vector3d kLamp = Eigen::Vector3d(0.45, 0.6, 1.0).normalized();
 
 constexpr double kFarthest = 0.04;  // a shadow falls, fading [m]; as in the shader
 constexpr double kNearBy = 4.0;     // radii from which on nearness takes nothing; likewise
-constexpr double kSoftest = 0.01;   // its edge at the farthest: 0.25 of the way [m]
+constexpr double kSoftest = 0.01;   // its edge at the farthest: 0.25 of the way [m], ...
+constexpr double kEdge = 1.1;       // ... beyond so many radii; likewise
 
 float real(double number) { return static_cast<float>(number); }
 
@@ -217,14 +219,20 @@ void BoneShading::fill(const EyeArea& area, const PixelBox& part) const {
   gl_.enable(GL_DEPTH_TEST);
 }
 
+PixelBox BoneShading::reached_by(const PixelBox& part, int width, int height) {
+  if (part.isEmpty()) {
+    return part;
+  }
+  const Eigen::Vector2i around = Eigen::Vector2i::Constant(kReach);
+  return PixelBox(part.min() - around, part.max() + around).intersection(all_pixels(width, height));
+}
+
 void BoneShading::draw(const BoneLayer& layer, const EyeView& view, const EyeArea& area,
                        const PixelBox& part) const {
   if (part.isEmpty()) {
     return;
   }
-  const Eigen::Vector2i around = Eigen::Vector2i::Constant(kReach);
-  const PixelBox wide = PixelBox(part.min() - around, part.max() + around)
-                            .intersection(all_pixels(area.width, area.height));
+  const PixelBox wide = reached_by(part, area.width, area.height);
   const double reach = style_.occlusion_reach;
   const double pixels = 0.5 * reach * std::abs(view.projection(1, 1)) * area.height;
   gl_.disable(GL_BLEND);
@@ -239,15 +247,37 @@ void BoneShading::draw(const BoneLayer& layer, const EyeView& view, const EyeAre
   fill(area, wide);
 }
 
-void BoneShading::draw_shadows(const EyeView& view, const EyeArea& area,
-                               std::span<const Capsule> capsules) const {
+/// Where a capsule takes light, in boxes along it. @param from, to  its ends in the eye's frame
+static std::vector<PixelBox> darkened_by(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                                         double radius, const EyeView& view, const EyeArea& area) {
+  constexpr double kPiece = 0.01;  // of its length [m]
+  constexpr int kMostPieces = 8;
+  const int pieces = std::clamp(static_cast<int>((to - from).norm() / kPiece), 1, kMostPieces);
+  std::vector<PixelBox> boxes;
+  for (int i = 0; i < pieces; ++i) {
+    Eigen::AlignedBox3d dark;
+    for (const int end : {i, i + 1}) {
+      const Eigen::Vector3d middle = from + static_cast<double>(end) / pieces * (to - from);
+      const Eigen::Vector3d far = middle - kFarthest * kLamp;
+      dark.extend(Eigen::Vector3d(middle.array() - kNearBy * radius));
+      dark.extend(Eigen::Vector3d(middle.array() + kNearBy * radius));
+      dark.extend(Eigen::Vector3d(far.array() - (kEdge * radius + kSoftest)));
+      dark.extend(Eigen::Vector3d(far.array() + (kEdge * radius + kSoftest)));
+    }
+    boxes.push_back(pixels_of(dark, view.projection, area.width, area.height));
+  }
+  return boxes;
+}
+
+std::vector<PixelBox> BoneShading::draw_shadows(const EyeView& view, const EyeArea& area,
+                                                std::span<const Capsule> capsules) const {
   if (capsules.empty() || style_.shadow <= 0.0) {
-    return;
+    return {};
   }
   use(shadow_, view, area);
   gl_.uniform4f(shadow_.measures, real(kLamp.x()), real(kLamp.y()), real(kLamp.z()),
                 real(style_.shadow));
-  Eigen::AlignedBox3d dark;  // in the eye's frame
+  std::vector<PixelBox> dark;
   for (std::size_t i = 0; i < kMostCapsules; ++i) {
     const bool there = i < capsules.size();
     const Capsule capsule = there ? capsules[i] : Capsule{};
@@ -255,26 +285,21 @@ void BoneShading::draw_shadows(const EyeView& view, const EyeArea& area,
     const Eigen::Vector3d to = (view.view * capsule.to.homogeneous()).head<3>();
     gl_.uniform4f(from_[i], real(from.x()), real(from.y()), real(from.z()), real(capsule.radius));
     gl_.uniform4f(to_[i], real(to.x()), real(to.y()), real(to.z()), 0.0F);
-    const double around = kNearBy * capsule.radius + kSoftest;
-    for (const Eigen::Vector3d& end : {from, to}) {
-      for (const double way : {0.0, kFarthest}) {
-        const Eigen::Vector3d middle = end - way * kLamp;
-        if (there) {
-          dark.extend(Eigen::Vector3d(middle.array() - around));
-          dark.extend(Eigen::Vector3d(middle.array() + around));
-        }
-      }
+    if (there) {
+      std::ranges::copy(darkened_by(from, to, capsule.radius, view, area),
+                        std::back_inserter(dark));
     }
   }
   gl_.enable(GL_BLEND);
   gl_.blend_equation(GL_FUNC_ADD);
   gl_.blend_func_separate(GL_ZERO, GL_SRC_COLOR, GL_ZERO, GL_ONE);
   gl_.depth_mask(GL_FALSE);
-  const PixelBox part = pixels_of(dark, view.projection, area.width, area.height);
-  if (!part.isEmpty()) {
+  dark = strips_of(dark);
+  for (const PixelBox& part : dark) {
     fill(area, part);
   }
   gl_.depth_mask(GL_TRUE);
+  return dark;
 }
 
 }  // namespace haptrial::render

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <span>
+#include <vector>
 
 #include "core/render/bone/bone_camera.h"
 #include "core/render/bone/bone_layer.h"
@@ -32,6 +33,9 @@ class BoneShading {
   /// How far, in pixels, a change of the bones' picture reaches in the shaded one.
   static constexpr int kReach = 42;
 
+  /// The pixels of an eye's shaded picture that a changed part may reach.
+  static PixelBox reached_by(const PixelBox& part, int width, int height);
+
   explicit BoneShading(const Gl& gl, const BoneStyle& style);
   ~BoneShading();
   BoneShading(const BoneShading&) = delete;
@@ -44,8 +48,9 @@ class BoneShading {
   /// Over the layer's copy, before the tools: what they take of the bone's light. More than
   /// kMostCapsules are left out.
   /// @param capsules  in W
-  void draw_shadows(const EyeView& view, const EyeArea& area,
-                    std::span<const Capsule> capsules) const;
+  /// @returns the pixels that it may have darkened, from the eye's lower left
+  std::vector<PixelBox> draw_shadows(const EyeView& view, const EyeArea& area,
+                                     std::span<const Capsule> capsules) const;
   static constexpr std::size_t kMostCapsules = 4;
 
  private:

@@ -2,34 +2,39 @@
 
 #include <GL/glcorearb.h>
 
+#include <string>
+
 #include "core/render/gl/gl_program.h"
 
 namespace haptrial::render {
 namespace {
 
-constexpr const char* kVertexShader = R"(#version 330 core
+/// A triangle that covers the whole viewport, for each of the passes at a depth of its own.
+constexpr const char* kNearVertexShader = R"(#version 330 core
 void main() {
   gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
 })";
+constexpr const char* kFarVertexShader = R"(#version 330 core
+void main() {
+  gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.5, 1.0);
+})";
 
-/// Of the eight neighbours' brightness follows whether there is an edge, whether it runs across or
-/// up, and on which side of the pixel it lies. Its ends are looked for both ways; between them a
-/// straight edge would come half a pixel nearer, by how far the nearer end is. Only a pixel on the
-/// side to which the edge bends there takes a share of its neighbour.
-constexpr const char* kFragmentShader = R"(#version 330 core
+constexpr const char* kPicture = R"(#version 330 core
 uniform sampler2D picture;
-uniform vec4 size;  // of the picture [px], and of a pixel
+uniform vec4 area;  // its first and last pixels
 out vec4 result;
-const float kLeast = 0.04;   // of a difference that is an edge
-const float kShare = 0.125;  // and of the brightest
-const int kFarthest = 16;    // an end is looked for [px]
 float brightness(vec3 colour) { return dot(colour, vec3(0.299, 0.587, 0.114)); }
 float at_pixel(ivec2 at) {
-  return brightness(texelFetch(picture, clamp(at, ivec2(0), ivec2(size.xy) - 1), 0).rgb);
+  return brightness(texelFetch(picture, clamp(at, ivec2(area.xy), ivec2(area.zw)), 0).rgb);
 }
-float between(vec2 at) { return brightness(texture(picture, at * size.zw).rgb); }
+)";
+
+/// A pixel that is at no edge is as it was; what is left to the other pass are the edges.
+constexpr const char* kFlatShader = R"(
+const float kLeast = 0.04;   // of a difference that is an edge
+const float kShare = 0.125;  // and of the brightest
 void main() {
-  ivec2 at = ivec2(gl_FragCoord.x, size.y - gl_FragCoord.y);
+  ivec2 at = ivec2(gl_FragCoord.xy);
   result = texelFetch(picture, at, 0);
   float m = brightness(result.rgb);
   float n = at_pixel(at + ivec2(0, -1));
@@ -38,9 +43,29 @@ void main() {
   float e = at_pixel(at + ivec2(1, 0));
   float brightest = max(m, max(max(n, s), max(w, e)));
   float darkest = min(m, min(min(n, s), min(w, e)));
-  if (brightest - darkest < max(kLeast, kShare * brightest)) {
-    return;
+  if (brightest - darkest >= max(kLeast, kShare * brightest)) {
+    discard;
   }
+})";
+
+/// Of the eight neighbours' brightness follows whether there is an edge, whether it runs across or
+/// up, and on which side of the pixel it lies. Its ends are looked for both ways; between them a
+/// straight edge would come half a pixel nearer, by how far the nearer end is. Only a pixel on the
+/// side to which the edge bends there takes a share of its neighbour.
+constexpr const char* kEdgeShader = R"(
+const int kFarthest = 16;  // an end is looked for [px]: with a pixel at either side, kReach
+vec3 colour_at(vec2 at) {
+  return texture(picture, clamp(at, area.xy + 0.5, area.zw + 0.5) / vec2(textureSize(picture, 0)))
+      .rgb;
+}
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  result = texelFetch(picture, at, 0);
+  float m = brightness(result.rgb);
+  float n = at_pixel(at + ivec2(0, -1));
+  float s = at_pixel(at + ivec2(0, 1));
+  float w = at_pixel(at + ivec2(-1, 0));
+  float e = at_pixel(at + ivec2(1, 0));
   float nw = at_pixel(at + ivec2(-1, -1));
   float ne = at_pixel(at + ivec2(1, -1));
   float sw = at_pixel(at + ivec2(-1, 1));
@@ -65,7 +90,7 @@ void main() {
     float off = 0.0;
     for (int i = 1; i <= kFarthest && abs(off) < enough; ++i) {
       way = float(i);
-      off = between(start + sign_of_way * way * along) - mean;
+      off = brightness(colour_at(start + sign_of_way * way * along)) - mean;
     }
     ways[side] = way;
     ends[side] = off;
@@ -76,38 +101,63 @@ void main() {
     return;
   }
   float share = 0.5 - min(ways.x, ways.y) / (ways.x + ways.y);
-  result.rgb = texture(picture, (vec2(at) + 0.5 + share * aside) * size.zw).rgb;
+  result.rgb = colour_at(vec2(at) + 0.5 + share * aside);
 })";
 
 }  // namespace
 
 Antialias::Antialias(const Gl& gl)
     : gl_(gl),
-      program_(build_program(gl, "the smoothed edges", kVertexShader, kFragmentShader)),
-      size_(gl.get_uniform_location(program_, "size")) {
+      flat_(make_pass("what is no edge", kNearVertexShader, kFlatShader)),
+      edges_(make_pass("the smoothed edges", kFarVertexShader, kEdgeShader)) {
   gl_.gen_vertex_arrays(1, &nothing_);
-  gl_.use_program(program_);
-  gl_.uniform1i(gl_.get_uniform_location(program_, "picture"), 0);
 }
 
 Antialias::~Antialias() {
   gl_.delete_vertex_arrays(1, &nothing_);
-  gl_.delete_program(program_);
+  gl_.delete_program(flat_.program);
+  gl_.delete_program(edges_.program);
 }
 
-void Antialias::draw(Gl::Name picture, int width, int height) const {
-  gl_.use_program(program_);
-  gl_.uniform4f(size_, static_cast<float>(width), static_cast<float>(height),
-                1.0F / static_cast<float>(width), 1.0F / static_cast<float>(height));
+Antialias::Pass Antialias::make_pass(const char* whose, const char* vertex,
+                                     const char* fragment) const {
+  const std::string text = std::string(kPicture) + fragment;
+  Pass pass;
+  pass.program = build_program(gl_, whose, vertex, text.c_str());
+  pass.area = gl_.get_uniform_location(pass.program, "area");
+  gl_.use_program(pass.program);
+  gl_.uniform1i(gl_.get_uniform_location(pass.program, "picture"), 0);
+  return pass;
+}
+
+void Antialias::fill(const Pass& pass, const PixelBox& area) const {
+  const auto real = [](int number) { return static_cast<float>(number); };
+  gl_.use_program(pass.program);
+  gl_.uniform4f(pass.area, real(area.min().x()), real(area.min().y()), real(area.max().x()),
+                real(area.max().y()));
+  gl_.draw_arrays_instanced(GL_TRIANGLES, 0, 3, 1);
+}
+
+void Antialias::draw(Gl::Name picture, const PixelBox& area,
+                     std::span<const PixelBox> parts) const {
   gl_.active_texture(GL_TEXTURE0);
   gl_.bind_texture(GL_TEXTURE_2D, picture);
-  gl_.disable(GL_DEPTH_TEST);
+  gl_.enable(GL_DEPTH_TEST);
+  gl_.depth_func(GL_LESS);
+  gl_.depth_mask(GL_TRUE);
   gl_.disable(GL_CULL_FACE);
   gl_.disable(GL_BLEND);
-  gl_.viewport(0, 0, width, height);
+  gl_.enable(GL_SCISSOR_TEST);
+  gl_.viewport(area.min().x(), area.min().y(), area.sizes().x() + 1, area.sizes().y() + 1);
   gl_.bind_vertex_array(nothing_);
-  gl_.draw_arrays_instanced(GL_TRIANGLES, 0, 3, 1);
+  for (const PixelBox& part : parts) {
+    gl_.scissor(part.min().x(), part.min().y(), part.sizes().x() + 1, part.sizes().y() + 1);
+    gl_.clear(GL_DEPTH_BUFFER_BIT);
+    fill(flat_, area);
+    fill(edges_, area);
+  }
   gl_.bind_vertex_array(0);
+  gl_.disable(GL_SCISSOR_TEST);
   gl_.bind_texture(GL_TEXTURE_2D, 0);
 }
 

@@ -1,29 +1,48 @@
 #pragma once
 
+#include <Eigen/Geometry>
+#include <span>
+
 #include "core/render/gl/gl.h"
 
 namespace haptrial::render {
 
-/// Draws a picture with its jagged edges smoothed: where the brightness of a pixel's neighbours
-/// differs, colours are mixed along the edge (fast approximate anti-aliasing, Lottes 2009).
-/// Elsewhere pixels stay as they are, to the bit. One thread, with the context current.
+/// Pixels from min() to max(), both included, from the lower left of a framebuffer.
+using PixelBox = Eigen::AlignedBox2i;
+
+/// Draws a picture with its jagged edges smoothed: a straight edge between two ends is taken for
+/// one that is half a pixel off at either of them, and pixels beside it get the share of their
+/// neighbour that it would cover (fast approximate anti-aliasing, Lottes 2009 and 2011). Elsewhere
+/// pixels stay as they are, to the bit. One thread, with the context current.
 class Antialias {
  public:
+  /// How far, in pixels, a change of the picture reaches in the smoothed one.
+  static constexpr int kReach = 18;
+
   explicit Antialias(const Gl& gl);
   ~Antialias();
   Antialias(const Antialias&) = delete;
   Antialias& operator=(const Antialias&) = delete;
 
-  /// To the lower left width x height pixels of the bound framebuffer.
-  /// @param picture  a texture of that size whose rows run down, with linear filtering, bound in
-  ///                 unit 0 until the call ends
-  void draw(Gl::Name picture, int width, int height) const;
+  /// To the same place of the bound framebuffer, which has a depth buffer: that says where edges
+  /// are, so that the costly pass passes over all that is flat.
+  /// @param picture  a texture with linear filtering
+  /// @param area     of the picture: what is outside of it is not looked at
+  /// @param parts    of the area that are drawn, none of them empty
+  void draw(Gl::Name picture, const PixelBox& area, std::span<const PixelBox> parts) const;
 
  private:
+  struct Pass {
+    Gl::Name program{0};
+    int area{-1};
+  };
+  Pass make_pass(const char* whose, const char* vertex, const char* fragment) const;
+  void fill(const Pass& pass, const PixelBox& area) const;
+
   Gl gl_;
-  Gl::Name program_;
+  Pass flat_;
+  Pass edges_;
   Gl::Name nothing_{0};  // a vertex array: the corners follow from their numbers
-  int size_;
 };
 
 }  // namespace haptrial::render

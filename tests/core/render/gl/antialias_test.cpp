@@ -27,7 +27,8 @@ Image smoothed(const Brightness& of) {
   std::vector<std::uint8_t> bytes;
   for (int y = 0; y < kSize; ++y) {
     for (int x = 0; x < kSize; ++x) {
-      const auto grey = static_cast<std::uint8_t>(std::lround(255.0 * of(x + 0.5, y + 0.5)));
+      const auto grey =
+          static_cast<std::uint8_t>(std::lround(255.0 * of(x + 0.5, kSize - y - 0.5)));
       bytes.insert(bytes.end(), {grey, grey, grey, 255});
     }
   }
@@ -45,7 +46,8 @@ Image smoothed(const Brightness& of) {
   }
   {
     const Antialias antialias(gl);
-    antialias.draw(picture, kSize, kSize);
+    const PixelBox all(Eigen::Vector2i(0, 0), Eigen::Vector2i(kSize - 1, kSize - 1));
+    antialias.draw(picture, all, std::vector{all});
   }
   gl.delete_textures(1, &picture);
   return context.read();
