@@ -1,7 +1,7 @@
 #!/bin/bash
 # Makes the pictures of a session in guide-bone.md: a virtual hand drills a real temporal bone for
-# 75 s on the real clock, in a window, and the session is replayed. Needs xvfb-run, ImageMagick,
-# curl and ffmpeg.
+# 75 s on the real clock, in a window, and the session is replayed. Needs xvfb-run, curl
+# and ffmpeg.
 # drilling-session.sh HAPTRIAL EAR FOLDER: the command, ear3_171_labels.nrrd, where to.
 set -eu
 haptrial=$(realpath "$1")
@@ -27,10 +27,9 @@ wait
 "$haptrial" info sessions/S01.h5
 "$haptrial" replay sessions/S01.h5
 "$haptrial" replay sessions/S01.h5 --video session.mp4 --fps 15
-for moment in 4 18 32 46 60 74; do
-  ffmpeg -v error -ss "$moment" -i session.mp4 -frames:v 1 "still-$moment.png"
-done
-montage still-4.png still-18.png still-32.png still-46.png still-60.png still-74.png \
-  -tile 3x2 -geometry 480x270+1+1 -colors 200 "PNG8:$out/drilling-session.png"
+# Frames at 4, 18, 32, 46, 60 and 74 s.
+ffmpeg -v error -y -i session.mp4 -frames:v 1 -vf "select=eq(n\\,60)+eq(n\\,270)+eq(n\\,480)+eq(n\\,690)\
++eq(n\\,900)+eq(n\\,1110),scale=480:270:flags=lanczos,pad=482:272:1:1:white,tile=3x2,split[a][b];\
+[a]palettegen=max_colors=200[p];[b][p]paletteuse=dither=none" "$out/drilling-session.png"
 ffmpeg -v error -y -i session.mp4 -vf "setpts=PTS/8,fps=8,scale=480:-1:flags=lanczos,split[a][b];\
 [a]palettegen=max_colors=64[p];[b][p]paletteuse=dither=bayer" "$out/drilling-session.gif"

@@ -61,6 +61,7 @@ bone::DrillingView view_of(const bone::Simulator& simulator,
   view.orientation = input.tool.orientation;
   view.tool = out.tool;
   view.power = out.power > 0.0;
+  view.turned = simulator.shown_turn();
   view.contact = out.contact;
   view.sound_force = out.force.norm();
   view.eye = camera.eye;

@@ -14,6 +14,7 @@ struct DrillingView {
       Eigen::Quaterniond::Identity()};            // of the tool in W, z to the hand
   std::int32_t tool{0};                           // in hand
   bool power{false};                              // it turns, or sucks
+  double turned{0.0};                             // as it is drawn, a share of a turn
   bool contact{false};                            // it touches bone
   double sound_force{0.0};                        // what can be heard of it [N]
   Eigen::Vector3d eye{Eigen::Vector3d::UnitZ()};  // in W [m]

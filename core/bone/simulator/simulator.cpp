@@ -223,6 +223,9 @@ void Simulator::work(const SimulatorInput& input, std::uint32_t pressed) noexcep
   const bool apply = is_held(pressed, Function::kApply);
   const ToolSpec& tool = tools_[in_hand()];
   if (const auto* burr = tool.as<BurrTool>()) {
+    constexpr double kTurnsShown = 1.0 / 617.0;  // a tick: no screen keeps step with it
+    shown_turn_ += kTurnsShown * (burr->burr.clockwise ? -23.0 : 23.0) * input.power;
+    shown_turn_ -= std::floor(shown_turn_);
     drill(*burr, input);
     yield(burr->radius(), input);
   } else if (const auto* tube = tool.as<SuctionTool>()) {

@@ -117,6 +117,8 @@ class Simulator {
   const Camera& camera() const noexcept { return camera_; }
   /// How often kStill went down.
   std::int32_t stills_asked() const noexcept { return stills_asked_; }
+  /// How a turning tool is to be drawn, a share of a turn: real speeds are far beyond any screen's.
+  double shown_turn() const noexcept { return shown_turn_; }
   const ToolSpec& tool() const noexcept { return tools_[static_cast<std::size_t>(output_.tool)]; }
   std::span<const ToolSpec> tools() const noexcept { return tools_; }
   /// The model of a tool that is a plate; else null.
@@ -175,6 +177,7 @@ class Simulator {
   SimulatorOutput output_;
   std::uint32_t functions_{0};  // held on the last tick
   std::int32_t stills_asked_{0};
+  double shown_turn_{0.0};
   Eigen::Vector3d hand_{Eigen::Vector3d::Zero()};
   bool hand_known_{false};
   bool waits_until_free_{true};

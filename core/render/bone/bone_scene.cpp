@@ -111,7 +111,7 @@ struct BoneScene::Impl {
   void draw_bones(const BoneFrame& frame, const EyeView& view, const PixelBox& part, int width,
                   int height);
   std::vector<PixelBox> draw_over(const BoneFrame& frame, const EyeView& view, const EyeArea& area);
-  void smooth(std::vector<std::vector<PixelBox>> drawn, int across);
+  void smooth(std::vector<std::vector<PixelBox>> drawn, int across, int height);
   void use(const EyeView& view) const;
   void draw_meshes(const BoneFrame& frame, const EyeView& view, bool translucent);
   void use(const EyeView& view, const Eigen::Isometry3d& pose) const;
@@ -128,7 +128,9 @@ struct BoneScene::Impl {
   DustDrawing dust;
   BoneLayer layer;
   BoneShading shading;
-  std::vector<EyeView> seen_from;            // as the kept picture is
+  std::vector<EyeView> seen_from;  // as the kept picture is
+  Quality quality{Quality::kFull};
+  bool is_smooth{false};                     // so was the last frame
   bool is_shaded{false};                     // it is darker where it is closed in
   std::vector<PixelBox> changed;             // of it in this frame, by eye
   std::vector<std::vector<PixelBox>> over;   // where it was drawn over in the last frame, by eye
@@ -262,7 +264,10 @@ void BoneScene::Impl::draw_bones(const BoneFrame& frame, const EyeView& view, co
 /// @returns the pixels that may have changed by that, from the eye's lower left
 std::vector<PixelBox> BoneScene::Impl::draw_over(const BoneFrame& frame, const EyeView& view,
                                                  const EyeArea& area) {
-  std::vector<PixelBox> parts = shading.draw_shadows(view, area, capsules_of(frame));
+  std::vector<PixelBox> parts;
+  if (quality != Quality::kPlain) {
+    parts = shading.draw_shadows(view, area, capsules_of(frame));
+  }
   const Eigen::Matrix4d clip = view.projection * view.view;
   for (const SceneMesh& mesh : frame.meshes) {
     for (const Eigen::AlignedBox3d& slab : meshes.at(mesh.mesh.get())->slabs()) {
@@ -285,12 +290,14 @@ std::vector<PixelBox> BoneScene::Impl::draw_over(const BoneFrame& frame, const E
 }
 
 /// Smooths again what is not as it was, and what is near it.
-void BoneScene::Impl::smooth(std::vector<std::vector<PixelBox>> drawn, int across) {
+void BoneScene::Impl::smooth(std::vector<std::vector<PixelBox>> drawn, int across, int height) {
+  const bool was_smooth = is_smooth;
+  is_smooth = style.smooth_edges && is_shaded && quality == Quality::kFull;
   over.resize(drawn.size());
-  for (std::size_t eye = 0; eye < drawn.size(); ++eye) {
+  for (std::size_t eye = 0; is_smooth && eye < drawn.size(); ++eye) {
     std::vector<PixelBox> parts = drawn[eye];
     parts.insert(parts.end(), over[eye].begin(), over[eye].end());
-    parts.push_back(changed[eye]);
+    parts.push_back(was_smooth ? changed[eye] : all_pixels(across, height));
     layer.smooth(static_cast<int>(eye) * across, across, std::move(parts));
   }
   over = std::move(drawn);
@@ -303,7 +310,8 @@ void BoneScene::Impl::keep(const BoneFrame& frame, const std::vector<EyeView>& v
   std::vector<PixelBox> parts = changed_parts(frame, views, across, height);
   const bool rests =
       std::equal(views.begin(), views.end(), seen_from.begin(), seen_from.end(), is_same);
-  const bool shaded = rests || seen_from.empty();
+  const bool shaded =
+      quality != Quality::kPlain && (rests || seen_from.empty() || style.shades_moving);
   there = there && style.kept_layer && rests;
   seen_from = views;
   gl.disable(GL_BLEND);
@@ -350,7 +358,7 @@ void BoneScene::Impl::end() const {
   gl.cull_face(GL_BACK);
   gl.disable(GL_BLEND);
   gl.use_program(0);
-  layer.show(style.smooth_edges && is_shaded);
+  layer.show(is_smooth);
 }
 
 BoneScene::BoneScene(const Gl& gl, const BoneStyle& style,
@@ -392,12 +400,12 @@ void BoneScene::draw(const BoneFrame& frame, int width, int height) {
     gl.viewport(area.left, 0, across, height);
     drawn.push_back(scene.draw_over(frame, views[eye], area));
   }
-  if (scene.style.smooth_edges && scene.is_shaded) {
-    scene.smooth(std::move(drawn), across);
-  }
+  scene.smooth(std::move(drawn), across, height);
   scene.end();
   gl.viewport(0, 0, width, height);
 }
+
+void BoneScene::set_quality(Quality quality) noexcept { impl_->quality = quality; }
 
 const BoneFrameFigures& BoneScene::figures() const noexcept { return impl_->figures; }
 

@@ -17,6 +17,7 @@
 #include "core/render/bone/bone_style.h"
 #include "core/render/gl/colour.h"
 #include "core/render/gl/gl.h"
+#include "core/render/gl/quality_steps.h"
 
 namespace haptrial::render {
 
@@ -80,6 +81,8 @@ class BoneScene {
   /// bound framebuffer, its colours only. @throws std::invalid_argument for a frame that cannot be
   /// drawn: a camera or pose that is not finite, a bone without a volume, an id twice.
   void draw(const BoneFrame& frame, int width, int height);
+  /// How much of what the style asks for is drawn from now on; at first all.
+  void set_quality(Quality quality) noexcept;
   const BoneFrameFigures& figures() const noexcept;
 
  private:

@@ -18,6 +18,7 @@ struct BoneStyle {
   double occlusion_reach{0.005};  // how far what closes it in may lie [m]
   double shadow{0.5};             // share of the light that a tool takes; 0: not drawn
   bool smooth_edges{true};        // of the whole picture
+  bool shades_moving{false};      // all of this also while the camera moves: pictures, no screen
   double through_length{0.0007};  // the share of a structure's colour in the bone over it is
   double through_share{0.85};     // share exp(-depth / length) [m]
   /// The visibility pass on a thread of its own, for a screen. When it ends is then a matter of

@@ -62,11 +62,48 @@ double burr_shaft(double diameter) noexcept {
   return std::min(std::max(kThinnestShaft, kShaftShare * diameter), diameter);
 }
 
-geometry::Mesh burr_mesh(double diameter, double shaft_diameter, double length) {
+namespace {
+
+void check_burr(double diameter, double shaft_diameter, double length) {
   require(diameter > 0.0 && shaft_diameter > 0.0 && length > diameter,
           "burr_mesh: diameters above 0 and a length above the burr's are needed");
-  constexpr int kFrequency = 12;
-  geometry::Mesh mesh = geometry::make_sphere(0.5 * diameter, kFrequency);
+}
+
+/// A ball with grooves along twisted meridians: each blade falls from its sharp side to the groove
+/// before the next one.
+geometry::Mesh fluted_ball(double radius, bool clockwise) {
+  constexpr int kBlades = 8;
+  constexpr int kStations = 12;  // from a blade to the next
+  constexpr int kRings = 24;     // from pole to pole
+  constexpr double kGroove = 0.16;
+  constexpr double kTwist = 0.7;  // of a blade, to either pole [rad]
+  constexpr int kRound = kBlades * kStations;
+  geometry::Mesh mesh;
+  for (int ring = 0; ring <= kRings; ++ring) {
+    const double polar = std::numbers::pi * ring / kRings;
+    for (int i = 0; i < kRound; ++i) {
+      const double into = static_cast<double>(i % kStations) / (kStations - 1);
+      const double groove = clockwise ? into : 1.0 - into;
+      const double r = radius * (1.0 - kGroove * groove * std::sin(polar));
+      const double turn = 2.0 * std::numbers::pi * i / kRound + kTwist * std::cos(polar);
+      mesh.vertices.emplace_back(r * std::sin(polar) * std::cos(turn),
+                                 r * std::sin(polar) * std::sin(turn), r * std::cos(polar));
+    }
+  }
+  for (int ring = 0; ring < kRings; ++ring) {
+    for (int i = 0; i < kRound; ++i) {
+      const int next = (i + 1) % kRound;
+      const int above = ring * kRound;
+      const int below = above + kRound;
+      mesh.triangles.push_back({above + i, below + i, below + next});
+      mesh.triangles.push_back({above + i, below + next, above + next});
+    }
+  }
+  return mesh;
+}
+
+/// Shaft and handle.
+void add_handle(geometry::Mesh& mesh, double shaft_diameter, double length) {
   const double shaft = 0.5 * shaft_diameter;
   const double handle = kHandleThickness * shaft;
   const double begins = kHandleBegins * length;
@@ -76,6 +113,23 @@ geometry::Mesh burr_mesh(double diameter, double shaft_diameter, double length) 
                     {handle, begins + 2.0 * handle},
                     {handle, length},
                     {0.0, length}});
+}
+
+}  // namespace
+
+geometry::Mesh burr_mesh(double diameter, double shaft_diameter, double length) {
+  check_burr(diameter, shaft_diameter, length);
+  constexpr int kFrequency = 12;
+  geometry::Mesh mesh = geometry::make_sphere(0.5 * diameter, kFrequency);
+  add_handle(mesh, shaft_diameter, length);
+  return mesh;
+}
+
+geometry::Mesh cutting_burr_mesh(double diameter, double shaft_diameter, double length,
+                                 bool clockwise) {
+  check_burr(diameter, shaft_diameter, length);
+  geometry::Mesh mesh = fluted_ball(0.5 * diameter, clockwise);
+  add_handle(mesh, shaft_diameter, length);
   return mesh;
 }
 

@@ -14,6 +14,10 @@ namespace haptrial::render {
 /// A burr's shaft: 1.2 mm, or two fifths of a thick burr; never thicker than the burr [m].
 double burr_shaft(double diameter) noexcept;
 geometry::Mesh burr_mesh(double diameter, double shaft_diameter, double length);
+/// The same with the blades of a cutting burr, within its diameter.
+/// @param clockwise  seen from the handle: the blades' sharp sides face the way it turns
+geometry::Mesh cutting_burr_mesh(double diameter, double shaft_diameter, double length,
+                                 bool clockwise);
 /// What of such a burr keeps light off: the ball, the shaft and the handle.
 std::vector<Capsule> burr_shadow(double diameter, double shaft_diameter, double length);
 geometry::Mesh suction_mesh(double inner_diameter, double outer_diameter, double length);

@@ -105,6 +105,7 @@ display.hand_radius | | of the dot of the hand
 display.feedback_right | | what is shown after a right answer
 display.feedback_wrong | | what is shown after a wrong one
 display.feedback_time | | for which it is shown
+display.quality | auto | of the drilling's picture: plain light, with shadows, or full with smoothed edges; auto: what the machine draws 27 times a second
 display.stereo | false | pictures for the left and the right eye side by side
 trials:display.eye_distance | 0.063 | between the eyes
 display.eye_distance | | between the eyes, in the scene

@@ -62,6 +62,14 @@ void read_display(Table& table, BoneDefinition& d) {
   d.display.width = static_cast<int>(table.integer("width", 160, 8192));
   d.display.height = static_cast<int>(table.integer("height", 120, 8192));
   d.stereo = table.has("stereo") && table.boolean("stereo");
+  if (table.has("quality")) {
+    const std::string quality = table.choice("quality", {"auto", "plain", "shaded", "full"});
+    if (quality != "auto") {
+      d.quality = quality == "plain"    ? render::Quality::kPlain
+                  : quality == "shaded" ? render::Quality::kShaded
+                                        : render::Quality::kFull;
+    }
+  }
   optional(table, "eye_distance", d.eye_distance, {0.0, 0.1}, "m");
   d.stills = table.has("stills") ? static_cast<int>(table.integer("stills", 2, 20)) : 0;
   if (d.stills > 0 && !d.cavity) {

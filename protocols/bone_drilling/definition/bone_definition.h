@@ -14,6 +14,7 @@
 #include "core/bone/simulator/simulator.h"
 #include "core/nerve/setup/nerve_distances.h"
 #include "core/nerve/setup/nerve_setup.h"
+#include "core/render/gl/quality_steps.h"
 #include "core/sound/drill_sound.h"
 #include "core/subject/drilling/drilling_chart.h"
 #include "core/subject/drilling/drilling_hand.h"
@@ -60,7 +61,8 @@ struct BoneDefinition : Definition {
   sound::SpectrumTable sound_table;
   sound::ThinBone thin_bone;
   sound::SpectrumTable vibration_table;
-  double vibration_gain{0.0};  // >= 0
+  double vibration_gain{0.0};              // >= 0
+  std::optional<render::Quality> quality;  // of the participant's screen; none: by frame time
   bool stereo{false};
   double eye_distance{0.02};  // between the eyes, in the scene >= 0 [m]
   int stills{0};              // of stages of the cavity, which can be called up; 0: none

@@ -1,7 +1,9 @@
 #include "protocols/bone_drilling/display/bone_display.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "core/render/bone/bone_tools.h"
@@ -28,17 +30,27 @@ device::PointerHandParameters pointer_hand_of(const BoneDefinition& d) {
   return p;
 }
 
+using Clock = std::chrono::steady_clock;
+
 class BoneDrawing final : public Drawing {
  public:
   BoneDrawing(const render::Gl& gl, const BoneDefinition& definition,
               std::shared_ptr<const BoneStage> stage, int width, int height,
               std::shared_ptr<bone::Surface> surface)
       : definition_(definition),
-        display_(gl, definition, std::move(stage), width, height, std::move(surface)),
+        display_(gl, definition, std::move(stage), width, height, render::BoneStyle{},
+                 std::move(surface)),
         hand_(pointer_hand_of(definition)) {}
   void draw(const stimulus::Shown& shown) override {
     const auto* seen = shown.as<bone::DrillingView>();
     seen_ = seen != nullptr ? *seen : bone::DrillingView{};
+    if (definition_.quality) {
+      display_.set_quality(*definition_.quality);
+    } else {
+      const Clock::time_point now = Clock::now();
+      const std::chrono::duration<double> interval = now - std::exchange(last_, now);
+      display_.set_quality(steps_.next(interval.count()));
+    }
     display_.draw(seen_);
   }
   std::optional<device::HandPose> hand(const device::PointerInput& input) override {
@@ -75,6 +87,8 @@ class BoneDrawing final : public Drawing {
   bone::DrillingView seen_;
   device::PointerHand hand_;
   std::vector<int> keys_;
+  render::QualitySteps steps_;
+  Clock::time_point last_{Clock::now()};
 };
 
 }  // namespace
@@ -85,13 +99,13 @@ std::shared_ptr<const bone::StructureDepths> depths_of(const bone::BoneModel& mo
 
 BoneDisplay::BoneDisplay(const render::Gl& gl, const BoneDefinition& definition,
                          std::shared_ptr<const BoneStage> stage, int width, int height,
-                         std::shared_ptr<bone::Surface> surface)
+                         const render::BoneStyle& style, std::shared_ptr<bone::Surface> surface)
     : gl_(gl),
       stage_(std::move(stage)),
       surface_(std::move(surface)),
       width_(width),
       height_(height),
-      scene_(gl, render::BoneStyle{}, stage_->model->structures, stage_->depths) {
+      scene_(gl, style, stage_->model->structures, stage_->depths) {
   for (std::size_t tool = 0; tool < stage_->simulator->tools().size(); ++tool) {
     meshes_.push_back(mesh_of(static_cast<int>(tool)));
   }
@@ -108,7 +122,11 @@ std::shared_ptr<const geometry::Mesh> BoneDisplay::mesh_of(int tool) const {
   };
   if (const auto* burr = spec.as<bone::BurrTool>()) {
     const double diameter = burr->burr.diameter;
-    return shared(render::burr_mesh(diameter, render::burr_shaft(diameter), spec.handle_length));
+    const double shaft = render::burr_shaft(diameter);
+    return shared(
+        burr->burr.kind == bone::BurrKind::kCutting
+            ? render::cutting_burr_mesh(diameter, shaft, spec.handle_length, burr->burr.clockwise)
+            : render::burr_mesh(diameter, shaft, spec.handle_length));
   }
   if (const auto* suction = spec.as<bone::SuctionTool>()) {
     return shared(
@@ -164,8 +182,9 @@ void BoneDisplay::draw(const bone::DrillingView& seen) {
     const auto tool = static_cast<std::size_t>(seen.tool);
     const bool plane = stage_->simulator->tools()[tool].as<bone::CutPlane>() != nullptr;
     const ToolState held{{seen.tip, Eigen::Vector3d::Zero()}, seen.orientation};
-    frame_.meshes.push_back(
-        {meshes_[tool], render::pose_of(held), plane ? kPlane : kSteel, shadow_of(seen.tool)});
+    Eigen::Isometry3d pose = render::pose_of(held);
+    pose.rotate(Eigen::AngleAxisd(2.0 * std::numbers::pi * seen.turned, Eigen::Vector3d::UnitZ()));
+    frame_.meshes.push_back({meshes_[tool], pose, plane ? kPlane : kSteel, shadow_of(seen.tool)});
     frame_.camera = {seen.eye, seen.target, seen.up, seen.field_of_view};
   } else {
     frame_.camera = stage_->start_view;

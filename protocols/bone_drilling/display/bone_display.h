@@ -27,10 +27,12 @@ class BoneDisplay {
   /// @throws RunError where OpenGL does not give what is needed.
   BoneDisplay(const render::Gl& gl, const BoneDefinition& definition,
               std::shared_ptr<const BoneStage> stage, int width, int height,
+              const render::BoneStyle& style = {},
               std::shared_ptr<bone::Surface> surface = nullptr);
 
   /// @param seen  of this stage; whatever moves beside it is taken as published
   void draw(const bone::DrillingView& seen);
+  void set_quality(render::Quality quality) noexcept { scene_.set_quality(quality); }
   /// What can be called up from now on; at first those of the stage. Null: nothing.
   void set_stills(std::shared_ptr<const std::vector<render::Image>> stills);
   /// The camera of the last picture, or of one of its two.

@@ -280,6 +280,56 @@ TEST(BoneSceneTest, PiecesToolsAndDustAreWhereTheirPosesSay) {
   EXPECT_EQ(count_lit(stage.draw(frame)), 0);
 }
 
+bool is_same(const Image& a, const Image& b) { return a.rgb == b.rgb; }
+
+/// A ball under a burr, with all that a style has to draw.
+BoneFrame busy_frame(const BoneModel& model, const BoneVolume& volume) {
+  BoneFrame frame = frame_of(model, volume);
+  frame.meshes.push_back({std::make_shared<geometry::Mesh>(burr_mesh(0.006, 0.002, 0.08)),
+                          Eigen::Isometry3d::Identity(),
+                          {0.7, 0.7, 0.7},
+                          burr_shadow(0.006, 0.002, 0.08)});
+  frame.meshes[0].pose.translation() = frame.camera.target + Eigen::Vector3d(0, 0.004, 0.02);
+  frame.dust.push_back(
+      {(frame.camera.target + Eigen::Vector3d(0, -0.005, 0.016)).cast<float>(), 0.004F, 0.8F});
+  return frame;
+}
+
+TEST(BoneSceneTest, LessQualityLeavesOutAndAllOfItComesBack) {
+  const BoneModel model = bone::ball_model(30, 12.0);
+  const BoneVolume volume(model);
+  Stage stage(model, BoneStyle{});
+  const BoneFrame frame = busy_frame(model, volume);
+  const Image full = stage.draw(frame);
+  stage.scene.set_quality(Quality::kShaded);
+  const Image shaded = stage.draw(frame);
+  stage.scene.set_quality(Quality::kPlain);
+  const Image plain = stage.draw(frame);
+  EXPECT_GT(count_different(full, shaded), 50);
+  EXPECT_GT(count_different(shaded, plain), 500);
+  BoneStyle bare;
+  bare.smooth_edges = false;
+  EXPECT_TRUE(is_same(shaded, Stage(model, bare).draw(frame)));
+  for (const Quality quality : {Quality::kShaded, Quality::kFull}) {
+    stage.scene.set_quality(quality);
+    EXPECT_TRUE(is_same(stage.draw(frame), quality == Quality::kFull ? full : shaded));
+  }
+}
+
+TEST(BoneSceneTest, APictureOfAMovingCameraIsThatOfOneAtRestIfItIsAskedFor) {
+  const BoneModel model = bone::ball_model(30, 12.0);
+  const BoneVolume volume(model);
+  BoneStyle style;
+  style.shades_moving = true;
+  Stage moving(model, style);
+  BoneFrame frame = busy_frame(model, volume);
+  for (int i = 0; i < 3; ++i) {
+    frame.camera.eye.x() += 0.01;
+    const Image at_rest = Stage(model, style).draw(frame);
+    EXPECT_TRUE(is_same(moving.draw(frame), at_rest)) << i;
+  }
+}
+
 TEST(BoneSceneTest, GrainsOfDustAreTheSameEachTimeAndMakeNoLattice) {
   const BoneModel model = bone::ball_model(16, 4.0);
   const BoneVolume volume(model);
@@ -341,6 +391,17 @@ TEST(BoneSceneTest, ToolMeshesAreClosedAndOutwards) {
   EXPECT_NEAR(volume_of(suction_mesh(0.002, 0.003, 0.1)),
               polygon * (0.0015 * 0.0015 - 0.001 * 0.001) * 0.1, 1e-12);
   EXPECT_GT(volume_of(burr_mesh(0.006, 0.002, 0.08)), 4.0 / 3.0 * M_PI * std::pow(0.003, 3) * 0.95);
+  for (const bool clockwise : {true, false}) {
+    const geometry::Mesh burr = cutting_burr_mesh(0.006, 0.002, 0.08, clockwise);
+    const double ball = 4.0 / 3.0 * M_PI * std::pow(0.003, 3);
+    const double handle =
+        volume_of(burr_mesh(0.006, 0.002, 0.08)) - volume_of(geometry::make_sphere(0.003, 12));
+    EXPECT_LT(volume_of(burr) - handle, 0.92 * ball) << "grooves";
+    EXPECT_GT(volume_of(burr) - handle, 0.6 * ball) << "outwards";
+    for (const Eigen::Vector3d& vertex : burr.vertices) {
+      EXPECT_TRUE(vertex.norm() < 0.003 + 1e-12 || vertex.z() > 0.003) << "within its diameter";
+    }
+  }
   EXPECT_NEAR(volume_of(plane_mesh(0.1, 0.2)), 0.0, 1e-15);
   for (const LitCorner& corner : lit_corners(geometry::make_sphere(0.01, 6))) {
     const Eigen::Vector3f place = Eigen::Map<const Eigen::Vector3f>(corner.place.data());
