@@ -22,7 +22,7 @@ std::optional<int> key_code(const std::string& name);
 /// The names, for sentences.
 inline constexpr const char* kKeyNames = "space, enter, A to Z, 0 to 9, left, right, up, down";
 
-/// Codes of a list of keys by their names. Notes a name that is none.
+/// Codes of a list of keys by their names. A name that is not known is a problem, which is noted.
 std::vector<int> read_window_keys(Table& table, const std::string& key);
 
 }  // namespace haptrial::protocols

@@ -165,6 +165,18 @@ TEST_F(CommandTest, EverySubcommandShowsAnExampleOfItself) {
   }
 }
 
+TEST_F(CommandTest, PicturesThatADryRunDoesNotDrawAreSaidToBeNone) {
+  const CommandResult some = brief_study("some", "--subjects 1 --frames 1");
+  EXPECT_THAT(some.output, HasSubstr("pictures: " + (folder_ / "some/frames").string()));
+  const CommandResult none =
+      run_command("haptrial dry-run '" HAPTRIAL_SOURCE_DIR "/experiments/wall_detection.toml' " +
+                  ("--subjects 1 --trials 2 --frames 1 --out " + path("none")));
+  EXPECT_EQ(none.status, 0) << none.errors;
+  EXPECT_THAT(none.output, HasSubstr("pictures: none"));
+  EXPECT_THAT(none.output, HasSubstr("haptrial replay"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "none/frames"));
+}
+
 TEST_F(CommandTest, BadArguments) {
   expect_bad_input("haptrial", "subcommand");
   expect_bad_input("haptrial bone", "haptrial bone needs a subcommand; allowed: import, info");

@@ -18,7 +18,8 @@ Eigen::Vector3d read_vector(Table& table, std::string_view key, const Bounds& bo
 /// a problem
 Eigen::Vector3d read_direction(Table& table, std::string_view key);
 
-/// Bits of an array of numbers from 0 to 30, such as those of buttons. Notes a number that is none.
+/// Bits of an array of whole numbers from 0 to 30, such as those of buttons. Other numbers are a
+/// problem, which is noted.
 std::uint32_t read_bits(Table& table, std::string_view key);
 
 }  // namespace haptrial

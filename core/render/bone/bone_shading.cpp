@@ -12,12 +12,6 @@
 namespace haptrial::render {
 namespace {
 
-/// One triangle that covers the whole viewport.
-constexpr const char* kScreenVertexShader = R"(#version 330 core
-void main() {
-  gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
-})";
-
 /// Places in the eye's frame from the depths; in front of each of the shaders below.
 constexpr const char* kPlaceOfPixel = R"(#version 330 core
 uniform sampler2D bones;
@@ -151,8 +145,8 @@ const Eigen::Vector3d kLamp = Eigen::Vector3d(0.45, 0.6, 1.0).normalized();
 
 constexpr double kFarthest = 0.04;  // a shadow falls, fading [m]; as in the shader
 constexpr double kNearBy = 4.0;     // radii from which on nearness takes nothing; likewise
-constexpr double kSoftest = 0.01;   // its edge at the farthest: 0.25 of the way [m], ...
-constexpr double kEdge = 1.1;       // ... beyond so many radii; likewise
+constexpr double kSoftest = 0.01;   // its soft edge at the farthest: 0.25 of the way [m], ...
+constexpr double kEdge = 1.1;       // ... and 0.1 of the radius, beyond the radius
 
 float real(double number) { return static_cast<float>(number); }
 

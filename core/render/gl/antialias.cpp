@@ -9,16 +9,6 @@
 namespace haptrial::render {
 namespace {
 
-/// A triangle that covers the whole viewport, for each of the passes at a depth of its own.
-constexpr const char* kNearVertexShader = R"(#version 330 core
-void main() {
-  gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
-})";
-constexpr const char* kFarVertexShader = R"(#version 330 core
-void main() {
-  gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.5, 1.0);
-})";
-
 constexpr const char* kPicture = R"(#version 330 core
 uniform sampler2D picture;
 uniform vec4 area;  // its first and last pixels
@@ -27,9 +17,13 @@ float brightness(vec3 colour) { return dot(colour, vec3(0.299, 0.587, 0.114)); }
 float at_pixel(ivec2 at) {
   return brightness(texelFetch(picture, clamp(at, ivec2(area.xy), ivec2(area.zw)), 0).rgb);
 }
+vec4 beside(ivec2 at) {  // of the pixels below, above, at its left and at its right
+  return vec4(at_pixel(at + ivec2(0, -1)), at_pixel(at + ivec2(0, 1)), at_pixel(at + ivec2(-1, 0)),
+              at_pixel(at + ivec2(1, 0)));
+}
 )";
 
-/// A pixel that is at no edge is as it was; what is left to the other pass are the edges.
+/// A pixel that is at no edge is as it was, and takes the depth of the pass; edges are left out.
 constexpr const char* kFlatShader = R"(
 const float kLeast = 0.04;   // of a difference that is an edge
 const float kShare = 0.125;  // and of the brightest
@@ -37,19 +31,16 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   result = texelFetch(picture, at, 0);
   float m = brightness(result.rgb);
-  float n = at_pixel(at + ivec2(0, -1));
-  float s = at_pixel(at + ivec2(0, 1));
-  float w = at_pixel(at + ivec2(-1, 0));
-  float e = at_pixel(at + ivec2(1, 0));
-  float brightest = max(m, max(max(n, s), max(w, e)));
-  float darkest = min(m, min(min(n, s), min(w, e)));
+  vec4 near = beside(at);
+  float brightest = max(m, max(max(near.x, near.y), max(near.z, near.w)));
+  float darkest = min(m, min(min(near.x, near.y), min(near.z, near.w)));
   if (brightest - darkest >= max(kLeast, kShare * brightest)) {
     discard;
   }
 })";
 
-/// Of the eight neighbours' brightness follows whether there is an edge, whether it runs across or
-/// up, and on which side of the pixel it lies. Its ends are looked for both ways; between them a
+/// The brightness of the eight neighbours tells whether the edge runs across or up, and on which
+/// side of the pixel it lies. Its ends are looked for both ways; between them a
 /// straight edge would come half a pixel nearer, by how far the nearer end is. Only a pixel on the
 /// side to which the edge bends there takes a share of its neighbour.
 constexpr const char* kEdgeShader = R"(
@@ -62,10 +53,11 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   result = texelFetch(picture, at, 0);
   float m = brightness(result.rgb);
-  float n = at_pixel(at + ivec2(0, -1));
-  float s = at_pixel(at + ivec2(0, 1));
-  float w = at_pixel(at + ivec2(-1, 0));
-  float e = at_pixel(at + ivec2(1, 0));
+  vec4 near = beside(at);
+  float n = near.x;
+  float s = near.y;
+  float w = near.z;
+  float e = near.w;
   float nw = at_pixel(at + ivec2(-1, -1));
   float ne = at_pixel(at + ivec2(1, -1));
   float sw = at_pixel(at + ivec2(-1, 1));
@@ -108,8 +100,8 @@ void main() {
 
 Antialias::Antialias(const Gl& gl)
     : gl_(gl),
-      flat_(make_pass("what is no edge", kNearVertexShader, kFlatShader)),
-      edges_(make_pass("the smoothed edges", kFarVertexShader, kEdgeShader)) {
+      flat_(make_pass("what is no edge", kFlatShader)),
+      edges_(make_pass("the smoothed edges", kEdgeShader)) {
   gl_.gen_vertex_arrays(1, &nothing_);
 }
 
@@ -119,11 +111,10 @@ Antialias::~Antialias() {
   gl_.delete_program(edges_.program);
 }
 
-Antialias::Pass Antialias::make_pass(const char* whose, const char* vertex,
-                                     const char* fragment) const {
+Antialias::Pass Antialias::make_pass(const char* whose, const char* fragment) const {
   const std::string text = std::string(kPicture) + fragment;
   Pass pass;
-  pass.program = build_program(gl_, whose, vertex, text.c_str());
+  pass.program = build_program(gl_, whose, kScreenVertexShader, text.c_str());
   pass.area = gl_.get_uniform_location(pass.program, "area");
   gl_.use_program(pass.program);
   gl_.uniform1i(gl_.get_uniform_location(pass.program, "picture"), 0);

@@ -36,7 +36,7 @@ class Antialias {
     Gl::Name program{0};
     int area{-1};
   };
-  Pass make_pass(const char* whose, const char* vertex, const char* fragment) const;
+  Pass make_pass(const char* whose, const char* fragment) const;
   void fill(const Pass& pass, const PixelBox& area) const;
 
   Gl gl_;

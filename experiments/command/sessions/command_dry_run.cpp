@@ -57,6 +57,17 @@ int take_parts(const DryRunOptions& options, DryRun& dry) {
 
 }  // namespace
 
+/// Where pictures were written; an empty folder for them goes.
+static std::string pictures_in(const fs::path& folder) {
+  const fs::path frames = folder / "frames";
+  if (!fs::is_empty(frames)) {
+    return frames.string();
+  }
+  fs::remove(frames);
+  return "none, since a dry run of this protocol draws none; haptrial replay FILE --frames FOLDER "
+         "does";
+}
+
 int dry_run(const DryRunOptions& options) {
   watch_for_interrupt();
   const Experiment experiment = load_experiment(options.definition, options.language);
@@ -114,6 +125,9 @@ int dry_run(const DryRunOptions& options) {
          experiment.study->after_session(setup, fs::path(options.definition).parent_path(), file)) {
       fmt::print("{}\n", line);
     }
+  }
+  if (dry.frames_per_pass > 0) {
+    fmt::print("pictures: {}\n", pictures_in(dry.folder));
   }
   fmt::print("sessions: {}\n", dry.folder.string());
   fmt::print("next: {}\n", experiment.study->next_step(dry.folder));
