@@ -84,6 +84,12 @@ double Easel::probe() {
   return *middle;
 }
 
+void Easel::pressed(int key) {
+  if (drawing_) {
+    drawing_->pressed(key);
+  }
+}
+
 ScreenPointer Easel::pointer(std::span<const int> held, double dt) {
   const render::Pointer p = window_.pointer();
   const protocols::Drawing* drawing = drawing_ ? drawing_.get() : before_.get();

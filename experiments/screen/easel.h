@@ -44,6 +44,7 @@ class Easel {
   std::uint64_t flash(std::uint64_t onsets);
   /// How fast the display takes pictures [s]; shows empty ones.
   double probe();
+  void pressed(int key);
   /// @param held  keys  @param dt  since the picture before [s]
   ScreenPointer pointer(std::span<const int> held, double dt);
 

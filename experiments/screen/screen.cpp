@@ -103,7 +103,7 @@ class Happenings {
 
   /// @param other_view  the view moved under the pointer
   void tell(Easel& easel, bool other_view) {
-    tell_keys();
+    tell_keys(easel);
     const bool moved = std::exchange(pointer_, window_.pointer()) != pointer_;
     const std::int64_t now = screen_ns();
     const double dt = told_ns_ != 0 ? 1e-9 * static_cast<double>(now - told_ns_) : 0.0;
@@ -120,13 +120,16 @@ class Happenings {
   }
 
  private:
-  void tell_keys() {
+  void tell_keys(Easel& easel) {
     std::vector<int> held = window_.held_keys();
     for (const render::KeyPress& press : window_.take_keys()) {
       if (callbacks_.key) {
         callbacks_.key(press);
       }
       const bool typed = press.character != 0;
+      if (!typed) {
+        easel.pressed(press.key);
+      }
       if (!typed && std::find(held.begin(), held.end(), press.key) == held.end()) {
         held.push_back(press.key);  // let go again already: held for a picture all the same
       }

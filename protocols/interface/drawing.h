@@ -20,6 +20,8 @@ class Drawing {
   virtual ~Drawing() = default;
   /// One whole picture. @param shown  of the protocol's own type, or nothing
   virtual void draw(const stimulus::Shown& shown) = 0;
+  /// A key of the window was pressed. @param key  its code
+  virtual void pressed(int key) { static_cast<void>(key); }
   /// The point p_W that a pixel shows, for a pointer that is a device; nothing if pixels are none
   /// [m].
   virtual std::optional<Eigen::Vector3d> to_world(const Eigen::Vector2d& pixel) const {

@@ -40,18 +40,29 @@ class BoneDrawing final : public Drawing {
       : definition_(definition),
         display_(gl, definition, std::move(stage), width, height, render::BoneStyle{},
                  std::move(surface)),
-        hand_(pointer_hand_of(definition)) {}
+        hand_(pointer_hand_of(definition)),
+        chosen_(definition.quality) {}
   void draw(const stimulus::Shown& shown) override {
     const auto* seen = shown.as<bone::DrillingView>();
     seen_ = seen != nullptr ? *seen : bone::DrillingView{};
-    if (definition_.quality) {
-      display_.set_quality(*definition_.quality);
-    } else {
-      const Clock::time_point now = Clock::now();
-      const std::chrono::duration<double> interval = now - std::exchange(last_, now);
-      display_.set_quality(steps_.next(interval.count()));
-    }
+    const Clock::time_point now = Clock::now();
+    const std::chrono::duration<double> interval = now - std::exchange(last_, now);
+    const render::Quality by_time = steps_.next(interval.count());
+    display_.set_quality(chosen_.value_or(by_time));
     display_.draw(seen_);
+  }
+  /// V: all that can be drawn, with less and with least, and then by time again.
+  void pressed(int key) override {
+    if (key != 'V' || definition_.quality || definition_.bits_of({key}) != 0) {
+      return;
+    }
+    if (!chosen_) {
+      chosen_ = render::Quality::kFull;
+    } else if (*chosen_ == render::Quality::kPlain) {
+      chosen_ = std::nullopt;
+    } else {
+      chosen_ = static_cast<render::Quality>(static_cast<int>(*chosen_) - 1);
+    }
   }
   std::optional<device::HandPose> hand(const device::PointerInput& input) override {
     if (!definition_.mouse.in_space || !seen_.shown) {
@@ -87,6 +98,7 @@ class BoneDrawing final : public Drawing {
   bone::DrillingView seen_;
   device::PointerHand hand_;
   std::vector<int> keys_;
+  std::optional<render::Quality> chosen_;  // none: by time
   render::QualitySteps steps_;
   Clock::time_point last_{Clock::now()};
 };

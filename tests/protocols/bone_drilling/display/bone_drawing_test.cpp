@@ -1,0 +1,68 @@
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <utility>
+
+#include "core/render/gl/offscreen.h"
+#include "protocols/bone_drilling/display/bone_display.h"
+#include "tests/protocols/drilling_fixture.h"
+
+namespace haptrial::protocols {
+namespace {
+
+constexpr int kWidth = 320;
+constexpr int kHeight = 240;
+
+/// Two blocks of bone, seen from above.
+std::shared_ptr<const BoneStage> stage() {
+  test::Workshop shop;
+  auto stage = std::make_shared<BoneStage>();
+  stage->model = std::make_shared<const bone::BoneModel>(shop.model);
+  stage->start_view.eye = {0.01, 0.06, 0.03};
+  stage->start_view.target = {0.0, 0.0, 0.0};
+  stage->start_view.field_of_view = 0.4;
+  stage->depths = depths_of(*stage->model);
+  stage->simulator = std::move(shop.simulator);
+  stage->companions = std::move(shop.companions);
+  return stage;
+}
+
+/// A window's drawing, off screen.
+struct View {
+  explicit View(const BoneDefinition& definition)
+      : drawing(bone_drawing(definition, stage(), nullptr)(context.gl(), kWidth, kHeight)) {}
+  std::vector<std::uint8_t> picture() {
+    drawing->draw({});
+    return context.read().rgb;
+  }
+  render::OffscreenContext context{kWidth, kHeight};
+  std::unique_ptr<Drawing> drawing;
+};
+
+TEST(BoneDrawingTest, VStepsThroughTheQualitiesAndAFixedOneStays) {
+  const BoneDefinition free;
+  View view(free);
+  const auto full = view.picture();
+  view.drawing->pressed('X');
+  view.drawing->pressed('V');
+  EXPECT_EQ(view.picture(), full) << "as much as the machine draws, at first";
+  view.drawing->pressed('V');
+  const auto shaded = view.picture();
+  EXPECT_NE(shaded, full);
+  view.drawing->pressed('V');
+  const auto plain = view.picture();
+  EXPECT_NE(plain, shaded);
+  EXPECT_NE(plain, full);
+  view.drawing->pressed('V');
+  EXPECT_EQ(view.picture(), full);
+
+  BoneDefinition fixed;
+  fixed.quality = render::Quality::kShaded;
+  View other(fixed);
+  EXPECT_EQ(other.picture(), shaded);
+  other.drawing->pressed('V');
+  EXPECT_EQ(other.picture(), shaded);
+}
+
+}  // namespace
+}  // namespace haptrial::protocols
