@@ -73,7 +73,8 @@ def look(page, url, folder):
     assert not wide, "the narrow page scrolls sideways"
 
     # At the nerve itself an answer of 100 µV needs about 0.09 mA.
-    wait("the threshold of the nerve", lambda: page.text("probe").startswith("oculi answers from"))
+    wait("the end of the search", lambda: not page.text("probe").startswith("looking"))
+    assert page.text("probe").startswith("oculi answers from"), page.text("probe")
     found = float(page.text("probe").split()[3])
     assert 0.07 < found < 0.13, found
 

@@ -74,11 +74,14 @@ void NerveSimulation::tick(const NerveTick& tick, bool heard) {
     first_ = tick.sequence;
   }
   ended_ = rows_.events.size();
+  const auto searched = stimulator_.searching();
+  const bool quiet = !searched || !monitor_.channel(*searched).tone;
   discharge(tick);
   make(tick);
   look(tick, heard);
   note_settings(tick.sequence);
-  stimulator_.follow(tick.sequence, static_cast<double>(tick.current), ended(), rows_.stimuli);
+  stimulator_.follow(tick.sequence, static_cast<double>(tick.current), quiet, ended(),
+                     rows_.stimuli);
 }
 
 /// One of the nerve's muscles at random: what irritates a nerve seldom reaches all of its fibres.

@@ -35,7 +35,7 @@ void Stimulator::search(std::size_t channel) noexcept {
   set_ = true;
 }
 
-void Stimulator::follow(std::uint64_t sequence, double pulse,
+void Stimulator::follow(std::uint64_t sequence, double pulse, bool quiet,
                         std::span<const record::NerveEventRow> ended,
                         std::vector<record::NerveStimulusRow>& rows) {
   const std::int32_t channel = channel_ ? static_cast<std::int32_t>(*channel_) : -1;
@@ -55,7 +55,7 @@ void Stimulator::follow(std::uint64_t sequence, double pulse,
                               e.kind == record::NerveEventRow::Kind::kResponse);
   }
   // A pulse that was on its way when the search asked for another one is not of the search.
-  if (pulse > 0.0 && same(pulse, search_->current())) {
+  if (pulse > 0.0 && quiet && same(pulse, search_->current())) {
     pulse_ = sequence;
     answered_ = false;
   }

@@ -24,8 +24,9 @@ struct FoundThreshold {
 };
 
 /// What a technician makes of the probe's pulses: sets their current, or lets a search find the
-/// least one that a channel answers. An answer that falls into another event of the channel is not
-/// seen: search in quiet. The thread that makes electromyograms; allocates rows.
+/// least one that a channel answers. An answer to a pulse that comes while another event of the
+/// channel goes on could not be told from it: the search waits for a pulse in quiet. The thread
+/// that makes electromyograms; allocates rows.
 class Stimulator {
  public:
   /// @param rate  of ticks [Hz]
@@ -35,8 +36,12 @@ class Stimulator {
   void set(double current) noexcept;
   void search(std::size_t channel) noexcept;
 
-  /// After every tick. @param pulse  that began with it [A], 0: none @param ended  its events
-  void follow(std::uint64_t sequence, double pulse, std::span<const record::NerveEventRow> ended,
+  /// After every tick.
+  /// @param pulse  that began with it [A], 0: none
+  /// @param quiet  no event of the searched channel went on when the tick began
+  /// @param ended  events that ended in it
+  void follow(std::uint64_t sequence, double pulse, bool quiet,
+              std::span<const record::NerveEventRow> ended,
               std::vector<record::NerveStimulusRow>& rows);
 
   double current() const noexcept { return current_->load(std::memory_order_relaxed); }  // [A]

@@ -48,10 +48,10 @@ class Bench {
       }
       const double pulse = now_ % 200 == 0 ? static_cast<double>(current->load()) : 0.0;
       pulses += pulse > 0.0;
-      if (pulse >= threshold_) {
+      if (pulse >= threshold_ && now_ >= busy_until) {
         answer_ = now_ + 6;
       }
-      stimulator.follow(now_, pulse, ended, rows);
+      stimulator.follow(now_, pulse, now_ >= busy_until, ended, rows);
     }
   }
   std::size_t count(Kind kind) const {
@@ -62,6 +62,7 @@ class Bench {
   Stimulator stimulator{current, 1000.0};
   std::vector<NerveStimulusRow> rows;
   int pulses{0};
+  std::uint64_t busy_until{0};  // tick; until then an event hides every answer
 
  private:
   double threshold_;
@@ -87,6 +88,18 @@ TEST(StimulatorTest, ASearchFindsTheCurrentFromPulsesAndAnswers) {
     EXPECT_EQ(bench.count(Kind::kSearch), 1u);
     EXPECT_EQ(bench.count(Kind::kFound), 1u);
   }
+}
+
+TEST(StimulatorTest, ASearchWaitsUntilAnEventOfTheChannelIsOver) {
+  Bench bench(0.2e-3);
+  bench.busy_until = 1500;
+  bench.stimulator.search(1);
+  bench.run(1.4);
+  EXPECT_TRUE(bench.stimulator.searching()) << "seven pulses, and nothing is known";
+  bench.run(3.0);
+  ASSERT_TRUE(bench.stimulator.found());
+  EXPECT_FALSE(bench.stimulator.found()->out_of_range);
+  EXPECT_LE(bench.stimulator.found()->current, 1.051 * 0.2e-3);
 }
 
 TEST(StimulatorTest, ANerveOutOfReachIsSaidToBe) {
