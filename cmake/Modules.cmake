@@ -252,6 +252,7 @@ function(haptrial_test_needs)
   target_link_libraries(test_contact PRIVATE haptrial_geometry_files)
   target_link_libraries(test_deformable PRIVATE SUNDIALS::kinsol SUNDIALS::cvode
                                                 haptrial_base_files)  # solvers to compare with
+  target_link_libraries(test_bone_surface PRIVATE haptrial_bone_drill)
   target_link_libraries(test_bone_anatomy PRIVATE haptrial_bone_data)
   target_link_libraries(test_bone_drill PRIVATE haptrial_test_references)
   target_link_libraries(test_nerve_beside PRIVATE haptrial_sound)

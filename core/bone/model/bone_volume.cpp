@@ -57,6 +57,9 @@ BoneVolume::BoneVolume(const BoneModel& model)
   };
   for_each_voxel(grid_, mark);
   make_room();
+  if (!model.density.empty()) {
+    originals_.assign(labels_.size(), 0);
+  }
   const auto fill = [&](const Voxel& voxel, std::size_t index) {
     if (model.labels[index] != 0) {
       const std::int32_t at = address(voxel);
@@ -65,6 +68,9 @@ BoneVolume::BoneVolume(const BoneModel& model)
         flip(at);
       }
       labels_[static_cast<std::size_t>(at)] = model.labels[index];
+      if (!originals_.empty()) {
+        keep_original(at, densities_[at]);
+      }
     }
   };
   for_each_voxel(grid_, fill);
@@ -81,9 +87,16 @@ BoneVolume::BoneVolume(const BoneVolume& other, std::span<const Voxel> voxels)
     }
   }
   make_room();
+  if (!other.originals_.empty()) {
+    originals_.assign(labels_.size(), 0);
+  }
   for (const Voxel& voxel : voxels) {
     if (const std::int32_t from = other.address(voxel); from != 0) {
-      labels_[static_cast<std::size_t>(address(voxel))] = other.label(from);
+      const auto at = static_cast<std::size_t>(address(voxel));
+      labels_[at] = other.label(from);
+      if (!originals_.empty()) {
+        originals_[at] = other.originals_[static_cast<std::size_t>(from)];
+      }
     }
   }
 }
@@ -139,7 +152,8 @@ double BoneVolume::amount() const noexcept {
 }
 
 BoneVolume::View BoneVolume::view() const noexcept {
-  return {grid_.size, table_size_, table_.data(), densities_.get(), filled_.data(), holding_.data()};
+  return {grid_.size,       table_size_,    table_.data(),
+          densities_.get(), filled_.data(), holding_.data()};
 }
 
 }  // namespace haptrial::bone

@@ -54,6 +54,13 @@ class BoneVolume {
     return std::atomic_ref<float>(densities_[address]).load(std::memory_order_relaxed);
   }
   float density(const Voxel& voxel) const noexcept { return density(address(voxel)); }
+  /// What the voxel had before anything was removed, from 0 to 1, cut off to 1/255. Any thread.
+  float original(std::int32_t address) const noexcept {
+    return originals_.empty()
+               ? 1.0F
+               : static_cast<float>(originals_[static_cast<std::size_t>(address)]) / kOriginalSteps;
+  }
+  float original(const Voxel& voxel) const noexcept { return original(address(voxel)); }
   std::uint8_t label(std::int32_t address) const noexcept {
     return labels_[static_cast<std::size_t>(address)];
   }
@@ -107,6 +114,12 @@ class BoneVolume {
   }
   std::size_t table_index(const Voxel& voxel) const noexcept;
   void make_room();
+  void keep_original(std::int32_t address, float density) noexcept {
+    originals_[static_cast<std::size_t>(address)] =
+        static_cast<std::uint8_t>(density * kOriginalSteps);
+  }
+
+  static constexpr float kOriginalSteps = 255.0F;
 
   geometry::VoxelGrid grid_;
   std::array<std::int32_t, 3> table_size_{};
@@ -114,6 +127,7 @@ class BoneVolume {
   std::vector<Voxel> origins_;                              // by brick
   std::unique_ptr<float[]> densities_;                      // by address
   std::vector<std::uint8_t> labels_;                        // by address
+  std::vector<std::uint8_t> originals_;                     // by address; empty: all 1
   std::vector<std::uint64_t> filled_;                       // by layer; the servo thread's
   std::vector<std::uint16_t> holding_;                      // by brick; likewise
   std::unique_ptr<std::atomic<std::uint32_t>[]> versions_;  // by brick

@@ -11,8 +11,7 @@ constexpr int kNone = -1;
 constexpr int kVoxelReach = CellField::kReach + 1;  // how far, in cells, a quad follows a voxel
 
 constexpr std::uint8_t kTessellate = 1;
-constexpr std::uint8_t kDensity = 2;
-constexpr std::uint8_t kNear = 4;
+constexpr std::uint8_t kNear = 2;
 
 /// The brick that a cell lies in; cells -8 .. -1 are in brick -1.
 Voxel brick_of(const Voxel& cell) { return {cell.x() >> 3, cell.y() >> 3, cell.z() >> 3}; }
@@ -49,11 +48,16 @@ bool Surface::update(const BoneVolume& volume) {
   }
   const bool first = !std::exchange(reported_, true);
   changed_voxels_.clear();
+  worn_voxels_.clear();
   changed_bricks_.clear();
   if (!first) {
     forget_changes();
   }
   occupancy_.follow(volume, changed_voxels_, &changed_bricks_);
+  remains_.follow(volume, occupancy_, changed_bricks_, &worn_voxels_);
+  for (const Voxel& voxel : worn_voxels_) {
+    mark(voxel);
+  }
   for (const Voxel& voxel : changed_voxels_) {
     mark(voxel);
     if (near_.shows(volume, voxel)) {
@@ -65,12 +69,6 @@ bool Surface::update(const BoneVolume& volume) {
   }
   for (const std::size_t place : marked_) {
     place_quads(place);
-  }
-  for (const std::int32_t brick : changed_bricks_) {
-    mark_density(volume.brick_origin(brick));
-  }
-  for (const std::size_t place : density_marked_) {
-    refresh_densities(volume, place);
   }
   for (const Voxel& voxel : changed_voxels_) {
     mark_near(volume, voxel);
@@ -84,10 +82,8 @@ bool Surface::update(const BoneVolume& volume) {
       bricks_[place].reset();
     }
   }
-  for (const auto* list : {&density_marked_, &near_marked_}) {
-    for (const std::size_t place : *list) {
-      marks_[place] = 0;
-    }
+  for (const std::size_t place : near_marked_) {
+    marks_[place] = 0;
   }
   constexpr std::size_t kFew = 4096;  // slots that are not worth packing
   if (free_vertices_.size() > std::max(vertices_.size() / 2, kFew)) {
@@ -119,7 +115,6 @@ void Surface::forget_changes() {
   changed_vertices_.clear();
   changed_quads_.clear();
   marked_.clear();
-  density_marked_.clear();
   near_marked_.clear();
   rebuilt_ = false;
 }
@@ -163,10 +158,6 @@ void Surface::mark(const Voxel& voxel) {
   mark_box(voxel - reach, voxel + reach, kTessellate, marked_);
 }
 
-void Surface::mark_density(const Voxel& brick_origin) {
-  mark_box(brick_origin - Voxel::Ones(), brick_origin, kDensity, density_marked_);
-}
-
 void Surface::mark_near(const BoneVolume& volume, const Voxel& voxel) {
   if (near_.shows(volume, voxel)) {
     const Voxel reach = Voxel::Constant(near_.reach());
@@ -177,7 +168,7 @@ void Surface::mark_near(const BoneVolume& volume, const Voxel& voxel) {
 void Surface::place_vertices(const BoneVolume& volume, std::size_t place) {
   const Voxel origin = BoneVolume::kEdge * brick_at(place);
   std::unique_ptr<CellBrick>& brick = bricks_[place];
-  const bool any = field_.read(volume, occupancy_, origin);
+  const bool any = field_.read(volume, occupancy_, remains_, origin);
   if (!any && brick == nullptr) {
     return;
   }
@@ -186,7 +177,7 @@ void Surface::place_vertices(const BoneVolume& volume, std::size_t place) {
     brick->vertices.fill(kNone);
   }
   if (any) {
-    field_.smooth();
+    field_.smooth(remains_);
   }
   std::size_t at = 0;
   for (int k = 0; k < BoneVolume::kEdge; ++k) {
@@ -246,7 +237,7 @@ std::uint8_t Surface::mean_density(const BoneVolume& volume, const Voxel& cell, 
   int count = 0;
   for (int b = 0; b < 8; ++b) {
     if ((corners >> b & 1U) != 0) {
-      sum += volume.density(Voxel(cell + corner(b)));
+      sum += volume.original(Voxel(cell + corner(b)));
       ++count;
     }
   }
@@ -381,17 +372,6 @@ void Surface::remove_quad(std::int32_t vertex, int axis) {
   touch_quad(slot);
   free_quads_.push_back(slot);
   slot = kNone;
-}
-
-void Surface::refresh_densities(const BoneVolume& volume, std::size_t place) {
-  for_each_vertex(place, [&](std::int32_t slot) {
-    const auto index = static_cast<std::size_t>(slot);
-    const std::uint8_t density = mean_density(volume, links_[index].cell, links_[index].corners);
-    if (density != vertices_[index].density) {
-      vertices_[index].density = density;
-      touch_vertex(slot);
-    }
-  });
 }
 
 void Surface::refresh_near(const BoneVolume& volume, std::size_t place) {

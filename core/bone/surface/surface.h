@@ -9,6 +9,7 @@
 #include "core/bone/model/bone_volume.h"
 #include "core/bone/model/occupancy.h"
 #include "core/bone/surface/near_structures.h"
+#include "core/bone/surface/remains.h"
 #include "core/bone/surface/surface_cells.h"
 #include "core/bone/surface/surface_depths.h"
 #include "core/geometry/mesh/work.h"
@@ -43,7 +44,7 @@ class Surface {
   bool built() const noexcept { return !bricks_.empty(); }
 
   /// Follows the volume, always the same one: retessellates around voxels that were filled or
-  /// emptied and refreshes densities where any changed. The first call builds the whole and orders
+  /// emptied, or of which a sixteenth more was taken. The first call builds the whole and orders
   /// it for the vertex cache; so does one that leaves most slots dead, which gives them back. The
   /// first one after build() reports all as changed.
   /// @returns whether anything changed.
@@ -111,7 +112,6 @@ class Surface {
   void mark_box(const Voxel& low, const Voxel& high, std::uint8_t flag,
                 std::vector<std::size_t>& list);
   void mark(const Voxel& voxel);
-  void mark_density(const Voxel& brick_origin);
   void mark_near(const BoneVolume& volume, const Voxel& voxel);
 
   void place_vertices(const BoneVolume& volume, std::size_t place);
@@ -130,7 +130,6 @@ class Surface {
   void place_quads(std::size_t place);
   void set_quad(std::int32_t vertex, int axis, bool outwards);
   void remove_quad(std::int32_t vertex, int axis);
-  void refresh_densities(const BoneVolume& volume, std::size_t place);
   void refresh_near(const BoneVolume& volume, std::size_t place);
   void touch_vertex(std::int32_t vertex);
   void touch_quad(std::int32_t quad);
@@ -141,6 +140,7 @@ class Surface {
 
   NearStructures near_;
   Occupancy occupancy_;
+  Remains remains_;
   geometry::VoxelGrid grid_;
   std::array<std::int32_t, 3> table_size_{0, 0, 0};  // in bricks of cells
   std::vector<std::unique_ptr<CellBrick>> bricks_;   // by place; null: no vertex there
@@ -152,12 +152,12 @@ class Surface {
 
   // What the update at hand uses; kept for the room.
   CellField field_;
-  std::vector<Voxel> changed_voxels_;
+  std::vector<Voxel> changed_voxels_;  // filled or emptied
+  std::vector<Voxel> worn_voxels_;     // of which more or less is left
   std::vector<std::int32_t> changed_bricks_;
-  std::vector<std::uint8_t> marks_;          // by place
-  std::vector<std::size_t> marked_;          // places to be tessellated again
-  std::vector<std::size_t> density_marked_;  // places whose densities are to be read again
-  std::vector<std::size_t> near_marked_;     // places where something else may show through
+  std::vector<std::uint8_t> marks_;       // by place
+  std::vector<std::size_t> marked_;       // places to be tessellated again
+  std::vector<std::size_t> near_marked_;  // places where something else may show through
   std::vector<std::uint8_t> vertex_touched_;
   std::vector<std::uint8_t> quad_touched_;
   std::vector<std::int32_t> changed_vertices_;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "core/base/parallel.h"
@@ -18,6 +19,9 @@ constexpr double kUntilQuads = 0.9;
 void Surface::build(const BoneVolume& volume, const geometry::WorkReport& report) {
   occupancy_.follow(volume);
   begin(volume);
+  changed_bricks_.resize(static_cast<std::size_t>(volume.bricks()) - 1);
+  std::iota(changed_bricks_.begin(), changed_bricks_.end(), 1);
+  remains_.follow(volume, occupancy_, changed_bricks_, nullptr);
   begin_places(volume);
   const std::vector<std::size_t> places = std::exchange(marked_, {});
   const int threads = threads_or_all(0);
@@ -82,10 +86,10 @@ void Surface::begin_places(const BoneVolume& volume) {
 void Surface::make_vertices(const BoneVolume& volume, std::size_t place, CellField& field,
                             std::vector<MadeVertex>& made) const {
   const Voxel origin = BoneVolume::kEdge * brick_at(place);
-  if (!field.read(volume, occupancy_, origin)) {
+  if (!field.read(volume, occupancy_, remains_, origin)) {
     return;
   }
-  field.smooth();
+  field.smooth(remains_);
   for (int k = 0; k < BoneVolume::kEdge; ++k) {
     for (int j = 0; j < BoneVolume::kEdge; ++j) {
       for (int i = 0; i < BoneVolume::kEdge; ++i) {

@@ -12,9 +12,10 @@ Number weighted(const Number* p, int step) {
   return static_cast<Number>(p[0] + p[4 * step] + 4 * (p[step] + p[3 * step]) + 6 * p[2 * step]);
 }
 
-/// Smooths a cube of kFrom³ numbers to one of (kFrom - 4)³.
+/// Smooths a cube of kFrom³ numbers to one of (kFrom - 4)³, of which only the last step is as large
+/// as its type.
 template <int kFrom, class Number>
-void smooth_cube(const Number* from, Number* to) {
+void smooth_cube(const Number* from, std::uint32_t* to) {
   constexpr int kTo = kFrom - 4;
   std::array<Number, kFrom * kFrom * kTo> along_x;
   std::array<Number, kFrom * kTo * kTo> along_y;
@@ -30,7 +31,10 @@ void smooth_cube(const Number* from, Number* to) {
     }
   }
   for (int at = 0; at < kTo * kTo * kTo; ++at) {
-    to[at] = weighted(along_y.data() + at, kTo * kTo);
+    const Number* p = along_y.data() + at;
+    constexpr int kStep = kTo * kTo;
+    to[at] = std::uint32_t{p[0]} + p[4 * kStep] + 4U * (std::uint32_t{p[kStep]} + p[3 * kStep]) +
+             6U * std::uint32_t{p[2 * kStep]};
   }
 }
 
@@ -77,7 +81,7 @@ constexpr float kFar = 1.4F;        // less than the 1.5 of a sheet of one voxel
 Eigen::Vector3f nearer_slopes(const Eigen::Vector3f& wide, const Eigen::Vector3f& slope,
                               const Eigen::Vector3f& step) {
   constexpr float kAgrees = 0.5F;  // cosine from which on the wide slope is enough
-  constexpr float kStep = 200.0F;  // as long as a slope of the sums
+  constexpr float kStep = 200.0F * Remains::kWhole;  // as long as a slope of the sums
   const float lengths = wide.norm() * step.norm();
   const float cosine = lengths > 0.0F ? wide.dot(step) / lengths : 0.0F;
   const float doubt = 1.0F - std::clamp(cosine / kAgrees, 0.0F, 1.0F);
@@ -86,58 +90,104 @@ Eigen::Vector3f nearer_slopes(const Eigen::Vector3f& wide, const Eigen::Vector3f
 
 }  // namespace
 
-bool CellField::read(const BoneVolume& volume, const Occupancy& occupancy,
+/// Rows of the wide cube: visit(number of the row, number of its first brick of the three along x,
+/// y and z in them).
+template <class Visit>
+void CellField::for_each_row(const Visit& visit) {
+  std::size_t row = 0;
+  for (int k = kEdge - kReach; k < kEdge - kReach + kWide; ++k) {
+    for (int j = kEdge - kReach; j < kEdge - kReach + kWide; ++j, ++row) {
+      visit(row, static_cast<std::size_t>(3 * (j / kEdge) + 9 * (k / kEdge)), j % kEdge, k % kEdge);
+    }
+  }
+}
+
+/// Takes those voxels of which half or less is left out of filled_ that lie beside one with more.
+void CellField::leave_out_rests(const Remains& remains) noexcept {
+  Rows solid;
+  for_each_row([&](std::size_t row, std::size_t first, int y, int z) {
+    std::uint32_t bits = 0;
+    for (std::size_t b = 0; b < 3; ++b) {
+      bits |= Remains::more_than_half(remains.row(bricks_[first + b], y, z)) << (kEdge * b);
+    }
+    solid[row] = holds_[row] & bits >> (kEdge - kReach);
+  });
+  // Those around, first along x, then y, then z; only the corners' are used.
+  Rows around;
+  for (std::size_t row = 0; row < solid.size(); ++row) {
+    around[row] = solid[row] | solid[row] << 1 | solid[row] >> 1;
+  }
+  for (const std::size_t step : {std::size_t{1}, std::size_t{kWide}}) {
+    const Rows before = around;
+    for (std::size_t row = step; row + step < around.size(); ++row) {
+      around[row] |= before[row - step] | before[row + step];
+    }
+  }
+  for (std::size_t row = 0; row < solid.size(); ++row) {
+    filled_[row] = solid[row] | (holds_[row] & ~around[row]);
+  }
+}
+
+bool CellField::read(const BoneVolume& volume, const Occupancy& occupancy, const Remains& remains,
                      const Voxel& origin) noexcept {
-  std::array<std::int32_t, 27> bricks{};
+  bool whole = true;
   for (int b = 0; b < 27; ++b) {
     const Voxel brick = origin + kEdge * (Voxel(b % 3, b / 3 % 3, b / 9) - Voxel::Ones());
-    bricks[static_cast<std::size_t>(b)] = volume.address(brick) / BoneVolume::kBrickVoxels;
+    const std::int32_t number = volume.address(brick) / BoneVolume::kBrickVoxels;
+    bricks_[static_cast<std::size_t>(b)] = number;
+    whole = whole && remains.all_whole(number);
+  }
+  for_each_row([&](std::size_t row, std::size_t first, int y, int z) {
+    std::uint32_t bits = 0;
+    for (std::size_t b = 0; b < 3; ++b) {
+      const std::uint64_t layer = occupancy.layer(bricks_[first + b], z);
+      bits |= static_cast<std::uint32_t>(layer >> (kEdge * y) & 0xFF) << (kEdge * b);
+    }
+    holds_[row] = bits >> (kEdge - kReach);
+  });
+  filled_ = holds_;
+  if (!whole) {
+    leave_out_rests(remains);
   }
   constexpr std::uint32_t kCorners = (1U << kCorner) - 1;
   std::uint32_t any = 0;
   std::uint32_t all = kCorners;
-  std::size_t row = 0;
-  for (int k = kEdge - kReach; k < kEdge - kReach + kWide; ++k) {
-    for (int j = kEdge - kReach; j < kEdge - kReach + kWide; ++j, ++row) {
-      const auto first = static_cast<std::size_t>(3 * (j / kEdge) + 9 * (k / kEdge));
-      std::uint32_t bits = 0;
-      for (std::size_t b = 0; b < 3; ++b) {
-        const std::uint64_t layer = occupancy.layer(bricks[first + b], k % kEdge);
-        bits |= static_cast<std::uint32_t>(layer >> (kEdge * (j % kEdge)) & 0xFF) << (kEdge * b);
-      }
-      rows_[row] = bits >> (kEdge - kReach);
-      const bool corners = j >= kEdge && j <= 2 * kEdge && k >= kEdge && k <= 2 * kEdge;
-      if (corners) {
-        any |= rows_[row] >> kReach & kCorners;
-        all &= rows_[row] >> kReach;
-      }
+  for (std::size_t k = kReach; k < kReach + kCorner; ++k) {
+    for (std::size_t j = kReach; j < kReach + kCorner; ++j) {
+      const std::uint32_t row = filled_[j + kWide * k] >> kReach & kCorners;
+      any |= row;
+      all &= row;
     }
   }
   return any != 0 && all != kCorners;
 }
 
 unsigned CellField::corners(int i, int j, int k) const noexcept {
-  const std::uint32_t* row = rows_.data() + (j + kReach) + kWide * (k + kReach);
+  const std::uint32_t* row = filled_.data() + (j + kReach) + kWide * (k + kReach);
   const auto two = [&](int step) { return row[step] >> (i + kReach) & 3U; };
   return two(0) | two(1) << 2 | two(kWide) << 4 | two(kWide + 1) << 6;
 }
 
-void CellField::smooth() noexcept {
-  std::array<std::uint16_t, kWide * kWide * kWide> filled;
-  for (std::size_t row = 0; row < rows_.size(); ++row) {
-    for (std::size_t i = 0; i < kWide; ++i) {
-      filled[kWide * row + i] = static_cast<std::uint16_t>(rows_[row] >> i & 1U);
+void CellField::smooth(const Remains& remains) noexcept {
+  std::array<std::uint16_t, kWide * kWide * kWide> left;
+  for_each_row([&](std::size_t row, std::size_t first, int y, int z) {
+    std::array<std::uint32_t, 3> shares;
+    for (std::size_t b = 0; b < 3; ++b) {
+      shares[b] = remains.row(bricks_[first + b], y, z);
     }
-  }
-  std::array<std::uint16_t, kSums * kSums * kSums> sums;
-  smooth_cube<kWide>(filled.data(), sums.data());
-  std::copy(sums.begin(), sums.end(), sums_.begin());
+    for (std::size_t i = 0; i < kWide; ++i) {
+      const std::size_t x = i + kEdge - kReach;
+      const std::uint32_t share = (shares[x / kEdge] >> (4 * (x % kEdge)) & 0xFU) + 1;
+      left[kWide * row + i] = static_cast<std::uint16_t>((holds_[row] >> i & 1U) * share);
+    }
+  });
+  smooth_cube<kWide>(left.data(), sums_.data());
   smooth_cube<kSums>(sums_.data(), wide_sums_.data());
 }
 
 Eigen::Vector3f CellField::place(int i, int j, int k, unsigned corners,
                                  Eigen::Vector3f& normal) const noexcept {
-  constexpr int kInner = kReach - 2;  // of sums_ before the first corner
+  constexpr int kInner = (kSums - kCorner) / 2;  // of sums_ before the first corner
   const std::uint32_t* sums =
       sums_.data() + (i + kInner) + kSums * ((j + kInner) + kSums * (k + kInner));
   int total = 0;

@@ -5,6 +5,7 @@
 
 #include "core/bone/model/bone_volume.h"
 #include "core/bone/model/occupancy.h"
+#include "core/bone/surface/remains.h"
 #include "core/bone/surface/surface_depths.h"
 
 namespace haptrial::bone {
@@ -14,7 +15,7 @@ struct SurfaceVertex {
   std::array<float, 3> place{};          // in B [m]
   std::array<std::int16_t, 3> normal{};  // outwards; 32767 is 1
   std::uint8_t label{0};                 // of the nearest filled voxel
-  std::uint8_t density{0};               // mean of the filled voxels around; 255 is 1
+  std::uint8_t density{0};               // mean of the filled voxels' first one; 255 is 1
   std::uint8_t near_label{0};            // of the nearest structure; 0: none within reach
   std::uint8_t near_depth{0};  // to it from the nearest filled voxel, in units of kDepthUnit
 
@@ -25,24 +26,30 @@ struct SurfaceVertex {
 /// Numbers of three vertices.
 using SurfaceTriangle = std::array<std::uint32_t, 3>;
 
-/// Which voxels are filled in and around a brick of 8 x 8 x 8 cells, and how many are around each:
-/// the sum over the 5 x 5 x 5 voxels around, weighted 1, 4, 6, 4, 1 along each axis, for places,
-/// and the same of these sums for normals, which want to be smoother. Whole numbers, so that a sum
-/// is the same in any order.
+/// Which voxels are drawn as filled in and around a brick of 8 x 8 x 8 cells, and how much is left
+/// around each: the sum of what is left of the 5 x 5 x 5 voxels around, weighted 1, 4, 6, 4, 1
+/// along each axis, for places, and the same of these sums for normals, which want to be smoother.
+/// Whole numbers, so that a sum is the same in any order.
+///
+/// A voxel of which half or less is left belongs to the empty side of the surface if one of the 26
+/// around has more, so that the surface passes through the middle of a voxel as half of it is gone;
+/// else it is a crumb, and filled.
 class CellField {
  public:
   static constexpr int kEdge = BoneVolume::kEdge;
-  static constexpr int kReach = 4;            // voxels around a cell that count
-  static constexpr int kFull = 16 * 16 * 16;  // the sum deep inside
+  static constexpr int kReach = 4;                              // voxels around a cell that count
+  static constexpr int kFull = Remains::kWhole * 16 * 16 * 16;  // the sum deep inside
 
   /// Reads the voxels around the cells from `origin`, a multiple of 8 along each axis.
+  /// @param occupancy, remains  of the volume
   /// @returns whether the cells have both filled and empty corners; else there are no vertices.
-  bool read(const BoneVolume& volume, const Occupancy& occupancy, const Voxel& origin) noexcept;
+  bool read(const BoneVolume& volume, const Occupancy& occupancy, const Remains& remains,
+            const Voxel& origin) noexcept;
 
   /// Bit b is the cell's corner (b & 1, b >> 1 & 1, b >> 2): whether it is filled.
   unsigned corners(int i, int j, int k) const noexcept;
-  /// Works out the sums; needed before place().
-  void smooth() noexcept;
+  /// Works out the sums; needed before place(). @param remains  as it was read
+  void smooth(const Remains& remains) noexcept;
   /// Where the smoothed field of a cell is half full, and its direction there.
   /// @param normal  outwards, of unit length
   /// @returns the place from the cell's middle, each coordinate from -0.5 to 0.5 [voxels]
@@ -53,7 +60,15 @@ class CellField {
   static constexpr int kCorner = kEdge + 1;           // voxels 0 .. 8
   static constexpr int kSums = kCorner + 4;           // voxels -2 .. 10
   static constexpr int kWide = kCorner + 2 * kReach;  // voxels -4 .. 12
-  std::array<std::uint32_t, kWide * kWide> rows_;     // bit i + 4 of row (j, k): filled
+  using Rows = std::array<std::uint32_t, kWide * kWide>;
+
+  void leave_out_rests(const Remains& remains) noexcept;
+  template <class Visit>
+  static void for_each_row(const Visit& visit);
+
+  std::array<std::int32_t, 27> bricks_;  // of the volume, around and at the cells
+  Rows holds_;                           // bit i + 4 of row (j, k): holds bone
+  Rows filled_;                          // likewise, and is drawn so
   std::array<std::uint32_t, kSums * kSums * kSums> sums_;
   std::array<std::uint32_t, kCorner * kCorner * kCorner> wide_sums_;
 };

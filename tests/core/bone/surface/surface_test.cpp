@@ -301,25 +301,6 @@ TEST(SurfaceTest, ThinThingsKeepAThickness) {
   }
 }
 
-TEST(SurfaceTest, DensitiesAreThoseOfTheVoxelsAround) {
-  const BoneModel model = ball_model(20, 6.0);
-  BoneVolume volume(model);
-  Surface surface;
-  surface.update(volume);
-  // All to a half, by the law that the mean of equal numbers is the number.
-  for_each_voxel(volume.grid(), [&](const Voxel& voxel) {
-    if (volume.density(voxel) > 0.0F) {
-      volume.put(volume.address(voxel), 0.5F);
-    }
-  });
-  ASSERT_TRUE(surface.update(volume));
-  EXPECT_TRUE(surface.changed_quads().empty()) << "no triangle changed";
-  EXPECT_EQ(surface.changed_vertices().size(), surface.vertex_count());
-  for (const SurfaceVertex& vertex : surface.vertices()) {
-    EXPECT_EQ(vertex.density, 128);
-  }
-}
-
 TEST(SurfaceTest, BuiltBeforehandItFollowsWhatWasCarvedSinceAndReportsAll) {
   const BoneModel model = rich_model(60, 9);
   BoneVolume volume(model);

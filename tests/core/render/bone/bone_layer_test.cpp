@@ -134,7 +134,7 @@ TEST_P(BoneLayerTest, APictureThatIsKeptIsThatOfAFullRedraw) {
       ASSERT_NO_FATAL_FAILURE(next("a carving", step));
     }
     std::sort(pixels.begin(), pixels.end());
-    EXPECT_LT(pixels[20], std::size_t{kWidth * kHeight / 4}) << "the half of the carvings";
+    EXPECT_LT(pixels[20], std::size_t{kWidth * kHeight / 3}) << "the half of the carvings";
     EXPECT_GT(pixels[20], 500U);
     frame.bones.push_back({2, &piece, Eigen::Isometry3d::Identity()});
     for (int step = 0; step < 12; ++step) {  // moves, rests, is changed
