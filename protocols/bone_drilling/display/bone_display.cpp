@@ -117,7 +117,8 @@ BoneDisplay::BoneDisplay(const render::Gl& gl, const BoneDefinition& definition,
       surface_(std::move(surface)),
       width_(width),
       height_(height),
-      scene_(gl, style, stage_->model->structures, stage_->depths) {
+      scene_(gl, style, stage_->model->structures, stage_->depths),
+      label_(gl, width, height) {
   for (std::size_t tool = 0; tool < stage_->simulator->tools().size(); ++tool) {
     meshes_.push_back(mesh_of(static_cast<int>(tool)));
   }
@@ -203,7 +204,17 @@ void BoneDisplay::draw(const bone::DrillingView& seen) {
   }
   stage_->companions->quads(frame_.dust, dust_version_);
   scene_.draw(frame_, width_, height_);
+  if (seen.shown) {
+    name_tool(seen.tool);
+  }
   draw_still(seen.stills_asked);
+}
+
+void BoneDisplay::name_tool(int tool) {
+  const bone::ToolSpec& spec = stage_->simulator->tools()[static_cast<std::size_t>(tool)];
+  for (int left = 0; left < width_; left += width()) {
+    label_.draw(spec, left);
+  }
 }
 
 void BoneDisplay::set_stills(std::shared_ptr<const std::vector<render::Image>> stills) {

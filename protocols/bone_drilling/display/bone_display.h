@@ -12,6 +12,7 @@
 #include "core/render/gl/image.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_stage.h"
+#include "protocols/bone_drilling/display/tool_label.h"
 #include "protocols/interface/drawing.h"
 
 namespace haptrial::protocols {
@@ -43,6 +44,7 @@ class BoneDisplay {
  private:
   std::shared_ptr<const geometry::Mesh> mesh_of(int tool) const;
   std::vector<render::Capsule> shadow_of(int tool) const;
+  void name_tool(int tool);
   void draw_still(std::int32_t asked);
 
   render::Gl gl_;
@@ -53,6 +55,7 @@ class BoneDisplay {
   int height_;
   render::BoneScene scene_;
   render::BoneFrame frame_;
+  ToolLabel label_;
   std::vector<std::shared_ptr<const geometry::Mesh>> meshes_;  // by tool
   std::uint64_t dust_version_{~std::uint64_t{0}};
   std::unique_ptr<render::BoneStills> stills_;  // null where there are none
