@@ -27,6 +27,9 @@ const ProxyOptions& checked(const ProxyOptions& options) {
   if (options.most_steps < 1 || options.most_steps > 48) {
     throw std::invalid_argument("most_steps: allowed: 1 to 48");
   }
+  if (options.most_work < 1) {
+    throw std::invalid_argument("most_work: allowed: 1 or more");
+  }
   return options;
 }
 
@@ -36,6 +39,13 @@ bool leads_off(const ContactPlane& plane, const Vector3d& move) {
 }
 
 }  // namespace
+
+std::uint64_t work_of(const Operations& o, double radius) noexcept {
+  constexpr std::uint64_t kPassed = 8;  // for one test
+  constexpr std::uint64_t kList = 30, kLongSweep = 30, kOfSphere = 2;
+  return (radius > 0.0 ? kOfSphere : 1) * o.triangles_tested + o.triangles_passed / kPassed +
+         kList * o.lists + kLongSweep * o.long_sweeps;
+}
 
 /// What holds for one tick.
 struct Proxy::Tick {
@@ -345,7 +355,7 @@ bool Proxy::advance(Tick& tick) noexcept {
   return true;
 }
 
-/// The steps are used up: what held the proxy last is taken to hold it.
+/// The tick's work is used up: what held the proxy last is taken to hold it.
 void Proxy::break_off(Tick& tick) noexcept {
   if (planes_.size() == 0) {
     planes_ = before_;
@@ -376,7 +386,10 @@ const ProxyState& Proxy::follow(const Vector3d& tool) noexcept {
   }
   planes_.clear();
   state_.settled = false;
-  for (int step = 0; step < options_.most_steps; ++step) {
+  const auto work = [&] { return work_of(near_.operations(), options_.radius); };
+  const std::uint64_t enough = work() + static_cast<std::uint64_t>(options_.most_work);
+  constexpr int kFewest = 4;  // three planes and the way along them: else it might stay
+  for (int step = 0; step < options_.most_steps && (step < kFewest || work() < enough); ++step) {
     if (advance(tick)) {
       return state_;
     }

@@ -38,18 +38,24 @@ struct ProxyState {
   std::array<std::int32_t, 3> triangles{};   // of these planes
   std::array<double, 3> push{};              // of each, along its normal [m]
   std::array<Eigen::Vector3d, 3> normals{};  // of each
-  bool settled{true};  // false: the tick's steps were used up, the way goes on on the next tick
+  bool settled{true};  // false: the tick's work was used up, the way goes on on the next tick
 };
 
 struct ProxyOptions {
   double radius{0.0};  // >= 0; 0: a point [m]
   Friction friction{};
   int most_steps{16};  // a tick, 1 to 48
+  int most_work{180};  // a tick, >= 1: after it and four steps no other follows (work_of)
   /// Ruspini's method is without the two: ways out of places where the planes stop the proxy and
   /// the triangles do not; paths round the arcs of a sphere.
   bool ways_out{true};
   bool arcs{true};
 };
+
+/// What operations cost, in exact tests of a triangle against a point: counted, not timed, so that
+/// a path gives the same proxy on every machine.
+/// @param radius  of the proxy [m]
+std::uint64_t work_of(const Operations& operations, double radius) noexcept;
 
 /// The god object of a mesh: a point, or a sphere, that follows the tool as near as the surface
 /// lets it and never passes through a triangle.

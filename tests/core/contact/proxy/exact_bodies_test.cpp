@@ -260,7 +260,7 @@ TEST(ExactBodiesTest, AFanOfManyTrianglesIsAPlane) {
   }
   const ContactSurface surface(fan, 1);
   for (const double radius : {0.0, 0.03}) {
-    Proxy proxy(surface, {.radius = radius});
+    Proxy proxy(surface, {.radius = radius, .most_work = 100'000});
     proxy.start({0.1, 0.0, 0.2});
     RandomStream random(8, "fan");
     for (int i = 0; i < 5000; ++i) {
@@ -269,6 +269,35 @@ TEST(ExactBodiesTest, AFanOfManyTrianglesIsAPlane) {
       ASSERT_TRUE(state.settled) << "radius " << radius << ", step " << i;
       ASSERT_LT((state.position - Vector3d(tool.x(), tool.y(), radius)).norm(), 1e-11) << i;
     }
+  }
+}
+
+/// Where there is one nearest place, a proxy that may do one step a tick comes to it, only later.
+TEST(ProxyTest, WorkThatIsLeftIsDoneOnTheNextTicks) {
+  const ContactSurface surface(geometry::make_sphere(0.03, 20));
+  for (const double radius : {0.0, 0.002}) {
+    Proxy all(surface, {.radius = radius, .most_work = 1'000'000});
+    Proxy little(surface, {.radius = radius, .most_work = 1});
+    RandomStream random(9, "work");
+    all.start({0.0, 0.0, 0.05});
+    little.start({0.0, 0.0, 0.05});
+    Vector3d tool(0.0, 0.0, 0.028);
+    int late = 0;
+    for (int i = 0; i < 200; ++i) {
+      tool = 0.028 * (tool + 0.0005 * random_in(random, 1.0)).normalized();
+      all.follow(tool);
+      ASSERT_TRUE(all.state().settled) << i;
+      double before = 1.0;
+      for (int tick = 0; tick == 0 || !little.state().settled; ++tick) {
+        ASSERT_LT(tick, 100) << i;
+        late += tick > 0;
+        const double apart = (little.follow(tool).position - tool).norm();
+        ASSERT_LE(apart, before * (1.0 + 1e-12)) << "each tick brings it nearer, " << i;
+        before = apart;
+      }
+      ASSERT_LT((all.state().position - little.state().position).norm(), 1e-9) << i;
+    }
+    EXPECT_GT(late, 50);
   }
 }
 
@@ -293,6 +322,7 @@ TEST(ProxyTest, RefusesOptionsOutOfBounds) {
   EXPECT_THROW(Proxy(surface, {.friction = {0.2, 0.3}}), std::invalid_argument);
   EXPECT_THROW(Proxy(surface, {.friction = {0.2, -0.3}}), std::invalid_argument);
   EXPECT_THROW(Proxy(surface, {.most_steps = 0}), std::invalid_argument);
+  EXPECT_THROW(Proxy(surface, {.most_work = 0}), std::invalid_argument);
 }
 
 TEST(ProxyTest, AToolThatIsNotFiniteChangesNothing) {
