@@ -13,7 +13,7 @@ constexpr std::size_t kFarthest = 100;  // back [ticks]
 constexpr std::size_t kShape = 2;       // ticks before the present one that are compared
 constexpr std::size_t kAhead = 16;      // [ticks]
 constexpr double kLevel = 0.3;          // weight of the level of the force beside its shape
-constexpr double kLess = 0.2;           // each analogue counts less than the one before
+constexpr double kLess = 0.5;           // each analogue counts less than the one before
 constexpr double kInside = 0.98;        // of the bound
 
 /// The point of a ball around `middle` that is nearest to `p`.

@@ -12,7 +12,6 @@
 namespace haptrial::experiments {
 namespace {
 
-
 /// Finite numbers between commas; none where one is not.
 std::vector<double> numbers_of(std::string_view text) {
   std::vector<double> numbers;
@@ -31,27 +30,29 @@ std::vector<double> numbers_of(std::string_view text) {
   }
 }
 
-/// Empties where `within` says so of a voxel's centre, in the bricks that `near` says of.
-template <class Near, class Within>
-void empty_where(bone::BoneVolume& volume, const std::vector<bool>& spared, Near&& near,
-                 Within&& within) {
+/// @param outside  of a point: how far from what is cut away, negative within it [m]
+template <class Outside>
+void cut_away(bone::BoneVolume& volume, const std::vector<bool>& spared, Outside&& outside) {
   constexpr int kVoxels = bone::BoneVolume::kBrickVoxels;
   const geometry::VoxelGrid& grid = volume.grid();
-  const double around = 0.5 * std::sqrt(3.0) * bone::BoneVolume::kEdge * grid.spacing;
+  const double around = 0.5 * std::sqrt(3.0) * (bone::BoneVolume::kEdge + 1) * grid.spacing;
   for (std::int32_t brick = 1; brick < volume.bricks(); ++brick) {
     const bone::Voxel first = volume.brick_origin(brick);
     const Eigen::Vector3d middle = grid.centre(first.x(), first.y(), first.z()) +
                                    Eigen::Vector3d::Constant(3.5 * grid.spacing);
-    if (!near(middle, around)) {
+    if (outside(middle) > around) {
       continue;
     }
     for (std::int32_t at = brick * kVoxels; at < (brick + 1) * kVoxels; ++at) {
       const bone::Voxel voxel = volume.voxel_at(at);
       const std::uint8_t label = volume.label(at);
-      if (volume.density(at) > 0.0F && !(label < spared.size() && spared[label]) &&
-          within(grid.centre(voxel.x(), voxel.y(), voxel.z()))) {
-        volume.take(at, 1.0F);
+      if (volume.density(at) == 0.0F || (label < spared.size() && spared[label])) {
+        continue;
       }
+      const double off = outside(grid.centre(voxel.x(), voxel.y(), voxel.z()));
+      const double share = std::clamp(0.5 + off / grid.spacing, 0.0, 1.0);
+      const float left = share < 1.0 ? static_cast<float>(share) * volume.original(at) : 1.0F;
+      volume.take(at, std::max(0.0F, volume.density(at) - left));
     }
   }
 }
@@ -85,28 +86,16 @@ PlaneCut parse_plane_cut(const char* name, const std::string& text) {
 void carve(bone::BoneVolume& volume, const Stroke& stroke, const std::vector<bool>& spared) {
   const Eigen::Vector3d along = stroke.to - stroke.from;
   const double squared = along.squaredNorm();
-  const auto distance = [&](const Eigen::Vector3d& point) {
+  cut_away(volume, spared, [&](const Eigen::Vector3d& point) {
     const double t = squared == 0.0 ? 0.0 : (point - stroke.from).dot(along) / squared;
-    return (point - stroke.from - std::clamp(t, 0.0, 1.0) * along).norm();
-  };
-  empty_where(
-      volume, spared,
-      [&](const Eigen::Vector3d& middle, double around) {
-        return distance(middle) <= stroke.radius + around;
-      },
-      [&](const Eigen::Vector3d& point) { return distance(point) <= stroke.radius; });
+    return (point - stroke.from - std::clamp(t, 0.0, 1.0) * along).norm() - stroke.radius;
+  });
 }
 
 void carve(bone::BoneVolume& volume, const PlaneCut& cut, const std::vector<bool>& spared) {
-  const auto distance = [&](const Eigen::Vector3d& point) {
-    return std::abs(cut.normal.dot(point - cut.point));
-  };
-  empty_where(
-      volume, spared,
-      [&](const Eigen::Vector3d& middle, double around) {
-        return distance(middle) <= cut.half_width + around;
-      },
-      [&](const Eigen::Vector3d& point) { return distance(point) <= cut.half_width; });
+  cut_away(volume, spared, [&](const Eigen::Vector3d& point) {
+    return std::abs(cut.normal.dot(point - cut.point)) - cut.half_width;
+  });
 }
 
 }  // namespace haptrial::experiments

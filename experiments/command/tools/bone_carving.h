@@ -31,7 +31,8 @@ Stroke parse_stroke(const char* name, const std::string& text);
 /// "X,Y,Z,NX,NY,NZ,WIDTH" [mm]; the normal of any length but 0. @throws InputError
 PlaneCut parse_plane_cut(const char* name, const std::string& text);
 
-/// Empties the voxels whose centres lie within.
+/// Leaves each voxel the share of what it had at first that lies outside: what a plane across the
+/// nearest direction, as far from its centre, would leave.
 /// @param spared  by label: stays; shorter than the labels: the rest does not
 void carve(bone::BoneVolume& volume, const Stroke& stroke, const std::vector<bool>& spared);
 void carve(bone::BoneVolume& volume, const PlaneCut& cut, const std::vector<bool>& spared);
