@@ -45,6 +45,7 @@ class DefinedTrials final : public Trials {
   std::vector<std::string> notices() const override;
 
   /// The pass that make_pass() made last, and names of the stages of its intervals.
+  TrialPass& pass() { return *pass_; }
   const TrialPass& pass() const { return *pass_; }
   const std::vector<std::vector<NamedStage>>& stages() const { return stages_; }
 

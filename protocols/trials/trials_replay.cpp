@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
@@ -71,11 +72,17 @@ class TrialReplay {
     const auto drawing = trials_.drawing()(context.gl(), width, height);
     const double duration = static_cast<double>(samples.size() - 1) / definition_->rate;
     const int count = static_cast<int>(std::floor(duration * request_.fps + 1e-9)) + 1;
+    std::size_t felt = 0;  // samples
     for (int i = 0; i < count; ++i) {
       request_.progress(i, count, fmt::format("{} of {} pictures", i, count), request_.fps);
-      const auto at = static_cast<std::size_t>(std::lround(i * definition_->rate / request_.fps));
+      const auto at =
+          std::min(static_cast<std::size_t>(std::lround(i * definition_->rate / request_.fps)),
+                   samples.size() - 1);
+      for (; felt <= at; ++felt) {
+        feel(samples[felt]);
+      }
       context.make_current();
-      drawing->draw(stimulus::Shown(view_at(samples[std::min(at, samples.size() - 1)])));
+      drawing->draw(stimulus::Shown(view_at(samples[at])));
       request_.picture(context.read());
     }
     request_.tell(
@@ -163,16 +170,39 @@ class TrialReplay {
     }
   }
 
+  /// Null between the intervals and while something is asked.
+  const record::StageRow* stage_at(std::uint64_t sequence) const {
+    const auto at = std::ranges::find_if(stages_, [sequence](const record::StageRow& stage) {
+      return sequence >= stage.first_sample && sequence <= stage.last_sample;
+    });
+    return at == stages_.end() ? nullptr : &*at;
+  }
+
+  /// A tick: what presses the bodies that are seen follows from the hands alone.
+  void feel(const record::Sample& sample) {
+    const record::StageRow* stage = stage_at(sample.sequence);
+    if (stage == nullptr) {
+      return;
+    }
+    if (stage != std::exchange(felt_, stage)) {
+      trials_.pass().enter_again(static_cast<std::size_t>(stage->interval - 1), number_of(*stage));
+    }
+    std::vector<PointState> hands{{sample.position, sample.velocity}};
+    each_other(sample.sequence, [&hands](const record::DeviceRow& row) {
+      hands.push_back({row.position, row.velocity});
+    });
+    pressed_ = trials_.pass().feel_again(hands);
+  }
+
   TrialView view_at(const record::Sample& sample) const {
     TrialView view;
     view.trial = trials_.pass().trial();
     view.tool = sample.position;
     add_others(sample.sequence, view);
-    for (const record::StageRow& stage : stages_) {
-      if (sample.sequence >= stage.first_sample && sample.sequence <= stage.last_sample) {
-        show(stage, view);
-        return view;
-      }
+    if (const record::StageRow* stage = stage_at(sample.sequence)) {
+      show(*stage, view);
+      view.pressed = pressed_;
+      return view;
     }
     std::size_t answered = 0;  // the question that is open is the first one without an answer
     for (const record::ResponseRow& row : responses_) {
@@ -187,27 +217,39 @@ class TrialReplay {
     return view;
   }
 
-  void add_others(std::uint64_t sequence, TrialView& view) const {
+  template <class Visit>
+  void each_other(std::uint64_t sequence, Visit&& visit) const {
     auto row = std::ranges::lower_bound(others_, sequence, {}, &record::DeviceRow::sequence);
     for (; row != others_.end() && row->sequence == sequence; ++row) {
-      if (row->device < 1 || std::cmp_greater_equal(row->device, kMostDevices)) {
-        continue;
+      if (row->device >= 1 && std::cmp_less(row->device, kMostDevices)) {
+        visit(*row);
       }
-      const Eigen::Vector3f p = row->position.cast<float>();
-      view.others[static_cast<std::size_t>(row->device) - 1] = {p.x(), p.y(), p.z()};
-      view.other_count = std::max(view.other_count, static_cast<std::uint8_t>(row->device));
     }
   }
 
-  void show(const record::StageRow& row, TrialView& view) const {
-    const auto interval = static_cast<std::size_t>(row.interval - 1);
-    const std::vector<NamedStage>& stages = trials_.stages().at(interval);
+  void add_others(std::uint64_t sequence, TrialView& view) const {
+    each_other(sequence, [&view](const record::DeviceRow& row) {
+      const Eigen::Vector3f p = row.position.cast<float>();
+      view.others[static_cast<std::size_t>(row.device) - 1] = {p.x(), p.y(), p.z()};
+      view.other_count = std::max(view.other_count, static_cast<std::uint8_t>(row.device));
+    });
+  }
+
+  /// In its interval.
+  std::size_t number_of(const record::StageRow& row) const {
+    const std::vector<NamedStage>& stages =
+        trials_.stages().at(static_cast<std::size_t>(row.interval - 1));
     const auto at = std::ranges::find(stages, row.stage, &NamedStage::name);
     if (at == stages.end()) {
       throw InputError(fmt::format("{}: /stages names \"{}\", which the definition does not have",
                                    reader_.path().string(), row.stage));
     }
-    const auto stage = static_cast<std::size_t>(at - stages.begin());
+    return static_cast<std::size_t>(at - stages.begin());
+  }
+
+  void show(const record::StageRow& row, TrialView& view) const {
+    const auto interval = static_cast<std::size_t>(row.interval - 1);
+    const std::size_t stage = number_of(row);
     const StageSight& sight = trials_.pass().sight(interval, stage);
     view.interval = static_cast<std::uint8_t>(row.interval);
     view.stage = static_cast<std::uint8_t>(stage);
@@ -227,6 +269,8 @@ class TrialReplay {
   std::size_t row_{0};  // of /trials
   std::vector<record::StageRow> stages_;
   std::vector<record::DeviceRow> others_;
+  const record::StageRow* felt_{nullptr};  // stage of the last sample that was felt again
+  SeenForces pressed_;                     // on its tick
 };
 
 }  // namespace

@@ -24,15 +24,40 @@ void TrialPass::begin(std::uint64_t sequence) noexcept {
   begin_interval();
 }
 
-void TrialPass::begin_interval() noexcept {
+/// What was felt in the interval before does not jump.
+void TrialPass::go_on_feeling() noexcept {
   IntervalRun& run = setup_.intervals[interval_];
   for (std::size_t device = 0; interval_ > 0 && device < run.scenes.size(); ++device) {
     run.scenes[device].start_from(setup_.intervals[interval_ - 1].scenes[device]);
   }
+}
+
+void TrialPass::begin_interval() noexcept {
+  IntervalRun& run = setup_.intervals[interval_];
+  go_on_feeling();
   run.machine.begin(run.scenes, setup_.most_repeats);
   first_ticks_[interval_] = sequence_;
   begun_ = interval_ + 1;
   view_.interval = static_cast<std::uint8_t>(interval_ + 1);
+}
+
+void TrialPass::enter_again(std::size_t interval, std::size_t stage) noexcept {
+  if (interval != std::exchange(interval_, interval)) {
+    go_on_feeling();
+  }
+  IntervalRun& run = setup_.intervals[interval];
+  run.machine.enter(stage, run.scenes);
+}
+
+const SeenForces& TrialPass::feel_again(std::span<const PointState> hands) noexcept {
+  IntervalRun& run = setup_.intervals[interval_];
+  const std::size_t devices = std::min(hands.size(), run.scenes.size());
+  for (std::size_t device = 0; device < devices; ++device) {
+    run.scenes[device].force(hands[device]);
+  }
+  view_.pressed.counts = {};
+  show_pressed(run, run.sights[run.machine.stage()], devices);
+  return view_.pressed;
 }
 
 PassOutput TrialPass::tick(const Readings& readings, double dt) noexcept {

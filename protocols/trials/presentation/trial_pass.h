@@ -104,6 +104,12 @@ class TrialPass final : public Pass {
   PassState state() const noexcept override { return state_; }
   bool names_onsets() const noexcept override { return true; }
 
+  // For a replay, which knows the stages, in place of begin() and tick().
+  void enter_again(std::size_t interval, std::size_t stage) noexcept;
+  /// @param hands  (devices) on a tick of that stage, all of its ticks in order
+  /// @returns what presses the seen bodies
+  const SeenForces& feel_again(std::span<const PointState> hands) noexcept;
+
   // After the pass.
   /// Sequence number of the first tick of an interval; 0 for one that did not begin.
   std::uint64_t first_tick(std::size_t interval) const { return first_ticks_[interval]; }
@@ -132,6 +138,7 @@ class TrialPass final : public Pass {
   enum class Part : std::uint8_t { kIntervals, kQuestions, kFeedback };
 
   void begin_interval() noexcept;
+  void go_on_feeling() noexcept;
   void note_stage(const IntervalRun& run, PassOutput& out) noexcept;
   int sound_of(const Asked& asked, const Answer& answer) const noexcept;
   void present(const Readings& readings, double dt, PassOutput& out) noexcept;

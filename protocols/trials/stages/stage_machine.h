@@ -58,6 +58,8 @@ class StageMachine {
   void begin(Scenes scenes, int most_repeats) noexcept;
   /// @param dt  since the tick before [s]
   void tick(Readings readings, Scenes scenes, double dt) noexcept;
+  /// Into a stage, whatever came before: for a replay, which knows when it began.
+  void enter(std::size_t stage, Scenes scenes) noexcept;
 
   State state() const noexcept { return state_; }
   /// That goes on; of an interval that is over the last one.
@@ -68,7 +70,6 @@ class StageMachine {
   std::span<const StageTimes> times() const noexcept { return times_; }
 
  private:
-  void enter(std::size_t stage, Scenes scenes) noexcept;
   void leave(StageEnd how, Consequence what, Scenes scenes) noexcept;
   bool holds(const Until& until, Readings readings, Scenes scenes, double speed) const noexcept;
   bool all_inside(std::uint64_t regions, Readings readings) const noexcept;

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -383,6 +384,46 @@ seen_from = "front"
 [texts]
 instructions = "Press."
 )";
+}
+
+/// A replay has the hands and the stages, and finds what pressed the body on each tick.
+TEST_F(RehearsalTest, WhatPressedABodyFollowsFromTheHandsAndTheStages) {
+  Table root = Table::parse(soft_block("0.006"), "study.toml");
+  definition_ = trials_protocol().read(root, "study.toml", nullptr);
+  DefinedTrials live(studied(), place());
+  DefinedTrials recorded(studied(), place());
+  for (DefinedTrials* trials : {&live, &recorded}) {
+    auto trial = trials->next(nullptr);
+    trials->make_pass(*trial, trials->phases().front());
+  }
+  live.pass().begin(100);
+  int pressed = 0;
+  for (int tick = 0; live.pass().state() == PassState::kRunning; ++tick) {
+    device::DeviceReading reading;
+    const double time = 1e-3 * tick;
+    reading.tool.position = {0.004 * std::sin(3.0 * time), 0.008 - 0.006 * std::sin(2.0 * time),
+                             0.0};
+    reading.tool.velocity = {0.012 * std::cos(3.0 * time), -0.012 * std::cos(2.0 * time), 0.0};
+    const PassOutput out = live.pass().tick(Readings(reading), 1e-3);
+    const auto* view = out.shown.as<TrialView>();
+    ASSERT_NE(view, nullptr);
+    if (view->interval == 0) {
+      break;
+    }
+    if (tick == 0) {
+      recorded.pass().enter_again(0, 0);
+    }
+    const SeenForces& again = recorded.pass().feel_again(std::array{reading.tool});
+    const auto then = view->pressed.on(0);
+    const auto now = again.on(0);
+    ASSERT_EQ(now.size(), then.size()) << tick;
+    for (std::size_t i = 0; i < then.size(); ++i) {
+      ASSERT_EQ(now[i].vertex, then[i].vertex) << tick;
+      ASSERT_EQ(now[i].newtons, then[i].newtons) << tick;
+    }
+    pressed += !then.empty();
+  }
+  EXPECT_GT(pressed, 500);
 }
 
 /// What the screen is told presses the body is what the hand feels, turned around.
