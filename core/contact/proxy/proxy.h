@@ -45,7 +45,7 @@ struct ProxyOptions {
   double radius{0.0};  // >= 0; 0: a point [m]
   Friction friction{};
   int most_steps{16};  // a tick, 1 to 48
-  int most_work{180};  // a tick, >= 1: after it and four steps no other follows (work_of)
+  int most_work{240};  // a tick, >= 1: after it and four steps no other follows (work_of)
   /// Ruspini's method is without the two: ways out of places where the planes stop the proxy and
   /// the triangles do not; paths round the arcs of a sphere.
   bool ways_out{true};
