@@ -17,7 +17,7 @@ int share_left(const BoneVolume& volume, std::int32_t address) {
                       : Remains::kWhole;
 }
 
-/// Of eight voxels, as Remains::row() has it. @param holding  bit x: whether it holds bone
+/// The shares of eight voxels, packed as row() has them. @param holding  bit x: x holds bone
 std::uint32_t row_of(const BoneVolume& volume, std::int32_t first, unsigned holding) {
   std::uint32_t row = 0;
   for (int x = 0; x < kEdge; ++x) {

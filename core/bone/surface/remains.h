@@ -11,8 +11,9 @@
 
 namespace haptrial::bone {
 
-/// How much is left of each voxel of a volume that is being removed, for one reader: in sixteenths
-/// of what it had at first, so that a sum over whole voxels is exact in whatever order. One thread.
+/// How much of each voxel is left in a volume that is being removed, as one reader knows it.
+/// Counted in sixteenths of what the voxel had at first, so that sums do not depend on their order.
+/// One thread.
 class Remains {
  public:
   static constexpr int kWhole = 16;
@@ -24,8 +25,8 @@ class Remains {
   void follow(const BoneVolume& volume, const Occupancy& occupancy,
               std::span<const std::int32_t> bricks, std::vector<Voxel>* changed);
 
-  /// Of eight voxels along x, by y and z in their brick: four bits each, the share less one of one
-  /// that holds bone.
+  /// The shares of eight voxels along x, at y and z in their brick: four bits each, one less than
+  /// the share. Bits of a voxel without bone mean nothing.
   std::uint32_t row(std::int32_t brick, int y, int z) const noexcept {
     return all_whole(brick) ? kWholeRow
                             : (*bricks_[static_cast<std::size_t>(brick)])[static_cast<std::size_t>(

@@ -127,7 +127,7 @@ TEST(DrilledSurfaceTest, ABallThatIsWornIntoABlockIsRound) {
   EXPECT_LT(now.distance, 0.5 * whole.distance);
 }
 
-/// Of a patch of a surface that looks upwards.
+/// How uneven a patch that looks upwards is.
 struct Roughness {
   double height{0.0};  // off the nearest paraboloid, rms [voxels]
   double angle{0.0};   // between the normals and the paraboloid's, rms [degrees]
