@@ -201,8 +201,9 @@ Eigen::Vector3f CellField::place(int i, int j, int k, unsigned corners,
     }
   }
   const Eigen::Vector3f slope = slope_of<kSums>(sums) / 4.0F;
+  constexpr float kWeights = kFull / Remains::kWhole;  // of a sum: a slope of the sums is as long
   const Eigen::Vector3f wide =
-      slope_of<kCorner>(wide_sums_.data() + i + kCorner * (j + kCorner * k)) / (4.0F * kFull);
+      slope_of<kCorner>(wide_sums_.data() + i + kCorner * (j + kCorner * k)) / (4.0F * kWeights);
   const Eigen::Vector3f inwards = wide + nearer_slopes(wide, slope, step);
   const float length = inwards.norm();
   normal = length > 0.0F ? Eigen::Vector3f(inwards / -length) : Eigen::Vector3f::UnitZ();
