@@ -21,7 +21,7 @@ data=${HAPTRIAL_DATA:-$root/../shared/data}
 run_tests() {
   local few=6 failed=$root/$1/Testing/Temporary/LastTestsFailed.log
   rm -f "$failed"
-  ctest --test-dir "$root/$1" --output-on-failure --no-tests=error -j $((2 * $(nproc))) && return
+  ctest --test-dir "$root/$1" --output-on-failure --no-tests=error -j $((4 * $(nproc))) && return
   [ -s "$failed" ] && [ "$(wc -l <"$failed")" -le $few ] || return 1
   say "failed beside others, and run once more, alone: $(cut -d: -f2- "$failed" | paste -sd ' ')"
   ctest --test-dir "$root/$1" --output-on-failure --rerun-failed

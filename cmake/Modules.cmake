@@ -6,16 +6,15 @@ function(haptrial_unite target)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# haptrial_unite_tests(TARGET SOURCE...): the same for tests, at most a dozen files of a folder as one.
+# haptrial_unite_tests(TARGET SOURCE...): the same for tests, at most sixteen files as one, whatever
+# their folder: most have few, and each begins with the same templates.
 function(haptrial_unite_tests target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${HAPTRIAL_UNITY} UNITY_BUILD_MODE GROUP)
+  set(files 0)
   foreach(source ${ARGN})
-    cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${CMAKE_SOURCE_DIR} OUTPUT_VARIABLE id)
-    cmake_path(GET id PARENT_PATH id)
-    string(MAKE_C_IDENTIFIER "${id}" id)
-    math(EXPR files_${id} "0${files_${id}} + 1")
-    math(EXPR part "${files_${id}} / 12")
-    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${id}_${part})
+    math(EXPR part "${files} / 16")
+    math(EXPR files "${files} + 1")
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP part_${part})
   endforeach()
 endfunction()
 
@@ -38,7 +37,7 @@ function(haptrial_module name folder)
     endif()
   endforeach()
   target_link_libraries(haptrial_${name} PRIVATE ${ARG_USES})
-  haptrial_precompile(haptrial_${name} modules)
+  haptrial_precompile(haptrial_${name} modules ${folder})
   haptrial_optimise(haptrial_${name} ${folder})
   haptrial_unite(haptrial_${name} ${sources})
   set_property(GLOBAL APPEND PROPERTY HAPTRIAL_MODULES ${name})
@@ -71,7 +70,7 @@ function(haptrial_command)
   target_sources(haptrial_runner PRIVATE ${CMAKE_BINARY_DIR}/version.cpp)
   add_executable(haptrial ${CMAKE_SOURCE_DIR}/experiments/main.cpp)
   target_link_libraries(haptrial PRIVATE haptrial_command_line)
-  haptrial_precompile(haptrial modules)
+  haptrial_precompile(haptrial modules experiments)
   haptrial_optimise(haptrial experiments)
   set_target_properties(haptrial PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
 endfunction()
@@ -138,11 +137,7 @@ function(haptrial_test name link)
   list(GET ARGN 0 folder)
   cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${CMAKE_SOURCE_DIR})
   haptrial_optimise(test_${name} ${folder})
-  if(folder MATCHES "${HAPTRIAL_COMPUTING_TESTS}")
-    haptrial_precompile(test_${name} core_tests)
-  else()
-    haptrial_precompile(test_${name} tests)
-  endif()
+  haptrial_precompile(test_${name} tests ${folder})
   haptrial_unite_tests(test_${name} ${ARGN})
   # The allocation guard sees malloc of our objects too (Eigen calls it directly); it is linked
   # also where no test names it.
@@ -155,16 +150,16 @@ function(haptrial_test name link)
   list(TRANSFORM together APPEND ".*")
   list(JOIN together ":" together)
   if(name STREQUAL realtime)
-    haptrial_discover(test_${name} "*" 2 RUN_SERIAL TRUE)  # these measure time
+    haptrial_discover(test_${name} "*" 4 RUN_SERIAL TRUE)  # these measure time
   elseif(name STREQUAL experiments)
     # They wait for a session on the real clock.
     set(live "*Live*:KilledTest.*:KilledTrialsTest.*:LostDiskTest.*:ResumedParticipantTest.*")
     string(APPEND live ":RoundTripTest.ARec*:SessionMarkersTest.*:SessionTest.RealClock*")
-    haptrial_discover(test_${name} "-${live}:Timed*:${together}" 2)
+    haptrial_discover(test_${name} "-${live}:Timed*:${together}" 4)
     haptrial_discover(test_${name} "${live}" 1)
-    haptrial_discover(test_${name} "Timed*" 2 RUN_SERIAL TRUE)  # a busy machine is a fault here
+    haptrial_discover(test_${name} "Timed*" 4 RUN_SERIAL TRUE)  # a busy machine is a fault here
   else()
-    haptrial_discover(test_${name} "-${together}" 2)
+    haptrial_discover(test_${name} "-${together}" 4)
   endif()
 endfunction()
 
@@ -179,13 +174,13 @@ endfunction()
 function(haptrial_whole_suites target)
   foreach(suite ${ARGN})
     add_test(NAME ${suite} COMMAND ${target} --gtest_filter=${suite}.*)
-    set_tests_properties(${suite} PROPERTIES TIMEOUT 600 PROCESSORS 2
+    set_tests_properties(${suite} PROPERTIES TIMEOUT 600 PROCESSORS 4
                                              FAIL_REGULAR_EXPRESSION "Running 0 tests")
   endforeach()
 endfunction()
 
-# Tests run on twice as many places as there are processors. One that computes takes two; one of a
-# live session, which sleeps most of its time, takes one.
+# Tests run on four times as many places as there are processors. One that computes takes four; one
+# of a live session, which sleeps most of its time, takes one.
 function(haptrial_discover target filter places)
   gtest_discover_tests(${target} TEST_FILTER ${filter} DISCOVERY_TIMEOUT 60
                        PROPERTIES TIMEOUT 600 PROCESSORS ${places} ${ARGN})
@@ -280,11 +275,8 @@ endfunction()
 function(haptrial_tests)
   include(GoogleTest)
   find_package(GTest REQUIRED)
-  foreach(kind tests core_tests)
-    string(REPLACE core_tests tests/core folder ${kind})
-    haptrial_precompiled(${kind} FOR ${folder} LIBRARIES Eigen3::Eigen fmt::fmt GTest::gmock GTest::gtest
-                         HEADERS <gmock/gmock.h> <gtest/gtest.h>)
-  endforeach()
+  haptrial_precompiled(tests FOLDERS tests tests/core LIBRARIES Eigen3::Eigen fmt::fmt GTest::gmock GTest::gtest
+                       HEADERS <gmock/gmock.h> <gtest/gtest.h>)
   file(GLOB support CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/support/*.cpp)
   list(FILTER support EXCLUDE REGEX "/stand_in_")
   add_library(haptrial_test_support STATIC ${support})
@@ -308,5 +300,5 @@ function(haptrial_tests)
   add_executable(test_architecture ${architecture})
   target_link_libraries(test_architecture PRIVATE GTest::gmock GTest::gtest GTest::gtest_main)
   target_compile_definitions(test_architecture PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
-  haptrial_discover(test_architecture "*" 2)
+  haptrial_discover(test_architecture "*" 4)
 endfunction()

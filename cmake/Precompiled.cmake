@@ -1,5 +1,6 @@
-# The headers of libraries that most files read, compiled once for the modules and twice for
-# the tests, at both levels of optimisation. Every file still includes what it uses: HAPTRIAL_PRECOMPILED=OFF builds without them.
+# The headers of libraries that most files read, compiled once for each level of optimisation, of the
+# modules and of the tests: those of another level would be taken, and cost a third of a file's time.
+# Every file still includes what it uses: HAPTRIAL_PRECOMPILED=OFF builds without them.
 option(HAPTRIAL_PRECOMPILED "Precompile the headers of libraries (GCC)" ON)
 if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   set(HAPTRIAL_PRECOMPILED OFF)
@@ -12,11 +13,13 @@ set(HAPTRIAL_LIBRARY_HEADERS
     <thread> <tuple> <unordered_map> <utility> <variant> <vector>
     <Eigen/Geometry> <fmt/format.h>)
 
-# haptrial_precompile(TARGET KIND): TARGET's files begin with KIND's precompiled headers: modules,
-# tests or core_tests. Targets of one kind must agree in all macros and options that these headers depend on.
-function(haptrial_precompile target kind)
+# haptrial_precompile(TARGET KIND FOLDER): TARGET's files begin with KIND's precompiled headers at
+# FOLDER's level: modules or tests. Targets of one kind must agree in all macros and options that
+# these headers depend on.
+function(haptrial_precompile target kind folder)
   if(HAPTRIAL_PRECOMPILED)
-    target_precompile_headers(${target} REUSE_FROM precompiled_${kind})
+    haptrial_level("${folder}" level)
+    target_precompile_headers(${target} REUSE_FROM precompiled_${kind}_${level})
     cmake_language(EVAL CODE "cmake_language(DEFER CALL haptrial_skip_own_options ${target})")
   endif()
 endfunction()
@@ -34,18 +37,22 @@ function(haptrial_skip_own_options target)
   endforeach()
 endfunction()
 
-# haptrial_precompiled(KIND FOR FOLDER LIBRARIES ... HEADERS ...): makes what haptrial_precompile
-# takes, at the level of optimisation of a folder.
+# haptrial_precompiled(KIND FOLDERS ... LIBRARIES ... HEADERS ...): makes what haptrial_precompile
+# takes, at the levels of these folders.
 function(haptrial_precompiled kind)
-  cmake_parse_arguments(ARG "" "FOR" "LIBRARIES;HEADERS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "FOLDERS;LIBRARIES;HEADERS" ${ARGN})
   if(NOT HAPTRIAL_PRECOMPILED)
     return()
   endif()
-  set(source ${CMAKE_BINARY_DIR}/precompiled_${kind}.cpp)  # a target needs one
-  file(CONFIGURE OUTPUT ${source} CONTENT "\n")
-  add_library(precompiled_${kind} OBJECT EXCLUDE_FROM_ALL ${source})
-  target_compile_features(precompiled_${kind} PRIVATE cxx_std_20)
-  target_link_libraries(precompiled_${kind} PRIVATE ${ARG_LIBRARIES})
-  haptrial_optimise(precompiled_${kind} "${ARG_FOR}")  # __OPTIMIZE__ is one of the macros
-  target_precompile_headers(precompiled_${kind} PRIVATE ${HAPTRIAL_LIBRARY_HEADERS} ${ARG_HEADERS})
+  foreach(folder ${ARG_FOLDERS})
+    haptrial_level(${folder} level)
+    set(target precompiled_${kind}_${level})
+    set(source ${CMAKE_BINARY_DIR}/${target}.cpp)  # a target needs one
+    file(CONFIGURE OUTPUT ${source} CONTENT "\n")
+    add_library(${target} OBJECT EXCLUDE_FROM_ALL ${source})
+    target_compile_features(${target} PRIVATE cxx_std_20)
+    target_link_libraries(${target} PRIVATE ${ARG_LIBRARIES})
+    haptrial_optimise(${target} ${folder})
+    target_precompile_headers(${target} PRIVATE ${HAPTRIAL_LIBRARY_HEADERS} ${ARG_HEADERS})
+  endforeach()
 endfunction()

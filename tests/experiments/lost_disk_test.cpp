@@ -7,10 +7,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <atomic>
-#include <chrono>
+#include <cstdlib>
 #include <fstream>
-#include <thread>
 #include <vector>
 
 #include "core/base/error.h"
@@ -19,9 +17,9 @@
 #include "experiments/runner/session.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"
+#include "tests/experiments/force_log.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/sanitizer.h"
-#include "tests/support/stand_in.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments::lost_disk_test {
@@ -30,51 +28,19 @@ namespace {
 namespace fs = std::filesystem;
 const std::string kLibrary = std::string(HAPTRIAL_BINARY_DIR) + "/libstand_in_dhd.so";
 
-/// Looks at the motors of the stand-in library a thousand times a second.
-class MotorWatch {
- public:
-  MotorWatch() {
-    library_.get(view_, "stand_in_view");
-    forces_.reserve(1 << 16);
-    thread_ = std::thread([this] {
-      while (!over_ && forces_.size() < forces_.capacity()) {
-        test::StandInView seen{};
-        view_(&seen);
-        forces_.push_back(Eigen::Vector3d(seen.force[0], seen.force[1], seen.force[2]).norm());
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      }
-    });
-  }
-  const std::vector<double>& stop() {
-    over_ = true;
-    thread_.join();
-    return forces_;
-  }
-
- private:
-  device::DynamicLibrary library_{kLibrary, "the stand-in"};
-  void (*view_)(test::StandInView*){nullptr};
-  std::vector<double> forces_;
-  std::atomic<bool> over_{false};
-  std::thread thread_;
-};
-
-/// In a process of its own, whose files may not grow far. Leaves the motors' forces and the error.
-void run_until_the_disk_is_full(const SessionRequest& request, const fs::path& forces) {
+/// In a process of its own, whose files may not grow far. Leaves every force that the motors were
+/// given and the error.
+void run_until_the_disk_is_full(const SessionRequest& request, const fs::path& folder) {
+  ::setenv("STAND_IN_FORCES", (folder / "forces").c_str(), 1);
+  const device::DynamicLibrary library(kLibrary, "the stand-in");  // its record is mapped now
+  std::ofstream out(folder / "error.txt");
   signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{400'000, 400'000};
   setrlimit(RLIMIT_FSIZE, &limit);
-  MotorWatch watch;
-  std::string error = "none";
   try {
     run_session(request);
   } catch (const RunError& thrown) {
-    error = thrown.what();
-  }
-  std::ofstream out(forces);
-  out << error << "\n";
-  for (const double force : watch.stop()) {
-    out << force << "\n";
+    out << thrown.what() << "\n";
   }
 }
 
@@ -94,22 +60,21 @@ TEST(LostDiskTest, TheForceFadesAndWhatWasRecordedIsKept) {
   request.file = folder / "P01.h5";
   const pid_t child = fork();
   if (child == 0) {
-    run_until_the_disk_is_full(request, folder / "forces.txt");
+    run_until_the_disk_is_full(request, folder.path());
     _exit(0);
   }
   int status = 0;
   waitpid(child, &status, 0);
   ASSERT_EQ(status, 0);
 
-  std::ifstream in(folder / "forces.txt");
-  std::string error;
-  std::getline(in, error);
+  const std::string error = test::read_text(folder / "error.txt");
   EXPECT_THAT(error, testing::HasSubstr("the session cannot be written"));
   EXPECT_THAT(error, testing::HasSubstr("File too large"));
-  std::vector<double> forces;
-  for (double force = 0.0; in >> force;) {
-    forces.push_back(force);
+  std::vector<double> forces;  // tick by tick
+  for (const test::Commanded& each : test::read_force_log(folder / "forces")) {
+    forces.push_back(each.force);
   }
+  ASSERT_GT(forces.size(), 1000u);
   ASSERT_EQ(forces.back(), 0.0);
   std::size_t last = forces.size() - 1;  // under force
   while (last > 0 && forces[last] == 0.0) {

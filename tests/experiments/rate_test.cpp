@@ -87,6 +87,15 @@ class RateTest : public testing::Test {
     EXPECT_EQ(rate_prepare(options), 0);
   }
 
+  /// Made once.
+  static fs::path films() {
+    const fs::path made = *folder_ / "films";
+    if (!fs::exists(made)) {
+      prepare(study(), made, false);
+    }
+    return made;
+  }
+
   static std::unique_ptr<test::TemporaryFolder> folder_;
 };
 std::unique_ptr<test::TemporaryFolder> RateTest::folder_;
@@ -126,16 +135,14 @@ TEST_F(RateTest, FilmsAreOfOneKindAndTellNothingElse) {
   if (!has_ffmpeg()) {
     GTEST_SKIP() << kNoFfmpeg;
   }
-  prepare(study(), *folder_ / "films", false);
   prepare(renamed(), *folder_ / "others", false);
-  EXPECT_TRUE(files_in(*folder_ / "films") == files_in(*folder_ / "others"))
-      << "names of participants enter";
+  EXPECT_TRUE(files_in(films()) == files_in(*folder_ / "others")) << "names of participants enter";
   std::vector<std::string> kinds;
-  for (const auto& [name, bytes] : files_in(*folder_ / "films")) {
+  for (const auto& [name, bytes] : files_in(films())) {
     if (!name.ends_with(".mp4")) {
       continue;
     }
-    const fs::path film = *folder_ / "films" / name;
+    const fs::path film = films() / name;
     kinds.push_back(
         probed(film, "stream=codec_name,width,height,pix_fmt,r_frame_rate,time_base,profile"));
     EXPECT_EQ(kinds.back(), kinds.front());
@@ -155,8 +162,7 @@ TEST_F(RateTest, TheEndOfAFilmStandsStillAndItsBeginningMoves) {
   if (!has_ffmpeg()) {
     GTEST_SKIP() << kNoFfmpeg;
   }
-  prepare(study(), *folder_ / "moving", false);
-  for (const auto& entry : fs::directory_iterator(*folder_ / "moving")) {
+  for (const auto& entry : fs::directory_iterator(films())) {
     if (entry.path().extension() != ".mp4") {
       continue;
     }

@@ -197,6 +197,10 @@ TEST_F(TimedMarkersTest, TheSerialLineReceivesWhatTheFileSays) {
 
   std::vector<MarkerRow> rows = markers_by(file, MarkerWay::kSerial);
   std::ranges::stable_sort(rows, {}, &MarkerRow::written);
+  for (int i = 0; i < 500 && line.heard().size() < 2 * rows.size();
+       ++i) {  // read on another thread
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
   std::vector<test::PseudoTerminal::Heard> codes;
   const auto heard = line.heard();
   for (std::size_t i = 0; i < heard.size(); ++i) {
@@ -318,8 +322,8 @@ TEST_P(MarkerKillTest, LeavesTheMarkersOfFinishedTrials) {
     GTEST_SKIP() << "a process that has threads is forked";
   }
   test::PseudoTerminal line;
-  const SessionRequest asked = live(
-      fmt::format("[markers]\nserial = \"{}\"\npulse = {}\n", line.name(), GetParam()));
+  const SessionRequest asked =
+      live(fmt::format("[markers]\nserial = \"{}\"\npulse = {}\n", line.name(), GetParam()));
   const pid_t child = fork();
   ASSERT_GE(child, 0);
   if (child == 0) {

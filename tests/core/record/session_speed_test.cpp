@@ -8,7 +8,7 @@
 #include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
-namespace haptrial::record {
+namespace haptrial::record::session_speed_test {
 namespace {
 
 double clock_seconds(clockid_t clock) {
@@ -68,4 +68,4 @@ TEST(SessionSpeedTest, AParticipantFitsInSixtyMegabytes) {
 }
 
 }  // namespace
-}  // namespace haptrial::record
+}  // namespace haptrial::record::session_speed_test

@@ -127,8 +127,11 @@ bool seen_by_sampling(const StandingBone& bone, const bone::Voxel& voxel,
     const Eigen::Vector3d p = from + (eye - from) * (n / 20000.0);
     const Eigen::Vector3d place = (p - grid.origin) / grid.spacing;
     const bone::Voxel at = place.array().round().cast<int>();
+    if (!bone.inside(at)) {
+      break;  // a line leaves a box once
+    }
     const double edge = 0.5 - (place - at.cast<double>()).cwiseAbs().maxCoeff();
-    const bool hides = bone.inside(at) && bone.holds(at) && at != voxel && !burr.touches(grid, at);
+    const bool hides = bone.holds(at) && at != voxel && !burr.touches(grid, at);
     if (hides) {
       visible = false;
       unsure = unsure || edge < 1e-3;

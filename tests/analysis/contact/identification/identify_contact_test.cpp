@@ -11,7 +11,7 @@
 #include "core/contact/proxy/proxy.h"
 #include "core/contact/surface/contact_surface.h"
 
-namespace haptrial::evaluation {
+namespace haptrial::evaluation::identify_contact_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -287,4 +287,4 @@ TEST(PathVelocityTest, KnowsItsNoise) {
 }
 
 }  // namespace
-}  // namespace haptrial::evaluation
+}  // namespace haptrial::evaluation::identify_contact_test

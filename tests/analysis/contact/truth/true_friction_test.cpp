@@ -9,7 +9,7 @@
 #include "analysis/contact/truth/true_contact.h"
 #include "tests/analysis/contact/truth/truth_cases.h"
 
-namespace haptrial::evaluation {
+namespace haptrial::evaluation::true_friction_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -263,4 +263,4 @@ TEST(TrueFrictionTest, TheIntegratorReproducesTheClosedForms) {
 }
 
 }  // namespace
-}  // namespace haptrial::evaluation
+}  // namespace haptrial::evaluation::true_friction_test

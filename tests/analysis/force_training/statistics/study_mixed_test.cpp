@@ -9,7 +9,7 @@
 #include "analysis/statistics/variance/repeated_anova.h"
 #include "tests/support/condition_null.h"
 
-namespace haptrial::analysis {
+namespace haptrial::analysis::study_mixed_test {
 namespace {
 
 using testing::ElementsAre;
@@ -174,4 +174,4 @@ TEST(StudyMixed, KeepsItsLevelWhereARandomInterceptAloneDoesNot) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis
+}  // namespace haptrial::analysis::study_mixed_test

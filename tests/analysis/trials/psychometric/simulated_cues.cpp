@@ -14,7 +14,7 @@ namespace {
 
 using namespace analysis::trials;
 
-constexpr double kStandard = 0.055;  // [m]
+constexpr double kStandardSize = 0.055;  // [m]
 constexpr std::array kLevels{0.043, 0.047, 0.051, 0.055, 0.059, 0.063, 0.067};
 constexpr std::array kConflicts{-0.006, 0.0, 0.006};
 
@@ -23,17 +23,17 @@ struct Shown {
   std::string modality;
   std::size_t noise{0};
   double conflict{0.0};
-  double pse{kStandard};
+  double pse{kStandardSize};
   double sd{0.005};
 };
 
 std::vector<Shown> conditions_of(const SimulatedCues& study, int participant) {
-  std::vector<Shown> all{{"hand", 0, 0.0, kStandard, true_cues(study, participant, 0).hand}};
+  std::vector<Shown> all{{"hand", 0, 0.0, kStandardSize, true_cues(study, participant, 0).hand}};
   for (std::size_t noise = 0; noise < study.eye_sd.size(); ++noise) {
     const TrueCues own = true_cues(study, participant, noise);
-    all.push_back({"eye", noise, 0.0, kStandard, own.eye});
+    all.push_back({"eye", noise, 0.0, kStandardSize, own.eye});
     for (const double conflict : kConflicts) {
-      const double pse = kStandard + (own.weight - 0.5) * conflict;
+      const double pse = kStandardSize + (own.weight - 0.5) * conflict;
       all.push_back({"both", noise, conflict, pse, own.both});
     }
   }
@@ -58,8 +58,8 @@ class Answers {
         trial.trial = ++number_;
         const int place = 1 + number_ % 2;
         trial.variables.back().value = place;
-        trial.variables.push_back({"seen", place, kStandard + half, ""});
-        trial.variables.push_back({"felt", place, kStandard - half, ""});
+        trial.variables.push_back({"seen", place, kStandardSize + half, ""});
+        trial.variables.push_back({"felt", place, kStandardSize - half, ""});
         trial.variables.push_back({"seen", 3 - place, level, ""});
         trial.variables.push_back({"felt", 3 - place, level, ""});
         const double outcome = taller(shown, level, i) ? 1.0 : 0.0;

@@ -13,7 +13,7 @@
 #include "tests/support/message_of.h"
 #include "tests/support/solid_block.h"
 
-namespace haptrial::deformable {
+namespace haptrial::deformable::equilibrium_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -233,4 +233,4 @@ TEST(SettleTest, WithoutDampingItIsNotInTime) {
 }
 
 }  // namespace
-}  // namespace haptrial::deformable
+}  // namespace haptrial::deformable::equilibrium_test

@@ -15,7 +15,7 @@
 #include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
-namespace haptrial::record {
+namespace haptrial::record::session_resume_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -431,4 +431,4 @@ TEST(SessionVersionTest, AFileOfVersionOneIsRead) {
 }
 
 }  // namespace
-}  // namespace haptrial::record
+}  // namespace haptrial::record::session_resume_test

@@ -19,7 +19,7 @@
 #include "tests/core/record/session_fixture.h"
 #include "tests/support/message_of.h"
 
-namespace haptrial::record {
+namespace haptrial::record::session_writer_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -305,4 +305,4 @@ TEST(SessionWriterTest, AWriteThatFailsWithinHdf5IsASentenceAndTheFileStaysReada
 }
 
 }  // namespace
-}  // namespace haptrial::record
+}  // namespace haptrial::record::session_writer_test
