@@ -12,9 +12,7 @@ function(haptrial_level folder out)
     endif()
   elseif(folder MATCHES "^core/record/table|^experiments/loop")
     set(level 3)
-  elseif(folder MATCHES "^experiments|^analysis/(.*/)?(report|document)")
-    set(level 1)
-  elseif(folder MATCHES "^protocols|^core/(record|stream|network|pages|markers)|^core/base/definition" OR
+  elseif(folder MATCHES "^experiments|^core/(record|stream|network|pages|markers)|^core/base/definition" OR
          (folder MATCHES "^analysis" AND NOT folder MATCHES "^analysis/(alignment|psychometric)"))
     set(level 2)
   endif()
