@@ -1,5 +1,5 @@
 # The headers of libraries that most files read, compiled once for each level of optimisation, of the
-# modules and of the tests: those of another level would be taken, and cost a third of a file's time.
+# modules and of the tests: those of another level would be taken, too, but cost more time.
 # Every file still includes what it uses: HAPTRIAL_PRECOMPILED=OFF builds without them.
 option(HAPTRIAL_PRECOMPILED "Precompile the headers of libraries (GCC)" ON)
 if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
