@@ -125,6 +125,9 @@ class BoneDrilling final : public Protocol {
         record::with_tables(record::drilling_tables(), record::nerve_tables());
     tables.push_back(&record::table_of<record::TearRow>());
     tables.push_back(&record::table_of<record::LedRow>());
+    tables.push_back(&record::table_of<record::SecondHandRow>());
+    tables.push_back(&record::table_of<record::OpeningRow>());
+    tables.push_back(&record::table_of<record::FieldRow>());
     return tables;
   }
   SidePages side_pages(const Definition& definition) const override {

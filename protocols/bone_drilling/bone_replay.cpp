@@ -42,6 +42,18 @@ device::DeviceReading reading_of(const record::Sample& sample, const record::Too
   return reading;
 }
 
+/// What the second device gave, as it is recorded. @param rows  of it, on one tick
+device::DeviceReading second_of(std::span<const record::DeviceRow> rows,
+                                const record::SecondHandRow& hand) {
+  device::DeviceReading reading;
+  if (!rows.empty()) {
+    reading.tool = {rows.front().position, rows.front().velocity};
+    reading.buttons = static_cast<std::uint32_t>(rows.front().buttons);
+  }
+  reading.orientation = hand.orientation;
+  return reading;
+}
+
 /// Rows of one table by tick, in order.
 template <class Row>
 class Cursor {
@@ -127,6 +139,7 @@ BoneReplay::BoneReplay(const std::filesystem::path& session)
       removals_(reader_.rows<record::RemovalRow>()),
       splits_(reader_.rows<record::SplitRow>()),
       tears_(reader_.rows<record::TearRow>()),
+      second_(reader_.rows<record::DeviceRow>()),
       led_(reader_.rows<record::LedRow>()) {
   for (const record::BoneRecord& bone : record::recorded_bones(reader_)) {
     bones_.push_back(std::make_shared<const bone::BoneModel>(bone::model_of(bone)));
@@ -307,16 +320,24 @@ void BoneReplay::run_own(const record::PassRow& pass, Work& work) const {
   const protocols::DrillingInput input(definition_.drilling);
   const std::uint64_t offset = reader_.samples(0, 1).front().sequence;
   const std::uint64_t end = pass.last_sample - offset + 1;
+  const bool two = definition_.drilling.second.has_value();
+  Cursor<record::DeviceRow> devices(second_, pass.first_sample);
   bool begun = false;
   for (std::uint64_t at = pass.first_sample - offset; at < end; at += kPiece) {
     const std::uint64_t count = std::min(kPiece, end - at);
     const std::vector<record::Sample> samples = reader_.samples(at, count);
     const std::vector<record::ToolRow> tool = reader_.rows<record::ToolRow>(at, count);
+    const auto hand = two ? reader_.rows<record::SecondHandRow>(at, count)
+                          : std::vector<record::SecondHandRow>{};
     for (std::size_t i = 0; i < samples.size(); ++i) {
+      const std::span<const record::DeviceRow> other = devices.take(samples[i].sequence);
       if (!tool[i].active) {
         continue;
       }
-      const bone::SimulatorInput now = input.of(reading_of(samples[i], tool[i]), work.dt);
+      const device::DeviceReading second =
+          two ? second_of(other, hand[i]) : device::DeviceReading{};
+      const bone::SimulatorInput now =
+          input.of(reading_of(samples[i], tool[i]), work.dt, two ? &second : nullptr);
       if (!std::exchange(begun, true)) {
         work.stage->simulator->begin(now.functions);
       }

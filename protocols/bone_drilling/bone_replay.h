@@ -12,6 +12,7 @@
 #include "core/bone/record/led_row.h"
 #include "core/bone/record/tear_row.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/rows/device_row.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_stage.h"
 
@@ -88,6 +89,7 @@ class BoneReplay {
   std::vector<record::RemovalRow> removals_;
   std::vector<record::SplitRow> splits_;
   std::vector<record::TearRow> tears_;
+  std::vector<record::DeviceRow> second_;  // of the second device; none where there is one
   std::vector<record::LedRow> led_;  // none where the bone was the session's own
   std::vector<std::shared_ptr<const bone::BoneModel>> bones_;
 };

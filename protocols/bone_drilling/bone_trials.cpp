@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
+#include "core/base/text/counted.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/recorded_bone.h"
 #include "core/nerve/record/nerve_rows.h"
@@ -44,6 +45,24 @@ std::vector<PlannedTrial> plan_of(const BoneDefinition& d, const SessionPlace& p
 constexpr double kUntilDepths = 0.2;
 constexpr double kUntilSurface = 0.5;
 
+/// Blood and heat up to now.
+record::FieldRow field_of(const BoneStage& stage, std::int32_t row) {
+  const bone::Simulator& simulator = *stage.simulator;
+  const double spacing = stage.model->grid.spacing;
+  const double voxel = spacing * spacing * spacing;
+  const bone::DustBalance blood = stage.companions->blood();
+  record::FieldRow field;
+  field.pass = row;
+  field.bled = voxel * blood.deposited;
+  field.blood_sucked = voxel * blood.suctioned;
+  field.blood_lying = voxel * (blood.lying + blood.held);
+  if (simulator.heat() != nullptr) {
+    field.hottest = simulator.heat()->hottest();
+    field.harmful_time = simulator.heat()->harmful_time();
+  }
+  return field;
+}
+
 /// How many bones a trial has had in earlier runs.
 std::int32_t bones_used(const SessionFile& file, const PlannedTrial& trial) {
   std::int32_t most = 0;
@@ -64,6 +83,9 @@ BoneTrials::BoneTrials(const BoneDefinition& definition, const SessionPlace& pla
     records_.push_back(bone::record_of(*model, static_cast<std::int32_t>(records_.size())));
   }
   open_sound();
+  if (d_.drilling.second) {
+    logs_.watch_second();
+  }
   if (d_.nerves) {
     watch_nerves();
   }
@@ -140,6 +162,10 @@ std::vector<std::string> BoneTrials::notices() const {
                       bone->name));
     }
   }
+  if (openings_ > 0) {
+    notices.push_back(fmt::format("{} opened and bled (/openings, /field)",
+                                  counted(openings_, "place was", "places were")));
+  }
   if (tears_ > 0) {
     notices.push_back(fmt::format("soft tissue was torn {} (/tears)",
                                   tears_ == 1 ? "once" : fmt::format("{} times", tears_)));
@@ -161,6 +187,15 @@ record::TableList BoneTrials::tables() const {
   }
   if (is_led()) {
     tables.push_back(&record::table_of<record::LedRow>());
+  }
+  if (d_.drilling.second) {
+    tables.push_back(&record::table_of<record::SecondHandRow>());
+  }
+  if (!d_.simulator.bleeding.structures.empty()) {
+    tables.push_back(&record::table_of<record::OpeningRow>());
+  }
+  if (d_.has_field()) {
+    tables.push_back(&record::table_of<record::FieldRow>());
   }
   return tables;
 }
@@ -186,6 +221,15 @@ void BoneTrials::empty_logs(SessionFile& file) {
   if (is_led()) {
     empty(logs_.led);
   }
+  if (d_.drilling.second) {
+    empty(logs_.second);
+  }
+  if (!d_.simulator.bleeding.structures.empty()) {
+    logs_.openings.flush([&](std::span<const record::OpeningRow> rows) {
+      file.add(rows);
+      openings_ += rows.size();
+    });
+  }
   tell_shared(file);
   if (!d_.simulator.soft_tissue.empty()) {
     logs_.tears.flush([&](std::span<const record::TearRow> rows) { tell_tears(file, rows); });
@@ -202,6 +246,11 @@ void BoneTrials::empty_logs(SessionFile& file) {
 }
 
 SharedWorld* BoneTrials::share_world(bool leads) {
+  if (d_.drilling.second) {
+    throw InputError(fmt::format("{}: has a second hand, and a bone is shared over a link with one "
+                                 "hand on each side only; leave [second_hand] out",
+                                 d_.file_name));
+  }
   shared_ = std::make_unique<SharedBone>(leads);
   return shared_.get();
 }
@@ -229,7 +278,9 @@ void BoneTrials::tell_tears(SessionFile& file, std::span<const record::TearRow> 
                fmt::format("{} torn by {}{} at {:.2f} N, {:.1f} mm deep, at ({:.1f}, {:.1f}, "
                            "{:.1f}) mm in the world, on tick {}",
                            model.structures[row.label].name,
-                           d_.simulator.tools[static_cast<std::size_t>(row.tool)].name,
+                           row.tool == record::kSecondHand
+                               ? "the tube in the other hand"
+                               : d_.simulator.tools[static_cast<std::size_t>(row.tool)].name,
                            row.by_suction ? ", which sucks," : "", row.force,
                            kMillimetres * row.depth, p.x(), p.y(), p.z(), row.sequence));
     ++tears_;
@@ -419,6 +470,10 @@ void BoneTrials::close_pass(SessionFile& file, std::int32_t row) {
   procedure.fallen = dust.fallen + old_dust_;
   procedure.checksum = simulator.checksum();
   file.add(std::span<const record::ProcedureRow>(&procedure, 1));
+  if (d_.has_field()) {
+    const record::FieldRow field = field_of(*stage_, row);
+    file.add(std::span<const record::FieldRow>(&field, 1));
+  }
 }
 
 void BoneTrials::draw_pictures(const PlannedTrial& trial, const record::Phase&) {

@@ -83,6 +83,7 @@ class BoneTrials final : public Trials {
   std::unique_ptr<BoneSound> sound_;
   std::string notice_;
   std::uint64_t tears_{0};              // of soft tissue, in this run
+  std::uint64_t openings_{0};           // of vessels, likewise
   std::unique_ptr<SharedBone> shared_;  // with a linked session; null: it is nobody else's
   std::unique_ptr<DrillingPass> pass_;
   std::unique_ptr<LedPass> led_;  // in its stead, on a bone that belongs to the other side

@@ -13,12 +13,18 @@
 namespace haptrial::protocols {
 namespace {
 
-Eigen::Quaterniond grip_of(const DrillingParameters& p) {
-  if (!(p.handle.norm() > 0.0) || !p.handle.allFinite() || !(p.scale > 0.0)) {
+Eigen::Quaterniond grip_of(const Eigen::Vector3d& handle, double scale) {
+  if (!(handle.norm() > 0.0) || !handle.allFinite() || !(scale > 0.0)) {
     throw std::invalid_argument(
         "DrillingInput: the handle must have a length and the scale be above 0");
   }
-  return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), p.handle);
+  return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), handle);
+}
+
+ToolState tool_of(const device::DeviceReading& reading, const Eigen::Quaterniond& grip,
+                  double scale) noexcept {
+  return {{reading.tool.position / scale, reading.tool.velocity / scale},
+          reading.orientation.normalized() * grip};
 }
 
 }  // namespace
@@ -37,14 +43,21 @@ device::DeviceReading as_recorded(const device::DeviceReading& reading) noexcept
 }
 
 DrillingInput::DrillingInput(const DrillingParameters& parameters)
-    : parameters_(parameters), grip_(grip_of(parameters)) {}
+    : parameters_(parameters),
+      grip_(grip_of(parameters.handle, parameters.scale)),
+      second_grip_(
+          parameters.second ? grip_of(parameters.second->handle, parameters.scale) : grip_) {}
 
 bone::SimulatorInput DrillingInput::of(const device::DeviceReading& recorded,
-                                       double dt) const noexcept {
+                                       double dt,
+                                       const device::DeviceReading* second) const noexcept {
   bone::SimulatorInput input;
-  input.tool.tip.position = recorded.tool.position / parameters_.scale;
-  input.tool.tip.velocity = recorded.tool.velocity / parameters_.scale;
-  input.tool.orientation = recorded.orientation.normalized() * grip_;
+  input.tool = tool_of(recorded, grip_, parameters_.scale);
+  if (second != nullptr && parameters_.second) {
+    input.tube.tool = tool_of(*second, second_grip_, parameters_.scale);
+    input.tube.sucks = (second->buttons & parameters_.second->suck) != 0;
+    input.tube.rinses = (second->buttons & parameters_.second->rinse) != 0;
+  }
   input.functions = functions_of(parameters_.controls, recorded);
   input.power = power_of(parameters_.controls, recorded, input.functions);
   input.dt = dt;
@@ -69,6 +82,11 @@ bone::DrillingView view_of(const bone::Simulator& simulator,
   view.up = camera.up;
   view.field_of_view = camera.field_of_view;
   view.stills_asked = simulator.stills_asked();
+  if (simulator.tube() != nullptr) {
+    const bone::TubeInput& tube = input.tube;
+    view.tube = {true, tube.tool.tip.position, tube.tool.orientation, tube.sucks, tube.rinses};
+  }
+  view.temperature = simulator.heat() != nullptr ? simulator.heat()->temperature() : 0.0;
   return view;
 }
 
@@ -113,7 +131,9 @@ void DrillingPass::begin(std::uint64_t sequence) noexcept {
 PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   const device::DeviceReading& reading = readings[0];
   const device::DeviceReading recorded = as_recorded(reading);
-  const bone::SimulatorInput input = input_.of(recorded, dt);
+  const bool two = parameters_.second && readings.size() > 1;
+  const device::DeviceReading second = two ? second_as_recorded(readings[1]) : reading;
+  const bone::SimulatorInput input = input_.of(recorded, dt, two ? &second : nullptr);
   if (first_) {
     simulator_.begin(input.functions);
   }
@@ -152,6 +172,10 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   seen.tone = logs_.nerve_tone();
   out.shown = seen;
   out.shown.tool = reading.tool.position;
+  if (two) {
+    second_.force = control::saturate(done.tube.force, parameters_.second->force_limit);
+    rows_.log_second(input.tube);
+  }
   rows_.log_tool(done.removed + done.cut, done.force);
   return out;
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "core/bone/simulator/companions.h"
 #include "core/bone/simulator/drilling_view.h"
@@ -25,11 +26,14 @@ class DrillingInput {
  public:
   /// @throws std::invalid_argument for a handle without length or a scale not above 0.
   explicit DrillingInput(const DrillingParameters& parameters);
-  bone::SimulatorInput of(const device::DeviceReading& recorded, double dt) const noexcept;
+  /// @param second  of the second device, as it is recorded; null: there is one device
+  bone::SimulatorInput of(const device::DeviceReading& recorded, double dt,
+                          const device::DeviceReading* second = nullptr) const noexcept;
 
  private:
   DrillingParameters parameters_;
-  Eigen::Quaterniond grip_;  // from the tool frame T to the handle's
+  Eigen::Quaterniond grip_;         // from the tool frame T to the handle's
+  Eigen::Quaterniond second_grip_;  // likewise, of the tube
 };
 
 /// What a participant is to see of a simulator.
@@ -60,6 +64,9 @@ class DrillingPass final : public Pass {
 
   void begin(std::uint64_t sequence) noexcept override;
   PassOutput tick(const Readings& readings, double dt) noexcept override;
+  std::span<const Drive> others() const noexcept override {
+    return {&second_, parameters_.second ? 1U : 0U};
+  }
   PassState state() const noexcept override { return state_; }
   bool wants_attention() noexcept override;
 
@@ -71,6 +78,7 @@ class DrillingPass final : public Pass {
   bone::Companions& companions_;
   DrillingParameters parameters_;
   DrillingInput input_;
+  Drive second_;  // of the second device
   DrillingLogs& logs_;
   DrillingRows rows_;
   sound::DrillVibration* vibration_;

@@ -1,6 +1,7 @@
 #include "protocols/bone_drilling/drilling_rig.h"
 
 #include "core/base/random.h"
+#include "core/subject/drilling/assisting_hand.h"
 #include "core/subject/drilling/drilling_hand.h"
 #include "core/subject/drilling/drilling_surgeon.h"
 
@@ -33,6 +34,34 @@ std::vector<std::shared_ptr<const subject::DrillingChart>> charts_of(const BoneD
 
 }  // namespace
 
+struct DrillingRig::Second {
+  Second(const BoneDefinition& d, const Eigen::Vector3d& start)
+      : hand(d.hand, 1.0 / d.rate, start),
+        device(d.device, hand, d.rate),
+        person({d.beside}, hand, device, d.drilling.scale),
+        limits(d.envelope) {}
+  subject::Hand hand;
+  device::VirtualDevice device;
+  subject::AssistingHand person;
+  device::EnvelopeLimits limits;
+};
+
+/// Each hand sees the same.
+class DrillingRig::BothHands final : public stimulus::Observer {
+ public:
+  BothHands(stimulus::Observer& first, stimulus::Observer& second)
+      : first_(first), second_(second) {}
+  void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
+               double dt) noexcept override {
+    first_.observe(shown, forces, dt);
+    second_.observe(shown, forces, dt);
+  }
+
+ private:
+  stimulus::Observer& first_;
+  stimulus::Observer& second_;
+};
+
 DrillingRig::DrillingRig(const BoneDefinition& d, std::uint64_t session_seed, int participant)
     : hand_(d.hand, 1.0 / d.rate, start_of(d)), device_(d.device, hand_, d.rate) {
   const std::uint64_t seed = derived_seed(session_seed, "subject");
@@ -47,6 +76,17 @@ DrillingRig::DrillingRig(const BoneDefinition& d, std::uint64_t session_seed, in
     subject_ = std::make_unique<subject::DrillingHand>(d.hand_plan, hand_, device_,
                                                        d.drilling.scale, seed, 1.0 / d.rate);
   }
+  if (d.drilling.second) {
+    second_ = std::make_unique<Second>(d, start_of(d) + d.beside);
+    both_ = std::make_unique<BothHands>(*subject_, second_->person);
+  }
+}
+
+DrillingRig::~DrillingRig() = default;
+
+std::vector<DeviceSet::Arm> DrillingRig::others() {
+  return second_ ? std::vector<DeviceSet::Arm>{{&second_->device, second_->limits}}
+                 : std::vector<DeviceSet::Arm>{};
 }
 
 }  // namespace haptrial::protocols

@@ -15,14 +15,22 @@ class DrillingRig final : public Rig {
   /// @param session_seed  whatever is drawn for the person follows from it
   /// @param participant   from 0; says the group
   DrillingRig(const BoneDefinition& definition, std::uint64_t session_seed, int participant = 0);
+  ~DrillingRig() override;
 
   device::Device& device() override { return device_; }
-  stimulus::Observer* subject() override { return subject_.get(); }
+  std::vector<DeviceSet::Arm> others() override;
+  stimulus::Observer* subject() override { return both_ ? both_.get() : subject_.get(); }
 
  private:
+  /// The other hand at its device.
+  struct Second;
+  class BothHands;
+
   subject::Hand hand_;
   device::VirtualDevice device_;
   std::unique_ptr<stimulus::Observer> subject_;
+  std::unique_ptr<Second> second_;  // null: one hand
+  std::unique_ptr<stimulus::Observer> both_;
 };
 
 }  // namespace haptrial::protocols

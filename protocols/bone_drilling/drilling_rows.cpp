@@ -24,6 +24,12 @@ void DrillingLogs::record(std::uint64_t sequence, const Readings& readings,
   row.keys = readings[0].keys;
   row.pedal = readings[0].pedal;
   tool.push(row);
+  if (two_hands_) {
+    record::SecondHandRow other = std::exchange(second_row_, record::SecondHandRow{});
+    other.sequence = sequence;
+    other.orientation = readings.size() > 1 ? readings[1].orientation : other.orientation;
+    second.push(other);
+  }
   if (beside_ != nullptr) {
     nerve::NerveTick tick = std::exchange(nerves_, nerve::NerveTick{});
     tick.sequence = sequence;
@@ -47,7 +53,11 @@ void DrillingRows::log(std::uint64_t sequence, double speed) noexcept {
   }
   for (const bone::Tear& tear : simulator_.tears()) {
     logs_.tears.push(
-        {sequence, tear.label, out.tool, tear.by_suction, tear.force, tear.depth, tear.place_B});
+        {sequence, tear.label, tear.by_second ? record::kSecondHand : out.tool, tear.by_suction,
+         tear.force, tear.depth, tear.place_B});
+  }
+  for (const bone::Opening& opening : simulator_.bleeding().begun()) {
+    logs_.openings.push({sequence, opening.label, opening.place_B});
   }
   for (const bone::WorldEvent& event : simulator_.separations()) {
     using Kind = bone::WorldEvent::Kind;
@@ -93,6 +103,16 @@ void DrillingRows::log_tool(double removed, const Eigen::Vector3d& contact) noex
   tool.removed = removed;
   tool.contact = contact;
   logs_.set_tool(tool);
+}
+
+void DrillingRows::log_second(const bone::TubeInput& tube) noexcept {
+  const bone::TubeOutput& out = simulator_.output().tube;
+  record::SecondHandRow row;
+  row.sucks = tube.sucks;
+  row.rinses = tube.rinses;
+  row.immersed = out.immersed;
+  row.contact = out.force;
+  logs_.set_second(row);
 }
 
 nerve::ToolAtNerves tool_at_nerves(const bone::Simulator& simulator,

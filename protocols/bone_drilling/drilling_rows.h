@@ -3,7 +3,9 @@
 #include <cstdint>
 
 #include "core/bone/record/drilling_types.h"
+#include "core/bone/record/field_row.h"
 #include "core/bone/record/led_row.h"
+#include "core/bone/record/second_hand_row.h"
 #include "core/bone/record/tear_row.h"
 #include "core/bone/simulator/simulator.h"
 #include "core/nerve/beside/nerve_beside.h"
@@ -23,6 +25,13 @@ class DrillingLogs final : public TickLog {
   realtime::BlockLog<record::SplitRow> splits{1024, 16};
   realtime::BlockLog<record::TearRow> tears{64, 16};
   realtime::BlockLog<record::LedRow> led{1024, 16};
+  realtime::BlockLog<record::SecondHandRow> second;
+  realtime::BlockLog<record::OpeningRow> openings{64, 16};
+
+  /// A row of /second_hand for every tick from now on, also between passes. Before the first tick.
+  void watch_second() noexcept { two_hands_ = true; }
+  /// What the present tick says of the tube; taken by record(). Servo thread.
+  void set_second(const record::SecondHandRow& row) noexcept { second_row_ = row; }
 
   /// What the present tick says of the tool in hand; taken by record(). Servo thread.
   void set_tool(const record::ToolRow& row) noexcept { row_ = row; }
@@ -38,11 +47,13 @@ class DrillingLogs final : public TickLog {
 
   std::uint64_t dropped() const noexcept {
     return tool.dropped() + removals.dropped() + camera.dropped() + splits.dropped() +
-           tears.dropped() + led.dropped();
+           tears.dropped() + led.dropped() + second.dropped() + openings.dropped();
   }
 
  private:
   record::ToolRow row_;
+  record::SecondHandRow second_row_;
+  bool two_hands_{false};
   nerve::NerveTick nerves_;
   nerve::NerveBeside* beside_{nullptr};
 };
@@ -61,6 +72,8 @@ class DrillingRows {
   void log_camera(std::uint64_t sequence, bool changed) noexcept;
   /// The tool in hand after it. @param removed  in this tick [voxels]
   void log_tool(double removed, const Eigen::Vector3d& contact) noexcept;
+  /// The tube in the other hand after it.
+  void log_second(const bone::TubeInput& tube) noexcept;
 
  private:
   const bone::Simulator& simulator_;

@@ -1,5 +1,7 @@
 #include "core/bone/anatomy/anatomy.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -8,6 +10,7 @@
 #include <string>
 #include <tuple>
 
+#include "core/base/error.h"
 #include "core/base/text/nearest.h"
 
 namespace haptrial::bone {
@@ -199,6 +202,20 @@ std::vector<Structure> known_structures() {
     structures[static_cast<std::size_t>(known.label)] = structure_of(known);
   }
   return structures;
+}
+
+std::uint8_t label_named(const BoneModel& model, const std::string& name, const char* table) {
+  const std::string known = structure_named(name, 0).name;
+  std::string names;
+  for (std::size_t label = 1; label < model.structures.size(); ++label) {
+    const std::string& own = model.structures[label].name;
+    if (own == name || own == known) {
+      return static_cast<std::uint8_t>(label);
+    }
+    names += (names.empty() ? "" : ", ") + own;
+  }
+  throw InputError(fmt::format("{}: the bone {} has no structure '{}'; it has {}", table,
+                               model.name, name, names));
 }
 
 }  // namespace haptrial::bone

@@ -44,6 +44,10 @@ bool is_known_structure(std::string_view name);
 /// change, also in one of the usual names, or one with a word of it.
 std::string nearest_structure(std::string_view name);
 
+/// The label of a structure that a definition asks for. @param table  of the definition, for the
+/// sentence @throws InputError, with the names that there are, where the bone has none of it
+std::uint8_t label_named(const BoneModel& model, const std::string& name, const char* table);
+
 /// All of Anatomy, by label; the first stands for nothing.
 std::vector<Structure> known_structures();
 

@@ -100,6 +100,7 @@ void DustState::seek(Ref ref) {
     return;
   }
   const Look here = look(grid.cell(ref), ref);
+  const auto& stands = in_water(centre(here.cell)) ? wet_limit : limit;
   std::array<Flow, kSides> out;
   std::size_t count = 0;
   std::int64_t sum = 0;
@@ -118,7 +119,7 @@ void DustState::seek(Ref ref) {
         (room_below && (side.ref != kNone ? passage(side.ref, kDown) : passage(side, below)));
     const Look& to = drops && !side.outside ? below : side;
     const std::int32_t excess =
-        (drops ? capacity : 0) + here.amount - to.amount - limit[static_cast<std::size_t>(step)];
+        (drops ? capacity : 0) + here.amount - to.amount - stands[static_cast<std::size_t>(step)];
     const std::int32_t amount = std::min(excess / kPace, to.room / kSides);
     if (excess > least && amount > 0) {
       out[count++] = {ref, to, amount};

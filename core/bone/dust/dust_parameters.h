@@ -8,6 +8,9 @@ class Table;
 
 namespace haptrial::bone {
 
+/// Of a liquid, or of dust in water.
+inline constexpr double kLeastSlope = 0.05;
+
 struct DustParameters {
   double cell{0.5e-3};           // edge of a cell > 0 [m]
   double voxel{0.5e-3};          // edge of the voxels in whose volumes dust is counted > 0 [m]

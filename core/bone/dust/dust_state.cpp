@@ -32,7 +32,7 @@ const DustParameters& checked(const DustParameters& p) {
   require(positive(p.cell) && positive(p.voxel), "Dust: cells and voxels must be above 0 m");
   require(p.bulking >= 1.0 && p.bulking <= 100.0, "Dust: bulking must be from 1 to 100");
   require(positive(p.fall_speed), "Dust: fall_speed must be above 0 m/s");
-  require(p.slope >= 0.05 && p.slope <= 0.7, "Dust: slope must be from 0.05 to 0.7");
+  require(p.slope >= kLeastSlope && p.slope <= 0.7, "Dust: slope must be from 0.05 to 0.7");
   require(positive(p.suction_rate), "Dust: suction_rate must be above 0 m3/s");
   require(positive(p.suction_reach), "Dust: suction_reach must be above 0 m");
   require(p.up.allFinite() && p.up.norm() > 0.0, "Dust: up must be a direction");
@@ -63,6 +63,7 @@ DustState::DustState(const DustParameters& given)
   for (std::size_t step = 0; step < limit.size(); ++step) {
     const double apart = step <= 4 ? 1.0 : std::sqrt(2.0);
     limit[step] = static_cast<std::int32_t>(apart * parameters.slope * capacity);
+    wet_limit[step] = static_cast<std::int32_t>(apart * kLeastSlope * capacity);
   }
   lowest_layer = std::numeric_limits<int>::max();
   int highest = std::numeric_limits<int>::min();

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/bone/dust/dust_bones.h"
@@ -85,6 +86,9 @@ struct DustState {
   // Tools and bone
   double outside_tools(const Eigen::Vector3d& p_W) const;
   void flag_tools(Ref ref);
+  std::pair<DustCell, DustCell> cells_around(const Eigen::AlignedBox3d& box) const;
+  bool in_water(const Eigen::Vector3d& p_W) const;
+  void wake_in(const DustWater& water);
   void expel();
   void suck();
   void set_free(Ref ref);
@@ -100,6 +104,7 @@ struct DustState {
   std::int32_t capacity;
   std::int32_t least;                 // excess that still flows
   std::array<std::int32_t, 9> limit;  // difference of two heights that stands, by step
+  std::array<std::int32_t, 9> wet_limit;  // likewise, of slurry
   DustGrid grid;
   DustBones bones;
 

@@ -28,9 +28,15 @@ struct DustTool {
   double radius{0.0};                              // 0: no tool [m]
   bool sucks{false};                               // dust near the tip is taken away
 };
+/// Water that runs: dust within it is a slurry, which flows where dry dust would stand.
+struct DustWater {
+  Eigen::Vector3d centre{Eigen::Vector3d::Zero()};  // in W [m]
+  double radius{0.0};                               // 0: none runs [m]
+};
 struct DustTools {
   static constexpr int kMost = 4;
   std::array<DustTool, kMost> tools{};  // those of radius 0 are not there
+  DustWater water;
 };
 
 }  // namespace haptrial::bone

@@ -52,9 +52,44 @@ void DustState::flag_tools(Ref ref) {
   flags |= kTool | kStays;
 }
 
+/// The first and the last cell of a box of W.
+std::pair<DustCell, DustCell> DustState::cells_around(const Eigen::AlignedBox3d& box) const {
+  DustCell low = cell_at(box.min());
+  DustCell high = low;
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto type = static_cast<Eigen::AlignedBox3d::CornerType>(corner);
+    const DustCell cell = cell_at(box.corner(type));
+    low = low.cwiseMin(cell);
+    high = high.cwiseMax(cell);
+  }
+  return {low, high};
+}
+
+bool DustState::in_water(const Eigen::Vector3d& p_W) const {
+  const DustWater& water = tools.water;
+  return water.radius > 0.0 && (p_W - water.centre).squaredNorm() <= water.radius * water.radius;
+}
+
+/// What rests there may flow from now on.
+void DustState::wake_in(const DustWater& water) {
+  const Eigen::Vector3d extent = Eigen::Vector3d::Constant(water.radius);
+  const auto [low, high] = cells_around({water.centre - extent, water.centre + extent});
+  grid.for_each_in(low, high, [&](Ref ref) { wake(ref); });
+}
+
 void Dust::place(const DustTools& tools) {
   DustState& state = *state_;
+  const double moved = (tools.water.centre - state.tools.water.centre).norm();
+  const bool runs_elsewhere = tools.water.radius > 0.0 &&
+                              (tools.water.radius != state.tools.water.radius ||
+                               moved > 0.5 * state.parameters.cell);
+  const Eigen::Vector3d before_water = state.tools.water.centre;
   state.tools = tools;
+  if (runs_elsewhere) {
+    state.wake_in(tools.water);
+  } else if (tools.water.radius > 0.0) {
+    state.tools.water.centre = before_water;  // until it has moved far enough to wake what lies there
+  }
   std::vector<Ref> before;
   before.swap(state.tool_cells);
   for (const Ref ref : before) {
@@ -62,15 +97,7 @@ void Dust::place(const DustTools& tools) {
   }
   for (const DustTool& tool : tools.tools) {
     if (tool.radius > 0.0) {
-      const Eigen::AlignedBox3d box = around(tool);
-      DustCell low = state.cell_at(box.min());
-      DustCell high = low;
-      for (int corner = 0; corner < 8; ++corner) {
-        const auto type = static_cast<Eigen::AlignedBox3d::CornerType>(corner);
-        const DustCell cell = state.cell_at(box.corner(type));
-        low = low.cwiseMin(cell);
-        high = high.cwiseMax(cell);
-      }
+      const auto [low, high] = state.cells_around(around(tool));
       state.grid.for_each_in(low, high, [&](Ref ref) { state.flag_tools(ref); });
     }
   }

@@ -1,6 +1,7 @@
 #include "core/bone/simulator/bone_touch.h"
 
 #include "core/bone/drill/feel.h"
+#include "core/bone/simulator/piece_contact.h"
 
 namespace haptrial::bone {
 
@@ -41,19 +42,8 @@ bool BoneTouch::lets_feel(bool contact) noexcept {
 
 BoneTouch::Felt BoneTouch::touch_by_burr(const Simulator& simulator, const BurrTool& burr,
                                          const ToolState& tool) noexcept {
-  Drill& drill = *drills_[static_cast<std::size_t>(tool_)];
-  drill.begin_tick();
-  Contact all;
-  for (int piece = 0; piece < simulator.world().pieces(); ++piece) {
-    const Eigen::Isometry3d& pose = simulator.world().pose(piece);
-    const Eigen::Vector3d tip_B = pose.inverse(Eigen::Isometry) * tool.tip.position;
-    const Eigen::Quaterniond turn(pose.linear());
-    const Contact contact =
-        drill.touch(simulator.world().volume(piece), tip_B, turn.conjugate() * tool.orientation);
-    if (contact) {
-      all = all ? together(all, in_world(contact, pose)) : in_world(contact, pose);
-    }
-  }
+  const Contact all =
+      touch_pieces(*drills_[static_cast<std::size_t>(tool_)], simulator.world(), tool);
   Felt touched;
   touched.contact = static_cast<bool>(all);
   if (lets_feel(touched.contact)) {

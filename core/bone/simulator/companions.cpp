@@ -21,6 +21,16 @@ void list_bones(const BoneWorld& world, std::vector<DustBone>& bones) {
   });
 }
 
+bool changed_quads(const std::optional<Dust>& flow, std::vector<DustQuad>& quads,
+                   std::uint64_t& version) {
+  if (!flow || version == flow->version()) {
+    return false;
+  }
+  version = flow->version();
+  flow->quads(quads);
+  return true;
+}
+
 DustBalance only_counted(double amount) {
   DustBalance balance;
   balance.deposited = balance.lying = amount;
@@ -29,6 +39,15 @@ DustBalance only_counted(double amount) {
 
 }  // namespace
 
+DustParameters blood_parameters() {
+  DustParameters p;
+  p.bulking = 1.0;
+  p.slope = kLeastSlope;
+  p.suction_rate = 5e-6;
+  p.suction_reach = 3e-3;
+  return p;
+}
+
 SteppedCompanions::SteppedCompanions(Simulator& simulator, const CompanionParameters& parameters,
                                      double rate, bool search)
     : simulator_(simulator),
@@ -36,6 +55,9 @@ SteppedCompanions::SteppedCompanions(Simulator& simulator, const CompanionParame
       search_every_(search ? ticks_of(parameters.search_period, rate) : 0) {
   if (parameters.dusty) {
     dust_.emplace(parameters.dust);
+  }
+  if (parameters.bleeds) {
+    blood_.emplace(parameters.blood);
   }
 }
 
@@ -46,51 +68,64 @@ void SteppedCompanions::after_tick(const Simulator& simulator, double dt) noexce
       dust_->deposit(deposit);
     }
   }
+  if (blood_) {
+    for (const DustDeposit& deposit : simulator.bleeding().deposits()) {
+      blood_->deposit(deposit);
+    }
+  }
   unstepped_ += dt;
   ++ticks_;
-  if (dust_ && ticks_ % dust_every_ == 0) {
-    dust_->place(simulator.dust_tools());
-    step_dust(unstepped_);
+  if ((dust_ || blood_) && ticks_ % dust_every_ == 0) {
+    for (std::optional<Dust>* flow : {&dust_, &blood_}) {
+      if (*flow) {
+        (*flow)->place(simulator.dust_tools());
+      }
+    }
+    step_flows(unstepped_);
   }
   if (search_every_ > 0 && ticks_ % search_every_ == 0) {
     simulator_.world().search();
   }
 }
 
-void SteppedCompanions::step_dust(double dt) {
+void SteppedCompanions::step_flows(double dt) {
   list_bones(simulator_.world(), bones_);
-  dust_->follow(bones_);
-  dust_->step(dt);
+  for (std::optional<Dust>* flow : {&dust_, &blood_}) {
+    if (*flow) {
+      (*flow)->follow(bones_);
+      (*flow)->step(dt);
+    }
+  }
   unstepped_ = 0.0;
 }
 
 bool SteppedCompanions::quads(std::vector<DustQuad>& quads, std::uint64_t& version) const {
-  if (!dust_ || version == dust_->version()) {
-    return false;
-  }
-  version = dust_->version();
-  dust_->quads(quads);
-  return true;
+  return changed_quads(dust_, quads, version);
 }
+
+bool SteppedCompanions::blood_quads(std::vector<DustQuad>& quads, std::uint64_t& version) const {
+  return changed_quads(blood_, quads, version);
+}
+
+DustBalance SteppedCompanions::blood() const { return blood_ ? blood_->balance() : DustBalance{}; }
 
 DustBalance SteppedCompanions::dust() const {
   return dust_ ? dust_->balance() : only_counted(counted_);
 }
 
-void SteppedCompanions::settle() {
-  if (dust_) {
-    step_dust(unstepped_);
-  }
-}
+void SteppedCompanions::settle() { step_flows(unstepped_); }
 
 ThreadedCompanions::ThreadedCompanions(Simulator& simulator, const CompanionParameters& parameters,
                                        bool search)
     : simulator_(simulator),
       search_period_(parameters.search_period) {
+  const auto bones = [&simulator](std::vector<DustBone>& list) {
+    list_bones(std::as_const(simulator).world(), list);
+  };
+  if (parameters.bleeds) {
+    blood_.emplace(parameters.blood, bones, parameters.dust_period);
+  }
   if (parameters.dusty) {
-    const auto bones = [&simulator](std::vector<DustBone>& list) {
-      list_bones(std::as_const(simulator).world(), list);
-    };
     dust_.emplace(parameters.dust, bones, parameters.dust_period);
   }
   if (search) {
@@ -117,7 +152,15 @@ void ThreadedCompanions::after_tick(const Simulator& simulator, double) noexcept
   if (dust_) {
     dust_->place(simulator.dust_tools());
   }
+  if (blood_) {
+    for (const DustDeposit& deposit : simulator.bleeding().deposits()) {
+      blood_->deposit(deposit);
+    }
+    blood_->place(simulator.dust_tools());
+  }
 }
+
+DustBalance ThreadedCompanions::blood() const { return blood_ ? blood_->balance() : DustBalance{}; }
 
 DustBalance ThreadedCompanions::dust() const {
   return dust_ ? dust_->balance() : only_counted(counted_.load(std::memory_order_relaxed));
@@ -132,8 +175,10 @@ void ThreadedCompanions::search() {
 }
 
 void ThreadedCompanions::settle() {
-  if (dust_) {
-    dust_->settle();
+  for (std::optional<DustWorker>* flow : {&dust_, &blood_}) {
+    if (*flow) {
+      (*flow)->settle();
+    }
   }
 }
 

@@ -23,15 +23,23 @@ class Companions {
   virtual DustBalance dust() const = 0;
   /// If they changed since `version`, which is brought up to date. One other thread.
   virtual bool quads(std::vector<DustQuad>& quads, std::uint64_t& version) const = 0;
+  /// Likewise, of blood.
+  virtual DustBalance blood() const = 0;
+  virtual bool blood_quads(std::vector<DustQuad>& quads, std::uint64_t& version) const = 0;
   /// While nothing ticks: until the dust has taken up all that was left for it. The thread that
   /// ends passes.
   virtual void settle() = 0;
 };
 
+/// Blood is dust that does not pile.
+DustParameters blood_parameters();
+
 struct CompanionParameters {
   /// Whether dust falls and piles; else it is only counted, as lying, which takes no time.
   bool dusty{true};
   DustParameters dust;
+  bool bleeds{false};  // whether there may be blood
+  DustParameters blood = blood_parameters();
   double dust_period{0.02};    // > 0 [s]
   double search_period{0.05};  // > 0 [s]
 };
@@ -49,13 +57,16 @@ class SteppedCompanions final : public Companions {
   void after_tick(const Simulator& simulator, double dt) noexcept override;
   DustBalance dust() const override;
   bool quads(std::vector<DustQuad>& quads, std::uint64_t& version) const override;
+  DustBalance blood() const override;
+  bool blood_quads(std::vector<DustQuad>& quads, std::uint64_t& version) const override;
   void settle() override;
 
  private:
-  void step_dust(double dt);
+  void step_flows(double dt);
 
   Simulator& simulator_;
   std::optional<Dust> dust_;
+  std::optional<Dust> blood_;
   double counted_{0.0};         // of dust that is only counted [voxels]
   std::uint64_t dust_every_;    // [ticks]
   std::uint64_t search_every_;  // [ticks]; 0: never
@@ -78,6 +89,10 @@ class ThreadedCompanions final : public Companions {
   bool quads(std::vector<DustQuad>& quads, std::uint64_t& version) const override {
     return dust_ && dust_->quads(quads, version);
   }
+  DustBalance blood() const override;
+  bool blood_quads(std::vector<DustQuad>& quads, std::uint64_t& version) const override {
+    return blood_ && blood_->quads(quads, version);
+  }
   void settle() override;
 
  private:
@@ -86,6 +101,7 @@ class ThreadedCompanions final : public Companions {
   Simulator& simulator_;
   double search_period_;
   std::optional<DustWorker> dust_;
+  std::optional<DustWorker> blood_;
   std::atomic<double> counted_{0.0};  // of dust that is only counted [voxels]
   std::atomic<bool> stop_{false};
   std::thread searcher_;

@@ -5,6 +5,15 @@
 
 namespace haptrial::bone {
 
+/// What there is to see of the tube in the other hand.
+struct TubeView {
+  bool shown{false};
+  Eigen::Vector3d tip{Eigen::Vector3d::Zero()};  // in W [m]
+  Eigen::Quaterniond orientation{Eigen::Quaterniond::Identity()};
+  bool sucks{false};
+  bool rinses{false};
+};
+
 /// What there is to see of a drilling beside the bone itself, which the screen follows by itself:
 /// a view (core/stimulus/shown.h).
 struct DrillingView {
@@ -23,6 +32,8 @@ struct DrillingView {
   double field_of_view{0.35};    // [rad]
   std::int32_t stills_asked{0};  // how often the next still was asked for
   bool tone{false};              // the participant hears one of a nerve monitor
+  TubeView tube;
+  double temperature{0.0};       // at the burr; 0: nothing warms up [degree C]
   double progress{0.0};          // of the time limit, as a fraction
   double time_limit{0.0};        // [s]
 

@@ -30,8 +30,9 @@ std::vector<ToolSpec> checked(std::vector<ToolSpec> tools) {
 }
 
 /// The largest burr or tube has this radius [m].
-double largest_radius(std::span<const ToolSpec> tools) noexcept {
-  double largest = 0.0;
+double largest_radius(std::span<const ToolSpec> tools,
+                      const std::optional<TubeParameters>& second) noexcept {
+  double largest = second ? second->radius : 0.0;
   for (const ToolSpec& tool : tools) {
     const auto* burr = tool.as<BurrTool>();
     const auto* tube = tool.as<SuctionTool>();
@@ -71,7 +72,8 @@ Simulator::Simulator(const BoneModel& model, const SimulatorParameters& paramete
       camera_parameters_(parameters.camera),
       structures_(model.structures),
       world_(model, parameters.pose_WB, parameters.world),
-      soft_(model, parameters.soft_tissue, largest_radius(tools_)),
+      soft_(model, parameters.soft_tissue, largest_radius(tools_, parameters.tube)),
+      bleeding_(model, parameters.bleeding),
       camera_(parameters.camera.start),
       start_(world_.volume(0).amount()) {
   std::size_t most = 1;
@@ -90,9 +92,17 @@ Simulator::Simulator(const BoneModel& model, const SimulatorParameters& paramete
     }
   }
   const std::size_t torn =
-      soft_.empty() ? 0 : most_in_ball(largest_radius(tools_), model.grid.spacing);
-  emptied_.reserve(most + torn + CutPlaneTool::kMostEmptied);
+      soft_.empty()
+          ? 0
+          : most_in_ball(largest_radius(tools_, parameters.tube), model.grid.spacing);
+  emptied_.reserve(most + 2 * torn + CutPlaneTool::kMostEmptied);
   deposits_.reserve(128);
+  if (parameters.tube) {
+    second_.emplace(*parameters.tube, structures_, model.grid.spacing, soft_.soft());
+  }
+  if (parameters.heat) {
+    heat_.emplace(*parameters.heat);
+  }
 }
 
 void Simulator::begin(std::uint32_t functions_held) noexcept {
@@ -100,6 +110,10 @@ void Simulator::begin(std::uint32_t functions_held) noexcept {
   hand_known_ = false;
   waits_until_free_ = true;
   soft_.forget();
+  soft_.forget_second();
+  if (second_) {
+    second_->begin();
+  }
 }
 
 const SimulatorOutput& Simulator::tick(const SimulatorInput& input,
@@ -107,6 +121,7 @@ const SimulatorOutput& Simulator::tick(const SimulatorInput& input,
   emptied_.clear();
   deposits_.clear();
   soft_.begin_tick();
+  bleeding_.begin_tick();
   const int tool = output_.tool;
   output_ = {};
   output_.tool = tool;
@@ -129,6 +144,9 @@ const SimulatorOutput& Simulator::tick(const SimulatorInput& input,
   if (cutter_.busy()) {
     go_on_cutting();
   }
+  work_second(input);
+  warm_up(input);
+  bleed(input.dt);
   place_for_dust(input);
   hand_ = input.tool.tip.position;
   hand_known_ = true;
@@ -364,6 +382,45 @@ void Simulator::empty_soft(const Eigen::Vector3d& tip_B, double radius) noexcept
   }
 }
 
+void Simulator::work_second(const SimulatorInput& input) noexcept {
+  if (!second_) {
+    return;
+  }
+  output_.tube = second_->tick(world_, soft_, input.tube);
+  if (output_.tube.tore) {
+    const Eigen::Isometry3d& pose = world_.pose(0);
+    empty_soft(pose.inverse(Eigen::Isometry) * input.tube.tool.tip.position, tube()->radius);
+  }
+}
+
+void Simulator::warm_up(const SimulatorInput& input) noexcept {
+  if (!heat_) {
+    return;
+  }
+  const auto* burr = tools_[in_hand()].as<BurrTool>();
+  const bool turns = burr != nullptr && output_.mode == HandMode::kTool;
+  const bool rinsed = second_ && second_->rinses(input.tube, input.tool.tip.position);
+  heat_->tick(turns ? output_.drag.norm() : 0.0, turns ? burr->radius() : 0.0,
+              turns ? input.power : 0.0, rinsed, input.dt);
+}
+
+/// Of vessels that lost a voxel on this tick, or were torn.
+void Simulator::bleed(double dt) noexcept {
+  if (bleeding_.empty()) {
+    return;
+  }
+  for (const EmptiedIn& gone : emptied_) {
+    if (bleeding_.bleeds(gone.label)) {
+      const geometry::VoxelGrid& grid = world_.volume(0).grid();
+      bleeding_.open(gone.label, grid.centre(gone.voxel.x(), gone.voxel.y(), gone.voxel.z()));
+    }
+  }
+  for (const Tear& tear : soft_.tears()) {
+    bleeding_.open(tear.label, tear.place_B);
+  }
+  bleeding_.tick(world_.pose(0), dt);
+}
+
 /// The tick goes on with it.
 void Simulator::begin_cut(CutPlane plane, const SimulatorInput& input) noexcept {
   plane.pose_WC = pose_of(input.tool);
@@ -399,6 +456,9 @@ void Simulator::hold_plate(const SimulatorInput& input, bool fixes) noexcept {
 void Simulator::place_for_dust(const SimulatorInput& input) noexcept {
   const ToolSpec& tool = tools_[in_hand()];
   dust_tools_ = {};
+  if (second_) {
+    second_->place(input.tube, dust_tools_.tools[2], dust_tools_.water);
+  }
   if (output_.mode != HandMode::kTool) {
     return;
   }

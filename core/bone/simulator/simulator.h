@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -11,7 +12,10 @@
 #include "core/base/tool_state.h"
 #include "core/bone/drill/drill.h"
 #include "core/bone/dust/dust.h"
+#include "core/bone/drill/heat.h"
 #include "core/bone/pieces/world.h"
+#include "core/bone/simulator/bleeding.h"
+#include "core/bone/simulator/second_hand.h"
 #include "core/bone/tools/cut_plane.h"
 #include "core/bone/tools/microscope.h"
 #include "core/bone/tools/simulator_tools.h"
@@ -47,6 +51,9 @@ struct SimulatorParameters {
   Eigen::Isometry3d pose_WB{Eigen::Isometry3d::Identity()};  // of the bone
   MicroscopeParameters camera;
   std::vector<SoftTissueParameters> soft_tissue{};  // the bone's structures that are soft
+  std::optional<TubeParameters> tube{};             // in the other hand; none: there is one hand
+  std::optional<HeatParameters> heat{};             // none: nothing warms up
+  BleedingParameters bleeding{};                    // of the bone's structures
 };
 
 /// What happens on one tick. All in W.
@@ -55,6 +62,7 @@ struct SimulatorInput {
   std::uint32_t functions{0};  // bit(Function) of those held
   double power{0.0};           // with which the burr turns or the suction sucks, 0 to 1
   double dt{1e-3};             // since the last tick [s]
+  TubeInput tube{};            // in the other hand, if there is one
 };
 
 enum class HandMode : std::uint8_t { kTool, kCameraMove, kCameraTurn, kCarry };
@@ -73,6 +81,7 @@ struct SimulatorOutput {
   bool yields{false};   // soft tissue gives way to the tool
   bool camera_changed{false};
   bool finished{false};  // kFinish went down
+  TubeOutput tube{};
 };
 
 /// A part that was separated, as it is recorded: what BoneWorld::split_at or crumble_at repeats.
@@ -110,6 +119,13 @@ class Simulator {
   /// Soft tissue that was torn on the last tick, in the bone's frame.
   std::span<const Tear> tears() const noexcept { return soft_.tears(); }
   const SoftTissue& soft_tissue() const noexcept { return soft_; }
+  const Bleeding& bleeding() const noexcept { return bleeding_; }
+  /// Null where nothing warms up.
+  const DrillHeat* heat() const noexcept { return heat_ ? &*heat_ : nullptr; }
+  /// Null where there is one hand.
+  const TubeParameters* tube() const noexcept {
+    return second_ ? &second_->parameters() : nullptr;
+  }
   std::span<const WorldEvent> separations() const noexcept { return world_.events(); }
   std::span<const DustDeposit> deposits() const noexcept { return deposits_; }
   const DustTools& dust_tools() const noexcept { return dust_tools_; }
@@ -157,6 +173,9 @@ class Simulator {
   void work(const SimulatorInput& input, std::uint32_t pressed) noexcept;
   void drill(const BurrTool& tool, const SimulatorInput& input) noexcept;
   void yield(double radius, const SimulatorInput& input) noexcept;
+  void work_second(const SimulatorInput& input) noexcept;
+  void warm_up(const SimulatorInput& input) noexcept;
+  void bleed(double dt) noexcept;
   void empty_soft(const Eigen::Vector3d& tip_B, double radius) noexcept;
   void begin_cut(CutPlane plane, const SimulatorInput& input) noexcept;
   void go_on_cutting() noexcept;
@@ -171,6 +190,9 @@ class Simulator {
   SoftTissue soft_;
   std::vector<std::unique_ptr<Drill>> drills_;       // by tool; null where it is no burr
   std::vector<std::unique_ptr<PlateModel>> plates_;  // likewise
+  std::optional<SecondHand> second_;
+  std::optional<DrillHeat> heat_;
+  Bleeding bleeding_;
   CutPlaneTool cutter_;
   double cut_of_present_{0.0};
   Camera camera_;

@@ -21,20 +21,6 @@ constexpr double kDeepest = 0.008;    // how far inside distances are told apart
 constexpr double kWayOut = 0.5;       // a gradient below it, inside: the ball is through
 constexpr int kBeside = 3;            // voxels beyond the reach
 
-std::uint8_t label_named(const BoneModel& model, const std::string& name) {
-  const std::string known = structure_named(name, 0).name;
-  std::string names;
-  for (std::size_t label = 1; label < model.structures.size(); ++label) {
-    const std::string& own = model.structures[label].name;
-    if (own == name || own == known) {
-      return static_cast<std::uint8_t>(label);
-    }
-    names += (names.empty() ? "" : ", ") + own;
-  }
-  throw InputError(fmt::format("soft_tissue: the bone {} has no structure '{}'; it has {}",
-                               model.name, name, names));
-}
-
 /// The voxels with a label.
 Eigen::AlignedBox3i box_of(const BoneModel& model, std::uint8_t label) {
   Eigen::AlignedBox3i box;
@@ -118,7 +104,7 @@ std::vector<SoftTissueParameters> read_soft_tissue(Table& table) {
 void check_soft_tissue(const BoneModel& model, std::span<const SoftTissueParameters> parameters) {
   std::array<bool, 256> named{};
   for (const SoftTissueParameters& p : parameters) {
-    const std::uint8_t label = label_named(model, p.structure);
+    const std::uint8_t label = label_named(model, p.structure, "soft_tissue");
     if (named[label]) {
       throw InputError(
           fmt::format("soft_tissue: '{}' is named twice", model.structures[label].name));
@@ -189,7 +175,7 @@ SoftTissue::SoftTissue(const BoneModel& model, std::span<const SoftTissueParamet
                        double largest_radius) {
   check_soft_tissue(model, parameters);
   for (const SoftTissueParameters& p : parameters) {
-    const std::uint8_t label = label_named(model, p.structure);
+    const std::uint8_t label = label_named(model, p.structure, "soft_tissue");
     soft_[label] = true;
     const double held = p.suction / p.stiffness;  // how far a tube lifts it
     if (!box_of(model, label).isEmpty()) {
@@ -197,8 +183,9 @@ SoftTissue::SoftTissue(const BoneModel& model, std::span<const SoftTissueParamet
     }
   }
   own_ = touch();
+  second_ = touch();
   holes_.reserve(kMostHoles);
-  tears_.resize(parts_.size());
+  tears_.resize(2 * parts_.size());
 }
 
 SoftTissue::Touch SoftTissue::touch() const {
@@ -215,10 +202,20 @@ void SoftTissue::forget(Touch& touch) noexcept {
 
 Vector3d SoftTissue::tick(const Vector3d& c_B, double radius, bool sucks) noexcept {
   begin_tick();
+  return press_all(own_, c_B, radius, sucks, false);
+}
+
+Vector3d SoftTissue::tick_second(const Vector3d& c_B, double radius, bool sucks) noexcept {
+  return press_all(second_, c_B, radius, sucks, true);
+}
+
+Vector3d SoftTissue::press_all(Touch& touch, const Vector3d& c_B, double radius, bool sucks,
+                               bool second) noexcept {
   Vector3d force = Vector3d::Zero();
   for (std::size_t i = 0; i < parts_.size(); ++i) {
-    const Pressed pressed = press(parts_[i], own_.parts_[i], c_B, radius, sucks);
+    Pressed pressed = press(parts_[i], touch.parts_[i], c_B, radius, sucks);
     if (pressed.tears) {
+      pressed.tear.by_second = second;
       tear(pressed.tear, radius);
     }
     force += pressed.force;
@@ -262,7 +259,7 @@ SoftTissue::Pressed SoftTissue::press(const Part& part, TouchedPart& touched, co
   touched.way_out = here.gradient;
   if (size >= part.parameters.tears_at || through) {
     touched.state = State::kInHole;
-    return {force, true, {part.label, depth <= 0.0, size, std::abs(depth), place}};
+    return {force, true, {part.label, depth <= 0.0, false, size, std::abs(depth), place}};
   }
   if (depth <= 0.0 && size > part.parameters.suction) {
     touched.state = State::kFree;  // it comes off the tube

@@ -34,6 +34,7 @@ void check_soft_tissue(const BoneModel& model, std::span<const SoftTissueParamet
 struct Tear {
   std::uint8_t label{0};
   bool by_suction{false};
+  bool by_second{false};                             // by the tube in the other hand
   double force{0.0};                                 // at which it tore [N]
   double depth{0.0};                                 // how far its surface had given way [m]
   Eigen::Vector3d place_B{Eigen::Vector3d::Zero()};  // on the surface at rest [m]
@@ -96,13 +97,16 @@ class SoftTissue {
 
   /// A tool is taken in hand: structures that it is in are not felt before it has left them.
   void forget() noexcept { forget(own_); }
+  void forget_second() noexcept { forget(second_); }
   static void forget(Touch& touch) noexcept;
   /// Forgets the tears of the last tick.
   void begin_tick() noexcept { tear_count_ = 0; }
   /// @param sucks  the tool is a tube that sucks
   /// @returns the force on the tool, in B [N]; on the tick of a tear that at which it tore
   Eigen::Vector3d tick(const Eigen::Vector3d& c_B, double radius, bool sucks) noexcept;
-  /// Likewise of a second tool, which tears nothing: where the first one would, it slips through,
+  /// Likewise, after tick(), of the tube in the other hand, which tears as well.
+  Eigen::Vector3d tick_second(const Eigen::Vector3d& c_B, double radius, bool sucks) noexcept;
+  /// Likewise of a tool that tears nothing: where the first one would, it slips through,
   /// and feels nothing until it is out of the structure.
   Eigen::Vector3d feel(Touch& touch, const Eigen::Vector3d& c_B, double radius,
                        bool sucks) const noexcept;
@@ -135,6 +139,8 @@ class SoftTissue {
   Pressed press(const Part& part, TouchedPart& touched, const Eigen::Vector3d& c_B, double radius,
                 bool sucks) const noexcept;
   bool holed(std::uint8_t label, const Eigen::Vector3d& place) const noexcept;
+  Eigen::Vector3d press_all(Touch& touch, const Eigen::Vector3d& c_B, double radius, bool sucks,
+                            bool second) noexcept;
   void tear(const Tear& tear, double radius) noexcept;
 
  public:
@@ -146,9 +152,10 @@ class SoftTissue {
  private:
   std::vector<Part> parts_;
   Touch own_;
+  Touch second_;  // of the tube in the other hand
   std::array<bool, 256> soft_{};
   std::vector<Hole> holes_;  // room for kMostHoles; beyond these a tear is told and closes again
-  std::vector<Tear> tears_;  // (structures)
+  std::vector<Tear> tears_;  // (2 structures)
   std::size_t tear_count_{0};
 };
 

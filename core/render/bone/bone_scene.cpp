@@ -92,6 +92,7 @@ struct BoneScene::Impl {
         to_clip(gl.get_uniform_location(program, "to_clip")),
         light(gl.get_uniform_location(program, "light")),
         dust(gl),
+        blood(gl),
         layer(gl),
         shading(gl, look) {
     if (style.visible_array && style.background_visibility) {
@@ -126,6 +127,7 @@ struct BoneScene::Impl {
   int to_clip;
   int light;
   DustDrawing dust;
+  DustDrawing blood;
   BoneLayer layer;
   BoneShading shading;
   std::vector<EyeView> seen_from;  // as the kept picture is
@@ -275,6 +277,7 @@ std::vector<PixelBox> BoneScene::Impl::draw_over(const BoneFrame& frame, const E
     }
   }
   parts.push_back(pixels_of(bounds_of(frame.dust), clip, area.width, area.height));
+  parts.push_back(pixels_of(bounds_of(frame.blood), clip, area.width, area.height));
   use(view);
   gl.disable(GL_BLEND);
   gl.depth_mask(GL_TRUE);
@@ -285,6 +288,7 @@ std::vector<PixelBox> BoneScene::Impl::draw_over(const BoneFrame& frame, const E
   gl.depth_mask(GL_FALSE);
   draw_meshes(frame, view, true);
   dust.draw(frame.dust, view, style.dust, is_shaded);
+  blood.draw(frame.blood, view, style.blood, is_shaded);
   gl.depth_mask(GL_TRUE);
   return parts;
 }

@@ -46,7 +46,8 @@ struct BoneFrame {
   std::optional<StereoPair> stereo;
   std::vector<SceneBone> bones;
   std::vector<SceneMesh> meshes;
-  std::vector<bone::DustQuad> dust;  // in any order
+  std::vector<bone::DustQuad> dust;   // in any order
+  std::vector<bone::DustQuad> blood;  // likewise
 };
 
 /// What the last draw() did.

@@ -10,6 +10,7 @@ struct BoneStyle {
   Colour hard_bone{0.93, 0.88, 0.78};  // of density 1
   Colour soft_bone{0.80, 0.58, 0.45};  // of density 0
   Colour dust{0.95, 0.92, 0.84};
+  Colour blood{0.50, 0.03, 0.03};
   double ambient{0.22};           // light from everywhere
   double diffuse{0.72};           // light at the eye, by the cosine
   double specular{0.13};          // its reflection on wet bone, ...

@@ -54,6 +54,10 @@ protocols::DrillingParameters read_drilling(Table& root) {
     p.handle = Eigen::Vector3d::UnitY();
   }
   optional(table, "scale", p.scale, {0.1, 20.0}, "");
+  if (root.has("second_hand")) {
+    Table second = root.table("second_hand");
+    p.second = protocols::read_second_hand(second);
+  }
   p.controls = protocols::read_controls(root);
   return p;
 }
@@ -177,6 +181,11 @@ void check_together(Table& root, const BoneDefinition& d) {
   if (d.drilling.force_limit > d.envelope.max_force) {
     drilling.reject("force_limit", fmt::format("{}", d.drilling.force_limit),
                     fmt::format("at most envelope.max_force, {} [N]", d.envelope.max_force));
+  }
+  if (d.drilling.second && d.drilling.second->force_limit > d.envelope.max_force) {
+    root.table("second_hand")
+        .reject("force_limit", fmt::format("{}", d.drilling.second->force_limit),
+                fmt::format("at most envelope.max_force, {} [N]", d.envelope.max_force));
   }
   for (const bone::SoftTissueParameters& soft : d.simulator.soft_tissue) {
     if (soft.tears_at > d.drilling.force_limit) {
@@ -306,7 +315,23 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
     Table dust = root.table("dust");
     d.companions.dust = bone::read_dust_parameters(dust);
   }
+  if (root.has("bleeding")) {
+    Table bleeding = root.table("bleeding");
+    d.simulator.bleeding = bone::read_bleeding(bleeding);
+    d.companions.bleeds = true;
+  }
+  if (root.has("heat")) {
+    Table heat = root.table("heat");
+    d.simulator.heat = bone::read_heat_parameters(heat);
+  }
   d.drilling = read_drilling(root);
+  if (d.drilling.second) {
+    d.simulator.tube = d.drilling.second->tube;
+    Table second = root.table("second_hand");
+    if (second.has("beside")) {
+      d.beside = read_vector(second, "beside", {-0.05, 0.05}, "m", d.beside);
+    }
+  }
   Table drilling = root.table("drilling");
   optional(drilling, "recovery", d.recovery, {0.0, 600.0}, "s");
   if (root.has("drilling_hand")) {
@@ -347,6 +372,7 @@ void BoneDefinition::load_bones(const fs::path& folder) {
       check_placement(placement, *bones.back(), simulator.camera.start,
                       cavity ? &*cavity : nullptr);
       bone::check_soft_tissue(*bones.back(), simulator.soft_tissue);
+      bone::check_bleeding(*bones.back(), simulator.bleeding);
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: {}", file_name, error.what()));
     }
@@ -406,6 +432,7 @@ bone::SimulatorParameters simulator_for(const BoneDefinition& d, const geometry:
 bone::CompanionParameters companions_for(const BoneDefinition& d, const geometry::VoxelGrid& grid) {
   bone::CompanionParameters p = d.companions;
   p.dust.voxel = grid.spacing;
+  p.blood.voxel = grid.spacing;
   return p;
 }
 

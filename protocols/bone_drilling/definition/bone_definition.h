@@ -51,6 +51,7 @@ struct BoneDefinition : Definition {
   bone::CompanionParameters companions;
   DrillingParameters drilling;
   subject::DrillingHandParameters hand_plan;  // of the virtual hand
+  Eigen::Vector3d beside{0.003, 0.003, 0.0};  // the burr, where its other one holds the tube [m]
   std::vector<ParticipantGroup> groups;       // none: everybody is alike
   double practice{0.0};                       // before the first procedure, of people only [s]
   std::optional<CavityParameters> cavity;     // that is asked for
@@ -76,6 +77,11 @@ struct BoneDefinition : Definition {
 
   std::vector<std::shared_ptr<const nerve::NerveDistances>> nerve_distances;  // (bones) if watched
 
+  int devices() const override { return drilling.second ? 2 : 1; }
+  /// Whether something bleeds or warms up.
+  bool has_field() const {
+    return simulator.heat || !simulator.bleeding.structures.empty();
+  }
   /// Whether a participant hears the nerve monitor in a procedure. @param trial  from 1; practice:
   /// 0
   bool hears_nerves(int trial, int participant) const;

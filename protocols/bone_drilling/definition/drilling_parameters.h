@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "protocols/bone_drilling/definition/controls.h"
+#include "protocols/bone_drilling/definition/second_hand.h"
 
 namespace haptrial::protocols {
 
@@ -17,6 +19,7 @@ struct DrillingParameters {
   double scale{1.0};
   double force_limit{10.0};  // of what the device is asked for > 0 [N]
   double time_limit{900.0};  // of a drilling > 0 [s]
+  std::optional<SecondHandParameters> second;  // at a second device
 };
 
 }  // namespace haptrial::protocols

@@ -30,6 +30,10 @@ device::PointerHandParameters pointer_hand_of(const BoneDefinition& d) {
   return p;
 }
 
+std::vector<render::Capsule> tube_shadow(double radius, double length) {
+  return {{Eigen::Vector3d::Zero(), length * Eigen::Vector3d::UnitZ(), 2.0 * radius}};
+}
+
 using Clock = std::chrono::steady_clock;
 
 class BoneDrawing final : public Drawing {
@@ -122,6 +126,10 @@ BoneDisplay::BoneDisplay(const render::Gl& gl, const BoneDefinition& definition,
   for (std::size_t tool = 0; tool < stage_->simulator->tools().size(); ++tool) {
     meshes_.push_back(mesh_of(static_cast<int>(tool)));
   }
+  if (const bone::TubeParameters* tube = stage_->simulator->tube()) {
+    tube_ = std::make_shared<const geometry::Mesh>(
+        render::suction_mesh(tube->outer_radius(), 2.0 * tube->radius, tube->handle_length));
+  }
   set_stills(stage_->stills);
   if (definition.stereo) {
     frame_.stereo = render::StereoPair{definition.eye_distance, std::nullopt};
@@ -162,8 +170,7 @@ std::vector<render::Capsule> BoneDisplay::shadow_of(int tool) const {
     return render::burr_shadow(diameter, render::burr_shaft(diameter), spec.handle_length);
   }
   if (const auto* suction = spec.as<bone::SuctionTool>()) {
-    return {{Eigen::Vector3d::Zero(), spec.handle_length * Eigen::Vector3d::UnitZ(),
-             2.0 * suction->radius}};
+    return tube_shadow(suction->radius, spec.handle_length);
   }
   return {};
 }
@@ -198,11 +205,23 @@ void BoneDisplay::draw(const bone::DrillingView& seen) {
     Eigen::Isometry3d pose = render::pose_of(held);
     pose.rotate(Eigen::AngleAxisd(2.0 * std::numbers::pi * seen.turned, Eigen::Vector3d::UnitZ()));
     frame_.meshes.push_back({meshes_[tool], pose, plane ? kPlane : kSteel, shadow_of(seen.tool)});
+    if (tube_ != nullptr && seen.tube.shown) {
+      const ToolState other{{seen.tube.tip, Eigen::Vector3d::Zero()}, seen.tube.orientation};
+      frame_.meshes.push_back({tube_, render::pose_of(other), kSteel,
+                               tube_shadow(stage_->simulator->tube()->radius,
+                                           stage_->simulator->tube()->handle_length)});
+    }
     frame_.camera = {seen.eye, seen.target, seen.up, seen.field_of_view};
   } else {
     frame_.camera = stage_->start_view;
   }
   stage_->companions->quads(frame_.dust, dust_version_);
+  if (stage_->companions->blood_quads(frame_.blood, blood_version_)) {
+    constexpr float kTogether = 1.8F;  // drops are so wide that they run into each other
+    for (bone::DustQuad& drop : frame_.blood) {
+      drop.size *= kTogether;
+    }
+  }
   scene_.draw(frame_, width_, height_);
   if (seen.shown) {
     name_tool(seen.tool);

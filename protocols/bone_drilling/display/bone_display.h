@@ -57,7 +57,9 @@ class BoneDisplay {
   render::BoneFrame frame_;
   ToolLabel label_;
   std::vector<std::shared_ptr<const geometry::Mesh>> meshes_;  // by tool
+  std::shared_ptr<const geometry::Mesh> tube_;  // in the other hand; null: there is none
   std::uint64_t dust_version_{~std::uint64_t{0}};
+  std::uint64_t blood_version_{~std::uint64_t{0}};
   std::unique_ptr<render::BoneStills> stills_;  // null where there are none
 };
 

@@ -1,0 +1,64 @@
+#include "core/bone/simulator/bleeding.h"
+
+#include <algorithm>
+
+#include "core/base/definition/table.h"
+#include "core/bone/anatomy/anatomy.h"
+
+namespace haptrial::bone {
+
+BleedingParameters read_bleeding(Table& table) {
+  BleedingParameters p;
+  p.structures = table.texts("structures");
+  if (p.structures.empty()) {
+    table.reject("structures", "is empty; name structures that bleed, as \"sigmoid sinus\"");
+  }
+  p.rate = table.number_or("rate", p.rate, {1e-9, 1e-5}, "m3/s");
+  return p;
+}
+
+void check_bleeding(const BoneModel& model, const BleedingParameters& parameters) {
+  for (const std::string& name : parameters.structures) {
+    label_named(model, name, "bleeding");
+  }
+}
+
+Bleeding::Bleeding(const BoneModel& model, const BleedingParameters& parameters)
+    : spacing_(model.grid.spacing), any_(!parameters.structures.empty()) {
+  for (const std::string& name : parameters.structures) {
+    bleeds_[label_named(model, name, "bleeding")] = true;
+  }
+  rate_ = parameters.rate / (spacing_ * spacing_ * spacing_);
+  openings_.reserve(kMost);
+  owed_.reserve(kMost);
+  deposits_.reserve(kMost);
+}
+
+void Bleeding::begin_tick() noexcept {
+  before_ = openings_.size();
+  deposits_.clear();
+}
+
+void Bleeding::open(std::uint8_t label, const Eigen::Vector3d& place_B) noexcept {
+  const bool part_of_another =
+      std::any_of(openings_.begin(), openings_.end(), [&](const Opening& other) {
+        return other.label == label && (other.place_B - place_B).norm() < kApart;
+      });
+  if (bleeds(label) && !part_of_another && openings_.size() < kMost) {
+    openings_.push_back({label, place_B});
+    owed_.push_back(0.0);
+  }
+}
+
+void Bleeding::tick(const Eigen::Isometry3d& pose_WB, double dt) noexcept {
+  ++ticks_;
+  for (std::size_t i = 0; i < openings_.size(); ++i) {
+    owed_[i] += rate_ * dt;
+    if (ticks_ % kBetween == i % kBetween) {
+      deposits_.push_back({pose_WB * openings_[i].place_B, 0.5 * spacing_, owed_[i]});
+      owed_[i] = 0.0;
+    }
+  }
+}
+
+}  // namespace haptrial::bone

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+
+#include "core/base/tool_state.h"
+#include "core/bone/drill/drill.h"
+#include "core/bone/drill/feel.h"
+#include "core/bone/dust/dust_surroundings.h"
+#include "core/bone/pieces/world.h"
+#include "core/bone/tools/soft_tissue.h"
+
+namespace haptrial::bone {
+
+/// A tube that sucks and rinses, held in the other hand. Its end is felt as a ball as wide as its
+/// wall.
+struct TubeParameters {
+  double radius{1.2e-3};        // of its opening, 0.2e-3 to 0.01 [m]
+  double handle_length{0.1};    // > 0 [m]
+  double rinse_reach{6e-3};     // of its water from its end > 0 [m]
+  FeelParameters feel{};        // default_feel() of its outer radius
+  double outer_radius() const noexcept { return 1.4 * radius; }  // [m]
+};
+
+/// What the other hand does on one tick. In W.
+struct TubeInput {
+  ToolState tool;
+  bool sucks{false};
+  bool rinses{false};
+};
+
+struct TubeOutput {
+  Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // of bone and soft tissue on the tube [N]
+  bool contact{false};                             // with bone
+  bool yields{false};                              // soft tissue gives way to it
+  int immersed{0};                                 // samples of its end in bone
+  bool tore{false};
+};
+
+/// The tube at the bones that the first hand works on: it feels them and takes none of them; soft
+/// tissue gives way to it, sticks to it where it sucks, and may tear. It does not meet the burr.
+/// One that is in bone at first is not felt before it has been free.
+///
+/// Servo thread: no allocation, lock, wait or throw after construction. Source: Morris 2006,
+/// §3.2.8, Figure 66.
+class SecondHand {
+ public:
+  /// @throws std::invalid_argument naming the parameter that breaks its bound.
+  SecondHand(const TubeParameters& parameters, std::span<const Structure> structures,
+             double spacing, const std::array<bool, 256>& soft);
+
+  void begin() noexcept { waits_until_free_ = true; }
+  /// After the first hand's tick.
+  TubeOutput tick(const BoneWorld& world, SoftTissue& soft, const TubeInput& input) noexcept;
+  /// What dust and blood have of it. @param tools  room for it
+  void place(const TubeInput& input, DustTool& tube, DustWater& water) const noexcept;
+  /// Whether its water gets to a point of W.
+  bool rinses(const TubeInput& input, const Eigen::Vector3d& p_W) const noexcept;
+
+  const TubeParameters& parameters() const noexcept { return p_; }
+
+ private:
+  TubeParameters p_;
+  BurrParameters end_;  // a burr of its size, at rest
+  Drill drill_;
+  bool waits_until_free_{true};
+};
+
+}  // namespace haptrial::bone

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+
+#include "core/bone/simulator/second_hand.h"
+#include "core/device/device.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::protocols {
+
+/// What a second device is for: a tube that sucks and rinses. Source: Morris 2006, §3.2.8.
+struct SecondHandParameters {
+  bone::TubeParameters tube;
+  std::uint32_t suck{1};   // its buttons, a bit each: any of these
+  std::uint32_t rinse{2};  //
+  /// As DrillingParameters::handle, of this device.
+  Eigen::Vector3d handle{Eigen::Vector3d::UnitY()};
+  double force_limit{4.0};  // of what its device is asked for > 0 [N]
+};
+
+/// Reads a [second_hand] table.
+SecondHandParameters read_second_hand(Table& table);
+
+/// A reading of a device after the first as the session file keeps it: what is simulated from it
+/// is simulated again from the file. Servo thread.
+device::DeviceReading second_as_recorded(const device::DeviceReading& reading) noexcept;
+
+}  // namespace haptrial::protocols
