@@ -9,6 +9,8 @@
 #include "core/base/error.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/recorded_bone.h"
+#include "core/record/table/rounding.h"
+#include "core/record/table/schema.h"
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/drilling_pass.h"
 
@@ -129,6 +131,20 @@ std::string difference(std::uint64_t sequence, std::span<const record::TearRow> 
                    sequence, recorded.size(), torn.size());
 }
 
+/// Empty where the tube in the other hand was pushed as in the record.
+std::string difference(const record::SecondHandRow& recorded, const Eigen::Vector3d& force) {
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    if (record::on_grid(force[axis], record::kForceResolution) != recorded.contact[axis]) {
+      return fmt::format(
+          "on tick {} the record has ({}, {}, {}) N on the tube of the second hand, and the "
+          "simulation ({}, {}, {})",
+          recorded.sequence, recorded.contact[0], recorded.contact[1], recorded.contact[2],
+          force[0], force[1], force[2]);
+    }
+  }
+  return "";
+}
+
 }  // namespace
 
 BoneReplay::BoneReplay(const std::filesystem::path& session)
@@ -140,6 +156,7 @@ BoneReplay::BoneReplay(const std::filesystem::path& session)
       splits_(reader_.rows<record::SplitRow>()),
       tears_(reader_.rows<record::TearRow>()),
       second_(reader_.rows<record::DeviceRow>()),
+      field_(reader_.rows<record::FieldRow>()),
       led_(reader_.rows<record::LedRow>()) {
   for (const record::BoneRecord& bone : record::recorded_bones(reader_)) {
     bones_.push_back(std::make_shared<const bone::BoneModel>(bone::model_of(bone)));
@@ -312,7 +329,7 @@ void BoneReplay::run_pass(std::int32_t row, const record::PassRow& pass,
   }
   if (verdict.difference.empty()) {
     verdict.checksum = stage->simulator->checksum();
-    check_end(row, verdict);
+    check_end(row, *stage->simulator, verdict);
   }
 }
 
@@ -327,8 +344,8 @@ void BoneReplay::run_own(const record::PassRow& pass, Work& work) const {
     const std::uint64_t count = std::min(kPiece, end - at);
     const std::vector<record::Sample> samples = reader_.samples(at, count);
     const std::vector<record::ToolRow> tool = reader_.rows<record::ToolRow>(at, count);
-    const auto hand = two ? reader_.rows<record::SecondHandRow>(at, count)
-                          : std::vector<record::SecondHandRow>{};
+    const auto hand =
+        two ? reader_.rows<record::SecondHandRow>(at, count) : std::vector<record::SecondHandRow>{};
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const std::span<const record::DeviceRow> other = devices.take(samples[i].sequence);
       if (!tool[i].active) {
@@ -344,6 +361,13 @@ void BoneReplay::run_own(const record::PassRow& pass, Work& work) const {
       work.step(samples[i].sequence, now, true);
       if (!work.check(samples[i].sequence)) {
         return;
+      }
+      if (two) {
+        const Eigen::Vector3d& force = work.stage->simulator->output().tube.force;
+        work.verdict.difference = difference(hand[i], force);
+        if (!work.verdict.difference.empty()) {
+          return;
+        }
       }
       work.show(samples[i].sequence, now);
     }
@@ -380,7 +404,8 @@ void BoneReplay::run_led(const record::PassRow& pass, Work& work) const {
 }
 
 /// Whether the bone at the end of a pass is that of the record.
-void BoneReplay::check_end(std::int32_t row, ReplayVerdict& verdict) const {
+void BoneReplay::check_end(std::int32_t row, const bone::Simulator& simulator,
+                           ReplayVerdict& verdict) const {
   const auto procedure =
       std::find_if(procedures_.begin(), procedures_.end(),
                    [row](const record::ProcedureRow& each) { return each.pass == row; });
@@ -391,6 +416,14 @@ void BoneReplay::check_end(std::int32_t row, ReplayVerdict& verdict) const {
         "pass {} ends with another bone: its checksum is {:016x}, and the record has {:016x}, "
         "though the same voxels were emptied",
         row, verdict.checksum, procedure->checksum);
+  }
+  const auto field = std::ranges::find_if(
+      field_, [row](const record::FieldRow& each) { return each.pass == row; });
+  if (verdict.difference.empty() && simulator.heat() != nullptr && field != field_.end() &&
+      field->hottest != simulator.heat()->hottest()) {
+    verdict.difference =
+        fmt::format("pass {} comes to {} degrees at the burr, and the record has {}", row,
+                    simulator.heat()->hottest(), field->hottest);
   }
 }
 

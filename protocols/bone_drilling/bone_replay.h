@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "core/bone/record/drilling_types.h"
+#include "core/bone/record/field_row.h"
 #include "core/bone/record/led_row.h"
+#include "core/bone/record/second_hand_row.h"
 #include "core/bone/record/tear_row.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/device_row.h"
@@ -79,7 +81,7 @@ class BoneReplay {
                 ReplayVerdict& verdict) const;
   void run_own(const record::PassRow& pass, Work& work) const;
   void run_led(const record::PassRow& pass, Work& work) const;
-  void check_end(std::int32_t row, ReplayVerdict& verdict) const;
+  void check_end(std::int32_t row, const bone::Simulator& simulator, ReplayVerdict& verdict) const;
   std::shared_ptr<BoneStage> make_stage(int trial, bool drawn) const;
 
   record::SessionReader reader_;
@@ -90,6 +92,7 @@ class BoneReplay {
   std::vector<record::SplitRow> splits_;
   std::vector<record::TearRow> tears_;
   std::vector<record::DeviceRow> second_;  // of the second device; none where there is one
+  std::vector<record::FieldRow> field_;
   std::vector<record::LedRow> led_;  // none where the bone was the session's own
   std::vector<std::shared_ptr<const bone::BoneModel>> bones_;
 };

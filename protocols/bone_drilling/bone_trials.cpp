@@ -247,9 +247,10 @@ void BoneTrials::empty_logs(SessionFile& file) {
 
 SharedWorld* BoneTrials::share_world(bool leads) {
   if (d_.drilling.second) {
-    throw InputError(fmt::format("{}: has a second hand, and a bone is shared over a link with one "
-                                 "hand on each side only; leave [second_hand] out",
-                                 d_.file_name));
+    throw InputError(
+        fmt::format("{}: has a second hand, and a bone is shared over a link with one "
+                    "hand on each side only; leave [second_hand] out",
+                    d_.file_name));
   }
   shared_ = std::make_unique<SharedBone>(leads);
   return shared_.get();

@@ -45,11 +45,10 @@ device::DeviceReading as_recorded(const device::DeviceReading& reading) noexcept
 DrillingInput::DrillingInput(const DrillingParameters& parameters)
     : parameters_(parameters),
       grip_(grip_of(parameters.handle, parameters.scale)),
-      second_grip_(
-          parameters.second ? grip_of(parameters.second->handle, parameters.scale) : grip_) {}
+      second_grip_(parameters.second ? grip_of(parameters.second->handle, parameters.scale)
+                                     : grip_) {}
 
-bone::SimulatorInput DrillingInput::of(const device::DeviceReading& recorded,
-                                       double dt,
+bone::SimulatorInput DrillingInput::of(const device::DeviceReading& recorded, double dt,
                                        const device::DeviceReading* second) const noexcept {
   bone::SimulatorInput input;
   input.tool = tool_of(recorded, grip_, parameters_.scale);

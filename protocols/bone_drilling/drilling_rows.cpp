@@ -52,9 +52,8 @@ void DrillingRows::log(std::uint64_t sequence, double speed) noexcept {
     logs_.removals.push(row);
   }
   for (const bone::Tear& tear : simulator_.tears()) {
-    logs_.tears.push(
-        {sequence, tear.label, tear.by_second ? record::kSecondHand : out.tool, tear.by_suction,
-         tear.force, tear.depth, tear.place_B});
+    logs_.tears.push({sequence, tear.label, tear.by_second ? record::kSecondHand : out.tool,
+                      tear.by_suction, tear.force, tear.depth, tear.place_B});
   }
   for (const bone::Opening& opening : simulator_.bleeding().begun()) {
     logs_.openings.push({sequence, opening.label, opening.place_B});

@@ -102,8 +102,8 @@ struct DustState {
   DustParameters parameters;
   Eigen::Matrix3d R_WD;  // from the lattice's frame D, whose z axis is up
   std::int32_t capacity;
-  std::int32_t least;                 // excess that still flows
-  std::array<std::int32_t, 9> limit;  // difference of two heights that stands, by step
+  std::int32_t least;                     // excess that still flows
+  std::array<std::int32_t, 9> limit;      // difference of two heights that stands, by step
   std::array<std::int32_t, 9> wet_limit;  // likewise, of slurry
   DustGrid grid;
   DustBones bones;

@@ -80,15 +80,16 @@ void DustState::wake_in(const DustWater& water) {
 void Dust::place(const DustTools& tools) {
   DustState& state = *state_;
   const double moved = (tools.water.centre - state.tools.water.centre).norm();
-  const bool runs_elsewhere = tools.water.radius > 0.0 &&
-                              (tools.water.radius != state.tools.water.radius ||
-                               moved > 0.5 * state.parameters.cell);
+  const bool runs_elsewhere =
+      tools.water.radius > 0.0 &&
+      (tools.water.radius != state.tools.water.radius || moved > 0.5 * state.parameters.cell);
   const Eigen::Vector3d before_water = state.tools.water.centre;
   state.tools = tools;
   if (runs_elsewhere) {
     state.wake_in(tools.water);
   } else if (tools.water.radius > 0.0) {
-    state.tools.water.centre = before_water;  // until it has moved far enough to wake what lies there
+    state.tools.water.centre =
+        before_water;  // until it has moved far enough to wake what lies there
   }
   std::vector<Ref> before;
   before.swap(state.tool_cells);

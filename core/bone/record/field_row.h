@@ -16,12 +16,12 @@ struct OpeningRow {
 
 /// What the field was like up to the end of a pass, since the bone was new, a row of /field.
 struct FieldRow {
-  std::int32_t pass{0};        // row of /trials
-  double bled{0.0};            // [m3]
-  double blood_sucked{0.0};    // [m3]
-  double blood_lying{0.0};     // [m3]
-  double hottest{0.0};         // at the burr; 0: nothing warms up [degree C]
-  double harmful_time{0.0};    // above the temperature that harms [s]
+  std::int32_t pass{0};      // row of /trials
+  double bled{0.0};          // [m3]
+  double blood_sucked{0.0};  // [m3]
+  double blood_lying{0.0};   // [m3]
+  double hottest{0.0};       // at the burr; 0: nothing warms up [degree C]
+  double harmful_time{0.0};  // above the temperature that harms [s]
 };
 
 template <>

@@ -56,9 +56,7 @@ class Bleeding {
   void tick(const Eigen::Isometry3d& pose_WB, double dt) noexcept;
 
   /// Those that began on this tick.
-  std::span<const Opening> begun() const noexcept {
-    return std::span(openings_).subspan(before_);
-  }
+  std::span<const Opening> begun() const noexcept { return std::span(openings_).subspan(before_); }
   std::size_t openings() const noexcept { return openings_.size(); }
   /// What flowed on this tick.
   std::span<const DustDeposit> deposits() const noexcept { return deposits_; }
@@ -68,8 +66,8 @@ class Bleeding {
   double spacing_;  // of voxels [m]
   bool any_;
   std::array<bool, 256> bleeds_{};
-  std::vector<Opening> openings_;     // room for kMost
-  std::vector<double> owed_;          // (openings) that has not been deposited [voxels]
+  std::vector<Opening> openings_;  // room for kMost
+  std::vector<double> owed_;       // (openings) that has not been deposited [voxels]
   std::vector<DustDeposit> deposits_;
   std::size_t before_{0};  // openings, at the beginning of the tick
   std::uint64_t ticks_{0};

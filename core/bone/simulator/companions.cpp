@@ -117,8 +117,7 @@ void SteppedCompanions::settle() { step_flows(unstepped_); }
 
 ThreadedCompanions::ThreadedCompanions(Simulator& simulator, const CompanionParameters& parameters,
                                        bool search)
-    : simulator_(simulator),
-      search_period_(parameters.search_period) {
+    : simulator_(simulator), search_period_(parameters.search_period) {
   const auto bones = [&simulator](std::vector<DustBone>& list) {
     list_bones(std::as_const(simulator).world(), list);
   };

@@ -33,9 +33,9 @@ struct DrillingView {
   std::int32_t stills_asked{0};  // how often the next still was asked for
   bool tone{false};              // the participant hears one of a nerve monitor
   TubeView tube;
-  double temperature{0.0};       // at the burr; 0: nothing warms up [degree C]
-  double progress{0.0};          // of the time limit, as a fraction
-  double time_limit{0.0};        // [s]
+  double temperature{0.0};  // at the burr; 0: nothing warms up [degree C]
+  double progress{0.0};     // of the time limit, as a fraction
+  double time_limit{0.0};   // [s]
 
   bool engaged() const noexcept { return shown; }
 };

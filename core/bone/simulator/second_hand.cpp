@@ -7,7 +7,7 @@
 namespace haptrial::bone {
 namespace {
 
-TubeParameters checked(const TubeParameters& p) {
+TubeParameters within_bounds(const TubeParameters& p) {
   if (!(p.radius >= 2e-4 && p.radius <= 0.01 && p.handle_length > 0.0 && p.rinse_reach > 0.0)) {
     throw std::invalid_argument("SecondHand: the tube's radius, length or reach is out of bounds");
   }
@@ -19,7 +19,7 @@ TubeParameters checked(const TubeParameters& p) {
 
 SecondHand::SecondHand(const TubeParameters& parameters, std::span<const Structure> structures,
                        double spacing, const std::array<bool, 256>& soft)
-    : p_(checked(parameters)),
+    : p_(within_bounds(parameters)),
       end_(for_bone(default_burr(BurrKind::kDiamond, 2.0 * p_.outer_radius()), spacing)),
       drill_(end_, structures, best_instruction_set(), soft) {}
 

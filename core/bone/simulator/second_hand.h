@@ -16,10 +16,10 @@ namespace haptrial::bone {
 /// A tube that sucks and rinses, held in the other hand. Its end is felt as a ball as wide as its
 /// wall.
 struct TubeParameters {
-  double radius{1.2e-3};        // of its opening, 0.2e-3 to 0.01 [m]
-  double handle_length{0.1};    // > 0 [m]
-  double rinse_reach{6e-3};     // of its water from its end > 0 [m]
-  FeelParameters feel{};        // default_feel() of its outer radius
+  double radius{1.2e-3};      // of its opening, 0.2e-3 to 0.01 [m]
+  double handle_length{0.1};  // > 0 [m]
+  double rinse_reach{6e-3};   // of its water from its end > 0 [m]
+  FeelParameters feel{};      // default_feel() of its outer radius
   double outer_radius() const noexcept { return 1.4 * radius; }  // [m]
 };
 

@@ -92,9 +92,7 @@ Simulator::Simulator(const BoneModel& model, const SimulatorParameters& paramete
     }
   }
   const std::size_t torn =
-      soft_.empty()
-          ? 0
-          : most_in_ball(largest_radius(tools_, parameters.tube), model.grid.spacing);
+      soft_.empty() ? 0 : most_in_ball(largest_radius(tools_, parameters.tube), model.grid.spacing);
   emptied_.reserve(most + 2 * torn + CutPlaneTool::kMostEmptied);
   deposits_.reserve(128);
   if (parameters.tube) {

@@ -11,8 +11,8 @@
 
 #include "core/base/tool_state.h"
 #include "core/bone/drill/drill.h"
-#include "core/bone/dust/dust.h"
 #include "core/bone/drill/heat.h"
+#include "core/bone/dust/dust.h"
 #include "core/bone/pieces/world.h"
 #include "core/bone/simulator/bleeding.h"
 #include "core/bone/simulator/second_hand.h"
@@ -123,9 +123,7 @@ class Simulator {
   /// Null where nothing warms up.
   const DrillHeat* heat() const noexcept { return heat_ ? &*heat_ : nullptr; }
   /// Null where there is one hand.
-  const TubeParameters* tube() const noexcept {
-    return second_ ? &second_->parameters() : nullptr;
-  }
+  const TubeParameters* tube() const noexcept { return second_ ? &second_->parameters() : nullptr; }
   std::span<const WorldEvent> separations() const noexcept { return world_.events(); }
   std::span<const DustDeposit> deposits() const noexcept { return deposits_; }
   const DustTools& dust_tools() const noexcept { return dust_tools_; }

@@ -701,6 +701,28 @@ soft_tissue.NAME.structure | | of the bone, by any of its names, that is soft
 soft_tissue.NAME.stiffness | | of its surface under a burr or a tube
 soft_tissue.NAME.tears_at | | force at which it tears
 soft_tissue.NAME.suction | | pull at which it comes off a tube that sucks
+second_hand.radius | | of the opening of a tube at a second device, which sucks and rinses
+second_hand.handle_length | | of the tube
+second_hand.rinse_reach | | of its water
+second_hand.feel.first_gain | | force for an immersed volume of the tube's end just after contact
+second_hand.feel.second_gain | | the same deeper
+second_hand.feel.threshold | | immersed volume at which the gain changes
+second_hand.feel.force_limit | | of the contact
+second_hand.feel.least_agreement | | of the pushes of samples, below which the force fades
+second_hand.handle | | direction from the tip along the handle of the second device
+second_hand.force_limit | | of the force that its device is given
+second_hand.suck | [0] | buttons of the second device that make it suck
+second_hand.rinse | [1] | buttons of the second device that let water run
+second_hand.beside | [0.003, 0.003, 0.0] | the burr's tip, where a virtual participant holds the tube
+heat.turns | | of the burr at full power; without [heat] nothing warms up
+heat.share | | of the work of its teeth that stays as heat
+heat.capacity | | of what is warmed
+heat.loss | | to what lies around
+heat.rinsed_loss | | likewise, under water
+heat.body | | temperature of what lies around
+heat.harmful | | temperature above which time is counted
+bleeding.structures | | of the bone, by any of their names, that bleed where they are opened
+bleeding.rate | | of each opening
 pieces.capacity | | greatest number of pieces
 pieces.smallest_piece | | in voxels; smaller parts turn to dust
 pieces.moves_per_tick | | voxels that are moved to a new piece per tick, at most

@@ -79,9 +79,7 @@ struct BoneDefinition : Definition {
 
   int devices() const override { return drilling.second ? 2 : 1; }
   /// Whether something bleeds or warms up.
-  bool has_field() const {
-    return simulator.heat || !simulator.bleeding.structures.empty();
-  }
+  bool has_field() const { return simulator.heat || !simulator.bleeding.structures.empty(); }
   /// Whether a participant hears the nerve monitor in a procedure. @param trial  from 1; practice:
   /// 0
   bool hears_nerves(int trial, int participant) const;

@@ -17,8 +17,8 @@ struct DrillingParameters {
   /// The device's workspace is this many times as large as the scene's: motions are scaled down by
   /// it, forces are not. > 0
   double scale{1.0};
-  double force_limit{10.0};  // of what the device is asked for > 0 [N]
-  double time_limit{900.0};  // of a drilling > 0 [s]
+  double force_limit{10.0};                    // of what the device is asked for > 0 [N]
+  double time_limit{900.0};                    // of a drilling > 0 [s]
   std::optional<SecondHandParameters> second;  // at a second device
 };
 

@@ -7,7 +7,9 @@
 
 #include "core/base/files/file_text.h"
 #include "core/bone/record/drilling_tables.h"
+#include "core/bone/record/field_row.h"
 #include "core/bone/record/led_row.h"
+#include "core/bone/record/second_hand_row.h"
 #include "core/bone/record/tear_row.h"
 #include "core/nerve/record/nerve_rows.h"
 #include "core/record/rows/common_tables.h"
@@ -61,6 +63,9 @@ TEST(SessionPageTest, TablesOfDrillings) {
   TableList tables = drilling_tables();
   tables.push_back(&table_of<TearRow>());
   tables.push_back(&table_of<LedRow>());
+  tables.push_back(&table_of<SecondHandRow>());
+  tables.push_back(&table_of<OpeningRow>());
+  tables.push_back(&table_of<FieldRow>());
   expect_described("drilling", tables);
 }
 TEST(SessionPageTest, TablesOfNerveMonitors) { expect_described("nerves", nerve_tables()); }

@@ -257,6 +257,78 @@ TEST(DustTest, AToolPushesDustOutOfItsWay) {
   EXPECT_GT(inside, 5.0);
 }
 
+/// The heights of columns [cells] in a basin that is walled and floored by bone.
+std::vector<double> heights_in_basin(Dust& dust) {
+  std::vector<double> heights;
+  for (int i = 10; i < 20; ++i) {
+    double height = 0.0;
+    for (int k = 5; k < 25; ++k) {
+      height += dust.amount_at(middle(i, 15, k)) / dust.capacity();
+    }
+    heights.push_back(height);
+  }
+  return heights;
+}
+
+/// Into a corner, until all is at rest.
+void pour(Dust& dust) {
+  for (int i = 0; i < 300; ++i) {
+    dust.deposit({middle(12, 12, 9), 0.0, 1.0});
+    dust.step(4.0 * dust.step_time());
+  }
+  settle(dust);
+}
+
+BoneVolume basin() {
+  return volume_of(
+      30, [](int i, int j, int k) { return k < 5 || i < 10 || i >= 20 || j < 10 || j >= 20; });
+}
+
+double unevenness(const std::vector<double>& heights) {
+  const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
+  return *high - *low;
+}
+
+TEST(DustTest, ALiquidStandsLevelInABasinAndDryDustDoesNot) {
+  const BoneVolume bone = basin();
+  const DustBone bones[] = {{&bone, Eigen::Isometry3d::Identity()}};
+  DustParameters p = aligned();
+  p.bulking = 1.0;
+  for (const double slope : {kLeastSlope, 0.6}) {
+    p.slope = slope;
+    Dust dust(p);
+    dust.follow(bones);
+    pour(dust);
+    // Neighbours may differ by the slope, and by what is too little to flow.
+    const double most = 9.0 * (kLeastSlope + 1.0 / 32.0);
+    EXPECT_EQ(unevenness(heights_in_basin(dust)) <= most, slope == kLeastSlope);
+    expect_balanced(dust);
+  }
+}
+
+TEST(DustTest, WaterLetsAPileFlowWhereItRuns) {
+  const BoneVolume bone = basin();
+  const DustBone bones[] = {{&bone, Eigen::Isometry3d::Identity()}};
+  DustParameters p = aligned();
+  p.bulking = 1.0;
+  p.slope = 0.6;
+  Dust dust(p);
+  dust.follow(bones);
+  pour(dust);
+  const double dry = unevenness(heights_in_basin(dust));
+  DustTools tools;
+  tools.water = {middle(25, 25, 9), 2.0 * kEdge};  // elsewhere
+  dust.place(tools);
+  settle(dust);
+  EXPECT_EQ(unevenness(heights_in_basin(dust)), dry);
+  tools.water = {middle(15, 15, 7), 20.0 * kEdge};
+  dust.place(tools);
+  settle(dust);
+  EXPECT_LE(unevenness(heights_in_basin(dust)), 9.0 * (kLeastSlope + 1.0 / 32.0));
+  EXPECT_GT(dry, 1.5);
+  expect_balanced(dust);
+}
+
 TEST(DustTest, SuctionTakesAtItsRateAndNotThroughBone) {
   // Two rooms side by side, both full; the nozzle is in one of them.
   const BoneVolume bone = volume_of(40, [](int i, int j, int k) {

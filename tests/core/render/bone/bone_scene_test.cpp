@@ -280,6 +280,27 @@ TEST(BoneSceneTest, PiecesToolsAndDustAreWhereTheirPosesSay) {
   EXPECT_EQ(count_lit(stage.draw(frame)), 0);
 }
 
+TEST(BoneSceneTest, BloodHidesWhatItCovers) {
+  const BoneModel model = bone::ball_model(30, 12.0);
+  const BoneVolume volume(model);
+  Stage stage(model);
+  BoneFrame frame = frame_of(model, volume);
+  const auto redness = [&](int x) {
+    const auto colour = pixel(stage.draw(frame), x, kHeight / 2);
+    return colour.x() / std::max(1.0, colour.y());
+  };
+  const double bare = redness(kWidth / 2);
+  const double beside = redness(kWidth / 2 + 12);
+  for (int i = 0; i < 60; ++i) {  // a pool before the bone
+    const Eigen::Vector3d at(0.0004 * (i % 8 - 4), 0.0004 * (i / 8 - 4), 0.016);
+    frame.blood.push_back({(frame.camera.target + at).cast<float>(), 0.0009F, 1.0F});
+  }
+  EXPECT_GT(redness(kWidth / 2), 4.0 * bare);
+  EXPECT_NEAR(redness(kWidth / 2 + 12), beside, 0.05 * beside);
+  frame.blood.clear();
+  EXPECT_NEAR(redness(kWidth / 2), bare, 1e-9) << "sucked away";
+}
+
 bool is_same(const Image& a, const Image& b) { return a.rgb == b.rgb; }
 
 /// A ball under a burr, with all that a style has to draw.
