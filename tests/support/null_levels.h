@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdlib>
 #include <string>
 #include <thread>
 #include <vector>
@@ -85,6 +86,11 @@ inline Band binomial_band(std::size_t replications, double probability) {
     --band.high;
   }
   return band;
+}
+
+/// How many null studies a test counts: `usually`, or 2,000 with HAPTRIAL_EVERY_STUDY set.
+inline std::size_t null_studies(std::size_t usually) {
+  return std::getenv("HAPTRIAL_EVERY_STUDY") != nullptr ? 2000 : usually;
 }
 
 }  // namespace haptrial::test

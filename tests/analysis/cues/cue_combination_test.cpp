@@ -100,7 +100,7 @@ People observers(RandomStream& random, std::size_t count, bool first_only) {
 }
 
 TEST(CueCombinationTest, OptimalObserversDifferInFivePercentOfStudies) {
-  constexpr std::size_t kStudies = 1000;
+  constexpr std::size_t kStudies = 2000;
   std::size_t weight = 0, sd = 0;
   for (std::size_t study = 0; study < kStudies; ++study) {
     RandomStream random(study, "optimal observers");

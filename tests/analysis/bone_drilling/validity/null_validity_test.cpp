@@ -14,8 +14,8 @@ namespace {
 using test::NullLabels;
 using test::NullLevel;
 
-// 100 studies: a test with a level of 0.05 leaves the band once in ten million times.
-constexpr std::size_t kStudies = 100;
+// A test with a level of 0.05 leaves the band once in ten million times.
+const std::size_t kStudies = test::null_studies(100);
 
 std::size_t most() { return test::binomial_band(kStudies, 1.0 - 1e-7).high; }
 
@@ -52,6 +52,8 @@ test::RatedStudy many_procedures() {
 void expect_level(const std::vector<NullLevel>& levels, std::size_t leading) {
   std::size_t leads = 0;
   for (const NullLevel& level : levels) {
+    fmt::print("{}: {} of {}{}\n", level.test, level.found, level.replications,
+               level.leads ? ", leads" : "");
     if (level.leads) {
       ++leads;
       EXPECT_EQ(level.replications, kStudies) << level.test;

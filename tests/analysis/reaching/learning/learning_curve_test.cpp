@@ -77,7 +77,7 @@ TEST(LearningCurveTest, AContrastIsThePairedTest) {
 }
 
 TEST(LearningCurveTest, StudiesWithoutLearningFindItInFivePercent) {
-  constexpr std::size_t kStudies = 1000;
+  constexpr std::size_t kStudies = 2000;
   constexpr std::size_t kPeople = 16;
   constexpr std::size_t kTrials = 64;
   std::size_t two_sided = 0, greater = 0, against_zero = 0;
