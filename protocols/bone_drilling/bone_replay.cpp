@@ -346,6 +346,12 @@ void BoneReplay::run_own(const record::PassRow& pass, Work& work) const {
     const std::vector<record::ToolRow> tool = reader_.rows<record::ToolRow>(at, count);
     const auto hand =
         two ? reader_.rows<record::SecondHandRow>(at, count) : std::vector<record::SecondHandRow>{};
+    if (two && hand.size() != samples.size()) {
+      throw InputError(
+          fmt::format("{}: lacks rows of /second_hand; the drilling of two hands cannot "
+                      "be simulated again without them",
+                      reader_.path().string()));
+    }
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const std::span<const record::DeviceRow> other = devices.take(samples[i].sequence);
       if (!tool[i].active) {

@@ -14,7 +14,10 @@ const Table<SecondHandRow>& table_of<SecondHandRow>() {
        "the tube in the other hand on each tick of the servo loop",
        4096,
        RowsOf::kEachTick,
-       {"sequence"}},
+       {"sequence"},
+       // Of its own: made anew beside other tables it would have no row for their ticks.
+       "second_hand",
+       5},
       {T::column("sequence", &R::sequence, "1", "tick number, as in /samples"),
        T::rounded(
            "orientation_w", [](R& r) -> double& { return r.orientation.w(); }, "1",

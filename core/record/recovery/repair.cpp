@@ -9,8 +9,8 @@
 
 #include "core/base/error.h"
 #include "core/record/hdf5/hdf5_layer.h"
-#include "core/record/read/tick_rows.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/read/tick_rows.h"
 #include "core/record/recovery/rewrite.h"
 #include "core/record/recovery/tick_ranges.h"
 #include "core/record/rows/common_tables.h"
@@ -62,8 +62,11 @@ class Plan {
         ticks_.add(sample.sequence);
       }
     }
+    // Of what the session had: a table that it may have had and has no rows of says nothing.
+    const TableList had = rows_.tables();
     for (const RecoveredTable& table : rows_.own) {
-      if (each_tick_ && table.table().of() == RowsOf::kEachTick) {
+      const bool counts = std::find(had.begin(), had.end(), &table.table()) != had.end();
+      if (each_tick_ && counts && table.table().of() == RowsOf::kEachTick) {
         ticks_ = ticks_.shared_with(ticks_of(table));
       }
     }
