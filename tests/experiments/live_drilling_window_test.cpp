@@ -126,6 +126,9 @@ Held while_held(const std::vector<record::ToolRow>& rows, Function function) {
   return held;
 }
 
+// The virtual hand turns the view by a button for 0.4 s now and then: nothing is carried meanwhile.
+constexpr double kLongerThanALook = 0.8;  // [s]
+
 TEST_F(LiveDrillingWindowTest, EveryKeyDoesItsPartAndTheReplayKnows) {
   write_study("G", false);
   test::LiveCommand session(run(""));
@@ -137,7 +140,7 @@ TEST_F(LiveDrillingWindowTest, EveryKeyDoesItsPartAndTheReplayKnows) {
   hold('b');
   EXPECT_TRUE(test::eventually([&] { return !shows_still(); })) << "after the last none";
   for (const char key : {'m', 'v', 'i', 'o', 'g', 't', 'a', 'a', 'a', 't', 'a', 'd', ' '}) {
-    hold(key);
+    hold(key, key == 'g' ? kLongerThanALook : 0.3);
   }
   tap('f');
   const test::CommandResult ended = session.wait();

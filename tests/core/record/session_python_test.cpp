@@ -5,7 +5,9 @@
 #include <fstream>
 
 #include "core/bone/record/drilling_tables.h"
+#include "core/bone/record/field_row.h"
 #include "core/bone/record/led_row.h"
+#include "core/bone/record/second_hand_row.h"
 #include "core/bone/record/tear_row.h"
 #include "core/nerve/record/nerve_rows.h"
 #include "core/record/rows/common_tables.h"
@@ -60,6 +62,9 @@ void expect_that_python_reads(bool drills) {
   TableList own = with_tables(drilling_tables(), nerve_tables());
   own.push_back(&table_of<TearRow>());
   own.push_back(&table_of<LedRow>());
+  own.push_back(&table_of<SecondHandRow>());
+  own.push_back(&table_of<OpeningRow>());
+  own.push_back(&table_of<FieldRow>());
   SessionWriter writer =
       drills ? SessionWriter(folder / "session.h5", test::example_info(), own, rows_of(bones))
              : SessionWriter(folder / "session.h5", test::example_info());
