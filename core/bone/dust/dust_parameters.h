@@ -8,7 +8,7 @@ class Table;
 
 namespace haptrial::bone {
 
-/// Of a liquid, or of dust in water.
+/// The slope of a liquid, and of dust in water.
 inline constexpr double kLeastSlope = 0.05;
 
 struct DustParameters {

@@ -402,7 +402,7 @@ void Simulator::warm_up(const SimulatorInput& input) noexcept {
               turns ? input.power : 0.0, rinsed, input.dt);
 }
 
-/// Of vessels that lost a voxel on this tick, or were torn.
+/// Vessels bleed that lost a voxel on this tick, or were torn.
 void Simulator::bleed(double dt) noexcept {
   if (bleeding_.empty()) {
     return;
