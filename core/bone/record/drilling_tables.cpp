@@ -1,5 +1,6 @@
 #include "core/bone/record/drilling_tables.h"
 
+#include "core/bone/record/turn_columns.h"
 #include "core/record/read/session_reader.h"
 
 namespace haptrial::record {
@@ -21,7 +22,6 @@ template <>
 const Table<ToolRow>& table_of<ToolRow>() {
   using R = ToolRow;
   using T = Table<R>;
-  constexpr double kTurn = kOrientationResolution;
   static const T table(
       {"tool",
        "the tool on each tick of the servo loop",
@@ -31,18 +31,7 @@ const Table<ToolRow>& table_of<ToolRow>() {
        kGroup,
        kSince},
       {T::column("sequence", &R::sequence, "1", "tick number, as in /samples"),
-       T::rounded(
-           "orientation_w", [](R& r) -> double& { return r.orientation.w(); }, "1",
-           "unit quaternion from the handle's frame to the world", kTurn),
-       T::rounded(
-           "orientation_x", [](R& r) -> double& { return r.orientation.x(); }, "1", "likewise",
-           kTurn),
-       T::rounded(
-           "orientation_y", [](R& r) -> double& { return r.orientation.y(); }, "1", "likewise",
-           kTurn),
-       T::rounded(
-           "orientation_z", [](R& r) -> double& { return r.orientation.z(); }, "1", "likewise",
-           kTurn),
+       turn_columns(&R::orientation, "unit quaternion from the handle's frame to the world"),
        T::column("buttons", &R::buttons, "1", "of the device; bit i: button i is pressed"),
        T::column("keys", &R::keys, "1", "of the window; bit i: function i is held"),
        T::rounded("pedal", &R::pedal, "1", "how far an analog pedal is down", kPedalResolution),

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "core/bone/record/turn_columns.h"
+
 namespace haptrial::record {
 
 template <>
@@ -24,18 +26,7 @@ const Table<LedRow>& table_of<LedRow>() {
        T::rounded_elements(
            Names3{"vx", "vy", "vz"}, [](R& r) -> Eigen::Vector3d& { return r.tool.velocity; },
            "m/s", "of the tool there, in the world frame", kVelocityResolution),
-       T::rounded(
-           "orientation_w", [](R& r) -> double& { return r.orientation.w(); }, "1",
-           "unit quaternion from the handle's frame there to the world", kOrientationResolution),
-       T::rounded(
-           "orientation_x", [](R& r) -> double& { return r.orientation.x(); }, "1", "likewise",
-           kOrientationResolution),
-       T::rounded(
-           "orientation_y", [](R& r) -> double& { return r.orientation.y(); }, "1", "likewise",
-           kOrientationResolution),
-       T::rounded(
-           "orientation_z", [](R& r) -> double& { return r.orientation.z(); }, "1", "likewise",
-           kOrientationResolution),
+       turn_columns(&R::orientation, "unit quaternion from the handle's frame there to the world"),
        T::column("buttons", &R::buttons, "1", "of the device there"),
        T::column("keys", &R::keys, "1", "of the window there"),
        T::rounded("pedal", &R::pedal, "1", "there", kPedalResolution)});

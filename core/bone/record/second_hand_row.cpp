@@ -2,13 +2,14 @@
 
 #include <array>
 
+#include "core/bone/record/turn_columns.h"
+
 namespace haptrial::record {
 
 template <>
 const Table<SecondHandRow>& table_of<SecondHandRow>() {
   using R = SecondHandRow;
   using T = Table<R>;
-  constexpr double kTurn = kOrientationResolution;
   static const T table(
       {"second_hand",
        "the tube in the other hand on each tick of the servo loop",
@@ -19,18 +20,7 @@ const Table<SecondHandRow>& table_of<SecondHandRow>() {
        "second_hand",
        5},
       {T::column("sequence", &R::sequence, "1", "tick number, as in /samples"),
-       T::rounded(
-           "orientation_w", [](R& r) -> double& { return r.orientation.w(); }, "1",
-           "unit quaternion from the handle's frame to the world", kTurn),
-       T::rounded(
-           "orientation_x", [](R& r) -> double& { return r.orientation.x(); }, "1", "likewise",
-           kTurn),
-       T::rounded(
-           "orientation_y", [](R& r) -> double& { return r.orientation.y(); }, "1", "likewise",
-           kTurn),
-       T::rounded(
-           "orientation_z", [](R& r) -> double& { return r.orientation.z(); }, "1", "likewise",
-           kTurn),
+       turn_columns(&R::orientation, "unit quaternion from the handle's frame to the world"),
        T::column("sucks", &R::sucks, "1", "1 where it sucks"),
        T::column("rinses", &R::rinses, "1", "1 where water runs"),
        T::column("immersed", &R::immersed, "1", "samples of its end in bone"),
