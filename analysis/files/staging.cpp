@@ -39,6 +39,10 @@ void Staging::write(const std::string& name, const std::string& text) const {
   write_text(path_ / name, text, final_ / name);
 }
 
+void Staging::append(const std::string& name, const std::string& text) const {
+  append_text(path_ / name, text, final_ / name);
+}
+
 void Staging::publish() const {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(path_)) {

@@ -18,6 +18,8 @@ class Staging {
 
   /// @throws RunError
   void write(const std::string& name, const std::string& text) const;
+  /// Adds to a file that is as long as a study. @throws RunError
+  void append(const std::string& name, const std::string& text) const;
   /// Moves everything to its place, each file at once. @throws RunError
   void publish() const;
 

@@ -11,20 +11,6 @@
 namespace haptrial::analysis::trials {
 namespace {
 
-const char* word_of(record::StageEnding ending) {
-  switch (ending) {
-    case record::StageEnding::kReached:
-      return "reached";
-    case record::StageEnding::kLate:
-      return "late";
-    case record::StageEnding::kTooLittle:
-      return "too little";
-    case record::StageEnding::kBrokenOff:
-      break;
-  }
-  return "broken off";
-}
-
 /// Puts rows that name their pass with the pass; rows of no pass are left out.
 class SessionTrials {
  public:
@@ -60,7 +46,16 @@ class SessionTrials {
     }
   }
 
-  std::vector<StudyTrial> take() { return std::move(trials_); }
+  std::vector<StudyTrial> take() {
+    for (StudyTrial& trial : trials_) {  // a study of thousands is kept whole
+      trial.levels.shrink_to_fit();
+      trial.answers.shrink_to_fit();
+      trial.variables.shrink_to_fit();
+      trial.stages.shrink_to_fit();
+      trial.touched.shrink_to_fit();
+    }
+    return std::move(trials_);
+  }
 
  private:
   StudyTrial* of(std::int32_t pass) {
@@ -108,16 +103,10 @@ class SessionTrials {
 
   void add(const record::StageRow& row) {
     if (StudyTrial* trial = of(row.pass)) {
-      const double rate = reader_.info().rate;
-      StageTime stage{row.stage,        row.interval,   0.0, kNotKnown, word_of(row.ending),
-                      row.first_sample, row.last_sample};
-      stage.duration = static_cast<double>(row.last_sample - row.first_sample + 1) / rate;
-      if (row.onset_sample >= 0) {
-        stage.onset =
-            static_cast<double>(row.onset_sample - static_cast<std::int64_t>(row.first_sample)) /
-            rate;
-      }
-      trial->stages.push_back(std::move(stage));
+      const auto ticks = static_cast<double>(row.last_sample - row.first_sample + 1);
+      trial->stages.push_back({row.stage, static_cast<std::int16_t>(row.interval),
+                               row.ending == record::StageEnding::kReached,
+                               ticks / reader_.info().rate, row.first_sample, row.last_sample});
     }
   }
 
@@ -164,12 +153,18 @@ TrialsData read_trials(const std::vector<std::filesystem::path>& files, const Gr
       markers[first].add(rows);
     };
   });
+  std::size_t count = 0;
+  for (const std::vector<StudyTrial>& trials : by_file) {
+    count += trials.size();
+  }
+  data.trials.reserve(count);
   for (std::size_t session = 0; session < by_file.size(); ++session) {
     data.markers.add(markers[session]);
     for (StudyTrial& trial : by_file[session]) {
       trial.session = session;
       data.trials.push_back(std::move(trial));
     }
+    by_file[session] = {};
   }
   return data;
 }

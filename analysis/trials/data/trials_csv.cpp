@@ -45,19 +45,19 @@ Columns columns_of(const TrialsData& data) {
   for (const StudyTrial& trial : data.trials) {
     most = std::max(most, trial.levels.size());
     for (const GivenLevel& level : trial.levels) {
-      note(columns.dimensions, level.variable);
+      note(columns.dimensions, level.variable.text());
     }
     for (const GivenAnswer& answer : trial.answers) {
-      note(columns.questions, answer.question);
+      note(columns.questions, answer.question.text());
       if (!answer.out_of_time.empty()) {
-        note(columns.limited, answer.question);
+        note(columns.limited, answer.question.text());
       }
     }
     for (const GivenVariable& variable : trial.variables) {
-      note(columns.variables, std::pair(variable.name, variable.interval));
+      note(columns.variables, std::pair(variable.name.text(), variable.interval));
     }
     for (const StageTime& stage : trial.stages) {
-      note(columns.stages, std::pair(stage.stage, stage.interval));
+      note(columns.stages, std::pair(stage.stage.text(), int{stage.interval}));
     }
   }
   if (most < 2) {
@@ -146,43 +146,53 @@ void add_answers(RowText& row, const StudyTrial& trial, const Columns& columns) 
   }
 }
 
+void add_trial(std::string& text, const TrialsData& data, const StudyTrial& trial,
+               const Columns& columns) {
+  RowText row(text, exchange::Delimited::kCsv);
+  const StudySession& session = data.session_of(trial);
+  row.add(session.participant).add(session.group).add(session.session).add(session.file);
+  row.add(session.simulated ? 1 : 0).add(session.pilot ? 1 : 0);
+  row.add(trial.trial).add(trial.attempt).add(trial.block).add(trial.condition).add(trial.probe);
+  row.add(trial.practice ? 1 : 0);
+  row.add(!trial.completed ? "aborted" : trial.again ? "out of time" : "completed");
+  row.add(trial.counts() ? 1 : 0).add(trial.start).add(trial.saturated);
+  add_levels(row, trial, columns);
+  add_answers(row, trial, columns);
+  for (const auto& [name, interval] : columns.variables) {
+    const GivenVariable* variable = variable_of(trial, name, interval);
+    if (variable == nullptr) {
+      row.add_missing();
+    } else if (variable->word.empty()) {
+      row.add(variable->value);
+    } else {
+      row.add(variable->word);
+    }
+  }
+  for (const auto& [name, interval] : columns.stages) {
+    // The last one counts: an interval that was repeated has stages of the same name before it.
+    const auto at = std::find_if(trial.stages.rbegin(), trial.stages.rend(), [&](const auto& s) {
+      return s.stage == name && s.interval == interval;
+    });
+    row.add(at != trial.stages.rend() ? at->duration : kNotKnown);
+  }
+  row.end();
+}
+
 }  // namespace
 
-std::string trials_csv(const TrialsData& data) {
+void trials_csv(const TrialsData& data, const std::function<void(const std::string&)>& take) {
+  constexpr std::size_t kPiece = std::size_t{1} << 20;  // [bytes]
   const Columns columns = columns_of(data);
   std::string text;
   add_heading(text, columns);
-  RowText row(text, exchange::Delimited::kCsv);
   for (const StudyTrial& trial : data.trials) {
-    const StudySession& session = data.session_of(trial);
-    row.add(session.participant).add(session.group).add(session.session).add(session.file);
-    row.add(session.simulated ? 1 : 0).add(session.pilot ? 1 : 0);
-    row.add(trial.trial).add(trial.attempt).add(trial.block).add(trial.condition).add(trial.probe);
-    row.add(trial.practice ? 1 : 0);
-    row.add(!trial.completed ? "aborted" : trial.again ? "out of time" : "completed");
-    row.add(trial.counts() ? 1 : 0).add(trial.start).add(trial.saturated);
-    add_levels(row, trial, columns);
-    add_answers(row, trial, columns);
-    for (const auto& [name, interval] : columns.variables) {
-      const GivenVariable* variable = variable_of(trial, name, interval);
-      if (variable == nullptr) {
-        row.add_missing();
-      } else if (variable->word.empty()) {
-        row.add(variable->value);
-      } else {
-        row.add(variable->word);
-      }
+    add_trial(text, data, trial, columns);
+    if (text.size() >= kPiece) {
+      take(text);
+      text.clear();
     }
-    for (const auto& [name, interval] : columns.stages) {
-      // The last one counts: an interval that was repeated has stages of the same name before it.
-      const auto at = std::find_if(trial.stages.rbegin(), trial.stages.rend(), [&](const auto& s) {
-        return s.stage == name && s.interval == interval;
-      });
-      row.add(at != trial.stages.rend() ? at->duration : kNotKnown);
-    }
-    row.end();
   }
-  return text;
+  take(text);
 }
 
 }  // namespace haptrial::analysis::trials

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "analysis/trials/data/trials_data.h"
@@ -11,6 +12,7 @@ namespace haptrial::analysis::trials {
 /// outcome), of each question its value, text (.text), correctness (.correct) and reaction time
 /// (.rt), each variable (NAME, or NAME.INTERVAL where intervals differ), and the duration of each
 /// stage (STAGE.INTERVAL.s). Times in seconds; what is not known is empty.
-std::string trials_csv(const TrialsData& data);
+/// @param take  given the text piece by piece: that of thousands of sessions is larger than they
+void trials_csv(const TrialsData& data, const std::function<void(const std::string&)>& take);
 
 }  // namespace haptrial::analysis::trials

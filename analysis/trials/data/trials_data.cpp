@@ -26,7 +26,7 @@ const GivenVariable* variable_of(const StudyTrial& trial, const std::string& nam
 }
 
 std::string word_of(const GivenVariable& variable) {
-  return variable.word.empty() ? fmt::format("{}", variable.value) : variable.word;
+  return variable.word.empty() ? fmt::format("{}", variable.value) : variable.word.text();
 }
 
 std::string factor_level(const TrialsData& data, const StudyTrial& trial,
@@ -41,7 +41,7 @@ std::string factor_level(const TrialsData& data, const StudyTrial& trial,
     return trial.probe;
   }
   if (factor == "track") {
-    return trial.levels.empty() ? std::string() : trial.levels.front().track;
+    return trial.levels.empty() ? std::string() : trial.levels.front().track.text();
   }
   const GivenVariable* variable = variable_of(trial, factor);
   if (variable == nullptr && factor == "block") {

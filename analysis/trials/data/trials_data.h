@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/trials/data/word.h"
 #include "core/markers/marker_times.h"
 #include "core/record/trials/object_file_row.h"
 
@@ -26,26 +27,26 @@ struct StudySession {
 
 /// An answer to one question of a trial.
 struct GivenAnswer {
-  std::string question;
+  Word question;
   double value{kNotKnown};          // NaN: the answer is no number
-  std::string text;                 // the answer as a word
+  Word text;                        // the answer as a word
   int correct{-1};                  // 1 right, 0 wrong, -1 not known
   double reaction_time{kNotKnown};  // [s]; NaN: not measured
-  std::string out_of_time{};        // "too fast" or "too slow"; empty: neither
+  Word out_of_time{};               // "too fast" or "too slow"; empty: neither
 };
 
 /// What a variable of the definition was worth in a trial or in one of its intervals.
 struct GivenVariable {
-  std::string name;
+  Word name;
   int interval{0};          // from 1; 0: the whole trial
   double value{kNotKnown};  // in the definition's unit; NaN: it is a word
-  std::string word;
+  Word word;
 };
 
 /// What a procedure asked for, and what was presented.
 struct GivenLevel {
-  std::string track;
-  std::string variable;
+  Word track;
+  Word variable;
   double asked{kNotKnown};  // [unit of the variable]
   double applied{kNotKnown};
   double outcome{kNotKnown};  // what the procedure learnt; NaN: nothing
@@ -53,17 +54,16 @@ struct GivenLevel {
 
 /// How long a stage of an interval took.
 struct StageTime {
-  std::string stage;
-  int interval{1};
-  double duration{0.0};     // [s]
-  double onset{kNotKnown};  // of the movement, from the first tick of the stage [s]
-  std::string ending;       // as /stages has it
+  Word stage;
+  std::int16_t interval{1};
+  bool reached{true};                             // else it ended by its time or was broken off
+  double duration{0.0};                           // [s]
   std::uint64_t first_sample{0}, last_sample{0};  // both inclusive, in /samples of the session
 };
 
 /// How a tool touched a body that gives way, in ticks.
 struct TouchedBody {
-  std::string object;
+  Word object;
   std::uint64_t contact{0};
   std::uint64_t inverted{0};  // a tetrahedron would have been inside out: the force was cut
   std::uint64_t crowded{0};   // more places of contact than are computed: felt softer
@@ -75,8 +75,8 @@ struct StudyTrial {
   int trial{0};            // as in /trials
   int attempt{1};
   int block{0};
-  std::string condition;
-  std::string probe;  // empty: none
+  Word condition;
+  Word probe;  // empty: none
   bool practice{false};
   bool completed{true};
   bool again{false};               // an answer was too fast or too slow, and the trial came again

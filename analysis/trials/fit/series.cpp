@@ -109,6 +109,9 @@ std::vector<AnsweredSeries> series_of(const TrialsData& data, const TrialsPlan& 
   for (auto& [participant, own] : people) {
     std::sort(own.begin(), own.end(),
               [](const AnsweredSeries& a, const AnsweredSeries& b) { return a.levels < b.levels; });
+    for (AnsweredSeries& series : own) {
+      series.trials.shrink_to_fit();
+    }
     std::move(own.begin(), own.end(), std::back_inserter(all));
   }
   return all;

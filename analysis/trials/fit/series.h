@@ -14,10 +14,10 @@ struct LevelTrial {
   std::size_t trial{0};  // in TrialsData::trials
   double level{0.0};     // presented [unit of the variable]
   double asked{0.0};
-  int outcome{0};     // 1 or 0
-  int choice{0};      // of two answers +1 or -1; 0: not known
-  int side{0};        // the choice whose outcome would be 1, likewise
-  std::string track;  // empty: none
+  int outcome{0};  // 1 or 0
+  int choice{0};   // of two answers +1 or -1; 0: not known
+  int side{0};     // the choice whose outcome would be 1, likewise
+  Word track;      // empty: none
 };
 
 /// The trials of one participant in one combination of factors, in their order.

@@ -130,10 +130,14 @@ std::vector<TrackEstimate> track_estimates(const TrialsData& data,
       continue;
     }
     const GivenLevel& first = trial.levels.front();
-    auto at = std::find_if(tracks.begin(), tracks.end(), [&](const TrackEstimate& t) {
+    // Backwards: trials of a session lie together.
+    const auto known = std::find_if(tracks.rbegin(), tracks.rend(), [&](const TrackEstimate& t) {
       return t.session == trial.session && t.track == first.track;
     });
-    if (at == tracks.end()) {
+    const bool fresh = known == tracks.rend();
+    const std::size_t at =
+        fresh ? tracks.size() : static_cast<std::size_t>(tracks.rend() - known) - 1;
+    if (fresh) {
       tracks.push_back({trial.session,
                         data.session_of(trial).participant,
                         first.track,
@@ -145,16 +149,16 @@ std::vector<TrackEstimate> track_estimates(const TrialsData& data,
                         "",
                         ""});
       levels.emplace_back();
-      at = tracks.end() - 1;
     }
-    at->steps.push_back({i, first.applied, first.outcome, false});
+    tracks[at].steps.push_back({i, first.applied, first.outcome, false});
     psychometric::Level level;
     for (const GivenLevel& each : trial.levels) {
       level.push_back(each.applied);
     }
-    levels[static_cast<std::size_t>(at - tracks.begin())].push_back(std::move(level));
+    levels[at].push_back(std::move(level));
   }
   for (std::size_t i = 0; i < tracks.size(); ++i) {
+    tracks[i].steps.shrink_to_fit();
     mark_reversals(tracks[i].steps);
     const auto procedure = procedure_of ? procedure_of(tracks[i].track) : nullptr;
     if (procedure) {

@@ -90,7 +90,7 @@ void measure_session(const std::filesystem::path& file, const TrialsData& data,
   for (StudyReach* reach : reaches) {
     const StudyTrial& trial = data.trials[reach->trial];
     if (const StageTime* time = stage_of(trial, stage)) {
-      reach->arrived = time->ending == "reached";
+      reach->arrived = time->reached;
       measure(samples_of(reader, trial, *time), reader.info().rate, *reach);
     }
   }

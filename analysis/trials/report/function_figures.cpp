@@ -116,7 +116,7 @@ Figure function_figure(const TrialsResult& result, const std::vector<const Funct
 
 std::vector<Figure> function_figures(const TrialsResult& result) {
   std::vector<Figure> figures;
-  for (const ParticipantTrials& person : result.participants) {
+  for (const ParticipantTrials& person : drawn_participants(result)) {
     std::vector<const FunctionFit*> fits;
     for (const FunctionFit& fit : result.fits) {
       if (fit.participant == person.participant && !fit.blocks.empty()) {

@@ -126,9 +126,14 @@ std::string level_label(const TrialsResult& result) {
   return capitalized(name.empty() ? "level" : name) + (unit.empty() ? "" : " (" + unit + ")");
 }
 
+std::span<const ParticipantTrials> drawn_participants(const TrialsResult& result) {
+  const std::span<const ParticipantTrials> all(result.participants);
+  return all.first(std::min(all.size(), kMostDrawn));
+}
+
 std::vector<Figure> track_figures(const TrialsResult& result) {
   std::vector<Figure> figures;
-  for (const ParticipantTrials& person : result.participants) {
+  for (const ParticipantTrials& person : drawn_participants(result)) {
     Figure figure = new_figure(result, "tracks-" + file_word(person.participant),
                                "Tracks of " + person.participant, "Trial", level_label(result));
     Series reversals{"reversal", Mark::kPoints, kReversal};
@@ -245,15 +250,19 @@ std::vector<Figure> reaction_figures(const TrialsResult& result) {
   Figure figure =
       new_figure(result, "reaction-times", "Reaction times", "Participant", "Reaction time (s)");
   Series series{"median, lower and upper quartile", Mark::kBars, look_of(0)};
-  double place = 0.0;
-  for (const auto& [participant, times] : times_of(result)) {
-    figure.x_names.emplace_back(++place, participant);
-    add_times(series, place, times);
+  const auto times = times_of(result);
+  const std::size_t named_every = 1 + times.size() / 16;  // names beside each other have room
+  std::size_t place = 0;
+  for (const auto& [participant, own] : times) {
+    if (place++ % named_every == 0) {
+      figure.x_names.emplace_back(static_cast<double>(place), participant);
+    }
+    add_times(series, static_cast<double>(place), own);
   }
   if (series.x.empty()) {
     return {};
   }
-  figure.x_range = Range{0.5, place + 0.5};
+  figure.x_range = Range{0.5, static_cast<double>(place) + 0.5};
   figure.y_range = Range{0.0, 1.1 * *std::max_element(series.high.begin(), series.high.end())};
   figure.series.push_back(std::move(series));
   figure.caption = "Medians and quartiles of the reaction times of each participant.";

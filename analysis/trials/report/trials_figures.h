@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,10 @@ Figure new_figure(const TrialsResult& result, std::string name, std::string titl
                   std::string x_label, std::string y_label);
 /// "level (N/m)".
 std::string level_label(const TrialsResult& result);
+
+/// Those of the first participants have figures of their own; a study of more is looked at whole.
+inline constexpr std::size_t kMostDrawn = 500;
+std::span<const ParticipantTrials> drawn_participants(const TrialsResult& result);
 
 /// Levels of each participant's tracks over the trials, with reversals: "tracks-P01".
 std::vector<Figure> track_figures(const TrialsResult& result);

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "analysis/statistics/words/wording.h"
+#include "analysis/trials/report/trials_figures.h"
 #include "analysis/trials/report/trials_words.h"
 
 namespace haptrial::analysis::trials {
@@ -37,6 +38,12 @@ void add_design(Document& document, const TrialsResult& result) {
   }
   document.paragraph(
       "Practice and aborted passes are in trials.csv (column counted: 0) and in nothing else.");
+  if (result.participants.size() > kMostDrawn) {
+    document.paragraph(fmt::format(
+        "Pictures of single participants are drawn of the first {}; estimates.csv and trials.csv "
+        "have all.",
+        kMostDrawn));
+  }
   for (const std::string& remark : result.remarks) {
     document.paragraph(remark);
   }

@@ -15,7 +15,7 @@ namespace haptrial::analysis::trials {
 
 void write_trials(const TrialsResult& result, const std::filesystem::path& folder) {
   const Staging staging(folder);
-  staging.write("trials.csv", trials_csv(result.data));
+  trials_csv(result.data, [&](const std::string& text) { staging.append("trials.csv", text); });
   staging.write("estimates.csv", estimates_csv(result));
   staging.write("results.json", results_json(result));
   if (!result.surfaces.empty()) {

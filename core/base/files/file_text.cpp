@@ -23,10 +23,12 @@ std::string file_text(const std::filesystem::path& file) {
   return std::move(text).str();
 }
 
-void write_text(const std::filesystem::path& file, std::string_view text,
-                const std::filesystem::path& told) {
+namespace {
+
+void put(const std::filesystem::path& file, std::string_view text,
+         const std::filesystem::path& told, std::ios::openmode mode) {
   errno = 0;
-  std::ofstream out(file, std::ios::binary);
+  std::ofstream out(file, std::ios::binary | mode);
   out.write(text.data(), static_cast<std::streamsize>(text.size()));
   out.close();
   if (!out) {
@@ -34,6 +36,18 @@ void write_text(const std::filesystem::path& file, std::string_view text,
                                (told.empty() ? file : told).string(),
                                std::system_category().message(errno)));
   }
+}
+
+}  // namespace
+
+void write_text(const std::filesystem::path& file, std::string_view text,
+                const std::filesystem::path& told) {
+  put(file, text, told, std::ios::trunc);
+}
+
+void append_text(const std::filesystem::path& file, std::string_view text,
+                 const std::filesystem::path& told) {
+  put(file, text, told, std::ios::app);
 }
 
 }  // namespace haptrial

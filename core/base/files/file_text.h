@@ -15,5 +15,8 @@ std::string file_text(const std::filesystem::path& file);
 /// @throws RunError in the words of the system, as on a full disk.
 void write_text(const std::filesystem::path& file, std::string_view text,
                 const std::filesystem::path& told = {});
+/// Adds to the end of a file, which is made where it is not there. Otherwise as write_text().
+void append_text(const std::filesystem::path& file, std::string_view text,
+                 const std::filesystem::path& told = {});
 
 }  // namespace haptrial

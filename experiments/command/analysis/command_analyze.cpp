@@ -1,5 +1,7 @@
 #include "experiments/command/commands.h"
 
+#include <malloc.h>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,6 +44,8 @@ void report_link(const AnalysisRequest& request) {
 }
 
 int analyze_sessions(const AnalyzeOptions& options, Pilots pilots, int threads) {
+  mallopt(M_ARENA_MAX,
+          1);  // what is read of thousands of files stays; what was read with is reused
   AnalysisRequest request;
   request.folder = options.folder;
   request.files = with_plugins(options.folder,

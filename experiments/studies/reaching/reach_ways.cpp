@@ -48,10 +48,10 @@ class Ways {
 
  private:
   static std::string key_of(const StudyTrial& trial, const std::string& group) {
-    std::string key = group + "\n" + trial.probe;
+    std::string key = group + "\n" + trial.probe.text();
     for (const GivenVariable& variable : trial.variables) {
-      key += fmt::format("\n{} {} {:a} {}", variable.name, variable.interval, variable.value,
-                         variable.word);
+      key += fmt::format("\n{} {} {:a} {}", variable.name.text(), variable.interval, variable.value,
+                         variable.word.text());
     }
     return key;
   }
@@ -60,7 +60,7 @@ class Ways {
     names_->forget_given();
     names_->set("trial", trial.trial);
     names_->set("group", group);
-    names_->set("probe", trial.probe.empty() ? std::string("no") : trial.probe);
+    names_->set("probe", trial.probe.empty() ? std::string("no") : trial.probe.text());
     const auto stage = std::find_if(trial.stages.rbegin(), trial.stages.rend(),
                                     [&](const auto& each) { return each.stage == plan_.stage; });
     const int interval = stage == trial.stages.rend() ? 1 : stage->interval;

@@ -247,7 +247,7 @@ class SessionRows {
       writer_.add_response(row);
     }
     std::vector<record::VariableRow> variables{
-        {row_, 0, "probe", kNotKnown, trial.probe.empty() ? "no" : trial.probe},
+        {row_, 0, "probe", kNotKnown, trial.probe.empty() ? "no" : trial.probe.text()},
         {row_, 0, "trial", double(trial.trial), ""}};
     for (const GivenVariable& v : trial.variables) {
       variables.push_back({row_, v.interval, v.name, v.value, v.word});
@@ -265,10 +265,6 @@ class SessionRows {
       row.first_sample = pass.first_sample;
       row.last_sample =
           pass.first_sample + static_cast<std::uint64_t>(std::llround(s.duration * 1e3)) - 1;
-      if (std::isfinite(s.onset)) {
-        row.onset_sample =
-            static_cast<std::int64_t>(pass.first_sample) + std::llround(s.onset * 1e3);
-      }
       stages.push_back(row);
     }
     writer_.add(std::span<const record::VariableRow>(variables));
