@@ -22,9 +22,13 @@ constexpr std::size_t kLanes = 8;
 
 namespace haptrial::psychometric {
 
-void row_sums_avx2(const float* rows, std::size_t count, std::size_t cells, const float* weights,
-                   double* sums) {
+void row_sums_avx2(const float* rows, std::size_t count, std::size_t cells,
+                   const GroupedWeights& weights, double* sums) {
   row_sums_of(rows, count, cells, weights, sums);
+}
+
+double row_sum_avx2(const double* row, std::size_t cells, const double* weights) {
+  return row_sum_in_double(row, cells, weights);
 }
 
 }  // namespace haptrial::psychometric

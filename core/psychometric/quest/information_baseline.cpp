@@ -14,8 +14,12 @@ namespace haptrial::psychometric {
 namespace {
 
 void row_sums_baseline(const float* rows, std::size_t count, std::size_t cells,
-                       const float* weights, double* sums) {
+                       const GroupedWeights& weights, double* sums) {
   row_sums_of(rows, count, cells, weights, sums);
+}
+
+double row_sum_baseline(const double* row, std::size_t cells, const double* weights) {
+  return row_sum_in_double(row, cells, weights);
 }
 
 }  // namespace
@@ -25,18 +29,9 @@ RowSums* row_sums(InstructionSet set) {
 }
 
 double row_sum(const double* row, std::size_t cells, const double* weights) noexcept {
-  constexpr std::size_t kWide = 8;
-  double sums[kWide] = {};
-  std::size_t c = 0;
-  for (; c + kWide <= cells; c += kWide) {
-    for (std::size_t i = 0; i < kWide; ++i) {
-      sums[i] += row[c + i] * weights[c + i];
-    }
-  }
-  for (; c < cells; ++c) {
-    sums[0] += row[c] * weights[c];
-  }
-  return ((sums[0] + sums[4]) + (sums[2] + sums[6])) + ((sums[1] + sums[5]) + (sums[3] + sums[7]));
+  static RowSum* const sum = choose(best_instruction_set(), row_sum_baseline,
+                                    HAPTRIAL_X86(row_sum_avx2), HAPTRIAL_X86(row_sum_avx512));
+  return sum(row, cells, weights);
 }
 
 }  // namespace haptrial::psychometric

@@ -20,14 +20,16 @@ inline Floats load(const float* from) {
   return lanes;
 }
 
-inline double row_sum_of(const float* row, std::size_t cells, const float* weights) {
+inline double row_sum_of(const float* row, const GroupedWeights& weights) {
   Doubles total[kVectors] = {};
-  for (std::size_t begin = 0; begin < cells; begin += kBlock) {
-    const std::size_t end = std::min(begin + kBlock, cells);
+  const std::size_t groups = weights.groups.size();
+  for (std::size_t begin = 0; begin < groups; begin += kBlock) {
+    const std::size_t end = std::min(begin + kBlock, groups);
     Floats part[kVectors] = {};
-    for (std::size_t c = begin; c < end; c += kColumns) {
+    for (std::size_t g = begin; g < end; ++g) {
+      const std::uint32_t c = weights.groups[g];
       for (std::size_t v = 0; v < kVectors; ++v) {
-        part[v] += load(row + c + v * kLanes) * load(weights + c + v * kLanes);
+        part[v] += load(row + c + v * kLanes) * load(weights.values + c + v * kLanes);
       }
     }
     for (std::size_t v = 0; v < kVectors; ++v) {
@@ -45,10 +47,30 @@ inline double row_sum_of(const float* row, std::size_t cells, const float* weigh
 }
 
 inline void row_sums_of(const float* rows, std::size_t count, std::size_t cells,
-                        const float* weights, double* sums) {
+                        const GroupedWeights& weights, double* sums) {
   for (std::size_t r = 0; r < count; ++r) {
-    sums[r] = row_sum_of(rows + r * cells, cells, weights);
+    sums[r] = row_sum_of(rows + r * cells, weights);
   }
+}
+
+/// Eight sums side by side, in every instruction set.
+inline double row_sum_in_double(const double* row, std::size_t cells, const double* weights) {
+  constexpr std::size_t kWide = 8;
+  typedef double Wide __attribute__((vector_size(8 * kWide)));
+  Wide total = {};
+  std::size_t c = 0;
+  for (; c + kWide <= cells; c += kWide) {
+    Wide likelihood, weight;
+    std::memcpy(&likelihood, row + c, sizeof likelihood);
+    std::memcpy(&weight, weights + c, sizeof weight);
+    total += likelihood * weight;
+  }
+  double sums[kWide];
+  std::memcpy(sums, &total, sizeof sums);
+  for (; c < cells; ++c) {
+    sums[0] += row[c] * weights[c];
+  }
+  return ((sums[0] + sums[4]) + (sums[2] + sums[6])) + ((sums[1] + sums[5]) + (sums[3] + sums[7]));
 }
 
 }  // namespace

@@ -11,34 +11,40 @@ namespace haptrial::psychometric {
 namespace {
 
 constexpr double kTie = 1e-15;          // [nat]
-constexpr double kLeastWeight = 1e-20;  // smaller ones count as 0
-constexpr double kOfLeast = 1e-12;      // more than what all that counts as 0 amounts to [nat]
+constexpr double kLeastWeight = 1e-20;  // smaller ones count as this: none is a denormal number
+constexpr double kLeftOut = 1e-8;       // at most what the cells that are not summed have together
 
-/// What an error of a probability may change in its surprise.
-double surprise_error(double p, double error) {
-  return error * (1.0 + std::abs(std::log(std::max(p, error))));
-}
+/// What is known of an entropy [nat].
+struct Estimate {
+  double value{0.0};
+  double error{0.0};
+
+  /// A probability adds its surprise, and its error what it may change in it.
+  void add(double p, double error_of_p) {
+    const double least = std::max(p, error_of_p);
+    const double logarithm = std::log(least);
+    value -= p * logarithm;
+    // Below its error a probability is taken to be its error, which changes no more than that.
+    error += error_of_p * (least > p ? 2.0 - 2.0 * logarithm : 1.0 - logarithm);
+  }
+};
 
 struct Bounds {
   double low, high;
 };
 
 /// Information from sums in single precision: outcomes but the last, then h.
-Bounds information_bounds(const std::vector<double>& sums) {
+Bounds information_bounds(const std::vector<double>& sums, double most_entropy) {
   const std::size_t known = sums.size() - 1;
   double last = 1.0;
-  double entropy = 0.0;
-  double error = kOfLeast + kSumError * sums[known];
+  Estimate entropy{0.0, kLeftOut * most_entropy + kSumError * sums[known]};
   for (std::size_t o = 0; o < known; ++o) {
     last -= sums[o];
-    entropy += surprise(sums[o]);
-    error += surprise_error(sums[o], kSumError * sums[o] + std::numeric_limits<double>::min());
+    entropy.add(sums[o], kSumError * sums[o] + kLeftOut);
   }
-  last = std::max(last, 0.0);
-  entropy += surprise(last);
-  error += surprise_error(last, kSumError);
-  const double value = entropy - sums[known];
-  return {value - error, value + error};
+  entropy.add(std::max(last, 0.0), kSumError + kLeftOut);
+  const double value = entropy.value - sums[known];
+  return {value - entropy.error, value + entropy.error};
 }
 
 }  // namespace
@@ -49,15 +55,32 @@ StimulusSelection::StimulusSelection(const QuestTables& tables, InstructionSet s
       row_sums_(tables.outcomes()),
       information_(tables.stimuli()) {}
 
+/// A group counts if one of its cells has its share of what may be left out.
+void StimulusSelection::take_groups(const std::vector<double>& posterior) {
+  const double least = kLeftOut / static_cast<double>(posterior.size());
+  groups_.clear();
+  for (std::size_t begin = 0; begin < posterior.size(); begin += kColumns) {
+    const std::size_t end = std::min(begin + kColumns, posterior.size());
+    double most = 0.0;
+    for (std::size_t c = begin; c < end; ++c) {
+      most = std::max(most, posterior[c]);
+      weights_[c] = static_cast<float>(std::max(posterior[c], kLeastWeight));
+    }
+    if (most >= least) {
+      groups_.push_back(static_cast<std::uint32_t>(begin));
+    }
+  }
+}
+
 void StimulusSelection::look_at_all(const QuestTables& tables,
                                     const std::vector<double>& posterior) {
-  for (std::size_t c = 0; c < posterior.size(); ++c) {
-    weights_[c] = posterior[c] < kLeastWeight ? 0.0f : static_cast<float>(posterior[c]);
-  }
+  take_groups(posterior);
+  const double most_entropy = std::log(static_cast<double>(row_sums_.size()));
   double least = -std::numeric_limits<double>::infinity();
   for (std::size_t s = 0; s < information_.size(); ++s) {
-    sums_(tables.rows(s), row_sums_.size(), tables.padded(), weights_.data(), row_sums_.data());
-    const Bounds bounds = information_bounds(row_sums_);
+    sums_(tables.rows(s), row_sums_.size(), tables.padded(), {weights_.data(), groups_},
+          row_sums_.data());
+    const Bounds bounds = information_bounds(row_sums_, most_entropy);
     least = std::max(least, bounds.low);
     information_[s] = bounds.high;
   }

@@ -38,12 +38,14 @@ class StimulusSelection {
   std::size_t compared() const noexcept { return candidates_.size(); }
 
  private:
+  void take_groups(const std::vector<double>& posterior);
   void look_at_all(const QuestTables& tables, const std::vector<double>& posterior);
 
   RowSums* sums_;
-  std::vector<float> weights_;       // (padded)
-  std::vector<double> row_sums_;     // (outcomes)
-  std::vector<double> information_;  // upper bound for each stimulus [nat]
+  std::vector<float> weights_;         // (padded)
+  std::vector<std::uint32_t> groups_;  // of weights that count
+  std::vector<double> row_sums_;       // (outcomes)
+  std::vector<double> information_;    // upper bound for each stimulus [nat]
   std::vector<std::size_t> candidates_;
 };
 
