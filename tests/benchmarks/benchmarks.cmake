@@ -53,6 +53,7 @@ target_sources(bench_null_relabelled
                PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/force_training/comparison/null_comparisons.cpp
                        ${CMAKE_SOURCE_DIR}/tests/analysis/bone_drilling/validity/null_validity.cpp)
 target_compile_definitions(bench_servo PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+target_compile_definitions(bench_responses PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 target_compile_definitions(bench_mesh PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 # bench_distance compares with those of its peers that are installed.
 find_package(embree 3 QUIET)

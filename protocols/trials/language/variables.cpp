@@ -103,6 +103,7 @@ std::vector<std::string> Variables::given() const {
       names.push_back(name);
     }
   }
+  std::ranges::sort(names);
   return names;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "core/base/formula/expression.h"
@@ -29,7 +29,7 @@ class Variables {
   /// unless `name` is declared
   void set(const std::string& name, double value);
   void forget_given();
-  /// Declared names that have a value.
+  /// Declared names that have a value, in alphabetical order.
   std::vector<std::string> given() const;
   /// @throws InputError as check() does, if a declared name has no value yet, or if a value is not
   /// finite
@@ -41,8 +41,8 @@ class Variables {
   void check(const std::string& name, std::vector<std::string>& way) const;
   [[noreturn]] void refuse(const std::string& name) const;
 
-  std::map<std::string, Expression> meanings_;
-  std::map<std::string, double> given_;  // NaN: no value yet
+  std::unordered_map<std::string, Expression> meanings_;
+  std::unordered_map<std::string, double> given_;  // NaN: no value yet
 };
 
 }  // namespace haptrial::protocols

@@ -252,6 +252,9 @@ bool TrialSequence::probe_comes(const Block& block) const {
 /// One of the open tracks, by the share of trials that each still has; not one that would break the
 /// rule, unless all would.
 std::size_t TrialSequence::pick(const std::vector<std::size_t>& open) const {
+  if (open.size() == 1) {
+    return open.front();
+  }
   const auto most = static_cast<std::size_t>(d_.order.most_in_a_row);
   std::vector<std::size_t> allowed;
   for (const std::size_t i : open) {
@@ -322,6 +325,9 @@ void TrialSequence::add_factors(NextTrial& next, const std::vector<std::string>&
       factors.push_back(factor);
     }
   }
+  if (factors.empty()) {
+    return;
+  }
   const auto combinations = crossed(factors);
   const auto size = static_cast<int>(combinations.size());
   RandomStream random(taker_.session_seed,
@@ -335,7 +341,8 @@ void TrialSequence::conclude(bool presented, double outcome, bool right) {
   if (!next_) {
     throw std::logic_error("TrialSequence: no trial has been asked for");
   }
-  const NextTrial done = *std::exchange(next_, std::nullopt);
+  const NextTrial done = std::move(*next_);
+  next_.reset();
   failed_ += presented ? 0 : 1;
   if (!presented) {
     return;
