@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "analysis/python/arrays.h"
+#include "analysis/python/meshes.h"
 #include "core/base/error.h"
 #include "core/geometry/bvh/bvh.h"
 #include "core/geometry/files/mesh_io.h"
@@ -13,20 +13,13 @@
 #include "core/geometry/volume/voxelize.h"
 
 namespace haptrial::python {
-namespace {
 
-using geometry::Mesh;
-using Corners = py::array_t<std::int32_t, py::array::c_style | py::array::forcecast>;
-
-static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
-
-/// (vertices x 3) and (triangles x 3) as a mesh.
-Mesh mesh_of(const Numbers& vertices, const Corners& triangles) {
+geometry::Mesh mesh_of(const Numbers& vertices, const Corners& triangles) {
   if (vertices.ndim() != 2 || vertices.shape(1) != 3 || triangles.ndim() != 2 ||
       triangles.shape(1) != 3) {
     throw InputError("a mesh is not (vertices x 3) and (triangles x 3); allowed: these shapes");
   }
-  Mesh mesh;
+  geometry::Mesh mesh;
   for (py::ssize_t i = 0; i < vertices.shape(0); ++i) {
     mesh.vertices.emplace_back(vertices.at(i, 0), vertices.at(i, 1), vertices.at(i, 2));
   }
@@ -36,12 +29,18 @@ Mesh mesh_of(const Numbers& vertices, const Corners& triangles) {
   return mesh;
 }
 
-template <class T, class Rows>
-py::array_t<T> rows_of(Rows&& rows, py::ssize_t width) {
-  const auto count = static_cast<py::ssize_t>(rows.size());
-  using Row = typename std::decay_t<Rows>::value_type;
-  return array_of<T>(std::vector<Row>(rows.begin(), rows.end()), {count, width});
+std::span<const Eigen::Vector3d> points_of(const Numbers& points) {
+  static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
+  if (points.ndim() != 2 || points.shape(1) != 3) {
+    throw InputError("points are not (points x 3); allowed: this shape");
+  }
+  return {reinterpret_cast<const Eigen::Vector3d*>(points.data()),
+          static_cast<std::size_t>(points.shape(0))};
 }
+
+namespace {
+
+using geometry::Mesh;
 
 py::tuple read_mesh(const std::string& path) {
   Mesh mesh;
@@ -111,16 +110,11 @@ py::tuple tetrahedra(const Numbers& vertices, const Corners& triangles, int reso
 
 /// Distance, nearest point and triangle of each point.
 py::tuple nearest(const Numbers& vertices, const Corners& triangles, const Numbers& points) {
-  if (points.ndim() != 2 || points.shape(1) != 3) {
-    throw InputError("points are not (points x 3); allowed: this shape");
-  }
+  const std::span<const Eigen::Vector3d> asked = points_of(points);
   const Mesh mesh = mesh_of(vertices, triangles);
   if (mesh.triangles.empty()) {
     throw InputError("the mesh has no triangle, so nothing is nearest; allowed: at least one");
   }
-  const std::span<const Eigen::Vector3d> asked{
-      reinterpret_cast<const Eigen::Vector3d*>(points.data()),
-      static_cast<std::size_t>(points.shape(0))};
   std::vector<double> distance;
   std::vector<Eigen::Vector3d> point;
   std::vector<std::int32_t> triangle;

@@ -1,5 +1,5 @@
 """Sessions of haptrial in Python: recorded tables as pandas frames, the C++ analysis on numpy
-arrays, procedures and psychometric functions for experiments of one's own.
+arrays, procedures, psychometric functions and objects that are touched, for experiments of one's own.
 
     import haptrial
 
@@ -20,8 +20,9 @@ from ._psychometric import Fit, PsychometricFunction, fit, psychometric_function
 from ._run import dry_run
 from ._scores import Alignments, align, force_scores, score, score_keys
 from ._session import Info, Session, open, study
+from ._touch import Contact, SoftBody, TouchedMesh
 
-__all__ = ["Alignments", "DistanceMap", "Fit", "Info", "Procedure", "PsychometricFunction",
-           "Session", "align", "distance_map", "dry_run", "fit", "force_scores", "nearest", "open",
+__all__ = ["Alignments", "Contact", "DistanceMap", "Fit", "Info", "Procedure",
+           "PsychometricFunction", "Session", "SoftBody", "TouchedMesh", "align", "distance_map", "dry_run", "fit", "force_scores", "nearest", "open",
            "procedure", "procedures", "psychometric_function", "read_mesh", "score", "score_keys",
            "study", "tetrahedra"]
