@@ -5,6 +5,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <numbers>
+#include <regex>
+#include <sstream>
+#include <string>
 
 #include "tests/experiments/command.h"
 #include "tests/support/sanitizer.h"
@@ -161,6 +164,46 @@ TEST_F(InstallTest, APackageHoldsTheCommandWithManualAndDefinitions) {
   const std::string command = (unpacked / "bin/haptrial").string();
   const test::CommandResult ran = test::run_command(command + " validate " + definition);
   EXPECT_EQ(ran.status, 0) << ran.errors;
+}
+
+/// The bundle of a tarball, moved, and started with nothing of the environment: every library comes
+/// from the bundle but those of the C library, and what needs many of them runs.
+TEST_F(InstallTest, ABundleRunsFromAnyFolderWithItsOwnLibraries) {
+  const test::CommandResult made = test::run_command(
+      HAPTRIAL_SOURCE_DIR "/cmake/bundle.sh " HAPTRIAL_BINARY_DIR " '" + root_ + "/made-here'");
+  ASSERT_EQ(made.status, 0) << made.output << made.errors;
+  const std::filesystem::path bundle = folder_ / "moved-there";
+  std::filesystem::rename(folder_ / "made-here", bundle);
+
+  const std::string command = "'" + (bundle / "bin/haptrial").string() + "'";
+  const test::CommandResult loaded = test::run_command("env -i /usr/bin/ldd " + command);
+  ASSERT_EQ(loaded.status, 0) << loaded.errors;
+  std::istringstream lines(loaded.output);
+  int own = 0;
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_EQ(line.find("not found"), std::string::npos) << line;
+    if (line.find("moved-there/") != std::string::npos) {
+      ++own;
+      continue;
+    }
+    static const std::regex machine(
+        "\\s(linux-vdso|/lib64/ld-linux|lib(c|m|mvec|dl|rt|pthread|resolv|util|anl)\\.so).*");
+    EXPECT_TRUE(std::regex_match(line, machine)) << "taken from the machine: " << line;
+  }
+  EXPECT_GT(own, 20) << loaded.output;
+  EXPECT_FALSE(std::filesystem::is_empty(bundle / "share/doc/haptrial/licenses"));
+
+  const std::string ear = "'" + root_ + "/ear.nrrd'";
+  for (const std::string& options :
+       {std::string("--version"), std::string("examples"),
+        "new '" + root_ + "/study.toml' --from stiffness_discrimination",
+        "dry-run '" + root_ + "/study.toml' --subjects 1 --out '" + root_ + "/rehearsed'",
+        "bone make temporal " + ear + " --seed 1",
+        "bone picture " + ear + " '" + root_ + "/ear.png'"}) {
+    const test::CommandResult ran = test::run_command("env -i " + command + " " + options);
+    EXPECT_EQ(ran.status, 0) << options << ": " << ran.errors;
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "ear.png"));
 }
 
 TEST_F(InstallTest, TheManualHasEverySubcommand) {
