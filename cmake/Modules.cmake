@@ -91,7 +91,7 @@ endfunction()
 
 # Plug-ins with what the command refuses, and one without: stand_in_plugin.
 function(haptrial_stand_in_plugins)
-  foreach(flaw none other_program unlinked bad_name taken_device taken_field)
+  foreach(flaw none other_program unlinked bad_name taken_device taken_field bad_words)
     string(REPLACE "_none" "" name stand_in_plugin_${flaw})
     string(TOUPPER STAND_IN_${flaw} definition)
     add_library(${name} MODULE ${CMAKE_SOURCE_DIR}/tests/support/stand_in_plugin.cpp)

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,17 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kEntry = "haptrial_plugin";
+
+/// @throws std::invalid_argument for a line that is not "PATH | DEFAULT | MEANING"
+void check_key_lines(std::string_view lines) {
+  std::istringstream stream{std::string(lines)};
+  for (std::string line; std::getline(stream, line);) {
+    if (!line.empty() && std::count(line.begin(), line.end(), '|') != 2) {
+      throw std::invalid_argument(
+          fmt::format("'{}' says nothing of a key; allowed: PATH | DEFAULT | MEANING", line));
+    }
+  }
+}
 
 /// Into the registries of the program, with a list of what it was.
 class Registries final : public PluginParts {
@@ -47,7 +59,13 @@ class Registries final : public PluginParts {
     analysis::add_score(score);
     gives.push_back(fmt::format("score:{}", score.name()));
   }
+  void key_words(const char* lines) override {
+    check_key_lines(lines);
+    words += lines;
+    words += '\n';
+  }
   std::vector<std::string> gives;
+  std::string words;
 };
 
 std::string bytes_of(const fs::path& file) {
@@ -146,7 +164,7 @@ void load_plugin(const fs::path& file) {
   const std::string bytes = bytes_of(file);
   check_bytes(file, bytes);
   const PluginEntry& entry = entry_of(file);
-  LoadedPlugin plugin{entry.name, entry.version, file.string(), sha256_of(bytes), {}};
+  LoadedPlugin plugin{entry.name, entry.version, file.string(), sha256_of(bytes), {}, {}};
   check_word(file, "name", plugin.name);
   check_word(file, "version", plugin.version);
   check_new(file, plugin.name);
@@ -157,6 +175,7 @@ void load_plugin(const fs::path& file) {
     throw InputError(fmt::format("--plugin: {} cannot be added: {}", file.string(), error.what()));
   }
   plugin.gives = std::move(registries.gives);
+  plugin.key_words = std::move(registries.words);
   note_plugin(std::move(plugin));
 }
 

@@ -50,6 +50,9 @@ class PluginParts {
   virtual void device(const device::OwnDevice& device) = 0;  // core/device/own_devices.h
   virtual void field(const scene::KindOfField& kind) = 0;    // core/scene/read/field_kinds.h
   virtual void score(const analysis::Score& score) = 0;      // analysis/scores/score.h
+  /// What its keys are, for `haptrial keys`: lines "PATH | DEFAULT | MEANING", as
+  /// "fields.NAME.width | | distance at which ...". DEFAULT stays empty where the reader says it.
+  virtual void key_words(const char* lines) = 0;
 };
 
 /// What the entry point gives; texts of static duration.

@@ -85,6 +85,12 @@ TEST_F(InstallTest, TheInstalledCommandLoadsPlugins) {
   const test::CommandResult table = test::run_command("cat " + sessions + "/plugin_scores.csv");
   EXPECT_NE(table.output.find("S01,1,7,8,compare,way,0."), std::string::npos) << table.output;
 
+  ran = test::run_command(program + plugin("protocol") + "keys springs");
+  EXPECT_NE(
+      ran.output.find("| N/m | needed | stiffness of the spring that others are compared with"),
+      std::string::npos)
+      << ran.output << ran.errors;
+
   ran = test::run_command(program + plugin("device") + "devices");
   EXPECT_NE(ran.output.find("circle           ready"), std::string::npos) << ran.output;
   ran = test::run_command(program + plugin("device") + "device-test circle:0.5");
@@ -99,7 +105,8 @@ TEST_F(InstallTest, TheInstalledCommandLoadsPlugins) {
   EXPECT_EQ(ran.status, 0) << ran.errors;
   ran = test::run_command(program + plugin("field") + "keys trials");
   EXPECT_NE(ran.output.find("| `strength` | number or text | N | needed | "), std::string::npos);
-  EXPECT_NE(ran.output.find("(type: valley) |"), std::string::npos);
+  EXPECT_NE(ran.output.find("distance at which a valley has its strength (type: valley) |"),
+            std::string::npos);
 }
 
 TEST_F(InstallTest, AnotherProjectFindsLinksAndRunsTheLibraries) {

@@ -62,6 +62,8 @@ TEST(PluginTest, ASharedObjectThatIsNoPluginOfThisProgramIsRefused) {
 
 TEST(PluginTest, ANameThatIsTakenIsRefused) {
   expect_plugin_refused(stand_in("_taken_device"), "there is a device 'mouse' already");
+  expect_plugin_refused(stand_in("_bad_words"),
+                        "'fields.NAME.calm: how calm it is' says nothing of a key; allowed: PATH");
   expect_plugin_refused(stand_in("_taken_field"), "there is a field 'spring' already");
   expect_line_refused("haptrial --plugin " + stand_in("") + " devices --plugin=" + stand_in(""),
                       "is the plug-in 'stand-in', which");

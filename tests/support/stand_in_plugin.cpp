@@ -45,6 +45,8 @@ void add([[maybe_unused]] haptrial::experiments::PluginParts& parts) {
   parts.field({"spring", read_calm});
 #elif defined(STAND_IN_UNLINKED)
   haptrial::experiments::nobody_has_this();
+#elif defined(STAND_IN_BAD_WORDS)
+  parts.key_words("fields.NAME.calm: how calm it is");
 #else
   parts.field({"calm", read_calm});
 #endif

@@ -43,7 +43,12 @@ FieldKind read_valley(const FieldReader& read) {
   return OwnParameters{"valley", std::make_shared<ValleyNumbers>(strength, width)};
 }
 
-void add(haptrial::experiments::PluginParts& parts) { parts.field({"valley", read_valley}); }
+void add(haptrial::experiments::PluginParts& parts) {
+  parts.field({"valley", read_valley});
+  parts.key_words(
+      "fields.NAME.strength | | force of a valley at the distance width from its middle\n"
+      "fields.NAME.width | | distance at which a valley has its strength");
+}
 
 }  // namespace
 

@@ -13,6 +13,7 @@
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "experiments/command/keys/key_words_internal.h"
+#include "experiments/plugin/loaded/loaded_plugins.h"
 #include "experiments/studies/registry.h"
 #include "experiments/studies/rehearsal/power_plan.h"
 
@@ -153,18 +154,28 @@ std::string trimmed(std::string_view text) {
              : std::string(text.substr(first, text.find_last_not_of(' ') - first + 1));
 }
 
-std::map<std::string, Words> read_words() {
-  std::map<std::string, Words> all;
-  std::string_view rest = key_words();
+/// A key that has words already, of the program or of another plug-in, gets these behind them.
+void add_words(std::map<std::string, Words>& all, std::string_view rest) {
   while (!rest.empty()) {
     const std::string_view line = rest.substr(0, rest.find('\n'));
     rest.remove_prefix(std::min(rest.size(), line.size() + 1));
     const std::size_t first = line.find('|');
     const std::size_t second = line.find('|', first + 1);
-    if (second != std::string_view::npos) {
-      all[trimmed(line.substr(0, first))] = {trimmed(line.substr(first + 1, second - first - 1)),
-                                             trimmed(line.substr(second + 1)), false};
+    if (second == std::string_view::npos) {
+      continue;
     }
+    Words& words = all[trimmed(line.substr(0, first))];
+    const std::string otherwise = trimmed(line.substr(first + 1, second - first - 1));
+    words.otherwise = otherwise.empty() ? words.otherwise : otherwise;
+    words.meaning += (words.meaning.empty() ? "" : "; ") + trimmed(line.substr(second + 1));
+  }
+}
+
+std::map<std::string, Words> read_words() {
+  std::map<std::string, Words> all;
+  add_words(all, key_words());
+  for (const LoadedPlugin& plugin : loaded_plugins()) {
+    add_words(all, plugin.key_words);
   }
   return all;
 }

@@ -22,6 +22,7 @@ struct LoadedPlugin {
   std::string file;                // as it was named
   std::string checksum;            // of the file: SHA-256 in hexadecimal
   std::vector<std::string> gives;  // "protocol:springs", "field:wobble", ...
+  std::string key_words;           // lines "PATH | DEFAULT | MEANING"
 };
 
 /// In the order in which they were loaded. Call before threads are started.
