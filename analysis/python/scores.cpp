@@ -77,6 +77,7 @@ Alignments align(const std::vector<Numbers>& references, const std::vector<Numbe
     throw InputError(problem);
   }
   const py::gil_scoped_release release;
+  const auto start = std::chrono::steady_clock::now();
   const auto target_slopes = slopes_of(targets, rate);
   const auto applied_slopes = slopes_of(applied, rate);
   std::vector<analysis::AlignmentPair> pairs;
@@ -84,7 +85,6 @@ Alignments align(const std::vector<Numbers>& references, const std::vector<Numbe
     const std::size_t t = targets.size() == 1 ? 0 : i;
     pairs.push_back({{targets[t], target_slopes[t]}, {applied[i], applied_slopes[i]}});
   }
-  const auto start = std::chrono::steady_clock::now();
   auto found = analysis::align_batch(pairs, options, threads_or_all(threads));
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   return {std::move(found), took.count()};
@@ -186,7 +186,7 @@ void bind_alignments(py::module_& module) {
                          "What haptrial.align() found; as many items as curves.")
       .def("__len__", &Alignments::count)
       .def_property_readonly("seconds", &Alignments::seconds,
-                             "Time that the alignment itself took [s].")
+                             "Time that slopes and alignments took in C++ [s].")
       .def_property_readonly("costs", &Alignments::costs,
                              "(curves) sum of weighted errors and penalties along each path [1].")
       .def_property_readonly("weights", &Alignments::weights,

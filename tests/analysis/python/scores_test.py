@@ -103,8 +103,8 @@ class AlignTest(unittest.TestCase):
         np.testing.assert_array_equal(path, np.repeat(np.arange(50)[:, None], 2, axis=1))
 
     def test_a_batch_costs_little_beyond_cpp(self):
-        """1,000 alignments: what Python, with slopes and paths, adds to the time in C++ of the same
-        run. Other work on the machine only adds, so the least of some counts."""
+        """1,000 alignments: what Python, with the paths, adds to the time that C++ takes for slopes
+        and alignments in the same run. Other work on the machine only adds, so the least of some counts."""
         reference, *curves = self.curves(1001, 1000)
         shares = [1.0]
         while min(shares) >= 0.02 and len(shares) < 12:
