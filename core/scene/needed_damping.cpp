@@ -1,7 +1,6 @@
 #include "core/scene/needed_damping.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -13,15 +12,21 @@ namespace {
 
 Steepness of_gains(const control::PdGains& gains) { return {true, gains.stiffness, gains.damping}; }
 
+/// @param matrix  symmetric
+double largest_eigenvalue(const Eigen::Matrix3d& matrix) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix, Eigen::EigenvaluesOnly)
+      .eigenvalues()
+      .maxCoeff();
+}
+
 Steepness of_matrix(const MatrixViscousParameters& p) {
   const Eigen::Matrix3d& b = p.matrix;
   const double size = b.cwiseAbs().maxCoeff();
-  const double largest =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(b + b.transpose()).eigenvalues().maxCoeff();
+  const double largest = largest_eigenvalue(b + b.transpose());
   const bool symmetric = (b - b.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * size;
   const bool takes = largest <= 1e-12 * size;
   return {takes && (symmetric || std::isinf(p.velocity_filter)), 0.0,
-          Eigen::JacobiSVD<Eigen::Matrix3d>(b).singularValues()[0]};
+          std::sqrt(largest_eigenvalue(b.transpose() * b))};
 }
 
 /// phi(e) with e = depth + h: its second derivative is at most k |g|² along g, and phi' <= limit

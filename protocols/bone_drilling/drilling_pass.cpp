@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/base/shortest_turn.h"
 #include "core/control/pd_controller.h"
 #include "core/record/table/rounding.h"
 #include "core/record/table/schema.h"
@@ -18,7 +19,7 @@ Eigen::Quaterniond grip_of(const Eigen::Vector3d& handle, double scale) {
     throw std::invalid_argument(
         "DrillingInput: the handle must have a length and the scale be above 0");
   }
-  return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), handle);
+  return shortest_turn(Eigen::Vector3d::UnitZ(), handle);
 }
 
 ToolState tool_of(const device::DeviceReading& reading, const Eigen::Quaterniond& grip,

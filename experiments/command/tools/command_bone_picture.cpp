@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "core/base/error.h"
+#include "core/base/shortest_turn.h"
 #include "core/bone/data/load_bone.h"
 #include "core/bone/surface/surface_depths.h"
 #include "core/render/bone/bone_scene.h"
@@ -103,7 +104,7 @@ void add_burr(const BonePictureOptions& options, render::BoneFrame& frame) {
   mesh.casts = render::burr_shadow(diameter, shaft, kLength);
   mesh.pose.translation() = burr.from;
   mesh.pose.linear() =
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), burr.to - burr.from)
+      shortest_turn(Eigen::Vector3d::UnitZ(), burr.to - burr.from)
           .toRotationMatrix();
   frame.meshes.push_back(std::move(mesh));
 }
