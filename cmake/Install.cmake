@@ -27,7 +27,23 @@ function(haptrial_install)
   install(FILES ${CMAKE_SOURCE_DIR}/cmake/haptrial-config.cmake
                 ${CMAKE_BINARY_DIR}/haptrial-config-version.cmake
           DESTINATION ${package} COMPONENT development)
+  haptrial_package_texts(development libhaptrial-dev)
   haptrial_install_command()
+endfunction()
+
+# haptrial_package_texts(COMPONENT PACKAGE): what Debian wants each package to have in /usr/share/doc.
+function(haptrial_package_texts component package)
+  set(folder ${CMAKE_BINARY_DIR}/texts/${package})
+  file(TIMESTAMP ${CMAKE_SOURCE_DIR}/CHANGELOG.md written "%a, %d %b %Y %H:%M:%S +0000" UTC)
+  file(CONFIGURE OUTPUT ${folder}/changelog CONTENT
+       "haptrial (${PROJECT_VERSION}) unstable; urgency=medium\n
+  * Version ${PROJECT_VERSION}: see CHANGELOG.md of the source.\n
+ -- ${CPACK_PACKAGE_CONTACT}  ${written}\n")
+  execute_process(COMMAND gzip -9nf ${folder}/changelog)
+  set(documents ${CMAKE_INSTALL_DATADIR}/doc/${package})
+  install(FILES ${folder}/changelog.gz DESTINATION ${documents} COMPONENT ${component})
+  install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION ${documents} COMPONENT ${component}
+          RENAME copyright)
 endfunction()
 
 # The command without its symbols, what is typed with it, and what is read about it. The manual is
@@ -40,8 +56,7 @@ function(haptrial_install_command)
   install(FILES ${definitions} DESTINATION ${documents}/experiments COMPONENT command)
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/docs DESTINATION ${documents} COMPONENT command)
   install(FILES ${CMAKE_SOURCE_DIR}/README.md DESTINATION ${documents} COMPONENT command)
-  install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION ${documents} COMPONENT command
-          RENAME copyright)
+  haptrial_package_texts(command haptrial)
   install(FILES ${CMAKE_SOURCE_DIR}/experiments/completion.bash COMPONENT command
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME haptrial)
   install(FILES ${CMAKE_BINARY_DIR}/haptrial.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1

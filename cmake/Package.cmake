@@ -2,7 +2,7 @@
 # libraries. Dependencies are found from what the command links.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR "the haptrial authors")
-set(CPACK_PACKAGE_CONTACT "the haptrial authors <haptrial@localhost>")
+# CPACK_PACKAGE_CONTACT is in Settings.cmake: the packages' change logs name it, too.
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES TRUE)
 set(CPACK_COMPONENTS_ALL command development)

@@ -28,8 +28,7 @@ function(haptrial_python)
   set(installed lib/python3/dist-packages/haptrial)  # where Debian's Python looks below /usr
   install(TARGETS haptrial_extension LIBRARY DESTINATION ${installed} COMPONENT python)
   install(FILES ${sources} DESTINATION ${installed} COMPONENT python)
-  install(FILES ${CMAKE_SOURCE_DIR}/LICENSE COMPONENT python RENAME copyright
-          DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-haptrial)
+  haptrial_package_texts(python python3-haptrial)
 endfunction()
 
 # Each file of tests/analysis/python is an entry; its studies are simulated by the command.

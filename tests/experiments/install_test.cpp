@@ -148,13 +148,17 @@ TEST_F(InstallTest, AnotherProjectFindsLinksAndRunsTheLibraries) {
   EXPECT_EQ(sections.output.find(" .debug_"), std::string::npos) << "the command is not stripped";
 }
 
-/// The Debian package of the command, unpacked beside the system: what it has runs, and it says
-/// what it needs.
+/// The Debian package of the command, unpacked beside the system: what it has runs, it says what it
+/// needs, and lintian finds nothing but the missing address of the project.
 TEST_F(InstallTest, APackageHoldsTheCommandWithManualAndDefinitions) {
   std::string line = "set -e; cd '";
   line += root_;
-  line += "'\ncpack --config '" HAPTRIAL_BINARY_DIR
+  line += "'\n" HAPTRIAL_SOURCE_DIR "/cmake/man-page.sh " HAPTRIAL_BINARY_DIR
+          "/haptrial " HAPTRIAL_BINARY_DIR "/haptrial.1.gz\n";
+  line += "cpack --config '" HAPTRIAL_BINARY_DIR
           "/CPackConfig.cmake' -B made -D CPACK_COMPONENTS_ALL=command\n"
+          "lintian --allow-root --fail-on error,warning --suppress-tags "
+          "bogus-mail-host,bogus-mail-host-in-debian-changelog made/haptrial_*.deb >&2\n"
           "dpkg-deb -x made/haptrial_*.deb unpacked\n"
           "dpkg-deb -f made/haptrial_*.deb Depends\n";
   const test::CommandResult made = test::run_command(line);
@@ -163,6 +167,7 @@ TEST_F(InstallTest, APackageHoldsTheCommandWithManualAndDefinitions) {
     EXPECT_NE(made.output.find(needed), std::string::npos) << needed << " in " << made.output;
   }
   const auto unpacked = folder_ / "unpacked/usr";
+  EXPECT_TRUE(std::filesystem::exists(unpacked / "share/man/man1/haptrial.1.gz"));
   EXPECT_TRUE(std::filesystem::exists(unpacked / "share/doc/haptrial/docs/keys.md"));
   EXPECT_TRUE(std::filesystem::exists(unpacked / "share/bash-completion/completions/haptrial"));
   const std::string definition =
