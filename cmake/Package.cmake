@@ -34,6 +34,9 @@ if(HAPTRIAL_PYTHON)  # an extension serves the one version of Python that it was
       "python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next}), python3-numpy, python3-pandas")
 endif()
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS haptrial)
+# They compile the module at installation, and remove what Python compiled.
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/cmake/python3-haptrial/postinst
+                                              ${CMAKE_SOURCE_DIR}/cmake/python3-haptrial/prerm)
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Sessions of haptrial as pandas frames,
 with its scores, fits and procedures, in Python.")
 

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <numbers>
 #include <regex>
@@ -175,6 +177,20 @@ TEST_F(InstallTest, APackageHoldsTheCommandWithManualAndDefinitions) {
   const std::string command = (unpacked / "bin/haptrial").string();
   const test::CommandResult ran = test::run_command(command + " validate " + definition);
   EXPECT_EQ(ran.status, 0) << ran.errors;
+}
+
+/// All packages in a Debian that has nothing else: installed, used in each way, removed.
+TEST_F(InstallTest, ABareMachineInstallsUsesAndRemovesThePackages) {
+  if (std::getenv("HAPTRIAL_BARE_MACHINE") == nullptr) {
+    GTEST_SKIP() << "it takes minutes and Debian's archive; set HAPTRIAL_BARE_MACHINE=1, as root, "
+                    "with debootstrap installed";
+  }
+  const test::CommandResult run = test::run_command(
+      "set -e; cd '" + root_ +
+      "'\ncpack --config " HAPTRIAL_BINARY_DIR "/CPackConfig.cmake -B made >/dev/null\n" +
+      HAPTRIAL_SOURCE_DIR "/tests/experiments/bare_machine.sh made machine\n");
+  EXPECT_EQ(run.status, 0) << run.errors;
+  std::printf("%s", run.output.c_str());
 }
 
 /// The bundle of a tarball, moved, and started with nothing of the environment: every library comes
