@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <numbers>
