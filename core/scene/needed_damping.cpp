@@ -71,8 +71,12 @@ Steepness of_solid(const std::vector<Field>& fields, const Field& field, const S
 }
 
 /// The spring between hand and ball and the body behind it, along each other; friction bends a
-/// bristle that is no stiffer. Of a body that is not prepared the spring alone is known.
+/// bristle that is no stiffer. Of a body that is not prepared the spring alone is known. What moves
+/// keeps an account of its energy, in which the hand has a damping.
 Steepness of_yielding(const YieldingParameters& p) {
+  if (p.springs) {
+    return {true, 0.0, deformable::EnergyAccount::kDamping};
+  }
   const double body = p.body ? deformable::stiffest_touch(*p.body, p.tool.radius)
                              : std::numeric_limits<double>::infinity();
   const double both = 1.0 / (1.0 / p.tool.stiffness + 1.0 / body);

@@ -12,6 +12,7 @@
 #include "core/base/random.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/trials/contact_row.h"
+#include "core/record/trials/moving_body_row.h"
 #include "core/record/trials/touched_body_row.h"
 #include "core/record/trials/trial_rows.h"
 #include "protocols/interface/session_file.h"
@@ -31,6 +32,12 @@ constexpr const char* kInsideOut =
 constexpr const char* kCrowded =
     "the ball lay on more places of the body than are computed; it may have been felt softer than "
     "its elements (use fewer cells or a smaller ball)";
+constexpr const char* kLimited =
+    "the force was cut, as it might have given out more energy than the hand had given";
+constexpr const char* kFlownApart =
+    "the body flew apart, deformed beyond what its steps are stable for, and was put to rest (use "
+    "softer constants, more damping or more density)";
+
 /// Fields whose force is to work on the hand, a bit each: all but those that only give way.
 std::uint64_t pushing(const std::vector<scene::Field>& fields) {
   std::uint64_t mask = 0;
@@ -51,6 +58,10 @@ bool records_contacts(const TrialsDefinition& d) {
 
 bool has_yielding(const TrialsDefinition& d) {
   return std::ranges::any_of(d.objects, &TrialObject::yields);
+}
+
+bool has_moving(const TrialsDefinition& d) {
+  return std::ranges::any_of(d.objects, &TrialObject::moves);
 }
 
 /// Objects come behind all other fields, in the order of the definition's.
@@ -152,6 +163,9 @@ record::TableList DefinedTrials::tables() const {
   }
   if (has_yielding(d_)) {
     tables.push_back(&record::table_of<record::TouchedBodyRow>());
+  }
+  if (has_moving(d_)) {
+    tables.push_back(&record::table_of<record::MovingBodyRow>());
   }
   if (!object_files_.empty()) {
     tables.push_back(&record::table_of<record::ObjectFileRow>());
@@ -275,8 +289,8 @@ void DefinedTrials::number_bodies(const std::vector<scene::Field>& fields,
       const auto object = static_cast<std::size_t>(seen.object);
       const scene::Field& field = fields[fields.size() - d_.objects.size() + object];
       const auto* body = std::get_if<scene::YieldingParameters>(&field.kind);
-      if (body != nullptr && body->body && d_.objects[object].seen_yielding) {
-        seen.body = bodies_->number_of(body->body);
+      if (body != nullptr && body->prepared() && d_.objects[object].seen_yielding) {
+        seen.body = bodies_->number_of({body->body, body->moving, body->shape});
       }
     }
   }
@@ -288,7 +302,7 @@ IntervalRun DefinedTrials::make_interval(std::size_t place, RandomStream& random
   note_variables(place + 1, variables_);
   Presented presented = read_presented(root_, *names_, d_, &random);
   root_.check();
-  prepare_bodies(presented.fields);
+  prepare_bodies(presented.fields, d_.rate);
   const std::uint64_t seed =
       derived_seed(current_.plan.stimulus_seed, fmt::format("dots {}", place));
   std::vector<Stage> stages;
@@ -419,6 +433,53 @@ void DefinedTrials::close_pass(SessionFile& file, std::int32_t row) {
   if (has_yielding(d_)) {
     keep_touched_bodies(file, row);
   }
+  if (has_moving(d_)) {
+    keep_moving_bodies(file, row);
+  }
+}
+
+/// How bodies that move did so; what was given up of it is told at once, too.
+void DefinedTrials::keep_moving_bodies(SessionFile& file, std::int32_t row) {
+  std::vector<record::MovingBodyRow> rows;
+  for (std::size_t device = 0; device < pass_->scenes(0).size(); ++device) {
+    for (std::size_t object = 0; object < d_.objects.size(); ++object) {
+      if (d_.objects[object].moves) {
+        rows.push_back(moving_body(device, object));
+        rows.back().pass = row;
+      }
+    }
+  }
+  file.add(std::span<const record::MovingBodyRow>(rows));
+  const int trial = pass_->trial() % kPracticeNumbers;
+  const auto tell = [&](const record::MovingBodyRow& body, std::uint64_t ticks, TickSum& sum,
+                        const char* event, const char* what) {
+    if (ticks > 0) {
+      sum.add(ticks);
+      file.event(event,
+                 fmt::format("trial {}: {}: on {} ticks {}", trial, body.object, ticks, what));
+    }
+  };
+  for (const record::MovingBodyRow& body : rows) {
+    tell(body, body.limited, limited_, "energy_limit", kLimited);
+    tell(body, body.flown_apart, flown_apart_, "flown_apart", kFlownApart);
+  }
+}
+
+record::MovingBodyRow DefinedTrials::moving_body(std::size_t device, std::size_t object) const {
+  record::MovingBodyRow sum;
+  sum.device = static_cast<std::int32_t>(device);
+  sum.object = d_.objects[object].name;
+  for (std::size_t i = 0; i < pass_->intervals_begun(); ++i) {
+    const scene::Scene& scene = pass_->scenes(i)[device];
+    const auto* touch = dynamic_cast<const deformable::MovingTouch*>(
+        scene.touch(scene.size() - d_.objects.size() + object));
+    if (touch != nullptr) {
+      sum.steps = touch->steps();
+      sum.limited += touch->counts().limited;
+      sum.flown_apart += touch->counts().flown_apart;
+    }
+  }
+  return sum;
 }
 
 /// The contacts of all intervals with each body; what was not felt as it should be is told at once,
@@ -468,20 +529,23 @@ record::TouchedBodyRow DefinedTrials::touched_body(std::size_t device, std::size
 
 std::vector<std::string> DefinedTrials::notices() const {
   std::vector<std::string> lines;
-  const auto say = [&](const TickSum& sum, const char* what) {
+  const auto say = [&](const TickSum& sum, const char* what,
+                       const char* table = "/touched_bodies") {
     if (sum.ticks > 0) {
       lines.push_back(fmt::format("bodies that give way, in {} of {}: on {} ticks {}",
                                   sum.bodies == 1 ? "1 pass" : fmt::format("{} passes", sum.bodies),
-                                  "/touched_bodies", sum.ticks, what));
+                                  table, sum.ticks, what));
     }
   };
   if (script_ != nullptr && script_->left() > 0) {
-    lines.push_back(fmt::format("{}: in {} of {} trials the level was the procedure's own (events {})",
-                                d_.script->file.filename().string(), script_->left(),
-                                script_->asked(), kScriptTrouble));
+    lines.push_back(fmt::format(
+        "{}: in {} of {} trials the level was the procedure's own (events {})",
+        d_.script->file.filename().string(), script_->left(), script_->asked(), kScriptTrouble));
   }
   say(inverted_, kInsideOut);
   say(crowded_, kCrowded);
+  say(limited_, kLimited, "/moving_bodies");
+  say(flown_apart_, kFlownApart, "/moving_bodies");
   return lines;
 }
 

@@ -62,6 +62,8 @@ class DefinedTrials final : public Trials {
   void keep_level(SessionFile& file, std::int32_t row);
   void keep_stages(SessionFile& file, std::int32_t row) const;
   void keep_touched_bodies(SessionFile& file, std::int32_t row);
+  void keep_moving_bodies(SessionFile& file, std::int32_t row);
+  record::MovingBodyRow moving_body(std::size_t device, std::size_t object) const;
   record::TouchedBodyRow touched_body(std::size_t device, std::size_t object) const;
 
   const StudiedDefinition& d_;
@@ -95,7 +97,7 @@ class DefinedTrials final : public Trials {
       ++bodies;
     }
   };
-  TickSum inverted_, crowded_;
+  TickSum inverted_, crowded_, limited_, flown_apart_;
 };
 
 }  // namespace haptrial::protocols

@@ -56,6 +56,7 @@ class TrialsProtocol final : public Protocol {
     tables.push_back(&record::table_of<record::OutOfTimeRow>());
     tables.push_back(&record::table_of<record::ContactRow>());
     tables.push_back(&record::table_of<record::TouchedBodyRow>());
+    tables.push_back(&record::table_of<record::MovingBodyRow>());
     tables.push_back(&record::table_of<record::ObjectFileRow>());
     return tables;
   }

@@ -5,6 +5,7 @@
 #include "core/base/parallel.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/session_tables.h"
+#include "core/record/trials/moving_body_row.h"
 #include "core/record/trials/touched_body_row.h"
 #include "core/record/trials/trial_rows.h"
 
@@ -44,6 +45,11 @@ class SessionTrials {
         trial->touched.push_back({row.object, row.contact, row.inverted, row.crowded});
       }
     }
+    for (const record::MovingBodyRow& row : reader.rows<record::MovingBodyRow>()) {
+      if (StudyTrial* trial = of(row.pass)) {
+        trial->moving.push_back({row.object, row.limited, row.flown_apart});
+      }
+    }
   }
 
   std::vector<StudyTrial> take() {
@@ -53,6 +59,7 @@ class SessionTrials {
       trial.variables.shrink_to_fit();
       trial.stages.shrink_to_fit();
       trial.touched.shrink_to_fit();
+      trial.moving.shrink_to_fit();
     }
     return std::move(trials_);
   }

@@ -69,6 +69,13 @@ struct TouchedBody {
   std::uint64_t crowded{0};   // more places of contact than are computed: felt softer
 };
 
+/// How a body that moves did so, in ticks.
+struct MovingBody {
+  Word object;
+  std::uint64_t limited{0};      // the force was cut: it might have given out energy
+  std::uint64_t flown_apart{0};  // it was put to rest
+};
+
 /// One pass of a trial, with everything that the session file says of it.
 struct StudyTrial {
   std::size_t session{0};  // in TrialsData::sessions
@@ -88,6 +95,7 @@ struct StudyTrial {
   std::vector<GivenVariable> variables;
   std::vector<StageTime> stages;
   std::vector<TouchedBody> touched;
+  std::vector<MovingBody> moving;
 
   /// Whether it is part of the study: completed, not presented again, and no practice.
   bool counts() const { return completed && !again && !practice; }

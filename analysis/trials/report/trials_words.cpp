@@ -119,17 +119,27 @@ std::string estimate_word(const Estimated& e) {
 
 namespace {
 
+std::uint64_t ticks_in_contact(const StudyTrial& trial) {
+  std::uint64_t sum = 0;
+  for (const TouchedBody& body : trial.touched) {
+    sum += body.contact;
+  }
+  return sum;
+}
+
 /// Ticks on which bodies that give way were not felt as they should be.
-void add_touched(const TrialsData& data, std::uint64_t TouchedBody::*ticks, const char* what,
-                 std::vector<std::string>& lines) {
+/// @param bodies  of a trial, and a count of each
+template <class Body>
+void add_touched(const TrialsData& data, std::vector<Body> StudyTrial::*bodies,
+                 std::uint64_t Body::*ticks, const char* what, std::vector<std::string>& lines) {
   std::uint64_t sum = 0, contact = 0;
   std::size_t trials = 0;
   for (const StudyTrial& trial : data.trials) {
     const std::uint64_t before = sum;
-    for (const TouchedBody& body : trial.touched) {
+    for (const Body& body : trial.*bodies) {
       sum += body.*ticks;
-      contact += body.contact;
     }
+    contact += ticks_in_contact(trial);
     trials += sum > before ? 1 : 0;
   }
   if (sum > 0) {
@@ -198,12 +208,17 @@ std::vector<std::string> summary_lines(const TrialsResult& result) {
     lines.push_back(fmt::format("{} of {} could not be determined from the answers", count,
                                 counted(result.fits.size(), "function")));
   }
-  add_touched(result.data, &TouchedBody::inverted,
+  add_touched(result.data, &StudyTrial::touched, &TouchedBody::inverted,
               "a tetrahedron would have been turned inside out: the force stayed below that",
               lines);
-  add_touched(result.data, &TouchedBody::crowded,
+  add_touched(result.data, &StudyTrial::touched, &TouchedBody::crowded,
               "the ball lay on more places than are computed: the body may have been felt softer",
               lines);
+  add_touched(result.data, &StudyTrial::moving, &MovingBody::limited,
+              "the force was cut: it might have given out more energy than the hand had given",
+              lines);
+  add_touched(result.data, &StudyTrial::moving, &MovingBody::flown_apart,
+              "the body flew apart and was put to rest", lines);
   return lines;
 }
 

@@ -98,6 +98,12 @@ void SpringMotion::set_velocity(std::size_t vertex, const Vector3d& velocity) no
   }
 }
 
+void SpringMotion::push(std::size_t vertex, const Vector3d& force) noexcept {
+  const Vector3d faster = kick_[vertex] * force;
+  velocities_[vertex] += faster;
+  positions_[vertex] += settings_.step * faster;
+}
+
 void SpringMotion::stop() noexcept {
   for (std::size_t v = 0; v < masses_.size(); ++v) {
     velocities_[v].setZero();

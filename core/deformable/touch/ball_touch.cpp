@@ -58,7 +58,7 @@ int steps_of(const Compliance& body, const TouchOptions& options) {
 BallTouch::BallTouch(SharedCompliance body, const TouchOptions& options)
     : body_(std::move(body)),
       options_(felt_options(*body_, options)),
-      samples_(*body_, steps_of(*body_, options)) {
+      samples_(body_->faces(), body_->rest(), steps_of(*body_, options)) {
   found_.resize(body_->faces().size());
   faces_.reserve(kMostFaces);
   near_.reserve(kMostNear);

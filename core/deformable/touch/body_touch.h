@@ -27,10 +27,12 @@ struct VertexForce {
 
 /// What did not go as it should since the body was made, in ticks.
 struct TouchCounts {
-  std::uint64_t contact{};    // in contact
-  std::uint64_t inverted{};   // a tetrahedron would be inside out: the force stays below that
-  std::uint64_t unsettled{};  // the places of contact were not found to rounding
-  std::uint64_t crowded{};    // more places than fit: the deepest were taken
+  std::uint64_t contact{};      // in contact
+  std::uint64_t inverted{};     // a tetrahedron would be inside out: the force stays below that
+  std::uint64_t unsettled{};    // the places of contact were not found to rounding
+  std::uint64_t crowded{};      // more places than fit: the deepest were taken
+  std::uint64_t limited{};      // the force was cut, or it might have given out energy
+  std::uint64_t flown_apart{};  // the steps were too long for the deformed body: put to rest
 
   bool operator==(const TouchCounts&) const = default;
 };
@@ -46,6 +48,8 @@ class BodyTouch {
 
   /// Puts the tool to a point, and the body to rest.
   virtual void start(const Eigen::Vector3d& tool) noexcept = 0;
+  /// What was felt of the same body before goes on, if it moves; any other body begins at rest.
+  virtual void adopt(const BodyTouch&, const Eigen::Vector3d& tool) noexcept { start(tool); }
   /// One tick. @param tool  [m]; not finite: zero force  @param period  > 0 [s]
   virtual const contact::Contact& tick(const Eigen::Vector3d& tool, double period) noexcept = 0;
   /// On the body, on the last tick.

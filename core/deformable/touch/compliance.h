@@ -36,6 +36,8 @@ class Compliance {
     return rest_[static_cast<std::size_t>(place)];
   }
 
+  std::span<const Eigen::Vector3d> rest() const noexcept { return rest_; }  // (places) [m]
+
   /// The displacement of one place by a force on a touched one [m].
   Eigen::Vector3f response(std::int32_t place, std::int32_t touched,
                            const Eigen::Vector3f& force) const noexcept {

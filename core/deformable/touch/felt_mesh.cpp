@@ -94,6 +94,12 @@ void finish(FeltMesh& mesh, const FeltSides& sides) {
 
 std::string_view name_of(BodySide side) { return kSideNames[static_cast<std::size_t>(side)]; }
 
+bool same_mesh(const FeltMesh& a, const FeltMesh& b) {
+  return a.name == b.name && a.held == b.held && a.felt == b.felt &&
+         std::ranges::equal(a.tets.tetrahedra, b.tets.tetrahedra) &&
+         std::ranges::equal(a.tets.vertices, b.tets.vertices);
+}
+
 double felt_block_vertices(const Vector3d& size, int cells) {
   double vertices = 1.0;
   for (const int count : cells_of(size, cells)) {

@@ -43,6 +43,9 @@ using SharedFeltMesh = std::shared_ptr<const FeltMesh>;
 
 inline constexpr int kMostFeltCells = 200;  // along the longest side
 
+/// Whether two bodies are the same but for what they are made of.
+bool same_mesh(const FeltMesh& a, const FeltMesh& b);
+
 /// A box about the origin of cells that are nearly cubes.
 /// @param size  of its sides, > 0 [m]  @param cells  along the longest side, 2 to kMostFeltCells
 /// @throws InputError naming the body: sides so thin that a cell would be flat, a body that nothing

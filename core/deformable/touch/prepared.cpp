@@ -5,42 +5,15 @@
 
 #include <algorithm>
 #include <fstream>
-#include <future>
-#include <list>
-#include <mutex>
 #include <numbers>
 #include <string>
 
 #include "core/base/error.h"
 #include "core/deformable/touch/ball_touch.h"
+#include "core/deformable/touch/prepared_bodies.h"
 
 namespace haptrial::deformable {
 namespace {
-
-using Made = std::shared_future<std::shared_ptr<const Compliance>>;
-
-struct Entry {
-  SharedFeltMesh mesh;
-  Tissue tissue;
-  Made made;
-};
-
-std::mutex& guard() {
-  static std::mutex mutex;
-  return mutex;
-}
-
-/// Those used last come first.
-std::list<Entry>& entries() {
-  static std::list<Entry> list;
-  return list;
-}
-
-bool same_mesh(const FeltMesh& a, const FeltMesh& b) {
-  return a.name == b.name && a.held == b.held && a.felt == b.felt &&
-         std::ranges::equal(a.tets.tetrahedra, b.tets.tetrahedra) &&
-         std::ranges::equal(a.tets.vertices, b.tets.vertices);
-}
 
 /// What the machine can give to a program that asks now [bytes].
 double free_memory() {
@@ -75,37 +48,12 @@ double stiffest_touch(const Compliance& body, double radius) {
 }
 
 std::shared_ptr<const Compliance> prepared(const SharedFeltMesh& mesh, const Tissue& tissue) {
-  std::promise<std::shared_ptr<const Compliance>> promise;
-  Made made;
-  {
-    const std::lock_guard lock(guard());
-    std::list<Entry>& all = entries();
-    const auto found = std::ranges::find_if(all, [&](const Entry& entry) {
-      return entry.tissue == tissue && (entry.mesh == mesh || same_mesh(*entry.mesh, *mesh));
-    });
-    if (found != all.end()) {
-      all.splice(all.begin(), all, found);
-      made = found->made;
-    } else {
-      all.push_front({mesh, tissue, promise.get_future().share()});
-      if (all.size() > kMostPrepared) {
-        all.pop_back();
-      }
-    }
-  }
-  if (made.valid()) {
-    return made.get();
-  }
-  try {
+  static PreparedBodies<Tissue, Compliance> bodies;
+  return bodies.get(mesh, tissue, [&] {
     check_tissue(*mesh, tissue);
     check_memory(*mesh);
-    auto body = std::make_shared<const Compliance>(mesh, tissue);
-    promise.set_value(body);
-    return body;
-  } catch (...) {
-    promise.set_exception(std::current_exception());
-    throw;
-  }
+    return std::make_shared<const Compliance>(mesh, tissue);
+  });
 }
 
 }  // namespace haptrial::deformable

@@ -7,13 +7,11 @@
 namespace haptrial::deformable {
 
 /// The compliance of a body of a tissue, made when it is first asked for and shared by all who ask
-/// for the same: trials, participants, threads. The last kMostPrepared are kept. Any thread but the
+/// for the same (prepared_bodies.h): trials, participants, threads. Any thread but the
 /// servo thread.
 /// @throws InputError as check_tissue(), and before anything is made if the machine has not the
 /// memory that it takes.
 std::shared_ptr<const Compliance> prepared(const SharedFeltMesh& mesh, const Tissue& tissue);
-
-inline constexpr std::size_t kMostPrepared = 128;
 
 /// @throws InputError naming the body if the machine has not the memory that it takes.
 void check_memory(const FeltMesh& mesh);

@@ -32,12 +32,16 @@ Face corners_of(const Face& face, const std::array<int, 3>& steps) {
 
 }  // namespace
 
-SurfaceSamples::SurfaceSamples(const Compliance& body, int steps) {
+SurfaceSamples::SurfaceSamples(std::span<const Face> faces, std::span<const Eigen::Vector3d> rest,
+                               int steps) {
+  const auto at_rest = [&](std::int32_t corner) -> const Eigen::Vector3d& {
+    return rest[static_cast<std::size_t>(corner)];
+  };
   std::map<Name, std::int32_t> known;
-  for (const Face& face : body.faces()) {
-    const Eigen::Vector3d a = body.rest(face[0]);
+  for (const Face& face : faces) {
+    const Eigen::Vector3d a = at_rest(face[0]);
     const Eigen::Vector3d outward =
-        (body.rest(face[1]) - a).cross(body.rest(face[2]) - a).stableNormalized();
+        (at_rest(face[1]) - a).cross(at_rest(face[2]) - a).stableNormalized();
     for (int i = 0; i <= steps; ++i) {
       for (int j = 0; i + j <= steps; ++j) {
         const std::array<int, 3> counts{i, j, steps - i - j};
@@ -56,7 +60,7 @@ SurfaceSamples::SurfaceSamples(const Compliance& body, int steps) {
   for (Sample& sample : samples) {
     sample.outward.stableNormalize();
   }
-  per_face = body.faces().empty() ? 0 : of_face.size() / body.faces().size();
+  per_face = faces.empty() ? 0 : of_face.size() / faces.size();
 }
 
 }  // namespace haptrial::deformable

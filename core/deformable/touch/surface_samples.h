@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/deformable/touch/compliance.h"
+#include "core/deformable/body/mesh_parts.h"
 
 namespace haptrial::deformable {
 
@@ -14,13 +14,13 @@ namespace haptrial::deformable {
 /// between them in equal steps. Those on an edge or corner are there once.
 struct SurfaceSamples {
   struct Sample {
-    std::array<std::int32_t, 3> corners{};  // places of the body; all of them on each of its faces
+    std::array<std::int32_t, 3> corners{};  // into `rest`; all of them on each of its faces
     Eigen::Vector3d weight{Eigen::Vector3d::Zero()};
     Eigen::Vector3d outward{Eigen::Vector3d::Zero()};  // at rest: the mean over its faces
   };
 
-  /// @param steps  along an edge, at least 1
-  SurfaceSamples(const Compliance& body, int steps);
+  /// @param faces  of corners into `rest` [m], outward  @param steps  along an edge, at least 1
+  SurfaceSamples(std::span<const Face> faces, std::span<const Eigen::Vector3d> rest, int steps);
 
   std::span<const std::int32_t> on(std::int32_t face) const noexcept {
     return std::span(of_face).subspan(static_cast<std::size_t>(face) * per_face, per_face);

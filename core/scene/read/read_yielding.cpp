@@ -1,5 +1,7 @@
 #include "core/scene/read/read_yielding.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "core/base/error.h"
@@ -11,6 +13,7 @@ namespace haptrial::scene {
 namespace {
 
 constexpr Bounds kYoungBounds{0.0, 1e9, true};  // [Pa]
+constexpr double kDecay = 10.0;                 // of springs [1/s]
 
 deformable::Inclusion read_inclusion(Table& table, std::string name, const NumberSource& source) {
   const FieldReader read{table, source};
@@ -32,6 +35,19 @@ deformable::Tissue read_tissue(const FieldReader& read) {
   return tissue;
 }
 
+deformable::SpringTissue read_springs(const FieldReader& read) {
+  const Eigen::Vector3d constants = read.vector("constants", {0.0, 1e6}, "J");
+  deformable::SpringTissue springs;
+  springs.constants = {constants[0], constants[1], constants[2]};
+  if (!(springs.constants.length > 0.0)) {
+    read.table.reject("constants", fmt::format("begins with {} J", springs.constants.length),
+                      "a number above 0 for the edges, and at least 0 for faces and tetrahedra");
+  }
+  springs.density = read.number("density", {0.0, 1e5, true}, "kg/m³");
+  springs.decay = read.number_or(kDecay, "decay", {0.0, 1e4}, "1/s");
+  return springs;
+}
+
 }  // namespace
 
 Field read_yielding(Table& table, std::string name, const deformable::SharedFeltMesh& mesh,
@@ -42,13 +58,17 @@ Field read_yielding(Table& table, std::string name, const deformable::SharedFelt
   read_limits(read, field);
   YieldingParameters p;
   p.mesh = mesh;
-  p.tissue = read_tissue(read);
+  if (table.has("model") && table.choice("model", {"elements", "springs"}) == "springs") {
+    p.springs = read_springs(read);
+  } else {
+    p.tissue = read_tissue(read);
+  }
   p.pose = read_pose(read);
   p.tool.radius = read.number_or(p.tool.radius, "tool_radius", {0.0, 0.05}, "m");
   p.tool.stiffness =
       read.number_or(p.tool.stiffness, "spring", {0.0, kStiffnessBounds.high, true}, "N/m");
   p.tool.friction = read_contact_friction(read);
-  if (mesh && p.tissue.young > 0.0) {
+  if (mesh && !p.springs && p.tissue.young > 0.0) {
     try {
       deformable::check_tissue(*mesh, p.tissue);
     } catch (const InputError& error) {

@@ -12,8 +12,13 @@ namespace haptrial::scene {
 /// (core/scene/surface/yielding.h). Keys in brackets are optional; all numbers may be formulas.
 /// Problems are noted in the table.
 ///
-///     young [Pa], poisson
-///     [inclusions.NAME]  centre, in the body's frame [m]; radius [m]; young [Pa]: balls
+///     [model]            "elements", at rest on every tick, if left out:
+///         young [Pa], poisson
+///         [inclusions.NAME]  centre, in the body's frame [m]; radius [m]; young [Pa]: balls
+///                        "springs", which move:
+///         constants      of every edge, face and tetrahedron, three numbers [J]
+///         density        [kg/m³]
+///         [decay]        a free motion dies down with exp(-decay t), 10 if left out [1/s]
 ///     [centre], [turn]   of the body in W, as of other objects
 ///     [tool_radius]      of the ball that stands for the hand, 0.005 if left out [m]
 ///     [spring]           between hand and ball, 5000 if left out [N/m]

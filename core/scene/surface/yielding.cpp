@@ -6,7 +6,10 @@ using Eigen::Vector3d;
 
 Yielding::Yielding(const YieldingParameters& parameters, const Setting& setting)
     : parameters_(parameters), period_(1.0 / setting.rate) {
-  if (parameters.body) {
+  if (parameters.moving) {
+    touch_ = std::make_unique<deformable::MovingTouch>(parameters.moving, parameters.tool, period_,
+                                                       parameters.shape);
+  } else if (parameters.body) {
     touch_ = std::make_unique<deformable::BallTouch>(parameters.body, parameters.tool);
   } else {
     deformable::check(parameters.tool);
@@ -24,10 +27,13 @@ void Yielding::start(const PointState& hand) noexcept {
   }
 }
 
-/// The body begins at rest under the hand: only what friction held is forgotten.
+/// A body that moves goes on moving; any other begins at rest under the hand: only what friction
+/// held is forgotten.
 void Yielding::adopt(const Yielding& before) noexcept {
   hand_ = before.hand_;
-  if (touch_) {
+  if (touch_ && before.touch_) {
+    touch_->adopt(*before.touch_, to_body(hand_));
+  } else if (touch_) {
     touch_->start(to_body(hand_));
   }
 }
@@ -42,7 +48,7 @@ Vector3d Yielding::force(const Felt& felt, FieldState& state) noexcept {
   const contact::Contact& contact = touch_->tick(to_body(hand_), period_);
   const auto& q = parameters_.pose.orientation;
   state.proxy = q * contact.proxy + parameters_.pose.position;
-  if (!(contact.depth > 0.0)) {
+  if (contact.state == contact::ContactState::kFree) {
     return Vector3d::Zero();
   }
   state.depth = contact.depth;

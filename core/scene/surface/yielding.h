@@ -2,8 +2,10 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 
 #include "core/contact/objects/moving_objects.h"
+#include "core/deformable/moving/moving_touch.h"
 #include "core/deformable/touch/ball_touch.h"
 #include "core/scene/field/field_state.h"
 
@@ -11,15 +13,21 @@ namespace haptrial::scene {
 
 /// An object that gives way to the hand.
 struct YieldingParameters {
-  deformable::SharedFeltMesh mesh;  // null: nothing is felt
-  deformable::Tissue tissue;
-  contact::ObjectPose pose;  // of the body's frame in W
+  deformable::SharedFeltMesh mesh;                  // null: nothing is felt
+  deformable::Tissue tissue;                        // of elements that rest on every tick
+  std::optional<deformable::SpringTissue> springs;  // of springs that move, instead
+  contact::ObjectPose pose;                         // of the body's frame in W
   deformable::TouchOptions tool;
-  deformable::SharedCompliance body;  // of mesh and tissue; null until it is prepared
+  deformable::SharedCompliance body;               // of mesh and tissue; null until it is prepared
+  deformable::SharedMovingBody moving;             // of mesh and springs; likewise
+  std::shared_ptr<deformable::MovingShape> shape;  // where its vertices are; null: no pictures
+
+  bool prepared() const { return body != nullptr || moving != nullptr; }
 };
 
-/// A body of linear elements that a ball presses (core/deformable/touch), in W. `depth` is how far
-/// the ball is in the body as it would be at rest, `proxy` the ball's centre.
+/// A body that a ball presses, in W: of linear elements (core/deformable/touch) or of springs that
+/// move (core/deformable/moving). `depth` is how far the ball is in the body as it would be at
+/// rest, `proxy` the ball's centre.
 class Yielding {
  public:
   Yielding(const YieldingParameters& parameters, const Setting& setting);

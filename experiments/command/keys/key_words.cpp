@@ -421,6 +421,10 @@ objects.NAME.cells | | of a body that gives way: along its longest side
 objects.NAME.fixed | bottom | its sides that do not move
 objects.NAME.felt | all that are not fixed | its sides that can be touched
 objects.NAME.seen | yielding | whether it is seen as the hand presses it, or at rest
+objects.NAME.model | elements | what it is made of: elements that rest on every tick, or springs that move
+objects.NAME.constants | | of springs: of every edge, face and tetrahedron
+objects.NAME.density | | of springs
+objects.NAME.decay | | of springs: a free motion dies down with exp(-decay t)
 objects.NAME.young | | Young's modulus
 objects.NAME.spring | | between the hand and the ball that presses
 objects.NAME.poisson | | Poisson's ratio

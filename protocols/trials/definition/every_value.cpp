@@ -85,8 +85,9 @@ std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValu
       scene::Scene(presented.fields, d.rate);
       check_forces(d, presented.fields);
       check_objects(d, presented.fields);
+      prepare_moving_bodies(presented.fields, d.rate);
       if (with_bodies && place == 0) {
-        prepare_bodies(presented.fields);
+        prepare_bodies(presented.fields, d.rate);
         bodies = words_of_bodies(presented.fields, d.rate, d.hand.damping);
       }
     }

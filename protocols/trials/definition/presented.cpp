@@ -23,6 +23,9 @@ std::vector<scene::Field> read_felt_objects(Table& table, const Names& names,
     const auto object = std::ranges::find(d.objects, name, &TrialObject::name);
     Table own = table.table(name);
     const bool known = object != d.objects.end();
+    if (known && object->moves && d.devices() > 1 && !own.has("device")) {
+      own.reject("device", "is missing; name the device whose tool feels the body of springs");
+    }
     objects.push_back(known && object->yields
                           ? scene::read_yielding(own, name, object->felt, names)
                           : scene::read_solid(own, name, known ? object->body : nullptr, names));

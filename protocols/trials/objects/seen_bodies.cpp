@@ -41,20 +41,20 @@ void SeenForces::add(std::size_t i, std::span<const deformable::VertexForce> mor
   }
 }
 
-std::int32_t SeenBodies::number_of(const deformable::SharedCompliance& body) {
+std::int32_t SeenBodies::number_of(const SeenBody& body) {
   const std::lock_guard lock(mutex_);
   auto at = std::ranges::find_if(bodies_, [&](const auto& each) { return each.lock() == body; });
   if (at == bodies_.end()) {
-    bodies_.push_back(body);
+    bodies_.push_back({body.resting, body.moving, body.shape});
     at = bodies_.end() - 1;
   }
   return static_cast<std::int32_t>(at - bodies_.begin());
 }
 
-deformable::SharedCompliance SeenBodies::body(std::int32_t number) const {
+SeenBody SeenBodies::body(std::int32_t number) const {
   const std::lock_guard lock(mutex_);
   const auto at = static_cast<std::size_t>(number);
-  return number >= 0 && at < bodies_.size() ? bodies_[at].lock() : nullptr;
+  return number >= 0 && at < bodies_.size() ? bodies_[at].lock() : SeenBody{};
 }
 
 }  // namespace haptrial::protocols

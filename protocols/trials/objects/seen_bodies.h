@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/deformable/moving/moving_touch.h"
 #include "core/deformable/touch/ball_touch.h"
 #include "protocols/trials/objects/trial_object.h"
 
@@ -30,18 +31,34 @@ struct SeenForces {
   void add(std::size_t i, std::span<const deformable::VertexForce> more) noexcept;
 };
 
+/// How a body gives way: at rest on every tick by forces that press it, or by its own motion.
+struct SeenBody {
+  deformable::SharedCompliance resting;  // null: it moves
+  deformable::SharedMovingBody moving;
+  std::shared_ptr<deformable::MovingShape> shape;  // of what moves
+
+  bool operator==(const SeenBody&) const = default;
+  explicit operator bool() const { return resting != nullptr || shape != nullptr; }
+};
+
 /// How the bodies of a session's trials give way, by the numbers of SeenObject::body. The session's
 /// thread numbers them before a pass, the screen's asks for them; the servo thread does neither.
 class SeenBodies {
  public:
   /// The same body gets the same number as long as it is in use.
-  std::int32_t number_of(const deformable::SharedCompliance& body);
-  /// Null if there is none, or it is no longer in use.
-  deformable::SharedCompliance body(std::int32_t number) const;
+  std::int32_t number_of(const SeenBody& body);
+  /// None if there is none, or it is no longer in use.
+  SeenBody body(std::int32_t number) const;
 
  private:
   mutable std::mutex mutex_;
-  std::vector<std::weak_ptr<const deformable::Compliance>> bodies_;
+  struct Used {
+    std::weak_ptr<const deformable::Compliance> resting;
+    std::weak_ptr<const deformable::MovingBody> moving;
+    std::weak_ptr<deformable::MovingShape> shape;
+    SeenBody lock() const { return {resting.lock(), moving.lock(), shape.lock()}; }
+  };
+  std::vector<Used> bodies_;
 };
 
 }  // namespace haptrial::protocols

@@ -109,6 +109,7 @@ std::vector<deformable::BodySide> read_sides(Table& table, const char* key) {
 /// The keys of a body that gives way; its block, unless it is a file.
 void read_yielding_shape(Table& table, TrialObject& object) {
   object.yields = true;
+  object.moves = table.has("model") && table.choice("model", {"elements", "springs"}) == "springs";
   object.cells = table.integer_or("cells", object.cells, 2, deformable::kMostFeltCells);
   if (table.has("fixed")) {
     object.sides.fixed = read_sides(table, "fixed");

@@ -23,6 +23,7 @@ struct TrialObject {
   std::uint64_t file_bytes{0}, file_checksum{0};  // likewise; the checksum is FNV-1a
   bool recorded{false};                           // its contacts, tick by tick, in /contacts
   bool yields{false};                             // gives way to the hand
+  bool moves{false};                              // and moves: it is made of springs
   int cells{16};                                  // then: along its longest side
   deformable::FeltSides sides{};
   deformable::SharedFeltMesh felt{};  // of a file: null until it is loaded
@@ -46,6 +47,7 @@ struct TrialObject {
 ///     [fixed]         its sides that do not move, of "left", "right", "bottom", "top", "back",
 ///                     "front" (-x, +x, -y, +y, -z, +z); the bottom if left out
 ///     [felt]          its sides that can be touched; all that are not fixed if left out
+///     [model]         "elements" or "springs" (core/scene/read/read_yielding.h)
 ///     [seen]          "yielding", as the hand presses it, if left out; "rest": its resting outline
 ///
 /// Lengths are in metres, numbers alone: what changes between trials is the object's scale, centre

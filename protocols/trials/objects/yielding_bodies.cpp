@@ -11,10 +11,87 @@
 
 namespace haptrial::protocols {
 
-void prepare_bodies(std::vector<scene::Field>& fields) {
+namespace {
+
+constexpr double kMicroseconds = 1e6;
+
+std::string words_of_cost(const std::string& name, const deformable::TouchCost& cost, double rate) {
+  return fmt::format(
+      "objects.{}: a tick in contact takes {:.0f} µs in the median and less than {:.0f} µs in 99 "
+      "of 100 (measured now, on this machine), of {:.0f} µs at {:g} Hz",
+      name, kMicroseconds * cost.median, kMicroseconds * cost.most, kMicroseconds / rate, rate);
+}
+
+/// Of elements that rest on every tick.
+void add_words_of_elements(const scene::Field& field, const scene::YieldingParameters& p,
+                           const scene::Steepness& steepness, double rate, double damping,
+                           std::vector<std::string>& lines) {
+  const double needed = scene::needed_damping_below(0.0, steepness, rate);
+  const double most = deformable::stiffest_touch(*p.body, p.tool.radius);
+  const double under = p.body->stiffest(p.tool.radius);
+  const deformable::ComplianceMemory memory = deformable::compliance_memory(*p.mesh);
+  // Infinite where the ball reaches what is held.
+  const std::string softer = std::isfinite(under)
+                                 ? fmt::format("by about {:.1f} % where the whole ball presses",
+                                               100.0 * under / (under + p.tool.stiffness))
+                                 : "most where the ball reaches what is held";
+  lines.push_back(fmt::format(
+      "objects.{}: {} vertices of which {} can be touched, {:.0f} MB, at most {:.0f} MB while it "
+      "is prepared; at most {:.0f} N/m; the spring of the hand makes it softer than its "
+      "elements, {}; stays calm with {:.2g} N·s/m of damping, and the hand of [hand] has {:g}",
+      field.name, p.mesh->tets.vertices.size(), p.body->touched(), 1e-6 * memory.kept,
+      1e-6 * memory.most, 1.0 / (1.0 / most + 1.0 / p.tool.stiffness), softer, needed, damping));
+  const deformable::TouchCost cost = deformable::measured_cost(p.body, p.tool);
+  lines.push_back(words_of_cost(field.name, cost, rate));
+  if (cost.crowded) {
+    lines.push_back(fmt::format(
+        "objects.{}: pressed 0.4 of its radius deep the ball lies on more places than are "
+        "computed and may be felt softer than the elements; use fewer cells or a smaller ball",
+        field.name));
+  }
+}
+
+/// Of springs that move.
+void add_words_of_springs(const scene::Field& field, const scene::YieldingParameters& p,
+                          double rate, double damping, std::vector<std::string>& lines) {
+  const deformable::MovingBody& body = *p.moving;
+  const int steps = deformable::steps_on_a_tick(body, 1.0 / rate);
+  lines.push_back(fmt::format(
+      "objects.{}: {} tetrahedra of springs, {} step{} of {:.3g} ms on a tick (the longest that is "
+      "stable at rest: {:.3g} ms); gives no energy to a hand of at least {:g} N·s/m of damping, "
+      "and the hand of [hand] has {:g}",
+      field.name, body.springs.tetrahedra.size(), steps, steps == 1 ? "" : "s",
+      1e3 / (rate * steps), 1e3 * body.stable_step, deformable::EnergyAccount::kDamping, damping));
+  deformable::MovingTouch touch(p.moving, p.tool, 1.0 / rate);
+  const deformable::TouchCost cost =
+      deformable::measured_cost(touch, *p.mesh, p.tool.radius, 1.0 / rate);
+  lines.push_back(words_of_cost(field.name, cost, rate));
+  if (cost.most * rate > 1.0) {
+    lines.push_back(fmt::format(
+        "objects.{}: that does not fit into a tick: this machine holds {:.0f} ticks a second; use "
+        "fewer cells, smaller constants or more density, which need fewer or shorter steps",
+        field.name, 1.0 / cost.most));
+  }
+}
+
+}  // namespace
+
+void prepare_moving_bodies(std::vector<scene::Field>& fields, double rate) {
   for (scene::Field& field : fields) {
     auto* p = std::get_if<scene::YieldingParameters>(&field.kind);
-    if (p != nullptr && p->mesh) {
+    if (p != nullptr && p->mesh && p->springs) {
+      p->moving = deformable::prepared(p->mesh, *p->springs);
+      p->shape = std::make_shared<deformable::MovingShape>(p->mesh->tets.vertices.size());
+      deformable::steps_on_a_tick(*p->moving, 1.0 / rate);
+    }
+  }
+}
+
+void prepare_bodies(std::vector<scene::Field>& fields, double rate) {
+  prepare_moving_bodies(fields, rate);
+  for (scene::Field& field : fields) {
+    auto* p = std::get_if<scene::YieldingParameters>(&field.kind);
+    if (p != nullptr && p->mesh && !p->springs) {
       p->body = deformable::prepared(p->mesh, p->tissue);
     }
   }
@@ -25,37 +102,13 @@ std::vector<std::string> words_of_bodies(const std::vector<scene::Field>& fields
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const auto* p = std::get_if<scene::YieldingParameters>(&fields[i].kind);
-    if (p == nullptr || !p->body) {
+    if (p == nullptr || !p->prepared()) {
       continue;
     }
-    const scene::Steepness steepness = scene::steepness(fields, i);
-    const double needed = scene::needed_damping_below(0.0, steepness, rate);
-    const double most = deformable::stiffest_touch(*p->body, p->tool.radius);
-    const double under = p->body->stiffest(p->tool.radius);
-    const deformable::ComplianceMemory memory = deformable::compliance_memory(*p->mesh);
-    // Infinite where the ball reaches what is held.
-    const std::string softer = std::isfinite(under)
-                                   ? fmt::format("by about {:.1f} % where the whole ball presses",
-                                                 100.0 * under / (under + p->tool.stiffness))
-                                   : "most where the ball reaches what is held";
-    lines.push_back(fmt::format(
-        "objects.{}: {} vertices of which {} can be touched, {:.0f} MB, at most {:.0f} MB while it "
-        "is prepared; at most {:.0f} N/m; the spring of the hand makes it softer than its "
-        "elements, {}; stays calm with {:.2g} N·s/m of damping, and the hand of [hand] has {:g}",
-        fields[i].name, p->mesh->tets.vertices.size(), p->body->touched(), 1e-6 * memory.kept,
-        1e-6 * memory.most, 1.0 / (1.0 / most + 1.0 / p->tool.stiffness), softer, needed, damping));
-    const deformable::TouchCost cost = deformable::measured_cost(p->body, p->tool);
-    constexpr double kMicroseconds = 1e6;
-    lines.push_back(fmt::format(
-        "objects.{}: a tick in contact takes {:.0f} µs in the median and less than {:.0f} µs in 99 "
-        "of 100 (measured now, on this machine), of {:.0f} µs at {:g} Hz",
-        fields[i].name, kMicroseconds * cost.median, kMicroseconds * cost.most,
-        kMicroseconds / rate, rate));
-    if (cost.crowded) {
-      lines.push_back(fmt::format(
-          "objects.{}: pressed 0.4 of its radius deep the ball lies on more places than are "
-          "computed and may be felt softer than the elements; use fewer cells or a smaller ball",
-          fields[i].name));
+    if (p->moving) {
+      add_words_of_springs(fields[i], *p, rate, damping, lines);
+    } else {
+      add_words_of_elements(fields[i], *p, scene::steepness(fields, i), rate, damping, lines);
     }
     if (p->tool.radius < deformable::smallest_ball(*p->mesh)) {
       lines.push_back(fmt::format(

@@ -9,7 +9,12 @@ namespace haptrial::protocols {
 
 /// Finds how the bodies among the fields give way, which takes a while if nobody asked for the same
 /// before. Session's thread, between trials. @throws InputError as deformable::prepared()
-void prepare_bodies(std::vector<scene::Field>& fields);
+/// @param rate  of the servo loop [Hz]
+void prepare_bodies(std::vector<scene::Field>& fields, double rate);
+
+/// Whether bodies that move can do so at this rate: prepares them, which takes little.
+/// @throws InputError as deformable::steps_on_a_tick()
+void prepare_moving_bodies(std::vector<scene::Field>& fields, double rate);
 
 /// What the bodies among prepared fields cost and how stiff they are, a line each.
 /// @param rate  of the servo loop [Hz]  @param damping  of the hand of the definition [N·s/m]

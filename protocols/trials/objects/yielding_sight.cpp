@@ -49,41 +49,56 @@ std::vector<Edge> sides_of_cells(const deformable::FeltMesh& mesh) {
 
 }  // namespace
 
-YieldingSight::YieldingSight(deformable::SharedCompliance body, const contact::SharedBody& skin)
+YieldingSight::YieldingSight(SeenBody body, const contact::SharedBody& skin)
     : body_(std::move(body)) {
-  const auto& rest = body_->mesh().tets.vertices;
+  const auto& rest = mesh().tets.vertices;
   coarse_.assign(rest.begin(), rest.end());
-  place_.assign(coarse_.size(), -1);
-  for (std::size_t i = 0; i < body_->places(); ++i) {
-    const auto place = static_cast<std::int32_t>(i);
-    place_[static_cast<std::size_t>(body_->vertex(place))] = place;
+  if (body_.resting) {
+    place_.assign(coarse_.size(), -1);
+    for (std::size_t i = 0; i < body_.resting->places(); ++i) {
+      const auto place = static_cast<std::int32_t>(i);
+      place_[static_cast<std::size_t>(body_.resting->vertex(place))] = place;
+    }
   }
-  const std::vector<Face> outer = deformable::mesh_parts(body_->mesh().tets.tetrahedra).surface;
+  const std::vector<Face> outer = deformable::mesh_parts(mesh().tets.tetrahedra).surface;
   if (skin) {
     fine_ = skin->mesh.vertices;
     skin_ = std::make_unique<deformable::Skin>(coarse_, outer, fine_);
     triangles_ = skin->mesh.triangles;
   } else {
     triangles_ = outer;
-    grid_ = sides_of_cells(body_->mesh());
+    grid_ = sides_of_cells(mesh());
+  }
+}
+
+const deformable::FeltMesh& YieldingSight::mesh() const {
+  return body_.resting ? body_.resting->mesh() : *body_.moving->mesh;
+}
+
+void YieldingSight::update(std::span<const SeenForces::Force> forces) {
+  if (body_.resting) {
+    press(forces);
+  } else if (!body_.shape->read(coarse_)) {
+    return;
+  }
+  if (skin_) {
+    skin_->update(coarse_, fine_);
   }
 }
 
 void YieldingSight::press(std::span<const SeenForces::Force> forces) {
-  for (std::size_t i = 0; i < body_->places(); ++i) {
+  const deformable::Compliance& body = *body_.resting;
+  for (std::size_t i = 0; i < body.places(); ++i) {
     const auto place = static_cast<std::int32_t>(i);
     Eigen::Vector3f u = Eigen::Vector3f::Zero();
     for (const SeenForces::Force& force : forces) {
       const auto vertex = static_cast<std::size_t>(force.vertex);
       const std::int32_t touched = vertex < place_.size() ? place_[vertex] : -1;
-      if (touched >= 0 && static_cast<std::size_t>(touched) < body_->touched()) {
-        u += body_->response(place, touched, Eigen::Vector3f(force.newtons.data()));
+      if (touched >= 0 && static_cast<std::size_t>(touched) < body.touched()) {
+        u += body.response(place, touched, Eigen::Vector3f(force.newtons.data()));
       }
     }
-    coarse_[static_cast<std::size_t>(body_->vertex(place))] = body_->rest(place) + u.cast<double>();
-  }
-  if (skin_) {
-    skin_->update(coarse_, fine_);
+    coarse_[static_cast<std::size_t>(body.vertex(place))] = body.rest(place) + u.cast<double>();
   }
 }
 

@@ -10,16 +10,18 @@
 
 namespace haptrial::protocols {
 
-/// The surface of a body as forces press it, for pictures: of a block its outer faces, of a body
+/// The surface of a body as it gives way, for pictures: of a block its outer faces, of a body
 /// from a file the file's mesh, which follows the elements as a skin. Lengths are the body's own
 /// frame [m]. One thread.
 class YieldingSight {
  public:
   /// @param skin  null: the outer faces of the elements
-  YieldingSight(deformable::SharedCompliance body, const contact::SharedBody& skin);
+  YieldingSight(SeenBody body, const contact::SharedBody& skin);
 
-  /// Beyond the vertices that a Compliance knows, those deeper than one element, nothing moves.
-  void press(std::span<const SeenForces::Force> forces);
+  /// What rests on every tick lies as these forces press it; beyond the vertices that a Compliance
+  /// knows, those deeper than one element, nothing moves. What moves is where it was published
+  /// last.
+  void update(std::span<const SeenForces::Force> forces);
 
   const std::vector<Eigen::Vector3d>& vertices() const { return skin_ ? fine_ : coarse_; }
   const std::vector<geometry::Triangle>& triangles() const { return triangles_; }
@@ -27,7 +29,10 @@ class YieldingSight {
   const std::vector<deformable::Edge>& grid() const { return grid_; }
 
  private:
-  deformable::SharedCompliance body_;
+  const deformable::FeltMesh& mesh() const;
+  void press(std::span<const SeenForces::Force> forces);
+
+  SeenBody body_;
   std::vector<std::int32_t> place_;      // by vertex of the FeltMesh; -1: none
   std::vector<Eigen::Vector3d> coarse_;  // (vertices of the FeltMesh)
   std::vector<Eigen::Vector3d> fine_;

@@ -223,7 +223,7 @@ class TrialDrawing final : public Drawing {
     }
     if (seen.body != sighted_[i] || !sights_[i]) {
       sighted_[i] = seen.body;
-      const deformable::SharedCompliance body = bodies_->body(seen.body);
+      const SeenBody body = bodies_->body(seen.body);
       const TrialObject& object = d_.objects[static_cast<std::size_t>(seen.object)];
       sights_[i] =
           body ? std::make_unique<YieldingSight>(body, object.file.empty() ? nullptr : object.body)
@@ -238,7 +238,7 @@ class TrialDrawing final : public Drawing {
                  std::span<const SeenForces::Force> pressed, const Part& part) {
     constexpr double kThin = 1.0;  // [px]
     constexpr double kPale = 0.3;  // share of the colour in the surface's
-    body.press(pressed);
+    body.update(pressed);
     const Eigen::Quaterniond turn(seen.turn[0], seen.turn[1], seen.turn[2], seen.turn[3]);
     const Eigen::Vector3d centre = place_of(seen.centre);
     pixels_.clear();

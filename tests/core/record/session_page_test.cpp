@@ -15,6 +15,7 @@
 #include "core/record/rows/common_tables.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/table/table_page.h"
+#include "core/record/trials/moving_body_row.h"
 #include "core/record/trials/touched_body_row.h"
 #include "core/record/trials/trial_rows.h"
 
@@ -57,6 +58,7 @@ TEST(SessionPageTest, TablesOfTrials) {
   tables.insert(tables.end(), adaptation_tables().begin(), adaptation_tables().end());
   tables.insert(tables.end(), out_of_time_tables().begin(), out_of_time_tables().end());
   tables.push_back(&table_of<TouchedBodyRow>());
+  tables.push_back(&table_of<MovingBodyRow>());
   expect_described("trials", tables);
 }
 TEST(SessionPageTest, TablesOfDrillings) {

@@ -18,6 +18,8 @@ struct UniformConstants {
   double length{};  // of every edge, >= 0 [J]
   double area{};    // of every face, >= 0 [J]
   double volume{};  // of every tetrahedron, >= 0 [J]
+
+  bool operator==(const UniformConstants&) const = default;
 };
 
 /// The constants k of each spring (spring_energies.h), all >= 0.

@@ -12,7 +12,7 @@ namespace {
 TEST(SurfaceSamplesTest, ASampleIsMadeOfCornersThatEachOfItsFacesHas) {
   const Compliance body(test::soft_block(), test::soft_tissue());
   for (const int steps : {1, 2, 5}) {
-    const SurfaceSamples samples(body, steps);
+    const SurfaceSamples samples(body.faces(), body.rest(), steps);
     for (std::size_t f = 0; f < body.faces().size(); ++f) {
       const Face& face = body.faces()[f];
       for (const std::int32_t number : samples.on(static_cast<std::int32_t>(f))) {

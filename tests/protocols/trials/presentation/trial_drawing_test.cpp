@@ -100,7 +100,7 @@ TEST_F(TrialDrawingTest, ABodyThatGivesWayIsSeenAsTheHandPressesIt) {
   TrialView view;
   view.interval = 1;
   view.objects[0].object = 0;
-  view.objects[0].body = bodies->number_of(body);
+  view.objects[0].body = bodies->number_of({body, nullptr, nullptr});
   const auto row_of = [&](double y) { return 0.5 * kHeight - y / definition_.view.width * kWidth; };
   const auto lowest_line = [&](const render::Image& image, double x) {
     const auto column = static_cast<int>(0.5 * kWidth + x / definition_.view.width * kWidth);

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/deformable/springs/spring_motion.h"
+#include "core/deformable/touch/body_touch.h"
+#include "core/deformable/touch/felt_mesh.h"
+#include "core/deformable/touch/normal_forces.h"
+#include "core/deformable/touch/surface_samples.h"
+
+namespace haptrial::deformable {
+
+/// A ball that presses the surface of a moving body, step by step. After a free step no place p of
+/// the surface (surface_samples.h) may be inside of the ball; forces over the last step see to it:
+///
+///     n · (p - y) >= r,  f >= 0,   y = x - Σ f / k
+///
+/// with the tool x, the ball's centre y and n from the ball into the body. Masses lie at the
+/// vertices: how places give way on a step is known without the stiffness of the body. Friction
+/// keeps the places, on the mean of their pressures, from moving along the ball, up to Coulomb's
+/// bound. A ball whose centre is behind the surface does not touch it.
+/// After: Carpenter, Taylor and Katona 1991, Lagrange constraints for transient contact.
+class BallContact {
+ public:
+  static constexpr std::size_t kMostPlaces = PressedPlaces::kMost;
+
+  /// A point of the surface that the ball may press.
+  struct Place {
+    std::int32_t sample{};
+    Eigen::Vector3d before{Eigen::Vector3d::Zero()};  // where it was after the last step [m]
+    Eigen::Vector3d normal{Eigen::Vector3d::Zero()};  // n
+    double pressed{0.0};                              // f on the last step [N]
+    Eigen::Vector3d sum{Eigen::Vector3d::Zero()};     // of the forces on it since gather() [N]
+  };
+
+  /// @param options  of a radius that the body's cells can show
+  BallContact(const FeltMesh& mesh, const TouchOptions& options);
+
+  // Servo thread, all of the following: no allocation, lock or throw.
+
+  /// No contact any more.
+  void forget() noexcept;
+  /// Goes on as a ball of the same radius on the same body was left; any other forgets.
+  void adopt(const BallContact& before) noexcept;
+  /// Which places the ball may press on a tick, on which the tool goes from one point to another.
+  void gather(const SpringMotion& motion, const Eigen::Vector3d& from,
+              const Eigen::Vector3d& to) noexcept;
+  /// Moves places out of a ball that is put there, without a velocity; after gather().
+  void make_room(SpringMotion& motion, const Eigen::Vector3d& centre) const noexcept;
+  /// After a free step.
+  void press(SpringMotion& motion, const Eigen::Vector3d& tool) noexcept;
+
+  std::span<const Place> places() const noexcept { return std::span(places_).first(count_); }
+  const SurfaceSamples::Sample& sample(const Place& place) const noexcept {
+    return samples_.samples[static_cast<std::size_t>(place.sample)];
+  }
+  const Eigen::Vector3d& force() const noexcept { return force_; }    // on the body, last step [N]
+  const Eigen::Vector3d& centre() const noexcept { return centre_; }  // y [m]
+  bool slips() const noexcept { return slips_; }
+  bool solved() const noexcept { return solved_; }    // since gather()
+  bool crowded() const noexcept { return crowded_; }  // more places than fit: the nearest are taken
+  /// How far a ball around `tool` is in the body as it would be at rest, at what it presses [m].
+  double depth(const Eigen::Vector3d& tool) const noexcept;
+
+ private:
+  Eigen::Vector3d where(const SpringMotion& motion, const Place& place) const noexcept;
+  Eigen::Vector3d at_rest(const Place& place) const noexcept;
+  void find_near(const SpringMotion& motion, const Eigen::Vector3d& middle, double reach) noexcept;
+  void look_at(const SpringMotion& motion, std::int32_t sample, const Eigen::Vector3d& middle,
+               double reach) noexcept;
+  void add(const Place& place, double distance) noexcept;
+  void rub_on(SpringMotion& motion) noexcept;
+  void choose(const SpringMotion& motion, const Eigen::Vector3d& centre) noexcept;
+  void find_compliance(const SpringMotion& motion) noexcept;
+  void press_chosen(SpringMotion& motion) noexcept;
+  void rub(SpringMotion& motion, const Eigen::Vector3d& before) noexcept;
+  Place& chosen_place(Eigen::Index i) noexcept {
+    return places_[chosen_[static_cast<std::size_t>(i)]];
+  }
+  double together(const SpringMotion& motion, const Place& a, const Place& b) const noexcept;
+  void apply(SpringMotion& motion, Place& place, const Eigen::Vector3d& force) noexcept;
+
+  const FeltMesh* mesh_;
+  TouchOptions options_;
+  SurfaceSamples samples_;
+  std::vector<std::int32_t> corners_;     // of the felt faces, each once
+  std::vector<std::uint8_t> near_;        // by vertex
+  std::vector<std::uint64_t> looked_at_;  // by sample: on which tick
+  std::vector<double> kept_;              // by sample: the pressure of the tick before [N]
+  std::uint64_t tick_{0};
+  std::array<Place, kMostPlaces> places_;
+  std::array<double, kMostPlaces> distance_{};
+  std::size_t count_{0};
+  std::array<std::size_t, kMostPlaces> chosen_{};  // places that may be pressed on the step
+  PressedPlaces problem_;
+  PressedPlaces::Matrix across_;  // of chosen places: compliance across n [m/N]
+  PressedPlaces::Vector pressed_;
+  Eigen::Vector3d centre_{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d force_{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d friction_{Eigen::Vector3d::Zero()};  // of it
+  double pressure_{0.0};                               // sum of f [N]
+  bool slips_{false};
+  bool solved_{true};
+  bool crowded_{false};
+};
+
+}  // namespace haptrial::deformable

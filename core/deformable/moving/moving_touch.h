@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/deformable/moving/ball_contact.h"
+#include "core/deformable/moving/energy_account.h"
+#include "core/deformable/moving/moving_body.h"
+#include "core/deformable/moving/moving_shape.h"
+#include "core/deformable/touch/body_touch.h"
+
+namespace haptrial::deformable {
+
+/// A ball on the surface of a body of springs that moves: with inertia, waves and large strains.
+/// On each tick the body makes several explicit steps, while the ball goes on to the tool; what is
+/// felt is the mean force of these steps. An energy account (energy_account.h) keeps it passive.
+/// A tick is a function of the tool's places alone, to the bit on every instruction set.
+/// A point, and any ball below smallest_ball(), is felt as a ball of that radius. A ball whose
+/// centre begins inside of the body touches nothing until it has left.
+/// Source: Morris 2006, §5.4.1; docs/algorithms/deformable-moving.md.
+class MovingTouch final : public BodyTouch {
+ public:
+  /// @param period  of a tick [s]  @param shape  null: no pictures
+  /// @throws std::invalid_argument naming the option that breaks its bound; InputError as
+  /// steps_on_a_tick().
+  MovingTouch(SharedMovingBody body, const TouchOptions& options, double period,
+              std::shared_ptr<MovingShape> shape = nullptr);
+
+  void start(const Eigen::Vector3d& tool) noexcept override;
+  /// Goes on as `before`, of the same body, was left; as start() of any other body.
+  void adopt(const BodyTouch& before, const Eigen::Vector3d& tool) noexcept override;
+  /// @param period  is that of the constructor
+  const contact::Contact& tick(const Eigen::Vector3d& tool, double period) noexcept override;
+  std::span<const VertexForce> forces() const noexcept override {
+    return std::span(forces_).first(force_count_);
+  }
+  const TouchCounts& counts() const noexcept override { return counts_; }
+
+  const SpringMotion& motion() const noexcept { return motion_; }
+  int steps() const noexcept { return steps_; }  // on a tick
+  /// What the hand gave in this contact and did not get back [J].
+  double balance() const noexcept { return account_.balance(); }
+
+ private:
+  void put_to_rest() noexcept;
+  void advance(const Eigen::Vector3d& tool) noexcept;
+  void keep_forces() noexcept;
+  void note(const Eigen::Vector3d& tool) noexcept;
+  void limit() noexcept;
+  void scale(double share) noexcept;
+  bool together() const noexcept;
+
+  SharedMovingBody body_;
+  TouchOptions options_;
+  double period_;
+  int steps_;
+  SpringMotion motion_;
+  BallContact ball_;
+  EnergyAccount account_;
+  std::shared_ptr<MovingShape> shape_;
+  std::vector<VertexForce> forces_;
+  std::size_t force_count_{0};
+  Eigen::Vector3d tool_{Eigen::Vector3d::Zero()};  // a tick ago [m]
+  Eigen::Vector3d felt_{Eigen::Vector3d::Zero()};  // on the body, mean over the steps [N]
+  std::uint64_t inverted_steps_{0};                // before this tick
+  double upright_{0.0};                            // the last force without one inside out [N]
+  std::uint64_t ticks_{0};
+  contact::Contact contact_;
+  TouchCounts counts_;
+};
+
+}  // namespace haptrial::deformable
