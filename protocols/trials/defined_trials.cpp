@@ -12,8 +12,6 @@
 #include "core/base/random.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/trials/contact_row.h"
-#include "core/record/trials/moving_body_row.h"
-#include "core/record/trials/touched_body_row.h"
 #include "core/record/trials/trial_rows.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/trials/definition/defaults.h"
@@ -27,17 +25,6 @@ namespace haptrial::protocols {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* kInsideOut =
-    "a tetrahedron would have been turned inside out; the force stayed below that";
-constexpr const char* kCrowded =
-    "the ball lay on more places of the body than are computed; it may have been felt softer than "
-    "its elements (use fewer cells or a smaller ball)";
-constexpr const char* kLimited =
-    "the force was cut, as it might have given out more energy than the hand had given";
-constexpr const char* kFlownApart =
-    "the body flew apart, deformed beyond what its steps are stable for, and was put to rest (use "
-    "softer constants, more damping or more density)";
-
 /// Fields whose force is to work on the hand, a bit each: all but those that only give way.
 std::uint64_t pushing(const std::vector<scene::Field>& fields) {
   std::uint64_t mask = 0;
@@ -54,14 +41,6 @@ std::uint64_t pushing(const std::vector<scene::Field>& fields) {
 
 bool records_contacts(const TrialsDefinition& d) {
   return std::ranges::any_of(d.objects, &TrialObject::recorded);
-}
-
-bool has_yielding(const TrialsDefinition& d) {
-  return std::ranges::any_of(d.objects, &TrialObject::yields);
-}
-
-bool has_moving(const TrialsDefinition& d) {
-  return std::ranges::any_of(d.objects, &TrialObject::moves);
 }
 
 /// Objects come behind all other fields, in the order of the definition's.
@@ -99,7 +78,8 @@ DefinedTrials::DefinedTrials(const StudiedDefinition& definition, const SessionP
       root_(parsed_trials(definition)),
       names_(read_names(root_, definition)),
       sequence_(definition, taker_of(definition, place)),
-      object_files_(object_files(definition.objects)) {
+      object_files_(object_files(definition.objects)),
+      touched_bodies_(definition.objects) {
   if (records_contacts(d_)) {
     contacts_ = std::make_unique<ContactLog>();
   }
@@ -161,12 +141,7 @@ record::TableList DefinedTrials::tables() const {
   if (contacts_) {
     tables.push_back(&record::table_of<record::ContactRow>());
   }
-  if (has_yielding(d_)) {
-    tables.push_back(&record::table_of<record::TouchedBodyRow>());
-  }
-  if (has_moving(d_)) {
-    tables.push_back(&record::table_of<record::MovingBodyRow>());
-  }
+  touched_bodies_.add_tables(tables);
   if (!object_files_.empty()) {
     tables.push_back(&record::table_of<record::ObjectFileRow>());
   }
@@ -430,122 +405,18 @@ void DefinedTrials::close_pass(SessionFile& file, std::int32_t row) {
   keep_stages(file, row);
   keep_adaptation(file, row);
   keep_out_of_time(file, row);
-  if (has_yielding(d_)) {
-    keep_touched_bodies(file, row);
-  }
-  if (has_moving(d_)) {
-    keep_moving_bodies(file, row);
-  }
-}
-
-/// How bodies that move did so; what was given up of it is told at once, too.
-void DefinedTrials::keep_moving_bodies(SessionFile& file, std::int32_t row) {
-  std::vector<record::MovingBodyRow> rows;
-  for (std::size_t device = 0; device < pass_->scenes(0).size(); ++device) {
-    for (std::size_t object = 0; object < d_.objects.size(); ++object) {
-      if (d_.objects[object].moves) {
-        rows.push_back(moving_body(device, object));
-        rows.back().pass = row;
-      }
-    }
-  }
-  file.add(std::span<const record::MovingBodyRow>(rows));
-  const int trial = pass_->trial() % kPracticeNumbers;
-  const auto tell = [&](const record::MovingBodyRow& body, std::uint64_t ticks, TickSum& sum,
-                        const char* event, const char* what) {
-    if (ticks > 0) {
-      sum.add(ticks);
-      file.event(event,
-                 fmt::format("trial {}: {}: on {} ticks {}", trial, body.object, ticks, what));
-    }
-  };
-  for (const record::MovingBodyRow& body : rows) {
-    tell(body, body.limited, limited_, "energy_limit", kLimited);
-    tell(body, body.flown_apart, flown_apart_, "flown_apart", kFlownApart);
-  }
-}
-
-record::MovingBodyRow DefinedTrials::moving_body(std::size_t device, std::size_t object) const {
-  record::MovingBodyRow sum;
-  sum.device = static_cast<std::int32_t>(device);
-  sum.object = d_.objects[object].name;
-  for (std::size_t i = 0; i < pass_->intervals_begun(); ++i) {
-    const scene::Scene& scene = pass_->scenes(i)[device];
-    const auto* touch = dynamic_cast<const deformable::MovingTouch*>(
-        scene.touch(scene.size() - d_.objects.size() + object));
-    if (touch != nullptr) {
-      sum.steps = touch->steps();
-      sum.limited += touch->counts().limited;
-      sum.flown_apart += touch->counts().flown_apart;
-    }
-  }
-  return sum;
-}
-
-/// The contacts of all intervals with each body; what was not felt as it should be is told at once,
-/// too.
-void DefinedTrials::keep_touched_bodies(SessionFile& file, std::int32_t row) {
-  std::vector<record::TouchedBodyRow> rows;
-  for (std::size_t device = 0; device < pass_->scenes(0).size(); ++device) {
-    for (std::size_t object = 0; object < d_.objects.size(); ++object) {
-      if (d_.objects[object].yields) {
-        rows.push_back(touched_body(device, object));
-        rows.back().pass = row;
-      }
-    }
-  }
-  file.add(std::span<const record::TouchedBodyRow>(rows));
-  const int trial = pass_->trial() % kPracticeNumbers;
-  for (const record::TouchedBodyRow& body : rows) {
-    if (body.inverted > 0) {
-      inverted_.add(body.inverted);
-      file.event("inside_out", fmt::format("trial {}: {}: on {} ticks {}", trial, body.object,
-                                           body.inverted, kInsideOut));
-    }
-    if (body.crowded > 0) {
-      crowded_.add(body.crowded);
-      file.event("crowded_contact", fmt::format("trial {}: {}: on {} ticks {}", trial, body.object,
-                                                body.crowded, kCrowded));
-    }
-  }
-}
-
-record::TouchedBodyRow DefinedTrials::touched_body(std::size_t device, std::size_t object) const {
-  record::TouchedBodyRow sum;
-  sum.device = static_cast<std::int32_t>(device);
-  sum.object = d_.objects[object].name;
-  for (std::size_t i = 0; i < pass_->intervals_begun(); ++i) {
-    const scene::Scene& scene = pass_->scenes(i)[device];
-    if (const auto* touch = scene.touch(scene.size() - d_.objects.size() + object)) {
-      const deformable::TouchCounts& counts = touch->counts();
-      sum.contact += counts.contact;
-      sum.inverted += counts.inverted;
-      sum.unsettled += counts.unsettled;
-      sum.crowded += counts.crowded;
-    }
-  }
-  return sum;
+  touched_bodies_.keep(*pass_, row, file);
 }
 
 std::vector<std::string> DefinedTrials::notices() const {
   std::vector<std::string> lines;
-  const auto say = [&](const TickSum& sum, const char* what,
-                       const char* table = "/touched_bodies") {
-    if (sum.ticks > 0) {
-      lines.push_back(fmt::format("bodies that give way, in {} of {}: on {} ticks {}",
-                                  sum.bodies == 1 ? "1 pass" : fmt::format("{} passes", sum.bodies),
-                                  table, sum.ticks, what));
-    }
-  };
   if (script_ != nullptr && script_->left() > 0) {
     lines.push_back(fmt::format(
         "{}: in {} of {} trials the level was the procedure's own (events {})",
         d_.script->file.filename().string(), script_->left(), script_->asked(), kScriptTrouble));
   }
-  say(inverted_, kInsideOut);
-  say(crowded_, kCrowded);
-  say(limited_, kLimited, "/moving_bodies");
-  say(flown_apart_, kFlownApart, "/moving_bodies");
+  const std::vector<std::string> bodies = touched_bodies_.notices();
+  lines.insert(lines.end(), bodies.begin(), bodies.end());
   return lines;
 }
 

@@ -6,9 +6,9 @@
 
 #include "core/base/definition/table.h"
 #include "core/record/trials/object_file_row.h"
-#include "core/record/trials/touched_body_row.h"
 #include "core/record/trials/trial_rows.h"
 #include "protocols/interface/trials.h"
+#include "protocols/trials/body_report.h"
 #include "protocols/trials/definition/presented.h"
 #include "protocols/trials/presentation/trial_pass.h"
 #include "protocols/trials/script/scripted_levels.h"
@@ -61,10 +61,6 @@ class DefinedTrials final : public Trials {
   void keep_out_of_time(SessionFile& file, std::int32_t row) const;
   void keep_level(SessionFile& file, std::int32_t row);
   void keep_stages(SessionFile& file, std::int32_t row) const;
-  void keep_touched_bodies(SessionFile& file, std::int32_t row);
-  void keep_moving_bodies(SessionFile& file, std::int32_t row);
-  record::MovingBodyRow moving_body(std::size_t device, std::size_t object) const;
-  record::TouchedBodyRow touched_body(std::size_t device, std::size_t object) const;
 
   const StudiedDefinition& d_;
   SessionPlace place_;
@@ -82,22 +78,13 @@ class DefinedTrials final : public Trials {
   std::unique_ptr<ContactLog> contacts_;                                // null: none are recorded
   std::shared_ptr<SeenBodies> bodies_{std::make_shared<SeenBodies>()};  // for the screen
   std::vector<record::ObjectFileRow> object_files_;
+  BodyReport touched_bodies_;
   std::unique_ptr<TrialPass> pass_;
   std::vector<std::vector<NamedStage>> stages_;  // of each interval of the pass
   std::vector<scene::Region> regions_;           // of the last interval
   std::vector<std::size_t> region_devices_;      // likewise
   std::vector<record::VariableRow> variables_;   // of the pass
   std::vector<int> right_;                       // choice of each question; -1: none
-  /// Ticks of the session, and the rows of /touched_bodies that have them.
-  struct TickSum {
-    std::uint64_t ticks{0};
-    std::uint64_t bodies{0};
-    void add(std::uint64_t more) {
-      ticks += more;
-      ++bodies;
-    }
-  };
-  TickSum inverted_, crowded_, limited_, flown_apart_;
 };
 
 }  // namespace haptrial::protocols

@@ -248,7 +248,7 @@ TEST_F(EvaluateCommandTest, ARecordingIsNotReplayedWithAnotherMesh) {
   const auto refused = run(again + "_2");
   EXPECT_EQ(refused.status, 2);
   EXPECT_THAT(refused.errors,
-              HasSubstr("was recorded with another mesh of objects.ball: 'ball.obj' has the "
+              HasSubstr("was recorded with another file of objects.ball: 'ball.obj' has the "
                         "checksum " +
                         other + ", the recording " + fmt::format("{:016x}", rows[0].checksum) +
                         "; replay it with the same file"));

@@ -17,6 +17,10 @@ std::shared_ptr<const MovingBody> made(const SharedFeltMesh& mesh, const SpringT
   auto body = std::make_shared<MovingBody>();
   body->mesh = mesh;
   body->springs = spring_body(mesh->tets, tissue.density, tissue.constants, mesh->name);
+  if (tissue.calibrated) {
+    check_constants(body->springs, *tissue.calibrated);
+    body->springs.constants = *tissue.calibrated;
+  }
   for (std::size_t v = 0; v < mesh->held.size(); ++v) {
     if (mesh->held[v] != 0) {
       body->held.push_back(static_cast<std::int32_t>(v));

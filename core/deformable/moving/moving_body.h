@@ -10,11 +10,12 @@
 
 namespace haptrial::deformable {
 
-/// What a body of springs is made of, everywhere the same.
+/// What a body of springs is made of.
 struct SpringTissue {
-  UniformConstants constants;  // [J]
-  double density{1000.0};      // > 0 [kg/m³]
-  double decay{0.0};           // a >= 0: a free motion dies down with exp(-a t) [1/s]
+  UniformConstants constants;                         // everywhere the same [J]
+  std::shared_ptr<const SpringConstants> calibrated;  // of each spring, instead; null: none
+  double density{1000.0};                             // > 0 [kg/m³]
+  double decay{0.0};  // a >= 0: a free motion dies down with exp(-a t) [1/s]
 
   bool operator==(const SpringTissue&) const = default;
 };

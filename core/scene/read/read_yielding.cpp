@@ -36,12 +36,16 @@ deformable::Tissue read_tissue(const FieldReader& read) {
 }
 
 deformable::SpringTissue read_springs(const FieldReader& read) {
-  const Eigen::Vector3d constants = read.vector("constants", {0.0, 1e6}, "J");
   deformable::SpringTissue springs;
-  springs.constants = {constants[0], constants[1], constants[2]};
-  if (!(springs.constants.length > 0.0)) {
-    read.table.reject("constants", fmt::format("begins with {} J", springs.constants.length),
-                      "a number above 0 for the edges, and at least 0 for faces and tetrahedra");
+  if (read.table.has("calibrated")) {
+    read.table.text("calibrated");
+  } else {
+    const Eigen::Vector3d constants = read.vector("constants", {0.0, 1e6}, "J");
+    springs.constants = {constants[0], constants[1], constants[2]};
+    if (!(springs.constants.length > 0.0)) {
+      read.table.reject("constants", fmt::format("begins with {} J", springs.constants.length),
+                        "a number above 0 for the edges, and at least 0 for faces and tetrahedra");
+    }
   }
   springs.density = read.number("density", {0.0, 1e5, true}, "kg/m³");
   springs.decay = read.number_or(kDecay, "decay", {0.0, 1e4}, "1/s");
@@ -51,7 +55,8 @@ deformable::SpringTissue read_springs(const FieldReader& read) {
 }  // namespace
 
 Field read_yielding(Table& table, std::string name, const deformable::SharedFeltMesh& mesh,
-                    const NumberSource& source) {
+                    const NumberSource& source,
+                    std::shared_ptr<const deformable::SpringConstants> calibrated) {
   const FieldReader read{table, source};
   Field field;
   field.name = std::move(name);
@@ -60,6 +65,7 @@ Field read_yielding(Table& table, std::string name, const deformable::SharedFelt
   p.mesh = mesh;
   if (table.has("model") && table.choice("model", {"elements", "springs"}) == "springs") {
     p.springs = read_springs(read);
+    p.springs->calibrated = std::move(calibrated);
   } else {
     p.tissue = read_tissue(read);
   }

@@ -11,6 +11,7 @@
 #include "analysis/document/palette.h"
 #include "analysis/files/new_folder.h"
 #include "core/base/files/file_text.h"
+#include "core/deformable/springs/law/constants_table.h"
 #include "experiments/command/deform/calibration_journal.h"
 #include "experiments/command/deform/calibration_pictures.h"
 #include "experiments/command/deform/deform_files.h"
@@ -215,7 +216,7 @@ void write_calibration(const DeformBody& body, const deformable::SpringBody& spr
                        const CalibrationRun& run, const std::string& folder) {
   exchange::NewFolder out(folder);
   out.write("calibration.json", json_of(body, springs, run));
-  out.write("constants.csv", constants_csv(run.springs));
+  out.write("constants.csv", deformable::constants_csv(run.springs));
   out.write("evaluations.csv", evaluations_csv(run.result.steps));
   const auto place = out.place("report.html").parent_path();
   const analysis::Figure figure = error_figure(run);

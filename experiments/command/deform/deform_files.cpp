@@ -8,14 +8,14 @@
 
 #include "analysis/files/csv.h"
 #include "core/base/error.h"
-#include "core/deformable/calibration/spring_parameters.h"
+#include "core/base/files/file_text.h"
+#include "core/deformable/springs/law/constants_table.h"
 #include "core/geometry/volume_files/tet_files.h"
 
 namespace haptrial::experiments {
 namespace {
 
 using analysis::CsvTable;
-using deformable::SpringKind;
 using Eigen::Vector3d;
 
 std::vector<Vector3d> vectors(const CsvTable& table, const char* x, const char* y, const char* z) {
@@ -27,18 +27,6 @@ std::vector<Vector3d> vectors(const CsvTable& table, const char* x, const char* 
     found.emplace_back(xs[i], ys[i], zs[i]);
   }
   return found;
-}
-
-const char* word_of(SpringKind kind) {
-  switch (kind) {
-    case SpringKind::kLength:
-      return "length";
-    case SpringKind::kArea:
-      return "area";
-    case SpringKind::kVolume:
-      break;
-  }
-  return "volume";
 }
 
 geometry::TetField stress_field(const std::vector<deformable::TetState>& states) {
@@ -118,41 +106,9 @@ std::vector<deformable::Marker> read_markers(const std::filesystem::path& file,
   return markers;
 }
 
-std::string constants_csv(const deformable::SpringConstants& constants) {
-  std::string text = "kind,number,constant_J\n";
-  for (const SpringKind kind : deformable::kSpringKinds) {
-    const auto& list = list_of(constants, kind);
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      fmt::format_to(std::back_inserter(text), "{},{},{:.9g}\n", word_of(kind), i, list[i]);
-    }
-  }
-  return text;
-}
-
 deformable::SpringConstants read_constants(const std::filesystem::path& file,
                                            const deformable::SpringBody& body) {
-  const CsvTable table = CsvTable::load(file);
-  const auto values = table.numbers(table.column("constant_J"));
-  const std::size_t kind_column = table.column("kind");
-  deformable::SpringConstants constants;
-  std::size_t row = 0;
-  for (const SpringKind kind : deformable::kSpringKinds) {
-    const std::size_t count = list_of(body.constants, kind).size();
-    for (std::size_t i = 0; i < count && row < values.size(); ++i, ++row) {
-      if (table.text(row, kind_column) != word_of(kind)) {
-        table.refuse(row, kind_column,
-                     fmt::format("{} here: the body has {} of them", word_of(kind), count));
-      }
-      list_of(constants, kind).push_back(values[row]);
-    }
-  }
-  if (row != values.size() || constants.volume.size() != body.volumes.size()) {
-    throw InputError(fmt::format("{}: has {} constants; the body has {}", file.string(),
-                                 values.size(),
-                                 body.lengths.size() + body.areas.size() + body.volumes.size()));
-  }
-  check_constants(body, constants);
-  return constants;
+  return deformable::parse_constants(file_text(file), file.string(), body);
 }
 
 void write_state(const std::filesystem::path& file, const geometry::TetMesh& mesh,

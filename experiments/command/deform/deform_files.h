@@ -28,9 +28,7 @@ bool has_markers(const std::filesystem::path& file);
 std::vector<deformable::Marker> read_markers(const std::filesystem::path& file,
                                              const geometry::TetMesh& mesh);
 
-/// A table of kind, number and constant [J] of each spring.
-std::string constants_csv(const deformable::SpringConstants& constants);
-/// @throws InputError for a table that is not one of this body.
+/// @throws InputError as deformable::parse_constants().
 deformable::SpringConstants read_constants(const std::filesystem::path& file,
                                            const deformable::SpringBody& body);
 

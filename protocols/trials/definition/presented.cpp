@@ -27,7 +27,7 @@ std::vector<scene::Field> read_felt_objects(Table& table, const Names& names,
       own.reject("device", "is missing; name the device whose tool feels the body of springs");
     }
     objects.push_back(known && object->yields
-                          ? scene::read_yielding(own, name, object->felt, names)
+                          ? scene::read_yielding(own, name, object->felt, names, object->constants)
                           : scene::read_solid(own, name, known ? object->body : nullptr, names));
   }
   return objects;

@@ -17,6 +17,11 @@ std::vector<record::ObjectFileRow> object_files(const std::vector<TrialObject>& 
       rows.push_back({static_cast<std::int32_t>(i), object.name, object.file.string(),
                       object.file_bytes, object.file_checksum});
     }
+    if (!object.constants_file.empty()) {
+      rows.push_back({static_cast<std::int32_t>(i), object.name + ".calibrated",
+                      object.constants_file.string(), object.constants_bytes,
+                      object.constants_checksum});
+    }
   }
   return rows;
 }
@@ -28,7 +33,7 @@ void check_object_files(const record::SessionReader& recorded,
     const auto same = std::ranges::find(now, before.name, &record::ObjectFileRow::name);
     if (same != now.end() && (same->bytes != before.bytes || same->checksum != before.checksum)) {
       throw InputError(fmt::format(
-          "{}: was recorded with another mesh of objects.{}: '{}' has the checksum {:016x}, the "
+          "{}: was recorded with another file of objects.{}: '{}' has the checksum {:016x}, the "
           "recording {:016x}; {} it with the same file",
           recorded.path().string(), before.name, same->file, same->checksum, before.checksum, to));
     }

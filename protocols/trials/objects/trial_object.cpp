@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/files/file_text.h"
 #include "core/base/fnv.h"
+#include "core/deformable/springs/law/constants_table.h"
 #include "core/geometry/files/mesh_io.h"
 #include "core/geometry/mesh/procedural.h"
 
@@ -110,6 +111,9 @@ std::vector<deformable::BodySide> read_sides(Table& table, const char* key) {
 void read_yielding_shape(Table& table, TrialObject& object) {
   object.yields = true;
   object.moves = table.has("model") && table.choice("model", {"elements", "springs"}) == "springs";
+  if (object.moves && table.has("calibrated")) {
+    object.constants_file = table.text("calibrated");
+  }
   object.cells = table.integer_or("cells", object.cells, 2, deformable::kMostFeltCells);
   if (table.has("fixed")) {
     object.sides.fixed = read_sides(table, "fixed");
@@ -161,21 +165,42 @@ std::vector<TrialObject> read_objects(Table& objects) {
   return found;
 }
 
+namespace {
+
+void load_mesh(TrialObject& object, const std::filesystem::path& file) {
+  const std::string bytes = file_text(file);
+  object.body =
+      contact::felt_body(geometry::parse_mesh(bytes, geometry::mesh_format(file), file.string()));
+  object.file_bytes = bytes.size();
+  object.file_checksum = fnv1a(bytes);
+  if (object.yields) {
+    object.felt = std::make_shared<const deformable::FeltMesh>(deformable::felt_solid(
+        object.body->mesh, object.cells, object.sides, "objects." + object.name));
+  }
+}
+
+void load_constants(TrialObject& object, const std::filesystem::path& file) {
+  const std::string bytes = file_text(file);
+  const deformable::SpringBody any = deformable::spring_body(object.felt->tets, 1.0, {});
+  object.constants = std::make_shared<const deformable::SpringConstants>(
+      deformable::parse_constants(bytes, file.string(), any));
+  object.constants_bytes = bytes.size();
+  object.constants_checksum = fnv1a(bytes);
+}
+
+}  // namespace
+
 void load_objects(std::vector<TrialObject>& objects, const std::filesystem::path& folder) {
+  const auto found = [&](const std::filesystem::path& file) {
+    return file.is_relative() ? folder / file : file;
+  };
   for (TrialObject& object : objects) {
-    if (object.file.empty()) {
-      continue;
-    }
-    const auto file = object.file.is_relative() ? folder / object.file : object.file;
     try {
-      const std::string bytes = file_text(file);
-      object.body = contact::felt_body(
-          geometry::parse_mesh(bytes, geometry::mesh_format(file), file.string()));
-      object.file_bytes = bytes.size();
-      object.file_checksum = fnv1a(bytes);
-      if (object.yields) {
-        object.felt = std::make_shared<const deformable::FeltMesh>(deformable::felt_solid(
-            object.body->mesh, object.cells, object.sides, "objects." + object.name));
+      if (!object.file.empty()) {
+        load_mesh(object, found(object.file));
+      }
+      if (!object.constants_file.empty() && object.felt) {
+        load_constants(object, found(object.constants_file));
       }
     } catch (const InputError& error) {
       throw InputError(fmt::format("objects.{}: {}", object.name, error.what()));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/contact/surface/felt_body.h"
+#include "core/deformable/springs/law/spring_body.h"
 #include "core/deformable/touch/felt_mesh.h"
 
 namespace haptrial {
@@ -26,8 +27,11 @@ struct TrialObject {
   bool moves{false};                              // and moves: it is made of springs
   int cells{16};                                  // then: along its longest side
   deformable::FeltSides sides{};
-  deformable::SharedFeltMesh felt{};  // of a file: null until it is loaded
-  bool seen_yielding{true};           // else it is seen at its resting shape
+  deformable::SharedFeltMesh felt{};     // of a file: null until it is loaded
+  std::filesystem::path constants_file;  // of springs; empty: none
+  std::shared_ptr<const deformable::SpringConstants> constants;  // of it; null until loaded
+  std::uint64_t constants_bytes{0}, constants_checksum{0};
+  bool seen_yielding{true};  // else it is seen at its resting shape
 };
 
 /// Reads the shapes of [objects], in the order of their names. Problems are noted.
@@ -48,13 +52,15 @@ struct TrialObject {
 ///                     "front" (-x, +x, -y, +y, -z, +z); the bottom if left out
 ///     [felt]          its sides that can be touched; all that are not fixed if left out
 ///     [model]         "elements" or "springs" (core/scene/read/read_yielding.h)
+///     [calibrated]    of springs: a file of constants by haptrial deform calibrate, for a body of
+///                     the same cells; beside the definition
 ///     [seen]          "yielding", as the hand presses it, if left out; "rest": its resting outline
 ///
 /// Lengths are in metres, numbers alone: what changes between trials is the object's scale, centre
 /// and turn, which read_solid() or read_yielding() reads with all else.
 std::vector<TrialObject> read_objects(Table& objects);
 
-/// Reads the meshes that are files. @param folder  of the definition
+/// Reads the meshes and constants that are files. @param folder  of the definition
 /// @throws InputError as read_mesh() and FeltBody do, naming the object
 void load_objects(std::vector<TrialObject>& objects, const std::filesystem::path& folder);
 

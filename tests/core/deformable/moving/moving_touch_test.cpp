@@ -25,7 +25,7 @@ constexpr double kRadius = 0.006;
 SpringTissue soft_springs(double decay = 25.0) {
   const double cell = 0.048 / 12;
   const double energy = 15e3 * cell * cell * cell;
-  return {{0.5 * energy, 0.2 * energy, energy}, 1000.0, decay};
+  return {{0.5 * energy, 0.2 * energy, energy}, nullptr, 1000.0, decay};
 }
 
 SharedMovingBody soft_body(double decay = 25.0) {
