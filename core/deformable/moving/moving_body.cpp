@@ -26,6 +26,7 @@ std::shared_ptr<const MovingBody> made(const SharedFeltMesh& mesh, const SpringT
       body->held.push_back(static_cast<std::int32_t>(v));
     }
   }
+  body->held.insert(body->held.end(), mesh->grasped.begin(), mesh->grasped.end());
   const std::vector<double>& masses = body->springs.masses;
   const double mass = std::accumulate(masses.begin(), masses.end(), 0.0);
   body->drag = 2.0 * tissue.decay * mass / static_cast<double>(masses.size());

@@ -24,7 +24,7 @@ struct SpringTissue {
 struct MovingBody {
   SharedFeltMesh mesh;
   SpringBody springs;
-  std::vector<std::int32_t> held;  // vertices
+  std::vector<std::int32_t> held;  // vertices, those that the hand holds among them
   double drag{};                   // of every vertex: 2 a times their mean mass [N·s/m]
   double stable_step{};            // springs/stable_step.h [s]
 };

@@ -33,7 +33,8 @@ MovingTouch::MovingTouch(SharedMovingBody body, const TouchOptions& options, dou
       motion_(motion_of(*body_, period)),
       ball_(*body_->mesh, options_),
       shape_(std::move(shape)),
-      forces_(3 * BallContact::kMostPlaces) {}
+      forces_(std::max(3 * BallContact::kMostPlaces, body_->mesh->grasped.size())),
+      grip_(body_->mesh->grasped.size(), Vector3d::Zero()) {}
 
 void MovingTouch::put_to_rest() noexcept {
   for (std::size_t v = 0; v < motion_.vertices(); ++v) {
@@ -52,7 +53,7 @@ void MovingTouch::start(const Vector3d& tool) noexcept {
   put_to_rest();
   ball_.gather(motion_, tool, tool);
   ball_.make_room(motion_, tool);
-  tool_ = tool;
+  tool_ = grip_at_ = tool;
   contact_.proxy = tool;
 }
 
@@ -71,6 +72,7 @@ void MovingTouch::adopt(const BodyTouch& before, const Vector3d& tool) noexcept 
   account_ = same->account_;
   contact_ = same->contact_;
   upright_ = same->upright_;
+  grip_at_ = same->grip_at_;
   tool_ = same->tool_;
 }
 
@@ -106,13 +108,35 @@ const contact::Contact& MovingTouch::tick(const Vector3d& tool, double) noexcept
 
 /// The body steps while the ball goes from where the tool was to where it is.
 void MovingTouch::advance(const Vector3d& tool) noexcept {
-  ball_.gather(motion_, tool_, tool);
   felt_.setZero();
+  std::ranges::fill(grip_, Vector3d::Zero());
+  if (!grasps()) {
+    ball_.gather(motion_, tool_, tool);
+  }
   for (int step = 1; step <= steps_; ++step) {
-    motion_.step();
-    const double part = static_cast<double>(step) / steps_;
-    ball_.press(motion_, tool_ + part * (tool - tool_));
-    felt_ += ball_.force() / steps_;
+    const Vector3d hand = tool_ + static_cast<double>(step) / steps_ * (tool - tool_);
+    if (grasps()) {
+      pull(hand);
+    } else {
+      motion_.step();
+      ball_.press(motion_, hand);
+      felt_ += ball_.force() / steps_;
+    }
+  }
+}
+
+/// A step with the grasped vertices where the hand has them.
+void MovingTouch::pull(const Vector3d& hand) noexcept {
+  const std::vector<std::int32_t>& grasped = body_->mesh->grasped;
+  for (const std::int32_t vertex : grasped) {
+    const auto v = static_cast<std::size_t>(vertex);
+    motion_.place(v, body_->springs.rest[v] + hand - grip_at_);
+  }
+  motion_.step();
+  for (std::size_t i = 0; i < grasped.size(); ++i) {
+    const Vector3d force = motion_.force(static_cast<std::size_t>(grasped[i])) / steps_;
+    grip_[i] -= force;
+    felt_ -= force;
   }
 }
 
@@ -132,6 +156,10 @@ void MovingTouch::note(const Vector3d& tool) noexcept {
   contact_ = {};
   contact_.proxy = ball_.centre();
   force_count_ = 0;
+  if (grasps()) {
+    note_grip(tool);
+    return;
+  }
   if (ball_.places().empty() || felt_.isZero(0.0)) {
     return;
   }
@@ -145,6 +173,20 @@ void MovingTouch::note(const Vector3d& tool) noexcept {
   contact_.settled = ball_.solved();
   contact_.state = ball_.slips() ? ContactState::kSlip : ContactState::kStick;
   keep_forces();
+}
+
+void MovingTouch::note_grip(const Vector3d& tool) noexcept {
+  contact_.proxy = tool;
+  if (felt_.isZero(0.0)) {
+    return;
+  }
+  contact_.depth = (tool - grip_at_).norm();
+  contact_.force = -felt_;
+  contact_.normal = contact_.force.stableNormalized();
+  contact_.state = ContactState::kStick;
+  for (std::size_t i = 0; i < grip_.size(); ++i) {
+    forces_[force_count_++] = {body_->mesh->grasped[i], grip_[i].cast<float>()};
+  }
 }
 
 /// The mean over the tick's steps.

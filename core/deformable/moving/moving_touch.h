@@ -13,13 +13,14 @@
 
 namespace haptrial::deformable {
 
-/// A ball on the surface of a body of springs that moves: with inertia, waves and large strains.
-/// On each tick the body makes several explicit steps, while the ball goes on to the tool; what is
-/// felt is the mean force of these steps. An energy account (energy_account.h) keeps it passive.
-/// A tick is a function of the tool's places alone, to the bit on every instruction set.
-/// A point, and any ball below smallest_ball(), is felt as a ball of that radius. A ball whose
-/// centre begins inside of the body touches nothing until it has left.
-/// Source: Morris 2006, §5.4.1; docs/algorithms/deformable-moving.md.
+/// A body of springs that moves, with inertia, waves and large strains, and is pressed by a ball,
+/// or held by the hand at its grasped vertices, which go with the hand from start() on. On each
+/// tick the body makes several explicit steps, while the hand goes on to the tool; what is felt is
+/// the mean force of these steps. An energy account (energy_account.h) keeps it passive. A tick is
+/// a function of the tool's places alone, to the bit on every instruction set. A point, and any
+/// ball below smallest_ball(), is felt as a ball of that radius. A ball whose centre begins inside
+/// of the body touches nothing until it has left. Source: Morris 2006, §5.4.1;
+/// docs/algorithms/deformable-moving.md.
 class MovingTouch final : public BodyTouch {
  public:
   /// @param period  of a tick [s]  @param shape  null: no pictures
@@ -46,7 +47,10 @@ class MovingTouch final : public BodyTouch {
  private:
   void put_to_rest() noexcept;
   void advance(const Eigen::Vector3d& tool) noexcept;
+  void pull(const Eigen::Vector3d& hand) noexcept;
+  bool grasps() const noexcept { return !grip_.empty(); }
   void keep_forces() noexcept;
+  void note_grip(const Eigen::Vector3d& tool) noexcept;
   void note(const Eigen::Vector3d& tool) noexcept;
   void limit() noexcept;
   void scale(double share) noexcept;
@@ -62,7 +66,9 @@ class MovingTouch final : public BodyTouch {
   std::shared_ptr<MovingShape> shape_;
   std::vector<VertexForce> forces_;
   std::size_t force_count_{0};
-  Eigen::Vector3d tool_{Eigen::Vector3d::Zero()};  // a tick ago [m]
+  Eigen::Vector3d tool_{Eigen::Vector3d::Zero()};     // a tick ago [m]
+  Eigen::Vector3d grip_at_{Eigen::Vector3d::Zero()};  // where the hand took hold [m]
+  std::vector<Eigen::Vector3d> grip_;  // on each grasped vertex, mean over the steps [N]
   Eigen::Vector3d felt_{Eigen::Vector3d::Zero()};  // on the body, mean over the steps [N]
   std::uint64_t inverted_steps_{0};                // before this tick
   double upright_{0.0};                            // the last force without one inside out [N]

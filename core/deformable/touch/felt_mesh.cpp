@@ -71,6 +71,18 @@ void finish(FeltMesh& mesh, const FeltSides& sides) {
       return is_on(mesh, static_cast<std::int32_t>(v), side);
     });
   }
+  for (std::size_t v = 0; v < mesh.held.size(); ++v) {
+    const auto vertex = static_cast<std::int32_t>(v);
+    if (mesh.held[v] == 0 && std::ranges::any_of(sides.grasped, [&](BodySide side) {
+          return is_on(mesh, vertex, side);
+        })) {
+      mesh.grasped.push_back(vertex);
+    }
+  }
+  if (!sides.grasped.empty() && mesh.grasped.empty()) {
+    throw InputError(fmt::format(
+        "{}: there is nothing to grasp; name a side in `grasped` that is not fixed", mesh.name));
+  }
   check_body(mesh.tets, mesh.name);
   check_held(mesh);
   const auto all_of = [](const Face& face, auto&& test) { return std::ranges::all_of(face, test); };
@@ -95,7 +107,7 @@ void finish(FeltMesh& mesh, const FeltSides& sides) {
 std::string_view name_of(BodySide side) { return kSideNames[static_cast<std::size_t>(side)]; }
 
 bool same_mesh(const FeltMesh& a, const FeltMesh& b) {
-  return a.name == b.name && a.held == b.held && a.felt == b.felt &&
+  return a.name == b.name && a.held == b.held && a.grasped == b.grasped && a.felt == b.felt &&
          std::ranges::equal(a.tets.tetrahedra, b.tets.tetrahedra) &&
          std::ranges::equal(a.tets.vertices, b.tets.vertices);
 }

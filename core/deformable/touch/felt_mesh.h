@@ -27,17 +27,19 @@ std::string_view name_of(BodySide side);
 /// Which vertices do not move, and where a tool may touch.
 struct FeltSides {
   std::vector<BodySide> fixed{BodySide::kBottom};
-  std::vector<BodySide> felt;  // empty: every outer face that is not held all over
+  std::vector<BodySide> felt;       // empty: every outer face that is not held all over
+  std::vector<BodySide> grasped{};  // the hand holds them; of bodies that move
 };
 
 /// The tetrahedra of a body that is to be felt: the same for every material.
 struct FeltMesh {
-  std::string name;                // as messages call the body
-  geometry::TetMesh tets;          // [m]
-  std::vector<std::uint8_t> held;  // by vertex
-  std::vector<Face> felt;          // outer faces, normals outwards
-  Eigen::AlignedBox3d box;         // [m]
-  double spacing{};                // the longest side of its cells [m]
+  std::string name;                   // as messages call the body
+  geometry::TetMesh tets;             // [m]
+  std::vector<std::uint8_t> held;     // by vertex
+  std::vector<std::int32_t> grasped;  // vertices that are not held
+  std::vector<Face> felt;             // outer faces, normals outwards
+  Eigen::AlignedBox3d box;            // [m]
+  double spacing{};                   // the longest side of its cells [m]
 };
 using SharedFeltMesh = std::shared_ptr<const FeltMesh>;
 

@@ -121,6 +121,12 @@ void read_yielding_shape(Table& table, TrialObject& object) {
   if (table.has("felt")) {
     object.sides.felt = read_sides(table, "felt");
   }
+  if (table.has("grasped")) {
+    object.sides.grasped = read_sides(table, "grasped");
+    if (!object.moves) {
+      table.reject("grasped", "stands without model = \"springs\", which it needs");
+    }
+  }
   if (table.has("seen")) {
     object.seen_yielding = table.choice("seen", {"yielding", "rest"}) != "rest";
   }

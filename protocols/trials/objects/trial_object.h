@@ -52,6 +52,8 @@ struct TrialObject {
 ///                     "front" (-x, +x, -y, +y, -z, +z); the bottom if left out
 ///     [felt]          its sides that can be touched; all that are not fixed if left out
 ///     [model]         "elements" or "springs" (core/scene/read/read_yielding.h)
+///     [grasped]       of springs: sides that the hand holds from the first tick on; then it does
+///                     not press the body
 ///     [calibrated]    of springs: a file of constants by haptrial deform calibrate, for a body of
 ///                     the same cells; beside the definition
 ///     [seen]          "yielding", as the hand presses it, if left out; "rest": its resting outline

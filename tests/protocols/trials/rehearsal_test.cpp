@@ -12,6 +12,7 @@
 #include "core/base/definition/table.h"
 #include "core/psychometric/procedure/procedure.h"
 #include "core/record/trials/contact_row.h"
+#include "core/record/trials/moving_body_row.h"
 #include "core/record/trials/touched_body_row.h"
 #include "core/record/trials/trial_rows.h"
 #include "protocols/interface/session_file.h"
@@ -64,6 +65,7 @@ class Rows final : public SessionFile {
   std::vector<record::StageRow> stages;
   std::vector<record::ContactRow> contacts;
   std::vector<record::TouchedBodyRow> touched;
+  std::vector<record::MovingBodyRow> moving;
   std::map<std::string, std::string> events;
 
   void keep_stimulus(std::int32_t, std::span<const record::StimulusRow>) override {}
@@ -84,6 +86,7 @@ class Rows final : public SessionFile {
     add(stages);
     add(contacts);
     add(touched);
+    add(moving);
   }
 
  private:
@@ -347,8 +350,12 @@ TEST_F(RehearsalTest, ContactsWithAnObjectAreRecorded) {
   EXPECT_LT(rows_.contacts.back().work, -1e-3) << "friction takes energy";
 }
 
+const std::string kElements = "young = 10000.0\npoisson = 0.45\n";
+const std::string kSprings =
+    "model = \"springs\"\nconstants = [6e-4, 2.4e-4, 1.2e-3]\ndensity = 1000.0\ndecay = 20.0\n";
+
 /// A soft block that a hand presses in its middle with 1 N.
-std::string soft_block(const std::string& ball) {
+std::string soft_block(const std::string& ball, const std::string& tissue = kElements) {
   return R"([experiment]
 protocol = "trials"
 name = "press"
@@ -360,9 +367,8 @@ shape = "box"
 size = [0.04, 0.02, 0.04]
 cells = 8
 felt = ["top"]
-young = 10000.0
-poisson = 0.45
-centre = [0.0, -0.01, 0.0]
+)" + tissue +
+         R"(centre = [0.0, -0.01, 0.0]
 turn = [0.0, 0.7, 0.0]
 fade_in = 0.0
 record = true
@@ -387,8 +393,11 @@ instructions = "Press."
 }
 
 /// A replay has the hands and the stages, and finds what pressed the body on each tick.
-TEST_F(RehearsalTest, WhatPressedABodyFollowsFromTheHandsAndTheStages) {
-  Table root = Table::parse(soft_block("0.006"), "study.toml");
+class ReplayedBodyTest : public RehearsalTest, public testing::WithParamInterface<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Models, ReplayedBodyTest, testing::Values(kElements, kSprings));
+
+TEST_P(ReplayedBodyTest, WhatPressedABodyFollowsFromTheHandsAndTheStages) {
+  Table root = Table::parse(soft_block("0.006", GetParam()), "study.toml");
   definition_ = trials_protocol().read(root, "study.toml", nullptr);
   DefinedTrials live(studied(), place());
   DefinedTrials recorded(studied(), place());
@@ -443,6 +452,24 @@ TEST_F(RehearsalTest, WhatIsSeenToPressABodyIsWhatIsFelt) {
   EXPECT_EQ(rows_.touched[0].inverted, 0u);
   EXPECT_EQ(rows_.events.count("inside_out"), 0u);
   EXPECT_THAT(notices_, testing::Not(testing::Contains(testing::HasSubstr("inside out"))));
+}
+
+TEST_F(RehearsalTest, ABodyOfSpringsIsPressedAndSaysHowItMoved) {
+  ASSERT_NO_FATAL_FAILURE(rehearse(soft_block("0.006", kSprings)));
+  ASSERT_GT(presses_.all.size(), 500u);
+  double most = 0.0;
+  for (const record::ContactRow& row : rows_.contacts) {
+    most = std::max(most, row.force.norm());
+  }
+  EXPECT_NEAR(most, 1.0, 0.3) << "the hand presses with 1 N";
+  ASSERT_EQ(rows_.touched.size(), 1u);
+  EXPECT_EQ(rows_.touched[0].contact, rows_.contacts.size());
+  ASSERT_EQ(rows_.moving.size(), 1u);
+  EXPECT_EQ(rows_.moving[0].object, "tissue");
+  EXPECT_GT(rows_.moving[0].steps, 1);
+  EXPECT_EQ(rows_.moving[0].flown_apart, 0u);
+  EXPECT_EQ(rows_.events.count("flown_apart"), 0u);
+  EXPECT_EQ(rows_.events.count("energy_limit"), rows_.moving[0].limited > 0 ? 1u : 0u);
 }
 
 TEST_F(RehearsalTest, WhatWouldTurnATetrahedronInsideOutIsTold) {

@@ -248,6 +248,42 @@ TEST(MovingTouchTest, AShakingHandIsNotDriven) {
   EXPECT_LT(given, taken + 3.0 * EnergyAccount::kLoan);
 }
 
+/// A hand that holds a side and pulls feels what Newton's method finds with that side moved.
+TEST(MovingTouchTest, AGraspedSideIsFeltAsItsStatics) {
+  FeltSides sides;
+  sides.fixed = {BodySide::kLeft};
+  sides.grasped = {BodySide::kRight};
+  const auto mesh =
+      std::make_shared<const FeltMesh>(felt_block({0.048, 0.024, 0.024}, 12, sides, "bar"));
+  const SharedMovingBody body = prepared(mesh, soft_springs(50.0));
+  MovingTouch touch(body, ball(), kTick);
+  const Vector3d begin(0.1, -0.05, 0.02), way(0.006, 0.002, 0.0);
+  touch.start(begin);
+  contact::Contact felt;
+  for (int i = 1; i <= 1200; ++i) {
+    felt = touch.tick(begin + std::min(1.0, i / 500.0) * way, kTick);
+  }
+  LoadCase load{"pull", {}, {}};
+  for (const std::int32_t v : body->held) {
+    load.holds.push_back({v, Vector3d::Zero()});
+  }
+  for (const std::int32_t v : mesh->grasped) {
+    std::ranges::find(load.holds, v, &Hold::vertex)->displacement = way;
+  }
+  const Equilibrium rest = equilibrium(body->springs, load);
+  ASSERT_EQ(rest.outcome, Settling::kSettled);
+  const std::vector<Vector3d> forces = spring_forces(body->springs, rest.positions);
+  Vector3d expected = Vector3d::Zero();
+  for (const std::int32_t v : mesh->grasped) {
+    expected += forces[static_cast<std::size_t>(v)];
+  }
+  ASSERT_GT(expected.norm(), 0.1);
+  EXPECT_LT((felt.force - expected).norm(), 1e-4 * expected.norm());
+  EXPECT_LT((felt.force + sum_of(touch.forces())).norm(), 1e-6 * expected.norm());
+  EXPECT_EQ(touch.counts().limited, 0u);
+  EXPECT_GT(felt.force.dot(-way), 0.0) << "it pulls back";
+}
+
 TEST(MovingTouchTest, FrictionHoldsUpToItsBoundAndThenSlips) {
   const double mu = 0.4;
   MovingTouch touch(soft_body(), ball(kRadius, mu), kTick);

@@ -8,6 +8,9 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "core/base/files/file_text.h"
+#include "core/deformable/setup/setup_body.h"
+#include "core/deformable/springs/law/constants_table.h"
 #include "core/geometry/files/mesh_io.h"
 #include "core/geometry/mesh/procedural.h"
 #include "protocols/trials/objects/outline.h"
@@ -142,6 +145,52 @@ TEST(TrialObjectTest, ABodyThatGivesWayIsReadAndItsMistakesAreToldInASentenceEac
               Contains(HasSubstr("left, right, bottom, top, back, front")));
   EXPECT_THAT(problems_of_tissue("young = 1e4\nseen = \"moving\"\n"),
               Contains(HasSubstr("yielding, rest")));
+}
+
+const std::string kSprings =
+    "[objects.tissue]\nkind = \"deformable\"\nshape = \"box\"\nsize = [0.04, 0.02, 0.04]\n"
+    "cells = 6\nmodel = \"springs\"\n";
+
+TEST(TrialObjectTest, ABodyOfSpringsIsReadAndItsMistakesAreToldInASentenceEach) {
+  const auto problems = [](const std::string& text) {
+    return problems_of_trials(small_trials(kSmallStaircase, kSprings + text));
+  };
+  EXPECT_THAT(problems("constants = [1e-3, 0, 2e-3]\ndensity = 1000\n"), IsEmpty());
+  EXPECT_THAT(problems("constants = [\"1e-5 * $level\", 0, 2e-3]\ndensity = 1000\n"), IsEmpty());
+  EXPECT_THAT(problems("constants = [0, 0, 2e-3]\ndensity = 1000\n"),
+              Contains(HasSubstr("constants begins with 0 J; allowed: a number above 0")));
+  EXPECT_THAT(problems("constants = [1e-3, 0, 2e-3]\n"),
+              Contains(HasSubstr("objects.tissue.density is missing")));
+  EXPECT_THAT(problems("density = 1000\n"), Contains(HasSubstr("constants is missing")));
+  EXPECT_THAT(problems("constants = [1e-3, 0, 2e-3]\ndensity = 1000\nyoung = 1e4\n"),
+              Contains(HasSubstr("objects.tissue.young")));
+}
+
+TEST(TrialObjectTest, CalibratedConstantsAreThoseOfABodyOfTheSameCells) {
+  const test::TemporaryFolder folder;
+  const auto object = [&](int cells) {
+    return read(
+        "thing = { kind = \"deformable\", shape = \"box\", size = [0.04, 0.04, 0.03], cells = " +
+        std::to_string(cells) + ", model = \"springs\", calibrated = \"constants.csv\" }");
+  };
+  // As haptrial deform calibrate makes them for [body] block = [0.04, 0.04, 0.03].
+  const deformable::SpringBody body = deformable::spring_body(
+      deformable::block_body({0.04, 0.04, 0.03}, 4), 1000.0, {1.0, 2.0, 3.0});
+  deformable::SpringConstants constants = body.constants;
+  constants.area[7] = 0.25;
+  write_text(folder / "constants.csv", deformable::constants_csv(constants));
+  std::vector<TrialObject> objects = object(4);
+  EXPECT_EQ(objects.at(0).constants, nullptr);
+  load_objects(objects, folder.path());
+  ASSERT_NE(objects.at(0).constants, nullptr);
+  EXPECT_EQ(objects.at(0).constants->area, constants.area);
+  EXPECT_EQ(objects.at(0).constants->volume, constants.volume);
+  const auto& felt = objects.at(0).felt->tets;
+  ASSERT_TRUE(std::ranges::equal(felt.tetrahedra, body.tetrahedra)) << "the same springs";
+  objects = object(5);
+  EXPECT_THAT(test::message_of([&] { load_objects(objects, folder.path()); }),
+              AllOf(HasSubstr("objects.thing: "), HasSubstr("constants.csv:"),
+                    HasSubstr("springs of length")));
 }
 
 TEST(TrialObjectTest, ABodyIsSeenAsItIsPressedUnlessItIsToBeSeenAtRest) {

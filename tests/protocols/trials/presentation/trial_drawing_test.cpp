@@ -81,14 +81,21 @@ TEST_F(TrialDrawingTest, AnObjectIsSeenAsItsOutline) {
 
 /// Seen from the front, the lowest side of a cell under the ball is where the ball's lowest point
 /// is: the ball rests on the surface there.
-TEST_F(TrialDrawingTest, ABodyThatGivesWayIsSeenAsTheHandPressesIt) {
+class SeenBodyTest : public TrialDrawingTest, public testing::WithParamInterface<bool> {};
+INSTANTIATE_TEST_SUITE_P(RestsOrMoves, SeenBodyTest, testing::Bool());
+
+TEST_P(SeenBodyTest, ABodyThatGivesWayIsSeenAsTheHandPressesIt) {
   constexpr double kRadius = 0.006, kFinger = 0.005;  // over a corner of cells of 5 mm [m]
   const double half = 0.01;
+  const bool moves = GetParam();
   const auto mesh = std::make_shared<const deformable::FeltMesh>(deformable::felt_block(
       {0.04, 2.0 * half, 0.04}, 8, {{deformable::BodySide::kBottom}, {deformable::BodySide::kTop}},
       "tissue"));
   const auto body = std::make_shared<const deformable::Compliance>(
       mesh, deformable::Tissue{10e3, 0.45, 1000.0, {}});
+  const deformable::SharedMovingBody springs = deformable::prepared(
+      mesh, deformable::SpringTissue{{6e-4, 2e-4, 1e-3}, nullptr, 1000.0, 50.0});
+  const auto shape = std::make_shared<deformable::MovingShape>(mesh->tets.vertices.size());
   const auto bodies = std::make_shared<SeenBodies>();
   TrialObject object;
   object.name = "tissue";
@@ -100,7 +107,8 @@ TEST_F(TrialDrawingTest, ABodyThatGivesWayIsSeenAsTheHandPressesIt) {
   TrialView view;
   view.interval = 1;
   view.objects[0].object = 0;
-  view.objects[0].body = bodies->number_of({body, nullptr, nullptr});
+  view.objects[0].body = bodies->number_of(moves ? SeenBody{nullptr, springs, shape}
+                                                 : SeenBody{body, nullptr, nullptr});
   const auto row_of = [&](double y) { return 0.5 * kHeight - y / definition_.view.width * kWidth; };
   const auto lowest_line = [&](const render::Image& image, double x) {
     const auto column = static_cast<int>(0.5 * kWidth + x / definition_.view.width * kWidth);
@@ -116,7 +124,14 @@ TEST_F(TrialDrawingTest, ABodyThatGivesWayIsSeenAsTheHandPressesIt) {
   };
   const render::Image rest = picture_of(view, "body at rest");
   EXPECT_NEAR(lowest_line(rest, kFinger), row_of(half), 2.0);
-  deformable::BallTouch touch(body, {.radius = kRadius});
+  const deformable::TouchOptions ball{.radius = kRadius};
+  std::unique_ptr<deformable::BodyTouch> made;
+  if (moves) {
+    made = std::make_unique<deformable::MovingTouch>(springs, ball, 1e-3, shape);
+  } else {
+    made = std::make_unique<deformable::BallTouch>(body, ball);
+  }
+  deformable::BodyTouch& touch = *made;
   touch.start({kFinger, half + kRadius, 0.0});
   contact::Contact felt;
   for (int tick = 1; tick <= 400; ++tick) {
