@@ -260,6 +260,7 @@ function(haptrial_test_needs)
   target_link_libraries(test_drilling_analysis PRIVATE haptrial_bone_data)
   target_link_libraries(test_exchange PRIVATE haptrial_force_score)
   target_link_libraries(test_contact_analysis PRIVATE haptrial_geometry_files haptrial_geometry_repair)
+  target_link_libraries(test_trials PRIVATE haptrial_deformable_setup)  # bodies as they are calibrated
   target_link_libraries(test_subject_perceiver PRIVATE haptrial_scene)
   target_link_libraries(test_psychometric_fit PRIVATE nlohmann_json::nlohmann_json PkgConfig::gsl
                                                       haptrial_psychometric)  # virtual sessions

@@ -24,14 +24,14 @@ struct TrialObject {
   std::uint64_t file_bytes{0}, file_checksum{0};  // likewise; the checksum is FNV-1a
   bool recorded{false};                           // its contacts, tick by tick, in /contacts
   bool yields{false};                             // gives way to the hand
-  bool moves{false};                              // and moves: it is made of springs
   int cells{16};                                  // then: along its longest side
   deformable::FeltSides sides{};
-  deformable::SharedFeltMesh felt{};     // of a file: null until it is loaded
-  std::filesystem::path constants_file;  // of springs; empty: none
-  std::shared_ptr<const deformable::SpringConstants> constants;  // of it; null until loaded
-  std::uint64_t constants_bytes{0}, constants_checksum{0};
-  bool seen_yielding{true};  // else it is seen at its resting shape
+  deformable::SharedFeltMesh felt{};       // of a file: null until it is loaded
+  bool seen_yielding{true};                // else it is seen at its resting shape
+  bool moves{false};                       // it yields and moves: it is made of springs
+  std::filesystem::path constants_file{};  // of springs; empty: none
+  std::shared_ptr<const deformable::SpringConstants> constants{};  // of it; null until loaded
+  std::uint64_t constants_bytes{0}, constants_checksum{0};         // likewise
 };
 
 /// Reads the shapes of [objects], in the order of their names. Problems are noted.

@@ -203,8 +203,8 @@ HAPTRIAL_LANES void take_middle(const Cluster& m, Queue& queue, Lanes* t) {
 /// Measures everything, then turns measures into tensions, then pulls: within each of the three
 /// nothing waits for anything else.
 template <bool star>
-void add_pack(const ForceQuery& query, const std::int32_t* corners, std::uint64_t owned,
-              const double*& constants, Flags& upright) {
+HAPTRIAL_LANES void add_pack(const ForceQuery& query, const std::int32_t* corners,
+                             std::uint64_t owned, const double*& constants, Flags& upright) {
   Cluster m;
   const double* x = query.positions;
   Queue queue{m.measure, owned};
@@ -228,6 +228,34 @@ void add_pack(const ForceQuery& query, const std::int32_t* corners, std::uint64_
   pull_middle(m, query.forces, corners, tension);
 }
 
+/// What the two kinds of voxels inside of a lattice own, as tetrahedralize() cuts them. Code for
+/// these alone has no branches and knows where every measure goes.
+constexpr std::uint64_t kInLattice[] = {0x20fd083d5, 0x31c7103c7};
+
+template <bool star, std::uint64_t known>
+__attribute__((noinline)) void add_known(const ForceQuery& query, const std::int32_t* corners,
+                                         const double*& constants, Flags& upright) {
+  add_pack<star>(query, corners, known, constants, upright);
+}
+template <bool star>
+__attribute__((noinline)) void add_any(const ForceQuery& query, const std::int32_t* corners,
+                                       std::uint64_t owned, const double*& constants,
+                                       Flags& upright) {
+  add_pack<star>(query, corners, owned, constants, upright);
+}
+
+template <bool star>
+HAPTRIAL_LANES void add_by_kind(const ForceQuery& query, const std::int32_t* corners,
+                                std::uint64_t owned, const double*& constants, Flags& upright) {
+  if (star && owned == kInLattice[0]) {
+    add_known<star, kInLattice[0]>(query, corners, constants, upright);
+  } else if (star && owned == kInLattice[1]) {
+    add_known<star, kInLattice[1]>(query, corners, constants, upright);
+  } else {
+    add_any<star>(query, corners, owned, constants, upright);
+  }
+}
+
 template <bool star>
 void add_packs(const ForceQuery& query, const PackView& view, Flags& upright) {
   constexpr std::size_t corners = star ? 8 : 4;
@@ -236,8 +264,8 @@ void add_packs(const ForceQuery& query, const PackView& view, Flags& upright) {
     const double* end = constants;
     for (std::size_t first = 0; first < kPack; first += kLanes) {
       const double* reader = constants + first;
-      add_pack<star>(query, view.corners + pack * corners * kPack + first, view.owned[pack], reader,
-                     upright);
+      add_by_kind<star>(query, view.corners + pack * corners * kPack + first, view.owned[pack],
+                        reader, upright);
       end = reader - first;
     }
     constants = end;

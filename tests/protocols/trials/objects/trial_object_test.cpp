@@ -147,13 +147,13 @@ TEST(TrialObjectTest, ABodyThatGivesWayIsReadAndItsMistakesAreToldInASentenceEac
               Contains(HasSubstr("yielding, rest")));
 }
 
-const std::string kSprings =
+const std::string kSpringBody =
     "[objects.tissue]\nkind = \"deformable\"\nshape = \"box\"\nsize = [0.04, 0.02, 0.04]\n"
     "cells = 6\nmodel = \"springs\"\n";
 
 TEST(TrialObjectTest, ABodyOfSpringsIsReadAndItsMistakesAreToldInASentenceEach) {
   const auto problems = [](const std::string& text) {
-    return problems_of_trials(small_trials(kSmallStaircase, kSprings + text));
+    return problems_of_trials(small_trials(kSmallStaircase, kSpringBody + text));
   };
   EXPECT_THAT(problems("constants = [1e-3, 0, 2e-3]\ndensity = 1000\n"), IsEmpty());
   EXPECT_THAT(problems("constants = [\"1e-5 * $level\", 0, 2e-3]\ndensity = 1000\n"), IsEmpty());
