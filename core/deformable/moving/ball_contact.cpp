@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 
@@ -16,7 +17,7 @@ constexpr double kAhead = 0.25;          // of a cell: what is that near may be 
 constexpr double kNear = 0.05;           // of a cell: likewise on the step
 constexpr double kOwnCompliance = 1e-6;  // added to each place's: two places may be one
 constexpr int kRounds = 2;               // of pressures and friction on a step
-constexpr int kRoomSweeps = 32;
+constexpr double kGrowth = 0.02;         // of a ball that had shrunk [m/s]
 
 int places_along_a_cell(const FeltMesh& mesh, double radius) {
   return static_cast<int>(std::ceil(mesh.spacing / (kSampled * radius)));
@@ -28,10 +29,12 @@ Vector3d across(const Vector3d& v, const Vector3d& n) { return v - v.dot(n) * n;
 
 }  // namespace
 
-BallContact::BallContact(const FeltMesh& mesh, const TouchOptions& options)
+BallContact::BallContact(const FeltMesh& mesh, const TouchOptions& options, double period)
     : mesh_(&mesh),
       options_(options),
-      samples_(mesh.felt, mesh.tets.vertices, places_along_a_cell(mesh, options.radius)) {
+      samples_(mesh.felt, mesh.tets.vertices, places_along_a_cell(mesh, options.radius)),
+      growth_(kGrowth * period),
+      radius_(options.radius) {
   std::set<std::int32_t> corners;
   for (const Face& face : mesh.felt) {
     corners.insert(face.begin(), face.end());
@@ -48,6 +51,7 @@ void BallContact::forget() noexcept {
   }
   count_ = 0;
   pressure_ = 0.0;
+  radius_ = options_.radius;
   force_.setZero();
   friction_.setZero();
 }
@@ -61,6 +65,7 @@ void BallContact::adopt(const BallContact& before) noexcept {
     force_ = before.force_;
     friction_ = before.friction_;
     pressure_ = before.pressure_;
+    radius_ = before.radius_;
   }
 }
 
@@ -107,6 +112,10 @@ void BallContact::gather(const SpringMotion& motion, const Vector3d& from,
   for (std::size_t i = 0; i < had_count; ++i) {
     kept_[at(had[i])] = 0.0;
   }
+  if (!(pressure_ > 0.0)) {
+    radius_ = std::min(radius_, room(from));
+  }
+  radius_ = std::min(radius_ + growth_, options_.radius);
 }
 
 void BallContact::find_near(const SpringMotion& motion, const Vector3d& middle,
@@ -148,24 +157,18 @@ void BallContact::add(const Place& place, double distance) noexcept {
   distance_[to] = distance;
 }
 
-void BallContact::make_room(SpringMotion& motion, const Vector3d& centre) const noexcept {
-  for (int sweep = 0; sweep < kRoomSweeps; ++sweep) {
-    for (const Place& place : places()) {
-      const SurfaceSamples::Sample& s = sample(place);
-      const Vector3d away = where(motion, place) - centre;
-      const double depth = options_.radius - away.norm();
-      if (!(depth > 0.0) || !(away.dot(s.outward) < 0.0)) {
-        continue;
-      }
-      const Vector3d way = depth / s.weight.squaredNorm() * away.normalized();
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t v = at(s.corners[k]);
-        if (!motion.held(v)) {
-          motion.place(v, motion.position(v) + s.weight[static_cast<Eigen::Index>(k)] * way);
-        }
-      }
+/// From the centre to the nearest place, if that is before it; 0 if the centre is behind.
+double BallContact::room(const Vector3d& centre) const noexcept {
+  double nearest = std::numeric_limits<double>::infinity();
+  double room = nearest;
+  for (const Place& place : places()) {
+    const Vector3d away = place.before - centre;
+    if (away.squaredNorm() < nearest) {
+      nearest = away.squaredNorm();
+      room = away.dot(sample(place).outward) < 0.0 ? std::sqrt(nearest) : 0.0;
     }
   }
+  return room;
 }
 
 void BallContact::press(SpringMotion& motion, const Vector3d& tool) noexcept {
@@ -205,7 +208,7 @@ void BallContact::choose(const SpringMotion& motion, const Vector3d& centre) noe
     const Vector3d p = where(motion, place);
     const Vector3d away = p - centre;
     place.normal = away.stableNormalized();
-    const double gap = place.normal.dot(p - centre_) - options_.radius;
+    const double gap = place.normal.dot(p - centre_) - radius_;
     if (gap < kNear * mesh_->spacing && away.dot(sample(place).outward) < 0.0) {
       problem_.free_gap[chosen] = gap;
       pressed_[chosen] = place.pressed;
@@ -310,7 +313,7 @@ double BallContact::depth(const Vector3d& tool) const noexcept {
   double depth = 0.0;
   for (const Place& place : places()) {
     if (!place.sum.isZero(0.0)) {
-      depth = std::max(depth, options_.radius - place.normal.dot(at_rest(place) - tool));
+      depth = std::max(depth, radius_ - place.normal.dot(at_rest(place) - tool));
     }
   }
   return depth;

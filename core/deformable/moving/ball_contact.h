@@ -22,7 +22,8 @@ namespace haptrial::deformable {
 /// with the tool x, the ball's centre y and n from the ball into the body. Masses lie at the
 /// vertices: how places give way on a step is known without the stiffness of the body. Friction
 /// keeps the places, on the mean of their pressures, from moving along the ball, up to Coulomb's
-/// bound. A ball whose centre is behind the surface does not touch it.
+/// bound. A ball whose centre is behind the surface does not touch it; one that is found in the
+/// surface shrinks to what has room and grows slowly again.
 /// After: Carpenter, Taylor and Katona 1991, Lagrange constraints for transient contact.
 class BallContact {
  public:
@@ -37,8 +38,8 @@ class BallContact {
     Eigen::Vector3d sum{Eigen::Vector3d::Zero()};     // of the forces on it since gather() [N]
   };
 
-  /// @param options  of a radius that the body's cells can show
-  BallContact(const FeltMesh& mesh, const TouchOptions& options);
+  /// @param options  of a radius that the body's cells can show  @param period  of a tick [s]
+  BallContact(const FeltMesh& mesh, const TouchOptions& options, double period);
 
   // Servo thread, all of the following: no allocation, lock or throw.
 
@@ -49,8 +50,6 @@ class BallContact {
   /// Which places the ball may press on a tick, on which the tool goes from one point to another.
   void gather(const SpringMotion& motion, const Eigen::Vector3d& from,
               const Eigen::Vector3d& to) noexcept;
-  /// Moves places out of a ball that is put there, without a velocity; after gather().
-  void make_room(SpringMotion& motion, const Eigen::Vector3d& centre) const noexcept;
   /// After a free step.
   void press(SpringMotion& motion, const Eigen::Vector3d& tool) noexcept;
 
@@ -73,6 +72,7 @@ class BallContact {
   void look_at(const SpringMotion& motion, std::int32_t sample, const Eigen::Vector3d& middle,
                double reach) noexcept;
   void add(const Place& place, double distance) noexcept;
+  double room(const Eigen::Vector3d& centre) const noexcept;
   void rub_on(SpringMotion& motion) noexcept;
   void choose(const SpringMotion& motion, const Eigen::Vector3d& centre) noexcept;
   void find_compliance(const SpringMotion& motion) noexcept;
@@ -87,6 +87,8 @@ class BallContact {
   const FeltMesh* mesh_;
   TouchOptions options_;
   SurfaceSamples samples_;
+  double growth_;                         // on a tick [m]
+  double radius_;                         // r, now [m]
   std::vector<std::int32_t> corners_;     // of the felt faces, each once
   std::vector<std::uint8_t> near_;        // by vertex
   std::vector<std::uint64_t> looked_at_;  // by sample: on which tick

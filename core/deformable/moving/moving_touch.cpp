@@ -31,7 +31,7 @@ MovingTouch::MovingTouch(SharedMovingBody body, const TouchOptions& options, dou
       period_(period),
       steps_(steps_on_a_tick(*body_, period)),
       motion_(motion_of(*body_, period)),
-      ball_(*body_->mesh, options_),
+      ball_(*body_->mesh, options_, period),
       shape_(std::move(shape)),
       forces_(std::max(3 * BallContact::kMostPlaces, body_->mesh->grasped.size())),
       grip_(body_->mesh->grasped.size(), Vector3d::Zero()) {}
@@ -51,8 +51,6 @@ void MovingTouch::put_to_rest() noexcept {
 
 void MovingTouch::start(const Vector3d& tool) noexcept {
   put_to_rest();
-  ball_.gather(motion_, tool, tool);
-  ball_.make_room(motion_, tool);
   tool_ = grip_at_ = tool;
   contact_.proxy = tool;
 }

@@ -14,13 +14,15 @@
 namespace haptrial::deformable {
 
 /// A body of springs that moves, with inertia, waves and large strains, and is pressed by a ball,
-/// or held by the hand at its grasped vertices, which go with the hand from start() on. On each
-/// tick the body makes several explicit steps, while the hand goes on to the tool; what is felt is
-/// the mean force of these steps. An energy account (energy_account.h) keeps it passive. A tick is
-/// a function of the tool's places alone, to the bit on every instruction set. A point, and any
-/// ball below smallest_ball(), is felt as a ball of that radius. A ball whose centre begins inside
-/// of the body touches nothing until it has left. Source: Morris 2006, §5.4.1;
-/// docs/algorithms/deformable-moving.md.
+/// or held by the hand at its grasped vertices, which go with the hand from start() on.
+///
+/// On each tick the body makes several explicit steps, while the hand goes on to the tool; what is
+/// felt is the mean force of these steps. An energy account (energy_account.h) keeps it passive. A
+/// tick is a function of the tool's places alone, to the bit on every instruction set.
+///
+/// A point, and any ball below smallest_ball(), is felt as a ball of that radius. A ball that
+/// begins in the surface grows there from what has room; one whose centre is inside touches nothing
+/// until it has left. Source: Morris 2006, §5.4.1; docs/algorithms/deformable-moving.md.
 class MovingTouch final : public BodyTouch {
  public:
   /// @param period  of a tick [s]  @param shape  null: no pictures

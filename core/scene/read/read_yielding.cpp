@@ -43,7 +43,8 @@ deformable::SpringTissue read_springs(const FieldReader& read) {
     const Eigen::Vector3d constants = read.vector("constants", {0.0, 1e6}, "J");
     springs.constants = {constants[0], constants[1], constants[2]};
     if (!(springs.constants.length > 0.0)) {
-      read.table.reject("constants", fmt::format("begins with {} J", springs.constants.length),
+      read.table.reject("constants",
+                        fmt::format("[{}, {}, {}] J", constants[0], constants[1], constants[2]),
                         "a number above 0 for the edges, and at least 0 for faces and tetrahedra");
     }
   }

@@ -158,7 +158,7 @@ TEST(TrialObjectTest, ABodyOfSpringsIsReadAndItsMistakesAreToldInASentenceEach) 
   EXPECT_THAT(problems("constants = [1e-3, 0, 2e-3]\ndensity = 1000\n"), IsEmpty());
   EXPECT_THAT(problems("constants = [\"1e-5 * $level\", 0, 2e-3]\ndensity = 1000\n"), IsEmpty());
   EXPECT_THAT(problems("constants = [0, 0, 2e-3]\ndensity = 1000\n"),
-              Contains(HasSubstr("constants begins with 0 J; allowed: a number above 0")));
+              Contains(HasSubstr("constants is [0, 0, 0.002] J; allowed: a number above 0")));
   EXPECT_THAT(problems("constants = [1e-3, 0, 2e-3]\n"),
               Contains(HasSubstr("objects.tissue.density is missing")));
   EXPECT_THAT(problems("density = 1000\n"), Contains(HasSubstr("constants is missing")));
