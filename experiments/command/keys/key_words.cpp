@@ -422,7 +422,7 @@ objects.NAME.fixed | bottom | its sides that do not move
 objects.NAME.felt | all that are not fixed | its sides that can be touched
 objects.NAME.seen | yielding | whether it is seen as the hand presses it, or at rest
 objects.NAME.model | elements | what it is made of: elements that rest on every tick, or springs that move
-objects.NAME.constants | needed, or calibrated | of springs: of every edge, face and tetrahedron
+objects.NAME.constants | | of springs without `calibrated`: of every edge, face and tetrahedron
 objects.NAME.grasped | none | of springs: sides that the hand holds, and moves, instead of pressing the body
 objects.NAME.calibrated | needed, or constants | of springs: file of constants that haptrial deform calibrate made, beside the definition
 objects.NAME.density | | of springs
