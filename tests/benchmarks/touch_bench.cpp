@@ -1,6 +1,7 @@
 // What is felt of a soft block with and without a lump, and what a tick takes, as tables:
 //   bench_touch felt > touch.dat; gnuplot tests/benchmarks/touch.gp draws deformable-touch.svg
 //   bench_touch ticks
+//   bench_touch moving: ticks of a body of springs
 
 #include <fmt/format.h>
 #include <time.h>
@@ -11,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "core/deformable/moving/moving_touch.h"
 #include "core/deformable/touch/ball_touch.h"
 #include "core/deformable/touch/prepared.h"
 
@@ -95,9 +97,35 @@ void ticks() {
   }
 }
 
+/// A ball that wanders over a block of springs, 0 to 2 mm deep.
+void moving() {
+  fmt::print("cells vertices tetrahedra steps stable_ms median_us p999_us worst_us cut\n");
+  for (const int cells : {8, 12, 16}) {
+    const auto mesh = block(cells);
+    const double energy = 15e3 * std::pow(mesh->spacing, 3);
+    const auto body =
+        prepared(mesh, SpringTissue{{0.5 * energy, 0.2 * energy, energy}, nullptr, 1000.0, 20.0});
+    MovingTouch touch(body, {kRadius, 5000.0, {0.3, 0.2}}, kTick);
+    touch.start({0.0, kTop + kRadius + 0.001, 0.0});
+    std::vector<double> times;
+    for (int i = 0; i < 20000; ++i) {
+      const double t = 2e-3 * i;
+      const Vector3d tool(0.012 * std::sin(t), kTop + kRadius - 0.001 - 0.001 * std::sin(1.7 * t),
+                          0.012 * std::cos(0.8 * t));
+      const double begin = thread_time();
+      touch.tick(tool, kTick);
+      times.push_back(thread_time() - begin);
+    }
+    std::sort(times.begin(), times.end());
+    fmt::print("{} {} {} {} {:.3f} {:.1f} {:.1f} {:.1f} {}\n", cells, mesh->tets.vertices.size(),
+               body->springs.tetrahedra.size(), touch.steps(), 1e3 * body->stable_step,
+               times[10000], times[19980], times.back(), touch.counts().limited);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "ticks";
-  what == "felt" ? felt() : ticks();
+  what == "felt" ? felt() : what == "moving" ? moving() : ticks();
 }

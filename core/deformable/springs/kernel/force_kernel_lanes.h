@@ -2,6 +2,7 @@
 
 #include "core/deformable/springs/kernel/force_kernel.h"
 #include "core/deformable/springs/kernel/force_kernel_vectors.h"
+#include "core/deformable/springs/kernel/lattice_kinds.h"
 
 // Included once for each instruction set, by a file that says how many numbers go side by side
 // (kLanes), and gives Lanes, Flags, gather() and scatter(): everything is its own.
@@ -228,32 +229,26 @@ HAPTRIAL_LANES void add_pack(const ForceQuery& query, const std::int32_t* corner
   pull_middle(m, query.forces, corners, tension);
 }
 
-/// What the two kinds of voxels inside of a lattice own, as tetrahedralize() cuts them. Code for
-/// these alone has no branches and knows where every measure goes.
-constexpr std::uint64_t kInLattice[] = {0x20fd083d5, 0x31c7103c7};
-
-template <bool star, std::uint64_t known>
-__attribute__((noinline)) void add_known(const ForceQuery& query, const std::int32_t* corners,
-                                         const double*& constants, Flags& upright) {
-  add_pack<star>(query, corners, known, constants, upright);
-}
-template <bool star>
-__attribute__((noinline)) void add_any(const ForceQuery& query, const std::int32_t* corners,
-                                       std::uint64_t owned, const double*& constants,
-                                       Flags& upright) {
-  add_pack<star>(query, corners, owned, constants, upright);
+/// @tparam known  what the pack owns, so that there are no branches; 0: `owned` says it
+template <bool star, std::uint64_t known = 0>
+__attribute__((noinline)) void add_alike(const ForceQuery& query, const std::int32_t* corners,
+                                         std::uint64_t owned, const double*& constants,
+                                         Flags& upright) {
+  add_pack<star>(query, corners, known != 0 ? known : owned, constants, upright);
 }
 
 template <bool star>
 HAPTRIAL_LANES void add_by_kind(const ForceQuery& query, const std::int32_t* corners,
                                 std::uint64_t owned, const double*& constants, Flags& upright) {
-  if (star && owned == kInLattice[0]) {
-    add_known<star, kInLattice[0]>(query, corners, constants, upright);
-  } else if (star && owned == kInLattice[1]) {
-    add_known<star, kInLattice[1]>(query, corners, constants, upright);
-  } else {
-    add_any<star>(query, corners, owned, constants, upright);
+  if constexpr (star) {
+    if (owned == kInLattice[0]) {
+      return add_alike<star, kInLattice[0]>(query, corners, owned, constants, upright);
+    }
+    if (owned == kInLattice[1]) {
+      return add_alike<star, kInLattice[1]>(query, corners, owned, constants, upright);
+    }
   }
+  add_alike<star>(query, corners, owned, constants, upright);
 }
 
 template <bool star>

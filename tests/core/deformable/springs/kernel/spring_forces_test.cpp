@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstring>
 #include <numeric>
 
 #include "core/base/random.h"
+#include "core/deformable/springs/kernel/lattice_kinds.h"
 #include "tests/support/solid_block.h"
 
 namespace haptrial::deformable {
@@ -129,6 +131,16 @@ TEST(SpringForcesTest, GiveTheSameBitsOnEveryInstructionSet) {
           << name_of(set);
     }
   }
+}
+
+/// The kernel has code for these two alone; it would not be used if voxels were cut otherwise.
+TEST(SpringForcesTest, TheInsideOfALatticeIsOfTwoKinds) {
+  const geometry::TetMesh mesh = test::solid_block({12, 12, 12}, 0.01);
+  const SpringPacks packs = pack_springs(spring_body(mesh, 1000, {1, 1, 1}));
+  for (const std::uint64_t kind : kInLattice) {
+    EXPECT_GT(6 * std::ranges::count(packs.stars.owned, kind), std::ssize(packs.stars.owned));
+  }
+  expect_forces_of_every_spring(mesh, 1e-3);
 }
 
 TEST(SpringForcesTest, CountInvertedTetrahedra) {
