@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kSampled = 0.3;         // of the radius: how far places are apart, about
+constexpr double kSampled = 0.4;         // of the radius: how far places are apart, about
 constexpr double kAhead = 0.25;          // of a cell: what is that near may be pressed on the tick
 constexpr double kNear = 0.05;           // of a cell: likewise on the step
 constexpr double kOwnCompliance = 1e-6;  // added to each place's: two places may be one

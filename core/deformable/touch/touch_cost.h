@@ -4,7 +4,7 @@
 
 namespace haptrial::deformable {
 
-/// How long a tick of a ball that presses takes on this machine, now.
+/// How long a tick of a ball that presses takes on this machine, now: the least of three times.
 struct TouchCost {
   double median{};  // [s]
   double most{};    // of 99 in 100 ticks [s]
