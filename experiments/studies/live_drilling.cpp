@@ -30,7 +30,8 @@ struct LiveDrilling::Batch {
 struct LiveDrilling::Bone {
   Bone(const record::PassRow& row, const std::shared_ptr<const bone::BoneModel>& model,
        const drilling::ProcedureSetup& setup, double rate)
-      : pass(row), metrics(model, setup.pose_WB(model->grid), setup.tools, setup.scale, rate) {}
+      : pass(row),
+        metrics(model, setup.pose_WB(model->grid), setup.tools, setup.scale, rate, setup.handle) {}
 
   record::PassRow pass;
   drilling::LiveMetrics metrics;

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text/counted.h"
+#include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/tear_row.h"
 #include "core/nerve/record/nerve_rows.h"
@@ -126,6 +127,8 @@ class BoneDrilling final : public Protocol {
     tables.push_back(&record::table_of<record::TearRow>());
     tables.push_back(&record::table_of<record::LedRow>());
     tables.push_back(&record::table_of<record::SecondHandRow>());
+    tables.push_back(&record::table_of<record::BurrRow>());
+    tables.push_back(&record::table_of<record::HandpieceRow>());
     tables.push_back(&record::table_of<record::OpeningRow>());
     tables.push_back(&record::table_of<record::FieldRow>());
     return tables;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/recorded_bone.h"
 #include "core/record/table/rounding.h"
@@ -131,18 +132,34 @@ std::string difference(std::uint64_t sequence, std::span<const record::TearRow> 
                    sequence, recorded.size(), torn.size());
 }
 
-/// Empty where the tube in the other hand was pushed as in the record.
-std::string difference(const record::SecondHandRow& recorded, const Eigen::Vector3d& force) {
+/// Empty where a part of a tool was pushed as in the record.
+std::string difference(std::uint64_t sequence, const char* part, const Eigen::Vector3d& recorded,
+                       const Eigen::Vector3d& force) {
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    if (record::on_grid(force[axis], record::kForceResolution) != recorded.contact[axis]) {
+    if (record::on_grid(force[axis], record::kForceResolution) != recorded[axis]) {
       return fmt::format(
-          "on tick {} the record has ({}, {}, {}) N on the tube of the second hand, and the "
-          "simulation ({}, {}, {})",
-          recorded.sequence, recorded.contact[0], recorded.contact[1], recorded.contact[2],
-          force[0], force[1], force[2]);
+          "on tick {} the record has ({}, {}, {}) N on {}, and the simulation ({}, {}, {})",
+          sequence, recorded[0], recorded[1], recorded[2], part, force[0], force[1], force[2]);
     }
   }
   return "";
+}
+
+/// Empty where shafts, wear and reverse are those of the record.
+std::string difference(const record::HandpieceRow& recorded, const bone::Simulator& simulator) {
+  const bone::SimulatorOutput& out = simulator.output();
+  const bone::Handpiece& held = simulator.handpiece();
+  if (held.reversed() != recorded.reversed || held.sharpness(out.tool) != recorded.sharpness) {
+    return fmt::format(
+        "on tick {} the record has a burr of sharpness {}, reversed {}, and the simulation {}, {}",
+        recorded.sequence, recorded.sharpness, recorded.reversed, held.sharpness(out.tool),
+        held.reversed());
+  }
+  const std::string shaft =
+      difference(recorded.sequence, "the burr's shaft", recorded.shaft, out.shaft);
+  return !shaft.empty() ? shaft
+                        : difference(recorded.sequence, "the tube's shaft", recorded.tube_shaft,
+                                     out.tube.shaft);
 }
 
 }  // namespace
@@ -352,6 +369,8 @@ void BoneReplay::run_own(const record::PassRow& pass, Work& work) const {
                       "be simulated again without them",
                       reader_.path().string()));
     }
+    const auto held = definition_.has_handpiece() ? reader_.rows<record::HandpieceRow>(at, count)
+                                                  : std::vector<record::HandpieceRow>{};
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const std::span<const record::DeviceRow> other = devices.take(samples[i].sequence);
       if (!tool[i].active) {
@@ -370,10 +389,14 @@ void BoneReplay::run_own(const record::PassRow& pass, Work& work) const {
       }
       if (two) {
         const Eigen::Vector3d& force = work.stage->simulator->output().tube.force;
-        work.verdict.difference = difference(hand[i], force);
-        if (!work.verdict.difference.empty()) {
-          return;
-        }
+        work.verdict.difference =
+            difference(hand[i].sequence, "the tube of the second hand", hand[i].contact, force);
+      }
+      if (i < held.size() && work.verdict.difference.empty()) {
+        work.verdict.difference = difference(held[i], *work.stage->simulator);
+      }
+      if (!work.verdict.difference.empty()) {
+        return;
       }
       work.show(samples[i].sequence, now);
     }

@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "core/base/text/counted.h"
+#include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/recorded_bone.h"
 #include "core/nerve/record/nerve_rows.h"
@@ -63,6 +64,22 @@ record::FieldRow field_of(const BoneStage& stage, std::int32_t row) {
   return field;
 }
 
+std::vector<record::BurrRow> burr_rows(std::span<const bone::ToolSpec> tools) {
+  std::vector<record::BurrRow> rows;
+  for (std::size_t tool = 0; tool < tools.size(); ++tool) {
+    if (const auto* burr = tools[tool].as<bone::BurrTool>()) {
+      const bone::BurrParameters& p = burr->burr;
+      const bone::ShaftParameters none{0.0, 0.0, {}};
+      const bone::ShaftParameters& shaft = burr->shaft ? *burr->shaft : none;
+      rows.push_back({static_cast<std::int32_t>(tool), tools[tool].name,
+                      static_cast<std::uint8_t>(p.kind), static_cast<std::uint8_t>(p.form),
+                      p.diameter, 2.0 * bone::BurrShape(p.dimensions()).half_length(),
+                      p.narrow_diameter, p.clockwise, shaft.radius, shaft.length, p.wear_volume});
+    }
+  }
+  return rows;
+}
+
 /// How many bones a trial has had in earlier runs.
 std::int32_t bones_used(const SessionFile& file, const PlannedTrial& trial) {
   std::int32_t most = 0;
@@ -86,6 +103,10 @@ BoneTrials::BoneTrials(const BoneDefinition& definition, const SessionPlace& pla
   if (d_.drilling.second) {
     logs_.watch_second();
   }
+  if (d_.has_handpiece()) {
+    logs_.watch_handpiece();
+  }
+  burrs_ = burr_rows(d_.simulator.tools);
   if (d_.nerves) {
     watch_nerves();
   }
@@ -191,6 +212,10 @@ record::TableList BoneTrials::tables() const {
   if (d_.drilling.second) {
     tables.push_back(&record::table_of<record::SecondHandRow>());
   }
+  tables.push_back(&record::table_of<record::BurrRow>());
+  if (d_.has_handpiece()) {
+    tables.push_back(&record::table_of<record::HandpieceRow>());
+  }
   if (!d_.simulator.bleeding.structures.empty()) {
     tables.push_back(&record::table_of<record::OpeningRow>());
   }
@@ -202,6 +227,7 @@ record::TableList BoneTrials::tables() const {
 
 std::vector<record::Rows> BoneTrials::first_rows() const {
   std::vector<record::Rows> rows = record::rows_of(records_);
+  rows.emplace_back(std::span(burrs_));
   if (!channels_.empty()) {
     rows.emplace_back(std::span(channels_));
   }
@@ -223,6 +249,9 @@ void BoneTrials::empty_logs(SessionFile& file) {
   }
   if (d_.drilling.second) {
     empty(logs_.second);
+  }
+  if (d_.has_handpiece()) {
+    empty(logs_.handpiece);
   }
   if (!d_.simulator.bleeding.structures.empty()) {
     logs_.openings.flush([&](std::span<const record::OpeningRow> rows) {

@@ -66,6 +66,7 @@ class BoneTrials final : public Trials {
   FixedPlan plan_;
   DrillingLogs logs_;
   std::vector<record::BoneRecord> records_;  // of the bones
+  std::vector<record::BurrRow> burrs_;
   std::vector<record::NerveChannelRow> channels_;
   std::shared_ptr<nerve::NerveVoice> voice_;  // of the sound card
   std::unique_ptr<nerve::NerveBeside> nerves_;

@@ -86,6 +86,8 @@ bone::DrillingView view_of(const bone::Simulator& simulator,
     const bone::TubeInput& tube = input.tube;
     view.tube = {true, tube.tool.tip.position, tube.tool.orientation, tube.sucks, tube.rinses};
   }
+  view.reversed = simulator.handpiece().reversed();
+  view.sharpness = simulator.handpiece().sharpness(out.tool);
   view.temperature = simulator.heat() != nullptr ? simulator.heat()->temperature() : 0.0;
   return view;
 }
@@ -160,7 +162,7 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   PassOutput out;
   const Eigen::Vector3d shake =
       shaking(vibration_, simulator_, done.contact, done.force.norm(), input.tool);
-  const Eigen::Vector3d wanted = done.force + shake;
+  const Eigen::Vector3d wanted = done.force + done.shaft + shake;
   out.force = control::saturate(wanted, parameters_.force_limit);
   out.intent.push = done.drag + shake;
   out.saturated = wanted.norm() > parameters_.force_limit;
@@ -173,10 +175,12 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   out.shown = seen;
   out.shown.tool = reading.tool.position;
   if (two) {
-    second_.force = control::saturate(done.tube.force, parameters_.second->force_limit);
+    second_.force =
+        control::saturate(done.tube.force + done.tube.shaft, parameters_.second->force_limit);
     rows_.log_second(input.tube);
   }
   rows_.log_tool(done.removed + done.cut, done.force);
+  rows_.log_handpiece(done.shaft);
   return out;
 }
 

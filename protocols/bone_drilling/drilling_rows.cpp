@@ -1,5 +1,6 @@
 #include "protocols/bone_drilling/drilling_rows.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -29,6 +30,11 @@ void DrillingLogs::record(std::uint64_t sequence, const Readings& readings,
     other.sequence = sequence;
     other.orientation = readings.size() > 1 ? readings[1].orientation : other.orientation;
     second.push(other);
+  }
+  if (watches_handpiece_) {
+    record::HandpieceRow held = std::exchange(handpiece_row_, record::HandpieceRow{});
+    held.sequence = sequence;
+    handpiece.push(held);
   }
   if (beside_ != nullptr) {
     nerve::NerveTick tick = std::exchange(nerves_, nerve::NerveTick{});
@@ -104,6 +110,16 @@ void DrillingRows::log_tool(double removed, const Eigen::Vector3d& contact) noex
   logs_.set_tool(tool);
 }
 
+void DrillingRows::log_handpiece(const Eigen::Vector3d& shaft) noexcept {
+  const bone::SimulatorOutput& out = simulator_.output();
+  record::HandpieceRow row;
+  row.reversed = simulator_.handpiece().reversed();
+  row.sharpness = simulator_.handpiece().sharpness(out.tool);
+  row.shaft = shaft;
+  row.tube_shaft = out.tube.shaft;
+  logs_.set_handpiece(row);
+}
+
 void DrillingRows::log_second(const bone::TubeInput& tube) noexcept {
   const bone::TubeOutput& out = simulator_.output().tube;
   record::SecondHandRow row;
@@ -113,6 +129,24 @@ void DrillingRows::log_second(const bone::TubeInput& tube) noexcept {
   row.contact = out.force;
   logs_.set_second(row);
 }
+
+namespace {
+
+/// Those that fill a burr that is no ball.
+void add_balls(const bone::Simulator& simulator, const Eigen::Isometry3d& X_WB,
+               const ToolState& tool, nerve::ToolAtNerves& at) noexcept {
+  const std::span<const bone::BurrShape::Ball> balls = simulator.burr_balls();
+  if (balls.size() < 2) {
+    return;
+  }
+  const Eigen::Vector3d axis_B = X_WB.linear().transpose() * tool.axis();
+  for (const bone::BurrShape::Ball& ball : balls.first(std::min(balls.size(), at.more.size()))) {
+    at.more[at.balls++] = {at.tip_B + ball.z * axis_B, ball.radius};
+  }
+  at.radius = balls[balls.size() / 2].radius;
+}
+
+}  // namespace
 
 nerve::ToolAtNerves tool_at_nerves(const bone::Simulator& simulator,
                                    const bone::SimulatorInput& input) noexcept {
@@ -135,6 +169,7 @@ nerve::ToolAtNerves tool_at_nerves(const bone::Simulator& simulator,
   }
   const Eigen::Isometry3d& X_WB = simulator.world().pose(0);
   at.tip_B = X_WB.inverse(Eigen::Isometry) * input.tool.tip.position;
+  add_balls(simulator, X_WB, input.tool, at);
   at.speed = input.tool.tip.velocity.norm();
   at.force = out.force.norm();
   at.power = out.power;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_types.h"
 #include "core/bone/record/field_row.h"
 #include "core/bone/record/led_row.h"
@@ -27,11 +28,16 @@ class DrillingLogs final : public TickLog {
   realtime::BlockLog<record::LedRow> led{1024, 16};
   realtime::BlockLog<record::SecondHandRow> second;
   realtime::BlockLog<record::OpeningRow> openings{64, 16};
+  realtime::BlockLog<record::HandpieceRow> handpiece;
 
   /// A row of /second_hand for every tick from now on, also between passes. Before the first tick.
   void watch_second() noexcept { two_hands_ = true; }
   /// What the present tick says of the tube; taken by record(). Servo thread.
   void set_second(const record::SecondHandRow& row) noexcept { second_row_ = row; }
+
+  /// A row of /handpiece for every tick from now on, likewise.
+  void watch_handpiece() noexcept { watches_handpiece_ = true; }
+  void set_handpiece(const record::HandpieceRow& row) noexcept { handpiece_row_ = row; }
 
   /// What the present tick says of the tool in hand; taken by record(). Servo thread.
   void set_tool(const record::ToolRow& row) noexcept { row_ = row; }
@@ -47,13 +53,16 @@ class DrillingLogs final : public TickLog {
 
   std::uint64_t dropped() const noexcept {
     return tool.dropped() + removals.dropped() + camera.dropped() + splits.dropped() +
-           tears.dropped() + led.dropped() + second.dropped() + openings.dropped();
+           tears.dropped() + led.dropped() + second.dropped() + openings.dropped() +
+           handpiece.dropped();
   }
 
  private:
   record::ToolRow row_;
   record::SecondHandRow second_row_;
   bool two_hands_{false};
+  record::HandpieceRow handpiece_row_;
+  bool watches_handpiece_{false};
   nerve::NerveTick nerves_;
   nerve::NerveBeside* beside_{nullptr};
 };
@@ -72,6 +81,8 @@ class DrillingRows {
   void log_camera(std::uint64_t sequence, bool changed) noexcept;
   /// The tool in hand after it. @param removed  in this tick [voxels]
   void log_tool(double removed, const Eigen::Vector3d& contact) noexcept;
+  /// Shafts, wear and reverse after it. @param shaft  force on the burr's shaft [N]
+  void log_handpiece(const Eigen::Vector3d& shaft) noexcept;
   /// The tube in the other hand after it.
   void log_second(const bone::TubeInput& tube) noexcept;
 

@@ -153,7 +153,7 @@ PassOutput LedPass::output(const Readings& readings) noexcept {
   const bone::BoneTouch::Felt felt = touch_.tick(p_.simulator, own.tool);
   const Eigen::Vector3d shake =
       shaking(p_.vibration, p_.simulator, felt.contact, felt.force.norm(), own.tool);
-  const Eigen::Vector3d wanted = felt.force + shake;
+  const Eigen::Vector3d wanted = felt.force + felt.shaft + shake;
   PassOutput out;
   out.force = control::saturate(wanted, p_.parameters.force_limit);
   out.intent.push = felt.drag + shake;
@@ -168,6 +168,7 @@ PassOutput LedPass::output(const Readings& readings) noexcept {
   out.shown = seen;
   rows_.log_camera(sequence_, camera_changed_);
   rows_.log_tool(removed_, felt.force);
+  rows_.log_handpiece(felt.shaft);
   return out;
 }
 

@@ -8,18 +8,14 @@ DrillingMeter::DrillingMeter(std::shared_ptr<const bone::BoneModel> bone,
                              const Eigen::Isometry3d& pose_WB,
                              const std::vector<ProcedureTool>& tools, double rate,
                              StudyBones& bones)
-    : usage_(bone, tools, rate),
+    : tools_(tools),
+      usage_(bone, tools, rate),
       visibility_(bone, pose_WB),
-      injuries_(bone, pose_WB, tools, bones) {
-  for (const ProcedureTool& tool : tools) {
-    radii_.push_back(tool.burr_radius);
-  }
-}
+      injuries_(bone, pose_WB, tools, bones) {}
 
-double DrillingMeter::radius() const noexcept {
-  return last_.tool >= 0 && std::cmp_less(last_.tool, radii_.size())
-             ? radii_[static_cast<std::size_t>(last_.tool)]
-             : 0.0;
+BurrOnTick DrillingMeter::burr() const noexcept {
+  const bool known = last_.tool >= 0 && std::cmp_less(last_.tool, tools_.size());
+  return burr_of(last_, known ? &tools_[static_cast<std::size_t>(last_.tool)] : nullptr);
 }
 
 void DrillingMeter::view(const View& view) {
@@ -37,12 +33,12 @@ void DrillingMeter::tick(const ToolTick& tick) {
   last_ = tick;
   any_ = true;
   usage_.tick(tick);
-  injuries_.tick(tick, radius(), time());
+  injuries_.tick(tick, burr(), time());
 }
 
 void DrillingMeter::removal(const Removal& removal) {
   const bool now = any_ && last_.sequence == removal.sequence;
-  visibility_.remove(removal.voxel, last_.position, now ? radius() : 0.0);
+  visibility_.remove(removal.voxel, now ? burr() : burr_of(last_, nullptr));
   usage_.remove(removal);
   injuries_.remove(removal, time());
 }

@@ -29,9 +29,9 @@ class DrillingMeter {
   const InjuryMeter& injuries() const noexcept { return injuries_; }
 
  private:
-  double radius() const noexcept;  // of the burr on the last tick
+  BurrOnTick burr() const noexcept;  // on the last tick
 
-  std::vector<double> radii_;  // (tools)
+  std::vector<ProcedureTool> tools_;
   UsageMeter usage_;
   VisibilityMeter visibility_;
   InjuryMeter injuries_;

@@ -24,12 +24,12 @@ bone::Voxel nearest_voxel(const geometry::VoxelGrid& grid, const Eigen::Vector3d
   return voxel;
 }
 
-double largest_radius(const std::vector<ProcedureTool>& tools) {
-  double radius = 0.0;
+double largest_reach(const std::vector<ProcedureTool>& tools) {
+  double reach = 0.0;
   for (const ProcedureTool& tool : tools) {
-    radius = std::max(radius, tool.burr_radius);
+    reach = std::max(reach, burr_of({}, &tool).reach());
   }
-  return radius;
+  return reach;
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ InjuryMeter::InjuryMeter(std::shared_ptr<const bone::BoneModel> bone,
   // half a diagonal each.
   const double spacing = bone_->grid.spacing;
   const double reach =
-      std::min(largest_radius(tools) + std::numbers::sqrt3 * spacing, 250.0 * spacing);
+      std::min(largest_reach(tools) + std::numbers::sqrt3 * spacing, 250.0 * spacing);
   std::array<bool, 256> there{};
   for (const std::uint8_t label : bone_->labels) {
     there[label] = true;
@@ -58,35 +58,36 @@ InjuryMeter::InjuryMeter(std::shared_ptr<const bone::BoneModel> bone,
   }
 }
 
-void InjuryMeter::tick(const ToolTick& tick, double radius, double time) {
-  if (!(radius > 0.0) || !tick.power || !tick.drives_tool || !tick.position.allFinite()) {
+void InjuryMeter::tick(const ToolTick& tick, const BurrOnTick& burr, double time) {
+  if (!(burr.radius > 0.0) || !tick.power || !tick.drives_tool || !tick.position.allFinite()) {
     return;
   }
-  const Eigen::Vector3d centre = pose_BW_ * tick.position;
+  const BurrOnTick burr_B = in_frame(pose_BW_, burr);
   for (std::size_t i = 0; i < injuries_.size(); ++i) {
-    if (!injuries_[i].first_contact && touches(i, centre, radius)) {
+    if (!injuries_[i].first_contact && touches(i, burr_B)) {
       injuries_[i].first_contact = time;
     }
   }
 }
 
 /// The tip clamped into the grid is nowhere farther from a voxel than the tip itself.
-bool InjuryMeter::touches(std::size_t injury, const Eigen::Vector3d& centre, double radius) const {
+bool InjuryMeter::touches(std::size_t injury, const BurrOnTick& burr_B) const {
+  const Eigen::Vector3d& centre = burr_B.centre;
+  const double reach = burr_B.reach();
   const geometry::VoxelGrid& grid = bone_->grid;
   const bone::Voxel middle = nearest_voxel(grid, centre);
   const std::optional<double> distance = fields_[injury]->at(middle);
-  if (!distance || *distance > radius + std::numbers::sqrt3 * grid.spacing) {
+  if (!distance || *distance > reach + std::numbers::sqrt3 * grid.spacing) {
     return false;
   }
-  const BurrSphere burr{centre, radius};
-  const Eigen::Vector3d half = Eigen::Vector3d::Constant(radius + grid.spacing);
+  const Eigen::Vector3d half = Eigen::Vector3d::Constant(reach + grid.spacing);
   const bone::Voxel low = nearest_voxel(grid, centre - half);
   const bone::Voxel high = nearest_voxel(grid, centre + half);
   for (int k = low.z(); k <= high.z(); ++k) {
     for (int j = low.y(); j <= high.y(); ++j) {
       for (int i = low.x(); i <= high.x(); ++i) {
         if (bone_->labels[grid.index(i, j, k)] == injuries_[injury].label &&
-            burr.touches(grid, {i, j, k})) {
+            burr_B.touches(grid, {i, j, k})) {
           return true;
         }
       }
@@ -159,7 +160,7 @@ std::vector<Injury> injuries(const Procedure& procedure, StudyBones& bones) {
     }
     void tick(const ToolTick& tick) {
       ++ticks;
-      meter.tick(tick, procedure.burr_radius(tick.tool), time());
+      meter.tick(tick, burr_of(tick, procedure.tool(tick.tool)), time());
     }
     void removal(const Removal& removal) {
       bone.take(removal.voxel);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/bone_drilling/metrics/burr_on_tick.h"
 #include "analysis/bone_drilling/procedure/procedure.h"
 #include "core/bone/model/distance_field.h"
 
@@ -40,15 +41,15 @@ struct Injury {
 /// Adds what tore. @param procedure  with its ticks
 void add_tears(const Procedure& procedure, std::vector<Injury>& injuries);
 
-/// Goes along with a drilling. Contact is exact: the burr's sphere reaches into the cube of a voxel
-/// of the structure as it was at first. One thread, not the servo thread.
+/// Goes along with a drilling. Contact is exact: the burr reaches into the cube of a voxel of the
+/// structure as it was at first. One thread, not the servo thread.
 class InjuryMeter {
  public:
   InjuryMeter(std::shared_ptr<const bone::BoneModel> bone, const Eigen::Isometry3d& pose_WB,
               const std::vector<ProcedureTool>& tools, StudyBones& bones);
 
-  /// @param time  of the procedure [s]; radius of the burr [m], 0 for none
-  void tick(const ToolTick& tick, double radius, double time);
+  /// @param burr  in W  @param time  of the procedure [s]
+  void tick(const ToolTick& tick, const BurrOnTick& burr, double time);
   void remove(const Removal& removal, double time);
   void crumble(const std::vector<bone::Voxel>& voxels);
 
@@ -56,7 +57,7 @@ class InjuryMeter {
   std::uint64_t voxels() const noexcept;  // of all, emptied by a burr or the cut plane
 
  private:
-  bool touches(std::size_t injury, const Eigen::Vector3d& centre, double radius) const;
+  bool touches(std::size_t injury, const BurrOnTick& burr_B) const;
 
   std::shared_ptr<const bone::BoneModel> bone_;
   Eigen::Isometry3d pose_BW_;

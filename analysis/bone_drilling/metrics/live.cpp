@@ -16,8 +16,8 @@ void drop(std::vector<Row>& rows, std::size_t count) {
 
 LiveMetrics::LiveMetrics(const std::shared_ptr<const bone::BoneModel>& bone,
                          const Eigen::Isometry3d& pose_WB, const std::vector<ProcedureTool>& tools,
-                         double scale, double rate)
-    : meter_(bone, pose_WB, tools, rate, bones_), scale_(scale) {}
+                         double scale, double rate, const Eigen::Vector3d& handle)
+    : meter_(bone, pose_WB, tools, rate, bones_), scale_(scale), handle_(handle) {}
 
 void LiveMetrics::add(std::span<const record::Sample> samples,
                       std::span<const record::ToolRow> tool) {
@@ -29,7 +29,7 @@ void LiveMetrics::add(std::span<const record::Sample> samples,
       throw std::invalid_argument("LiveMetrics: rows of /samples and /tool are of other ticks");
     }
     if (tool[i].active) {
-      waiting_.ticks.push_back(tick_of(samples[i], tool[i], scale_));
+      waiting_.ticks.push_back(tick_of(samples[i], tool[i], scale_, handle_));
     }
   }
 }

@@ -21,9 +21,10 @@ namespace haptrial::analysis::drilling {
 class LiveMetrics {
  public:
   /// One for each bone; a drilling that was broken off and goes on stays with its object.
-  /// @param scale  as ProcedureSetup has it
+  /// @param scale, handle  as ProcedureSetup has them
   LiveMetrics(const std::shared_ptr<const bone::BoneModel>& bone, const Eigen::Isometry3d& pose_WB,
-              const std::vector<ProcedureTool>& tools, double scale, double rate);
+              const std::vector<ProcedureTool>& tools, double scale, double rate,
+              const Eigen::Vector3d& handle = Eigen::Vector3d::UnitZ());
 
   /// Rows of the same ticks; those on which no bone was simulated are passed over.
   /// @throws std::invalid_argument where they are not of the same ticks.
@@ -44,6 +45,7 @@ class LiveMetrics {
   StudyBones bones_;
   DrillingMeter meter_;
   double scale_;
+  Eigen::Vector3d handle_;
   struct {
     std::vector<ToolTick> ticks;
     std::vector<Removal> removals;

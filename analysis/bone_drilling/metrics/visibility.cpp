@@ -7,18 +7,8 @@
 
 namespace haptrial::analysis::drilling {
 
-bool BurrSphere::touches(const geometry::VoxelGrid& grid, const bone::Voxel& voxel) const noexcept {
-  if (!(radius > 0.0)) {
-    return false;
-  }
-  const Eigen::Array3d middle = grid.centre(voxel.x(), voxel.y(), voxel.z()).array();
-  const Eigen::Array3d beyond =
-      ((centre.array() - middle).abs() - 0.5 * grid.spacing).max(0.0);  // the cube, per axis
-  return beyond.matrix().squaredNorm() <= radius * radius;
-}
-
 bool is_visible(const StandingBone& bone, const bone::Voxel& voxel, const Eigen::Vector3d& eye,
-                const BurrSphere& burr) {
+                const BurrOnTick& burr) {
   const geometry::VoxelGrid& grid = bone.grid();
   bool visible = eye.allFinite();
   bone::walk_voxels(grid, grid.centre(voxel.x(), voxel.y(), voxel.z()), eye,
@@ -44,10 +34,10 @@ VisibilityMeter::VisibilityMeter(std::shared_ptr<const bone::BoneModel> bone,
 
 void VisibilityMeter::look_from(const Eigen::Vector3d& eye) { eye_ = pose_BW_ * eye; }
 
-bool VisibilityMeter::remove(const bone::Voxel& voxel, const Eigen::Vector3d& tip, double radius) {
+bool VisibilityMeter::remove(const bone::Voxel& voxel, const BurrOnTick& burr) {
   bone_.take(voxel);
-  const bool seen = bone_.inside(voxel) && eye_ &&
-                    is_visible(bone_, voxel, *eye_, BurrSphere{pose_BW_ * tip, radius});
+  const bool seen =
+      bone_.inside(voxel) && eye_ && is_visible(bone_, voxel, *eye_, in_frame(pose_BW_, burr));
   found_.visible.push_back(seen ? 1 : 0);
   found_.count += seen ? 1 : 0;
   return seen;
@@ -68,7 +58,7 @@ Visibility visibility(const Procedure& procedure) {
     void cut(const Removal& cut) { meter.cut(cut.voxel); }
     void removal(const Removal& removal) {
       const bool now = any && last.sequence == removal.sequence;
-      meter.remove(removal.voxel, last.position, now ? procedure.burr_radius(last.tool) : 0.0);
+      meter.remove(removal.voxel, burr_of(last, now ? procedure.tool(last.tool) : nullptr));
     }
   };
   Visitor visitor{procedure, VisibilityMeter(procedure.bone, procedure.pose_WB)};

@@ -7,25 +7,17 @@
 #include <optional>
 #include <vector>
 
+#include "analysis/bone_drilling/metrics/burr_on_tick.h"
 #include "analysis/bone_drilling/procedure/procedure.h"
 #include "analysis/bone_drilling/procedure/standing_bone.h"
 
 namespace haptrial::analysis::drilling {
 
-/// The burr on a tick, in the bone frame B.
-struct BurrSphere {
-  Eigen::Vector3d centre{Eigen::Vector3d::Zero()};  // [m]
-  double radius{0.0};                               // [m]
-
-  /// Whether it reaches into a voxel's cube.
-  bool touches(const geometry::VoxelGrid& grid, const bone::Voxel& voxel) const noexcept;
-};
-
 /// Whether nothing stands between a voxel's centre and the eye but bone that the burr touches.
-/// @param eye  in B [m]
+/// @param eye, burr  in B [m]
 /// Source: Morris 2006, §3.5.1.
 bool is_visible(const StandingBone& bone, const bone::Voxel& voxel, const Eigen::Vector3d& eye,
-                const BurrSphere& burr);
+                const BurrOnTick& burr);
 
 /// How many of the voxels that burrs removed were seen.
 struct Visibility {
@@ -50,9 +42,9 @@ class VisibilityMeter {
   }
   /// A voxel that the cut plane took: it hides nothing from now on, and nobody had to see it.
   void cut(const bone::Voxel& voxel) noexcept { bone_.take(voxel); }
-  /// A removed voxel. @param tip, radius  of the burr, in W [m]
+  /// A removed voxel. @param burr  in W
   /// @returns whether it was visible; never before the first look_from()
-  bool remove(const bone::Voxel& voxel, const Eigen::Vector3d& tip, double radius);
+  bool remove(const bone::Voxel& voxel, const BurrOnTick& burr);
 
   const Visibility& visibility() const noexcept { return found_; }
   const StandingBone& bone() const noexcept { return bone_; }

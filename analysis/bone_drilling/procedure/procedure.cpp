@@ -155,7 +155,7 @@ class Loader {
                           file_.path().string(), first + i, tool[i].sequence, samples[i].sequence));
         }
         if (tool[i].active) {
-          procedure.ticks.push_back(tick_of(samples[i], tool[i], setup_.scale));
+          procedure.ticks.push_back(tick_of(samples[i], tool[i], setup_.scale, setup_.handle));
         }
       }
     }
@@ -199,10 +199,15 @@ double as_float(double value) { return static_cast<double>(static_cast<float>(va
 
 }  // namespace
 
-double Procedure::burr_radius(std::int32_t tool) const noexcept {
-  return tool >= 0 && std::cmp_less(tool, tools.size())
-             ? tools[static_cast<std::size_t>(tool)].burr_radius
-             : 0.0;
+const ProcedureTool* Procedure::tool(std::int32_t number) const noexcept {
+  return number >= 0 && std::cmp_less(number, tools.size())
+             ? &tools[static_cast<std::size_t>(number)]
+             : nullptr;
+}
+
+double Procedure::burr_radius(std::int32_t number) const noexcept {
+  const ProcedureTool* const of = tool(number);
+  return of != nullptr ? of->burr_radius : 0.0;
 }
 
 std::vector<Procedure> load_procedures(const record::SessionReader& file,
@@ -222,11 +227,17 @@ std::vector<Procedure> load_procedures(const record::SessionReader& file,
   return procedures;
 }
 
-ToolTick tick_of(const record::Sample& sample, const record::ToolRow& tool, double scale) {
+ToolTick tick_of(const record::Sample& sample, const record::ToolRow& tool, double scale,
+                 const Eigen::Vector3d& handle) {
   ToolTick tick;
   tick.sequence = sample.sequence;
   tick.position = as_filed(sample.position, record::kPositionResolution) / scale;
   tick.velocity = as_filed(sample.velocity, record::kVelocityResolution) / scale;
+  Eigen::Quaterniond turn = tool.orientation;
+  for (double& number : turn.coeffs()) {
+    number = as_filed(number, record::kOrientationResolution);
+  }
+  tick.axis = (turn.normalized() * handle.normalized()).cast<float>();
   tick.force = as_filed(tool.contact, record::kForceResolution).norm();
   tick.removed = as_float(tool.removed);
   tick.tool = tool.tool;

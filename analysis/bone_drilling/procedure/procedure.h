@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/bone/drill/burr_shape.h"
 #include "core/bone/model/bone_model.h"
 #include "core/bone/model/bone_volume.h"
 #include "core/bone/record/drilling_types.h"
@@ -23,7 +24,8 @@ namespace haptrial::analysis::drilling {
 /// A tool as far as metrics need it.
 struct ProcedureTool {
   std::string name;
-  double burr_radius{0.0};  // [m]; 0: no burr
+  double burr_radius{0.0};                         // [m]; 0: no burr
+  std::shared_ptr<const bone::BurrShape> shape{};  // of a burr that is no ball; else null
 };
 
 /// What the definition of a session says and its tables do not.
@@ -31,7 +33,9 @@ struct ProcedureSetup {
   std::string group;  // of the participant
   /// X_WB, how a bone lies in the scene; null: B is W.
   std::function<Eigen::Isometry3d(const geometry::VoxelGrid&)> pose_WB;
-  double scale{1.0};                 // the device's motions are this many times the scene's > 0
+  double scale{1.0};  // the device's motions are this many times the scene's > 0
+  /// From the tip along the handle, in the frame of the device's orientation. Any length but 0.
+  Eigen::Vector3d handle{Eigen::Vector3d::UnitZ()};
   std::vector<ProcedureTool> tools;  // in the definition's order
 };
 
@@ -40,6 +44,7 @@ struct ToolTick {
   std::uint64_t sequence{0};
   Eigen::Vector3d position{Eigen::Vector3d::Zero()};  // [m]
   Eigen::Vector3d velocity{Eigen::Vector3d::Zero()};  // [m/s]
+  Eigen::Vector3f axis{Eigen::Vector3f::UnitZ()};     // from the tip along the handle, unit length
   double force{0.0};                                  // magnitude of the contact force [N]
   double removed{0.0};                                // density on this tick [voxels]
   std::int32_t tool{0};                               // in hand, of Procedure::tools
@@ -105,6 +110,8 @@ struct Procedure {
   std::vector<Crumb> crumbs;
   std::vector<Torn> tears;
 
+  /// Null out of range.
+  const ProcedureTool* tool(std::int32_t number) const noexcept;
   /// The radius of a tool's burr; 0 for a tool that is none, or out of range [m].
   double burr_radius(std::int32_t tool) const noexcept;
 };
@@ -122,7 +129,8 @@ std::vector<Procedure> load_procedures(const record::SessionReader& file,
 
 // Rows of a session file as metrics use them; of rows that are not in a file yet, what the file
 // will give.
-ToolTick tick_of(const record::Sample& sample, const record::ToolRow& tool, double scale);
+ToolTick tick_of(const record::Sample& sample, const record::ToolRow& tool, double scale,
+                 const Eigen::Vector3d& handle = Eigen::Vector3d::UnitZ());
 Removal removal_of(const record::RemovalRow& row);
 View view_of(const record::CameraRow& row);
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "core/base/definition/table.h"
@@ -16,11 +17,14 @@ namespace {
 
 constexpr Bounds kDiameter{0.0005, 0.03};
 constexpr double kMostSamples = 1e6;
-constexpr double kSphere = std::numbers::pi / 6.0;  // volume over diameter^3
+constexpr double kSphere = std::numbers::pi / 6.0;  // volume of a ball over diameter^3
 
-double least_spacing(double diameter) { return diameter * std::cbrt(kSphere / kMostSamples); }
+/// How far samples are apart where there are so many of them.
+double spacing_of(const BurrShape& shape, double samples) {
+  return shape.dimensions().diameter * std::cbrt(shape.fullness() / samples);
+}
 
-void check(const BurrParameters& p) {
+void check(const BurrParameters& p, const BurrShape& shape) {
   const auto need = [](bool good, const char* name, double value, const char* allowed) {
     if (!good) {
       throw std::invalid_argument(fmt::format("Burr: {} is {}; allowed: {}", name, value, allowed));
@@ -28,13 +32,15 @@ void check(const BurrParameters& p) {
   };
   need(p.diameter >= kDiameter.low && p.diameter <= kDiameter.high, "diameter", p.diameter,
        "from 0.0005 to 0.03 [m]");
-  need(p.sample_spacing >= least_spacing(p.diameter) && p.sample_spacing <= 0.5 * p.diameter,
+  need(p.sample_spacing >= spacing_of(shape, kMostSamples) && p.sample_spacing <= 0.5 * p.diameter,
        "sample_spacing", p.sample_spacing, "at most half of the diameter, and 1e6 samples [m]");
   need(p.removal_rate >= 0.0 && p.removal_rate < 1e6, "removal_rate", p.removal_rate,
        "from 0 to 1e6 [1/(N·s)]");
   need(p.falloff >= 0.0 && p.falloff < 1e6, "falloff", p.falloff, "from 0 to 1e6 [1/(N·s·rad)]");
   need(p.tangential_gain >= 0.0 && std::isfinite(p.tangential_gain), "tangential_gain",
        p.tangential_gain, "at least 0 [N/m^4]");
+  need(p.wear_volume >= 0.0 && std::isfinite(p.wear_volume), "wear_volume", p.wear_volume,
+       "at least 0 [m^3]");
 }
 
 /// Evenly spread places in a unit cube: the additive recurrence of Roberts (2018).
@@ -55,22 +61,41 @@ class Places {
   Eigen::Vector3d at_{0.5, 0.5, 0.5};
 };
 
-/// Half of the samples, in units of the radius: those in cells of the upper half, row by row.
-std::vector<Eigen::Vector3d> half_of_samples(double cell) {
-  const int reach = static_cast<int>(std::ceil(1.0 / cell));
+/// Half of the samples, in units of the reach, row by row: of a point-symmetric shape those in
+/// cells of the upper half, else those of y > 0.
+std::vector<Eigen::Vector3d> half_of_samples(const BurrShape& shape, double cell) {
+  const double reach = shape.reach();
+  const auto cells = [&](double wide) { return static_cast<int>(std::ceil(wide / reach / cell)); };
+  const int across = cells(0.5 * shape.dimensions().diameter);
+  const int along = cells(shape.half_length());
+  const bool upper = shape.is_point_symmetric();
   std::vector<Eigen::Vector3d> samples;
   Places places;
-  for (int k = 0; k < reach; ++k) {
-    for (int j = -reach; j < reach; ++j) {
-      for (int i = -reach; i < reach; ++i) {
+  for (int k = upper ? 0 : -along; k < along; ++k) {
+    for (int j = upper ? -across : 0; j < across; ++j) {
+      for (int i = -across; i < across; ++i) {
         const Eigen::Vector3d at = cell * (Eigen::Vector3d(i, j, k) + places.next());
-        if (at.squaredNorm() <= 1.0 && at.squaredNorm() > 0.0) {
+        const bool inside = shape.is_ball() ? at.squaredNorm() <= 1.0 && at.squaredNorm() > 0.0
+                                            : shape.nearest(reach * at).distance <= 0.0;
+        if (inside) {
           samples.push_back(at);
         }
       }
     }
   }
   return samples;
+}
+
+/// Those of the other half.
+Eigen::Vector3d image_of(const BurrShape& shape, const Eigen::Vector3d& at) {
+  return shape.is_point_symmetric() ? Eigen::Vector3d(-at)
+                                    : Eigen::Vector3d(-at.x(), -at.y(), at.z());
+}
+
+/// Where a sample pushes: inwards. @param at  in units of the reach
+Eigen::Vector3d inwards(const BurrShape& shape, const Eigen::Vector3d& at) {
+  return shape.is_ball() ? Eigen::Vector3d(-at.normalized())
+                         : Eigen::Vector3d(-shape.nearest(shape.reach() * at).normal);
 }
 
 constexpr std::size_t kFew = 16384;  // samples that are as fast without a tree
@@ -173,16 +198,28 @@ std::int16_t rounded(double value) { return static_cast<std::int16_t>(std::lroun
 
 }  // namespace
 
+double sharpness(const BurrParameters& burr, double removed) noexcept {
+  return burr.wear_volume > 0.0 ? burr.wear_volume / (burr.wear_volume + removed) : 1.0;
+}
+
 BurrParameters default_burr(BurrKind kind, double diameter) {
+  return default_burr(kind, {BurrForm::kBall, diameter, 0.0, 0.0});
+}
+
+BurrParameters default_burr(BurrKind kind, const BurrDimensions& dimensions) {
   BurrParameters p;
   p.kind = kind;
-  p.diameter = diameter;
+  p.form = dimensions.form;
+  p.diameter = dimensions.diameter;
+  p.length = dimensions.length;
+  p.narrow_diameter = dimensions.narrow_diameter;
   // Small burrs need as many samples as large ones to push as evenly.
-  p.sample_spacing = std::min(0.25e-3, diameter / 28.0);
+  const double as_ball = std::cbrt(BurrShape(dimensions).fullness() / kSphere);
+  p.sample_spacing = std::min(0.25e-3, p.diameter / 28.0 * as_ball);
   const bool cutting = kind == BurrKind::kCutting;
   p.removal_rate = cutting ? 25.0 : 10.0;
   p.falloff = cutting ? 12.0 : 2.0;
-  const double radius = 0.5 * diameter;
+  const double radius = 0.5 * p.diameter;
   p.tangential_gain = (cutting ? 1.2e6 : 0.4e6) / (radius * radius);
   return p;
 }
@@ -191,41 +228,73 @@ BurrParameters for_bone(const BurrParameters& burr, double voxel) {
   BurrParameters p = burr;
   if (p.follows_bone) {
     constexpr double kMostFollowing = 4e5;  // samples that a tick has time for
-    const double finest = p.diameter * std::cbrt(kSphere / kMostFollowing);
-    p.sample_spacing = std::min(p.sample_spacing, std::max(0.5 * voxel, finest));
+    const double finest = spacing_of(BurrShape(p.dimensions()), kMostFollowing);
+    // At half a voxel the burr misses pieces of voxels at its edge: docs/algorithms/bone-feel.md.
+    const double share = voxel < 0.5e-3 ? 0.46 : 0.5;
+    p.sample_spacing = std::min(p.sample_spacing, std::max(share * voxel, finest));
   }
   return p;
 }
+
+namespace {
+
+BurrDimensions read_dimensions(Table& table) {
+  BurrDimensions d;
+  if (table.has("shape")) {
+    const std::string shape = table.choice("shape", {"ball", "cylinder", "cone", "pear"});
+    for (const BurrForm form : {BurrForm::kCylinder, BurrForm::kCone, BurrForm::kPear}) {
+      d.form = shape == name_of(form) ? form : d.form;
+    }
+  }
+  d.diameter = table.number("diameter", kDiameter, "m");
+  if (d.form == BurrForm::kBall) {
+    return d;
+  }
+  const bool pear = d.form == BurrForm::kPear;
+  constexpr double kPearsLeast = 1.01;  // length over diameter: else it is a ball
+  d.length = table.number("length", {pear ? kPearsLeast * d.diameter : 1e-4, 0.04}, "m");
+  if (d.form != BurrForm::kCylinder) {
+    const double least = pear ? 1e-4 : 0.0;
+    d.narrow_diameter =
+        table.number_or("narrow_diameter", 0.5 * d.diameter, {least, d.diameter}, "m");
+  }
+  return d;
+}
+
+}  // namespace
 
 BurrParameters read_burr_parameters(Table& table) {
   const BurrKind kind = table.choice("kind", {"diamond", "cutting"}) == "cutting"
                             ? BurrKind::kCutting
                             : BurrKind::kDiamond;
-  BurrParameters p = default_burr(kind, table.number("diameter", kDiameter, "m"));
+  BurrParameters p = default_burr(kind, read_dimensions(table));
   const auto optional = [&](const char* key, const Bounds& bounds, const char* unit,
                             double& value) { value = table.number_or(key, value, bounds, unit); };
   p.follows_bone = !table.has("sample_spacing");
-  optional("sample_spacing", {least_spacing(p.diameter), 0.5 * p.diameter}, "m", p.sample_spacing);
+  const double closest = spacing_of(BurrShape(p.dimensions()), kMostSamples);
+  optional("sample_spacing", {closest, 0.5 * p.diameter}, "m", p.sample_spacing);
   optional("removal_rate", {0.0, 1e6}, "1/(N·s)", p.removal_rate);
   optional("falloff", {0.0, 1e6}, "1/(N·s·rad)", p.falloff);
   optional("tangential_gain", {0.0, 1e15}, "N/m^4", p.tangential_gain);
+  optional("wear_volume", {0.0, 1.0, true}, "m3", p.wear_volume);
   if (table.has("rotation")) {
     p.clockwise = table.choice("rotation", {"clockwise", "counterclockwise"}) == "clockwise";
   }
   return p;
 }
 
-Burr::Burr(const BurrParameters& parameters) : parameters_(parameters) {
-  check(parameters);
-  const double cell = parameters.sample_spacing / radius();
-  const auto half = half_of_samples(cell);
+Burr::Burr(const BurrParameters& parameters)
+    : parameters_(parameters), shape_(parameters.dimensions()) {
+  check(parameters, shape_);
+  const double cell = parameters.sample_spacing / reach();
+  const auto half = half_of_samples(shape_, cell);
   for (auto& axis : position_) {
     axis.reserve(2 * half.size());
   }
-  // Lower half first, so that all samples run row by row.
+  // The other half first, so that all samples of a ball run row by row.
   std::vector<Eigen::Vector3d> all(half.rbegin(), half.rend());
   for (Eigen::Vector3d& at : all) {
-    at = -at;
+    at = image_of(shape_, at);
   }
   all.insert(all.end(), half.begin(), half.end());
   std::vector<std::uint64_t> keys;
@@ -233,7 +302,7 @@ Burr::Burr(const BurrParameters& parameters) : parameters_(parameters) {
     keys = sort_by_cell(all, cell);
   }
   for (const Eigen::Vector3d& at : all) {
-    const Eigen::Vector3d in = -at.normalized();
+    const Eigen::Vector3d in = inwards(shape_, at);
     for (int axis = 0; axis < 3; ++axis) {
       position_[axis].push_back(rounded(kRadius * at[axis]));
       direction_[axis].push_back(rounded(kUnit * in[axis]));
@@ -245,15 +314,33 @@ Burr::Burr(const BurrParameters& parameters) : parameters_(parameters) {
   if (half.empty()) {
     throw std::invalid_argument("Burr: no samples");
   }
+  balance();
   if (!keys.empty()) {
     cells_ = cells_of(arrays(), all, keys, cell);
   }
-  sample_volume_ = kSphere * std::pow(parameters.diameter, 3) / static_cast<double>(samples());
+  sample_volume_ =
+      shape_.fullness() * std::pow(parameters.diameter, 3) / static_cast<double>(samples());
+}
+
+/// Makes the sum of the directions along the axis zero where images alone do not.
+void Burr::balance() noexcept {
+  std::int64_t sum = 0;
+  for (const std::int16_t z : direction_[2]) {
+    sum += z;
+  }
+  const std::int64_t count = samples();
+  const std::int64_t each = sum / count;
+  const std::int64_t sign = sum < 0 ? -1 : 1;
+  std::int64_t left = std::abs(sum % count);
+  for (std::int16_t& z : direction_[2]) {
+    z = static_cast<std::int16_t>(z - each - (left > 0 ? sign : 0));
+    left -= left > 0 ? 1 : 0;
+  }
 }
 
 Eigen::Vector3d Burr::position(std::int32_t sample) const {
   const auto at = static_cast<std::size_t>(sample);
-  return radius() / kRadius * Eigen::Vector3d(position_[0][at], position_[1][at], position_[2][at]);
+  return reach() / kRadius * Eigen::Vector3d(position_[0][at], position_[1][at], position_[2][at]);
 }
 
 Eigen::Vector3d Burr::direction(std::int32_t sample) const {

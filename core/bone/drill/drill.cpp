@@ -9,7 +9,7 @@
 namespace haptrial::bone {
 namespace {
 
-constexpr double kWidest = 5000.0;          // radius of a burr in voxels
+constexpr double kWidest = 5000.0;          // reach of a burr in voxels
 constexpr std::size_t kMostHits = 400'000;  // of a burr in cells, in cells on the bone's surface
 constexpr std::int32_t kTurn = 64;          // samples that take bone in the same ticks
 
@@ -29,6 +29,17 @@ std::size_t room_for_emptied(const Burr& burr) {
 
 enum class Held { kNothing, kAll, kSome };
 
+/// Of each byte, eight bits for each of its bits.
+constexpr std::array<std::uint64_t, 256> spread_bits() {
+  std::array<std::uint64_t, 256> spread{};
+  for (std::size_t byte = 0; byte < spread.size(); ++byte) {
+    for (std::size_t bit = 0; bit < 8; ++bit) {
+      spread[byte] |= (byte >> bit & 1U) != 0 ? 0xFFULL << (8 * bit) : 0;
+    }
+  }
+  return spread;
+}
+
 /// What a box of voxels, both ends in it, holds of bone.
 Held held_in(const BoneVolume::View& view, const std::array<std::int32_t, 3>& low,
              const std::array<std::int32_t, 3>& high) noexcept {
@@ -45,6 +56,7 @@ Held held_in(const BoneVolume::View& view, const std::array<std::int32_t, 3>& lo
     }
   }
   constexpr std::uint64_t kEachRow = 0x0101010101010101U;
+  static constexpr auto kSpread = spread_bits();
   /// Bits first .. last of eight.
   const auto bits = [](std::int32_t first, std::int32_t last, std::int32_t origin) {
     const std::int32_t begin = std::max(first - origin, 0);
@@ -53,11 +65,7 @@ Held held_in(const BoneVolume::View& view, const std::array<std::int32_t, 3>& lo
   };
   for (std::int32_t k = from[2] >> 3; k <= to[2] >> 3; ++k) {
     for (std::int32_t j = from[1] >> 3; j <= to[1] >> 3; ++j) {
-      const std::uint64_t rows = bits(from[1], to[1], 8 * j);
-      std::uint64_t spread = 0;
-      for (int y = 0; y < 8; ++y) {
-        spread |= (rows >> y & 1U) != 0 ? 0xFFULL << (8 * y) : 0;
-      }
+      const std::uint64_t spread = kSpread[bits(from[1], to[1], 8 * j)];
       for (std::int32_t i = from[0] >> 3; i <= to[0] >> 3; ++i) {
         const auto brick = static_cast<std::size_t>(
             view.table[i + view.table_size[0] * (j + view.table_size[1] * k)]);
@@ -83,29 +91,42 @@ Held held_in(const BoneVolume::View& view, const std::array<std::int32_t, 3>& lo
   return all ? Held::kAll : Held::kNothing;
 }
 
-/// The voxels that a cell of the burr may reach, and what they hold.
-Held held_by(const BoneVolume::View& view, const kernel::Placement& at,
-             const Burr::Cell& cell) noexcept {
-  std::array<std::int32_t, 3> low{};
-  std::array<std::int32_t, 3> high{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::int64_t middle = at.offset[axis];
-    std::int64_t reach = 0;
-    for (std::size_t of = 0; of < 3; ++of) {
-      const std::int64_t turn = at.turn[axis][of];
-      middle += turn * cell.centre[of];
-      reach += std::abs(turn) * cell.half;
+/// What the voxels hold that a cell of the burr may reach.
+class CellBoxes {
+ public:
+  CellBoxes(const BoneVolume::View& view, const kernel::Placement& at) noexcept
+      : view_(view), at_(at) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (const std::int32_t turn : at.turn[axis]) {
+        span_[axis] += std::abs(static_cast<std::int64_t>(turn));
+      }
     }
-    low[axis] = static_cast<std::int32_t>((middle - reach) >> at.shift) + at.base[axis];
-    high[axis] = static_cast<std::int32_t>((middle + reach) >> at.shift) + at.base[axis];
   }
-  return held_in(view, low, high);
-}
+  Held held_by(const Burr::Cell& cell) const noexcept {
+    std::array<std::int32_t, 3> low{};
+    std::array<std::int32_t, 3> high{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::int64_t middle = at_.offset[axis];
+      for (std::size_t of = 0; of < 3; ++of) {
+        middle += std::int64_t{at_.turn[axis][of]} * cell.centre[of];
+      }
+      const std::int64_t reach = span_[axis] * cell.half;
+      low[axis] = static_cast<std::int32_t>((middle - reach) >> at_.shift) + at_.base[axis];
+      high[axis] = static_cast<std::int32_t>((middle + reach) >> at_.shift) + at_.base[axis];
+    }
+    return held_in(view_, low, high);
+  }
+
+ private:
+  const BoneVolume::View& view_;
+  const kernel::Placement& at_;
+  std::array<std::int64_t, 3> span_{};  // of a cell whose half is 1
+};
 
 /// @returns false where the burr cannot touch the grid, or its pose is none.
-bool place(const geometry::VoxelGrid& grid, const Eigen::Vector3d& tip, double radius,
+bool place(const geometry::VoxelGrid& grid, const Eigen::Vector3d& tip, double reach,
            const Eigen::Matrix3d& turn, kernel::Placement& at) noexcept {
-  const double wide = radius / grid.spacing;  // in voxels
+  const double wide = reach / grid.spacing;  // in voxels
   // In units of voxels, with voxel i from i to i + 1.
   const Eigen::Array3d centre = ((tip - grid.origin) / grid.spacing).array() + 0.5;
   for (int axis = 0; axis < 3; ++axis) {
@@ -201,7 +222,7 @@ Contact Drill::touch(const BoneVolume& volume, const Eigen::Vector3d& tip_B,
   kernel::Placement at{};
   const double length = orientation_B.squaredNorm();
   if (!(length > 0.0 && std::isfinite(length)) ||
-      !place(volume.grid(), tip_B, burr_.radius(), turn, at)) {
+      !place(volume.grid(), tip_B, burr_.reach(), turn, at)) {
     return contact;
   }
   const kernel::Bricks bricks = bricks_of(volume.view());
@@ -229,7 +250,7 @@ Contact Drill::touch(const BoneVolume& volume, const Eigen::Vector3d& tip_B,
     return Eigen::Vector3d(static_cast<double>(v[0]), static_cast<double>(v[1]),
                            static_cast<double>(v[2]));
   };
-  const Eigen::Vector3d position_T = burr_.radius() / Burr::kRadius * vector(sums.position);
+  const Eigen::Vector3d position_T = burr_.reach() / Burr::kRadius * vector(sums.position);
   const double each = burr_.sample_volume();
   contact.samples = static_cast<std::int32_t>(sums.count);
   contact.volume = each * static_cast<double>(sums.count);
@@ -256,9 +277,10 @@ std::int32_t Drill::touch_cells(const BoneVolume::View& view, const kernel::Plac
       kept += touch_(cloud, some, at, bricks, hits_.data() + kept_ + kept, room, sums);
     }
   };
+  const CellBoxes boxes(view, at);
   for (std::size_t c = 0; c < cells.size();) {
     const Burr::Cell& cell = cells[c];
-    Held held = held_by(view, at, cell);
+    Held held = boxes.held_by(cell);
     const bool room = static_cast<std::size_t>(cells_kept_) < cells_.size();
     held = held == Held::kAll && (any_soft_ || !room) ? Held::kSome : held;
     if (held == Held::kAll) {

@@ -51,7 +51,8 @@ Eigen::Vector3d push_force(const Contact& contact, const FeelParameters& paramet
 /// The force of the turning teeth along the bone [N], perpendicular to the burr's axis:
 /// gain · power · (sum of (p - sc) x d over the immersed volume), d along the handle, for a burr
 /// that turns counterclockwise seen from the handle; the opposite for one that turns clockwise, as
-/// burrs do unless they are told otherwise. @param power  how fast the burr turns, from 0 to 1
+/// burrs do unless they are told otherwise. @param power  how fast the burr turns, from -1, in
+/// reverse, to 1
 /// Source: Morris 2006, §3.2.3.7. Servo thread.
 Eigen::Vector3d drag_force(const Contact& contact, const BurrParameters& burr,
                            double power) noexcept;

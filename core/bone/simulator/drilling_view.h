@@ -23,6 +23,8 @@ struct DrillingView {
       Eigen::Quaterniond::Identity()};            // of the tool in W, z to the hand
   std::int32_t tool{0};                           // in hand
   bool power{false};                              // it turns, or sucks
+  bool reversed{false};                           // burrs turn against their rotation
+  double sharpness{1.0};                          // of the tool, 1 down to 0
   double turned{0.0};                             // as it is drawn, a share of a turn
   bool contact{false};                            // it touches bone
   double sound_force{0.0};                        // what can be heard of it [N]

@@ -2,16 +2,16 @@
 
 #include <stdexcept>
 
-#include "core/bone/simulator/piece_contact.h"
+#include "core/bone/tools/simulator_tools.h"
 
 namespace haptrial::bone {
 namespace {
 
 TubeParameters within_bounds(const TubeParameters& p) {
-  if (!(p.radius >= 2e-4 && p.radius <= 0.01 && p.handle_length > 0.0 && p.rinse_reach > 0.0)) {
+  if (!(p.radius >= 2e-4 && p.radius <= 0.01 && p.handle_length > 0.0 && p.rinse_reach > 0.0 &&
+        p.shaft_length >= 0.0)) {
     throw std::invalid_argument("SecondHand: the tube's radius, length or reach is out of bounds");
   }
-  check(p.feel);
   return p;
 }
 
@@ -20,18 +20,31 @@ TubeParameters within_bounds(const TubeParameters& p) {
 SecondHand::SecondHand(const TubeParameters& parameters, std::span<const Structure> structures,
                        double spacing, const std::array<bool, 256>& soft)
     : p_(within_bounds(parameters)),
-      end_(for_bone(default_burr(BurrKind::kDiamond, 2.0 * p_.outer_radius()), spacing)),
-      drill_(end_, structures, best_instruction_set(), soft) {}
+      end_({BurrForm::kBall, 2.0 * p_.outer_radius(), 0.0, 0.0}, 0.0, p_.feel, structures, spacing,
+           soft) {
+  if (p_.shaft_length > 0.0) {
+    const ShaftParameters shaft = default_shaft(p_.outer_radius(), p_.shaft_length);
+    shaft_ = std::make_unique<FeltPart>(shaft.dimensions(), p_.outer_radius() + 0.5 * shaft.length,
+                                        shaft.feel, structures, spacing, soft);
+  }
+}
+
+void SecondHand::begin() noexcept {
+  end_.wait();
+  if (shaft_ != nullptr) {
+    shaft_->wait();
+  }
+}
 
 TubeOutput SecondHand::tick(const BoneWorld& world, SoftTissue& soft,
                             const TubeInput& input) noexcept {
   TubeOutput out;
-  const Contact all = touch_pieces(drill_, world, input.tool);
-  out.contact = static_cast<bool>(all);
-  out.immersed = all.samples;
-  waits_until_free_ = waits_until_free_ && out.contact;
-  if (out.contact && !waits_until_free_) {
-    out.force = bone_force(all, p_.feel, end_, 0.0);
+  const FeltPart::Felt end = end_.tick(world, input.tool);
+  out.force = end.force;
+  out.immersed = end.immersed;
+  out.contact = end.immersed > 0;
+  if (shaft_ != nullptr) {
+    out.shaft = shaft_->tick(world, input.tool).force;
   }
   if (!soft.empty()) {
     const Eigen::Isometry3d& pose = world.pose(0);

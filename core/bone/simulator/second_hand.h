@@ -5,20 +5,21 @@
 #include <memory>
 
 #include "core/base/tool_state.h"
-#include "core/bone/drill/drill.h"
 #include "core/bone/drill/feel.h"
 #include "core/bone/dust/dust_surroundings.h"
 #include "core/bone/pieces/world.h"
+#include "core/bone/simulator/felt_part.h"
 #include "core/bone/tools/soft_tissue.h"
 
 namespace haptrial::bone {
 
 /// A tube that sucks and rinses, held in the other hand. Its end is felt as a ball as wide as its
-/// wall.
+/// wall, and so is as much of the tube behind it as is told.
 struct TubeParameters {
   double radius{1.2e-3};      // of its opening, 0.2e-3 to 0.01 [m]
   double handle_length{0.1};  // > 0 [m]
   double rinse_reach{6e-3};   // of its water from its end > 0 [m]
+  double shaft_length{0.0};   // behind its end that is felt, too, >= 0 [m]
   FeelParameters feel{};      // default_feel() of its outer radius
   double outer_radius() const noexcept { return 1.4 * radius; }  // [m]
 };
@@ -31,7 +32,8 @@ struct TubeInput {
 };
 
 struct TubeOutput {
-  Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // of bone and soft tissue on the tube [N]
+  Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // of bone and soft tissue on its end [N]
+  Eigen::Vector3d shaft{Eigen::Vector3d::Zero()};  // of bone on the tube behind it [N]
   bool contact{false};                             // with bone
   bool yields{false};                              // soft tissue gives way to it
   int immersed{0};                                 // samples of its end in bone
@@ -50,7 +52,7 @@ class SecondHand {
   SecondHand(const TubeParameters& parameters, std::span<const Structure> structures,
              double spacing, const std::array<bool, 256>& soft);
 
-  void begin() noexcept { waits_until_free_ = true; }
+  void begin() noexcept;
   /// After the first hand's tick.
   TubeOutput tick(const BoneWorld& world, SoftTissue& soft, const TubeInput& input) noexcept;
   /// What dust and blood have of it. @param tools  room for it
@@ -62,9 +64,8 @@ class SecondHand {
 
  private:
   TubeParameters p_;
-  BurrParameters end_;  // a burr of its size, at rest
-  Drill drill_;
-  bool waits_until_free_{true};
+  FeltPart end_;
+  std::unique_ptr<FeltPart> shaft_;  // null: it is not felt
 };
 
 }  // namespace haptrial::bone

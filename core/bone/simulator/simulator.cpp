@@ -11,12 +11,8 @@ namespace haptrial::bone {
 namespace {
 
 constexpr std::array<std::string_view, kFunctions> kNames{
-    "power",    "next_tool", "previous_tool", "camera_move", "camera_turn", "zoom_in",
-    "zoom_out", "carry",     "apply",         "detach",      "finish",      "still"};
-
-// Removal depends on the force: rounded to this, a sum of two contacts gives the same bits as the
-// one contact that it was before a part was separated.
-constexpr double kForceStep = 0x1p-13;  // [N]
+    "power", "next_tool", "previous_tool", "camera_move", "camera_turn", "zoom_in", "zoom_out",
+    "carry", "apply",     "detach",        "finish",      "still",       "reverse"};
 
 bool is_held(std::uint32_t functions, Function function) noexcept {
   return (functions & bit(function)) != 0;
@@ -73,6 +69,8 @@ Simulator::Simulator(const BoneModel& model, const SimulatorParameters& paramete
       structures_(model.structures),
       world_(model, parameters.pose_WB, parameters.world),
       soft_(model, parameters.soft_tissue, largest_radius(tools_, parameters.tube)),
+      shafts_(tools_, structures_, model.grid.spacing, soft_.soft()),
+      handpiece_(tools_),
       bleeding_(model, parameters.bleeding),
       camera_(parameters.camera.start),
       start_(world_.volume(0).amount()) {
@@ -107,6 +105,7 @@ void Simulator::begin(std::uint32_t functions_held) noexcept {
   functions_ = functions_held;
   hand_known_ = false;
   waits_until_free_ = true;
+  shafts_.wait();
   soft_.forget();
   soft_.forget_second();
   if (second_) {
@@ -128,6 +127,9 @@ const SimulatorOutput& Simulator::tick(const SimulatorInput& input,
   functions_ = input.functions;
   output_.finished = is_held(pressed, Function::kFinish);
   stills_asked_ += is_held(pressed, Function::kStill) ? 1 : 0;
+  if (is_held(pressed, Function::kReverse)) {
+    handpiece_.reverse();
+  }
   change_tool((is_held(pressed, Function::kNextTool) ? 1 : 0) -
               (is_held(pressed, Function::kPreviousTool) ? 1 : 0));
   output_.mode = mode_of(input);
@@ -137,6 +139,7 @@ const SimulatorOutput& Simulator::tick(const SimulatorInput& input,
     work(input, pressed);
   } else {
     waits_until_free_ = true;
+    shafts_.wait();
     soft_.forget();
   }
   if (cutter_.busy()) {
@@ -178,6 +181,7 @@ void Simulator::change_tool(int by) noexcept {
   if (by != 0 && count > 1) {
     output_.tool = (output_.tool + by + count) % count;
     waits_until_free_ = true;
+    shafts_.wait();
     soft_.forget();
   }
 }
@@ -240,13 +244,16 @@ void Simulator::work(const SimulatorInput& input, std::uint32_t pressed) noexcep
   const ToolSpec& tool = tools_[in_hand()];
   if (const auto* burr = tool.as<BurrTool>()) {
     constexpr double kTurnsShown = 1.0 / 617.0;  // a tick: no screen keeps step with it
-    shown_turn_ += kTurnsShown * (burr->burr.clockwise ? -23.0 : 23.0) * input.power;
+    const double turning = handpiece_.turning(input.power);
+    shown_turn_ += kTurnsShown * (burr->burr.clockwise ? -23.0 : 23.0) * turning;
     shown_turn_ -= std::floor(shown_turn_);
     drill(*burr, input);
-    yield(burr->radius(), input);
+    output_.shaft = shafts_.force(output_.tool, world_, input.tool);
+    yield(drills_[in_hand()]->burr().shape().balls(), input);
   } else if (const auto* tube = tool.as<SuctionTool>()) {
     output_.power = input.power;
-    yield(tube->radius, input);
+    const BurrShape::Ball end{0.0, tube->radius};
+    yield({&end, 1}, input);
   } else if (tool.as<ProbeTool>() != nullptr) {
     output_.power = input.power;
   } else if (tool.as<PlateTool>() != nullptr) {
@@ -259,122 +266,6 @@ void Simulator::work(const SimulatorInput& input, std::uint32_t pressed) noexcep
       if (world_.plate_is_on(plate)) {
         world_.detach_plate(plate);
         break;
-      }
-    }
-  }
-}
-
-bool Simulator::Reach::is_near(const Eigen::Vector3d& p_B, double radius) const noexcept {
-  return ((p_B - low).array() > -radius).all() && ((high - p_B).array() > -radius).all();
-}
-
-/// Bricks of a piece are there from its beginning.
-const Simulator::Reach& Simulator::reach_of(int piece) noexcept {
-  for (; reaches_known_ <= piece; ++reaches_known_) {
-    const BoneVolume& volume = std::as_const(world_).volume(reaches_known_);
-    Reach& reach = reaches_[static_cast<std::size_t>(reaches_known_)];
-    reach.low.setConstant(std::numeric_limits<double>::infinity());
-    reach.high = -reach.low;
-    const double half = 0.5 * volume.grid().spacing;
-    for (std::int32_t brick = 1; brick < volume.bricks(); ++brick) {
-      const Voxel& first = volume.brick_origin(brick);
-      const Eigen::Vector3d centre = volume.grid().centre(first.x(), first.y(), first.z());
-      const double width = volume.grid().spacing * BoneVolume::kEdge;
-      reach.low = reach.low.cwiseMin(centre - Eigen::Vector3d::Constant(half));
-      reach.high = reach.high.cwiseMax(centre + Eigen::Vector3d::Constant(width - half));
-    }
-  }
-  return reaches_[static_cast<std::size_t>(piece)];
-}
-
-void Simulator::drill(const BurrTool& tool, const SimulatorInput& input) noexcept {
-  Drill& drill = *drills_[in_hand()];
-  drill.begin_tick();
-  Contact all;
-  const int pieces = world_.pieces();
-  for (int piece = 0; piece < pieces; ++piece) {
-    const Eigen::Isometry3d& pose = world_.pose(piece);
-    const Eigen::Vector3d tip_B = pose.inverse(Eigen::Isometry) * input.tool.tip.position;
-    Contact& contact = contacts_[static_cast<std::size_t>(piece)];
-    contact = {};
-    if (!reach_of(piece).is_near(tip_B, drill.burr().radius())) {
-      continue;
-    }
-    const Eigen::Quaterniond turn(pose.linear());
-    contact = drill.touch(world_.volume(piece), tip_B, turn.conjugate() * input.tool.orientation);
-    if (contact) {
-      all = all ? together(all, in_world(contact, pose)) : in_world(contact, pose);
-    }
-  }
-  output_.power = input.power;
-  output_.contact = static_cast<bool>(all);
-  output_.immersed = all.samples;
-  if (!all) {
-    waits_until_free_ = false;
-    return;
-  }
-  if (waits_until_free_) {
-    return;
-  }
-  output_.force = bone_force(all, tool.feel, tool.burr, input.power);
-  output_.drag = drag_force(all, tool.burr, input.power);
-  const double force = kForceStep * std::round(output_.force.norm() / kForceStep);
-  for (int piece = 0; piece < pieces; ++piece) {
-    const Contact& contact = contacts_[static_cast<std::size_t>(piece)];
-    if (!contact) {
-      continue;
-    }
-    BoneVolume& volume = world_.volume(piece);
-    const Removal removal = drill.remove(volume, contact, force, input.power, input.dt);
-    output_.removed += removal.amount;
-    for (const EmptiedVoxel& voxel : removal.emptied) {  // no more than there is room for
-      emptied_.push_back(
-          {world_.known_as(piece), volume.voxel_at(voxel.address), voxel.label, false});
-    }
-  }
-  if (output_.removed > 0.0) {
-    deposits_.push_back({input.tool.tip.position, drill.burr().radius(), output_.removed});
-  }
-}
-
-/// Soft tissue is part of the bone itself, not of pieces that come off it. It is torn open where it
-/// tears, and then wherever a burr turns in a hole.
-void Simulator::yield(double radius, const SimulatorInput& input) noexcept {
-  if (soft_.empty()) {
-    return;
-  }
-  const Eigen::Isometry3d& pose = world_.pose(0);
-  const Eigen::Vector3d tip_B = pose.inverse(Eigen::Isometry) * input.tool.tip.position;
-  const bool is_tube = tools_[in_hand()].as<SuctionTool>() != nullptr;
-  const Eigen::Vector3d force = soft_.tick(tip_B, radius, is_tube && input.power > 0.0);
-  output_.yields = !force.isZero(0.0);
-  output_.force += pose.linear() * force;
-  const bool turns = !is_tube && input.power > 0.0;
-  if (!soft_.tears().empty() || (turns && soft_.in_hole())) {
-    empty_soft(tip_B, radius);
-  }
-}
-
-/// Voxels of soft structures whose centres are in a ball.
-void Simulator::empty_soft(const Eigen::Vector3d& tip_B, double radius) noexcept {
-  BoneVolume& volume = world_.volume(0);
-  const geometry::VoxelGrid& grid = volume.grid();
-  const Eigen::Array3d middle = (tip_B - grid.origin).array() / grid.spacing;
-  const double wide = radius / grid.spacing;
-  const Eigen::Array3i last(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1);
-  const Eigen::Array3i low = (middle - wide).ceil().cast<int>().cwiseMax(0);
-  const Eigen::Array3i high = (middle + wide).floor().cast<int>().cwiseMin(last);
-  for (int k = low[2]; k <= high[2]; ++k) {
-    for (int j = low[1]; j <= high[1]; ++j) {
-      for (int i = low[0]; i <= high[0]; ++i) {
-        const std::int32_t address = volume.address({i, j, k});
-        const std::uint8_t label = volume.label(address);
-        const bool in_ball =
-            (Eigen::Array3d(i, j, k) - middle).matrix().squaredNorm() <= wide * wide;
-        if (address > 0 && in_ball && soft_.is_soft(label) && volume.density(address) > 0.0F) {
-          output_.removed += static_cast<double>(volume.take(address, 1.0F));
-          emptied_.push_back({world_.known_as(0), {i, j, k}, label, false});
-        }
       }
     }
   }
@@ -463,13 +354,21 @@ void Simulator::place_for_dust(const SimulatorInput& input) noexcept {
   const Eigen::Vector3d axis = input.tool.axis();
   const auto& tip = input.tool.tip.position;
   if (const auto* burr = tool.as<BurrTool>()) {
+    const std::span<const BurrShape::Ball> balls = drills_[in_hand()]->burr().shape().balls();
     const double radius = burr->radius();
-    dust_tools_.tools[0] = {tip, axis, 0.0, radius, false};
-    const double thin = std::min(radius, tool.handle_radius);
-    dust_tools_.tools[1] = {tip + radius * axis, axis, tool.handle_length, thin, false};
+    const double top = drills_[in_hand()]->burr().shape().half_length();
+    const double low = balls.front().z;
+    dust_tools_.tools[0] = {tip + low * axis, axis, balls.back().z - low, radius, false};
+    const double thin = std::min(radius, burr->shaft ? burr->shaft->radius : tool.handle_radius);
+    dust_tools_.tools[1] = {tip + top * axis, axis, tool.handle_length, thin, false};
   } else if (const auto* suction = tool.as<SuctionTool>()) {
     dust_tools_.tools[0] = {tip, axis, tool.handle_length, suction->radius, output_.power > 0.0};
   }
+}
+
+std::span<const BurrShape::Ball> Simulator::burr_balls() const noexcept {
+  const Drill* drill = drills_[in_hand()].get();
+  return drill != nullptr ? drill->burr().shape().balls() : std::span<const BurrShape::Ball>{};
 }
 
 int Simulator::pieces() const noexcept {

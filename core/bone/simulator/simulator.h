@@ -15,6 +15,7 @@
 #include "core/bone/dust/dust.h"
 #include "core/bone/pieces/world.h"
 #include "core/bone/simulator/bleeding.h"
+#include "core/bone/simulator/handpiece.h"
 #include "core/bone/simulator/second_hand.h"
 #include "core/bone/tools/cut_plane.h"
 #include "core/bone/tools/microscope.h"
@@ -37,8 +38,9 @@ enum class Function : std::uint8_t {
   kDetach,        // when it goes down: the plate that was fixed last comes off
   kFinish,        // the participant is done
   kStill,         // when it goes down: the screen shows the next still; nothing of the bone follows
+  kReverse,       // when it goes down: burrs turn the other way
 };
-inline constexpr std::size_t kFunctions = 12;
+inline constexpr std::size_t kFunctions = 13;
 /// As definitions call them: "power", "next_tool", ...
 std::string_view name_of(Function function) noexcept;
 constexpr std::uint32_t bit(Function function) noexcept {
@@ -71,7 +73,9 @@ enum class HandMode : std::uint8_t { kTool, kCameraMove, kCameraTurn, kCarry };
 struct SimulatorOutput {
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // of the bone on the tool [N]
   Eigen::Vector3d drag{Eigen::Vector3d::Zero()};   // the part of it that the turning teeth give [N]
-  int tool{0};                                     // in hand
+  Eigen::Vector3d shaft{
+      Eigen::Vector3d::Zero()};  // of bone on the burr's shaft, beside `force` [N]
+  int tool{0};                   // in hand
   HandMode mode{HandMode::kTool};
   double power{0.0};    // of the tool in hand, 0 where it has none
   bool contact{false};  // the tool touches bone
@@ -120,6 +124,9 @@ class Simulator {
   std::span<const Tear> tears() const noexcept { return soft_.tears(); }
   const SoftTissue& soft_tissue() const noexcept { return soft_; }
   const Bleeding& bleeding() const noexcept { return bleeding_; }
+  const Handpiece& handpiece() const noexcept { return handpiece_; }
+  /// Of the burr in hand (burr_shape.h); none of another tool.
+  std::span<const BurrShape::Ball> burr_balls() const noexcept;
   /// Null where nothing warms up.
   const DrillHeat* heat() const noexcept { return heat_ ? &*heat_ : nullptr; }
   /// Null where there is one hand.
@@ -170,7 +177,7 @@ class Simulator {
   void carry(const SimulatorInput& input) noexcept;
   void work(const SimulatorInput& input, std::uint32_t pressed) noexcept;
   void drill(const BurrTool& tool, const SimulatorInput& input) noexcept;
-  void yield(double radius, const SimulatorInput& input) noexcept;
+  void yield(std::span<const BurrShape::Ball> balls, const SimulatorInput& input) noexcept;
   void work_second(const SimulatorInput& input) noexcept;
   void warm_up(const SimulatorInput& input) noexcept;
   void bleed(double dt) noexcept;
@@ -188,6 +195,8 @@ class Simulator {
   SoftTissue soft_;
   std::vector<std::unique_ptr<Drill>> drills_;       // by tool; null where it is no burr
   std::vector<std::unique_ptr<PlateModel>> plates_;  // likewise
+  Shafts shafts_;
+  Handpiece handpiece_;
   std::optional<SecondHand> second_;
   std::optional<DrillHeat> heat_;
   Bleeding bleeding_;

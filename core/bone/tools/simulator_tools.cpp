@@ -17,14 +17,25 @@ void optional(Table& table, const char* key, double& value, const Bounds& bounds
   value = table.number_or(key, value, bounds, unit);
 }
 
+/// @param widest  [m]
+std::optional<ShaftParameters> read_shaft(Table& table, double widest) {
+  if (!table.has("shaft_radius") && !table.has("shaft_length")) {
+    return std::nullopt;
+  }
+  const double radius = table.number("shaft_radius", {1e-4, widest}, "m");
+  return default_shaft(radius, table.number("shaft_length", {1e-3, 0.1}, "m"));
+}
+
 BurrTool read_burr(Table& table) {
   BurrTool tool;
   tool.burr = read_burr_parameters(table);
-  tool.feel = default_feel(tool.radius());
+  const double as_ball = BurrShape(tool.burr.dimensions()).ball_radius();
+  tool.feel = default_feel(as_ball);
   if (table.has("feel")) {
     Table feel = table.table("feel");
-    tool.feel = read_feel_parameters(feel, tool.radius());
+    tool.feel = read_feel_parameters(feel, as_ball);
   }
+  tool.shaft = read_shaft(table, tool.radius());
   return tool;
 }
 
@@ -63,6 +74,14 @@ ToolSpec read_tool(Table& table, const std::string& name) {
 }
 
 }  // namespace
+
+ShaftParameters default_shaft(double radius, double length) {
+  ShaftParameters shaft;
+  shaft.radius = radius;
+  shaft.length = length;
+  shaft.feel = default_feel(BurrShape(shaft.dimensions()).ball_radius());
+  return shaft;
+}
 
 std::vector<ToolSpec> read_tools(Table& table) {
   std::vector<ToolSpec> tools;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
@@ -280,6 +281,17 @@ void SoftTissue::tear(const Tear& tear, double radius) noexcept {
   if (holes_.size() < kMostHoles) {
     holes_.push_back({tear.place_B, radius, tear.label});
   }
+}
+
+double SoftTissue::distance(const Vector3d& p_B) const noexcept {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Part& part : parts_) {
+    SurfaceDepth::Here here{};
+    if (part.depth.at(p_B, here)) {
+      least = std::min(least, here.distance);
+    }
+  }
+  return least;
 }
 
 bool SoftTissue::in_hole() const noexcept {

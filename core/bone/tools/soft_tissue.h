@@ -112,6 +112,8 @@ class SoftTissue {
                        bool sucks) const noexcept;
   /// What tore on the last tick.
   std::span<const Tear> tears() const noexcept { return {tears_.data(), tear_count_}; }
+  /// To the nearest soft surface, negative within; infinite where none is near [m].
+  double distance(const Eigen::Vector3d& p_B) const noexcept;
   /// Whether the ball is in a hole of a structure.
   bool in_hole() const noexcept;
 

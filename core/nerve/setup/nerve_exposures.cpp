@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace haptrial::nerve {
@@ -21,6 +22,31 @@ NerveExposures::NerveExposures(const NerveSetup& setup,
   }
 }
 
+namespace {
+
+/// From the tool's surface.
+NerveDistances::Distances surface_distances(const NerveDistances& nerves,
+                                            const ToolAtNerves& tool) noexcept {
+  const auto from = [&nerves](const Eigen::Vector3d& centre_B, double radius) {
+    NerveDistances::Distances distances = nerves.at(centre_B);
+    for (float& distance : distances) {
+      distance = distance < NerveDistances::kFar ? distance - static_cast<float>(radius)
+                                                 : NerveDistances::kFar;
+    }
+    return distances;
+  };
+  NerveDistances::Distances least = from(tool.tip_B, tool.radius);
+  for (std::size_t ball = 0; ball < tool.balls; ++ball) {
+    const auto other = from(tool.more[ball].centre_B, tool.more[ball].radius);
+    for (std::size_t nerve = 0; nerve < least.size(); ++nerve) {
+      least[nerve] = std::min(least[nerve], other[nerve]);
+    }
+  }
+  return least;
+}
+
+}  // namespace
+
 NerveTick NerveExposures::step(const ToolAtNerves& tool) noexcept {
   using Kind = ToolAtNerves::Kind;
   NerveTick tick;
@@ -38,14 +64,12 @@ NerveTick NerveExposures::step(const ToolAtNerves& tool) noexcept {
   exposure.drilling = tick.drilling;
   exposure.suction = tick.suction;
   exposure.power = tick.drilling ? heat_ * tool.force * tool.power : 0.0;
-  const NerveDistances::Distances distances = distances_->at(tool.tip_B);
+  // Whatever carries no burr, tube or probe lies nowhere.
+  const bool there = tool.kind != Kind::kOther;
+  const NerveDistances::Distances distances = surface_distances(*distances_, tool);
   for (std::size_t i = 0; i < nerves_.size(); ++i) {
-    // Whatever carries no burr, tube or probe lies nowhere.
-    const bool there = tool.kind != Kind::kOther;
     NerveTick::OfNerve& nerve = tick.nerves[i];
-    nerve.distance = there && distances[i] < NerveDistances::kFar
-                         ? distances[i] - static_cast<float>(tool.radius)
-                         : NerveDistances::kFar;
+    nerve.distance = there ? distances[i] : NerveDistances::kFar;
     exposure.distance = static_cast<double>(nerve.distance);
     const NerveEvents events = nerves_[i].step(exposure, dt_);
     nerve.burst = events.burst;

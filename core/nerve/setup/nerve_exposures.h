@@ -33,9 +33,17 @@ struct ToolAtNerves {
   enum class Kind : std::uint8_t { kOther, kBurr, kSuction, kProbe } kind{Kind::kOther};
   Eigen::Vector3d tip_B{Eigen::Vector3d::Zero()};  // in the bone's frame [m]
   double radius{0.0};                              // of the tool's end [m]
-  double speed{0.0};                               // of the tip [m/s]
-  double force{0.0};                               // on the bone [N]
-  double power{0.0};                               // with which it turns or sucks, 0 to 1
+  /// A tool whose end is no ball is these as well; each as the tip.
+  struct Ball {
+    Eigen::Vector3d centre_B;  // [m]
+    double radius;             // [m]
+  };
+  static constexpr std::size_t kMostBalls = 9;
+  std::array<Ball, kMostBalls> more{};
+  std::size_t balls{0};  // of them
+  double speed{0.0};     // of the tip [m/s]
+  double force{0.0};     // on the bone [N]
+  double power{0.0};     // with which it turns or sucks, 0 to 1
 };
 
 /// The nerves of one bone while a tool works at it. Servo thread: step() neither allocates nor

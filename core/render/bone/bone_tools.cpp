@@ -69,59 +69,99 @@ void check_burr(double diameter, double shaft_diameter, double length) {
           "burr_mesh: diameters above 0 and a length above the burr's are needed");
 }
 
-/// A ball with grooves along twisted meridians: each blade falls from its sharp side to the groove
-/// before the next one.
-geometry::Mesh fluted_ball(double radius, bool clockwise) {
-  constexpr int kBlades = 8;
-  constexpr int kStations = 12;  // from a blade to the next
-  constexpr int kRings = 24;     // from pole to pole
-  constexpr double kGroove = 0.16;
-  constexpr double kTwist = 0.7;  // of a blade, to either pole [rad]
-  constexpr int kRound = kBlades * kStations;
-  geometry::Mesh mesh;
-  for (int ring = 0; ring <= kRings; ++ring) {
-    const double polar = std::numbers::pi * ring / kRings;
-    for (int i = 0; i < kRound; ++i) {
-      const double into = static_cast<double>(i % kStations) / (kStations - 1);
-      const double groove = clockwise ? into : 1.0 - into;
-      const double r = radius * (1.0 - kGroove * groove * std::sin(polar));
-      const double turn = 2.0 * std::numbers::pi * i / kRound + kTwist * std::cos(polar);
-      mesh.vertices.emplace_back(r * std::sin(polar) * std::cos(turn),
-                                 r * std::sin(polar) * std::sin(turn), r * std::cos(polar));
-    }
-  }
-  for (int ring = 0; ring < kRings; ++ring) {
+// Blades of a cutting burr: each falls from its sharp side to the groove before the next one.
+constexpr int kBlades = 8;
+constexpr int kStations = 12;  // from a blade to the next
+constexpr double kGroove = 0.16;
+constexpr double kTwist = 0.7;  // of a blade, over the radius along the axis [rad]
+constexpr int kRound = kBlades * kStations;
+
+/// What is left of the radius at a station around the axis, where grooves are as deep as can be.
+double groove_at(int station, bool clockwise) {
+  const double into = static_cast<double>(station % kStations) / (kStations - 1);
+  return kGroove * (clockwise ? into : 1.0 - into);
+}
+
+/// The triangles between rings of kRound vertices that go down.
+void add_rings(geometry::Mesh& mesh, int first, int rings) {
+  for (int ring = 0; ring + 1 < rings; ++ring) {
     for (int i = 0; i < kRound; ++i) {
       const int next = (i + 1) % kRound;
-      const int above = ring * kRound;
+      const int above = first + ring * kRound;
       const int below = above + kRound;
       mesh.triangles.push_back({above + i, below + i, below + next});
       mesh.triangles.push_back({above + i, below + next, above + next});
     }
   }
+}
+
+/// A ball with grooves along twisted meridians.
+geometry::Mesh fluted_ball(double radius, bool clockwise) {
+  constexpr int kRings = 24;  // from pole to pole
+  geometry::Mesh mesh;
+  for (int ring = 0; ring <= kRings; ++ring) {
+    const double polar = std::numbers::pi * ring / kRings;
+    for (int i = 0; i < kRound; ++i) {
+      const double r = radius * (1.0 - groove_at(i, clockwise) * std::sin(polar));
+      const double turn = 2.0 * std::numbers::pi * i / kRound + kTwist * std::cos(polar);
+      mesh.vertices.emplace_back(r * std::sin(polar) * std::cos(turn),
+                                 r * std::sin(polar) * std::sin(turn), r * std::cos(polar));
+    }
+  }
+  add_rings(mesh, 0, kRings + 1);
+  return mesh;
+}
+
+/// Any other shape, with vertices of its own for each smooth part. @param grooves  0: none, 1: all
+geometry::Mesh turned_head(const bone::BurrShape& shape, bool clockwise, double grooves) {
+  constexpr int kRings = 12;  // of a smooth part
+  geometry::Mesh mesh;
+  const double radius = 0.5 * shape.dimensions().diameter;
+  for (std::vector<bone::BurrShape::OutlinePoint> part : shape.outline(kRings)) {
+    if (part.size() == 2) {  // a line, along which blades wind
+      const bone::BurrShape::OutlinePoint from = part.front();
+      const bone::BurrShape::OutlinePoint to = part.back();
+      part.clear();
+      for (int n = 0; n <= kRings; ++n) {
+        const double t = static_cast<double>(n) / kRings;
+        part.push_back({from.radius + t * (to.radius - from.radius), from.z + t * (to.z - from.z),
+                        from.lateral});
+      }
+    }
+    const auto first = static_cast<int>(mesh.vertices.size());
+    for (auto at = part.rbegin(); at != part.rend(); ++at) {
+      for (int i = 0; i < kRound; ++i) {
+        const double r = at->radius * (1.0 - grooves * groove_at(i, clockwise) * at->lateral);
+        const double turn = 2.0 * std::numbers::pi * i / kRound + grooves * kTwist * at->z / radius;
+        mesh.vertices.emplace_back(r * std::cos(turn), r * std::sin(turn), at->z);
+      }
+    }
+    add_rings(mesh, first, static_cast<int>(part.size()));
+  }
   return mesh;
 }
 
 /// Shaft and handle.
-void add_handle(geometry::Mesh& mesh, double shaft_diameter, double length) {
+void add_handle(geometry::Mesh& mesh, double shaft_diameter, double length, double shaft_begins,
+                double handle_begins) {
   const double shaft = 0.5 * shaft_diameter;
   const double handle = kHandleThickness * shaft;
-  const double begins = kHandleBegins * length;
-  add_turned(mesh, {{0.0, 0.0},
-                    {shaft, 0.0},
-                    {shaft, begins},
-                    {handle, begins + 2.0 * handle},
+  add_turned(mesh, {{0.0, shaft_begins},
+                    {shaft, shaft_begins},
+                    {shaft, handle_begins},
+                    {handle, handle_begins + 2.0 * handle},
                     {handle, length},
                     {0.0, length}});
 }
+
+constexpr int kFrequency = 12;  // of a smooth ball
 
 }  // namespace
 
 geometry::Mesh burr_mesh(double diameter, double shaft_diameter, double length) {
   check_burr(diameter, shaft_diameter, length);
-  constexpr int kFrequency = 12;
   geometry::Mesh mesh = geometry::make_sphere(0.5 * diameter, kFrequency);
-  add_handle(mesh, shaft_diameter, length);
+  add_handle(mesh, shaft_diameter, length, 0.0, kHandleBegins * length);
   return mesh;
 }
 
@@ -129,7 +169,7 @@ geometry::Mesh cutting_burr_mesh(double diameter, double shaft_diameter, double 
                                  bool clockwise) {
   check_burr(diameter, shaft_diameter, length);
   geometry::Mesh mesh = fluted_ball(0.5 * diameter, clockwise);
-  add_handle(mesh, shaft_diameter, length);
+  add_handle(mesh, shaft_diameter, length, 0.0, kHandleBegins * length);
   return mesh;
 }
 
@@ -141,6 +181,43 @@ std::vector<Capsule> burr_shadow(double diameter, double shaft_diameter, double 
   return {{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 0.5 * diameter},
           {Eigen::Vector3d::Zero(), begins, shaft},
           {begins, length * up, handle}};
+}
+
+namespace {
+
+/// Where the handle of a burr begins, which has room for it.
+double handle_begins(const BurrLook& look, const bone::BurrShape& shape) {
+  const double thick = kHandleThickness * look.shaft_diameter;  // twice its radius
+  const double wanted = look.shaft_length > 0.0 ? shape.half_length() + look.shaft_length
+                                                : kHandleBegins * look.length;
+  return std::min(wanted, look.length - thick);
+}
+
+}  // namespace
+
+geometry::Mesh burr_mesh(const BurrLook& look) {
+  const bone::BurrShape shape(look.head);
+  require(look.shaft_diameter > 0.0 && look.length > 2.0 * shape.half_length(),
+          "burr_mesh: a shaft above 0 and a length above the burr's are needed");
+  const double radius = 0.5 * look.head.diameter;
+  geometry::Mesh mesh = !shape.is_ball()
+                            ? turned_head(shape, look.clockwise, look.cutting ? 1.0 : 0.0)
+                            : (look.cutting ? fluted_ball(radius, look.clockwise)
+                                            : geometry::make_sphere(radius, kFrequency));
+  add_handle(mesh, look.shaft_diameter, look.length, shape.is_ball() ? 0.0 : shape.half_length(),
+             handle_begins(look, shape));
+  return mesh;
+}
+
+std::vector<Capsule> burr_shadow(const BurrLook& look) {
+  const bone::BurrShape shape(look.head);
+  const double shaft = 0.5 * look.shaft_diameter;
+  const double handle = kHandleThickness * shaft;
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d begins = (handle_begins(look, shape) + 2.0 * handle) * up;
+  return {{shape.balls().front().z * up, shape.balls().back().z * up, 0.5 * look.head.diameter},
+          {Eigen::Vector3d::Zero(), begins, shaft},
+          {begins, look.length * up, handle}};
 }
 
 geometry::Mesh suction_mesh(double inner_diameter, double outer_diameter, double length) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/base/tool_state.h"
+#include "core/bone/drill/burr_shape.h"
 #include "core/geometry/mesh/mesh.h"
 #include "core/render/bone/bone_shading.h"
 
@@ -20,6 +21,18 @@ geometry::Mesh cutting_burr_mesh(double diameter, double shaft_diameter, double 
                                  bool clockwise);
 /// What of such a burr keeps light off: the ball, the shaft and the handle.
 std::vector<Capsule> burr_shadow(double diameter, double shaft_diameter, double length);
+
+/// A burr of any shape with its shaft and handle.
+struct BurrLook {
+  bone::BurrDimensions head;
+  bool cutting{false};         // it has blades
+  bool clockwise{true};        // as of cutting_burr_mesh()
+  double shaft_diameter{0.0};  // > 0 [m]
+  double shaft_length{0.0};    // from the burr's end on; 0: half of the tool [m]
+  double length{0.0};          // of all, from the burr's centre [m]
+};
+geometry::Mesh burr_mesh(const BurrLook& look);
+std::vector<Capsule> burr_shadow(const BurrLook& look);
 geometry::Mesh suction_mesh(double inner_diameter, double outer_diameter, double length);
 /// A rectangle in the plane z = 0 around the origin, seen from both sides.
 geometry::Mesh plane_mesh(double width, double height);

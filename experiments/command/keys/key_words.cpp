@@ -674,12 +674,17 @@ tools.NAME.type | | what the tool is
 tools.NAME.handle_radius | | of the tool's handle
 tools.NAME.handle_length | | of the tool's handle
 tools.NAME.kind | | of the burr
-tools.NAME.diameter | | of the burr
+tools.NAME.diameter | | of the burr, the greatest
+tools.NAME.length | | of a burr that is no ball, along its axis
+tools.NAME.narrow_diameter | half of the diameter | of the tip of a cone or the neck of a pear
 tools.NAME.sample_spacing | | edge of a cell of the burr with one sample
 tools.NAME.removal_rate | | share of the immersed volume that is removed
 tools.NAME.falloff | | of that rate with latitude
 tools.NAME.tangential_gain | | of the force along the surface
 tools.NAME.rotation | clockwise | how the burr turns, seen from the handle
+tools.NAME.wear_volume | never | volume of bone after which the burr removes half as much
+tools.NAME.shaft_radius | not felt | of the shaft behind the burr, which bone is felt by
+tools.NAME.shaft_length | not felt | of that shaft
 tools.NAME.feel.first_gain | | force for an immersed volume just after contact
 tools.NAME.feel.second_gain | | the same deeper
 tools.NAME.feel.threshold | | immersed volume at which the gain changes
@@ -689,7 +694,7 @@ tools.NAME.radius | | of the opening of a suction tube, or of the tip of a probe
 tools.NAME.width | | of the plane of a cut
 tools.NAME.height | | of the plane of a cut
 tools.NAME.depth | | of a cut
-tools.NAME.shape | | of the plate
+tools.NAME.shape | ball | of the burr, or of the plate
 tools.NAME.holes | 4 | of a straight plate
 tools.NAME.contact.samples | | of the plate that touch
 tools.NAME.contact.extrusion | | by which they stand out
@@ -710,6 +715,7 @@ soft_tissue.NAME.suction | | pull at which it comes off a tube that sucks
 second_hand.radius | | of the opening of a tube at a second device, which sucks and rinses
 second_hand.handle_length | | of the tube
 second_hand.rinse_reach | | of its water
+second_hand.shaft_length | 0.0 | of the tube behind its end that is felt, too
 second_hand.feel.first_gain | | force for an immersed volume of the tube's end just after contact
 second_hand.feel.second_gain | | the same deeper
 second_hand.feel.threshold | | immersed volume at which the gain changes
@@ -826,6 +832,7 @@ buttons.apply | none | numbers of the device: fixes the plate or cuts the plane
 buttons.detach | none | numbers of the device: the plate that was fixed last comes off
 buttons.finish | none | numbers of the device: ends the procedure
 buttons.still | none | numbers of the device: shows the next still
+buttons.reverse | none | numbers of the device: burrs turn the other way
 keys.power | none | keys of the window: the burr turns
 keys.next_tool | none | keys of the window: takes the next tool
 keys.previous_tool | none | keys of the window: takes the tool before
@@ -838,6 +845,7 @@ keys.apply | none | keys of the window: fixes the plate or cuts the plane
 keys.detach | none | keys of the window: the plate that was fixed last comes off
 keys.finish | none | keys of the window: ends the procedure
 keys.still | none | keys of the window: shows the next still
+keys.reverse | none | keys of the window: burrs turn the other way
 )";
 }
 

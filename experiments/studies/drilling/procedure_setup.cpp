@@ -18,12 +18,20 @@ drilling::ProcedureSetup procedure_setup(const record::SessionReader& session,
 drilling::ProcedureSetup procedure_setup(const protocols::BoneDefinition& definition) {
   drilling::ProcedureSetup setup;
   setup.scale = definition.drilling.scale;
+  setup.handle = definition.drilling.handle;
   setup.pose_WB = [placement = definition.placement](const geometry::VoxelGrid& grid) {
     return pose_of(placement, grid);
   };
   for (const bone::ToolSpec& tool : definition.simulator.tools) {
     const auto* burr = tool.as<bone::BurrTool>();
-    setup.tools.push_back({tool.name, burr != nullptr ? burr->radius() : 0.0});
+    auto& made = setup.tools.emplace_back();
+    made.name = tool.name;
+    if (burr != nullptr) {
+      made.burr_radius = burr->radius();
+      made.shape = burr->burr.form == bone::BurrForm::kBall
+                       ? nullptr
+                       : std::make_shared<const bone::BurrShape>(burr->burr.dimensions());
+    }
   }
   return setup;
 }

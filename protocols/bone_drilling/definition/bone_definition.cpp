@@ -112,6 +112,9 @@ subject::SurgeonBurr burr_named(Table& table, const char* key, const BoneDefinit
     const bone::ToolSpec& spec = d.simulator.tools[tool];
     const auto* burr = spec.as<bone::BurrTool>();
     if (spec.name == name && burr != nullptr) {
+      if (burr->burr.form != bone::BurrForm::kBall) {
+        table.reject(key, fmt::format("\"{}\"", name), "a burr whose shape is a ball");
+      }
       return {static_cast<int>(tool), burr->radius()};
     }
   }
@@ -388,6 +391,17 @@ void BoneDefinition::load_bones(const fs::path& folder) {
   }
   mouse.in_space = true;
   mouse.start = drilling.scale * before_bones(*this);
+}
+
+bool BoneDefinition::has_handpiece() const {
+  constexpr auto kReverse = static_cast<std::size_t>(bone::Function::kReverse);
+  const auto wears_or_feels = [](const bone::ToolSpec& tool) {
+    const auto* burr = tool.as<bone::BurrTool>();
+    return burr != nullptr && (burr->shaft || burr->burr.wear_volume > 0.0);
+  };
+  return std::any_of(simulator.tools.begin(), simulator.tools.end(), wears_or_feels) ||
+         (simulator.tube && simulator.tube->shaft_length > 0.0) ||
+         drilling.controls.buttons[kReverse] != 0 || !drilling.controls.keys[kReverse].empty();
 }
 
 bool BoneDefinition::hears_nerves(int trial, int participant) const {

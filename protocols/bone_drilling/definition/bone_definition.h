@@ -80,6 +80,8 @@ struct BoneDefinition : Definition {
   int devices() const override { return drilling.second ? 2 : 1; }
   /// Whether something bleeds or warms up.
   bool has_field() const { return simulator.heat || !simulator.bleeding.structures.empty(); }
+  /// Whether a shaft is felt, a burr wears or can be reversed.
+  bool has_handpiece() const;
   /// Whether a participant hears the nerve monitor in a procedure. @param trial  from 1; practice:
   /// 0
   bool hears_nerves(int trial, int participant) const;

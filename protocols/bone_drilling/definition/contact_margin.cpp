@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "protocols/bone_drilling/definition/bone_definition.h"
@@ -21,24 +22,68 @@ double inverse(const Function& function, double high, double wanted) {
   return high;
 }
 
+/// d m(V) / dh at a force. @param volume, section  of what is immersed by h [m^3], [m^2]
+template <class Volume, class Section>
+double stiffness_at(const Volume& volume, const Section& section, double deepest, double force,
+                    const bone::FeelParameters& limits) {
+  const double reached = std::min(force, limits.force_limit);
+  bone::FeelParameters feel = limits;
+  feel.force_limit = 2.0 * reached;  // its own limit is flat
+  const double depth =
+      inverse([&](double h) { return bone::magnitude(volume(h), feel); }, deepest, reached);
+  const double gain = volume(depth) > feel.threshold ? feel.second_gain : feel.first_gain;
+  return gain * section(depth);
+}
+
+/// The sum over the sections of a burr, across its axis, from the tip up.
+template <class OfSection>
+double along(const bone::BurrShape& shape, double high, const OfSection& of) {
+  constexpr int kSlices = 200;
+  const double slice = high / kSlices;
+  double sum = 0.0;
+  for (int n = 0; n < kSlices; ++n) {
+    sum += slice * of(shape.radius_at((n + 0.5) * slice - shape.half_length()));
+  }
+  return sum;
+}
+
+/// The greater one of a burr that stands on its tip and one that lies on its side.
+double stiffness_of_shape(const bone::BurrShape& shape, double force,
+                          const bone::FeelParameters& feel) {
+  constexpr double kPi = std::numbers::pi;
+  const double upright = stiffness_at(
+      [&](double h) { return along(shape, h, [](double r) { return kPi * r * r; }); },
+      [&](double h) { return kPi * std::pow(shape.radius_at(h - shape.half_length()), 2); },
+      shape.half_length(), force, feel);
+  const double wide = 0.5 * shape.dimensions().diameter;
+  const double length = 2.0 * shape.half_length();
+  const auto chord = [wide](double r, double h) {  // half of it
+    const double below = wide - h;                 // the axis, to the plane
+    return std::sqrt(std::max(0.0, r * r - below * below));
+  };
+  const double lying = stiffness_at(
+      [&](double h) {
+        return along(shape, length, [&](double r) {
+          const double half = chord(r, h);
+          return half > 0.0 ? r * r * std::atan2(half, wide - h) - (wide - h) * half : 0.0;
+        });
+      },
+      [&](double h) { return along(shape, length, [&](double r) { return 2.0 * chord(r, h); }); },
+      wide, force, feel);
+  return std::max(upright, lying);
+}
+
 }  // namespace
 
 double flat_bone_stiffness(const bone::BurrTool& tool, double force) {
+  const bone::BurrShape shape(tool.burr.dimensions());
+  if (!shape.is_ball()) {
+    return stiffness_of_shape(shape, force, tool.feel);
+  }
   const double r = tool.radius();
-  const auto volume = [r](double depth) {
-    return std::numbers::pi * depth * depth * (r - depth / 3.0);
-  };
-  const double reached = std::min(force, tool.feel.force_limit);
-  const double depth = inverse(
-      [&](double h) {
-        bone::FeelParameters feel = tool.feel;
-        feel.force_limit = 2.0 * reached;  // its own limit is flat
-        return bone::magnitude(volume(h), feel);
-      },
-      r, reached);
-  const double gain =
-      volume(depth) > tool.feel.threshold ? tool.feel.second_gain : tool.feel.first_gain;
-  return gain * std::numbers::pi * depth * (2.0 * r - depth);
+  return stiffness_at([r](double h) { return std::numbers::pi * h * h * (r - h / 3.0); },
+                      [r](double h) { return std::numbers::pi * h * (2.0 * r - h); }, r, force,
+                      tool.feel);
 }
 
 double stable_stiffness(const control::HandleLoop& loop, const control::HeldBy& hand) {

@@ -19,8 +19,8 @@ struct ContactMargin {
 };
 
 /// Stiffness of flat bone under a force, d m(V) / dh, with V = pi h^2 (r - h / 3) of a sphere of
-/// radius r that is immersed by h; at most that of a burr immersed by its radius [N/m].
-/// @param force  > 0 [N]
+/// radius r that is immersed by h; at most that of a burr immersed by its radius. Of another shape
+/// the greater one of its tip upright and its side [N/m]. @param force  > 0 [N]
 double flat_bone_stiffness(const bone::BurrTool& burr, double force);
 
 /// Up to which an undamped spring is stable in the sampled loop, with a hand on it [N/m]. The law

@@ -13,6 +13,7 @@ SecondHandParameters read_second_hand(Table& table) {
   tube.radius = table.number_or("radius", tube.radius, {2e-4, 0.01}, "m");
   tube.handle_length = table.number_or("handle_length", tube.handle_length, {1e-3, 0.5}, "m");
   tube.rinse_reach = table.number_or("rinse_reach", tube.rinse_reach, {5e-4, 0.05}, "m");
+  tube.shaft_length = table.number_or("shaft_length", tube.shaft_length, {0.0, 0.1}, "m");
   tube.feel = bone::default_feel(tube.outer_radius());
   if (table.has("feel")) {
     Table feel = table.table("feel");

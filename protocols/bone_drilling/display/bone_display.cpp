@@ -34,6 +34,22 @@ std::vector<render::Capsule> tube_shadow(double radius, double length) {
   return {{Eigen::Vector3d::Zero(), length * Eigen::Vector3d::UnitZ(), 2.0 * radius}};
 }
 
+render::BurrLook look_of(const bone::BurrTool& tool, double length) {
+  const bone::BurrParameters& burr = tool.burr;
+  render::BurrLook look;
+  look.head = burr.dimensions();
+  look.cutting = burr.kind == bone::BurrKind::kCutting;
+  look.clockwise = burr.clockwise;
+  const double neck = burr.form == bone::BurrForm::kPear ? burr.narrow_diameter : burr.diameter;
+  look.shaft_diameter = std::min(render::burr_shaft(burr.diameter), neck);
+  look.length = length;
+  if (tool.shaft) {
+    look.shaft_diameter = 2.0 * tool.shaft->radius;
+    look.shaft_length = tool.shaft->length;
+  }
+  return look;
+}
+
 using Clock = std::chrono::steady_clock;
 
 class BoneDrawing final : public Drawing {
@@ -142,12 +158,7 @@ std::shared_ptr<const geometry::Mesh> BoneDisplay::mesh_of(int tool) const {
     return std::make_shared<const geometry::Mesh>(std::move(mesh));
   };
   if (const auto* burr = spec.as<bone::BurrTool>()) {
-    const double diameter = burr->burr.diameter;
-    const double shaft = render::burr_shaft(diameter);
-    return shared(
-        burr->burr.kind == bone::BurrKind::kCutting
-            ? render::cutting_burr_mesh(diameter, shaft, spec.handle_length, burr->burr.clockwise)
-            : render::burr_mesh(diameter, shaft, spec.handle_length));
+    return shared(render::burr_mesh(look_of(*burr, spec.handle_length)));
   }
   if (const auto* suction = spec.as<bone::SuctionTool>()) {
     return shared(
@@ -166,8 +177,7 @@ std::shared_ptr<const geometry::Mesh> BoneDisplay::mesh_of(int tool) const {
 std::vector<render::Capsule> BoneDisplay::shadow_of(int tool) const {
   const bone::ToolSpec& spec = stage_->simulator->tools()[static_cast<std::size_t>(tool)];
   if (const auto* burr = spec.as<bone::BurrTool>()) {
-    const double diameter = burr->burr.diameter;
-    return render::burr_shadow(diameter, render::burr_shaft(diameter), spec.handle_length);
+    return render::burr_shadow(look_of(*burr, spec.handle_length));
   }
   if (const auto* suction = spec.as<bone::SuctionTool>()) {
     return tube_shadow(suction->radius, spec.handle_length);
@@ -224,15 +234,16 @@ void BoneDisplay::draw(const bone::DrillingView& seen) {
   }
   scene_.draw(frame_, width_, height_);
   if (seen.shown) {
-    name_tool(seen.tool);
+    name_tool(seen);
   }
   draw_still(seen.stills_asked);
 }
 
-void BoneDisplay::name_tool(int tool) {
-  const bone::ToolSpec& spec = stage_->simulator->tools()[static_cast<std::size_t>(tool)];
+void BoneDisplay::name_tool(const bone::DrillingView& seen) {
+  const std::string words =
+      words_of(stage_->simulator->tools()[static_cast<std::size_t>(seen.tool)], seen);
   for (int left = 0; left < width_; left += width()) {
-    label_.draw(spec, left);
+    label_.draw(words, left);
   }
 }
 

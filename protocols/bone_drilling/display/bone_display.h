@@ -44,7 +44,7 @@ class BoneDisplay {
  private:
   std::shared_ptr<const geometry::Mesh> mesh_of(int tool) const;
   std::vector<render::Capsule> shadow_of(int tool) const;
-  void name_tool(int tool);
+  void name_tool(const bone::DrillingView& seen);
   void draw_still(std::int32_t asked);
 
   render::Gl gl_;

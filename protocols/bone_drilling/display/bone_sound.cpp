@@ -21,7 +21,8 @@ double ThicknessProbe::under(const bone::DrillingView& seen) {
   double thinnest = kThick;
   world.published_poses().read(world.pieces(), [&](int piece, const Eigen::Isometry3d& pose) {
     const bone::BoneVolume& volume = world.volume(piece);
-    const double reach = burr->radius() + 2.0 * volume.grid().spacing;
+    const double reach =
+        bone::BurrShape(burr->burr.dimensions()).reach() + 2.0 * volume.grid().spacing;
     bone::surface_voxels_within(volume, pose.inverse(Eigen::Isometry) * seen.tip, reach, voxels_);
     if (const auto mean = bone::mean_thickness(volume, voxels_)) {
       thinnest = std::min(thinnest, *mean);

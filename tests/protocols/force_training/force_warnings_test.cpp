@@ -200,6 +200,26 @@ TEST(ContactMarginTest, BoneIsAsStiffAsItWasMeasuredInTheLoop) {
   }
 }
 
+TEST(ContactMarginTest, AFissureBurrIsStiffestOnItsSide) {
+  constexpr double kRadius = 0.8e-3;
+  constexpr double kLength = 6e-3;
+  bone::BurrTool tool;
+  tool.burr = bone::default_burr(
+      bone::BurrKind::kCutting,
+      bone::BurrDimensions{bone::BurrForm::kCylinder, 2.0 * kRadius, kLength, 0.0});
+  tool.feel = bone::default_feel(bone::BurrShape(tool.burr.dimensions()).ball_radius());
+  const auto force = [&](double depth) {  // of the segments below a plane
+    const double below = kRadius - depth;
+    const double area = kRadius * kRadius * std::acos(below / kRadius) -
+                        below * std::sqrt(kRadius * kRadius - below * below);
+    return bone::magnitude(kLength * area, tool.feel);
+  };
+  for (const double depth : {0.1e-3, 0.25e-3, 0.4e-3}) {
+    const double slope = (force(depth + 1e-7) - force(depth - 1e-7)) / 2e-7;
+    EXPECT_NEAR(protocols::flat_bone_stiffness(tool, force(depth)), slope, 0.01 * slope);
+  }
+}
+
 TEST(ContactMarginTest, TheLoopCarriesLessTheLaterItsForcesCome) {
   control::HandleLoop loop;
   const control::HeldBy hand{0.8, 15.0, 250.0};

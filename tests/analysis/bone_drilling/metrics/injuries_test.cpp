@@ -96,6 +96,53 @@ TEST(InjuriesTest, ContactAgreesWithAllVoxels) {
   }
 }
 
+/// A burr that is no ball, against places all over the voxel.
+TEST(InjuriesTest, AFissureBurrTouchesByItsShape) {
+  RandomStream random(10, "fissure");
+  const bone::BurrDimensions fissure{bone::BurrForm::kCylinder, 1.5e-3, 7e-3, 0.0};
+  const auto shape = std::make_shared<const bone::BurrShape>(fissure);
+  int touched = 0;
+  for (int n = 0; n < 60; ++n) {
+    bone::BoneModel model = test::block(12, 12, 12);
+    model.structures.push_back({"nerve", {}, 1.0, true});
+    const bone::Voxel nerve = test::any_voxel(random, model.grid);
+    test::mark(model, nerve, 2);
+    Procedure p = test::procedure_on(model);
+    p.tools[0] = {"fissure", 0.75e-3, shape};
+    p.pose_WB = Eigen::Translation3d(0.01, 0.02, 0.03) *
+                Eigen::AngleAxisd(random.uniform(0.0, 3.0), Eigen::Vector3d::UnitZ());
+    const Eigen::Vector3d middle = model.grid.centre(nerve.x(), nerve.y(), nerve.z());
+    const Eigen::Vector3d tip_B =
+        middle + Eigen::Vector3d(random.uniform(-4e-3, 4e-3), random.uniform(-4e-3, 4e-3),
+                                 random.uniform(-4e-3, 4e-3));
+    const Eigen::Vector3d axis_B =
+        Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+    p.ticks.push_back(test::drilling_tick(0, p.pose_WB * tip_B));
+    p.ticks.back().axis = (p.pose_WB.linear() * axis_B).cast<float>();
+    double least = 1.0;  // from a cylinder's axis and ends, over the cube
+    constexpr int kSteps = 20;
+    for (int i = 0; i <= kSteps * kSteps * kSteps; ++i) {
+      const Eigen::Vector3d share(i % kSteps, i / kSteps % kSteps, i / kSteps / kSteps);
+      const Eigen::Vector3d from =
+          middle + 1e-3 * (share / (kSteps - 1) - Eigen::Vector3d::Constant(0.5)) - tip_B;
+      const double along = std::abs(axis_B.dot(from));
+      const double across = std::sqrt(std::max(0.0, from.squaredNorm() - along * along));
+      const double beyond = std::max(0.0, along - 3.5e-3);
+      const double beside = std::max(0.0, across - 0.75e-3);
+      least = std::min(least, std::hypot(beyond, beside));
+    }
+    if (least > 0.0 && least < 0.06e-3) {
+      continue;  // the places are no closer to each other
+    }
+    StudyBones bones;
+    const bool found = injuries(p, bones)[0].first_contact.has_value();
+    EXPECT_EQ(found, least == 0.0) << n;
+    touched += found ? 1 : 0;
+  }
+  EXPECT_GT(touched, 5);
+  EXPECT_LT(touched, 50);
+}
+
 TEST(InjuriesTest, WhatFallsToDustIsLostToo) {
   StudyBones bones;
   Procedure p = test::procedure_on(row());

@@ -119,7 +119,7 @@ TEST(VisibilityTest, ASurfaceVoxelOfAConvexBoneIsSeenFromOutside) {
 
 /// Points along the line, close together.
 bool seen_by_sampling(const StandingBone& bone, const bone::Voxel& voxel,
-                      const Eigen::Vector3d& eye, const BurrSphere& burr, bool& unsure) {
+                      const Eigen::Vector3d& eye, const BurrOnTick& burr, bool& unsure) {
   const geometry::VoxelGrid& grid = bone.grid();
   const Eigen::Vector3d from = grid.centre(voxel.x(), voxel.y(), voxel.z());
   bool visible = true;
@@ -157,7 +157,7 @@ TEST(VisibilityTest, AgreesWithPointsAlongTheLine) {
     const bone::Voxel v = test::any_voxel(random, model.grid);
     const Eigen::Vector3d eye(random.uniform(-0.02, 0.03), random.uniform(-0.02, 0.03),
                               random.uniform(-0.02, 0.03));
-    const BurrSphere burr{model.grid.centre(v.x(), v.y(), v.z()), random.uniform(0.0, 2e-3)};
+    const BurrOnTick burr{model.grid.centre(v.x(), v.y(), v.z()), random.uniform(0.0, 2e-3)};
     bool unsure = false;
     const bool expected = seen_by_sampling(standing, v, eye, burr, unsure);
     if (!unsure) {

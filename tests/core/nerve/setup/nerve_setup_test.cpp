@@ -180,6 +180,22 @@ TEST(NerveExposuresTest, TheToolsSurfaceCounts) {
   EXPECT_EQ(exposures.step(tool).nerves[0].distance, NerveDistances::kFar);
 }
 
+TEST(NerveExposuresTest, TheNearestBallOfALongToolCounts) {
+  const NerveSetup setup = facial();
+  NerveExposures exposures(setup, std::make_shared<const NerveDistances>(block(), setup.nerves), 1,
+                           1e-3);
+  ToolAtNerves tool;
+  tool.kind = ToolAtNerves::Kind::kBurr;
+  tool.tip_B = {10e-3, 13.5e-3, 7.5e-3};
+  tool.radius = 1e-3;
+  const float far = exposures.step(tool).nerves[0].distance;
+  tool.more[0] = {{10e-3, 16.5e-3, 7.5e-3}, 1e-3};
+  tool.more[1] = {{10e-3, 10.5e-3, 7.5e-3}, 0.5e-3};
+  tool.balls = 2;
+  EXPECT_NEAR(static_cast<double>(exposures.step(tool).nerves[0].distance),
+              static_cast<double>(far) - 3e-3 + 0.5e-3, 1e-5);
+}
+
 TEST(NerveExposuresTest, AProbeGivesPulsesAtItsRate) {
   NerveSetup setup = facial();
   setup.pulses = 4.0;

@@ -399,14 +399,46 @@ TEST(BoneSceneTest, ATranslucentPlaneLetsBoneThroughAndHidesNothingBehindTheBone
   EXPECT_EQ(pixel(stage.draw(frame), kWidth / 2, kHeight / 2), bare);
 }
 
-TEST(BoneSceneTest, ToolMeshesAreClosedAndOutwards) {
-  const auto volume_of = [](const geometry::Mesh& mesh) {
-    double six = 0.0;
-    for (const geometry::Triangle& t : mesh.triangles) {
-      six += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]]));
-    }
-    return six / 6.0;
+/// A closed mesh that is seen from outside.
+double volume_of(const geometry::Mesh& mesh) {
+  double six = 0.0;
+  for (const geometry::Triangle& t : mesh.triangles) {
+    six += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]]));
+  }
+  return six / 6.0;
+}
+
+TEST(BoneSceneTest, BurrsOfEveryShapeAreDrawnAsTheyAre) {
+  using bone::BurrForm;
+  const bone::BurrDimensions thin{BurrForm::kCylinder, 0.001, 0.006, 0.0};
+  const auto look_of = [](const bone::BurrDimensions& head) {
+    return BurrLook{head, false, true, 0.001, 0.02, 0.08};
   };
+  for (const bone::BurrDimensions& head :
+       {bone::BurrDimensions{BurrForm::kCylinder, 0.002, 0.006, 0.0},
+        bone::BurrDimensions{BurrForm::kCone, 0.003, 0.006, 0.001},
+        bone::BurrDimensions{BurrForm::kPear, 0.004, 0.006, 0.002}}) {
+    const bone::BurrShape shape(head);
+    BurrLook look = look_of(head);
+    const geometry::Mesh smooth = burr_mesh(look);
+    look.cutting = true;
+    const geometry::Mesh bladed = burr_mesh(look);
+    // Shaft and handle are the same.
+    EXPECT_NEAR(volume_of(smooth) - volume_of(burr_mesh(look_of(thin))),
+                shape.volume() - bone::BurrShape(thin).volume(), 0.01 * shape.volume());
+    EXPECT_LT(volume_of(bladed), volume_of(smooth) - 0.05 * shape.volume()) << "grooves";
+    for (const geometry::Mesh* mesh : {&smooth, &bladed}) {
+      for (const Eigen::Vector3d& vertex : mesh->vertices) {
+        EXPECT_TRUE(vertex.z() >= shape.half_length() - 1e-12 ||
+                    shape.nearest(vertex).distance < 1e-9)
+            << "within its shape";
+      }
+    }
+  }
+  EXPECT_THROW(burr_mesh(look_of({BurrForm::kCylinder, 0.002, 0.09, 0.0})), std::invalid_argument);
+}
+
+TEST(BoneSceneTest, ToolMeshesAreClosedAndOutwards) {
   // A tube of a regular polygon of 32 sides: its area is 16 sin(2 pi / 32) of the radius squared.
   const double polygon = 16.0 * std::sin(2.0 * M_PI / 32);
   EXPECT_NEAR(volume_of(suction_mesh(0.002, 0.003, 0.1)),

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "core/base/tool_state.h"
+#include "core/bone/drill/drill.h"
+#include "core/bone/drill/feel.h"
+#include "core/bone/pieces/world.h"
+
+namespace haptrial::bone {
+
+/// A part of a tool that feels bone and takes none of it: a shaft, the end of a tube. It is sampled
+/// as a burr at rest. One that is in bone at first is not felt before it has been free.
+///
+/// Servo thread: no allocation, lock, wait or throw after construction.
+class FeltPart {
+ public:
+  /// @param middle   of its length along the tool's axis, from the tip [m]
+  /// @param spacing  of the bone's voxels [m]
+  /// @throws std::invalid_argument as BurrShape and check(FeelParameters) do.
+  FeltPart(const BurrDimensions& dimensions, double middle, const FeelParameters& feel,
+           std::span<const Structure> structures, double spacing,
+           const std::array<bool, 256>& soft);
+
+  struct Felt {
+    Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // on the tool, in W [N]
+    std::int32_t immersed{0};                        // samples in bone
+  };
+  Felt tick(const BoneWorld& world, const ToolState& tool) noexcept;
+  /// Until it is free it is not felt.
+  void wait() noexcept { waits_until_free_ = true; }
+
+ private:
+  double middle_;
+  FeelParameters feel_;
+  BurrParameters at_rest_;
+  Drill drill_;
+  bool waits_until_free_{true};
+};
+
+}  // namespace haptrial::bone
