@@ -93,8 +93,11 @@ class WornBurrSessionTest : public testing::Test {
     folder_ = std::make_unique<test::TemporaryFolder>();
     const fs::path study = write_study(folder_->path(), kWorn);
     std::string text = test::read_text(study);
-    const std::string line = "camera_turn = [4]\n";
-    text.replace(text.find(line), line.size(), "reverse = [6]\n");
+    const auto replace = [&text](const std::string& line, const std::string& by) {
+      text.replace(text.find(line), line.size(), by);
+    };
+    replace("camera_turn = [4]\n", "reverse = [6]\n");
+    replace("handle = [0.0, 0.8, 0.6]", "handle = [0.0, 0.3, 0.95]");  // low over the bone
     test::write_text(study, text);
     const test::CommandResult done = dry_run(study, *folder_ / "out");
     ASSERT_EQ(done.status, 0) << done.errors;

@@ -199,14 +199,13 @@ double as_float(double value) { return static_cast<double>(static_cast<float>(va
 
 }  // namespace
 
-const ProcedureTool* Procedure::tool(std::int32_t number) const noexcept {
-  return number >= 0 && std::cmp_less(number, tools.size())
-             ? &tools[static_cast<std::size_t>(number)]
-             : nullptr;
+const ProcedureTool* Procedure::tool(std::int32_t tool) const noexcept {
+  return tool >= 0 && std::cmp_less(tool, tools.size()) ? &tools[static_cast<std::size_t>(tool)]
+                                                        : nullptr;
 }
 
-double Procedure::burr_radius(std::int32_t number) const noexcept {
-  const ProcedureTool* const of = tool(number);
+double Procedure::burr_radius(std::int32_t tool) const noexcept {
+  const ProcedureTool* const of = this->tool(tool);
   return of != nullptr ? of->burr_radius : 0.0;
 }
 

@@ -111,7 +111,7 @@ struct Procedure {
   std::vector<Torn> tears;
 
   /// Null out of range.
-  const ProcedureTool* tool(std::int32_t number) const noexcept;
+  const ProcedureTool* tool(std::int32_t tool) const noexcept;
   /// The radius of a tool's burr; 0 for a tool that is none, or out of range [m].
   double burr_radius(std::int32_t tool) const noexcept;
 };

@@ -17,7 +17,6 @@ namespace {
 
 constexpr Bounds kDiameter{0.0005, 0.03};
 constexpr double kMostSamples = 1e6;
-constexpr double kSphere = std::numbers::pi / 6.0;  // volume of a ball over diameter^3
 
 /// How far samples are apart where there are so many of them.
 double spacing_of(const BurrShape& shape, double samples) {
@@ -214,7 +213,7 @@ BurrParameters default_burr(BurrKind kind, const BurrDimensions& dimensions) {
   p.length = dimensions.length;
   p.narrow_diameter = dimensions.narrow_diameter;
   // Small burrs need as many samples as large ones to push as evenly.
-  const double as_ball = std::cbrt(BurrShape(dimensions).fullness() / kSphere);
+  const double as_ball = std::cbrt(BurrShape(dimensions).fullness() / kBallFullness);
   p.sample_spacing = std::min(0.25e-3, p.diameter / 28.0 * as_ball);
   const bool cutting = kind == BurrKind::kCutting;
   p.removal_rate = cutting ? 25.0 : 10.0;
@@ -255,8 +254,9 @@ BurrDimensions read_dimensions(Table& table) {
   d.length = table.number("length", {pear ? kPearsLeast * d.diameter : 1e-4, 0.04}, "m");
   if (d.form != BurrForm::kCylinder) {
     const double least = pear ? 1e-4 : 0.0;
-    d.narrow_diameter =
-        table.number_or("narrow_diameter", 0.5 * d.diameter, {least, d.diameter}, "m");
+    d.narrow_diameter = table.has("narrow_diameter")
+                            ? table.number("narrow_diameter", {least, d.diameter}, "m")
+                            : 0.5 * d.diameter;
   }
   return d;
 }
@@ -276,7 +276,9 @@ BurrParameters read_burr_parameters(Table& table) {
   optional("removal_rate", {0.0, 1e6}, "1/(N·s)", p.removal_rate);
   optional("falloff", {0.0, 1e6}, "1/(N·s·rad)", p.falloff);
   optional("tangential_gain", {0.0, 1e15}, "N/m^4", p.tangential_gain);
-  optional("wear_volume", {0.0, 1.0, true}, "m3", p.wear_volume);
+  if (table.has("wear_volume")) {
+    p.wear_volume = table.number("wear_volume", {0.0, 1.0, true}, "m3");
+  }
   if (table.has("rotation")) {
     p.clockwise = table.choice("rotation", {"clockwise", "counterclockwise"}) == "clockwise";
   }

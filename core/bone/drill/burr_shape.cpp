@@ -14,8 +14,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kSphere = std::numbers::pi / 6.0;  // volume over diameter^3
-
 void check(const BurrDimensions& d) {
   const auto need = [](bool good, const char* name, double value, const char* allowed) {
     if (!good) {
@@ -59,7 +57,7 @@ BurrShape::BurrShape(const BurrDimensions& dimensions) : dimensions_(dimensions)
   const BurrDimensions& d = dimensions_;
   if (is_ball()) {
     half_length_ = reach_ = 0.5 * d.diameter;
-    fullness_ = kSphere;
+    fullness_ = kBallFullness;
     balls_ = {{0.0, reach_}};
     return;
   }
@@ -153,7 +151,7 @@ bool BurrShape::is_point_symmetric() const noexcept {
 double BurrShape::volume() const noexcept { return fullness_ * std::pow(dimensions_.diameter, 3); }
 
 double BurrShape::ball_radius() const noexcept {
-  return is_ball() ? reach_ : 0.5 * dimensions_.diameter * std::cbrt(fullness_ / kSphere);
+  return is_ball() ? reach_ : 0.5 * dimensions_.diameter * std::cbrt(fullness_ / kBallFullness);
 }
 
 double BurrShape::radius_at(double z) const noexcept {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,9 @@ enum class BurrForm : std::uint8_t {
 };
 /// As definitions call it: "ball", "cylinder", "cone", "pear"; "rod" is none of theirs.
 std::string_view name_of(BurrForm form) noexcept;
+
+/// Volume of a ball over diameter^3.
+inline constexpr double kBallFullness = std::numbers::pi / 6.0;
 
 struct BurrDimensions {
   BurrForm form{BurrForm::kBall};

@@ -694,7 +694,7 @@ tools.NAME.radius | | of the opening of a suction tube, or of the tip of a probe
 tools.NAME.width | | of the plane of a cut
 tools.NAME.height | | of the plane of a cut
 tools.NAME.depth | | of a cut
-tools.NAME.shape | ball | of the burr, or of the plate
+tools.NAME.shape | a burr is a ball | of the burr, or of the plate
 tools.NAME.holes | 4 | of a straight plate
 tools.NAME.contact.samples | | of the plate that touch
 tools.NAME.contact.extrusion | | by which they stand out
@@ -715,7 +715,7 @@ soft_tissue.NAME.suction | | pull at which it comes off a tube that sucks
 second_hand.radius | | of the opening of a tube at a second device, which sucks and rinses
 second_hand.handle_length | | of the tube
 second_hand.rinse_reach | | of its water
-second_hand.shaft_length | 0.0 | of the tube behind its end that is felt, too
+second_hand.shaft_length | | of the tube behind its end that is felt, too
 second_hand.feel.first_gain | | force for an immersed volume of the tube's end just after contact
 second_hand.feel.second_gain | | the same deeper
 second_hand.feel.threshold | | immersed volume at which the gain changes

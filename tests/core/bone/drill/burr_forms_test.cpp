@@ -73,9 +73,11 @@ TEST(BurrFormsTest, SamplesPushInwardsAndCutByTheLatitudeOfTheSurface) {
     const BurrParameters& p = burr.parameters();
     for (std::int32_t n = 0; n < burr.samples(); ++n) {
       const Vector3d outwards = burr.shape().nearest(burr.position(n)).normal;
-      // But for samples between two surfaces, whose rounded place is nearer to the other one.
-      if (std::abs(burr.shape().nearest(burr.position(n) + 1e-8 * outwards).distance -
-                   burr.shape().nearest(burr.position(n)).distance - 1e-8) > 1e-10) {
+      // But for samples between two surfaces, whose rounded place may be nearer to the other one.
+      constexpr double kStep = 3e-7;
+      const Vector3d at = burr.position(n);
+      const double deeper = burr.shape().nearest(at - kStep * outwards).distance;
+      if (deeper > burr.shape().nearest(at).distance - kStep + 1e-10) {
         continue;
       }
       EXPECT_NEAR(burr.direction(n).dot(-outwards), 1.0, 3e-3);
@@ -122,7 +124,7 @@ TEST(BurrFormsTest, AnUprightCylinderIsPushedByTheVolumeBelowThePlane) {
 
 TEST(BurrFormsTest, ALyingCylinderIsPushedByTheSegmentBelowThePlane) {
   for (const double depth : {0.2e-3, 0.4e-3, 0.8e-3}) {
-    expect_volume(kFissure, {1e-4, 2e-4, 1e-3 - depth}, kLying, 6e-3 * segment(1e-3, depth), 0.02);
+    expect_volume(kFissure, {1e-4, 2e-4, 1e-3 - depth}, kLying, 6e-3 * segment(1e-3, depth), 0.03);
   }
 }
 
