@@ -11,9 +11,9 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 
-# A block of 160 x 60 x 40 voxels of 0.25 mm, its top at y = 0 in the world.
+# A block of 48 x 40 x 60 voxels of 0.25 mm, its top at y = 0 in the world; a stroke is longer.
 python3 - <<'END'
-size = (160, 40, 60)
+size = (48, 40, 60)
 head = ("NRRD0004\ntype: uint8\ndimension: 3\nsizes: %d %d %d\nspace: left-posterior-superior\n"
         "space directions: (0.25,0,0) (0,0.25,0) (0,0,0.25)\nspace origin: (0,0,0)\n"
         "encoding: raw\nendian: little\n\n" % size)
@@ -25,28 +25,30 @@ with open("block.nrrd", "wb") as file:
             file.write(bytes(1 if inside and 2 <= i < size[0] - 2 else 0 for i in range(size[0])))
 END
 
-# drill NAME TABLE-LINES: a dry run that goes along one stroke with the burr.
+# drill NUMBER-NAME TABLE-LINES DEPTH: a dry run that goes along one stroke with the burr.
 drill() {
   sed -e 's/^bones = .*/bones = ["block.nrrd"]/' -e 's/^x_to = .*/x_to = [1.0, 0.0, 0.0]/' \
     -e 's/^y_to = .*/y_to = [0.0, 1.0, 0.0]/' -e 's/^centre = .*/centre = [0.0, -0.005, 0.0]/' \
     -e 's/^time_limit = .*/time_limit = 20.0/' -e 's/^handle = \[.*\]/handle = [0.0, 1.0, 0.0]/' \
     -e 's/^start = .*/start = [0.0, 0.012, 0.0]/' -e 's/^height = 0.009/height = 0.0001/' \
-    -e 's/^line = .*/line = 0.001/' -e 's/^depth = 0.008/depth = 0.003/' \
+    -e 's/^line = .*/line = 0.001/' -e "s/^depth = 0.008/depth = $3/" \
     -e 's/^strokes_to_suction = .*/strokes_to_suction = 1000/' -e 's/^look_button = .*//' \
-    -e 's/^target = .*/target = [0.0, 0.0, 0.0]/' -e 's/^eye = .*/eye = [0.0, 0.06, 0.10]/' \
-    -e 's/^field_of_view = .*/field_of_view = 0.26/' -e 's/^\[dust\]/[dust_no]/' \
+    -e 's/^target = .*/target = [0.0, 0.0, 0.0]/' -e 's/^eye = .*/eye = [0.08, 0.03, 0.025]/' \
+    -e 's/^up = .*/up = [0.0, 1.0, 0.0]/' -e "s/^in_hand = .*/in_hand = [\"${1#?-}\", \"diamond\", \"suction\"]/" \
+    -e "s/^\[tools.cutting\]/[tools.${1#?-}]/" \
+    -e 's/^field_of_view = .*/field_of_view = 0.24/' -e 's/^\[dust\]/[dust_no]/' \
     -e "s/^diameter = 0.006 .*/$2/" "$definition" |
     sed -e '/^\[dust_no\]/,/^$/d' >"$1.toml"
   "$haptrial" dry-run "$1.toml" --out "$1"
   "$haptrial" replay "$1/S01.h5" --frames "$1/frames" --fps 1
   cp "$(ls "$1"/frames/frame-*.png | tail -1)" "$1.png"
 }
-drill 1-ball 'diameter = 0.003'
-drill 2-fissure 'shape = "cylinder"\ndiameter = 0.003\nlength = 0.007'
-drill 3-taper 'shape = "cone"\ndiameter = 0.0035\nnarrow_diameter = 0.0015\nlength = 0.007'
-drill 4-pear 'shape = "pear"\ndiameter = 0.0035\nnarrow_diameter = 0.002\nlength = 0.007'
+drill 1-ball 'diameter = 0.003' 0.001
+drill 2-fissure 'shape = "cylinder"\ndiameter = 0.003\nlength = 0.007' 0.003
+drill 3-taper 'shape = "cone"\ndiameter = 0.0035\nnarrow_diameter = 0.0015\nlength = 0.007' 0.003
+drill 4-pear 'shape = "pear"\ndiameter = 0.0035\nnarrow_diameter = 0.002\nlength = 0.007' 0.003
 ffmpeg -v error -y -pattern_type glob -i "?-*.png" -frames:v 1 \
-  -vf "crop=860:620:0:100,scale=430:310:flags=lanczos,pad=432:312:1:1:white,tile=2x2" \
+  -vf "crop=960:660:160:30,scale=430:296:flags=lanczos,pad=432:298:1:1:white,tile=2x2" \
   "$out/burr-shapes.png"
 
 sed -e 's/^in_hand = .*/in_hand = ["fissure", "diamond", "suction"]/' \
