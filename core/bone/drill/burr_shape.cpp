@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-void check(const BurrDimensions& d) {
+void check_dimensions(const BurrDimensions& d) {
   const auto need = [](bool good, const char* name, double value, const char* allowed) {
     if (!good) {
       throw std::invalid_argument(fmt::format("Burr: {} is {}; allowed: {}", name, value, allowed));
@@ -53,7 +53,7 @@ std::string_view name_of(BurrForm form) noexcept {
 }
 
 BurrShape::BurrShape(const BurrDimensions& dimensions) : dimensions_(dimensions) {
-  check(dimensions);
+  check_dimensions(dimensions);
   const BurrDimensions& d = dimensions_;
   if (is_ball()) {
     half_length_ = reach_ = 0.5 * d.diameter;

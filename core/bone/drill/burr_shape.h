@@ -31,6 +31,7 @@ struct BurrDimensions {
 
 /// A convex solid of revolution about the z axis of the tool frame T (core/base/tool_state.h); the
 /// middle of its length is T's origin, and its tip is at negative z. Immutable: any thread.
+/// The source has balls only: Morris 2006, §3.2.3.6.
 class BurrShape {
  public:
   /// @throws std::invalid_argument naming the dimension that breaks its bound.

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "core/base/files/file_text.h"
+#include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/field_row.h"
 #include "core/bone/record/led_row.h"
@@ -66,6 +67,8 @@ TEST(SessionPageTest, TablesOfDrillings) {
   tables.push_back(&table_of<TearRow>());
   tables.push_back(&table_of<LedRow>());
   tables.push_back(&table_of<SecondHandRow>());
+  tables.push_back(&table_of<BurrRow>());
+  tables.push_back(&table_of<HandpieceRow>());
   tables.push_back(&table_of<OpeningRow>());
   tables.push_back(&table_of<FieldRow>());
   expect_described("drilling", tables);
