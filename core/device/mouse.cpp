@@ -18,10 +18,9 @@ MouseParameters read_mouse_parameters(Table& table) {
   return p;
 }
 
-MouseDevice::MouseDevice(const MouseParameters& parameters, double rate)
+MouseDevice::MouseDevice(const MouseParameters& parameters, double rate, const std::string& name)
     : parameters_(parameters),
-      info_{"mouse", parameters.electronics.max_force, parameters.electronics.workspace_radius,
-            false},
+      info_{name, parameters.electronics.max_force, parameters.electronics.workspace_radius, false},
       period_(1.0 / rate),
       mass_(parameters.coupling, parameters.start),
       electronics_(parameters.electronics, mass_, rate) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "core/device/coupled_mass.h"
 #include "core/device/pointer_hand.h"
 #include "core/device/virtual_device.h"
@@ -34,8 +36,9 @@ MouseParameters read_mouse_parameters(Table& table);
 class MouseDevice final : public Device {
  public:
   /// @param rate  of the servo loop > 0 [Hz]
+  /// @param name  as sessions record it, after what moves the pointer
   /// @throws std::invalid_argument naming a parameter out of its bounds.
-  MouseDevice(const MouseParameters& parameters, double rate);
+  MouseDevice(const MouseParameters& parameters, double rate, const std::string& name = "mouse");
 
   const DeviceInfo& info() const noexcept override { return info_; }
   bool read(DeviceReading& reading) noexcept override;

@@ -10,7 +10,7 @@
 namespace haptrial::device {
 namespace {
 
-constexpr std::array kBuiltIn{"virtual", "mouse", "force-dimension", "open-haptics"};
+constexpr std::array kBuiltIn{"virtual", "mouse", "gamepad", "force-dimension", "open-haptics"};
 constexpr const char* kReplay = "replay";  // with a file
 
 std::vector<OwnDevice>& all_own() {
@@ -34,8 +34,7 @@ void add_own_device(const OwnDevice& device) {
         "add_own_device: '{}' is no name; allowed: letters, digits and '-'", device.name));
   }
   const std::vector<std::string> taken = device_names();
-  if (device.name == kReplay ||
-      std::find(taken.begin(), taken.end(), device.name) != taken.end()) {
+  if (device.name == kReplay || std::find(taken.begin(), taken.end(), device.name) != taken.end()) {
     throw std::invalid_argument(
         fmt::format("add_own_device: there is a device '{}' already", device.name));
   }

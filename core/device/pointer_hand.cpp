@@ -88,11 +88,13 @@ void PointerHand::turn(const Screen& screen, const PointerInput& input,
                        const Eigen::Vector2d& dragged) {
   const double keyed = p_.turn_speed * std::min(input.dt, kLongest);
   const Eigen::Vector3d turned =
-      (keyed * sign_of(input.keys, kDown, kUp) + p_.turn_per_pixel * dragged.y()) *
+      (keyed * (sign_of(input.keys, kDown, kUp) + input.turn.x()) +
+       p_.turn_per_pixel * dragged.y()) *
           screen.axes.col(0) +
-      (keyed * sign_of(input.keys, kRight, kLeft) + p_.turn_per_pixel * dragged.x()) *
+      (keyed * (sign_of(input.keys, kRight, kLeft) + input.turn.y()) +
+       p_.turn_per_pixel * dragged.x()) *
           screen.axes.col(1) +
-      keyed * sign_of(input.keys, 'Q', 'E') * screen.axes.col(2);
+      keyed * (sign_of(input.keys, 'Q', 'E') + input.turn.z()) * screen.axes.col(2);
   const double angle = turned.norm();
   if (angle > 0.0) {
     const Eigen::AngleAxisd by(angle, turned / angle);

@@ -54,4 +54,12 @@ struct BonePageOptions {
 };
 int bone_page(const BonePageOptions& options);
 
+struct BoneSafeOptions {
+  std::vector<std::string> experts;  // sessions to learn from (.h5)
+  std::string study;                 // folder of sessions; empty: none
+  std::string out;                   // new .toml
+  bool overwrite{false};
+};
+int bone_safe(const BoneSafeOptions& options);
+
 }  // namespace haptrial::experiments

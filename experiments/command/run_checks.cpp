@@ -37,9 +37,9 @@ void check_subject(const std::string& subject) {
 void check_device(const RunOptions& options) {
   for (const std::string& device : options.devices) {
     check_device_name(device);
-    if (device == "mouse" && !options.window) {
-      throw InputError(
-          "--device mouse takes its pointer from the participant's screen; add --window");
+    if ((device == "mouse" || device == "gamepad") && !options.window) {
+      throw InputError(fmt::format(
+          "--device {} takes its pointer from the participant's screen; add --window", device));
     }
     if (options.devices.size() == 1 || takes_library(device)) {
       check_library(device, options.library);

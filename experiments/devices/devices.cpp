@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text/nearest.h"
+#include "core/device/gamepad/gamepad.h"
 #include "core/device/mouse.h"
 #include "core/device/own_devices.h"
 #include "core/device/replay.h"
@@ -17,6 +18,7 @@ namespace haptrial::experiments {
 namespace {
 
 constexpr std::string_view kReplay = "replay:";
+constexpr const char* kGamepad = "gamepad";
 
 /// A device with a person at it, or with a recording in a person's place.
 class DeviceRig final : public protocols::Rig {
@@ -38,6 +40,25 @@ class MouseRig final : public protocols::Rig {
   device::MouseDevice device_;
 };
 
+/// A mouse whose pointer a game controller moves.
+class GamepadRig final : public protocols::Rig {
+ public:
+  explicit GamepadRig(const protocols::Definition& d)
+      : gamepad_(d.gamepad), device_(mouse_of(d), d.rate, kGamepad) {}
+  device::Device& device() override { return device_; }
+  device::MouseDevice* mouse() override { return &device_; }
+  device::Gamepad* gamepad() override { return &gamepad_; }
+
+ private:
+  static device::MouseParameters mouse_of(const protocols::Definition& d) {
+    device::MouseParameters mouse = d.mouse;
+    mouse.stop_button = d.gamepad.stop_button;
+    return mouse;
+  }
+  device::Gamepad gamepad_;
+  device::MouseDevice device_;
+};
+
 /// Devices that people hold, each with the definition's envelope.
 class SeveralDevices final : public protocols::Rig {
  public:
@@ -46,6 +67,7 @@ class SeveralDevices final : public protocols::Rig {
   void add(std::unique_ptr<protocols::Rig> rig) { others_.push_back(std::move(rig)); }
   device::Device& device() override { return first_->device(); }
   device::MouseDevice* mouse() override { return first_->mouse(); }
+  device::Gamepad* gamepad() override { return first_->gamepad(); }
   std::vector<protocols::DeviceSet::Arm> others() override {
     std::vector<protocols::DeviceSet::Arm> arms;
     for (const auto& rig : others_) {
@@ -92,6 +114,15 @@ std::unique_ptr<protocols::Rig> open_rig(
   const auto with = [](auto device) { return std::make_unique<DeviceRig>(std::move(device)); };
   if (choice.name == "mouse") {
     return std::make_unique<MouseRig>(d);
+  }
+  if (choice.name == kGamepad) {
+    if (d.gamepad.input.empty()) {
+      throw InputError(fmt::format(
+          "{}: --device gamepad needs a table [gamepad] whose input says which input device that "
+          "is; /dev/input/by-id names what is connected",
+          d.file_name));
+    }
+    return std::make_unique<GamepadRig>(d);
   }
   if (choice.name == "force-dimension") {
     device::ForceDimensionParameters parameters = d.force_dimension;

@@ -29,32 +29,13 @@ SessionPedal::SessionPedal(const DeviceChoice& device, const protocols::Definiti
   }
 }
 
-std::vector<SessionPedal::News> SessionPedal::take_news() {
-  std::vector<News> all;
-  if (pedal_ == nullptr) {
-    return all;
-  }
-  for (const device::Pedal::Change& change : pedal_->take_changes()) {
-    if (change.back) {
-      all.push_back({"pedal_back", pedal_->input(), ""});
-      continue;
-    }
-    const std::string what = fmt::format("the pedal {} is lost ({})", pedal_->input(), change.why);
-    ++losses_;
-    all.push_back({"pedal_lost", fmt::format("{}: {}", pedal_->input(), change.why),
-                   losses_ > 1 ? ""
-                               : what + ": it counts as up until it is connected again; events "
-                                        "pedal_lost and pedal_back say when"});
-  }
-  return all;
+std::vector<InputNews> SessionPedal::take_news() {
+  return pedal_ == nullptr ? std::vector<InputNews>{}
+                           : losses_.take(pedal_->input(), pedal_->take_changes());
 }
 
 std::string SessionPedal::losses() const {
-  return losses_ < 2 ? ""
-                     : fmt::format(
-                           "the pedal {} was lost {} times; events pedal_lost and "
-                           "pedal_back say when",
-                           pedal_->input(), losses_);
+  return pedal_ == nullptr ? "" : losses_.sentence(pedal_->input());
 }
 
 }  // namespace haptrial::experiments

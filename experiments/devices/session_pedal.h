@@ -6,6 +6,7 @@
 
 #include "core/device/pedal/pedal.h"
 #include "experiments/devices/devices.h"
+#include "experiments/devices/input_losses.h"
 
 namespace haptrial::experiments {
 
@@ -13,13 +14,6 @@ namespace haptrial::experiments {
 /// what becomes of it while the session runs. Session's thread.
 class SessionPedal {
  public:
-  /// What is to be recorded, and what an experimenter has to know of it.
-  struct News {
-    std::string event;   // "pedal_lost" or "pedal_back"
-    std::string text;    // of the event
-    std::string notice;  // empty: none
-  };
-
   /// @param device  the session's first one: a virtual hand or a recording has no foot
   /// @param real    whether the session is on the real clock
   /// @throws InputError as device::Pedal does, and if the definition has an answer that only a
@@ -31,14 +25,14 @@ class SessionPedal {
   /// At the beginning: that a pedal would be used, and that none is named. Empty: all is well.
   const std::string& notice() const { return notice_; }
   /// What happened since the last call.
-  std::vector<News> take_news();
+  std::vector<InputNews> take_news();
   /// At the end: how often it was lost; empty if at most once, which take_news() has said.
   std::string losses() const;
 
  private:
   std::unique_ptr<device::Pedal> pedal_;
   std::string notice_;
-  int losses_{0};
+  InputLosses losses_{"pedal", "pedal", "counts as up"};
 };
 
 }  // namespace haptrial::experiments

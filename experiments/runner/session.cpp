@@ -49,7 +49,7 @@ class Session {
   SessionDesk::Actions desk_actions();
 
   void watch_flashes();
-  void hear_pedal();
+  void hear_inputs();
   void show_trial();
   void run_trials();
   void note_setting();
@@ -79,6 +79,7 @@ class Session {
   std::unique_ptr<protocols::Trials> trials_;
   std::unique_ptr<protocols::Rig> rig_;
   SessionPedal pedal_;
+  InputLosses pad_losses_{"gamepad", "game controller", "is at rest"};
   std::atomic<std::uint32_t> held_keys_{0};  // functions, from the screen's thread
   std::atomic<bool> begin_pressed_{false};   // likewise, without an experimenter
   PageKeys page_keys_;                       // likewise
@@ -143,7 +144,7 @@ Session::Session(const SessionRequest& request)
       trials_(trials_of(request, place_)),
       rig_(make_rig(choices_of(request), d_, [this] { return trials_->virtual_rig(); })),
       pedal_(choices_of(request).front(), d_, real_),
-      screen_(open_screen(request, rig_->mouse(), &held_keys_, &begin_pressed_, &page_keys_)),
+      screen_(open_screen(request, *rig_, &held_keys_, &begin_pressed_, &page_keys_)),
       live_(open_live(request)),
       record_(request, rig_->device().info(), loop_, *trials_, onsets_, live_.get()),
       desk_(request.control, desk_actions()),
@@ -161,7 +162,7 @@ Session::Session(const SessionRequest& request)
       pace_({request, loop_, record_, desk_, task_, rig_->felt(), screen_.get(), &begin_pressed_,
              live_.get(),
              [this] {
-               hear_pedal();
+               hear_inputs();
                desk_.status().partner = trials_->partner();
              }}),
       pages_({request, record_, desk_, pace_, page_keys_, screen_.get(), place_.session_seed}),
@@ -199,8 +200,13 @@ void Session::watch_flashes() {
   }
 }
 
-void Session::hear_pedal() {
-  for (const SessionPedal::News& news : pedal_.take_news()) {
+void Session::hear_inputs() {
+  std::vector<InputNews> all = pedal_.take_news();
+  if (device::Gamepad* pad = rig_->gamepad()) {
+    const std::vector<InputNews> more = pad_losses_.take(pad->input(), pad->take_changes());
+    all.insert(all.end(), more.begin(), more.end());
+  }
+  for (const InputNews& news : all) {
     record_.event(news.event, news.text);
     notices_.note(news.notice);
   }
@@ -431,8 +437,11 @@ void Session::finish() {
   if (screen_) {
     record_.keep_frames(screen_->take_frames());
   }
-  hear_pedal();
+  hear_inputs();
   notices_.note(pedal_.losses());
+  if (device::Gamepad* pad = rig_->gamepad()) {
+    notices_.note(pad_losses_.sentence(pad->input()));
+  }
   notices_.note_troubles(live_.get(), screen_.get());
   for (const std::string& notice : trials_->notices()) {  // what came up meanwhile
     notices_.note(notice);

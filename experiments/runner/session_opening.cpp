@@ -191,7 +191,7 @@ static bool begins(const render::KeyPress& press) {
   return press.key == render::KeyPress::kEnter || press.key == render::KeyPress::kSpace;
 }
 
-std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::MouseDevice* mouse,
+std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Rig& rig,
                                     std::atomic<std::uint32_t>* held, std::atomic<bool>* begin,
                                     PageKeys* pages) {
   if (!request.window) {
@@ -231,7 +231,10 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::Mouse
     };
     callbacks.closed = [] { interrupt(); };
   }
-  if (mouse != nullptr) {
+  if (device::Gamepad* pad = rig.gamepad()) {
+    callbacks.pad = [pad] { return pad->state(); };
+  }
+  if (device::MouseDevice* mouse = rig.mouse()) {
     callbacks.pointer = [mouse](const ScreenPointer& pointer) {
       mouse->set_buttons(pointer.buttons);
       if (pointer.hand) {

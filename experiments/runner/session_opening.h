@@ -56,11 +56,11 @@ std::filesystem::path resumed_file(const SessionRequest& request);
 
 /// The participant's screen, where one was asked for; else null. Its Escape stops the session, its
 /// other keys steer it where the definition says so; its pointer moves the mouse device.
-/// @param mouse  null for any other device
+/// @param rig  outlives the screen; only a mouse, or a game controller, takes the pointer
 /// @param held   receives the functions that keys of the window hold; outlives the screen
 /// @param begin  set by Enter and space where nobody attends; outlives the screen
 /// @param pages  take the keys while a page is open; outlive the screen
-std::unique_ptr<Screen> open_screen(const SessionRequest& request, device::MouseDevice* mouse,
+std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Rig& rig,
                                     std::atomic<std::uint32_t>* held, std::atomic<bool>* begin,
                                     PageKeys* pages);
 

@@ -90,14 +90,13 @@ void Easel::pressed(int key) {
   }
 }
 
-ScreenPointer Easel::pointer(std::span<const int> held, double dt) {
-  const render::Pointer p = window_.pointer();
+ScreenPointer Easel::pointer(const device::PointerInput& input) {
   const protocols::Drawing* drawing = drawing_ ? drawing_.get() : before_.get();
-  const auto seen = drawing != nullptr ? drawing->to_world(p.position) : std::nullopt;
-  const Eigen::Vector3d point = seen.value_or(trial_.to_world(p.position));
-  ScreenPointer pointer{point.x(), point.z(), p.wheel, p.buttons};
+  const auto seen = drawing != nullptr ? drawing->to_world(input.pixel) : std::nullopt;
+  const Eigen::Vector3d point = seen.value_or(trial_.to_world(input.pixel));
+  ScreenPointer pointer{point.x(), point.z(), input.wheel, input.buttons};
   if (drawing_) {
-    pointer.hand = drawing_->hand({p.position, p.wheel, p.buttons, held, dt});
+    pointer.hand = drawing_->hand(input);
   }
   return pointer;
 }

@@ -45,8 +45,9 @@ class Easel {
   /// How fast the display takes pictures [s]; shows empty ones.
   double probe();
   void pressed(int key);
-  /// @param held  keys  @param dt  since the picture before [s]
-  ScreenPointer pointer(std::span<const int> held, double dt);
+  /// Where the window's pointer is over what is shown.
+  /// @param input  with pixel, wheel and buttons of that pointer
+  ScreenPointer pointer(const device::PointerInput& input);
 
  private:
   bool is_white(const stimulus::Shown& shown) const;

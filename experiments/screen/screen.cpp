@@ -16,6 +16,7 @@
 #include "core/realtime/latest_value.h"
 #include "experiments/screen/easel.h"
 #include "experiments/screen/pace.h"
+#include "experiments/screen/pad_pointer.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -99,17 +100,23 @@ namespace {
 class Happenings {
  public:
   Happenings(render::Window& window, const ScreenCallbacks& callbacks)
-      : window_(window), callbacks_(callbacks), pointer_(window.pointer()) {}
+      : window_(window),
+        callbacks_(callbacks),
+        pointer_(window.pointer()),
+        pad_(window.width(), window.height()) {}
 
   /// @param other_view  the view moved under the pointer
   void tell(Easel& easel, bool other_view) {
     tell_keys(easel);
-    const bool moved = std::exchange(pointer_, window_.pointer()) != pointer_;
     const std::int64_t now = screen_ns();
     const double dt = told_ns_ != 0 ? 1e-9 * static_cast<double>(now - told_ns_) : 0.0;
     told_ns_ = now;
+    const device::GamepadState pad = callbacks_.pad ? callbacks_.pad() : device::GamepadState{};
+    const render::Pointer at = callbacks_.pad ? pad_.moved(pad, dt) : window_.pointer();
+    const bool moved = std::exchange(pointer_, at) != pointer_;
     if (callbacks_.pointer) {
-      const ScreenPointer pointer = easel.pointer(held_, dt);
+      const ScreenPointer pointer =
+          easel.pointer({at.position, at.wheel, at.buttons, held_, dt, pad.turn});
       if (moved || other_view || pointer.hand) {
         callbacks_.pointer(pointer);
       }
@@ -142,6 +149,7 @@ class Happenings {
   render::Window& window_;
   const ScreenCallbacks& callbacks_;
   render::Pointer pointer_;
+  PadPointer pad_;
   std::vector<int> held_;
   std::int64_t told_ns_{0};
   bool closed_{false};

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/device/gamepad/gamepad.h"
 #include "core/markers/onset_log.h"
 #include "core/record/rows/session_types.h"
 #include "core/render/flat/text_screen.h"
@@ -43,6 +44,8 @@ struct ScreenCallbacks {
   std::function<void(const render::KeyPress&)> key;
   std::function<void(const ScreenPointer&)> pointer;  // when it or the view under it changed
   std::function<void()> closed;                       // the window's close button, once
+  /// What a game controller says now, in the place of the mouse; empty: there is none.
+  std::function<device::GamepadState()> pad;
   /// Keys that are held, when they change; one that was tapped between two pictures is among them
   /// once.
   std::function<void(const std::vector<int>&)> held;

@@ -98,10 +98,10 @@ std::vector<std::string> analyze_drillings(const fs::path& folder, const StudyFi
   const std::vector<protocols::StudyGroup> groups =
       protocols::study_groups(first.definition, first.definition_name);
   drilling::ValidityStudy study;
-  const bool watched =
-      protocols::parse_bone_definition(first.definition, first.definition_name).nerves.has_value();
-  study.title =
-      watched ? "Drilling beside watched nerves" : "Construct validity of simulated bone surgery";
+  const auto definition = protocols::parse_bone_definition(first.definition, first.definition_name);
+  study.title = definition.nerves  ? "Drilling beside watched nerves"
+                : definition.hints ? "Drilling with hints"
+                                   : "Construct validity of simulated bone surgery";
   study.files = files.files;
   study.threads = threads;
   study.ratings = folder / kRatingsFile;
@@ -117,9 +117,7 @@ std::vector<std::string> analyze_drillings(const fs::path& folder, const StudyFi
   drilling::ValidityResult result = drilling::analyze(study);
   result.remarks = files.remarks;
   const PictureFolder pictures(out);
-  result.pictures = visibility_pictures(
-      result.procedures, protocols::parse_bone_definition(first.definition, first.definition_name),
-      pictures.path());
+  result.pictures = visibility_pictures(result.procedures, definition, pictures.path());
   drilling::write_validity(result, out);
   std::vector<std::string> lines = drilling::summary_lines(result);
   lines.insert(lines.end(), result.remarks.begin(), result.remarks.end());

@@ -7,10 +7,13 @@
 
 #include "core/base/error.h"
 #include "core/base/text/counted.h"
+#include "core/bone/model/nearest_structure.h"
 #include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/tear_row.h"
+#include "core/hint/hint_rows.h"
 #include "core/nerve/record/nerve_rows.h"
+#include "core/record/read/session_reader.h"
 #include "core/record/rows/common_tables.h"
 #include "core/sound/wav.h"
 #include "protocols/bone_drilling/bone_replay.h"
@@ -19,40 +22,48 @@
 #include "protocols/bone_drilling/display/bone_renderer.h"
 #include "protocols/bone_drilling/display/bone_sound.h"
 #include "protocols/bone_drilling/nerve_page.h"
+#include "protocols/bone_drilling/replayed_hints.h"
 #include "protocols/bone_drilling/replayed_nerves.h"
 
 namespace haptrial::protocols {
 namespace {
 
-/// What is made of a drilling that is simulated again.
+/// Pictures and sound of a drilling that is simulated again.
 class DrillingOutputs {
  public:
   DrillingOutputs(const ReplayRequest& request, const BoneReplay& replay)
-      : request_(request), replay_(replay), every_(replay.rate() / request.fps) {
+      : request_(request),
+        replay_(replay),
+        hints_(record::SessionReader(request.file)),
+        chimes_(replay.definition().hints && replay.definition().hints->sound),
+        every_(replay.rate() / request.fps) {
     if (!request.sound.empty()) {
       const BoneDefinition& d = replay.definition();
       const int trial = request.trial != 0 ? request.trial : replay.trials().front();
-      sound::SoundTrack::Mix mix;
       if (d.nerves) {
         nerves_ = std::make_unique<ReplayedNerves>(request.file, d.nerves->monitor, trial,
                                                    sound::DrillSound::kRate);
-        mix = [nerves = nerves_.get()](std::span<float> part) { nerves->mix(part); };
       }
-      sound_.emplace(request.sound, replay.rate(), d.sound_table, d.thin_bone, 1, false, mix);
+      sound_.emplace(request.sound, replay.rate(), d.sound_table, d.thin_bone, 1, false,
+                     [this](std::span<float> part) { mix(part); });
     }
   }
+  DrillingOutputs(const DrillingOutputs&) = delete;
+  DrillingOutputs& operator=(const DrillingOutputs&) = delete;
   bool any() const { return request_.pictures || sound_; }
 
-  void watch(std::uint64_t tick, std::uint64_t sequence, const bone::DrillingView& seen,
+  void watch(std::uint64_t tick, std::uint64_t sequence, const bone::DrillingView& without_hints,
              const std::shared_ptr<const BoneStage>& stage) {
     if (stage != stage_) {
       stage_ = stage;
+      vital_ = bone::vital_structures(*stage->model);
       renderer_.reset();
       probe_.emplace(stage);
       if (request_.pictures) {
         renderer_ = std::make_unique<BoneRenderer>(replay_.definition(), stage);
       }
     }
+    const bone::DrillingView seen = hints_.with(without_hints, sequence, vital_);
     constexpr std::uint64_t kProbeEvery = 20;  // ticks
     if (nerves_) {
       nerves_->tick(sequence);
@@ -80,9 +91,22 @@ class DrillingOutputs {
   }
 
  private:
+  /// What is heard with the drill.
+  void mix(std::span<float> part) noexcept {
+    if (nerves_) {
+      nerves_->mix(part);
+    }
+    if (chimes_) {
+      hints_.mix(part);
+    }
+  }
+
   const ReplayRequest& request_;
   const BoneReplay& replay_;
-  double every_;  // ticks from picture to picture
+  ReplayedHints hints_;
+  bool chimes_;                     // a hint that begins was heard
+  std::vector<std::string> vital_;  // structures of the bone
+  double every_;                    // ticks from picture to picture
   double next_{0.0};
   int count_{0};
   std::unique_ptr<ReplayedNerves> nerves_;  // heard with the drill; null: nobody watched any
@@ -124,6 +148,7 @@ class BoneDrilling final : public Protocol {
   record::TableList tables() const override {
     record::TableList tables =
         record::with_tables(record::drilling_tables(), record::nerve_tables());
+    tables = record::with_tables(tables, record::hint_tables());
     tables.push_back(&record::table_of<record::TearRow>());
     tables.push_back(&record::table_of<record::LedRow>());
     tables.push_back(&record::table_of<record::SecondHandRow>());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/random.h"
@@ -12,6 +13,7 @@
 #include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/recorded_bone.h"
+#include "core/hint/hint_rows.h"
 #include "core/nerve/record/nerve_rows.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/common_tables.h"
@@ -33,10 +35,7 @@ std::vector<PlannedTrial> plan_of(const BoneDefinition& d, const SessionPlace& p
   }
   for (int trial = 1; trial <= d.design.trials; ++trial) {
     const std::uint64_t seed = derived_seed(place.session_seed, fmt::format("procedure {}", trial));
-    const char* condition = !d.nerves                                  ? "drilling"
-                            : d.hears_nerves(trial, place.participant) ? kMonitorOn
-                                                                       : kMonitorOff;
-    plan.push_back({trial, trial, 1, condition, seed, false});
+    plan.push_back({trial, trial, 1, d.condition(trial, place.participant), seed, false});
   }
   return plan;
 }
@@ -110,6 +109,9 @@ BoneTrials::BoneTrials(const BoneDefinition& definition, const SessionPlace& pla
   if (d_.nerves) {
     watch_nerves();
   }
+  if (d_.hints) {
+    make_hints();
+  }
   for (const auto& bone : d_.bones) {  // before there is a window: it takes seconds
     stills_.push_back(place.window ? screen_stills(d_, *bone) : nullptr);
   }
@@ -123,16 +125,35 @@ void BoneTrials::open_sound() {
   if (!d_.sound_card || !place_.real) {
     return;
   }
-  sound::SoundOutput::Mix mix;
   if (d_.nerves) {
     voice_ = std::make_shared<nerve::NerveVoice>(d_.nerves->monitor.rate);
-    mix = [voice = voice_](std::span<float> part) { voice->mix(part); };
   }
+  if (d_.hints && d_.hints->sound) {
+    chime_ = std::make_shared<hint::HintChime>();
+  }
+  const sound::SoundOutput::Mix mix = [voice = voice_, chime = chime_](std::span<float> part) {
+    if (voice) {
+      voice->mix(part);
+    }
+    if (chime) {
+      chime->mix(part);
+    }
+  };
   try {
     sound_ = std::make_unique<BoneSound>(d_, derived_seed(place_.session_seed, "sound"), mix);
   } catch (const RunError& error) {
     notice_ = error.what();
     voice_.reset();
+    chime_.reset();
+  }
+}
+
+void BoneTrials::make_hints() {
+  limits_ = record::limit_rows(d_.hints->limits);
+  if (place_.real) {
+    hints_ = std::make_unique<hint::ThreadedHints>(chime_);
+  } else {
+    hints_ = std::make_unique<hint::SteppedHints>(chime_);
   }
 }
 
@@ -203,6 +224,9 @@ record::TableList BoneTrials::tables() const {
   record::TableList tables =
       d_.nerves ? record::with_tables(record::drilling_tables(), record::nerve_tables())
                 : record::drilling_tables();
+  if (d_.hints) {
+    tables = record::with_tables(tables, record::hint_tables());
+  }
   if (!d_.simulator.soft_tissue.empty()) {
     tables.push_back(&record::table_of<record::TearRow>());
   }
@@ -230,6 +254,9 @@ std::vector<record::Rows> BoneTrials::first_rows() const {
   rows.emplace_back(std::span(burrs_));
   if (!channels_.empty()) {
     rows.emplace_back(std::span(channels_));
+  }
+  if (!limits_.empty()) {
+    rows.emplace_back(std::span(limits_));
   }
   return rows;
 }
@@ -263,6 +290,10 @@ void BoneTrials::empty_logs(SessionFile& file) {
   if (!d_.simulator.soft_tissue.empty()) {
     logs_.tears.flush([&](std::span<const record::TearRow> rows) { tell_tears(file, rows); });
   }
+  if (hints_) {
+    hints_->settle();  // likewise
+    tell_hints(file);
+  }
   if (nerves_) {
     nerves_->settle();  // rows of a tick come before its sample
     const record::NerveRows rows = nerves_->take();
@@ -274,7 +305,18 @@ void BoneTrials::empty_logs(SessionFile& file) {
   }
 }
 
+void BoneTrials::tell_hints(SessionFile& file) {
+  const std::vector<record::HintRow> rows = hints_->take();
+  file.add(std::span(rows));
+}
+
 SharedWorld* BoneTrials::share_world(bool leads) {
+  if (d_.hints) {
+    throw InputError(fmt::format(
+        "{}: has hints, which are given to somebody who drills alone; leave [hints] out of a "
+        "session that is linked to another",
+        d_.file_name));
+  }
   if (d_.drilling.second) {
     throw InputError(
         fmt::format("{}: has a second hand, and a bone is shared over a link with one "
@@ -317,8 +359,13 @@ void BoneTrials::tell_tears(SessionFile& file, std::span<const record::TearRow> 
   }
 }
 
-/// A bone's file beside the definition may have changed since: what follows would be of another.
+/// A file beside the definition may have changed since: what follows would be of another.
 void BoneTrials::check_resumed(const record::SessionReader& file) const {
+  if (d_.hints && file.rows<record::HintLimitRow>() != limits_) {
+    throw InputError(fmt::format(
+        "{}: its hints went by other safe values than {} has now; resume it with the same file",
+        file.path().string(), d_.hints->file));
+  }
   const std::vector<record::BoneRecord> before = record::recorded_bones(file);
   const std::vector<record::BoneRecord>& now = records_;
   for (std::size_t i = 0; i < std::max(before.size(), now.size()); ++i) {
@@ -422,6 +469,9 @@ void BoneTrials::set_up(std::shared_ptr<BoneStage> stage, const PlannedTrial& tr
                                                          derived_seed(trial.stimulus_seed, name),
                                                          1.0 / d_.rate, pulse_);
   }
+  if (hints_) {
+    watch_for_hints();
+  }
   vibration_.reset();
   if (d_.vibration_gain > 0.0) {
     vibration_.emplace(d_.vibration_table, d_.vibration_gain, d_.rate, trial.stimulus_seed);
@@ -429,6 +479,27 @@ void BoneTrials::set_up(std::shared_ptr<BoneStage> stage, const PlannedTrial& tr
   if (sound_) {
     sound_->listen_to(stage_);
   }
+}
+
+/// On a bone that may have been drilled before.
+void BoneTrials::watch_for_hints() {
+  const std::shared_ptr<const bone::BoneModel>& model = d_.bones[bone_];
+  auto watch = std::make_unique<hint::HintWatch>(*d_.hints, d_.hint_maps[bone_], model,
+                                                 pose_of(d_.placement, model->grid), d_.rate);
+  if (stage_->simulator->emptied_so_far() > 0) {
+    const bone::BoneWorld& world = std::as_const(*stage_->simulator).world();
+    const auto& size = model->grid.size;
+    for (int k = 0; k < size[2]; ++k) {
+      for (int j = 0; j < size[1]; ++j) {
+        for (int i = 0; i < size[0]; ++i) {
+          if (world.holder({i, j, k}) < 0) {
+            watch->gone({i, j, k});
+          }
+        }
+      }
+    }
+  }
+  hints_->begin(std::move(watch));
 }
 
 void BoneTrials::tell_preparing(double share) {
@@ -454,6 +525,9 @@ Pass& BoneTrials::make_pass(PlannedTrial& trial, const record::Phase&) {
   if (nerves_) {
     nerves_->let_hear(d_.hears_nerves(trial.trial, place_.participant));
   }
+  if (hints_) {
+    hints_->let_show(d_.sees_hints(trial.trial, place_.participant));
+  }
   if (pictures_) {
     pictures_->watch(stage_);
   }
@@ -469,6 +543,9 @@ Pass& BoneTrials::make_drilling_pass(const PlannedTrial& trial) {
   if (shared_) {
     pass_->share(*shared_);
   }
+  if (hints_) {
+    pass_->give(*hints_);
+  }
   return *pass_;
 }
 
@@ -483,6 +560,10 @@ void BoneTrials::close_pass(SessionFile& file, std::int32_t row) {
   spent_ = pass_ ? pass_->ticks() : 0;
   if (led_) {
     led_->rest();
+  }
+  if (hints_) {
+    hints_->end_pass();
+    tell_hints(file);
   }
   stage_->companions->settle();
   const bone::Simulator& simulator = *stage_->simulator;

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/hint/hints_beside.h"
 #include "core/nerve/beside/nerve_beside.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_pictures.h"
@@ -31,7 +32,7 @@ class BoneTrials final : public Trials {
   TickLog* tick_log() override { return &logs_; }
   void empty_logs(SessionFile& file) override;
   std::uint64_t dropped() const override {
-    return logs_.dropped() + (nerves_ ? nerves_->dropped() : 0);
+    return logs_.dropped() + (nerves_ ? nerves_->dropped() : 0) + (hints_ ? hints_->dropped() : 0);
   }
   record::TableList tables() const override;
   std::vector<record::Rows> first_rows() const override;
@@ -53,6 +54,9 @@ class BoneTrials final : public Trials {
   void tell_tears(SessionFile& file, std::span<const record::TearRow> rows);
   void open_sound();
   void watch_nerves();
+  void make_hints();
+  void watch_for_hints();
+  void tell_hints(SessionFile& file);
   void restore(const PlannedTrial& trial, SessionFile& file);
   static void begin_again(const PlannedTrial& trial, SessionFile& file);
   bool is_led() const { return shared_ && !shared_->leads(); }
@@ -70,6 +74,9 @@ class BoneTrials final : public Trials {
   std::vector<record::NerveChannelRow> channels_;
   std::shared_ptr<nerve::NerveVoice> voice_;  // of the sound card
   std::unique_ptr<nerve::NerveBeside> nerves_;
+  std::vector<record::HintLimitRow> limits_;
+  std::shared_ptr<hint::HintChime> chime_;  // on the sound card; null: none
+  std::unique_ptr<hint::HintsBeside> hints_;
   nerve::PulseCurrent pulse_;                         // of the probe
   std::unique_ptr<nerve::NerveExposures> exposures_;  // of the present bone
   std::unique_ptr<BonePictures> pictures_;

@@ -14,16 +14,6 @@ namespace {
 const std::array<double, 3> kRemovedBone{0.95, 0.25, 0.20};
 const std::array<double, 3> kRemovedStructure{1.0, 0.0, 0.85};  // an injury is to be seen
 
-/// Whether any piece still holds bone at a voxel.
-bool holds(const bone::BoneWorld& world, const bone::Voxel& voxel) {
-  for (int piece = 0; piece < world.pieces(); ++piece) {
-    if (world.volume(piece).density(voxel) > 0.0F) {
-      return true;
-    }
-  }
-  return false;
-}
-
 /// The label for what was removed of a structure.
 std::uint8_t label_of_removed(const bone::Structure& of, bone::BoneModel& model) {
   bone::Structure removed;
@@ -55,7 +45,7 @@ DrilledBone drilled_bone(const BoneReplay& replay, int trial, const BoneReplay::
     for (int j = 0; j < before.grid.size[1]; ++j) {
       for (int i = 0; i < before.grid.size[0]; ++i, ++at) {
         const std::uint8_t label = before.labels[at];
-        if (label == 0 || holds(world, {i, j, k})) {
+        if (label == 0 || world.holder({i, j, k}) >= 0) {
           continue;
         }
         if (counts[label]++ == 0) {

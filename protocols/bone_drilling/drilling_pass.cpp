@@ -146,6 +146,9 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   }
   rows_.log(sequence_, input.tool.tip.velocity.norm());
   rows_.log_camera(sequence_, done.camera_changed);
+  if (hints_ != nullptr) {
+    tell_hints(*hints_, sequence_, simulator_, input);
+  }
   if (shared_ != nullptr) {
     shared_->tell_step(recorded, simulator_);
   }
@@ -172,6 +175,11 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   seen.progress = static_cast<double>(ticks_) / static_cast<double>(time_limit_);
   seen.time_limit = parameters_.time_limit;
   seen.tone = logs_.nerve_tone();
+  if (hints_ != nullptr) {
+    const hint::HintsNow now = hints_->now();
+    seen.hints = now.kinds;
+    seen.hint_structure = now.structure;
+  }
   out.shown = seen;
   out.shown.tool = reading.tool.position;
   if (two) {

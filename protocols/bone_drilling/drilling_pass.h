@@ -61,6 +61,8 @@ class DrillingPass final : public Pass {
 
   /// Before it begins: the bone is one that another session's follows.
   void share(SharedBone& shared) noexcept { shared_ = &shared; }
+  /// Likewise: hints are given. @param hints  outlive the pass
+  void give(hint::HintsBeside& hints) noexcept { hints_ = &hints; }
 
   void begin(std::uint64_t sequence) noexcept override;
   PassOutput tick(const Readings& readings, double dt) noexcept override;
@@ -84,6 +86,7 @@ class DrillingPass final : public Pass {
   sound::DrillVibration* vibration_;
   nerve::NerveExposures* nerves_;
   SharedBone* shared_{nullptr};
+  hint::HintsBeside* hints_{nullptr};
   std::uint64_t time_limit_;  // [ticks]
   std::uint64_t ticks_;
   std::uint64_t sequence_{0};

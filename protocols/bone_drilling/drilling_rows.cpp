@@ -148,6 +148,29 @@ void add_balls(const bone::Simulator& simulator, const Eigen::Isometry3d& X_WB,
 
 }  // namespace
 
+void tell_hints(hint::HintsBeside& hints, std::uint64_t sequence, const bone::Simulator& simulator,
+                const bone::SimulatorInput& input) noexcept {
+  using What = hint::HintVoxel::What;
+  const double force = simulator.output().force.norm();
+  const double speed = input.tool.tip.velocity.norm();
+  for (const bone::WorldEvent& event : simulator.separations()) {
+    if (event.kind == bone::WorldEvent::Kind::kCrumb) {
+      hints.voxel({sequence, What::kCrumb, event.seed, 0.0, 0.0});
+    }
+  }
+  for (const bone::EmptiedIn& gone : simulator.emptied()) {
+    const What what = gone.by_cut ? What::kCut : What::kRemoved;
+    hints.voxel({sequence, what, gone.voxel, force, speed});
+  }
+  const auto* burr = simulator.tool().as<bone::BurrTool>();
+  const bone::BurrShape* shape = simulator.burr_shape();
+  hints.after_tick({sequence,
+                    {input.tool.tip.position, burr != nullptr ? burr->radius() : 0.0,
+                     shape != nullptr && !shape->is_ball() ? shape : nullptr,
+                     input.tool.axis().cast<float>().cast<double>()},  // as the analysis has it
+                    simulator.camera().eye});
+}
+
 nerve::ToolAtNerves tool_at_nerves(const bone::Simulator& simulator,
                                    const bone::SimulatorInput& input) noexcept {
   using Kind = nerve::ToolAtNerves::Kind;

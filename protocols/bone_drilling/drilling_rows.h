@@ -9,6 +9,7 @@
 #include "core/bone/record/second_hand_row.h"
 #include "core/bone/record/tear_row.h"
 #include "core/bone/simulator/simulator.h"
+#include "core/hint/hints_beside.h"
 #include "core/nerve/beside/nerve_beside.h"
 #include "core/nerve/setup/nerve_exposures.h"
 #include "core/realtime/block_log.h"
@@ -94,6 +95,10 @@ class DrillingRows {
   bool camera_due_{true};           // a change is not logged yet
   std::uint64_t camera_logged_{0};  // sequence number of the last row
 };
+
+/// What the simulator's last tick did, for hints.
+void tell_hints(hint::HintsBeside& hints, std::uint64_t sequence, const bone::Simulator& simulator,
+                const bone::SimulatorInput& input) noexcept;
 
 /// The tool after a tick of the simulator, as nerves have it. They lie in the bone that was there
 /// at the beginning, and go with it.

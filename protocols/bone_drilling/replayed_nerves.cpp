@@ -14,7 +14,7 @@ bool before(const record::EmgRow& row, std::uint64_t sequence) { return row.sequ
 bool was_heard(const record::SessionReader& reader, int trial) {
   const std::vector<record::PassRow> passes = reader.passes();
   return std::ranges::any_of(passes, [trial](const record::PassRow& pass) {
-    return pass.trial == trial && pass.condition != kMonitorOff;
+    return pass.trial == trial && !says_off(pass.condition, kMonitor);
   });
 }
 

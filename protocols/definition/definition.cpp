@@ -22,6 +22,7 @@ void read_devices(Table& root, Definition& setup) {
   read("force_dimension", setup.force_dimension, device::read_force_dimension_parameters);
   read("open_haptics", setup.open_haptics, device::read_open_haptics_parameters);
   read("mouse", setup.mouse, device::read_mouse_parameters);
+  read("gamepad", setup.gamepad, device::read_gamepad_parameters);
   read("pedal", setup.pedal, device::read_pedal_parameters);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/device/envelope.h"
+#include "core/device/gamepad/gamepad.h"
 #include "core/device/mouse.h"
 #include "core/device/pedal/pedal.h"
 #include "core/device/vendor/force_dimension.h"
@@ -63,6 +64,7 @@ struct Definition {
   device::ForceDimensionParameters force_dimension{};
   device::OpenHapticsParameters open_haptics{};
   device::MouseParameters mouse{};
+  device::GamepadParameters gamepad{};
   device::PedalParameters pedal{};  // beside any of them
   markers::MarkerOptions markers{};
   TutoringOptions tutoring{};

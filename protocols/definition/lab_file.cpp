@@ -75,8 +75,8 @@ std::string without_mark(std::string text) {
 }  // namespace
 
 const std::vector<std::string>& machine_tables() {
-  static const std::vector<std::string> kTables{"device",       "force_dimension", "mouse",
-                                                "open_haptics", "pedal",           "screen"};
+  static const std::vector<std::string> kTables{
+      "device", "force_dimension", "mouse", "gamepad", "open_haptics", "pedal", "screen"};
   return kTables;
 }
 

@@ -6,8 +6,9 @@
 #include "protocols/interface/device_set.h"
 
 namespace haptrial::device {
+class Gamepad;
 class MouseDevice;
-}
+}  // namespace haptrial::device
 
 namespace haptrial::protocols {
 
@@ -28,6 +29,8 @@ class Rig {
   virtual stimulus::Observer* subject() { return nullptr; }
   /// Where the screen's pointer goes; null for any other device.
   virtual device::MouseDevice* mouse() { return nullptr; }
+  /// What moves that pointer in the mouse's place; null: nothing.
+  virtual device::Gamepad* gamepad() { return nullptr; }
   /// Whether somebody feels the forces.
   bool felt() { return !device().info().simulated && mouse() == nullptr; }
 };

@@ -17,6 +17,7 @@ DefinitionRules of_every_study() {
                 "force_dimension",
                 "open_haptics",
                 "mouse",
+                "gamepad",
                 "pedal",
                 "markers.serial",
                 "markers.baud",

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "analysis/bone_drilling/procedure/in_order.h"
+#include "core/bone/model/nearest_structure.h"
 
 namespace haptrial::analysis::drilling {
 namespace {
@@ -116,7 +117,7 @@ ExpertProcedure expert_procedure(const Procedure& procedure, const SafeOptions& 
   expert.summary.removed_seen = {};
   expert.summary.near = {};
   expert.summary.visibility.visible = {};
-  expert.structures = vital_structures(*procedure.bone);
+  expert.structures = bone::vital_structures(*procedure.bone);
   expert.removals = nearest_structures(procedure, expert.structures, bones, options.bins.reach);
   return expert;
 }
@@ -162,7 +163,7 @@ Findings findings_of(const Procedure& procedure, const Experts& experts, StudyBo
                      const SafeOptions& options) {
   Findings f;
   f.summary = summarize(procedure, metric_options(options), bones);
-  f.structures = vital_structures(*procedure.bone);
+  f.structures = bone::vital_structures(*procedure.bone);
   f.nearest = nearest_structures(procedure, f.structures, bones, options.bins.reach);
   f.faults.assign(procedure.removals.size(), 0);
   f.judged.assign(procedure.removals.size(), 0);

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <stdexcept>
 #include <utility>
+
+#include "core/bone/model/nearest_structure.h"
 
 namespace haptrial::analysis::drilling {
 namespace {
@@ -67,47 +70,23 @@ SafeBin bin_from(const ByParticipant& removals, std::size_t number, const SafeOp
 
 }  // namespace
 
-std::vector<std::string> vital_structures(const bone::BoneModel& bone) {
-  std::vector<bool> there(256, false);
-  for (const std::uint8_t label : bone.labels) {
-    there[label] = true;
-  }
-  std::vector<std::string> names;
-  for (std::size_t label = 1; label < bone.structures.size(); ++label) {
-    const bone::Structure& structure = bone.structures[label];
-    if (structure.vital && there[label] &&
-        std::find(names.begin(), names.end(), structure.name) == names.end()) {
-      names.push_back(structure.name);
-    }
-  }
-  return names;
-}
-
 std::vector<NearestRemoval> nearest_structures(const Procedure& procedure,
                                                std::span<const std::string> names,
                                                StudyBones& bones, double reach) {
   constexpr double kMostVoxels = 250.0;  // that a distance field reaches
   const bone::BoneModel& bone = *procedure.bone;
-  std::vector<NearestRemoval> nearest(procedure.removals.size());
-  for (std::size_t name = 0; name < names.size(); ++name) {
-    std::vector<bool> labels(bone.structures.size(), false);
-    for (std::size_t label = 1; label < labels.size(); ++label) {
-      labels[label] = bone.structures[label].name == names[name];
-    }
-    const auto field =
-        bones.field(procedure.bone, labels, std::min(reach, kMostVoxels * bone.grid.spacing));
-    for (std::size_t n = 0; n < nearest.size(); ++n) {
-      const auto distance = field->at(procedure.removals[n].voxel);
-      const bool first = nearest[n].structure < 0;
-      if (distance && (first || static_cast<float>(*distance) < nearest[n].at.distance)) {
-        nearest[n].structure = static_cast<std::int32_t>(name);
-        nearest[n].at.distance = static_cast<float>(*distance);
-      }
-    }
+  std::vector<std::shared_ptr<const bone::DistanceField>> fields;
+  for (const std::string& name : names) {
+    fields.push_back(bones.field(procedure.bone, bone::labels_named(bone, name),
+                                 std::min(reach, kMostVoxels * bone.grid.spacing)));
   }
-  for (std::size_t n = 0; n < nearest.size(); ++n) {
-    nearest[n].at.force = static_cast<float>(procedure.removals[n].force);
-    nearest[n].at.speed = static_cast<float>(procedure.removals[n].speed);
+  std::vector<NearestRemoval> nearest;
+  nearest.reserve(procedure.removals.size());
+  for (const Removal& removal : procedure.removals) {
+    const bone::NearestStructure found = bone::nearest_structure(fields, removal.voxel);
+    nearest.push_back(
+        {found.structure,
+         {found.distance, static_cast<float>(removal.force), static_cast<float>(removal.speed)}});
   }
   return nearest;
 }

@@ -18,9 +18,6 @@ struct NearestRemoval {
   NearRemoval at;              // distance 0 without a structure
 };
 
-/// The vital structures of a bone by name, each once, that have voxels.
-std::vector<std::string> vital_structures(const bone::BoneModel& bone);
-
 /// One for each removal of a procedure, in order. @param names  of structures of its bone, which
 /// need not have them all; reach [m], at most 250 voxels count
 std::vector<NearestRemoval> nearest_structures(const Procedure& procedure,

@@ -1,27 +1,14 @@
 #pragma once
 
-#include <Eigen/Geometry>
-
 #include "analysis/bone_drilling/procedure/procedure.h"
+#include "core/bone/sight/burr_on_tick.h"
 
 namespace haptrial::analysis::drilling {
 
-/// The burr on a tick, in a frame.
-struct BurrOnTick {
-  Eigen::Vector3d centre{Eigen::Vector3d::Zero()};  // [m]
-  double radius{0.0};                               // 0: no burr [m]
-  const bone::BurrShape* shape{nullptr};            // null: a ball
-  Eigen::Vector3d axis{Eigen::Vector3d::UnitZ()};   // from the tip along the handle, unit length
-
-  /// Of its points from the centre [m].
-  double reach() const noexcept { return shape != nullptr ? shape->reach() : radius; }
-  /// Whether it reaches into a voxel's cube; the grid is in the burr's frame. Exact for balls; to a
-  /// thousandth of a voxel for other shapes.
-  bool touches(const geometry::VoxelGrid& grid, const bone::Voxel& voxel) const noexcept;
-};
+using bone::BurrOnTick;
+using bone::in_frame;
 
 /// @param tool  null: none  @returns it in W
 BurrOnTick burr_of(const ToolTick& tick, const ProcedureTool* tool) noexcept;
-BurrOnTick in_frame(const Eigen::Isometry3d& X, const BurrOnTick& burr) noexcept;
 
 }  // namespace haptrial::analysis::drilling

@@ -8,8 +8,8 @@
 
 #include "analysis/bone_drilling/metrics/visibility.h"
 #include "analysis/bone_drilling/procedure/in_order.h"
-#include "analysis/bone_drilling/procedure/standing_bone.h"
 #include "analysis/bone_drilling/procedure/study_bones.h"
+#include "core/bone/sight/standing_bone.h"
 
 namespace haptrial::analysis::drilling {
 namespace {

@@ -1,62 +1,17 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <optional>
-#include <vector>
-
 #include "analysis/bone_drilling/metrics/burr_on_tick.h"
 #include "analysis/bone_drilling/procedure/procedure.h"
-#include "analysis/bone_drilling/procedure/standing_bone.h"
+#include "core/bone/sight/sight.h"
 
 namespace haptrial::analysis::drilling {
 
-/// Whether nothing stands between a voxel's centre and the eye but bone that the burr touches.
-/// @param eye, burr  in B [m]
-/// Source: Morris 2006, §3.5.1.
-bool is_visible(const StandingBone& bone, const bone::Voxel& voxel, const Eigen::Vector3d& eye,
-                const BurrOnTick& burr);
+using bone::is_visible;
+using bone::StandingBone;
+using bone::Visibility;
+using bone::VisibilityMeter;
 
-/// How many of the voxels that burrs removed were seen.
-struct Visibility {
-  std::vector<std::uint8_t> visible;  // (removals) 1: visible when it was removed
-  std::size_t count{0};               // of the visible ones
-
-  std::optional<double> share() const;  // nothing where nothing was removed
-};
-
-/// Goes along with a drilling, one voxel at a time. One thread, not the servo thread; takes about a
-/// microsecond a voxel.
-class VisibilityMeter {
- public:
-  /// @param pose_WB  of the bone
-  VisibilityMeter(std::shared_ptr<const bone::BoneModel> bone, const Eigen::Isometry3d& pose_WB);
-
-  /// From now on. @param eye  in W [m]
-  void look_from(const Eigen::Vector3d& eye);
-  /// A part that turned to dust. @param taken  its voxels are appended; may be null
-  void crumble(const bone::Voxel& voxel, std::vector<bone::Voxel>* taken = nullptr) {
-    bone_.take_part(voxel, taken);
-  }
-  /// A voxel that the cut plane took: it hides nothing from now on, and nobody had to see it.
-  void cut(const bone::Voxel& voxel) noexcept { bone_.take(voxel); }
-  /// A removed voxel. @param burr  in W
-  /// @returns whether it was visible; never before the first look_from()
-  bool remove(const bone::Voxel& voxel, const BurrOnTick& burr);
-
-  const Visibility& visibility() const noexcept { return found_; }
-  const StandingBone& bone() const noexcept { return bone_; }
-
- private:
-  StandingBone bone_;
-  Eigen::Isometry3d pose_BW_;
-  std::optional<Eigen::Vector3d> eye_;  // in B [m]
-  Visibility found_;
-};
-
-/// That of a whole procedure, in the order of its removals.
+/// How much of a whole procedure's removals was seen, in their order.
 Visibility visibility(const Procedure& procedure);
 
 }  // namespace haptrial::analysis::drilling

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "core/base/conditions/given_in.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/nerve/record/nerve_rows.h"
 #include "core/record/read/session_reader.h"
@@ -292,7 +293,7 @@ std::vector<NerveProcedure> load_nerves(const record::SessionReader& file,
   for (const auto& [trial, passes] : by_trial) {
     procedures.push_back(session.procedure(trial, passes));
     procedures.back().group = group;
-    procedures.back().heard = procedures.back().condition != "monitor off";
+    procedures.back().heard = !says_off(procedures.back().condition, "monitor");
   }
   return procedures;
 }

@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <utility>
 
-#include "analysis/statistics/tests/t_tests.h"
-#include "analysis/statistics/words/wording.h"
+#include "analysis/bone_drilling/report/with_without.h"
 
 namespace haptrial::analysis::drilling {
 namespace {
@@ -103,63 +101,24 @@ Row train_row(const std::string& condition, const Some& procedures) {
   return {condition, count(0.0, kLittle), count(kLittle, kMuch), count(kMuch, 1e9)};
 }
 
-/// Over a participant's procedures in one condition.
-std::optional<double> person_mean(const std::vector<NerveProcedure>& procedures,
-                                  const std::string& participant, bool heard,
-                                  std::optional<double> (*value)(const NerveProcedure&)) {
-  double sum = 0.0;
-  int count = 0;
-  for (const NerveProcedure& p : procedures) {
-    const std::optional<double> each = value(p);
-    if (p.participant == participant && p.heard == heard && each) {
-      sum += *each;
-      ++count;
-    }
-  }
-  return count > 0 ? std::optional(sum / count) : std::nullopt;
-}
-
-struct OnLessOff {
-  std::size_t participants{0};
-  Defined<TTest> test{Undefined{""}};
-};
-
-/// Participants' means with the monitor less those without, in pairs.
-OnLessOff on_less_off(const std::vector<NerveProcedure>& procedures,
-                      std::optional<double> (*value)(const NerveProcedure&)) {
-  std::map<std::string, int> people;
-  for (const NerveProcedure& p : procedures) {
-    ++people[p.participant];
-  }
-  std::vector<double> on, off;
-  for (const auto& [participant, count] : people) {
-    const auto with = person_mean(procedures, participant, true, value);
-    const auto without = person_mean(procedures, participant, false, value);
-    if (with && without) {
-      on.push_back(*with);
-      off.push_back(*without);
-    }
-  }
-  return {on.size(), paired_t_test(on, off, Tail::kTwoSided)};
-}
-
 std::optional<double> reaction_value(const NerveProcedure& p) { return p.reaction(); }
 std::optional<double> train_value(const NerveProcedure& p) { return p.train_time(); }
 std::optional<double> rate_value(const NerveProcedure& p) {
   return p.drilling > 0.0 ? std::optional(60.0 * p.events() / p.drilling) : std::nullopt;
 }
 
-std::string on_off_word(const OnLessOff& c, const char* unit) {
-  return c.test ? fmt::format("{:+.2f} {}, 95 % CI {:.2f} to {:.2f}, paired {} ({} participants)",
-                              c.test->difference, unit, c.test->low, c.test->high, t_result(c.test),
-                              c.participants)
-                : "not defined: " + c.test.because();
+std::vector<GivenValue> values_of(const std::vector<NerveProcedure>& procedures,
+                                  std::optional<double> (*value)(const NerveProcedure&)) {
+  std::vector<GivenValue> values;
+  for (const NerveProcedure& p : procedures) {
+    values.push_back({p.participant, p.heard, value(p)});
+  }
+  return values;
 }
 
-bool compares(const std::vector<NerveProcedure>& procedures) {
-  const auto heard = [](const NerveProcedure& p) { return p.heard; };
-  return std::any_of(procedures.begin(), procedures.end(), heard) &&
-         !std::all_of(procedures.begin(), procedures.end(), heard);
+std::string on_off_word(const std::vector<NerveProcedure>& procedures,
+                        std::optional<double> (*value)(const NerveProcedure&), const char* unit) {
+  return difference_word(with_less_without(values_of(procedures, value)), unit);
 }
 
 NerveDetection all_detection(const std::vector<NerveProcedure>& procedures) {
@@ -219,14 +178,12 @@ void add_nerve_section(Document& document, const std::vector<NerveProcedure>& pr
   document.table(
       {"condition", "procedures below 0.5 s of train time", "0.5 s to 10 s", "10 s and more"},
       trains);
-  if (compares(procedures)) {
-    document.table({"monitor on less monitor off, participants' means", "result"},
-                   {result_row("events a minute of drilling",
-                               on_off_word(on_less_off(procedures, rate_value), "1/min")),
-                    result_row("train time of a procedure",
-                               on_off_word(on_less_off(procedures, train_value), "s")),
-                    result_row("median reaction time",
-                               on_off_word(on_less_off(procedures, reaction_value), "s"))});
+  if (has_both(values_of(procedures, rate_value))) {
+    document.table(
+        {"monitor on less monitor off, participants' means", "result"},
+        {result_row("events a minute of drilling", on_off_word(procedures, rate_value, "1/min")),
+         result_row("train time of a procedure", on_off_word(procedures, train_value, "s")),
+         result_row("median reaction time", on_off_word(procedures, reaction_value, "s"))});
     document.paragraph("The three results are not adjusted for each other.");
   }
   std::vector<Row> timeline;

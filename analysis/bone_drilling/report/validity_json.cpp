@@ -199,6 +199,30 @@ Json near_of(const ValidityResult& result) {
   return near;
 }
 
+Json hints_of(const ValidityResult& result) {
+  Json procedures = Json::array();
+  for (const HintProcedure& p : result.hints) {
+    Json row{{"session", p.session},  {"participant", p.participant},
+             {"procedure", p.number}, {"condition", p.condition},
+             {"shown", p.shown},      {"drilling_s", p.drilling}};
+    for (const auto kind : hint::kAllHintKinds) {
+      const HintCounts& counts = p.of(kind);
+      row[std::string(hint::name_of(kind))] = {
+          {"hints", counts.hints}, {"removals", counts.removals}, {"time_s", counts.time}};
+    }
+    procedures.push_back(std::move(row));
+  }
+  Json effects = Json::array();
+  for (const HintEffect& each : result.hint_effects) {
+    effects.push_back({{"name", each.name},
+                       {"unit", each.unit},
+                       {"participants", each.effect.participants},
+                       {"paired_t_of_participant_means", to_json(each.effect.test)},
+                       {"p_holm", to_json(each.holm)}});
+  }
+  return {{"procedures", procedures}, {"with_less_without", effects}};
+}
+
 Json findings_of(const Validity& v, std::span<const ProcedureSummary> procedures) {
   Json root;
   root["simulated"] = v.simulated;
@@ -241,6 +265,9 @@ std::string validity_json(const ValidityResult& result) {
   Json root = findings_of(result.validity, result.procedures);
   if (!result.structure.empty()) {
     root["near_structure"] = near_of(result);
+  }
+  if (!result.hints.empty()) {
+    root["hints"] = hints_of(result);
   }
   return text_of(root);
 }

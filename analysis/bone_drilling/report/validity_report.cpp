@@ -60,6 +60,7 @@ class Report {
     document_.points(summary_lines(result_));
     add_design();
     add_nerve_section(document_, result_.nerves, v_.simulated);
+    add_hint_section(document_, result_.hints, result_.hint_effects, v_.simulated);
     add_ratings();
     add_metrics();
     add_forces();

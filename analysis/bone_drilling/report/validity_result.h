@@ -4,8 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "analysis/bone_drilling/hints/hint_findings.h"
 #include "analysis/bone_drilling/metrics/metrics.h"
 #include "analysis/bone_drilling/nerves/nerve_findings.h"
+#include "analysis/bone_drilling/report/hint_section.h"
 #include "analysis/bone_drilling/validity/validity_findings.h"
 
 namespace haptrial::analysis::drilling {
@@ -28,7 +30,9 @@ struct ValidityResult {
   Validity validity;
   std::vector<NerveProcedure> nerves;  // of sessions with a nerve monitor
   std::vector<StudyPicture> pictures;
-  std::vector<std::string> remarks;  // sentences about the files, for the report
+  std::vector<std::string> remarks;    // sentences about the files, for the report
+  std::vector<HintProcedure> hints{};  // of sessions that give hints
+  std::vector<HintEffect> hint_effects{};
 };
 
 }  // namespace haptrial::analysis::drilling

@@ -24,10 +24,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What every session gave, and what its nerve monitor found.
+/// What every session gave, what its nerve monitor found, and its hints.
 struct Sessions {
   std::vector<ProcedureSummary> procedures;
   std::vector<NerveProcedure> nerves;
+  std::vector<HintProcedure> hints;
 };
 
 template <class T>
@@ -46,12 +47,14 @@ Sessions sessions_of(const ValidityStudy& study) {
         by_file[first].procedures.push_back(summarize(p, study.metrics, bones));
       }
       by_file[first].nerves = load_nerves(reader, setup.group);
+      by_file[first].hints = load_hints(reader, by_file[first].procedures);
     };
   });
   Sessions all;
   for (Sessions& file : by_file) {
     move_to(all.procedures, file.procedures);
     move_to(all.nerves, file.nerves);
+    move_to(all.hints, file.hints);
   }
   return all;
 }
@@ -90,6 +93,8 @@ ValidityResult analyze(const ValidityStudy& study) {
   Sessions sessions = sessions_of(study);
   result.procedures = std::move(sessions.procedures);
   result.nerves = std::move(sessions.nerves);
+  result.hints = std::move(sessions.hints);
+  result.hint_effects = hint_effects(result.hints, result.procedures);
   if (result.procedures.empty()) {
     throw InputError("no session holds a drilling, so there is nothing to analyse");
   }
@@ -111,6 +116,9 @@ void write_validity(const ValidityResult& result, const fs::path& folder) {
   staging.write("statistics.json", validity_json(result));
   if (!result.nerves.empty()) {
     staging.write("nerves.csv", nerves_csv(result.nerves));
+  }
+  if (!result.hints.empty()) {
+    staging.write("hints.csv", hints_csv(result.hints));
   }
   const std::vector<Figure> figures = validity_figures(result);
   draw_figures(figures, staging.path());

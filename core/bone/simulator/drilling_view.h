@@ -31,9 +31,11 @@ struct DrillingView {
   Eigen::Vector3d eye{Eigen::Vector3d::UnitZ()};  // in W [m]
   Eigen::Vector3d target{Eigen::Vector3d::Zero()};
   Eigen::Vector3d up{Eigen::Vector3d::UnitY()};
-  double field_of_view{0.35};    // [rad]
-  std::int32_t stills_asked{0};  // how often the next still was asked for
-  bool tone{false};              // the participant hears one of a nerve monitor
+  double field_of_view{0.35};      // [rad]
+  std::int32_t stills_asked{0};    // how often the next still was asked for
+  bool tone{false};                // the participant hears one of a nerve monitor
+  std::uint8_t hints{0};           // that are shown, hint::bit() of each kind
+  std::int8_t hint_structure{-1};  // of vital_structures(), that they are about; -1: none
   TubeView tube;
   double temperature{0.0};  // at the burr; 0: nothing warms up [degree C]
   double progress{0.0};     // of the time limit, as a fraction

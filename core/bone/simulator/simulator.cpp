@@ -366,9 +366,14 @@ void Simulator::place_for_dust(const SimulatorInput& input) noexcept {
   }
 }
 
-std::span<const BurrShape::Ball> Simulator::burr_balls() const noexcept {
+const BurrShape* Simulator::burr_shape() const noexcept {
   const Drill* drill = drills_[in_hand()].get();
-  return drill != nullptr ? drill->burr().shape().balls() : std::span<const BurrShape::Ball>{};
+  return drill != nullptr ? &drill->burr().shape() : nullptr;
+}
+
+std::span<const BurrShape::Ball> Simulator::burr_balls() const noexcept {
+  const BurrShape* shape = burr_shape();
+  return shape != nullptr ? shape->balls() : std::span<const BurrShape::Ball>{};
 }
 
 int Simulator::pieces() const noexcept {

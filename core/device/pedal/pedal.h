@@ -1,14 +1,10 @@
 #pragma once
 
-#include <atomic>
-#include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
-#include "core/device/pedal/input_axis.h"
+#include "core/device/input/input_reader.h"
 #include "core/realtime/latest_value.h"
 
 namespace haptrial {
@@ -40,40 +36,27 @@ double depth_of(double value, double released, double pressed, double dead_zone)
 /// tries twice a second.
 class Pedal {
  public:
-  /// Something that happened to it while it was read.
-  struct Change {
-    bool back{false};  // else it was lost
-    std::string why;   // of a loss
-  };
+  using Change = InputChange;
 
-  /// @throws InputError as InputAxis does, and if an end is missing that a pipe does not state
+  /// @throws InputError as InputReader does, and if an end is missing that a pipe does not state
   explicit Pedal(const PedalParameters& parameters);
-  ~Pedal();
-  Pedal(const Pedal&) = delete;
-  Pedal& operator=(const Pedal&) = delete;
 
   /// 0 to 1. Servo thread: wait-free.
   double depth() noexcept;
   /// What happened since the last call. Any thread but the servo thread.
-  std::vector<Change> take_changes();
-  const std::string& input() const { return parameters_.input; }
+  std::vector<Change> take_changes() { return reader_.take_changes(); }
+  const std::string& input() const { return reader_.path(); }
 
  private:
-  void read();
-  void show();
-  void lose();
-  void try_again();
+  void take_ends(InputFile& file);
+  void show(const InputReports* reports);
 
   PedalParameters parameters_;
   double released_{0.0};
   double pressed_{1.0};
-  std::unique_ptr<InputAxis> axis_;  // null while it is lost; the reading thread's
   realtime::LatestValue<double> channel_;
-  double depth_{0.0};  // servo thread
-  std::mutex mutex_;
-  std::vector<Change> changes_;
-  std::atomic<bool> over_{false};
-  std::thread thread_;
+  double depth_{0.0};   // servo thread
+  InputReader reader_;  // ends first
 };
 
 }  // namespace haptrial::device

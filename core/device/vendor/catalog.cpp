@@ -1,8 +1,10 @@
 #include "core/device/vendor/catalog.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/base/error.h"
+#include "core/device/gamepad/gamepad.h"
 #include "core/device/own_devices.h"
 #include "core/device/vendor/force_dimension.h"
 #include "core/device/vendor/open_haptics.h"
@@ -36,6 +38,18 @@ DeviceListing open_haptics(const std::string& library) {
   }
 }
 
+DeviceListing gamepad() {
+  const std::vector<std::string> found = find_gamepads();
+  if (found.empty()) {
+    return {"gamepad", false,
+            "no game controller is connected (/dev/input/by-id has none); [gamepad] of a "
+            "definition may name a pipe instead"};
+  }
+  return {"gamepad", true,
+          fmt::format("a game controller moves the mouse's hand; [gamepad] names it: {}",
+                      fmt::join(found, ", "))};
+}
+
 }  // namespace
 
 std::vector<DeviceListing> list_devices(const VendorLibraries& libraries) {
@@ -43,6 +57,7 @@ std::vector<DeviceListing> list_devices(const VendorLibraries& libraries) {
       {"virtual", true, "simulated 3-DOF impedance device with a virtual subject's hand"},
       {"replay", true, "the hand of a recorded session, played back"},
       {"mouse", true, "the pointer stands for the hand; forces are seen, not felt"},
+      gamepad(),
       force_dimension(libraries.force_dimension),
       open_haptics(libraries.open_haptics)};
   for (const OwnDevice& device : own_devices()) {

@@ -136,12 +136,7 @@ NerveSetup read_nerve_setup(Table& table, double rate) {
   s.muted = table.has("muted") && table.boolean("muted");
   s.current = table.number_or("stimulus", s.current, {kLeastStimulus, kMostStimulus}, "A");
   s.pulses = table.number_or("stimuli", s.pulses, {0.5, 5.0}, "1/s");
-  if (table.has("heard_in")) {
-    const std::string heard = table.choice("heard_in", {"all", "none", "every other"});
-    s.heard = heard == "none"          ? HeardIn::kNone
-              : heard == "every other" ? HeardIn::kEveryOther
-                                       : HeardIn::kAll;
-  }
+  s.heard = read_given_in(table, "heard_in");
   ExposureParameters& e = s.exposure;
   e.bursts = table.number_or("bursts", e.bursts, {0.0, 100.0}, "1/s");
   e.reach = table.number_or("reach", e.reach, {1e-4, 0.02}, "m");

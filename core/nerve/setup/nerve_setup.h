@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/conditions/given_in.h"
 #include "core/nerve/emg.h"
 #include "core/nerve/exposure.h"
 #include "core/nerve/monitor.h"
@@ -23,9 +24,6 @@ struct WatchedNerve {
   std::vector<std::string> channels;   // muscles, at least one
 };
 
-/// In which procedures the participant hears the monitor; it records in all of them.
-enum class HeardIn : std::uint8_t { kAll, kNone, kEveryOther };
-
 /// What a definition says of a nerve monitor. A model to train with: its figures are chosen.
 struct NerveSetup {
   std::vector<WatchedNerve> nerves;  // with kMostChannels channels in all at most
@@ -33,11 +31,11 @@ struct NerveSetup {
   ExposureParameters exposure;
   EmgParameters emg;  // likewise
   StimulationParameters stimulation;
-  double heat{1.0};        // that a newton under a turning burr gives [W/N]
-  double current{0.5e-3};  // of a pulse of the probe [A]
-  double pulses{3.0};      // of the probe a second [1/s]
-  bool muted{false};       // at the beginning
-  HeardIn heard{HeardIn::kAll};
+  double heat{1.0};              // that a newton under a turning burr gives [W/N]
+  double current{0.5e-3};        // of a pulse of the probe [A]
+  double pulses{3.0};            // of the probe a second [1/s]
+  bool muted{false};             // at the beginning
+  GivenIn heard{GivenIn::kAll};  // procedures in which the participant hears it; all are recorded
 
   std::size_t channels() const noexcept;
 };

@@ -88,6 +88,7 @@ DrillingSurgeon::Procedure DrillingSurgeon::plan(const SurgeonParameters& p,
           std::move(fine),
           noise_of(skill, step, own),
           RandomStream(own, "work"),
+          HintHeeding(p.heeds, p.reaction, RandomStream(own, "hints")),
           DrillingMemory(drawn)};
 }
 
@@ -150,6 +151,7 @@ void DrillingSurgeon::observe(const stimulus::Shown& shown, const stimulus::Forc
     now().memory.sweep(place);
   }
   listen(view, place, dt);
+  heed(view, dt);
   decide(view, place);
   move_goal(view, dt);
   HandCommand command;
@@ -175,6 +177,14 @@ void DrillingSurgeon::listen(const bone::DrillingView& seen, const Eigen::Vector
   begin(Doing::kWithdraw);
 }
 
+/// What it drills ends if it is too fast, or hidden; with less force it goes on.
+void DrillingSurgeon::heed(const bone::DrillingView& seen, double dt) noexcept {
+  if (now().heeding.notice(seen.hints, dt) && doing_ == Doing::kBout) {
+    now().memory.end_bout(bout_);
+    begin(Doing::kPause);
+  }
+}
+
 bool DrillingSurgeon::wants_to_look(const bone::DrillingView& seen) noexcept {
   Procedure& p = now();
   if (parameters_.look_button < 0) {
@@ -189,7 +199,8 @@ bool DrillingSurgeon::wants_to_look(const bone::DrillingView& seen) noexcept {
   Eigen::Vector3d wanted = (chart.world(outside) - chart.world(there)).normalized();
   const Eigen::Vector3d now_from = (seen.eye - seen.target).normalized();
   const bool hidden = std::acos(std::clamp(wanted.dot(now_from), -1.0, 1.0)) > kWorthALook;
-  if (!hidden || p.random.uniform() >= p.skill.looking) {
+  const bool told = p.heeding.looks();
+  if (!told && (!hidden || p.random.uniform() >= p.skill.looking)) {
     return false;
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -204,7 +215,8 @@ void DrillingSurgeon::next_bout(const bone::DrillingView& seen) noexcept {
   // What the rough burr leaves is for the fine one.
   const double share = p.careful && !fine_ ? kRoughShare : 1.0;
   const bool enough = p.memory.left() < 1.0 - share * p.skill.completeness;
-  const BoutChoice choice{p.skill.evenness, p.skill.stroke_length, p.skill.bite, p.skill.undercut};
+  const BoutChoice choice{p.skill.evenness, p.skill.stroke_length, p.skill.bite,
+                          p.heeding.looks() ? 0.0 : p.skill.undercut};
   if (enough || !p.memory.choose(choice, last_.head<2>(), p.random, bout_)) {
     lift_to_ = p.memory.opening().z() - 4.0 * parameters_.rough.radius;
     if (p.careful && !fine_) {
@@ -243,6 +255,7 @@ void DrillingSurgeon::decide(const bone::DrillingView& seen,
         bout_depth_ = place.z();
         idle_ = 0.0;
         ++bouts_;
+        bout_rate_ = p.skill.stroke_rate * p.heeding.pace();
         begin(Doing::kBout);
       }
       break;
@@ -285,8 +298,7 @@ void DrillingSurgeon::decide_bout(const bone::DrillingView& seen,
   const int sweeps = bout_.under ? kSweepsUnder : kSweeps;
   const bool at_bottom = place.z() > depth_limit(place) - 0.2e-3;
   idle_ = seen.contact && !at_bottom ? 0.0 : idle_ + 1e-3;
-  if (time_ * now().skill.stroke_rate > sweeps ||
-      (!bout_.under && idle_ * now().skill.stroke_rate > kPatience)) {
+  if (time_ * bout_rate_ > sweeps || (!bout_.under && idle_ * bout_rate_ > kPatience)) {
     now().memory.end_bout(bout_);
     begin(Doing::kPause);
   }
@@ -304,7 +316,7 @@ void DrillingSurgeon::go_to(const Eigen::Vector3d& place, double speed, double d
 
 /// To and fro, each stroke beginning and ending at rest, and a little beside the one before.
 void DrillingSurgeon::follow_bout() noexcept {
-  const double rate = now().skill.stroke_rate;
+  const double rate = bout_rate_;
   const double strokes = time_ * rate;
   const int stroke = static_cast<int>(strokes);
   const double angle = std::numbers::pi * strokes;
@@ -369,10 +381,11 @@ double DrillingSurgeon::press(const Eigen::Vector3d& place) noexcept {
     nearest = std::min(nearest, p.chart->clearance_at(place + side - p.view.offset));
   }
   const DrillingSkill& k = p.skill;
+  const double light = p.heeding.lightness();
   const double far = std::clamp(
       (static_cast<double>(nearest) - k.near_distance) / (k.far_distance - k.near_distance), 0.0,
       1.0);
-  return k.near_force + far * (k.far_force - k.near_force);
+  return light * (k.near_force + far * (k.far_force - k.near_force));
 }
 
 double DrillingSurgeon::depth_limit(const Eigen::Vector3d& place) const noexcept {

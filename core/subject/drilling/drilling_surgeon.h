@@ -12,6 +12,7 @@
 #include "core/subject/drilling/drilling_chart.h"
 #include "core/subject/drilling/drilling_memory.h"
 #include "core/subject/drilling/drilling_skill.h"
+#include "core/subject/drilling/hint_heeding.h"
 #include "core/subject/hand_model.h"
 #include "core/subject/motor_noise.h"
 
@@ -29,7 +30,8 @@ struct SurgeonParameters {
   SkillSpread spread;
   SurgeonBurr rough;     // for most of it
   SurgeonBurr fine;      // for what is near a structure
-  double reaction{0.6};  // from a tone of the nerve monitor until it lifts the burr > 0 [s]
+  double reaction{0.6};  // from a tone of the nerve monitor, or a hint, until it acts > 0 [s]
+  double heeds{0.0};     // share of hints that it heeds, 0 to 1
   int power_button{0};
   int next_button{1};
   int previous_button{2};
@@ -71,6 +73,7 @@ class DrillingSurgeon final : public stimulus::Observer {
     BurrReach fine;  // empty unless careful
     MotorNoise noise;
     RandomStream random;
+    HintHeeding heeding;
     DrillingMemory memory;
   };
   enum class Doing { kLift, kTravel, kDescend, kBout, kPause, kLook, kChange, kWithdraw, kFinish };
@@ -80,6 +83,7 @@ class DrillingSurgeon final : public stimulus::Observer {
   void begin(Doing doing) noexcept;
   void begin_procedure() noexcept;
   void listen(const bone::DrillingView& seen, const Eigen::Vector3d& place, double dt) noexcept;
+  void heed(const bone::DrillingView& seen, double dt) noexcept;
   void next_bout(const bone::DrillingView& seen) noexcept;
   bool wants_to_look(const bone::DrillingView& seen) noexcept;
   void decide(const bone::DrillingView& seen, const Eigen::Vector3d& place) noexcept;
@@ -109,6 +113,7 @@ class DrillingSurgeon final : public stimulus::Observer {
   bool fine_{false};
   std::uint64_t bouts_{0};
   Bout bout_;
+  double bout_rate_{1.0};                           // of its strokes [1/s]
   double bout_depth_{0.0};                          // of the burr's centre where the bout began [m]
   double idle_{0.0};                                // of the bout, without bone under the burr [s]
   double heard_{0.0};                               // since when a tone goes on [s]

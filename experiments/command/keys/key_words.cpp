@@ -42,6 +42,9 @@ mouse.max_press | | greatest pressing force
 mouse.first_press | | pressing force when the left button goes down
 mouse.press_step | | change of it for each step of the wheel
 mouse.stop_button | | button for emergency stops; -1: none
+gamepad.input | | file of the game controller, /dev/input/by-id/...-event-joystick
+gamepad.dead_zone | | share of a stick's or a trigger's way that counts as rest
+gamepad.stop_button | | button for emergency stops, 7 is start; -1: none
 tutoring.stiffness | | of the spring from the hand to the tutor's, with --tutor
 tutoring.damping | | beside it
 tutoring.force_share | | of the tutor's forces that is played
@@ -807,7 +810,19 @@ nerve_monitor.curves[].name | | of a nerve that is drawn as a curve
 nerve_monitor.curves[].points_mm | | its points in the bone's frame
 nerve_monitor.curves[].radius_mm | | of the nerve
 nerve_monitor.curves[].channels | | muscles, a channel each; without, one named like the nerve
-virtual_surgeons.reaction | | time from a tone of the nerve monitor until the burr is lifted
+hints.file | none | with safe values, as haptrial bone safe writes it; relative to the definition
+hints.kinds | | what hints are about: too much force, too much speed, bone that other bone hides
+hints.shown_in | all | procedures in which the participant sees hints; every other: the first participant from the first on, the second from the second on
+hints.reach | | distance from a structure up to which forces and speeds are judged
+hints.fewest | | faulty removals that begin a hint
+hints.within | | time in which they come
+hints.holds | | time for which a hint stays after the last one
+hints.sound | false | whether a chime is heard when a hint begins
+hints.force_text | | what a participant reads who presses too hard; {structure} is the nearest one's name
+hints.speed_text | | likewise of a tip that is too fast
+hints.hidden_text | | likewise of bone that cannot be seen
+virtual_surgeons.reaction | | time from a tone of the nerve monitor, or a hint, until it acts
+virtual_surgeons.heeds_hints | | share of hints that a virtual surgeon heeds
 virtual_surgeons.rough | | burr for most of the bone
 virtual_surgeons.fine | | burr near structures
 virtual_surgeons.between | | spread of skill between surgeons

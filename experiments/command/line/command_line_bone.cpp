@@ -176,6 +176,20 @@ void add_page(CLI::App& bone, int& status) {
   sub->add_flag("--overwrite", o.overwrite, "Overwrite existing pages");
 }
 
+void add_safe(CLI::App& bone, int& status) {
+  CLI::App* sub = subcommand(
+      bone, "safe", "Learn safe forces and speeds near structures from experts, for hints",
+      "haptrial bone safe safe.toml --study out/validity-001",
+      {"the file OUT, which [hints] of a definition names", "algorithms/live-hints.md"});
+  auto& o = options_of<BoneSafeOptions>(*sub, status, bone_safe);
+  sub->add_option("OUT", o.out, "New file of safe values (.toml)")->required();
+  sub->add_option("--study", o.study,
+                  "Folder of a study; participants of its expert groups are the experts");
+  sub->add_option("--expert", o.experts, "Session of an expert (.h5); may be repeated")
+      ->allow_extra_args(false);
+  sub->add_flag("--overwrite", o.overwrite, "Overwrite an existing file");
+}
+
 }  // namespace
 
 void add_bone(CLI::App& app, int& status) {
@@ -192,6 +206,7 @@ void add_bone(CLI::App& app, int& status) {
   add_stages(*bone, status);
   add_place(*bone, status);
   add_page(*bone, status);
+  add_safe(*bone, status);
 }
 
 }  // namespace haptrial::experiments

@@ -47,7 +47,7 @@ void add_run(CLI::App& app, int& status) {
                   "first that is left)");
   sub->add_option(
          "--device", o.devices,
-         "Device: virtual, mouse, force-dimension, open-haptics, replay:FILE or a "
+         "Device: virtual, mouse, gamepad, force-dimension, open-haptics, replay:FILE or a "
          "plug-in's (default: virtual); repeated for each device of an experiment with several")
       ->allow_extra_args(false);
   sub->add_option("--library", o.library,

@@ -13,6 +13,7 @@
 #include "core/base/files/whole_file.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/record/read/session_reader.h"
+#include "experiments/studies/drilling/expert_sessions.h"
 #include "experiments/studies/drilling/procedure_setup.h"
 #include "experiments/study/study_run.h"
 
@@ -21,14 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 namespace drilling = analysis::drilling;
-
-/// A procedure of an expert, and where it is.
-struct Expert {
-  fs::path file;
-  int trial{1};
-  std::shared_ptr<const bone::BoneModel> bone;
-  drilling::ExpertProcedure procedure;
-};
 
 /// A session file as pages use it.
 struct Session {
@@ -43,12 +36,6 @@ struct Session {
   std::vector<protocols::StudyGroup> groups;
   protocols::BoneDefinition definition;
 };
-
-void require_drilling(const fs::path& file) {
-  if (!record::drills(record::SessionReader(file))) {
-    throw InputError(fmt::format("{}: is not a drilling session", file.string()));
-  }
-}
 
 class Pages {
  public:
@@ -73,12 +60,11 @@ class Pages {
  private:
   void load_sessions();
   void load_experts();
-  void load_expert(const fs::path& file);
   std::vector<std::pair<const Session*, int>> chosen();
   void require_room(std::size_t procedures) const;
   void write_procedure(const Session& session, int trial, std::size_t procedures);
   drilling::Procedure load(const Session& session, int trial);
-  const Expert* shown_beside(const bone::BoneModel* bone) const;
+  const ExpertSession* shown_beside(const bone::BoneModel* bone) const;
   drilling::FirstView first_view(const Session& session) const;
   std::string picture(const drilling::Findings& findings, const Session& session) const;
   void write(const fs::path& file, const std::string& html);
@@ -92,8 +78,8 @@ class Pages {
   drilling::StudyBones bones_;
   std::vector<std::unique_ptr<Session>> sessions_;  // in order of their start
   std::string participant_;
-  std::vector<Expert> expert_procedures_;
-  std::vector<drilling::ExpertProcedure> summaries_;  // (expert_procedures_)
+  ExpertSessions expert_sessions_{options_, bones_};
+  std::vector<drilling::ExpertProcedure> summaries_;  // (of them)
   drilling::Experts experts_;
   std::vector<drilling::TraineeProcedure> done_;
   std::vector<fs::path> files_;
@@ -118,51 +104,12 @@ void Pages::load_sessions() {
 
 void Pages::load_experts() {
   for (const fs::path& file : request_.experts) {
-    load_expert(file);
+    expert_sessions_.add(file);
   }
-  if (request_.study.empty()) {
-    return;
+  if (!request_.study.empty()) {
+    expert_sessions_.add_study(request_.study);
   }
-  const std::size_t before = expert_procedures_.size();
-  for (const fs::path& file : session_files(request_.study)) {
-    const record::SessionReader reader(file);
-    const record::SessionInfo& info = reader.info();
-    if (info.pilot || !record::drills(reader)) {
-      continue;
-    }
-    const auto groups = protocols::study_groups(info.definition, info.definition_name);
-    const std::string own = protocols::group_of(groups, info.subject);
-    const bool expert = std::any_of(groups.begin(), groups.end(), [&own](const auto& group) {
-      return group.expert && group.name == own;
-    });
-    if (expert) {
-      load_expert(file);
-    }
-  }
-  if (expert_procedures_.size() == before) {
-    throw InputError(
-        fmt::format("{}: holds no drilling of an expert; choose a study whose definition has "
-                    "[groups], all but novices being experts",
-                    request_.study.string()));
-  }
-}
-
-void Pages::load_expert(const fs::path& file) {
-  const bool again =
-      std::any_of(expert_procedures_.begin(), expert_procedures_.end(),
-                  [&file](const Expert& expert) { return fs::equivalent(expert.file, file); });
-  if (again) {
-    return;  // named, and of the study as well
-  }
-  const record::SessionReader reader(file);
-  const record::SessionInfo& info = reader.info();
-  const auto setup =
-      procedure_setup(reader, protocols::study_groups(info.definition, info.definition_name));
-  for (const drilling::Procedure& procedure : load_procedures(reader, setup, &bones_)) {
-    expert_procedures_.push_back({file, procedure.number, procedure.bone,
-                                  drilling::expert_procedure(procedure, options_, bones_)});
-    summaries_.push_back(expert_procedures_.back().procedure);
-  }
+  summaries_ = expert_sessions_.for_feedback();
 }
 
 /// Every procedure that gets a page.
@@ -215,16 +162,16 @@ drilling::Procedure Pages::load(const Session& session, int trial) {
 
 /// On the same bone, somebody else's: of the procedures that were asked for by name the one with
 /// most in sight, else of all.
-const Expert* Pages::shown_beside(const bone::BoneModel* bone) const {
-  const auto named = [this](const Expert& expert) {
+const ExpertSession* Pages::shown_beside(const bone::BoneModel* bone) const {
+  const auto named = [this](const ExpertSession& expert) {
     return std::find(request_.experts.begin(), request_.experts.end(), expert.file) !=
            request_.experts.end();
   };
-  const auto rank = [&](const Expert& expert) {
+  const auto rank = [&](const ExpertSession& expert) {
     return std::pair(named(expert), expert.procedure.summary.value("visible_share").value_or(-1.0));
   };
-  const Expert* best = nullptr;
-  for (const Expert& expert : expert_procedures_) {
+  const ExpertSession* best = nullptr;
+  for (const ExpertSession& expert : expert_sessions_.procedures()) {
     if (expert.bone.get() == bone && expert.procedure.summary.participant != participant_ &&
         (best == nullptr || rank(expert) > rank(*best))) {
       best = &expert;
@@ -264,7 +211,7 @@ void Pages::write_procedure(const Session& session, int trial, std::size_t proce
   page.picture = picture(f, session);
   page.started = session.reader.info().start_utc;
   page.overview = several ? request_.out.filename().string() : "";
-  if (const Expert* expert = shown_beside(f.summary.bone.get())) {
+  if (const ExpertSession* expert = shown_beside(f.summary.bone.get())) {
     const Session other(expert->file);
     const std::string& name = expert->procedure.summary.participant;
     const drilling::Experts others = drilling::experts_of(summaries_, name, options_);

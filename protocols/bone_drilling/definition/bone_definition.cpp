@@ -134,6 +134,7 @@ void read_surgeons(Table& root, BoneDefinition& d) {
   optional(table, "within", p.spread.within, {0.0, 1.0}, "");
   optional(table, "learning", p.spread.learning, kFraction, "");
   optional(table, "reaction", p.reaction, {0.05, 10.0}, "s");
+  optional(table, "heeds_hints", p.heeds, kFraction, "");
   const auto button = [&](const char* key, int& value, long low) {
     value = table.integer_or(key, value, low, 30);
   };
@@ -208,19 +209,6 @@ void check_together(Table& root, const BoneDefinition& d) {
                                        reach, d.envelope.workspace_radius));
     }
   }
-}
-
-void read_nerves(Table& root, BoneDefinition& d) {
-  if (!root.has("nerve_monitor")) {
-    return;
-  }
-  Table table = root.table("nerve_monitor");
-  d.nerves = nerve::read_nerve_setup(table, d.rate);
-  using nerve::HeardIn;
-  d.design.conditions = d.nerves->heard == HeardIn::kAll ? std::vector<std::string>{kMonitorOn}
-                        : d.nerves->heard == HeardIn::kNone
-                            ? std::vector<std::string>{kMonitorOff}
-                            : std::vector<std::string>{kMonitorOn, kMonitorOff};
 }
 
 void read_feedback(Table& root, BoneDefinition& d) {
@@ -356,7 +344,7 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
   read_surgeons(root, d);
   read_display(display, d);
   read_sound(root, d, folder);
-  read_nerves(root, d);
+  read_given(root, d);
   read_feedback(root, d);
   check_common(root, d);
   check_together(root, d);
@@ -367,6 +355,9 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
 }
 
 void BoneDefinition::load_bones(const fs::path& folder) {
+  if (hints) {
+    hint::load_limits(*hints, folder);
+  }
   for (const std::string& source : sources) {
     bone::BoneModel loaded = load_source(source, *this, folder);
     bones.push_back(std::make_shared<const bone::BoneModel>(mirror ? bone::mirrored(loaded)
@@ -388,6 +379,9 @@ void BoneDefinition::load_bones(const fs::path& folder) {
       nerve_distances.push_back(
           std::make_shared<const nerve::NerveDistances>(*bones.back(), nerves->nerves));
     }
+    if (hints) {
+      hint_maps.push_back(std::make_shared<const hint::HintMap>(*hints, *bones.back()));
+    }
   }
   mouse.in_space = true;
   mouse.start = drilling.scale * before_bones(*this);
@@ -402,13 +396,6 @@ bool BoneDefinition::has_handpiece() const {
   return std::any_of(simulator.tools.begin(), simulator.tools.end(), wears_or_feels) ||
          (simulator.tube && simulator.tube->shaft_length > 0.0) ||
          drilling.controls.buttons[kReverse] != 0 || !drilling.controls.keys[kReverse].empty();
-}
-
-bool BoneDefinition::hears_nerves(int trial, int participant) const {
-  if (!nerves || nerves->heard == nerve::HeardIn::kNone) {
-    return false;
-  }
-  return nerves->heard == nerve::HeardIn::kAll || (trial + participant) % 2 == 1;
 }
 
 const ParticipantGroup* group_of(const BoneDefinition& d, int participant) {

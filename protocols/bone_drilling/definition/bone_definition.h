@@ -12,6 +12,7 @@
 #include "core/bone/model/bone_model.h"
 #include "core/bone/simulator/companions.h"
 #include "core/bone/simulator/simulator.h"
+#include "core/hint/hint_watch.h"
 #include "core/nerve/setup/nerve_distances.h"
 #include "core/nerve/setup/nerve_setup.h"
 #include "core/render/gl/quality_steps.h"
@@ -27,9 +28,7 @@
 namespace haptrial::protocols {
 
 inline constexpr const char* kBoneDrilling = "bone_drilling";  // its name in [experiment]
-// Conditions of procedures in which the nerve monitor is heard, and not.
-inline constexpr const char* kMonitorOn = "monitor on";
-inline constexpr const char* kMonitorOff = "monitor off";
+inline constexpr const char* kMonitor = "monitor";  // in conditions: "monitor on", "monitor off"
 
 /// Participants of one kind. The first ones belong to the first group, and so on.
 struct ParticipantGroup {
@@ -68,6 +67,7 @@ struct BoneDefinition : Definition {
   double eye_distance{0.02};  // between the eyes, in the scene >= 0 [m]
   int stills{0};              // of stages of the cavity, which can be called up; 0: none
   std::optional<nerve::NerveSetup> nerves;  // that are watched
+  std::optional<hint::HintSetup> hints;     // to who drills
   bool trainee_page{false};                 // written after a session, beside its file
   std::string experts_study;                // folder that the page compares with; empty: nobody
   /// By source; procedures take them in turn. None where only a text was parsed: a session file has
@@ -76,15 +76,19 @@ struct BoneDefinition : Definition {
   std::vector<std::shared_ptr<const subject::DrillingChart>> charts;  // (bones) with a cavity
 
   std::vector<std::shared_ptr<const nerve::NerveDistances>> nerve_distances;  // (bones) if watched
+  std::vector<std::shared_ptr<const hint::HintMap>> hint_maps;  // (bones) if there are hints
 
   int devices() const override { return drilling.second ? 2 : 1; }
   /// Whether something bleeds or warms up.
   bool has_field() const { return simulator.heat || !simulator.bleeding.structures.empty(); }
   /// Whether a shaft is felt, a burr wears or can be reversed.
   bool has_handpiece() const;
-  /// Whether a participant hears the nerve monitor in a procedure. @param trial  from 1; practice:
-  /// 0
+  /// Whether a participant hears the nerve monitor in a procedure, or sees hints.
+  /// @param trial  from 1; practice: 0
   bool hears_nerves(int trial, int participant) const;
+  bool sees_hints(int trial, int participant) const;
+  /// Of a procedure: one of design.conditions.
+  std::string condition(int trial, int participant) const;
   /// Makes or reads the bones, which takes seconds. @param folder  of the file
   /// @throws InputError as bone::load_bone does
   void load_bones(const std::filesystem::path& folder);
@@ -113,6 +117,10 @@ BoneDefinition parse_bone_definition(std::string_view text, std::string_view fil
 /// @param folder  of the file, for tables that it names; null: they are not read
 BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
                                     const std::filesystem::path* folder);
+
+/// Reads [nerve_monitor] and [hints], what participants may be given while they drill, and the
+/// conditions of procedures that follow from them.
+void read_given(Table& root, BoneDefinition& definition);
 
 /// The simulator of a procedure: the definition's, around a bone.
 bone::SimulatorParameters simulator_for(const BoneDefinition& definition,

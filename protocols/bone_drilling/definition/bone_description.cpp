@@ -64,12 +64,40 @@ std::string describe_nerves(const BoneDefinition& d) {
   for (const nerve::WatchedNerve& nerve : d.nerves->nerves) {
     names.push_back(nerve.name);
   }
-  const char* heard = d.nerves->heard == nerve::HeardIn::kAll          ? "heard in every procedure"
-                      : d.nerves->heard == nerve::HeardIn::kEveryOther ? "heard in every other one"
-                                                                       : "not heard";
+  const char* heard = d.nerves->heard == GivenIn::kAll          ? "heard in every procedure"
+                      : d.nerves->heard == GivenIn::kEveryOther ? "heard in every other one"
+                                                                : "not heard";
   return fmt::format("nerve monitor (a model, no clinical claim): {}; {} at {:g} Hz, {}",
                      fmt::join(names, ", "), counted(d.nerves->channels(), "channel", "channels"),
                      d.nerves->monitor.rate, heard);
+}
+
+std::string describe_hints(const hint::HintSetup& setup) {
+  std::vector<std::string_view> kinds;
+  for (const auto kind : hint::kAllHintKinds) {
+    if (setup.gives(kind)) {
+      kinds.push_back(hint::name_of(kind));
+    }
+  }
+  const char* shown = setup.shown == GivenIn::kAll          ? "shown in every procedure"
+                      : setup.shown == GivenIn::kEveryOther ? "shown in every other one"
+                                                            : "recorded but not shown";
+  const std::string from =
+      setup.file.empty() ? ""
+                         : fmt::format("; safe values of {} ({} of {})",
+                                       counted(setup.limits.participants, "expert", "experts"),
+                                       setup.file, setup.limits.study);
+  return fmt::format("hints: {}, {}{}", fmt::join(kinds, ", "), shown, from);
+}
+
+/// Whoever is hinted at by programs should know.
+void warn_of_hints(const BoneDefinition& d, std::vector<std::string>& warnings) {
+  if (d.hints && d.hints->limits.simulated) {
+    warnings.push_back(fmt::format(
+        "hints.file {} was learned from simulated experts: its safe values prove nothing about "
+        "surgeons",
+        d.hints->file));
+  }
 }
 
 }  // namespace
@@ -80,6 +108,7 @@ std::vector<std::string> BoneDefinition::warnings() const {
   warn_of_contact(d, warnings);
   warn_of_vibration(d, warnings);
   warn_of_devices(d, warnings);
+  warn_of_hints(d, warnings);
   return warnings;
 }
 
@@ -115,6 +144,9 @@ std::vector<std::string> BoneDefinition::description() const {
   }
   if (nerves) {
     lines.push_back(describe_nerves(*this));
+  }
+  if (hints) {
+    lines.push_back(describe_hints(*hints));
   }
   if (const auto margin = contact_margin(*this)) {
     lines.push_back(describe(*margin));

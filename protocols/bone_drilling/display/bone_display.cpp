@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/bone/model/nearest_structure.h"
 #include "core/render/bone/bone_tools.h"
 
 namespace haptrial::protocols {
@@ -138,7 +139,10 @@ BoneDisplay::BoneDisplay(const render::Gl& gl, const BoneDefinition& definition,
       width_(width),
       height_(height),
       scene_(gl, style, stage_->model->structures, stage_->depths),
-      label_(gl, width, height) {
+      labels_(gl, width, height),
+      hints_(definition.hints),
+      vital_(definition.hints ? bone::vital_structures(*stage_->model)
+                              : std::vector<std::string>{}) {
   for (std::size_t tool = 0; tool < stage_->simulator->tools().size(); ++tool) {
     meshes_.push_back(mesh_of(static_cast<int>(tool)));
   }
@@ -234,17 +238,31 @@ void BoneDisplay::draw(const bone::DrillingView& seen) {
   }
   scene_.draw(frame_, width_, height_);
   if (seen.shown) {
-    name_tool(seen);
+    label(seen);
   }
   draw_still(seen.stills_asked);
 }
 
-void BoneDisplay::name_tool(const bone::DrillingView& seen) {
-  const std::string words =
-      words_of(stage_->simulator->tools()[static_cast<std::size_t>(seen.tool)], seen);
+void BoneDisplay::label(const bone::DrillingView& seen) {
+  const bone::ToolSpec& tool = stage_->simulator->tools()[static_cast<std::size_t>(seen.tool)];
+  const std::vector<std::string> hints = hints_in(seen);
   for (int left = 0; left < width_; left += width()) {
-    label_.draw(words, left);
+    labels_.tool(words_of(tool, seen), {left, width()});
+    labels_.hints(hints, {left, width()});
   }
+}
+
+std::vector<std::string> BoneDisplay::hints_in(const bone::DrillingView& seen) const {
+  std::vector<std::string> lines;
+  const auto at = static_cast<std::size_t>(seen.hint_structure);
+  const std::string structure =
+      seen.hint_structure >= 0 && at < vital_.size() ? vital_[at] : std::string();
+  for (const hint::HintKind kind : hint::kAllHintKinds) {
+    if (hints_ && (seen.hints & hint::bit(kind)) != 0) {
+      lines.push_back(hint::hint_text(*hints_, kind, structure));
+    }
+  }
+  return lines;
 }
 
 void BoneDisplay::set_stills(std::shared_ptr<const std::vector<render::Image>> stills) {

@@ -12,7 +12,7 @@
 #include "core/render/gl/image.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_stage.h"
-#include "protocols/bone_drilling/display/tool_label.h"
+#include "protocols/bone_drilling/display/picture_labels.h"
 #include "protocols/interface/drawing.h"
 
 namespace haptrial::protocols {
@@ -44,7 +44,8 @@ class BoneDisplay {
  private:
   std::shared_ptr<const geometry::Mesh> mesh_of(int tool) const;
   std::vector<render::Capsule> shadow_of(int tool) const;
-  void name_tool(const bone::DrillingView& seen);
+  void label(const bone::DrillingView& seen);
+  std::vector<std::string> hints_in(const bone::DrillingView& seen) const;
   void draw_still(std::int32_t asked);
 
   render::Gl gl_;
@@ -55,7 +56,9 @@ class BoneDisplay {
   int height_;
   render::BoneScene scene_;
   render::BoneFrame frame_;
-  ToolLabel label_;
+  PictureLabels labels_;
+  std::optional<hint::HintSetup> hints_;
+  std::vector<std::string> vital_;  // names, as HintsNow::structure counts them
   std::vector<std::shared_ptr<const geometry::Mesh>> meshes_;  // by tool
   std::shared_ptr<const geometry::Mesh> tube_;  // in the other hand; null: there is none
   std::uint64_t dust_version_{~std::uint64_t{0}};

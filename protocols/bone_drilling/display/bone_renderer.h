@@ -11,7 +11,8 @@
 
 namespace haptrial::protocols {
 
-/// Draws a stage off screen; stills are made when the first is called up. The definition outlives it.
+/// Draws a stage off screen; stills are made when the first is called up. The definition outlives
+/// it.
 class BoneRenderer {
  public:
   BoneRenderer(const BoneDefinition& definition, std::shared_ptr<const BoneStage> stage);

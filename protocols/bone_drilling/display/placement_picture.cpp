@@ -15,9 +15,9 @@
 namespace haptrial::protocols {
 namespace {
 
-constexpr int kSharper = 2;               // drawn pixels to one of the picture, each way
-constexpr double kStructureShare = 0.55;  // of what shows through, in a pixel
-constexpr double kCavityShare = 0.45;     // likewise
+constexpr int kSharper = 2;                      // drawn pixels to one of the picture, each way
+constexpr double kStructureShare = 0.55;         // of what shows through, in a pixel
+constexpr double kCavityShare = 0.45;            // likewise
 const render::Colour kCavity{0.95, 0.25, 0.20};  // unlike any known structure
 
 /// Draws parts of a bone as the camera has them.
@@ -84,8 +84,9 @@ render::Image bare_picture(const BoneDefinition& d, std::size_t bone) {
   render::BoneStyle on_black = views.style();
   on_black.background = {};
   on_black.ambient = 0.4;  // nothing of what shows through is black
-  const bone::BoneModel inner = part_of(
-      model, [&](std::size_t at) { return model.structures[model.labels[at]].name != bone::kPlainBone; });
+  const bone::BoneModel inner = part_of(model, [&](std::size_t at) {
+    return model.structures[model.labels[at]].name != bone::kPlainBone;
+  });
   if (holds_any(inner)) {
     lay_over(views.draw(inner, on_black, false), kStructureShare, image);
   }

@@ -12,6 +12,7 @@
 #include "core/bone/record/led_row.h"
 #include "core/bone/record/second_hand_row.h"
 #include "core/bone/record/tear_row.h"
+#include "core/hint/hint_rows.h"
 #include "core/nerve/record/nerve_rows.h"
 #include "core/record/rows/common_tables.h"
 #include "core/record/rows/session_tables.h"
@@ -73,6 +74,7 @@ TEST(SessionPageTest, TablesOfDrillings) {
   tables.push_back(&table_of<FieldRow>());
   expect_described("drilling", tables);
 }
+TEST(SessionPageTest, TablesOfHints) { expect_described("hints", hint_tables()); }
 TEST(SessionPageTest, TablesOfNerveMonitors) { expect_described("nerves", nerve_tables()); }
 
 }  // namespace

@@ -191,10 +191,10 @@ TEST(DeviceTestCommandTest, WhatIsMissingIsNamed) {
   EXPECT_EQ(run_command("haptrial device-test virtual --seconds 0").status, 2);
 }
 
-TEST(DeviceTestCommandTest, DevicesListsAllFive) {
+TEST(DeviceTestCommandTest, DevicesListsAll) {
   const test::CommandResult result = run_command("haptrial devices");
   EXPECT_EQ(result.status, 0);
-  for (const char* name : {"virtual", "replay", "mouse", "force-dimension", "open-haptics"}) {
+  for (const char* name : {"virtual", "replay", "mouse", "gamepad", "force-dimension", "open-haptics"}) {
     EXPECT_THAT(result.output, HasSubstr(name));
   }
 }

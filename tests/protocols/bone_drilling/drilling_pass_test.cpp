@@ -57,6 +57,38 @@ TEST(DrillingPassTest, ATickDoesNotAllocateBesideThreads) {
   EXPECT_GT(removed, 10.0);
 }
 
+TEST(DrillingPassTest, HintsAllocateNothingOnTheServoThreadAndAreSeen) {
+  Workshop shop(test::dumbbell(), true);
+  hint::HintSetup setup;
+  setup.kinds[static_cast<std::size_t>(hint::HintKind::kHidden)] = true;
+  setup.fewest = 1;
+  const auto model = std::make_shared<const bone::BoneModel>(shop.model);
+  hint::ThreadedHints hints(nullptr);
+  hints.begin(
+      std::make_unique<hint::HintWatch>(setup, std::make_shared<const hint::HintMap>(setup, *model),
+                                        model, test::workshop(shop.model).pose_WB, 1000.0));
+  shop.pass->give(hints);
+  const auto readings = test::through_the_bridge(8000);
+  std::uint8_t seen = 0;
+  std::size_t allocations = 0;
+  for (std::size_t from = 0; from < readings.size(); from += 500) {
+    {
+      const test::AllocationGuard guard;
+      for (std::size_t i = from; i < from + 500; ++i) {
+        const auto shown = shop.pass->tick(readings[i], kDt).shown;
+        seen = static_cast<std::uint8_t>(seen | shown.as<bone::DrillingView>()->hints);
+      }
+      allocations += guard.count();
+    }
+    hints.settle();  // as fast as it can, and yet nothing finds no room
+  }
+  EXPECT_EQ(allocations, 0u);
+  EXPECT_EQ(hints.dropped(), 0u);
+  hints.end_pass();
+  EXPECT_GT(hints.take().size(), 0u) << "the bridge is drilled from above, through bone";
+  EXPECT_EQ(seen, hint::bit(hint::HintKind::kHidden));
+}
+
 TEST(DrillingPassTest, EveryEmptiedVoxelIsLoggedOnceWithItsTick) {
   Workshop shop;
   const int before = filled(*shop.simulator);

@@ -16,7 +16,7 @@
 #include <thread>
 
 #include "core/base/definition/table.h"
-#include "core/device/pedal/axis_names.h"
+#include "core/device/input/axis_names.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/event_records.h"
 #include "tests/support/message_of.h"
@@ -26,40 +26,6 @@ namespace haptrial::device::pedal_test {
 namespace {
 
 using testing::HasSubstr;
-
-TEST(AxisRecordsTest, ValuesCountFromTheEndOfTheirReportInWhateverPiecesTheyCome) {
-  AxisRecords records(ABS_GAS);
-  std::vector<std::byte> bytes;
-  test::add_record(bytes, EV_ABS, ABS_BRAKE, 9);
-  test::add_record(bytes, EV_ABS, ABS_GAS, 40);
-  test::add_record(bytes, EV_ABS, ABS_GAS, 41);
-  const std::size_t open = bytes.size();
-  test::add_record(bytes, EV_SYN, SYN_REPORT, 0);
-  test::add_record(bytes, EV_ABS, ABS_BRAKE, 10);
-  test::add_record(bytes, EV_SYN, SYN_REPORT, 0);
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    records.take(std::span(bytes).subspan(i, 1));
-    EXPECT_EQ(records.value().has_value(), i + 1 >= open + sizeof(input_event)) << i;
-  }
-  EXPECT_EQ(records.value(), 41);
-  EXPECT_FALSE(records.take_dropped());
-}
-
-TEST(AxisRecordsTest, WhatStandsAroundDroppedRecordsIsVoid) {
-  AxisRecords records(ABS_GAS);
-  records.take(test::report_of(ABS_GAS, 7));
-  std::vector<std::byte> bytes;
-  test::add_record(bytes, EV_ABS, ABS_GAS, 100);
-  test::add_record(bytes, EV_SYN, SYN_DROPPED, 0);
-  test::add_record(bytes, EV_ABS, ABS_GAS, 200);
-  test::add_record(bytes, EV_SYN, SYN_REPORT, 0);
-  records.take(bytes);
-  EXPECT_EQ(records.value(), 7);
-  EXPECT_TRUE(records.take_dropped());
-  EXPECT_FALSE(records.take_dropped());
-  records.take(test::report_of(ABS_GAS, 8));
-  EXPECT_EQ(records.value(), 8);
-}
 
 TEST(PedalTest, DepthGoesFromTheDeadZoneToTheEndEitherWay) {
   EXPECT_EQ(depth_of(0, 0, 200, 0.1), 0.0);

@@ -1,4 +1,4 @@
-#include "core/device/pedal/axis_names.h"
+#include "core/device/input/axis_names.h"
 
 #include <fmt/format.h>
 #include <linux/input.h>

@@ -1,19 +1,19 @@
-#include "analysis/bone_drilling/procedure/standing_bone.h"
+#include "core/bone/sight/standing_bone.h"
 
 #include <array>
 #include <utility>
 
-namespace haptrial::analysis::drilling {
+namespace haptrial::bone {
 
-StandingBone::StandingBone(std::shared_ptr<const bone::BoneModel> bone)
+StandingBone::StandingBone(std::shared_ptr<const BoneModel> bone)
     : bone_(std::move(bone)), bits_((bone_->grid.count() + 63) / 64, 0) {
-  bone::check(*bone_);
+  check(*bone_);
   for (std::size_t i = 0; i < bone_->labels.size(); ++i) {
     bits_[i / 64] |= static_cast<std::uint64_t>(bone_->labels[i] != 0) << (i % 64);
   }
 }
 
-bool StandingBone::inside(const bone::Voxel& voxel) const noexcept {
+bool StandingBone::inside(const Voxel& voxel) const noexcept {
   for (int axis = 0; axis < 3; ++axis) {
     if (voxel[axis] < 0 || voxel[axis] >= grid().size[static_cast<std::size_t>(axis)]) {
       return false;
@@ -22,7 +22,7 @@ bool StandingBone::inside(const bone::Voxel& voxel) const noexcept {
   return true;
 }
 
-bool StandingBone::take(const bone::Voxel& voxel) noexcept {
+bool StandingBone::take(const Voxel& voxel) noexcept {
   if (!inside(voxel) || !holds(voxel)) {
     return false;
   }
@@ -31,21 +31,20 @@ bool StandingBone::take(const bone::Voxel& voxel) noexcept {
   return true;
 }
 
-void StandingBone::take_part(const bone::Voxel& voxel, std::vector<bone::Voxel>* taken) {
-  static const std::array<bone::Voxel, 6> kFaces{bone::Voxel(1, 0, 0), bone::Voxel(-1, 0, 0),
-                                                 bone::Voxel(0, 1, 0), bone::Voxel(0, -1, 0),
-                                                 bone::Voxel(0, 0, 1), bone::Voxel(0, 0, -1)};
-  std::vector<bone::Voxel> open;
+void StandingBone::take_part(const Voxel& voxel, std::vector<Voxel>* taken) {
+  static const std::array<Voxel, 6> kFaces{Voxel(1, 0, 0),  Voxel(-1, 0, 0), Voxel(0, 1, 0),
+                                           Voxel(0, -1, 0), Voxel(0, 0, 1),  Voxel(0, 0, -1)};
+  std::vector<Voxel> open;
   if (take(voxel)) {
     open.push_back(voxel);
   }
   while (!open.empty()) {
-    const bone::Voxel at = open.back();
+    const Voxel at = open.back();
     open.pop_back();
     if (taken != nullptr) {
       taken->push_back(at);
     }
-    for (const bone::Voxel& face : kFaces) {
+    for (const Voxel& face : kFaces) {
       if (take(at + face)) {
         open.push_back(at + face);
       }
@@ -53,4 +52,4 @@ void StandingBone::take_part(const bone::Voxel& voxel, std::vector<bone::Voxel>*
   }
 }
 
-}  // namespace haptrial::analysis::drilling
+}  // namespace haptrial::bone

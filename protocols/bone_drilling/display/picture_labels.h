@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "core/bone/simulator/drilling_view.h"
@@ -16,18 +17,31 @@ std::string words_of(const bone::ToolSpec& tool);
 /// The same with what became of a burr: "cutting, 6 mm, 82 % sharp, reversed".
 std::string words_of(const bone::ToolSpec& tool, const bone::DrillingView& seen);
 
-/// Says in a picture's lower left corner which tool is in hand. One thread, with its OpenGL context
-/// current.
-class ToolLabel {
+/// An eye's picture in the framebuffer.
+struct EyePicture {
+  int left{0};   // edge [px]
+  int width{0};  // [px]
+};
+
+/// Says over what is in the bound framebuffer which tool is in hand, in the lower left corner, and
+/// what the participant is hinted at, at the top. One thread, with its OpenGL context current.
+class PictureLabels {
  public:
   /// @param width, height  of the framebuffer [px]
   /// @throws RunError as render::TextPainter does.
-  ToolLabel(const render::Gl& gl, int width, int height);
-  /// Over what is in the bound framebuffer. @param words  words_of() the tool  @param left  edge of
-  /// the eye's picture [px]
-  void draw(const std::string& words, int left);
+  PictureLabels(const render::Gl& gl, int width, int height);
+  /// @param words  words_of() the tool
+  void tool(const std::string& words, const EyePicture& eye);
+  /// One line below the other.
+  void hints(std::span<const std::string> lines, const EyePicture& eye);
 
  private:
+  struct Look {
+    render::TextStyle text;
+    render::Colour plate;
+  };
+  void line(const std::string& words, const Eigen::Vector2d& low, const Look& look);
+
   int height_;
   render::Painter painter_;
   render::TextPainter text_;

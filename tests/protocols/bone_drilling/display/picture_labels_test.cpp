@@ -1,4 +1,4 @@
-#include "protocols/bone_drilling/display/tool_label.h"
+#include "protocols/bone_drilling/display/picture_labels.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ bone::ToolSpec burr_called(const char* name, const bone::BurrDimensions& dimensi
   return tool;
 }
 
-TEST(ToolLabelTest, NamesAToolWithItsSizeAndWhatBecameOfIt) {
+TEST(PictureLabelsTest, NamesAToolWithItsSizeAndWhatBecameOfIt) {
   bone::ToolSpec ball = burr_called("cutting", {bone::BurrForm::kBall, 6e-3, 0.0, 0.0});
   bone::ToolSpec fissure = burr_called("fissure", {bone::BurrForm::kCylinder, 1.6e-3, 6e-3, 0.0});
   EXPECT_EQ(words_of(ball), "cutting, 6 mm");

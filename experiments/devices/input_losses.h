@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/device/input/input_reader.h"
+
+namespace haptrial::experiments {
+
+/// What is to be recorded of an input device, and what an experimenter has to know of it.
+struct InputNews {
+  std::string event;   // "pedal_lost" or "pedal_back"
+  std::string text;    // of the event
+  std::string notice;  // empty: none
+};
+
+/// How often an input device was lost during a session. Session's thread.
+class InputLosses {
+ public:
+  /// @param what       "pedal"; events begin with it
+  /// @param name       "pedal"; sentences call it so
+  /// @param meanwhile  "counts as up"
+  InputLosses(std::string what, std::string name, std::string meanwhile)
+      : what_(std::move(what)), name_(std::move(name)), meanwhile_(std::move(meanwhile)) {}
+
+  /// Of its changes since the last call. @param input  its file
+  std::vector<InputNews> take(const std::string& input,
+                              const std::vector<device::InputChange>& changes);
+  /// At the end; empty if it was lost once at most, which take() has said.
+  std::string sentence(const std::string& input) const;
+
+ private:
+  std::string what_;
+  std::string name_;
+  std::string meanwhile_;
+  int losses_{0};
+};
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,48 @@
+#include "core/base/definition/table.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
+
+namespace haptrial::protocols {
+
+void read_given(Table& root, BoneDefinition& d) {
+  std::vector<std::string> conditions;
+  if (root.has("nerve_monitor")) {
+    Table table = root.table("nerve_monitor");
+    d.nerves = nerve::read_nerve_setup(table, d.rate);
+    conditions = given_words(kMonitor, d.nerves->heard);
+  }
+  if (root.has("hints")) {
+    Table table = root.table("hints");
+    d.hints = hint::read_hint_setup(table);
+    conditions = joined_words(conditions, given_words(hint::kHints, d.hints->shown));
+    if (d.nerves && d.nerves->heard == GivenIn::kEveryOther &&
+        d.hints->shown == GivenIn::kEveryOther) {
+      table.reject(
+          "shown_in", "\"every other\", and so is nerve_monitor.heard_in",
+          "\"all\" or \"none\" for one of them: nobody could tell which of the two did it");
+    }
+  }
+  if (!conditions.empty()) {
+    d.design.conditions = conditions;
+  }
+}
+
+bool BoneDefinition::hears_nerves(int trial, int participant) const {
+  return nerves && is_given(nerves->heard, trial, participant);
+}
+
+bool BoneDefinition::sees_hints(int trial, int participant) const {
+  return hints && is_given(hints->shown, trial, participant);
+}
+
+std::string BoneDefinition::condition(int trial, int participant) const {
+  std::vector<std::string> words;
+  if (nerves) {
+    words = {given_word(kMonitor, hears_nerves(trial, participant))};
+  }
+  if (hints) {
+    words = joined_words(words, {given_word(hint::kHints, sees_hints(trial, participant))});
+  }
+  return words.empty() ? "drilling" : words.front();
+}
+
+}  // namespace haptrial::protocols

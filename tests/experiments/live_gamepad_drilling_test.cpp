@@ -1,0 +1,181 @@
+// A game controller drills the shipped bone in a window, and hints are seen there. A pipe stands
+// for the controller.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+#include "core/bone/record/drilling_tables.h"
+#include "core/hint/hint_rows.h"
+#include "core/record/read/session_reader.h"
+#include "core/render/gl/image.h"
+#include "tests/experiments/command.h"
+#include "tests/experiments/console_person.h"
+#include "tests/experiments/live_command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/event_records.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/virtual_display.h"
+
+namespace haptrial::live_gamepad_drilling_test {
+namespace {
+
+namespace fs = std::filesystem;
+using test::VirtualDisplay;
+using testing::HasSubstr;
+
+constexpr const char* kTitle = "haptrial";
+
+/// For the documents: the whole window and the bone as it is shipped, pictures kept there.
+const char* kept_pictures() { return std::getenv("HAPTRIAL_KEEP_PICTURES"); }
+
+std::string with(std::string text, const std::string& what, const std::string& by) {
+  const auto at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), by);
+}
+
+/// A file of safe values for the documents' picture; else what is hidden is hinted at, alone.
+std::string hints() {
+  const char* file = std::getenv("HAPTRIAL_SAFE_VALUES");
+  return file != nullptr ? "\n[hints]\nfile = \"" + std::string(file) + "\"\n"
+                         : "\n[hints]\nkinds = [\"hidden\"]\nfewest = 1\n";
+}
+
+class LiveGamepadDrillingTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!VirtualDisplay::available()) {
+      GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
+    }
+    display_.emplace(width_, height_);
+    std::string text =
+        test::read_text(fs::path(HAPTRIAL_SOURCE_DIR) / "experiments/first_drilling.toml");
+    text = with(text, "card = true", "card = false");
+    if (kept_pictures() == nullptr) {  // what takes time
+      text = with(text, "width = 1280", "width = " + std::to_string(width_));
+      text = with(text, "height = 720", "height = " + std::to_string(height_));
+      text = with(text, "seed = 1 ", "spacing = 0.0008\nseed = 1 ");
+    }
+    text += "\n[gamepad]\ninput = \"" + (folder_ / "pad").string() + "\"\n" + hints();
+    test::write_text(folder_ / "study.toml", text);
+    signal(SIGPIPE, SIG_IGN);
+    ASSERT_EQ(mkfifo((folder_ / "pad").c_str(), 0600), 0);
+  }
+  fs::path file() const { return folder_ / "out/P01.h5"; }
+  template <class Row>
+  std::uint64_t rows() const {
+    try {
+      return record::SessionReader(file().string() + ".partial").count<Row>();
+    } catch (const std::exception&) {  // not there yet
+      return 0;
+    }
+  }
+  void put(int type, int code, int value) {
+    if (writer_ < 0) {
+      writer_ = open((folder_ / "pad").c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+    }
+    std::vector<std::byte> bytes;
+    test::add_record(bytes, type, code, value);
+    test::add_record(bytes, EV_SYN, SYN_REPORT, 0);
+    EXPECT_EQ(write(writer_, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+  }
+  void stick(int axis, double share) { put(EV_ABS, axis, static_cast<int>(32767 * share)); }
+  void hang_up() {
+    close(writer_);
+    writer_ = -1;
+  }
+  void TearDown() override {
+    if (writer_ >= 0) {
+      hang_up();
+    }
+  }
+  void keep(const std::string& name) const {
+    if (const char* folder = kept_pictures()) {
+      render::write_png(fs::path(folder) / name,
+                        render::Image{width_, height_, display_->screenshot()});
+    }
+  }
+
+  int width_{kept_pictures() != nullptr ? 1280 : 640};
+  int height_{kept_pictures() != nullptr ? 720 : 480};
+  int writer_{-1};
+  test::TemporaryFolder folder_;
+  std::optional<VirtualDisplay> display_;
+};
+
+TEST_F(LiveGamepadDrillingTest, SticksTriggersAndButtonsDrillAndALossIsRecorded) {
+  test::LiveCommand session("run '" + (folder_ / "study.toml").string() + "' --out '" +
+                            (folder_ / "out").string() + "' --device gamepad --window");
+  ASSERT_TRUE(test::eventually([&] {
+    display_->try_key(kTitle, VirtualDisplay::kEnter);
+    return rows<record::ToolRow>() > 0;
+  })) << session.errors();
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  put(EV_KEY, BTN_SOUTH, 1);
+  put(EV_ABS, ABS_RZ, 255);
+  ASSERT_TRUE(test::eventually([&] { return rows<record::RemovalRow>() > 0; }))
+      << "the right trigger takes the burr into the bone";
+  // Strokes from side to side under a burr that is pressed on; deep holes have hidden walls.
+  for (int stroke = 0; stroke < (kept_pictures() != nullptr ? 40 : 12); ++stroke) {
+    stick(ABS_X, stroke % 2 == 0 ? 0.8 : -0.8);
+    put(EV_ABS, ABS_RZ, stroke % 4 == 3 ? 0 : 200);
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    if (stroke >= 8 && rows<record::HintRow>() > 0) {
+      keep("gamepad-hint-" + std::to_string(stroke) + ".png");
+    }
+  }
+  stick(ABS_X, 0.0);
+  put(EV_ABS, ABS_RZ, 0);
+  stick(ABS_RX, 1.0);  // tilts
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));
+  hang_up();  // the burr stops, and the hand with it
+  std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+  put(EV_ABS, ABS_Z, 255);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  display_->press_key(kTitle, 'f');
+  const test::CommandResult ended = session.wait();
+  ASSERT_EQ(ended.status, 0) << ended.errors;
+  EXPECT_THAT(ended.output + ended.errors, HasSubstr("the game controller"));
+
+  const record::SessionReader reader(file());
+  EXPECT_EQ(reader.info().device, "gamepad");
+  EXPECT_FALSE(reader.info().simulated);
+  std::vector<std::string> events;
+  for (const record::EventRow& event : reader.events()) {
+    events.push_back(event.kind);
+  }
+  EXPECT_THAT(events, testing::Contains("gamepad_lost"));
+  EXPECT_THAT(events, testing::Contains("gamepad_back"));
+  const auto tool = reader.rows<record::ToolRow>();
+  EXPECT_FALSE(tool.back().power);
+  EXPECT_GT(tool.back().orientation.angularDistance(Eigen::Quaterniond::Identity()), 0.1);
+  EXPECT_GT(reader.count<record::RemovalRow>(), 50u);
+  EXPECT_EQ(reader.passes().at(0).condition, "hints on");
+  const test::CommandResult replay = test::run_command("haptrial replay '" + file().string() + "'");
+  EXPECT_EQ(replay.status, 0) << replay.errors;
+  EXPECT_THAT(replay.output, HasSubstr("trial 1: the same bone"));
+}
+
+TEST_F(LiveGamepadDrillingTest, WithoutATableThereIsASentence) {
+  const std::string shipped = HAPTRIAL_SOURCE_DIR "/experiments/first_drilling.toml";
+  const auto none = test::run_command("haptrial run '" + shipped + "' --device gamepad --window " +
+                                      "--out '" + (folder_ / "none").string() + "'");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.errors, HasSubstr("--device gamepad needs a table [gamepad]"));
+  const auto blind = test::run_command("haptrial run '" + shipped + "' --device gamepad");
+  EXPECT_EQ(blind.status, 2);
+  EXPECT_THAT(blind.errors, HasSubstr("--device gamepad takes its pointer"));
+}
+
+}  // namespace
+}  // namespace haptrial::live_gamepad_drilling_test
