@@ -49,12 +49,13 @@ void solve_one(const Side& a, const Vector3d& wish, PlaneSolution& s) {
 void solve_two(const Side& a, const Side& b, const Vector3d& wish, PlaneSolution& s) {
   const Vector3d along = a.normal.cross(b.normal);
   const double square = along.squaredNorm(), c = a.normal.dot(b.normal);
+  const double by = 1.0 / square;
   s.solved = square > kParallel;
-  s.move = along * (along.dot(wish) / square) +
-           ((a.lack - c * b.lack) * a.normal + (b.lack - c * a.lack) * b.normal) / square;
+  s.move = along * (along.dot(wish) * by) +
+           ((a.lack - c * b.lack) * a.normal + (b.lack - c * a.lack) * b.normal) * by;
   s.residual = s.move - wish;
   const double r0 = s.residual.dot(a.normal), r1 = s.residual.dot(b.normal);
-  s.push = {(r0 - c * r1) / square, (r1 - c * r0) / square, 0.0};
+  s.push = {(r0 - c * r1) * by, (r1 - c * r0) * by, 0.0};
 }
 
 void solve_three(const Side& a, const Side& b, const Side& c, const Vector3d& wish,
@@ -62,10 +63,11 @@ void solve_three(const Side& a, const Side& b, const Side& c, const Vector3d& wi
   const Vector3d c0 = b.normal.cross(c.normal), c1 = c.normal.cross(a.normal);
   const Vector3d c2 = a.normal.cross(b.normal);
   const double volume = a.normal.dot(c0);
+  const double by = 1.0 / volume;
   s.solved = std::abs(volume) > kFlat;
-  s.move = (a.lack * c0 + b.lack * c1 + c.lack * c2) / volume;
+  s.move = (a.lack * c0 + b.lack * c1 + c.lack * c2) * by;
   s.residual = s.move - wish;
-  s.push = {s.residual.dot(c0) / volume, s.residual.dot(c1) / volume, s.residual.dot(c2) / volume};
+  s.push = {s.residual.dot(c0) * by, s.residual.dot(c1) * by, s.residual.dot(c2) * by};
 }
 
 /// Visits every one, every two and every three of `count`, until it is sure.
@@ -87,6 +89,80 @@ void each_of_up_to_three(int count, const bool& sure, Visit visit) {
     }
   }
 }
+
+/// What a few planes push with, about, and whether that seems to hold the proxy: none pulls, and no
+/// other plane refuses where it ends. Told by the products of their normals alone; of planes that
+/// are nearly parallel nothing is told.
+class Pushes {
+ public:
+  static constexpr int kMost = PlaneSet::kMost;
+
+  /// @param count  of planes
+  /// @param normal  of a plane, by its number
+  /// @param lack  how much too deep the goal is for it
+  template <class Normal, class Lack>
+  Pushes(int count, const Normal& normal, const Lack& lack) : count_(count) {
+    for (int i = 0; i < count; ++i) {
+      lack_[i] = lack(i);
+      size_ = std::max(size_, std::abs(lack_[i]));
+      for (int j = 0; j < i; ++j) {
+        products_[i][j] = products_[j][i] = normal(i).dot(normal(j));
+      }
+      products_[i][i] = 1.0;
+    }
+  }
+
+  bool seem_to_hold(std::span<const int> which) const {
+    std::array<double, 3> push{};
+    const int i = which[0];
+    if (which.size() == 1) {
+      push = {lack_[i], 0.0, 0.0};
+      return holds(which, push, size_);
+    }
+    const int j = which[1];
+    const double c = products_[i][j], square = 1.0 - c * c;
+    if (which.size() == 2) {
+      push = {lack_[i] - c * lack_[j], lack_[j] - c * lack_[i], 0.0};
+      return square > kDoubtful && holds(which, scaled(push, square), size_ / square);
+    }
+    const int k = which[2];
+    const double a = products_[j][k], b = products_[i][k];
+    const double x = lack_[i], y = lack_[j], z = lack_[k];
+    const double volume = square - a * a - b * b + 2.0 * a * b * c;  // squared
+    push = {(1.0 - a * a) * x + (a * b - c) * y + (a * c - b) * z,
+            (a * b - c) * x + (1.0 - b * b) * y + (b * c - a) * z,
+            (a * c - b) * x + (b * c - a) * y + square * z};
+    return volume > kDoubtful && holds(which, scaled(push, volume), size_ / volume);
+  }
+
+ private:
+  static constexpr double kDoubtful = 1e-4, kRounded = 1e-9;
+
+  static std::array<double, 3> scaled(const std::array<double, 3>& push, double by) {
+    return {push[0] / by, push[1] / by, push[2] / by};
+  }
+  bool holds(std::span<const int> which, const std::array<double, 3>& push, double size) const {
+    const double doubt = kRounded * size;
+    if (push[0] < -doubt || push[1] < -doubt || push[2] < -doubt) {
+      return false;
+    }
+    for (int i = 0; i < count_; ++i) {
+      double lifted = doubt - lack_[i];
+      for (std::size_t k = 0; k < which.size(); ++k) {
+        lifted += push[k] * products_[i][which[k]];
+      }
+      if (lifted < 0.0) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  int count_;
+  std::array<double, kMost> lack_;
+  std::array<std::array<double, kMost>, kMost> products_;
+  double size_{0.0};
+};
 
 }  // namespace
 
@@ -143,7 +219,7 @@ PlaneSolution PlaneSet::solve(const Vector3d& proxy, const Vector3d& wish,
   double least = farthest * farthest;
   bool sure = false;  // no plane pulls: then no point is nearer
   int tried = 0;
-  each_of_up_to_three(count_, sure, [&](std::span<const int> which) {
+  const auto visit = [&](std::span<const int> which) {
     const PlaneSolution s = solve_on(which, proxy, wish);
     ++tried;
     const double square = s.residual.squaredNorm();
@@ -152,7 +228,19 @@ PlaneSolution PlaneSet::solve(const Vector3d& proxy, const Vector3d& wish,
       least = square;
       sure = s.push[0] >= 0.0 && s.push[1] >= 0.0 && s.push[2] >= 0.0;
     }
-  });
+  };
+  // Most often one look is enough; if what seems to hold is not sure, all are looked at.
+  if (count_ > 1) {
+    const Pushes pushes(
+        count_, [&](int i) -> const Vector3d& { return planes_[i].normal; },
+        [&](int i) { return most[i] + tolerance - planes_[i].normal.dot(wish); });
+    each_of_up_to_three(count_, sure, [&](std::span<const int> which) {
+      if (pushes.seem_to_hold(which)) {
+        visit(which);
+      }
+    });
+  }
+  each_of_up_to_three(count_, sure, visit);
   best.tried = tried;
   return best;
 }
