@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "core/contact/surface/contact_surface.h"
 #include "core/geometry/bvh/search/bvh_data.h"
@@ -11,6 +13,7 @@ namespace haptrial::contact {
 namespace {
 
 using geometry::all_four;
+using geometry::bits;
 using geometry::Boxes;
 using geometry::BvhData;
 using geometry::Four;
@@ -32,7 +35,9 @@ void store(float* to, Four x) { std::memcpy(to, &x, sizeof x); }
 Four absolute(Four x) { return larger(x, -x); }
 
 /// Squared distances from a point to the boxes of a node; infinite for empty places.
-void squared_distances(const Boxes& boxes, const Four (&q)[3], Lanes& out) {
+/// @returns a bit for each that is within `limit`
+unsigned squared_distances(const Boxes& boxes, const Four (&q)[3], float limit, Lanes& out) {
+  unsigned within = 0;
   for (int i = 0; i < kWidth; i += 4) {
     Four sum = all_four(0.0f);
     for (int axis = 0; axis < 3; ++axis) {
@@ -42,7 +47,9 @@ void squared_distances(const Boxes& boxes, const Four (&q)[3], Lanes& out) {
       sum += apart * apart;
     }
     store(out.data() + i, sum);
+    within |= bits(sum <= all_four(limit)) << i;
   }
+  return within;
 }
 
 /// A segment for boxes, in the frame of the hierarchy.
@@ -63,8 +70,9 @@ struct Rod {
     widen = all_four(static_cast<float>(radius + kRounded * (1.0 + radius + largest)));
   }
 
-  /// Not above zero for boxes that the widened segment may meet: by separating axes.
-  void apart(const Boxes& boxes, Lanes& out) const {
+  /// A bit for each box that the widened segment may meet: by separating axes.
+  unsigned meets(const Boxes& boxes) const {
+    unsigned met = 0;
     for (int i = 0; i < kWidth; i += 4) {
       Four d[3], e[3], most = all_four(-1.0f);
       for (int axis = 0; axis < 3; ++axis) {
@@ -78,18 +86,12 @@ struct Rod {
         const Four across = absolute(d[y] * half[z] - d[z] * half[y]);
         most = larger(across - e[y] * reach[z] - e[z] * reach[y], most);
       }
-      store(out.data() + i, most);
+      const Four filled = load(boxes.low[0] + i);
+      met |= bits((most <= 0.0f) & (filled < std::numeric_limits<float>::infinity())) << i;
     }
+    return met;
   }
 };
-
-int full_places(const Boxes& boxes) {
-  int count = 0;
-  while (count < kWidth && !std::isinf(boxes.low[0][count])) {
-    ++count;
-  }
-  return count;
-}
 
 /// Asks for the boxes of a node that will be looked at soon: they come from far, several at once.
 void fetch_early(const BvhData& data, std::int32_t node) {
@@ -97,6 +99,9 @@ void fetch_early(const BvhData& data, std::int32_t node) {
   for (int axis = 0; axis < 3; ++axis) {
     __builtin_prefetch(boxes.low[axis]);
     __builtin_prefetch(boxes.high[axis]);
+  }
+  if (node >= 0) {
+    __builtin_prefetch(data.nodes[node].child);
   }
 }
 
@@ -108,14 +113,9 @@ struct Child {
 /// The children of a node that the widened segment may meet.
 int met_children(const Rod& rod, const Boxes& boxes, const Eigen::Vector3f& direction,
                  std::array<Child, kWidth>& children) {
-  Lanes apart;
-  rod.apart(boxes, apart);
-  const int places = full_places(boxes);
   int count = 0;
-  for (int i = 0; i < places; ++i) {
-    if (apart[i] > 0.0f) {
-      continue;
-    }
+  for (unsigned met = rod.meets(boxes); met != 0; met &= met - 1) {
+    const int i = std::countr_zero(met);
     float entry = 0.0f;
     for (int axis = 0; axis < 3; ++axis) {
       entry +=
@@ -156,34 +156,47 @@ int ContactSurface::gather(const Eigen::Vector3d& centre, double reach,
   }
   const Ball ball(data.frame.to_frame(centre), reach * data.frame.scale);
   std::array<std::int32_t, geometry::kMaxDepth * kWidth> stack;
-  int top = 0;
+  std::array<std::int32_t, 64> leaves;  // looked at when they have come from memory
+  int top = 0, waiting = 0;
   std::size_t count = 0;
   stack[top++] = 0;
   Lanes squares;
+  const auto look_at_leaves = [&] {
+    for (int k = 0; k < waiting; ++k) {
+      const std::int32_t leaf = leaves[k];
+      unsigned within = squared_distances(data.leaf_boxes[leaf], ball.centre, ball.limit, squares);
+      for (; within != 0; within &= within - 1) {
+        if (count == found.size()) {
+          return false;
+        }
+        const int i = std::countr_zero(within);
+        const std::int32_t slot = leaf * kWidth + i;
+        found[count++] = {ball.apart(squares[i]) / data.frame.scale, slot};
+        __builtin_prefetch(&corners_[slot]);
+        __builtin_prefetch(&corners_[slot][2].z());
+        __builtin_prefetch(&normals_[slot]);
+      }
+    }
+    waiting = 0;
+    return true;
+  };
   while (top > 0) {
-    const std::int32_t node = stack[--top];
-    squared_distances(node < 0 ? data.leaf_boxes[~node] : data.nodes[node].boxes, ball.centre,
-                      squares);
-    for (int i = 0; i < kWidth; ++i) {
-      if (!(squares[i] <= ball.limit)) {
+    const geometry::Node& node = data.nodes[stack[--top]];
+    unsigned within = squared_distances(node.boxes, ball.centre, ball.limit, squares);
+    for (; within != 0; within &= within - 1) {
+      const std::int32_t child = node.child[std::countr_zero(within)];
+      fetch_early(data, child);
+      if (child >= 0) {
+        stack[top++] = child;
         continue;
       }
-      if (node >= 0) {
-        stack[top++] = data.nodes[node].child[i];
-        fetch_early(data, stack[top - 1]);
-        continue;
-      }
-      if (count == found.size()) {
+      if (waiting == static_cast<int>(leaves.size()) && !look_at_leaves()) {
         return -1;
       }
-      const std::int32_t slot = ~node * kWidth + i;
-      found[count++] = {ball.apart(squares[i]) / data.frame.scale, slot};
-      __builtin_prefetch(&corners_[slot]);
-      __builtin_prefetch(&corners_[slot][2].z());
-      __builtin_prefetch(&normals_[slot]);
+      leaves[waiting++] = ~child;
     }
   }
-  return static_cast<int>(count);
+  return look_at_leaves() ? static_cast<int>(count) : -1;
 }
 
 void ContactSurface::along(const Eigen::Vector3d& from, const Eigen::Vector3d& move, double radius,

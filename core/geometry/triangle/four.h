@@ -2,6 +2,7 @@
 
 // Four floats in the compiler's own vector type: x, y, z and one more.
 
+#include <cmath>
 #include <cstdint>
 
 #ifdef __SSE__
@@ -26,6 +27,23 @@ inline Four larger(Four a, Four b) {
   return _mm_max_ps(a, b);
 #else
   return a > b ? a : b;
+#endif
+}
+
+inline Four root(Four a) {
+#ifdef __SSE__
+  return _mm_sqrt_ps(a);
+#else
+  return Four{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+#endif
+}
+
+/// A bit for each of the four that a condition holds for.
+inline unsigned bits(FourInts holds) {
+#ifdef __SSE__
+  return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(holds)));
+#else
+  return (holds[0] & 1u) | (holds[1] & 2u) | (holds[2] & 4u) | (holds[3] & 8u);
 #endif
 }
 
