@@ -3,24 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 namespace haptrial::contact {
 namespace {
 
 using Eigen::Vector3d;
-
-typedef double Two __attribute__((vector_size(16)));
-typedef std::int64_t TwoInts __attribute__((vector_size(16)));
-
-Two load_two(const double* from) {
-  Two x;
-  std::memcpy(&x, from, sizeof x);
-  return x;
-}
-
-void store_two(double* to, Two x) { std::memcpy(to, &x, sizeof x); }
 
 /// A plane at the farthest of the corners.
 void set_plane(Hull& hull, int k, const Vector3d& out, const Vector3d& to_second,
@@ -68,30 +56,6 @@ void Hull::wrap(const geometry::Corners& c, const Vector3d& normal, std::int32_t
   set(7, Vector3d::Zero());
   constexpr double kPlump = 1e-4;  // the height over the longest edge, as a part of it
   plump = least > kPlump * std::sqrt(most) && level[0] + level[1] < 1e-9 * least;
-}
-
-Hull::Heights Hull::heights(const Vector3d& from, const Vector3d& move) const noexcept {
-  const Vector3d d = from - origin;
-  const Two dx{d.x(), d.x()}, dy{d.y(), d.y()}, dz{d.z(), d.z()};
-  const Two mx{move.x(), move.x()}, my{move.y(), move.y()}, mz{move.z(), move.z()};
-  Heights heights;
-  for (int k = 0; k < kPlanes; k += 2) {
-    const Two a = load_two(&x[k]), b = load_two(&y[k]), c = load_two(&z[k]);
-    store_two(&heights.at[k], a * dx + b * dy + c * dz - load_two(&level[k]));
-    store_two(&heights.gain[k], a * mx + b * my + c * mz);
-  }
-  return heights;
-}
-
-bool Hull::parted(const Heights& heights, double off_faces, double off_edges) noexcept {
-  Two off{off_faces, off_faces};
-  TwoInts parted{0, 0};
-  for (int k = 0; k < kPlanes; k += 2) {
-    const Two at = load_two(&heights.at[k]);
-    parted |= (at > off) & (at + load_two(&heights.gain[k]) > off);
-    off = Two{off_edges, off_edges};
-  }
-  return (parted[0] | parted[1]) != 0;
 }
 
 Vector3d Hull::farthest(const Heights& heights) const noexcept {

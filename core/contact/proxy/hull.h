@@ -3,11 +3,23 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "core/contact/surface/contact_surface.h"
 
 namespace haptrial::contact {
+
+typedef double Two __attribute__((vector_size(16)));
+typedef std::int64_t TwoInts __attribute__((vector_size(16)));
+
+inline Two load_two(const double* from) noexcept {
+  Two x;
+  std::memcpy(&x, from, sizeof x);
+  return x;
+}
+
+inline void store_two(double* to, Two x) noexcept { std::memcpy(to, &x, sizeof x); }
 
 /// A triangle as the points x with
 ///
@@ -39,9 +51,26 @@ struct alignas(64) Hull {
   struct Heights {
     std::array<double, kPlanes> at, gain;  // [m]
   };
-  Heights heights(const Eigen::Vector3d& from, const Eigen::Vector3d& move) const noexcept;
+  Heights heights(const Eigen::Vector3d& from, const Eigen::Vector3d& move) const noexcept {
+    const Eigen::Vector3d d = from - origin;
+    Heights heights;
+    for (int k = 0; k < kPlanes; k += 2) {
+      const Two a = load_two(&x[k]), b = load_two(&y[k]), c = load_two(&z[k]);
+      store_two(&heights.at[k], a * d.x() + b * d.y() + c * d.z() - load_two(&level[k]));
+      store_two(&heights.gain[k], a * move.x() + b * move.y() + c * move.z());
+    }
+    return heights;
+  }
   /// Whether one plane keeps a whole move farther away than what faces and other planes ask for.
-  static bool parted(const Heights& heights, double off_faces, double off_edges) noexcept;
+  static bool parted(const Heights& heights, double off_faces, double off_edges) noexcept {
+    TwoInts parted{0, 0};
+    for (int k = 0; k < kPlanes; k += 2) {
+      const double off = k < kFaces ? off_faces : off_edges;
+      const Two at = load_two(&heights.at[k]);
+      parted |= (at > off) & (at + load_two(&heights.gain[k]) > off);
+    }
+    return (parted[0] | parted[1]) != 0;
+  }
   /// The direction of the plane that keeps a move farthest away.
   Eigen::Vector3d farthest(const Heights& heights) const noexcept;
 };

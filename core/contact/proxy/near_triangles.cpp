@@ -50,9 +50,25 @@ bool NearTriangles::is_clear(const Sweep& sweep, double length) const noexcept {
          (sweep.from - clear_centre_).norm() + length < clear_ - radius_ - 2.0 * sweep.skin.rest();
 }
 
-/// How far the proxy may go until something may be met that the list does not have.
-double NearTriangles::left(const Sweep& sweep) const noexcept {
-  return covered_ - radius_ - 2.0 * sweep.skin.rest() - (sweep.from - centre_).norm();
+/// The part of a move until which nothing can be met that the list does not have; negative: none.
+double NearTriangles::listed_part(const Sweep& sweep, double length) const noexcept {
+  const double within = covered_ - radius_ - 2.0 * sweep.skin.rest();
+  if (!(within > 0.0)) {
+    return -1.0;
+  }
+  const Eigen::Vector3d from = sweep.from - centre_;
+  const double inside = within * within - from.squaredNorm();
+  if (inside <= 0.0) {
+    return -1.0;
+  }
+  if ((from + sweep.move).squaredNorm() <= within * within) {
+    return 1.0;
+  }
+  // Where it leaves the ball.
+  const double along = from.dot(sweep.move) / length;
+  const double root = std::sqrt(along * along + inside);
+  const double ahead = along > 0.0 ? inside / (root + along) : root - along;
+  return std::min(ahead / length, 1.0);
 }
 
 bool NearTriangles::list_around(const Sweep& sweep) noexcept {
@@ -65,31 +81,48 @@ bool NearTriangles::list_around(const Sweep& sweep) noexcept {
   return false;
 }
 
-bool NearTriangles::gather(const Sweep& sweep, double reach) noexcept {
-  const double around = radius_ + 2.0 * sweep.skin.rest();
-  ++operations_.lists;
-  const int count = surface_->gather(sweep.from, around + reach, found_);
+namespace {
+
+/// Where a list has its middle: it reaches farther ahead than behind.
+Eigen::Vector3d middle_ahead(const Sweep& sweep, double reach) {
+  constexpr double kLead = 0.6;
+  const double length = sweep.move.norm();
+  return length > 0.0 ? Eigen::Vector3d(sweep.from + kLead * reach / length * sweep.move)
+                      : sweep.from;
+}
+
+}  // namespace
+
+/// Of a list that is as long, the next reaches farther or less far.
+void NearTriangles::adapt_reach(int count) noexcept {
   const bool point = radius_ == 0.0;
   // Triangles that lie around the proxy as it is are listed however near the reach is.
   constexpr double kLeastReach = 1.0;  // of the typical edge
   const bool many = count > (point ? kMany : kManyOfSphere);
   if (count < 0 || (many && reach_ > kLeastReach * surface_->typical_edge())) {
     reach_ *= 0.6;
-  } else if (count < (point ? kFew : kFewOfSphere) &&
-             reach_ < 4.0 * surface_->typical_edge() + radius_) {
+  } else if (count < (point ? kFew : kFewOfSphere) && reach_ < 4.0 * surface_->typical_edge()) {
     reach_ *= 1.2;
   }
+}
+
+bool NearTriangles::gather(const Sweep& sweep, double reach) noexcept {
+  const double around = radius_ + 2.0 * sweep.skin.rest();
+  const Eigen::Vector3d middle = middle_ahead(sweep, reach);
+  ++operations_.lists;
+  const int count = surface_->gather(middle, around + reach, found_);
+  adapt_reach(count);
   if (count < 0) {
     covered_ = -1.0;
     return false;
   }
-  centre_ = sweep.from;
+  centre_ = middle;
   covered_ = around + reach;
-  listed_reach_ = reach;
   listed_.clear(centre_, covered_);
   for (int i = 0; i < count; ++i) {
-    listed_.add(found_[i].slot, surface_->corners(found_[i].slot), sweep.from);
+    listed_.add(found_[i].slot, surface_->corners(found_[i].slot));
   }
+  listed_.part_all(sweep.from);
   if (count == 0) {
     clear_centre_ = sweep.from;
     ++operations_.nearest_searches;
@@ -147,11 +180,24 @@ bool NearTriangles::meets_listed(const Sweep& sweep, int i, double end, SweepHit
 struct NearTriangles::FirstMet {
   const Sweep& sweep;
   double length;  // of the move [m]
-  double limit;   // the part of the move that is still of interest
+  double end;     // the part of the move that is looked at
+  double limit;   // the part of it that is still of interest
   SweepHit& hit;
   bool met{false};
   int tested{0};
 };
+
+/// A few together: other planes first, which are cheaper than tests.
+void NearTriangles::test(std::span<PartedTriangles::Candidate> few,
+                         const PartedTriangles::Move& move, FirstMet& first) noexcept {
+  const auto too_late = [&](const auto& c) { return first.end * c.t > first.limit; };
+  few = few.first(std::remove_if(few.begin(), few.end(), too_late) - few.begin());
+  for (const PartedTriangles::Candidate& candidate : few.first(listed_.part_anew(move, few))) {
+    if (!too_late(candidate)) {
+      test(candidate, first);
+    }
+  }
+}
 
 void NearTriangles::test(const PartedTriangles::Candidate& candidate, FirstMet& first) noexcept {
   SweepHit here;
@@ -169,21 +215,25 @@ bool NearTriangles::first_listed(const Sweep& sweep, double end, double length,
                                  SweepHit& hit) noexcept {
   // A little more than the hull that is never entered.
   const double off = radius_ + 1.25 * sweep.skin.thickness;
-  const int count = listed_.within(sweep.from, end * sweep.move, off, candidates_);
-  FirstMet first{sweep, length, end, hit};
-  // The soonest first: most often it stops the proxy, and the others need not be looked at.
-  constexpr int kPicked = 4;
-  int next = 0;
-  for (; next < std::min(kPicked, count) && !first.met; ++next) {
-    const auto soonest = std::min_element(candidates_.begin() + next, candidates_.begin() + count,
-                                          [](const auto& a, const auto& b) { return a.t < b.t; });
-    std::swap(candidates_[next], *soonest);
-    test(candidates_[next], first);
+  const PartedTriangles::Move move = listed_.in_list(sweep.from, end * sweep.move, off);
+  const int count = listed_.within(move, candidates_);
+  FirstMet first{sweep, length, end, end, hit};
+  // The soonest first: most often they stop the proxy, and the others need not be looked at.
+  constexpr int kSorted = 2 * PartedTriangles::kTogether;
+  const auto sooner_of_two = [](const auto& a, const auto& b) { return a.t < b.t; };
+  const auto last = candidates_.begin() + count;
+  auto next = candidates_.begin();
+  if (radius_ > 0.0 && count > 0) {  // what a sphere may meet first it most often does
+    std::iter_swap(next, std::min_element(next, last, sooner_of_two));
+    test(*next++, first);
   }
-  for (; next < count; ++next) {
-    if (end * candidates_[next].t <= first.limit) {
-      test(candidates_[next], first);
+  while (next < last) {
+    const auto stop = next + std::min<std::ptrdiff_t>(PartedTriangles::kTogether, last - next);
+    if (next - candidates_.begin() < kSorted && !first.met) {
+      std::partial_sort(next, stop, last, sooner_of_two);
     }
+    test({next, stop}, move, first);
+    next = stop;
   }
   operations_.triangles_tested += first.tested;
   operations_.triangles_passed += listed_.size() - first.tested;
@@ -219,6 +269,16 @@ bool NearTriangles::first_of_all(const Sweep& sweep, SweepHit& hit) noexcept {
   return search.met;
 }
 
+/// @param part  receives how much of the move the list covers
+NearTriangles::Listed NearTriangles::look_through_list(const Sweep& sweep, double length,
+                                                       double& part, SweepHit& hit) noexcept {
+  part = std::max(0.0, listed_part(sweep, length));
+  if (part > 0.0 && first_listed(sweep, part, length, hit)) {
+    return Listed::kMet;
+  }
+  return part == 1.0 ? Listed::kFree : Listed::kEnds;
+}
+
 bool NearTriangles::first_hit(const Sweep& sweep, SweepHit& hit, double& seen) noexcept {
   const double length = sweep.move.norm();
   seen = 1.0;
@@ -226,37 +286,38 @@ bool NearTriangles::first_hit(const Sweep& sweep, SweepHit& hit, double& seen) n
   if (is_clear(sweep, length)) {
     return false;
   }
-  double ahead = left(sweep);
-  const auto listed = [&] { return covered_ > 0.0 && ahead > 0.0; };
-  if (listed()) {
-    const double part = std::min(1.0, ahead / length);
-    if (first_listed(sweep, part, length, hit)) {
-      return true;
+  double known = 0.0, part = 0.0;
+  if (const Listed listed = look_through_list(sweep, length, known, hit); listed != Listed::kEnds) {
+    return listed == Listed::kMet;
+  }
+  // The rest of the move, from where the list ends.
+  const double left = (1.0 - known) * length;
+  const Sweep rest{sweep.from + known * sweep.move, (1.0 - known) * sweep.move, radius_,
+                   sweep.skin};
+  const auto of_move = [&](double t) { return known + (1.0 - known) * t; };
+  // A point that goes far looks through the hierarchy anyway; a sphere that came far looks later.
+  constexpr double kFar = 3.0, kCame = 0.5;  // of the next list's reach
+  if (radius_ > 0.0 ? known * length < kCame * reach_ : left <= kFar * reach_) {
+    list_around(rest);
+    const Listed listed = look_through_list(rest, left, part, hit);
+    if (listed == Listed::kMet) {
+      hit.t = of_move(hit.t);
     }
-    if (part == 1.0) {
-      return false;
+    if (listed != Listed::kEnds) {
+      return listed == Listed::kMet;
     }
   }
-  // A point that goes far looks through the hierarchy anyway.
-  constexpr double kFar = 3.0;  // of the next list's reach
-  const bool leaves = radius_ == 0.0 && length > kFar * reach_;
-  if (!leaves && (ahead < 0.5 * listed_reach_ || covered_ < 0.0)) {
-    list_around(sweep);
-    ahead = left(sweep);
-    if (listed() && first_listed(sweep, std::min(1.0, ahead / length), length, hit)) {
-      return true;
-    }
-  }
-  if (listed() && ahead >= length) {
-    return false;
-  }
-  if (radius_ > 0.0 && listed()) {
+  if (radius_ > 0.0 && (known > 0.0 || part > 0.0)) {
     const double clear =
         clear_ - radius_ - 2.0 * sweep.skin.rest() - (sweep.from - clear_centre_).norm();
-    seen = std::clamp(std::max(ahead, clear) / length, 0.0, 1.0);
+    seen = std::clamp(std::max(of_move(part), clear / length), 0.0, 1.0);
     return false;
   }
-  return first_of_all(sweep, hit);
+  if (!first_of_all(rest, hit)) {
+    return false;
+  }
+  hit.t = of_move(hit.t);
+  return true;
 }
 
 }  // namespace haptrial::contact

@@ -40,13 +40,18 @@ class NearTriangles {
   bool meets(const Sweep& sweep, std::int32_t slot, double end, SweepHit& hit,
              Eigen::Vector3d& apart) noexcept;
   bool is_clear(const Sweep& sweep, double length) const noexcept;
-  double left(const Sweep& sweep) const noexcept;
+  double listed_part(const Sweep& sweep, double length) const noexcept;
   bool list_around(const Sweep& sweep) noexcept;
+  void adapt_reach(int count) noexcept;
   bool gather(const Sweep& sweep, double reach) noexcept;
   bool meets_listed(const Sweep& sweep, int i, double end, SweepHit& hit) noexcept;
   struct FirstMet;
   void test(const PartedTriangles::Candidate& candidate, FirstMet& first) noexcept;
+  void test(std::span<PartedTriangles::Candidate> few, const PartedTriangles::Move& move,
+            FirstMet& first) noexcept;
   bool first_listed(const Sweep& sweep, double end, double length, SweepHit& hit) noexcept;
+  enum class Listed { kMet, kFree, kEnds };  // ends: before the move does
+  Listed look_through_list(const Sweep& sweep, double length, double& part, SweepHit& hit) noexcept;
   bool first_of_all(const Sweep& sweep, SweepHit& hit) noexcept;
 
   const ContactSurface* surface_;
@@ -57,7 +62,6 @@ class NearTriangles {
   std::vector<PartedTriangles::Candidate> candidates_;     // as long
   Eigen::Vector3d centre_{Eigen::Vector3d::Zero()};        // of the ball that the list covers [m]
   double covered_{-1.0};                                   // its radius; negative: no list [m]
-  double listed_reach_{0.0};                               // of the proxy's way in it [m]
   double reach_;                                           // of the next list [m]
   Eigen::Vector3d clear_centre_{Eigen::Vector3d::Zero()};  // of a ball without triangles [m]
   double clear_{-1.0};                                     // its radius [m]

@@ -41,7 +41,7 @@ bool leads_off(const ContactPlane& plane, const Vector3d& move) {
 }  // namespace
 
 std::uint64_t work_of(const Operations& o, double radius) noexcept {
-  constexpr std::uint64_t kPassed = 8;  // for one test
+  constexpr std::uint64_t kPassed = 16;  // for one test
   constexpr std::uint64_t kList = 30, kLongSweep = 30, kOfSphere = 2;
   return (radius > 0.0 ? kOfSphere : 1) * o.triangles_tested + o.triangles_passed / kPassed +
          kList * o.lists + kLongSweep * o.long_sweeps;
@@ -177,8 +177,7 @@ void Proxy::lift(Tick& tick) noexcept {
 }
 
 /// Whether one of the known triangles stops a sweep at once.
-bool Proxy::blocked_at_once(const Sweep& sweep, double enough) noexcept {
-  const double length = sweep.move.norm();
+bool Proxy::blocked_at_once(const Sweep& sweep, double length, double enough) noexcept {
   SweepHit hit;
   for (int i = 0; i < planes_.size(); ++i) {
     if (!leads_off(planes_[i], sweep.move) && near_.meets(sweep, planes_[i].slot, hit) &&
@@ -198,12 +197,14 @@ bool Proxy::leave_on(const Tick& tick, std::span<const int> which) noexcept {
   near_.operations().plane_solutions += 1;
   bool sticks = false;
   const Vector3d move = allowed_by_friction(solution, sticks);
-  const double length = move.norm();
-  if (!solution.solved || !(length > enough) || !(solution.residual.norm() < wish.norm())) {
+  const double square = move.squaredNorm();
+  if (!solution.solved || !(square > enough * enough) ||
+      !(solution.residual.squaredNorm() < wish.squaredNorm())) {
     return false;
   }
+  const double length = std::sqrt(square);
   const Sweep sweep{state_.position, move, options_.radius, tick.skin};
-  if (blocked_at_once(sweep, enough)) {
+  if (blocked_at_once(sweep, length, enough)) {
     return false;
   }
   SweepHit hit;

@@ -45,7 +45,7 @@ struct ProxyOptions {
   double radius{0.0};  // >= 0; 0: a point [m]
   Friction friction{};
   int most_steps{16};  // a tick, 1 to 48
-  int most_work{240};  // a tick, >= 1: after it and four steps no other follows (work_of)
+  int most_work{190};  // a tick, >= 1: after it and four steps no other follows (work_of)
   /// Ruspini's method is without the two: ways out of places where the planes stop the proxy and
   /// the triangles do not; paths round the arcs of a sphere.
   bool ways_out{true};
@@ -97,7 +97,7 @@ class Proxy {
   bool go(Tick& tick, const Eigen::Vector3d& move) noexcept;
   bool still_there(Tick& tick) noexcept;
   void lift(Tick& tick) noexcept;
-  bool blocked_at_once(const Sweep& sweep, double enough) noexcept;
+  bool blocked_at_once(const Sweep& sweep, double length, double enough) noexcept;
   bool leave_on(const Tick& tick, std::span<const int> which) noexcept;
   bool find_way_out(const Tick& tick) noexcept;
   void forget_planes() noexcept;

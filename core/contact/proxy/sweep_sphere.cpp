@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/contact/proxy/sweep.h"
 #include "core/geometry/triangle/triangle_distance.h"
@@ -17,6 +18,8 @@ struct Away {
   Vector3d point;
   Vector3d normal;
   bool curved;
+  /// The edge that the point lies on, zero for a corner; nothing on a face.
+  std::optional<Vector3d> edge{};
 };
 
 Away away_from(const geometry::Corners& c, const Vector3d& normal, const Vector3d& x) {
@@ -49,9 +52,9 @@ Away away_from_edge(const Vector3d& start, const Vector3d& end, const Vector3d& 
   const Vector3d edge = end - start, from_start = x - start;
   const double along = edge.dot(from_start), square = edge.squaredNorm();
   Away away;
-  away.point = along <= 0.0      ? start
-               : along >= square ? end
-                                 : Vector3d(start + along / square * edge);
+  const bool inside = along > 0.0 && along < square;
+  away.point = inside ? Vector3d(start + along / square * edge) : along <= 0.0 ? start : end;
+  away.edge = inside ? edge : Vector3d(Vector3d::Zero());
   const Vector3d off = x - away.point;
   away.distance = off.norm();
   away.normal = away.distance > 0.0 ? Vector3d(off / away.distance) : normal;
@@ -102,6 +105,29 @@ class NearPart {
   const Hull::Heights& heights_;
 };
 
+/// The distance above what it must not fall to, at the part `t` of a move, and how fast it changes.
+struct Height {
+  double t, left, rate;  // -, [m], [m]
+};
+
+/// Whether a convex function stays above zero between where it falls and where it does not.
+bool stays_above(const Height& falls, const Height& after) {
+  const double back = (falls.left - after.left + falls.rate * (after.t - falls.t)) /
+                      (after.rate - falls.rate);  // to where the tangents meet
+  return after.left + after.rate * back > 0.0;
+}
+
+/// How much more of a move brings the sphere to `limit` from the edge or corner that is nearest, or
+/// where it is nearest to that: the square of the distance is a quadratic function.
+double until(const Away& away, double limit, double rate, const Vector3d& move) {
+  const double square = away.edge->squaredNorm(), along = away.edge->dot(move);
+  const double across = move.squaredNorm() - (square > 0.0 ? along * along / square : 0.0);
+  const double falls = away.distance * rate;
+  const double rest = (away.distance - limit) * (away.distance + limit);
+  const double root = falls * falls - across * rest;
+  return root >= 0.0 ? rest / (std::sqrt(root) - falls) : -falls / across;
+}
+
 }  // namespace
 
 bool sweep_sphere(const Sweep& sweep, const geometry::Corners& c, const Vector3d& normal,
@@ -111,27 +137,39 @@ bool sweep_sphere(const Sweep& sweep, const geometry::Corners& c, const Vector3d
   const NearPart near(c, normal, hull, heights);
   const double limit = sweep.radius + h;
   const double rest = sweep.radius + sweep.skin.rest();
-  constexpr int kMostSteps = 40;
-  double t = 0.0;
+  constexpr int kMostSteps = 40, kSlow = 2;
   Away away = near.away(0.0, sweep.from);
   apart = away.normal;
+  Height before{};
+  bool leaps = true, leapt = false;
+  double t = 0.0;
   for (int step = 0;; ++step) {
-    const double rate = away.normal.dot(sweep.move);
-    if (rate >= 0.0) {
-      return false;  // convex: it only recedes from here on
-    }
-    const double left = away.distance - limit;
-    if (left <= 0.25 * h && away.distance + rate * (end - t) >= sweep.radius + 0.5 * h) {
-      return false;  // along the surface, to rounding
-    }
-    if (left <= 0.25 * h || step == kMostSteps) {
-      hit.t = std::clamp(t - (rest - away.distance) / -rate, 0.0, t);
-      hit.plane = {away.normal, away.point, rest, hull.slot, away.curved};
-      return true;
-    }
-    t += left / -rate;
-    if (t >= end) {
-      return false;
+    const Height here{t, away.distance - limit, away.normal.dot(sweep.move)};
+    if (leapt && (here.left < -h || (here.rate >= 0.0 && !stays_above(before, here)))) {
+      leaps = leapt = false;  // another part of the triangle is nearer: back, and on slowly
+      t = before.t + before.left / -before.rate;
+    } else {
+      if (here.rate >= 0.0) {
+        return false;  // convex: it only recedes from here on
+      }
+      const bool near_enough = here.left <= 0.25 * h;
+      if (near_enough && away.distance + here.rate * (end - t) >= sweep.radius + 0.5 * h) {
+        return false;  // along the surface, to rounding
+      }
+      if (near_enough || step >= kMostSteps) {
+        hit.t = std::clamp(t - (rest - away.distance) / -here.rate, 0.0, t);
+        hit.plane = {away.normal, away.point, rest, hull.slot, away.curved};
+        return true;
+      }
+      t += here.left / -here.rate;
+      if (t >= end) {
+        return false;
+      }
+      before = here;
+      leapt = leaps && step >= kSlow && away.edge;
+      if (leapt) {
+        t = std::min(std::max(t, here.t + until(away, limit, here.rate, sweep.move)), end);
+      }
     }
     away = near.away(t, sweep.from + t * sweep.move);
   }
