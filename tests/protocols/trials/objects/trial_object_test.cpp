@@ -14,6 +14,7 @@
 #include "core/geometry/files/mesh_io.h"
 #include "core/geometry/mesh/procedural.h"
 #include "protocols/trials/objects/outline.h"
+#include "protocols/trials/objects/yielding_bodies.h"
 #include "tests/protocols/trials/definition/small_definition.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
@@ -164,6 +165,37 @@ TEST(TrialObjectTest, ABodyOfSpringsIsReadAndItsMistakesAreToldInASentenceEach) 
   EXPECT_THAT(problems("density = 1000\n"), Contains(HasSubstr("constants is missing")));
   EXPECT_THAT(problems("constants = [1e-3, 0, 2e-3]\ndensity = 1000\nyoung = 1e4\n"),
               Contains(HasSubstr("objects.tissue.young")));
+}
+
+TEST(TrialObjectTest, ABodyOfSpringsIsFeltByOneDevice) {
+  const std::string devices =
+      "[devices.left]\nstart = [0, 0, 0]\n[devices.right]\nstart = [0, 0, 0]\n";
+  const std::string springs = kSpringBody + "constants = [1e-3, 0, 2e-3]\ndensity = 1000\n";
+  const auto refused = Contains(HasSubstr("objects.tissue.device is missing; name the device"));
+  EXPECT_THAT(problems_of_trials(small_trials(kSmallStaircase, devices + springs)), refused);
+  EXPECT_THAT(
+      problems_of_trials(small_trials(kSmallStaircase, devices + springs + "device = \"left\"\n")),
+      testing::Not(refused));
+}
+
+/// What validate says of a body of springs: its steps, and what a tick costs.
+TEST(TrialObjectTest, WhatABodyOfSpringsTakesIsSaid) {
+  scene::YieldingParameters p;
+  p.mesh = std::make_shared<const deformable::FeltMesh>(
+      deformable::felt_block({0.04, 0.02, 0.04}, 6, {}, "objects.tissue"));
+  p.springs = deformable::SpringTissue{{6e-4, 2e-4, 1e-3}, nullptr, 1000.0, 10.0};
+  std::vector<scene::Field> fields(1);
+  fields[0].name = "tissue";
+  fields[0].kind = p;
+  prepare_bodies(fields, 1000.0);
+  const std::vector<std::string> lines = words_of_bodies(fields, 1000.0, 15.0);
+  ASSERT_GE(lines.size(), 2u);
+  EXPECT_THAT(lines[0], AllOf(HasSubstr("540 tetrahedra of springs, "), HasSubstr(" ms on a tick"),
+                              HasSubstr("the hand of [hand] has 15")));
+  EXPECT_THAT(lines[1], HasSubstr("a tick in contact takes "));
+  std::get<scene::YieldingParameters>(fields[0].kind).springs->density = 0.1;
+  EXPECT_THAT(test::message_of([&] { prepare_moving_bodies(fields, 1000.0); }),
+              HasSubstr("at most 64 are allowed"));
 }
 
 TEST(TrialObjectTest, CalibratedConstantsAreThoseOfABodyOfTheSameCells) {
