@@ -21,8 +21,8 @@
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/display/bone_renderer.h"
 #include "protocols/bone_drilling/display/bone_sound.h"
+#include "protocols/bone_drilling/hints/replayed_hints.h"
 #include "protocols/bone_drilling/nerve_page.h"
-#include "protocols/bone_drilling/replayed_hints.h"
 #include "protocols/bone_drilling/replayed_nerves.h"
 
 namespace haptrial::protocols {

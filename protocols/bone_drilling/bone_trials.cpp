@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/random.h"
@@ -110,7 +109,7 @@ BoneTrials::BoneTrials(const BoneDefinition& definition, const SessionPlace& pla
     watch_nerves();
   }
   if (d_.hints) {
-    make_hints();
+    hints_ = std::make_unique<TrialHints>(d_, place.real, chime_);
   }
   for (const auto& bone : d_.bones) {  // before there is a window: it takes seconds
     stills_.push_back(place.window ? screen_stills(d_, *bone) : nullptr);
@@ -145,15 +144,6 @@ void BoneTrials::open_sound() {
     notice_ = error.what();
     voice_.reset();
     chime_.reset();
-  }
-}
-
-void BoneTrials::make_hints() {
-  limits_ = record::limit_rows(d_.hints->limits);
-  if (place_.real) {
-    hints_ = std::make_unique<hint::ThreadedHints>(chime_);
-  } else {
-    hints_ = std::make_unique<hint::SteppedHints>(chime_);
   }
 }
 
@@ -255,8 +245,8 @@ std::vector<record::Rows> BoneTrials::first_rows() const {
   if (!channels_.empty()) {
     rows.emplace_back(std::span(channels_));
   }
-  if (!limits_.empty()) {
-    rows.emplace_back(std::span(limits_));
+  if (hints_) {
+    rows.emplace_back(hints_->limits());
   }
   return rows;
 }
@@ -291,7 +281,7 @@ void BoneTrials::empty_logs(SessionFile& file) {
     logs_.tears.flush([&](std::span<const record::TearRow> rows) { tell_tears(file, rows); });
   }
   if (hints_) {
-    hints_->settle();  // likewise
+    hints_->beside().settle();  // likewise
     tell_hints(file);
   }
   if (nerves_) {
@@ -306,7 +296,7 @@ void BoneTrials::empty_logs(SessionFile& file) {
 }
 
 void BoneTrials::tell_hints(SessionFile& file) {
-  const std::vector<record::HintRow> rows = hints_->take();
+  const std::vector<record::HintRow> rows = hints_->beside().take();
   file.add(std::span(rows));
 }
 
@@ -361,10 +351,8 @@ void BoneTrials::tell_tears(SessionFile& file, std::span<const record::TearRow> 
 
 /// A file beside the definition may have changed since: what follows would be of another.
 void BoneTrials::check_resumed(const record::SessionReader& file) const {
-  if (d_.hints && file.rows<record::HintLimitRow>() != limits_) {
-    throw InputError(fmt::format(
-        "{}: its hints went by other safe values than {} has now; resume it with the same file",
-        file.path().string(), d_.hints->file));
+  if (hints_) {
+    hints_->check_resumed(file);
   }
   const std::vector<record::BoneRecord> before = record::recorded_bones(file);
   const std::vector<record::BoneRecord>& now = records_;
@@ -470,7 +458,7 @@ void BoneTrials::set_up(std::shared_ptr<BoneStage> stage, const PlannedTrial& tr
                                                          1.0 / d_.rate, pulse_);
   }
   if (hints_) {
-    watch_for_hints();
+    hints_->watch(bone_, *stage_->simulator);
   }
   vibration_.reset();
   if (d_.vibration_gain > 0.0) {
@@ -479,27 +467,6 @@ void BoneTrials::set_up(std::shared_ptr<BoneStage> stage, const PlannedTrial& tr
   if (sound_) {
     sound_->listen_to(stage_);
   }
-}
-
-/// On a bone that may have been drilled before.
-void BoneTrials::watch_for_hints() {
-  const std::shared_ptr<const bone::BoneModel>& model = d_.bones[bone_];
-  auto watch = std::make_unique<hint::HintWatch>(*d_.hints, d_.hint_maps[bone_], model,
-                                                 pose_of(d_.placement, model->grid), d_.rate);
-  if (stage_->simulator->emptied_so_far() > 0) {
-    const bone::BoneWorld& world = std::as_const(*stage_->simulator).world();
-    const auto& size = model->grid.size;
-    for (int k = 0; k < size[2]; ++k) {
-      for (int j = 0; j < size[1]; ++j) {
-        for (int i = 0; i < size[0]; ++i) {
-          if (world.holder({i, j, k}) < 0) {
-            watch->gone({i, j, k});
-          }
-        }
-      }
-    }
-  }
-  hints_->begin(std::move(watch));
 }
 
 void BoneTrials::tell_preparing(double share) {
@@ -526,7 +493,7 @@ Pass& BoneTrials::make_pass(PlannedTrial& trial, const record::Phase&) {
     nerves_->let_hear(d_.hears_nerves(trial.trial, place_.participant));
   }
   if (hints_) {
-    hints_->let_show(d_.sees_hints(trial.trial, place_.participant));
+    hints_->beside().let_show(d_.sees_hints(trial.trial, place_.participant));
   }
   if (pictures_) {
     pictures_->watch(stage_);
@@ -544,7 +511,7 @@ Pass& BoneTrials::make_drilling_pass(const PlannedTrial& trial) {
     pass_->share(*shared_);
   }
   if (hints_) {
-    pass_->give(*hints_);
+    pass_->give(hints_->beside());
   }
   return *pass_;
 }
@@ -562,7 +529,7 @@ void BoneTrials::close_pass(SessionFile& file, std::int32_t row) {
     led_->rest();
   }
   if (hints_) {
-    hints_->end_pass();
+    hints_->beside().end_pass();
     tell_hints(file);
   }
   stage_->companions->settle();

@@ -3,13 +3,13 @@
 #include <memory>
 #include <optional>
 
-#include "core/hint/hints_beside.h"
 #include "core/nerve/beside/nerve_beside.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_pictures.h"
 #include "protocols/bone_drilling/display/bone_sound.h"
 #include "protocols/bone_drilling/display/bone_stage.h"
 #include "protocols/bone_drilling/drilling_pass.h"
+#include "protocols/bone_drilling/hints/trial_hints.h"
 #include "protocols/bone_drilling/led_pass.h"
 #include "protocols/bone_drilling/shared_bone.h"
 #include "protocols/interface/trials.h"
@@ -32,7 +32,8 @@ class BoneTrials final : public Trials {
   TickLog* tick_log() override { return &logs_; }
   void empty_logs(SessionFile& file) override;
   std::uint64_t dropped() const override {
-    return logs_.dropped() + (nerves_ ? nerves_->dropped() : 0) + (hints_ ? hints_->dropped() : 0);
+    return logs_.dropped() + (nerves_ ? nerves_->dropped() : 0) +
+           (hints_ ? hints_->beside().dropped() : 0);
   }
   record::TableList tables() const override;
   std::vector<record::Rows> first_rows() const override;
@@ -54,8 +55,6 @@ class BoneTrials final : public Trials {
   void tell_tears(SessionFile& file, std::span<const record::TearRow> rows);
   void open_sound();
   void watch_nerves();
-  void make_hints();
-  void watch_for_hints();
   void tell_hints(SessionFile& file);
   void restore(const PlannedTrial& trial, SessionFile& file);
   static void begin_again(const PlannedTrial& trial, SessionFile& file);
@@ -74,9 +73,8 @@ class BoneTrials final : public Trials {
   std::vector<record::NerveChannelRow> channels_;
   std::shared_ptr<nerve::NerveVoice> voice_;  // of the sound card
   std::unique_ptr<nerve::NerveBeside> nerves_;
-  std::vector<record::HintLimitRow> limits_;
-  std::shared_ptr<hint::HintChime> chime_;  // on the sound card; null: none
-  std::unique_ptr<hint::HintsBeside> hints_;
+  std::shared_ptr<hint::HintChime> chime_;            // on the sound card; null: none
+  std::unique_ptr<TrialHints> hints_;                 // null: none are given
   nerve::PulseCurrent pulse_;                         // of the probe
   std::unique_ptr<nerve::NerveExposures> exposures_;  // of the present bone
   std::unique_ptr<BonePictures> pictures_;

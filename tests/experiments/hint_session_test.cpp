@@ -21,7 +21,7 @@
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/bone_replay.h"
 #include "protocols/bone_drilling/display/bone_renderer.h"
-#include "protocols/bone_drilling/replayed_hints.h"
+#include "protocols/bone_drilling/hints/replayed_hints.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"

@@ -153,10 +153,14 @@ TEST_F(GamepadPipeTest, ALostOneIsAtRestUntilItIsBackAndSaysSo) {
 }
 
 TEST(GamepadTest, WhatIsNoneIsRefusedInASentence) {
-  EXPECT_THAT(test::message_of([] { const Gamepad pad({"/dev/null", 0.1, 7}); }),
+  EXPECT_THAT(test::message_of([] {
+                const Gamepad pad({"/dev/null", 0.1, 7});
+              }),
               HasSubstr("gamepad /dev/null: is neither an input device nor a named pipe; connect "
                         "it, check gamepad.input"));
-  EXPECT_THAT(test::message_of([] { const Gamepad pad({"/no/such/pad", 0.1, 7}); }),
+  EXPECT_THAT(test::message_of([] {
+                const Gamepad pad({"/no/such/pad", 0.1, 7});
+              }),
               HasSubstr("No such file"));
 }
 

@@ -1,4 +1,4 @@
-#include "protocols/bone_drilling/replayed_hints.h"
+#include "protocols/bone_drilling/hints/replayed_hints.h"
 
 #include <algorithm>
 
