@@ -4,11 +4,13 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/field_row.h"
 #include "core/bone/record/led_row.h"
 #include "core/bone/record/second_hand_row.h"
 #include "core/bone/record/tear_row.h"
+#include "core/hint/hint_rows.h"
 #include "core/nerve/record/nerve_rows.h"
 #include "core/record/rows/common_tables.h"
 #include "core/record/write/session_writer.h"
@@ -59,12 +61,14 @@ void expect_that_python_reads(bool drills) {
   const test::TemporaryFolder folder;
   const std::vector<Sample> samples = test::hand_motion(9001, 3);
   const std::vector<BoneRecord> bones{test::small_bone()};
-  TableList own = with_tables(drilling_tables(), nerve_tables());
+  TableList own = with_tables(with_tables(drilling_tables(), nerve_tables()), hint_tables());
   own.push_back(&table_of<TearRow>());
   own.push_back(&table_of<LedRow>());
   own.push_back(&table_of<SecondHandRow>());
   own.push_back(&table_of<OpeningRow>());
   own.push_back(&table_of<FieldRow>());
+  own.push_back(&table_of<BurrRow>());
+  own.push_back(&table_of<HandpieceRow>());
   SessionWriter writer =
       drills ? SessionWriter(folder / "session.h5", test::example_info(), own, rows_of(bones))
              : SessionWriter(folder / "session.h5", test::example_info());
