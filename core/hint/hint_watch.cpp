@@ -111,7 +111,7 @@ void HintWatch::note(HintKind kind, bool faulty, const Fault& fault, bool shown)
   }
 }
 
-/// @returns whether enough came within so many ticks.
+/// @returns whether `fewest` came within `within` ticks.
 bool HintWatch::Running::come(std::uint64_t sequence, int fewest, std::uint64_t within) {
   const auto needed = static_cast<std::size_t>(fewest);
   if (faults.size() >= needed) {

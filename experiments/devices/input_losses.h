@@ -23,7 +23,7 @@ class InputLosses {
   InputLosses(std::string what, std::string name, std::string meanwhile)
       : what_(std::move(what)), name_(std::move(name)), meanwhile_(std::move(meanwhile)) {}
 
-  /// Of its changes since the last call. @param input  its file
+  /// Notes its changes since the last call. @param input  its file
   std::vector<InputNews> take(const std::string& input,
                               const std::vector<device::InputChange>& changes);
   /// At the end; empty if it was lost once at most, which take() has said.

@@ -22,9 +22,9 @@ class BodyReport {
 
   /// Those that the objects need.
   void add_tables(record::TableList& tables) const;
-  /// Of a pass that has ended, all of its intervals together. @param row  of /trials
+  /// Keeps the rows of a pass that has ended, all of its intervals together. @param row  of /trials
   void keep(const TrialPass& pass, std::int32_t row, SessionFile& file);
-  /// Of all passes so far, a line for each kind of loss.
+  /// Notices about all passes so far, a line for each kind of loss.
   std::vector<std::string> notices() const;
 
   static constexpr std::size_t kLosses = 4;

@@ -60,7 +60,7 @@ HintRowWords row_of(const std::string& condition, HintKind kind, const HintSum& 
           fmt::format("{:.1f}", sum.counts.time)};
 }
 
-/// Of the procedure's summary with the same session and number.
+/// Metric of the procedure's summary with the same session and number.
 std::optional<double> metric_in(std::span<const ProcedureSummary> summaries, const HintProcedure& p,
                                 const char* metric) {
   const auto at = std::find_if(summaries.begin(), summaries.end(), [&](const auto& summary) {

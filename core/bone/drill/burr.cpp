@@ -18,7 +18,7 @@ namespace {
 constexpr Bounds kDiameter{0.0005, 0.03};
 constexpr double kMostSamples = 1e6;
 
-/// How far samples are apart where there are so many of them.
+/// Distance between samples for a given number of them.
 double spacing_of(const BurrShape& shape, double samples) {
   return shape.dimensions().diameter * std::cbrt(shape.fullness() / samples);
 }

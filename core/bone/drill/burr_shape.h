@@ -45,9 +45,9 @@ class BurrShape {
   double reach() const noexcept { return reach_; }              // of its points from the origin [m]
   double fullness() const noexcept { return fullness_; }        // volume / diameter^3
   double volume() const noexcept;                               // [m^3]
-  /// Of the ball with the same volume [m].
+  /// Radius of the ball with the same volume [m].
   double ball_radius() const noexcept;
-  /// Of its section at a height; 0 beyond its ends [m].
+  /// Radius of its section at a height; 0 beyond its ends [m].
   double radius_at(double z) const noexcept;
 
   struct Nearest {

@@ -29,7 +29,7 @@ std::size_t room_for_emptied(const Burr& burr) {
 
 enum class Held { kNothing, kAll, kSome };
 
-/// Of each byte, eight bits for each of its bits.
+/// Spreads each byte: eight bits for each of its bits.
 constexpr std::array<std::uint64_t, 256> spread_bits() {
   std::array<std::uint64_t, 256> spread{};
   for (std::size_t byte = 0; byte < spread.size(); ++byte) {

@@ -40,7 +40,7 @@ const Table<HandpieceRow>& table_of<HandpieceRow>() {
        4096,
        RowsOf::kEachTick,
        {"sequence"},
-       // Of its own: made anew beside other tables it would have no row for their ticks.
+       // A table of its own: made anew beside other tables it would have no row for their ticks.
        "handpiece",
        5},
       {T::column("sequence", &R::sequence, "1", "tick number, as in /samples"),

@@ -14,7 +14,7 @@ struct BurrOnTick {
   const BurrShape* shape{nullptr};                  // null: a ball
   Eigen::Vector3d axis{Eigen::Vector3d::UnitZ()};   // from the tip along the handle, unit length
 
-  /// Of its points from the centre [m].
+  /// Greatest distance of its points from the centre [m].
   double reach() const noexcept { return shape != nullptr ? shape->reach() : radius; }
   /// Whether it reaches into a voxel's cube; the grid is in the burr's frame. Exact for balls; to a
   /// thousandth of a voxel for other shapes.

@@ -17,7 +17,7 @@ class Shafts {
   Shafts(std::span<const ToolSpec> tools, std::span<const Structure> structures, double spacing,
          const std::array<bool, 256>& soft);
 
-  /// Of a tool's shaft; zero of one that has none to feel [N].
+  /// Force on a tool's shaft; zero without a shaft that is felt [N].
   Eigen::Vector3d force(int tool, const BoneWorld& world, const ToolState& state) noexcept;
   /// Until they are free they are not felt.
   void wait() noexcept;

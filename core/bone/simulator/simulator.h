@@ -125,7 +125,7 @@ class Simulator {
   const SoftTissue& soft_tissue() const noexcept { return soft_; }
   const Bleeding& bleeding() const noexcept { return bleeding_; }
   const Handpiece& handpiece() const noexcept { return handpiece_; }
-  /// Of the burr in hand; null of another tool.
+  /// Shape of the burr in hand; null for another tool.
   const BurrShape* burr_shape() const noexcept;
   /// Likewise; none of another tool.
   std::span<const BurrShape::Ball> burr_balls() const noexcept;

@@ -93,7 +93,7 @@ Eigen::Vector3d middle_ahead(const Sweep& sweep, double reach) {
 
 }  // namespace
 
-/// Of a list that is as long, the next reaches farther or less far.
+/// The next list reaches farther after a short list, and less far after a long one.
 void NearTriangles::adapt_reach(int count) noexcept {
   const bool point = radius_ == 0.0;
   // Triangles that lie around the proxy as it is are listed however near the reach is.

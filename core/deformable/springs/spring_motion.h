@@ -52,7 +52,7 @@ class SpringMotion {
     return settings_.step * kick_[vertex];
   }
   void stop() noexcept;  // at once
-  /// Of springs and from outside at the begin of the last step, also on a held one [N].
+  /// Force of springs and from outside when the last step began, also on a held vertex [N].
   Eigen::Vector3d force(std::size_t vertex) const noexcept { return forces_[vertex]; }
   Eigen::Vector3d position(std::size_t vertex) const noexcept { return positions_[vertex]; }
   /// Half a step before position(), as Verlet's method has it.

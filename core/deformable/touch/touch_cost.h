@@ -11,7 +11,7 @@ struct TouchCost {
   bool crowded{};   // the ball lay on more places than are computed: it is felt softer
 };
 
-/// Of a touch that is put to rest: presses at up to 12 places, 0.4 of the ball's radius deep and
+/// Cost of a touch that is put to rest: presses at up to 12 places, 0.4 of the ball's radius deep and
 /// back; takes some 0.1 s.
 /// @param radius  of the ball [m]  @param period  of a tick [s]
 TouchCost measured_cost(BodyTouch& touch, const FeltMesh& mesh, double radius, double period);

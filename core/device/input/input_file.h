@@ -13,7 +13,7 @@ namespace haptrial::device {
 /// same records. One thread.
 class InputFile {
  public:
-  /// Of an axis, as the device states it.
+  /// Range of an axis, as the device states it.
   struct Range {
     int lowest{0};
     int highest{0};

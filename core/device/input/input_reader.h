@@ -25,7 +25,7 @@ class InputReader {
   /// What is made of a device. After the constructor both are called on the reading thread.
   struct Use {
     std::string table;  // as InputFile has it
-    /// Of one that was opened. @throws InputError if it does not do
+    /// Checks one that was opened. @throws InputError if it does not do
     std::function<void(InputFile&)> open;
     /// When something may have changed. Null: it is lost.
     std::function<void(const InputReports*)> show;

@@ -87,7 +87,7 @@ struct BoneDefinition : Definition {
   /// @param trial  from 1; practice: 0
   bool hears_nerves(int trial, int participant) const;
   bool sees_hints(int trial, int participant) const;
-  /// Of a procedure: one of design.conditions.
+  /// Condition of a procedure: one of design.conditions.
   std::string condition(int trial, int participant) const;
   /// Makes or reads the bones, which takes seconds. @param folder  of the file
   /// @throws InputError as bone::load_bone does

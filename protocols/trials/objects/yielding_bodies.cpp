@@ -22,7 +22,7 @@ std::string words_of_cost(const std::string& name, const deformable::TouchCost& 
       name, kMicroseconds * cost.median, kMicroseconds * cost.most, kMicroseconds / rate, rate);
 }
 
-/// Of elements that rest on every tick.
+/// Words about elements that rest on every tick.
 void add_words_of_elements(const scene::Field& field, const scene::YieldingParameters& p,
                            const scene::Steepness& steepness, double rate, double damping,
                            std::vector<std::string>& lines) {
@@ -51,7 +51,7 @@ void add_words_of_elements(const scene::Field& field, const scene::YieldingParam
   }
 }
 
-/// Of springs that move.
+/// Words about springs that move.
 void add_words_of_springs(const scene::Field& field, const scene::YieldingParameters& p,
                           double rate, double damping, std::vector<std::string>& lines) {
   const deformable::MovingBody& body = *p.moving;
