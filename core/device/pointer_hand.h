@@ -16,7 +16,8 @@ struct PointerInput {
   std::uint32_t buttons{0};                        // bit 0 left, 1 right, 2 middle
   std::span<const int> keys;                       // codes of the window
   double dt{0.0};                                  // since the picture before [s]
-  /// Turn by a stick about the picture's right, up and towards the eye; each -1 to 1, as a held key.
+  /// Turn by a stick about the picture's right, up and towards the eye; each -1 to 1, as a held
+  /// key.
   Eigen::Vector3d turn{Eigen::Vector3d::Zero()};
 };
 

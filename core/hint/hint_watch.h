@@ -74,7 +74,8 @@ class HintWatch {
   void end();
 
   std::uint8_t on() const noexcept;  // bit() of each kind
-  /// Index in bone::vital_structures() of what the newest hint of force or speed is about; -1: none yet.
+  /// Index in bone::vital_structures() of what the newest hint of force or speed is about; -1: none
+  /// yet.
   std::int32_t structure() const noexcept { return structure_; }
   /// Hints that ended since the rows were cleared.
   std::vector<record::HintRow>& rows() noexcept { return rows_; }
