@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/definition/table.h"
+#include "core/base/error.h"
 
 namespace haptrial::hint {
 namespace {
@@ -69,9 +70,17 @@ HintSetup read_hint_setup(Table& table) {
 }
 
 void load_limits(HintSetup& setup, const std::filesystem::path& folder) {
-  if (!setup.file.empty()) {
-    setup.limits = load_safe_limits(folder / setup.file);
+  if (setup.file.empty()) {
+    return;
   }
+  const std::filesystem::path file = folder / setup.file;
+  if (!std::filesystem::is_regular_file(file)) {
+    throw InputError(fmt::format(
+        "hints.file: {}: no such file; haptrial bone safe makes one from the sessions of "
+        "experts",
+        file.string()));
+  }
+  setup.limits = load_safe_limits(file);
 }
 
 std::string hint_text(const HintSetup& setup, HintKind kind, std::string_view structure) {

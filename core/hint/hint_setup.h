@@ -51,7 +51,7 @@ struct HintSetup {
 HintSetup read_hint_setup(Table& table);
 
 /// Reads the file of limits, if there is one. @param folder  of the definition
-/// @throws InputError as load_safe_limits() does.
+/// @throws InputError where the file is missing, and as load_safe_limits() does.
 void load_limits(HintSetup& setup, const std::filesystem::path& folder);
 
 /// The text of a hint for a participant.

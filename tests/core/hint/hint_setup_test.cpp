@@ -45,6 +45,12 @@ TEST(HintSetupTest, HintsOfWhatIsHiddenNeedNoFile) {
   EXPECT_THAT(refusal("file = \"s\"\nholds = 0.0\n"), HasSubstr("hints.holds"));
 }
 
+TEST(HintSetupTest, AMissingFileIsToldAsTheKeyThatNamesIt) {
+  HintSetup s = read("file = \"none.toml\"\n");
+  EXPECT_THAT(test::message_of([&] { load_limits(s, "/nowhere"); }),
+              HasSubstr("hints.file: /nowhere/none.toml: no such file; haptrial bone safe"));
+}
+
 TEST(HintSetupTest, TextsMayNameTheStructure) {
   const HintSetup s =
       read("file = \"s\"\nforce_text = \"Leichter! ({structure})\"\nhidden_text = \"Verdeckt\"\n");
