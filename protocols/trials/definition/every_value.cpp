@@ -98,7 +98,10 @@ std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValu
       }
     }
   } catch (const std::exception& error) {
-    throw InputError(fmt::format("{}\n(with {})", error.what(), words_of(d, values)));
+    const std::string said = error.what();
+    throw InputError(fmt::format("{}{}\n(with {})",
+                                 said.starts_with(d.file_name) ? "" : d.file_name + ": ", said,
+                                 words_of(d, values)));
   }
   return bodies;
 }
@@ -121,9 +124,7 @@ std::vector<std::string> check_every_value(const TrialsDefinition& d) {
         for (std::size_t i = 0; i < d.intervals.size(); ++i) {
           values.intervals.push_back(i);
         }
-        for (const Track& track : d.tracks) {
-          give_corner(track, high, values);
-        }
+        give_corners(d, high, values);
         std::size_t rest = c;
         for (const Factor* factor : varied) {
           values.values.push_back({factor->name, factor->levels[rest % factor->levels.size()]});

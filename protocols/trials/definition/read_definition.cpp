@@ -104,9 +104,7 @@ TrialValues sample_values(const TrialsDefinition& d, std::size_t block) {
   for (std::size_t i = 0; i < d.intervals.size(); ++i) {
     values.intervals.push_back(i);
   }
-  for (const Track& track : d.tracks) {
-    give_corner(track, false, values);
-  }
+  give_corners(d, false, values);
   for (const Factor& factor : d.order.factors) {
     values.values.push_back({factor.name, factor.levels.front()});
   }
@@ -159,7 +157,7 @@ void read_first_trial(Table& root, TrialsDefinition& d) {
       give_interval(*names, d.intervals[place], place);
     } catch (const InputError& error) {
       root.reject("experiment", fmt::format("cannot begin: {}", error.what()));
-      return;
+      root.check();  // what is not read after this would count as not known
     }
     Presented presented = read_presented(root, *names, d, nullptr);
     if (place == 0) {

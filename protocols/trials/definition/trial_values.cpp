@@ -25,11 +25,16 @@ void give_value(Names& names, const GivenValue& value) {
 
 }  // namespace
 
-void give_corner(const Track& track, bool high, TrialValues& values) {
-  const std::vector<std::string> names = track.variables();
-  const psychometric::Level corner = track.corner(high);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    values.levels.emplace_back(names[i], corner[i]);
+void give_corners(const TrialsDefinition& d, bool high, TrialValues& values) {
+  if (!d.asks_procedures(d.order.blocks[values.block])) {
+    return;
+  }
+  for (const Track& track : d.tracks) {
+    const std::vector<std::string> names = track.variables();
+    const psychometric::Level corner = track.corner(high);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      values.levels.emplace_back(names[i], corner[i]);
+    }
   }
 }
 

@@ -28,8 +28,9 @@ struct TrialValues {
   std::vector<std::size_t> intervals;  // of the definition, in the order of their presentation
 };
 
-/// The lowest levels of a track, or the highest.
-void give_corner(const Track& track, bool high, TrialValues& values);
+/// The lowest levels of all tracks, or the highest; none where the block of the values asks no
+/// procedure.
+void give_corners(const TrialsDefinition& definition, bool high, TrialValues& values);
 
 /// Everything that a trial may give a value: "trial", "block", "interval" (its place in the trial,
 /// from 1), "participant", "session", "group", "probe" (a word; 'no' of a trial without), what

@@ -22,6 +22,14 @@ std::vector<const Factor*> TrialsDefinition::varied_in(const Block& block) const
   return varied;
 }
 
+bool TrialsDefinition::asks_procedures(const Block& block) const {
+  const auto given = [&](const Track& track) {
+    return std::any_of(block.values.begin(), block.values.end(),
+                       [&](const GivenValue& value) { return track.sets(value.name); });
+  };
+  return !tracks.empty() && std::none_of(tracks.begin(), tracks.end(), given);
+}
+
 int TrialsDefinition::combinations(const Track& track, const Block& block) const {
   std::size_t count = 1;
   for (const Factor* factor : varied_in(block)) {

@@ -47,8 +47,8 @@ struct TrialsDefinition : Definition {
   KeyBits keys;
   std::vector<Track> tracks;
   std::optional<LevelScriptPlan> script;  // may choose the levels of the tracks
-  std::vector<std::string> stages;  // names, in their order
-  std::vector<int> stage_markers;   // the code of each; 0: the one of its place
+  std::vector<std::string> stages;        // names, in their order
+  std::vector<int> stage_markers;         // the code of each; 0: the one of its place
   std::vector<StudyGroup> groups;
   std::vector<TrialDevice> hands;  // in the order of the session's devices; empty: one, unnamed
   std::vector<TrialObject> objects;
@@ -81,6 +81,8 @@ struct TrialsDefinition : Definition {
   int practice_trials(int session = 0) const;
   /// The factors that vary in a block: those that it gives no value of its own.
   std::vector<const Factor*> varied_in(const Block& block) const;
+  /// Whether its levels come from tracks: it gives none of their variables a value of its own.
+  bool asks_procedures(const Block& block) const;
   /// How many combinations of its factors a track has in a block.
   int combinations(const Track& track, const Block& block) const;
 };

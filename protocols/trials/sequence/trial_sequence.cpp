@@ -87,15 +87,6 @@ TrialSequence::TrialSequence(const TrialsDefinition& definition, const Taker& ta
   }
 }
 
-/// A block that gives the variable of a track its value asks no procedure.
-bool TrialSequence::asks_procedures(const Block& block) const {
-  const auto given = [&](const Track& track) {
-    return std::any_of(block.values.begin(), block.values.end(),
-                       [&](const GivenValue& value) { return track.sets(value.name); });
-  };
-  return !d_.tracks.empty() && std::none_of(d_.tracks.begin(), d_.tracks.end(), given);
-}
-
 void TrialSequence::begin_block() {
   running_.clear();
   fixed_.clear();
@@ -104,7 +95,7 @@ void TrialSequence::begin_block() {
   probe_before_ = true;  // a block does not begin with a probe
   combinations_.clear();
   ++(block().practice ? practice_blocks_ : study_blocks_);
-  if (!asks_procedures(block())) {
+  if (!d_.asks_procedures(block())) {
     make_fixed();
     return;
   }

@@ -82,7 +82,6 @@ class TrialSequence {
     std::string probe;
   };
   const Block& block() const { return d_.order.blocks[blocks_[at_]]; }
-  bool asks_procedures(const Block& block) const;
   void begin_block();
   bool block_is_over() const;
   NextTrial make_next();
@@ -95,7 +94,7 @@ class TrialSequence {
 
   const TrialsDefinition& d_;
   Taker taker_;
-  LevelChooser* chooser_{nullptr};  // null: the procedures
+  LevelChooser* chooser_{nullptr};   // null: the procedures
   std::vector<std::size_t> blocks_;  // of the definition, in this participant's order
   std::size_t at_{0};                // of blocks_
   std::vector<RunningTrack> running_;

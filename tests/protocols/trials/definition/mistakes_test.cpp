@@ -46,6 +46,18 @@ TEST(TrialMistakesTest, MistakesOfFormulas) {
       Contains(AllOf(HasSubstr("variables.a"), HasSubstr("depends on itself"))));
 }
 
+// A block that gives the variable of a procedure its value asks none: nothing else says the level.
+TEST(TrialMistakesTest, ALevelThatNeedsItself) {
+  EXPECT_THAT(problems_of_trials(
+                  small_trials(kSmallStaircase, "[practice]\ntrials = 2\nlevel = \"$level\"\n")),
+              Contains(HasSubstr("level = \"$level\": level has no value yet")));
+  EXPECT_THAT(
+      problems_of_trials(small_trials(kSmallStaircase,
+                                      "[[blocks]]\nname = \"main\"\n[[blocks]]\nname = \"still\"\n"
+                                      "trials = 2\nlevel = \"2 * $level\"\n")),
+      Contains(HasSubstr("small.toml: level = \"2 * $level\": level has no value yet")));
+}
+
 TEST(TrialMistakesTest, AWordIsNoNumber) {
   EXPECT_THAT(
       problems_of_trials(with(kSmall, "{ stiffness = 300.0 }", "{ stiffness = \"'soft'\" }")),
