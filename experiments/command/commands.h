@@ -33,11 +33,12 @@ struct DryRunOptions {
   std::string out;          // default: a new folder out/NAME-001
   std::string parts;        // in its place, a folder that is gone on with
   int frames{0};
-  std::optional<int> trials;   // default: all
-  std::optional<int> session;  // of each subject; default: all, in their order
-  std::string tutor;           // `FILE`, `FILE:TRIAL` or `FILE:TRIAL@SECONDS`; empty: none
-  bool taught{false};          // each subject, by a second one over a simulated network
-  std::string language;        // of what participants read; default: the definition's own
+  std::optional<int> trials;       // default: all
+  std::optional<int> session;      // of each subject; default: all, in their order
+  std::string tutor;               // `FILE`, `FILE:TRIAL` or `FILE:TRIAL@SECONDS`; empty: none
+  bool taught{false};              // each subject, by a second one over a simulated network
+  std::string language;            // of what participants read; default: the definition's own
+  std::vector<std::string> set{};  // KEY=VALUE of the definition
 };
 int dry_run(const DryRunOptions& options);
 

@@ -164,7 +164,8 @@ Session::Session(const SessionRequest& request)
              [this] {
                hear_inputs();
                desk_.status().partner = trials_->partner();
-             }}),
+             },
+             rig_.get()}),
       pages_({request, record_, desk_, pace_, page_keys_, screen_.get(), place_.session_seed}),
       next_({request, *trials_, record_, pages_}),
       notices_({request, loop_, record_, desk_, summary_}),

@@ -43,6 +43,9 @@ void SessionPace::drive_until_idle() {
       p_.loop.run(p_.task);
     }
     collect();
+    if (p_.rig != nullptr) {
+      p_.rig->attend();
+    }
     watch_loop();
     publish(p_.record.pass().practice ? "practice" : "running");
     if (asked_to_stop()) {

@@ -10,6 +10,7 @@
 #include "experiments/loop/servo_thread.h"
 #include "experiments/runner/session_record.h"
 #include "experiments/runner/session_request.h"
+#include "protocols/interface/rig.h"
 #include "protocols/interface/session_task.h"
 
 namespace haptrial::experiments {
@@ -33,6 +34,7 @@ class SessionPace {
     std::atomic<bool>* begin_pressed{nullptr};  // Enter or space, in the participant's window
     const record::LiveFigures* live{nullptr};
     std::function<void()> hear{};  // what else may have happened, asked often
+    protocols::Rig* rig{nullptr};  // attended to while a pass runs
   };
   explicit SessionPace(const Parts& parts);
 

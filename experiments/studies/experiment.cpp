@@ -73,10 +73,11 @@ void check_translations(const Translations& translations, Experiment& experiment
 
 }  // namespace
 
-Experiment load_experiment(const std::filesystem::path& file, const std::string& language) {
+Experiment load_experiment(const std::filesystem::path& file, const std::string& language,
+                           std::span<const GivenKey> given) {
   const std::filesystem::path folder = file.parent_path();
   refuse_session(file);
-  Table root = protocols::load_with_lab(file);
+  Table root = protocols::load_with_lab(file, given);
   std::optional<Translations> translations;
   if (!language.empty()) {
     translations = protocols::translations_for(file, language);

@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "core/base/definition/given/given_values.h"
 #include "core/base/definition/table.h"
 #include "core/base/definition/translations.h"
 #include "experiments/studies/study.h"
@@ -21,7 +23,9 @@ struct Experiment {
 
 /// @throws InputError with a sentence for every problem of the file.
 /// @param language  of what participants read, "de"; empty: as the definition has it
-Experiment load_experiment(const std::filesystem::path& file, const std::string& language = "");
+/// @param given  keys that have these values in place of the file's
+Experiment load_experiment(const std::filesystem::path& file, const std::string& language = "",
+                           std::span<const GivenKey> given = {});
 /// From the text that a session file keeps: what the protocol loads beside it is not.
 Experiment parse_experiment(std::string_view text, std::string_view file_name);
 /// The same of several files, of which sentences name each with its own lines; the definition's is

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/nerve/monitor.h"
 
 namespace haptrial::protocols {
 namespace {

@@ -80,8 +80,12 @@ const std::vector<std::string>& machine_tables() {
   return kTables;
 }
 
-Table load_with_lab(const fs::path& definition) {
+Table load_with_lab(const fs::path& definition, std::span<const GivenKey> given) {
   Table root = Table::load(definition);
+  if (!given.empty()) {
+    root =
+        Table::parse(with_values(root.source(), definition.string(), given), definition.string());
+  }
   if (!root.has("lab")) {
     return root;
   }

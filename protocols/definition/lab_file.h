@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/base/definition/given/given_values.h"
 #include "core/base/definition/table.h"
 
 namespace haptrial::protocols {
@@ -21,9 +23,10 @@ const std::vector<std::string>& machine_tables();
 ///
 /// The lab file's text follows the definition's, so that source() is a definition that needs no
 /// other file: session files keep it so.
+/// @param given  keys of the definition that have these values instead; source() has them
 /// @throws InputError as Table::load() does for either file, and when the lab file holds another
 /// table, one that the definition has as well, or a key outside a table.
-Table load_with_lab(const std::filesystem::path& definition);
+Table load_with_lab(const std::filesystem::path& definition, std::span<const GivenKey> given = {});
 
 /// The lab file that a definition's text names; empty if none, or if the text is not TOML.
 std::string lab_of(std::string_view definition);

@@ -66,7 +66,8 @@ class Pass {
   virtual PassState state() const noexcept = 0;
   /// Whether PassOutput::onsets says what begins when; else the stages of PassOutput do.
   virtual bool names_onsets() const noexcept { return false; }
-  /// On a simulated clock: whether the session's thread has to empty the protocol's own logs.
+  /// On a simulated clock: whether the session's thread has to empty the protocol's own logs, or to
+  /// attend to the virtual subject.
   virtual bool wants_attention() noexcept { return false; }
 };
 

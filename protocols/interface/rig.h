@@ -27,6 +27,9 @@ class Rig {
   }
   /// The virtual subject; null where a person holds the devices.
   virtual stimulus::Observer* subject() { return nullptr; }
+  /// While a pass runs, often: what the virtual subject leaves to others than the servo thread.
+  /// Session's thread. @throws InputError if it cannot go on
+  virtual void attend() {}
   /// Where the screen's pointer goes; null for any other device.
   virtual device::MouseDevice* mouse() { return nullptr; }
   /// What moves that pointer in the mouse's place; null: nothing.

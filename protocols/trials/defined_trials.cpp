@@ -19,6 +19,7 @@
 #include "protocols/trials/objects/yielding_bodies.h"
 #include "protocols/trials/presentation/stage_sight.h"
 #include "protocols/trials/presentation/trial_drawing.h"
+#include "protocols/trials/script/kept_script.h"
 #include "protocols/trials/subject/trials_rig.h"
 
 namespace haptrial::protocols {
@@ -86,6 +87,9 @@ DefinedTrials::DefinedTrials(const StudiedDefinition& definition, const SessionP
   if (d_.script) {
     use_script();
   }
+  if (d_.observer.script) {
+    use_decision_script();
+  }
 }
 
 void DefinedTrials::use_script() {
@@ -101,7 +105,25 @@ void DefinedTrials::use_script() {
   sequence_.choose_by(*script_);
 }
 
+/// Its process begins with the first decision that a virtual participant leaves to it.
+void DefinedTrials::use_decision_script() {
+  std::function<void()> pulse;
+  if (place_.pulse) {
+    pulse = [this] { place_.pulse("waiting for the script of decisions", 0.0); };
+  }
+  const ScriptPlan& plan = *d_.observer.script;
+  decisions_ = std::make_unique<ScriptedDecisions>(
+      plan, place_.subject, derived_seed(place_.hand_session_seed, "subject"), pulse);
+  if (!place_.resumed.empty()) {
+    decisions_kept_ =
+        kept_before(plan, kDecisionScriptEvent, record::SessionReader(place_.resumed));
+  }
+}
+
 void DefinedTrials::prepare(const PlannedTrial&, SessionFile& file) {
+  if (rig_ != nullptr && decisions_ != nullptr && !std::exchange(decisions_kept_, true)) {
+    file.event(kDecisionScriptEvent, d_.observer.script->text);
+  }
   if (script_ == nullptr) {
     return;
   }
@@ -176,9 +198,16 @@ void DefinedTrials::check_resumed(const record::SessionReader& file) const {
 
 std::unique_ptr<Rig> DefinedTrials::virtual_rig() const {
   said_ = std::make_unique<SaidAnswer>();
-  auto rig = std::make_unique<TrialsRig>(
-      TrialsRig::Briefing{&d_, &d_.observer, &d_.questions, d_.stages, &d_.hands, said_.get()},
-      place_.hand_person_seed, place_.hand_session_seed);
+  TrialsRig::Briefing briefing{&d_, &d_.observer, &d_.questions, d_.stages, &d_.hands, said_.get()};
+  if (decisions_ != nullptr) {
+    briefing.decide = [this](const LeftDecision::Asked& asked) {
+      const PlannedTrial& plan = current_.plan;
+      return decisions_->decide({plan.trial, plan.practice, variables_},
+                                d_.questions[asked.question], asked);
+    };
+  }
+  auto rig =
+      std::make_unique<TrialsRig>(briefing, place_.hand_person_seed, place_.hand_session_seed);
   rig_ = rig.get();
   return rig;
 }
@@ -191,6 +220,9 @@ std::optional<PlannedTrial> DefinedTrials::next(const Outcome* last) {
       sequence_.postpone();
     } else {
       sequence_.conclude(done, done ? outcome_of(last->responses) : kNone, right);
+      if (done && decisions_ != nullptr) {
+        decisions_->told(last->trial.trial, last->trial.practice, last->responses);
+      }
     }
   }
   const std::optional<NextTrial> next = sequence_.next();
@@ -239,6 +271,7 @@ Pass& DefinedTrials::make_pass(PlannedTrial&, const record::Phase&) {
   setup.most_repeats = d_.most_repeats;
   setup.max_force = d_.envelope.max_force;
   setup.said = said_.get();
+  setup.left = rig_ != nullptr ? rig_->left() : nullptr;
   setup.contacts = contacts_.get();
   setup.sound_right = d_.sound_right;
   setup.sound_wrong = d_.sound_wrong;

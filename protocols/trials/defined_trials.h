@@ -11,6 +11,7 @@
 #include "protocols/trials/body_report.h"
 #include "protocols/trials/definition/presented.h"
 #include "protocols/trials/presentation/trial_pass.h"
+#include "protocols/trials/script/scripted_decisions.h"
 #include "protocols/trials/script/scripted_levels.h"
 #include "protocols/trials/sequence/trial_sequence.h"
 #include "protocols/trials/studied_definition.h"
@@ -51,6 +52,7 @@ class DefinedTrials final : public Trials {
 
  private:
   void use_script();
+  void use_decision_script();
   void number_bodies(const std::vector<scene::Field>& fields, std::vector<StageSight>& sights);
   IntervalRun make_interval(std::size_t place, RandomStream& random);
   std::vector<Asked> make_questions();
@@ -66,8 +68,10 @@ class DefinedTrials final : public Trials {
   SessionPlace place_;
   Table root_;
   std::unique_ptr<Names> names_;
-  std::unique_ptr<ScriptedLevels> script_;  // null: the procedures choose
-  bool script_kept_{false};                 // its text is in the file
+  std::unique_ptr<ScriptedLevels> script_;        // null: the procedures choose
+  bool script_kept_{false};                       // its text is in the file
+  std::unique_ptr<ScriptedDecisions> decisions_;  // null: virtual participants decide themselves
+  bool decisions_kept_{false};                    // likewise
   TrialSequence sequence_;
   NextTrial current_;
   void keep_adaptation(SessionFile& file, std::int32_t row) const;

@@ -32,6 +32,9 @@ void check_hands(const StudiedDefinition& d) {
   if (plan.adaptation || plan.sight || d.devices() > 1) {
     refuse_depth(d, "virtual participants who adapt, see or use several devices need a hand");
   }
+  if (plan.script) {
+    refuse_depth(d, "observer.script answers by what a hand felt");
+  }
   if (d.questions.empty()) {
     refuse_depth(d, "nothing is asked, so responses alone say nothing");
   }

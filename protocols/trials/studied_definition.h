@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "protocols/trials/definition/read_definition.h"
 #include "protocols/trials/subject/observer_plan.h"
 
@@ -8,6 +11,8 @@ namespace haptrial::protocols {
 /// A definition of trials with those who stand in for people.
 struct StudiedDefinition final : TrialsDefinition {
   ObserverPlan observer;
+
+  std::vector<std::string> description() const override;
 };
 
 }  // namespace haptrial::protocols

@@ -32,14 +32,17 @@ class TrialsProtocol final : public Protocol {
     return definition;
   }
   void load(Definition& definition, const std::filesystem::path& folder) const override {
-    auto& d = dynamic_cast<TrialsDefinition&>(definition);
+    auto& d = dynamic_cast<StudiedDefinition&>(definition);
     try {
       load_objects(d.objects, folder);
     } catch (const InputError& error) {
       throw InputError(d.file_name + ": " + error.what());
     }
     if (d.script) {
-      load_level_script(*d.script, folder);
+      load_script(*d.script, folder);
+    }
+    if (d.observer.script) {
+      load_script(*d.observer.script, folder);
     }
     d.bodies = check_every_value(d);
     for (const sound::Cue& cue : d.cues.cues) {

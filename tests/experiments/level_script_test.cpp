@@ -38,8 +38,7 @@ std::string ladder(const std::string& mischief = "") {
          "    with open('asked', 'a') as kept:\n"
          "        kept.write(line)\n"
          "    n = sum(1 for _ in open('asked'))\n" +
-         mischief +
-         "    print(json.dumps({'level': q['low'] + 10 * (1 + len(q['history']))}))\n";
+         mischief + "    print(json.dumps({'level': q['low'] + 10 * (1 + len(q['history']))}))\n";
 }
 
 class LevelScriptSessionTest : public testing::Test {
@@ -138,7 +137,7 @@ TEST_F(LevelScriptSessionTest, KilledHangingAndThrowingItLeavesALiveSessionToThe
   EXPECT_EQ(asked_in("S01.h5"), wanted);
   const auto troubles = events_of("S01.h5", protocols::kScriptTrouble);
   ASSERT_THAT(troubles, SizeIs(3));
-  EXPECT_THAT(troubles[0], HasSubstr("trial 3: levels.py: it ended without a level"));
+  EXPECT_THAT(troubles[0], HasSubstr("trial 3: levels.py: it ended with no level"));
   EXPECT_THAT(troubles[1], HasSubstr("trial 5: levels.py: it gave no level within 3 s"));
   EXPECT_THAT(troubles[2], HasSubstr("ValueError: no such level"));
   const record::SessionReader file(folder_ / "S01.h5");
@@ -151,8 +150,8 @@ TEST_F(LevelScriptSessionTest, AResumedSessionAsksNothingAgainAndTakesNoOtherScr
   if (test::kThreadSanitizer) {
     GTEST_SKIP() << "a process that has threads is forked";
   }
-  const std::string script =
-      ladder("    if n == 6 and os.path.exists('kill'):\n        os.kill(os.getppid(), signal.SIGKILL)\n");
+  const std::string script = ladder(
+      "    if n == 6 and os.path.exists('kill'):\n        os.kill(os.getppid(), signal.SIGKILL)\n");
   run(script, "whole.h5", 8);
   fs::remove(folder_ / "asked");
   test::write_text(folder_ / "kill", "");
@@ -166,7 +165,8 @@ TEST_F(LevelScriptSessionTest, AResumedSessionAsksNothingAgainAndTakesNoOtherScr
   ASSERT_EQ(waitpid(session, &status, 0), session);
   ASSERT_TRUE(WIFSIGNALED(status)) << "the script kills its session at the sixth trial";
   fs::remove(folder_ / "kill");
-  EXPECT_THROW(run(script + "\n", "parts.h5", 8, realtime::ClockKind::kSimulated, true), InputError);
+  EXPECT_THROW(run(script + "\n", "parts.h5", 8, realtime::ClockKind::kSimulated, true),
+               InputError);
   EXPECT_THAT(questions(), SizeIs(6));
   run(script, "parts.h5", 8, realtime::ClockKind::kSimulated, true);
   const auto asked = questions();
@@ -188,8 +188,9 @@ TEST_F(LevelScriptSessionTest, TheWorkedScriptComesToTheThreshold) {
     EXPECT_GT(asked.back(), 306.0) << track;
     EXPECT_LT(asked.back(), 420.0) << "its virtual participant tells 7 % of a force apart";
   }
-  const test::CommandResult report = test::run_command(
-      "cd '" + folder_.path().string() + "' && mkdir study && mv S01.h5 study && haptrial analyze study");
+  const test::CommandResult report =
+      test::run_command("cd '" + folder_.path().string() +
+                        "' && mkdir study && mv S01.h5 study && haptrial analyze study");
   EXPECT_EQ(report.status, 0) << report.errors;
 }
 

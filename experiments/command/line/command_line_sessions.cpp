@@ -31,6 +31,11 @@ void add_dry_run(CLI::App& app, int& status) {
                 "Lead each participant by a second virtual one, over a simulated network");
   sub->add_option("--frames", o.frames,
                   "Number of pictures to write of each pass, as the subject saw it (default: 0)");
+  sub->add_option("--set", o.set,
+                  "KEY=VALUE: a key of the definition that has another value, as a definition "
+                  "writes it, such as observer.lapse=0.05; may be repeated")
+      ->expected(1)
+      ->take_all();
 }
 
 void add_run(CLI::App& app, int& status) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/text/counted.h"
@@ -30,6 +31,19 @@ fs::path fresh_folder(const std::string& name) {
       return folder;
     }
   }
+}
+
+std::vector<GivenKey> given_keys(const std::vector<std::string>& set) {
+  std::vector<GivenKey> given;
+  for (const std::string& each : set) {
+    const std::size_t at = each.find('=');
+    if (at == 0 || at == std::string::npos) {
+      throw InputError(
+          fmt::format("--set is \"{}\"; allowed: KEY=VALUE, such as observer.reaction=0.5", each));
+    }
+    given.push_back({each.substr(0, at), each.substr(at + 1)});
+  }
+  return given;
 }
 
 /// Takes --parts, and the rank of a process that mpirun or srun started. @returns the rank
@@ -70,7 +84,8 @@ static std::string pictures_in(const fs::path& folder) {
 
 int dry_run(const DryRunOptions& options) {
   watch_for_interrupt();
-  const Experiment experiment = load_experiment(options.definition, options.language);
+  const Experiment experiment =
+      load_experiment(options.definition, options.language, given_keys(options.set));
   const protocols::Definition& setup = *experiment.definition;
   DryRun dry;
   dry.participants =

@@ -10,8 +10,8 @@
 #include "protocols/definition/definition.h"
 #include "protocols/definition/groups.h"
 #include "protocols/trials/definition/block.h"
-#include "protocols/trials/definition/level_script_plan.h"
 #include "protocols/trials/definition/question.h"
+#include "protocols/trials/definition/script_plan.h"
 #include "protocols/trials/definition/trial_devices.h"
 #include "protocols/trials/looks/look.h"
 #include "protocols/trials/objects/trial_object.h"
@@ -46,9 +46,9 @@ struct TrialsDefinition : Definition {
   std::vector<Question> questions;
   KeyBits keys;
   std::vector<Track> tracks;
-  std::optional<LevelScriptPlan> script;  // may choose the levels of the tracks
-  std::vector<std::string> stages;        // names, in their order
-  std::vector<int> stage_markers;         // the code of each; 0: the one of its place
+  std::optional<ScriptPlan> script;  // may choose the levels of the tracks
+  std::vector<std::string> stages;   // names, in their order
+  std::vector<int> stage_markers;    // the code of each; 0: the one of its place
   std::vector<StudyGroup> groups;
   std::vector<TrialDevice> hands;  // in the order of the session's devices; empty: one, unnamed
   std::vector<TrialObject> objects;

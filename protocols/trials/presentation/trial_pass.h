@@ -13,6 +13,7 @@
 #include "core/scene/shape/shape.h"
 #include "protocols/interface/pass.h"
 #include "protocols/trials/definition/question.h"
+#include "protocols/trials/presentation/left_decision.h"
 #include "protocols/trials/presentation/trial_view.h"
 #include "protocols/trials/stages/stage_machine.h"
 
@@ -89,9 +90,10 @@ class TrialPass final : public Pass {
     std::vector<Asked> questions;
     double feedback_time{0.0};  // [s]
     int most_repeats{5};
-    double max_force{8.0};          // the sum of a device's fields is scaled to at most this [N]
-    SaidAnswer* said{nullptr};      // null: a person answers
-    ContactLog* contacts{nullptr};  // of recorded objects; null if there are none
+    double max_force{8.0};      // the sum of a device's fields is scaled to at most this [N]
+    SaidAnswer* said{nullptr};  // null: a person answers
+    const LeftDecision* left{nullptr};     // null: nothing is left to the session's thread
+    ContactLog* contacts{nullptr};         // of recorded objects; null if there are none
     int sound_right{-1}, sound_wrong{-1};  // with the feedback; -1: none
   };
   explicit TrialPass(Setup setup);
@@ -103,6 +105,9 @@ class TrialPass final : public Pass {
   }
   PassState state() const noexcept override { return state_; }
   bool names_onsets() const noexcept override { return true; }
+  bool wants_attention() noexcept override {
+    return setup_.left != nullptr && setup_.left->waits();
+  }
 
   // For a replay, which knows the stages, in place of begin() and tick().
   void enter_again(std::size_t interval, std::size_t stage) noexcept;

@@ -1,20 +1,16 @@
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 
-#include "core/base/files/child_process.h"
 #include "core/psychometric/procedure/procedure.h"
+#include "protocols/trials/script/script_process.h"
 
 namespace haptrial::protocols {
 
-/// The process of a script that is asked for levels: a line of JSON on its standard input, and a
-/// line with "level" on its standard output. It begins with the first question, and again after it
-/// ended, crashed or was too late. Whatever it does, ask() returns. One thread.
+/// A script that is asked for levels: a line with "level" is its answer. One thread.
 class LevelScript {
  public:
   struct Answer {
@@ -24,7 +20,6 @@ class LevelScript {
 
   /// @param deadline  for an answer [s]
   LevelScript(std::filesystem::path file, double deadline);
-  ~LevelScript();
 
   /// @param question    one line, without its end
   /// @param dimensions  of the level
@@ -33,20 +28,7 @@ class LevelScript {
              const std::function<void()>& pulse = {});
 
  private:
-  using Clock = std::chrono::steady_clock;
-
-  void start();
-  void stop() noexcept;
-  /// A line that came; nothing at the deadline, or where the process ended.
-  std::optional<std::string> line_before(Clock::time_point end, const std::function<void()>& pulse);
-  Answer lost();
-
-  std::filesystem::path file_;
-  double deadline_;
-  std::unique_ptr<ChildProcess> process_;
-  Descriptor to_, from_;
-  std::string heard_;  // without a line's end so far
-  std::string said_;   // the last line that was no answer
+  ScriptProcess process_;
 };
 
 }  // namespace haptrial::protocols

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core/base/error.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/trials/trial_rows.h"
+#include "protocols/trials/script/kept_script.h"
 #include "protocols/trials/sequence/trial_sequence.h"
 
 namespace haptrial::protocols {
@@ -25,7 +25,7 @@ int key_of(int trial, bool practice) { return trial + (practice ? kPracticeNumbe
 
 }  // namespace
 
-ScriptedLevels::ScriptedLevels(const LevelScriptPlan& plan, std::string subject, bool real,
+ScriptedLevels::ScriptedLevels(const ScriptPlan& plan, std::string subject, bool real,
                                std::function<void()> pulse)
     : plan_(plan),
       subject_(std::move(subject)),
@@ -33,15 +33,7 @@ ScriptedLevels::ScriptedLevels(const LevelScriptPlan& plan, std::string subject,
       script_(plan.file, real ? plan.deadline : kPatient) {}
 
 void ScriptedLevels::recall(const record::SessionReader& earlier) {
-  for (const record::EventRow& event : earlier.events()) {
-    if (event.kind == kScriptEvent && event.text != plan_.text) {
-      throw InputError(fmt::format(
-          "{}: began with another {}; put that one back (the file keeps it in /events), or begin a "
-          "new session",
-          earlier.path().string(), plan_.file.filename().string()));
-    }
-    recalled_ = recalled_ || event.kind == kScriptEvent;
-  }
+  recalled_ = kept_before(plan_, kScriptEvent, earlier);
   std::map<int, std::int32_t> passes;  // the last of each trial
   for (const record::LevelRow& row : earlier.rows<record::LevelRow>()) {
     const record::PassRow& pass = earlier.passes().at(static_cast<std::size_t>(row.pass));
@@ -86,10 +78,9 @@ psychometric::Level ScriptedLevels::choose(const LevelQuestion& question) {
     return *answer.level;
   }
   ++left_;
-  troubles_.push_back(
-      fmt::format("{} {}: {}: {}; the level is the procedure's own",
-                  question.practice ? "practice trial" : "trial", question.trial,
-                  plan_.file.filename().string(), answer.why_not));
+  troubles_.push_back(fmt::format("{} {}: {}: {}; the level is the procedure's own",
+                                  question.practice ? "practice trial" : "trial", question.trial,
+                                  plan_.file.filename().string(), answer.why_not));
   return question.proposed;
 }
 

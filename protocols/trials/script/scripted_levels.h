@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "protocols/trials/definition/level_script_plan.h"
+#include "protocols/trials/definition/script_plan.h"
 #include "protocols/trials/script/level_script.h"
 #include "protocols/trials/sequence/level_chooser.h"
 
@@ -19,8 +19,8 @@ namespace haptrial::protocols {
 inline constexpr const char* kScriptEvent = "level_script";
 inline constexpr const char* kScriptTrouble = "level_script_failed";
 
-/// Levels of a script (docs/guide-own-experiment.md), or of the procedures where it gives none. What
-/// an earlier run of the session presented is not asked again.
+/// Levels of a script (docs/guide-own-experiment.md), or of the procedures where it gives none.
+/// What an earlier run of the session presented is not asked again.
 class ScriptedLevels final : public LevelChooser {
  public:
   /// The deadline where nobody waits: a busy machine is not to change a dry run. [s]
@@ -28,7 +28,7 @@ class ScriptedLevels final : public LevelChooser {
 
   /// @param real   a person waits
   /// @param pulse  called while the script thinks; may throw
-  ScriptedLevels(const LevelScriptPlan& plan, std::string subject, bool real,
+  ScriptedLevels(const ScriptPlan& plan, std::string subject, bool real,
                  std::function<void()> pulse);
 
   /// Takes the levels of an earlier run. @throws InputError where its script was another one
@@ -46,7 +46,7 @@ class ScriptedLevels final : public LevelChooser {
  private:
   std::string line_of(const LevelQuestion& question) const;
 
-  const LevelScriptPlan& plan_;
+  const ScriptPlan& plan_;
   std::string subject_;
   std::function<void()> pulse_;
   LevelScript script_;

@@ -7,12 +7,10 @@
 #include "core/base/random.h"
 #include "core/subject/perceiver/judgement.h"
 #include "protocols/trials/definition/question.h"
+#include "protocols/trials/presentation/left_decision.h"
 #include "protocols/trials/subject/observer_plan.h"
 
 namespace haptrial::protocols {
-
-/// Most intervals of a trial that a virtual participant compares.
-inline constexpr std::size_t kMostIntervals = 16;
 
 /// The noise of what is felt in an interval. @param trial, interval  from 0
 RandomStream sense_stream(std::uint64_t seed, int trial, int interval) noexcept;

@@ -278,6 +278,7 @@ ObserverPlan read_observer(Table& root, const std::vector<Question>& questions,
     Table sight = table.table("sight");
     plan.sight = read_sight(sight);
   }
+  plan.script = read_decision_script(table);
   subject::JudgementParameters judge;
   // Nothing at all has no logarithm.
   judge.logarithmic = plan.decides != Decides::kYes && plan.decides != Decides::kNearest;

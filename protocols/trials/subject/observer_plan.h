@@ -11,6 +11,7 @@
 #include "core/subject/perceiver/probing.h"
 #include "core/subject/perceiver/sight.h"
 #include "core/subject/perceiver/two_rate.h"
+#include "protocols/trials/definition/script_plan.h"
 
 namespace haptrial {
 class Table;
@@ -53,6 +54,7 @@ struct ObserverPlan {
   std::optional<Adaptation> adaptation;
   std::optional<subject::SightParameters> sight;
   std::optional<subject::PerceiverPopulation> people;
+  std::optional<ScriptPlan> script;  // by which they answer, in place of `decides`
 };
 
 /// Reads [observer]; without it participants answer at random and rest. Keys in brackets are
@@ -80,6 +82,7 @@ struct ObserverPlan {
 ///                   with [devices] stage = { NAME = { do = … }, … }, or the same for all of them
 ///     [sight]       { noise, sd [m], [spread] } of a size that is seen (core/subject/perceiver)
 ///     [adaptation]  { stage, matrix, [fast], [slow] }
+///     [script]      { file, [deadline] }: answers (protocols/trials/definition/script_plan.h)
 ///     and the keys of the person (perceiver_population.h)
 ObserverPlan read_observer(Table& root, const std::vector<Question>& questions,
                            const std::vector<std::string>& stages,

@@ -38,10 +38,11 @@ int index_of(const std::vector<std::string>& names, const std::string& name) {
 class TrialsRig::Participant final : public stimulus::Observer {
  public:
   Participant(const Briefing& briefing, const std::vector<std::unique_ptr<Arm>>& arms,
-              std::uint64_t person_seed, std::uint64_t session_seed)
+              LeftDecision* left, std::uint64_t person_seed, std::uint64_t session_seed)
       : plan_(*briefing.plan),
         questions_(*briefing.questions),
         said_(*briefing.said),
+        left_(left),
         seed_(derived_seed(session_seed, "subject")),
         hand_parameters_(briefing.definition->hand),
         step_(1.0 / briefing.definition->rate),
@@ -149,6 +150,10 @@ class TrialsRig::Participant final : public stimulus::Observer {
     trial_ = trial;
     stage_ = interval_ = -1;
     question_ = 0;
+    thinks_ = false;
+    if (left_ != nullptr) {
+      left_->forget();
+    }
     end_answer();
     intervals_ = 1;
     percepts_ = {};
@@ -289,22 +294,54 @@ class TrialsRig::Participant final : public stimulus::Observer {
       question_ = view.question;
       constexpr double kSpread = 0.3;  // of the log of reaction times
       wait_ = plan_.reaction * std::exp(kSpread * reaction_.normal());
+      leave_decision();
     }
     wait_ -= dt;
+    take_decision();
     if (by_hand_.under_way()) {
       Limb& limb = limbs_[by_hand_.device()];
       by_hand_.tick(limb.prober, limb.state, dt);
     }
-    if (wait_ > 0.0 || decided_ || view.told()) {
+    if (wait_ > 0.0 || thinks_ || decided_ || view.told()) {
       return;
     }
-    const Question& question = questions_[view.question - 1U];
-    const Decider::Said said =
-        decider_.decide(question, view.question == 1, std::span(percepts_.data(), intervals_));
+    const Decider::Said said = left_ != nullptr ? left_said_ : decide();
     said_.choice = said.choice;
     said_.value = said.value;
     decided_ = true;
-    give(question, view);
+    give(questions_[view.question - 1U], view);
+  }
+
+  Decider::Said decide() noexcept {
+    return decider_.decide(questions_[static_cast<std::size_t>(question_ - 1)], question_ == 1,
+                           std::span(percepts_.data(), intervals_));
+  }
+
+  /// A question has come: the session's thread is asked what to say.
+  void leave_decision() noexcept {
+    if (left_ == nullptr) {
+      return;
+    }
+    left_said_ = decide();
+    left_reaction_ = wait_;
+    left_->ask({static_cast<std::size_t>(question_ - 1),
+                percepts_,
+                std::min(intervals_, kMostIntervals),
+                {left_said_.choice, left_said_.value, left_reaction_}});
+    thinks_ = true;
+  }
+
+  void take_decision() noexcept {
+    const LeftDecision::Answer* answer = thinks_ ? left_->answer() : nullptr;
+    if (answer == nullptr) {
+      return;
+    }
+    left_said_ = {answer->choice, answer->value};
+    wait_ += answer->reaction - left_reaction_;
+    if (question_ == 1) {
+      decider_.set_previous(answer->choice);
+    }
+    thinks_ = false;
   }
 
   /// The answer that is decided, in the way in which it is to be given.
@@ -338,6 +375,10 @@ class TrialsRig::Participant final : public stimulus::Observer {
   const ObserverPlan& plan_;
   const std::vector<Question>& questions_;
   SaidAnswer& said_;
+  LeftDecision* left_;  // null: decides by itself
+  Decider::Said left_said_;
+  double left_reaction_{0.0};  // that was proposed [s]
+  bool thinks_{false};         // until the decision that was left is there
   std::uint64_t seed_;
   subject::HandParameters hand_parameters_;
   double step_;  // [s]
@@ -375,7 +416,9 @@ TrialsRig::Arm::Arm(const Definition& d, const Eigen::Vector3d& start)
 
 TrialsRig::TrialsRig(const Briefing& briefing, std::uint64_t person_seed,
                      std::uint64_t session_seed)
-    : envelope_(briefing.definition->envelope) {
+    : decide_(briefing.decide),
+      left_(decide_ ? std::make_unique<LeftDecision>() : nullptr),
+      envelope_(briefing.definition->envelope) {
   const Definition& d = *briefing.definition;
   for (const TrialDevice& each : *briefing.devices) {
     arms_.push_back(std::make_unique<Arm>(d, each.start));
@@ -383,7 +426,8 @@ TrialsRig::TrialsRig(const Briefing& briefing, std::uint64_t person_seed,
   if (arms_.empty()) {
     arms_.push_back(std::make_unique<Arm>(d, Eigen::Vector3d::Zero()));
   }
-  participant_ = std::make_unique<Participant>(briefing, arms_, person_seed, session_seed);
+  participant_ =
+      std::make_unique<Participant>(briefing, arms_, left_.get(), person_seed, session_seed);
 }
 
 TrialsRig::~TrialsRig() = default;
@@ -397,6 +441,12 @@ std::vector<DeviceSet::Arm> TrialsRig::others() {
 }
 
 stimulus::Observer* TrialsRig::subject() { return participant_.get(); }
+
+void TrialsRig::attend() {
+  if (left_ != nullptr && left_->waits()) {
+    left_->answer(decide_(left_->asked()));
+  }
+}
 
 void TrialsRig::recall(const CarriedOver& before) { participant_->recall(before); }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "core/subject/hand_model.h"
 #include "protocols/definition/definition.h"
 #include "protocols/interface/rig.h"
+#include "protocols/trials/presentation/left_decision.h"
 #include "protocols/trials/presentation/trial_view.h"
 #include "protocols/trials/subject/observer_plan.h"
 
@@ -36,6 +38,8 @@ class TrialsRig final : public Rig {
     std::vector<std::string> stages;  // names, in their order
     const std::vector<TrialDevice>* devices{nullptr};
     SaidAnswer* said{nullptr};  // where answers go
+    /// Answers on the session's thread in place of the participant; null: nobody does.
+    std::function<LeftDecision::Answer(const LeftDecision::Asked&)> decide{};
   };
   /// @param briefing  what it points to outlives the rig
   /// @param person_seed   who it is follows from it: the same person in every session
@@ -46,6 +50,9 @@ class TrialsRig final : public Rig {
   device::Device& device() override { return arms_.front()->device; }
   std::vector<DeviceSet::Arm> others() override;
   stimulus::Observer* subject() override;
+  void attend() override;
+  /// Decisions that are left to the session's thread; null: none are.
+  const LeftDecision* left() const { return left_.get(); }
   /// Goes on from what an earlier run of the session left. Session's thread, before the first pass.
   void recall(const CarriedOver& before);
   /// What was learnt up to the end of the last pass, whether or not the participant has noticed
@@ -60,6 +67,8 @@ class TrialsRig final : public Rig {
     device::VirtualDevice device;
   };
   class Participant;
+  std::function<LeftDecision::Answer(const LeftDecision::Asked&)> decide_;
+  std::unique_ptr<LeftDecision> left_;  // before the participant, who uses it
   device::EnvelopeLimits envelope_;
   std::vector<std::unique_ptr<Arm>> arms_;
   std::unique_ptr<Participant> participant_;

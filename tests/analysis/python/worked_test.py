@@ -2,6 +2,7 @@
 import contextlib
 import inspect
 import io
+import linecache
 import os
 import re
 import runpy
@@ -34,8 +35,10 @@ class WorkedTest(unittest.TestCase):
         self.assertGreater(len(blocks), 4)
         names = {"SOURCE": support.SOURCE}
         with contextlib.redirect_stdout(io.StringIO()):
-            for block in blocks:
-                exec(compile(block, "guide-python.md", "exec"), names)
+            for number, block in enumerate(blocks):
+                file = f"guide-python.md, block {number}"
+                linecache.cache[file] = (len(block), None, block.splitlines(True), file)
+                exec(compile(block, file, "exec"), names)
 
 
 class DryRunTest(unittest.TestCase):
@@ -49,11 +52,62 @@ class DryRunTest(unittest.TestCase):
         self.assertTrue(first[0].samples.equals(second[0].samples))
         self.assertTrue(haptrial.study(first, "responses")["participant"].eq("S01").all())
 
+    def test_a_function_answers_and_another_chooses_levels(self):
+        def second(trial):
+            assert trial["question"] == "stiffer"
+            return {"answer": trial["choices"][1], "reaction_time": 0.25}
+
+        def ladder(trial):
+            return trial["low"] + 10.0 * (1 + len(trial["history"]))
+
+        file = support.SOURCE / "experiments" / "stiffness_discrimination.toml"
+        session, = haptrial.dry_run(file, subjects=1, trials=6, decision=second, levels=ladder)
+        responses = session.responses
+        self.assertEqual(set(responses["text"]), {"second"})
+        self.assertTrue((abs(responses["reaction_time"] - 0.25) < 0.0021).all())
+        for _, track in session.table("levels").groupby("track"):
+            self.assertEqual(track["asked"].tolist(),
+                             [305.0 + 10.0 * (1 + i) for i in range(len(track))])
+        kept = session.events.set_index("kind")["text"]
+        self.assertIn("def second(trial):", kept["decision_script"])
+        self.assertIn("def ladder(trial):", kept["level_script"])
+
+    def test_a_function_that_fails_is_told(self):
+        def wrong(trial):
+            raise KeyError("nothing")
+
+        file = support.SOURCE / "experiments" / "stiffness_discrimination.toml"
+        with self.assertRaisesRegex(ValueError, "ended with no answer: KeyError: 'nothing'"):
+            haptrial.dry_run(file, subjects=1, trials=1, decision=wrong)
+        for none in (lambda trial: None, file.exists, lambda_around(file)):
+            with self.assertRaisesRegex(ValueError, "no function that stands alone"):
+                haptrial.dry_run(file, subjects=1, trials=1, decision=none)
+
+    def test_the_worked_script_is_drawn_to_what_is_usual(self):
+        file = support.SOURCE / "experiments" / "stiffness_discrimination.toml"
+        script = support.SOURCE / "docs" / "worked" / "python" / "decide.py"
+        sessions = haptrial.dry_run(file, subjects=4, decision=script, seed=3)
+        answers = haptrial.study(sessions, "responses")
+        answers = answers[answers["trial"].notna()]
+        right = answers["correct"].astype(bool)
+        # Right with "second": the comparison came second.
+        came_second = (answers["text"] == "second") == right
+        share = right.groupby(came_second).mean()
+        counts = right.groupby(came_second).size()
+        spread = (sum(p * (1 - p) / n for p, n in zip(share, counts))) ** 0.5
+        self.assertGreater(share[True] - share[False], 4 * spread)
+
     def test_a_definition_as_text_and_its_mistakes(self):
         text = (support.SOURCE / "experiments" / "stiffness_discrimination.toml").read_text()
         self.assertEqual(len(haptrial.dry_run(text, subjects=1, trials=1)), 1)
         with self.assertRaisesRegex(ValueError, "procedure.down is 0; allowed: "):
             haptrial.dry_run(text.replace("down = 2 ", "down = 0 "), subjects=1)
+
+
+def lambda_around(file):
+    def around(trial):
+        return str(file)
+    return around
 
 
 class HelpTest(unittest.TestCase):

@@ -36,7 +36,8 @@ class LevelScriptTest : public testing::Test {
 };
 
 TEST_F(LevelScriptTest, AnswersEachQuestionInTurn) {
-  LevelScript echo = script("while read line; do echo noise; echo \"{\\\"level\\\": $line}\"; done");
+  LevelScript echo =
+      script("while read line; do echo noise; echo \"{\\\"level\\\": $line}\"; done");
   EXPECT_EQ(echo.ask("2.5", 1).level, Level{2.5});
   EXPECT_EQ(echo.ask("-3e-2", 1).level, Level{-0.03});
   EXPECT_EQ(echo.ask("[1, 2]", 2).level, (Level{1.0, 2.0}));
@@ -47,9 +48,9 @@ TEST_F(LevelScriptTest, WhatIsNoLevelGetsASentence) {
   EXPECT_THAT(why_not("read line; echo '{\"level\": \"much\"}'; cat"), HasSubstr("was \"much\""));
   EXPECT_THAT(why_not("read line; echo '{\"level\": [1, 2]}'; cat"), HasSubstr("not a number"));
   EXPECT_THAT(why_not("read line; echo 'Traceback: no such thing' >&2; exit 1"),
-              HasSubstr("ended without a level: Traceback: no such thing"));
-  EXPECT_THAT(why_not("exit 0"), HasSubstr("ended without a level"));
-  EXPECT_THAT(why_not("kill -KILL $$"), HasSubstr("ended without a level"));
+              HasSubstr("ended with no level: Traceback: no such thing"));
+  EXPECT_THAT(why_not("exit 0"), HasSubstr("ended with no level"));
+  EXPECT_THAT(why_not("kill -KILL $$"), HasSubstr("ended with no level"));
 }
 
 TEST_F(LevelScriptTest, OneThatHangsIsLeftAtItsDeadline) {

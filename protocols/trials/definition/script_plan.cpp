@@ -1,4 +1,4 @@
-#include "protocols/trials/definition/level_script_plan.h"
+#include "protocols/trials/definition/script_plan.h"
 
 #include <fmt/format.h>
 
@@ -7,23 +7,38 @@
 #include "core/base/files/file_text.h"
 
 namespace haptrial::protocols {
+namespace {
 
-std::optional<LevelScriptPlan> read_level_script(Table& root) {
+ScriptPlan read_script(Table& table, double deadline, double longest) {
+  ScriptPlan plan;
+  plan.file = table.text("file");
+  plan.deadline = table.number_or("deadline", deadline, {0.05, longest}, "s");
+  return plan;
+}
+
+}  // namespace
+
+std::optional<ScriptPlan> read_level_script(Table& root) {
   if (!root.has("level_script")) {
     return std::nullopt;
   }
   Table table = root.table("level_script");
-  LevelScriptPlan plan;
-  plan.file = table.text("file");
-  plan.deadline = table.number_or("deadline", plan.deadline, {0.05, 10.0}, "s");
   if (!root.has("procedure") && !root.has("procedures")) {
     root.reject("level_script", "stands without a [procedure]",
                 "a procedure beside it, whose levels are presented where the script gives none");
   }
-  return plan;
+  return read_script(table, 2.0, 10.0);
 }
 
-void load_level_script(LevelScriptPlan& plan, const std::filesystem::path& folder) {
+std::optional<ScriptPlan> read_decision_script(Table& observer) {
+  if (!observer.has("script")) {
+    return std::nullopt;
+  }
+  Table table = observer.table("script");
+  return read_script(table, 60.0, 600.0);
+}
+
+void load_script(ScriptPlan& plan, const std::filesystem::path& folder) {
   if (plan.file.is_relative()) {
     plan.file = folder / plan.file;
   }

@@ -1,0 +1,16 @@
+#include "protocols/trials/studied_definition.h"
+
+#include <fmt/format.h>
+
+namespace haptrial::protocols {
+
+std::vector<std::string> StudiedDefinition::description() const {
+  std::vector<std::string> lines = TrialsDefinition::description();
+  if (observer.script) {
+    lines.push_back(fmt::format("virtual participants answer by {} (observer.script)",
+                                observer.script->file.filename().string()));
+  }
+  return lines;
+}
+
+}  // namespace haptrial::protocols
