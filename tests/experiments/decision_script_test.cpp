@@ -29,6 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using testing::AllOf;
 using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -142,7 +143,7 @@ TEST_F(DecisionScriptTest, TheOwnRuleRestatedGivesTheSameSessionToTheBit) {
 }
 
 TEST_F(DecisionScriptTest, SoDoesOneThatLeavesEveryDecisionToTheParticipant) {
-  put("lapse = 0.0", "lapse = 0.2\nnoise = 0.1\nbias_first = 0.3\nrepetition = 0.2");
+  put("lapse = 0.0\n", "lapse = 0.2\ndecision_noise = 0.1\nbias_first = 0.3\nrepetition = 0.2\n");
   run("", "own.h5", 40);
   run(answering("{'answer': None}"), "script.h5", 40);
   expect_same("own.h5", "script.h5");

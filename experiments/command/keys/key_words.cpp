@@ -512,7 +512,7 @@ observer.actions.NAME.NAME.then_around | 1, 0, 0 | axis of the second loop
 observer.actions.NAME.NAME.turn_after | | when the second loop begins
 observer.actions.NAME.NAME.speed | | along the surface
 observer.script.file | | Python script (.py), or a program, by which virtual participants answer, beside the definition
-observer.script.deadline | 60 | for an answer
+observer.script.deadline | | for an answer
 observer.adaptation.stage | | of the reach that is learnt from
 observer.adaptation.matrix | | B of the field that is learnt
 observer.adaptation.fast.retention | | of the fast process from trial to trial; without the table 0.59
