@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/record/rows/response.h"
 #include "core/record/trials/contact_row.h"
+#include "core/record/trials/moving_body_row.h"
 #include "core/record/trials/object_file_row.h"
 #include "core/record/trials/touched_body_row.h"
 #include "core/record/trials/trial_rows.h"
