@@ -36,7 +36,7 @@ class LeftDecision {
   const Answer* answer() const noexcept {
     return state_.load(std::memory_order_acquire) == State::kAnswered ? &answer_ : nullptr;
   }
-  /// An answer that is still to come is to nobody.
+  /// Drops the question, and an answer that is still to come.
   void forget() noexcept { state_.store(State::kNothing, std::memory_order_release); }
 
   /// Whether an answer is waited for. Any thread.
