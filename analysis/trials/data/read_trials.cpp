@@ -110,10 +110,10 @@ class SessionTrials {
 
   void add(const record::StageRow& row) {
     if (StudyTrial* trial = of(row.pass)) {
-      const auto ticks = static_cast<double>(row.last_sample - row.first_sample + 1);
       trial->stages.push_back({row.stage, static_cast<std::int16_t>(row.interval),
                                row.ending == record::StageEnding::kReached,
-                               ticks / reader_.info().rate, row.first_sample, row.last_sample});
+                               static_cast<std::uint32_t>(row.last_sample - row.first_sample + 1),
+                               static_cast<std::uint32_t>(row.first_sample - trial->first_sample)});
     }
   }
 
@@ -154,7 +154,8 @@ TrialsData read_trials(const std::vector<std::filesystem::path>& files, const Gr
                               info.simulated,
                               info.pilot,
                               static_cast<int>(info.session),
-                              reader.rows<record::ObjectFileRow>()};
+                              reader.rows<record::ObjectFileRow>(),
+                              info.rate};
       by_file[first] = SessionTrials(reader).take();
       const std::vector<record::MarkerRow> rows = reader.rows<record::MarkerRow>();
       markers[first].add(rows);

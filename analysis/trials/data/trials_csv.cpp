@@ -173,7 +173,7 @@ void add_trial(std::string& text, const TrialsData& data, const StudyTrial& tria
     const auto at = std::find_if(trial.stages.rbegin(), trial.stages.rend(), [&](const auto& s) {
       return s.stage == name && s.interval == interval;
     });
-    row.add(at != trial.stages.rend() ? at->duration : kNotKnown);
+    row.add(at != trial.stages.rend() ? static_cast<double>(at->ticks) / session.rate : kNotKnown);
   }
   row.end();
 }

@@ -23,6 +23,7 @@ struct StudySession {
   bool pilot{false};
   int session{1};                               // of the participant, from 1
   std::vector<record::ObjectFileRow> meshes{};  // files of the objects, as they were then
+  double rate{1000.0};                          // ticks a second [Hz]
 };
 
 /// An answer to one question of a trial.
@@ -52,13 +53,13 @@ struct GivenLevel {
   double outcome{kNotKnown};  // what the procedure learnt; NaN: nothing
 };
 
-/// How long a stage of an interval took.
+/// When a stage of an interval was, in ticks: 16 bytes, as a trial has many.
 struct StageTime {
   Word stage;
   std::int16_t interval{1};
-  bool reached{true};                             // else it ended by its time or was broken off
-  double duration{0.0};                           // [s]
-  std::uint64_t first_sample{0}, last_sample{0};  // both inclusive, in /samples of the session
+  bool reached{true};      // else it ended by its time or was broken off
+  std::uint32_t ticks{0};  // its duration
+  std::uint32_t first{0};  // its first tick, from that of the pass
 };
 
 /// How a tool touched a body that gives way, in ticks.

@@ -34,23 +34,22 @@ struct ReachSamples {
 ReachSamples samples_of(const record::SessionReader& reader, const StudyTrial& trial,
                         const StageTime& stage) {
   const double rate = reader.info().rate;
-  const auto lead = std::min<std::uint64_t>(static_cast<std::uint64_t>(kLead * rate),
-                                            stage.first_sample - trial.first_sample);
-  const std::uint64_t first = stage.first_sample - lead;
-  const std::uint64_t end = std::min<std::uint64_t>(stage.last_sample + 1, reader.sample_count());
+  const std::uint64_t go = trial.first_sample + stage.first;
+  const std::uint64_t first =
+      go - std::min<std::uint64_t>(static_cast<std::uint64_t>(kLead * rate), stage.first);
+  const std::uint64_t end = std::min<std::uint64_t>(go + stage.ticks, reader.sample_count());
   ReachSamples samples;
-  if (end <= stage.first_sample) {
+  if (end <= go) {
     return samples;
   }
   const std::vector<record::Sample> rows = reader.samples(first, end - first);
   for (const record::Sample& row : rows) {
-    samples.time.push_back(
-        (static_cast<double>(row.sequence) - static_cast<double>(stage.first_sample)) / rate);
+    samples.time.push_back((static_cast<double>(row.sequence) - static_cast<double>(go)) / rate);
     samples.position.push_back(row.position);
     samples.force.push_back(row.force);
-    samples.saturated += row.saturated && row.sequence >= stage.first_sample ? 1.0 : 0.0;
+    samples.saturated += row.saturated && row.sequence >= go ? 1.0 : 0.0;
   }
-  samples.saturated /= static_cast<double>(end - stage.first_sample);
+  samples.saturated /= static_cast<double>(end - go);
   return samples;
 }
 

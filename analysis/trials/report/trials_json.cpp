@@ -284,53 +284,88 @@ Json cues_json(const CuePlan& plan, const CueStudy& cues) {
           {"at", plan.at},       {"conflict", plan.conflict}, {"levels", list_of(cues.levels)}};
 }
 
+std::string laid_out(const Json& value) {
+  return value.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+/// What the report says, member by member.
+class ResultsJson {
+ public:
+  ResultsJson(const TrialsResult& result, const JsonPieces::Take& take)
+      : result_(result), pieces_(take) {}
+
+  void write() {
+    const TrialsPlan& plan = result_.plan;
+    add("title", result_.title);
+    add("simulated", result_.simulated());
+    add("kind", name_of(plan.kind));
+    add("factors", plan.by);
+    add_list("participants", result_.participants);
+    if (plan.functions) {
+      add_functions();
+    }
+    if (result_.cues) {
+      add("cue_combination", cues_json(*plan.cues, *result_.cues));
+    }
+    add_list("quantities", result_.quantities);
+    add_list("tracks", result_.tracks);
+    add_list("detection", result_.detected);
+    if (plan.kind == AnalysisKind::kIdentification) {
+      add("choices", plan.choices);
+      add_list("identification", result_.identified);
+    }
+    add_list("magnitudes", result_.magnitudes);
+    add_rest();
+    pieces_.end();
+  }
+
+ private:
+  void add(const char* name, const Json& value) { pieces_.member(name, laid_out(value)); }
+
+  template <class T>
+  void add_list(const char* name, const std::vector<T>& values) {
+    pieces_.list(name, values.size(), [&](std::size_t i) { return laid_out(to_json(values[i])); });
+  }
+
+  void add_functions() {
+    const TrialsPlan& plan = result_.plan;
+    add("function", {{"sigmoid", plan.function_name},
+                     {"axis_unit", plan.function.axis.x_unit()},
+                     {"axis_origin", plan.function.axis.origin},
+                     {"guess", plan.guess_free ? Json("free") : Json(plan.function.guess)},
+                     {"threshold_at", plan.threshold_at},
+                     {"reference", plan.reference ? Json(*plan.reference) : Json()}});
+    add_list("functions", result_.fits);
+    add("population", to_json(result_.population));
+    add_list("serial_effects", result_.serial);
+    add("drift_over_participants", to_json(result_.drift));
+    add("repetition_over_participants", to_json(result_.repetition));
+  }
+
+  void add_rest() {
+    if (!result_.surfaces.empty()) {
+      add("surfaces", Json::parse(surfaces_json(result_)));
+    }
+    if (result_.reaching) {
+      add("reaching", Json::parse(reaching_json(*result_.reaching)));
+    }
+    if (const auto times = result_.data.markers.times(); !times.empty()) {
+      add_list("markers", times);  // of sessions that recorded any
+    }
+    if (!result_.page_scores.empty()) {
+      add("page_scores", scores_json(result_.page_scores));
+    }
+    add("remarks", result_.remarks);
+  }
+
+  const TrialsResult& result_;
+  JsonPieces pieces_;
+};
+
 }  // namespace
 
-std::string results_json(const TrialsResult& result) {
-  const TrialsPlan& plan = result.plan;
-  Json root{{"title", result.title},
-            {"simulated", result.simulated()},
-            {"kind", name_of(plan.kind)},
-            {"factors", plan.by}};
-  root["participants"] = list_of(result.participants);
-  if (plan.functions) {
-    root["function"] = {{"sigmoid", plan.function_name},
-                        {"axis_unit", plan.function.axis.x_unit()},
-                        {"axis_origin", plan.function.axis.origin},
-                        {"guess", plan.guess_free ? Json("free") : Json(plan.function.guess)},
-                        {"threshold_at", plan.threshold_at},
-                        {"reference", plan.reference ? Json(*plan.reference) : Json()}};
-    root["functions"] = list_of(result.fits);
-    root["population"] = to_json(result.population);
-    root["serial_effects"] = list_of(result.serial);
-    root["drift_over_participants"] = to_json(result.drift);
-    root["repetition_over_participants"] = to_json(result.repetition);
-  }
-  if (result.cues) {
-    root["cue_combination"] = cues_json(*plan.cues, *result.cues);
-  }
-  root["quantities"] = list_of(result.quantities);
-  root["tracks"] = list_of(result.tracks);
-  root["detection"] = list_of(result.detected);
-  if (plan.kind == AnalysisKind::kIdentification) {
-    root["choices"] = plan.choices;
-    root["identification"] = list_of(result.identified);
-  }
-  root["magnitudes"] = list_of(result.magnitudes);
-  if (!result.surfaces.empty()) {
-    root["surfaces"] = Json::parse(surfaces_json(result));
-  }
-  if (result.reaching) {
-    root["reaching"] = Json::parse(reaching_json(*result.reaching));
-  }
-  if (const auto times = result.data.markers.times(); !times.empty()) {
-    root["markers"] = list_of(times);  // of sessions that recorded any
-  }
-  if (!result.page_scores.empty()) {
-    root["page_scores"] = scores_json(result.page_scores);
-  }
-  root["remarks"] = result.remarks;
-  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+void results_json(const TrialsResult& result, const JsonPieces::Take& take) {
+  ResultsJson(result, take).write();
 }
 
 }  // namespace haptrial::analysis::trials

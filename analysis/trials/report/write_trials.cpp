@@ -17,7 +17,7 @@ void write_trials(const TrialsResult& result, const std::filesystem::path& folde
   const Staging staging(folder);
   trials_csv(result.data, [&](const std::string& text) { staging.append("trials.csv", text); });
   staging.write("estimates.csv", estimates_csv(result));
-  staging.write("results.json", results_json(result));
+  results_json(result, [&](const std::string& text) { staging.append("results.json", text); });
   if (!result.surfaces.empty()) {
     staging.write("surfaces.csv", surfaces_csv(result));
   }

@@ -262,9 +262,8 @@ class SessionRows {
       row.pass = row_;
       row.interval = s.interval;
       row.stage = s.stage;
-      row.first_sample = pass.first_sample;
-      row.last_sample =
-          pass.first_sample + static_cast<std::uint64_t>(std::llround(s.duration * 1e3)) - 1;
+      row.first_sample = pass.first_sample + s.first;
+      row.last_sample = row.first_sample + s.ticks - 1;
       stages.push_back(row);
     }
     writer_.add(std::span<const record::VariableRow>(variables));

@@ -40,7 +40,7 @@ TrialsData hand_made() {
   again.variables = {{"stiffness", 1, 300.0, ""},
                      {"stiffness", 2, 330.0, ""},
                      {"field", 0, kNotKnown, "curl, \"soft\""}};
-  again.stages = {{"press", 1, true, 0.012}, {"press", 2, true, 0.02}};
+  again.stages = {{"press", 1, true, 12}, {"press", 2, true, 20}};
   StudyTrial probe = aborted;
   probe.trial = 2;
   probe.completed = true;
@@ -98,8 +98,8 @@ TEST_F(ReadTrials, AnswersVariablesLevelsAndStagesBelongToTheirPass) {
   EXPECT_EQ(trial.levels[0].applied, 330.0);
   EXPECT_EQ(trial.levels[0].outcome, 1.0);
   ASSERT_EQ(trial.stages.size(), 2u);
-  EXPECT_NEAR(trial.stages[0].duration, 0.012, 1e-12);
-  EXPECT_NEAR(trial.stages[1].duration, 0.02, 1e-12);
+  EXPECT_EQ(trial.stages[0].ticks, 12u);
+  EXPECT_EQ(trial.stages[1].ticks, 20u);
   EXPECT_NEAR(trial.saturated, 0.25, 1e-12);
   EXPECT_THAT(data_.trials[3].levels, IsEmpty());
 }
