@@ -213,7 +213,7 @@ void fit_likelihood(FunctionFit& result, const TrialsPlan& plan, int threads) {
     result.band.push_back({kBandShares[i], estimated(fit, band + i)});
   }
   ProfiledFit profiled = profiled_fit(result.blocks, options);
-  if (result.adaptive) {
+  if (result.adaptive && plan.posteriors) {
     take_posterior(result, readings, profiled, plan);
   }
   take_profile(readings, profiled, plan);

@@ -64,6 +64,7 @@ struct TrialsPlan {
   bool bayesian{true};
   bool population{true};        // the mixed model of all participants
   bool track_intervals{true};   // of the procedures' own estimates
+  bool posteriors{true};        // intervals of functions of adaptive trials, which take most time
   bool serial{true};            // drift and repetition
   std::size_t resamples{1999};  // of each function
   std::size_t permutations{9999};

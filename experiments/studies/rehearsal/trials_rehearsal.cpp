@@ -122,6 +122,7 @@ class TrialsRehearsal final : public Rehearsal {
     plan_.resamples = 0;
     plan_.bayesian = false;
     plan_.track_intervals = false;
+    plan_.posteriors = false;
     plan_.serial = watched.find(": ") == std::string::npos;  // names of other tests have one
     plan_.population = !plan_.by.empty();  // it tests nothing but conditions
     plan_.permutations = watched.ends_with("permutation") ? plan_.permutations : 0;
