@@ -10,18 +10,30 @@ namespace {
 
 /// A key may hold keys in turn ("a.b.c = 1"). Thousands of them on one line are one inside the
 /// other, and a tree that deep overflows the stack when it is destroyed.
-constexpr int kMostDotsInLine = 100;
+constexpr int kMostDotsInKey = 100;
 
+/// Counts dots up to the end of a line, or to a comma that is not quoted: keys have none, but a
+/// list of decimals does.
 void refuse_deep_keys(std::string_view text, std::string_view file_name) {
   unsigned line = 1;
   int dots = 0;
-  for (const char c : text) {
+  char quote = 0;  // the open one
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
     if (c == '\n') {
       ++line;
       dots = 0;
-    } else if (c == '.' && ++dots > kMostDotsInLine) {
-      throw InputError(fmt::format("{}:{}: the line has more than {} dots; write shorter keys",
-                                   file_name, line, kMostDotsInLine));
+      quote = 0;
+    } else if (c == '\\' && quote == '"' && i + 1 < text.size() && text[i + 1] != '\n') {
+      ++i;
+    } else if (c == '"' || c == '\'') {
+      quote = quote == 0 ? c : quote == c ? 0 : quote;
+    } else if (c == ',' && quote == 0) {
+      dots = 0;
+    } else if (c == '.' && ++dots > kMostDotsInKey) {
+      throw InputError(
+          fmt::format("{}:{}: the line has more than {} dots without a comma; write shorter keys",
+                      file_name, line, kMostDotsInKey));
     }
   }
 }

@@ -449,6 +449,19 @@ TEST(TableTest, DeepNestingIsRefusedAndNotFollowed) {
   EXPECT_THAT(refusal(braces), HasSubstr("f.toml:1: not valid TOML"));
   EXPECT_THAT(refusal(dots + "b = 1\n"), StartsWith("f.toml:2: the line has more than 100 dots"));
   EXPECT_THAT(refusal("\n[" + dots.substr(1) + "b]\n"), StartsWith("f.toml:2: the line has"));
+  std::string quoted;
+  for (int i = 0; i < 200000; ++i) {
+    quoted += i % 2 == 0 ? "\"\\\",\"." : "','.";
+  }
+  EXPECT_THAT(refusal(quoted + "b = 1\n"), StartsWith("f.toml:1: the line has"));
+}
+
+TEST(TableTest, AListOfDecimalsMayBeLong) {
+  std::string line = "a = [0.5";
+  for (int i = 0; i < 1000; ++i) {
+    line += ", 1.5";
+  }
+  EXPECT_TRUE(Table::parse(line + "]\n", "f.toml").has("a"));
 }
 
 class TableFileTest : public ::testing::Test {
