@@ -1,10 +1,12 @@
 // How many trials a second power simulates at the level of responses: sessions of shipped
-// definitions, without the analysis of their answers. One core. Prints a table in Markdown.
+// definitions, without the analysis of their answers. One core; seconds of the processor, the best
+// of several rounds, so that other work on the machine counts little. Prints a table in Markdown.
 //   bench_responses [SECONDS [DEFINITION]]
 #include <fmt/format.h>
 
-#include <chrono>
+#include <algorithm>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <string_view>
 #include <utility>
@@ -17,9 +19,8 @@ namespace {
 
 using namespace haptrial;
 
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+/// Of the processor, in this process.
+double seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// @returns trials a second
 double rate_of(const protocols::StudiedDefinition& definition, const std::string& met,
@@ -55,7 +56,12 @@ int main(int argc, char** argv) {
     const experiments::Experiment experiment = experiments::load_experiment(file);
     const auto& definition =
         dynamic_cast<const protocols::StudiedDefinition&>(*experiment.definition);
-    fmt::print("| {} | {:.0f} |\n", name, rate_of(definition, met, lasting));
+    constexpr int kRounds = 5;
+    double best = 0.0;
+    for (int round = 0; round < kRounds; ++round) {
+      best = std::max(best, rate_of(definition, met, lasting / kRounds));
+    }
+    fmt::print("| {} | {:.0f} |\n", name, best);
   }
   return 0;
 }
