@@ -107,11 +107,14 @@ TEST(PowerQuestion, RefusesBadInputWithASentence) {
   const std::string name = "stiffness_discrimination";
   expect_refused(power_of(name, "watch = \"sign test\"\n" + met + kVary),
                  "power.watch is \"sign test\"; allowed: \"drift over the trials\"");
+  expect_refused(power_of(name, "watch = \"threshold: paired t\"\n" + met + kVary),
+                 "power.watch is \"threshold: paired t\"; allowed: \"drift over the trials\", "
+                 "\"repetition of the answer before\"");
   std::string huge = "watch = \"drift over the trials\"\n" + met;
   for (const char* key : {"observer.drift", "observer.repetition", "observer.lapse.median"}) {
     huge += "[[power.vary]]\nkey = \"" + std::string(key) + "\"\nvalues = [";
     for (int i = 0; i < 1000; ++i) {
-      huge += std::to_string(i) + ", ";
+      huge += std::to_string(0.001 * i) + ", ";
     }
     huge += "]\n";
   }

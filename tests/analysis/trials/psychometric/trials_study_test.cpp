@@ -236,6 +236,23 @@ TEST(TrialsStudyTest, ATrackIsReplayedAsItRan) {
   }
 }
 
+void expect_same_estimates(const TrialsResult& a, const TrialsResult& b) {
+  ASSERT_EQ(a.fits.size(), b.fits.size());
+  for (std::size_t i = 0; i < a.fits.size(); ++i) {
+    ASSERT_EQ(bool(a.fits[i].likelihood), bool(b.fits[i].likelihood));
+    if (a.fits[i].likelihood) {
+      EXPECT_EQ(a.fits[i].likelihood->x.value, b.fits[i].likelihood->x.value);
+      EXPECT_EQ(a.fits[i].likelihood->width.value, b.fits[i].likelihood->width.value);
+      EXPECT_EQ(a.fits[i].likelihood->slope.value, b.fits[i].likelihood->slope.value);
+      EXPECT_EQ(a.fits[i].likelihood->lapse.value, b.fits[i].likelihood->lapse.value);
+      EXPECT_NE(a.fits[i].likelihood->x.low, b.fits[i].likelihood->x.low);
+    }
+  }
+  ASSERT_TRUE(a.drift && b.drift && a.repetition && b.repetition);
+  EXPECT_EQ(a.drift->p, b.drift->p);
+  EXPECT_EQ(a.repetition->p, b.repetition->p);
+}
+
 TEST(TrialsStudyTest, AdaptiveTrialsHaveIntervalsThatHoldTheTruth) {
   SimulatedTrials study;
   study.participants = 12;
@@ -275,6 +292,9 @@ TEST(TrialsStudyTest, AdaptiveTrialsHaveIntervalsThatHoldTheTruth) {
   // Of 12 and 24 intervals of 95 %, 8 and 18 or fewer hold the truth once in 10,000 studies.
   EXPECT_GE(held, 9);
   EXPECT_GE(own_held, 19);
+  TrialsPlan bare = plan;
+  bare.posteriors = bare.track_intervals = false;
+  expect_same_estimates(result, analyze(test::simulated_trials(study), bare, begin, 2));
   plan.functions = false;
   const TrialsResult without = analyze(test::simulated_trials(study), plan, begin, 2);
   EXPECT_FALSE(without.tracks[0].estimates.at(0).interval);
