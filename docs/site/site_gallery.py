@@ -12,6 +12,7 @@ PICTURES = {
     "construct_validity": ["docs/images/validity-live.jpg"],
     "first_drilling": ["docs/images/first-drilling.png"],
     "nerve_training": ["docs/algorithms/nerve-monitor.png"],
+    "sinus_exposure": ["docs/images/bone-drilled.png"],
     "two_hands": ["docs/images/two-hands.png"],
 }
 TABLES = ("scores.csv", "estimates.csv", "metrics.csv")

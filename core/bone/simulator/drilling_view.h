@@ -1,7 +1,10 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
+
+#include "core/bone/model/dent.h"
 
 namespace haptrial::bone {
 
@@ -37,9 +40,10 @@ struct DrillingView {
   std::uint8_t hints{0};           // that are shown, hint::bit() of each kind
   std::int8_t hint_structure{-1};  // of vital_structures(), that they are about; -1: none
   TubeView tube;
-  double temperature{0.0};  // at the burr; 0: nothing warms up [degree C]
-  double progress{0.0};     // of the time limit, as a fraction
-  double time_limit{0.0};   // [s]
+  std::array<Dent, 2> dents{};  // of soft tissue in the bone itself, by tool and tube
+  double temperature{0.0};      // at the burr; 0: nothing warms up [degree C]
+  double progress{0.0};         // of the time limit, as a fraction
+  double time_limit{0.0};       // [s]
 
   bool engaged() const noexcept { return shown; }
 };

@@ -198,6 +198,7 @@ SoftTissue::Touch SoftTissue::touch() const {
 void SoftTissue::forget(Touch& touch) noexcept {
   for (TouchedPart& part : touch.parts_) {
     part.state = State::kUnfelt;
+    part.dent = {};
   }
 }
 
@@ -236,6 +237,7 @@ Vector3d SoftTissue::feel(Touch& touch, const Vector3d& c_B, double radius,
 SoftTissue::Pressed SoftTissue::press(const Part& part, TouchedPart& touched, const Vector3d& c_B,
                                       double radius, bool sucks) const noexcept {
   SurfaceDepth::Here here{};
+  touched.dent = {};
   const bool near = part.depth.at(c_B, here);
   const double depth = near ? radius - here.distance : 0.0;
   const bool holds = touched.state == State::kHeld && sucks;
@@ -267,7 +269,18 @@ SoftTissue::Pressed SoftTissue::press(const Part& part, TouchedPart& touched, co
     return {};
   }
   touched.state = sucks ? State::kHeld : State::kPressed;
+  touched.dent = {part.label, place, here.gradient.stableNormalized(), depth, radius};
   return {force};
+}
+
+Dent SoftTissue::deepest(const Touch& touch) noexcept {
+  Dent deepest;
+  for (const TouchedPart& part : touch.parts_) {
+    if (std::abs(part.dent.depth) > std::abs(deepest.depth)) {
+      deepest = part.dent;
+    }
+  }
+  return deepest;
 }
 
 bool SoftTissue::holed(std::uint8_t label, const Vector3d& place) const noexcept {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/bone/model/bone_model.h"
+#include "core/bone/model/dent.h"
 
 namespace haptrial {
 class Table;
@@ -116,6 +117,9 @@ class SoftTissue {
   double distance(const Eigen::Vector3d& p_B) const noexcept;
   /// Whether the ball is in a hole of a structure.
   bool in_hole() const noexcept;
+  /// The deepest one that the tool, or the tube in the other hand, makes now.
+  Dent dent() const noexcept { return deepest(own_); }
+  Dent dent_of_second() const noexcept { return deepest(second_); }
 
  private:
   enum class State : std::uint8_t { kFree, kPressed, kHeld, kInHole, kUnfelt };
@@ -127,6 +131,7 @@ class SoftTissue {
   struct TouchedPart {
     State state{State::kUnfelt};
     Eigen::Vector3d way_out{Eigen::Vector3d::Zero()};  // on the last tick of contact
+    Dent dent{};                                       // now
   };
   struct Hole {
     Eigen::Vector3d place;
@@ -144,6 +149,7 @@ class SoftTissue {
   Eigen::Vector3d press_all(Touch& touch, const Eigen::Vector3d& c_B, double radius, bool sucks,
                             bool second) noexcept;
   void tear(const Tear& tear, double radius) noexcept;
+  static Dent deepest(const Touch& touch) noexcept;
 
  public:
   class Touch {

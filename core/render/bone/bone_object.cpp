@@ -51,7 +51,7 @@ BoneObject::BoneObject(const Gl& gl, std::uint32_t id,
     gl_.enable_vertex_attrib_array(index);
   }
   gl_.vertex_attrib_pointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(GpuVertex), offset(0));
-  gl_.vertex_attrib_pointer(1, 3, GL_SHORT, GL_TRUE, sizeof(GpuVertex),
+  gl_.vertex_attrib_pointer(1, 4, GL_SHORT, GL_TRUE, sizeof(GpuVertex),
                             offset(offsetof(GpuVertex, normal)));
   gl_.vertex_attrib_pointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(GpuVertex),
                             offset(offsetof(GpuVertex, colour)));
@@ -121,7 +121,8 @@ std::size_t BoneObject::send(const BonePalette& palette) {
   const auto write_vertices = [&](ItemRange range, std::byte* to) {
     for (std::size_t i = 0; i < range.count; ++i) {
       const bone::SurfaceVertex& v = surface_->vertices()[range.first + i];
-      const GpuVertex vertex{v.place, {v.normal[0], v.normal[1], v.normal[2], 0}, palette.of(v)};
+      const GpuVertex vertex{
+          v.place, {v.normal[0], v.normal[1], v.normal[2], v.label}, palette.of(v)};
       std::memcpy(to + i * sizeof(GpuVertex), &vertex, sizeof(GpuVertex));
     }
   };

@@ -58,7 +58,7 @@ class BoneObject {
 
   struct GpuVertex {
     std::array<float, 3> place;
-    std::array<std::int16_t, 4> normal;
+    std::array<std::int16_t, 4> normal;  // and the label
     std::array<std::uint8_t, 4> colour;
   };
 

@@ -74,8 +74,37 @@ std::vector<Capsule> capsules_of(const BoneFrame& frame) {
 /// A bone as it is in the kept picture.
 struct DrawnBone {
   Eigen::Matrix4d pose;
-  std::uint64_t array;           // BoneObject::array()
+  std::uint64_t array;  // BoneObject::array()
+  std::array<bone::Dent, 2> dents;
   std::vector<PixelBox> covers;  // by eye
+};
+
+Eigen::AlignedBox3d bounds_of(const std::array<bone::Dent, 2>& dents) {
+  return dents[0].bounds().merged(dents[1].bounds());
+}
+
+/// Where the shader has dents.
+struct DentUniforms {
+  std::array<int, 2> place, out;
+  int label;
+
+  DentUniforms(const Gl& gl, Gl::Name program)
+      : place{gl.get_uniform_location(program, "dent_place[0]"),
+              gl.get_uniform_location(program, "dent_place[1]")},
+        out{gl.get_uniform_location(program, "dent_out[0]"),
+            gl.get_uniform_location(program, "dent_out[1]")},
+        label(gl.get_uniform_location(program, "dent_label")) {}
+
+  void set(const Gl& gl, const std::array<bone::Dent, 2>& dents) const {
+    const auto set_one = [&gl](int at, const Eigen::Vector3f& v, double w) {
+      gl.uniform4f(at, v.x(), v.y(), v.z(), static_cast<float>(w));
+    };
+    for (std::size_t i = 0; i < dents.size(); ++i) {
+      set_one(place[i], dents[i].place.cast<float>(), dents[i].width());
+      set_one(out[i], dents[i].out.cast<float>(), dents[i].depth);
+    }
+    gl.uniform2f(label, dents[0].label, dents[1].label);
+  }
 };
 
 }  // namespace
@@ -91,6 +120,7 @@ struct BoneScene::Impl {
         to_eye(gl.get_uniform_location(program, "to_eye")),
         to_clip(gl.get_uniform_location(program, "to_clip")),
         light(gl.get_uniform_location(program, "light")),
+        dents(gl, program),
         dust(gl),
         blood(gl),
         layer(gl),
@@ -126,6 +156,7 @@ struct BoneScene::Impl {
   int to_eye;
   int to_clip;
   int light;
+  DentUniforms dents;
   DustDrawing dust;
   DustDrawing blood;
   BoneLayer layer;
@@ -212,7 +243,7 @@ std::vector<PixelBox> BoneScene::Impl::changed_parts(const BoneFrame& frame,
   std::map<std::uint32_t, DrawnBone> before = std::exchange(shown, {});
   for (const SceneBone& bone : frame.bones) {
     const BoneObject& object = *bones.at(bone.id);
-    DrawnBone now{bone.pose.matrix(), style.visible_array ? object.array() : 0, {}};
+    DrawnBone now{bone.pose.matrix(), style.visible_array ? object.array() : 0, bone.dents, {}};
     const auto known = before.find(bone.id);
     const bool same =
         known != before.end() && known->second.pose == now.pose && known->second.array == now.array;
@@ -222,6 +253,10 @@ std::vector<PixelBox> BoneScene::Impl::changed_parts(const BoneFrame& frame,
       now.covers.push_back(pixels_of(bounds, clip, width, height));
       parts[eye].extend(same ? pixels_of(object.blocks().changed(), clip, width, height)
                              : now.covers[eye]);
+      if (same && known->second.dents != bone.dents) {
+        const auto bent = bounds_of(known->second.dents).merged(bounds_of(bone.dents));
+        parts[eye].extend(pixels_of(bent, clip, width, height));
+      }
     }
     if (same) {
       before.erase(known);
@@ -256,6 +291,7 @@ void BoneScene::Impl::draw_bones(const BoneFrame& frame, const EyeView& view, co
   const bool all = 2 * pixels > count(all_pixels(width, height).sizes());
   for (const SceneBone& bone : frame.bones) {
     use(view, bone.pose);
+    dents.set(gl, bone.dents);
     BoneObject& object = *bones.at(bone.id);
     const Eigen::Matrix4d clip = view.projection * view.view * bone.pose.matrix();
     figures.drawn += all ? object.draw(style.visible_array)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -9,6 +10,7 @@
 
 #include "core/bone/dust/dust_quad.h"
 #include "core/bone/model/bone_volume.h"
+#include "core/bone/model/dent.h"
 #include "core/bone/surface/surface.h"
 #include "core/bone/surface/surface_depths.h"
 #include "core/geometry/mesh/mesh.h"
@@ -30,6 +32,7 @@ struct SceneBone {
   /// The volume's surface, built already and from now on the scene's; read for a new id. Null: the
   /// scene builds one, which takes seconds for a large bone.
   std::shared_ptr<bone::Surface> surface{};
+  std::array<bone::Dent, 2> dents{};  // in its soft structures
 };
 
 /// A tool, a plate or anything else with a mesh; kept by the mesh's address while it is drawn.

@@ -3,17 +3,36 @@
 namespace haptrial::render {
 
 /// Light at the eye, as of a microscope, for each pixel; the normal beside it, for what follows.
+/// Soft structures are bent by dents (core/bone/model/dent.h), and their normals with them.
 inline constexpr const char* kLitVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 place;
-layout(location = 1) in vec3 normal;
+layout(location = 1) in vec4 normal_and_label;  // of a mesh: 1, which is no label
 layout(location = 2) in vec4 colour;
 uniform mat4 to_eye;
 uniform mat4 to_clip;
+uniform vec4 dent_place[2];  // and its width
+uniform vec4 dent_out[2];    // and its depth
+uniform vec2 dent_label;
 out vec3 at;
 out vec3 facing;
 out vec4 paint;
 void main() {
-  vec4 p = to_eye * vec4(place, 1.0);
+  vec3 bent = place;
+  vec3 normal = normal_and_label.xyz;
+  for (int i = 0; i < 2; ++i) {
+    vec3 off = place - dent_place[i].xyz;
+    float width = dent_place[i].w;
+    float left = 1.0 - dot(off, off) / (width * width);
+    if (width > 0.0 && left > 0.0 &&
+        abs(32767.0 * normal_and_label.w - dent_label[i]) < 0.5) {
+      vec3 out_of = dent_out[i].xyz;
+      float depth = dent_out[i].w;
+      vec3 slope = -4.0 * depth * left / (width * width) * off;
+      bent -= depth * left * left * out_of;
+      normal += slope * dot(out_of, normal) / (1.0 - dot(slope, out_of));
+    }
+  }
+  vec4 p = to_eye * vec4(bent, 1.0);
   at = p.xyz;
   facing = mat3(to_eye) * normal;
   paint = colour;

@@ -194,11 +194,12 @@ void BoneDisplay::draw(const bone::DrillingView& seen) {
   const int pieces = world.pieces();
   frame_.bones.resize(static_cast<std::size_t>(pieces));
   world.published_poses().read(pieces, [&](int piece, const Eigen::Isometry3d& pose) {
-    frame_.bones[static_cast<std::size_t>(piece)] = {static_cast<std::uint32_t>(piece),
-                                                     &world.volume(piece), pose, nullptr};
+    frame_.bones[static_cast<std::size_t>(piece)] = {
+        static_cast<std::uint32_t>(piece), &world.volume(piece), pose, nullptr, {}};
   });
   if (!frame_.bones.empty()) {
     frame_.bones.front().surface = std::exchange(surface_, nullptr);
+    frame_.bones.front().dents = seen.dents;
   }
   frame_.meshes.clear();
   const int plates = world.plates();

@@ -60,6 +60,32 @@ TEST(SoftTissueTest, AFlatLayerIsASpringOfItsStiffness) {
   }
 }
 
+/// The surface that is drawn touches the ball in one place and is outside of it elsewhere.
+TEST(SoftTissueTest, ItsDentLiesOnTheBall) {
+  const SoftTissueParameters one[] = {dura(3.0)};
+  SoftTissue soft(layer(), one, kRadius);
+  EXPECT_EQ(soft.dent(), Dent());
+  for (const double depth : {0.5e-3, 1e-3, 2e-3}) {
+    press_to(soft, depth);
+    const Dent dent = soft.dent();
+    EXPECT_EQ(dent.label, 2);
+    EXPECT_NEAR(dent.depth, depth, 0.15 * kEdge);
+    EXPECT_NEAR(dent.out.z(), 1.0, 1e-9);
+    const Vector3d centre = dent.place + (dent.radius - dent.depth) * dent.out;
+    EXPECT_NEAR((centre - kMiddle - Vector3d(0, 0, kTop + kRadius - depth)).norm(), 0.0, 1e-9);
+    for (int i = 0; i <= 100; ++i) {
+      const double aside = 0.01 * i * dent.width();
+      const double left = 1.0 - aside * aside / (dent.width() * dent.width());
+      const Vector3d at = dent.place + Vector3d(aside, 0, -dent.depth * left * left);
+      EXPECT_GE((at - centre).norm(), dent.radius * (1.0 - 1e-9)) << i;
+      EXPECT_TRUE(dent.bounds().contains(at));
+    }
+  }
+  soft.tick(kMiddle + Vector3d(0, 0, kTop + kRadius + 1e-3), kRadius, false);
+  EXPECT_EQ(soft.dent(), Dent());
+  EXPECT_TRUE(soft.dent().bounds().isEmpty());
+}
+
 TEST(SoftTissueTest, ItTearsAtItsForceAndIsNotFeltInTheHole) {
   const SoftTissueParameters one[] = {dura(1.0)};
   SoftTissue soft(layer(), one, kRadius);

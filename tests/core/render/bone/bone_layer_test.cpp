@@ -101,6 +101,50 @@ void move_tools(BoneFrame& frame, RandomStream& random) {
 
 class BoneLayerTest : public testing::TestWithParam<bool> {};  // a stereo pair
 
+/// Soft below, bone above; the eye looks at an edge of both.
+BoneModel half_soft(int size) {
+  BoneModel model = bone::model_of(
+      size, [&](const Voxel& v) -> std::uint8_t { return v.y() < size / 2 ? 2 : 1; });
+  model.structures.resize(3);
+  model.structures[1] = {"bone", {}};
+  model.structures[2] = {"dura", {0.3, 0.4, 0.8}, 1.0, true};
+  return model;
+}
+
+/// A dent that deepens, wanders and goes is drawn by drawing a part of the picture.
+TEST_P(BoneLayerTest, ADentIsDrawnIntoThePictureThatIsKept) {
+  const BoneModel model = half_soft(40);
+  BoneVolume volume(model);
+  Both both(model);
+  BoneFrame frame = frame_of(model, volume);
+  if (GetParam()) {
+    frame.stereo = StereoPair{0.01, {}};
+  }
+  frame.camera.eye = frame.camera.target + Eigen::Vector3d(0.01, 0.02, 0.15);
+  frame.meshes.clear();
+  const double top = model.grid.origin.z() + model.grid.spacing * (model.grid.size[2] - 1);
+  for (int step = 0; step < 3; ++step) {
+    ASSERT_NO_FATAL_FAILURE(both.draw(frame, "at rest", step));
+  }
+  const Image before = both.kept.draw(frame);
+  for (int step = 1; step <= 12; ++step) {
+    bone::Dent& dent = frame.bones.front().dents[static_cast<std::size_t>(step / 7)];
+    frame.bones.front().dents = {};
+    dent = {2,
+            {frame.camera.target.x() + 3e-4 * step, frame.camera.target.y() - 0.004, top},
+            Eigen::Vector3d::UnitZ(),
+            3e-4 * step,
+            0.003};
+    ASSERT_NO_FATAL_FAILURE(both.draw(frame, "a dent", step));
+    EXPECT_GT(both.pixels(), 0U) << step;
+    EXPECT_LT(both.pixels(), std::size_t{kWidth * kHeight / 2}) << step;
+  }
+  EXPECT_NE(both.kept.draw(frame).rgb, before.rgb) << "it is seen";
+  frame.bones.front().dents[1].label = 3;
+  ASSERT_NO_FATAL_FAILURE(both.draw(frame, "of a structure that is not there", 0));
+  EXPECT_EQ(both.kept.draw(frame).rgb, before.rgb);
+}
+
 TEST_P(BoneLayerTest, APictureThatIsKeptIsThatOfAFullRedraw) {
   RandomStream random(12, "layer");
   const BoneModel model = bumpy(40);
