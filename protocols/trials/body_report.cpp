@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "core/deformable/moving/moving_touch.h"
+#include "core/deformable/moving/two_rate_touch.h"
+#include "core/record/trials/late_window_row.h"
 #include "core/record/trials/moving_body_row.h"
 #include "core/record/trials/touched_body_row.h"
 #include "protocols/trials/sequence/trial_sequence.h"
@@ -33,6 +35,9 @@ constexpr std::array<Loss, BodyReport::kLosses> kAllLosses{
     Loss{&TouchCounts::flown_apart, "/moving_bodies", "flown_apart",
          "the body flew apart, deformed beyond what its steps are stable for, and was put to rest "
          "(use smaller constants, more density or fewer cells)"},
+    Loss{&TouchCounts::late, "/late_windows", "late_body",
+         "a body of its own rate was late and felt as it had been before (use fewer cells, smaller "
+         "constants or more density, or a machine with less other work)"},
 };
 
 void add(const TouchCounts& more, TouchCounts& to) {
@@ -42,6 +47,7 @@ void add(const TouchCounts& more, TouchCounts& to) {
   to.crowded += more.crowded;
   to.limited += more.limited;
   to.flown_apart += more.flown_apart;
+  to.late += more.late;
 }
 
 }  // namespace
@@ -53,18 +59,29 @@ void BodyReport::add_tables(record::TableList& tables) const {
   if (std::ranges::any_of(objects_, &TrialObject::moves)) {
     tables.push_back(&record::table_of<record::MovingBodyRow>());
   }
+  if (std::ranges::any_of(objects_, &TrialObject::own_rate)) {
+    tables.push_back(&record::table_of<record::LateWindowRow>());
+  }
+}
+
+const deformable::BodyTouch* BodyReport::touch_of(const TrialPass& pass, std::size_t interval,
+                                                  std::size_t device, std::size_t object) const {
+  const scene::Scene& scene = pass.scenes(interval)[device];
+  return scene.touch(scene.size() - objects_.size() + object);
 }
 
 BodyReport::Touched BodyReport::touched(const TrialPass& pass, std::size_t device,
                                         std::size_t object) const {
   Touched sum{device, object, {}, 0};
   for (std::size_t i = 0; i < pass.intervals_begun(); ++i) {
-    const scene::Scene& scene = pass.scenes(i)[device];
-    const deformable::BodyTouch* touch = scene.touch(scene.size() - objects_.size() + object);
+    const deformable::BodyTouch* touch = touch_of(pass, i, device, object);
     if (touch != nullptr) {
       add(touch->counts(), sum.counts);
     }
     if (const auto* moving = dynamic_cast<const deformable::MovingTouch*>(touch)) {
+      sum.steps = moving->steps();
+    }
+    if (const auto* moving = dynamic_cast<const deformable::TwoRateTouch*>(touch)) {
       sum.steps = moving->steps();
     }
   }
@@ -90,6 +107,24 @@ void BodyReport::add_rows(const std::vector<Touched>& all, std::int32_t row,
   }
 }
 
+void BodyReport::add_late(const TrialPass& pass, const Touched& body, std::int32_t row,
+                          SessionFile& file) const {
+  std::vector<record::LateWindowRow> rows;
+  for (std::size_t i = 0; i < pass.intervals_begun(); ++i) {
+    if (const auto* touch = dynamic_cast<const deformable::TwoRateTouch*>(
+            touch_of(pass, i, body.device, body.object))) {
+      for (const deformable::LateWindow& late : touch->late()) {
+        rows.push_back({row, static_cast<std::int32_t>(body.device),
+                        static_cast<std::int32_t>(i + 1), objects_[body.object].name, late.tick,
+                        late.ticks});
+      }
+    }
+  }
+  if (!rows.empty()) {
+    file.add(std::span<const record::LateWindowRow>(rows));
+  }
+}
+
 void BodyReport::keep(const TrialPass& pass, std::int32_t row, SessionFile& file) {
   std::vector<Touched> all;
   for (std::size_t device = 0; device < pass.scenes(0).size(); ++device) {
@@ -105,6 +140,7 @@ void BodyReport::keep(const TrialPass& pass, std::int32_t row, SessionFile& file
   add_rows(all, row, file);
   const int trial = pass.trial() % kPracticeNumbers;
   for (const Touched& each : all) {
+    add_late(pass, each, row, file);
     for (std::size_t i = 0; i < kLosses; ++i) {
       const Loss& loss = kAllLosses[i];
       if (const std::uint64_t ticks = each.counts.*loss.ticks; ticks > 0) {

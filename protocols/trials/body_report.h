@@ -13,8 +13,9 @@
 
 namespace haptrial::protocols {
 
-/// How bodies that give way were touched in a session: rows of /touched_bodies and /moving_bodies,
-/// and what was not felt as it should be as events and notices. The session's thread.
+/// How bodies that give way were touched in a session: rows of /touched_bodies, /moving_bodies and
+/// /late_windows, and what was not felt as it should be as events and notices. The session's
+/// thread.
 class BodyReport {
  public:
   /// @param objects  of the definition; must outlive this
@@ -27,7 +28,7 @@ class BodyReport {
   /// Notices about all passes so far, a line for each kind of loss.
   std::vector<std::string> notices() const;
 
-  static constexpr std::size_t kLosses = 4;
+  static constexpr std::size_t kLosses = 5;
 
  private:
   struct Touched {
@@ -41,7 +42,11 @@ class BodyReport {
     std::uint64_t bodies{0};
   };
 
+  const deformable::BodyTouch* touch_of(const TrialPass& pass, std::size_t interval,
+                                        std::size_t device, std::size_t object) const;
   Touched touched(const TrialPass& pass, std::size_t device, std::size_t object) const;
+  void add_late(const TrialPass& pass, const Touched& body, std::int32_t row,
+                SessionFile& file) const;
   void add_rows(const std::vector<Touched>& all, std::int32_t row, SessionFile& file) const;
 
   const std::vector<TrialObject>& objects_;

@@ -304,13 +304,29 @@ void DefinedTrials::number_bodies(const std::vector<scene::Field>& fields,
   }
 }
 
+/// Bodies of their own rate come as late as they did.
+void DefinedTrials::be_late_again(std::size_t interval, std::vector<scene::Field>& fields) const {
+  for (scene::Field& field : fields) {
+    if (auto* body = std::get_if<scene::YieldingParameters>(&field.kind)) {
+      for (const record::LateWindowRow& row : late_again_) {
+        if (std::cmp_equal(row.interval, interval + 1) && row.object == field.name) {
+          body->rates.late.push_back({row.tick, row.ticks});
+        }
+      }
+    }
+  }
+}
+
 IntervalRun DefinedTrials::make_interval(std::size_t place, RandomStream& random) {
   give(*names_, d_, current_.values);
   give_interval(*names_, d_.intervals[current_.values.intervals[place]], place);
   note_variables(place + 1, variables_);
   Presented presented = read_presented(root_, *names_, d_, &random);
   root_.check();
-  prepare_bodies(presented.fields, d_.rate);
+  prepare_bodies(presented.fields, d_.rate, place_.real && !repeats_);
+  if (repeats_) {
+    be_late_again(place, presented.fields);
+  }
   const std::uint64_t seed =
       derived_seed(current_.plan.stimulus_seed, fmt::format("dots {}", place));
   std::vector<Stage> stages;

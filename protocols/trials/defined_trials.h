@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/definition/table.h"
+#include "core/record/trials/late_window_row.h"
 #include "core/record/trials/object_file_row.h"
 #include "core/record/trials/trial_rows.h"
 #include "protocols/interface/trials.h"
@@ -45,6 +46,12 @@ class DefinedTrials final : public Trials {
   const char* why_aborted() const override;
   std::vector<std::string> notices() const override;
 
+  /// For a replay: bodies of their own rate have no thread, and were late in the next pass as these
+  /// rows of /late_windows say.
+  void repeat(std::vector<record::LateWindowRow> late) {
+    late_again_ = std::move(late);
+    repeats_ = true;
+  }
   /// The pass that make_pass() made last, and names of the stages of its intervals.
   TrialPass& pass() { return *pass_; }
   const TrialPass& pass() const { return *pass_; }
@@ -54,6 +61,7 @@ class DefinedTrials final : public Trials {
   void use_script();
   void use_decision_script();
   void number_bodies(const std::vector<scene::Field>& fields, std::vector<StageSight>& sights);
+  void be_late_again(std::size_t interval, std::vector<scene::Field>& fields) const;
   IntervalRun make_interval(std::size_t place, RandomStream& random);
   std::vector<Asked> make_questions();
   void note_variables(std::size_t interval, std::vector<record::VariableRow>& rows) const;
@@ -83,6 +91,8 @@ class DefinedTrials final : public Trials {
   std::shared_ptr<SeenBodies> bodies_{std::make_shared<SeenBodies>()};  // for the screen
   std::vector<record::ObjectFileRow> object_files_;
   BodyReport touched_bodies_;
+  std::vector<record::LateWindowRow> late_again_;
+  bool repeats_{false};
   std::unique_ptr<TrialPass> pass_;
   std::vector<std::vector<NamedStage>> stages_;  // of each interval of the pass
   std::vector<scene::Region> regions_;           // of the last interval

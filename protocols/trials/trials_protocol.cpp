@@ -61,6 +61,7 @@ class TrialsProtocol final : public Protocol {
     tables.push_back(&record::table_of<record::ContactRow>());
     tables.push_back(&record::table_of<record::TouchedBodyRow>());
     tables.push_back(&record::table_of<record::MovingBodyRow>());
+    tables.push_back(&record::table_of<record::LateWindowRow>());
     tables.push_back(&record::table_of<record::ObjectFileRow>());
     return tables;
   }

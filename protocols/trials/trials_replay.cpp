@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/device_row.h"
+#include "core/record/trials/late_window_row.h"
 #include "core/record/trials/trial_rows.h"
 #include "core/render/gl/offscreen.h"
 #include "protocols/interface/protocol.h"
@@ -126,6 +127,7 @@ class TrialReplay {
         known.insert(trial->trial);
         if (trial->trial == request_.trial) {
           row_ = *row;
+          trials_.repeat(late_windows(row_));
           trials_.make_pass(*trial, last);
           take_rows();
           return;
@@ -149,6 +151,12 @@ class TrialReplay {
       row = is_of(passes_[i], trial) ? i : row;
     }
     return row;
+  }
+
+  std::vector<record::LateWindowRow> late_windows(std::size_t pass) {
+    std::vector<record::LateWindowRow> late = reader_.rows<record::LateWindowRow>();
+    std::erase_if(late, [pass](const auto& row) { return std::cmp_not_equal(row.pass, pass); });
+    return late;
   }
 
   void take_rows() {

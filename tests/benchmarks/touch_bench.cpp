@@ -2,6 +2,8 @@
 //   bench_touch felt > touch.dat; gnuplot tests/benchmarks/touch.gp draws deformable-touch.svg
 //   bench_touch ticks
 //   bench_touch moving: ticks of a body of springs
+//   bench_touch rates: the same at rates of its own, and how far that is felt from the loop's
+//   bench_touch live: the same with a thread beside the real clock
 
 #include <fmt/format.h>
 #include <time.h>
@@ -10,9 +12,11 @@
 #include <chrono>
 #include <cmath>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "core/deformable/moving/moving_touch.h"
+#include "core/deformable/moving/two_rate_touch.h"
 #include "core/deformable/touch/ball_touch.h"
 #include "core/deformable/touch/prepared.h"
 
@@ -51,6 +55,18 @@ double thread_time() {
   return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
 }
 
+/// The ball's way over the block, 0 to 2 mm deep.
+Vector3d wandering(double t) {
+  return {0.012 * std::sin(t), kTop + kRadius - 0.001 - 0.001 * std::sin(1.7 * t),
+          0.012 * std::cos(0.8 * t)};
+}
+
+SharedMovingBody springs(int cells) {
+  const auto mesh = block(cells);
+  const double energy = 15e3 * std::pow(mesh->spacing, 3);
+  return prepared(mesh, SpringTissue{{0.5 * energy, 0.2 * energy, energy}, nullptr, 1000.0, 20.0});
+}
+
 /// Force under a ball that goes down over the lump, a block for each depth of it.
 void felt() {
   for (const double depth : {0.0, 0.005, 0.003, 0.001}) {
@@ -82,9 +98,7 @@ void ticks() {
     touch.start({0.0, kTop + kRadius, 0.0});
     std::vector<double> times;
     for (int i = 0; i < 20000; ++i) {
-      const double t = 2e-3 * i;
-      const Vector3d tool(0.012 * std::sin(t), kTop + kRadius - 0.001 - 0.001 * std::sin(1.7 * t),
-                          0.012 * std::cos(0.8 * t));
+      const Vector3d tool = wandering(2e-3 * i);
       const double begin = thread_time();
       touch.tick(tool, kTick);
       times.push_back(thread_time() - begin);
@@ -101,17 +115,13 @@ void ticks() {
 void moving() {
   fmt::print("cells vertices tetrahedra steps stable_ms median_us p999_us worst_us cut\n");
   for (const int cells : {8, 12, 16}) {
-    const auto mesh = block(cells);
-    const double energy = 15e3 * std::pow(mesh->spacing, 3);
-    const auto body =
-        prepared(mesh, SpringTissue{{0.5 * energy, 0.2 * energy, energy}, nullptr, 1000.0, 20.0});
+    const auto body = springs(cells);
+    const auto& mesh = body->mesh;
     MovingTouch touch(body, {kRadius, 5000.0, {0.3, 0.2}}, kTick);
     touch.start({0.0, kTop + kRadius + 0.001, 0.0});
     std::vector<double> times;
     for (int i = 0; i < 20000; ++i) {
-      const double t = 2e-3 * i;
-      const Vector3d tool(0.012 * std::sin(t), kTop + kRadius - 0.001 - 0.001 * std::sin(1.7 * t),
-                          0.012 * std::cos(0.8 * t));
+      const Vector3d tool = wandering(2e-3 * i);
       const double begin = thread_time();
       touch.tick(tool, kTick);
       times.push_back(thread_time() - begin);
@@ -123,9 +133,102 @@ void moving() {
   }
 }
 
+/// How far a body of its own rate is felt from one that moves on each tick.
+struct Error {
+  double sum{0.0}, size{0.0};
+  std::vector<double> each;
+
+  void add(const Vector3d& felt, const Vector3d& expected) {
+    sum += (felt - expected).squaredNorm();
+    size += expected.squaredNorm();
+    each.push_back((felt - expected).norm());
+  }
+  double share() const { return std::sqrt(sum / size); }
+  double p99() {
+    std::sort(each.begin(), each.end());
+    return each[each.size() * 99 / 100];
+  }
+};
+
+void rates() {
+  constexpr int kTicks = 6000, kFirst = 200;
+  fmt::print("cells rate friction speed_mm_s rms_share p99_N rms_N cut cut_of_one tick_us\n");
+  for (const int cells : {8, 12}) {
+    const auto body = springs(cells);
+    for (const int window : {2, 4, 8}) {
+      const auto gives = prepared_compliance(body, window * kTick);
+      for (const double friction : {0.0, 0.3}) {
+        for (const double scale : {2e-3, 6e-3}) {
+          const TouchOptions ball{kRadius, 5000.0, {friction, friction / 1.5}};
+          MovingTouch one(body, ball, kTick);
+          TwoRateTouch two(body, gives, ball, kTick, {window, false});
+          one.start(wandering(0.0));
+          two.start(wandering(0.0));
+          Error error;
+          std::vector<double> times;
+          TouchCounts before_one, before_two;
+          for (int i = 0; i < kTicks; ++i) {
+            const Vector3d tool = wandering(scale * i);
+            const Vector3d expected = one.tick(tool, kTick).force;
+            const double begin = thread_time();
+            const Vector3d felt = two.tick(tool, kTick).force;
+            times.push_back(thread_time() - begin);
+            const bool cut = one.counts().limited > before_one.limited ||
+                             two.counts().limited > before_two.limited;
+            if (i >= kFirst && !cut) {
+              error.add(felt, expected);
+            }
+            before_one = one.counts();
+            before_two = two.counts();
+          }
+          std::sort(times.begin(), times.end());
+          fmt::print("{} {:.0f} {} {:.0f} {:.4f} {:.4f} {:.4f} {} {} {:.1f}\n", cells,
+                     1.0 / (window * kTick), friction, 12.0 * scale / kTick, error.share(),
+                     error.p99(), std::sqrt(error.size / static_cast<double>(error.each.size())),
+                     before_two.limited, before_one.limited, times[times.size() / 2]);
+        }
+      }
+    }
+  }
+}
+
+/// Ticks on the real clock beside a thread that moves the body at 250 Hz.
+void live() {
+  constexpr int kWindow = 4, kTicks = 5000;
+  fmt::print("cells tetrahedra median_us p999_us worst_us late_windows of\n");
+  for (const int cells : {8, 12, 16}) {
+    const auto body = springs(cells);
+    TwoRateTouch touch(body, prepared_compliance(body, kWindow * kTick),
+                       {kRadius, 5000.0, {0.3, 0.2}}, kTick, {kWindow, true});
+    touch.start(wandering(0.0));
+    std::vector<double> times;
+    auto next = Clock::now();
+    for (int i = 0; i < kTicks; ++i) {
+      std::this_thread::sleep_until(next += std::chrono::milliseconds(1));
+      const double begin = thread_time();
+      touch.tick(wandering(2e-3 * i), kTick);
+      times.push_back(thread_time() - begin);
+    }
+    std::sort(times.begin(), times.end());
+    fmt::print("{} {} {:.1f} {:.1f} {:.1f} {} {}\n", cells, body->springs.tetrahedra.size(),
+               times[kTicks / 2], times[kTicks * 999 / 1000], times.back(), touch.late().size(),
+               kTicks / kWindow);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "ticks";
-  what == "felt" ? felt() : what == "moving" ? moving() : ticks();
+  if (what == "felt") {
+    felt();
+  } else if (what == "moving") {
+    moving();
+  } else if (what == "rates") {
+    rates();
+  } else if (what == "live") {
+    live();
+  } else {
+    ticks();
+  }
 }

@@ -69,15 +69,15 @@ void BallContact::adopt(const BallContact& before) noexcept {
   }
 }
 
-Vector3d BallContact::where(const SpringMotion& motion, const Place& place) const noexcept {
-  const SurfaceSamples::Sample& s = sample(place);
+Vector3d BallContact::where(const SpringMotion& motion, std::int32_t sample) const noexcept {
+  const SurfaceSamples::Sample& s = samples_.samples[at(sample)];
   return s.weight[0] * motion.position(at(s.corners[0])) +
          s.weight[1] * motion.position(at(s.corners[1])) +
          s.weight[2] * motion.position(at(s.corners[2]));
 }
 
-Vector3d BallContact::at_rest(const Place& place) const noexcept {
-  const SurfaceSamples::Sample& s = sample(place);
+Vector3d BallContact::at_rest(std::int32_t sample) const noexcept {
+  const SurfaceSamples::Sample& s = samples_.samples[at(sample)];
   Vector3d p = Vector3d::Zero();
   for (std::size_t k = 0; k < 3; ++k) {
     p += s.weight[static_cast<Eigen::Index>(k)] * mesh_->tets.vertices[at(s.corners[k])];
@@ -313,7 +313,7 @@ double BallContact::depth(const Vector3d& tool) const noexcept {
   double depth = 0.0;
   for (const Place& place : places()) {
     if (!place.sum.isZero(0.0)) {
-      depth = std::max(depth, radius_ - place.normal.dot(at_rest(place) - tool));
+      depth = std::max(depth, radius_ - place.normal.dot(at_rest(place.sample) - tool));
     }
   }
   return depth;

@@ -57,8 +57,14 @@ class BallContact {
   const SurfaceSamples::Sample& sample(const Place& place) const noexcept {
     return samples_.samples[static_cast<std::size_t>(place.sample)];
   }
-  const Eigen::Vector3d& force() const noexcept { return force_; }    // on the body, last step [N]
-  const Eigen::Vector3d& centre() const noexcept { return centre_; }  // y [m]
+  const SurfaceSamples& samples() const noexcept { return samples_; }
+  /// Where a sample is in a body that moves, and in one at rest [m].
+  Eigen::Vector3d where(const SpringMotion& motion, std::int32_t sample) const noexcept;
+  Eigen::Vector3d at_rest(std::int32_t sample) const noexcept;
+  double radius() const noexcept { return radius_; }                // now [m]
+  const Eigen::Vector3d& force() const noexcept { return force_; }  // on the body, last step [N]
+  const Eigen::Vector3d& friction() const noexcept { return friction_; }  // of it
+  const Eigen::Vector3d& centre() const noexcept { return centre_; }      // y [m]
   bool slips() const noexcept { return slips_; }
   bool solved() const noexcept { return solved_; }    // since gather()
   bool crowded() const noexcept { return crowded_; }  // more places than fit: the nearest are taken
@@ -66,8 +72,9 @@ class BallContact {
   double depth(const Eigen::Vector3d& tool) const noexcept;
 
  private:
-  Eigen::Vector3d where(const SpringMotion& motion, const Place& place) const noexcept;
-  Eigen::Vector3d at_rest(const Place& place) const noexcept;
+  Eigen::Vector3d where(const SpringMotion& motion, const Place& place) const noexcept {
+    return where(motion, place.sample);
+  }
   void find_near(const SpringMotion& motion, const Eigen::Vector3d& middle, double reach) noexcept;
   void look_at(const SpringMotion& motion, std::int32_t sample, const Eigen::Vector3d& middle,
                double reach) noexcept;

@@ -42,7 +42,10 @@ class MovingTouch final : public BodyTouch {
   const TouchCounts& counts() const noexcept override { return counts_; }
 
   const SpringMotion& motion() const noexcept { return motion_; }
+  const BallContact& ball() const noexcept { return ball_; }
   int steps() const noexcept { return steps_; }  // on a tick
+  /// The last force without a tetrahedron inside out [N].
+  double upright_force() const noexcept { return upright_; }
   /// What the hand gave in this contact and did not get back [J].
   double balance() const noexcept { return account_.balance(); }
 

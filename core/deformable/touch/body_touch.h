@@ -33,6 +33,7 @@ struct TouchCounts {
   std::uint64_t crowded{};      // more places than fit: the deepest were taken
   std::uint64_t limited{};      // the force was cut, or it might have given out energy
   std::uint64_t flown_apart{};  // the steps were too long for the deformed body: put to rest
+  std::uint64_t late{};         // a body of its own rate was waited for
 
   bool operator==(const TouchCounts&) const = default;
 };

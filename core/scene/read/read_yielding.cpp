@@ -67,6 +67,7 @@ Field read_yielding(Table& table, std::string name, const deformable::SharedFelt
   if (table.has("model") && table.choice("model", {"elements", "springs"}) == "springs") {
     p.springs = read_springs(read);
     p.springs->calibrated = std::move(calibrated);
+    p.rate = table.has("rate") ? read.number("rate", {0.0, 1e5, true}, "Hz") : 0.0;
   } else {
     p.tissue = read_tissue(read);
   }

@@ -6,7 +6,11 @@ using Eigen::Vector3d;
 
 Yielding::Yielding(const YieldingParameters& parameters, const Setting& setting)
     : parameters_(parameters), period_(1.0 / setting.rate) {
-  if (parameters.moving) {
+  if (parameters.moving && parameters.gives) {
+    touch_ = std::make_unique<deformable::TwoRateTouch>(parameters.moving, parameters.gives,
+                                                        parameters.tool, period_, parameters.rates,
+                                                        parameters.shape);
+  } else if (parameters.moving) {
     touch_ = std::make_unique<deformable::MovingTouch>(parameters.moving, parameters.tool, period_,
                                                        parameters.shape);
   } else if (parameters.body) {

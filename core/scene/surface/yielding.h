@@ -6,6 +6,7 @@
 
 #include "core/contact/objects/moving_objects.h"
 #include "core/deformable/moving/moving_touch.h"
+#include "core/deformable/moving/two_rate_touch.h"
 #include "core/deformable/touch/ball_touch.h"
 #include "core/scene/field/field_state.h"
 
@@ -16,18 +17,21 @@ struct YieldingParameters {
   deformable::SharedFeltMesh mesh;                  // null: nothing is felt
   deformable::Tissue tissue;                        // of elements that rest on every tick
   std::optional<deformable::SpringTissue> springs;  // of springs that move, instead
+  double rate{0.0};                                 // of these; 0: that of the loop [Hz]
   contact::ObjectPose pose;                         // of the body's frame in W
   deformable::TouchOptions tool;
   deformable::SharedCompliance body;               // of mesh and tissue; null until it is prepared
   deformable::SharedMovingBody moving;             // of mesh and springs; likewise
+  deformable::SharedWindowCompliance gives;        // of a body of its own rate; likewise
+  deformable::TwoRates rates;                      // of it
   std::shared_ptr<deformable::MovingShape> shape;  // where its vertices are; null: no pictures
 
   bool prepared() const { return body != nullptr || moving != nullptr; }
 };
 
 /// A body that a ball presses, in W: of linear elements (core/deformable/touch) or of springs that
-/// move (core/deformable/moving). `depth` is how far the ball is in the body as it would be at
-/// rest, `proxy` the ball's centre.
+/// move (core/deformable/moving), at the loop's rate or their own. `depth` is how far the ball is
+/// in the body as it would be at rest, `proxy` the ball's centre.
 class Yielding {
  public:
   Yielding(const YieldingParameters& parameters, const Setting& setting);

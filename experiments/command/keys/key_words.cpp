@@ -429,6 +429,7 @@ objects.NAME.constants | | of springs without `calibrated`: of every edge, face 
 objects.NAME.grasped | none | of springs: sides that the hand holds, and moves, instead of pressing the body
 objects.NAME.calibrated | needed, or constants | of springs: file of constants that haptrial deform calibrate made, beside the definition
 objects.NAME.density | | of springs
+objects.NAME.rate | the loop's | of springs: how often they move a second, if less often than they are felt
 objects.NAME.decay | | of springs: a free motion dies down with exp(-decay t)
 objects.NAME.young | | Young's modulus
 objects.NAME.spring | | between the hand and the ball that presses

@@ -111,6 +111,7 @@ std::vector<deformable::BodySide> read_sides(Table& table, const char* key) {
 void read_yielding_shape(Table& table, TrialObject& object) {
   object.yields = true;
   object.moves = table.has("model") && table.choice("model", {"elements", "springs"}) == "springs";
+  object.own_rate = object.moves && table.has("rate");
   if (object.moves && table.has("calibrated")) {
     object.constants_file = table.text("calibrated");
   }

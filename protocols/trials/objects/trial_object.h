@@ -29,6 +29,7 @@ struct TrialObject {
   deformable::SharedFeltMesh felt{};       // of a file: null until it is loaded
   bool seen_yielding{true};                // else it is seen at its resting shape
   bool moves{false};                       // it yields and moves: it is made of springs
+  bool own_rate{false};                    // and moves at another rate than the loop's
   std::filesystem::path constants_file{};  // of springs; empty: none
   std::shared_ptr<const deformable::SpringConstants> constants{};  // of it; null until loaded
   std::uint64_t constants_bytes{0}, constants_checksum{0};         // likewise
@@ -52,6 +53,7 @@ struct TrialObject {
 ///                     "front" (-x, +x, -y, +y, -z, +z); the bottom if left out
 ///     [felt]          its sides that can be touched; all that are not fixed if left out
 ///     [model]         "elements" or "springs" (core/scene/read/read_yielding.h)
+///     [rate]          of springs: how often they move a second, less often than they are felt
 ///     [grasped]       of springs: sides that the hand holds from the first tick on; then it does
 ///                     not press the body
 ///     [calibrated]    of springs: a file of constants by haptrial deform calibrate, for a body of

@@ -51,6 +51,25 @@ void add_words_of_elements(const scene::Field& field, const scene::YieldingParam
   }
 }
 
+/// Words about springs that move at their own rate. @param cost  of their steps on a tick
+void add_words_of_own_rate(const scene::Field& field, const scene::YieldingParameters& p,
+                           double rate, const deformable::TouchCost& cost,
+                           std::vector<std::string>& lines) {
+  const double window = p.rates.window / rate;
+  lines.push_back(fmt::format(
+      "objects.{}: moves {:g} times a second, {} ticks at once, and is felt {:g} to {:g} ms later "
+      "through its surface's compliance of then; that keeps a thread of its own busy for {:.0f} % "
+      "(measured now, on this machine)",
+      field.name, p.rate, p.rates.window, 1e3 * window, 1e3 * (2.0 * window - 1.0 / rate),
+      100.0 * cost.median * rate));
+  if (cost.most * rate > 1.0) {
+    lines.push_back(fmt::format(
+        "objects.{}: that is more than there is: the body would be late and move too slowly; use "
+        "fewer cells, smaller constants or more density, which need fewer or shorter steps",
+        field.name));
+  }
+}
+
 /// Words about springs that move.
 void add_words_of_springs(const scene::Field& field, const scene::YieldingParameters& p,
                           double rate, double damping, std::vector<std::string>& lines) {
@@ -65,11 +84,16 @@ void add_words_of_springs(const scene::Field& field, const scene::YieldingParame
   deformable::MovingTouch touch(p.moving, p.tool, 1.0 / rate);
   const deformable::TouchCost cost =
       deformable::measured_cost(touch, *p.mesh, p.tool.radius, 1.0 / rate);
+  if (p.gives) {
+    add_words_of_own_rate(field, p, rate, cost, lines);
+    return;
+  }
   lines.push_back(words_of_cost(field.name, cost, rate));
   if (cost.most * rate > 1.0) {
     lines.push_back(fmt::format(
         "objects.{}: that does not fit into a tick: this machine holds {:.0f} ticks a second; use "
-        "fewer cells, smaller constants or more density, which need fewer or shorter steps",
+        "fewer cells, smaller constants or more density, which need fewer or shorter steps, or "
+        "give the body a `rate` of its own",
         field.name, 1.0 / cost.most));
   }
 }
@@ -83,16 +107,20 @@ void prepare_moving_bodies(std::vector<scene::Field>& fields, double rate) {
       p->moving = deformable::prepared(p->mesh, *p->springs);
       p->shape = std::make_shared<deformable::MovingShape>(p->mesh->tets.vertices.size());
       deformable::steps_on_a_tick(*p->moving, 1.0 / rate);
+      p->rates.window = p->rate > 0.0 ? deformable::ticks_of_window(*p->mesh, rate, p->rate) : 1;
     }
   }
 }
 
-void prepare_bodies(std::vector<scene::Field>& fields, double rate) {
+void prepare_bodies(std::vector<scene::Field>& fields, double rate, bool real) {
   prepare_moving_bodies(fields, rate);
   for (scene::Field& field : fields) {
     auto* p = std::get_if<scene::YieldingParameters>(&field.kind);
     if (p != nullptr && p->mesh && !p->springs) {
       p->body = deformable::prepared(p->mesh, p->tissue);
+    } else if (p != nullptr && p->moving && p->rate > 0.0) {
+      p->gives = deformable::prepared_compliance(p->moving, 1.0 / p->rate);
+      p->rates.threaded = real;
     }
   }
 }

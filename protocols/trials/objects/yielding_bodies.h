@@ -10,10 +10,11 @@ namespace haptrial::protocols {
 /// Finds how the bodies among the fields give way, which takes a while if nobody asked for the same
 /// before. Session's thread, between trials. @throws InputError as deformable::prepared()
 /// @param rate  of the servo loop [Hz]
-void prepare_bodies(std::vector<scene::Field>& fields, double rate);
+/// @param real  on the real clock: bodies of their own rate get a thread
+void prepare_bodies(std::vector<scene::Field>& fields, double rate, bool real = false);
 
 /// Whether bodies that move can do so at this rate: prepares them, which takes little.
-/// @throws InputError as deformable::steps_on_a_tick()
+/// @throws InputError as deformable::steps_on_a_tick() and ticks_of_window()
 void prepare_moving_bodies(std::vector<scene::Field>& fields, double rate);
 
 /// What the bodies among prepared fields cost and how stiff they are, a line each.

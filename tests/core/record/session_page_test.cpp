@@ -17,6 +17,7 @@
 #include "core/record/rows/common_tables.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/table/table_page.h"
+#include "core/record/trials/late_window_row.h"
 #include "core/record/trials/moving_body_row.h"
 #include "core/record/trials/touched_body_row.h"
 #include "core/record/trials/trial_rows.h"
@@ -61,6 +62,7 @@ TEST(SessionPageTest, TablesOfTrials) {
   tables.insert(tables.end(), out_of_time_tables().begin(), out_of_time_tables().end());
   tables.push_back(&table_of<TouchedBodyRow>());
   tables.push_back(&table_of<MovingBodyRow>());
+  tables.push_back(&table_of<LateWindowRow>());
   expect_described("trials", tables);
 }
 TEST(SessionPageTest, TablesOfDrillings) {

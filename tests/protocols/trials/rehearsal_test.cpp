@@ -394,7 +394,8 @@ instructions = "Press."
 
 /// A replay has the hands and the stages, and finds what pressed the body on each tick.
 class ReplayedBodyTest : public RehearsalTest, public testing::WithParamInterface<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Models, ReplayedBodyTest, testing::Values(kElements, kSprings));
+INSTANTIATE_TEST_SUITE_P(Models, ReplayedBodyTest,
+                         testing::Values(kElements, kSprings, kSprings + "rate = 250.0\n"));
 
 TEST_P(ReplayedBodyTest, WhatPressedABodyFollowsFromTheHandsAndTheStages) {
   Table root = Table::parse(soft_block("0.006", GetParam()), "study.toml");

@@ -163,6 +163,9 @@ TEST(TrialObjectTest, ABodyOfSpringsIsReadAndItsMistakesAreToldInASentenceEach) 
   EXPECT_THAT(problems("constants = [1e-3, 0, 2e-3]\n"),
               Contains(HasSubstr("objects.tissue.density is missing")));
   EXPECT_THAT(problems("density = 1000\n"), Contains(HasSubstr("constants is missing")));
+  const std::string jelly = "constants = [1e-3, 0, 2e-3]\ndensity = 1000\n";
+  EXPECT_THAT(problems(jelly + "rate = 250\n"), IsEmpty());
+  EXPECT_THAT(problems(jelly + "rate = 0\n"), Contains(HasSubstr("objects.tissue.rate is 0 Hz")));
   EXPECT_THAT(problems("constants = [1e-3, 0, 2e-3]\ndensity = 1000\nyoung = 1e4\n"),
               Contains(HasSubstr("objects.tissue.young")));
 }
@@ -193,7 +196,17 @@ TEST(TrialObjectTest, WhatABodyOfSpringsTakesIsSaid) {
   EXPECT_THAT(lines[0], AllOf(HasSubstr("540 tetrahedra of springs, "), HasSubstr(" ms on a tick"),
                               HasSubstr("the hand of [hand] has 15")));
   EXPECT_THAT(lines[1], HasSubstr("a tick in contact takes "));
-  std::get<scene::YieldingParameters>(fields[0].kind).springs->density = 0.1;
+  auto& own = std::get<scene::YieldingParameters>(fields[0].kind);
+  own.rate = 250.0;
+  prepare_bodies(fields, 1000.0);
+  EXPECT_THAT(words_of_bodies(fields, 1000.0, 15.0)[1],
+              AllOf(HasSubstr("moves 250 times a second, 4 ticks at once"),
+                    HasSubstr("felt 4 to 7 ms later")));
+  own.rate = 300.0;
+  EXPECT_THAT(
+      test::message_of([&] { prepare_moving_bodies(fields, 1000.0); }),
+      HasSubstr("objects.tissue: rate is 300 Hz; allowed: the 1000 Hz of the loop divided by"));
+  own.springs->density = 0.1;
   EXPECT_THAT(test::message_of([&] { prepare_moving_bodies(fields, 1000.0); }),
               HasSubstr("at most 64 are allowed"));
 }
