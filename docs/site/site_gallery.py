@@ -9,6 +9,7 @@ import tempfile
 # Drillings take long to rehearse; their pictures are those of the guides.
 PICTURES = {
     "bone_drilling": ["docs/images/bone-drilled.png"],
+    "burr_shapes": ["docs/images/burr-shapes.png"],
     "construct_validity": ["docs/images/validity-live.jpg"],
     "first_drilling": ["docs/images/first-drilling.png"],
     "nerve_training": ["docs/algorithms/nerve-monitor.png"],

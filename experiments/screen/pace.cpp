@@ -46,10 +46,13 @@ void Pace::wait() {
   }
   due_ += period_ns_;
   const auto now = static_cast<double>(screen_ns());
-  if (now > due_) {  // too late for this one: on to the next in step
-    const double missed = std::ceil((now - due_) / period_ns_);
-    due_ += missed * period_ns_;
-    missed_ += static_cast<std::int32_t>(missed);
+  if (now > due_) {  // at once: to wait for the next in step would make it half a period later yet
+    late_ += (now - due_) / period_ns_;
+    const double whole = std::floor(late_);
+    missed_ += static_cast<std::int32_t>(whole);
+    late_ -= whole;
+    due_ = now;
+    return;
   }
   std::this_thread::sleep_until(
       ScreenClock::time_point(std::chrono::nanoseconds(static_cast<std::int64_t>(due_))));

@@ -27,7 +27,8 @@ struct AgreedPace {
 /// @param timer_rate    where the monitor does not say [Hz]
 AgreedPace agreed_pace(bool wants_lock, double monitor_rate, double interval, double timer_rate);
 
-/// Decides when the next picture is due, and which refreshes passed without one.
+/// Decides when the next picture is due, and which refreshes passed without one. A timer's picture
+/// that is late is due at once.
 class Pace {
  public:
   explicit Pace(const AgreedPace& agreed);
@@ -42,6 +43,7 @@ class Pace {
   bool locked_;
   std::int64_t last_;
   double due_;
+  double late_{0.0};        // that is not counted as missed yet [periods]
   std::int32_t missed_{0};  // before the next picture
 };
 

@@ -152,6 +152,7 @@ class BoneDrilling final : public Protocol {
     tables.push_back(&record::table_of<record::TearRow>());
     tables.push_back(&record::table_of<record::LedRow>());
     tables.push_back(&record::table_of<record::SecondHandRow>());
+    tables.push_back(&record::table_of<record::ToolContactRow>());
     tables.push_back(&record::table_of<record::BurrRow>());
     tables.push_back(&record::table_of<record::HandpieceRow>());
     tables.push_back(&record::table_of<record::OpeningRow>());

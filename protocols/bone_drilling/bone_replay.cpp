@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -14,6 +15,7 @@
 #include "core/record/table/schema.h"
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/drilling_pass.h"
+#include "protocols/bone_drilling/replayed_handpiece.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -32,17 +34,6 @@ BoneDefinition definition_of(const record::SessionReader& reader) {
     throw InputError(fmt::format("{}: its definition is not one of this version of haptrial: {}",
                                  reader.path().string(), error.what()));
   }
-}
-
-/// What the device gave, as it is recorded.
-device::DeviceReading reading_of(const record::Sample& sample, const record::ToolRow& tool) {
-  device::DeviceReading reading;
-  reading.tool = {sample.position, sample.velocity};
-  reading.orientation = tool.orientation;
-  reading.buttons = tool.buttons;
-  reading.keys = tool.keys;
-  reading.pedal = tool.pedal;
-  return reading;
 }
 
 /// What the second device gave, as it is recorded. @param rows  of it, on one tick
@@ -130,36 +121,6 @@ std::string difference(std::uint64_t sequence, std::span<const record::TearRow> 
                    "on tick {} the record has {} tears of soft tissue, and the simulation "
                    "{}, or others",
                    sequence, recorded.size(), torn.size());
-}
-
-/// Empty where a part of a tool was pushed as in the record.
-std::string difference(std::uint64_t sequence, const char* part, const Eigen::Vector3d& recorded,
-                       const Eigen::Vector3d& force) {
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    if (record::on_grid(force[axis], record::kForceResolution) != recorded[axis]) {
-      return fmt::format(
-          "on tick {} the record has ({}, {}, {}) N on {}, and the simulation ({}, {}, {})",
-          sequence, recorded[0], recorded[1], recorded[2], part, force[0], force[1], force[2]);
-    }
-  }
-  return "";
-}
-
-/// Empty where shafts, wear and reverse are those of the record.
-std::string difference(const record::HandpieceRow& recorded, const bone::Simulator& simulator) {
-  const bone::SimulatorOutput& out = simulator.output();
-  const bone::Handpiece& held = simulator.handpiece();
-  if (held.reversed() != recorded.reversed || held.sharpness(out.tool) != recorded.sharpness) {
-    return fmt::format(
-        "on tick {} the record has a burr of sharpness {}, reversed {}, and the simulation {}, {}",
-        recorded.sequence, recorded.sharpness, recorded.reversed, held.sharpness(out.tool),
-        held.reversed());
-  }
-  const std::string shaft =
-      difference(recorded.sequence, "the burr's shaft", recorded.shaft, out.shaft);
-  return !shaft.empty() ? shaft
-                        : difference(recorded.sequence, "the tube's shaft", recorded.tube_shaft,
-                                     out.tube.shaft);
 }
 
 }  // namespace
@@ -371,6 +332,8 @@ void BoneReplay::run_own(const record::PassRow& pass, Work& work) const {
     }
     const auto held = definition_.has_handpiece() ? reader_.rows<record::HandpieceRow>(at, count)
                                                   : std::vector<record::HandpieceRow>{};
+    const auto met = definition_.tools_meet() ? reader_.rows<record::ToolContactRow>(at, count)
+                                              : std::vector<record::ToolContactRow>{};
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const std::span<const record::DeviceRow> other = devices.take(samples[i].sequence);
       if (!tool[i].active) {
@@ -392,8 +355,13 @@ void BoneReplay::run_own(const record::PassRow& pass, Work& work) const {
         work.verdict.difference =
             difference(hand[i].sequence, "the tube of the second hand", hand[i].contact, force);
       }
+      if (i < met.size() && work.verdict.difference.empty()) {
+        work.verdict.difference = difference(met[i].sequence, "the tool that the tube meets",
+                                             met[i].force, work.stage->simulator->output().pushed);
+      }
       if (i < held.size() && work.verdict.difference.empty()) {
-        work.verdict.difference = difference(held[i], *work.stage->simulator);
+        work.verdict.difference =
+            difference(held[i], *work.stage->simulator, work.stage->simulator->output().shaft);
       }
       if (!work.verdict.difference.empty()) {
         return;
@@ -407,6 +375,10 @@ void BoneReplay::run_own(const record::PassRow& pass, Work& work) const {
 void BoneReplay::run_led(const record::PassRow& pass, Work& work) const {
   const protocols::DrillingInput input(definition_.drilling);
   Cursor<record::LedRow> led(led_, pass.first_sample);
+  std::optional<ReplayedHandpiece> handpiece;
+  if (definition_.has_handpiece()) {
+    handpiece.emplace(reader_, input, *work.stage->simulator);
+  }
   for (std::uint64_t sequence = pass.first_sample; sequence <= pass.last_sample; ++sequence) {
     const std::span<const record::LedRow> steps = led.take(sequence);
     bone::SimulatorInput now;
@@ -423,10 +395,16 @@ void BoneReplay::run_led(const record::PassRow& pass, Work& work) const {
       }
       work.step(sequence, now, &row == steps.data());
     }
-    if (!steps.empty()) {
-      if (!work.check(sequence)) {
+    if (!steps.empty() && !work.check(sequence)) {
+      return;
+    }
+    if (handpiece) {
+      work.verdict.difference = handpiece->check(sequence);
+      if (!work.verdict.difference.empty()) {
         return;
       }
+    }
+    if (!steps.empty()) {
       work.show(sequence, now);
     }
   }

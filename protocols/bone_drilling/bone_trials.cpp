@@ -101,6 +101,9 @@ BoneTrials::BoneTrials(const BoneDefinition& definition, const SessionPlace& pla
   if (d_.drilling.second) {
     logs_.watch_second();
   }
+  if (d_.tools_meet()) {
+    logs_.watch_tool_contact();
+  }
   if (d_.has_handpiece()) {
     logs_.watch_handpiece();
   }
@@ -226,6 +229,9 @@ record::TableList BoneTrials::tables() const {
   if (d_.drilling.second) {
     tables.push_back(&record::table_of<record::SecondHandRow>());
   }
+  if (d_.tools_meet()) {
+    tables.push_back(&record::table_of<record::ToolContactRow>());
+  }
   tables.push_back(&record::table_of<record::BurrRow>());
   if (d_.has_handpiece()) {
     tables.push_back(&record::table_of<record::HandpieceRow>());
@@ -266,6 +272,9 @@ void BoneTrials::empty_logs(SessionFile& file) {
   }
   if (d_.drilling.second) {
     empty(logs_.second);
+  }
+  if (d_.tools_meet()) {
+    empty(logs_.tool_contact);
   }
   if (d_.has_handpiece()) {
     empty(logs_.handpiece);

@@ -166,7 +166,7 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   PassOutput out;
   const Eigen::Vector3d shake =
       shaking(vibration_, simulator_, done.contact, done.force.norm(), input.tool);
-  const Eigen::Vector3d wanted = done.force + done.shaft + shake;
+  const Eigen::Vector3d wanted = done.force + done.shaft + done.pushed + shake;
   out.force = control::saturate(wanted, parameters_.force_limit);
   out.intent.push = done.drag + shake;
   out.saturated = wanted.norm() > parameters_.force_limit;
@@ -184,8 +184,8 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   out.shown = seen;
   out.shown.tool = reading.tool.position;
   if (two) {
-    second_.force =
-        control::saturate(done.tube.force + done.tube.shaft, parameters_.second->force_limit);
+    second_.force = control::saturate(done.tube.force + done.tube.shaft - done.pushed,
+                                      parameters_.second->force_limit);
     rows_.log_second(input.tube);
   }
   rows_.log_tool(done.removed + done.cut, done.force);

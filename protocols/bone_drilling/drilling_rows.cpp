@@ -36,6 +36,11 @@ void DrillingLogs::record(std::uint64_t sequence, const Readings& readings,
     held.sequence = sequence;
     handpiece.push(held);
   }
+  if (watches_tool_contact_) {
+    record::ToolContactRow contact = std::exchange(tool_contact_, record::ToolContactRow{});
+    contact.sequence = sequence;
+    tool_contact.push(contact);
+  }
   if (beside_ != nullptr) {
     nerve::NerveTick tick = std::exchange(nerves_, nerve::NerveTick{});
     tick.sequence = sequence;
@@ -128,6 +133,7 @@ void DrillingRows::log_second(const bone::TubeInput& tube) noexcept {
   row.immersed = out.immersed;
   row.contact = out.force;
   logs_.set_second(row);
+  logs_.set_tool_contact(simulator_.output().pushed);
 }
 
 namespace {

@@ -30,6 +30,7 @@ class DrillingLogs final : public TickLog {
   realtime::BlockLog<record::SecondHandRow> second;
   realtime::BlockLog<record::OpeningRow> openings{64, 16};
   realtime::BlockLog<record::HandpieceRow> handpiece;
+  realtime::BlockLog<record::ToolContactRow> tool_contact;
 
   /// A row of /second_hand for every tick from now on, also between passes. Before the first tick.
   void watch_second() noexcept { two_hands_ = true; }
@@ -39,6 +40,11 @@ class DrillingLogs final : public TickLog {
   /// A row of /handpiece for every tick from now on, likewise.
   void watch_handpiece() noexcept { watches_handpiece_ = true; }
   void set_handpiece(const record::HandpieceRow& row) noexcept { handpiece_row_ = row; }
+
+  /// A row of /tool_contact for every tick from now on, likewise.
+  void watch_tool_contact() noexcept { watches_tool_contact_ = true; }
+  /// @param pushed  force on the first hand's tool, in W [N]
+  void set_tool_contact(const Eigen::Vector3d& pushed) noexcept { tool_contact_.force = pushed; }
 
   /// What the present tick says of the tool in hand; taken by record(). Servo thread.
   void set_tool(const record::ToolRow& row) noexcept { row_ = row; }
@@ -55,7 +61,7 @@ class DrillingLogs final : public TickLog {
   std::uint64_t dropped() const noexcept {
     return tool.dropped() + removals.dropped() + camera.dropped() + splits.dropped() +
            tears.dropped() + led.dropped() + second.dropped() + openings.dropped() +
-           handpiece.dropped();
+           handpiece.dropped() + tool_contact.dropped();
   }
 
  private:
@@ -64,6 +70,8 @@ class DrillingLogs final : public TickLog {
   bool two_hands_{false};
   record::HandpieceRow handpiece_row_;
   bool watches_handpiece_{false};
+  record::ToolContactRow tool_contact_;
+  bool watches_tool_contact_{false};
   nerve::NerveTick nerves_;
   nerve::NerveBeside* beside_{nullptr};
 };

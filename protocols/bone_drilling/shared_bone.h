@@ -13,7 +13,8 @@ namespace haptrial::protocols {
 
 /// A bone that two linked sessions have: it belongs to the side that leads, and the other side's
 /// follows it tick by tick, bit for bit. With each tick goes a witness of all that was done to the
-/// bone, and at the end of a pass both sides compare checksums. docs/decisions/0013-led-bone-by-ticks.md.
+/// bone, and at the end of a pass both sides compare checksums.
+/// docs/decisions/0013-led-bone-by-ticks.md.
 class SharedBone final : public SharedWorld {
  public:
   explicit SharedBone(bool leads);

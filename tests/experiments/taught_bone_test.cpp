@@ -12,14 +12,17 @@
 #include <vector>
 
 #include "core/bone/data/bone_file.h"
+#include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/led_row.h"
+#include "core/bone/record/recorded_bone.h"
 #include "core/bone/simulator/bone_touch.h"
 #include "core/record/link/link_row.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/table/rounding.h"
 #include "core/record/table/schema.h"
+#include "core/record/write/session_writer.h"
 #include "protocols/bone_drilling/bone_replay.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/drilling_pass.h"
@@ -127,6 +130,57 @@ TEST_F(TaughtBoneTest, AReplayOfTheLedSessionGivesItsBone) {
   const test::CommandResult r = run_command("haptrial replay " + out + "/S01.h5");
   EXPECT_EQ(r.status, 0) << r.errors;
   EXPECT_THAT(r.output, HasSubstr("trial 1: the same bone"));
+}
+
+/// A copy of a led session in which the rows of /handpiece on some ticks are others.
+fs::path with_another_handpiece(const record::SessionReader& reader, const fs::path& copy,
+                                std::uint64_t from, const record::HandpieceRow& other) {
+  auto held = reader.rows<record::HandpieceRow>();
+  for (record::HandpieceRow& row : held) {
+    const std::uint64_t sequence = row.sequence;
+    if (sequence >= from && sequence < from + 20) {
+      row = other;
+      row.sequence = sequence;
+    }
+  }
+  record::TableList tables = record::drilling_tables();
+  tables.push_back(&record::table_of<record::LedRow>());
+  tables.push_back(&record::table_of<record::HandpieceRow>());
+  record::SessionWriter writer(copy, reader.info(), tables,
+                               record::rows_of(record::recorded_bones(reader)));
+  writer.add(std::span<const record::ToolRow>(reader.rows<record::ToolRow>()));
+  writer.add(std::span<const record::HandpieceRow>(held));
+  writer.add(std::span<const record::LedRow>(reader.rows<record::LedRow>()));
+  writer.add(std::span<const record::RemovalRow>(reader.rows<record::RemovalRow>()));
+  writer.add(std::span<const record::SplitRow>(reader.rows<record::SplitRow>()));
+  writer.add(std::span<const record::ProcedureRow>(reader.rows<record::ProcedureRow>()));
+  writer.append(reader.samples(0, reader.sample_count()));
+  writer.add_pass(reader.passes().front());
+  writer.close();
+  return copy;
+}
+
+TEST_F(TaughtBoneTest, AReplayOfTheLedSessionFeelsItsHandpiece) {
+  const std::string burr =
+      "diameter = 0.006\nwear_volume = 5e-8\nshaft_radius = 0.003\n"
+      "shaft_length = 0.02";
+  const std::string out = taught(definition("", 4.0, {{"diameter", burr}}), "out");
+  const record::SessionReader reader(out + "/S01.h5");
+  const auto held = reader.rows<record::HandpieceRow>();
+  ASSERT_EQ(held.size(), reader.sample_count());
+  EXPECT_LT(held[held.size() - 100].sharpness, 0.95) << "the burr wears";
+  const protocols::ReplayVerdict same = protocols::BoneReplay(reader.path()).run(1);
+  EXPECT_EQ(same.difference, "");
+  const std::uint64_t when = held[held.size() / 2].sequence;
+  record::HandpieceRow other = held[held.size() / 2];
+  other.sharpness *= 0.5;
+  const auto blunt = with_another_handpiece(reader, folder_ / "blunt.h5", when, other);
+  EXPECT_THAT(protocols::BoneReplay(blunt).run(1).difference,
+              HasSubstr("on tick " + std::to_string(when) + " the record has a burr of sharpness"));
+  other = held[held.size() / 2];
+  other.shaft.x() += 1.0;
+  const auto pushed = with_another_handpiece(reader, folder_ / "pushed.h5", when, other);
+  EXPECT_THAT(protocols::BoneReplay(pushed).run(1).difference, HasSubstr("on the burr's shaft"));
 }
 
 /// The upper slab of bone over dura.

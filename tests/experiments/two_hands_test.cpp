@@ -87,6 +87,7 @@ TEST_F(TwoHandsTest, BothHandsAreInTheFileTickByTick) {
     }
   }
   EXPECT_GT(felt, 200u) << "the tube meets bone";
+  EXPECT_TRUE(reader.rows<record::ToolContactRow>().empty()) << "the tools do not push";
 }
 
 TEST_F(TwoHandsTest, TheOtherHandSucksTheDustAndRinses) {
@@ -147,6 +148,42 @@ TEST_F(TwoHandsTest, AReplaySaysWhereTheTubeFirstDiffers) {
   EXPECT_THAT(verdict.difference, HasSubstr("on the tube of the second hand"));
 }
 
+TEST(TwoHandsMeetTest, BurrAndTubePushEachOtherByTheSameAndAReplayFeelsIt) {
+  const test::TemporaryFolder folder;
+  const fs::path study =
+      write_study(folder.path(), 6.0,
+                  "[second_hand]\nhandle = [0.0, 1.0, 0.0]\nbeside = [0.0048, 0.0, 0.0]\n"
+                  "tool_stiffness = 1500.0\n");
+  const fs::path out = folder / "out";
+  const test::CommandResult done =
+      test::run_command("haptrial dry-run '" + study.string() + "' --out '" + out.string() + "'");
+  ASSERT_EQ(done.status, 0) << done.errors;
+  const record::SessionReader reader(out / "S01.h5");
+  const record::Integrity integrity = record::check_session(reader);
+  EXPECT_TRUE(integrity.ok) << integrity.problems.front();
+  const auto samples = reader.samples(0, reader.sample_count());
+  const auto tool = reader.rows<record::ToolRow>();
+  const auto hand = reader.rows<record::SecondHandRow>();
+  const auto device = reader.rows<record::DeviceRow>();
+  const auto met = reader.rows<record::ToolContactRow>();
+  ASSERT_EQ(met.size(), samples.size());
+  std::size_t alone = 0;
+  for (std::size_t i = 500; i < std::min<std::size_t>(samples.size(), 5500); ++i) {
+    ASSERT_EQ(met[i].sequence, samples[i].sequence);
+    const bool steady = (met[i].force - met[i - 1].force).norm() < 0.05;  // the envelope's rate
+    if (met[i].force.norm() > 0.1 && steady && tool[i].immersed == 0 && hand[i].immersed == 0) {
+      ++alone;
+      EXPECT_LT((samples[i].force - met[i].force).norm(), 0.06) << i;
+      EXPECT_LT((device[i].force + met[i].force).norm(), 0.06) << i;
+    }
+  }
+  EXPECT_GT(alone, 50u) << "they meet where no bone is";
+  const test::CommandResult same =
+      test::run_command("haptrial replay '" + (out / "S01.h5").string() + "'");
+  EXPECT_EQ(same.status, 0) << same.errors;
+  EXPECT_THAT(same.output, HasSubstr("the same bone, 6000 ticks"));
+}
+
 TEST(LiveTwoHandsTest, AfterAKillBothHandsGoOnAtTheBoneAsItStood) {
   const test::TemporaryFolder folder;
   const fs::path study = write_study(folder.path(), 8.0, kSecond + kHeat);
@@ -195,6 +232,9 @@ TEST(TwoHandsDefinitionTest, WhatCannotBeIsSaid) {
   EXPECT_THAT(says(kSecond + "force_limit = 10.0\n"),
               HasSubstr("second_hand.force_limit is 10; allowed: at most envelope.max_force"));
   EXPECT_THAT(says(kSecond + "radius = 1.0\n"), HasSubstr("second_hand.radius"));
+  EXPECT_THAT(says(kSecond + "tool_stiffness = 9000.0\n"),
+              HasSubstr("second_hand.tool_stiffness is 9000; allowed: a number of at least 0 and "
+                        "at most 5000 [N/m]"));
   EXPECT_THAT(says("[heat]\nloss = 1.0\nrinsed_loss = 0.5\n"), HasSubstr("heat.rinsed_loss"));
   EXPECT_THAT(says("[bleeding]\nstructures = [\"sigmoid sinus\"]\n"),
               HasSubstr("has no structure 'sigmoid sinus'"));

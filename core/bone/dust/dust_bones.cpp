@@ -33,11 +33,12 @@ void DustBones::follow(const DustBone& bone) {
     change_.everything = true;
   }
   found->listed = true;
-  voxels_.clear();
-  found->occupancy.follow(*bone.volume, voxels_);
   if (change_.everything) {
+    found->occupancy.follow(*bone.volume);  // a list of a whole bone would be larger than the bone
     return;
   }
+  voxels_.clear();
+  found->occupancy.follow(*bone.volume, voxels_);
   const geometry::VoxelGrid& grid = bone.volume->grid();
   for (const Voxel& voxel : voxels_) {
     change_.centres.push_back(bone.X_WB * grid.centre(voxel.x(), voxel.y(), voxel.z()));

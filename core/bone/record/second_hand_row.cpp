@@ -31,4 +31,25 @@ const Table<SecondHandRow>& table_of<SecondHandRow>() {
   return table;
 }
 
+template <>
+const Table<ToolContactRow>& table_of<ToolContactRow>() {
+  using R = ToolContactRow;
+  using T = Table<R>;
+  static const T table(
+      {"tool_contact",
+       "the push of the two hands' tools on each tick of the servo loop",
+       4096,
+       RowsOf::kEachTick,
+       {"sequence"},
+       "tool_contact",
+       5},
+      {T::column("sequence", &R::sequence, "1", "tick number, as in /samples"),
+       T::rounded_elements(std::array<const char*, 3>{"force_x", "force_y", "force_z"}, &R::force,
+                           "N",
+                           "force of the tube on the first hand's tool before any limit of the "
+                           "device, in the world frame; its opposite acts on the tube",
+                           kForceResolution)});
+  return table;
+}
+
 }  // namespace haptrial::record

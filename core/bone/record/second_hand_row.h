@@ -18,7 +18,16 @@ struct SecondHandRow {
   Eigen::Vector3d contact{Eigen::Vector3d::Zero()};  // force before any limit, in W [N]
 };
 
+/// How the two hands' tools push each other on one tick, a row of /tool_contact; only of sessions
+/// whose tools do. Goes through a block log.
+struct ToolContactRow {
+  std::uint64_t sequence{0};
+  Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // on the first hand's, in W [N]
+};
+
 template <>
 const Table<SecondHandRow>& table_of<SecondHandRow>();
+template <>
+const Table<ToolContactRow>& table_of<ToolContactRow>();
 
 }  // namespace haptrial::record

@@ -21,7 +21,8 @@ SecondHand::SecondHand(const TubeParameters& parameters, std::span<const Structu
                        double spacing, const std::array<bool, 256>& soft)
     : p_(within_bounds(parameters)),
       end_({BurrForm::kBall, 2.0 * p_.outer_radius(), 0.0, 0.0}, 0.0, p_.feel, structures, spacing,
-           soft) {
+           soft),
+      at_tool_(p_.at_tool) {
   if (p_.shaft_length > 0.0) {
     const ShaftParameters shaft = default_shaft(p_.outer_radius(), p_.shaft_length);
     shaft_ = std::make_unique<FeltPart>(shaft.dimensions(), p_.outer_radius() + 0.5 * shaft.length,
@@ -31,6 +32,7 @@ SecondHand::SecondHand(const TubeParameters& parameters, std::span<const Structu
 
 void SecondHand::begin() noexcept {
   end_.wait();
+  leave_tool();
   if (shaft_ != nullptr) {
     shaft_->wait();
   }
@@ -56,6 +58,17 @@ TubeOutput SecondHand::tick(const BoneWorld& world, SoftTissue& soft,
     out.force += pose.linear() * force;
   }
   return out;
+}
+
+Eigen::Vector3d SecondHand::push(std::span<const Rod> tool, const Eigen::Vector3d& velocity,
+                                 const TubeInput& input) noexcept {
+  if (!at_tool_.on()) {
+    return Eigen::Vector3d::Zero();
+  }
+  const PointState& tip = input.tool.tip;
+  const Rod tube{tip.position, tip.position + p_.handle_length * input.tool.axis(),
+                 p_.outer_radius()};
+  return at_tool_.force(tool, tube, tip.velocity - velocity);
 }
 
 void SecondHand::place(const TubeInput& input, DustTool& tube, DustWater& water) const noexcept {

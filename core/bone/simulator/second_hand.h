@@ -9,6 +9,7 @@
 #include "core/bone/dust/dust_surroundings.h"
 #include "core/bone/pieces/world.h"
 #include "core/bone/simulator/felt_part.h"
+#include "core/bone/simulator/tool_contact.h"
 #include "core/bone/tools/soft_tissue.h"
 
 namespace haptrial::bone {
@@ -16,11 +17,12 @@ namespace haptrial::bone {
 /// A tube that sucks and rinses, held in the other hand. Its end is felt as a ball as wide as its
 /// wall, and so is as much of the tube behind it as is told.
 struct TubeParameters {
-  double radius{1.2e-3};      // of its opening, 0.2e-3 to 0.01 [m]
-  double handle_length{0.1};  // > 0 [m]
-  double rinse_reach{6e-3};   // of its water from its end > 0 [m]
-  double shaft_length{0.0};   // behind its end that is felt, too, >= 0 [m]
-  FeelParameters feel{};      // default_feel() of its outer radius
+  double radius{1.2e-3};            // of its opening, 0.2e-3 to 0.01 [m]
+  double handle_length{0.1};        // > 0 [m]
+  double rinse_reach{6e-3};         // of its water from its end > 0 [m]
+  double shaft_length{0.0};         // behind its end that is felt, too, >= 0 [m]
+  FeelParameters feel{};            // default_feel() of its outer radius
+  ToolContactParameters at_tool{};  // with the tool in the first hand
   double outer_radius() const noexcept { return 1.4 * radius; }  // [m]
 };
 
@@ -41,8 +43,9 @@ struct TubeOutput {
 };
 
 /// The tube at the bones that the first hand works on: it feels them and takes none of them; soft
-/// tissue gives way to it, sticks to it where it sucks, and may tear. It does not meet the burr.
-/// One that is in bone at first is not felt before it has been free.
+/// tissue gives way to it, sticks to it where it sucks, and may tear. The first hand's tool pushes
+/// it if it is told to (ToolContact). One that is in bone at first is not felt before it has been
+/// free.
 ///
 /// Servo thread: no allocation, lock, wait or throw after construction. Source: Morris 2006,
 /// §3.2.8, Figure 66.
@@ -55,6 +58,12 @@ class SecondHand {
   void begin() noexcept;
   /// After the first hand's tick.
   TubeOutput tick(const BoneWorld& world, SoftTissue& soft, const TubeInput& input) noexcept;
+  /// Force of the tube on the first hand's tool; the opposite acts on the tube. Zero where the two
+  /// pass through each other. @param tool  its rods  @param velocity  of its tip [m/s]
+  Eigen::Vector3d push(std::span<const Rod> tool, const Eigen::Vector3d& velocity,
+                       const TubeInput& input) noexcept;
+  /// The first hand has another tool, or none at work.
+  void leave_tool() noexcept { at_tool_.wait(); }
   /// What dust and blood have of it. @param tools  room for it
   void place(const TubeInput& input, DustTool& tube, DustWater& water) const noexcept;
   /// Whether its water gets to a point of W.
@@ -66,6 +75,7 @@ class SecondHand {
   TubeParameters p_;
   FeltPart end_;
   std::unique_ptr<FeltPart> shaft_;  // null: it is not felt
+  ToolContact at_tool_;
 };
 
 }  // namespace haptrial::bone

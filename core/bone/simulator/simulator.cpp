@@ -183,6 +183,9 @@ void Simulator::change_tool(int by) noexcept {
     waits_until_free_ = true;
     shafts_.wait();
     soft_.forget();
+    if (second_) {
+      second_->leave_tool();
+    }
   }
 }
 
@@ -280,6 +283,7 @@ void Simulator::work_second(const SimulatorInput& input) noexcept {
     const Eigen::Isometry3d& pose = world_.pose(0);
     empty_soft(pose.inverse(Eigen::Isometry) * input.tube.tool.tip.position, tube()->radius);
   }
+  meet(input);
 }
 
 void Simulator::warm_up(const SimulatorInput& input) noexcept {

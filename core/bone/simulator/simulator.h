@@ -75,6 +75,9 @@ struct SimulatorOutput {
   Eigen::Vector3d drag{Eigen::Vector3d::Zero()};   // the part of it that the turning teeth give [N]
   Eigen::Vector3d shaft{
       Eigen::Vector3d::Zero()};  // of bone on the burr's shaft, beside `force` [N]
+  Eigen::Vector3d pushed{
+      Eigen::Vector3d::Zero()};  // of the other hand's tube on the tool, beside `force`, and of the
+                                 // tool on the tube with the other sign [N]
   int tool{0};                   // in hand
   HandMode mode{HandMode::kTool};
   double power{0.0};    // of the tool in hand, 0 where it has none
@@ -181,6 +184,7 @@ class Simulator {
   void drill(const BurrTool& tool, const SimulatorInput& input) noexcept;
   void yield(std::span<const BurrShape::Ball> balls, const SimulatorInput& input) noexcept;
   void work_second(const SimulatorInput& input) noexcept;
+  void meet(const SimulatorInput& input) noexcept;
   void warm_up(const SimulatorInput& input) noexcept;
   void bleed(double dt) noexcept;
   void empty_soft(const Eigen::Vector3d& tip_B, double radius) noexcept;

@@ -1,4 +1,4 @@
-// The burr of a simulator at bone and at soft tissue.
+// The burr of a simulator at bone, at soft tissue and at the tube in the other hand.
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +14,45 @@ namespace {
 // Removal depends on the force: rounded to this, a sum of two contacts gives the same bits as the
 // one contact that it was before a part was separated.
 constexpr double kForceStep = 0x1p-13;  // [N]
+
+class RodsOfTool {
+ public:
+  void add(const Rod& rod) noexcept {
+    if (count_ < rods_.size()) {
+      rods_[count_++] = rod;
+    }
+  }
+  std::span<const Rod> all() const noexcept { return std::span(rods_).first(count_); }
+
+ private:
+  std::array<Rod, ToolContact::kMost> rods_;
+  std::size_t count_{0};
+};
+
+/// What of a tool another one can meet: within a burr, but for its edges, and what holds it; a tube
+/// or a probe. None of plates, planes and grips.
+RodsOfTool rods_of(const ToolSpec& tool, const BurrShape* shape, const ToolState& state) noexcept {
+  RodsOfTool rods;
+  const Eigen::Vector3d& tip = state.tip.position;
+  const Eigen::Vector3d axis = state.axis();
+  if (const auto* burr = tool.as<BurrTool>()) {
+    const std::span<const BurrShape::Ball> balls = shape->balls();
+    for (std::size_t i = 0; i < std::max<std::size_t>(balls.size() - 1, 1); ++i) {
+      const BurrShape::Ball& next = balls[std::min(i + 1, balls.size() - 1)];
+      rods.add(
+          {tip + balls[i].z * axis, tip + next.z * axis, std::min(balls[i].radius, next.radius)});
+    }
+    const double thin =
+        std::min(burr->radius(), burr->shaft ? burr->shaft->radius : tool.handle_radius);
+    const double top = shape->half_length();
+    rods.add({tip + top * axis, tip + (top + tool.handle_length) * axis, thin});
+  } else if (const auto* suction = tool.as<SuctionTool>()) {
+    rods.add({tip, tip + tool.handle_length * axis, suction->radius});
+  } else if (const auto* probe = tool.as<ProbeTool>()) {
+    rods.add({tip, tip + tool.handle_length * axis, probe->radius});
+  }
+  return rods;
+}
 
 }  // namespace
 
@@ -115,6 +154,16 @@ void Simulator::yield(std::span<const BurrShape::Ball> balls,
   if (!soft_.tears().empty() || (turns && soft_.in_hole())) {
     empty_soft(ball.centre_B, ball.radius);
   }
+}
+
+/// The first hand's tool and the other's tube push each other apart.
+void Simulator::meet(const SimulatorInput& input) noexcept {
+  if (output_.mode != HandMode::kTool) {
+    second_->leave_tool();
+    return;
+  }
+  const RodsOfTool rods = rods_of(tool(), burr_shape(), input.tool);
+  output_.pushed = second_->push(rods.all(), input.tool.tip.velocity, input.tube);
 }
 
 /// Voxels of soft structures whose centres are in a ball.

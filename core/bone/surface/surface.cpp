@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/base/growth.h"
+
 namespace haptrial::bone {
 namespace {
 
@@ -116,7 +118,10 @@ void Surface::forget_changes() {
   changed_quads_.clear();
   marked_.clear();
   near_marked_.clear();
-  rebuilt_ = false;
+  if (std::exchange(rebuilt_, false)) {
+    changed_vertices_.shrink_to_fit();
+    changed_quads_.shrink_to_fit();
+  }
 }
 
 std::size_t Surface::place_of(const Voxel& brick) const noexcept {
@@ -204,7 +209,11 @@ Surface::MadeVertex Surface::vertex_at(const BoneVolume& volume, const Voxel& or
       field.place(of_brick.x(), of_brick.y(), of_brick.z(), corners, normal);
   const std::uint8_t nearest = nearest_corner(corners, offset);
   return {place_in_brick(of_brick),
-          {cell, {kNone, kNone, kNone}, static_cast<std::uint8_t>(corners), nearest},
+          {{kNone, kNone, kNone},
+           {static_cast<std::int16_t>(cell.x()), static_cast<std::int16_t>(cell.y()),
+            static_cast<std::int16_t>(cell.z())},
+           static_cast<std::uint8_t>(corners),
+           nearest},
           make_vertex(volume, cell, corners, offset, normal, nearest)};
 }
 
@@ -252,9 +261,9 @@ void Surface::set_vertex(CellBrick& brick, std::size_t at, const VertexLinks& li
     ++brick.living;
     if (free_vertices_.empty()) {
       slot = static_cast<std::int32_t>(vertices_.size());
-      vertices_.emplace_back();
-      links_.emplace_back();
-      vertex_touched_.push_back(0);
+      resize_slowly(vertices_, vertices_.size() + 1);
+      resize_slowly(links_, vertices_.size());
+      resize_slowly(vertex_touched_, vertices_.size());
     } else {
       slot = free_vertices_.back();
       free_vertices_.pop_back();
@@ -312,7 +321,7 @@ void Surface::place_quads(std::size_t place) {
 
 /// The triangles of a quad.
 std::array<SurfaceTriangle, 2> Surface::halves(std::int32_t vertex, int axis, bool outwards) const {
-  const Voxel cell = links_[static_cast<std::size_t>(vertex)].cell;
+  const Voxel cell = cell_of(vertex);
   const Voxel b = Voxel::Unit((axis + 1) % 3);
   const Voxel c = Voxel::Unit((axis + 2) % 3);
   // Anticlockwise seen from the far end of the axis.
@@ -340,8 +349,8 @@ void Surface::set_quad(std::int32_t vertex, int axis, bool outwards) {
   if (changed) {
     if (free_quads_.empty()) {
       slot = static_cast<std::int32_t>(quad_touched_.size());
-      triangles_.resize(triangles_.size() + 2);
-      quad_touched_.push_back(0);
+      resize_slowly(triangles_, triangles_.size() + 2);
+      resize_slowly(quad_touched_, quad_touched_.size() + 1);
     } else {
       slot = free_quads_.back();
       free_quads_.pop_back();
@@ -378,7 +387,7 @@ void Surface::refresh_near(const BoneVolume& volume, std::size_t place) {
   for_each_vertex(place, [&](std::int32_t slot) {
     const auto index = static_cast<std::size_t>(slot);
     SurfaceVertex vertex = vertices_[index];
-    set_near(volume, links_[index].cell + corner(links_[index].nearest), vertex);
+    set_near(volume, cell_of(slot) + corner(links_[index].nearest), vertex);
     if (vertex != vertices_[index]) {
       vertices_[index] = vertex;
       touch_vertex(slot);
@@ -413,10 +422,6 @@ std::int32_t Surface::vertex_of(const Voxel& cell) const noexcept {
   }
   const std::unique_ptr<CellBrick>& brick = bricks_[place_of(brick_of(cell))];
   return brick == nullptr ? kNone : brick->vertices[place_in_brick(cell)];
-}
-
-const Voxel& Surface::cell_of(std::int32_t vertex) const noexcept {
-  return links_[static_cast<std::size_t>(vertex)].cell;
 }
 
 std::int32_t Surface::quad_of(const Voxel& voxel, int axis) const noexcept {

@@ -60,7 +60,10 @@ class Surface {
   /// The slot of a cell's vertex; -1 where it has none.
   std::int32_t vertex_of(const Voxel& cell) const noexcept;
   /// The cell of a living vertex.
-  const Voxel& cell_of(std::int32_t vertex) const noexcept;
+  Voxel cell_of(std::int32_t vertex) const noexcept {
+    const auto& [i, j, k] = links_[static_cast<std::size_t>(vertex)].cell;
+    return {i, j, k};
+  }
   /// The quad between a voxel and the next along an axis (0, 1, 2); -1 where there is none. A
   /// triangle t belongs to quad t / 2.
   std::int32_t quad_of(const Voxel& voxel, int axis) const noexcept;
@@ -74,8 +77,8 @@ class Surface {
 
  private:
   struct VertexLinks {
-    Voxel cell;
     std::array<std::int32_t, 3> quads;  // of the pairs from the cell's first voxel along each axis
+    std::array<std::int16_t, 3> cell;   // a grid has at most 32,767 voxels along an axis
     std::uint8_t corners;               // bit b: CellField::corners
     std::uint8_t nearest;               // corner: the filled one that is nearest to the vertex
   };
@@ -101,6 +104,7 @@ class Surface {
 
   void begin(const BoneVolume& volume);
   void begin_places(const BoneVolume& volume);
+  void make_room(const BoneVolume& volume, const std::vector<std::size_t>& places, int threads);
   void make_vertices(const BoneVolume& volume, std::size_t place, CellField& field,
                      std::vector<MadeVertex>& made) const;
   void keep_vertices(std::size_t place, const std::vector<MadeVertex>& made);

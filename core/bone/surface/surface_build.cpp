@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <utility>
 
@@ -25,6 +26,7 @@ void Surface::build(const BoneVolume& volume, const geometry::WorkReport& report
   begin_places(volume);
   const std::vector<std::size_t> places = std::exchange(marked_, {});
   const int threads = threads_or_all(0);
+  make_room(volume, places, threads);
   /// Makes batch by batch in parallel, and keeps in order.
   const auto in_batches = [&](auto made, double from, double to, const auto& make,
                               const auto& keep) {
@@ -81,6 +83,28 @@ void Surface::begin_places(const BoneVolume& volume) {
   for (const std::size_t place : marked_) {
     marks_[place] = 0;
   }
+}
+
+/// For all vertices and quads, which are counted first: growing arrays would take up to three times
+/// the memory.
+void Surface::make_room(const BoneVolume& volume, const std::vector<std::size_t>& places,
+                        int threads) {
+  std::atomic<std::size_t> vertices{0};
+  std::atomic<std::size_t> quads{0};
+  in_groups(places.size(), kGroup, threads, [&] {
+    return [&, field = CellField()](std::size_t begin, std::size_t some) mutable {
+      for (std::size_t n = begin; n < begin + some; ++n) {
+        if (field.read(volume, occupancy_, remains_, BoneVolume::kEdge * brick_at(places[n]))) {
+          const CellField::Count count = field.count();
+          vertices += count.vertices;
+          quads += count.quads;
+        }
+      }
+    };
+  });
+  vertices_.reserve(vertices);
+  links_.reserve(vertices);
+  triangles_.reserve(2 * quads);
 }
 
 void Surface::make_vertices(const BoneVolume& volume, std::size_t place, CellField& field,

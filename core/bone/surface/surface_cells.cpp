@@ -1,6 +1,7 @@
 #include "core/bone/surface/surface_cells.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace haptrial::bone {
@@ -160,6 +161,27 @@ bool CellField::read(const BoneVolume& volume, const Occupancy& occupancy, const
     }
   }
   return any != 0 && all != kCorners;
+}
+
+CellField::Count CellField::count() const noexcept {
+  constexpr std::uint32_t kCells = (1U << kEdge) - 1;
+  Count found;
+  for (std::size_t k = kReach; k < kReach + kEdge; ++k) {
+    for (std::size_t j = kReach; j < kReach + kEdge; ++j) {
+      const std::uint32_t* row = filled_.data() + j + kWide * k;
+      const std::array<std::uint32_t, 4> rows{row[0] >> kReach, row[1] >> kReach,
+                                              row[kWide] >> kReach, row[kWide + 1] >> kReach};
+      const std::uint32_t any = rows[0] | rows[1] | rows[2] | rows[3];
+      const std::uint32_t all = rows[0] & rows[1] & rows[2] & rows[3];
+      const auto number = [](std::uint32_t bits) {
+        return static_cast<std::size_t>(std::popcount(bits & kCells));
+      };
+      found.vertices += number((any | any >> 1) & ~(all & all >> 1));
+      found.quads +=
+          number(rows[0] ^ rows[0] >> 1) + number(rows[0] ^ rows[1]) + number(rows[0] ^ rows[2]);
+    }
+  }
+  return found;
 }
 
 unsigned CellField::corners(int i, int j, int k) const noexcept {

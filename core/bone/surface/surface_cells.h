@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "core/bone/model/bone_volume.h"
@@ -46,6 +47,12 @@ class CellField {
   bool read(const BoneVolume& volume, const Occupancy& occupancy, const Remains& remains,
             const Voxel& origin) noexcept;
 
+  struct Count {
+    std::size_t vertices{0};
+    std::size_t quads{0};  // between a cell's first voxel and the next along each axis
+  };
+  /// What the cells have.
+  Count count() const noexcept;
   /// Bit b is the cell's corner (b & 1, b >> 1 & 1, b >> 2): whether it is filled.
   unsigned corners(int i, int j, int k) const noexcept;
   /// Works out the sums; needed before place(). @param remains  as it was read

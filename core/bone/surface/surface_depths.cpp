@@ -146,7 +146,8 @@ StructureDepths::StructureDepths(const BoneModel& model, const std::vector<bool>
                     static_cast<std::size_t>(table_size_[1]) *
                     static_cast<std::size_t>(table_size_[2]),
                 0);
-  entries_.resize(BoneVolume::kBrickVoxels);
+  labels_.resize(BoneVolume::kBrickVoxels);
+  squares_.resize(BoneVolume::kBrickVoxels);
   const Eigen::AlignedBox3i box = box_of(model, shows, whole);
   if (box.isEmpty()) {
     return;
@@ -183,11 +184,13 @@ StructureDepths::StructureDepths(const BoneModel& model, const std::vector<bool>
       brick = bricks++;
     }
   });
-  entries_.resize(static_cast<std::size_t>(bricks) * BoneVolume::kBrickVoxels);
+  labels_.resize(static_cast<std::size_t>(bricks) * BoneVolume::kBrickVoxels);
+  squares_.resize(labels_.size());
   for_each([&](const Voxel& voxel, Key key) {
     if (is_near(key)) {
-      entries_[entry_index(table_[table_index(voxel)], voxel)] = {
-          static_cast<std::uint8_t>(key % kLabels), static_cast<std::uint16_t>(key / kLabels)};
+      const std::size_t at = entry_index(table_[table_index(voxel)], voxel);
+      labels_[at] = static_cast<std::uint8_t>(key % kLabels);
+      squares_[at] = static_cast<std::uint16_t>(key / kLabels);
     }
   });
 }
@@ -213,8 +216,8 @@ NearStructure StructureDepths::at(const Voxel& voxel) const noexcept {
       return {};
     }
   }
-  const Entry& entry = entries_[entry_index(table_[table_index(voxel)], voxel)];
-  return {entry.label, grid_.spacing * std::sqrt(static_cast<double>(entry.squared))};
+  const std::size_t at = entry_index(table_[table_index(voxel)], voxel);
+  return {labels_[at], grid_.spacing * std::sqrt(static_cast<double>(squares_[at]))};
 }
 
 std::vector<bool> all_but_bone(std::span<const Structure> structures) {

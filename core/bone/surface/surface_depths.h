@@ -34,10 +34,6 @@ class StructureDepths {
   std::size_t voxels() const noexcept { return voxels_; }  // of the model that show
 
  private:
-  struct Entry {
-    std::uint8_t label{0};
-    std::uint16_t squared{0};  // distance in voxels
-  };
   std::size_t table_index(const Voxel& voxel) const noexcept;
   static std::size_t entry_index(std::int32_t brick, const Voxel& voxel) noexcept;
 
@@ -47,7 +43,8 @@ class StructureDepths {
   std::size_t voxels_{0};
   std::array<std::int32_t, 3> table_size_{};  // in bricks of 8 x 8 x 8 voxels
   std::vector<std::int32_t> table_;           // number of a brick; 0: nothing within reach there
-  std::vector<Entry> entries_;                // 512 to a brick
+  std::vector<std::uint8_t> labels_;          // 512 to a brick; 0: nothing within reach
+  std::vector<std::uint16_t> squares_;        // likewise: squared distances in voxels
 };
 
 /// Every label but 0 and those of bone itself: structures whose name is "bone" or ends in " bone".

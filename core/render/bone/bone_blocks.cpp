@@ -1,5 +1,9 @@
 #include "core/render/bone/bone_blocks.h"
 
+#include <algorithm>
+
+#include "core/base/growth.h"
+
 namespace haptrial::render {
 namespace {
 
@@ -7,8 +11,8 @@ using bone::Voxel;
 
 /// The last of the four cells of a quad along every axis; any of its triangles has two cells that
 /// lie across.
-Voxel cell_of(const bone::Surface& surface, const bone::SurfaceTriangle& triangle) {
-  const auto cell = [&](std::size_t corner) -> const Voxel& {
+Voxel cell_of_quad(const bone::Surface& surface, const bone::SurfaceTriangle& triangle) {
+  const auto cell = [&](std::size_t corner) {
     return surface.cell_of(static_cast<std::int32_t>(triangle[corner]));
   };
   return cell(0).cwiseMax(cell(1)).cwiseMax(cell(2));
@@ -46,17 +50,17 @@ void BoneBlocks::follow(const bone::Surface& surface, const geometry::VoxelGrid&
     }
     begin(grid);
   }
-  homes_.resize(std::max(homes_.size(), surface.triangles().size() / 2));
+  resize_slowly(homes_, std::max(homes_.size(), surface.triangles().size() / 2));
   for (const std::int32_t quad : surface.changed_quads()) {
     remove(homes_[static_cast<std::size_t>(quad)]);
     const bone::SurfaceTriangle& triangle = surface.triangles()[2 * static_cast<std::size_t>(quad)];
     if (triangle[0] != triangle[1]) {
-      put(quad, cell_of(surface, triangle));
+      put(quad, cell_of_quad(surface, triangle));
     }
   }
   // All triangles at a vertex lie in the cells around its own.
   for (const std::int32_t vertex : surface.changed_vertices()) {
-    const Voxel& cell = surface.cell_of(vertex);
+    const Voxel cell = surface.cell_of(vertex);
     changed_.extend(Voxel(cell - Voxel::Ones()));
     changed_.extend(Voxel(cell + Voxel::Constant(2)));
   }
@@ -64,26 +68,37 @@ void BoneBlocks::follow(const bone::Surface& surface, const geometry::VoxelGrid&
 
 void BoneBlocks::put(std::int32_t quad, const Voxel& cell) {
   const Voxel at = (cell + Voxel::Ones()) / kEdge;
+  const Voxel within = cell + Voxel::Ones() - kEdge * at;
   const std::int32_t place = at.x() + table_size_.x() * (at.y() + table_size_.y() * at.z());
   std::vector<std::int32_t>& quads = blocks_[static_cast<std::size_t>(place)].quads;
-  homes_[static_cast<std::size_t>(quad)] = {cell, place, static_cast<std::int32_t>(quads.size())};
+  homes_[static_cast<std::size_t>(quad)] = {
+      place, static_cast<std::uint16_t>(quads.size()),
+      static_cast<std::uint16_t>(within.x() + kEdge * (within.y() + kEdge * within.z()))};
   quads.push_back(quad);
   changed_.extend(Voxel(cell - Voxel::Ones()));
   changed_.extend(Voxel(cell + Voxel::Ones()));
+}
+
+Voxel BoneBlocks::cell_of(const Home& home) const {
+  const Voxel block(home.block % table_size_.x(), home.block / table_size_.x() % table_size_.y(),
+                    home.block / (table_size_.x() * table_size_.y()));
+  const Voxel within(home.cell % kEdge, home.cell / kEdge % kEdge, home.cell / (kEdge * kEdge));
+  return kEdge * block + within - Voxel::Ones();
 }
 
 void BoneBlocks::remove(Home& home) {
   if (home.block < 0) {
     return;
   }
+  const Voxel cell = cell_of(home);
   std::vector<std::int32_t>& quads = blocks_[static_cast<std::size_t>(home.block)].quads;
   const std::int32_t last = quads.back();
   quads[static_cast<std::size_t>(home.at)] = last;
   homes_[static_cast<std::size_t>(last)].at = home.at;
   quads.pop_back();
   home.block = -1;
-  changed_.extend(Voxel(home.cell - Voxel::Ones()));
-  changed_.extend(Voxel(home.cell + Voxel::Ones()));
+  changed_.extend(Voxel(cell - Voxel::Ones()));
+  changed_.extend(Voxel(cell + Voxel::Ones()));
 }
 
 Eigen::AlignedBox3d BoneBlocks::bounds() const {

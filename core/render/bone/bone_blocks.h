@@ -32,13 +32,16 @@ class BoneBlocks {
 
  private:
   struct Home {
-    bone::Voxel cell;        // of the quad
     std::int32_t block{-1};  // -1: it is dead
-    std::int32_t at{0};      // in the block
+    std::uint16_t at{0};     // in the block
+    std::uint16_t cell{0};   // of the quad: its place in the block, x fastest
   };
+  // While quads change their slots, a block has each at most twice.
+  static_assert(2 * 3 * kEdge * kEdge * kEdge <= 65536);
   void begin(const geometry::VoxelGrid& grid);
   void put(std::int32_t quad, const bone::Voxel& cell);
   void remove(Home& home);
+  bone::Voxel cell_of(const Home& home) const;
   Eigen::AlignedBox3d box_of(const bone::Voxel& low, const bone::Voxel& high) const;
 
   geometry::VoxelGrid grid_;

@@ -100,8 +100,7 @@ void BoneObject::look(const std::vector<Eigen::Vector3d>& eyes, VisibilityWorker
   }
   worker->submit({id_,
                   generation_,
-                  eyes_,
-                  {surface_->vertices().begin(), surface_->vertices().end()},
+                  facing(surface_->vertices(), eyes_),
                   {surface_->triangles().begin(), surface_->triangles().end()}});
 }
 
@@ -131,15 +130,19 @@ std::size_t BoneObject::send(const BonePalette& palette) {
   sent += complete_.update(surface_->triangles().size(), triangles_of(surface_->changed_quads()),
                            copier(surface_->triangles()));
   if (valid_) {
-    sent += chosen_.update(visible_.triangles().size(), visible_.take_changed(),
-                           copier(visible_.triangles()));
+    sent += chosen_.update(visible_.size(), visible_.take_changed(),
+                           [&](ItemRange range, std::byte* to) {
+                             for (std::size_t i = 0; i < range.count; ++i) {
+                               copy_triangle(true, range.first + i, to, i);
+                             }
+                           });
   }
   return sent;
 }
 
 std::size_t BoneObject::draw(bool visible) const {
   const bool chosen = visible && valid_;
-  const std::size_t count = chosen ? visible_.triangles().size() : surface_->triangles().size();
+  const std::size_t count = chosen ? visible_.size() : surface_->triangles().size();
   draw_triangles(chosen ? chosen_ : complete_, count);
   return count;
 }
@@ -156,15 +159,20 @@ std::size_t BoneObject::draw(bool visible, const PixelBox& part, const Eigen::Ma
   std::sort(places_.begin(), places_.end());
   std::vector<std::uint32_t> all(places_.size());
   std::iota(all.begin(), all.end(), 0U);
-  const auto triangles = chosen ? visible_.triangles() : surface_->triangles();
   part_.update(places_.size(), std::move(all), [&](ItemRange range, std::byte* to) {
     for (std::size_t i = 0; i < range.count; ++i) {
-      std::memcpy(to + i * sizeof(bone::SurfaceTriangle), &triangles[places_[range.first + i]],
-                  sizeof(bone::SurfaceTriangle));
+      copy_triangle(chosen, places_[range.first + i], to, i);
     }
   });
   draw_triangles(part_, places_.size());
   return places_.size();
+}
+
+/// The triangle at a place of the visible array or of the complete one, as item i.
+void BoneObject::copy_triangle(bool chosen, std::size_t place, std::byte* to, std::size_t i) const {
+  const bone::SurfaceTriangle triangle =
+      chosen ? visible_.triangle(*surface_, place) : surface_->triangles()[place];
+  std::memcpy(to + i * sizeof(triangle), &triangle, sizeof(triangle));
 }
 
 void BoneObject::gather(bool chosen, std::span<const std::int32_t> quads) {

@@ -53,6 +53,7 @@ class BoneObject {
  private:
   void look(const std::vector<Eigen::Vector3d>& eyes, VisibilityWorker* worker);
   std::size_t send(const BonePalette& palette);
+  void copy_triangle(bool chosen, std::size_t place, std::byte* to, std::size_t i) const;
   void gather(bool chosen, std::span<const std::int32_t> quads);
   void draw_triangles(const GlBuffer& from, std::size_t count) const;
 

@@ -4,6 +4,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/base/growth.h"
+
 namespace haptrial::render {
 
 bool faces(const bone::SurfaceVertex& vertex, std::span<const Eigen::Vector3d> eyes) {
@@ -13,13 +15,23 @@ bool faces(const bone::SurfaceVertex& vertex, std::span<const Eigen::Vector3d> e
                      [&](const Eigen::Vector3d& eye) { return normal.dot(eye - place) > 0.0; });
 }
 
-std::vector<std::uint32_t> visible_triangles(std::span<const bone::SurfaceVertex> vertices,
-                                             std::span<const bone::SurfaceTriangle> triangles,
-                                             std::span<const Eigen::Vector3d> eyes) {
+std::vector<std::uint8_t> facing(std::span<const bone::SurfaceVertex> vertices,
+                                 std::span<const Eigen::Vector3d> eyes) {
   std::vector<std::uint8_t> facing(vertices.size());
   std::transform(vertices.begin(), vertices.end(), facing.begin(), [&](const auto& vertex) {
     return static_cast<std::uint8_t>(faces(vertex, eyes));
   });
+  return facing;
+}
+
+std::vector<std::uint32_t> visible_triangles(std::span<const bone::SurfaceVertex> vertices,
+                                             std::span<const bone::SurfaceTriangle> triangles,
+                                             std::span<const Eigen::Vector3d> eyes) {
+  return visible_triangles(facing(vertices, eyes), triangles);
+}
+
+std::vector<std::uint32_t> visible_triangles(std::span<const std::uint8_t> facing,
+                                             std::span<const bone::SurfaceTriangle> triangles) {
   std::vector<std::uint32_t> visible;
   for (std::size_t slot = 0; slot < triangles.size(); ++slot) {
     const bone::SurfaceTriangle& t = triangles[slot];
@@ -76,8 +88,7 @@ void VisibilityWorker::work() {
     jobs_.erase(jobs_.begin());
     busy_ = true;
     lock.unlock();
-    VisibilityResult result{job.id, job.generation,
-                            visible_triangles(job.vertices, job.triangles, job.eyes)};
+    VisibilityResult result{job.id, job.generation, visible_triangles(job.facing, job.triangles)};
     lock.lock();
     busy_ = false;
     results_.push_back(std::move(result));
@@ -86,14 +97,12 @@ void VisibilityWorker::work() {
 }
 
 void VisibleArray::set(const bone::Surface& surface, std::span<const std::uint32_t> triangles) {
-  triangles_.clear();
-  triangles_.reserve(triangles.size());
+  slots_.assign(triangles.begin(), triangles.end());
   place_of_slot_.assign(surface.triangles().size(), -1);
-  for (const std::uint32_t slot : triangles) {
-    place_of_slot_[slot] = static_cast<std::int32_t>(triangles_.size());
-    triangles_.push_back(surface.triangles()[slot]);
+  for (std::size_t place = 0; place < slots_.size(); ++place) {
+    place_of_slot_[triangles[place]] = static_cast<std::int32_t>(place);
   }
-  changed_.resize(triangles_.size());
+  changed_.resize(slots_.size());
   std::iota(changed_.begin(), changed_.end(), 0U);
 }
 
@@ -102,36 +111,31 @@ void VisibleArray::refresh(const bone::Surface& surface, std::int32_t quad,
   for (std::size_t half = 0; half < 2; ++half) {
     const std::size_t slot = 2 * static_cast<std::size_t>(quad) + half;
     const bone::SurfaceTriangle& t = surface.triangles()[slot];
-    const bool visible = t[0] != t[1] && std::any_of(t.begin(), t.end(), [&](std::uint32_t v) {
-                           return faces(surface.vertices()[v], eyes);
-                         });
-    put(slot, visible ? t : bone::SurfaceTriangle{0, 0, 0});
+    put(slot, t[0] != t[1] && std::any_of(t.begin(), t.end(), [&](std::uint32_t v) {
+                return faces(surface.vertices()[v], eyes);
+              }));
   }
 }
 
-void VisibleArray::put(std::size_t slot, const bone::SurfaceTriangle& triangle) {
+void VisibleArray::put(std::size_t slot, bool visible) {
   if (slot >= place_of_slot_.size()) {
-    place_of_slot_.resize(slot + 1, -1);
+    resize_slowly(place_of_slot_, slot + 1, -1);
   }
   std::int32_t& place = place_of_slot_[slot];
   if (place < 0) {
-    if (triangle[0] == triangle[1]) {
+    if (!visible) {
       return;
     }
-    place = static_cast<std::int32_t>(triangles_.size());
-    triangles_.emplace_back();
+    place = static_cast<std::int32_t>(slots_.size());
+    resize_slowly(slots_, slots_.size() + 1);
   }
-  triangles_[static_cast<std::size_t>(place)] = triangle;
+  slots_[static_cast<std::size_t>(place)] = visible ? static_cast<std::int32_t>(slot) : -1;
   changed_.push_back(static_cast<std::uint32_t>(place));
 }
 
 std::int32_t VisibleArray::place_of(std::size_t slot) const noexcept {
   const std::int32_t place = slot < place_of_slot_.size() ? place_of_slot_[slot] : -1;
-  if (place < 0) {
-    return -1;
-  }
-  const bone::SurfaceTriangle& t = triangles_[static_cast<std::size_t>(place)];
-  return t[0] == t[1] ? -1 : place;
+  return place < 0 || slots_[static_cast<std::size_t>(place)] < 0 ? -1 : place;
 }
 
 std::vector<std::uint32_t> VisibleArray::take_changed() { return std::exchange(changed_, {}); }

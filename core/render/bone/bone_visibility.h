@@ -15,10 +15,9 @@ namespace haptrial::render {
 
 /// What a visibility pass looks at: a surface as it was at an instant.
 struct VisibilityJob {
-  std::uint32_t id{0};                // of the bone
-  std::uint64_t generation{0};        // tells results of older jobs
-  std::vector<Eigen::Vector3d> eyes;  // in B [m]
-  std::vector<bone::SurfaceVertex> vertices;
+  std::uint32_t id{0};               // of the bone
+  std::uint64_t generation{0};       // tells results of older jobs
+  std::vector<std::uint8_t> facing;  // by vertex: whether it faces an eye
   std::vector<bone::SurfaceTriangle> triangles;
 };
 
@@ -31,8 +30,14 @@ struct VisibilityResult {
 /// Whether a vertex's normal is less than 90 degrees away from the direction to an eye [in B].
 bool faces(const bone::SurfaceVertex& vertex, std::span<const Eigen::Vector3d> eyes);
 
+/// By vertex: whether it faces an eye. Any thread.
+std::vector<std::uint8_t> facing(std::span<const bone::SurfaceVertex> vertices,
+                                 std::span<const Eigen::Vector3d> eyes);
+
 /// The living triangles with a vertex that faces an eye, by slot. Any thread.
 /// Source: Morris 2006, §3.2.7.
+std::vector<std::uint32_t> visible_triangles(std::span<const std::uint8_t> facing,
+                                             std::span<const bone::SurfaceTriangle> triangles);
 std::vector<std::uint32_t> visible_triangles(std::span<const bone::SurfaceVertex> vertices,
                                              std::span<const bone::SurfaceTriangle> triangles,
                                              std::span<const Eigen::Vector3d> eyes);
@@ -64,8 +69,8 @@ class VisibilityWorker {
   std::thread thread_;
 };
 
-/// The visible array of a bone: copies of the visible triangles, kept up to date while the surface
-/// changes under an eye at rest.
+/// The visible array of a bone: which triangle of the surface is at which place, kept up to date
+/// while the surface changes under an eye at rest.
 class VisibleArray {
  public:
   /// @param triangles  slots, as visible_triangles() gives them
@@ -75,17 +80,24 @@ class VisibleArray {
   void refresh(const bone::Surface& surface, std::int32_t quad,
                std::span<const Eigen::Vector3d> eyes);
 
-  std::span<const bone::SurfaceTriangle> triangles() const noexcept { return triangles_; }
-  /// Where in triangles() the triangle of a slot is, for as long as it lives; -1: it does not show.
+  std::size_t size() const noexcept { return slots_.size(); }  // places
+  /// The triangle at a place; one of three equal corners where none shows any more.
+  /// @param surface  as it was last followed
+  bone::SurfaceTriangle triangle(const bone::Surface& surface, std::size_t place) const noexcept {
+    const std::int32_t slot = slots_[place];
+    return slot < 0 ? bone::SurfaceTriangle{0, 0, 0}
+                    : surface.triangles()[static_cast<std::size_t>(slot)];
+  }
+  /// The place of the triangle of a slot, for as long as it lives; -1: it does not show.
   std::int32_t place_of(std::size_t slot) const noexcept;
-  /// Places in triangles() that changed since the last call; all after set().
+  /// Places that changed since the last call; all after set().
   std::vector<std::uint32_t> take_changed();
 
  private:
-  void put(std::size_t slot, const bone::SurfaceTriangle& triangle);
+  void put(std::size_t slot, bool visible);
 
-  std::vector<bone::SurfaceTriangle> triangles_;
-  std::vector<std::int32_t> place_of_slot_;  // -1: not among them
+  std::vector<std::int32_t> slots_;          // by place; -1: it no longer shows
+  std::vector<std::int32_t> place_of_slot_;  // -1: it never showed
   std::vector<std::uint32_t> changed_;
 };
 

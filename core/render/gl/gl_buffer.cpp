@@ -29,11 +29,12 @@ void GlBuffer::bind(Gl::Enum target) const { gl_.bind_buffer(target, name_); }
 
 std::size_t GlBuffer::update(std::size_t count, std::vector<std::uint32_t> changed,
                              const std::function<void(ItemRange, std::byte*)>& write) {
-  constexpr std::size_t kGap = 32;  // sending a few more is cheaper than another call
+  constexpr std::size_t kGap = 32;        // sending a few more is cheaper than another call
+  constexpr std::size_t kStaged = 65536;  // items copied at once
   bind(GL_ARRAY_BUFFER);
   std::vector<ItemRange> ranges;
   if (count > room_) {
-    room_ = count + count / 2;
+    room_ = count + count / 8 + kGap;
     gl_.buffer_data(GL_ARRAY_BUFFER, static_cast<std::ptrdiff_t>(room_ * item_size_), nullptr,
                     GL_DYNAMIC_DRAW);
     ranges = {{0, count}};
@@ -42,15 +43,24 @@ std::size_t GlBuffer::update(std::size_t count, std::vector<std::uint32_t> chang
     ranges = ranges_of(changed, kGap);
   }
   std::size_t sent = 0;
-  for (ItemRange range : ranges) {
-    range.count = std::min(range.count, count - range.first);
-    staged_.resize(range.count * item_size_);
-    write(range, staged_.data());
-    gl_.buffer_sub_data(GL_ARRAY_BUFFER, static_cast<std::ptrdiff_t>(range.first * item_size_),
-                        static_cast<std::ptrdiff_t>(staged_.size()), staged_.data());
-    sent += staged_.size();
+  for (const ItemRange& range : ranges) {
+    const std::size_t end = std::min(range.first + range.count, count);
+    for (std::size_t first = range.first; first < end; first += kStaged) {
+      sent += send({static_cast<std::uint32_t>(first),
+                    static_cast<std::uint32_t>(std::min(kStaged, end - first))},
+                   write);
+    }
   }
   return sent;
+}
+
+std::size_t GlBuffer::send(ItemRange range,
+                           const std::function<void(ItemRange, std::byte*)>& write) {
+  staged_.resize(range.count * item_size_);
+  write(range, staged_.data());
+  gl_.buffer_sub_data(GL_ARRAY_BUFFER, static_cast<std::ptrdiff_t>(range.first * item_size_),
+                      static_cast<std::ptrdiff_t>(staged_.size()), staged_.data());
+  return staged_.size();
 }
 
 }  // namespace haptrial::render

@@ -36,6 +36,8 @@ class GlBuffer {
                      const std::function<void(ItemRange, std::byte*)>& write);
 
  private:
+  std::size_t send(ItemRange range, const std::function<void(ItemRange, std::byte*)>& write);
+
   Gl gl_;
   std::size_t item_size_;
   Gl::Name name_{0};

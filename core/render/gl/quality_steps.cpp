@@ -5,7 +5,8 @@
 namespace haptrial::render {
 namespace {
 
-constexpr double kSlow = 1.0 / 27.0;  // mean interval from which on it is too much [s]
+// Mean interval from which on it is too much [s]: every other refresh of 60 Hz is often enough.
+constexpr double kSlow = 1.0 / 29.5;
 constexpr double kFast = 1.0 / 45.0;  // below which more may fit [s]
 constexpr double kPause = 0.5;        // an interval that says nothing: nothing was shown [s]
 constexpr int kFewFrames = 30;

@@ -12,7 +12,7 @@ enum class Quality : std::uint8_t {
 };
 
 /// Chooses how well a screen is drawn by how long its frames take: less after 30 frames that came
-/// slower than 27 a second in the mean, more after 90 that were faster than 45. What turned out to
+/// slower than 30 a second in the mean, more after 90 that were faster than 45. What turned out to
 /// be too much is tried again ever more rarely. One thread.
 class QualitySteps {
  public:

@@ -722,6 +722,8 @@ second_hand.radius | | of the opening of a tube at a second device, which sucks 
 second_hand.handle_length | | of the tube
 second_hand.rinse_reach | | of its water
 second_hand.shaft_length | | of the tube behind its end that is felt, too
+second_hand.tool_stiffness | | of the tube at the tool in the first hand; 0: they pass through each other
+second_hand.tool_damping | | by which the speed of their approach makes that contact stiffer
 second_hand.feel.first_gain | | force for an immersed volume of the tube's end just after contact
 second_hand.feel.second_gain | | the same deeper
 second_hand.feel.threshold | | immersed volume at which the gain changes

@@ -318,6 +318,8 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
   d.drilling = read_drilling(root);
   if (d.drilling.second) {
     d.simulator.tube = d.drilling.second->tube;
+    d.simulator.tube->at_tool.force_limit =
+        std::min(d.drilling.force_limit, d.drilling.second->force_limit);
     Table second = root.table("second_hand");
     if (second.has("beside")) {
       d.beside = read_vector(second, "beside", {-0.05, 0.05}, "m", d.beside);

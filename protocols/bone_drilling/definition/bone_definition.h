@@ -83,6 +83,8 @@ struct BoneDefinition : Definition {
   bool has_field() const { return simulator.heat || !simulator.bleeding.structures.empty(); }
   /// Whether a shaft is felt, a burr wears or can be reversed.
   bool has_handpiece() const;
+  /// Whether the tools of two hands push each other, which /tool_contact has.
+  bool tools_meet() const { return simulator.tube && simulator.tube->at_tool.stiffness > 0.0; }
   /// Whether a participant hears the nerve monitor in a procedure, or sees hints.
   /// @param trial  from 1; practice: 0
   bool hears_nerves(int trial, int participant) const;

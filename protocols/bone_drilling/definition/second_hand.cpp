@@ -19,6 +19,9 @@ SecondHandParameters read_second_hand(Table& table) {
     Table feel = table.table("feel");
     tube.feel = bone::read_feel_parameters(feel, tube.outer_radius());
   }
+  bone::ToolContactParameters& at_tool = tube.at_tool;
+  at_tool.stiffness = table.number_or("tool_stiffness", at_tool.stiffness, {0.0, 5000.0}, "N/m");
+  at_tool.damping = table.number_or("tool_damping", at_tool.damping, {0.0, 100.0}, "s/m");
   p.handle = read_vector(table, "handle", {-1.0, 1.0}, "");
   if (!(p.handle.norm() > 0.0)) {
     table.reject("handle", "is zero; write the direction from the tip along the handle");

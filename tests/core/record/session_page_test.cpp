@@ -70,6 +70,7 @@ TEST(SessionPageTest, TablesOfDrillings) {
   tables.push_back(&table_of<TearRow>());
   tables.push_back(&table_of<LedRow>());
   tables.push_back(&table_of<SecondHandRow>());
+  tables.push_back(&table_of<ToolContactRow>());
   tables.push_back(&table_of<BurrRow>());
   tables.push_back(&table_of<HandpieceRow>());
   tables.push_back(&table_of<OpeningRow>());

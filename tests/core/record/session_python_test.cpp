@@ -65,6 +65,7 @@ void expect_that_python_reads(bool drills) {
   own.push_back(&table_of<TearRow>());
   own.push_back(&table_of<LedRow>());
   own.push_back(&table_of<SecondHandRow>());
+  own.push_back(&table_of<ToolContactRow>());
   own.push_back(&table_of<OpeningRow>());
   own.push_back(&table_of<FieldRow>());
   own.push_back(&table_of<BurrRow>());

@@ -49,6 +49,24 @@ TEST(PaceTest, ATimerCountsWhatItMisses) {
   EXPECT_LE(static_cast<double>(periods), passed + 1.0);
 }
 
+// A picture that takes a period and a half comes after that, not after two periods.
+TEST(PaceTest, ATimerDoesNotWaitWhereAPictureIsLate) {
+  constexpr double kRate = 100.0;
+  Pace pace({kRate, false, ""});
+  std::int32_t dropped = 0;
+  double waited = 0.0;
+  constexpr int kPictures = 20;
+  for (int picture = 0; picture < kPictures; ++picture) {
+    const std::int64_t before = screen_ns();
+    pace.wait();
+    waited += picture > 0 ? 1e-9 * static_cast<double>(screen_ns() - before) : 0.0;
+    std::this_thread::sleep_for(std::chrono::milliseconds(15));
+    dropped += pace.shown(0).dropped;
+  }
+  EXPECT_LT(waited, 0.5 * kPictures * 0.005) << "a step of the timer would take 5 ms each";
+  EXPECT_GE(dropped, kPictures / 2 - 2);
+}
+
 // Where the swap waits for the refresh, the distance of two pictures tells how many had none.
 TEST(PaceTest, RefreshesWithoutAPictureAreCounted) {
   Pace pace({100.0, true, ""});

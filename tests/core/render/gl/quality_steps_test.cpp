@@ -26,6 +26,8 @@ TEST(QualityStepsTest, ASlowOneGivesUpAStepASecond) {
   EXPECT_EQ(frames_until(steps, Quality::kShaded, 0.05), 30);
   EXPECT_EQ(frames_until(steps, Quality::kPlain, 0.05), 30);
   EXPECT_EQ(frames_until(steps, Quality::kFull, 0.05), -1);
+  QualitySteps other;
+  EXPECT_EQ(frames_until(other, Quality::kShaded, 1.0 / 29.0), 30) << "less than 30 a second";
 }
 
 TEST(QualityStepsTest, WhatIsTooMuchIsTriedEverMoreRarely) {
