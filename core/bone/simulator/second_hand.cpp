@@ -61,14 +61,14 @@ TubeOutput SecondHand::tick(const BoneWorld& world, SoftTissue& soft,
 }
 
 Eigen::Vector3d SecondHand::push(std::span<const Rod> tool, const Eigen::Vector3d& velocity,
-                                 const TubeInput& input) noexcept {
+                                 const TubeInput& input, double dt) noexcept {
   if (!at_tool_.on()) {
     return Eigen::Vector3d::Zero();
   }
   const PointState& tip = input.tool.tip;
   const Rod tube{tip.position, tip.position + p_.handle_length * input.tool.axis(),
                  p_.outer_radius()};
-  return at_tool_.force(tool, tube, tip.velocity - velocity);
+  return at_tool_.force(tool, tube, tip.velocity - velocity, dt);
 }
 
 void SecondHand::place(const TubeInput& input, DustTool& tube, DustWater& water) const noexcept {

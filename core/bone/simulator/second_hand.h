@@ -59,9 +59,10 @@ class SecondHand {
   /// After the first hand's tick.
   TubeOutput tick(const BoneWorld& world, SoftTissue& soft, const TubeInput& input) noexcept;
   /// Force of the tube on the first hand's tool; the opposite acts on the tube. Zero where the two
-  /// pass through each other. @param tool  its rods  @param velocity  of its tip [m/s]
+  /// pass through each other.
+  /// @param tool  its rods  @param velocity  of its tip [m/s]  @param dt  of the tick [s]
   Eigen::Vector3d push(std::span<const Rod> tool, const Eigen::Vector3d& velocity,
-                       const TubeInput& input) noexcept;
+                       const TubeInput& input, double dt) noexcept;
   /// The first hand has another tool, or none at work.
   void leave_tool() noexcept { at_tool_.wait(); }
   /// What dust and blood have of it. @param tools  room for it

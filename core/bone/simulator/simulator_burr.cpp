@@ -163,7 +163,7 @@ void Simulator::meet(const SimulatorInput& input) noexcept {
     return;
   }
   const RodsOfTool rods = rods_of(tool(), burr_shape(), input.tool);
-  output_.pushed = second_->push(rods.all(), input.tool.tip.velocity, input.tube);
+  output_.pushed = second_->push(rods.all(), input.tool.tip.velocity, input.tube, input.dt);
 }
 
 /// Voxels of soft structures whose centres are in a ball.

@@ -78,14 +78,15 @@ ToolContact::Deepest ToolContact::deepest(std::span<const Rod> tool, const Rod& 
 }
 
 Eigen::Vector3d ToolContact::force(std::span<const Rod> tool, const Rod& other,
-                                   const Eigen::Vector3d& closing) noexcept {
+                                   const Eigen::Vector3d& closing, double held) noexcept {
   const Deepest found = deepest(tool, other);
   waits_until_free_ = waits_until_free_ && found.depth > 0.0;
   if (waits_until_free_ || found.depth <= 0.0) {
     return Eigen::Vector3d::Zero();
   }
   const double rate = closing.dot(found.normal);  // of the depth [m/s]
-  const double force = p_.stiffness * found.depth * std::max(0.0, 1.0 + p_.damping * rate);
+  const double depth = std::max(0.0, found.depth + 0.5 * held * rate);
+  const double force = p_.stiffness * depth * std::max(0.0, 1.0 + p_.damping * rate);
   return std::min(force, p_.force_limit) * found.normal;
 }
 

@@ -30,11 +30,12 @@ RodDistance distance(const Rod& first, const Rod& second) noexcept;
 /// The tool of one hand at that of the other. With the depth d of the rod that is deepest in the
 /// other hand's, and the normal n there,
 ///
-///     f = min(k d max(0, 1 + c d'), f_max) n
+///     f = min(k max(0, d + d' T / 2) max(0, 1 + c d'), f_max) n
 ///
-/// pushes the tool, and -f the other: a spring whose losses grow with its depth, so that the force
-/// is continuous where they touch and never pulls (Hunt and Crossley 1975). d' follows from the
-/// motion of the tips, where the devices push, so losses are losses there. Rods that cross go on
+/// pushes the tool, and -f the other: a spring whose losses grow with its depth (Hunt and Crossley
+/// 1975) and that never pulls. T is how long the force is held: with the depth of its middle the
+/// holding brings no energy. d' follows from the motion of the tips, where the devices push, so
+/// losses are losses there. Rods that cross go on
 /// being pushed back to the side from which they came, until their surfaces are free of each other.
 /// Tools that are in each other at first do not feel that before they have been apart.
 ///
@@ -54,8 +55,9 @@ class ToolContact {
   /// Force on the tool, in W [N].
   /// @param tool    its rods, always in the same order; those beyond kMost are not looked at
   /// @param closing  velocity of the other's tip less that of the tool's [m/s]
-  Eigen::Vector3d force(std::span<const Rod> tool, const Rod& other,
-                        const Eigen::Vector3d& closing) noexcept;
+  /// @param held     T >= 0 [s]
+  Eigen::Vector3d force(std::span<const Rod> tool, const Rod& other, const Eigen::Vector3d& closing,
+                        double held) noexcept;
 
  private:
   struct Deepest {
