@@ -4,8 +4,10 @@
 
 #include <atomic>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <thread>
+#include <vector>
 
 #include "core/base/random.h"
 #include "tests/core/bone/surface/surface_checks.h"
@@ -71,6 +73,40 @@ void carve(BoneVolume& volume, RandomStream& random) {
       volume.put(at, 0.5F);
     }
   });
+}
+
+TEST(SurfaceTest, WhatIsCountedBeforehandIsWhatABuildMakes) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    BoneVolume volume(rich_model(30 + static_cast<int>(seed), seed));
+    RandomStream random(seed, "count");
+    for (int i = 0; i < 8; ++i) {
+      carve(volume, random);
+    }
+    Surface surface;
+    surface.build(volume);
+    Occupancy occupancy;
+    occupancy.follow(volume);
+    std::vector<std::int32_t> bricks(static_cast<std::size_t>(volume.bricks()) - 1);
+    std::iota(bricks.begin(), bricks.end(), 1);
+    Remains remains;
+    remains.follow(volume, occupancy, bricks, nullptr);
+    CellField::Count all;
+    CellField field;
+    const geometry::VoxelGrid& grid = volume.grid();
+    for (int k = -CellField::kEdge; k < grid.size[2]; k += CellField::kEdge) {
+      for (int j = -CellField::kEdge; j < grid.size[1]; j += CellField::kEdge) {
+        for (int i = -CellField::kEdge; i < grid.size[0]; i += CellField::kEdge) {
+          const bool any = field.read(volume, occupancy, remains, {i, j, k});
+          const CellField::Count here = any ? field.count() : CellField::Count{};
+          all.vertices += here.vertices;
+          all.quads += here.quads;
+        }
+      }
+    }
+    EXPECT_GT(all.vertices, 100u);
+    EXPECT_EQ(all.vertices, surface.vertex_count());
+    EXPECT_EQ(2 * all.quads, surface.triangle_count());
+  }
 }
 
 TEST(SurfaceTest, AfterAnyCarvingItIsClosedAndWhatAFullBuildGives) {
