@@ -7,7 +7,7 @@
 namespace haptrial::bone {
 namespace {
 
-ToolContactParameters within_bounds(const ToolContactParameters& p) {
+ToolContactParameters accepted(const ToolContactParameters& p) {
   if (!(p.stiffness >= 0.0 && p.damping >= 0.0 && p.force_limit > 0.0)) {
     throw std::invalid_argument(
         "ToolContact: stiffness and damping are at least 0, and the force limit above 0");
@@ -49,7 +49,7 @@ RodDistance distance(const Rod& first, const Rod& second) noexcept {
   return {length, across.isZero(0.0) ? Eigen::Vector3d(Eigen::Vector3d::UnitY()) : across};
 }
 
-ToolContact::ToolContact(const ToolContactParameters& parameters) : p_(within_bounds(parameters)) {
+ToolContact::ToolContact(const ToolContactParameters& parameters) : p_(accepted(parameters)) {
   wait();
 }
 
