@@ -36,7 +36,7 @@ const fs::path& begun(const fs::path& folder, const std::string& what) {
   }
   if (file_text(folder / kWhat) != what) {
     throw InputError(
-        fmt::format("{}: holds sessions of another definition, seed or program ({} says which); "
+        fmt::format("{}: holds sessions of another definition, script, seed or program ({} says which); "
                     "choose a new folder with --parts",
                     folder.string(), kWhat));
   }

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "core/base/error.h"
+#include "core/base/fnv.h"
 #include "core/base/parallel.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/progress.h"
@@ -190,9 +191,14 @@ std::string facts_of(const protocols::Definition& definition, const DryRun& dry_
   for (const std::string& plugin : plugin_lines()) {
     plugins += "# plug-in " + plugin + "\n";
   }
-  return fmt::format("# haptrial {} ({}), dry run: seed {}, trials {}, session {}{} (0: all)\n{}{}",
-                     program_version(), program_commit(), dry_run.seed, dry_run.max_trials,
-                     dry_run.session, language, plugins, definition.text);
+  const std::string scripts =
+      definition.scripts().empty()
+          ? std::string()
+          : fmt::format("# scripts {:016x} (FNV-1a)\n", fnv1a(definition.scripts()));
+  return fmt::format(
+      "# haptrial {} ({}), dry run: seed {}, trials {}, session {}{} (0: all)\n{}{}{}",
+      program_version(), program_commit(), dry_run.seed, dry_run.max_trials, dry_run.session,
+      language, plugins, scripts, definition.text);
 }
 
 }  // namespace

@@ -82,6 +82,8 @@ struct Definition {
   virtual std::vector<std::string> warnings() const { return {}; }
   /// What a session leaves out when its participant is virtual, in sentences.
   virtual std::vector<std::string> left_out_of_dry_runs() const { return {}; }
+  /// What scripts beside it hold on which its sessions depend; empty: it has none.
+  virtual std::string scripts() const { return {}; }
   /// Time of a participant's session at most, roughly, without breaks [s]. @param trials  of it
   virtual double longest(int trials) const = 0;
 

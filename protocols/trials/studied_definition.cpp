@@ -13,4 +13,8 @@ std::vector<std::string> StudiedDefinition::description() const {
   return lines;
 }
 
+std::string StudiedDefinition::scripts() const {
+  return (script ? script->text : "") + (observer.script ? observer.script->text : "");
+}
+
 }  // namespace haptrial::protocols

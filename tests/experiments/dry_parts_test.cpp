@@ -87,14 +87,35 @@ TEST_F(DryPartsTest, OtherSessionsAreRefused) {
   const std::string one = "haptrial dry-run '" + test::shipped_definition().string() +
                           "' --subjects 1 --trials 1 " + parts;
   ASSERT_EQ(run_command(one).status, 0);
-  expect_refused(one + " --seed 2", "holds sessions of another definition, seed or program");
-  expect_refused(dry_run(parts), "holds sessions of another definition, seed or program");
+  expect_refused(one + " --seed 2",
+                 "holds sessions of another definition, script, seed or program");
+  expect_refused(dry_run(parts), "holds sessions of another definition, script, seed or program");
   expect_refused(one + " --out x", "--out is given together with --parts; leave it out");
   expect_refused(one + " --taught", "--taught is given together with --parts");
   expect_refused(one + " --frames 2", "--frames is given together with --parts");
   fs::remove(folder_ / "parts/dry-run.toml");
   expect_refused(one, "holds something else; choose a new folder with --parts");
   expect_refused(dry_run("--parts /proc/sessions"), "/proc/sessions: cannot be made");
+}
+
+TEST_F(DryPartsTest, AnotherScriptIsRefused) {
+  test::write_text(
+      folder_ / "study.toml",
+      test::read_text(HAPTRIAL_SOURCE_DIR "/experiments/stiffness_discrimination.toml") +
+          "\n[observer.script]\nfile = \"answers.py\"\n");
+  const auto says = [this](const char* answer) {
+    test::write_text(folder_ / "answers.py",
+                     "import sys\nfor line in sys.stdin:\n    print('{\"answer\": " +
+                         std::string(answer) + "}', flush=True)\n");
+  };
+  const std::string one = "haptrial dry-run " + path("study.toml") +
+                          " --subjects 1 --trials 1 --parts " + path("parts");
+  says("\"first\"");
+  const CommandResult first = run_command(one);
+  ASSERT_EQ(first.status, 0) << first.errors;
+  EXPECT_EQ(run_command(one).status, 0);
+  says("null");
+  expect_refused(one, "holds sessions of another definition, script, seed or program");
 }
 
 }  // namespace

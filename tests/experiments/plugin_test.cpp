@@ -89,7 +89,7 @@ TEST(PluginTest, APartOfADryRunKeepsToItsPlugins) {
   const CommandResult ran = run_command("haptrial " + rest);
   ASSERT_EQ(ran.status, 0) << ran.errors;
   expect_line_refused("haptrial --plugin " + stand_in("") + " " + rest,
-                      "holds sessions of another definition, seed or program");
+                      "holds sessions of another definition, script, seed or program");
 }
 
 /// A session keeps name, version and checksum; without the plug-in the sentence names it.
